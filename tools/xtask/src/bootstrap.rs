@@ -1,0 +1,121 @@
+//! Sets a Debian machine up: packages, the soft core's Rust target, the Python environment.
+
+use std::fs;
+use std::process::Command;
+
+use anyhow::{Context, Result, bail};
+
+use crate::{paths, run};
+
+/// Debian's packages, and what each is for.
+const PACKAGES: [(&str, &str); 4] = [
+    ("gcc-riscv64-unknown-elf", "compiles the LiteX BIOS"),
+    ("g++", "compiles the verilated SoC"),
+    ("make", "builds the LiteX BIOS"),
+    ("python3-venv", "holds the gateware's Python packages"),
+];
+
+/// What the soft core runs: RV32IM without an operating system.
+const RUST_TARGET: &str = "riscv32im-unknown-none-elf";
+
+/// What the Python environment holds, all pinned.
+const REQUIREMENTS: &str = "gateware/requirements.txt";
+
+/// Does what is missing and says what it could not get. Quick when nothing is.
+///
+/// # Errors
+/// Names each thing that is still missing and the command that gets it.
+pub fn bootstrap() -> Result<()> {
+    let missing: Vec<String> = [debian_packages(), rust_target(), python_environment()]
+        .into_iter()
+        .filter_map(Result::err)
+        .map(|error| format!("{error:#}"))
+        .collect();
+    if !missing.is_empty() {
+        bail!("the set-up is not complete:\n- {}", missing.join("\n- "));
+    }
+    Ok(())
+}
+
+fn debian_packages() -> Result<()> {
+    let missing: Vec<&str> = PACKAGES
+        .iter()
+        .map(|(package, _)| *package)
+        .filter(|package| !is_present(package))
+        .collect();
+    if missing.is_empty() {
+        return Ok(());
+    }
+    for (package, purpose) in PACKAGES.iter().filter(|(package, _)| missing.contains(package)) {
+        println!("  missing: {package} ({purpose})");
+    }
+    let by_hand = format!(
+        "apt-get update && apt-get install --no-install-recommends {}",
+        missing.join(" ")
+    );
+    if !run::succeeds(Command::new("sh").args(["-c", "test \"$(id -u)\" = 0"])) {
+        bail!("Debian packages: this needs root; type: sudo sh -c '{by_hand}'");
+    }
+    run::step("apt-get update", Command::new("apt-get").arg("update"))?;
+    run::step(
+        "apt-get install",
+        Command::new("apt-get")
+            .args(["install", "--yes", "--no-install-recommends"])
+            .args(&missing)
+            .env("DEBIAN_FRONTEND", "noninteractive"),
+    )
+    .with_context(|| format!("Debian packages: type: {by_hand}"))
+}
+
+/// A package counts as present when what it is for works: python3 and g++ may come from elsewhere.
+fn is_present(package: &str) -> bool {
+    match package {
+        "gcc-riscv64-unknown-elf" => {
+            run::succeeds(Command::new("riscv64-unknown-elf-gcc").arg("--version"))
+        }
+        "python3-venv" => run::succeeds(Command::new("python3").args(["-c", "import ensurepip"])),
+        program => run::succeeds(Command::new(program).arg("--version")),
+    }
+}
+
+fn rust_target() -> Result<()> {
+    let installed = Command::new("rustc")
+        .args(["--print", "target-libdir", "--target", RUST_TARGET])
+        .output()
+        .context("rustc: not found; install Rust with rustup")?;
+    let folder = String::from_utf8_lossy(&installed.stdout).trim().to_owned();
+    if fs::exists(&folder).unwrap_or(false) {
+        return Ok(());
+    }
+    run::step(
+        "rustup target add",
+        Command::new("rustup").args(["target", "add", RUST_TARGET]),
+    )
+    .with_context(|| format!("the soft core's Rust target: type: rustup target add {RUST_TARGET}"))
+}
+
+fn python_environment() -> Result<()> {
+    let supported = "import sys; sys.exit(sys.version_info < (3, 11))";
+    if !run::succeeds(Command::new("python3").args(["-c", supported])) {
+        bail!("python3: expected version 3.11 or later (Debian 12 has it)");
+    }
+    let requirements = fs::read_to_string(paths::root().join(REQUIREMENTS))
+        .with_context(|| format!("reading {REQUIREMENTS}"))?;
+    let stamp = paths::venv().join("requirements.installed");
+    if fs::read_to_string(&stamp).is_ok_and(|installed| installed == requirements) {
+        return Ok(());
+    }
+    run::step(
+        "python environment",
+        Command::new("python3").args(["-m", "venv", "--clear"]).arg(paths::venv()),
+    )
+    .context("the Python environment: Debian's package python3-venv is needed")?;
+    run::step(
+        "python packages",
+        Command::new(paths::venv_program("pip"))
+            .args(["install", "--disable-pip-version-check", "--requirement", REQUIREMENTS])
+            .current_dir(paths::root()),
+    )
+    .context("the Python packages: is PyPI reachable?")?;
+    fs::write(&stamp, requirements).with_context(|| format!("writing {}", stamp.display()))
+}

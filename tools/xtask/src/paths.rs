@@ -1,0 +1,27 @@
+//! Where things lie in the checkout.
+
+use std::path::PathBuf;
+
+/// The checkout's root.
+pub fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+        .ancestors()
+        .nth(2)
+        .expect("xtask lies two levels below the root")
+        .to_path_buf()
+}
+
+/// Where all build output goes: cargo's own target directory.
+pub fn target() -> PathBuf {
+    root().join("target")
+}
+
+/// A program of the Python environment that `cargo xtask bootstrap` makes.
+pub fn venv_program(name: &str) -> PathBuf {
+    venv().join("bin").join(name)
+}
+
+/// The Python environment.
+pub fn venv() -> PathBuf {
+    root().join(".venv")
+}

@@ -1,0 +1,114 @@
+//! Running programs: a line that moves while they work, their output only when they fail.
+
+use std::collections::VecDeque;
+use std::fs::{self, File};
+use std::io::{BufRead, BufReader, IsTerminal, Write};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result, bail};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::paths;
+
+/// Lines of output shown when a step fails; the log has them all.
+const SHOWN_ON_FAILURE: usize = 60;
+
+/// Runs `command` as the step `name`: shows its latest line while it runs, keeps all of its output in
+/// `target/log`, and prints one line with the time it took.
+///
+/// # Errors
+/// When the program cannot be started or fails; the end of its output has then been printed.
+pub fn step(name: &str, command: &mut Command) -> Result<()> {
+    let start = Instant::now();
+    let bar = spinner(name);
+    let log_path = log_path(name)?;
+    let mut log = File::create(&log_path).with_context(|| format!("creating {}", log_path.display()))?;
+    let (reader, writer) = std::io::pipe()?;
+    command
+        .stdin(Stdio::null())
+        .stdout(writer.try_clone()?)
+        .stderr(writer);
+    let program = command.get_program().to_string_lossy().into_owned();
+    let mut child = command
+        .spawn()
+        .with_context(|| format!("{name}: cannot start `{program}`"))?;
+    // The pipe ends when the child's copies of its write end are the last ones.
+    command.stdout(Stdio::null()).stderr(Stdio::null());
+    let mut tail = VecDeque::new();
+    let mut lines = BufReader::new(reader);
+    let mut raw = Vec::new();
+    while lines.read_until(b'\n', &mut raw)? > 0 {
+        log.write_all(&raw)?;
+        let line = String::from_utf8_lossy(&raw).trim_end().to_owned();
+        bar.set_message(line.chars().take(90).collect::<String>());
+        if tail.len() == SHOWN_ON_FAILURE {
+            tail.pop_front();
+        }
+        tail.push_back(line);
+        raw.clear();
+    }
+    let status = child.wait()?;
+    bar.finish_and_clear();
+    let seconds = start.elapsed().as_secs_f64();
+    if status.success() {
+        println!("  ok   {seconds:6.1} s  {name}");
+        return Ok(());
+    }
+    println!("  FAIL {seconds:6.1} s  {name}");
+    for line in &tail {
+        println!("    {line}");
+    }
+    bail!("{name} failed ({status}); all of its output is in {}", log_path.display())
+}
+
+/// Runs `command` with the terminal as its own, for programs that show their progress themselves.
+///
+/// # Errors
+/// When the program cannot be started or fails.
+pub fn foreground(name: &str, command: &mut Command) -> Result<()> {
+    let program = command.get_program().to_string_lossy().into_owned();
+    let status = command
+        .status()
+        .with_context(|| format!("{name}: cannot start `{program}`"))?;
+    if !status.success() {
+        bail!("{name} failed ({status})");
+    }
+    Ok(())
+}
+
+/// Whether `command` runs and succeeds; its output is thrown away.
+pub fn succeeds(command: &mut Command) -> bool {
+    command
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .status()
+        .is_ok_and(|status| status.success())
+}
+
+/// A spinner named `name`; where there is no terminal, a line that says what begins.
+fn spinner(name: &str) -> ProgressBar {
+    if !std::io::stderr().is_terminal() {
+        println!("  ...            {name}");
+        return ProgressBar::hidden();
+    }
+    let style = ProgressStyle::with_template("  {spinner} {elapsed:>8}  {prefix}  {msg:.dim}")
+        .expect("the template is constant and valid");
+    let bar = ProgressBar::new_spinner()
+        .with_style(style)
+        .with_prefix(name.to_owned());
+    bar.enable_steady_tick(Duration::from_millis(120));
+    bar
+}
+
+/// `target/log/NAME.log`, with NAME made fit for a file.
+fn log_path(name: &str) -> Result<std::path::PathBuf> {
+    let folder = paths::target().join("log");
+    fs::create_dir_all(&folder).with_context(|| format!("creating {}", folder.display()))?;
+    let file: String = name
+        .chars()
+        .map(|c| if c.is_ascii_alphanumeric() { c } else { '-' })
+        .collect();
+    Ok(folder.join(file).with_extension("log"))
+}
