@@ -1,0 +1,126 @@
+"""Scan-out: shows a frame in DDR3 as 1280x720 video. The work is done by rtl/scanout; this is its register block."""
+
+from pathlib import Path
+
+from litex.gen import LiteXModule
+from litex.soc.interconnect.csr import CSRField, CSRStatus, CSRStorage
+from litex.soc.interconnect.csr_eventmanager import EventManager, EventSourcePulse
+from migen import ClockSignal, Instance, Record, ResetSignal, Signal
+
+RTL = Path(__file__).resolve().parent.parent / "rtl"
+
+SOURCES = [
+    RTL / "common" / "cdc_level.sv",
+    RTL / "common" / "cdc_request.sv",
+    RTL / "scanout" / "scanout_timing.sv",
+    RTL / "scanout" / "scanout_lines.sv",
+    RTL / "scanout" / "scanout_fetch.sv",
+    RTL / "scanout" / "scanout.sv",
+]
+
+IDENT = int.from_bytes(b"SCAN", "big")
+WIDTH, HEIGHT = 1280, 720
+
+VIDEO_LAYOUT = [("hsync", 1), ("vsync", 1), ("de", 1), ("r", 8), ("g", 8), ("b", 8)]
+
+# Address bits of a 16-byte word in the CPU's 32-bit space. The memory port uses as many of the low ones as it has.
+_WORD_ADDRESS_BITS = 28
+
+
+class Scanout(LiteXModule):
+    """Reads the front RGB565 frame through `port`, a native 128-bit LiteDRAM read port in the domain `sys`.
+
+    `video` (`VIDEO_LAYOUT`) is one pixel a clock of the domain `pix`, CEA-861 1280x720, both syncs active high. It runs
+    from the moment the domain leaves reset, and is black until it is enabled.
+    """
+
+    def __init__(self, platform, port):
+        if port.data_width != 128:
+            raise ValueError(f"scan-out needs a memory port of 128 bits, got {port.data_width}")
+        self.video = Record(VIDEO_LAYOUT)
+
+        self._ident = CSRStatus(32, name="ident", reset=IDENT, description="`SCAN` in ASCII; 0 where the block is absent.")
+        self._caps = CSRStatus(name="caps", fields=[
+            CSRField("width", size=12, offset=0, reset=WIDTH, description="Pixels of an output line."),
+            CSRField("height", size=12, offset=12, reset=HEIGHT, description="Lines of an output frame."),
+            CSRField("scales", size=3, offset=24, reset=0b111,
+                     description="Bit k is set if the scale 2^k is supported."),
+        ], description="What this block can do.")
+        self._control = CSRStorage(name="control", fields=[
+            CSRField("enable", description="1 shows the frame, 0 a black picture; the syncs run on. Taken over at vblank."),
+        ], description="Operation.")
+        self._status = CSRStatus(name="status", fields=[
+            CSRField("enabled", offset=0, description="The frame is shown (`enable` as taken over at the last vblank)."),
+            CSRField("fetching", offset=1, description="A source line is being read from memory."),
+            CSRField("scale", size=3, offset=4, description="The scale in force."),
+            CSRField("error", size=2, offset=8, values=[
+                ("0", "none", "no error"),
+                ("1", "scale", "`scale` was not 1, 2 or 4 at the last vblank; the scale before it stays in force"),
+                ("2", "underflow", "a line came late in the last frame (see `underflow_count`)"),
+            ], description="What went wrong, judged anew at each vblank."),
+        ], description="State.")
+        self.ev = EventManager()
+        self.ev.vblank = EventSourcePulse(
+            name="vblank", description="The vertical blanking has begun and `fb_next`, `scale` and `control` are in force.")
+        self.ev.finalize()
+        self._fb_next = CSRStorage(32, name="fb_next", description="Byte address of the frame to show next, a multiple of "
+            "16 (the low four bits are ignored): (1280/scale) x (720/scale) pixels of RGB565, row by row. Taken over at "
+            "vblank; the whole of the next frame comes from it.")
+        self._scale = CSRStorage(3, reset=4, name="scale", description="Each pixel of the frame is shown as a square of "
+            "scale x scale: 4 for 320x180, 2 for 640x360, 1 for 1280x720. Taken over at vblank.")
+        self._fb_current = CSRStatus(32, name="fb_current", description="Byte address of the frame in force: being shown or, in "
+            "the vertical blanking, about to be. A frame that is neither this nor `fb_next` is free to be drawn on.")
+        self._frame_count = CSRStatus(32, name="frame_count", description="Vertical blankings since reset, modulo 2^32.")
+        self._underflow_count = CSRStatus(32, name="underflow_count", description="Source lines that had not come from memory "
+            "when first needed, modulo 2^32. The line before is shown again (black if there is none in the frame).")
+        self._cycles_busy = CSRStatus(32, name="cycles_busy", description="Clock cycles in which a line was being fetched, "
+            "modulo 2^32.")
+        self._cycles_stalled = CSRStatus(32, name="cycles_stalled", description="Clock cycles in which memory did not take "
+            "a command, modulo 2^32.")
+        self._items_in = CSRStatus(32, name="items_in", description="Words of 16 bytes read from memory, modulo 2^32.")
+        self._items_out = CSRStatus(32, name="items_out", description="Source lines fetched, modulo 2^32.")
+
+        # # #
+
+        enabled, fetching, error = Signal(), Signal(), Signal(2)
+        scale_current = Signal(3)
+        cmd_addr = Signal(_WORD_ADDRESS_BITS)
+        self.comb += [
+            self._status.fields.enabled.eq(enabled),
+            self._status.fields.fetching.eq(fetching),
+            self._status.fields.scale.eq(scale_current),
+            self._status.fields.error.eq(error),
+            port.cmd.we.eq(0),
+            port.cmd.addr.eq(cmd_addr),
+            port.rdata.ready.eq(1),
+        ]
+        self.specials += Instance("scanout", name="scanout_core",
+            p_ADDRESS_BITS    = _WORD_ADDRESS_BITS,
+            i_sys_clk         = ClockSignal("sys"),
+            i_sys_rst         = ResetSignal("sys"),
+            i_pix_clk         = ClockSignal("pix"),
+            i_pix_rst         = ResetSignal("pix"),
+            i_enable          = self._control.fields.enable,
+            i_scale           = self._scale.storage,
+            i_frame_base      = self._fb_next.storage[4:],
+            o_enabled         = enabled,
+            o_scale_current   = scale_current,
+            o_frame_current   = self._fb_current.status[4:],
+            o_fetching        = fetching,
+            o_error           = error,
+            o_vblank          = self.ev.vblank.trigger,
+            o_frames          = self._frame_count.status,
+            o_underflows      = self._underflow_count.status,
+            o_cycles_busy     = self._cycles_busy.status,
+            o_cycles_stalled  = self._cycles_stalled.status,
+            o_items_in        = self._items_in.status,
+            o_items_out       = self._items_out.status,
+            o_cmd_valid       = port.cmd.valid,
+            i_cmd_ready       = port.cmd.ready,
+            o_cmd_addr        = cmd_addr,
+            i_rdata_valid     = port.rdata.valid,
+            i_rdata           = port.rdata.data,
+            **{f"o_video_{name}": getattr(self.video, name) for name, _ in VIDEO_LAYOUT},
+        )
+        for source in SOURCES:
+            platform.add_source(str(source))

@@ -1,0 +1,48 @@
+// A request from one clock domain to another and its completion back, as a four-phase handshake of two levels.
+//
+//   start ──▶ request (level, until done) ──▶ done ──▶ finished (one clock) ──▶ busy falls
+//
+// Payload travels beside it on plain registers: what the source sends must be stable from `start` until `finished`,
+// what the destination answers must be set at the latest in the clock of `done` and be stable until the next
+// `request`. Both have then been still for at least one receiving clock before they are used.
+//
+// Levels, not toggles, because the two sides may be reset apart: a destination that forgets a request sees it again,
+// a source that forgets one takes it back. One request at a time; `start` is ignored while `busy`.
+// Latency of a round trip: about 3 clocks of each side, plus the work.
+
+`default_nettype none
+
+module cdc_request (
+    input  wire  src_clk,
+    input  wire  src_rst,
+    input  wire  src_start,
+    output logic src_busy,
+    output logic src_finished,
+
+    input  wire  dst_clk,
+    input  wire  dst_rst,
+    output logic dst_request,
+    input  wire  dst_done
+);
+    logic asked, asked_synced;
+    logic answered, answered_synced;
+
+    always_ff @(posedge src_clk) begin
+        if (src_rst || answered_synced)     asked <= 1'b0;
+        else if (src_start && !src_busy) asked <= 1'b1;
+    end
+
+    always_ff @(posedge dst_clk) begin
+        if (dst_rst || !asked_synced) answered <= 1'b0;
+        else if (dst_done)            answered <= 1'b1;
+    end
+
+    cdc_level to_destination (.clk(dst_clk), .level(asked),    .synced(asked_synced));
+    cdc_level to_source      (.clk(src_clk), .level(answered), .synced(answered_synced));
+
+    assign src_busy     = asked || answered_synced;
+    assign src_finished = asked && answered_synced;
+    assign dst_request  = asked_synced && !answered;
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,229 @@
+// Scan-out: shows an RGB565 frame in memory as 1280x720 video, enlarged 4, 2 or 1 times by repeating pixels and lines.
+//
+//            sys_clk                                             pix_clk
+//   memory ─▶ scanout_fetch ─▶ line ring, 2 slots of 160 words ─▶ pixel ─▶ 565 to 888 ─▶ video
+//                  ▲                                                ▲
+//                  └──────────── one source line at a time ◀── scanout_lines ◀── scanout_timing
+//
+// Once a frame, when the vertical blanking begins, the sys side takes over `frame_base`, `scale` and `enable`, counts
+// the frame and pulses `vblank`; the pix side asks for line 0 only after that. So a frame comes from one base as a
+// whole. The raster never stops and never waits: a line that is late is replaced by the one before it and counted.
+//
+// Throughput: one pixel a pix_clk, at most one memory word a sys_clk. Latency: 3 pix_clk from the raster to the video
+// outputs; a source line is asked for one to `scale` output lines before its first use.
+// Crossings: three four-phase requests with stable payload (cdc_request), one level, and the line ring, whose slots are
+// written and read at different times by the protocol of scanout_lines.
+
+`default_nettype none
+
+module scanout #(
+    parameter int unsigned ADDRESS_BITS = 23,
+    parameter int unsigned H_ACTIVE     = 1280, // a multiple of 32
+    parameter int unsigned H_FRONT      = 110,  // at least the latency
+    parameter int unsigned H_SYNC       = 40,
+    parameter int unsigned H_BACK       = 220,
+    parameter int unsigned V_ACTIVE     = 720,  // a multiple of 4
+    parameter int unsigned V_FRONT      = 5,
+    parameter int unsigned V_SYNC       = 5,
+    parameter int unsigned V_BACK       = 20
+) (
+    input  wire                     sys_clk,
+    input  wire                     sys_rst,
+    input  wire                     pix_clk,
+    input  wire                     pix_rst,
+    // Asked for by software; taken over at vblank. The base is in words of 16 bytes, the scale 4, 2 or 1.
+    input  wire                     enable,
+    input  wire  [2:0]              scale,
+    input  wire  [ADDRESS_BITS-1:0] frame_base,
+    // In force.
+    output logic                    enabled,
+    output logic [2:0]              scale_current,
+    output logic [ADDRESS_BITS-1:0] frame_current,
+    output logic                    fetching,
+    output logic [1:0]              error,      // of the last frame: 0 none, 1 no such scale, 2 underflow
+    output logic                    vblank,     // one clock
+    // Free-running counters.
+    output logic [31:0]             frames,
+    output logic [31:0]             underflows,
+    output logic [31:0]             cycles_busy,
+    output logic [31:0]             cycles_stalled,
+    output logic [31:0]             items_in,   // memory words
+    output logic [31:0]             items_out,  // source lines
+    // Memory: LiteDRAM native read port, 128 bits.
+    output logic                    cmd_valid,
+    input  wire                     cmd_ready,
+    output logic [ADDRESS_BITS-1:0] cmd_addr,
+    input  wire                     rdata_valid,
+    input  wire  [127:0]            rdata,
+    // Video, in pix_clk.
+    output logic                    video_hsync,
+    output logic                    video_vsync,
+    output logic                    video_de,
+    output logic [7:0]              video_r,
+    output logic [7:0]              video_g,
+    output logic [7:0]              video_b
+);
+    localparam int unsigned LINE_WORDS = H_ACTIVE / 8;
+    localparam int unsigned WORD_BITS  = $clog2(LINE_WORDS + 1);
+    localparam int unsigned X_BITS     = $clog2(H_ACTIVE + H_FRONT + H_SYNC + H_BACK);
+    localparam int unsigned Y_BITS     = $clog2(V_ACTIVE + V_FRONT + V_SYNC + V_BACK);
+
+    // ---- Crossings ----------------------------------------------------------------------------------------------
+
+    /* verilator lint_off PINCONNECTEMPTY */ // Not every request needs both ends of its life.
+    logic pix_vblank, pix_frame_begun, sys_vblank;
+    cdc_request cross_vblank (
+        .src_clk(pix_clk), .src_rst(pix_rst), .src_start(pix_vblank), .src_busy(), .src_finished(pix_frame_begun),
+        .dst_clk(sys_clk), .dst_rst(sys_rst), .dst_request(sys_vblank), .dst_done(sys_vblank)
+    );
+
+    logic pix_fetch, pix_fetch_busy, sys_fetch, sys_fetch_done;
+    cdc_request cross_fetch (
+        .src_clk(pix_clk), .src_rst(pix_rst), .src_start(pix_fetch), .src_busy(pix_fetch_busy), .src_finished(),
+        .dst_clk(sys_clk), .dst_rst(sys_rst), .dst_request(sys_fetch), .dst_done(sys_fetch_done)
+    );
+
+    logic pix_underflow, sys_underflow;
+    cdc_request cross_underflow (
+        .src_clk(pix_clk), .src_rst(pix_rst), .src_start(pix_underflow), .src_busy(), .src_finished(),
+        .dst_clk(sys_clk), .dst_rst(sys_rst), .dst_request(sys_underflow), .dst_done(sys_underflow)
+    );
+
+    /* verilator lint_on PINCONNECTEMPTY */
+
+    // As a level, so that a reset of the sys side blacks the screen at once.
+    logic pix_enabled;
+    cdc_level cross_enabled (.clk(pix_clk), .level(enabled), .synced(pix_enabled));
+
+    // ---- Frame parameters and counters (sys) --------------------------------------------------------------------
+
+    logic [1:0] shift, shift_asked;
+    logic       scale_known, underflow_seen;
+
+    always_comb begin
+        scale_known = 1'b1;
+        shift_asked = 2'd0;
+        case (scale)
+            3'd1:    shift_asked = 2'd0;
+            3'd2:    shift_asked = 2'd1;
+            3'd4:    shift_asked = 2'd2;
+            default: scale_known = 1'b0;
+        endcase
+    end
+
+    assign vblank        = sys_vblank;
+    assign scale_current = 3'd1 << shift;
+
+    always_ff @(posedge sys_clk) begin
+        if (sys_vblank) begin
+            enabled        <= enable;
+            frame_current  <= frame_base;
+            if (scale_known) shift <= shift_asked;
+            error          <= !scale_known ? 2'd1 : underflow_seen ? 2'd2 : 2'd0;
+            underflow_seen <= 1'b0;
+        end
+        if (sys_underflow) underflow_seen <= 1'b1;
+
+        frames         <= frames         + 32'(sys_vblank);
+        underflows     <= underflows     + 32'(sys_underflow);
+        cycles_busy    <= cycles_busy    + 32'(fetching);
+        cycles_stalled <= cycles_stalled + 32'(cmd_valid && !cmd_ready);
+        items_in       <= items_in       + 32'(store);
+        items_out      <= items_out      + 32'(sys_fetch_done && enabled);
+
+        if (sys_rst) begin
+            enabled        <= 1'b0;
+            frame_current  <= '0;
+            shift          <= 2'd2;
+            error          <= 2'd0;
+            underflow_seen <= 1'b0;
+            frames         <= '0;
+            underflows     <= '0;
+            cycles_busy    <= '0;
+            cycles_stalled <= '0;
+            items_in       <= '0;
+            items_out      <= '0;
+        end
+    end
+
+    // ---- Fetch (sys) --------------------------------------------------------------------------------------------
+
+    logic                 store, store_slot;
+    logic [WORD_BITS-1:0] store_word;
+    logic [Y_BITS-1:0]    pix_fetch_line;
+    logic                 pix_fetch_slot;
+
+    scanout_fetch #(.ADDRESS_BITS(ADDRESS_BITS), .LINE_WORDS(LINE_WORDS), .Y_BITS(Y_BITS)) fetch (
+        .clk(sys_clk), .rst(sys_rst),
+        .enable(enabled), .base(frame_current), .shift,
+        .request(sys_fetch), .line(pix_fetch_line), .slot(pix_fetch_slot), .done(sys_fetch_done), .busy(fetching),
+        .cmd_valid, .cmd_ready, .cmd_addr, .rdata_valid,
+        .store, .store_slot, .store_word
+    );
+
+    // ---- Line ring (written by sys, read by pix) ----------------------------------------------------------------
+
+    logic [127:0]         ring [0:2*(1 << WORD_BITS)-1];
+    logic [127:0]         ring_word;
+    logic [WORD_BITS:0]   ring_address;
+
+    always_ff @(posedge sys_clk) if (store) ring[{store_slot, store_word}] <= rdata;
+    always_ff @(posedge pix_clk) ring_word <= ring[ring_address];
+
+    // ---- Raster and ring control (pix) --------------------------------------------------------------------------
+
+    logic [X_BITS-1:0] x;
+    logic              active, hsync, vsync, tick;
+    logic [Y_BITS-1:0] tick_line;
+
+    scanout_timing #(
+        .H_ACTIVE(H_ACTIVE), .H_FRONT(H_FRONT), .H_SYNC(H_SYNC), .H_BACK(H_BACK),
+        .V_ACTIVE(V_ACTIVE), .V_FRONT(V_FRONT), .V_SYNC(V_SYNC), .V_BACK(V_BACK)
+    ) timing (.clk(pix_clk), .rst(pix_rst), .x, .active, .hsync, .vsync, .tick, .tick_line);
+
+    logic [1:0] pix_shift;
+    logic       shown, shown_slot;
+
+    always_ff @(posedge pix_clk) if (pix_frame_begun) pix_shift <= shift;
+
+    scanout_lines #(.V_ACTIVE(V_ACTIVE), .Y_BITS(Y_BITS)) lines (
+        .clk(pix_clk), .rst(pix_rst), .enabled(pix_enabled), .shift(pix_shift),
+        .tick, .tick_line,
+        .vblank(pix_vblank), .frame_begun(pix_frame_begun),
+        .fetch(pix_fetch), .fetch_line(pix_fetch_line), .fetch_slot(pix_fetch_slot), .fetch_busy(pix_fetch_busy),
+        .shown, .shown_slot, .underflow(pix_underflow)
+    );
+
+    // ---- Pixels (pix): address, ring, select --------------------------------------------------------------------
+
+    logic [X_BITS-1:0] source_x;
+    logic [2:0]        lane_1, lane_2;
+    logic [2:0]        sync_1, sync_2; // hsync, vsync, active
+    logic [15:0]       pixel;
+
+    assign source_x = x >> pix_shift;
+    assign pixel    = ring_word[16*lane_2 +: 16];
+
+    always_ff @(posedge pix_clk) begin
+        ring_address <= {shown_slot, source_x[3 +: WORD_BITS]};
+        lane_1       <= source_x[2:0];
+        sync_1       <= {hsync, vsync, active};
+        lane_2       <= lane_1;
+        sync_2       <= sync_1;
+
+        {video_hsync, video_vsync, video_de} <= sync_2;
+        // Replicating the top bits maps 31 and 63 to 255.
+        video_r <= {pixel[15:11], pixel[15:13]};
+        video_g <= {pixel[10:5],  pixel[10:9]};
+        video_b <= {pixel[4:0],   pixel[4:2]};
+        if (!sync_2[0] || !shown || !pix_enabled) {video_r, video_g, video_b} <= '0;
+
+        if (pix_rst) begin
+            sync_1 <= '0;
+            sync_2 <= '0;
+            {video_hsync, video_vsync, video_de} <= '0;
+        end
+    end
+endmodule
+
+`default_nettype wire

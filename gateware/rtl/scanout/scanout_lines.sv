@@ -1,0 +1,106 @@
+// The line ring's keeper: which of the two slots is shown, and which source line is fetched into the other.
+//
+// Decided once an output line, at the tick (the leading edge of hsync, when the last pixel has left):
+//
+//   1. the hidden slot holds the source line the next output line needs: the slots change places;
+//   2. it does not, and this is the line's first use: an underflow. The shown slot is shown again, or black where this
+//      frame has shown nothing yet. Later output lines of the same source line look again;
+//   3. the hidden slot is free: the source line after the needed one is asked for, whatever was missed. During the
+//      vertical blanking that is line 0, as soon as the frame's parameters have come (`frame_begun`).
+//
+// A slot is written only while it is hidden, and a frame shows only lines that were asked for after its vblank, so
+// what is on the screen never mixes frames. A fetch that takes long delays fetches, never the raster.
+// `want_line`, `want_slot` are stable from `fetch` until `fetch_busy` falls.
+
+`default_nettype none
+
+module scanout_lines #(
+    parameter int unsigned V_ACTIVE = 720,
+    parameter int unsigned Y_BITS   = 10
+) (
+    input  wire               clk,
+    input  wire               rst,
+    input  wire               enabled,
+    input  wire  [1:0]        shift,
+    // Raster.
+    input  wire               tick,
+    input  wire  [Y_BITS-1:0] tick_line,
+    // Frame: vblank has begun; its parameters are there.
+    output logic              vblank,
+    input  wire               frame_begun,
+    // Fetches.
+    output logic              fetch,
+    output logic [Y_BITS-1:0] fetch_line,
+    output logic              fetch_slot,
+    input  wire               fetch_busy,
+    // Picture.
+    output logic              shown,
+    output logic              shown_slot,
+    output logic              underflow
+);
+    // The source line that the coming output line shows, and the one after it.
+    logic [Y_BITS-1:0] needed, next, group_mask;
+    logic              in_picture, first_use, next_exists;
+
+    always_comb begin
+        in_picture  = tick_line < Y_BITS'(V_ACTIVE);
+        group_mask  = ~({Y_BITS{1'b1}} << shift);
+        first_use   = (tick_line & group_mask) == '0;
+        needed      = tick_line >> shift;
+        next        = in_picture ? needed + 1'b1 : '0;
+        next_exists = next < (Y_BITS'(V_ACTIVE) >> shift);
+    end
+
+    // Of the hidden slot: a fetch into it was asked for in this frame.
+    logic frame_open, hidden_asked, hidden_ready;
+    assign hidden_ready = hidden_asked && !fetch_busy && fetch_line == needed && in_picture;
+
+    // Step 3 comes a clock after steps 1 and 2, so that it sees their outcome.
+    logic              decide;
+    logic [Y_BITS-1:0] decide_line;
+    logic              decide_exists;
+
+    always_ff @(posedge clk) begin
+        vblank        <= 1'b0;
+        fetch         <= 1'b0;
+        underflow     <= 1'b0;
+        decide        <= tick;
+        decide_line   <= next;
+        decide_exists <= next_exists;
+
+        if (frame_begun) frame_open <= 1'b1;
+
+        if (tick && hidden_ready) begin
+            shown        <= 1'b1;
+            shown_slot   <= !shown_slot;
+            hidden_asked <= 1'b0;
+        end
+        if (tick && in_picture && first_use && !hidden_ready) underflow <= enabled;
+
+        if (tick && tick_line == Y_BITS'(V_ACTIVE)) begin
+            vblank       <= 1'b1;
+            frame_open   <= 1'b0;
+            shown        <= 1'b0;
+            hidden_asked <= 1'b0;
+        end else if (decide && enabled && frame_open && decide_exists && !fetch_busy
+                     && !(hidden_asked && fetch_line == decide_line)) begin
+            fetch        <= 1'b1;
+            fetch_line   <= decide_line;
+            fetch_slot   <= !shown_slot;
+            hidden_asked <= 1'b1;
+        end
+
+        if (rst) begin
+            vblank       <= 1'b0;
+            fetch        <= 1'b0;
+            underflow    <= 1'b0;
+            decide       <= 1'b0;
+            frame_open   <= 1'b0;
+            shown        <= 1'b0;
+            shown_slot   <= 1'b0;
+            hidden_asked <= 1'b0;
+        end
+    end
+endmodule
+
+`default_nettype wire
