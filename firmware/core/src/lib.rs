@@ -1,3 +1,18 @@
-//! Cameras, sines, mesh and wire formats and the console's grammar.
+//! Cameras, sines, mesh and wire formats and the console's grammar: what the firmware and the host share.
+//!
+//! Everything here is integer arithmetic without allocation, and no input makes it panic.
 #![no_std]
 #![forbid(unsafe_code)]
+
+#[cfg(feature = "alloc")]
+extern crate alloc;
+#[cfg(test)]
+extern crate std;
+
+pub mod camera;
+pub mod colour;
+pub mod console;
+pub mod fixed;
+pub mod mesh;
+pub mod trig;
+pub mod wire;

@@ -1,0 +1,339 @@
+//! The one camera type, whatever drives it.
+//!
+//! A camera is an eye and an orthonormal basis: `u` to the right of the screen, `v` down, `n` forward into the
+//! scene, with u × v = n. The world is right-handed with z up. A [`View`] can only be made through checks, so
+//! that what follows may rely on its ranges.
+
+use core::fmt;
+
+use crate::fixed::{Q2_23, Q32_32, Turns, U4_28};
+use crate::trig::sin_cos_q30;
+
+/// The half width of the image plane at distance 1 that cameras driven by angles have: 0.9.
+pub const DEFAULT_HALF_WIDTH: U4_28 = U4_28::lit("0.9");
+/// The near plane that cameras driven by angles have: 0.1.
+pub const DEFAULT_NEAR: U4_28 = U4_28::lit("0.1");
+
+/// The farthest an eye may be from the origin.
+pub const MAX_EYE: u32 = 8;
+/// The half widths that are accepted.
+pub const HALF_WIDTH: [U4_28; 2] = [U4_28::lit("0.05"), U4_28::lit("4")];
+/// The near planes that are accepted.
+pub const NEAR: [U4_28; 2] = [U4_28::lit("0.01"), U4_28::lit("2")];
+/// The radii of the spherical camera.
+pub const RADIUS: [Q32_32; 2] = [Q32_32::lit("2"), Q32_32::lit("5")];
+
+/// A vector in 2^−60.
+type Exact = [i64; 3];
+
+/// A camera that has been checked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct View {
+    eye: [Q32_32; 3],
+    u: [Q2_23; 3],
+    v: [Q2_23; 3],
+    n: [Q2_23; 3],
+    half_width: U4_28,
+    near: U4_28,
+}
+
+impl View {
+    /// Makes a camera of its numbers.
+    ///
+    /// The basis must be orthonormal within 1e-4 (lengths and scalar products) with u × v = n; it is kept as it is. The
+    /// eye must be within 8 of the origin, `half_width` in [0.05, 4] and `near` in [0.01, 2].
+    ///
+    /// # Errors
+    /// The first condition that does not hold.
+    pub fn new_checked(
+        eye: [Q32_32; 3],
+        u: [Q2_23; 3],
+        v: [Q2_23; 3],
+        n: [Q2_23; 3],
+        half_width: U4_28,
+        near: U4_28,
+    ) -> Result<Self, ViewError> {
+        check_eye(eye)?;
+        check_basis(u, v, n)?;
+        if !(HALF_WIDTH[0]..=HALF_WIDTH[1]).contains(&half_width) {
+            return Err(ViewError::HalfWidth(half_width));
+        }
+        if !(NEAR[0]..=NEAR[1]).contains(&near) {
+            return Err(ViewError::Near(near));
+        }
+        Ok(Self {
+            eye,
+            u,
+            v,
+            n,
+            half_width,
+            near,
+        })
+    }
+
+    /// The camera on a sphere about the origin that looks at its centre.
+    ///
+    /// C = r·(sin φ cos θ, sin φ sin θ, cos φ), u = (−sin θ, cos θ, 0), v = (cos φ cos θ, cos φ sin θ, −sin φ),
+    /// n = −C/r. `theta` is the azimuth and `phi` the angle from the z axis, at most half a turn; at the poles the basis
+    /// follows from `theta`, so nothing is singular. The eye is exact to 2^−32, each number of the basis to 2^−24 (both
+    /// for the sines of [`sin_cos_q30`]).
+    ///
+    /// # Errors
+    /// When `r` is outside [2, 5] or `phi` beyond half a turn.
+    pub fn spherical(r: Q32_32, theta: Turns, phi: Turns) -> Result<Self, ViewError> {
+        if !(RADIUS[0]..=RADIUS[1]).contains(&r) {
+            return Err(ViewError::Radius(r));
+        }
+        if phi > Turns::HALF {
+            return Err(ViewError::Polar(phi));
+        }
+        let (st, ct) = sines(theta);
+        let (sp, cp) = sines(phi);
+        let outward = [sp * ct, sp * st, cp << 30];
+        Ok(Self {
+            eye: outward.map(|x| scaled(r, x)),
+            u: rounded([-st << 30, ct << 30, 0]),
+            v: rounded([cp * ct, cp * st, -sp << 30]),
+            n: rounded(outward.map(|x| -x)),
+            half_width: DEFAULT_HALF_WIDTH,
+            near: DEFAULT_NEAR,
+        })
+    }
+
+    /// The free camera: an eye and three angles, yaw to the right, pitch downwards, roll.
+    ///
+    /// In a left-handed frame (x right, y up, z forward) R = (cos y, 0, −sin y), U = (sin p sin y, cos p, sin p cos y),
+    /// F = (cos p sin y, −sin p, cos p cos y), R' = R cos r + U sin r, U' = −R sin r + U cos r. With P the swap of y and z
+    /// that makes it Glint's frame, u = P·R', v = −P·U', n = P·F: with all angles 0 the camera looks along +y.
+    ///
+    /// # Errors
+    /// When the eye is more than 8 from the origin.
+    pub fn look(
+        eye: [Q32_32; 3],
+        yaw: Turns,
+        pitch: Turns,
+        roll: Turns,
+    ) -> Result<Self, ViewError> {
+        check_eye(eye)?;
+        let (sy, cy) = sines(yaw);
+        let (sp, cp) = sines(pitch);
+        let (sr, cr) = sines(roll);
+        let right = [cy, 0, -sy];
+        let up = [narrow(sp * sy), cp, narrow(sp * cy)];
+        let forward = [cp * sy, -sp << 30, cp * cy];
+        let rolled = |a: i64, b: i64| -> Exact { [0, 1, 2].map(|i| right[i] * a + up[i] * b) };
+        let swapped = |[x, y, z]: Exact| [x, z, y];
+        Ok(Self {
+            eye,
+            u: rounded(swapped(rolled(cr, sr))),
+            v: rounded(swapped(rolled(sr, -cr))),
+            n: rounded(swapped(forward)),
+            half_width: DEFAULT_HALF_WIDTH,
+            near: DEFAULT_NEAR,
+        })
+    }
+
+    /// The eye, at most 8 from the origin.
+    pub const fn eye(&self) -> [Q32_32; 3] {
+        self.eye
+    }
+
+    /// The direction to the right of the screen.
+    pub const fn u(&self) -> [Q2_23; 3] {
+        self.u
+    }
+
+    /// The direction down the screen.
+    pub const fn v(&self) -> [Q2_23; 3] {
+        self.v
+    }
+
+    /// The direction into the scene.
+    pub const fn n(&self) -> [Q2_23; 3] {
+        self.n
+    }
+
+    /// Half the width of the image plane at distance 1, in [0.05, 4].
+    pub const fn half_width(&self) -> U4_28 {
+        self.half_width
+    }
+
+    /// The distance of the near plane along `n`, in [0.01, 2].
+    pub const fn near(&self) -> U4_28 {
+        self.near
+    }
+}
+
+/// Sine and cosine in 2^−30; the products of two are below 2^61.
+fn sines(angle: Turns) -> (i64, i64) {
+    let (sin, cos) = sin_cos_q30(angle);
+    (sin.to_bits().into(), cos.to_bits().into())
+}
+
+/// 2^−60 to 2^−30, nearest.
+const fn narrow(x: i64) -> i64 {
+    (x + (1 << 29)) >> 30
+}
+
+/// 2^−60 to 2^−23, nearest. The value is at most 1 and a rounding error.
+fn rounded(x: Exact) -> [Q2_23; 3] {
+    x.map(|x| Q2_23::from_bits(((x + (1 << 36)) >> 37) as i32))
+}
+
+/// r·x with x in 2^−60, nearest. |r| ≤ 5 and |x| ≤ 1, so the result fits.
+fn scaled(r: Q32_32, x: i64) -> Q32_32 {
+    Q32_32::from_bits(((i128::from(r.to_bits()) * i128::from(x) + (1 << 59)) >> 60) as i64)
+}
+
+fn check_eye(eye: [Q32_32; 3]) -> Result<(), ViewError> {
+    let limit = i128::from(MAX_EYE) << 32;
+    // Three squares of 64-bit numbers do not overflow 128 bits.
+    let squared: i128 = eye.map(|x| i128::from(x.to_bits()).pow(2)).iter().sum();
+    if squared <= limit.pow(2) {
+        Ok(())
+    } else {
+        Err(ViewError::Eye(eye))
+    }
+}
+
+fn check_basis(u: [Q2_23; 3], v: [Q2_23; 3], n: [Q2_23; 3]) -> Result<(), ViewError> {
+    const ONE: i64 = 1 << 46;
+    // 1e-4 and its square, in 2^−46.
+    const TOLERANCE: i64 = ONE / 10_000;
+    const SQUARE: i64 = ONE / 100_000_000;
+
+    let rows = [(Axis::U, u), (Axis::V, v), (Axis::N, n)];
+    for (axis, row) in rows {
+        // Within ±2 the sums below cannot overflow.
+        let squared = row
+            .iter()
+            .all(|x| x.unsigned_abs() < 2)
+            .then(|| dot(row, row));
+        match squared {
+            Some(squared) if (squared - ONE - SQUARE).abs() <= 2 * TOLERANCE => {}
+            _ => return Err(ViewError::Length { axis, row }),
+        }
+    }
+    for [(a, row), (b, other)] in [[rows[0], rows[1]], [rows[1], rows[2]], [rows[2], rows[0]]] {
+        let product = dot(row, other);
+        if product.abs() > TOLERANCE {
+            return Err(ViewError::NotPerpendicular {
+                a,
+                b,
+                product: Q2_23::from_bits(narrow_product(product)),
+            });
+        }
+    }
+    // The rows are orthonormal, so u × v is n or −n and the sign of one product tells.
+    let cross = [[1, 2], [2, 0], [0, 1]].map(|[i, j]| {
+        let (a, b) = (
+            i64::from(u[i].to_bits()) * i64::from(v[j].to_bits()),
+            i64::from(u[j].to_bits()) * i64::from(v[i].to_bits()),
+        );
+        Q2_23::from_bits(narrow_product(a - b))
+    });
+    if dot(cross, n) > 0 {
+        Ok(())
+    } else {
+        Err(ViewError::Mirrored)
+    }
+}
+
+/// The scalar product in 2^−46; exact for numbers within ±2.
+fn dot(a: [Q2_23; 3], b: [Q2_23; 3]) -> i64 {
+    core::iter::zip(a, b)
+        .map(|(a, b)| i64::from(a.to_bits()) * i64::from(b.to_bits()))
+        .sum()
+}
+
+/// 2^−46 to 2^−23, rounded down.
+const fn narrow_product(x: i64) -> i32 {
+    (x >> 23) as i32
+}
+
+/// A row of the basis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axis {
+    /// To the right of the screen.
+    U,
+    /// Down the screen.
+    V,
+    /// Into the scene.
+    N,
+}
+
+impl fmt::Display for Axis {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Self::U => "u",
+            Self::V => "v",
+            Self::N => "n",
+        })
+    }
+}
+
+/// Why numbers are not a camera.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ViewError {
+    /// The eye is too far from the origin.
+    Eye([Q32_32; 3]),
+    /// A row of the basis is not of length 1 within 1e-4.
+    Length {
+        /// Which row.
+        axis: Axis,
+        /// What it is.
+        row: [Q2_23; 3],
+    },
+    /// Two rows have a scalar product beyond 1e-4.
+    NotPerpendicular {
+        /// One row.
+        a: Axis,
+        /// The other.
+        b: Axis,
+        /// Their scalar product.
+        product: Q2_23,
+    },
+    /// The basis is orthonormal but u × v = −n.
+    Mirrored,
+    /// The half width is out of range.
+    HalfWidth(U4_28),
+    /// The near plane is out of range.
+    Near(U4_28),
+    /// The radius of a spherical camera is out of range.
+    Radius(Q32_32),
+    /// The polar angle of a spherical camera is out of range.
+    Polar(Turns),
+}
+
+impl fmt::Display for ViewError {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Eye([x, y, z]) => write!(
+                f,
+                "eye ({x}, {y}, {z}): expected within {MAX_EYE} of the origin"
+            ),
+            Self::Length {
+                axis,
+                row: [x, y, z],
+            } => {
+                write!(f, "{axis} = ({x}, {y}, {z}): expected length 1 within 1e-4")
+            }
+            Self::NotPerpendicular { a, b, product } => {
+                write!(f, "{a}·{b} = {product}: expected 0 within 1e-4")
+            }
+            Self::Mirrored => {
+                f.write_str("u × v = −n: expected u × v = n (u right, v down, n forward)")
+            }
+            Self::HalfWidth(x) => write!(
+                f,
+                "half_width {x}: expected {} to {}",
+                HALF_WIDTH[0], HALF_WIDTH[1]
+            ),
+            Self::Near(x) => write!(f, "near {x}: expected {} to {}", NEAR[0], NEAR[1]),
+            Self::Radius(r) => write!(f, "radius {r}: expected {} to {}", RADIUS[0], RADIUS[1]),
+            Self::Polar(phi) => write!(f, "phi {} degrees: expected 0 to 180", phi.to_degrees()),
+        }
+    }
+}
+
+impl core::error::Error for ViewError {}

@@ -1,0 +1,45 @@
+//! Colours in RGB565.
+
+/// A colour as the frame buffer holds it: red in bits 15–11, green in 10–5, blue in 4–0.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Rgb565(pub u16);
+
+impl Rgb565 {
+    /// Full red, green and blue.
+    pub const WHITE: Self = Self(0xFFFF);
+
+    /// The nearest colour to three 8-bit channels.
+    pub const fn from_rgb888(rgb: [u8; 3]) -> Self {
+        const fn nearest(channel: u8, max: u32) -> u16 {
+            ((channel as u32 * max * 2 + 255) / 510) as u16
+        }
+        Self(nearest(rgb[0], 31) << 11 | nearest(rgb[1], 63) << 5 | nearest(rgb[2], 31))
+    }
+
+    /// Three 8-bit channels by bit replication, as the scan-out shows them.
+    pub const fn to_rgb888(self) -> [u8; 3] {
+        let [r, g, b] = self.channels();
+        [r << 3 | r >> 2, g << 2 | g >> 4, b << 3 | b >> 2]
+    }
+
+    /// Red (0…31), green (0…63) and blue (0…31).
+    pub const fn channels(self) -> [u8; 3] {
+        [
+            (self.0 >> 11) as u8,
+            (self.0 >> 5 & 0x3F) as u8,
+            (self.0 & 0x1F) as u8,
+        ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Rgb565;
+
+    #[test]
+    fn every_colour_survives_the_way_through_888() {
+        for colour in (0..=u16::MAX).map(Rgb565) {
+            assert_eq!(Rgb565::from_rgb888(colour.to_rgb888()), colour);
+        }
+    }
+}

@@ -1,0 +1,454 @@
+//! Meshes as they lie in memory, in files and in uploads (docs/formats.md, "Mesh in memory").
+//!
+//! [`Mesh::new_checked`] looks at every byte once; what it returns is a view that cannot fail.
+
+#[cfg(feature = "alloc")]
+mod encode;
+
+use core::fmt;
+
+pub use crate::colour::Rgb565;
+#[cfg(feature = "alloc")]
+pub use encode::{EncodeError, IndexedTriangle, encode};
+
+/// The first four bytes.
+pub const MAGIC: [u8; 4] = *b"GLM1";
+/// The largest mesh in bytes.
+pub const MAX_BYTES: u32 = 32 << 20;
+/// The most vertices a chunk can have.
+pub const MAX_CHUNK_VERTICES: u32 = u16::MAX as u32;
+/// The largest radius, u.14: √3·2, the far corner of the positions, rounded up.
+pub const MAX_RADIUS: u32 = 56_756;
+
+/// Bytes of every record but the header, which has two.
+const RECORD: usize = 16;
+/// Bytes of the header of the whole.
+const HEADER: usize = 2 * RECORD;
+
+/// A checked mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Mesh<'a> {
+    /// Everything after the header.
+    records: &'a [[u8; RECORD]],
+    vertices: u32,
+    triangles: u32,
+    radius: u32,
+}
+
+impl<'a> Mesh<'a> {
+    /// Checks every length, count, index and reserved field of a mesh, and that its radius holds all vertices.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, with its place.
+    pub fn new_checked(bytes: &'a [u8]) -> Result<Self, MeshError> {
+        let found = bytes.len();
+        // The cast keeps what matters of a length that is refused anyway.
+        let wrong_length = |expected| MeshError {
+            offset: 0,
+            expected,
+            found: u32::try_from(found).unwrap_or(u32::MAX),
+        };
+        let Some((header, records)) = bytes.split_at_checked(HEADER) else {
+            return Err(wrong_length(Expected::AtLeast(
+                "bytes of header",
+                HEADER as u32,
+            )));
+        };
+        let length = match u32::try_from(found) {
+            Ok(length) if length <= MAX_BYTES => length,
+            _ => return Err(wrong_length(Expected::AtMost("bytes", MAX_BYTES))),
+        };
+        let (records, []) = records.as_chunks() else {
+            return Err(wrong_length(Expected::MultipleOf("bytes", RECORD as u32)));
+        };
+        let [
+            magic,
+            stated_length,
+            chunks,
+            vertices,
+            triangles,
+            radius,
+            reserved @ ..,
+        ] = words::<8>(header);
+        expect(
+            0,
+            Expected::Magic,
+            magic,
+            magic == u32::from_le_bytes(MAGIC),
+        )?;
+        expect(
+            4,
+            Expected::Exactly("bytes in all", length),
+            stated_length,
+            stated_length == length,
+        )?;
+        expect(8, Expected::AtLeast("chunks", 1), chunks, chunks >= 1)?;
+        expect(
+            20,
+            Expected::AtMost("radius in 2^-14", MAX_RADIUS),
+            radius,
+            radius <= MAX_RADIUS,
+        )?;
+        expect_zeros(24, reserved)?;
+
+        let mut walk = Walk {
+            rest: records,
+            offset: HEADER as u32,
+        };
+        let (mut seen_vertices, mut seen_triangles) = (0, 0);
+        for _ in 0..chunks {
+            let (offset, chunk) = walk.chunk()?;
+            chunk.check(offset, radius)?;
+            seen_vertices += chunk.vertices.len() as u32;
+            seen_triangles += chunk.triangles.len() as u32;
+        }
+        let rest = walk.rest.len() as u32 * RECORD as u32;
+        expect(
+            walk.offset,
+            Expected::Exactly("bytes after the last chunk", 0),
+            rest,
+            rest == 0,
+        )?;
+        expect(
+            12,
+            Expected::Exactly("vertices, as the chunks have", seen_vertices),
+            vertices,
+            vertices == seen_vertices,
+        )?;
+        expect(
+            16,
+            Expected::Exactly("triangles, as the chunks have", seen_triangles),
+            triangles,
+            triangles == seen_triangles,
+        )?;
+        Ok(Self {
+            records,
+            vertices,
+            triangles,
+            radius,
+        })
+    }
+
+    /// Vertices in all chunks.
+    pub const fn vertex_count(&self) -> u32 {
+        self.vertices
+    }
+
+    /// Triangles in all chunks.
+    pub const fn triangle_count(&self) -> u32 {
+        self.triangles
+    }
+
+    /// A radius about the origin that holds all vertices, u.14, at most [`MAX_RADIUS`].
+    pub const fn radius(&self) -> u32 {
+        self.radius
+    }
+
+    /// The chunks in order.
+    pub fn chunks(&self) -> impl Iterator<Item = Chunk<'a>> + Clone + use<'a> {
+        Chunks(Walk {
+            rest: self.records,
+            offset: HEADER as u32,
+        })
+    }
+}
+
+/// Vertices, and triangles that index them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Chunk<'a> {
+    vertices: &'a [[u8; RECORD]],
+    triangles: &'a [[u8; RECORD]],
+}
+
+impl<'a> Chunk<'a> {
+    /// How many vertices there are, 1 to 65,535.
+    pub const fn vertex_count(&self) -> usize {
+        self.vertices.len()
+    }
+
+    /// How many triangles there are.
+    pub const fn triangle_count(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// The vertex of a number, if there is one.
+    pub fn vertex(&self, index: usize) -> Option<Vertex> {
+        self.vertices.get(index).map(Vertex::from_bytes)
+    }
+
+    /// The triangle of a number, if there is one.
+    pub fn triangle(&self, index: usize) -> Option<Triangle> {
+        self.triangles.get(index).map(Triangle::from_bytes)
+    }
+
+    /// The vertices in order.
+    pub fn vertices(&self) -> impl ExactSizeIterator<Item = Vertex> + Clone + use<'a> {
+        self.vertices.iter().map(Vertex::from_bytes)
+    }
+
+    /// The triangles in order.
+    pub fn triangles(&self) -> impl ExactSizeIterator<Item = Triangle> + Clone + use<'a> {
+        self.triangles.iter().map(Triangle::from_bytes)
+    }
+
+    /// Checks the records of the chunk whose header is at `offset`.
+    fn check(&self, offset: u32, radius: u32) -> Result<(), MeshError> {
+        let count = self.vertices.len() as u32;
+        let mut offset = offset + RECORD as u32;
+        for record in self.vertices {
+            let [px, py, pz, .., reserved] = halves(record);
+            // Each square is at most 2^30.
+            let squared: u32 = [px, py, pz]
+                .map(|x| u32::from((x as i16).unsigned_abs()).pow(2))
+                .iter()
+                .sum();
+            if squared > radius.pow(2) {
+                let radius_needed = squared.isqrt() + u32::from(squared.isqrt().pow(2) < squared);
+                return Err(MeshError {
+                    offset,
+                    expected: Expected::AtMost("(radius) from the origin", radius),
+                    found: radius_needed,
+                });
+            }
+            expect_zeros(offset + 14, [reserved.into()])?;
+            offset += RECORD as u32;
+        }
+        for record in self.triangles {
+            let [a, b, c, .., flags] = halves(record);
+            for (place, index) in [(0, a), (2, b), (4, c)] {
+                let index = u32::from(index);
+                expect(
+                    offset + place,
+                    Expected::Below("vertices of the chunk, as an index", count),
+                    index,
+                    index < count,
+                )?;
+            }
+            expect_zeros(offset + 14, [flags.into()])?;
+            offset += RECORD as u32;
+        }
+        Ok(())
+    }
+}
+
+/// A vertex.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Vertex {
+    /// Where it is, s2.14.
+    pub position: [i16; 3],
+    /// The normal there, s2.14.
+    pub normal: [i16; 3],
+    /// Its colour.
+    pub colour: Rgb565,
+}
+
+impl Vertex {
+    fn from_bytes(bytes: &[u8; RECORD]) -> Self {
+        let [px, py, pz, nx, ny, nz, colour, _] = halves(bytes);
+        Self {
+            position: [px, py, pz].map(|x| x as i16),
+            normal: [nx, ny, nz].map(|x| x as i16),
+            colour: Rgb565(colour),
+        }
+    }
+}
+
+/// A triangle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Triangle {
+    /// Its vertices, by their number in the chunk; counter-clockwise seen from outside.
+    pub indices: [u16; 3],
+    /// Its colour.
+    pub colour: Rgb565,
+    /// The normal of its face, s2.14.
+    pub normal: [i16; 3],
+    /// Reserved, 0.
+    pub flags: u16,
+}
+
+impl Triangle {
+    fn from_bytes(bytes: &[u8; RECORD]) -> Self {
+        let [a, b, c, colour, nx, ny, nz, flags] = halves(bytes);
+        Self {
+            indices: [a, b, c],
+            colour: Rgb565(colour),
+            normal: [nx, ny, nz].map(|x| x as i16),
+            flags,
+        }
+    }
+}
+
+/// Walks over the chunks' extents.
+#[derive(Clone)]
+struct Walk<'a> {
+    rest: &'a [[u8; RECORD]],
+    /// Of `rest`, in bytes from the start of the mesh.
+    offset: u32,
+}
+
+impl<'a> Walk<'a> {
+    /// The next chunk and its offset.
+    fn chunk(&mut self) -> Result<(u32, Chunk<'a>), MeshError> {
+        let offset = self.offset;
+        let Some((header, rest)) = self.rest.split_first() else {
+            return Err(MeshError {
+                offset,
+                expected: Expected::AtLeast("bytes for a chunk's header", RECORD as u32),
+                found: 0,
+            });
+        };
+        let [vertices, triangles, reserved @ ..] = words::<4>(header);
+        expect(
+            offset,
+            Expected::AtLeast("vertices in a chunk", 1),
+            vertices,
+            vertices >= 1,
+        )?;
+        expect(
+            offset,
+            Expected::AtMost("vertices in a chunk", MAX_CHUNK_VERTICES),
+            vertices,
+            vertices <= MAX_CHUNK_VERTICES,
+        )?;
+        expect_zeros(offset + 8, reserved)?;
+        let left = rest.len() as u32;
+        let too_short = |at, what, needed, found| MeshError {
+            offset: at,
+            expected: Expected::AtLeast(what, needed),
+            found,
+        };
+        let (vertices, rest) = rest.split_at_checked(vertices as usize).ok_or(too_short(
+            offset,
+            "records for the chunk's vertices",
+            vertices,
+            left,
+        ))?;
+        let left = rest.len() as u32;
+        let (triangles, rest) = rest.split_at_checked(triangles as usize).ok_or(too_short(
+            offset + 4,
+            "records for the chunk's triangles",
+            triangles,
+            left,
+        ))?;
+        self.offset += (RECORD * (1 + vertices.len() + triangles.len())) as u32;
+        self.rest = rest;
+        Ok((
+            offset,
+            Chunk {
+                vertices,
+                triangles,
+            },
+        ))
+    }
+}
+
+/// The chunks of a checked mesh.
+#[derive(Clone)]
+struct Chunks<'a>(Walk<'a>);
+
+impl<'a> Iterator for Chunks<'a> {
+    type Item = Chunk<'a>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        // The walk fails only where the mesh ends.
+        self.0.chunk().ok().map(|(_, chunk)| chunk)
+    }
+}
+
+/// The first little-endian words of some bytes, 0 where there are none.
+fn words<const N: usize>(bytes: &[u8]) -> [u32; N] {
+    let mut words = [0; N];
+    for (word, bytes) in words.iter_mut().zip(bytes.as_chunks().0) {
+        *word = u32::from_le_bytes(*bytes);
+    }
+    words
+}
+
+/// A record as little-endian half words.
+fn halves(record: &[u8; RECORD]) -> [u16; RECORD / 2] {
+    let mut halves = [0; RECORD / 2];
+    for (half, bytes) in halves.iter_mut().zip(record.as_chunks().0) {
+        *half = u16::from_le_bytes(*bytes);
+    }
+    halves
+}
+
+fn expect(offset: u32, expected: Expected, found: u32, holds: bool) -> Result<(), MeshError> {
+    if holds {
+        Ok(())
+    } else {
+        Err(MeshError {
+            offset,
+            expected,
+            found,
+        })
+    }
+}
+
+fn expect_zeros<const N: usize>(offset: u32, reserved: [u32; N]) -> Result<(), MeshError> {
+    match reserved.into_iter().find(|&word| word != 0) {
+        Some(found) => Err(MeshError {
+            offset,
+            expected: Expected::Exactly("(reserved)", 0),
+            found,
+        }),
+        None => Ok(()),
+    }
+}
+
+/// Why bytes are not a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MeshError {
+    /// Where, in bytes from the start.
+    pub offset: u32,
+    /// What should have been there.
+    pub expected: Expected,
+    /// What was.
+    pub found: u32,
+}
+
+/// What a mesh should have had: a count of something named.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Expected {
+    /// The four bytes [`MAGIC`].
+    Magic,
+    /// Just so many.
+    Exactly(&'static str, u32),
+    /// So many or more.
+    AtLeast(&'static str, u32),
+    /// So many or fewer.
+    AtMost(&'static str, u32),
+    /// Fewer than so many.
+    Below(&'static str, u32),
+    /// A multiple of so many.
+    MultipleOf(&'static str, u32),
+}
+
+impl fmt::Display for MeshError {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(
+            f,
+            "mesh byte {}: expected {}, found ",
+            self.offset, self.expected
+        )?;
+        match self.expected {
+            Expected::Magic => write!(f, "\"{}\"", self.found.to_le_bytes().escape_ascii()),
+            _ => write!(f, "{}", self.found),
+        }
+    }
+}
+
+impl fmt::Display for Expected {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Magic => write!(f, "\"{}\"", MAGIC.escape_ascii()),
+            Self::Exactly(what, count) => write!(f, "{count} {what}"),
+            Self::AtLeast(what, count) => write!(f, "at least {count} {what}"),
+            Self::AtMost(what, count) => write!(f, "at most {count} {what}"),
+            Self::Below(what, count) => write!(f, "less than the {count} {what}"),
+            Self::MultipleOf(what, count) => write!(f, "a multiple of {count} {what}"),
+        }
+    }
+}
+
+impl core::error::Error for MeshError {}

@@ -1,0 +1,204 @@
+//! Writing meshes: for the host, which has a heap.
+
+use alloc::vec::Vec;
+use core::fmt;
+
+use super::{HEADER, MAGIC, MAX_BYTES, MAX_CHUNK_VERTICES, RECORD, Rgb565, Vertex};
+
+/// A triangle of an indexed mesh of any size.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct IndexedTriangle {
+    /// Its vertices, by their number in the whole mesh; counter-clockwise seen from outside.
+    pub indices: [u32; 3],
+    /// Its colour.
+    pub colour: Rgb565,
+    /// The normal of its face, s2.14.
+    pub normal: [i16; 3],
+}
+
+/// Writes an indexed mesh, cut into chunks where one would have too many vertices.
+///
+/// Triangles keep their order. A vertex is repeated in every chunk that uses it; one that no triangle uses is left
+/// out, but a mesh without triangles keeps its first vertex, as a chunk has at least one.
+///
+/// # Errors
+/// When there is no vertex, an index has no vertex, or the result would be larger than [`MAX_BYTES`].
+pub fn encode(vertices: &[Vertex], triangles: &[IndexedTriangle]) -> Result<Vec<u8>, EncodeError> {
+    let mut writer = Writer::default();
+    // The chunk's number for each vertex that it has.
+    let mut local = alloc::vec![None; vertices.len()];
+    let mut used: Vec<u32> = Vec::new();
+    let mut records: Vec<[u8; RECORD]> = Vec::new();
+    for (number, triangle) in triangles.iter().enumerate() {
+        let new = triangle
+            .indices
+            .iter()
+            .filter(|&&i| local.get(i as usize).is_some_and(Option::is_none))
+            .count();
+        if used.len() + new > MAX_CHUNK_VERTICES as usize {
+            writer.chunk(vertices, &used, &records)?;
+            used.drain(..).for_each(|i| local[i as usize] = None);
+            records.clear();
+        }
+        let mut indices = [0; 3];
+        for (index, &global) in indices.iter_mut().zip(&triangle.indices) {
+            let place = local.get_mut(global as usize).ok_or(EncodeError::Index {
+                triangle: number,
+                index: global,
+                vertices: vertices.len(),
+            })?;
+            *index = *place.get_or_insert_with(|| {
+                used.push(global);
+                // At most 65,534, by the check above.
+                (used.len() - 1) as u16
+            });
+        }
+        records.push(record(indices, triangle.colour.0, triangle.normal));
+    }
+    if used.is_empty() {
+        if vertices.is_empty() {
+            return Err(EncodeError::NoVertex);
+        }
+        used.push(0);
+    }
+    writer.chunk(vertices, &used, &records)?;
+    Ok(writer.finish())
+}
+
+fn record(first: [u16; 3], colour: u16, normal: [i16; 3]) -> [u8; RECORD] {
+    let mut bytes = [0; RECORD];
+    let halves = first
+        .into_iter()
+        .chain([colour])
+        .chain(normal.map(|x| x as u16));
+    bytes
+        .as_chunks_mut()
+        .0
+        .iter_mut()
+        .zip(halves)
+        .for_each(|(bytes, half)| *bytes = half.to_le_bytes());
+    bytes
+}
+
+fn vertex_record(vertex: &Vertex) -> [u8; RECORD] {
+    let mut bytes = [0; RECORD];
+    let halves = vertex
+        .position
+        .into_iter()
+        .chain(vertex.normal)
+        .map(|x| x as u16)
+        .chain([vertex.colour.0]);
+    bytes
+        .as_chunks_mut()
+        .0
+        .iter_mut()
+        .zip(halves)
+        .for_each(|(bytes, half)| *bytes = half.to_le_bytes());
+    bytes
+}
+
+/// Chunks so far, and the sums for the header.
+#[derive(Default)]
+struct Writer {
+    records: Vec<[u8; RECORD]>,
+    chunks: u32,
+    vertices: u32,
+    triangles: u32,
+    squared_radius: u32,
+}
+
+impl Writer {
+    fn chunk(
+        &mut self,
+        vertices: &[Vertex],
+        used: &[u32],
+        triangles: &[[u8; RECORD]],
+    ) -> Result<(), EncodeError> {
+        let records = self.records.len() + 1 + used.len() + triangles.len();
+        let bytes = HEADER + RECORD * records;
+        if bytes > MAX_BYTES as usize {
+            return Err(EncodeError::TooLarge);
+        }
+        let mut header = [0; RECORD];
+        header[..4].copy_from_slice(&(used.len() as u32).to_le_bytes());
+        header[4..8].copy_from_slice(&(triangles.len() as u32).to_le_bytes());
+        self.records.push(header);
+        for &index in used {
+            let vertex = &vertices[index as usize];
+            let squared = vertex
+                .position
+                .iter()
+                .map(|&x| u32::from(x.unsigned_abs()).pow(2))
+                .sum();
+            self.squared_radius = self.squared_radius.max(squared);
+            self.records.push(vertex_record(vertex));
+        }
+        self.records.extend(triangles);
+        self.chunks += 1;
+        self.vertices += used.len() as u32;
+        self.triangles += triangles.len() as u32;
+        Ok(())
+    }
+
+    fn finish(self) -> Vec<u8> {
+        let floor = self.squared_radius.isqrt();
+        let radius = floor + u32::from(floor.pow(2) < self.squared_radius);
+        let length = (HEADER + RECORD * self.records.len()) as u32;
+        let header = [
+            length,
+            self.chunks,
+            self.vertices,
+            self.triangles,
+            radius,
+            0,
+            0,
+        ];
+        let mut bytes = Vec::with_capacity(length as usize);
+        bytes.extend(MAGIC);
+        bytes.extend(header.into_iter().flat_map(u32::to_le_bytes));
+        bytes.extend(self.records.as_flattened());
+        bytes
+    }
+}
+
+/// Why a mesh cannot be written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EncodeError {
+    /// There is no vertex at all.
+    NoVertex,
+    /// A triangle uses a vertex that is not there.
+    Index {
+        /// Its number.
+        triangle: usize,
+        /// The index.
+        index: u32,
+        /// How many vertices there are.
+        vertices: usize,
+    },
+    /// The mesh would be larger than [`MAX_BYTES`].
+    TooLarge,
+}
+
+impl fmt::Display for EncodeError {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::NoVertex => f.write_str("mesh: expected at least 1 vertex, found none"),
+            Self::Index {
+                triangle,
+                index,
+                vertices,
+            } => {
+                write!(
+                    f,
+                    "triangle {triangle}: expected indices below {vertices}, found {index}"
+                )
+            }
+            Self::TooLarge => write!(
+                f,
+                "mesh: expected at most {MAX_BYTES} bytes, found more vertices and triangles than fit"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for EncodeError {}

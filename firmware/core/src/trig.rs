@@ -1,0 +1,148 @@
+//! Sine and cosine together, from one table.
+//!
+//! An octant of the circle is cut at 64 equal steps; [`NODES`] holds both functions there (512 bytes) and a Taylor
+//! polynomial about the nearest node does the rest. With e = d − d³/6 and h = d²/2, where d is the distance to
+//! the node in radians, at most π/512:
+//!
+//! ```text
+//! sin(node + d) = S + C·e − S·h        cos(node + d) = C − S·e − C·h
+//! ```
+//!
+//! The angles of an octant are mirrored and signs are set afterwards, so the symmetries hold bit for bit:
+//! sin(−x) = −sin x, cos(−x) = cos x, sin(x + ¼) = cos x, and quarter turns are exact.
+//!
+//! The order of the polynomial is the knob between error and time, see [`sin_cos_q30_order`].
+
+use crate::fixed::{Q2_14, Q2_30, Turns};
+
+/// Steps in an octant, and nodes in the table; node 0, where sin = 0 and cos = 1, is not stored.
+const STEPS: u32 = 64;
+/// Phase units in one step.
+const STEP: u32 = (1 << 29) / STEPS;
+
+/// sin(k·π/256) and 1 − cos(k·π/256) for k = 1…64 in u0.32, to the nearest.
+static NODES: [[u32; 2]; STEPS as usize] = nodes();
+
+/// Sine and cosine in Q2.14, nearest: at most 1 ULP (2^−14) off.
+pub fn sin_cos_q14(angle: Turns) -> (Q2_14, Q2_14) {
+    // The magnitudes are rounded before the signs are set, so that rounding keeps the symmetries.
+    let (sin, cos) = unfold(angle, |phase| {
+        octant::<2>(phase).map(|x| (x + (1 << 15)) >> 16)
+    });
+    // At most 2^14 in magnitude.
+    (Q2_14::from_bits(sin as i16), Q2_14::from_bits(cos as i16))
+}
+
+/// Sine and cosine in Q2.30: at most 1 ULP (2^−30) off.
+pub fn sin_cos_q30(angle: Turns) -> (Q2_30, Q2_30) {
+    sin_cos_q30_order::<3>(angle)
+}
+
+/// Sine and cosine in Q2.30 with a Taylor polynomial of order 0 to 3 (a higher one is taken as 3).
+///
+/// The remainder is at most d^(n + 1)/(n + 1)! with d = π/512: 6.1e-3, 1.9e-5, 3.9e-8 and 5.9e-11.
+pub fn sin_cos_q30_order<const ORDER: u32>(angle: Turns) -> (Q2_30, Q2_30) {
+    let (sin, cos) = unfold(angle, octant::<ORDER>);
+    (Q2_30::from_bits(sin), Q2_30::from_bits(cos))
+}
+
+/// Carries an octant's sine and cosine, given for phases 0…2^29, to the full circle.
+fn unfold(angle: Turns, octant: impl Fn(u32) -> [i32; 2]) -> (i32, i32) {
+    let number = angle.0 >> 29;
+    let offset = angle.0 & ((1 << 29) - 1);
+    let phase = if number & 1 == 0 {
+        offset
+    } else {
+        (1 << 29) - offset
+    };
+    let [mut sin, mut cos] = octant(phase);
+    // Octants 1, 2, 5, 6 lie nearer to the vertical axis.
+    if (number + 1) & 2 != 0 {
+        (sin, cos) = (cos, sin);
+    }
+    if number & 4 != 0 {
+        sin = -sin;
+    }
+    if (number + 2) & 4 != 0 {
+        cos = -cos;
+    }
+    (sin, cos)
+}
+
+/// Sine and cosine, 30 fraction bits, of a phase in 0…2^29 (units of 2^−32 turns).
+///
+/// No step overflows: |d| ≤ π/512 < 2^−7.3, so `d` and `e` (38 fraction bits) stay below 2^30.7 and `h` (45) below
+/// 2^29.4; the products with s and 1 − c, which are below 1, only shrink them.
+fn octant<const ORDER: u32>(phase: u32) -> [i32; 2] {
+    let node = (phase + STEP / 2) / STEP;
+    let [s, versine] = node
+        .checked_sub(1)
+        .and_then(|k| NODES.get(k as usize))
+        .copied()
+        .unwrap_or([0, 0]);
+    // |steps| ≤ 2^22, so d = steps·2π/2^32 in 38 fraction bits is below 2π·2^28 < 2^30.7.
+    let steps = phase as i32 - (node * STEP) as i32;
+    let d = if ORDER < 1 {
+        0
+    } else {
+        (steps as i64 * TAU_Q28 >> 22) as i32
+    };
+    let h = if ORDER < 2 {
+        0
+    } else {
+        mul_high(d.unsigned_abs() as i32, d.unsigned_abs()) as u32
+    };
+    // d·h is d³/2 in 51 fraction bits; a third of it, 13 bits down, is d³/6 in 38.
+    let e = if ORDER < 3 {
+        d
+    } else {
+        d - mul_high(mul_high(d, h), (1 << 19) / 3)
+    };
+
+    // What the polynomial adds to the node, 38 fraction bits; c·x is written as x − versine·x.
+    let sin = e - mul_high(e, versine) - (mul_high(h as i32, s) >> 7);
+    let cos = -mul_high(e, s) - ((h as i32 - mul_high(h as i32, versine)) >> 7);
+    // Floors nest, so this is the exact sum (node·2^6 + polynomial), rounded once to the nearest 2^−30. A sine of this
+    // octant lies in [0, 0.71], so the unsigned sum does not wrap.
+    let sin = s.wrapping_add_signed((sin + 128) >> 6) >> 2;
+    let cos = (1 << 30) + ((((cos + 128) >> 6) - versine as i32) >> 2);
+    [sin as i32, cos]
+}
+
+/// The high word of a product, one `mulhsu`: floor(a·b/2^32).
+fn mul_high(a: i32, b: u32) -> i32 {
+    (a as i64 * b as i64 >> 32) as i32
+}
+
+/// 2π with 28 fraction bits, nearest.
+const TAU_Q28: i64 = ((PI_Q60 >> 30) + 1 >> 1) as i64;
+/// π with 60 fraction bits.
+const PI_Q60: u128 = 0x3243_F6A8_885A_308D;
+
+/// The table, by the Taylor series of sin x and 1 − cos x with 60 fraction bits.
+const fn nodes() -> [[u32; 2]; STEPS as usize] {
+    let mut table = [[0; 2]; STEPS as usize];
+    let mut k = 0;
+    while k < STEPS as usize {
+        let x = PI_Q60 * (k as u128 + 1) / (4 * STEPS as u128);
+        table[k] = [alternating_series(x, 1), alternating_series(x, 2)];
+        k += 1;
+    }
+    table
+}
+
+/// x^n/n! − x^(n+2)/(n+2)! + …: the sine for n = 1, 1 − cos x for n = 2. `x` has 60 fraction bits and is below 1;
+/// the result has 32, nearest.
+const fn alternating_series(x: u128, first: u128) -> u32 {
+    let (mut sum, mut term, mut n) = (0_i128, x, 1);
+    let mut sign = 1;
+    while term > 0 {
+        if n >= first && (n - first) % 2 == 0 {
+            sum += sign * term as i128;
+            sign = -sign;
+        }
+        n += 1;
+        term = (term * x >> 60) / n;
+    }
+    ((sum + (1 << 27)) >> 28) as u32
+}
