@@ -1,3 +1,31 @@
 //! Bit-exact twins of Glint's accelerators.
+//!
+//! This is the triangle pipeline of `docs/formats.md` in integers: the renderer of the CPU backend, and the oracle
+//! that the gateware's tests compare with. A vertex goes through [`vertex`], a triangle through [`setup`] and [`raster`], one
+//! that leaves the guard band or crosses the near plane through [`clip`]; [`render`] runs a whole frame.
+//!
+//! No floating point, no allocation, no 128-bit integers. Every sum and product fits its type for every camera that
+//! [`glint_core::camera::View`] accepts and for every mesh; the comments prove it, and tests with overflow checks
+//! run the extremes. Where arithmetic is meant to be modular it says `wrapping`.
 #![no_std]
 #![forbid(unsafe_code)]
+
+pub mod clip;
+pub mod frame;
+pub mod raster;
+pub mod reciprocal;
+mod render;
+pub mod setup;
+pub mod shade;
+pub mod vertex;
+
+pub use frame::{DepthScale, FrameSetup};
+pub use render::{
+    Buffer, DrawnTriangle, Options, RenderError, SIZES, Stats, Target, render, trace,
+};
+pub use vertex::{Projected, ScreenVertex};
+
+/// x·2^−shift rounded to nearest, ties up. `shift` is at least 1, and x has room for half a unit of the result.
+const fn nearest(x: i64, shift: u32) -> i64 {
+    (x + (1 << (shift - 1))) >> shift
+}

@@ -1,0 +1,187 @@
+//! The clipper, for triangles that cross the near plane or leave the guard band.
+//!
+//! It works on camera coordinates, before the division. An intersection depends on the two ends of its edge alone and
+//! always starts from the inside one, so both triangles at an edge cut it at the same vertex.
+
+use crate::frame::FrameSetup;
+use crate::vertex::CameraVertex;
+
+/// Every plane replaces each run of outside vertices by two, and at most every second vertex is one:
+/// 3 → 4 → 6 → 9 → 13 → 19. (A convex polygon reaches 8, but rounding may bend one.)
+const MAX_VERTICES: usize = 19;
+
+/// What is left of a triangle.
+#[derive(Clone, Copy, Debug)]
+pub struct Polygon {
+    vertices: [CameraVertex; MAX_VERTICES],
+    len: usize,
+}
+
+impl Polygon {
+    const EMPTY: Self = Self {
+        vertices: [CameraVertex { x: 0, y: 0, z: 0 }; MAX_VERTICES],
+        len: 0,
+    };
+
+    /// The vertices in order; fewer than three when nothing is left.
+    pub fn vertices(&self) -> &[CameraVertex] {
+        self.vertices.get(..self.len).unwrap_or_default()
+    }
+
+    fn push(&mut self, vertex: CameraVertex) {
+        if let Some(slot) = self.vertices.get_mut(self.len) {
+            *slot = vertex;
+            self.len += 1;
+        }
+    }
+}
+
+/// A side of the view volume.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Plane {
+    /// Z ≥ near.
+    Near,
+    /// x ≥ −2047.5 pixels.
+    Left,
+    /// x ≤ 2047.5 pixels.
+    Right,
+    /// y ≥ −2047.5 pixels.
+    Top,
+    /// y ≤ 2047.5 pixels.
+    Bottom,
+}
+
+impl Plane {
+    /// All of them, in the order in which they cut.
+    pub const ALL: [Self; 5] = [Self::Near, Self::Left, Self::Right, Self::Top, Self::Bottom];
+
+    /// How far inside a vertex is, times a positive number that depends on the plane alone; negative is outside. Exact.
+    ///
+    /// The sides count in half pixels. |X|·2^14 < 2^55.7 and 5375·|Z| < 2^53.1, so the sum is below 2^56.
+    pub fn distance(self, frame: &FrameSetup, vertex: &CameraVertex) -> i64 {
+        let side = |sign: i64, x: i64, size: u32| {
+            let from_centre = 4095 - sign * i64::from(size);
+            from_centre * vertex.z - sign * (x << (24 - frame.scale_shift))
+        };
+        match self {
+            Self::Near => vertex.z - frame.near,
+            Self::Left => side(-1, vertex.x, frame.width),
+            Self::Right => side(1, vertex.x, frame.width),
+            Self::Top => side(-1, vertex.y, frame.height),
+            Self::Bottom => side(1, vertex.y, frame.height),
+        }
+    }
+
+    fn cut(self, frame: &FrameSetup, polygon: &Polygon) -> Polygon {
+        let mut left = Polygon::EMPTY;
+        let vertices = polygon.vertices();
+        let Some(mut from) = vertices.last() else {
+            return left;
+        };
+        let mut from_distance = self.distance(frame, from);
+        for to in vertices {
+            let to_distance = self.distance(frame, to);
+            match (from_distance >= 0, to_distance >= 0) {
+                (true, true) => left.push(*to),
+                (true, false) => {
+                    left.push(self.intersection(frame, from, from_distance, to, to_distance))
+                }
+                (false, true) => {
+                    left.push(self.intersection(frame, to, to_distance, from, from_distance));
+                    left.push(*to);
+                }
+                (false, false) => {}
+            }
+            (from, from_distance) = (to, to_distance);
+        }
+        left
+    }
+
+    /// Where the edge from a vertex inside to one outside meets the plane.
+    fn intersection(
+        self,
+        frame: &FrameSetup,
+        a: &CameraVertex,
+        da: i64,
+        b: &CameraVertex,
+        db: i64,
+    ) -> CameraVertex {
+        let (part, whole) = (da.unsigned_abs(), da.abs_diff(db));
+        let between = |a: i64, b: i64| a + portion(b - a, part, whole);
+        CameraVertex {
+            x: between(a.x, b.x),
+            y: between(a.y, b.y),
+            z: if self == Self::Near {
+                frame.near
+            } else {
+                between(a.z, b.z)
+            },
+        }
+    }
+}
+
+/// Cuts a triangle to the view volume, starting with its first vertex.
+pub fn clip(frame: &FrameSetup, triangle: [CameraVertex; 3]) -> Polygon {
+    let mut polygon = Polygon::EMPTY;
+    triangle.into_iter().for_each(|vertex| polygon.push(vertex));
+    Plane::ALL
+        .iter()
+        .fold(polygon, |polygon, plane| plane.cut(frame, &polygon))
+}
+
+/// x·part/whole to nearest, ties up, for part ≤ whole < 2^61 and whole > 0.
+///
+/// Long division: the product may have 100 bits, but the quotient has no more than x.
+fn portion(x: i64, part: u64, whole: u64) -> i64 {
+    let size = x.unsigned_abs();
+    let (mut quotient, mut rest) = (0i64, 0u64);
+    for bit in (0..u64::BITS - size.leading_zeros()).rev() {
+        quotient *= 2;
+        rest = 2 * rest + part * (size >> bit & 1);
+        // rest < 2·whole + part ≤ 3·whole
+        while rest >= whole {
+            rest -= whole;
+            quotient += 1;
+        }
+    }
+    if x < 0 {
+        -quotient - i64::from(2 * rest > whole)
+    } else {
+        quotient + i64::from(2 * rest >= whole)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::portion;
+
+    #[test]
+    fn portions_are_nearest_with_ties_up() {
+        let mut state = 1u64;
+        let mut random = |bits: u32| {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            state >> (64 - bits)
+        };
+        for round in 0..200_000u32 {
+            // Small numbers meet many ties.
+            let (wide, long) = if round % 2 == 0 { (4, 5) } else { (61, 44) };
+            let whole = random(wide) + 1;
+            let part = random(wide) % (whole + 1);
+            let x = random(long) as i64 - (1 << (long - 1));
+            let twice = 2 * i128::from(x) * i128::from(part) + i128::from(whole);
+            let expected = twice.div_euclid(2 * i128::from(whole));
+            assert_eq!(
+                i128::from(portion(x, part, whole)),
+                expected,
+                "{x}·{part}/{whole}"
+            );
+        }
+        assert_eq!(portion(0, 0, 1), 0);
+        assert_eq!(
+            portion(-(1 << 44), (1 << 61) - 1, (1 << 61) - 1),
+            -(1 << 44)
+        );
+    }
+}

@@ -1,0 +1,138 @@
+//! The constants of a frame, made once from the camera and the size of the picture.
+
+use glint_core::camera::View;
+use glint_core::fixed::{Q2_23, Q32_32};
+
+use crate::nearest;
+use crate::render::{RenderError, SIZES};
+
+/// What the vertex stage needs to know of a frame (formats.md, "Frame constants").
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct FrameSetup {
+    /// Width of the picture in pixels.
+    pub width: u32,
+    /// Height of the picture in pixels.
+    pub height: u32,
+    /// f, the fraction bits of `u` and `v`: 10 to 18.
+    pub scale_shift: u32,
+    /// The direction to the right in pixels at distance 1, f fraction bits, 25 bits.
+    pub u: [i32; 3],
+    /// The direction down in pixels at distance 1, f fraction bits, 25 bits.
+    pub v: [i32; 3],
+    /// The forward direction, s2.23.
+    pub n: [i32; 3],
+    /// −C·u and −C·v with 14 + f fraction bits, −C·n with 37; each s44.
+    pub translation: [i64; 3],
+    /// The near plane's distance, 37 fraction bits.
+    pub near: i64,
+    /// K, which relates depth codes to distances.
+    pub depth: DepthScale,
+}
+
+impl FrameSetup {
+    /// The constants for a camera, one of the [`SIZES`], and a mesh with the given radius (u.14).
+    ///
+    /// # Errors
+    /// [`RenderError::Size`].
+    pub fn new(view: &View, width: u32, height: u32, radius: u32) -> Result<Self, RenderError> {
+        if !SIZES.contains(&(width, height)) {
+            return Err(RenderError::Size { width, height });
+        }
+        let (scale_shift, scale) = Scale::new(width, view);
+        let (u, v) = (scale.row(view.u()), scale.row(view.v()));
+        let n = view.n().map(Q2_23::to_bits);
+        // |C| ≤ 8 is 2^35 in its units, and a row is shorter than 2^24.5: |C·row| < 2^60.
+        let eye = view.eye().map(Q32_32::to_bits);
+        let translation = [u, v, n].map(|row| {
+            let product: i64 = core::iter::zip(eye, row)
+                .map(|(c, r)| c * i64::from(r))
+                .sum();
+            nearest(-product, 18)
+        });
+        let near = i64::from(view.near().to_bits()) << 9;
+        let depth = DepthScale::new(translation[2], near, radius);
+        Ok(Self {
+            width,
+            height,
+            scale_shift,
+            u,
+            v,
+            n,
+            translation,
+            near,
+            depth,
+        })
+    }
+}
+
+/// s·2^f as the fraction (W/2)·2^(28 + f)/h, with h in u4.28.
+struct Scale {
+    numerator: i64,
+    half_width: i64,
+}
+
+impl Scale {
+    /// The largest f with ceil(s·2^f)·(1 + 2^−12) < 2^24, and its scale.
+    ///
+    /// s is in [40, 12800], so f is in 10…18. A number of the basis is at most 1 + 10^−4, and 2^−12 is more.
+    fn new(width: u32, view: &View) -> (u32, Self) {
+        let half_width = i64::from(view.half_width().to_bits());
+        let numerator = |shift| i64::from(width / 2) << (28 + shift);
+        // ceil(s·2^24); cutting its low bits upwards is the ceil of the smaller powers.
+        let ceil = (numerator(24) + half_width - 1) / half_width;
+        let fits = |cut: u32| ((ceil + (1 << cut) - 1) >> cut) * 4097 < 1 << 36;
+        let cut = (0..24).find(|&cut| fits(cut)).unwrap_or(24);
+        let shift = 24 - cut;
+        (
+            shift,
+            Self {
+                numerator: numerator(shift),
+                half_width,
+            },
+        )
+    }
+
+    /// nearest(row·s·2^f). The dividend is below 2^25·2^10·2^(28 + 18 − 23).
+    fn row(&self, row: [Q2_23; 3]) -> [i32; 3] {
+        row.map(|r| {
+            let dividend = i64::from(r.to_bits()) * (self.numerator >> 23);
+            (2 * dividend + self.half_width).div_euclid(2 * self.half_width) as i32
+        })
+    }
+}
+
+/// K = `mantissa`·2^`exponent`: a depth code is K/z, and z is K/code.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DepthScale {
+    /// km, u17 in [2^16, 2^17).
+    pub mantissa: u32,
+    /// ke, −5 to 5.
+    pub exponent: i32,
+}
+
+impl DepthScale {
+    /// (2^18 − 4) times the nearest depth that the mesh can have: at least the near plane's, or else that of the sphere
+    /// about the origin that holds it. `n` may be 10^−4 longer than 1, so the radius takes 2^−13 more.
+    fn new(origin: i64, near: i64, radius: u32) -> Self {
+        let radius = i64::from(radius);
+        let reach = (radius << 23) + (radius << 10);
+        // At most 8·(1 + 10^−4) in 37 fraction bits, so that the product is below 2^59.
+        let nearest = near.max(origin - reach);
+        let scale = nearest as u64 * ((1 << 18) - 4);
+        let lead = scale.ilog2();
+        Self {
+            mantissa: (scale >> (lead - 16)) as u32,
+            exponent: lead as i32 - 16 - 37,
+        }
+    }
+
+    /// The distance along n of a depth code, to nearest; `None` for 0, where nothing was drawn.
+    pub fn distance(&self, code: u32) -> Option<Q32_32> {
+        let code = u64::from(code);
+        // Below 2^(17 + 37).
+        let scale = u64::from(self.mantissa) << (32 + self.exponent);
+        let bits = (scale + code / 2).checked_div(code)?;
+        Some(Q32_32::from_bits(bits as i64))
+    }
+}

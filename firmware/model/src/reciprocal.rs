@@ -1,0 +1,66 @@
+//! The reciprocal that the vertex stage takes of 1/Z and the triangle setup of 1/|2A|.
+//!
+//! A table of 256 seeds and two Newton steps; each product fits a 25×18 multiplier.
+
+/// `SEED[i]` is 2^10/(1 + (i + 1/2)/256) to nearest, u0.10.
+pub const SEED: [u16; 256] = seeds();
+
+const fn seeds() -> [u16; 256] {
+    let mut table = [0; 256];
+    let mut i = 0;
+    while i < table.len() {
+        // The value is 2^19/d.
+        let d = 513 + 2 * i;
+        table[i] = (((1 << 20) + d) / (2 * d)) as u16;
+        i += 1;
+    }
+    table
+}
+
+/// 2^47/m for a mantissa m in [2^23, 2^24), in [2^23, 2^24).
+///
+/// The error is at most one unit: 2^47/2^23 saturates to 2^24 − 1, all others are within 0.53. It never rises as m rises.
+/// Any other m gives a meaningless number.
+pub const fn recip(m: u32) -> u32 {
+    let y0 = SEED[(m >> 15 & 0xFF) as usize] as u32;
+    let y1 = (y0 << 7).wrapping_add_signed((y0 as i32).wrapping_mul(residue(m, y0)) >> 18);
+    let y1 = if y1 < 1 << 17 { y1 } else { (1 << 17) - 1 };
+    let step = (y1 as i64 * residue(m, y1) as i64 + (1 << 24)) >> 25;
+    let y = (y1 << 7).wrapping_add_signed(step as i32);
+    if y < 1 << 24 { y } else { (1 << 24) - 1 }
+}
+
+/// How far m·y is below its power of two (2^33 for the seed, 2^40 for the first step), over 2^8, floor: s18.
+///
+/// The difference is smaller than 2^25, and both powers are 0 modulo 2^32: the low word of the product is enough.
+const fn residue(m: u32, y: u32) -> i32 {
+    m.wrapping_mul(y).wrapping_neg() as i32 >> 8
+}
+
+/// 1/v of an integer v > 0 as `y`·2^−(24 + `lead`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reciprocal {
+    /// The mantissa, u24 in [2^23, 2^24).
+    pub y: u32,
+    /// floor(log2 v).
+    pub lead: u32,
+}
+
+impl Reciprocal {
+    /// The reciprocal of `v` cut to 24 bits; that of 0 is that of 1.
+    ///
+    /// The relative error is below 2^−22: 2^−23 from the cut and one unit of `y`.
+    pub const fn of(v: u64) -> Self {
+        let v = v | (v == 0) as u64;
+        let lead = v.ilog2();
+        let m = if lead < 23 {
+            v << (23 - lead)
+        } else {
+            v >> (lead - 23)
+        };
+        Self {
+            y: recip(m as u32),
+            lead,
+        }
+    }
+}

@@ -1,0 +1,408 @@
+//! A whole frame.
+
+use core::fmt;
+
+use glint_core::camera::View;
+use glint_core::mesh::{Chunk, Mesh, Rgb565, Triangle};
+
+use crate::clip::clip;
+use crate::frame::FrameSetup;
+use crate::raster;
+use crate::setup::{Bounds, Facing, Oriented, Setup};
+use crate::shade::{intensity, lit};
+use crate::vertex::{Projected, ScreenVertex, project, snap, transform};
+
+/// The sizes of a picture: width and height in pixels.
+pub const SIZES: [(u32, u32); 3] = [(320, 180), (640, 360), (1280, 720)];
+
+/// Where a frame is drawn. Rows follow each other from the top, without padding.
+#[derive(Debug)]
+pub struct Target<'a> {
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels; one of the [`SIZES`] with the width.
+    pub height: u32,
+    /// RGB565, one number a pixel.
+    pub colour: &'a mut [u16],
+    /// Depth codes, one a pixel: u18, larger is nearer, 0 where nothing is drawn.
+    pub depth: &'a mut [u32],
+}
+
+impl Target<'_> {
+    fn check(&self) -> Result<(), RenderError> {
+        let &Self { width, height, .. } = self;
+        if !SIZES.contains(&(width, height)) {
+            return Err(RenderError::Size { width, height });
+        }
+        let expected = width as usize * height as usize;
+        for (buffer, found) in [
+            (Buffer::Colour, self.colour.len()),
+            (Buffer::Depth, self.depth.len()),
+        ] {
+            if found != expected {
+                return Err(RenderError::Buffer {
+                    buffer,
+                    expected,
+                    found,
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// How a frame is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Options {
+    /// Whether back faces are left out.
+    pub cull: bool,
+    /// The colour where nothing is drawn, RGB565.
+    pub clear: u16,
+}
+
+impl Default for Options {
+    /// Back faces left out, on black.
+    fn default() -> Self {
+        Self {
+            cull: true,
+            clear: 0,
+        }
+    }
+}
+
+/// What drawing a frame took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Stats {
+    /// Triangles in the mesh: `culled` + `drawn`.
+    pub triangles_in: u32,
+    /// Triangles that did not reach the walker: back faces, those without area, those that hold no pixel's centre in their bounds
+    /// in the picture, and those behind the near plane.
+    pub culled: u32,
+    /// Triangles that went through the clipper, whether something was left or not.
+    pub clipped: u32,
+    /// Triangles that reached the walker, whole or in part.
+    pub drawn: u32,
+    /// Pixels that the walker came to: covered ones, and those where it found that a span has ended.
+    pub pixels_tested: u64,
+    /// Pixels covered by a triangle, each as often as it is.
+    pub pixels_covered: u64,
+    /// Pixels written: covered, and not behind what was there.
+    pub pixels_drawn: u64,
+}
+
+/// A triangle that reached the walker, or a part of one that the clipper made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DrawnTriangle {
+    /// The triangle's number in the mesh, counted through all chunks.
+    pub index: u32,
+    /// Its vertices as they were snapped, clockwise on the screen (2A > 0).
+    pub vertices: [ScreenVertex; 3],
+    /// The side that is seen.
+    pub facing: Facing,
+    /// Its colour after shading.
+    pub colour: Rgb565,
+    /// Whether it comes from the clipper.
+    pub clipped: bool,
+}
+
+/// Draws a mesh.
+///
+/// `scratch` holds the vertices of one chunk; what is in it does not matter. Where `target` is clear nothing was drawn. The order is that of the
+/// triangles, then that of those that had to be clipped, and the later wins where depths are equal.
+///
+/// # Errors
+/// [`RenderError`]; then nothing has been touched.
+pub fn render(
+    mesh: &Mesh,
+    view: &View,
+    target: &mut Target,
+    scratch: &mut [Projected],
+    options: &Options,
+) -> Result<Stats, RenderError> {
+    trace(mesh, view, target, scratch, options, |_| {})
+}
+
+/// Draws a mesh as [`render`] does, and shows every triangle just before it is drawn.
+///
+/// # Errors
+/// [`RenderError`]; then nothing has been touched.
+pub fn trace(
+    mesh: &Mesh,
+    view: &View,
+    target: &mut Target,
+    scratch: &mut [Projected],
+    options: &Options,
+    show: impl FnMut(&DrawnTriangle),
+) -> Result<Stats, RenderError> {
+    target.check()?;
+    let frame = FrameSetup::new(view, target.width, target.height, mesh.radius())?;
+    let expected = mesh
+        .chunks()
+        .map(|chunk| chunk.vertex_count())
+        .max()
+        .unwrap_or(0);
+    let found = scratch.len();
+    let scratch = scratch
+        .get_mut(..expected)
+        .ok_or(RenderError::Scratch { expected, found })?;
+    target.colour.fill(options.clear);
+    target.depth.fill(0);
+
+    let mut renderer = Renderer {
+        frame,
+        cull: options.cull,
+        target,
+        show,
+        stats: Stats::default(),
+    };
+    renderer.regular(mesh, scratch);
+    renderer.exceptions(mesh, scratch);
+    let mut stats = renderer.stats;
+    stats.triangles_in = mesh.triangle_count();
+    stats.culled = stats.triangles_in - stats.drawn;
+    Ok(stats)
+}
+
+/// Where a triangle goes after the vertex stage.
+enum Path {
+    /// Wholly off one side of the picture, or behind.
+    Unseen,
+    /// To the setup.
+    Regular([ScreenVertex; 3]),
+    /// To the clipper.
+    Exception,
+}
+
+struct Renderer<'a, 'b, F> {
+    frame: FrameSetup,
+    cull: bool,
+    target: &'a mut Target<'b>,
+    show: F,
+    stats: Stats,
+}
+
+impl<F: FnMut(&DrawnTriangle)> Renderer<'_, '_, F> {
+    /// Draws what needs no clipping, and counts what does.
+    fn regular(&mut self, mesh: &Mesh, scratch: &mut [Projected]) {
+        let mut index = 0;
+        for chunk in mesh.chunks() {
+            self.project(&chunk, scratch);
+            for triangle in chunk.triangles() {
+                match self.path(&triangle, scratch) {
+                    Path::Unseen => {}
+                    Path::Regular(vertices) => {
+                        let drawn = self.draw(index, &triangle, vertices, false);
+                        self.stats.drawn += u32::from(drawn);
+                    }
+                    Path::Exception => self.stats.clipped += 1,
+                }
+                index += 1;
+            }
+        }
+    }
+
+    /// Draws what needs clipping.
+    fn exceptions(&mut self, mesh: &Mesh, scratch: &mut [Projected]) {
+        let several_chunks = mesh.chunks().nth(1).is_some();
+        let mut left = self.stats.clipped;
+        let mut index = 0;
+        for chunk in mesh.chunks() {
+            if left == 0 {
+                return;
+            }
+            // A single chunk is still in the scratch.
+            if several_chunks {
+                self.project(&chunk, scratch);
+            }
+            for triangle in chunk.triangles() {
+                if let Path::Exception = self.path(&triangle, scratch) {
+                    let drawn = self.clip(index, &triangle, &chunk);
+                    self.stats.drawn += u32::from(drawn);
+                    left -= 1;
+                }
+                index += 1;
+            }
+        }
+    }
+
+    /// The vertex stage for a whole chunk.
+    fn project(&self, chunk: &Chunk, scratch: &mut [Projected]) {
+        for (vertex, projected) in chunk.vertices().zip(scratch) {
+            *projected = project(&self.frame, &transform(&self.frame, vertex.position));
+        }
+    }
+
+    fn path(&self, triangle: &Triangle, scratch: &[Projected]) -> Path {
+        // A checked mesh has all the vertices it names.
+        let [Some(a), Some(b), Some(c)] = triangle.indices.map(|i| scratch.get(usize::from(i)))
+        else {
+            return Path::Unseen;
+        };
+        match (*a, *b, *c) {
+            (Projected::Behind, Projected::Behind, Projected::Behind) => Path::Unseen,
+            (Projected::Behind, ..) | (_, Projected::Behind, _) | (.., Projected::Behind) => {
+                Path::Exception
+            }
+            (
+                Projected::Visible(a) | Projected::BeyondGuard(a),
+                Projected::Visible(b) | Projected::BeyondGuard(b),
+                Projected::Visible(c) | Projected::BeyondGuard(c),
+            ) if self.off_screen([a, b, c]) => Path::Unseen,
+            (Projected::Visible(a), Projected::Visible(b), Projected::Visible(c)) => {
+                Path::Regular([a, b, c])
+            }
+            _ => Path::Exception,
+        }
+    }
+
+    /// Whether all vertices are off the same side of the picture.
+    fn off_screen(&self, vertices: [ScreenVertex; 3]) -> bool {
+        let off = |places: [i32; 3], size: u32| {
+            places.iter().all(|&x| x < 0) || places.iter().all(|&x| x >= (size << 8) as i32)
+        };
+        off(vertices.map(|v| v.x), self.frame.width)
+            || off(vertices.map(|v| v.y), self.frame.height)
+    }
+
+    /// Clips a triangle and draws what is left as a fan. Returns whether a part of it reached the walker.
+    fn clip(&mut self, index: u32, triangle: &Triangle, chunk: &Chunk) -> bool {
+        let [Some(a), Some(b), Some(c)] = triangle.indices.map(|i| chunk.vertex(usize::from(i)))
+        else {
+            return false;
+        };
+        let [a, b, c] = [a, b, c].map(|vertex| vertex.position);
+        // Starting at the smallest position, so that it does not matter which vertex the triangle names first.
+        let positions = if a <= b && a <= c {
+            [a, b, c]
+        } else if b <= c {
+            [b, c, a]
+        } else {
+            [c, a, b]
+        };
+        let polygon = clip(
+            &self.frame,
+            positions.map(|position| transform(&self.frame, position)),
+        );
+        let frame = self.frame;
+        let mut places = polygon.vertices().iter().map(|vertex| snap(&frame, vertex));
+        let (Some(first), Some(mut last)) = (places.next(), places.next()) else {
+            return false;
+        };
+        let mut any = false;
+        for place in places {
+            any |= self.draw(index, triangle, [first, last, place], true);
+            last = place;
+        }
+        any
+    }
+
+    /// Setup, shading and walk of one screen triangle. Returns whether it reached the walker.
+    fn draw(
+        &mut self,
+        index: u32,
+        triangle: &Triangle,
+        vertices: [ScreenVertex; 3],
+        clipped: bool,
+    ) -> bool {
+        let Some(oriented) = Oriented::new(vertices) else {
+            return false;
+        };
+        if self.cull && oriented.facing == Facing::Back {
+            return false;
+        }
+        let Some(bounds) = Bounds::new(&vertices, self.frame.width, self.frame.height) else {
+            return false;
+        };
+        let colour = lit(
+            triangle.colour,
+            intensity(triangle.normal, &self.frame.n, oriented.facing),
+        );
+        (self.show)(&DrawnTriangle {
+            index,
+            vertices: oriented.vertices,
+            facing: oriented.facing,
+            colour,
+            clipped,
+        });
+        let coverage = raster::draw(&Setup::new(&oriented, bounds), colour, self.target);
+        self.stats.pixels_tested += u64::from(coverage.tested);
+        self.stats.pixels_covered += u64::from(coverage.covered);
+        self.stats.pixels_drawn += u64::from(coverage.drawn);
+        true
+    }
+}
+
+/// A buffer of the target.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Buffer {
+    /// The picture.
+    Colour,
+    /// The depth codes.
+    Depth,
+}
+
+/// Why a frame was not drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RenderError {
+    /// The picture's size is not one of the [`SIZES`].
+    Size {
+        /// Its width.
+        width: u32,
+        /// Its height.
+        height: u32,
+    },
+    /// A buffer does not have one number a pixel.
+    Buffer {
+        /// Which.
+        buffer: Buffer,
+        /// The pixels.
+        expected: usize,
+        /// The numbers.
+        found: usize,
+    },
+    /// The scratch is smaller than the largest chunk.
+    Scratch {
+        /// Vertices of the largest chunk.
+        expected: usize,
+        /// Room for vertices.
+        found: usize,
+    },
+}
+
+impl fmt::Display for RenderError {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Size { width, height } => {
+                write!(f, "picture size {width}x{height}: expected")?;
+                SIZES
+                    .iter()
+                    .enumerate()
+                    .try_for_each(|(i, (width, height))| {
+                        write!(f, "{} {width}x{height}", if i == 0 { "" } else { "," })
+                    })
+            }
+            Self::Buffer {
+                buffer,
+                expected,
+                found,
+            } => {
+                let name = match buffer {
+                    Buffer::Colour => "colour",
+                    Buffer::Depth => "depth",
+                };
+                write!(
+                    f,
+                    "{name} buffer of {found} pixels: expected {expected}, the picture's width times its height"
+                )
+            }
+            Self::Scratch { expected, found } => {
+                write!(
+                    f,
+                    "scratch for {found} vertices: expected at least {expected}, as the largest chunk has"
+                )
+            }
+        }
+    }
+}
+
+impl core::error::Error for RenderError {}

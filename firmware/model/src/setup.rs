@@ -1,0 +1,265 @@
+//! Triangle setup: facing, bounds, edge functions and the depth plane.
+
+use crate::reciprocal::Reciprocal;
+use crate::vertex::ScreenVertex;
+
+/// Which side of a triangle is seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Facing {
+    /// Counter-clockwise on the screen: 2A < 0.
+    Front,
+    /// Clockwise: 2A > 0.
+    Back,
+}
+
+/// A triangle with a positive area, its vertices clockwise on the screen (y points down).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Oriented {
+    /// The vertices; those of a front face have 1 and 2 swapped.
+    pub vertices: [ScreenVertex; 3],
+    /// a = |2A| > 0, u41 with 16 fraction bits: a triangle is at most half of the square that holds it.
+    pub doubled_area: u64,
+    /// The side that is seen.
+    pub facing: Facing,
+}
+
+impl Oriented {
+    /// Steps 1 to 3; `None` for a triangle without area.
+    ///
+    /// A difference of two places is s21 (at most 4095 pixels), a product below 2^40.
+    pub fn new(vertices: [ScreenVertex; 3]) -> Option<Self> {
+        let [v0, v1, v2] = vertices;
+        match cross(v0, v1, v2) {
+            0 => None,
+            area @ 1.. => Some(Self {
+                vertices,
+                doubled_area: area.unsigned_abs(),
+                facing: Facing::Back,
+            }),
+            area => Some(Self {
+                vertices: [v0, v2, v1],
+                doubled_area: area.unsigned_abs(),
+                facing: Facing::Front,
+            }),
+        }
+    }
+}
+
+/// x10·y20 − x20·y10: the doubled area of a triangle, positive when it is clockwise.
+fn cross(v0: ScreenVertex, v1: ScreenVertex, v2: ScreenVertex) -> i64 {
+    let (x10, y10) = (i64::from(v1.x - v0.x), i64::from(v1.y - v0.y));
+    let (x20, y20) = (i64::from(v2.x - v0.x), i64::from(v2.y - v0.y));
+    x10 * y20 - x20 * y10
+}
+
+/// The pixels that a triangle may cover, in the picture: `left`…`right` − 1 and `top`…`bottom` − 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Bounds {
+    /// The first column.
+    pub left: i32,
+    /// One past the last column.
+    pub right: i32,
+    /// The first row.
+    pub top: i32,
+    /// One past the last row.
+    pub bottom: i32,
+}
+
+impl Bounds {
+    /// The pixels in the picture whose centres c have min ≤ c < max; `None` when there are none.
+    ///
+    /// The far sides are open because the top-left rule is that of a point moved a little to the right and less down.
+    pub fn new(vertices: &[ScreenVertex; 3], width: u32, height: u32) -> Option<Self> {
+        let (left, right) = columns(vertices.map(|v| v.x), width);
+        let (top, bottom) = columns(vertices.map(|v| v.y), height);
+        (left < right && top < bottom).then_some(Self {
+            left,
+            right,
+            top,
+            bottom,
+        })
+    }
+}
+
+/// The pixels 0 ≤ i < `size` with min ≤ 256·i + 128 < max.
+fn columns([a, b, c]: [i32; 3], size: u32) -> (i32, i32) {
+    let first_at_or_after = |x: i32| (x + 127) >> 8;
+    let (min, max) = (a.min(b).min(c), a.max(b).max(c));
+    (
+        first_at_or_after(min).max(0),
+        first_at_or_after(max).min(size as i32),
+    )
+}
+
+/// An edge function E' at the start pixel, and its steps: the pixel is inside where E' ≥ 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Edge {
+    /// E' = floor((E − bias)/256), s34.
+    pub start: i64,
+    /// What one pixel to the right adds, −dy, s21: positive on the left side of a triangle, negative on its right side.
+    pub step_x: i32,
+    /// What one pixel down adds, dx, s21.
+    pub step_y: i32,
+}
+
+impl Edge {
+    /// Steps 4 and 5 for the edge from `a` to `b`, starting at pixel (i, j) of the picture.
+    ///
+    /// |E| < 2^20·(2047.5 + 1280 + 2047.5 + 720)·2^8, which is below 2^41.
+    fn new(a: ScreenVertex, b: ScreenVertex, [i, j]: [i32; 2]) -> Self {
+        let (dx, dy) = (b.x - a.x, b.y - a.y);
+        let (px, py) = (256 * i + 128 - a.x, 256 * j + 128 - a.y);
+        let value = i64::from(dx) * i64::from(py) - i64::from(dy) * i64::from(px);
+        let top_left = dy < 0 || dy == 0 && dx > 0;
+        Self {
+            start: (value - i64::from(!top_left)) >> 8,
+            step_x: -dy,
+            step_y: dx,
+        }
+    }
+}
+
+/// The depth accumulator at the start pixel and its steps: 18.14, modulo 2^32.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct DepthPlane {
+    /// The value at the start pixel.
+    pub start: u32,
+    /// What one pixel to the right adds.
+    pub step_x: u32,
+    /// What one pixel down adds.
+    pub step_y: u32,
+}
+
+impl DepthPlane {
+    /// Steps 6 to 8.
+    ///
+    /// A difference of depths is below 2^24 and one of places below 2^20, so N < 2^45.
+    fn new(triangle: &Oriented, [i, j]: [i32; 2]) -> Self {
+        let [v0, v1, v2] = triangle.vertices;
+        let (x10, y10, w10) = (
+            i64::from(v1.x - v0.x),
+            i64::from(v1.y - v0.y),
+            i64::from(v1.w) - i64::from(v0.w),
+        );
+        let (x20, y20, w20) = (
+            i64::from(v2.x - v0.x),
+            i64::from(v2.y - v0.y),
+            i64::from(v2.w) - i64::from(v0.w),
+        );
+        let reciprocal = Reciprocal::of(triangle.doubled_area);
+        let gx = gradient(w10 * y20 - w20 * y10, reciprocal);
+        let gy = gradient(w20 * x10 - w10 * x20, reciprocal);
+        // Modulo 2^64 here, so that bits 8 to 39 are right.
+        let (px, py) = (
+            i64::from(256 * i + 128 - v0.x),
+            i64::from(256 * j + 128 - v0.y),
+        );
+        let from_v0 = gx.wrapping_mul(px).wrapping_add(gy.wrapping_mul(py)) >> 8;
+        Self {
+            start: (v0.w << 8).wrapping_add(from_v0 as u32),
+            step_x: gx as u32,
+            step_y: gy as u32,
+        }
+    }
+}
+
+/// nearest(N·y·2^−(lead + 8)) for |N| < 2^45, exact: at most 2^62.
+///
+/// The product has 69 bits, so N is taken in two parts of which the low one is shifted out first.
+const fn gradient(numerator: i64, Reciprocal { y, lead }: Reciprocal) -> i64 {
+    let shift = lead + 8;
+    let high = (numerator >> 24) * y as i64;
+    let low = (numerator & 0xFF_FFFF) * y as i64 + (1 << (shift - 1));
+    if shift <= 24 {
+        (high << (24 - shift)) + (low >> shift)
+    } else {
+        (high + (low >> 24)) >> (shift - 24)
+    }
+}
+
+/// All that the walker needs to know of a triangle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Setup {
+    /// The pixels to look at.
+    pub bounds: Bounds,
+    /// The column of the start pixel, in the bounds and near the topmost vertex. Its row is the first of the bounds.
+    pub start_column: i32,
+    /// The edges 0→1, 1→2 and 2→0.
+    pub edges: [Edge; 3],
+    /// The depth.
+    pub depth: DepthPlane,
+    /// Whether E' fits 32 bits everywhere in the bounds and one pixel around them.
+    pub narrow: bool,
+}
+
+impl Setup {
+    /// Steps 4 to 8 for a triangle and its bounds.
+    pub fn new(triangle: &Oriented, bounds: Bounds) -> Self {
+        let [v0, v1, v2] = triangle.vertices;
+        let topmost = if v0.y <= v1.y && v0.y <= v2.y {
+            v0
+        } else if v1.y <= v2.y {
+            v1
+        } else {
+            v2
+        };
+        let start_column = (topmost.x >> 8).clamp(bounds.left, bounds.right - 1);
+        let start = [start_column, bounds.top];
+        Self {
+            bounds,
+            start_column,
+            edges: [
+                Edge::new(v0, v1, start),
+                Edge::new(v1, v2, start),
+                Edge::new(v2, v0, start),
+            ],
+            depth: DepthPlane::new(triangle, start),
+            narrow: narrow(&triangle.vertices),
+        }
+    }
+}
+
+/// E is the doubled area of the triangle that an edge makes with the pixel, which is at most the area of a box that holds
+/// both: the triangle's, with a pixel around it. E' = E/256 fits 32 bits when that area is below 2^39.
+fn narrow(vertices: &[ScreenVertex; 3]) -> bool {
+    let extent = |[a, b, c]: [i32; 3]| i64::from(a.max(b).max(c) - a.min(b).min(c) + 2 * 256);
+    extent(vertices.map(|v| v.x)) * extent(vertices.map(|v| v.y)) < 1 << 39
+}
+
+#[cfg(test)]
+mod tests {
+    use super::gradient;
+    use crate::reciprocal::Reciprocal;
+
+    #[test]
+    fn gradients_equal_the_product_in_128_bits() {
+        let limit = (1i64 << 45) - 1;
+        let numerators = [
+            0,
+            1,
+            -1,
+            12_345,
+            -(1 << 24),
+            (1 << 24) - 1,
+            limit / 3,
+            -limit / 5,
+            limit,
+            -limit,
+        ];
+        for lead in 0..=40 {
+            for area in [1u64 << lead, (1 << lead) + (1 << lead) / 3, (2 << lead) - 1] {
+                let reciprocal = Reciprocal::of(area);
+                for n in numerators {
+                    let shift = reciprocal.lead + 8;
+                    let exact =
+                        (i128::from(n) * i128::from(reciprocal.y) + (1 << (shift - 1))) >> shift;
+                    assert_eq!(
+                        i128::from(gradient(n, reciprocal)),
+                        exact,
+                        "{n} over {area}"
+                    );
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! The vertex stage: from a position of the mesh to a place on the screen.
+
+use crate::frame::FrameSetup;
+use crate::nearest;
+use crate::reciprocal::Reciprocal;
+
+/// The guard band: 2047 pixels from the top left corner to every side, s12.8.
+pub const GUARD: i32 = 2047 << 8;
+
+/// A vertex before the division.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CameraVertex {
+    /// D·u in pixels at distance 1, s44 with 14 + f fraction bits.
+    pub x: i64,
+    /// D·v, as `x`.
+    pub y: i64,
+    /// D·n in world units, s44 with 37 fraction bits.
+    pub z: i64,
+}
+
+/// A vertex on the screen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ScreenVertex {
+    /// Pixels from the left, 8 fraction bits; s12.8 for every vertex that is drawn.
+    pub x: i32,
+    /// Pixels from the top, as `x`.
+    pub y: i32,
+    /// The depth code before its rounding, u18.6; larger is nearer.
+    pub w: u32,
+}
+
+/// What the vertex stage makes of a vertex.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Projected {
+    /// Inside the guard band.
+    Visible(ScreenVertex),
+    /// Nearer than the near plane, or behind the eye.
+    Behind,
+    /// Beyond the near plane, but outside the guard band. The place has saturated: only the sides on which it lies count.
+    BeyondGuard(ScreenVertex),
+}
+
+/// Steps 1 and 2: into the camera's frame.
+///
+/// |P| ≤ 2·√3 is less than 2^15.8 in its units and a row is shorter than 2^24.01 (2^23.01 for n), so each product is below 2^39.9;
+/// a translation is at most 8 rows, 2^41.1. So |X|, |Y| < 2^41.7 and |Z| < 2^40.7.
+pub fn transform(frame: &FrameSetup, position: [i16; 3]) -> CameraVertex {
+    let dot = |row: &[i32; 3]| -> i64 {
+        core::iter::zip(position, row)
+            .map(|(p, &r)| i64::from(p) * i64::from(r))
+            .sum()
+    };
+    let [tx, ty, tz] = frame.translation;
+    CameraVertex {
+        x: dot(&frame.u) + tx,
+        y: dot(&frame.v) + ty,
+        z: dot(&frame.n) + tz,
+    }
+}
+
+/// Steps 3 to 8.
+pub fn project(frame: &FrameSetup, vertex: &CameraVertex) -> Projected {
+    if vertex.z < frame.near {
+        return Projected::Behind;
+    }
+    let place = snap(frame, vertex);
+    let inside = |x: i32| (-GUARD..=GUARD).contains(&x);
+    if inside(place.x) && inside(place.y) {
+        Projected::Visible(place)
+    } else {
+        Projected::BeyondGuard(place)
+    }
+}
+
+/// Steps 4 to 8, for a vertex that is not behind.
+///
+/// A place more than 4096 pixels from the centre saturates at 4096 pixels or more: it stays outside the guard band.
+pub fn snap(frame: &FrameSetup, vertex: &CameraVertex) -> ScreenVertex {
+    let Reciprocal { y, lead } = Reciprocal::of(vertex.z as u64);
+    // Z is at least near, so lead ≥ 30 (and ≤ 40); with f in 10…18 the shift is in 6…24.
+    let shift = frame.scale_shift + lead - 34;
+    let divide = |x: i64, size: u32| {
+        // s14.11 times u24.
+        let normalised = nearest(x, shift).clamp(-1 << 24, (1 << 24) - 1);
+        (128 * size) as i32 + nearest(normalised * i64::from(y), 27) as i32
+    };
+    ScreenVertex {
+        x: divide(vertex.x, frame.width),
+        y: divide(vertex.y, frame.height),
+        w: depth(frame, y, lead),
+    }
+}
+
+/// Step 8: w = K/Z. A mesh that keeps to its radius never saturates.
+fn depth(frame: &FrameSetup, y: u32, lead: u32) -> u32 {
+    // 17 by 24 bits; the exponent is in −5…5, so the shift is in 6…26.
+    let product = u64::from(frame.depth.mantissa) * u64::from(y);
+    let shift = (lead as i32 - 19 - frame.depth.exponent) as u32;
+    nearest(product as i64, shift).min(((1 << 18) - 1) * 64) as u32
+}
