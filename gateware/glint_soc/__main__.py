@@ -1,0 +1,52 @@
+"""Writes the gateware of one board: `python -m glint_soc --board virtual --output DIR`."""
+
+import argparse
+import logging
+import os
+import sys
+from pathlib import Path
+
+from litex.soc.integration.builder import Builder
+
+from . import register_map
+from .register_map import OPTIONAL_BLOCKS
+
+
+def make_soc(board, build_id, blocks):
+    """The SoC of `board`, not yet finalized."""
+    if board == "virtual":
+        from .virtual import VirtualSoC
+        return VirtualSoC(build_id, blocks)
+    from .urbana import UrbanaSoC
+    return UrbanaSoC(build_id, blocks)
+
+
+def main():
+    """Parses the command line and builds."""
+    parser = argparse.ArgumentParser(prog="python -m glint_soc", description=__doc__)
+    parser.add_argument("--board", choices=["virtual", "urbana"], required=True)
+    parser.add_argument("--output", type=Path, required=True, help="directory to write to")
+    parser.add_argument("--blocks", nargs="*", default=sorted(OPTIONAL_BLOCKS), choices=sorted(OPTIONAL_BLOCKS),
+                        help="optional blocks of this build (default: all)")
+    arguments = parser.parse_args()
+    logging.getLogger().setLevel(logging.WARNING)
+    # The BIOS build calls meson and ninja of the virtual environment that runs this.
+    os.environ["PATH"] = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
+
+    full = make_soc("virtual", 0, OPTIONAL_BLOCKS)
+    full.finalize()
+    build_id = register_map.build_id(full)
+
+    soc = make_soc(arguments.board, build_id, arguments.blocks)
+    output = arguments.output.resolve()
+    builder = Builder(
+        soc, output_dir=str(output), gateware_dir=str(output / "gateware"), software_dir=str(output / "software"),
+        csr_json=str(output / "csr.json"), csr_svd=str(output / "soc.svd"),
+        # A vendor tool is run by hand, where it is installed.
+        compile_gateware=False)
+    builder.build()
+    register_map.check_subset(soc, full)
+
+
+if __name__ == "__main__":
+    main()

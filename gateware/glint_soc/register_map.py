@@ -1,0 +1,80 @@
+"""Where every peripheral lives, and the identity computed from it.
+
+Addresses and interrupt numbers are pinned here, so that they are the same in every build: a block left out of a
+build leaves its window empty (it reads as 0) and moves nothing else.
+"""
+
+import json
+import zlib
+from dataclasses import dataclass
+
+from litex.soc.interconnect.csr import CSRStatus
+
+
+@dataclass(frozen=True)
+class Location:
+    """A peripheral's place: its window of `CSR_PAGING` bytes and its interrupt, if it has one."""
+
+    window: int
+    irq: int | None = None
+
+
+CSR_PAGING = 0x800
+
+PINNED = {
+    "ctrl": Location(0),
+    "identity": Location(1),
+    "uart": Location(2, irq=0),
+    "timer0": Location(3, irq=1),
+    "sdram": Location(4),
+    "i2c": Location(5),
+    "buttons": Location(6, irq=2),
+    "switches": Location(7),
+    "leds": Location(8),
+    "scanout": Location(9, irq=3),
+    # Physical layers differ between boards. They are outside the map that the build id covers.
+    "ddrphy": Location(30),
+    "uart_phy": Location(31),
+}
+
+BOARD_SPECIFIC = ("ddrphy", "uart_phy")
+
+# Blocks that a build may leave out, with their bit in the register `identity_blocks`.
+OPTIONAL_BLOCKS = {"scanout": 0}
+
+CSR_MAP = {name: location.window for name, location in PINNED.items()}
+
+
+def registers(soc):
+    """The register map of a finalized SoC without its board specific parts, as plain data in address order."""
+    regions = {}
+    for name, region in soc.csr.regions.items():
+        if name in BOARD_SPECIFIC:
+            continue
+        if name not in PINNED:
+            raise ValueError(f"CSR region {name!r} has no pinned address: add it to PINNED in {__name__}")
+        offset = 0
+        rows = []
+        for csr in region.obj:
+            fields = [[f.name, f.offset, f.size] for f in getattr(csr, "fields", None).fields] \
+                if getattr(csr, "fields", None) else []
+            read_only = isinstance(csr, CSRStatus) and not hasattr(csr, "r")
+            rows.append([offset, csr.name, csr.size, "ro" if read_only else "rw", fields])
+            offset += 4 * -(-csr.size // region.busword)
+        regions[name] = {"origin": region.origin, "irq": soc.irq.locs.get(name), "registers": rows}
+    return regions
+
+
+def build_id(soc):
+    """CRC-32 of the register map of `soc`, which has to be the full build."""
+    canonical = json.dumps(registers(soc), sort_keys=True, separators=(",", ":"))
+    return zlib.crc32(canonical.encode())
+
+
+def check_subset(soc, full):
+    """Fails if a register of `soc` is not at the same place in the full build."""
+    expected = registers(full)
+    for name, region in registers(soc).items():
+        if region != expected.get(name):
+            raise ValueError(
+                f"registers of {name!r} differ from the full build: expected {expected.get(name)}, got {region}")

@@ -1,0 +1,66 @@
+"""The SoC that both boards share: CPU, memory controller, peripherals and accelerators.
+
+A board brings its platform, its clocks (domains `sys` and `pix`), its DDR3 PHY and its video output; everything that
+firmware can see is here.
+"""
+
+from litedram.modules import MT41K64M16
+from litex.soc.cores.gpio import GPIOIn, GPIOOut
+from litex.soc.integration.soc_core import SoCCore
+
+from .i2c import OpenDrainI2C
+from .identity import Identity
+from .register_map import CSR_MAP, CSR_PAGING, OPTIONAL_BLOCKS, PINNED
+from .scanout import Scanout
+
+SYS_CLK_FREQ = 81.25e6
+"""Keeps DDR3-650 and the fabric within the specification of the -1 speed grade."""
+
+PIXEL_CLK_FREQ = 74.25e6
+"""CEA-861 1280x720 at 60 Hz."""
+
+
+class GlintSoC(SoCCore):
+    """VexRiscv `full` with BIOS in ROM, 128 MB of DDR3 without a second cache level, and Glint's peripherals.
+
+    `blocks` names the optional accelerators of this build, a subset of `OPTIONAL_BLOCKS`; `build_id` is what the
+    full build's register map gives (see `register_map.build_id`).
+    """
+
+    csr_map = CSR_MAP
+
+    def __init__(self, platform, crg, build_id, blocks, uart_name, sys_clk_freq=SYS_CLK_FREQ):
+        unknown = set(blocks) - set(OPTIONAL_BLOCKS)
+        if unknown:
+            raise ValueError(f"unknown blocks {sorted(unknown)}, expected some of {sorted(OPTIONAL_BLOCKS)}")
+        self.blocks = frozenset(blocks)
+        # Before SoCCore, which adds uart and timer0: both use the location that exists.
+        self.interrupt_map = {
+            name: location.irq for name, location in PINNED.items()
+            if location.irq is not None and (name not in OPTIONAL_BLOCKS or name in self.blocks)
+        }
+        self.crg = crg
+        SoCCore.__init__(
+            self, platform, clk_freq=int(sys_clk_freq),
+            cpu_type="vexriscv", cpu_variant="full",
+            integrated_rom_size=0x10000, integrated_sram_size=0x2000,
+            csr_paging=CSR_PAGING,
+            uart_name=uart_name, uart_baudrate=115200,
+            timer_uptime=True,
+        )
+        # A build time in the BIOS would make every build different.
+        self.add_config("BIOS_NO_BUILD_TIME")
+        self.add_constant("BUILD_ID", build_id)
+
+        self.identity = Identity(build_id, sum(1 << OPTIONAL_BLOCKS[name] for name in self.blocks))
+        self.i2c = OpenDrainI2C(platform.request("i2c"))
+        self.buttons = GPIOIn(platform.request("buttons"), with_irq=True)
+        self.switches = GPIOIn(platform.request("switches"))
+        self.leds = GPIOOut(platform.request("leds"))
+
+    def add_dram(self, phy):
+        """Adds the DDR3 controller over the board's PHY, then what reads and writes memory through it."""
+        self.add_sdram(
+            "sdram", phy=phy, module=MT41K64M16(self.sys_clk_freq, "1:4"), l2_cache_size=0)
+        if "scanout" in self.blocks:
+            self.scanout = Scanout(self.platform, self.sdram.crossbar.get_port(mode="read"))
