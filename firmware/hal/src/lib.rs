@@ -1,2 +1,25 @@
-//! placeholder
+//! Drivers for the peripherals of Glint's SoC behind `embedded-hal` 1.0 and `embedded-io` 0.7.
+//!
+//! | module | what it drives | traits |
+//! |---|---|---|
+//! | [`timer`] | the uptime counter of `timer0` | [`DelayNs`](embedded_hal::delay::DelayNs) |
+//! | [`uart`] | `uart`, by interrupts and queues | [`Read`](embedded_io::Read), [`Write`](embedded_io::Write), both with time-outs |
+//! | [`i2c`] | `i2c`, bit by bit | [`I2c`](embedded_hal::i2c::I2c) |
+//! | [`gpio`] | `buttons`, `switches`, `leds` | [`InputPin`](embedded_hal::digital::InputPin), [`StatefulOutputPin`](embedded_hal::digital::StatefulOutputPin) |
+//! | [`interrupt`] | the CPU's interrupt lines | |
+//! | [`display`] | `scanout` and its two frames | |
+//!
+//! Registers are reached through `litex-pac` alone, which on a host has a modelled bus: the tests run these drivers
+//! unchanged.
+
 #![no_std]
+
+#[cfg(test)]
+extern crate std;
+
+pub mod display;
+pub mod gpio;
+pub mod i2c;
+pub mod interrupt;
+pub mod timer;
+pub mod uart;

@@ -1,0 +1,75 @@
+//! The CPU's interrupt lines, by name.
+//!
+//! VexRiscv gathers up to 32 lines under its one external interrupt. Each line is the interrupt of a peripheral and
+//! stays active until that peripheral's own pending register is cleared, which is the handler's business.
+
+use litex_pac::Interrupt;
+
+/// Calls `handle` for each interrupt of `pending`, the lowest number first, and returns the lines that have no name.
+///
+/// Handlers match on [`Interrupt`], so that the compiler finds the one that is missing.
+pub fn dispatch(pending: u32, mut handle: impl FnMut(Interrupt)) -> u32 {
+    let mut unknown = pending;
+    for interrupt in Interrupt::ALL {
+        if pending & interrupt.bit() != 0 {
+            unknown &= !interrupt.bit();
+            handle(interrupt);
+        }
+    }
+    unknown
+}
+
+/// Lets `interrupt` reach the CPU.
+///
+/// # Safety
+/// Its handler must be ready, and no critical section may rely on this interrupt staying away.
+#[cfg(target_arch = "riscv32")]
+pub unsafe fn enable(interrupt: Interrupt) {
+    use litex_pac::cpu;
+    critical_section::with(|_| {
+        // SAFETY: the caller answers for the handler; the critical section makes the change whole.
+        unsafe { cpu::set_interrupt_mask(cpu::interrupt_mask() | interrupt.bit()) }
+    });
+}
+
+/// Keeps the `lines` (bits as [`Interrupt::bit`]) from the CPU.
+#[cfg(target_arch = "riscv32")]
+pub fn disable(lines: u32) {
+    use litex_pac::cpu;
+    critical_section::with(|_| {
+        // SAFETY: nothing comes in that did not before; the critical section makes the change whole.
+        unsafe { cpu::set_interrupt_mask(cpu::interrupt_mask() & !lines) }
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use std::vec::Vec;
+
+    use super::*;
+
+    fn dispatched(pending: u32) -> (Vec<Interrupt>, u32) {
+        let mut handled = Vec::new();
+        let unknown = dispatch(pending, |interrupt| handled.push(interrupt));
+        (handled, unknown)
+    }
+
+    #[test]
+    fn every_pending_line_is_handled_once_and_in_order() {
+        assert_eq!(dispatched(0), (Vec::new(), 0));
+        let both = Interrupt::Scanout.bit() | Interrupt::Uart.bit();
+        assert_eq!(
+            dispatched(both),
+            (Vec::from([Interrupt::Uart, Interrupt::Scanout]), 0)
+        );
+        assert_eq!(dispatched(u32::MAX).0, Interrupt::ALL);
+    }
+
+    #[test]
+    fn lines_without_a_name_are_returned() {
+        assert_eq!(
+            dispatched(1 << 31 | Interrupt::Timer0.bit()),
+            (Vec::from([Interrupt::Timer0]), 1 << 31)
+        );
+    }
+}

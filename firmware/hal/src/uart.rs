@@ -1,0 +1,324 @@
+//! The UART, driven by interrupts: bytes wait in queues on both sides, so that nobody waits for the line.
+//!
+//! A [`Uart`] is a `static`. [`Uart::start`] gives it the registers, [`Uart::on_interrupt`] is called for
+//! [`Interrupt::Uart`](litex_pac::Interrupt::Uart), and [`Uart::reader`] and [`Uart::writer`] are the two ends for the
+//! program. Bytes that arrive while the receive queue is full are dropped and counted ([`Uart::lost`]).
+//!
+//! ```no_run
+//! # use core::time::Duration;
+//! # use litex_hal::{timer::Clock, uart::Uart};
+//! use embedded_io::Write;
+//! static UART: Uart<1024, 1024> = Uart::new();
+//!
+//! let peripherals = litex_pac::Peripherals::take().unwrap();
+//! let clock = Clock::new(peripherals.timer0)?;
+//! UART.start(peripherals.uart);
+//! let mut console = UART.writer(clock, Duration::from_millis(100));
+//! writeln!(console, "hello")?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use core::cell::RefCell;
+use core::fmt;
+use core::time::Duration;
+
+use critical_section::Mutex;
+use embedded_io::{ErrorKind, ErrorType, Read, ReadReady, Write, WriteReady};
+use heapless::Deque;
+use litex_pac::uart::{self, EvEnable, EvPending};
+
+use crate::timer::Clock;
+
+/// The UART with `RX` bytes of receive queue and `TX` bytes of transmit queue.
+pub struct Uart<const RX: usize, const TX: usize> {
+    state: Mutex<RefCell<State<RX, TX>>>,
+}
+
+struct State<const RX: usize, const TX: usize> {
+    registers: Option<uart::Uart>,
+    received: Deque<u8, RX>,
+    to_send: Deque<u8, TX>,
+    lost: u32,
+}
+
+impl<const RX: usize, const TX: usize> Uart<RX, TX> {
+    /// A UART without registers: it receives nothing, and what is sent waits.
+    #[must_use]
+    pub const fn new() -> Self {
+        let state = State {
+            registers: None,
+            received: Deque::new(),
+            to_send: Deque::new(),
+            lost: 0,
+        };
+        Self {
+            state: Mutex::new(RefCell::new(state)),
+        }
+    }
+
+    /// Starts sending and receiving. The interrupt itself is the caller's to enable.
+    pub fn start(&self, registers: uart::Uart) {
+        registers
+            .ev_enable()
+            .write(EvEnable::default().with_rx(true).with_tx(true));
+        self.with(|state| {
+            state.registers = Some(registers);
+            // What was there before now has raised its event before now.
+            state.serve();
+        });
+    }
+
+    /// Moves bytes between queues and hardware. To be called whenever the interrupt is pending.
+    pub fn on_interrupt(&self) {
+        self.with(State::serve);
+    }
+
+    /// Moves what has been received to `buffer` and returns how many bytes that were, possibly 0.
+    pub fn receive(&self, buffer: &mut [u8]) -> usize {
+        self.with(|state| {
+            let mut count = 0;
+            for (slot, byte) in buffer
+                .iter_mut()
+                .zip(core::iter::from_fn(|| state.received.pop_front()))
+            {
+                *slot = byte;
+                count += 1;
+            }
+            count
+        })
+    }
+
+    /// Queues as much of `bytes` as there is room for and returns how many bytes that were, possibly 0.
+    pub fn send(&self, bytes: &[u8]) -> usize {
+        self.with(|state| {
+            let room = state.to_send.capacity() - state.to_send.len();
+            let count = bytes.len().min(room);
+            state.to_send.extend(bytes.iter().copied().take(count));
+            state.transmit();
+            count
+        })
+    }
+
+    /// Bytes dropped since the start because the receive queue was full; it saturates.
+    pub fn lost(&self) -> u32 {
+        self.with(|state| state.lost)
+    }
+
+    /// The receiving end; a read waits at most `timeout` for its first byte.
+    pub const fn reader(&self, clock: Clock, timeout: Duration) -> Reader<'_, RX, TX> {
+        Reader {
+            uart: self,
+            clock,
+            timeout,
+        }
+    }
+
+    /// The sending end; a write waits at most `timeout` for room.
+    pub const fn writer(&self, clock: Clock, timeout: Duration) -> Writer<'_, RX, TX> {
+        Writer {
+            uart: self,
+            clock,
+            timeout,
+        }
+    }
+
+    /// Sends what is queued without interrupts, for a program that is about to end. It gives up on a line that takes
+    /// nothing, and does nothing when the end came in the middle of one of the calls above.
+    pub fn drain(&self) {
+        critical_section::with(|token| {
+            let Ok(mut state) = self.state.borrow(token).try_borrow_mut() else {
+                return;
+            };
+            let mut patience = PATIENCE;
+            while !state.to_send.is_empty() && patience > 0 {
+                state.transmit();
+                patience -= 1;
+            }
+        });
+    }
+
+    fn with<R>(&self, action: impl FnOnce(&mut State<RX, TX>) -> R) -> R {
+        critical_section::with(|token| action(&mut self.state.borrow_ref_mut(token)))
+    }
+}
+
+impl<const RX: usize, const TX: usize> Default for Uart<RX, TX> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<const RX: usize, const TX: usize> State<RX, TX> {
+    fn serve(&mut self) {
+        let Some(registers) = &self.registers else {
+            return;
+        };
+        while !registers.rxempty().read() {
+            let byte = registers.rxtx().read();
+            // Clearing the event is what takes the byte out of the hardware's queue.
+            registers
+                .ev_pending()
+                .write(EvPending::default().with_rx(true));
+            if self.received.push_back(byte).is_err() {
+                self.lost = self.lost.saturating_add(1);
+            }
+        }
+        // Cleared before the hardware's queue is filled, so that room which appears later raises the event again.
+        registers
+            .ev_pending()
+            .write(EvPending::default().with_tx(true));
+        self.transmit();
+    }
+
+    fn transmit(&mut self) {
+        let Some(registers) = &self.registers else {
+            return;
+        };
+        while !registers.txfull().read() {
+            let Some(byte) = self.to_send.pop_front() else {
+                return;
+            };
+            registers.rxtx().write(byte);
+        }
+    }
+}
+
+/// Nothing could be received or sent for the whole time-out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TimedOut;
+
+impl fmt::Display for TimedOut {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("uart: the line was silent, or took nothing, for the whole time-out")
+    }
+}
+
+impl core::error::Error for TimedOut {}
+
+impl embedded_io::Error for TimedOut {
+    fn kind(&self) -> ErrorKind {
+        ErrorKind::TimedOut
+    }
+}
+
+/// The receiving end of a [`Uart`].
+pub struct Reader<'u, const RX: usize, const TX: usize> {
+    uart: &'u Uart<RX, TX>,
+    clock: Clock,
+    timeout: Duration,
+}
+
+impl<const RX: usize, const TX: usize> ErrorType for Reader<'_, RX, TX> {
+    type Error = TimedOut;
+}
+
+impl<const RX: usize, const TX: usize> Read for Reader<'_, RX, TX> {
+    fn read(&mut self, buffer: &mut [u8]) -> Result<usize, TimedOut> {
+        if buffer.is_empty() {
+            return Ok(0);
+        }
+        let deadline = self.clock.after(self.timeout);
+        loop {
+            match self.uart.receive(buffer) {
+                0 if deadline.passed() => return Err(TimedOut),
+                0 => {}
+                count => return Ok(count),
+            }
+        }
+    }
+}
+
+impl<const RX: usize, const TX: usize> ReadReady for Reader<'_, RX, TX> {
+    fn read_ready(&mut self) -> Result<bool, TimedOut> {
+        Ok(self.uart.with(|state| !state.received.is_empty()))
+    }
+}
+
+/// The sending end of a [`Uart`].
+pub struct Writer<'u, const RX: usize, const TX: usize> {
+    uart: &'u Uart<RX, TX>,
+    clock: Clock,
+    timeout: Duration,
+}
+
+impl<const RX: usize, const TX: usize> ErrorType for Writer<'_, RX, TX> {
+    type Error = TimedOut;
+}
+
+impl<const RX: usize, const TX: usize> Write for Writer<'_, RX, TX> {
+    fn write(&mut self, bytes: &[u8]) -> Result<usize, TimedOut> {
+        if bytes.is_empty() {
+            return Ok(0);
+        }
+        let deadline = self.clock.after(self.timeout);
+        loop {
+            match self.uart.send(bytes) {
+                0 if deadline.passed() => return Err(TimedOut),
+                0 => {}
+                count => return Ok(count),
+            }
+        }
+    }
+
+    /// Waits until the last byte has left the queues; the line may still be sending it.
+    fn flush(&mut self) -> Result<(), TimedOut> {
+        let deadline = self.clock.after(self.timeout);
+        let sent = |state: &mut State<RX, TX>| {
+            state.to_send.is_empty()
+                && state
+                    .registers
+                    .as_ref()
+                    .is_some_and(|registers| registers.txempty().read())
+        };
+        while !self.uart.with(sent) {
+            if deadline.passed() {
+                return Err(TimedOut);
+            }
+        }
+        Ok(())
+    }
+}
+
+impl<const RX: usize, const TX: usize> WriteReady for Writer<'_, RX, TX> {
+    fn write_ready(&mut self) -> Result<bool, TimedOut> {
+        Ok(self.uart.with(|state| !state.to_send.is_full()))
+    }
+}
+
+/// How often a full line is looked at before it is given up: about 0.1 s, far longer than a byte at 115,200 baud.
+const PATIENCE: u32 = 1_000_000;
+
+/// Writes straight to the hardware, without queues or interrupts: what a trap and a panic print with.
+pub struct Direct {
+    registers: uart::Uart,
+}
+
+impl Direct {
+    /// Takes the UART away from whoever has it.
+    ///
+    /// # Safety
+    /// Whoever has it must not rely on its output coming first or whole any more.
+    #[must_use]
+    pub const unsafe fn seize() -> Self {
+        // SAFETY: the caller answers for the other's output, and sending disturbs nothing else.
+        let registers = unsafe { uart::Uart::steal() };
+        Self { registers }
+    }
+}
+
+impl fmt::Write for Direct {
+    /// Gives up on a line that takes nothing.
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        for byte in text.bytes() {
+            let mut patience = PATIENCE;
+            while self.registers.txfull().read() {
+                patience = patience.checked_sub(1).ok_or(fmt::Error)?;
+            }
+            self.registers.rxtx().write(byte);
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests;

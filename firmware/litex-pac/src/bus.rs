@@ -1,0 +1,84 @@
+//! The bus behind the registers: the CPU's own on the board, a model of it on a host.
+
+#[cfg(target_os = "none")]
+pub(crate) use board::{read, write};
+#[cfg(not(target_os = "none"))]
+pub use host::{Bus, connect};
+#[cfg(not(target_os = "none"))]
+pub(crate) use host::{read, write};
+
+#[cfg(target_os = "none")]
+mod board {
+    use core::ptr;
+
+    /// Reads the word at `address`.
+    ///
+    /// # Safety
+    /// A register must be there.
+    #[inline]
+    pub unsafe fn read(address: usize) -> u32 {
+        // SAFETY: the caller vouches for the address, which is a word's.
+        unsafe { ptr::read_volatile(ptr::with_exposed_provenance(address)) }
+    }
+
+    /// Writes the word at `address`.
+    ///
+    /// # Safety
+    /// A register that may be written must be there.
+    #[inline]
+    pub unsafe fn write(address: usize, value: u32) {
+        // SAFETY: the caller vouches for the address, which is a word's.
+        unsafe { ptr::write_volatile(ptr::with_exposed_provenance_mut(address), value) }
+    }
+}
+
+#[cfg(not(target_os = "none"))]
+mod host {
+    use core::cell::RefCell;
+    use std::boxed::Box;
+    use std::thread_local;
+
+    /// What answers at the registers' addresses on a host.
+    pub trait Bus {
+        /// Reads the word at `address`.
+        fn read(&mut self, address: usize) -> u32;
+        /// Writes the word at `address`.
+        fn write(&mut self, address: usize, value: u32);
+    }
+
+    /// A bus with nothing on it: reads are 0, as in the window of a block that was left out.
+    struct Empty;
+
+    impl Bus for Empty {
+        fn read(&mut self, _: usize) -> u32 {
+            0
+        }
+
+        fn write(&mut self, _: usize, _: u32) {}
+    }
+
+    thread_local! {
+        static BUS: RefCell<Box<dyn Bus>> = RefCell::new(Box::new(Empty));
+    }
+
+    /// Puts `bus` behind the registers for this thread.
+    pub fn connect(bus: impl Bus + 'static) {
+        BUS.replace(Box::new(bus));
+    }
+
+    /// Reads the word at `address`.
+    ///
+    /// # Safety
+    /// None here; it is what the board's own asks for.
+    pub unsafe fn read(address: usize) -> u32 {
+        BUS.with_borrow_mut(|bus| bus.read(address))
+    }
+
+    /// Writes the word at `address`.
+    ///
+    /// # Safety
+    /// None here; it is what the board's own asks for.
+    pub unsafe fn write(address: usize, value: u32) {
+        BUS.with_borrow_mut(|bus| bus.write(address, value));
+    }
+}

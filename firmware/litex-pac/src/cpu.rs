@@ -1,0 +1,95 @@
+//! The registers of the CPU itself (VexRiscv `full`) that are in no description of the SoC.
+
+use core::arch::asm;
+use core::sync::atomic::{Ordering, compiler_fence};
+
+/// The interrupt lines that reach the CPU, as [`Interrupt::bit`](crate::Interrupt::bit)s: its CSR 0xBC0.
+#[inline]
+#[must_use]
+pub fn interrupt_mask() -> u32 {
+    let mask;
+    // SAFETY: reads a register that VexRiscv has and that has no side effect.
+    unsafe { asm!("csrr {}, 0xbc0", out(reg) mask, options(nomem, nostack)) };
+    mask
+}
+
+/// Lets just the interrupt lines of `mask` reach the CPU.
+///
+/// # Safety
+/// A critical section may rely on the mask; and whatever comes in now must find its handler ready.
+#[inline]
+pub unsafe fn set_interrupt_mask(mask: u32) {
+    // SAFETY: writes a register that VexRiscv has; the caller answers for what comes in.
+    unsafe { asm!("csrw 0xbc0, {}", in(reg) mask, options(nostack)) };
+}
+
+/// The interrupt lines that are active and not masked: the CPU's CSR 0xFC0.
+#[inline]
+#[must_use]
+pub fn interrupts_pending() -> u32 {
+    let pending;
+    // SAFETY: reads a register that VexRiscv has and that has no side effect.
+    unsafe { asm!("csrr {}, 0xfc0", out(reg) pending, options(nomem, nostack)) };
+    pending
+}
+
+/// Empties the data cache, so that what another master wrote to memory is read from there. The cache writes through,
+/// so nothing is lost; what the CPU wrote is in memory already.
+#[inline]
+pub fn flush_data_cache() {
+    compiler_fence(Ordering::SeqCst);
+    // SAFETY: VexRiscv's own instruction for this; it changes no memory.
+    unsafe { asm!(".word 0x500f", options(nostack)) };
+    compiler_fence(Ordering::SeqCst);
+}
+
+/// Empties the instruction cache, so that code which was written as data is fetched from memory.
+#[inline]
+pub fn flush_instruction_cache() {
+    // SAFETY: `fence.i`, and as many empty instructions as VexRiscv's pipeline may have fetched before it.
+    unsafe {
+        asm!(
+            ".word 0x100f",
+            "nop",
+            "nop",
+            "nop",
+            "nop",
+            "nop",
+            options(nostack)
+        )
+    };
+}
+
+/// Clock cycles since reset, modulo 2^64.
+#[inline]
+#[must_use]
+pub fn cycles() -> u64 {
+    loop {
+        let (high, low, again): (u32, u32, u32);
+        // SAFETY: reads counters that the variant `full` has; no side effects.
+        unsafe {
+            asm!(
+                "csrr {high}, mcycleh",
+                "csrr {low}, mcycle",
+                "csrr {again}, mcycleh",
+                high = out(reg) high,
+                low = out(reg) low,
+                again = out(reg) again,
+                options(nomem, nostack)
+            );
+        }
+        if high == again {
+            return u64::from(high) << 32 | u64::from(low);
+        }
+    }
+}
+
+/// The low word of [`cycles`]: enough for spans below 2^32 cycles (52 s at 81.25 MHz), and quicker.
+#[inline]
+#[must_use]
+pub fn cycles_low() -> u32 {
+    let cycles;
+    // SAFETY: reads a counter that the variant `full` has; no side effects.
+    unsafe { asm!("csrr {}, mcycle", out(reg) cycles, options(nomem, nostack)) };
+    cycles
+}

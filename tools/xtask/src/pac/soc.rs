@@ -1,0 +1,396 @@
+//! The SoC as both of LiteX's descriptions tell it, joined by address.
+
+use std::collections::BTreeMap;
+
+use anyhow::{Context, Result, bail, ensure};
+use roxmltree::{Document, Node};
+use serde_json::Value;
+
+/// Name of the constant that carries the CRC-32 of the pinned register map.
+const BUILD_ID: &str = "build_id";
+
+/// Everything the generated files are made of, sorted by address or name.
+#[derive(Debug)]
+pub struct Soc {
+    /// CRC-32 of the pinned register map.
+    pub build_id: u32,
+    /// By base address.
+    pub peripherals: Vec<Peripheral>,
+    /// By base address, `csr` itself left out.
+    pub memories: Vec<Memory>,
+    /// By name: the numbers among the constants that firmware may rely on.
+    pub constants: Vec<(String, u32)>,
+}
+
+/// A window of registers.
+#[derive(Debug)]
+pub struct Peripheral {
+    pub name: String,
+    pub base: u32,
+    /// First paragraph of the gateware's own description; may be empty.
+    pub description: String,
+    pub interrupt: Option<u32>,
+    /// By offset.
+    pub registers: Vec<Register>,
+}
+
+/// One register of one or two 32-bit words, the high word first.
+#[derive(Debug)]
+pub struct Register {
+    pub name: String,
+    pub offset: u32,
+    pub words: u32,
+    pub access: Access,
+    pub reset: u64,
+    /// Width in bits.
+    pub width: u32,
+    pub description: String,
+    /// By lowest bit. Empty where the register is one plain number.
+    pub fields: Vec<Field>,
+}
+
+/// Whether the bus may write a register. LiteX has none that cannot be read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Access {
+    ReadOnly,
+    ReadWrite,
+}
+
+/// Bits of a register with a name of their own.
+#[derive(Debug)]
+pub struct Field {
+    pub name: String,
+    pub lsb: u32,
+    pub width: u32,
+    pub description: String,
+}
+
+/// A memory on the bus.
+#[derive(Debug)]
+pub struct Memory {
+    pub name: String,
+    pub base: u32,
+    pub size: u32,
+}
+
+impl Soc {
+    /// Joins the texts of `soc.svd` and `csr.json`.
+    ///
+    /// # Errors
+    /// When either cannot be read or the two disagree; the message names the register and what each of them says.
+    pub fn read(svd: &str, csr_json: &str) -> Result<Self> {
+        let document = Document::parse(svd).context("soc.svd is not XML")?;
+        let csr: Value = serde_json::from_str(csr_json).context("csr.json is not JSON")?;
+        let mut constants = constants(&csr)?;
+        let build_id = constants
+            .remove(BUILD_ID)
+            .with_context(|| format!("csr.json has no constant `{BUILD_ID}`"))?;
+        Ok(Self {
+            build_id,
+            peripherals: peripherals(&document, &csr)?,
+            memories: memories(&csr)?,
+            constants: constants.into_iter().collect(),
+        })
+    }
+}
+
+fn peripherals(document: &Document, csr: &Value) -> Result<Vec<Peripheral>> {
+    let mut declared = declared_registers(csr)?;
+    let bases = object(csr, "csr_bases")?;
+    let mut peripherals = Vec::new();
+    for node in document
+        .descendants()
+        .filter(|node| node.has_tag_name("peripheral"))
+    {
+        let name = child_text(node, "name")?.to_lowercase();
+        let base = number(child_text(node, "baseAddress")?)?;
+        let json_base = bases
+            .get(&name)
+            .with_context(|| format!("soc.svd has the peripheral `{name}`, csr.json has not"))?;
+        let json_base =
+            u32_of(json_base).with_context(|| format!("base of `{name}` in csr.json"))?;
+        ensure!(
+            base == json_base,
+            "`{name}` lies at {base:#010x} in soc.svd and at {json_base:#010x} in csr.json"
+        );
+        let registers = registers(node, &name, base, &mut declared)?;
+        // A memory behind the register bus (the identifier) has no registers in csr.json.
+        if !registers.is_empty() {
+            peripherals.push(Peripheral {
+                description: first_paragraph(
+                    child(node, "description")
+                        .and_then(|n| n.text())
+                        .unwrap_or_default(),
+                ),
+                interrupt: child(node, "interrupt")
+                    .map(|n| number(child_text(n, "value")?))
+                    .transpose()?,
+                name,
+                base,
+                registers,
+            });
+        }
+    }
+    if let Some((address, register)) = declared.first_key_value() {
+        bail!(
+            "csr.json has the register `{}` at {address:#010x}, soc.svd has not",
+            register.name
+        );
+    }
+    peripherals.sort_by_key(|peripheral| peripheral.base);
+    Ok(peripherals)
+}
+
+/// A register as csr.json knows it.
+struct Declared {
+    /// `peripheral_register`.
+    name: String,
+    words: u32,
+    access: Access,
+}
+
+fn declared_registers(csr: &Value) -> Result<BTreeMap<u32, Declared>> {
+    let mut declared = BTreeMap::new();
+    for (name, entry) in object(csr, "csr_registers")? {
+        let at = || format!("register `{name}` in csr.json");
+        let address = u32_of(&entry["addr"]).with_context(at)?;
+        let words = u32_of(&entry["size"]).with_context(at)?;
+        ensure!(
+            (1..=2).contains(&words),
+            "{} is {words} words wide, expected 1 or 2",
+            at()
+        );
+        let access = match entry["type"].as_str() {
+            Some("ro") => Access::ReadOnly,
+            Some("rw") => Access::ReadWrite,
+            other => bail!(
+                "{} has the access {other:?}, expected \"ro\" or \"rw\"",
+                at()
+            ),
+        };
+        let register = Declared {
+            name: name.clone(),
+            words,
+            access,
+        };
+        if let Some(other) = declared.insert(address, register) {
+            bail!(
+                "{} has the address of `{}`, {address:#010x}",
+                at(),
+                other.name
+            );
+        }
+    }
+    Ok(declared)
+}
+
+/// The registers of one peripheral of soc.svd, each taken out of `declared`.
+fn registers(
+    peripheral: Node,
+    peripheral_name: &str,
+    base: u32,
+    declared: &mut BTreeMap<u32, Declared>,
+) -> Result<Vec<Register>> {
+    let mut words = BTreeMap::new();
+    for node in peripheral
+        .descendants()
+        .filter(|node| node.has_tag_name("register"))
+    {
+        words.insert(number(child_text(node, "addressOffset")?)?, node);
+    }
+    let mut registers = Vec::new();
+    while let Some((offset, first)) = words.pop_first() {
+        let svd_name = child_text(first, "name")?.to_lowercase();
+        let address = base + offset;
+        let Some(Declared {
+            name,
+            words: count,
+            access,
+        }) = declared.remove(&address)
+        else {
+            ensure!(
+                !declared
+                    .values()
+                    .any(|register| register.name.starts_with(&format!("{peripheral_name}_"))),
+                "soc.svd has `{peripheral_name}_{svd_name}` at {address:#010x}, csr.json has nothing there"
+            );
+            continue;
+        };
+        let short = name
+            .strip_prefix(&format!("{peripheral_name}_"))
+            .with_context(|| {
+                format!("`{name}` at {address:#010x} is not of the peripheral `{peripheral_name}`")
+            })?;
+        let expected = if count == 1 {
+            short.to_owned()
+        } else {
+            format!("{short}{}", count - 1)
+        };
+        ensure!(
+            svd_name == expected,
+            "{address:#010x} is `{svd_name}` in soc.svd and `{expected}` in csr.json"
+        );
+        let mut register = register(first, short, offset, access)?;
+        for below in (0..count - 1).rev() {
+            let (low_offset, low) = words.pop_first().with_context(|| {
+                format!("`{name}` has {count} words in csr.json, fewer in soc.svd")
+            })?;
+            let low_name = child_text(low, "name")?.to_lowercase();
+            ensure!(
+                low_offset == offset + 4 * register.words && low_name == format!("{short}{below}"),
+                "word {below} of `{name}` is expected beside its other words, soc.svd has `{low_name}` there"
+            );
+            let low = self::register(low, short, low_offset, access)?;
+            register.words += 1;
+            register.width += 32;
+            register.reset = register.reset << 32 | low.reset;
+        }
+        registers.push(register);
+    }
+    Ok(registers)
+}
+
+fn register(node: Node, name: &str, offset: u32, access: Access) -> Result<Register> {
+    let mut fields = Vec::new();
+    for field in node.descendants().filter(|node| node.has_tag_name("field")) {
+        let lsb: u32 = number(child_text(field, "lsb")?)?;
+        let msb: u32 = number(child_text(field, "msb")?)?;
+        let name = child_text(field, "name")?.to_lowercase();
+        ensure!(
+            lsb <= msb && msb < 32,
+            "field `{name}` of `{name}` has the bits {msb} to {lsb}"
+        );
+        fields.push(Field {
+            name,
+            lsb,
+            width: msb - lsb + 1,
+            description: field_description(&flowed(
+                child(field, "description").and_then(|n| n.text()),
+            )),
+        });
+    }
+    fields.sort_by_key(|field| field.lsb);
+    let width = fields.last().map_or(32, |field| field.lsb + field.width);
+    // LiteX invents a field of the register's own name where none was declared.
+    if let [only] = fields.as_slice()
+        && only.lsb == 0
+        && (only.name == name || name.strip_prefix("ev_") == Some(&only.name))
+    {
+        fields.clear();
+    }
+    Ok(Register {
+        name: name.to_owned(),
+        offset,
+        words: 1,
+        access,
+        reset: u64::from(number(child_text(node, "resetValue")?)?),
+        width,
+        description: register_description(
+            name,
+            &flowed(child(node, "description").and_then(|n| n.text())),
+        ),
+        fields,
+    })
+}
+
+fn memories(csr: &Value) -> Result<Vec<Memory>> {
+    let mut memories = Vec::new();
+    for (name, entry) in object(csr, "memories")? {
+        let at = || format!("memory `{name}` in csr.json");
+        memories.push(Memory {
+            name: name.clone(),
+            base: u32_of(&entry["base"]).with_context(at)?,
+            size: u32_of(&entry["size"]).with_context(at)?,
+        });
+    }
+    memories.retain(|memory| memory.name != "csr");
+    memories.sort_by_key(|memory| memory.base);
+    Ok(memories)
+}
+
+/// The constants that are numbers. Interrupt numbers are told by the peripherals, and what steers only the BIOS's
+/// memory test differs between boards.
+fn constants(csr: &Value) -> Result<BTreeMap<String, u32>> {
+    let mut constants = BTreeMap::new();
+    for (name, value) in object(csr, "constants")? {
+        if value.is_number() && !name.ends_with("_interrupt") && !name.starts_with("memtest_") {
+            let value = u32_of(value).with_context(|| format!("constant `{name}` in csr.json"))?;
+            constants.insert(name.clone(), value);
+        }
+    }
+    Ok(constants)
+}
+
+fn object<'a>(csr: &'a Value, name: &str) -> Result<&'a serde_json::Map<String, Value>> {
+    csr[name]
+        .as_object()
+        .with_context(|| format!("csr.json has no object `{name}`"))
+}
+
+fn u32_of(value: &Value) -> Result<u32> {
+    value
+        .as_u64()
+        .and_then(|number| u32::try_from(number).ok())
+        .with_context(|| format!("expected a number of 32 bits, found {value}"))
+}
+
+fn child<'a, 'b>(node: Node<'a, 'b>, name: &str) -> Option<Node<'a, 'b>> {
+    node.children().find(|child| child.has_tag_name(name))
+}
+
+fn child_text<'a>(node: Node<'a, '_>, name: &str) -> Result<&'a str> {
+    child(node, name)
+        .and_then(|child| child.text())
+        .with_context(|| format!("soc.svd: <{}> has no <{name}>", node.tag_name().name()))
+}
+
+fn number(text: &str) -> Result<u32> {
+    let parsed = match text.strip_prefix("0x") {
+        Some(digits) => u32::from_str_radix(digits, 16),
+        None => text.parse(),
+    };
+    parsed.with_context(|| format!("soc.svd: expected a number of 32 bits, found `{text}`"))
+}
+
+/// A description on one line, with reStructuredText's code quotes turned into Markdown's.
+fn flowed(text: Option<&str>) -> String {
+    text.unwrap_or_default()
+        .split_whitespace()
+        .collect::<Vec<_>>()
+        .join(" ")
+        .replace("``", "`")
+}
+
+fn first_paragraph(text: &str) -> String {
+    flowed(text.trim().split("\n\n").next())
+}
+
+/// LiteX names an edge for every process event, and always the falling one; a field without a description is `None`.
+fn field_description(text: &str) -> String {
+    let text = text
+        .split(" This Event is triggered")
+        .next()
+        .unwrap_or_default();
+    if text == "None" {
+        String::new()
+    } else {
+        text.to_owned()
+    }
+}
+
+/// What a register is: for an event manager's in general words, because LiteX's speak of its last event only; for one
+/// of several words without the note which of its words this one is.
+fn register_description(name: &str, text: &str) -> String {
+    match (name, text.strip_prefix("Bits ")) {
+        ("ev_status", _) => "Level of each event's trigger.".to_owned(),
+        ("ev_pending", _) => "Events that have occurred; writing a 1 clears an event.".to_owned(),
+        ("ev_enable", _) => "Events that raise the interrupt.".to_owned(),
+        (_, Some(rest)) => rest
+            .split_once(". ")
+            .map_or(String::new(), |(_, description)| description.to_owned()),
+        (_, None) => text.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests;
