@@ -2,8 +2,8 @@
 //!
 //! A triangle is convex, so each row has one span. The span starts where all edges of the left side are passed and ends
 //! where an edge of the right side fails; from one row to the next both ends move along their edges, and the walker
-//! follows them pixel by pixel instead of looking through the row. Horizontal edges need no test: they are the first
-//! or the last row of the bounds, and those are open below.
+//! follows them pixel by pixel instead of looking through the row. Horizontal edges need no test: the bounds hold the
+//! rows at or below a top edge and above a bottom edge.
 
 use core::ops::{Add, BitOr, Sub};
 

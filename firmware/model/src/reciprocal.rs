@@ -19,7 +19,7 @@ const fn seeds() -> [u16; 256] {
 
 /// 2^47/m for a mantissa m in [2^23, 2^24), in [2^23, 2^24).
 ///
-/// The error is at most one unit: 2^47/2^23 saturates to 2^24 − 1, all others are within 0.53. It never rises as m rises.
+/// The error is at most one unit: 2^47/2^23 saturates to 2^24 − 1, all others are within 0.51. It never rises as m rises.
 /// Any other m gives a meaningless number.
 pub const fn recip(m: u32) -> u32 {
     let y0 = SEED[(m >> 15 & 0xFF) as usize] as u32;

@@ -17,7 +17,7 @@ pub enum Facing {
 pub struct Oriented {
     /// The vertices; those of a front face have 1 and 2 swapped.
     pub vertices: [ScreenVertex; 3],
-    /// a = |2A| > 0, u41 with 16 fraction bits: a triangle is at most half of the square that holds it.
+    /// a = |2A| > 0, u40 with 16 fraction bits: a triangle is at most half of a square that holds it.
     pub doubled_area: u64,
     /// The side that is seen.
     pub facing: Facing,

@@ -1,0 +1,233 @@
+//! Snapped places and depths against a projection in f64.
+
+mod common;
+
+use common::{Camera, Random, world};
+use glint_model::vertex::{project, transform};
+use glint_model::{FrameSetup, Projected, SIZES, ScreenVertex};
+
+/// The radius of a mesh that fills the 1×1×1 box, and of one with vertices at ±2; u.14.
+const RADII: [u32; 2] = [14_190, 56_756];
+
+/// Largest errors in 1/256 pixel.
+#[derive(Clone, Copy, Default)]
+struct Worst {
+    screen: f64,
+    guard: f64,
+    count: u32,
+}
+
+impl Worst {
+    fn note(&mut self, place: ScreenVertex, [x, y, _]: [f64; 3], (width, height): (u32, u32)) {
+        let error = (f64::from(place.x) - 256.0 * x)
+            .abs()
+            .max((f64::from(place.y) - 256.0 * y).abs());
+        let on_screen =
+            (0.0..=f64::from(width)).contains(&x) && (0.0..=f64::from(height)).contains(&y);
+        if on_screen {
+            self.screen = self.screen.max(error);
+            self.count += 1;
+        }
+        self.guard = self.guard.max(error);
+    }
+}
+
+/// A camera somewhere within 8, with a point of the mesh somewhere in its guard band.
+fn aimed(
+    random: &mut Random,
+    (width, height): (u32, u32),
+    half_width: f64,
+    reach: f64,
+) -> (Camera, [i16; 3], f64) {
+    loop {
+        let point = [0; 3]
+            .map(|_| random.integer((-16384.0 * reach) as i64, (16383.0 * reach) as i64) as i16);
+        let distance = random.real(0.0, 8.0);
+        let eye = random.direction().map(|x| x * distance);
+        let towards = [0, 1, 2].map(|i| world(point)[i] - eye[i]);
+        let length = common::dot(towards, towards).sqrt();
+        // In pixels, half of the time on the screen.
+        let (x, y) = if random.coin() {
+            (
+                random.real(0.0, width.into()),
+                random.real(0.0, height.into()),
+            )
+        } else {
+            (random.real(-2047.0, 2047.0), random.real(-2047.0, 2047.0))
+        };
+        let scale = 2.0 * half_width / f64::from(width);
+        let place = [
+            (x - f64::from(width) / 2.0) * scale,
+            (y - f64::from(height) / 2.0) * scale,
+        ];
+        let z = length / (1.0 + place[0].powi(2) + place[1].powi(2)).sqrt();
+        if z > 0.01 {
+            let near = random.logarithmic(0.01, z.min(2.0));
+            return (
+                Camera::aimed(random, eye, towards, place, half_width, near),
+                point,
+                z,
+            );
+        }
+    }
+}
+
+#[test]
+fn places_against_f64() {
+    let mut random = Random(1);
+    for (size, bound) in SIZES.into_iter().zip([1.0, 1.0, 2.0]) {
+        let (width, height) = size;
+        let [mut same, mut unrounded] = [Worst::default(); 2];
+        for round in 0..40_000 {
+            let half_width = match round % 8 {
+                0 => 0.05,
+                1 => 4.0,
+                _ => random.logarithmic(0.05, 4.0),
+            };
+            let index = round / 8 % 2;
+            let (camera, point, z) = aimed(&mut random, size, half_width, [0.5, 2.0][index]);
+            let view = camera.rounded();
+            let frame = FrameSetup::new(&view, width, height, RADII[index]).unwrap();
+            for _ in 0..4 {
+                // Neighbours of the point on the screen.
+                let spread = (z * half_width * 16384.0).min(20_000.0) as i64 + 1;
+                let position = point.map(|x| {
+                    (i64::from(x) + random.integer(-spread, spread)).clamp(-32768, 32767) as i16
+                });
+                if let Projected::Visible(place) = project(&frame, &transform(&frame, position)) {
+                    same.note(
+                        place,
+                        Camera::of(&view).project(world(position), width, height),
+                        size,
+                    );
+                    unrounded.note(place, camera.project(world(position), width, height), size);
+                }
+            }
+        }
+        println!(
+            "{width}x{height}: {} places on the screen; 1/256 px off: {:.3} on it, {:.3} in the guard band \
+             (from the camera before its rounding: {:.3}, {:.3})",
+            same.count, same.screen, same.guard, unrounded.screen, unrounded.guard
+        );
+        assert!(same.count > 20_000);
+        // Off the screen a wide camera multiplies the rounding of its own numbers.
+        assert!(same.guard <= bound && unrounded.screen <= bound);
+    }
+}
+
+/// w against K/z, and K against the nearest depth: the code of what is nearest is as large as can be.
+#[test]
+fn depths_against_f64() {
+    let mut random = Random(2);
+    let mut worst: f64 = 0.0;
+    for round in 0..40_000 {
+        let half_width = random.logarithmic(0.05, 4.0);
+        let index = round % 2;
+        let (camera, point, _) = aimed(&mut random, SIZES[0], half_width, [0.5, 2.0][index]);
+        let view = camera.rounded();
+        let frame = FrameSetup::new(&view, 320, 180, RADII[index]).unwrap();
+        let k = f64::from(frame.depth.mantissa) * 2f64.powi(frame.depth.exponent);
+        let [.., z] = Camera::of(&view).project(world(point), 320, 180);
+        if let Projected::Visible(place) | Projected::BeyondGuard(place) =
+            project(&frame, &transform(&frame, point))
+        {
+            let exact = 64.0 * k / z;
+            assert!(exact < 64.0 * 262_140.5, "{exact} at {z}");
+            worst = worst.max((f64::from(place.w) - exact).abs());
+        }
+        let origin = -common::dot(Camera::of(&view).n, Camera::of(&view).eye);
+        let nearest = view
+            .near()
+            .to_num::<f64>()
+            .max(origin - f64::from(RADII[index]) / 16384.0 * (1.0 + 2f64.powi(-13)));
+        assert!(
+            (1.0 - 2f64.powi(-16)..=1.0).contains(&(k / nearest / 262_140.0)),
+            "K {k} for {nearest}"
+        );
+    }
+    println!("w: at most {worst:.3} of its units (1/64 code) from K/z");
+    assert!(worst <= 4.5);
+}
+
+/// The far corners of what a camera may be: no overflow, and right places.
+#[test]
+fn extremes() {
+    let mut random = Random(3);
+    let corners = [
+        [i16::MIN; 3],
+        [i16::MAX; 3],
+        [i16::MIN, i16::MAX, i16::MIN],
+        [0; 3],
+        [1, 0, -1],
+    ];
+    let mut seen = 0;
+    for size in SIZES {
+        for half_width in [0.05, 4.0] {
+            for near in [0.01, 2.0] {
+                for eye in [
+                    [8.0, 0.0, 0.0],
+                    [0.0, 0.0, -8.0],
+                    [4.6, 4.6, 4.6],
+                    [-2.0, -2.0, -2.0],
+                    [0.0; 3],
+                    [2.0, -2.0, 2.0],
+                ] {
+                    for _ in 0..50 {
+                        let scale = 1.0 + random.real(-9.9e-5, 9.9e-5);
+                        let mut camera = Camera::aimed(
+                            &mut random,
+                            eye,
+                            eye.map(|x| 0.1 - x),
+                            [0.0; 2],
+                            half_width,
+                            near,
+                        );
+                        for row in [&mut camera.u, &mut camera.v, &mut camera.n] {
+                            *row = row.map(|x| x * scale);
+                        }
+                        let view = camera.rounded();
+                        let frame = FrameSetup::new(&view, size.0, size.1, RADII[1]).unwrap();
+                        assert!((10..=18).contains(&frame.scale_shift));
+                        assert!(
+                            frame
+                                .u
+                                .iter()
+                                .chain(&frame.v)
+                                .all(|row| row.abs() < 1 << 24)
+                        );
+                        assert!(frame.translation.iter().all(|t| t.abs() < 1 << 42));
+                        for position in corners {
+                            let vertex = transform(&frame, position);
+                            assert!(
+                                [vertex.x, vertex.y].iter().all(|x| x.abs() < 3 << 40)
+                                    && vertex.z.abs() < 1 << 41
+                            );
+                            let [x, y, z] =
+                                Camera::of(&view).project(world(position), size.0, size.1);
+                            let inside = x.abs().max(y.abs()) < 2046.9;
+                            let outside = x.abs().max(y.abs()) > 2047.1;
+                            match project(&frame, &vertex) {
+                                Projected::Behind => assert!(z < near + 1e-6),
+                                Projected::Visible(_) => assert!(z > near - 1e-6 && !outside),
+                                Projected::BeyondGuard(place) => {
+                                    assert!(z > near - 1e-6 && !inside);
+                                    // Saturated or not, it is on the right side.
+                                    let side = |place: i32, x: f64| {
+                                        x.abs() < 2046.9
+                                            || f64::from(place) * x >= 256.0 * 2046.0 * x.abs()
+                                    };
+                                    assert!(
+                                        side(place.x, x) && side(place.y, y),
+                                        "{place:?} for {x}, {y}"
+                                    );
+                                }
+                            }
+                            seen += u32::from(z >= near);
+                        }
+                    }
+                }
+            }
+        }
+    }
+    assert!(seen > 5000, "{seen}");
+}
