@@ -1,1 +1,13 @@
-//! placeholder
+//! References that Glint is measured against, written from the rules and not from the model.
+//!
+//! - [`exact`]: coverage and depth of a snapped triangle in integers.
+//! - [`camera`]: the camera in f64.
+//! - [`surface`]: what each pixel of the unsnapped scene shows, and where that depends on snapping.
+//! - [`sine`]: exhaustive error tables of sine and cosine, beside other libraries.
+
+#![forbid(unsafe_code)]
+
+pub mod camera;
+pub mod exact;
+pub mod sine;
+pub mod surface;

@@ -1,0 +1,208 @@
+//! What is kept of a sweep's errors.
+
+use super::truth::SinCos;
+
+/// Which of the two outputs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Function {
+    /// The sine.
+    Sin,
+    /// The cosine.
+    Cos,
+}
+
+impl std::fmt::Display for Function {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Sin => "sin",
+            Self::Cos => "cos",
+        })
+    }
+}
+
+/// Buckets of the histogram in one octave; a percentile is good to 1/64.
+const BUCKETS_PER_OCTAVE: u64 = 64;
+/// Errors below 2^-64 share the first bucket, and errors from 1 up the last.
+const OCTAVES: u64 = 64;
+
+/// Errors of sine and cosine together, absolute.
+///
+/// Each input counts with a weight, the part of the circle that it stands for, so that means are means over the angle even
+/// where inputs crowd, as floats do near zero.
+#[derive(Clone, Debug)]
+pub struct Statistics {
+    /// Inputs seen; each has a sine and a cosine.
+    pub inputs: u64,
+    /// The largest error.
+    pub max: f64,
+    /// The number of the input with the largest error, as the subject counts them; the first of several.
+    pub worst_input: u64,
+    /// The output with the largest error.
+    pub worst_function: Function,
+    /// The largest |sin² + cos² − 1|.
+    pub max_norm: f64,
+    /// Inputs whose outputs are not those of their image in the first octant, bit for bit.
+    pub asymmetric: u64,
+    weight: f64,
+    sum_of_squares: f64,
+    sum: f64,
+    histogram: Vec<f64>,
+}
+
+impl Default for Statistics {
+    fn default() -> Self {
+        Self {
+            inputs: 0,
+            max: -1.0,
+            worst_input: 0,
+            worst_function: Function::Sin,
+            max_norm: 0.0,
+            asymmetric: 0,
+            weight: 0.0,
+            sum_of_squares: 0.0,
+            sum: 0.0,
+            histogram: vec![0.0; (OCTAVES * BUCKETS_PER_OCTAVE) as usize + 1],
+        }
+    }
+}
+
+impl Statistics {
+    /// Adds one input's outputs.
+    pub fn add(&mut self, input: u64, truth: SinCos, got: SinCos, weight: f64) {
+        self.inputs += 1;
+        self.add_one(input, Function::Sin, truth.sin, got.sin, weight);
+        self.add_one(input, Function::Cos, truth.cos, got.cos, weight);
+        let norm = (got.sin * got.sin + got.cos * got.cos - 1.0).abs();
+        self.max_norm = self.max_norm.max(norm);
+    }
+
+    fn add_one(&mut self, input: u64, function: Function, truth: f64, got: f64, weight: f64) {
+        let error = got - truth;
+        let size = error.abs();
+        if size > self.max {
+            (self.max, self.worst_input, self.worst_function) = (size, input, function);
+        }
+        self.weight += weight;
+        self.sum_of_squares += error * error * weight;
+        self.sum += error * truth.signum() * weight;
+        if let Some(count) = self.histogram.get_mut(bucket(size)) {
+            *count += weight;
+        }
+    }
+
+    /// Adds what was found over later inputs.
+    pub fn merge(&mut self, later: &Self) {
+        self.inputs += later.inputs;
+        // Inputs need not come in order of their numbers.
+        if later.max > self.max || (later.max == self.max && later.worst_input < self.worst_input) {
+            (self.max, self.worst_input, self.worst_function) =
+                (later.max, later.worst_input, later.worst_function);
+        }
+        self.max_norm = self.max_norm.max(later.max_norm);
+        self.asymmetric += later.asymmetric;
+        self.weight += later.weight;
+        self.sum_of_squares += later.sum_of_squares;
+        self.sum += later.sum;
+        for (count, more) in self.histogram.iter_mut().zip(&later.histogram) {
+            *count += more;
+        }
+    }
+
+    /// Root of the mean squared error.
+    pub fn rms(&self) -> f64 {
+        (self.sum_of_squares / self.weight).sqrt()
+    }
+
+    /// Mean error of the magnitude: positive when outputs are too far from zero.
+    pub fn bias(&self) -> f64 {
+        self.sum / self.weight
+    }
+
+    /// The error that 99 % of the outputs do not pass, rounded up by at most 1/64 of itself.
+    pub fn p99(&self) -> f64 {
+        let mut below = 0.0;
+        for (index, count) in self.histogram.iter().enumerate() {
+            below += count;
+            if below >= 0.99 * self.weight {
+                return bucket_end(index).min(self.max);
+            }
+        }
+        self.max
+    }
+}
+
+/// Bits of an f64 from the bucket's size up: the exponent and six bits of the mantissa.
+const SHIFT: u32 = 52 - BUCKETS_PER_OCTAVE.ilog2();
+const FIRST: u64 = (1023 - OCTAVES) * BUCKETS_PER_OCTAVE;
+
+fn bucket(size: f64) -> usize {
+    ((size.to_bits() >> SHIFT).saturating_sub(FIRST)).min(OCTAVES * BUCKETS_PER_OCTAVE) as usize
+}
+
+fn bucket_end(index: usize) -> f64 {
+    f64::from_bits((index as u64 + 1 + FIRST) << SHIFT)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const RIGHT: SinCos = SinCos {
+        sin: 0.6,
+        cos: -0.8,
+    };
+
+    fn off_by(sin: f64, cos: f64) -> SinCos {
+        SinCos {
+            sin: RIGHT.sin + sin,
+            cos: RIGHT.cos + cos,
+        }
+    }
+
+    #[test]
+    fn known_errors_give_known_figures() {
+        let mut statistics = Statistics::default();
+        statistics.add(7, RIGHT, off_by(0.0, 0.0), 1.0);
+        statistics.add(8, RIGHT, off_by(0.0, -0.25), 1.0);
+        assert_eq!(statistics.inputs, 2);
+        assert_eq!(
+            (statistics.worst_input, statistics.worst_function),
+            (8, Function::Cos)
+        );
+        assert!((statistics.max - 0.25).abs() < 1e-15);
+        assert!((statistics.rms() - 0.125).abs() < 1e-15);
+        assert!(
+            (statistics.bias() - 0.0625).abs() < 1e-15,
+            "too far from zero is positive"
+        );
+        assert!((statistics.max_norm - (1.05f64 * 1.05 + 0.36 - 1.0)).abs() < 1e-15);
+    }
+
+    #[test]
+    fn merging_parts_is_adding_all() {
+        let (mut whole, mut early, mut late) = (
+            Statistics::default(),
+            Statistics::default(),
+            Statistics::default(),
+        );
+        for i in 0..100u32 {
+            let got = off_by(f64::from(i) / 64.0, 0.0);
+            whole.add(i.into(), RIGHT, got, 1.0);
+            if i < 40 { &mut early } else { &mut late }.add(i.into(), RIGHT, got, 1.0);
+        }
+        early.merge(&late);
+        assert_eq!(early.worst_input, whole.worst_input);
+        assert_eq!((early.p99(), early.rms()), (whole.p99(), whole.rms()));
+    }
+
+    #[test]
+    fn p99_leaves_one_in_a_hundred_above() {
+        let mut statistics = Statistics::default();
+        for i in 1..=1000u32 {
+            let error = f64::from(i) / 1024.0;
+            statistics.add(i.into(), RIGHT, off_by(error, error), 1.0);
+        }
+        let p99 = statistics.p99() * 1024.0;
+        assert!((990.0..990.0 * 65.0 / 64.0).contains(&p99), "p99 is {p99}");
+    }
+}

@@ -1,0 +1,361 @@
+//! The kernels that are measured, each over all inputs of its own format.
+
+use std::f64::consts::PI;
+use std::ops::Range;
+
+use cordic::CordicNumber;
+use fixed::types::{I4F28, I16F16};
+use glint_core::fixed::Turns;
+use glint_core::trig;
+use micromath::F32Ext;
+
+use super::statistics::Statistics;
+use super::truth::{Image, OCTANT, SinCos, TURN};
+
+/// A kernel and its inputs, numbered in steps. One step may stand for several inputs.
+pub struct Subject {
+    /// The kernel's name, that of its line in the firmware's `bench sine`.
+    pub kernel: &'static str,
+    /// The line of the work-precision diagram on which it lies.
+    pub family: &'static str,
+    /// Which variant.
+    pub config: &'static str,
+    /// The format of the outputs.
+    pub format: &'static str,
+    /// The last place of that format, for floats that just below 1.
+    pub ulp: f64,
+    /// The inputs in words.
+    pub inputs: &'static str,
+    /// Its inputs are phases, so the symmetries of the circle can be checked bit for bit.
+    pub by_phase: bool,
+    /// Used by Glint itself.
+    pub shipped: bool,
+    steps: u64,
+    run: Box<Run>,
+    show: fn(u64) -> String,
+}
+
+/// Adds the errors of every so many of a range of steps.
+type Run = dyn Fn(Range<u64>, u64, &mut Statistics) + Sync;
+
+impl Subject {
+    /// How many steps make all inputs.
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// Measures the steps `stride·i` for all i in `range`.
+    pub fn run(&self, range: Range<u64>, stride: u64, statistics: &mut Statistics) {
+        (self.run)(range, stride, statistics);
+    }
+
+    /// An input's number in words.
+    pub fn show_input(&self, number: u64) -> String {
+        (self.show)(number)
+    }
+}
+
+/// All subjects, Glint's own first.
+pub fn subjects() -> Vec<Subject> {
+    vec![
+        Subject {
+            shipped: true,
+            ..phases(
+                ["sin_cos_q14", GLINT, "order 2", "Q2.14"],
+                14,
+                16,
+                "all 2^16 phases of 16 bits",
+                q14,
+            )
+        },
+        Subject {
+            shipped: true,
+            ..phases(
+                ["sin_cos_q14", GLINT, "order 2", "Q2.14"],
+                14,
+                32,
+                ALL_PHASES,
+                q14,
+            )
+        },
+        Subject {
+            shipped: true,
+            ..phases(
+                ["sin_cos_q30", GLINT, "order 3", "Q2.30"],
+                30,
+                32,
+                ALL_PHASES,
+                q30::<3>,
+            )
+        },
+        phases(
+            ["sin_cos_q30_order2", GLINT, "order 2", "Q2.30"],
+            30,
+            32,
+            ALL_PHASES,
+            q30::<2>,
+        ),
+        phases(
+            ["sin_cos_q30_order1", GLINT, "order 1", "Q2.30"],
+            30,
+            32,
+            ALL_PHASES,
+            q30::<1>,
+        ),
+        phases(
+            ["sin_cos_q30_order0", GLINT, "order 0", "Q2.30"],
+            30,
+            32,
+            ALL_PHASES,
+            q30::<0>,
+        ),
+        phases(
+            ["idsp", "idsp", "cossin", "Q1.31"],
+            31,
+            32,
+            ALL_PHASES,
+            |angle| {
+                let (cos, sin) = idsp::cossin(angle as i32);
+                (sin, cos)
+            },
+        ),
+        radians(["cordic", "cordic", "I16F16", "Q16.16"], 16, |bits| {
+            let (sin, cos) = cordic_sin_cos(I16F16::from_bits(bits));
+            (sin.to_bits(), cos.to_bits())
+        }),
+        radians(["cordic_i4f28", "cordic", "I4F28", "Q4.28"], 28, |bits| {
+            let (sin, cos) = cordic_sin_cos(I4F28::from_bits(bits));
+            (sin.to_bits(), cos.to_bits())
+        }),
+        floats(["micromath", "micromath", "F32Ext", "f32"], |angle| {
+            (F32Ext::sin(angle), F32Ext::cos(angle))
+        }),
+        floats(["libm", "libm", "sincosf", "f32"], libm::sincosf),
+        degrees(),
+    ]
+}
+
+const GLINT: &str = "glint: table of 64 and Taylor";
+const ALL_PHASES: &str = "all 2^32 phases";
+
+fn q14(angle: u32) -> (i32, i32) {
+    let (sin, cos) = trig::sin_cos_q14(Turns(angle));
+    (sin.to_bits().into(), cos.to_bits().into())
+}
+
+fn q30<const ORDER: u32>(angle: u32) -> (i32, i32) {
+    let (sin, cos) = trig::sin_cos_q30_order::<ORDER>(Turns(angle));
+    (sin.to_bits(), cos.to_bits())
+}
+
+fn cordic_sin_cos<T: CordicNumber>(angle: T) -> (T, T) {
+    cordic::sin_cos(angle)
+}
+
+/// 2^-`fraction_bits`.
+fn last_place(fraction_bits: u32) -> f64 {
+    (-f64::from(fraction_bits)).exp2()
+}
+
+/// A kernel of phases: `phase_bits` of the 32 bits of an angle are used. A step is a phase of the first octant and
+/// measures its images in all octants, so that one f64 sine serves eight inputs; nothing is assumed of the kernel.
+fn phases(
+    [kernel, family, config, format]: [&'static str; 4],
+    fraction_bits: u32,
+    phase_bits: u32,
+    inputs: &'static str,
+    evaluate: impl Fn(u32) -> (i32, i32) + Sync + 'static,
+) -> Subject {
+    let ulp = last_place(fraction_bits);
+    let real = move |(sin, cos): (i32, i32)| SinCos {
+        sin: f64::from(sin) * ulp,
+        cos: f64::from(cos) * ulp,
+    };
+    let unused = 32 - phase_bits;
+    Subject {
+        kernel,
+        family,
+        config,
+        format,
+        ulp,
+        inputs,
+        by_phase: true,
+        shipped: false,
+        steps: u64::from(OCTANT >> unused) + 1,
+        run: Box::new(move |range, stride, statistics| {
+            for step in range {
+                let phase = ((step * stride) as u32) << unused;
+                let truth = SinCos::of_octant(phase);
+                let (first_sin, first_cos) = evaluate(phase);
+                for image in Image::all(phase) {
+                    let angle = image.angle(phase);
+                    let (sin, cos) = image.carry(truth.sin, truth.cos);
+                    let got = evaluate(angle);
+                    statistics.asymmetric += u64::from(got != image.carry(first_sin, first_cos));
+                    statistics.add(angle.into(), SinCos { sin, cos }, real(got), 1.0);
+                }
+            }
+        }),
+        show: |angle| format!("0x{angle:08x} ({:.6}°)", angle as f64 / TURN * 360.0),
+    }
+}
+
+/// A kernel of fixed-point radians with as many fraction bits as its outputs: all inputs in [−π, π].
+fn radians(
+    [kernel, family, config, format]: [&'static str; 4],
+    fraction_bits: u32,
+    evaluate: impl Fn(i32) -> (i32, i32) + Sync + 'static,
+) -> Subject {
+    let ulp = last_place(fraction_bits);
+    let last = (PI / ulp) as i64;
+    let show: fn(u64) -> String = match fraction_bits {
+        16 => |bits| format!("{:.7} rad", bits as i64 as f64 * last_place(16)),
+        _ => |bits| format!("{:.10} rad", bits as i64 as f64 * last_place(28)),
+    };
+    Subject {
+        kernel,
+        family,
+        config,
+        format,
+        ulp,
+        inputs: "all radians in [−π, π]",
+        by_phase: false,
+        shipped: false,
+        steps: 2 * last as u64 + 1,
+        run: Box::new(move |range, stride, statistics| {
+            for step in range {
+                let bits = (step * stride) as i64 - last;
+                let (sin, cos) = evaluate(bits as i32);
+                let got = SinCos {
+                    sin: f64::from(sin) * ulp,
+                    cos: f64::from(cos) * ulp,
+                };
+                let truth = SinCos::of_radians(bits as f64 * ulp);
+                statistics.add(bits as u64, truth, got, 1.0);
+            }
+        }),
+        show,
+    }
+}
+
+/// A kernel of f32 radians: all floats from 2^-24, below which a sine is its angle, to 2π.
+fn floats(
+    [kernel, family, config, format]: [&'static str; 4],
+    evaluate: impl Fn(f32) -> (f32, f32) + Sync + 'static,
+) -> Subject {
+    let first = u64::from(2f32.powi(-24).to_bits());
+    let last = u64::from(std::f32::consts::TAU.to_bits());
+    Subject {
+        kernel,
+        family,
+        config,
+        format,
+        ulp: last_place(24),
+        inputs: "all floats in [2^-24, 2π] rad",
+        by_phase: false,
+        shipped: false,
+        steps: last - first + 1,
+        run: Box::new(move |range, stride, statistics| {
+            for step in range {
+                let bits = (first + step * stride) as u32;
+                let angle = f32::from_bits(bits);
+                let to_next = f64::from(f32::from_bits(bits + 1)) - f64::from(angle);
+                let (sin, cos) = evaluate(angle);
+                let got = SinCos {
+                    sin: sin.into(),
+                    cos: cos.into(),
+                };
+                statistics.add(bits.into(), SinCos::of_radians(angle.into()), got, to_next);
+            }
+        }),
+        show: |bits| format!("{:?} rad", f32::from_bits(bits as u32)),
+    }
+}
+
+/// The table with one entry a degree, in 16.16, of the student design: all angles in [0°, 360°) in 16.16.
+fn degrees() -> Subject {
+    let table: Vec<f64> = (0..=180)
+        .map(|degree| (f64::from(degree).to_radians().sin() * 65536.0).round() / 65536.0)
+        .collect();
+    let sine = move |degree: u64| match degree % 360 {
+        low @ 0..=180 => table[low as usize],
+        high => -table[high as usize - 180],
+    };
+    Subject {
+        kernel: "degree_table",
+        family: "table of degrees",
+        config: "181 entries",
+        format: "Q16.16",
+        ulp: last_place(16),
+        inputs: "all of 16.16 in [0°, 360°)",
+        by_phase: false,
+        shipped: false,
+        steps: 360 << 16,
+        run: Box::new(move |range, stride, statistics| {
+            for step in range {
+                let angle = step * stride;
+                let degree = angle >> 16;
+                let got = SinCos {
+                    sin: sine(degree),
+                    cos: sine(450 - degree),
+                };
+                let truth = SinCos::of_radians((angle as f64 / 65536.0).to_radians());
+                statistics.add(angle, truth, got, 1.0);
+            }
+        }),
+        show: |angle| format!("{:.5}°", angle as f64 / 65536.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::sweep::sweep;
+    use super::*;
+
+    fn named(kernel: &str) -> Subject {
+        subjects()
+            .into_iter()
+            .find(|subject| subject.kernel == kernel)
+            .expect("a subject")
+    }
+
+    /// Figures that are known from theory or from the libraries' own documents.
+    #[test]
+    fn comparators_show_the_errors_they_are_known_for() {
+        for (kernel, at_least, at_most) in [
+            ("degree_table", 0.01744, 0.01747),
+            ("idsp", 1.8e-5, 1.95e-5),
+            ("micromath", 8e-4, 2e-3),
+            ("libm", 2.5e-8, 6e-8),
+        ] {
+            let subject = named(kernel);
+            let statistics = sweep(&subject, subject.steps() / 300_000 + 1, &|_| ());
+            let max = statistics.max;
+            assert!((at_least..=at_most).contains(&max), "{kernel}: {max:e}");
+        }
+    }
+
+    #[test]
+    fn floats_weigh_as_much_of_the_circle_as_they_stand_for() {
+        // Half of the inputs are below 2^-11 rad, where a cosine of 1 would be nearly right.
+        let careless = floats(["", "", "", ""], |_| (0.0, 1.0));
+        let statistics = sweep(&careless, 997, &|_| ());
+        // Over the circle: mean of (sin² + (cos − 1)²)/2 = (1/2 + 3/2)/2 = 1.
+        assert!(
+            (statistics.rms() - 1.0).abs() < 1e-3,
+            "{}",
+            statistics.rms()
+        );
+    }
+
+    #[test]
+    fn a_broken_symmetry_is_counted() {
+        let crooked = phases(["", "", "", ""], 30, 16, "", |angle| {
+            if angle == 3 << 16 { (1, 1) } else { (0, 0) }
+        });
+        let statistics = sweep(&crooked, 1, &|_| ());
+        assert_eq!(statistics.inputs, 1 << 16);
+        // The seven images of the crooked first-octant phase differ from it.
+        assert_eq!(statistics.asymmetric, 7);
+    }
+}

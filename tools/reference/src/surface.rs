@@ -1,0 +1,310 @@
+//! What is to be seen in each pixel of the exact, unsnapped scene, and where snapping may change it.
+//!
+//! The classes follow the rasterization checks of the Khronos conformance tests (dEQP): a pixel whose centre is inside
+//! by more than the tolerance must be drawn, one that is outside by more must not, and in between both are right.
+
+use crate::camera::{Camera, Size, Vector, cross, dot, subtract};
+
+/// How a triangle relates to a pixel's centre.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Class {
+    /// Inside by at least the tolerance: must be drawn.
+    Full,
+    /// Within the tolerance of an edge: may be drawn.
+    Partial,
+    /// Outside by at least the tolerance: must not be drawn.
+    None,
+}
+
+/// A triangle clipped and projected in f64.
+#[derive(Clone, Debug)]
+pub struct ProjectedTriangle {
+    /// The corners of what is in front of the near plane, in pixels; empty when nothing is, or when it is seen edge-on.
+    pub corners: Vec<[f64; 2]>,
+    /// Lines through the edges as (a, b, c): a·x + b·y + c is the distance to the edge, positive inside, in pixels.
+    edges: Vec<Vector>,
+    /// 1/z = plane · (x, y, 1) with x and y in pixels, z in world units.
+    inverse_depth: Vector,
+    /// Seen from the side from which its vertices run counter-clockwise.
+    pub front: bool,
+}
+
+impl ProjectedTriangle {
+    /// Projects a triangle of the world.
+    pub fn new(camera: &Camera, size: Size, triangle: [Vector; 3]) -> Self {
+        let points = triangle.map(|point| camera.coordinates(point));
+        let normal = cross(
+            subtract(points[1], points[0]),
+            subtract(points[2], points[0]),
+        );
+        let offset = dot(normal, points[0]);
+        let mut corners: Vec<_> = camera
+            .clip_near(&points)
+            .iter()
+            .map(|&point| camera.screen(point, size))
+            .collect();
+        if offset == 0.0 {
+            corners.clear();
+        }
+        // A point (x, y) of the screen is the direction ((x − cx)/s, (y − cy)/s, 1), and normal · (z · direction) = offset.
+        let scale = camera.pixels_per_unit(size);
+        let [a, b] = [normal[0] / scale, normal[1] / scale];
+        let c = normal[2] - a * f64::from(size.width) / 2.0 - b * f64::from(size.height) / 2.0;
+        let front = offset < 0.0;
+        Self {
+            edges: inward_edges(&corners, front),
+            corners,
+            inverse_depth: [a / offset, b / offset, c / offset],
+            front,
+        }
+    }
+
+    /// The class of the pixel in `column` and `row`, with a tolerance in pixels.
+    pub fn classify(&self, column: u32, row: u32, tolerance: f64) -> Class {
+        if self.corners.is_empty() {
+            return Class::None;
+        }
+        let here = centre(column, row);
+        let inside = self
+            .edges
+            .iter()
+            .map(|&edge| dot(edge, here))
+            .fold(f64::INFINITY, f64::min);
+        if inside >= tolerance {
+            Class::Full
+        } else if inside > -tolerance {
+            Class::Partial
+        } else {
+            Class::None
+        }
+    }
+
+    /// 1/z of the triangle's plane at a pixel's centre, z in world units along n.
+    pub fn inverse_depth(&self, column: u32, row: u32) -> f64 {
+        dot(self.inverse_depth, centre(column, row))
+    }
+
+    /// The steepest change of 1/z a pixel.
+    pub fn inverse_depth_slope(&self) -> f64 {
+        self.inverse_depth[0].hypot(self.inverse_depth[1])
+    }
+
+    /// The pixels of the picture whose centres may be within a pixel of the triangle: columns, then rows.
+    pub fn bounds(&self, size: Size) -> [std::ops::Range<u32>; 2] {
+        let range = |axis: usize, limit: u32| {
+            let (mut first, mut last) = (f64::INFINITY, f64::NEG_INFINITY);
+            for corner in &self.corners {
+                first = first.min(corner[axis]);
+                last = last.max(corner[axis]);
+            }
+            let cut = |value: f64| value.clamp(0.0, f64::from(limit)) as u32;
+            cut(first - 2.0)..cut(last + 2.0)
+        };
+        [range(0, size.width), range(1, size.height)]
+    }
+}
+
+/// The edges of a convex polygon, their normals pointing inwards. A front face runs counter-clockwise in the world and, y
+/// pointing down, so does its picture: negative area.
+fn inward_edges(corners: &[[f64; 2]], front: bool) -> Vec<Vector> {
+    let sign = if front { -1.0 } else { 1.0 };
+    let mut edges = Vec::with_capacity(corners.len());
+    for (i, a) in corners.iter().enumerate() {
+        let b = corners[(i + 1) % corners.len()];
+        let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
+        let length = dx.hypot(dy);
+        if length > 0.0 {
+            let (nx, ny) = (-dy / length * sign, dx / length * sign);
+            edges.push([nx, ny, -(nx * a[0] + ny * a[1])]);
+        }
+    }
+    edges
+}
+
+fn centre(column: u32, row: u32) -> Vector {
+    [f64::from(column) + 0.5, f64::from(row) + 0.5, 1.0]
+}
+
+/// What a pixel shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Visible {
+    /// Nothing, whatever way the vertices are snapped.
+    Background,
+    /// This triangle, whatever way the vertices are snapped.
+    Surface {
+        /// Its place in the scene's list of triangles.
+        triangle: usize,
+        /// 1/z at the pixel's centre, z in world units.
+        inverse_depth: f64,
+        /// The change of 1/z a pixel.
+        slope: f64,
+    },
+    /// It depends on the snapping of vertices or the rounding of depth.
+    Unstable,
+}
+
+/// How far the device may be from the exact scene.
+#[derive(Clone, Copy, Debug)]
+pub struct Tolerance {
+    /// Displacement of an edge, in pixels.
+    pub pixels: f64,
+    /// Error of a depth, in units of 1/z.
+    pub inverse_depth: f64,
+}
+
+/// Finds what each pixel shows, row by row.
+///
+/// With `cull`, triangles seen from behind are left out.
+pub fn visible_surfaces(
+    camera: &Camera,
+    size: Size,
+    triangles: &[[Vector; 3]],
+    cull: bool,
+    tolerance: Tolerance,
+) -> Vec<Visible> {
+    let width = size.width as usize;
+    let mut pixels = vec![Candidates::default(); width * size.height as usize];
+    for (index, &triangle) in triangles.iter().enumerate() {
+        let projected = ProjectedTriangle::new(camera, size, triangle);
+        if cull && !projected.front {
+            continue;
+        }
+        let slope = projected.inverse_depth_slope();
+        let spread = tolerance.inverse_depth + slope * tolerance.pixels;
+        let [columns, rows] = projected.bounds(size);
+        for row in rows {
+            for column in columns.clone() {
+                let class = projected.classify(column, row, tolerance.pixels);
+                let pixel = &mut pixels[row as usize * width + column as usize];
+                let inverse_depth = projected.inverse_depth(column, row);
+                match class {
+                    Class::Full => pixel.add(index, inverse_depth, slope, spread),
+                    Class::Partial => pixel.rival = pixel.rival.max(inverse_depth + spread),
+                    Class::None => {}
+                }
+            }
+        }
+    }
+    pixels.iter().map(Candidates::decide).collect()
+}
+
+/// The nearest surface so far, and the nearest that any other could appear.
+#[derive(Clone)]
+struct Candidates {
+    nearest: Option<(usize, f64, f64, f64)>,
+    rival: f64,
+}
+
+impl Default for Candidates {
+    fn default() -> Self {
+        Self {
+            nearest: None,
+            rival: f64::NEG_INFINITY,
+        }
+    }
+}
+
+impl Candidates {
+    fn add(&mut self, triangle: usize, inverse_depth: f64, slope: f64, spread: f64) {
+        let candidate = (triangle, inverse_depth, slope, spread);
+        let loser = match self.nearest {
+            Some(nearest) if nearest.1 >= inverse_depth => Some(candidate),
+            displaced => {
+                self.nearest = Some(candidate);
+                displaced
+            }
+        };
+        if let Some((_, inverse_depth, _, spread)) = loser {
+            self.rival = self.rival.max(inverse_depth + spread);
+        }
+    }
+
+    fn decide(&self) -> Visible {
+        match self.nearest {
+            None if self.rival == f64::NEG_INFINITY => Visible::Background,
+            Some((triangle, inverse_depth, slope, spread))
+                if self.rival < inverse_depth - spread =>
+            {
+                Visible::Surface {
+                    triangle,
+                    inverse_depth,
+                    slope,
+                }
+            }
+            _ => Visible::Unstable,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CAMERA: Camera = Camera {
+        eye: [0.0, 0.0, -2.0],
+        u: [1.0, 0.0, 0.0],
+        v: [0.0, 1.0, 0.0],
+        n: [0.0, 0.0, 1.0],
+        half_width: 1.0,
+        near: 0.5,
+    };
+    const SIZE: Size = Size {
+        width: 16,
+        height: 16,
+    };
+    const TOLERANCE: Tolerance = Tolerance {
+        pixels: 3.0 / 256.0,
+        inverse_depth: 1e-5,
+    };
+
+    /// A front face in the plane z that covers the left half of the picture and more.
+    fn half(z: f64) -> [Vector; 3] {
+        [[0.0, 9.0, z], [0.0, -9.0, z], [-9.0, 0.0, z]]
+    }
+
+    #[test]
+    fn classes_change_at_the_tolerance() {
+        let triangle = ProjectedTriangle::new(&CAMERA, SIZE, half(0.0));
+        assert!(triangle.front);
+        assert_eq!(triangle.classify(7, 8, 0.25), Class::Full);
+        assert_eq!(triangle.classify(7, 8, 0.75), Class::Partial);
+        assert_eq!(triangle.classify(8, 8, 0.75), Class::Partial);
+        assert_eq!(triangle.classify(8, 8, 0.25), Class::None);
+    }
+
+    #[test]
+    fn the_nearer_surface_shows_and_depth_is_its_plane() {
+        let seen = visible_surfaces(&CAMERA, SIZE, &[half(1.0), half(0.0)], true, TOLERANCE);
+        assert_eq!(
+            seen[8 * 16 + 3],
+            Visible::Surface {
+                triangle: 1,
+                inverse_depth: 0.5,
+                slope: 0.0
+            }
+        );
+        assert_eq!(seen[8 * 16 + 12], Visible::Background);
+    }
+
+    #[test]
+    fn coplanar_surfaces_and_near_edges_are_unstable() {
+        let seen = visible_surfaces(&CAMERA, SIZE, &[half(0.0), half(0.0)], true, TOLERANCE);
+        assert_eq!(seen[8 * 16 + 3], Visible::Unstable);
+        let shifted = half(0.0).map(|[x, y, z]| [x + 0.125, y, z]);
+        let seen = visible_surfaces(&CAMERA, SIZE, &[shifted], true, TOLERANCE);
+        assert_eq!(seen[8 * 16 + 8], Visible::Unstable);
+    }
+
+    #[test]
+    fn back_faces_are_culled_and_edge_on_ones_show_nothing() {
+        let [a, b, c] = half(0.0);
+        let seen = visible_surfaces(&CAMERA, SIZE, &[[a, c, b]], true, TOLERANCE);
+        assert!(seen.iter().all(|pixel| *pixel == Visible::Background));
+        let edge_on = [[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        assert!(
+            ProjectedTriangle::new(&CAMERA, SIZE, edge_on)
+                .corners
+                .is_empty()
+        );
+    }
+}
