@@ -43,12 +43,12 @@ class Platform(GenericPlatform):
         os.makedirs(build_dir, exist_ok=True)
         self.finalize(fragment)
         design = self.get_verilog(fragment, name=build_name, special_overrides=sim_special_overrides)
-        cwd = os.getcwd()
-        os.chdir(build_dir)
-        try:
-            design.write(f"{build_name}.v")
-        finally:
-            os.chdir(cwd)
+        if design.data_files:
+            raise ValueError(f"a memory is initialized from a file, which ties the build to a path: {design.data_files}")
+        # The banner has the time of the build: without it the same SoC gives the same file.
+        lines = design.main_source.splitlines(keepends=True)
+        with open(os.path.join(build_dir, f"{build_name}.v"), "w") as verilog:
+            verilog.writelines(line for line in lines if not line.startswith("// Date "))
         with open(os.path.join(build_dir, f"{build_name}.f"), "w") as file_list:
             for path, *_ in self.sources:
                 file_list.write(f"{path}\n")

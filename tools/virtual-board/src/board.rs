@@ -1,0 +1,348 @@
+//! The board itself: clock, reset, pins and back door.
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use litex_pac::memories::MAIN_RAM;
+
+use crate::library::Soc;
+use crate::{Error, Monitor, Picture, TimingError, boot};
+
+/// Cycles between looks at what the SoC has sent and shown.
+const SLICE: u64 = 1000;
+
+/// A frame takes 1650 × 750 ticks of the pixel clock; this many cycles hold two of them.
+const TWO_FRAMES: u64 = 2 * 1650 * 750 * 325 / 297 + SLICE;
+
+/// How a board starts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Start<'a> {
+    /// As a real board: the BIOS in ROM tests the memory and waits for a serial boot.
+    #[default]
+    Full,
+    /// `firmware` lies at the start of main RAM already, and the ROM jumps there at once.
+    Fast {
+        /// The program's image.
+        firmware: &'a [u8],
+    },
+}
+
+/// How to make a [`VirtualBoard`].
+#[derive(Clone, Debug, Default)]
+pub struct Builder<'a> {
+    library: Option<PathBuf>,
+    start: Start<'a>,
+    trace: Option<PathBuf>,
+}
+
+impl<'a> Builder<'a> {
+    /// The library to load instead of the one that `cargo xtask gateware` left in this checkout.
+    #[must_use]
+    pub fn library(mut self, path: impl Into<PathBuf>) -> Self {
+        self.library = Some(path.into());
+        self
+    }
+
+    /// How it starts; [`Start::Full`] unless told.
+    #[must_use]
+    pub fn start(mut self, start: Start<'a>) -> Self {
+        self.start = start;
+        self
+    }
+
+    /// Writes waveforms (VCD, about 1 kB a cycle) to `path`, from the first cycle on.
+    #[must_use]
+    pub fn trace(mut self, path: impl Into<PathBuf>) -> Self {
+        self.trace = Some(path.into());
+        self
+    }
+
+    /// A board whose clocks have not moved yet.
+    ///
+    /// # Errors
+    /// When the library is missing or of another version, firmware does not fit in main RAM, or waveforms cannot be
+    /// written.
+    pub fn build(self) -> Result<VirtualBoard, Error> {
+        let (name, option) = match self.trace {
+            None => ("libglint_soc.so", ""),
+            Some(_) => ("libglint_soc_trace.so", " --waveforms"),
+        };
+        let path = self.library.unwrap_or_else(|| built_libraries().join(name));
+        if !path.is_file() {
+            return Err(Error::LibraryMissing { path, option });
+        }
+        let mut soc = Soc::load(&path)?;
+        if let Some(path) = self.trace
+            && !soc.trace(&path)
+        {
+            return Err(Error::Trace { path });
+        }
+        let mut board = VirtualBoard {
+            soc,
+            monitor: Monitor::default(),
+            uart: Vec::new(),
+            running: Duration::ZERO,
+        };
+        if let Start::Fast { firmware } = self.start {
+            let found = board.soc.build_id();
+            if found != litex_pac::BUILD_ID {
+                return Err(Error::BuildId {
+                    expected: litex_pac::BUILD_ID,
+                    found,
+                });
+            }
+            board.soc.rom_write(&boot::stub());
+            board.ddr_write(MAIN_RAM.base, firmware)?;
+        }
+        Ok(board)
+    }
+}
+
+/// Where `cargo xtask gateware` puts the libraries of this checkout.
+fn built_libraries() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target/gateware/virtual")
+}
+
+/// One board.
+pub struct VirtualBoard {
+    soc: Soc,
+    monitor: Monitor,
+    /// What the SoC has sent and nobody has read.
+    uart: Vec<u8>,
+    running: Duration,
+}
+
+impl VirtualBoard {
+    /// A board is made with options.
+    #[must_use]
+    pub fn builder<'a>() -> Builder<'a> {
+        Builder::default()
+    }
+
+    /// Runs `cycles` cycles of the system clock.
+    pub fn run(&mut self, cycles: u64) {
+        let start = Instant::now();
+        self.soc.video_record(self.monitor.is_on());
+        let mut left = cycles;
+        while left > 0 {
+            let slice = left.min(SLICE);
+            self.soc.run(slice);
+            self.collect();
+            left -= slice;
+        }
+        self.running += start.elapsed();
+    }
+
+    /// Runs until `done` says so, which is asked every 1000 cycles, but no longer than `limit` cycles. Returns whether
+    /// it was done.
+    pub fn run_until(&mut self, limit: u64, mut done: impl FnMut(&mut Self) -> bool) -> bool {
+        let end = self.cycles().saturating_add(limit);
+        loop {
+            if done(self) {
+                return true;
+            }
+            let left = end.saturating_sub(self.cycles());
+            if left == 0 {
+                return false;
+            }
+            self.run(left.min(SLICE));
+        }
+    }
+
+    /// Takes what the SoC has sent and shown since the last time.
+    fn collect(&mut self) {
+        self.soc.uart_read(&mut self.uart);
+        if self.monitor.is_on() {
+            let monitor = &mut self.monitor;
+            self.soc.video_take(|samples| monitor.watch(samples));
+        }
+    }
+
+    /// Cycles of the system clock since the start.
+    #[must_use]
+    pub fn cycles(&self) -> u64 {
+        self.soc.cycles()
+    }
+
+    /// Cycles simulated in a second of wall time, over the board's whole life.
+    #[must_use]
+    pub fn cycles_per_second(&self) -> f64 {
+        self.cycles() as f64 / self.running.as_secs_f64().max(f64::MIN_POSITIVE)
+    }
+
+    /// Frequency of the system clock that the SoC was built for, in Hz.
+    #[must_use]
+    pub fn clock_hz(&self) -> u32 {
+        self.soc.clock_hz()
+    }
+
+    /// CRC-32 of the gateware's register map.
+    #[must_use]
+    pub fn build_id(&self) -> u32 {
+        self.soc.build_id()
+    }
+
+    /// Sends bytes to the SoC's UART. They wait until it takes them; none is lost.
+    pub fn uart_write(&mut self, bytes: &[u8]) {
+        self.soc.uart_write(bytes);
+    }
+
+    /// Bytes sent to the UART that it has not taken yet.
+    #[must_use]
+    pub fn uart_queued(&self) -> usize {
+        self.soc.uart_queued()
+    }
+
+    /// Appends all that the SoC has sent and nobody has read to `output`.
+    pub fn uart_read(&mut self, output: &mut Vec<u8>) {
+        output.append(&mut self.uart);
+    }
+
+    /// Runs until the SoC has sent `expected`, and returns everything up to and including it. What comes after it
+    /// stays to be read.
+    ///
+    /// # Errors
+    /// [`Error::Timeout`] with what came, when `limit` cycles pass without it.
+    pub fn read_until(&mut self, expected: &str, limit: u64) -> Result<String, Error> {
+        let wanted = expected.as_bytes();
+        let mut searched = 0;
+        let mut end = None;
+        self.run_until(limit, |board| {
+            end = board.uart[searched..]
+                .windows(wanted.len().max(1))
+                .position(|window| window == wanted)
+                .map(|at| searched + at + wanted.len());
+            searched = board
+                .uart
+                .len()
+                .saturating_sub(wanted.len().saturating_sub(1))
+                .max(searched);
+            end.is_some()
+        });
+        let text = |bytes: Vec<u8>| String::from_utf8_lossy(&bytes).into_owned();
+        match end {
+            Some(end) => Ok(text(self.uart.drain(..end).collect())),
+            None => Err(Error::Timeout {
+                expected: format!("{expected:?}"),
+                cycles: limit,
+                got: text(std::mem::take(&mut self.uart)),
+            }),
+        }
+    }
+
+    /// Holds buttons 0 to 3 down, a bit each.
+    pub fn set_buttons(&mut self, pressed: u8) {
+        self.soc.set_buttons(pressed);
+    }
+
+    /// Sets the 16 switches, a bit each.
+    pub fn set_switches(&mut self, on: u16) {
+        self.soc.set_switches(on);
+    }
+
+    /// The 16 LEDs, a bit each.
+    #[must_use]
+    pub fn leds(&self) -> u16 {
+        self.soc.leds()
+    }
+
+    /// What devices on the I2C bus do to the wires: SCL in bit 0, SDA in bit 1; 0 pulls low, 1 releases.
+    pub fn i2c_drive(&mut self, released: u8) {
+        self.soc.i2c_drive(released);
+    }
+
+    /// The I2C wires: SCL in bit 0, SDA in bit 1.
+    #[must_use]
+    pub fn i2c_wires(&self) -> u8 {
+        self.soc.i2c_wires()
+    }
+
+    /// The monitor on the video output. It is off until [`Monitor::turn_on`].
+    pub fn monitor(&mut self) -> &mut Monitor {
+        &mut self.monitor
+    }
+
+    /// Captures the next frame that is shown from its first line to its last. Takes up to two frames' time, 2.7
+    /// million cycles.
+    ///
+    /// # Errors
+    /// [`Error::Timeout`] when there is no video.
+    pub fn capture(&mut self) -> Result<Picture, Error> {
+        let was_on = self.monitor.is_on();
+        self.monitor.turn_on();
+        self.monitor.take_picture();
+        let shown = self.run_until(TWO_FRAMES, |board| board.monitor.has_picture());
+        if !was_on {
+            self.monitor.turn_off();
+        }
+        let picture = self.monitor.take_picture();
+        picture.filter(|_| shown).ok_or_else(|| Error::Timeout {
+            expected: "a frame on the monitor".to_owned(),
+            cycles: TWO_FRAMES,
+            got: self
+                .monitor
+                .errors()
+                .first()
+                .map_or("no sync".to_owned(), TimingError::to_string),
+        })
+    }
+
+    /// Reads DDR3 from `address` on, as the CPU addresses it. A board that has run runs about a thousand cycles more
+    /// before that, so that the CPU's stores have arrived.
+    ///
+    /// # Errors
+    /// [`Error::Address`] when the range is not within main RAM.
+    pub fn ddr_read(&mut self, address: u32, bytes: &mut [u8]) -> Result<(), Error> {
+        let offset = main_ram_offset(address, bytes.len())?;
+        self.soc.ddr_read(offset, bytes);
+        self.collect();
+        Ok(())
+    }
+
+    /// Writes DDR3 from `address` on, as the CPU addresses it, and drops what the CPU's caches hold. A board that
+    /// has run runs about a thousand cycles more before that, so that the CPU's stores do not come after.
+    ///
+    /// # Errors
+    /// [`Error::Address`] when the range is not within main RAM.
+    pub fn ddr_write(&mut self, address: u32, bytes: &[u8]) -> Result<(), Error> {
+        let offset = main_ram_offset(address, bytes.len())?;
+        self.soc.ddr_write(offset, bytes);
+        self.collect();
+        Ok(())
+    }
+}
+
+/// Where `length` bytes at `address` lie in main RAM.
+fn main_ram_offset(address: u32, length: usize) -> Result<u32, Error> {
+    let ram: Range<u32> = MAIN_RAM.base..MAIN_RAM.base + MAIN_RAM.size;
+    let fits = ram.contains(&address) && length as u64 <= u64::from(ram.end - address);
+    if fits || (length == 0 && address == ram.end) {
+        Ok(address - ram.start)
+    } else {
+        Err(Error::Address {
+            address,
+            length,
+            ram,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn main_ram_is_checked_to_the_last_byte() {
+        let end = MAIN_RAM.base + MAIN_RAM.size;
+        assert_eq!(
+            main_ram_offset(MAIN_RAM.base, MAIN_RAM.size as usize).unwrap(),
+            0
+        );
+        assert_eq!(main_ram_offset(end - 1, 1).unwrap(), MAIN_RAM.size - 1);
+        assert!(main_ram_offset(end - 1, 2).is_err());
+        assert!(main_ram_offset(MAIN_RAM.base - 1, 1).is_err());
+        assert!(main_ram_offset(end, 1).is_err());
+        assert!(main_ram_offset(u32::MAX, usize::MAX).is_err());
+    }
+}

@@ -1,0 +1,68 @@
+//! The fast start: a few instructions in place of the BIOS.
+
+use litex_pac::memories::MAIN_RAM;
+
+/// Registers by their ABI names.
+const T0: u32 = 5;
+const T1: u32 = 6;
+const ZERO: u32 = 0;
+
+/// A program for the ROM that hands the DDR3 to its controller and jumps to the start of main RAM.
+///
+/// On a real DDR3 the BIOS has to write mode registers and train the PHY before that; the model needs neither.
+pub(crate) fn stub() -> Vec<u8> {
+    // SAFETY: nothing is accessed; only a register's address is asked for.
+    let control = unsafe { litex_pac::sdram::Sdram::steal() }
+        .dfii_control()
+        .address() as u32;
+    let controller_in_charge = litex_pac::sdram::DfiiControl::default().with_sel(true);
+    [
+        // Bit 11 of the low part is its sign: the high part makes up for it.
+        lui(T0, control.wrapping_add(0x800) >> 12),
+        addi(
+            T1,
+            ZERO,
+            litex_pac::register::Value::bits(controller_in_charge),
+        ),
+        sw(T1, T0, control & 0xfff),
+        lui(T0, MAIN_RAM.base >> 12),
+        jalr(ZERO, T0, 0),
+    ]
+    .into_iter()
+    .flat_map(u32::to_le_bytes)
+    .collect()
+}
+
+/// `lui rd, upper`: rd = upper << 12.
+const fn lui(rd: u32, upper: u32) -> u32 {
+    upper << 12 | rd << 7 | 0x37
+}
+
+/// `addi rd, rs, immediate`; 12 bits, signed.
+const fn addi(rd: u32, rs: u32, immediate: u32) -> u32 {
+    (immediate & 0xfff) << 20 | rs << 15 | rd << 7 | 0x13
+}
+
+/// `sw rs, offset(base)`; 12 bits, signed.
+const fn sw(rs: u32, base: u32, offset: u32) -> u32 {
+    (offset >> 5 & 0x7f) << 25 | rs << 20 | base << 15 | 2 << 12 | (offset & 0x1f) << 7 | 0x23
+}
+
+/// `jalr rd, offset(base)`; 12 bits, signed.
+const fn jalr(rd: u32, base: u32, offset: u32) -> u32 {
+    (offset & 0xfff) << 20 | base << 15 | rd << 7 | 0x67
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn instructions_are_encoded_as_the_assembler_does() {
+        assert_eq!(lui(T0, 0xf0002), 0xf000_22b7);
+        assert_eq!(addi(T1, ZERO, 1), 0x0010_0313);
+        assert_eq!(sw(T1, T0, 0), 0x0062_a023);
+        assert_eq!(sw(T1, T0, 0xffc), 0xfe62_ae23);
+        assert_eq!(jalr(ZERO, T0, 0), 0x0002_8067);
+    }
+}

@@ -1,0 +1,237 @@
+//! The shared library of the verilated SoC: `tools/virtual-board/soc/glint_soc.h` as safe Rust.
+
+use std::ffi::{CString, c_char, c_int};
+use std::path::Path;
+use std::ptr::NonNull;
+use std::slice;
+
+use libloading::Library;
+
+use crate::Error;
+
+/// The version of the C interface that this file is written for (`GLINT_SOC_ABI`).
+const ABI: u32 = 1;
+
+/// `glint_soc`, which only the library can look into.
+#[repr(C)]
+struct Opaque {
+    _private: [u8; 0],
+}
+
+type Handle = *mut Opaque;
+
+/// Declares the table of the library's functions and how it is filled.
+macro_rules! functions {
+    ($($name:ident: fn($($argument:ty),*) $(-> $result:ty)?;)*) => {
+        struct Functions {
+            $($name: unsafe extern "C" fn($($argument),*) $(-> $result)?,)*
+        }
+
+        impl Functions {
+            /// Looks every function up.
+            ///
+            /// # Safety
+            /// The library must be one made from `glint_soc.h`, and has to outlive the table.
+            unsafe fn load(library: &Library) -> Result<Self, libloading::Error> {
+                Ok(Self {
+                    // SAFETY: the caller vouches for the library; the types are those of glint_soc.h.
+                    $($name: *unsafe { library.get(concat!("glint_soc_", stringify!($name)).as_bytes())? },)*
+                })
+            }
+        }
+    };
+}
+
+functions! {
+    abi: fn() -> u32;
+    build_id: fn() -> u32;
+    clock_hz: fn() -> u32;
+    new: fn() -> Handle;
+    free: fn(Handle);
+    trace: fn(Handle, *const c_char) -> c_int;
+    run: fn(Handle, u64);
+    cycles: fn(Handle) -> u64;
+    uart_write: fn(Handle, *const u8, usize);
+    uart_queued: fn(Handle) -> usize;
+    uart_read: fn(Handle, *mut u8, usize) -> usize;
+    set_buttons: fn(Handle, u8);
+    set_switches: fn(Handle, u16);
+    leds: fn(Handle) -> u16;
+    i2c_drive: fn(Handle, u8);
+    i2c_wires: fn(Handle) -> u8;
+    video_record: fn(Handle, c_int);
+    video_samples: fn(Handle, *mut usize) -> *const u32;
+    video_clear: fn(Handle);
+    ddr_read: fn(Handle, u32, *mut u8, usize);
+    ddr_write: fn(Handle, u32, *const u8, usize);
+    rom_write: fn(Handle, *const u8, usize);
+}
+
+/// One verilated SoC.
+pub(crate) struct Soc {
+    handle: NonNull<Opaque>,
+    functions: Functions,
+    // Last, so that it is unloaded after everything that lives in it.
+    _library: Library,
+}
+
+// SAFETY: an instance may move between threads as long as one uses it at a time (glint_soc.h).
+unsafe impl Send for Soc {}
+
+impl Soc {
+    /// Loads the library and makes a SoC that has not seen a clock edge.
+    pub fn load(path: &Path) -> Result<Self, Error> {
+        let error = |source| Error::Library {
+            path: path.to_owned(),
+            source,
+        };
+        // SAFETY: the library's initializers are those of libstdc++ and Verilator, without conditions.
+        let library = unsafe { Library::new(path) }.map_err(error)?;
+        // SAFETY: `cargo xtask gateware` made it from glint_soc.h, and `_library` outlives the table.
+        let functions = unsafe { Functions::load(&library) }.map_err(error)?;
+        // SAFETY: without conditions.
+        let found = unsafe { (functions.abi)() };
+        if found != ABI {
+            return Err(Error::Interface {
+                path: path.to_owned(),
+                expected: ABI,
+                found,
+            });
+        }
+        // SAFETY: without conditions.
+        let handle =
+            NonNull::new(unsafe { (functions.new)() }).expect("glint_soc_new returns an instance");
+        Ok(Self {
+            handle,
+            functions,
+            _library: library,
+        })
+    }
+
+    fn raw(&self) -> Handle {
+        self.handle.as_ptr()
+    }
+
+    pub fn build_id(&self) -> u32 {
+        // SAFETY: without conditions.
+        unsafe { (self.functions.build_id)() }
+    }
+
+    pub fn clock_hz(&self) -> u32 {
+        // SAFETY: without conditions.
+        unsafe { (self.functions.clock_hz)() }
+    }
+
+    /// Starts writing waveforms; whether the library could.
+    pub fn trace(&mut self, path: &Path) -> bool {
+        let Ok(path) = CString::new(path.as_os_str().as_encoded_bytes()) else {
+            return false;
+        };
+        // SAFETY: the handle is alive, and the path is read during the call only.
+        unsafe { (self.functions.trace)(self.raw(), path.as_ptr()) != 0 }
+    }
+
+    pub fn run(&mut self, cycles: u64) {
+        // SAFETY: the handle is alive and ours alone.
+        unsafe { (self.functions.run)(self.raw(), cycles) }
+    }
+
+    pub fn cycles(&self) -> u64 {
+        // SAFETY: the handle is alive.
+        unsafe { (self.functions.cycles)(self.raw()) }
+    }
+
+    pub fn uart_write(&mut self, bytes: &[u8]) {
+        // SAFETY: the handle is alive and ours alone; the bytes are copied during the call.
+        unsafe { (self.functions.uart_write)(self.raw(), bytes.as_ptr(), bytes.len()) }
+    }
+
+    pub fn uart_queued(&self) -> usize {
+        // SAFETY: the handle is alive.
+        unsafe { (self.functions.uart_queued)(self.raw()) }
+    }
+
+    /// Appends everything that the SoC has sent to `output`.
+    pub fn uart_read(&mut self, output: &mut Vec<u8>) {
+        let mut buffer = [0; 256];
+        loop {
+            // SAFETY: the handle is alive and ours alone; no more than the buffer's length is written.
+            let count = unsafe {
+                (self.functions.uart_read)(self.raw(), buffer.as_mut_ptr(), buffer.len())
+            };
+            output.extend_from_slice(&buffer[..count]);
+            if count < buffer.len() {
+                return;
+            }
+        }
+    }
+
+    pub fn set_buttons(&mut self, pressed: u8) {
+        // SAFETY: the handle is alive and ours alone.
+        unsafe { (self.functions.set_buttons)(self.raw(), pressed) }
+    }
+
+    pub fn set_switches(&mut self, on: u16) {
+        // SAFETY: the handle is alive and ours alone.
+        unsafe { (self.functions.set_switches)(self.raw(), on) }
+    }
+
+    pub fn leds(&self) -> u16 {
+        // SAFETY: the handle is alive.
+        unsafe { (self.functions.leds)(self.raw()) }
+    }
+
+    pub fn i2c_drive(&mut self, released: u8) {
+        // SAFETY: the handle is alive and ours alone.
+        unsafe { (self.functions.i2c_drive)(self.raw(), released) }
+    }
+
+    pub fn i2c_wires(&self) -> u8 {
+        // SAFETY: the handle is alive.
+        unsafe { (self.functions.i2c_wires)(self.raw()) }
+    }
+
+    pub fn video_record(&mut self, on: bool) {
+        // SAFETY: the handle is alive and ours alone.
+        unsafe { (self.functions.video_record)(self.raw(), on.into()) }
+    }
+
+    /// Hands the recorded samples to `consume` and forgets them.
+    pub fn video_take(&mut self, consume: impl FnOnce(&[u32])) {
+        let mut count = 0;
+        // SAFETY: the handle is alive and ours alone, `count` is a place for the result.
+        let samples = unsafe { (self.functions.video_samples)(self.raw(), &mut count) };
+        if count != 0 {
+            // SAFETY: the library keeps `count` samples there until the next run or clear, and the borrow of `self`
+            // lasts until both.
+            consume(unsafe { slice::from_raw_parts(samples, count) });
+        }
+        // SAFETY: the handle is alive and ours alone; the slice is gone.
+        unsafe { (self.functions.video_clear)(self.raw()) }
+    }
+
+    /// `offset` and the length must lie within main RAM.
+    pub fn ddr_read(&mut self, offset: u32, bytes: &mut [u8]) {
+        // SAFETY: the handle is alive and ours alone; the board has checked the range.
+        unsafe { (self.functions.ddr_read)(self.raw(), offset, bytes.as_mut_ptr(), bytes.len()) }
+    }
+
+    /// `offset` and the length must lie within main RAM.
+    pub fn ddr_write(&mut self, offset: u32, bytes: &[u8]) {
+        // SAFETY: the handle is alive and ours alone; the board has checked the range.
+        unsafe { (self.functions.ddr_write)(self.raw(), offset, bytes.as_ptr(), bytes.len()) }
+    }
+
+    /// Replaces the ROM, before the first cycle.
+    pub fn rom_write(&mut self, bytes: &[u8]) {
+        // SAFETY: the handle is alive and ours alone; the library takes no more than fits.
+        unsafe { (self.functions.rom_write)(self.raw(), bytes.as_ptr(), bytes.len()) }
+    }
+}
+
+impl Drop for Soc {
+    fn drop(&mut self) {
+        // SAFETY: the handle is alive, and nobody uses it afterwards.
+        unsafe { (self.functions.free)(self.raw()) }
+    }
+}

@@ -1,0 +1,300 @@
+//! The monitor: checks the video timing tick by tick and captures pictures.
+
+use std::fmt;
+
+use crate::Picture;
+
+/// Pixels of a line.
+pub const WIDTH: usize = 1280;
+/// Lines of a picture.
+pub const HEIGHT: usize = 720;
+
+/// CEA-861 1280×720 at 60 Hz. A line begins with the leading edge of hsync and a frame with that of vsync, which fall
+/// together; both are high during the sync.
+const H_SYNC: usize = 40;
+const H_BACK: usize = 220;
+const H_FRONT: usize = 110;
+const V_SYNC: usize = 5;
+const V_BACK: usize = 20;
+const V_FRONT: usize = 5;
+const LINE: usize = H_SYNC + H_BACK + WIDTH + H_FRONT;
+const FRAME: usize = LINE * (V_SYNC + V_BACK + HEIGHT + V_FRONT);
+
+/// Departures from the timing that are kept; all are counted.
+const KEPT_ERRORS: usize = 16;
+
+/// The pins at one tick of the pixel clock, as glint_soc.h packs them.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct Pins(u32);
+
+impl Pins {
+    const DE: u32 = 1 << 24;
+    const HSYNC: u32 = 1 << 25;
+    const VSYNC: u32 = 1 << 26;
+    const CONTROL: u32 = Self::DE | Self::HSYNC | Self::VSYNC;
+
+    fn control(self) -> u32 {
+        self.0 & Self::CONTROL
+    }
+
+    fn rgb(self) -> [u8; 3] {
+        let [_, r, g, b] = self.0.to_be_bytes();
+        [r, g, b]
+    }
+
+    /// What the control pins have to be `position` ticks into a frame.
+    fn expected_control(position: usize) -> u32 {
+        let (x, y) = (position % LINE, position / LINE);
+        let active = (H_SYNC + H_BACK..H_SYNC + H_BACK + WIDTH).contains(&x)
+            && (V_SYNC + V_BACK..V_SYNC + V_BACK + HEIGHT).contains(&y);
+        let bit = |condition, bit| if condition { bit } else { 0 };
+        bit(active, Self::DE) | bit(x < H_SYNC, Self::HSYNC) | bit(y < V_SYNC, Self::VSYNC)
+    }
+}
+
+impl fmt::Display for Pins {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let pin = |bit| u8::from(self.0 & bit != 0);
+        write!(
+            f,
+            "vsync {} hsync {} de {}",
+            pin(Self::VSYNC),
+            pin(Self::HSYNC),
+            pin(Self::DE)
+        )
+    }
+}
+
+/// A tick at which the control pins were not what CEA-861 says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TimingError {
+    /// Whole frames before it.
+    pub frame: u64,
+    /// Line, 0 being the first of vsync.
+    pub line: usize,
+    /// Tick in the line, 0 being the first of hsync.
+    pub tick: usize,
+    /// The control pins as they should be, packed as the monitor's samples.
+    pub expected: u32,
+    /// The control pins as they were.
+    pub found: u32,
+}
+
+impl fmt::Display for TimingError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (expected, found) = (Pins(self.expected), Pins(self.found));
+        let Self {
+            frame, line, tick, ..
+        } = self;
+        write!(
+            f,
+            "frame {frame} line {line} tick {tick}: expected {expected}, found {found}"
+        )
+    }
+}
+
+/// What is plugged into the video output.
+///
+/// From the first leading edge of vsync on, every tick of hsync, vsync and de is compared with CEA-861's 1280×720:
+/// 1280/110/40/220 ticks and 720/5/5/20 lines, syncs positive. It never looks for another sync after that, so a stall
+/// or a glitch shows up as errors for as long as the timing is off.
+#[derive(Default)]
+pub struct Monitor {
+    on: bool,
+    /// Ticks since the frame began; nothing until the first vsync.
+    position: Option<usize>,
+    /// The last tick's pins; a monitor that was just turned on has not seen a vsync begin.
+    last: Option<Pins>,
+    /// Pixels of the frame that is being shown.
+    pixels: Vec<u8>,
+    picture: Option<Picture>,
+    frames: u64,
+    errors: Vec<TimingError>,
+    error_count: u64,
+}
+
+impl Monitor {
+    /// Begins to watch; a frame that is being shown is not captured.
+    pub fn turn_on(&mut self) {
+        if !self.on {
+            *self = Self {
+                on: true,
+                picture: self.picture.take(),
+                ..Self::default()
+            };
+        }
+    }
+
+    /// Stops watching, which makes the board a little faster. Counts and errors stay until it is turned on again.
+    pub fn turn_off(&mut self) {
+        self.on = false;
+    }
+
+    /// Whether it watches.
+    #[must_use]
+    pub fn is_on(&self) -> bool {
+        self.on
+    }
+
+    /// Frames seen from the first line to the last since it was turned on.
+    #[must_use]
+    pub fn frames(&self) -> u64 {
+        self.frames
+    }
+
+    /// Ticks at which the timing was wrong since it was turned on.
+    #[must_use]
+    pub fn error_count(&self) -> u64 {
+        self.error_count
+    }
+
+    /// The first few of them.
+    #[must_use]
+    pub fn errors(&self) -> &[TimingError] {
+        &self.errors
+    }
+
+    /// Whether [`take_picture`](Self::take_picture) has one.
+    #[must_use]
+    pub fn has_picture(&self) -> bool {
+        self.picture.is_some()
+    }
+
+    /// The last whole frame, once.
+    pub fn take_picture(&mut self) -> Option<Picture> {
+        self.picture.take()
+    }
+
+    /// Takes one sample for each tick of the pixel clock.
+    pub(crate) fn watch(&mut self, samples: &[u32]) {
+        for &sample in samples {
+            self.tick(Pins(sample));
+        }
+    }
+
+    fn tick(&mut self, pins: Pins) {
+        let vsync = |pins: Pins| pins.0 & Pins::VSYNC != 0;
+        let begins = vsync(pins) && self.last.is_some_and(|last| !vsync(last));
+        self.last = Some(pins);
+        let position = match self.position {
+            Some(position) => position,
+            None if begins => 0,
+            None => return,
+        };
+        let expected = Pins::expected_control(position);
+        if pins.control() != expected {
+            self.report(position, expected, pins.control());
+        }
+        if expected & Pins::DE != 0 {
+            self.pixels.extend(pins.rgb());
+        }
+        self.position = Some((position + 1) % FRAME);
+        if position + 1 == FRAME {
+            self.frames += 1;
+            let rgb = std::mem::replace(&mut self.pixels, Vec::with_capacity(3 * WIDTH * HEIGHT));
+            self.picture = Some(Picture::new(WIDTH, HEIGHT, rgb));
+        }
+    }
+
+    fn report(&mut self, position: usize, expected: u32, found: u32) {
+        self.error_count += 1;
+        if self.errors.len() < KEPT_ERRORS {
+            let (line, tick) = (position / LINE, position % LINE);
+            self.errors.push(TimingError {
+                frame: self.frames,
+                line,
+                tick,
+                expected,
+                found,
+            });
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A stretch of right video that begins `before` ticks ahead of a vsync; each pixel tells its place.
+    fn video(before: usize, ticks: usize) -> Vec<u32> {
+        (0..ticks)
+            .map(|tick| {
+                let position = (FRAME - before + tick) % FRAME;
+                let expected = Pins::expected_control(position);
+                let pixel = if expected & Pins::DE != 0 {
+                    position as u32 & 0xff_ffff
+                } else {
+                    0
+                };
+                expected | pixel
+            })
+            .collect()
+    }
+
+    fn watching() -> Monitor {
+        let mut monitor = Monitor::default();
+        monitor.turn_on();
+        monitor
+    }
+
+    #[test]
+    fn a_frame_has_the_counts_of_cea_861() {
+        let samples = video(0, FRAME);
+        let count = |bit| samples.iter().filter(|&&sample| sample & bit != 0).count();
+        assert_eq!(samples.len(), 1650 * 750);
+        assert_eq!(count(Pins::DE), 1280 * 720);
+        assert_eq!(count(Pins::HSYNC), 40 * 750);
+        assert_eq!(count(Pins::VSYNC), 5 * 1650);
+    }
+
+    #[test]
+    fn right_timing_is_accepted_and_every_pixel_lands_in_its_place() {
+        let mut monitor = watching();
+        monitor.watch(&video(777, 777 + 2 * FRAME));
+        assert_eq!((monitor.frames(), monitor.error_count()), (2, 0));
+        let picture = monitor.take_picture().expect("a picture");
+        for (x, y) in [(0, 0), (1279, 0), (640, 360), (0, 719), (1279, 719)] {
+            let position = (V_SYNC + V_BACK + y) * LINE + H_SYNC + H_BACK + x;
+            let [_, r, g, b] = (position as u32).to_be_bytes();
+            assert_eq!(picture.pixel(x, y), [r, g, b], "pixel {x}, {y}");
+        }
+        assert!(!monitor.has_picture());
+    }
+
+    #[test]
+    fn a_frame_that_was_joined_in_its_middle_is_not_captured() {
+        let mut monitor = watching();
+        // The first sample is in the middle of vsync: its beginning was not seen.
+        monitor.watch(&video(0, FRAME)[1000..]);
+        assert_eq!((monitor.frames(), monitor.error_count()), (0, 0));
+    }
+
+    #[test]
+    fn a_stall_of_one_tick_is_seen() {
+        let mut samples = video(1, 1 + FRAME);
+        samples.insert(5000, samples[5000]);
+        let mut monitor = watching();
+        monitor.watch(&samples);
+        assert!(monitor.error_count() > 0);
+        let first = monitor.errors()[0];
+        // The tick after the doubled one that differs from its neighbour: the beginning of the next hsync.
+        assert_eq!((first.line, first.tick), (4, 0));
+        assert!(
+            first
+                .to_string()
+                .starts_with("frame 0 line 4 tick 0: expected vsync 1 hsync 1 de 0, found")
+        );
+    }
+
+    #[test]
+    fn a_wrong_porch_and_a_negative_sync_are_seen() {
+        let mut monitor = watching();
+        let negative: Vec<u32> = video(1, 1 + FRAME)
+            .iter()
+            .map(|sample| sample ^ Pins::HSYNC)
+            .collect();
+        monitor.watch(&negative);
+        assert_eq!(monitor.error_count(), FRAME as u64);
+        assert_eq!(monitor.errors().len(), KEPT_ERRORS);
+    }
+}

@@ -1,0 +1,260 @@
+//! A captured picture.
+
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::Path;
+
+/// Why a picture is not the enlarged RGB565 frame that it should be.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum PictureError {
+    /// The picture's sides are not multiples of the scale.
+    #[error("a picture of {width}x{height} cannot come from scaling by {scale}")]
+    Scale {
+        /// Pixels of a line.
+        width: usize,
+        /// Lines.
+        height: usize,
+        /// The scale that was asked for.
+        scale: usize,
+    },
+    /// Pixels that show one source pixel differ.
+    #[error(
+        "pixel {x}, {y} is {found:?}, expected {expected:?} as in the rest of its {scale}x{scale} block"
+    )]
+    Block {
+        /// Column.
+        x: usize,
+        /// Line.
+        y: usize,
+        /// Side of a block.
+        scale: usize,
+        /// The block's first pixel, red, green and blue.
+        expected: [u8; 3],
+        /// The pixel.
+        found: [u8; 3],
+    },
+    /// A colour that RGB565 widened by bit replication cannot give.
+    #[error(
+        "pixel {x}, {y} is {found:?}, which is not an RGB565 colour; the nearest gives {expected:?}"
+    )]
+    Colour {
+        /// Column.
+        x: usize,
+        /// Line.
+        y: usize,
+        /// The colour whose upper bits are those of the pixel.
+        expected: [u8; 3],
+        /// The pixel.
+        found: [u8; 3],
+    },
+}
+
+/// A picture of 8 bits a channel, row by row from the top left.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Picture {
+    width: usize,
+    height: usize,
+    rgb: Vec<u8>,
+}
+
+impl Picture {
+    /// `rgb` has three bytes a pixel.
+    ///
+    /// # Panics
+    /// When the number of bytes is another.
+    #[must_use]
+    pub fn new(width: usize, height: usize, rgb: Vec<u8>) -> Self {
+        assert_eq!(rgb.len(), 3 * width * height, "three bytes a pixel");
+        Self { width, height, rgb }
+    }
+
+    /// Pixels of a line.
+    #[must_use]
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Lines.
+    #[must_use]
+    pub fn height(&self) -> usize {
+        self.height
+    }
+
+    /// Red, green and blue of every pixel.
+    #[must_use]
+    pub fn rgb(&self) -> &[u8] {
+        &self.rgb
+    }
+
+    /// Red, green and blue at column `x` of line `y`.
+    ///
+    /// # Panics
+    /// When there is no such pixel.
+    #[must_use]
+    pub fn pixel(&self, x: usize, y: usize) -> [u8; 3] {
+        assert!(
+            x < self.width && y < self.height,
+            "pixel {x}, {y} of {}x{}",
+            self.width,
+            self.height
+        );
+        let at = 3 * (y * self.width + x);
+        [self.rgb[at], self.rgb[at + 1], self.rgb[at + 2]]
+    }
+
+    /// The RGB565 frame that scan-out enlarged by `scale` to this picture, row by row.
+    ///
+    /// # Errors
+    /// When a block of `scale` × `scale` is not of one colour, or a colour is not RGB565 widened by bit replication.
+    pub fn scaled_back(&self, scale: usize) -> Result<Vec<u16>, PictureError> {
+        let Self { width, height, .. } = *self;
+        if scale == 0 || !width.is_multiple_of(scale) || !height.is_multiple_of(scale) {
+            return Err(PictureError::Scale {
+                width,
+                height,
+                scale,
+            });
+        }
+        let mut frame = Vec::with_capacity(width * height / (scale * scale));
+        for y in 0..height {
+            for x in 0..width {
+                let found = self.pixel(x, y);
+                let (left, top) = (x - x % scale, y - y % scale);
+                let expected = self.pixel(left, top);
+                if found != expected {
+                    return Err(PictureError::Block {
+                        x,
+                        y,
+                        scale,
+                        expected,
+                        found,
+                    });
+                }
+                if (x, y) == (left, top) {
+                    let colour = to_rgb565(found);
+                    let expected = from_rgb565(colour);
+                    if found != expected {
+                        return Err(PictureError::Colour {
+                            x,
+                            y,
+                            expected,
+                            found,
+                        });
+                    }
+                    frame.push(colour);
+                }
+            }
+        }
+        Ok(frame)
+    }
+
+    /// Writes a PNG.
+    ///
+    /// # Errors
+    /// When the file cannot be written.
+    pub fn save(&self, path: &Path) -> std::io::Result<()> {
+        let mut encoder = png::Encoder::new(
+            BufWriter::new(File::create(path)?),
+            self.width as u32,
+            self.height as u32,
+        );
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder.write_header()?.write_image_data(&self.rgb)?;
+        Ok(())
+    }
+}
+
+/// The upper bits of each channel: red in bits 15:11, green in 10:5, blue in 4:0.
+fn to_rgb565([r, g, b]: [u8; 3]) -> u16 {
+    u16::from(r >> 3) << 11 | u16::from(g >> 2) << 5 | u16::from(b >> 3)
+}
+
+/// Each channel widened to 8 bits by repeating its upper bits below it.
+fn from_rgb565(colour: u16) -> [u8; 3] {
+    let five = |shift: u16| (colour >> shift & 0x1f) as u8;
+    let six = (colour >> 5 & 0x3f) as u8;
+    let widen = |channel: u8| channel << 3 | channel >> 2;
+    [widen(five(11)), six << 2 | six >> 4, widen(five(0))]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A frame with every colour bit in use, enlarged by `scale`.
+    fn enlarged(width: usize, height: usize, scale: usize) -> (Vec<u16>, Picture) {
+        let frame: Vec<u16> = (0..width * height)
+            .map(|i| (i as u16).wrapping_mul(0x9e37))
+            .collect();
+        let (wide, high) = (width * scale, height * scale);
+        let rgb = (0..wide * high)
+            .flat_map(|i| from_rgb565(frame[i / wide / scale * width + i % wide / scale]))
+            .collect();
+        (frame, Picture::new(wide, high, rgb))
+    }
+
+    #[test]
+    fn every_rgb565_colour_survives_the_way_there_and_back() {
+        for colour in 0..=u16::MAX {
+            assert_eq!(to_rgb565(from_rgb565(colour)), colour);
+        }
+        assert_eq!(from_rgb565(0xffff), [255; 3]);
+        assert_eq!(from_rgb565(0x8410), [0x84, 0x82, 0x84]);
+    }
+
+    #[test]
+    fn an_enlarged_frame_comes_back() {
+        for scale in [1, 2, 4] {
+            let (frame, picture) = enlarged(20, 12, scale);
+            assert_eq!(picture.scaled_back(scale), Ok(frame));
+        }
+    }
+
+    #[test]
+    fn a_pixel_that_leaves_its_block_is_found() {
+        let (_, mut picture) = enlarged(20, 12, 4);
+        let expected = picture.pixel(4, 8);
+        picture.rgb[3 * (11 * 80 + 7) + 1] ^= 0x80;
+        let found = picture.pixel(7, 11);
+        assert_eq!(
+            picture.scaled_back(4),
+            Err(PictureError::Block {
+                x: 7,
+                y: 11,
+                scale: 4,
+                expected,
+                found
+            })
+        );
+    }
+
+    #[test]
+    fn a_colour_outside_rgb565_is_found() {
+        let picture = Picture::new(2, 1, vec![0, 0, 0, 0xf8, 0, 0]);
+        assert_eq!(
+            picture.scaled_back(1),
+            Err(PictureError::Colour {
+                x: 1,
+                y: 0,
+                expected: [0xff, 0, 0],
+                found: [0xf8, 0, 0]
+            })
+        );
+    }
+
+    #[test]
+    fn a_scale_that_does_not_divide_the_picture_is_refused() {
+        let (_, picture) = enlarged(20, 12, 1);
+        for scale in [0, 3, 5] {
+            assert_eq!(
+                picture.scaled_back(scale),
+                Err(PictureError::Scale {
+                    width: 20,
+                    height: 12,
+                    scale
+                })
+            );
+        }
+    }
+}

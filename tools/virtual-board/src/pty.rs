@@ -1,0 +1,160 @@
+//! The board behind a pseudo-terminal, for programs that expect a serial port.
+
+use std::fs::File;
+use std::io::{self, ErrorKind, Read, Write};
+use std::os::fd::OwnedFd;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
+use std::thread::JoinHandle;
+
+use rustix::fs::{Mode, OFlags};
+use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
+
+use crate::{Error, VirtualBoard};
+
+/// Cycles between looks at the terminal.
+const SLICE: u64 = 2000;
+
+/// Bytes from the terminal that wait for the UART before the terminal has to wait itself.
+const QUEUE: usize = 4096;
+
+/// Something to do with the board between two slices.
+type Task = Box<dyn FnOnce(&mut VirtualBoard) + Send>;
+
+/// A board that runs in a thread of its own, with its UART on a pseudo-terminal.
+///
+/// The terminal is raw: every byte passes as it is, in both directions. The board stops when this is dropped.
+pub struct Pty {
+    path: PathBuf,
+    tasks: Option<Sender<Task>>,
+    thread: Option<JoinHandle<VirtualBoard>>,
+    /// Keeps the terminal's other side open, so that programs may come and go.
+    _terminal: OwnedFd,
+}
+
+impl Pty {
+    /// Lets `board` run.
+    ///
+    /// # Errors
+    /// When the system has no pseudo-terminal to give.
+    pub fn start(board: VirtualBoard) -> Result<Self, Error> {
+        let (side, terminal, path) = open().map_err(io::Error::from)?;
+        let (tasks, queue) = channel();
+        let thread = std::thread::Builder::new()
+            .name("virtual board".to_owned())
+            .spawn(move || run(board, side, &queue))?;
+        Ok(Self {
+            path,
+            tasks: Some(tasks),
+            thread: Some(thread),
+            _terminal: terminal,
+        })
+    }
+
+    /// The device that programs open, such as `/dev/pts/3`.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Does something with the board between two of its cycles and returns what came of it.
+    ///
+    /// # Panics
+    /// When the board's thread has panicked, in an earlier task.
+    pub fn with<R: Send + 'static>(
+        &self,
+        task: impl FnOnce(&mut VirtualBoard) -> R + Send + 'static,
+    ) -> R {
+        let (reply, answer) = channel();
+        let task: Task = Box::new(move |board| {
+            // The caller waits for it.
+            let _ = reply.send(task(board));
+        });
+        let sent = self
+            .tasks
+            .as_ref()
+            .is_some_and(|tasks| tasks.send(task).is_ok());
+        assert!(sent, "the virtual board's thread has ended");
+        answer.recv().expect("the virtual board's thread has ended")
+    }
+
+    /// Stops the board and takes it back.
+    ///
+    /// # Panics
+    /// When the board's thread has panicked.
+    #[must_use]
+    pub fn stop(mut self) -> VirtualBoard {
+        self.tasks = None;
+        let thread = self
+            .thread
+            .take()
+            .expect("the thread is there until it is stopped");
+        thread
+            .join()
+            .expect("the virtual board's thread has panicked")
+    }
+}
+
+impl Drop for Pty {
+    fn drop(&mut self) {
+        self.tasks = None;
+        if let Some(thread) = self.thread.take() {
+            // A panic in there has been printed.
+            let _ = thread.join();
+        }
+    }
+}
+
+/// A raw pseudo-terminal: our side, which does not block, the other side, and its path.
+fn open() -> rustix::io::Result<(File, OwnedFd, PathBuf)> {
+    use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+    let side = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
+    grantpt(&side)?;
+    unlockpt(&side)?;
+    let path = ptsname(&side, Vec::new())?;
+    let terminal = rustix::fs::open(
+        &*path,
+        OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC,
+        Mode::empty(),
+    )?;
+    let mut settings = tcgetattr(&terminal)?;
+    settings.make_raw();
+    tcsetattr(&terminal, OptionalActions::Now, &settings)?;
+    rustix::io::ioctl_fionbio(&side, true)?;
+    let path = PathBuf::from(path.to_string_lossy().into_owned());
+    Ok((File::from(side), terminal, path))
+}
+
+/// The board's thread: terminal to UART, a slice of time, UART to terminal.
+fn run(mut board: VirtualBoard, mut terminal: File, tasks: &Receiver<Task>) -> VirtualBoard {
+    let mut output = Vec::new();
+    loop {
+        loop {
+            match tasks.try_recv() {
+                Ok(task) => task(&mut board),
+                Err(TryRecvError::Empty) => break,
+                Err(TryRecvError::Disconnected) => return board,
+            }
+        }
+        if board.uart_queued() < QUEUE {
+            let mut input = [0; QUEUE];
+            match terminal.read(&mut input) {
+                Ok(count) => board.uart_write(&input[..count]),
+                Err(error) if is_passing(&error) => {}
+                Err(error) => panic!("reading the virtual board's terminal: {error}"),
+            }
+        }
+        board.run(SLICE);
+        board.uart_read(&mut output);
+        match terminal.write(&output) {
+            Ok(count) => drop(output.drain(..count)),
+            Err(error) if is_passing(&error) => {}
+            Err(error) => panic!("writing the virtual board's terminal: {error}"),
+        }
+    }
+}
+
+/// Whether it may work the next time.
+fn is_passing(error: &io::Error) -> bool {
+    matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted)
+}

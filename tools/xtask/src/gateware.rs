@@ -1,0 +1,264 @@
+//! `cargo xtask gateware`: the SoC of a board, and for the virtual board the library that runs it.
+//!
+//! LiteX writes Verilog, the BIOS and the SoC's description to `target/gateware/BOARD`. For the virtual board,
+//! Verilator then turns the Verilog into C++, and g++ turns that and the harness of `tools/virtual-board/soc` into
+//! `libglint_soc.so`. Each part is skipped when its inputs have not changed.
+
+use std::ffi::OsStr;
+use std::fs;
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
+
+use anyhow::{Context, Result, bail};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::{paths, run};
+
+/// What the gateware is built for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Board {
+    /// The verilated SoC.
+    Virtual,
+    /// The RealDigital Urbana, up to Verilog, constraints and a Vivado script.
+    Urbana,
+}
+
+impl Board {
+    /// The board's name in paths and on the command line of `glint_soc`.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Virtual => "virtual",
+            Self::Urbana => "urbana",
+        }
+    }
+
+    /// Where everything of this board is built.
+    fn folder(self) -> PathBuf {
+        paths::target().join("gateware").join(self.name())
+    }
+}
+
+/// Builds what is out of date for `board`.
+///
+/// # Errors
+/// When a tool is missing or fails; its output has then been printed.
+pub fn build(board: Board) -> Result<()> {
+    generate(board)?;
+    if board == Board::Virtual {
+        verilate(Waveforms::Without)?;
+    }
+    Ok(())
+}
+
+/// Builds the virtual board's second library, which can write waveforms and is slower.
+///
+/// # Errors
+/// As [`build`].
+pub fn build_with_waveforms() -> Result<()> {
+    generate(Board::Virtual)?;
+    verilate(Waveforms::With)
+}
+
+/// Runs LiteX: Verilog, BIOS, `csr.json` and `soc.svd`.
+fn generate(board: Board) -> Result<()> {
+    let root = paths::root();
+    let folder = board.folder();
+    let gateware = root.join("gateware");
+    let inputs = fingerprint(
+        &[gateware.join("glint_soc"), gateware.join("rtl"), gateware.join("requirements.txt")],
+        board.name(),
+    )?;
+    let stamp = folder.join("generated.stamp");
+    if is_current(&stamp, &inputs) {
+        return Ok(());
+    }
+    fs::create_dir_all(&folder).with_context(|| format!("creating {}", folder.display()))?;
+    run::step(
+        &format!("SoC and BIOS ({})", board.name()),
+        Command::new(paths::venv_program("python"))
+            .args(["-m", "glint_soc", "--board", board.name(), "--output"])
+            .arg(&folder)
+            .current_dir(&folder)
+            .env("PYTHONPATH", gateware)
+            .env("PYTHONDONTWRITEBYTECODE", "1"),
+    )
+    .context("the gateware generator: `cargo xtask bootstrap` installs what it needs")?;
+    fs::write(&stamp, inputs).with_context(|| format!("writing {}", stamp.display()))
+}
+
+/// Whether a library can write waveforms.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Waveforms {
+    With,
+    Without,
+}
+
+/// The top module of the virtual board's Verilog.
+const TOP: &str = "glint_virtual";
+
+/// Runs Verilator and g++ over what [`generate`] left for the virtual board.
+fn verilate(waveforms: Waveforms) -> Result<()> {
+    let folder = Board::Virtual.folder();
+    let harness = paths::root().join("tools/virtual-board/soc");
+    let (variant, library) = match waveforms {
+        Waveforms::Without => ("verilated", "libglint_soc.so"),
+        Waveforms::With => ("verilated-trace", "libglint_soc_trace.so"),
+    };
+    let objects = folder.join(variant);
+    let bios = folder.join("software/bios/bios.bin");
+    let verilog = folder.join("gateware").join(TOP).with_extension("v");
+    let inputs = fingerprint(
+        &[verilog.clone(), bios.clone(), harness.clone(), paths::root().join("gateware/rtl")],
+        // How this function builds is an input as well.
+        include_str!("gateware.rs"),
+    )?;
+    let stamp = objects.join("stamp");
+    let library = folder.join(library);
+    if library.exists() && is_current(&stamp, &inputs) {
+        return Ok(());
+    }
+
+    // Verilator names its output by what it contains: nothing of an older build may stay.
+    if objects.exists() {
+        fs::remove_dir_all(&objects).with_context(|| format!("clearing {}", objects.display()))?;
+    }
+    fs::create_dir_all(&objects).with_context(|| format!("creating {}", objects.display()))?;
+    let verilator = verilator_root()?;
+    run::step(
+        "Verilator",
+        Command::new(verilator.join("bin/verilator_bin"))
+            .args(["--cc", "--no-timing", "--flatten", "-O3", "--x-assign", "fast", "--x-initial", "fast"])
+            .args(if waveforms == Waveforms::With { &["--trace-vcd"][..] } else { &[] })
+            .args(["--prefix", "Vglint", "--top-module", TOP, "--Mdir"])
+            .arg(&objects)
+            .arg(harness.join("glint_soc.vlt"))
+            .arg(&verilog)
+            .arg("-f")
+            .arg(verilog.with_extension("f"))
+            .env("VERILATOR_ROOT", &verilator),
+    )?;
+
+    let runtime = verilator.join("include");
+    let mut sources = vec![
+        harness.join("glint_soc.cpp"),
+        runtime.join("verilated.cpp"),
+        runtime.join("verilated_threads.cpp"),
+    ];
+    if waveforms == Waveforms::With {
+        sources.push(runtime.join("verilated_vcd_c.cpp"));
+    }
+    sources.extend(files(&objects)?.into_iter().filter(|path| path.extension() == Some(OsStr::new("cpp"))));
+    let flag = if waveforms == Waveforms::With { 1 } else { 0 };
+    let mut flags: Vec<String> = ["-std=gnu++17", "-O3", "-fPIC", "-fvisibility=hidden", "-w"].map(String::from).to_vec();
+    flags.extend(["SC", "COVERAGE", "TIMING"].map(|what| format!("-DVM_{what}=0")));
+    flags.extend(["TRACE", "TRACE_VCD"].map(|what| format!("-DVM_{what}={flag}")));
+    flags.push(format!("-DGLINT_BIOS=\"{}\"", bios.display()));
+    let includes = [&objects, &runtime, &runtime.join("vltstd"), &folder.join("software/include"), &harness];
+    flags.extend(includes.iter().map(|path| format!("-I{}", path.display())));
+    compile(&sources, &objects, &flags)?;
+
+    // A board that is running keeps the library it has opened: the new one takes its place by renaming.
+    let linked = objects.join("library.so");
+    run::step(
+        "link the virtual board",
+        Command::new("g++")
+            .arg("-shared")
+            .args(sources.iter().map(|source| object(source, &objects)))
+            .arg("-o")
+            .arg(&linked),
+    )?;
+    fs::rename(&linked, &library).with_context(|| format!("placing {}", library.display()))?;
+    fs::write(&stamp, inputs).with_context(|| format!("writing {}", stamp.display()))
+}
+
+/// Compiles every source to an object in `folder`, as many at a time as there are cores.
+fn compile(sources: &[PathBuf], folder: &Path, flags: &[String]) -> Result<()> {
+    let start = Instant::now();
+    // The largest first: they decide when the last one is done.
+    let mut queue: Vec<&PathBuf> = sources.iter().collect();
+    queue.sort_by_key(|path| std::cmp::Reverse(fs::metadata(path).map_or(0, |data| data.len())));
+    let style = ProgressStyle::with_template("  {bar:30} {pos}/{len}  {elapsed}  compile the virtual board")?;
+    let bar = ProgressBar::new(queue.len() as u64).with_style(style);
+    let next = AtomicUsize::new(0);
+    let work = || -> Result<()> {
+        while let Some(source) = queue.get(next.fetch_add(1, Ordering::Relaxed)) {
+            let output = Command::new("g++")
+                .args(flags)
+                .arg("-c")
+                .arg(source)
+                .arg("-o")
+                .arg(object(source, folder))
+                .output()
+                .context("g++: not found; `cargo xtask bootstrap` installs it")?;
+            if !output.status.success() {
+                bail!("g++ {}:\n{}", source.display(), String::from_utf8_lossy(&output.stderr));
+            }
+            bar.inc(1);
+        }
+        Ok(())
+    };
+    std::thread::scope(|scope| {
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        let workers: Vec<_> = (0..cores).map(|_| scope.spawn(work)).collect();
+        workers.into_iter().try_for_each(|worker| worker.join().expect("a compiling thread does not panic"))
+    })?;
+    bar.finish_and_clear();
+    println!("  ok   {:6.1} s  compile the virtual board", start.elapsed().as_secs_f64());
+    Ok(())
+}
+
+/// The object file of `source`.
+fn object(source: &Path, folder: &Path) -> PathBuf {
+    folder.join(source.file_name().unwrap_or_default()).with_extension("o")
+}
+
+/// The folder of the pinned Verilator in the Python environment.
+fn verilator_root() -> Result<PathBuf> {
+    let output = Command::new(paths::venv_program("python"))
+        .args(["-c", "import os, verilator; print(os.path.dirname(verilator.__file__), end='')"])
+        .output()
+        .context("python: `cargo xtask bootstrap` makes the Python environment")?;
+    if !output.status.success() {
+        bail!("Verilator is not in the Python environment: `cargo xtask bootstrap` installs it");
+    }
+    Ok(PathBuf::from(String::from_utf8(output.stdout)?))
+}
+
+/// A line that changes when a file below `roots` or `salt` does.
+fn fingerprint(roots: &[PathBuf], salt: &str) -> Result<String> {
+    let mut hasher = DefaultHasher::new();
+    salt.hash(&mut hasher);
+    for root in roots {
+        for path in files(root)? {
+            path.hash(&mut hasher);
+            fs::read(&path).with_context(|| format!("reading {}", path.display()))?.hash(&mut hasher);
+        }
+    }
+    Ok(format!("{:016x}\n", hasher.finish()))
+}
+
+/// All files below `root` in a fixed order, or `root` itself if it is a file; Python's caches are not inputs.
+fn files(root: &Path) -> Result<Vec<PathBuf>> {
+    if !root.is_dir() {
+        return Ok(vec![root.to_owned()]);
+    }
+    let mut entries = fs::read_dir(root)
+        .and_then(|entries| entries.map(|entry| entry.map(|entry| entry.path())).collect::<Result<Vec<_>, _>>())
+        .with_context(|| format!("listing {}", root.display()))?;
+    entries.sort();
+    let mut found = Vec::new();
+    for entry in entries {
+        if entry.file_name() != Some(OsStr::new("__pycache__")) {
+            found.extend(files(&entry)?);
+        }
+    }
+    Ok(found)
+}
+
+/// Whether the last build left `inputs` as its stamp.
+fn is_current(stamp: &Path, inputs: &str) -> bool {
+    fs::read_to_string(stamp).is_ok_and(|last| last == inputs)
+}
