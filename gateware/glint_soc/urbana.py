@@ -1,0 +1,95 @@
+"""The RealDigital Urbana: Spartan-7 clocks, DDR3 at 650 MT/s, HDMI from the scan-out."""
+
+from litedram.phy.s7ddrphy import A7DDRPHY
+from litex.gen import LiteXModule
+from litex.soc.cores.clock import S7IDELAYCTRL, S7MMCM, S7PLL
+from litex.soc.cores.video import VideoS7HDMIPHY
+from migen import ClockDomain, Signal
+
+from .scanout import VIDEO_LAYOUT
+from .soc import PIXEL_CLK_FREQ, SYS_CLK_FREQ, GlintSoC
+from .urbana_platform import Platform
+
+_SPEED_GRADE = -1
+_CLK100_FREQ = 100e6
+_IDELAY_CLK_FREQ = 200e6
+
+
+class _PixelMMCM(S7MMCM):
+    """An MMCM at 742.5 MHz, ten times the pixel clock, from 100 MHz: /5 and x37.125.
+
+    LiteX's search has whole multipliers only and would settle for 74.2857 MHz, 481 ppm too fast.
+    """
+
+    def compute_config(self):
+        config = {"divclk_divide": 5, "clkfbout_mult": 37.125}
+        vco_freq = self.clkin_freq / config["divclk_divide"] * config["clkfbout_mult"]
+        for number, (_, freq, phase, _) in self.clkouts.items():
+            divide = vco_freq / freq
+            if divide != int(divide):
+                raise ValueError(f"the pixel MMCM cannot make {freq/1e6} MHz from its {vco_freq/1e6} MHz")
+            config[f"clkout{number}_divide"] = int(divide)
+            config[f"clkout{number}_phase"] = phase
+        return config
+
+
+class CRG(LiteXModule):
+    """Clocks and resets: `sys` with its memory clocks, 200 MHz for the input delays, `pix` with its TMDS clock.
+
+    `rst` restarts the system but not the video clocks: the picture goes black and the monitor keeps its lock.
+    """
+
+    def __init__(self, platform, sys_clk_freq):
+        self.rst = Signal()
+        self.cd_sys = ClockDomain()
+        self.cd_sys4x = ClockDomain()
+        self.cd_sys4x_dqs = ClockDomain()
+        self.cd_idelay = ClockDomain()
+        self.cd_pix = ClockDomain()
+        self.cd_pix5x = ClockDomain()
+
+        # # #
+
+        clk100 = platform.request("clk100")
+
+        self.sys_mmcm = sys_mmcm = S7MMCM(speedgrade=_SPEED_GRADE)
+        self.comb += sys_mmcm.reset.eq(self.rst)
+        sys_mmcm.register_clkin(clk100, _CLK100_FREQ)
+        sys_mmcm.create_clkout(self.cd_sys, sys_clk_freq, margin=0)
+        sys_mmcm.create_clkout(self.cd_sys4x, 4 * sys_clk_freq, margin=0)
+        sys_mmcm.create_clkout(self.cd_sys4x_dqs, 4 * sys_clk_freq, phase=90, margin=0)
+        # `rst` of the sys domain resets what makes it, in the domain of the input clock.
+        platform.add_false_path_constraints(self.cd_sys.clk, "clk100")
+
+        self.idelay_pll = idelay_pll = S7PLL(speedgrade=_SPEED_GRADE)
+        self.comb += idelay_pll.reset.eq(self.rst)
+        idelay_pll.register_clkin(clk100, _CLK100_FREQ)
+        idelay_pll.create_clkout(self.cd_idelay, _IDELAY_CLK_FREQ, margin=0)
+        self.idelayctrl = S7IDELAYCTRL(self.cd_idelay)
+
+        self.pixel_mmcm = pixel_mmcm = _PixelMMCM(speedgrade=_SPEED_GRADE)
+        pixel_mmcm.register_clkin(clk100, _CLK100_FREQ)
+        pixel_mmcm.create_clkout(self.cd_pix, PIXEL_CLK_FREQ)
+        pixel_mmcm.create_clkout(self.cd_pix5x, 5 * PIXEL_CLK_FREQ)
+
+        # Every path between them goes through rtl/common's crossings or two flip-flops of LiteX.
+        platform.add_false_path_constraints(self.cd_sys.clk, self.cd_pix.clk)
+
+
+class UrbanaSoC(GlintSoC):
+    """The SoC on the board."""
+
+    def __init__(self, build_id, blocks):
+        platform = Platform()
+        GlintSoC.__init__(self, platform, CRG(platform, SYS_CLK_FREQ), build_id, blocks, uart_name="serial")
+        self.ddrphy = A7DDRPHY(
+            platform.request("ddram"), memtype="DDR3", nphases=4,
+            sys_clk_freq=SYS_CLK_FREQ, iodelay_clk_freq=_IDELAY_CLK_FREQ)
+        # Set here because `add_electrical_settings` keeps it under a name that the initialisation does not read.
+        self.ddrphy.settings.rtt_nom = "40ohm"
+        self.add_dram(self.ddrphy)
+        if "scanout" in self.blocks:
+            self.hdmi = VideoS7HDMIPHY(platform.request("hdmi_out"), clock_domain="pix")
+            self.comb += self.hdmi.sink.valid.eq(1)
+            self.comb += [getattr(self.hdmi.sink, name).eq(getattr(self.scanout.video, name))
+                          for name, _ in VIDEO_LAYOUT]

@@ -1,0 +1,88 @@
+"""The RealDigital Urbana (XC7S50-1CSGA324): its pins and how a bitstream gets onto it."""
+
+from litex.build.generic_platform import IOStandard, Misc, Pins, Subsignal
+from litex.build.openfpgaloader import OpenFPGALoader
+from litex.build.xilinx import Xilinx7SeriesPlatform
+
+# Bank 35 (buttons, switches) shares its supply with a pair that the board uses as LVDS_25, hence 2.5 V for all of it.
+_BANK_35 = IOStandard("LVCMOS25")
+
+_io = [
+    ("clk100", 0, Pins("N15"), IOStandard("LVCMOS33")),
+
+    ("buttons", 0, Pins("J2 J1 G2 H2"), _BANK_35),
+    ("switches", 0, Pins("G1 F2 F1 E2 E1 D2 D1 C2 B2 A4 A5 A6 C7 A7 B7 A8"), _BANK_35),
+    ("leds", 0, Pins("C13 C14 D14 D15 D16 F18 E17 D17 C17 B18 A17 B17 C18 D18 E18 G17"), IOStandard("LVCMOS33")),
+
+    # Seen from the FPGA. The vendor's file names these pins from the side of the USB bridge.
+    ("serial", 0,
+        Subsignal("rx", Pins("B16")),
+        Subsignal("tx", Pins("A16")),
+        IOStandard("LVCMOS33")),
+
+    # PMOD B, pins 2 and 3: an external MPU-6050. Its module has pull-ups; these keep the bus idle without it.
+    ("i2c", 0,
+        Subsignal("sda", Pins("G18")),
+        Subsignal("scl", Pins("K14")),
+        Misc("PULLUP=TRUE"), IOStandard("LVCMOS33")),
+
+    # The clock is CCLK, reached through STARTUPE2.
+    ("spiflash4x", 0,
+        Subsignal("cs_n", Pins("M13")),
+        Subsignal("dq", Pins("K17 K18 L14 M15")),
+        IOStandard("LVCMOS33")),
+    ("spiflash_reset_n", 0, Pins("N13"), IOStandard("LVCMOS33")),
+
+    ("hdmi_out", 0,
+        Subsignal("clk_p", Pins("U16")),
+        Subsignal("clk_n", Pins("V17")),
+        Subsignal("data0_p", Pins("U17")),
+        Subsignal("data0_n", Pins("U18")),
+        Subsignal("data1_p", Pins("R16")),
+        Subsignal("data1_n", Pins("R17")),
+        Subsignal("data2_p", Pins("R14")),
+        Subsignal("data2_n", Pins("T14")),
+        IOStandard("TMDS_33")),
+
+    # DDR3L, 1 Gbit x16. The chip select is tied on the board.
+    ("ddram", 0,
+        Subsignal("a", Pins("V3 R4 P6 T3 T6 T1 V5 U7 R7 U6 U3 P5 V6"), IOStandard("SSTL135")),
+        Subsignal("ba", Pins("V2 V4 R3"), IOStandard("SSTL135")),
+        Subsignal("ras_n", Pins("U2"), IOStandard("SSTL135")),
+        Subsignal("cas_n", Pins("U1"), IOStandard("SSTL135")),
+        Subsignal("we_n", Pins("T2"), IOStandard("SSTL135")),
+        Subsignal("dm", Pins("K4 M3"), IOStandard("SSTL135")),
+        Subsignal("dq", Pins("K2 M4 K3 L5 L6 M6 L4 K6 N5 M1 P1 N1 R2 N4 P2 M2"),
+            IOStandard("SSTL135"), Misc("IN_TERM=UNTUNED_SPLIT_50")),
+        Subsignal("dqs_p", Pins("K1 N3"), IOStandard("DIFF_SSTL135"), Misc("IN_TERM=UNTUNED_SPLIT_50")),
+        Subsignal("dqs_n", Pins("L1 N2"), IOStandard("DIFF_SSTL135"), Misc("IN_TERM=UNTUNED_SPLIT_50")),
+        Subsignal("clk_p", Pins("R5"), IOStandard("DIFF_SSTL135")),
+        Subsignal("clk_n", Pins("T4"), IOStandard("DIFF_SSTL135")),
+        Subsignal("cke", Pins("T5"), IOStandard("SSTL135")),
+        Subsignal("odt", Pins("P7"), IOStandard("SSTL135")),
+        Subsignal("reset_n", Pins("M5"), IOStandard("SSTL135")),
+        Misc("SLEW=FAST")),
+]
+
+
+class Platform(Xilinx7SeriesPlatform):
+    """Writes Verilog, constraints and a script for Vivado."""
+
+    def __init__(self):
+        Xilinx7SeriesPlatform.__init__(self, "xc7s50csga324-1", _io, toolchain="vivado", name="glint_urbana")
+        for setting in (
+            "CFGBVS VCCO",
+            "CONFIG_VOLTAGE 3.3",
+            "BITSTREAM.CONFIG.SPI_BUSWIDTH 4",
+            "BITSTREAM.GENERAL.COMPRESS TRUE",
+        ):
+            self.add_platform_command(f"set_property {setting} [current_design]")
+        self.add_platform_command("set_property INTERNAL_VREF 0.675 [get_iobanks 34]")
+
+    def create_programmer(self):
+        """The loader has no entry for this board; the Arty S7 has the same FPGA and the same USB bridge."""
+        return OpenFPGALoader("arty_s7_50")
+
+    def do_finalize(self, fragment):
+        Xilinx7SeriesPlatform.do_finalize(self, fragment)
+        self.add_period_constraint(self.lookup_request("clk100", loose=True), 1e9 / 100e6)

@@ -1,0 +1,31 @@
+"""The modules under test: their sources and their benches."""
+
+from dataclasses import dataclass, field
+
+from glint_soc import scanout
+
+
+@dataclass(frozen=True)
+class Module:
+    """A top module. `variants` are builds with other parameters, `defines` what the bench is told about them."""
+
+    top: str
+    sources: list
+    bench: list
+    variants: dict = field(default_factory=dict)
+    defines: list = field(default_factory=list)
+
+
+# As much time for a memory word as 1280x720 has, in a two-hundredth of its frame.
+_SMALL_RASTER = {"H_ACTIVE": 160, "H_FRONT": 8, "H_SYNC": 4, "H_BACK": 12,
+                 "V_ACTIVE": 24, "V_FRONT": 2, "V_SYNC": 2, "V_BACK": 4}
+
+MODULES = [
+    Module(
+        top="scanout",
+        sources=scanout.SOURCES,
+        bench=["scanout_test.cpp", "scanout_bench.h"],
+        variants={"scanout_small": _SMALL_RASTER},
+        defines=["SMALL_RASTER=" + ",".join(str(value) for value in _SMALL_RASTER.values())],
+    ),
+]

@@ -1,0 +1,84 @@
+"""Tests of the gateware that need no SoC: modules on their benches, lint, and the Urbana's generated files.
+
+    python gateware/tests/run.py           runs everything, one line a test; ends with 1 if anything failed
+    python gateware/tests/run.py --size    prints what each module costs on the FPGA instead
+"""
+
+import argparse
+import logging
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+
+import benches  # noqa: E402
+import size  # noqa: E402
+import urbana  # noqa: E402
+from modules import MODULES  # noqa: E402
+from tools import ToolError, run_verilator  # noqa: E402
+
+
+class Report:
+    """Prints outcomes and counts the failures."""
+
+    def __init__(self):
+        self.failures = 0
+
+    def check(self, name, action):
+        """Runs `action`; it fails by an exception or by returning a list of problems that is not empty."""
+        try:
+            problems = action() or []
+        except ToolError as error:
+            problems = [str(error)]
+        if problems:
+            self.failures += 1
+            print(f"FAIL  {name}:", *problems, sep="\n      ", flush=True)
+        else:
+            print(f"ok    {name}", flush=True)
+
+    def bench(self, module):
+        """Runs a bench, which reports in the same form."""
+        try:
+            lines = benches.run_bench(module).splitlines()
+        except ToolError as error:
+            lines = [f"FAIL  {module.top}: {error}"]
+        print(*lines, sep="\n", flush=True)
+        if not any(line.startswith("ok ") for line in lines) or any(line.startswith("FAIL") for line in lines):
+            self.failures += 1
+
+
+def test():
+    """Runs everything and returns the number of failures."""
+    report = Report()
+    for module in MODULES:
+        report.check(f"{module.top}: lint", lambda: run_lint(module))
+        report.check(f"{module.top}: read by Yosys", lambda: size.read(module))
+        report.bench(module)
+    files = urbana.generate()
+    for name, check in urbana.CHECKS.items():
+        report.check(f"urbana: {name}", lambda: check(*files))
+    return report.failures
+
+
+def run_lint(module):
+    """All of Verilator's warnings, none of them allowed."""
+    run_verilator("--lint-only", "-Wall", "--top-module", module.top, *module.sources)
+
+
+def print_sizes():
+    """Prints a table of sizes and returns the number of modules with a path that is too long."""
+    too_long = 0
+    for module in MODULES:
+        measured = size.measure(module)
+        print(f"{module.top}: " + ", ".join(f"{count} {row}" for row, count in measured.items() if row != "path" and count)
+              + f"; longest path {measured['path']} cells (at most {size.LONGEST_PATH})")
+        too_long += measured["path"] > size.LONGEST_PATH
+    return too_long
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--size", action="store_true", help="print sizes instead")
+    arguments = parser.parse_args()
+    logging.disable(logging.INFO) # LiteX describes all it does
+    sys.exit(1 if (print_sizes() if arguments.size else test()) else 0)

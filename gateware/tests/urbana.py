@@ -1,0 +1,111 @@
+"""The Urbana's generated files against facts that were written down apart from the platform file."""
+
+import csv
+import math
+import re
+from collections import Counter
+
+from litex.soc.integration.builder import Builder
+
+from glint_soc.register_map import OPTIONAL_BLOCKS
+from glint_soc.urbana import UrbanaSoC
+
+from tools import BUILD, TESTS
+
+_PINS = TESTS / "urbana_pins.csv"
+
+# Clocks that must come out of the FPGA's MMCMs and PLLs exactly: MHz and phase.
+_CLOCKS = Counter({(81.25, 0): 1, (325.0, 0): 1, (325.0, 90): 1, (200.0, 0): 1, (74.25, 0): 1, (371.25, 0): 1})
+
+_CONSTRAINTS = [
+    "create_clock -name clk100 -period 10.0 [get_ports clk100]",
+    "set_property INTERNAL_VREF 0.675 [get_iobanks 34]",
+    "set_property CFGBVS VCCO [current_design]",
+    "set_property CONFIG_VOLTAGE 3.3 [current_design]",
+    "set_property BITSTREAM.CONFIG.SPI_BUSWIDTH 4 [current_design]",
+    "set_clock_groups -group [get_clocks -include_generated_clocks -of [get_nets sys_clk]] "
+    "-group [get_clocks -include_generated_clocks -of [get_nets pix_clk]] -asynchronous",
+]
+
+
+def generate():
+    """Elaborates the board (no BIOS, no vendor tool) and returns its XDC, Verilog and Vivado script as text."""
+    folder = BUILD / "urbana"
+    soc = UrbanaSoC(build_id=0, blocks=OPTIONAL_BLOCKS)
+    Builder(soc, output_dir=str(folder), compile_software=False, compile_gateware=False).build()
+    return tuple((folder / "gateware" / f"glint_urbana.{kind}").read_text() for kind in ("xdc", "v", "tcl"))
+
+
+def check_pins(xdc, verilog, _script):
+    """Each port of the design has the pin and the properties of the table, and no other; no pin is used twice."""
+    with open(_PINS, newline="") as file:
+        table = {row["signal"]: row for row in csv.DictReader(file)}
+    ports = {}
+    for key, value, port in re.findall(r"^set_property (\S+) (\S+) \[get_ports \{(.+)\}\]$", xdc, re.M):
+        ports.setdefault(port, {})[key] = value
+
+    problems = []
+    for port, properties in ports.items():
+        row = table.get(port)
+        if row is None:
+            problems.append(f"{port} is in the XDC but not in {_PINS.name}")
+            continue
+        expected = {"LOC": row["pin"], "IOSTANDARD": row["iostandard"]}
+        expected |= dict(item.split("=") for item in row["properties"].split())
+        if properties != expected:
+            problems.append(f"{port}: expected {expected}, the XDC has {properties}")
+    in_design = _ports(verilog)
+    problems += [f"{port} is a port of the design without a pin" for port in in_design - ports.keys()]
+    problems += [f"{port} has a pin but is no port of the design" for port in ports.keys() - in_design]
+    pins = Counter(row["pin"] for row in table.values())
+    problems += [f"pin {pin} is in the table {count} times" for pin, count in pins.items() if count > 1]
+    if not ports:
+        problems.append("no pin found in the XDC")
+    return problems
+
+
+def _ports(verilog):
+    """The ports of the top module, one name a bit."""
+    header = re.search(r"^module glint_urbana \((.*?)^\);", verilog, re.M | re.S).group(1)
+    ports = set()
+    for width, name in re.findall(r"^\s*(?:input|output|inout)\s+(?:wire|reg)\s+(?:\[(\d+):0\])?\s*(\w+),?$", header, re.M):
+        ports |= {f"{name}[{bit}]" for bit in range(int(width) + 1)} if width else {name}
+    return ports
+
+
+def check_constraints(xdc, _verilog, script):
+    """The input clock, the clock groups and the configuration are constrained; Vivado is told the part and the sources."""
+    problems = [f"not in the XDC: {line}" for line in _CONSTRAINTS if line not in xdc.splitlines()]
+    for word in ("-part xc7s50csga324-1", "scanout.sv", "read_xdc glint_urbana.xdc", "write_bitstream"):
+        if word not in script:
+            problems.append(f"not in the Vivado script: {word}")
+    return problems
+
+
+def check_clocks(_xdc, verilog, _script):
+    """The parameters of the MMCMs and PLLs give exactly the frequencies that the design is made for, within limits."""
+    problems = []
+    found = Counter()
+    for kind, text in re.findall(r"^(MMCME2_ADV|PLLE2_ADV) #\((.*?)^\) ", verilog, re.M | re.S):
+        parameters = {name: float(value) for name, value in
+                      re.findall(r"\.(\w+)\s+\((?:\d+'d)?([\d.]+)\)", text)}
+        multiplier = parameters.get("CLKFBOUT_MULT_F", parameters.get("CLKFBOUT_MULT"))
+        vco = 1e3 / parameters["CLKIN1_PERIOD"] / parameters["DIVCLK_DIVIDE"] * multiplier
+        low, high = (600, 1200) if kind == "MMCME2_ADV" else (800, 1600)
+        if not low <= vco <= high:
+            problems.append(f"{kind} runs at {vco} MHz, outside {low} to {high}")
+        if not math.isclose(multiplier * 8, round(multiplier * 8)):
+            problems.append(f"{kind}: {multiplier} is not a multiple of 1/8")
+        for name, divide in parameters.items():
+            if output := re.fullmatch(r"CLKOUT(\d)_DIVIDE(_F)?", name):
+                found[vco / divide, int(parameters[f"CLKOUT{output[1]}_PHASE"])] += 1
+    if found != _CLOCKS:
+        problems.append(f"expected the clocks (MHz, phase) {sorted(_CLOCKS)}, got {sorted(found.elements())}")
+    return problems
+
+
+CHECKS = {
+    "pins as in the table, both ways": check_pins,
+    "constraints and script": check_constraints,
+    "clocks exact": check_clocks,
+}
