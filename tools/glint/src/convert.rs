@@ -1,0 +1,515 @@
+//! From polygons to the mesh that a board holds: scaling, triangles, normals, rounding to Q2.14.
+
+use crate::error::FormatError;
+use crate::normals::Smooth;
+use crate::polygons::{Corner, Polygons, Rgb8, Vector};
+use crate::triangulate::{self, area_vector, dot, unit};
+use glint_core::mesh::{self, IndexedTriangle, Rgb565, Vertex};
+use serde::Serialize;
+use std::collections::HashMap;
+
+/// One in Q2.14.
+const ONE: f64 = 16384.0;
+
+/// How a mesh is converted.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Options {
+    /// Leaves the coordinates as they are, instead of scaling the mesh to the 1×1×1 box about the origin.
+    pub keep_scale: bool,
+}
+
+/// What a conversion did.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// Points in the file.
+    pub points: usize,
+    /// Polygons in the file.
+    pub faces: usize,
+    /// Vertices in the mesh, those repeated in several chunks counted each time.
+    pub vertices: u32,
+    /// Triangles in the mesh.
+    pub triangles: u32,
+    /// Triangles left out, as they have no area at the mesh's resolution.
+    pub degenerate: usize,
+    /// Chunks of at most 65,535 vertices.
+    pub chunks: usize,
+    /// The mesh's length in bytes.
+    pub bytes: usize,
+    /// What the file's lengths were multiplied with.
+    pub scale: f64,
+    /// The file's point that became the origin.
+    pub centre: Vector,
+    /// The largest distance between a point and the vertex it was rounded to, in world units.
+    pub error_max: f64,
+    /// The root of the mean of those distances' squares, in world units.
+    pub error_rms: f64,
+    /// `error_max` in units of the last place, 2^-14.
+    pub error_max_lsb: f64,
+    /// `error_rms` in units of the last place, 2^-14.
+    pub error_rms_lsb: f64,
+    /// What else the user should know.
+    pub remarks: Vec<String>,
+}
+
+/// Converts polygons whose indices have been checked to a mesh as it lies in memory.
+///
+/// # Errors
+/// The mesh has no extent, does not fit Q2.14 (with `keep_scale`), has no triangle with an area, or is too large.
+pub fn convert(polygons: &Polygons, options: Options) -> Result<(Vec<u8>, Report), FormatError> {
+    let placing = Placing::of(polygons, options)?;
+    let rounded = Rounded::of(polygons, &placing)?;
+    let (triangles, degenerate) = flat_triangles(polygons, &rounded);
+    if triangles.is_empty() {
+        return Err(FormatError::whole(
+            "a triangle with an area at a resolution of 2^-14",
+            format!("{degenerate} without one"),
+        ));
+    }
+    let (vertices, indexed) = index(polygons, &rounded, &triangles);
+    let bytes = mesh::encode(&vertices, &indexed).map_err(|error| match error {
+        mesh::EncodeError::TooLarge => FormatError::whole(
+            format!("a mesh of at most {} bytes", mesh::MAX_BYTES),
+            "more",
+        ),
+        other => FormatError::whole("a mesh", other.to_string()),
+    })?;
+    let written = crate::formats::glm::check(&bytes)?;
+    let report = Report {
+        points: polygons.points.len(),
+        faces: polygons.faces.len(),
+        vertices: written.vertex_count(),
+        triangles: written.triangle_count(),
+        degenerate,
+        chunks: written.chunks().count(),
+        bytes: bytes.len(),
+        scale: placing.scale,
+        centre: placing.centre,
+        error_max: rounded.error_max,
+        error_rms: rounded.error_rms,
+        error_max_lsb: rounded.error_max * ONE,
+        error_rms_lsb: rounded.error_rms * ONE,
+        remarks: polygons.remarks.clone(),
+    };
+    Ok((bytes, report))
+}
+
+/// Moves and scales the points as [`convert`] would, without rounding them.
+///
+/// # Errors
+/// Those of the placing: no extent, or (with `keep_scale`) beyond Q2.14.
+pub fn place(polygons: &mut Polygons, options: Options) -> Result<(), FormatError> {
+    let placing = Placing::of(polygons, options)?;
+    for point in &mut polygons.points {
+        *point = placing.apply(*point);
+    }
+    Ok(())
+}
+
+/// Where a mesh comes to lie: (P − centre)·scale.
+struct Placing {
+    centre: Vector,
+    scale: f64,
+}
+
+impl Placing {
+    fn of(polygons: &Polygons, options: Options) -> Result<Self, FormatError> {
+        if options.keep_scale {
+            return Ok(Self {
+                centre: [0.0; 3],
+                scale: 1.0,
+            });
+        }
+        // Only points that faces use: files carry stray ones.
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for &corner in &polygons.corners {
+            for (i, &c) in polygons.point(corner).iter().enumerate() {
+                low[i] = low[i].min(c);
+                high[i] = high[i].max(c);
+            }
+        }
+        let extent = (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max);
+        let scale = 1.0 / extent;
+        if !scale.is_finite() {
+            return Err(FormatError::whole(
+                "a mesh with an extent",
+                format!("one of {extent:e}"),
+            ));
+        }
+        Ok(Self {
+            centre: [0, 1, 2].map(|i| low[i] + (high[i] - low[i]) / 2.0),
+            scale,
+        })
+    }
+
+    fn apply(&self, point: Vector) -> Vector {
+        [0, 1, 2].map(|i| (point[i] - self.centre[i]) * self.scale)
+    }
+}
+
+/// All points in Q2.14, those that fall together counted once.
+struct Rounded {
+    /// For each point of the file its number in `positions`.
+    of_point: Vec<u32>,
+    /// The positions in Q2.14.
+    positions: Vec<[i16; 3]>,
+    error_max: f64,
+    error_rms: f64,
+}
+
+impl Rounded {
+    const UNUSED: u32 = u32::MAX;
+
+    fn of(polygons: &Polygons, placing: &Placing) -> Result<Self, FormatError> {
+        let mut of_point = vec![Self::UNUSED; polygons.points.len()];
+        let mut positions = Vec::new();
+        let mut numbers: HashMap<[i16; 3], u32> = HashMap::new();
+        let (mut error_max, mut squares, mut used) = (0.0_f64, 0.0, 0_u32);
+        for &corner in &polygons.corners {
+            let slot = &mut of_point[corner.point as usize];
+            if *slot != Self::UNUSED {
+                continue;
+            }
+            let exact = placing.apply(polygons.point(corner));
+            let position = nearest(exact).ok_or_else(|| {
+                let [x, y, z] = exact;
+                FormatError::whole(
+                    "coordinates in [-2, 2 - 2^-14] (without --keep-scale the mesh is scaled to fit)",
+                    format!("point {} at ({x}, {y}, {z})", corner.point),
+                )
+            })?;
+            *slot = *numbers.entry(position).or_insert_with(|| {
+                positions.push(position);
+                (positions.len() - 1) as u32
+            });
+            let square: f64 = (0..3)
+                .map(|i| (f64::from(position[i]) / ONE - exact[i]).powi(2))
+                .sum();
+            error_max = error_max.max(square.sqrt());
+            squares += square;
+            used += 1;
+        }
+        Ok(Self {
+            of_point,
+            positions,
+            error_max,
+            error_rms: (squares / f64::from(used.max(1))).sqrt(),
+        })
+    }
+
+    fn number(&self, corner: Corner) -> u32 {
+        self.of_point[corner.point as usize]
+    }
+
+    fn position(&self, corner: Corner) -> [i16; 3] {
+        self.positions[self.number(corner) as usize]
+    }
+}
+
+/// Q2.14, to nearest, ties up; `None` outside [−2, 2 − 2^−14].
+fn nearest(exact: Vector) -> Option<[i16; 3]> {
+    let mut position = [0; 3];
+    for (q, c) in position.iter_mut().zip(exact) {
+        let rounded = (c * ONE + 0.5).floor();
+        if !(f64::from(i16::MIN)..=f64::from(i16::MAX)).contains(&rounded) {
+            return None;
+        }
+        *q = rounded as i16;
+    }
+    Some(position)
+}
+
+/// A triangle that has an area, with its face's normal.
+struct FlatTriangle {
+    corners: [Corner; 3],
+    normal: Vector,
+    colour: Option<Rgb8>,
+}
+
+/// All triangles that have an area after rounding, and how many have not.
+fn flat_triangles(polygons: &Polygons, rounded: &Rounded) -> (Vec<FlatTriangle>, usize) {
+    let mut triangles = Vec::with_capacity(polygons.triangle_count());
+    let mut degenerate = 0;
+    let mut scratch = triangulate::Scratch::default();
+    for face in &polygons.faces {
+        for &corners in triangulate::face(polygons, face, &mut scratch) {
+            match normal(polygons, rounded, corners) {
+                Some(normal) => triangles.push(FlatTriangle {
+                    corners,
+                    normal,
+                    colour: face.colour,
+                }),
+                None => degenerate += 1,
+            }
+        }
+    }
+    (triangles, degenerate)
+}
+
+/// The normal of the triangle as it was before rounding; `None` if it has no area after.
+fn normal(polygons: &Polygons, rounded: &Rounded, corners: [Corner; 3]) -> Option<Vector> {
+    // Differences of 17 bits and their products are exact in f64, so "no area" is exact too.
+    let after = unit(area_vector(
+        corners.map(|corner| rounded.position(corner).map(f64::from)),
+    ))?;
+    let before = unit(area_vector(corners.map(|corner| polygons.point(corner))));
+    // A sliver may have turned over: what is drawn is the rounded one.
+    Some(
+        before
+            .filter(|before| dot(*before, after) > 0.0)
+            .unwrap_or(after),
+    )
+}
+
+/// Vertices, each once, and the triangles between them.
+fn index(
+    polygons: &Polygons,
+    rounded: &Rounded,
+    triangles: &[FlatTriangle],
+) -> (Vec<Vertex>, Vec<IndexedTriangle>) {
+    let mut smooth = Smooth::new(rounded.positions.len());
+    for triangle in triangles {
+        let numbers = triangle
+            .corners
+            .map(|corner| rounded.number(corner) as usize);
+        smooth.add(
+            numbers,
+            triangle.corners.map(|corner| polygons.point(corner)),
+            triangle.normal,
+        );
+    }
+    let mut vertices = Vec::new();
+    let mut numbers: HashMap<VertexKey, u32> = HashMap::new();
+    let mut indexed = Vec::with_capacity(triangles.len());
+    for triangle in triangles {
+        let indices = triangle.corners.map(|corner| {
+            let given = polygons
+                .normals
+                .get(corner.normal as usize)
+                .copied()
+                .and_then(unit);
+            let normal = given
+                .or_else(|| smooth.at(rounded.number(corner) as usize))
+                .unwrap_or(triangle.normal);
+            let vertex = Vertex {
+                position: rounded.position(corner),
+                normal: direction(normal),
+                colour: rgb565(point_colour(polygons, corner).or(triangle.colour)),
+            };
+            *numbers
+                .entry(VertexKey(vertex.position, vertex.normal, vertex.colour))
+                .or_insert_with(|| {
+                    vertices.push(vertex);
+                    (vertices.len() - 1) as u32
+                })
+        });
+        indexed.push(IndexedTriangle {
+            indices,
+            colour: rgb565(
+                triangle
+                    .colour
+                    .or_else(|| mean_colour(polygons, triangle.corners)),
+            ),
+            normal: direction(triangle.normal),
+        });
+    }
+    (vertices, indexed)
+}
+
+/// What makes two vertices the same.
+#[derive(PartialEq, Eq, Hash)]
+struct VertexKey([i16; 3], [i16; 3], Rgb565);
+
+/// A unit vector in Q2.14, to nearest.
+fn direction(unit: Vector) -> [i16; 3] {
+    unit.map(|c| (c * ONE + 0.5).floor() as i16)
+}
+
+fn rgb565(colour: Option<Rgb8>) -> Rgb565 {
+    Rgb565::from_rgb888(colour.unwrap_or(Rgb8::DEFAULT).0)
+}
+
+fn point_colour(polygons: &Polygons, corner: Corner) -> Option<Rgb8> {
+    polygons.point_colours.get(corner.point as usize).copied()
+}
+
+/// The mean of the corners' colours: what a flat triangle between coloured points looks like from afar.
+fn mean_colour(polygons: &Polygons, corners: [Corner; 3]) -> Option<Rgb8> {
+    let mut sums = [0_u16; 3];
+    for corner in corners {
+        let Rgb8(rgb) = point_colour(polygons, corner)?;
+        for (sum, c) in sums.iter_mut().zip(rgb) {
+            *sum += u16::from(c);
+        }
+    }
+    Some(Rgb8(sums.map(|sum| ((sum + 1) / 3) as u8)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Place;
+    use crate::formats::glm;
+
+    fn soup(points: &[Vector], faces: &[&[u32]]) -> Polygons {
+        let mut polygons = Polygons::default();
+        for &point in points {
+            polygons.add_point(point, Place::Whole).unwrap();
+        }
+        for face in faces {
+            let corners: Vec<Corner> = face.iter().map(|&point| Corner::at(point)).collect();
+            polygons.add_face(&corners, None, Place::Whole).unwrap();
+        }
+        polygons.check_indices().unwrap();
+        polygons
+    }
+
+    const KEEP: Options = Options { keep_scale: true };
+
+    #[test]
+    fn scaled_to_the_unit_box() {
+        // The stray point does not count.
+        let polygons = soup(
+            &[
+                [10.0, 0.0, 0.0],
+                [14.0, 0.0, 0.0],
+                [10.0, 2.0, 0.0],
+                [99.0, 99.0, 99.0],
+            ],
+            &[&[0, 1, 2]],
+        );
+        let (bytes, report) = convert(&polygons, Options::default()).unwrap();
+        assert_eq!((report.scale, report.centre), (0.25, [12.0, 1.0, 0.0]));
+        assert_eq!(
+            (report.vertices, report.triangles, report.error_max),
+            (3, 1, 0.0)
+        );
+        let mesh = glm::check(&bytes).unwrap();
+        let positions: Vec<[i16; 3]> = mesh
+            .chunks()
+            .next()
+            .unwrap()
+            .vertices()
+            .map(|v| v.position)
+            .collect();
+        assert_eq!(
+            positions,
+            [[-8192, -4096, 0], [8192, -4096, 0], [-8192, 4096, 0]]
+        );
+    }
+
+    #[test]
+    fn kept_scale_is_refused_where_it_does_not_fit() {
+        let fits = 2.0 - 1.0 / ONE;
+        assert!(
+            convert(
+                &soup(
+                    &[[-2.0, 0.0, 0.0], [fits, 0.0, 0.0], [0.0, 1.0, 0.0]],
+                    &[&[0, 1, 2]]
+                ),
+                KEEP
+            )
+            .is_ok()
+        );
+        let beyond = soup(
+            &[[-2.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+            &[&[0, 1, 2]],
+        );
+        let error = convert(&beyond, KEEP).unwrap_err();
+        assert_eq!(error.found, "point 1 at (2, 0, 0)");
+    }
+
+    #[test]
+    fn the_rounding_is_to_nearest_ties_up() {
+        let half = 0.5 / ONE;
+        assert_eq!(nearest([half, -half, 1.4 / ONE]), Some([1, 0, 1]));
+        assert_eq!(nearest([-2.0 - half, 0.0, 0.0]), Some([i16::MIN, 0, 0]));
+        assert_eq!(nearest([f64::NAN, 0.0, 0.0]), None);
+    }
+
+    #[test]
+    fn degenerate_triangles_are_dropped_and_counted() {
+        let tiny = 0.2 / ONE;
+        let points = [
+            [0.0, 0.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [tiny, 0.0, 0.0],
+            [0.5, 0.0, 0.0],
+        ];
+        let (_, report) =
+            convert(&soup(&points, &[&[0, 1, 2], &[0, 3, 2], &[0, 4, 1]]), KEEP).unwrap();
+        assert_eq!(
+            (report.triangles, report.degenerate, report.vertices),
+            (1, 2, 3)
+        );
+        assert!((report.error_max_lsb - 0.2).abs() < 1e-9);
+        assert!((report.error_rms_lsb - 0.2 / 5f64.sqrt()).abs() < 1e-9);
+        let error = convert(&soup(&points, &[&[0, 3, 2]]), KEEP).unwrap_err();
+        assert_eq!(error.found, "1 without one");
+    }
+
+    #[test]
+    fn no_extent() {
+        let error = convert(&soup(&[[1.0; 3]; 3], &[&[0, 1, 2]]), Options::default()).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "expected a mesh with an extent, found one of 0e0"
+        );
+    }
+
+    #[test]
+    fn normals_of_a_corner() {
+        // Three faces of a cube's corner: the shared point looks along the diagonal, whatever the faces' triangles.
+        let polygons = soup(
+            &[
+                [0.0, 0.0, 0.0],
+                [-1.0, 0.0, 0.0],
+                [0.0, -1.0, 0.0],
+                [0.0, 0.0, -1.0],
+                [-1.0, -1.0, 0.0],
+                [0.0, -1.0, -1.0],
+                [-1.0, 0.0, -1.0],
+            ],
+            &[&[0, 1, 4, 2], &[0, 2, 5, 3], &[0, 3, 6, 1]],
+        );
+        let (bytes, _) = convert(&polygons, KEEP).unwrap();
+        let chunk = glm::check(&bytes).unwrap().chunks().next().unwrap();
+        let corner = chunk.vertices().find(|v| v.position == [0; 3]).unwrap();
+        let diagonal = (ONE / 3f64.sqrt() + 0.5).floor() as i16;
+        assert_eq!(corner.normal, [diagonal; 3]);
+        let normals: Vec<[i16; 3]> = chunk.triangles().map(|t| t.normal).collect();
+        let one = ONE as i16;
+        assert_eq!(normals[0], [0, 0, one]);
+        assert_eq!(normals[2], [one, 0, 0]);
+    }
+
+    #[test]
+    fn colours_of_faces_points_and_none() {
+        let mut polygons = soup(
+            &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]],
+            &[&[0, 1, 2], &[1, 3, 2]],
+        );
+        polygons.faces[0].colour = Some(Rgb8([255, 0, 0]));
+        let colours = |polygons: &Polygons| -> (Vec<u16>, u32) {
+            let (bytes, report) = convert(polygons, KEEP).unwrap();
+            let chunk = glm::check(&bytes).unwrap().chunks().next().unwrap();
+            (
+                chunk.triangles().map(|t| t.colour.0).collect(),
+                report.vertices,
+            )
+        };
+        let default = Rgb565::from_rgb888(Rgb8::DEFAULT.0).0;
+        // Points between faces of different colours are two vertices each.
+        assert_eq!(colours(&polygons), (vec![0xf800, default], 6));
+        polygons.point_colours = vec![
+            Rgb8([0, 0, 255]),
+            Rgb8([0, 0, 255]),
+            Rgb8([0, 255, 255]),
+            Rgb8([0, 255, 255]),
+        ];
+        assert_eq!(
+            colours(&polygons),
+            (vec![0xf800, Rgb565::from_rgb888([0, 170, 255]).0], 4)
+        );
+    }
+}

@@ -1,0 +1,58 @@
+//! Glint's own meshes, read back into polygons.
+
+use crate::error::{FormatError, Place};
+use crate::polygons::{Corner, Polygons, Rgb8};
+use glint_core::mesh::{Mesh, Rgb565};
+
+/// Reads a mesh as it lies in memory. Positions and normals come back as the numbers they are, colours by replication of
+/// their bits, and chunks are joined.
+///
+/// # Errors
+/// What [`Mesh::new_checked`] refuses, and a mesh without triangles.
+pub fn parse(bytes: &[u8]) -> Result<Polygons, FormatError> {
+    let mesh = check(bytes)?;
+    let world = |q: [i16; 3]| q.map(|c| f64::from(c) / 16384.0);
+    let rgb8 = |colour: Rgb565| Rgb8(colour.to_rgb888());
+    let mut polygons = Polygons::default();
+    for chunk in mesh.chunks() {
+        let first = polygons.points.len() as u32;
+        for vertex in chunk.vertices() {
+            polygons.add_point(world(vertex.position), Place::Whole)?;
+            polygons.add_normal(world(vertex.normal), Place::Whole)?;
+            polygons.point_colours.push(rgb8(vertex.colour));
+        }
+        for triangle in chunk.triangles() {
+            let corner = |index| Corner {
+                point: first + u32::from(index),
+                normal: first + u32::from(index),
+            };
+            polygons.add_face(
+                &triangle.indices.map(corner),
+                Some(rgb8(triangle.colour)),
+                Place::Whole,
+            )?;
+        }
+    }
+    polygons.check_indices()?;
+    Ok(polygons)
+}
+
+/// Checks a mesh as it lies in memory.
+///
+/// # Errors
+/// What [`Mesh::new_checked`] refuses.
+pub fn check(bytes: &[u8]) -> Result<Mesh<'_>, FormatError> {
+    Mesh::new_checked(bytes).map_err(|error| {
+        let found = match error.expected {
+            glint_core::mesh::Expected::Magic => {
+                format!("'{}'", error.found.to_le_bytes().escape_ascii())
+            }
+            _ => error.found.to_string(),
+        };
+        FormatError::new(
+            Place::Byte(error.offset as usize),
+            error.expected.to_string(),
+            found,
+        )
+    })
+}

@@ -1,0 +1,105 @@
+//! Mesh files: which format a name means, reading and writing.
+
+pub mod glm;
+pub mod mtl;
+pub mod obj;
+pub mod ply;
+pub mod ply_header;
+pub mod stl;
+pub mod text;
+pub mod write;
+
+use crate::error::{FormatError, InputError, MAX_FILE};
+use crate::polygons::Polygons;
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+/// A mesh file's format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Wavefront OBJ.
+    Obj,
+    /// STL; written as binary.
+    Stl,
+    /// PLY; written as binary, low byte first.
+    Ply,
+    /// Glint's own: the mesh as it lies in a board's memory.
+    Glm,
+}
+
+impl Format {
+    /// By the extension of a file's name.
+    ///
+    /// # Errors
+    /// The extension is none of obj, stl, ply and glm.
+    pub fn of(path: &Path) -> Result<Self, InputError> {
+        let extension = path
+            .extension()
+            .map(|extension| extension.to_string_lossy().to_ascii_lowercase());
+        match extension.as_deref() {
+            Some("obj") => Ok(Self::Obj),
+            Some("stl") => Ok(Self::Stl),
+            Some("ply") => Ok(Self::Ply),
+            Some("glm") => Ok(Self::Glm),
+            other => {
+                let found = other.map_or("no extension".into(), |other| {
+                    format!("'.{}'", other.escape_default())
+                });
+                Err(
+                    FormatError::whole("a name that ends in .obj, .stl, .ply or .glm", found)
+                        .in_file(name(path)),
+                )
+            }
+        }
+    }
+}
+
+fn name(path: &Path) -> String {
+    path.display().to_string().escape_debug().to_string()
+}
+
+/// Reads a whole file.
+///
+/// # Errors
+/// It cannot be read, or is larger than [`MAX_FILE`].
+pub fn read_file(path: &Path) -> Result<Vec<u8>, InputError> {
+    let mut bytes = Vec::new();
+    File::open(path)
+        .and_then(|file| file.take(MAX_FILE as u64 + 1).read_to_end(&mut bytes))
+        .map_err(|error| {
+            FormatError::whole("a file to read", error.to_string()).in_file(name(path))
+        })?;
+    if bytes.len() > MAX_FILE {
+        return Err(
+            FormatError::whole(format!("at most {MAX_FILE} bytes"), "more").in_file(name(path)),
+        );
+    }
+    Ok(bytes)
+}
+
+/// Reads a mesh file of any format. The materials of an OBJ are looked for beside it, and nowhere else.
+///
+/// # Errors
+/// The file cannot be read, or is not what its name says.
+pub fn read(path: &Path) -> Result<Polygons, InputError> {
+    let format = Format::of(path)?;
+    let bytes = read_file(path)?;
+    let parsed = match format {
+        Format::Obj => {
+            let mut beside = |name: &str| {
+                let name = Path::new(name).file_name()?;
+                read_file(&path.with_file_name(name)).ok()
+            };
+            match obj::parse(&bytes, &mut beside) {
+                Err(obj::ObjError::Mtl(error)) => return Err(error),
+                Err(obj::ObjError::Obj(error)) => Err(error),
+                Ok(polygons) => Ok(polygons),
+            }
+        }
+        Format::Stl => stl::parse(&bytes),
+        Format::Ply => ply::parse(&bytes),
+        Format::Glm => glm::parse(&bytes),
+    };
+    parsed.map_err(|error| error.in_file(name(path)))
+}

@@ -1,0 +1,443 @@
+//! Wavefront OBJ.
+//!
+//! Own code and not `tobj`, whose errors carry no line, which takes NaN and infinity for coordinates, and which reads lines
+//! of any length.
+
+use super::mtl;
+use super::text::{Line, Lines, coordinate, vector};
+use crate::error::{FormatError, InputError, MAX_LINE, Place, quote};
+use crate::polygons::{Corner, Polygons, Rgb8};
+use std::borrow::Cow;
+use std::collections::HashMap;
+
+/// Statements of the format that say nothing about the surface drawn.
+const IGNORED: &[&[u8]] = &[
+    b"vt",
+    b"vp",
+    b"g",
+    b"o",
+    b"s",
+    b"l",
+    b"p",
+    b"mg",
+    b"deg",
+    b"cstype",
+    b"bmat",
+    b"step",
+    b"curv",
+    b"curv2",
+    b"surf",
+    b"parm",
+    b"trim",
+    b"hole",
+    b"scrv",
+    b"sp",
+    b"end",
+    b"con",
+    b"bevel",
+    b"c_interp",
+    b"d_interp",
+    b"lod",
+    b"shadow_obj",
+    b"trace_obj",
+    b"ctech",
+    b"stech",
+    b"call",
+    b"csh",
+    b"maplib",
+    b"usemap",
+];
+
+/// What a material file beside the OBJ is read with: its bytes, or `None` where there is no such file.
+pub type Materials<'a> = dyn FnMut(&str) -> Option<Vec<u8>> + 'a;
+
+/// Why an OBJ could not be read: it may be the fault of its material file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ObjError {
+    /// In the OBJ.
+    Obj(FormatError),
+    /// In a material file.
+    Mtl(InputError),
+}
+
+impl From<FormatError> for ObjError {
+    fn from(error: FormatError) -> Self {
+        Self::Obj(error)
+    }
+}
+
+/// Reads a whole OBJ: faces with any number of corners, indices from the start or (negative) from the end, normals, vertex
+/// colours (`v x y z r g b`, to 1 or to 255) and the diffuse colour (`Kd`) of materials. Texture coordinates, lines,
+/// points and curves are skipped.
+///
+/// # Errors
+/// The first thing that is not OBJ, and its line.
+pub fn parse(text: &[u8], materials: &mut Materials) -> Result<Polygons, ObjError> {
+    let mut reader = Reader::default();
+    let mut lines = Lines::new(text);
+    while let Some(line) = lines.next_line()? {
+        let joined = join_continued(line, &mut lines)?;
+        reader.statement(
+            Line {
+                number: line.number,
+                text: &joined,
+            },
+            materials,
+        )?;
+    }
+    Ok(reader.finish()?)
+}
+
+/// A line that ends in a backslash goes on in the next.
+fn join_continued<'a>(
+    first: Line<'a>,
+    lines: &mut Lines<'a>,
+) -> Result<Cow<'a, [u8]>, FormatError> {
+    let mut joined = Cow::Borrowed(first.text);
+    while let Some(start) = joined.strip_suffix(b"\\") {
+        let Some(next) = lines.next_line()? else {
+            break;
+        };
+        let start = start.len();
+        let owned = joined.to_mut();
+        owned[start] = b' ';
+        owned.extend_from_slice(next.text);
+        if owned.len() > MAX_LINE {
+            return Err(FormatError::new(
+                first.place(),
+                format!("a continued line of at most {MAX_LINE} bytes"),
+                "a longer one",
+            ));
+        }
+    }
+    Ok(joined)
+}
+
+#[derive(Default)]
+struct Reader {
+    polygons: Polygons,
+    /// As the file gives them; whether they go to 1 or to 255 is known at the end.
+    point_colours: Vec<Option<[f32; 3]>>,
+    palette: HashMap<Vec<u8>, Rgb8>,
+    colour: Option<Rgb8>,
+    corners: Vec<Corner>,
+}
+
+impl Reader {
+    fn statement(&mut self, line: Line, materials: &mut Materials) -> Result<(), ObjError> {
+        let mut words = line.words().take_while(|word| !word.starts_with(b"#"));
+        let Some(keyword) = words.next() else {
+            return Ok(());
+        };
+        let place = line.place();
+        match keyword {
+            b"v" => self.vertex(&mut words, place)?,
+            b"vn" => {
+                let normal = vector(&mut words, "normal", place)?;
+                self.polygons.add_normal(normal, place)?;
+            }
+            b"f" | b"fo" => self.face(&mut words, place)?,
+            b"usemtl" => self.colour = self.palette.get(rest_of(line)).copied(),
+            b"mtllib" => self.library(rest_of(line), materials)?,
+            _ if IGNORED.contains(&keyword) => {}
+            _ => {
+                return Err(FormatError::new(
+                    place,
+                    "an OBJ statement such as v, vn or f",
+                    quote(keyword),
+                )
+                .into());
+            }
+        }
+        Ok(())
+    }
+
+    fn vertex<'a>(
+        &mut self,
+        words: &mut impl Iterator<Item = &'a [u8]>,
+        place: Place,
+    ) -> Result<(), FormatError> {
+        let point = vector(words, "vertex", place)?;
+        let mut extra = [0.0; 4];
+        let mut count = 0;
+        for word in words {
+            if count == extra.len() {
+                return Err(FormatError::new(
+                    place,
+                    "at most seven numbers of a vertex",
+                    "more",
+                ));
+            }
+            extra[count] = coordinate(word, place)?;
+            count += 1;
+        }
+        let colour = match count {
+            // Nothing, or a weight, which only curves use.
+            0 | 1 => None,
+            // Colour, perhaps with an opacity.
+            3 | 4 => Some([extra[0] as f32, extra[1] as f32, extra[2] as f32]),
+            _ => {
+                return Err(FormatError::new(
+                    place,
+                    "three numbers of a vertex's colour",
+                    format!("{count}"),
+                ));
+            }
+        };
+        self.polygons.add_point(point, place)?;
+        self.point_colours.push(colour);
+        Ok(())
+    }
+
+    fn face<'a>(
+        &mut self,
+        words: &mut impl Iterator<Item = &'a [u8]>,
+        place: Place,
+    ) -> Result<(), FormatError> {
+        self.corners.clear();
+        for word in words {
+            let mut parts = word.split(|&b| b == b'/');
+            let expected = |what: &str| {
+                FormatError::new(
+                    place,
+                    format!("{what} in a corner v, v/vt, v//vn or v/vt/vn"),
+                    quote(word),
+                )
+            };
+            let point = parts
+                .next()
+                .and_then(|part| index(part, self.polygons.points.len()))
+                .ok_or_else(|| expected("a vertex index (1, 2, … or -1, -2, …)"))?;
+            match parts.next() {
+                None | Some(b"") => {}
+                Some(part) => {
+                    // Texture coordinates are not used; where they point does not matter.
+                    index(part, i32::MAX as usize).ok_or_else(|| expected("a texture index"))?;
+                }
+            }
+            let normal = match parts.next() {
+                None | Some(b"") => Corner::NO_NORMAL,
+                Some(part) => index(part, self.polygons.normals.len())
+                    .ok_or_else(|| expected("a normal index"))?,
+            };
+            if parts.next().is_some() {
+                return Err(expected("at most three indices"));
+            }
+            self.corners.push(Corner { point, normal });
+        }
+        self.polygons.add_face(&self.corners, self.colour, place)
+    }
+
+    fn library(&mut self, names: &[u8], materials: &mut Materials) -> Result<(), ObjError> {
+        // One name with spaces, or several names: the first of these readings that finds a file is meant.
+        let mut found = false;
+        let whole = std::iter::once(names);
+        let parts = names
+            .split(u8::is_ascii_whitespace)
+            .filter(|name| !name.is_empty() && *name != names);
+        for name in whole.chain(parts) {
+            let Ok(name) = std::str::from_utf8(name) else {
+                continue;
+            };
+            if let Some(text) = materials(name) {
+                found = true;
+                mtl::parse(&text, &mut self.palette)
+                    .map_err(|error| ObjError::Mtl(error.in_file(name)))?;
+                if name.as_bytes() == names {
+                    break;
+                }
+            }
+        }
+        if !found && self.polygons.remarks.len() < 8 {
+            self.polygons.remarks.push(format!(
+                "no material file {} beside the mesh: its colours are missing",
+                quote(names)
+            ));
+        }
+        Ok(())
+    }
+
+    fn finish(mut self) -> Result<Polygons, FormatError> {
+        self.polygons.check_indices()?;
+        if self.point_colours.iter().any(Option::is_some) {
+            let largest = self
+                .point_colours
+                .iter()
+                .flatten()
+                .flatten()
+                .copied()
+                .fold(0.0, f32::max);
+            let scale = if largest > 1.0 { 1.0 / 255.0 } else { 1.0 };
+            self.polygons.point_colours = self
+                .point_colours
+                .iter()
+                .map(|colour| {
+                    colour.map_or(Rgb8::DEFAULT, |c| {
+                        Rgb8::from_unit(c.map(|c| f64::from(c) * scale))
+                    })
+                })
+                .collect();
+        }
+        Ok(self.polygons)
+    }
+}
+
+/// What follows the keyword: a name, which may have spaces in it.
+fn rest_of(line: Line<'_>) -> &[u8] {
+    let text = line.text.trim_ascii();
+    text[text
+        .iter()
+        .position(u8::is_ascii_whitespace)
+        .unwrap_or(text.len())..]
+        .trim_ascii_start()
+}
+
+/// An index from 0: `1` is the first, `-1` the last of the `count` so far. Zero, what lies before the first, and what does
+/// not fit 32 bits is none.
+fn index(word: &[u8], count: usize) -> Option<u32> {
+    let index: i64 = std::str::from_utf8(word).ok()?.parse().ok()?;
+    let index = match index {
+        1.. => index - 1,
+        0 => return None,
+        _ => i64::try_from(count).ok()?.checked_add(index)?,
+    };
+    u32::try_from(index)
+        .ok()
+        .filter(|&index| index != Corner::NO_NORMAL)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<Polygons, ObjError> {
+        parse(text.as_bytes(), &mut |name| {
+            (name == "a b.mtl").then(|| b"newmtl red #1\nKd 1 0 0\n".to_vec())
+        })
+    }
+
+    fn error(text: &str) -> String {
+        match read(text).expect_err("this text is refused") {
+            ObjError::Obj(error) => error.to_string(),
+            ObjError::Mtl(error) => error.to_string(),
+        }
+    }
+
+    const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+    #[test]
+    fn polygons_and_negative_indices() {
+        let polygons = read(&format!("{SQUARE}f 1 2 3 4\nf -4// -3//\\\n -2//\n")).unwrap();
+        let points = |i: usize| -> Vec<u32> {
+            polygons
+                .corners_of(&polygons.faces[i])
+                .iter()
+                .map(|c| c.point)
+                .collect()
+        };
+        assert_eq!(points(0), [0, 1, 2, 3]);
+        assert_eq!(points(1), [0, 1, 2]);
+        assert_eq!(polygons.triangle_count(), 3);
+    }
+
+    #[test]
+    fn forward_references() {
+        assert_eq!(read(&format!("f 1 2 3\n{SQUARE}")).unwrap().faces.len(), 1);
+    }
+
+    #[test]
+    fn normals_and_textures() {
+        let polygons = read(&format!("{SQUARE}vn 0 0 1\nvt 0 0\nf 1/1/1 2/1/-1 3//1\n")).unwrap();
+        assert!(polygons.corners.iter().all(|c| c.normal == 0));
+    }
+
+    #[test]
+    fn colours_to_1_and_to_255() {
+        for (one, half) in [("1", "0.5"), ("255", "127.5")] {
+            let polygons = read(&format!(
+                "v 0 0 0 {one} 0 0\nv 1 0 0 0 {half} 0 1\nv 0 1 0\nf 1 2 3"
+            ))
+            .unwrap();
+            assert_eq!(
+                polygons.point_colours,
+                [Rgb8([255, 0, 0]), Rgb8([0, 128, 0]), Rgb8::DEFAULT]
+            );
+        }
+    }
+
+    #[test]
+    fn materials() {
+        let polygons = read(&format!(
+            "mtllib a b.mtl\n{SQUARE}usemtl red #1\nf 1 2 3 # c\nusemtl none\nf 1 2 3\n"
+        ))
+        .unwrap();
+        assert_eq!(polygons.faces[0].colour, Some(Rgb8([255, 0, 0])));
+        assert_eq!(polygons.faces[1].colour, None);
+        assert!(polygons.remarks.is_empty());
+        let polygons = read(&format!("mtllib gone.mtl\n{SQUARE}f 1 2 3\n")).unwrap();
+        assert_eq!(polygons.remarks.len(), 1);
+    }
+
+    #[test]
+    fn refused() {
+        let cases = [
+            ("", "expected at least one face, found none"),
+            ("v 0 0 0\n", "expected at least one face, found none"),
+            (
+                "v 0 0\n",
+                "line 1: expected three numbers of a vertex, found 2",
+            ),
+            (
+                "\nv 0 nan 0\n",
+                "line 2: expected a number within ±1e15, found 'nan'",
+            ),
+            (
+                "v 1e300 0 0\n",
+                "line 1: expected a number within ±1e15, found '1e300'",
+            ),
+            (
+                "f 0 1 2\n",
+                "line 1: expected a vertex index (1, 2, … or -1, -2, …) in a corner v, v/vt, v//vn or v/vt/vn, found '0'",
+            ),
+            (
+                "v 0 0 0\nf 1 1 9\n",
+                "line 2: expected a point of the 1 in the file, found one with index 8, counted from 0",
+            ),
+            (
+                "v 0 0 0\nf 1 1 -2\n",
+                "line 2: expected a vertex index (1, 2, … or -1, -2, …) in a corner v, v/vt, v//vn or v/vt/vn, found '-2'",
+            ),
+            (
+                "v 0 0 0\nf 1 1 99999999999999999999\n",
+                "line 2: expected a vertex index (1, 2, … or -1, -2, …) in a corner v, v/vt, v//vn or v/vt/vn, found '99999999999999999999'",
+            ),
+            (
+                "v 0 0 0\nf 1 1\n",
+                "line 2: expected a face of 3 to 8192 corners, found 2",
+            ),
+            (
+                "v 0 0 0\nf 1//1 1//1 1//1\n",
+                "line 2: expected a normal of the 0 in the file, found one with index 0, counted from 0",
+            ),
+            (
+                "v 0 0 0 1 2\n",
+                "line 1: expected three numbers of a vertex's colour, found 2",
+            ),
+            (
+                "\x7fELF\0\n",
+                "line 1: expected an OBJ statement such as v, vn or f, found '\\x7fELF\\x00'",
+            ),
+        ];
+        for (text, message) in cases {
+            assert_eq!(error(text), message, "{text:?}");
+        }
+        assert_eq!(
+            error(&format!("v {}\n", " ".repeat(1 << 20))),
+            "line 1: expected a line of at most 65536 bytes, found a longer one"
+        );
+        assert_eq!(
+            error(&"f \\\n".repeat(1 << 20)),
+            "line 1: expected a continued line of at most 65536 bytes, found a longer one"
+        );
+    }
+}

@@ -1,0 +1,257 @@
+//! The header of a PLY file: which elements there are, and of what their instances consist.
+
+use super::text::{Line, Lines};
+use crate::error::{FormatError, Place, quote};
+
+/// The most elements a header may declare, and the most properties of an element: more than any real file has.
+const MAX_DECLARED: usize = 64;
+
+/// How the values behind the header are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Encoding {
+    /// A line for each instance.
+    Ascii,
+    /// Binary, low byte first.
+    LittleEndian,
+    /// Binary, high byte first.
+    BigEndian,
+}
+
+/// The type of one value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(missing_docs, reason = "the names say all")]
+pub enum Scalar {
+    Int8,
+    Uint8,
+    Int16,
+    Uint16,
+    Int32,
+    Uint32,
+    Float32,
+    Float64,
+}
+
+impl Scalar {
+    fn parse(name: &[u8]) -> Option<Self> {
+        Some(match name {
+            b"char" | b"int8" => Self::Int8,
+            b"uchar" | b"uint8" => Self::Uint8,
+            b"short" | b"int16" => Self::Int16,
+            b"ushort" | b"uint16" => Self::Uint16,
+            b"int" | b"int32" => Self::Int32,
+            b"uint" | b"uint32" => Self::Uint32,
+            b"float" | b"float32" => Self::Float32,
+            b"double" | b"float64" => Self::Float64,
+            _ => return None,
+        })
+    }
+
+    /// Bytes of one value in a binary file.
+    pub fn size(self) -> usize {
+        match self {
+            Self::Int8 | Self::Uint8 => 1,
+            Self::Int16 | Self::Uint16 => 2,
+            Self::Int32 | Self::Uint32 | Self::Float32 => 4,
+            Self::Float64 => 8,
+        }
+    }
+
+    /// The value of the low [`size`](Self::size) bytes, low byte first.
+    pub fn decode(self, raw: [u8; 8]) -> f64 {
+        let [a, b, c, d, ..] = raw;
+        match self {
+            Self::Int8 => f64::from(a as i8),
+            Self::Uint8 => f64::from(a),
+            Self::Int16 => f64::from(i16::from_le_bytes([a, b])),
+            Self::Uint16 => f64::from(u16::from_le_bytes([a, b])),
+            Self::Int32 => f64::from(i32::from_le_bytes([a, b, c, d])),
+            Self::Uint32 => f64::from(u32::from_le_bytes([a, b, c, d])),
+            Self::Float32 => f64::from(f32::from_le_bytes([a, b, c, d])),
+            Self::Float64 => f64::from_le_bytes(raw),
+        }
+    }
+
+    fn range(self) -> Option<(f64, f64)> {
+        Some(match self {
+            Self::Int8 => (f64::from(i8::MIN), f64::from(i8::MAX)),
+            Self::Uint8 => (0.0, f64::from(u8::MAX)),
+            Self::Int16 => (f64::from(i16::MIN), f64::from(i16::MAX)),
+            Self::Uint16 => (0.0, f64::from(u16::MAX)),
+            Self::Int32 => (f64::from(i32::MIN), f64::from(i32::MAX)),
+            Self::Uint32 => (0.0, f64::from(u32::MAX)),
+            Self::Float32 | Self::Float64 => return None,
+        })
+    }
+
+    /// Whether a value read as text fits.
+    pub fn holds(self, value: f64) -> bool {
+        self.range()
+            .is_none_or(|(low, high)| (low..=high).contains(&value) && value.fract() == 0.0)
+    }
+
+    /// What a full channel of a colour is in this type.
+    pub fn full_scale(self) -> f64 {
+        self.range().map_or(1.0, |(_, high)| high)
+    }
+
+    /// For messages.
+    pub fn describe(self) -> &'static str {
+        match self {
+            Self::Int8 => "an int8",
+            Self::Uint8 => "a uint8",
+            Self::Int16 => "an int16",
+            Self::Uint16 => "a uint16",
+            Self::Int32 => "an int32",
+            Self::Uint32 => "a uint32",
+            Self::Float32 => "a float32",
+            Self::Float64 => "a float64",
+        }
+    }
+}
+
+/// One value, or a list of them with its length in front.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// One value.
+    Scalar(Scalar),
+    /// A list.
+    List {
+        /// The type of its length.
+        count: Scalar,
+        /// The type of its items.
+        item: Scalar,
+    },
+}
+
+/// A property of an element.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Property {
+    /// Its name.
+    pub name: Vec<u8>,
+    /// What it consists of.
+    pub kind: Kind,
+}
+
+/// An element: a kind of thing of which the file has many.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Element {
+    /// Its name.
+    pub name: Vec<u8>,
+    /// How many there are.
+    pub count: u32,
+    /// What each consists of.
+    pub properties: Vec<Property>,
+    /// Where it was declared.
+    pub place: Place,
+}
+
+/// A whole header.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Header {
+    /// How the values are written.
+    pub encoding: Encoding,
+    /// The elements in the order of the file.
+    pub elements: Vec<Element>,
+}
+
+impl Header {
+    /// Reads up to the line `end_header`, so that `lines` stands at the first value.
+    ///
+    /// # Errors
+    /// The first line that is not of a PLY header.
+    pub fn parse(lines: &mut Lines) -> Result<Self, FormatError> {
+        let mut encoding = None;
+        let mut elements: Vec<Element> = Vec::new();
+        let mut number = 0;
+        while let Some(line) = lines.next_line()? {
+            number = line.number;
+            let place = line.place();
+            let mut words = [&b""[..]; 6];
+            let mut count = 0;
+            for word in line.words().take(words.len()) {
+                words[count] = word;
+                count += 1;
+            }
+            let refuse = |expected: &str| FormatError::new(place, expected, quote(line.text));
+            match (&words[..count], number) {
+                ([b"ply"], 1) => {}
+                (_, 1) => return Err(refuse("ply")),
+                ([b"format", name, b"1.0"], _) => {
+                    encoding = Some(match *name {
+                        b"ascii" => Encoding::Ascii,
+                        b"binary_little_endian" => Encoding::LittleEndian,
+                        b"binary_big_endian" => Encoding::BigEndian,
+                        _ => {
+                            return Err(refuse(
+                                "format ascii, binary_little_endian or binary_big_endian 1.0",
+                            ));
+                        }
+                    });
+                }
+                ([] | [b"comment" | b"obj_info", ..], _) => {}
+                ([b"element", name, count], _) if elements.len() < MAX_DECLARED => {
+                    let count = parse_count(count)
+                        .ok_or_else(|| refuse("a count of elements up to 2^32 - 1"))?;
+                    elements.push(Element {
+                        name: name.to_vec(),
+                        count,
+                        properties: Vec::new(),
+                        place,
+                    });
+                }
+                ([b"property", kind @ .., name], _) => {
+                    let element = elements
+                        .last_mut()
+                        .ok_or_else(|| refuse("element before the first property"))?;
+                    let kind = parse_kind(kind).ok_or_else(|| {
+                        refuse("property TYPE NAME or property list TYPE TYPE NAME")
+                    })?;
+                    if element.properties.len() == MAX_DECLARED {
+                        return Err(refuse("at most 64 properties of an element"));
+                    }
+                    element.properties.push(Property {
+                        name: name.to_vec(),
+                        kind,
+                    });
+                }
+                ([b"end_header"], _) => {
+                    let encoding =
+                        encoding.ok_or_else(|| refuse("a line format before end_header"))?;
+                    return Ok(Self { encoding, elements });
+                }
+                _ => return Err(header_line(line)),
+            }
+        }
+        Err(FormatError::new(
+            Place::Line(number.max(1)),
+            if number == 0 { "ply" } else { "end_header" },
+            "the end of the file",
+        ))
+    }
+}
+
+fn header_line(line: Line) -> FormatError {
+    FormatError::new(
+        line.place(),
+        "format, comment, element (at most 64), property or end_header",
+        quote(line.text),
+    )
+}
+
+fn parse_count(word: &[u8]) -> Option<u32> {
+    std::str::from_utf8(word).ok()?.parse().ok()
+}
+
+fn parse_kind(words: &[&[u8]]) -> Option<Kind> {
+    match words {
+        [scalar] => Scalar::parse(scalar).map(Kind::Scalar),
+        [b"list", count, item] => {
+            let count = Scalar::parse(count).filter(|count| count.range().is_some())?;
+            Some(Kind::List {
+                count,
+                item: Scalar::parse(item)?,
+            })
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,317 @@
+//! STL, ASCII and binary.
+//!
+//! Own code and not `stl_io`, whose errors carry neither line nor offset, which skips the colours of the attribute word, and
+//! which takes a binary file for ASCII when its header starts with `solid`.
+
+use super::text::{Lines, any_number, checked_at, vector};
+use crate::error::{FormatError, MAX_TRIANGLES, Place, quote};
+use crate::polygons::{Corner, Polygons, Rgb8, Vector};
+
+const HEADER: usize = 84;
+const RECORD: usize = 50;
+
+/// Reads a whole STL. A file of just the length that its count of triangles asks for is binary; another one that starts
+/// with `solid` is ASCII. Normals are not used: the winding says the same and is more often right.
+///
+/// # Errors
+/// The first thing that is not STL, and its line or offset.
+pub fn parse(file: &[u8]) -> Result<Polygons, FormatError> {
+    let count = file
+        .get(80..HEADER)
+        .and_then(|b| b.try_into().ok())
+        .map(u32::from_le_bytes);
+    let length = count.map(|count| HEADER as u64 + RECORD as u64 * u64::from(count));
+    let starts_as_text = file
+        .trim_ascii_start()
+        .get(..5)
+        .is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
+    let polygons = match (count, length) {
+        (Some(count), Some(length)) if length == file.len() as u64 => parse_binary(file, count)?,
+        _ if starts_as_text => parse_ascii(file)?,
+        (Some(count), Some(length)) => {
+            return Err(FormatError::whole(
+                format!(
+                    "a binary STL of {count} triangles to be {length} bytes (or an ASCII one to start with solid)"
+                ),
+                format!("{}", file.len()),
+            ));
+        }
+        _ => {
+            return Err(FormatError::whole(
+                "an STL (solid …, or a binary header of 84 bytes)",
+                quote(file),
+            ));
+        }
+    };
+    polygons.check_indices()?;
+    Ok(polygons)
+}
+
+/// How the attribute word of a binary record gives a colour. Both ways have five bits a channel.
+#[derive(Clone, Copy)]
+enum Colours {
+    /// VisCAM, SolidView: bit 15 says that there is a colour, red is the highest.
+    VisCam,
+    /// Materialise Magics: the header has a colour for the whole, bit 15 clear says that the face has its own, blue is
+    /// the highest.
+    Magics(Rgb8),
+}
+
+impl Colours {
+    fn of_header(header: &[u8]) -> Self {
+        let key = b"COLOR=";
+        match header
+            .windows(key.len() + 3)
+            .find(|window| window.starts_with(key))
+        {
+            Some([.., r, g, b]) => Self::Magics(Rgb8([*r, *g, *b])),
+            _ => Self::VisCam,
+        }
+    }
+
+    fn of_face(self, attribute: u16) -> Option<Rgb8> {
+        let channel = |shift: u16| {
+            let c = attribute >> shift & 31;
+            (c << 3 | c >> 2) as u8
+        };
+        let own = attribute & 0x8000 != 0;
+        match self {
+            Self::VisCam => own.then(|| Rgb8([channel(10), channel(5), channel(0)])),
+            Self::Magics(_) if !own => Some(Rgb8([channel(0), channel(5), channel(10)])),
+            Self::Magics(whole) => Some(whole),
+        }
+    }
+}
+
+fn parse_binary(file: &[u8], count: u32) -> Result<Polygons, FormatError> {
+    let (header, records) = file.split_at(HEADER);
+    if count as usize > MAX_TRIANGLES {
+        return Err(FormatError::new(
+            Place::Byte(80),
+            format!("at most {MAX_TRIANGLES} triangles"),
+            format!("{count}"),
+        ));
+    }
+    let colours = Colours::of_header(&header[..80]);
+    let mut polygons = Polygons::default();
+    for (record, offset) in records.chunks_exact(RECORD).zip((HEADER..).step_by(RECORD)) {
+        let mut corners = [Corner::at(0); 3];
+        for (i, corner) in corners.iter_mut().enumerate() {
+            let start = 12 + 12 * i;
+            let mut point: Vector = [0.0; 3];
+            for (j, c) in point.iter_mut().enumerate() {
+                let at = start + 4 * j;
+                let bytes = [record[at], record[at + 1], record[at + 2], record[at + 3]];
+                *c = checked_at(f64::from(f32::from_le_bytes(bytes)), offset + at)?;
+            }
+            corner.point = polygons.add_point(point, Place::Byte(offset + start))?;
+        }
+        let colour = colours.of_face(u16::from_le_bytes([record[48], record[49]]));
+        polygons.add_face(&corners, colour, Place::Byte(offset))?;
+    }
+    Ok(polygons)
+}
+
+/// What the next line of an ASCII STL may be.
+#[derive(Clone, Copy, PartialEq)]
+enum Expect {
+    Solid,
+    Facet,
+    Loop,
+    Vertex(usize),
+    EndLoop,
+    EndFacet,
+}
+
+impl Expect {
+    fn text(self) -> &'static str {
+        match self {
+            Self::Solid => "solid",
+            Self::Facet => "facet normal x y z, or endsolid",
+            Self::Loop => "outer loop",
+            Self::Vertex(_) => "vertex x y z",
+            Self::EndLoop => "endloop",
+            Self::EndFacet => "endfacet",
+        }
+    }
+}
+
+fn parse_ascii(file: &[u8]) -> Result<Polygons, FormatError> {
+    let mut polygons = Polygons::default();
+    let mut expect = Expect::Solid;
+    let mut corners = [Corner::at(0); 3];
+    let mut facet = Place::Whole;
+    let mut last = 0;
+    let mut lines = Lines::new(file);
+    while let Some(line) = lines.next_line()? {
+        let place = line.place();
+        last = line.number;
+        let mut words = line.words();
+        let Some(keyword) = words.next() else {
+            continue;
+        };
+        let is = |word: Option<&[u8]>, text: &str| {
+            word.is_some_and(|word| word.eq_ignore_ascii_case(text.as_bytes()))
+        };
+        let refuse = || FormatError::new(place, expect.text(), quote(line.text.trim_ascii()));
+        // What may follow a keyword on its line; a solid's name may be anything.
+        expect = match expect {
+            Expect::Solid if is(Some(keyword), "solid") => {
+                words.by_ref().for_each(drop);
+                Expect::Facet
+            }
+            Expect::Facet if is(Some(keyword), "endsolid") => {
+                words.by_ref().for_each(drop);
+                Expect::Solid
+            }
+            Expect::Facet if is(Some(keyword), "facet") && is(words.next(), "normal") => {
+                facet = place;
+                // Exporters write nan for the normal of a sliver.
+                for _ in 0..3 {
+                    words.next().and_then(any_number).ok_or_else(refuse)?;
+                }
+                Expect::Loop
+            }
+            Expect::Loop if is(Some(keyword), "outer") && is(words.next(), "loop") => {
+                Expect::Vertex(0)
+            }
+            Expect::Vertex(i) if is(Some(keyword), "vertex") => {
+                let point = vector(&mut words, "vertex", place)?;
+                corners[i].point = polygons.add_point(point, place)?;
+                if i < 2 {
+                    Expect::Vertex(i + 1)
+                } else {
+                    Expect::EndLoop
+                }
+            }
+            Expect::EndLoop if is(Some(keyword), "endloop") => Expect::EndFacet,
+            Expect::EndFacet if is(Some(keyword), "endfacet") => {
+                polygons.add_face(&corners, None, facet)?;
+                Expect::Facet
+            }
+            _ => return Err(refuse()),
+        };
+        if words.next().is_some() {
+            return Err(FormatError::new(
+                place,
+                "nothing more on the line",
+                quote(line.text.trim_ascii()),
+            ));
+        }
+    }
+    match expect {
+        Expect::Solid => Ok(polygons),
+        _ => Err(FormatError::new(
+            Place::Line(last),
+            expect.text(),
+            "the end of the file",
+        )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FACET: &str = "facet normal nan 0 1\n outer loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1e-3 0\nendloop\nendfacet\n";
+
+    fn binary(header: &[u8], count: u32, triangles: &[([f32; 9], u16)]) -> Vec<u8> {
+        let mut file = vec![0; 80];
+        file[..header.len()].copy_from_slice(header);
+        file.extend(count.to_le_bytes());
+        for (corners, attribute) in triangles {
+            file.extend([0; 12]);
+            corners.iter().for_each(|c| file.extend(c.to_le_bytes()));
+            file.extend(attribute.to_le_bytes());
+        }
+        file
+    }
+
+    const CORNERS: [f32; 9] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+
+    #[test]
+    fn ascii() {
+        let text = format!(
+            "solid facet of a name\r\n{FACET}\n{FACET}endsolid\nSOLID\n{FACET}endsolid x\n"
+        );
+        let polygons = parse(text.as_bytes()).unwrap();
+        assert_eq!((polygons.faces.len(), polygons.points.len()), (3, 9));
+        assert_eq!(polygons.points[8], [0.0, 1e-3, 0.0]);
+    }
+
+    #[test]
+    fn binary_that_calls_itself_solid() {
+        let polygons = parse(&binary(
+            b"solid really",
+            2,
+            &[(CORNERS, 0), (CORNERS, 0x7fff)],
+        ))
+        .unwrap();
+        assert_eq!(polygons.faces.len(), 2);
+        assert_eq!(polygons.faces[1].colour, None);
+    }
+
+    #[test]
+    fn colours() {
+        let red_high = parse(&binary(b"", 1, &[(CORNERS, 0x8000 | 31 << 10 | 16)])).unwrap();
+        assert_eq!(red_high.faces[0].colour, Some(Rgb8([255, 0, 132])));
+        let magics = parse(&binary(
+            b"COLOR=\x01\x02\x03\xff",
+            2,
+            &[(CORNERS, 31), (CORNERS, 0x8000)],
+        ))
+        .unwrap();
+        assert_eq!(magics.faces[0].colour, Some(Rgb8([255, 0, 0])));
+        assert_eq!(magics.faces[1].colour, Some(Rgb8([1, 2, 3])));
+    }
+
+    #[test]
+    fn refused() {
+        let nan = {
+            let mut c = CORNERS;
+            c[4] = f32::NAN;
+            c
+        };
+        let cases: [(Vec<u8>, &str); 9] = [
+            (
+                vec![],
+                "expected an STL (solid …, or a binary header of 84 bytes), found ''",
+            ),
+            (
+                binary(b"", 0, &[]),
+                "expected at least one face, found none",
+            ),
+            (
+                binary(b"", 1 << 31, &[(CORNERS, 0)]),
+                "expected a binary STL of 2147483648 triangles to be 107374182484 bytes (or an ASCII one to start with solid), found 134",
+            ),
+            (
+                binary(b"", 1, &[(nan, 0)]),
+                "byte 112: expected a number within ±1e15, found NaN",
+            ),
+            (
+                b"solid\n".to_vec(),
+                "line 1: expected facet normal x y z, or endsolid, found the end of the file",
+            ),
+            (
+                b"solid\nfacet normal 0 0\n".to_vec(),
+                "line 2: expected facet normal x y z, or endsolid, found 'facet normal 0 0'",
+            ),
+            (
+                b"solid\nfacet normal 0 0 1\nouter loop\nvertex 1 2\n".to_vec(),
+                "line 4: expected three numbers of a vertex, found 2",
+            ),
+            (
+                b"solid\nfacet normal 0 0 1\nouter loop\nvertex 1 2 3 4\n".to_vec(),
+                "line 4: expected nothing more on the line, found 'vertex 1 2 3 4'",
+            ),
+            (
+                b"solid\nendsolid\nfacet".to_vec(),
+                "line 3: expected solid, found 'facet'",
+            ),
+        ];
+        for (file, message) in cases {
+            assert_eq!(parse(&file).unwrap_err().to_string(), message);
+        }
+    }
+}

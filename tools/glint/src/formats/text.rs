@@ -1,0 +1,185 @@
+//! Lines, words and numbers of text files, each with its place.
+
+use crate::error::{FormatError, MAX_COORDINATE, MAX_LINE, Place, quote};
+
+/// The lines of a text: ended by LF, CR LF or CR.
+pub struct Lines<'a> {
+    rest: &'a [u8],
+    number: usize,
+}
+
+/// One line without its end.
+#[derive(Clone, Copy, Debug)]
+pub struct Line<'a> {
+    /// Counted from 1.
+    pub number: usize,
+    /// Its bytes; text files of the wild are not all UTF-8.
+    pub text: &'a [u8],
+}
+
+impl<'a> Lines<'a> {
+    /// Over a whole text.
+    pub fn new(text: &'a [u8]) -> Self {
+        Self {
+            rest: text,
+            number: 0,
+        }
+    }
+
+    /// The next line, or `None` after the last.
+    ///
+    /// # Errors
+    /// The line is longer than [`MAX_LINE`].
+    pub fn next_line(&mut self) -> Result<Option<Line<'a>>, FormatError> {
+        if self.rest.is_empty() {
+            return Ok(None);
+        }
+        self.number += 1;
+        let window = &self.rest[..self.rest.len().min(MAX_LINE + 1)];
+        let length = window
+            .iter()
+            .position(|&b| b == b'\n' || b == b'\r')
+            .unwrap_or(window.len());
+        if length > MAX_LINE {
+            return Err(FormatError::new(
+                Place::Line(self.number),
+                format!("a line of at most {MAX_LINE} bytes"),
+                "a longer one",
+            ));
+        }
+        let (text, rest) = self.rest.split_at(length);
+        self.rest = rest
+            .strip_prefix(b"\r\n")
+            .or(rest.get(1..))
+            .unwrap_or_default();
+        Ok(Some(Line {
+            number: self.number,
+            text,
+        }))
+    }
+
+    /// What has not been read.
+    pub fn rest(&self) -> &'a [u8] {
+        self.rest
+    }
+}
+
+impl<'a> Line<'a> {
+    /// Its words, parted by white space.
+    pub fn words(self) -> impl Iterator<Item = &'a [u8]> {
+        self.text
+            .split(u8::is_ascii_whitespace)
+            .filter(|word| !word.is_empty())
+    }
+
+    /// The line's place.
+    pub fn place(self) -> Place {
+        Place::Line(self.number)
+    }
+}
+
+/// Reads a number of any size, infinite or not a number included.
+pub fn any_number(word: &[u8]) -> Option<f64> {
+    std::str::from_utf8(word).ok()?.parse().ok()
+}
+
+/// Reads a coordinate: a number within [`MAX_COORDINATE`].
+///
+/// # Errors
+/// It is no number, not finite or too large.
+pub fn coordinate(word: &[u8], place: Place) -> Result<f64, FormatError> {
+    any_number(word).and_then(checked).ok_or_else(|| {
+        FormatError::new(
+            place,
+            format!("a number within ±{MAX_COORDINATE:e}"),
+            quote(word),
+        )
+    })
+}
+
+/// The value if it can be a coordinate.
+pub fn checked(value: f64) -> Option<f64> {
+    (value.abs() <= MAX_COORDINATE).then_some(value)
+}
+
+/// A coordinate of a binary file.
+///
+/// # Errors
+/// It is not finite or too large.
+pub fn checked_at(value: f64, offset: usize) -> Result<f64, FormatError> {
+    checked(value).ok_or_else(|| {
+        FormatError::new(
+            Place::Byte(offset),
+            format!("a number within ±{MAX_COORDINATE:e}"),
+            format!("{value:e}"),
+        )
+    })
+}
+
+/// Reads the next three words as coordinates.
+///
+/// # Errors
+/// There are fewer, or one is not a coordinate.
+pub fn vector<'a>(
+    words: &mut impl Iterator<Item = &'a [u8]>,
+    what: &str,
+    place: Place,
+) -> Result<[f64; 3], FormatError> {
+    let mut vector = [0.0; 3];
+    for (i, c) in vector.iter_mut().enumerate() {
+        let word = words.next().ok_or_else(|| {
+            FormatError::new(place, format!("three numbers of a {what}"), format!("{i}"))
+        })?;
+        *c = coordinate(word, place)?;
+    }
+    Ok(vector)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_line_end() {
+        let mut lines = Lines::new(b"a\nb\r\n\r\rc d \n");
+        let mut seen = Vec::new();
+        while let Some(line) = lines.next_line().unwrap() {
+            seen.push((line.number, line.text));
+        }
+        assert_eq!(
+            seen,
+            [(1, &b"a"[..]), (2, b"b"), (3, b""), (4, b""), (5, b"c d ")]
+        );
+    }
+
+    #[test]
+    fn long_lines() {
+        let mut text = vec![b'x'; MAX_LINE];
+        assert!(Lines::new(&text).next_line().is_ok());
+        text.push(b'x');
+        assert_eq!(
+            Lines::new(&text).next_line().unwrap_err().place,
+            Place::Line(1)
+        );
+    }
+
+    #[test]
+    fn absurd_numbers() {
+        for word in [
+            "nan",
+            "inf",
+            "-infinity",
+            "1e300",
+            "1e16",
+            "x",
+            "",
+            "1,5",
+            "0x10",
+        ] {
+            assert!(coordinate(word.as_bytes(), Place::Whole).is_err(), "{word}");
+        }
+        for (word, value) in [("1", 1.0), ("-.5", -0.5), ("+2.", 2.0), ("1e-300", 1e-300)] {
+            assert_eq!(coordinate(word.as_bytes(), Place::Whole).unwrap(), value);
+        }
+    }
+}

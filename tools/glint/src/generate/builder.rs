@@ -1,0 +1,83 @@
+//! Faces between points that are the same when their coordinates are.
+
+use crate::error::{FormatError, Place};
+use crate::polygons::{Corner, Polygons, Rgb8, Vector};
+use std::collections::HashMap;
+
+/// Collects faces given by their points.
+#[derive(Default)]
+pub struct Builder {
+    polygons: Polygons,
+    numbers: HashMap<[u64; 3], u32>,
+}
+
+impl Builder {
+    /// The number of a point. Points are one only if all bits of their coordinates agree (and zero has one sign).
+    pub fn point(&mut self, point: Vector) -> Result<u32, FormatError> {
+        let point = point.map(|c| c + 0.0);
+        let key = point.map(f64::to_bits);
+        if let Some(&number) = self.numbers.get(&key) {
+            return Ok(number);
+        }
+        let number = self.polygons.add_point(point, Place::Whole)?;
+        self.numbers.insert(key, number);
+        Ok(number)
+    }
+
+    /// Adds a face, counter-clockwise seen from outside. Corners that fall together with the one before are left out, and
+    /// a face with fewer than three is none.
+    pub fn face(&mut self, points: &[Vector], colour: Option<Rgb8>) -> Result<(), FormatError> {
+        let mut corners = Vec::with_capacity(points.len());
+        for &point in points {
+            corners.push(Corner::at(self.point(point)?));
+        }
+        corners.dedup();
+        while corners.len() > 1 && corners.first() == corners.last() {
+            corners.pop();
+        }
+        if corners.len() < 3 {
+            return Ok(());
+        }
+        self.polygons.add_face(&corners, colour, Place::Whole)
+    }
+
+    /// Adds a grid of rows of points as quads; `a × b` of the directions along the rows and across them points outside.
+    pub fn grid(
+        &mut self,
+        rows: &[Vec<Vector>],
+        colour: impl Fn(usize, usize) -> Rgb8,
+    ) -> Result<(), FormatError> {
+        for (j, pair) in rows.windows(2).enumerate() {
+            let [low, high] = pair else { continue };
+            for (i, (lower, upper)) in low.windows(2).zip(high.windows(2)).enumerate() {
+                self.face(
+                    &[lower[0], lower[1], upper[1], upper[0]],
+                    Some(colour(i, j)),
+                )?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Ends with a colour for each point.
+    pub fn coloured(mut self, colour: impl Fn(Vector) -> Rgb8) -> Polygons {
+        self.polygons.point_colours = self
+            .polygons
+            .points
+            .iter()
+            .map(|&point| colour(point))
+            .collect();
+        self.polygons
+    }
+
+    /// Ends with the colours of the faces.
+    pub fn finish(self) -> Polygons {
+        self.polygons
+    }
+}
+
+/// A colour of the rainbow, light enough that shading shows: `turns` once round from red.
+pub fn hue(turns: f64) -> Rgb8 {
+    let channel = |shift: f64| 0.62 + 0.36 * (std::f64::consts::TAU * (turns - shift)).cos();
+    Rgb8::from_unit([channel(0.0), channel(1.0 / 3.0), channel(2.0 / 3.0)])
+}

@@ -1,0 +1,181 @@
+//! Models made by arithmetic: closed surfaces, counter-clockwise seen from outside, z up.
+
+mod builder;
+mod cube;
+mod gear;
+mod icosphere;
+mod sponge;
+mod teapot;
+mod torus_knot;
+
+use crate::error::FormatError;
+use crate::polygons::Polygons;
+
+/// The names that [`named`] knows, for messages and help.
+pub const NAMES: &str = "cube, icosphere:N (0 to 7), torus-knot, gear, teapot or sponge:N (0 to 4)";
+
+/// Whether a name is meant for [`named`] and not for a file.
+pub fn is_name(name: &str) -> bool {
+    let stem = name.split(':').next().unwrap_or_default();
+    matches!(
+        stem,
+        "cube" | "icosphere" | "torus-knot" | "gear" | "teapot" | "sponge"
+    )
+}
+
+/// Makes the model of a name such as `icosphere:4`.
+///
+/// # Errors
+/// There is no such model, or its number is missing or out of range.
+pub fn named(name: &str) -> Result<Polygons, FormatError> {
+    let refuse = || {
+        FormatError::whole(
+            format!("a model {NAMES}"),
+            crate::error::quote(name.as_bytes()),
+        )
+    };
+    let (stem, number) = match name.split_once(':') {
+        Some((stem, number)) => (stem, Some(number.parse::<u32>().map_err(|_| refuse())?)),
+        None => (name, None),
+    };
+    match (stem, number) {
+        ("cube", None) => cube::cube(),
+        ("icosphere", Some(level @ 0..=7)) => icosphere::icosphere(level),
+        ("torus-knot", None) => torus_knot::torus_knot(),
+        ("gear", None) => gear::gear(),
+        ("teapot", None) => teapot::teapot(),
+        ("sponge", Some(level @ 0..=4)) => sponge::sponge(level),
+        _ => Err(refuse()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::convert::{self, Options};
+    use crate::formats::glm;
+    use crate::polygons::Vector;
+    use crate::triangulate::{self, cross, dot};
+    use std::collections::HashMap;
+
+    pub const ALL: [&str; 8] = [
+        "cube",
+        "icosphere:0",
+        "icosphere:3",
+        "torus-knot",
+        "gear",
+        "teapot",
+        "sponge:0",
+        "sponge:2",
+    ];
+
+    /// Six times the volume inside, positive when the faces run counter-clockwise seen from outside.
+    pub fn volume(polygons: &Polygons) -> f64 {
+        let mut scratch = triangulate::Scratch::default();
+        let mut sum = 0.0;
+        for face in &polygons.faces {
+            for triangle in triangulate::face(polygons, face, &mut scratch) {
+                let [a, b, c]: [Vector; 3] = triangle.map(|corner| polygons.point(corner));
+                sum += dot(a, cross(b, c)) / 6.0;
+            }
+        }
+        sum
+    }
+
+    /// Every edge is run along as often in one direction as in the other.
+    fn assert_closed(name: &str, edges: impl Iterator<Item = (u32, u32)>) {
+        let mut balance: HashMap<(u32, u32), i32> = HashMap::new();
+        for (a, b) in edges {
+            assert_ne!(a, b, "{name}: an edge without length");
+            *balance.entry((a.min(b), a.max(b))).or_default() += if a < b { 1 } else { -1 };
+        }
+        let open = balance.values().filter(|&&n| n != 0).count();
+        assert_eq!(
+            open,
+            0,
+            "{name}: {open} of {} edges are open",
+            balance.len()
+        );
+    }
+
+    #[test]
+    fn all_are_closed_and_run_counter_clockwise() {
+        for name in ALL {
+            let polygons = named(name).unwrap();
+            polygons.check_indices().unwrap();
+            assert!(volume(&polygons) > 0.0, "{name}");
+            let corners = |face| polygons.corners_of(face).iter().map(|corner| corner.point);
+            let edges = polygons
+                .faces
+                .iter()
+                .flat_map(|face| corners(face).zip(corners(face).cycle().skip(1)));
+            assert_closed(name, edges);
+        }
+    }
+
+    #[test]
+    fn all_convert_without_loss_and_stay_closed() {
+        for name in ALL {
+            let polygons = named(name).unwrap();
+            let (bytes, report) = convert::convert(&polygons, Options::default()).unwrap();
+            assert_eq!(report.degenerate, 0, "{name}");
+            assert!(report.error_max_lsb <= 0.75f64.sqrt() + 1e-9, "{name}");
+            let chunk = glm::check(&bytes).unwrap().chunks().next().unwrap();
+            let mut numbers = HashMap::new();
+            let places: Vec<u32> = chunk
+                .vertices()
+                .map(|v| {
+                    let next = numbers.len() as u32;
+                    *numbers.entry(v.position).or_insert(next)
+                })
+                .collect();
+            let edges = chunk.triangles().flat_map(|triangle| {
+                let [a, b, c] = triangle.indices.map(|i| places[usize::from(i)]);
+                [(a, b), (b, c), (c, a)]
+            });
+            assert_closed(name, edges);
+        }
+    }
+
+    #[test]
+    fn names() {
+        for name in [
+            "",
+            "cube:1",
+            "icosphere",
+            "icosphere:8",
+            "icosphere:x",
+            "sponge:5",
+            "Teapot",
+            "sponge:-1",
+        ] {
+            assert!(named(name).is_err(), "{name}");
+        }
+        assert!(is_name("sponge:9") && !is_name("sponge.obj"));
+    }
+
+    #[test]
+    fn volumes() {
+        let close = |name: &str, expected: f64, tolerance: f64| {
+            let found = volume(&named(name).unwrap());
+            assert!(
+                (found / expected - 1.0).abs() < tolerance,
+                "{name}: {found} instead of {expected}"
+            );
+        };
+        close("cube", 1.0, 1e-12);
+        close("icosphere:4", 4.0 / 3.0 * std::f64::consts::PI, 0.01);
+        close("sponge:2", (20.0f64 / 27.0).powi(2), 1e-12);
+    }
+
+    #[test]
+    fn the_sponges_count() {
+        for (level, cells, eights) in [(0, 1, 1), (1, 20, 8), (2, 400, 64), (3, 8000, 512)] {
+            // A sponge of level n has 2·20^n + 4·8^n outer faces.
+            assert_eq!(
+                named(&format!("sponge:{level}")).unwrap().faces.len(),
+                2 * cells + 4 * eights
+            );
+        }
+    }
+}

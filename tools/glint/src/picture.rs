@@ -1,0 +1,75 @@
+//! Frames as boards keep them, and as files show them.
+
+use glint_core::mesh::Rgb565;
+use glint_model::DepthScale;
+use std::io::{self, Write};
+use std::path::Path;
+use virtual_board::Picture;
+
+/// A rendered frame.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Frame {
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// RGB565, row by row from the top left.
+    pub colour: Vec<u16>,
+    /// Depth codes in the same order; empty if they were not asked for.
+    pub depth: Vec<u32>,
+}
+
+impl Frame {
+    /// The picture in 8 bits a channel, by bit replication as the scan-out does it.
+    pub fn picture(&self) -> Picture {
+        let rgb = self
+            .colour
+            .iter()
+            .flat_map(|&colour| Rgb565(colour).to_rgb888())
+            .collect();
+        Picture::new(self.width as usize, self.height as usize, rgb)
+    }
+
+    /// Writes the distance along n in world units as one little-endian f32 a pixel, +inf where nothing was drawn.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn save_depth(&self, path: &Path, scale: &DepthScale) -> io::Result<()> {
+        let mut file = io::BufWriter::new(std::fs::File::create(path)?);
+        for &code in &self.depth {
+            let distance = scale
+                .distance(code)
+                .map_or(f32::INFINITY, |z| z.to_num::<f32>());
+            file.write_all(&distance.to_le_bytes())?;
+        }
+        file.flush()
+    }
+}
+
+/// Writes frames of one size as an animated PNG that runs for ever.
+///
+/// # Errors
+/// The file cannot be written, or there is no frame.
+pub fn save_animation(path: &Path, frames: &[Frame], frames_per_second: u16) -> io::Result<()> {
+    let Some(first) = frames.first() else {
+        return Err(io::Error::new(
+            io::ErrorKind::InvalidInput,
+            "an animation without frames",
+        ));
+    };
+    let mut encoder = png::Encoder::new(
+        io::BufWriter::new(std::fs::File::create(path)?),
+        first.width,
+        first.height,
+    );
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_animated(frames.len() as u32, 0)?;
+    encoder.set_frame_delay(1, frames_per_second)?;
+    let mut writer = encoder.write_header()?;
+    for frame in frames {
+        writer.write_image_data(frame.picture().rgb())?;
+    }
+    writer.finish()?;
+    Ok(())
+}

@@ -1,0 +1,230 @@
+//! A mesh as files give it: points, and polygons between them.
+
+use crate::error::{FormatError, MAX_POINTS, MAX_POLYGON, MAX_TRIANGLES, Place};
+
+/// A point or a direction, in the file's own unit.
+pub type Vector = [f64; 3];
+
+/// A colour: red, green and blue, 0 to 255.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Rgb8(pub [u8; 3]);
+
+impl Rgb8 {
+    /// What a surface gets that has no colour of its own: a light warm grey.
+    pub const DEFAULT: Self = Self([0xd8, 0xd8, 0xd0]);
+
+    /// From three intensities; what lies outside 0 to 1 saturates.
+    pub fn from_unit(rgb: [f64; 3]) -> Self {
+        Self(rgb.map(|c| (c.clamp(0.0, 1.0) * 255.0).round() as u8))
+    }
+}
+
+/// One corner of a polygon.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Corner {
+    /// Index into [`Polygons::points`].
+    pub point: u32,
+    /// Index into [`Polygons::normals`], or [`NO_NORMAL`](Self::NO_NORMAL).
+    pub normal: u32,
+}
+
+impl Corner {
+    /// The corner's normal is not given.
+    pub const NO_NORMAL: u32 = u32::MAX;
+
+    /// A corner without a normal of its own.
+    pub fn at(point: u32) -> Self {
+        Self {
+            point,
+            normal: Self::NO_NORMAL,
+        }
+    }
+}
+
+/// One polygon: a run of corners, counter-clockwise seen from outside.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Face {
+    /// Its first corner in [`Polygons::corners`].
+    pub first: u32,
+    /// How many corners it has, at least 3.
+    pub count: u32,
+    /// Its colour, if it has one.
+    pub colour: Option<Rgb8>,
+}
+
+/// Points and the polygons between them.
+///
+/// [`add_point`](Self::add_point) and [`add_face`](Self::add_face) keep the limits of [`crate::error`], so that no input
+/// takes unbounded memory; [`check_indices`](Self::check_indices) must have been called before the polygons are used.
+#[derive(Clone, Debug, Default)]
+pub struct Polygons {
+    /// The points.
+    pub points: Vec<Vector>,
+    /// One colour a point, or none at all.
+    pub point_colours: Vec<Rgb8>,
+    /// Normals given by the file, of any length.
+    pub normals: Vec<Vector>,
+    /// The corners of all faces.
+    pub corners: Vec<Corner>,
+    /// The faces.
+    pub faces: Vec<Face>,
+    /// Remarks for the user, such as a missing material file.
+    pub remarks: Vec<String>,
+    triangles: usize,
+    largest_point: Largest,
+    largest_normal: Largest,
+}
+
+/// The largest index seen, and where: enough to check forward references at the end without keeping every place.
+#[derive(Clone, Copy, Debug, Default)]
+struct Largest(Option<(u32, Place)>);
+
+impl Largest {
+    fn see(&mut self, index: u32, place: Place) {
+        if self.0.is_none_or(|(largest, _)| index > largest) {
+            self.0 = Some((index, place));
+        }
+    }
+
+    fn check(self, count: usize, what: &str) -> Result<(), FormatError> {
+        match self.0 {
+            Some((index, place)) if index as usize >= count => Err(FormatError::new(
+                place,
+                format!("a {what} of the {count} in the file"),
+                format!("one with index {index}, counted from 0"),
+            )),
+            _ => Ok(()),
+        }
+    }
+}
+
+impl Polygons {
+    /// Adds a point and returns its index.
+    ///
+    /// # Errors
+    /// There are [`MAX_POINTS`] already.
+    pub fn add_point(&mut self, point: Vector, place: Place) -> Result<u32, FormatError> {
+        if self.points.len() >= MAX_POINTS {
+            return Err(FormatError::new(
+                place,
+                format!("at most {MAX_POINTS} points"),
+                "one more",
+            ));
+        }
+        self.points.push(point);
+        Ok((self.points.len() - 1) as u32)
+    }
+
+    /// Adds a normal and returns its index.
+    ///
+    /// # Errors
+    /// There are [`MAX_POINTS`] already.
+    pub fn add_normal(&mut self, normal: Vector, place: Place) -> Result<u32, FormatError> {
+        if self.normals.len() >= MAX_POINTS {
+            return Err(FormatError::new(
+                place,
+                format!("at most {MAX_POINTS} normals"),
+                "one more",
+            ));
+        }
+        self.normals.push(normal);
+        Ok((self.normals.len() - 1) as u32)
+    }
+
+    /// Adds a polygon. Its indices may name points that are still to come.
+    ///
+    /// # Errors
+    /// It has fewer than three corners or more than [`MAX_POLYGON`], or there are [`MAX_TRIANGLES`] already.
+    pub fn add_face(
+        &mut self,
+        corners: &[Corner],
+        colour: Option<Rgb8>,
+        place: Place,
+    ) -> Result<(), FormatError> {
+        let count = corners.len();
+        if !(3..=MAX_POLYGON).contains(&count) {
+            return Err(FormatError::new(
+                place,
+                format!("a face of 3 to {MAX_POLYGON} corners"),
+                format!("{count}"),
+            ));
+        }
+        self.triangles += count - 2;
+        if self.triangles > MAX_TRIANGLES {
+            return Err(FormatError::new(
+                place,
+                format!("at most {MAX_TRIANGLES} triangles"),
+                "more",
+            ));
+        }
+        for corner in corners {
+            self.largest_point.see(corner.point, place);
+            if corner.normal != Corner::NO_NORMAL {
+                self.largest_normal.see(corner.normal, place);
+            }
+        }
+        self.faces.push(Face {
+            first: self.corners.len() as u32,
+            count: count as u32,
+            colour,
+        });
+        self.corners.extend_from_slice(corners);
+        Ok(())
+    }
+
+    /// Checks that there is a face, and that every corner names a point and a normal that exist.
+    ///
+    /// # Errors
+    /// The place of the largest index that does not exist.
+    pub fn check_indices(&self) -> Result<(), FormatError> {
+        self.largest_point.check(self.points.len(), "point")?;
+        self.largest_normal.check(self.normals.len(), "normal")?;
+        if self.faces.is_empty() {
+            return Err(FormatError::whole("at least one face", "none"));
+        }
+        Ok(())
+    }
+
+    /// The corners of a face.
+    pub fn corners_of(&self, face: &Face) -> &[Corner] {
+        &self.corners[face.first as usize..][..face.count as usize]
+    }
+
+    /// The point of a corner.
+    pub fn point(&self, corner: Corner) -> Vector {
+        self.points[corner.point as usize]
+    }
+
+    /// How many triangles the faces make.
+    pub fn triangle_count(&self) -> usize {
+        self.triangles
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_largest_index_is_named() {
+        let mut polygons = Polygons::default();
+        polygons.add_point([0.0; 3], Place::Line(1)).unwrap();
+        polygons
+            .add_face(
+                &[Corner::at(0), Corner::at(7), Corner::at(3)],
+                None,
+                Place::Line(2),
+            )
+            .unwrap();
+        polygons
+            .add_face(
+                &[Corner::at(1), Corner::at(0), Corner::at(0)],
+                None,
+                Place::Line(3),
+            )
+            .unwrap();
+        let error = polygons.check_indices().unwrap_err();
+        assert_eq!(error.place, Place::Line(2));
+        assert_eq!(error.found, "one with index 7, counted from 0");
+    }
+}
