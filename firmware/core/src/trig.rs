@@ -85,7 +85,7 @@ fn octant<const ORDER: u32>(phase: u32) -> [i32; 2] {
     let d = if ORDER < 1 {
         0
     } else {
-        (steps as i64 * TAU_Q28 >> 22) as i32
+        ((steps as i64 * TAU_Q28) >> 22) as i32
     };
     let h = if ORDER < 2 {
         0
@@ -111,11 +111,11 @@ fn octant<const ORDER: u32>(phase: u32) -> [i32; 2] {
 
 /// The high word of a product, one `mulhsu`: floor(a·b/2^32).
 fn mul_high(a: i32, b: u32) -> i32 {
-    (a as i64 * b as i64 >> 32) as i32
+    ((a as i64 * b as i64) >> 32) as i32
 }
 
 /// 2π with 28 fraction bits, nearest.
-const TAU_Q28: i64 = ((PI_Q60 >> 30) + 1 >> 1) as i64;
+const TAU_Q28: i64 = (((PI_Q60 >> 30) + 1) >> 1) as i64;
 /// π with 60 fraction bits.
 const PI_Q60: u128 = 0x3243_F6A8_885A_308D;
 
@@ -137,12 +137,12 @@ const fn alternating_series(x: u128, first: u128) -> u32 {
     let (mut sum, mut term, mut n) = (0_i128, x, 1);
     let mut sign = 1;
     while term > 0 {
-        if n >= first && (n - first) % 2 == 0 {
+        if n >= first && (n - first).is_multiple_of(2) {
             sum += sign * term as i128;
             sign = -sign;
         }
         n += 1;
-        term = (term * x >> 60) / n;
+        term = ((term * x) >> 60) / n;
     }
     ((sum + (1 << 27)) >> 28) as u32
 }

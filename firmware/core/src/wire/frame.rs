@@ -1,0 +1,320 @@
+//! Frames: what they say, and how they are bytes.
+//!
+//! A frame's first byte has its kind in bits 3–0 and the session in bits 7–4; numbers are little-endian; a CRC-16 over all
+//! of it ends it.
+
+use cobs::{CobsEncoder, DestBufTooSmallError, decode_in_place};
+
+use super::{BLOCK, MAX_BLOCKS, Manifest, Reason};
+
+/// Bytes of a data frame besides its data, as sent: the kind, the number, the block, the CRC-16, the COBS code and two zeros.
+pub const OVERHEAD: usize = 10;
+/// The longest frame as sent; `poll` needs so much room.
+pub const MAX_FRAME: usize = OVERHEAD + (MAX_BLOCKS * BLOCK) as usize;
+
+/// CCITT polynomial, starting from all ones, so that leading zeros count.
+static CRC_16: crc::Crc<u16> = crc::Crc::<u16>::new(&crc::CRC_16_IBM_3740);
+
+/// What one side says to the other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Message<'a> {
+    /// From the sender: what is to come.
+    Open(Manifest),
+    /// From the sender: some blocks.
+    Data(Data<'a>),
+    /// From the receiver: what is there.
+    Acknowledge(Acknowledge),
+    /// From the receiver: all is there, and has the right CRC-32 or not.
+    Complete { verified: bool },
+    /// From the sender: the verdict is known.
+    Close,
+    /// From either: the transfer is given up.
+    Abort(Reason),
+}
+
+/// The contents of a data frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Data<'a> {
+    /// Counts data frames, modulo 256.
+    pub number: u8,
+    /// The first block.
+    pub block: u32,
+    /// Whole blocks, but for the end of the transfer.
+    pub bytes: &'a [u8],
+}
+
+/// The contents of an acknowledgement.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Acknowledge {
+    /// The data frame that came last; 0 before the first.
+    pub number: u8,
+    /// All blocks before this one are there, and this one is not.
+    pub next: u32,
+    /// Bit i: block `next` + i is there.
+    pub map: u128,
+}
+
+const OPEN: u8 = 1;
+const DATA: u8 = 2;
+const ACKNOWLEDGE: u8 = 3;
+const COMPLETE: u8 = 4;
+const CLOSE: u8 = 5;
+const ABORT: u8 = 6;
+
+/// Writes a frame and returns its length; 0 when there is no room for it.
+pub fn write(session: u8, message: Message, out: &mut [u8]) -> usize {
+    write_body(session, message, out).unwrap_or(0)
+}
+
+fn write_body(
+    session: u8,
+    message: Message,
+    out: &mut [u8],
+) -> Result<usize, DestBufTooSmallError> {
+    let (zero, rest) = out.split_first_mut().ok_or(DestBufTooSmallError)?;
+    *zero = 0;
+    let mut body = Body {
+        encoder: CobsEncoder::new(rest),
+        crc: CRC_16.digest(),
+    };
+    let head = |kind| kind | session << 4;
+    match message {
+        Message::Open(Manifest { length, crc32 }) => {
+            body.push(&[head(OPEN)])?;
+            body.push(&length.to_le_bytes())?;
+            body.push(&crc32.to_le_bytes())?;
+        }
+        Message::Data(Data {
+            number,
+            block,
+            bytes,
+        }) => {
+            let [low, middle, high, _] = block.to_le_bytes();
+            body.push(&[head(DATA), number, low, middle, high])?;
+            body.push(bytes)?;
+        }
+        Message::Acknowledge(Acknowledge { number, next, map }) => {
+            let [low, middle, high, _] = next.to_le_bytes();
+            body.push(&[head(ACKNOWLEDGE), number, low, middle, high])?;
+            // The bytes of the map between the zeros on both sides, after how many zeros come first.
+            let first = map.trailing_zeros() / 8;
+            let past = (u128::BITS - map.leading_zeros()).div_ceil(8);
+            if let Some(bytes) = map.to_le_bytes().get(first as usize..past as usize) {
+                body.push(&[first as u8])?;
+                body.push(bytes)?;
+            }
+        }
+        Message::Complete { verified } => body.push(&[head(COMPLETE), verified.into()])?,
+        Message::Close => body.push(&[head(CLOSE)])?,
+        Message::Abort(reason) => body.push(&[head(ABORT), reason as u8])?,
+    }
+    let Body { mut encoder, crc } = body;
+    encoder.push(&crc.finalize().to_le_bytes())?;
+    let length = 1 + encoder.finalize();
+    *out.get_mut(length).ok_or(DestBufTooSmallError)? = 0;
+    Ok(length + 1)
+}
+
+struct Body<'a> {
+    encoder: CobsEncoder<'a>,
+    crc: crc::Digest<'static, u16>,
+}
+
+impl Body<'_> {
+    fn push(&mut self, bytes: &[u8]) -> Result<(), DestBufTooSmallError> {
+        self.crc.update(bytes);
+        self.encoder.push(bytes)
+    }
+}
+
+/// Cuts a byte stream at its zeros.
+pub struct Reader {
+    buffer: [u8; MAX_FRAME],
+    /// Bytes of the frame so far; more than the buffer has when it is too long to be one.
+    length: usize,
+}
+
+impl Reader {
+    pub const fn new() -> Self {
+        Self {
+            buffer: [0; MAX_FRAME],
+            length: 0,
+        }
+    }
+
+    /// Takes bytes up to the next zero; returns how many, and the frame when one is complete and valid.
+    pub fn take(&mut self, bytes: &[u8]) -> (usize, Option<(u8, Message<'_>)>) {
+        let zero = bytes.iter().position(|&byte| byte == 0);
+        let part = bytes.get(..zero.unwrap_or(bytes.len())).unwrap_or_default();
+        let end = self.length.saturating_add(part.len());
+        if let Some(room) = self.buffer.get_mut(self.length..end) {
+            room.copy_from_slice(part);
+        }
+        self.length = end;
+        if zero.is_none() {
+            return (bytes.len(), None);
+        }
+        let frame = self.buffer.get_mut(..core::mem::take(&mut self.length));
+        (part.len() + 1, frame.and_then(parse))
+    }
+}
+
+/// Undoes COBS in place, checks the CRC-16 and reads the session and the message.
+fn parse(frame: &mut [u8]) -> Option<(u8, Message<'_>)> {
+    let length = decode_in_place(frame).ok()?;
+    let (body, crc) = frame.get(..length)?.split_last_chunk()?;
+    if CRC_16.checksum(body) != u16::from_le_bytes(*crc) {
+        return None;
+    }
+    let (&head, body) = body.split_first()?;
+    let message = match (head & 0xF, body) {
+        (OPEN, _) => {
+            let (length, crc32) = body.split_first_chunk()?;
+            let crc32 = u32::from_le_bytes(crc32.try_into().ok()?);
+            Message::Open(Manifest {
+                length: u32::from_le_bytes(*length),
+                crc32,
+            })
+        }
+        (DATA, &[number, low, middle, high, ref bytes @ ..]) => Message::Data(Data {
+            number,
+            block: u32::from_le_bytes([low, middle, high, 0]),
+            bytes,
+        }),
+        (ACKNOWLEDGE, &[number, low, middle, high, ref packed @ ..]) => {
+            let mut map = [0; 16];
+            if let Some((&first, bytes)) = packed.split_first() {
+                let past = usize::from(first) + bytes.len();
+                map.get_mut(first.into()..past)?.copy_from_slice(bytes);
+            }
+            let next = u32::from_le_bytes([low, middle, high, 0]);
+            let map = u128::from_le_bytes(map);
+            Message::Acknowledge(Acknowledge { number, next, map })
+        }
+        (COMPLETE, &[verified @ 0..=1]) => Message::Complete {
+            verified: verified == 1,
+        },
+        (CLOSE, []) => Message::Close,
+        (ABORT, &[reason]) => Message::Abort(match reason {
+            0 => Reason::Cancelled,
+            1 => Reason::TooLong,
+            2 => Reason::Unannounced,
+            3 => Reason::Corrupt,
+            4 => Reason::NoAnswer,
+            _ => return None,
+        }),
+        _ => return None,
+    };
+    Some((head >> 4, message))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn messages() -> [Message<'static>; 9] {
+        static BYTES: [u8; 240] = [0xA5; 240];
+        [
+            Message::Open(Manifest {
+                length: 0x0102_0304,
+                crc32: 0xFFEE_0011,
+            }),
+            Message::Data(Data {
+                number: 0,
+                block: 0,
+                bytes: &[0; 16],
+            }),
+            Message::Data(Data {
+                number: 255,
+                block: 0xFF_FFFF,
+                bytes: &BYTES,
+            }),
+            Message::Acknowledge(Acknowledge {
+                number: 7,
+                next: 0x12_3456,
+                map: 1 << 127 | 2,
+            }),
+            Message::Acknowledge(Acknowledge {
+                number: 0,
+                next: 1,
+                map: 0x0102_0300 << 56,
+            }),
+            Message::Acknowledge(Acknowledge {
+                number: 255,
+                next: 0,
+                map: 0,
+            }),
+            Message::Complete { verified: true },
+            Message::Close,
+            Message::Abort(Reason::Unannounced),
+        ]
+    }
+
+    #[test]
+    fn frames_come_back_and_fill_just_their_room() {
+        for message in messages() {
+            let mut out = [0xEE; MAX_FRAME];
+            let length = write(9, message, &mut out);
+            let mut reader = Reader::new();
+            assert_eq!(reader.take(&out[..length]), (1, None));
+            assert_eq!(
+                reader.take(&out[1..length]),
+                (length - 1, Some((9, message)))
+            );
+            assert_eq!(write(9, message, &mut out[..length - 1]), 0);
+        }
+        assert_eq!(write(0, messages()[2], &mut [0; MAX_FRAME]), MAX_FRAME);
+    }
+
+    #[test]
+    fn no_changed_lost_or_repeated_byte_passes() {
+        for message in messages() {
+            let mut out = [0; MAX_FRAME];
+            let length = write(3, message, &mut out);
+            let frame = &out[..length];
+            assert!(has_frame(frame));
+            for place in 1..length - 1 {
+                for change in 1..=255 {
+                    let mut changed = out;
+                    changed[place] ^= change;
+                    assert!(!has_frame(&changed[..length]), "{place} {change}");
+                }
+                assert!(
+                    !has_frame(&[&frame[..place], &frame[place + 1..]].concat()),
+                    "{place}"
+                );
+                assert!(
+                    !has_frame(&[&frame[..=place], &frame[place..]].concat()),
+                    "{place}"
+                );
+            }
+        }
+    }
+
+    fn has_frame(mut bytes: &[u8]) -> bool {
+        let mut reader = Reader::new();
+        let mut found = false;
+        while !bytes.is_empty() {
+            let (taken, message) = reader.take(bytes);
+            found |= message.is_some();
+            bytes = &bytes[taken..];
+        }
+        found
+    }
+
+    #[test]
+    fn an_endless_frame_does_no_harm() {
+        let mut reader = Reader::new();
+        for _ in 0..100 {
+            assert_eq!(reader.take(&[1; 100]), (100, None));
+        }
+        assert_eq!(reader.take(&[0]), (1, None));
+        let mut out = [0; MAX_FRAME];
+        let length = write(1, Message::Close, &mut out);
+        reader.take(&out[..1]);
+        assert_eq!(
+            reader.take(&out[1..length]),
+            (length - 1, Some((1, Message::Close)))
+        );
+    }
+}

@@ -1,0 +1,298 @@
+//! The side that wants the data.
+
+use super::ending::Ending;
+use super::frame::{Acknowledge, Data, MAX_FRAME, Message, Reader, write};
+use super::{
+    BLOCK, CRC_32, Failure, MAX_LENGTH, Manifest, Peer, Reason, State, Timing, WINDOW, feed,
+};
+
+/// Receives one transfer into a buffer.
+///
+/// The buffer is written as blocks come, in any order, so it must not be in use before the state is [`State::Done`].
+pub struct Receiver<'a> {
+    reader: Reader,
+    transfer: Transfer<'a>,
+}
+
+impl<'a> Receiver<'a> {
+    /// Waits for a transfer that fits into the buffer and, if one was announced, is that one.
+    pub fn new(
+        buffer: &'a mut [u8],
+        announced: Option<Manifest>,
+        timing: Timing,
+        now_ms: u64,
+    ) -> Self {
+        let transfer = Transfer {
+            buffer,
+            announced,
+            timing,
+            opened: None,
+            valid_ms: now_ms,
+            reply: false,
+            ending: None,
+            state: State::Running,
+        };
+        Self {
+            reader: Reader::new(),
+            transfer,
+        }
+    }
+
+    /// Takes bytes that came and returns how many of them belong to the transfer: less than all only after its end.
+    pub fn on_bytes(&mut self, now_ms: u64, bytes: &[u8]) -> usize {
+        feed(&mut self.reader, &mut self.transfer, now_ms, bytes)
+    }
+
+    /// Writes the next frame, if there is one to send, and returns its length. It also keeps the time, so it is
+    /// to be called now and then. `out` needs [`MAX_FRAME`] bytes; nothing is written into less.
+    pub fn poll(&mut self, now_ms: u64, out: &mut [u8]) -> usize {
+        if out.len() < MAX_FRAME {
+            0
+        } else {
+            self.transfer.poll(now_ms, out)
+        }
+    }
+
+    /// Gives the transfer up and tells the sender.
+    pub fn abort(&mut self, now_ms: u64) {
+        self.transfer.abort(Reason::Cancelled, now_ms);
+    }
+
+    /// Where the transfer is, as of the last `poll`.
+    pub fn state(&self) -> State {
+        self.transfer.state
+    }
+
+    /// Bytes that have arrived without a gap, and bytes in all (0 while that is unknown).
+    pub fn progress(&self) -> (u32, u32) {
+        self.transfer.opened.as_ref().map_or((0, 0), |opened| {
+            let length = opened.manifest.length;
+            ((opened.next * BLOCK).min(length), length)
+        })
+    }
+
+    /// The verified data, once the state is [`State::Done`].
+    pub fn received(&self) -> Option<&[u8]> {
+        let opened = self.transfer.opened.as_ref()?;
+        let received = self
+            .transfer
+            .buffer
+            .get(..opened.manifest.length as usize)?;
+        (self.transfer.state == State::Done).then_some(received)
+    }
+}
+
+/// All but the reader, which lends out its frames.
+struct Transfer<'a> {
+    buffer: &'a mut [u8],
+    announced: Option<Manifest>,
+    timing: Timing,
+    opened: Option<Opened>,
+    /// When the last valid frame came.
+    valid_ms: u64,
+    /// A frame wants an answer.
+    reply: bool,
+    ending: Option<Ending>,
+    state: State,
+}
+
+/// What an `Open` has begun.
+struct Opened {
+    session: u8,
+    manifest: Manifest,
+    /// The first block that is not there.
+    next: u32,
+    /// Bit i: block `next` + i is there.
+    map: u128,
+    /// The data frame that came last.
+    number: u8,
+    /// Over the blocks before `next`.
+    digest: crc::Digest<'static, u32>,
+    /// Once all is there: whether its CRC-32 is right.
+    verdict: Option<bool>,
+}
+
+impl Peer for Transfer<'_> {
+    fn on_message(&mut self, now_ms: u64, session: u8, message: Message) {
+        if let Message::Open(manifest) = message {
+            self.valid_ms = now_ms;
+            self.open(now_ms, session, manifest);
+            return;
+        }
+        let Some(opened) = self
+            .opened
+            .as_mut()
+            .filter(|opened| opened.session == session)
+        else {
+            return;
+        };
+        match message {
+            Message::Data(data) => {
+                opened.store(data, self.buffer);
+                self.reply = true;
+            }
+            Message::Close if opened.verdict == Some(true) => {
+                self.ending = Some(Ending::new(State::Done, None, self.timing, now_ms));
+            }
+            Message::Abort(reason) => {
+                self.ending = Some(Ending::failed(
+                    Failure::AbortedByPeer(reason),
+                    self.timing,
+                    now_ms,
+                ));
+            }
+            // A receiver's own messages are echoes.
+            _ => return,
+        }
+        self.valid_ms = now_ms;
+    }
+
+    fn ending(&mut self) -> Option<&mut Ending> {
+        self.ending.as_mut()
+    }
+}
+
+impl Transfer<'_> {
+    fn open(&mut self, now_ms: u64, session: u8, manifest: Manifest) {
+        let known = |opened: &Opened| opened.session == session && opened.manifest == manifest;
+        if !self.opened.as_ref().is_some_and(known) {
+            self.opened = Some(Opened::new(session, manifest));
+            if self
+                .announced
+                .is_some_and(|announced| announced != manifest)
+            {
+                return self.abort(Reason::Unannounced, now_ms);
+            }
+            if manifest.length > MAX_LENGTH || manifest.length as usize > self.buffer.len() {
+                return self.abort(Reason::TooLong, now_ms);
+            }
+        }
+        self.reply = true;
+    }
+
+    fn poll(&mut self, now_ms: u64, out: &mut [u8]) -> usize {
+        if let Some(ending) = &mut self.ending {
+            let (length, state) = ending.poll(now_ms, out);
+            self.state = state;
+            return length;
+        }
+        if now_ms.saturating_sub(self.valid_ms) > self.timing.silence_ms {
+            // The sender may have known the verdict and gone.
+            let outcome = match self.opened.as_ref().and_then(|opened| opened.verdict) {
+                Some(true) => State::Done,
+                Some(false) => State::Failed(Failure::Corrupt),
+                None => State::Failed(Failure::Silence(self.timing.silence_ms)),
+            };
+            self.ending = Some(Ending::new(outcome, None, self.timing, now_ms));
+            return 0;
+        }
+        let Some(opened) = self.opened.as_ref().filter(|_| self.reply) else {
+            return 0;
+        };
+        let length = write(opened.session, opened.report(), out);
+        self.reply = length == 0;
+        length
+    }
+
+    fn abort(&mut self, reason: Reason, now_ms: u64) {
+        if self.ending.is_none() {
+            // Before an `Open` there is nobody to be told.
+            let farewell = self
+                .opened
+                .as_ref()
+                .map(|opened| (opened.session, Message::Abort(reason)));
+            let outcome = State::Failed(Failure::Aborted(reason));
+            self.ending = Some(Ending::new(outcome, farewell, self.timing, now_ms));
+        }
+    }
+}
+
+impl Opened {
+    fn new(session: u8, manifest: Manifest) -> Self {
+        let mut opened = Self {
+            session,
+            manifest,
+            next: 0,
+            map: 0,
+            number: 0,
+            digest: CRC_32.digest(),
+            verdict: None,
+        };
+        opened.judge();
+        opened
+    }
+
+    /// Stores the blocks of a frame that are new and lie in the window.
+    fn store(
+        &mut self,
+        Data {
+            number,
+            block,
+            bytes,
+        }: Data,
+        buffer: &mut [u8],
+    ) {
+        let length = bytes.len() as u32;
+        let Some(end) = block
+            .checked_mul(BLOCK)
+            .and_then(|start| start.checked_add(length))
+        else {
+            return;
+        };
+        let whole = length.is_multiple_of(BLOCK) || end == self.manifest.length;
+        let past = end.div_ceil(BLOCK);
+        if length == 0
+            || !whole
+            || end > self.manifest.length
+            || past > self.next.saturating_add(WINDOW)
+        {
+            return;
+        }
+        self.number = number;
+        // What lies before `next` is in the digest already and stays as it is.
+        let first = block.max(self.next);
+        let new = bytes
+            .get(((first - block) * BLOCK) as usize..)
+            .unwrap_or_default();
+        let Some(room) = buffer.get_mut((first * BLOCK) as usize..end as usize) else {
+            return;
+        };
+        if past <= first || room.len() != new.len() {
+            return;
+        }
+        room.copy_from_slice(new);
+        // 1 to 15 blocks, all within the map's bits.
+        self.map |= ((1 << (past - first)) - 1) << (first - self.next);
+        self.advance(buffer);
+    }
+
+    /// Moves `next` over the blocks that are there, and the digest with it.
+    fn advance(&mut self, buffer: &[u8]) {
+        let blocks = self.map.trailing_ones();
+        let from = self.next * BLOCK;
+        self.next += blocks;
+        self.map = self.map.checked_shr(blocks).unwrap_or(0);
+        let to = (self.next * BLOCK).min(self.manifest.length);
+        self.digest
+            .update(buffer.get(from as usize..to as usize).unwrap_or_default());
+        self.judge();
+    }
+
+    /// Comes to the verdict when all is there.
+    fn judge(&mut self) {
+        if self.next >= self.manifest.blocks() && self.verdict.is_none() {
+            self.verdict = Some(self.digest.clone().finalize() == self.manifest.crc32);
+        }
+    }
+
+    fn report(&self) -> Message<'static> {
+        match self.verdict {
+            Some(verified) => Message::Complete { verified },
+            None => Message::Acknowledge(Acknowledge {
+                number: self.number,
+                next: self.next,
+                map: self.map,
+            }),
+        }
+    }
+}

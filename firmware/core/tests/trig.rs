@@ -1,0 +1,163 @@
+//! Sine and cosine against f64, whose own error (2^-53) is nothing here.
+
+use std::f64::consts::TAU;
+
+use glint_core::fixed::Turns;
+use glint_core::trig::{sin_cos_q14, sin_cos_q30, sin_cos_q30_order};
+
+/// The errors of a kernel over some phases, in units of its last place.
+#[derive(Default)]
+struct Errors {
+    max: f64,
+    argmax: u32,
+    squares: f64,
+    sum: f64,
+    count: f64,
+    /// The largest |sin² + cos² − 1|.
+    norm: f64,
+}
+
+impl Errors {
+    fn measure(
+        fraction_bits: i32,
+        phases: impl Iterator<Item = u32>,
+        kernel: impl Fn(Turns) -> [i32; 2],
+    ) -> Self {
+        let one = 2f64.powi(fraction_bits);
+        let mut errors = Self::default();
+        for phase in phases {
+            let (sin, cos) = (f64::from(phase) / 2f64.powi(32) * TAU).sin_cos();
+            let bits = kernel(Turns(phase)).map(f64::from);
+            for error in [bits[0] - sin * one, bits[1] - cos * one] {
+                if error.abs() > errors.max {
+                    (errors.max, errors.argmax) = (error.abs(), phase);
+                }
+                errors.squares += error * error;
+                errors.sum += error;
+                errors.count += 1.0;
+            }
+            let norm = (bits[0] / one).powi(2) + (bits[1] / one).powi(2) - 1.0;
+            errors.norm = errors.norm.max(norm.abs());
+        }
+        println!(
+            "max {:.4} ULP at {:#010x}, rms {:.4}, mean {:.1e}, norm {:.2e}",
+            errors.max,
+            errors.argmax,
+            (errors.squares / errors.count).sqrt(),
+            errors.sum / errors.count,
+            errors.norm
+        );
+        errors
+    }
+}
+
+fn q14(angle: Turns) -> [i32; 2] {
+    let (sin, cos) = sin_cos_q14(angle);
+    [sin.to_bits().into(), cos.to_bits().into()]
+}
+
+fn q30(angle: Turns) -> [i32; 2] {
+    let (sin, cos) = sin_cos_q30(angle);
+    [sin.to_bits(), cos.to_bits()]
+}
+
+fn q30_order<const ORDER: u32>(angle: Turns) -> [i32; 2] {
+    let (sin, cos) = sin_cos_q30_order::<ORDER>(angle);
+    [sin.to_bits(), cos.to_bits()]
+}
+
+/// Phases that meet every node and both ends of every step, and a dense walk that shares no factor with the steps.
+fn dense() -> impl Iterator<Item = u32> {
+    let edges = (0..1024_u32).flat_map(|half_step| {
+        let phase = half_step << 22;
+        (-3..=3).map(move |offset: i32| phase.wrapping_add_signed(offset))
+    });
+    edges.chain((0..1 << 21).map(|k: u32| k.wrapping_mul(2_654_435_769)))
+}
+
+#[test]
+fn q14_is_within_one_ulp_for_every_16_bit_phase() {
+    let errors = Errors::measure(14, (0..=u16::MAX).map(|phase| u32::from(phase) << 16), q14);
+    assert!(errors.max <= 0.51, "{}", errors.max);
+}
+
+#[test]
+fn q14_is_within_one_ulp_for_finer_phases() {
+    let errors = Errors::measure(14, dense(), q14);
+    assert!(errors.max <= 0.51, "{}", errors.max);
+}
+
+#[test]
+fn q30_is_within_one_ulp() {
+    let errors = Errors::measure(30, dense(), q30);
+    assert!(errors.max < 0.8, "{}", errors.max);
+    assert!(errors.norm <= 4e-9, "{}", errors.norm);
+    assert!(
+        (errors.sum / errors.count).abs() < 1e-3,
+        "{}",
+        errors.sum / errors.count
+    );
+}
+
+#[test]
+#[ignore = "two minutes: all 2^32 phases"]
+fn q30_is_within_one_ulp_for_every_phase() {
+    let errors = Errors::measure(30, 0..=u32::MAX, q30);
+    assert!(errors.max < 0.8, "{}", errors.max);
+}
+
+#[test]
+fn lower_orders_are_as_far_off_as_their_remainder_says() {
+    let one = 2f64.powi(30);
+    // d^(n + 1)/(n + 1)! for d = π/512, and one unit for the rounding.
+    for (errors, remainder) in [
+        (Errors::measure(30, dense(), q30_order::<0>), 6.14e-3),
+        (Errors::measure(30, dense(), q30_order::<1>), 1.89e-5),
+        (Errors::measure(30, dense(), q30_order::<2>), 3.86e-8),
+        (Errors::measure(30, dense(), q30_order::<3>), 5.9e-11),
+    ] {
+        assert!(
+            errors.max <= remainder * one + 1.0,
+            "{} {remainder}",
+            errors.max
+        );
+        assert!(
+            errors.max >= remainder * one * 0.9,
+            "{} {remainder}",
+            errors.max
+        );
+    }
+}
+
+#[test]
+fn quarter_turns_are_exact() {
+    for (one, kernel) in [(1 << 14, q14 as fn(_) -> _), (1 << 30, q30)] {
+        for (quarter, expected) in [(0, [0, one]), (1, [one, 0]), (2, [0, -one]), (3, [-one, 0])] {
+            assert_eq!(kernel(Turns(quarter << 30)), expected);
+        }
+    }
+}
+
+#[test]
+fn symmetries_hold_bit_for_bit() {
+    for kernel in [q14, q30, q30_order::<1>] {
+        for phase in dense() {
+            let [sin, cos] = kernel(Turns(phase));
+            assert_eq!(kernel(-Turns(phase)), [-sin, cos]);
+            assert_eq!(
+                kernel(Turns(phase).wrapping_add(Turns::QUARTER)),
+                [cos, -sin]
+            );
+            assert_eq!(
+                kernel(Turns::QUARTER.wrapping_add(-Turns(phase))),
+                [cos, sin]
+            );
+        }
+    }
+}
+
+#[test]
+fn sine_is_monotone_over_a_quarter_at_16_bits() {
+    let sines = (0..=1 << 14).map(|phase: u32| q14(Turns(phase << 16))[0]);
+    assert!(sines.clone().zip(sines.skip(1)).all(|(a, b)| a <= b));
+}

@@ -1,0 +1,462 @@
+//! Transfers over a line that loses, changes and repeats bytes.
+
+use std::collections::VecDeque;
+
+use glint_core::wire::{
+    Failure, MAX_FRAME, Manifest, Reason, Receiver, Sender, State, Timing, crc32,
+};
+use proptest::prelude::*;
+
+/// Microseconds a byte takes at 115200 baud, 8N1.
+const BYTE_US: f64 = 1e7 / 115_200.0;
+
+/// How often a byte is hit, in 1/10000.
+#[derive(Clone, Copy, Default)]
+struct Faults {
+    drop: u64,
+    flip: u64,
+    duplicate: u64,
+}
+
+impl Faults {
+    const fn new(drop: u64, flip: u64, duplicate: u64) -> Self {
+        Self {
+            drop,
+            flip,
+            duplicate,
+        }
+    }
+}
+
+/// One direction of a serial line.
+struct Line {
+    faults: Faults,
+    random: u64,
+    latency_us: f64,
+    free_at_us: f64,
+    on_the_way: VecDeque<(f64, u8)>,
+}
+
+impl Line {
+    fn new(faults: Faults, seed: u64, latency_us: f64) -> Self {
+        let random = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
+        Self {
+            faults,
+            random,
+            latency_us,
+            free_at_us: 0.0,
+            on_the_way: VecDeque::new(),
+        }
+    }
+
+    fn happens(&mut self, per_10000: u64) -> bool {
+        self.random ^= self.random << 13;
+        self.random ^= self.random >> 7;
+        self.random ^= self.random << 17;
+        self.random >> 32 & 0xFFFF_FFFF < per_10000 * (1 << 32) / 10_000
+    }
+
+    /// Whether the driver's buffer has room for a frame.
+    fn takes_more(&self, now_us: f64) -> bool {
+        self.free_at_us - now_us < 512.0 * BYTE_US
+    }
+
+    fn send(&mut self, now_us: f64, bytes: &[u8]) {
+        for &byte in bytes {
+            self.free_at_us = self.free_at_us.max(now_us) + BYTE_US;
+            let arrives = self.free_at_us + self.latency_us;
+            let flip = u8::from(self.happens(self.faults.flip)) << (self.random >> 20 & 7);
+            if !self.happens(self.faults.drop) {
+                self.on_the_way.push_back((arrives, byte ^ flip));
+            }
+            if self.happens(self.faults.duplicate) {
+                self.on_the_way.push_back((arrives, byte ^ flip));
+            }
+        }
+    }
+
+    fn receive(&mut self, now_us: f64) -> Vec<u8> {
+        let due = self.on_the_way.partition_point(|&(at, _)| at <= now_us);
+        self.on_the_way.drain(..due).map(|(_, byte)| byte).collect()
+    }
+}
+
+/// What became of a transfer.
+#[derive(Debug)]
+struct Outcome {
+    sender: State,
+    receiver: State,
+    /// What the receiver says it has received, if anything.
+    received: Option<Vec<u8>>,
+    seconds: f64,
+    /// Data bytes a frame had at the end.
+    frame_bytes: u32,
+}
+
+impl Outcome {
+    /// Data bytes over what the line could have carried in the time.
+    fn efficiency(&self) -> f64 {
+        let bytes = self.received.as_ref().map_or(0, Vec::len);
+        bytes as f64 * BYTE_US / 1e6 / self.seconds
+    }
+}
+
+/// A transfer between a host that sends and a console that receives.
+struct Scene {
+    faults: Faults,
+    seed: u64,
+    latency_us: f64,
+    room: usize,
+    announced: Option<Manifest>,
+    sender_aborts_at_ms: u64,
+    receiver_aborts_at_ms: u64,
+    cut_at_ms: u64,
+}
+
+impl Default for Scene {
+    fn default() -> Self {
+        Self {
+            faults: Faults::default(),
+            seed: 1,
+            latency_us: 2_000.0,
+            room: 1 << 20,
+            announced: None,
+            sender_aborts_at_ms: u64::MAX,
+            receiver_aborts_at_ms: u64::MAX,
+            cut_at_ms: u64::MAX,
+        }
+    }
+}
+
+impl Scene {
+    fn run(&self, data: &[u8]) -> Outcome {
+        let mut buffer = vec![0; self.room];
+        let mut sender = Sender::new(data, 5, Timing::HOST, 0);
+        let mut receiver = Receiver::new(&mut buffer, self.announced, Timing::CONSOLE, 0);
+        let mut there = Line::new(self.faults, self.seed, self.latency_us);
+        let mut back = Line::new(self.faults, self.seed + 1_000, self.latency_us);
+        // What a console has written before, and the rest of the command's line.
+        back.send(0.0, b"glint> load 1234 deadbeef\r\nready\r\n");
+        there.send(0.0, b"\n");
+        let mut frame = [0; MAX_FRAME];
+        let mut finished_ms = None;
+        let mut frame_bytes = 0;
+        for now_ms in 0..3_600_000 {
+            let now_us = now_ms as f64 * 1_000.0;
+            if now_ms == self.sender_aborts_at_ms {
+                sender.abort(now_ms);
+            }
+            if now_ms == self.receiver_aborts_at_ms {
+                receiver.abort(now_ms);
+            }
+            let (arrived, answered) = (there.receive(now_us), back.receive(now_us));
+            if now_ms < self.cut_at_ms {
+                receiver.on_bytes(now_ms, &arrived);
+                sender.on_bytes(now_ms, &answered);
+            }
+            while there.takes_more(now_us) {
+                match sender.poll(now_ms, &mut frame) {
+                    0 => break,
+                    length => there.send(now_us, &frame[..length]),
+                }
+            }
+            while back.takes_more(now_us) {
+                match receiver.poll(now_ms, &mut frame) {
+                    0 => break,
+                    length => back.send(now_us, &frame[..length]),
+                }
+            }
+            if sender.progress().0 < sender.progress().1 {
+                frame_bytes = sender.frame_bytes();
+            }
+            if sender.state() != State::Running {
+                finished_ms.get_or_insert(now_ms);
+                if receiver.state() != State::Running {
+                    break;
+                }
+            }
+        }
+        Outcome {
+            sender: sender.state(),
+            receiver: receiver.state(),
+            received: receiver.received().map(<[u8]>::to_vec),
+            seconds: finished_ms.expect("the sender comes to an end within an hour") as f64 / 1e3,
+            frame_bytes,
+        }
+    }
+}
+
+/// Bytes of every value, zeros and long runs without one among them.
+fn some_data(length: usize) -> Vec<u8> {
+    (0..length as u32)
+        .map(|i| (i.wrapping_mul(2_654_435_769) >> (i >> 10 & 15)) as u8)
+        .collect()
+}
+
+#[track_caller]
+fn assert_arrives(scene: &Scene, data: &[u8]) -> Outcome {
+    let outcome = scene.run(data);
+    assert_eq!(
+        (outcome.sender, outcome.receiver),
+        (State::Done, State::Done)
+    );
+    assert!(
+        outcome.received.as_deref() == Some(data),
+        "what was received is not what was sent"
+    );
+    outcome
+}
+
+#[test]
+fn every_length_arrives() {
+    for length in (0..=33).chain([239, 240, 241, 1_023, 2_047, 2_048, 2_049, 4_096, 5_000]) {
+        let data = some_data(length);
+        assert_arrives(
+            &Scene {
+                announced: Some(Manifest::of(&data)),
+                ..Scene::default()
+            },
+            &data,
+        );
+    }
+}
+
+#[test]
+fn a_clean_line_is_used_to_85_percent() {
+    for latency_us in [0.0, 2_000.0, 16_000.0, 50_000.0] {
+        let outcome = assert_arrives(
+            &Scene {
+                latency_us,
+                ..Scene::default()
+            },
+            &some_data(64 << 10),
+        );
+        println!(
+            "latency {latency_us} us: {:.1} %",
+            100.0 * outcome.efficiency()
+        );
+        assert!(outcome.efficiency() >= 0.85, "{}", outcome.efficiency());
+        assert_eq!(outcome.frame_bytes, 240);
+    }
+}
+
+#[test]
+fn one_percent_of_bytes_lost_changed_or_repeated_does_no_harm() {
+    let one = 100;
+    for (name, faults) in [
+        ("drops", Faults::new(one, 0, 0)),
+        ("flips", Faults::new(0, one, 0)),
+        ("duplicates", Faults::new(0, 0, one)),
+        ("all", Faults::new(one, one, one)),
+    ] {
+        for seed in 1..=4 {
+            let outcome = assert_arrives(
+                &Scene {
+                    faults,
+                    seed,
+                    ..Scene::default()
+                },
+                &some_data(40_000),
+            );
+            println!(
+                "1 % {name}: {:.1} %, frames of {}",
+                100.0 * outcome.efficiency(),
+                outcome.frame_bytes
+            );
+            assert!(
+                outcome.efficiency() >= if name == "all" { 0.2 } else { 0.4 },
+                "{name} {seed}: {}",
+                outcome.efficiency()
+            );
+            assert!(outcome.frame_bytes <= 48);
+        }
+    }
+}
+
+#[test]
+fn a_rarely_hit_line_gets_frames_in_between() {
+    let faults = Faults::new(5, 5, 0);
+    let outcome = assert_arrives(
+        &Scene {
+            faults,
+            ..Scene::default()
+        },
+        &some_data(100_000),
+    );
+    println!(
+        "0.1 %: {:.1} %, frames of {}",
+        100.0 * outcome.efficiency(),
+        outcome.frame_bytes
+    );
+    assert!(outcome.efficiency() >= 0.7, "{}", outcome.efficiency());
+}
+
+#[test]
+fn an_awful_line_is_slow_and_right_or_given_up() {
+    let faults = Faults::new(150, 150, 150);
+    for seed in 1..=4 {
+        let outcome = assert_arrives(
+            &Scene {
+                faults,
+                seed,
+                ..Scene::default()
+            },
+            &some_data(2_000),
+        );
+        println!("4.5 %: {:.1} %", 100.0 * outcome.efficiency());
+    }
+    let faults = Faults::new(5_000, 0, 0);
+    let outcome = Scene {
+        faults,
+        ..Scene::default()
+    }
+    .run(&some_data(2_000));
+    assert_eq!(outcome.sender, State::Failed(Failure::Silence(5_000)));
+    assert_eq!(outcome.receiver, State::Failed(Failure::Silence(2_000)));
+    assert_eq!(outcome.received, None);
+}
+
+#[test]
+fn a_sender_that_gives_up_is_heard() {
+    let outcome = Scene {
+        sender_aborts_at_ms: 500,
+        ..Scene::default()
+    }
+    .run(&some_data(50_000));
+    assert_eq!(
+        outcome.sender,
+        State::Failed(Failure::Aborted(Reason::Cancelled))
+    );
+    assert_eq!(
+        outcome.receiver,
+        State::Failed(Failure::AbortedByPeer(Reason::Cancelled))
+    );
+    assert_eq!(outcome.received, None);
+}
+
+#[test]
+fn a_receiver_that_gives_up_is_heard() {
+    let outcome = Scene {
+        receiver_aborts_at_ms: 500,
+        ..Scene::default()
+    }
+    .run(&some_data(50_000));
+    assert_eq!(
+        outcome.sender,
+        State::Failed(Failure::AbortedByPeer(Reason::Cancelled))
+    );
+    assert_eq!(
+        outcome.receiver,
+        State::Failed(Failure::Aborted(Reason::Cancelled))
+    );
+    assert_eq!(outcome.received, None);
+}
+
+#[test]
+fn a_cut_line_ends_both_sides() {
+    let outcome = Scene {
+        cut_at_ms: 500,
+        ..Scene::default()
+    }
+    .run(&some_data(50_000));
+    assert_eq!(outcome.sender, State::Failed(Failure::Silence(5_000)));
+    assert_eq!(outcome.receiver, State::Failed(Failure::Silence(2_000)));
+    assert_eq!(outcome.received, None);
+}
+
+#[test]
+fn what_was_not_announced_or_does_not_fit_is_refused() {
+    let data = some_data(1_000);
+    for announced in [
+        Manifest {
+            length: 999,
+            ..Manifest::of(&data)
+        },
+        Manifest {
+            crc32: 1,
+            ..Manifest::of(&data)
+        },
+    ] {
+        let outcome = Scene {
+            announced: Some(announced),
+            ..Scene::default()
+        }
+        .run(&data);
+        assert_eq!(
+            outcome.sender,
+            State::Failed(Failure::AbortedByPeer(Reason::Unannounced))
+        );
+        assert_eq!(
+            outcome.receiver,
+            State::Failed(Failure::Aborted(Reason::Unannounced))
+        );
+    }
+    let outcome = Scene {
+        room: 999,
+        ..Scene::default()
+    }
+    .run(&data);
+    assert_eq!(
+        outcome.sender,
+        State::Failed(Failure::AbortedByPeer(Reason::TooLong))
+    );
+    assert_eq!(
+        outcome.receiver,
+        State::Failed(Failure::Aborted(Reason::TooLong))
+    );
+}
+
+#[test]
+fn the_host_keeps_the_text_that_follows() {
+    let data = some_data(300);
+    let mut buffer = vec![0; 300];
+    let mut sender = Sender::new(&data, 0, Timing::CONSOLE, 0);
+    let mut receiver = Receiver::new(&mut buffer, None, Timing::HOST, 0);
+    let mut frame = [0; MAX_FRAME];
+    let mut to_host = Vec::new();
+    for now_ms in 0..1_000 {
+        let length = sender.poll(now_ms, &mut frame);
+        to_host.extend_from_slice(&frame[..length]);
+        if sender.state() == State::Done {
+            to_host.extend_from_slice(b"ok\r\n");
+            break;
+        }
+        if receiver.state() == State::Running {
+            let taken = receiver.on_bytes(now_ms, &to_host);
+            to_host.drain(..taken);
+            let length = receiver.poll(now_ms, &mut frame);
+            assert_eq!(sender.on_bytes(now_ms, &frame[..length]), length);
+        }
+    }
+    assert_eq!(receiver.state(), State::Done);
+    let text = to_host.rsplit(|&byte| byte == 0).next();
+    assert_eq!(text, Some(&b"ok\r\n"[..]));
+}
+
+#[test]
+fn crc32_is_the_common_one() {
+    assert_eq!(crc32(b"123456789"), 0xCBF4_3926);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn no_bytes_upset_either_side(chunks in proptest::collection::vec((any::<u16>(), proptest::collection::vec(any::<u8>(), 0..300)), 0..40)) {
+        let data = some_data(3_000);
+        let mut buffer = [0; 1_000];
+        let mut sender = Sender::new(&data, 0, Timing::HOST, 0);
+        let mut receiver = Receiver::new(&mut buffer, None, Timing::CONSOLE, 0);
+        let mut frame = [0; MAX_FRAME];
+        let mut now_ms = 0;
+        for (wait, bytes) in chunks {
+            now_ms += u64::from(wait >> 6);
+            sender.on_bytes(now_ms, &bytes);
+            receiver.on_bytes(now_ms, &bytes);
+            let length = sender.poll(now_ms, &mut frame);
+            receiver.on_bytes(now_ms, &frame[..length]);
+            receiver.poll(now_ms, &mut frame);
+        }
+        prop_assert_eq!(receiver.received(), None);
+    }
+}
