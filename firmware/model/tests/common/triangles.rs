@@ -1,0 +1,59 @@
+//! Triangles on the screen.
+
+use glint_model::setup::{Bounds, Oriented, Setup};
+use glint_model::vertex::GUARD;
+use glint_model::{SIZES, ScreenVertex};
+
+use super::Random;
+
+pub const SIZE: (u32, u32) = SIZES[0];
+/// A depth like any other.
+pub const FLAT: u32 = 1000 * 64;
+
+pub fn at([x, y]: [i64; 2]) -> ScreenVertex {
+    ScreenVertex {
+        x: x as i32,
+        y: y as i32,
+        w: FLAT,
+    }
+}
+
+pub fn set_up(
+    vertices: [ScreenVertex; 3],
+    (width, height): (u32, u32),
+) -> Option<(Oriented, Setup)> {
+    let oriented = Oriented::new(vertices)?;
+    let bounds = Bounds::new(&oriented.vertices, width, height)?;
+    Some((oriented, Setup::new(&oriented, bounds)))
+}
+
+/// Random triangles of all sizes and shapes, many with vertices on pixel centres and edges, some over the whole guard band.
+pub fn random_triangle(random: &mut Random) -> [ScreenVertex; 3] {
+    let guard = i64::from(GUARD) + 128;
+    let anywhere =
+        |random: &mut Random| at([random.integer(-guard, guard), random.integer(-guard, guard)]);
+    let near = |random: &mut Random, reach: i64, step: i64| {
+        at([160, 90].map(|c| 256 * c + step * random.integer(-reach / step, reach / step)))
+    };
+    match random.integer(0, 5) {
+        0 => [0; 3].map(|_| anywhere(random)),
+        1 => [0; 3].map(|_| near(random, 256 * 100, 1)),
+        2 => [0; 3].map(|_| near(random, 256 * 4, 1)),
+        3 => [0; 3].map(|_| near(random, 256 * 6, 128)),
+        4 => [
+            near(random, 256 * 80, 1),
+            anywhere(random),
+            anywhere(random),
+        ],
+        _ => {
+            // A sliver.
+            let (a, b) = (near(random, 256 * 200, 1), near(random, 256 * 200, 1));
+            let c = ScreenVertex {
+                x: (a.x + b.x) / 2 + random.integer(-3, 3) as i32,
+                y: (a.y + b.y) / 2,
+                w: FLAT,
+            };
+            [a, b, c]
+        }
+    }
+}
