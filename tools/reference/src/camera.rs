@@ -102,11 +102,12 @@ impl Camera {
         kept
     }
 
-    /// K of the depth codes, code = K/z: (2^18 − 4)·max(near, −eye·n − radius), cut to 17 significant bits.
+    /// K of the depth codes, code = K/z: (2^18 − 4)·max(near, −eye·n − radius·(1 + 2^-13)), cut to 17 significant bits. The
+    /// radius grows a little because n may be a little longer than 1.
     ///
     /// `radius` is that of the scene about the origin, in world units.
     pub fn depth_scale(&self, radius: f64) -> f64 {
-        let nearest = (-dot(self.eye, self.n) - radius).max(self.near);
+        let nearest = (-dot(self.eye, self.n) - radius * (1.0 + 1.0 / 8192.0)).max(self.near);
         let full = f64::from((1 << 18) - 4) * nearest;
         let unit = (full.log2().floor() - 16.0).exp2();
         (full / unit).floor() * unit
@@ -162,7 +163,10 @@ mod tests {
 
     #[test]
     fn depth_scale_leaves_four_codes_at_the_nearest_depth() {
-        assert_eq!(CAMERA.depth_scale(1.0), 2.0 * 262_140.0);
+        // 3·262140 has 20 bits, of which the lowest three are cut.
+        assert_eq!(CAMERA.depth_scale(0.0), 786_416.0);
+        // (2 − 2^-13)·262140 = 524248.0 has 19 bits and ends in two zeros.
+        assert_eq!(CAMERA.depth_scale(1.0), 524_248.0);
         assert_eq!(CAMERA.depth_scale(9.0), 262_140.0);
     }
 }

@@ -19,7 +19,7 @@ pub enum Class {
 /// A triangle clipped and projected in f64.
 #[derive(Clone, Debug)]
 pub struct ProjectedTriangle {
-    /// The corners of what is in front of the near plane, in pixels; empty when nothing is, or when it is seen edge-on.
+    /// The corners of what is in front of the near plane, in pixels; empty when nothing is.
     pub corners: Vec<[f64; 2]>,
     /// Lines through the edges as (a, b, c): a·x + b·y + c is the distance to the edge, positive inside, in pixels.
     edges: Vec<Vector>,
@@ -38,23 +38,26 @@ impl ProjectedTriangle {
             subtract(points[2], points[0]),
         );
         let offset = dot(normal, points[0]);
-        let mut corners: Vec<_> = camera
+        let corners: Vec<_> = camera
             .clip_near(&points)
             .iter()
             .map(|&point| camera.screen(point, size))
             .collect();
-        if offset == 0.0 {
-            corners.clear();
-        }
         // A point (x, y) of the screen is the direction ((x − cx)/s, (y − cy)/s, 1), and normal · (z · direction) = offset.
         let scale = camera.pixels_per_unit(size);
         let [a, b] = [normal[0] / scale, normal[1] / scale];
         let c = normal[2] - a * f64::from(size.width) / 2.0 - b * f64::from(size.height) / 2.0;
         let front = offset < 0.0;
+        let inverse_depth = if offset == 0.0 {
+            // Seen edge-on its depth is no function of the place.
+            [0.0, 0.0, f64::INFINITY]
+        } else {
+            [a / offset, b / offset, c / offset]
+        };
         Self {
             edges: inward_edges(&corners, front),
             corners,
-            inverse_depth: [a / offset, b / offset, c / offset],
+            inverse_depth,
             front,
         }
     }
@@ -65,11 +68,17 @@ impl ProjectedTriangle {
             return Class::None;
         }
         let here = centre(column, row);
+        // Fewer than three edges have no inside.
+        let most = if self.edges.len() < 3 {
+            0.0
+        } else {
+            f64::INFINITY
+        };
         let inside = self
             .edges
             .iter()
             .map(|&edge| dot(edge, here))
-            .fold(f64::INFINITY, f64::min);
+            .fold(most, f64::min);
         if inside >= tolerance {
             Class::Full
         } else if inside > -tolerance {
@@ -79,7 +88,7 @@ impl ProjectedTriangle {
         }
     }
 
-    /// 1/z of the triangle's plane at a pixel's centre, z in world units along n.
+    /// 1/z of the triangle's plane at a pixel's centre, z in world units along n; infinite when it is seen edge-on.
     pub fn inverse_depth(&self, column: u32, row: u32) -> f64 {
         dot(self.inverse_depth, centre(column, row))
     }
@@ -104,6 +113,9 @@ impl ProjectedTriangle {
     }
 }
 
+/// An edge shorter than this many pixels has no direction to trust. Without it a polygon is longer only where it is as narrow.
+const SHORTEST_EDGE: f64 = 1e-6;
+
 /// The edges of a convex polygon, their normals pointing inwards. A front face runs counter-clockwise in the world and, y
 /// pointing down, so does its picture: negative area.
 fn inward_edges(corners: &[[f64; 2]], front: bool) -> Vec<Vector> {
@@ -113,7 +125,7 @@ fn inward_edges(corners: &[[f64; 2]], front: bool) -> Vec<Vector> {
         let b = corners[(i + 1) % corners.len()];
         let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
         let length = dx.hypot(dy);
-        if length > 0.0 {
+        if length > SHORTEST_EDGE {
             let (nx, ny) = (-dy / length * sign, dx / length * sign);
             edges.push([nx, ny, -(nx * a[0] + ny * a[1])]);
         }
@@ -154,7 +166,8 @@ pub struct Tolerance {
 
 /// Finds what each pixel shows, row by row.
 ///
-/// With `cull`, triangles seen from behind are left out.
+/// With `cull`, triangles seen from behind are left out; near their edges they still make pixels uncertain, for a very thin
+/// one may be turned over by snapping.
 pub fn visible_surfaces(
     camera: &Camera,
     size: Size,
@@ -166,9 +179,7 @@ pub fn visible_surfaces(
     let mut pixels = vec![Candidates::default(); width * size.height as usize];
     for (index, &triangle) in triangles.iter().enumerate() {
         let projected = ProjectedTriangle::new(camera, size, triangle);
-        if cull && !projected.front {
-            continue;
-        }
+        let hidden = cull && !projected.front;
         let slope = projected.inverse_depth_slope();
         let spread = tolerance.inverse_depth + slope * tolerance.pixels;
         let [columns, rows] = projected.bounds(size);
@@ -178,6 +189,7 @@ pub fn visible_surfaces(
                 let pixel = &mut pixels[row as usize * width + column as usize];
                 let inverse_depth = projected.inverse_depth(column, row);
                 match class {
+                    Class::Full if hidden => {}
                     Class::Full => pixel.add(index, inverse_depth, slope, spread),
                     Class::Partial => pixel.rival = pixel.rival.max(inverse_depth + spread),
                     Class::None => {}
@@ -296,15 +308,22 @@ mod tests {
     }
 
     #[test]
-    fn back_faces_are_culled_and_edge_on_ones_show_nothing() {
+    fn back_faces_are_culled() {
         let [a, b, c] = half(0.0);
         let seen = visible_surfaces(&CAMERA, SIZE, &[[a, c, b]], true, TOLERANCE);
         assert!(seen.iter().all(|pixel| *pixel == Visible::Background));
-        let edge_on = [[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-        assert!(
-            ProjectedTriangle::new(&CAMERA, SIZE, edge_on)
-                .corners
-                .is_empty()
-        );
+    }
+
+    #[test]
+    fn seen_edge_on_a_triangle_is_uncertain_along_its_line() {
+        let edge_on =
+            [[0.0, 0.5, 0.0], [0.0, 0.5, 1.0], [1.0, 0.5, 0.0]].map(|[x, y, z]| [x, y - 0.5, z]);
+        let triangle = ProjectedTriangle::new(&CAMERA, SIZE, edge_on);
+        assert_eq!(triangle.classify(9, 7, 0.75), Class::Partial);
+        assert_eq!(triangle.classify(9, 7, 0.25), Class::None);
+        let line_through_centres = edge_on.map(|[x, y, z]| [x, y + (z + 2.0) / 16.0, z]);
+        let seen = visible_surfaces(&CAMERA, SIZE, &[line_through_centres], false, TOLERANCE);
+        assert_eq!(seen[8 * 16 + 9], Visible::Unstable);
+        assert_eq!(seen[3 * 16 + 9], Visible::Background);
     }
 }

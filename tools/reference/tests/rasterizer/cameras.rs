@@ -1,0 +1,94 @@
+//! Cameras from f64 numbers, and random ones.
+
+use glint_core::camera::View;
+use glint_core::fixed::{Q2_23, Q32_32, U4_28};
+use glint_reference::camera::{Camera, Vector};
+use rand::RngExt;
+use rand_pcg::Pcg64;
+
+/// The view nearest to a camera.
+pub fn view(camera: &Camera) -> View {
+    let basis = |row: Vector| row.map(Q2_23::from_num);
+    let made = View::new_checked(
+        camera.eye.map(Q32_32::from_num),
+        basis(camera.u),
+        basis(camera.v),
+        basis(camera.n),
+        U4_28::from_num(camera.half_width),
+        U4_28::from_num(camera.near),
+    );
+    match made {
+        Ok(view) => view,
+        Err(error) => panic!("{camera:?}: {error}"),
+    }
+}
+
+/// A camera at `eye` that looks at `target`, rolled by `roll` radians about its axis.
+pub fn looking_at(eye: Vector, target: Vector, roll: f64, half_width: f64, near: f64) -> Camera {
+    let n = unit(minus(target, eye));
+    // Any direction that is not n's will do for a start.
+    let aside = if n[2].abs() < 0.9 {
+        [0.0, 0.0, 1.0]
+    } else {
+        [1.0, 0.0, 0.0]
+    };
+    let u0 = unit(cross(n, aside));
+    let v0 = cross(n, u0);
+    let (sin, cos) = roll.sin_cos();
+    let rolled = |a: f64, b: f64| [0, 1, 2].map(|i| a * u0[i] + b * v0[i]);
+    Camera {
+        eye,
+        u: rolled(cos, sin),
+        v: rolled(-sin, cos),
+        n,
+        half_width,
+        near,
+    }
+}
+
+/// A camera in a random direction, `distance` from a point near the origin that it looks at.
+pub fn around(random: &mut Pcg64, distance: f64, half_width: f64, near: f64) -> Camera {
+    let target = [(); 3].map(|()| random.random_range(-0.3..0.3));
+    let direction = direction(random);
+    let eye = [0, 1, 2].map(|i| target[i] + distance * direction[i]);
+    looking_at(
+        eye,
+        target,
+        random.random_range(0.0..std::f64::consts::TAU),
+        half_width,
+        near,
+    )
+}
+
+/// A random direction, evenly spread.
+pub fn direction(random: &mut Pcg64) -> Vector {
+    let z: f64 = random.random_range(-1.0..1.0);
+    let (sin, cos) = random.random_range(0.0..std::f64::consts::TAU).sin_cos();
+    let across = (1.0 - z * z).sqrt();
+    [across * cos, across * sin, z]
+}
+
+/// A number whose logarithm is evenly spread.
+pub fn log_range(random: &mut Pcg64, low: f64, high: f64) -> f64 {
+    random
+        .random_range(low.ln()..high.ln())
+        .exp()
+        .clamp(low, high)
+}
+
+pub fn minus(a: Vector, b: Vector) -> Vector {
+    [0, 1, 2].map(|i| a[i] - b[i])
+}
+
+pub fn cross(a: Vector, b: Vector) -> Vector {
+    [0, 1, 2].map(|i| a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3])
+}
+
+pub fn dot(a: Vector, b: Vector) -> f64 {
+    (0..3).map(|i| a[i] * b[i]).sum()
+}
+
+pub fn unit(a: Vector) -> Vector {
+    let length = dot(a, a).sqrt();
+    a.map(|x| x / length)
+}

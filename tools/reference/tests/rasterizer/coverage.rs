@@ -1,0 +1,144 @@
+//! Coverage and depth of each triangle by itself: against the exact rasterizer with the model's own snapped vertices,
+//! and against the unsnapped triangle by the classes of the conformance tests.
+
+use glint_reference::camera::{Camera, Size};
+use glint_reference::surface::{Class, ProjectedTriangle};
+
+use crate::cameras::view;
+use crate::renderer::{Renderer, exact};
+use crate::scenes::{Case, LARGE, Scene, random_case};
+
+/// What has been compared, and the worst that was found.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Tally {
+    triangles: u64,
+    clipped: u64,
+    covered: u64,
+    missing: u64,
+    extra: u64,
+    depth_error: f64,
+    class_missing: u64,
+    class_extra: u64,
+    partial: u64,
+    partial_drawn: u64,
+}
+
+impl Tally {
+    fn add(&mut self, other: Self) {
+        self.triangles += other.triangles;
+        self.clipped += other.clipped;
+        self.covered += other.covered;
+        self.missing += other.missing;
+        self.extra += other.extra;
+        self.depth_error = self.depth_error.max(other.depth_error);
+        self.class_missing += other.class_missing;
+        self.class_extra += other.class_extra;
+        self.partial += other.partial;
+        self.partial_drawn += other.partial_drawn;
+    }
+}
+
+/// Depth may be this many codes from the exact plane.
+const DEPTH_LIMIT: f64 = 2.0;
+
+/// How far snapping may move an edge, in pixels. The conformance tests allow three steps of the grid.
+pub fn snap_limit(size: Size) -> f64 {
+    if size == LARGE {
+        2.0 / 256.0
+    } else {
+        1.0 / 256.0
+    }
+}
+
+/// Draws each triangle of a case by itself and compares every pixel of it.
+pub fn check(renderer: &mut Renderer, case: &Case) -> Tally {
+    let view = view(&case.camera);
+    let camera = Camera::from(&view);
+    let mut total = Tally::default();
+    for triangle in 0..case.scene.triangles.len() {
+        let scene = case.scene.only(triangle);
+        let stats = renderer.draw(&scene, &view, case.size, case.cull);
+        let mut tally = against_exact(renderer, case.size);
+        classify(renderer, &camera, &scene, case, &mut tally);
+        tally.triangles = 1;
+        tally.clipped = stats.clipped.into();
+        let good = tally.missing + tally.extra + tally.class_missing + tally.class_extra == 0
+            && tally.depth_error <= DEPTH_LIMIT;
+        assert!(
+            good,
+            "{}, triangle {triangle}: {tally:?}\n{:?} at {:?}\n{camera:?}\n{:?}",
+            case.name,
+            case.scene.corners(triangle),
+            case.size,
+            renderer.drawn,
+        );
+        total.add(tally);
+    }
+    total
+}
+
+/// Compares the last picture, of one triangle, with the exact coverage and depth of the parts that were drawn.
+fn against_exact(renderer: &Renderer, size: Size) -> Tally {
+    let mut tally = Tally::default();
+    let mut left = renderer.depth.clone();
+    for part in renderer.drawn.iter().filter_map(exact) {
+        part.for_each_pixel(size.width, size.height, |column, row| {
+            let code = &mut left[(row * size.width + column) as usize];
+            if *code == 0 {
+                // Not drawn, or already counted for another part: parts do not overlap.
+                tally.missing += 1;
+            } else {
+                tally.covered += 1;
+                let error = part.depth(column.into(), row.into()).error_of(*code).abs();
+                tally.depth_error = tally.depth_error.max(error);
+                *code = 0;
+            }
+        });
+    }
+    tally.extra = left.iter().filter(|&&code| code != 0).count() as u64;
+    tally
+}
+
+/// Compares the last picture with the classes of its one unsnapped triangle.
+fn classify(renderer: &Renderer, camera: &Camera, scene: &Scene, case: &Case, tally: &mut Tally) {
+    let size = case.size;
+    let triangle = ProjectedTriangle::new(camera, size, scene.corners(0));
+    let hidden = case.cull && !triangle.front;
+    let mut drawn = renderer.depth.iter().filter(|&&code| code != 0).count() as u64;
+    let [columns, rows] = triangle.bounds(size);
+    for row in rows {
+        for column in columns.clone() {
+            let is_drawn = renderer.depth[(row * size.width + column) as usize] != 0;
+            drawn -= u64::from(is_drawn);
+            match triangle.classify(column, row, snap_limit(size)) {
+                Class::Full if hidden => tally.class_extra += u64::from(is_drawn),
+                Class::Full => tally.class_missing += u64::from(!is_drawn),
+                Class::Partial => {
+                    tally.partial += 1;
+                    tally.partial_drawn += u64::from(is_drawn);
+                }
+                Class::None => tally.class_extra += u64::from(is_drawn),
+            }
+        }
+    }
+    // What was drawn outside the bounds.
+    tally.class_extra += drawn;
+}
+
+#[test]
+fn random_scenes_are_covered_exactly() {
+    let mut renderer = Renderer::default();
+    let mut total = Tally::default();
+    for seed in 0..240 {
+        total.add(check(&mut renderer, &random_case(seed)));
+    }
+    println!("240 random scenes: {total:?}");
+    assert!(
+        total.covered > 1_000_000,
+        "too little was compared: {total:?}"
+    );
+    assert!(
+        total.clipped > 100,
+        "too few triangles were clipped: {total:?}"
+    );
+}

@@ -1,0 +1,13 @@
+//! The model's triangle pipeline against the exact rasterizer and the f64 scene.
+//!
+//! All scenes come from fixed seeds, and a failure names the case and the triangle. `--nocapture` shows the measured figures.
+
+mod cameras;
+mod coverage;
+mod fans;
+mod renderer;
+mod scenes;
+mod shade;
+mod special;
+mod vertices;
+mod visible;

@@ -1,0 +1,68 @@
+//! The model behind a simple face: a scene goes in, a picture and its trace come out.
+
+use glint_core::camera::View;
+use glint_core::mesh::Mesh;
+use glint_model::{DrawnTriangle, Options, Projected, ScreenVertex, Stats, Target, trace};
+use glint_reference::camera::Size;
+use glint_reference::exact::{ExactTriangle, SnappedVertex};
+
+use crate::scenes::Scene;
+
+/// Holds the buffers from one picture to the next.
+#[derive(Default)]
+pub struct Renderer {
+    /// RGB565 of the last picture.
+    pub colour: Vec<u16>,
+    /// Depth codes of the last picture.
+    pub depth: Vec<u32>,
+    /// What the last picture was made of.
+    pub drawn: Vec<DrawnTriangle>,
+    scratch: Vec<Projected>,
+}
+
+impl Renderer {
+    /// Draws a scene over 0.
+    pub fn draw(&mut self, scene: &Scene, view: &View, size: Size, cull: bool) -> Stats {
+        let bytes = scene.encode();
+        let mesh = Mesh::new_checked(&bytes).expect("the encoder makes good meshes");
+        let pixels = size.width as usize * size.height as usize;
+        self.colour.resize(pixels, 0);
+        self.depth.resize(pixels, 0);
+        self.scratch.resize(
+            scene.positions.len().max(self.scratch.len()),
+            Projected::Behind,
+        );
+        self.drawn.clear();
+        let drawn = &mut self.drawn;
+        let mut target = Target {
+            width: size.width,
+            height: size.height,
+            colour: &mut self.colour,
+            depth: &mut self.depth,
+        };
+        let options = Options { cull, clear: 0 };
+        trace(
+            &mesh,
+            view,
+            &mut target,
+            &mut self.scratch,
+            &options,
+            |triangle| drawn.push(*triangle),
+        )
+        .expect("buffers of the right size")
+    }
+}
+
+/// A vertex of the model as the exact rasterizer takes it.
+pub fn snapped(vertex: ScreenVertex) -> SnappedVertex {
+    SnappedVertex {
+        x: vertex.x.into(),
+        y: vertex.y.into(),
+        w: vertex.w.into(),
+    }
+}
+
+/// A drawn triangle for the exact rasterizer; `None` without an area.
+pub fn exact(drawn: &DrawnTriangle) -> Option<ExactTriangle> {
+    ExactTriangle::new(drawn.vertices.map(snapped))
+}

@@ -1,0 +1,234 @@
+//! Meshes, and random cases of every kind.
+
+use glint_core::mesh::{IndexedTriangle, Rgb565, Vertex, encode};
+use glint_reference::camera::{Camera, Size, Vector};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+use crate::cameras::{around, log_range};
+
+/// 1.0 in Q2.14.
+pub const ONE: f64 = 16384.0;
+
+pub const SMALL: Size = Size {
+    width: 320,
+    height: 180,
+};
+pub const MIDDLE: Size = Size {
+    width: 640,
+    height: 360,
+};
+pub const LARGE: Size = Size {
+    width: 1280,
+    height: 720,
+};
+
+/// Triangles in Q2.14.
+#[derive(Clone, Debug, Default)]
+pub struct Scene {
+    pub positions: Vec<[i16; 3]>,
+    pub triangles: Vec<[u32; 3]>,
+    /// A face normal for each triangle, or none for all.
+    pub normals: Vec<[i16; 3]>,
+    /// A colour for each triangle, or none for all.
+    pub colours: Vec<u16>,
+}
+
+impl Scene {
+    /// Adds a vertex at the nearest place that Q2.14 has, and returns its number.
+    pub fn vertex(&mut self, point: Vector) -> u32 {
+        self.positions.push(point.map(|x| (x * ONE).round() as i16));
+        self.positions.len() as u32 - 1
+    }
+
+    /// Adds a triangle with vertices of its own.
+    pub fn triangle(&mut self, points: [Vector; 3]) {
+        let indices = points.map(|point| self.vertex(point));
+        self.triangles.push(indices);
+    }
+
+    /// A triangle's corners as f64 has them, which is exactly.
+    pub fn corners(&self, triangle: usize) -> [Vector; 3] {
+        self.triangles[triangle]
+            .map(|index| self.positions[index as usize].map(|x| f64::from(x) / ONE))
+    }
+
+    /// All triangles' corners.
+    pub fn all_corners(&self) -> Vec<[Vector; 3]> {
+        (0..self.triangles.len()).map(|i| self.corners(i)).collect()
+    }
+
+    /// The scene with one of its triangles only.
+    pub fn only(&self, triangle: usize) -> Self {
+        Self {
+            positions: self.triangles[triangle]
+                .map(|index| self.positions[index as usize])
+                .to_vec(),
+            triangles: vec![[0, 1, 2]],
+            normals: self.normals.get(triangle).copied().into_iter().collect(),
+            colours: self.colours.get(triangle).copied().into_iter().collect(),
+        }
+    }
+
+    /// The mesh's bytes.
+    pub fn encode(&self) -> Vec<u8> {
+        let vertices: Vec<Vertex> = self
+            .positions
+            .iter()
+            .map(|&position| Vertex {
+                position,
+                ..Vertex::default()
+            })
+            .collect();
+        let triangles: Vec<IndexedTriangle> = self
+            .triangles
+            .iter()
+            .enumerate()
+            .map(|(i, &indices)| IndexedTriangle {
+                indices,
+                colour: Rgb565(self.colours.get(i).copied().unwrap_or(0xFFFF)),
+                normal: self.normals.get(i).copied().unwrap_or_default(),
+            })
+            .collect();
+        encode(&vertices, &triangles).expect("small meshes are never refused")
+    }
+}
+
+/// A scene and how it is looked at.
+pub struct Case {
+    pub name: String,
+    pub scene: Scene,
+    pub camera: Camera,
+    pub size: Size,
+    pub cull: bool,
+}
+
+/// The kinds of random cases, each with its own difficulty.
+const KINDS: [(&str, fn(&mut Pcg64) -> (Scene, Camera)); 8] = [
+    ("a cloud of small triangles", cloud),
+    ("triangles larger than the picture", large),
+    ("slivers", slivers),
+    ("a camera among the triangles", inside),
+    ("a narrow view", narrow),
+    ("a wide view", wide),
+    ("triangles of a pixel and less", tiny),
+    ("closed bodies cut by a far near plane", bodies),
+];
+
+/// The random case of a seed.
+pub fn random_case(seed: u64) -> Case {
+    let mut random = Pcg64::seed_from_u64(seed);
+    let kinds = KINDS.len() as u64;
+    let (kind, make) = KINDS[(seed % kinds) as usize];
+    let (mut scene, camera) = make(&mut random);
+    // Large pictures take time, so they get fewer triangles.
+    let (size, most) = match seed / kinds % 10 {
+        8 => (MIDDLE, 25),
+        9 => (LARGE, 10),
+        _ => (SMALL, usize::MAX),
+    };
+    scene.triangles.truncate(most);
+    Case {
+        name: format!("seed {seed}, {kind}"),
+        scene,
+        camera,
+        size,
+        cull: seed / kinds % 2 == 0,
+    }
+}
+
+fn point(random: &mut Pcg64, reach: f64) -> Vector {
+    [(); 3].map(|()| random.random_range(-reach..reach))
+}
+
+fn near(random: &mut Pcg64, middle: Vector, reach: f64) -> Vector {
+    let offset = point(random, reach);
+    [0, 1, 2].map(|i| middle[i] + offset[i])
+}
+
+/// `count` triangles of a size between two, spread in a box of half width `reach`.
+fn spread(random: &mut Pcg64, count: usize, reach: f64, sizes: [f64; 2]) -> Scene {
+    let mut scene = Scene::default();
+    for _ in 0..count {
+        let middle = point(random, reach);
+        let size = log_range(random, sizes[0], sizes[1]);
+        scene.triangle([(); 3].map(|()| near(random, middle, size)));
+    }
+    scene
+}
+
+fn cloud(random: &mut Pcg64) -> (Scene, Camera) {
+    let distance = random.random_range(2.0..5.0);
+    (
+        spread(random, 60, 0.5, [0.02, 0.4]),
+        around(random, distance, 0.9, 0.1),
+    )
+}
+
+fn large(random: &mut Pcg64) -> (Scene, Camera) {
+    let distance = random.random_range(2.0..5.0);
+    (
+        spread(random, 12, 0.4, [0.5, 1.5]),
+        around(random, distance, 0.5, 0.1),
+    )
+}
+
+fn slivers(random: &mut Pcg64) -> (Scene, Camera) {
+    let mut scene = Scene::default();
+    for _ in 0..50 {
+        let (a, b) = (point(random, 0.8), point(random, 0.8));
+        let t = random.random_range(-0.2..1.2);
+        let width = log_range(random, 0.2 / ONE, 0.01);
+        let on = [0, 1, 2].map(|i| a[i] + t * (b[i] - a[i]));
+        scene.triangle([a, b, near(random, on, width)]);
+    }
+    let distance = random.random_range(1.0..4.0);
+    (scene, around(random, distance, 0.6, 0.1))
+}
+
+fn inside(random: &mut Pcg64) -> (Scene, Camera) {
+    let (distance, near) = (random.random_range(0.05..0.6), log_range(random, 0.01, 0.3));
+    (
+        spread(random, 30, 0.7, [0.1, 1.0]),
+        around(random, distance, 0.9, near),
+    )
+}
+
+fn narrow(random: &mut Pcg64) -> (Scene, Camera) {
+    let (distance, half_width) = (random.random_range(0.5..4.0), log_range(random, 0.05, 0.2));
+    (
+        spread(random, 30, 0.3, [0.02, 1.5]),
+        around(random, distance, half_width, 0.05),
+    )
+}
+
+fn wide(random: &mut Pcg64) -> (Scene, Camera) {
+    let (distance, half_width) = (random.random_range(0.02..1.0), log_range(random, 1.5, 4.0));
+    (
+        spread(random, 30, 0.6, [0.1, 1.0]),
+        around(random, distance, half_width, 0.01),
+    )
+}
+
+fn tiny(random: &mut Pcg64) -> (Scene, Camera) {
+    let distance = random.random_range(1.0..3.0);
+    (
+        spread(random, 250, 0.4, [1.0 / ONE, 0.02]),
+        around(random, distance, 0.4, 0.1),
+    )
+}
+
+/// Tetrahedra, whose triangles share edges.
+fn bodies(random: &mut Pcg64) -> (Scene, Camera) {
+    let mut scene = Scene::default();
+    for _ in 0..10 {
+        let middle = point(random, 0.9);
+        let corners = [(); 4].map(|()| near(random, middle, 0.8));
+        let [a, b, c, d] = corners.map(|corner| scene.vertex(corner));
+        scene
+            .triangles
+            .extend([[a, b, c], [a, c, d], [a, d, b], [b, d, c]]);
+    }
+    let near = random.random_range(0.5..2.0);
+    (scene, around(random, 1.5, 0.9, near))
+}

@@ -1,0 +1,214 @@
+//! The named list of hard cases, each through all of the coverage checks.
+
+use glint_reference::camera::{Camera, Vector};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+use crate::cameras::{looking_at, view};
+use crate::coverage::check;
+use crate::renderer::Renderer;
+use crate::scenes::{Case, LARGE, MIDDLE, ONE, SMALL, Scene};
+
+/// One step of Q2.14.
+const STEP: f64 = 1.0 / ONE;
+
+fn case(name: &str, camera: Camera, triangles: &[[Vector; 3]]) -> Case {
+    let mut scene = Scene::default();
+    triangles
+        .iter()
+        .for_each(|&triangle| scene.triangle(triangle));
+    Case {
+        name: name.to_owned(),
+        scene,
+        camera,
+        size: SMALL,
+        cull: false,
+    }
+}
+
+/// Looks along +y from 2 away; x is right and z is up.
+fn ahead() -> Camera {
+    looking_at([0.0, -2.0, 0.0], [0.0; 3], 0.0, 0.5, 0.1)
+}
+
+/// Draws a case in all sizes and with culling, and returns the pixels covered at 320x180 without it.
+fn check_all(case: Case) -> usize {
+    let mut renderer = Renderer::default();
+    let mut case = case;
+    for (size, cull) in [
+        (LARGE, false),
+        (MIDDLE, false),
+        (SMALL, true),
+        (SMALL, false),
+    ] {
+        (case.size, case.cull) = (size, cull);
+        check(&mut renderer, &case);
+    }
+    covered(&mut renderer, &case)
+}
+
+/// Pixels covered by a whole case.
+fn covered(renderer: &mut Renderer, case: &Case) -> usize {
+    renderer.draw(&case.scene, &view(&case.camera), case.size, case.cull);
+    renderer.depth.iter().filter(|&&code| code != 0).count()
+}
+
+#[test]
+fn triangles_without_area_draw_nothing() {
+    let point = [0.1, 0.2, 0.3];
+    let triangles = [
+        // A point, a line there and back, a line on, and a plane seen edge-on.
+        [point; 3],
+        [[-0.5, 0.0, 0.0], [0.5, 0.0, 0.25], [-0.5, 0.0, 0.0]],
+        [[-0.5, 0.0, 0.0], [0.0, 0.0, 0.0], [0.5, 0.0, 0.0]],
+        [[0.0, -1.0, 0.0], [0.0, 1.0, 0.25], [0.0, 0.5, -0.5]],
+    ];
+    assert_eq!(check_all(case("no area", ahead(), &triangles)), 0);
+}
+
+#[test]
+fn slivers_a_thousand_times_longer_than_wide() {
+    let mut triangles = Vec::new();
+    for i in (1..40).step_by(3) {
+        let along = [0.9, 0.0, 0.02 * f64::from(i) - 0.4];
+        let back = along.map(|x: f64| -x);
+        // One to forty steps of Q2.14 wide, at either end and in the middle.
+        for (place, depth) in [(0.0, 0.0), (0.9, 1.0), (-0.9, -1.0)] {
+            let off = [place, depth, place * along[2] / 0.9 + f64::from(i) * STEP];
+            triangles.push([along, back, off]);
+        }
+    }
+    let covered = check_all(case("slivers", ahead(), &triangles));
+    assert!(covered > 100, "only {covered} pixels");
+}
+
+#[test]
+fn off_the_screen_on_every_side() {
+    let mut triangles = Vec::new();
+    // Beside the picture, beyond the guard band, behind the eye.
+    for far in [1.2, 1.9] {
+        for [x, z] in [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0], [1.0, 1.0]] {
+            let middle = [x * far, -0.5, z * far];
+            triangles.push([
+                [middle[0] + 0.05, middle[1], middle[2] + 0.05],
+                [middle[0] - 0.05, middle[1], middle[2] + 0.05],
+                [middle[0], middle[1], middle[2] - 0.05],
+            ]);
+        }
+    }
+    triangles.push([[0.1, -1.95, 0.1], [0.1, -1.99, -0.1], [-0.1, -1.97, 0.0]]);
+    assert_eq!(check_all(case("off screen", ahead(), &triangles)), 0);
+}
+
+#[test]
+fn one_triangle_over_the_whole_screen() {
+    let whole = [[-1.9, 0.5, -1.5], [1.9, 0.5, -1.5], [0.0, 0.5, 1.9]];
+    let camera = Camera {
+        half_width: 0.3,
+        ..ahead()
+    };
+    assert_eq!(check_all(case("full screen", camera, &[whole])), 320 * 180);
+    let tilted = [[-1.9, -1.0, -1.9], [1.9, -0.5, -1.9], [0.0, 1.9, 1.9]];
+    let near = looking_at([0.0, -1.0, 0.0], [0.0, 0.0, -0.1], 0.3, 0.05, 0.01);
+    assert_eq!(
+        check_all(case("full screen, narrow", near, &[tilted])),
+        320 * 180
+    );
+}
+
+#[test]
+fn an_apex_at_the_eye() {
+    let eye = [0.25, -0.5, 0.125];
+    let mut triangles = Vec::new();
+    for i in 0..12 {
+        let (sin, cos) = (f64::from(i) * 0.55).sin_cos();
+        triangles.push([eye, [cos, 1.0, sin], [0.7 * sin, 1.5, 0.7 * cos]]);
+        // Another whose apex is one step from the eye, on either side of the near plane.
+        let beside = [eye[0] + STEP, eye[1] + f64::from(i) * STEP * 32.0, eye[2]];
+        triangles.push([beside, [sin, 0.5, cos], [-cos, 1.5, sin]]);
+    }
+    for near in [0.01, 0.1, 2.0] {
+        let camera = looking_at(eye, [0.0, 1.0, 0.0], 0.7, 1.0, near);
+        let covered = check_all(case("apex at the eye", camera, &triangles));
+        assert!(
+            near > 1.0 || covered > 1000,
+            "near {near}: only {covered} pixels"
+        );
+    }
+}
+
+#[test]
+fn inside_a_cube_everything_is_covered() {
+    let corner = |i: usize| [0, 1, 2].map(|axis| if i >> axis & 1 == 0 { -0.5 } else { 0.5 });
+    let quads = [
+        [0, 1, 3, 2],
+        [4, 6, 7, 5],
+        [0, 4, 5, 1],
+        [2, 3, 7, 6],
+        [0, 2, 6, 4],
+        [1, 5, 7, 3],
+    ];
+    let triangles: Vec<[Vector; 3]> = quads
+        .iter()
+        .flat_map(|&[a, b, c, d]| [[a, b, c].map(corner), [a, c, d].map(corner)])
+        .collect();
+    let mut renderer = Renderer::default();
+    for (i, half_width) in [0.05, 0.9, 4.0].into_iter().enumerate() {
+        for (j, target) in [
+            [0.5, 0.4, 0.3],
+            [-0.2, 0.5, -0.5],
+            [0.0, 0.0, 0.5],
+            [0.5, 0.5, 0.5],
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            let eye = [0.1 * i as f64 - 0.1, 0.05 * j as f64, -0.1];
+            let camera = looking_at(eye, target, 0.5 + i as f64, half_width, 0.01);
+            let case = case("inside a cube", camera, &triangles);
+            check(&mut renderer, &case);
+            assert_eq!(
+                covered(&mut renderer, &case),
+                320 * 180,
+                "half_width {half_width}, towards {target:?}: a hole in the wall"
+            );
+        }
+    }
+}
+
+#[test]
+fn half_pixel_grid_where_many_centres_lie_on_edges() {
+    // At distance 1 and half_width 0.625, 1/256 is a pixel at 320x180, so vertices fall on centres and borders.
+    let camera = Camera {
+        eye: [0.0, 0.0, 0.0],
+        u: [1.0, 0.0, 0.0],
+        v: [0.0, 0.0, -1.0],
+        n: [0.0, 1.0, 0.0],
+        half_width: 0.625,
+        near: 0.1,
+    };
+    let half_pixel = 1.0 / 512.0;
+    let mut random = Pcg64::seed_from_u64(1);
+    let mut triangles = Vec::new();
+    for _ in 0..150 {
+        let middle = [
+            random.random_range(-250..250),
+            random.random_range(-130..130),
+        ];
+        triangles.push([(); 3].map(|()| {
+            let [x, z] =
+                middle.map(|from| f64::from(from + random.random_range(-40..40)) * half_pixel);
+            [x, 1.0, z]
+        }));
+    }
+    let case = case("half-pixel grid", camera, &triangles);
+    let mut renderer = Renderer::default();
+    renderer.draw(&case.scene, &view(&camera), SMALL, false);
+    let mut vertices = renderer.drawn.iter().flat_map(|drawn| drawn.vertices);
+    assert!(
+        vertices.all(|vertex| vertex.x % 128 == 0 && vertex.y % 128 == 0),
+        "off the half-pixel grid"
+    );
+    let covered = check_all(case);
+    assert!(covered > 3000, "only {covered} pixels");
+}

@@ -1,0 +1,147 @@
+//! Snapped vertices and their depth against the f64 projection.
+
+use std::fmt;
+
+use glint_core::mesh::MAX_RADIUS;
+use glint_model::vertex::{project, transform};
+use glint_model::{FrameSetup, Projected, ScreenVertex};
+use glint_reference::camera::{Camera, Size, Vector};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+use crate::cameras::{around, log_range, view};
+use crate::renderer::Renderer;
+use crate::scenes::{LARGE, ONE, SMALL, Scene};
+
+/// Distances from the f64 projection, in steps of the grid, and errors of depth in steps of 1/64 code.
+#[derive(Clone, Copy, Debug, Default)]
+struct Worst {
+    vertices: u64,
+    across: f64,
+    distance: f64,
+    /// The distance when the camera's own rounding counts too.
+    unrounded_distance: f64,
+    depth: f64,
+}
+
+impl fmt::Display for Worst {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(
+            f,
+            "{} vertices: {:.3}/256 px across, {:.3}/256 px in distance ({:.3}/256 from the unrounded camera), depth {:.3}/64 code",
+            self.vertices, self.across, self.distance, self.unrounded_distance, self.depth
+        )
+    }
+}
+
+/// What is left between a snapped vertex and a point of the screen, in steps of the grid.
+fn offset(snapped: ScreenVertex, exact: [f64; 2]) -> [f64; 2] {
+    [
+        f64::from(snapped.x) - exact[0] * 256.0,
+        f64::from(snapped.y) - exact[1] * 256.0,
+    ]
+}
+
+/// Projects random vertices through random cameras and compares those that are in the guard band.
+///
+/// `limit` is for the distance from the projection through the camera as it was asked for, in steps of the grid.
+fn compare(size: Size, seeds: std::ops::Range<u64>, limit: f64) -> Worst {
+    let mut worst = Worst::default();
+    for seed in seeds {
+        let mut random = Pcg64::seed_from_u64(seed);
+        let half_width = log_range(&mut random, 0.05, 4.0);
+        let near = log_range(&mut random, 0.01, 2.0);
+        let distance = log_range(&mut random, 0.1, 7.0);
+        let asked = around(&mut random, distance, half_width, near);
+        let view = view(&asked);
+        let camera = Camera::from(&view);
+        // A mesh of vertices that the picture shows, or nearly.
+        let setup = FrameSetup::new(&view, size.width, size.height, MAX_RADIUS).expect("a size");
+        let depth_scale = camera.depth_scale(f64::from(MAX_RADIUS) / ONE);
+        for _ in 0..400 {
+            let Some(position) = somewhere_in_view(&mut random, &camera, size) else {
+                continue;
+            };
+            let Projected::Visible(snapped) = project(&setup, &transform(&setup, position)) else {
+                continue;
+            };
+            let point = position.map(|x| f64::from(x) / ONE);
+            let seen = camera.coordinates(point);
+            let [dx, dy] = offset(snapped, camera.screen(seen, size));
+            let [ux, uy] = offset(snapped, asked.screen(asked.coordinates(point), size));
+            let depth = f64::from(snapped.w) - depth_scale / seen[2] * 64.0;
+            worst.vertices += 1;
+            worst.across = worst.across.max(dx.abs()).max(dy.abs());
+            worst.distance = worst.distance.max(dx.hypot(dy));
+            worst.unrounded_distance = worst.unrounded_distance.max(ux.hypot(uy));
+            worst.depth = worst.depth.max(depth.abs());
+            assert!(
+                ux.hypot(uy) <= limit,
+                "seed {seed}: {position:?} is {:.3}/256 px off: {snapped:?} for {:?}\n{asked:?}",
+                ux.hypot(uy),
+                asked.screen(asked.coordinates(point), size),
+            );
+            // The steps before it round w by less than the half step of its own rounding, so half a code is far.
+            assert!(
+                depth.abs() <= 32.0,
+                "seed {seed}: depth of {position:?} is {depth:.2}/64 codes off\n{asked:?}"
+            );
+        }
+    }
+    worst
+}
+
+/// A vertex of Q2.14 that falls on the picture or a little beside it, if the random direction meets any.
+fn somewhere_in_view(random: &mut Pcg64, camera: &Camera, size: Size) -> Option<[i16; 3]> {
+    let z = log_range(random, camera.near, 10.0);
+    let scale = camera.pixels_per_unit(size);
+    let mut place = |pixels: u32| (random.random_range(-0.7..0.7) * f64::from(pixels)) / scale * z;
+    let (x, y) = (place(size.width), place(size.height));
+    let world: Vector =
+        [0, 1, 2].map(|i| camera.eye[i] + x * camera.u[i] + y * camera.v[i] + z * camera.n[i]);
+    let inside = world.iter().all(|x| x.abs() < 1.9999);
+    inside.then(|| world.map(|x| (x * ONE).round() as i16))
+}
+
+#[test]
+fn snapped_vertices_are_within_a_step_of_the_projection_at_320x180() {
+    let worst = compare(SMALL, 0..600, 1.0);
+    println!("320x180: {worst}");
+    assert!(worst.vertices > 20_000, "{worst}");
+}
+
+#[test]
+fn snapped_vertices_are_within_two_steps_of_the_projection_at_1280x720() {
+    let worst = compare(LARGE, 0..600, 2.0);
+    println!("1280x720: {worst}");
+    assert!(worst.vertices > 20_000, "{worst}");
+}
+
+/// The vertices that the trace shows are those that the vertex stage makes, in some order, clipped triangles apart.
+#[test]
+fn drawn_triangles_have_the_snapped_vertices() {
+    let mut renderer = Renderer::default();
+    let mut random = Pcg64::seed_from_u64(7);
+    let camera = around(&mut random, 3.0, 0.9, 0.1);
+    let view = view(&camera);
+    let mut scene = Scene::default();
+    scene.triangle([[0.5, 0.5, 0.5], [-0.5, 0.5, -0.5], [0.5, -0.5, 0.0]]);
+    renderer.draw(&scene, &view, SMALL, false);
+    let exact = Camera::from(&view);
+    let drawn = renderer
+        .drawn
+        .first()
+        .expect("a triangle in the middle of the picture");
+    for corner in scene.corners(0) {
+        let point = exact.screen(exact.coordinates(corner), SMALL);
+        let near = drawn.vertices.iter().any(|&vertex| {
+            let [dx, dy] = offset(vertex, point);
+            dx.hypot(dy) <= 1.0
+        });
+        assert!(
+            near,
+            "{corner:?} at {point:?} is none of {:?}",
+            drawn.vertices
+        );
+    }
+}

@@ -1,0 +1,121 @@
+//! Whole scenes: the right surface in front, at the right depth, wherever snapping cannot change it.
+
+use glint_reference::camera::Camera;
+use glint_reference::surface::{Tolerance, Visible, visible_surfaces};
+
+use crate::cameras::{cross, dot, minus, view};
+use crate::coverage::snap_limit;
+use crate::renderer::Renderer;
+use crate::scenes::{Case, ONE, random_case};
+
+/// What has been compared.
+#[derive(Debug, Default)]
+struct Tally {
+    stable: u64,
+    surface: u64,
+    unstable: u64,
+    /// The largest error of depth on flat ground, in codes: what snapping does on a slope is taken off.
+    depth_error: f64,
+}
+
+/// Depth may be this many codes off, beside what a displaced vertex does.
+const DEPTH_LIMIT: f64 = 2.0;
+
+/// Gives every triangle a colour of its own and a normal towards the camera, so that shading leaves the colour.
+fn colour_by_number(case: &mut Case) {
+    let camera = &case.camera;
+    for (i, [a, b, c]) in case.scene.all_corners().into_iter().enumerate() {
+        let front = dot(cross(minus(b, a), minus(c, a)), minus(a, camera.eye)) < 0.0;
+        let towards = if front { -ONE } else { ONE };
+        case.scene
+            .normals
+            .push(camera.n.map(|x| (x * towards).round() as i16));
+        case.scene.colours.push(i as u16 + 1);
+    }
+}
+
+fn check(renderer: &mut Renderer, case: &Case, tally: &mut Tally) {
+    let view = view(&case.camera);
+    let camera = Camera::from(&view);
+    let corners = case.scene.all_corners();
+    let radius = corners
+        .iter()
+        .flatten()
+        .map(|&p| dot(p, p).sqrt())
+        .fold(0.0, f64::max);
+    // The mesh keeps the radius in Q.14, rounded up.
+    let radius = (radius * ONE).ceil() / ONE;
+    let depth_scale = camera.depth_scale(radius);
+    let tolerance = Tolerance {
+        pixels: snap_limit(case.size),
+        inverse_depth: DEPTH_LIMIT / depth_scale,
+    };
+    renderer.draw(&case.scene, &view, case.size, case.cull);
+    let expected = visible_surfaces(&camera, case.size, &corners, case.cull, tolerance);
+    for (i, visible) in expected.iter().enumerate() {
+        let (colour, code) = (renderer.colour[i], renderer.depth[i]);
+        let place = || {
+            let width = case.size.width as usize;
+            format!(
+                "{}, pixel ({}, {})\n{camera:?}",
+                case.name,
+                i % width,
+                i / width
+            )
+        };
+        match *visible {
+            Visible::Unstable => tally.unstable += 1,
+            Visible::Background => {
+                tally.stable += 1;
+                assert!(
+                    colour == 0 && code == 0,
+                    "{}: triangle {colour} − 1 on the background",
+                    place()
+                );
+            }
+            Visible::Surface {
+                triangle,
+                inverse_depth,
+                slope,
+            } => {
+                tally.stable += 1;
+                tally.surface += 1;
+                assert_eq!(
+                    usize::from(colour),
+                    triangle + 1,
+                    "{}: the wrong triangle in front",
+                    place()
+                );
+                let exact = (inverse_depth * depth_scale).max(1.0);
+                let moved = slope * tolerance.pixels * depth_scale;
+                let error = (f64::from(code) - exact).abs() - moved;
+                tally.depth_error = tally.depth_error.max(error);
+                assert!(
+                    error <= DEPTH_LIMIT,
+                    "{}: depth {code} for {exact:.2} ± {moved:.2}",
+                    place()
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn the_right_surface_is_in_front_wherever_it_is_certain() {
+    let mut renderer = Renderer::default();
+    let mut tally = Tally::default();
+    for seed in 10_000..10_200 {
+        let mut case = random_case(seed);
+        colour_by_number(&mut case);
+        check(&mut renderer, &case, &mut tally);
+    }
+    println!("visible surfaces of 200 random scenes: {tally:?}");
+    assert!(
+        tally.surface > 1_000_000,
+        "too little is certain: {tally:?}"
+    );
+    assert!(
+        tally.unstable * 20 < tally.stable,
+        "too much is uncertain: {tally:?}"
+    );
+}
