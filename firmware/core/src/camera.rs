@@ -164,6 +164,19 @@ impl View {
     }
 }
 
+/// The numbers as the console's `view` takes them: eye, u, v, n, half width and near plane, each in the shortest decimals
+/// that read back as the same bits.
+impl fmt::Display for View {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        self.eye.iter().try_for_each(|x| write!(f, "{x} "))?;
+        [self.u, self.v, self.n]
+            .as_flattened()
+            .iter()
+            .try_for_each(|x| write!(f, "{x} "))?;
+        write!(f, "{} {}", self.half_width, self.near)
+    }
+}
+
 /// Sine and cosine in 2^−30; the products of two are below 2^61.
 fn sines(angle: Turns) -> (i64, i64) {
     let (sin, cos) = sin_cos_q30(angle);

@@ -1,20 +1,27 @@
-//! The grammar of commands.
+//! The commands: what they are, and the table of their syntax.
 
 use core::fmt;
 
+use super::ParseError;
+use super::error::Fault;
+use super::grammar::Kind::{
+    self, Basis, Choice, Degrees, HalfTurn, Hexadecimal, Length, Name, Number, Scale,
+};
+use super::grammar::{Syntax, Value, Words};
 use crate::camera::View;
 use crate::fixed::{Q32_32, Turns};
+use crate::mesh::MAX_BYTES;
 
 /// A command, parsed and checked as far as it can be without the machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Command<'a> {
     /// Nothing was typed.
     Empty,
-    /// `help [CMD]`: write [`write_help`].
+    /// `help [COMMAND]`: write [`write_help`].
     Help(Option<&'a str>),
     /// `info`
     Info,
-    /// `scene [NAME]`
+    /// `scene [NAME]`; without a name it lists the scenes.
     Scene(Option<&'a str>),
     /// `camera R THETA PHI`
     Camera {
@@ -22,10 +29,10 @@ pub enum Command<'a> {
         r: Q32_32,
         /// The azimuth.
         theta: Turns,
-        /// The angle from the z axis.
+        /// The angle from the z axis, at most half a turn.
         phi: Turns,
     },
-    /// `view [EYE U V N HALF_WIDTH NEAR]`; without numbers it prints the view.
+    /// `view [...]`; without numbers it prints the view.
     View(Option<View>),
     /// `look YAW PITCH ROLL`
     Look {
@@ -50,7 +57,7 @@ pub enum Command<'a> {
     },
     /// `load BYTES CRC32`
     Load {
-        /// Length of the upload.
+        /// Length of the upload, at most [`MAX_BYTES`].
         bytes: u32,
         /// Its CRC-32.
         crc32: u32,
@@ -64,9 +71,9 @@ pub enum Command<'a> {
         /// As JSON.
         json: bool,
     },
-    /// `backend [cpu|gateware]`
+    /// `backend [cpu|gateware]`; without one it prints the present one.
     Backend(Option<Backend>),
-    /// `bench [KERNEL]`
+    /// `bench [KERNEL]`; without a name it runs all.
     Bench(Option<&'a str>),
     /// `selftest`
     SelfTest,
@@ -98,33 +105,213 @@ pub enum Size {
     W1280,
 }
 
-impl<'a> Command<'a> {
-    /// Parses a line.
-    ///
-    /// # Errors
-    /// What is wrong, where, and what was expected.
-    pub fn parse(_line: &'a str) -> Result<Self, ParseError<'a>> {
-        Ok(Self::Empty)
+impl Size {
+    /// All sizes.
+    pub const ALL: [Self; 3] = [Self::W320, Self::W640, Self::W1280];
+
+    /// Width and height in pixels.
+    pub const fn pixels(self) -> [u32; 2] {
+        match self {
+            Self::W320 => [320, 180],
+            Self::W640 => [640, 360],
+            Self::W1280 => [1280, 720],
+        }
     }
 }
 
-/// Writes the help of one command or the list of all.
+/// Makes a command of the values of its arguments; `None` when they are not those of its syntax, which a test excludes.
+pub(super) type Build = for<'a> fn(&[Value<'a>]) -> Option<Result<Command<'a>, Fault<'a>>>;
+
+/// Every command, in the order of the help.
+static COMMANDS: [(Syntax, Build); 19] = [
+    (
+        Syntax::new("help", "lists the commands, or explains one").with_optional(&[("COMMAND", Kind::Command)]),
+        |values| match *values {
+            [] => accept(Command::Help(None)),
+            [Value::Name(name)] => accept(Command::Help(Some(name))),
+            _ => None,
+        },
+    ),
+    (Syntax::new("info", "says what this machine is and what it holds"), |_| accept(Command::Info)),
+    (
+        Syntax::new("scene", "lists the scenes, or shows one").with_optional(&[("NAME", Name)]),
+        |values| match *values {
+            [] => accept(Command::Scene(None)),
+            [Value::Name(name)] => accept(Command::Scene(Some(name))),
+            _ => None,
+        },
+    ),
+    (
+        Syntax::new("camera", "looks at the origin from a distance of 2 to 5, by azimuth and angle from the z axis")
+            .with(&[("R", Length), ("THETA", Degrees), ("PHI", HalfTurn)]),
+        |values| match *values {
+            [Value::Length(r), Value::Angle(theta), Value::Angle(phi)] => accept(Command::Camera { r, theta, phi }),
+            _ => None,
+        },
+    ),
+    (
+        Syntax::new("view", "prints the camera, or sets it: the eye, the basis (right, down, forward), half width, near plane")
+            .with_optional(&[
+                ("EX", Length),
+                ("EY", Length),
+                ("EZ", Length),
+                ("UX", Basis),
+                ("UY", Basis),
+                ("UZ", Basis),
+                ("VX", Basis),
+                ("VY", Basis),
+                ("VZ", Basis),
+                ("NX", Basis),
+                ("NY", Basis),
+                ("NZ", Basis),
+                ("HALF_WIDTH", Scale),
+                ("NEAR", Scale),
+            ]),
+        view,
+    ),
+    (
+        Syntax::new("look", "turns the camera where it is: to the right, downwards, and about its direction")
+            .with(&[("YAW", Degrees), ("PITCH", Degrees), ("ROLL", Degrees)]),
+        |values| match *values {
+            [Value::Angle(yaw), Value::Angle(pitch), Value::Angle(roll)] => accept(Command::Look { yaw, pitch, roll }),
+            _ => None,
+        },
+    ),
+    (
+        Syntax::new("orbit", "goes once round the z axis, in so many frames").with_optional(&[("FRAMES", Number(MAX_ORBIT))]),
+        |values| match *values {
+            [] => accept(Command::Orbit { frames: None }),
+            [Value::Number(frames)] => accept(Command::Orbit { frames: Some(frames) }),
+            _ => None,
+        },
+    ),
+    (
+        Syntax::new("size", "sets the size of the picture: 320 180, 640 360 or 1280 720")
+            .with(&[("W", Number(1280)), ("H", Number(720))]),
+        |values| match *values {
+            [Value::Number(width), Value::Number(height)] => {
+                let size = Size::ALL.into_iter().find(|size| size.pixels() == [width, height]);
+                Some(size.map(Command::Size).ok_or(Fault::Size { width, height }))
+            }
+            _ => None,
+        },
+    ),
+    (
+        Syntax::new("frame", "downloads the last frame, its colours or its depth (binary)")
+            .with_optional(&[("depth", Choice(&["depth"]))]),
+        |values| accept(Command::Frame { depth: !values.is_empty() }),
+    ),
+    (
+        Syntax::new("load", "takes an upload of a mesh (binary) and shows it")
+            .with(&[("BYTES", Number(MAX_BYTES)), ("CRC32", Hexadecimal)]),
+        |values| match *values {
+            [Value::Number(bytes), Value::Number(crc32)] => accept(Command::Load { bytes, crc32 }),
+            _ => None,
+        },
+    ),
+    (Syntax::new("render", "draws the picture again and says what it took"), |_| accept(Command::Render)),
+    (
+        Syntax::new("cull", "leaves back faces out, or draws them").with(&[("on|off", Choice(&["on", "off"]))]),
+        |values| match *values {
+            [Value::Choice(off)] => accept(Command::Cull(off == 0)),
+            _ => None,
+        },
+    ),
+    (
+        Syntax::new("stats", "says what the last frame took").with_optional(&[("json", Choice(&["json"]))]),
+        |values| accept(Command::Stats { json: !values.is_empty() }),
+    ),
+    (
+        Syntax::new("backend", "says who renders, or chooses").with_optional(&[("cpu|gateware", Choice(&["cpu", "gateware"]))]),
+        |values| match *values {
+            [] => accept(Command::Backend(None)),
+            [Value::Choice(0)] => accept(Command::Backend(Some(Backend::Cpu))),
+            [Value::Choice(_)] => accept(Command::Backend(Some(Backend::Gateware))),
+            _ => None,
+        },
+    ),
+    (
+        Syntax::new("bench", "measures the kernels, or one").with_optional(&[("KERNEL", Name)]),
+        |values| match *values {
+            [] => accept(Command::Bench(None)),
+            [Value::Name(name)] => accept(Command::Bench(Some(name))),
+            _ => None,
+        },
+    ),
+    (Syntax::new("selftest", "tests the machine"), |_| accept(Command::SelfTest)),
+    (
+        Syntax::new("leds", "sets the 16 LEDs").with(&[("VALUE", Number(u16::MAX as u32))]),
+        |values| match *values {
+            // The syntax keeps it within 16 bits.
+            [Value::Number(value)] => accept(Command::Leds(value as u16)),
+            _ => None,
+        },
+    ),
+    (Syntax::new("buttons", "says which buttons and switches are on"), |_| accept(Command::Buttons)),
+    (Syntax::new("reboot", "starts the machine again"), |_| accept(Command::Reboot)),
+];
+
+/// The most frames an orbit has.
+const MAX_ORBIT: u32 = 3_600;
+
+const fn accept<'a>(command: Command<'a>) -> Option<Result<Command<'a>, Fault<'a>>> {
+    Some(Ok(command))
+}
+
+fn view<'a>(values: &[Value<'a>]) -> Option<Result<Command<'a>, Fault<'a>>> {
+    use Value::{Basis as B, Length as L, Scale as S};
+    Some(match *values {
+        [] => Ok(Command::View(None)),
+        #[rustfmt::skip]
+        [L(ex), L(ey), L(ez), B(ux), B(uy), B(uz), B(vx), B(vy), B(vz), B(nx), B(ny), B(nz), S(half_width), S(near)] => {
+            View::new_checked([ex, ey, ez], [ux, uy, uz], [vx, vy, vz], [nx, ny, nz], half_width, near)
+                .map(|view| Command::View(Some(view)))
+                .map_err(Fault::View)
+        },
+        _ => return None,
+    })
+}
+
+impl<'a> Command<'a> {
+    /// Parses a line: a command and its arguments, between blanks.
+    ///
+    /// # Errors
+    /// What is wrong, where, and what was expected.
+    pub fn parse(line: &'a str) -> Result<Self, ParseError<'a>> {
+        let mut words = Words::new(line);
+        let Some(word) = words.next() else {
+            return Ok(Self::Empty);
+        };
+        let unknown = ParseError(Fault::Unknown { word });
+        let (syntax, build) = find(word.text).ok_or(unknown)?;
+        let values = syntax.parse(words)?;
+        build(&values).ok_or(unknown)?.map_err(ParseError)
+    }
+}
+
+/// The entry of a command in the table.
+pub(super) fn find(name: &str) -> Option<&'static (Syntax, Build)> {
+    COMMANDS.iter().find(|(syntax, _)| syntax.name == name)
+}
+
+/// Writes the help of one command or, when there is none of the name, the list of all.
 ///
 /// # Errors
 /// Those of the writer.
-pub fn write_help(_out: &mut dyn fmt::Write, _command: Option<&str>) -> fmt::Result {
-    Ok(())
-}
-
-/// Why a line is not a command; its `Display` is what follows `error: `.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ParseError<'a> {
-    /// The word that is wrong.
-    pub word: &'a str,
-}
-
-impl fmt::Display for ParseError<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str(self.word)
+pub fn write_help(out: &mut dyn fmt::Write, command: Option<&str>) -> fmt::Result {
+    match command.and_then(find) {
+        Some((syntax, _)) => {
+            writeln!(out, "{syntax}\n  {}", syntax.summary)?;
+            syntax
+                .arguments
+                .iter()
+                .try_for_each(|(name, kind)| writeln!(out, "  {name}: {kind}"))
+        }
+        None => {
+            COMMANDS.iter().try_for_each(|(syntax, _)| {
+                writeln!(out, "{:10}{}", syntax.name, syntax.summary)
+            })?;
+            writeln!(out, "`help COMMAND` says how one is used")
+        }
     }
 }

@@ -1,33 +1,324 @@
 //! The line editor.
 
+use core::fmt::{self, Write};
+
+use heapless::{Deque, Vec};
+
+use super::PROMPT;
+
 /// The longest line in bytes.
 pub const LINE_MAX: usize = 320;
+/// How many lines are remembered.
+pub const HISTORY: usize = 8;
+
+type Line = Vec<u8, LINE_MAX>;
 
 /// What a byte led to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event<'a> {
     /// Nothing to do; the echo has been written.
     None,
-    /// A line was ended.
+    /// A line was ended. It is ASCII, without control characters.
     Line(&'a str),
     /// A line was ended that was longer than [`LINE_MAX`]: answer with an error.
     Overlong,
-    /// Ctrl-C.
+    /// Ctrl-C: the line was given up.
     Interrupt,
 }
 
-/// Turns bytes into lines, with echo, editing keys and a history.
-#[derive(Debug, Default)]
-pub struct LineEditor {}
+/// Turns the bytes of a terminal into lines, with echo, editing keys and a history.
+///
+/// | key | effect |
+/// |---|---|
+/// | Enter (CR, LF or both) | ends the line |
+/// | Backspace, Delete | delete the character before or at the cursor |
+/// | ←, →, Home, End, Ctrl-B, -F, -A, -E | move the cursor |
+/// | ↑, ↓, Ctrl-P, Ctrl-N | bring back an earlier or later line |
+/// | Ctrl-U, Ctrl-K, Ctrl-W | delete to the start, to the end, or the word before the cursor |
+/// | Ctrl-L | writes prompt and line again |
+/// | Ctrl-C | gives the line up |
+///
+/// A zero byte drops the line in silence: it ends the leftovers of a binary transfer. Other control characters, unknown
+/// escape sequences and bytes beyond ASCII do nothing.
+#[derive(Debug)]
+pub struct LineEditor {
+    line: Line,
+    /// Where the next character goes, at most the line's length.
+    cursor: usize,
+    /// The line is longer than there is room for.
+    overlong: bool,
+    /// The line was handed out and is to be cleared.
+    ended: bool,
+    /// The last byte was a carriage return, so that a line feed belongs to it.
+    returned: bool,
+    escape: Escape,
+    /// Older lines last.
+    history: Deque<Line, HISTORY>,
+    /// Which line of the history is shown, from 1; 0 is the one that was typed.
+    shown: usize,
+    /// What was typed before the history was looked at.
+    typed: Line,
+}
+
+/// Within an escape sequence.
+#[derive(Clone, Copy, Debug)]
+enum Escape {
+    No,
+    /// After Escape.
+    Begun,
+    /// After Escape and `[` or `O`, with the number so far.
+    Number(u8),
+}
+
+enum Input {
+    Nothing,
+    Character(u8),
+    Key(Key),
+}
+
+/// What can be done to a line.
+enum Key {
+    Left,
+    Right,
+    Home,
+    End,
+    Up,
+    Down,
+    Backspace,
+    Delete,
+    DeleteToStart,
+    DeleteToEnd,
+    DeleteWord,
+    Redraw,
+}
 
 impl LineEditor {
     /// An empty line and no history.
     pub const fn new() -> Self {
-        Self {}
+        Self {
+            line: Vec::new(),
+            cursor: 0,
+            overlong: false,
+            ended: false,
+            returned: false,
+            escape: Escape::No,
+            history: Deque::new(),
+            shown: 0,
+            typed: Vec::new(),
+        }
     }
 
-    /// Takes a byte; what the terminal shall show is written to `echo`.
-    pub fn on_byte(&mut self, _byte: u8, _echo: &mut dyn core::fmt::Write) -> Event<'_> {
+    /// Takes a byte. What the terminal shall show is written to `echo`, which is to send a carriage return with every line feed; its
+    /// errors are ignored, as nobody sees the echo then.
+    pub fn on_byte(&mut self, byte: u8, echo: &mut dyn Write) -> Event<'_> {
+        if self.ended {
+            self.clear();
+        }
+        let returned = core::mem::replace(&mut self.returned, byte == b'\r');
+        match byte {
+            0 => self.clear(),
+            0x03 => {
+                self.clear();
+                let _ = echo.write_str("^C\n");
+                return Event::Interrupt;
+            }
+            b'\n' if returned => {}
+            b'\r' | b'\n' => return self.end(echo),
+            _ => {
+                // Nobody sees an echo that cannot be written.
+                let _ = match self.decode(byte) {
+                    Input::Nothing => Ok(()),
+                    Input::Character(byte) => self.insert(byte, echo),
+                    Input::Key(key) => self.press(key, echo),
+                };
+            }
+        }
         Event::None
     }
+
+    /// Ends the line and remembers it.
+    fn end(&mut self, echo: &mut dyn Write) -> Event<'_> {
+        let _ = echo.write_str("\n");
+        self.ended = true;
+        if self.overlong {
+            return Event::Overlong;
+        }
+        let blank = self.line.iter().all(|&byte| byte == b' ');
+        if !blank && self.history.back() != Some(&self.line) {
+            if self.history.is_full() {
+                self.history.pop_front();
+            }
+            // There is room now.
+            let _ = self.history.push_back(self.line.clone());
+        }
+        Event::Line(text(&self.line))
+    }
+
+    fn clear(&mut self) {
+        self.line.clear();
+        self.cursor = 0;
+        self.overlong = false;
+        self.ended = false;
+        self.escape = Escape::No;
+        self.shown = 0;
+    }
+
+    /// Tells characters from keys, some of which are sequences of bytes.
+    fn decode(&mut self, byte: u8) -> Input {
+        let key = match (self.escape, byte) {
+            (_, 0x1B) => {
+                self.escape = Escape::Begun;
+                return Input::Nothing;
+            }
+            (Escape::Begun, b'[' | b'O') => {
+                self.escape = Escape::Number(0);
+                return Input::Nothing;
+            }
+            (Escape::Number(number), b'0'..=b'9') => {
+                self.escape = Escape::Number(number.saturating_mul(10).saturating_add(byte - b'0'));
+                return Input::Nothing;
+            }
+            // Further parameters tell which of Shift, Alt and Ctrl were held.
+            (Escape::Number(_), b' '..=b'?') => return Input::Nothing,
+            (Escape::Number(number), last) => {
+                self.escape = Escape::No;
+                match (last, number) {
+                    (b'A', _) => Key::Up,
+                    (b'B', _) => Key::Down,
+                    (b'C', _) => Key::Right,
+                    (b'D', _) => Key::Left,
+                    (b'H', _) | (b'~', 1 | 7) => Key::Home,
+                    (b'F', _) | (b'~', 4 | 8) => Key::End,
+                    (b'~', 3) => Key::Delete,
+                    _ => return Input::Nothing,
+                }
+            }
+            (Escape::Begun, _) => {
+                self.escape = Escape::No;
+                return Input::Nothing;
+            }
+            (Escape::No, b' '..=b'~') => return Input::Character(byte),
+            (Escape::No, 0x01) => Key::Home,
+            (Escape::No, 0x02) => Key::Left,
+            (Escape::No, 0x05) => Key::End,
+            (Escape::No, 0x06) => Key::Right,
+            (Escape::No, 0x08 | 0x7F) => Key::Backspace,
+            (Escape::No, 0x0B) => Key::DeleteToEnd,
+            (Escape::No, 0x0C) => Key::Redraw,
+            (Escape::No, 0x0E) => Key::Down,
+            (Escape::No, 0x10) => Key::Up,
+            (Escape::No, 0x15) => Key::DeleteToStart,
+            (Escape::No, 0x17) => Key::DeleteWord,
+            (Escape::No, _) => return Input::Nothing,
+        };
+        Input::Key(key)
+    }
+
+    fn insert(&mut self, byte: u8, echo: &mut dyn Write) -> fmt::Result {
+        if self.overlong || self.line.insert(self.cursor, byte).is_err() {
+            self.overlong = true;
+            return Ok(());
+        }
+        self.cursor += 1;
+        echo.write_char(byte.into())?;
+        self.write_tail(echo)
+    }
+
+    fn press(&mut self, key: Key, echo: &mut dyn Write) -> fmt::Result {
+        let length = self.line.len();
+        match key {
+            Key::Left => self.move_to(self.cursor.saturating_sub(1), echo),
+            Key::Right => self.move_to((self.cursor + 1).min(length), echo),
+            Key::Home => self.move_to(0, echo),
+            Key::End => self.move_to(length, echo),
+            Key::Up => self.show(self.shown + 1, echo),
+            Key::Down => self
+                .shown
+                .checked_sub(1)
+                .map_or(Ok(()), |shown| self.show(shown, echo)),
+            Key::Backspace => self.delete(self.cursor.saturating_sub(1), self.cursor, echo),
+            Key::Delete => self.delete(self.cursor, (self.cursor + 1).min(length), echo),
+            Key::DeleteToStart => self.delete(0, self.cursor, echo),
+            Key::DeleteToEnd => self.delete(self.cursor, length, echo),
+            Key::DeleteWord => {
+                let before = self.line.get(..self.cursor).unwrap_or_default();
+                let word = before.trim_ascii_end();
+                let start = word
+                    .iter()
+                    .rposition(|&byte| byte == b' ')
+                    .map_or(0, |blank| blank + 1);
+                self.delete(start, self.cursor, echo)
+            }
+            Key::Redraw => {
+                write!(
+                    echo,
+                    "\r\x1B[K{PROMPT}{}",
+                    text(self.line.get(..self.cursor).unwrap_or_default())
+                )?;
+                self.write_tail(echo)
+            }
+        }
+    }
+
+    fn move_to(&mut self, cursor: usize, echo: &mut dyn Write) -> fmt::Result {
+        let from = core::mem::replace(&mut self.cursor, cursor);
+        match cursor {
+            _ if cursor < from => write!(echo, "\x1B[{}D", from - cursor),
+            _ if cursor > from => write!(echo, "\x1B[{}C", cursor - from),
+            _ => Ok(()),
+        }
+    }
+
+    /// Deletes what lies between two places, one of which is the cursor's.
+    fn delete(&mut self, start: usize, end: usize, echo: &mut dyn Write) -> fmt::Result {
+        let Some(tail) = self.line.get(end..).filter(|_| start < end) else {
+            return Ok(());
+        };
+        let length = start + tail.len();
+        self.line.copy_within(end.., start);
+        self.line.truncate(length);
+        // What did not fit is lost, but what is left is a line again.
+        self.overlong = false;
+        self.move_to(start, echo)?;
+        echo.write_str("\x1B[K")?;
+        self.write_tail(echo)
+    }
+
+    /// Shows a line of the history, counted from the last, or what was typed.
+    fn show(&mut self, shown: usize, echo: &mut dyn Write) -> fmt::Result {
+        if self.shown == 0 {
+            self.typed.clone_from(&self.line);
+        }
+        let line = match shown.checked_sub(1) {
+            Some(back) => self.history.iter().rev().nth(back),
+            None => Some(&self.typed),
+        };
+        let Some(line) = line else { return Ok(()) };
+        self.line.clone_from(line);
+        self.shown = shown;
+        self.overlong = false;
+        self.move_to(0, echo)?;
+        write!(echo, "\x1B[K{}", text(&self.line))?;
+        self.cursor = self.line.len();
+        Ok(())
+    }
+
+    /// Writes what follows the cursor and goes back to it.
+    fn write_tail(&self, echo: &mut dyn Write) -> fmt::Result {
+        match self.line.get(self.cursor..) {
+            Some(tail) if !tail.is_empty() => write!(echo, "{}\x1B[{}D", text(tail), tail.len()),
+            _ => Ok(()),
+        }
+    }
+}
+
+impl Default for LineEditor {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// A line's bytes are ASCII.
+fn text(bytes: &[u8]) -> &str {
+    core::str::from_utf8(bytes).unwrap_or_default()
 }

@@ -1,0 +1,91 @@
+//! Why a line is not a command.
+
+use core::fmt;
+
+use super::grammar::{Argument, Syntax, Word};
+use crate::camera::ViewError;
+
+/// Why a line is not a command; its `Display` says what is wrong, where, and what was expected.
+#[derive(Clone, Copy, Debug)]
+pub struct ParseError<'a>(pub(super) Fault<'a>);
+
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Fault<'a> {
+    /// There is no such command.
+    Unknown { word: Word<'a> },
+    /// The line ends before this argument.
+    Missing {
+        syntax: &'static Syntax,
+        argument: &'static Argument,
+    },
+    /// This argument is something else.
+    Wrong {
+        syntax: &'static Syntax,
+        argument: &'static Argument,
+        word: Word<'a>,
+    },
+    /// This word and what follows are too much.
+    Surplus {
+        syntax: &'static Syntax,
+        word: Word<'a>,
+    },
+    /// The picture cannot have this size.
+    Size { width: u32, height: u32 },
+    /// The numbers are not a camera.
+    View(ViewError),
+}
+
+impl fmt::Display for ParseError<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self.0 {
+            Fault::Unknown { word } => write!(f, "{word}: expected a command, `help` lists them"),
+            Fault::Missing {
+                syntax,
+                argument: (name, kind),
+            } => {
+                write!(
+                    f,
+                    "{}: {name} is missing: expected {kind}, as in `{syntax}`",
+                    syntax.name
+                )
+            }
+            Fault::Wrong {
+                syntax,
+                argument: (name, kind),
+                word,
+            } => {
+                write!(f, "{}: {name} is {word}: expected {kind}", syntax.name)
+            }
+            Fault::Surplus { syntax, word } => {
+                write!(
+                    f,
+                    "{}: {word}: expected the end of the line, as in `{syntax}`",
+                    syntax.name
+                )
+            }
+            Fault::Size { width, height } => {
+                write!(
+                    f,
+                    "size: {width} x {height}: expected 320 180, 640 360 or 1280 720"
+                )
+            }
+            Fault::View(error) => write!(f, "view: {error}"),
+        }
+    }
+}
+
+impl core::error::Error for ParseError<'_> {}
+
+/// The word, shortened and without control characters, and its place.
+impl fmt::Display for Word<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        const LONGEST: usize = 24;
+        let mut rest = self.text.chars();
+        f.write_str("\"")?;
+        for c in rest.by_ref().take(LONGEST) {
+            write!(f, "{}", c.escape_debug())?;
+        }
+        f.write_str(if rest.next().is_some() { "...\"" } else { "\"" })?;
+        write!(f, " (column {})", self.column)
+    }
+}
