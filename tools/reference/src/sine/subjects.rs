@@ -4,7 +4,8 @@ use std::f64::consts::PI;
 use std::ops::Range;
 
 use cordic::CordicNumber;
-use fixed::types::{I4F28, I16F16};
+use fixed::traits::Fixed;
+use fixed::types::{I4F28, I8F24, I16F16};
 use glint_core::fixed::Turns;
 use glint_core::trig;
 use micromath::F32Ext;
@@ -32,7 +33,7 @@ pub struct Subject {
     pub shipped: bool,
     steps: u64,
     run: Box<Run>,
-    show: fn(u64) -> String,
+    show: Box<dyn Fn(u64) -> String + Sync>,
 }
 
 /// Adds the errors of every so many of a range of steps.
@@ -119,14 +120,21 @@ pub fn subjects() -> Vec<Subject> {
                 (sin, cos)
             },
         ),
-        radians(["cordic", "cordic", "I16F16", "Q16.16"], 16, |bits| {
-            let (sin, cos) = cordic_sin_cos(I16F16::from_bits(bits));
-            (sin.to_bits(), cos.to_bits())
-        }),
-        radians(["cordic_i4f28", "cordic", "I4F28", "Q4.28"], 28, |bits| {
-            let (sin, cos) = cordic_sin_cos(I4F28::from_bits(bits));
-            (sin.to_bits(), cos.to_bits())
-        }),
+        radians(
+            ["cordic_i16f16", "cordic", "I16F16", "Q16.16"],
+            16,
+            cordic_sin_cos::<I16F16>,
+        ),
+        radians(
+            ["cordic", "cordic", "I8F24", "Q8.24"],
+            24,
+            cordic_sin_cos::<I8F24>,
+        ),
+        radians(
+            ["cordic_i4f28", "cordic", "I4F28", "Q4.28"],
+            28,
+            cordic_sin_cos::<I4F28>,
+        ),
         floats(["micromath", "micromath", "F32Ext", "f32"], |angle| {
             (F32Ext::sin(angle), F32Ext::cos(angle))
         }),
@@ -148,8 +156,9 @@ fn q30<const ORDER: u32>(angle: u32) -> (i32, i32) {
     (sin.to_bits(), cos.to_bits())
 }
 
-fn cordic_sin_cos<T: CordicNumber>(angle: T) -> (T, T) {
-    cordic::sin_cos(angle)
+fn cordic_sin_cos<T: CordicNumber + Fixed<Bits = i32>>(angle: i32) -> (i32, i32) {
+    let (sin, cos) = cordic::sin_cos(T::from_bits(angle));
+    (sin.to_bits(), cos.to_bits())
 }
 
 /// 2^-`fraction_bits`.
@@ -196,7 +205,7 @@ fn phases(
                 }
             }
         }),
-        show: |angle| format!("0x{angle:08x} ({:.6}°)", angle as f64 / TURN * 360.0),
+        show: Box::new(move |angle| format!("0x{angle:08x} ({:.6}°)", angle as f64 / TURN * 360.0)),
     }
 }
 
@@ -208,10 +217,6 @@ fn radians(
 ) -> Subject {
     let ulp = last_place(fraction_bits);
     let last = (PI / ulp) as i64;
-    let show: fn(u64) -> String = match fraction_bits {
-        16 => |bits| format!("{:.7} rad", bits as i64 as f64 * last_place(16)),
-        _ => |bits| format!("{:.10} rad", bits as i64 as f64 * last_place(28)),
-    };
     Subject {
         kernel,
         family,
@@ -234,7 +239,7 @@ fn radians(
                 statistics.add(bits as u64, truth, got, 1.0);
             }
         }),
-        show,
+        show: Box::new(move |bits| format!("{:.9} rad", bits as i64 as f64 * ulp)),
     }
 }
 
@@ -268,7 +273,7 @@ fn floats(
                 statistics.add(bits.into(), SinCos::of_radians(angle.into()), got, to_next);
             }
         }),
-        show: |bits| format!("{:?} rad", f32::from_bits(bits as u32)),
+        show: Box::new(move |bits| format!("{:?} rad", f32::from_bits(bits as u32))),
     }
 }
 
@@ -303,7 +308,7 @@ fn degrees() -> Subject {
                 statistics.add(angle, truth, got, 1.0);
             }
         }),
-        show: |angle| format!("{:.5}°", angle as f64 / 65536.0),
+        show: Box::new(move |angle| format!("{:.5}°", angle as f64 / 65536.0)),
     }
 }
 

@@ -103,8 +103,11 @@ pub struct Case {
     pub cull: bool,
 }
 
+/// Makes a scene and a camera for it.
+type Kind = fn(&mut Pcg64) -> (Scene, Camera);
+
 /// The kinds of random cases, each with its own difficulty.
-const KINDS: [(&str, fn(&mut Pcg64) -> (Scene, Camera)); 8] = [
+const KINDS: [(&str, Kind); 8] = [
     ("a cloud of small triangles", cloud),
     ("triangles larger than the picture", large),
     ("slivers", slivers),
@@ -133,7 +136,7 @@ pub fn random_case(seed: u64) -> Case {
         scene,
         camera,
         size,
-        cull: seed / kinds % 2 == 0,
+        cull: (seed / kinds).is_multiple_of(2),
     }
 }
 

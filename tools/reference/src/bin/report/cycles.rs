@@ -1,0 +1,161 @@
+//! Cycles of the kernels on the SoC, from the firmware's `bench sine`.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use anyhow::{Context, Result, bail};
+use indicatif::{ProgressBar, ProgressStyle};
+use virtual_board::{Start, VirtualBoard};
+
+use crate::in_workspace;
+
+/// Cycles of one call.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Figures {
+    pub min: u64,
+    pub median: u64,
+    pub max: u64,
+}
+
+/// Figures by the kernel's name.
+pub type Cycles = BTreeMap<String, Figures>;
+
+/// Finds the lines `bench NAME min MIN median MEDIAN max MAX cycles` in what the console printed.
+///
+/// # Errors
+/// When a line starts so and goes on otherwise, and when there is none.
+pub fn parse(console: &str) -> Result<Cycles> {
+    let mut cycles = Cycles::new();
+    for line in console.lines() {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        match words[..] {
+            [
+                "bench",
+                name,
+                "min",
+                min,
+                "median",
+                median,
+                "max",
+                max,
+                "cycles",
+            ] => {
+                let number = |word: &str| {
+                    word.parse().with_context(|| {
+                        format!("{line:?}: expected a number of cycles, found {word:?}")
+                    })
+                };
+                let figures = Figures {
+                    min: number(min)?,
+                    median: number(median)?,
+                    max: number(max)?,
+                };
+                cycles.insert(name.to_owned(), figures);
+            }
+            ["bench", _, "min", ..] => {
+                bail!("{line:?}: expected \"bench NAME min MIN median MEDIAN max MAX cycles\"")
+            }
+            _ => {}
+        }
+    }
+    if cycles.is_empty() {
+        bail!(
+            "no line of the form \"bench NAME min MIN median MEDIAN max MAX cycles\" in the console's output"
+        );
+    }
+    Ok(cycles)
+}
+
+/// The console's prompt.
+const PROMPT: &str = "glint> ";
+/// Cycles for the start and for all kernels, each a multiple of what they take.
+const LIMIT: u64 = 500_000_000;
+
+/// Runs `bench sine` on the virtual board.
+///
+/// # Errors
+/// When the board or the firmware is not built, or does not answer.
+pub fn measure(library: &Path, firmware: &Path) -> Result<Cycles> {
+    for (path, command) in [
+        (library, "cargo xtask gateware"),
+        (firmware, "cargo xtask firmware"),
+    ] {
+        if !path.exists() {
+            let path = path.strip_prefix(in_workspace("")).unwrap_or(path);
+            bail!("{} is not there, `{command}` makes it", path.display());
+        }
+    }
+    let firmware = std::fs::read(firmware)?;
+    let mut board = VirtualBoard::builder()
+        .library(library)
+        .start(Start::Fast {
+            firmware: &firmware,
+        })
+        .build()?;
+    let spinner = ProgressBar::new_spinner().with_style(ProgressStyle::with_template(
+        "{spinner} `bench sine` on the virtual board, {pos} million cycles",
+    )?);
+    board.read_until(PROMPT, LIMIT)?;
+    board.uart_write(b"bench sine\r");
+    let mut reply = Vec::new();
+    let answered = board.run_until(LIMIT, |board| {
+        spinner.set_position(board.cycles() / 1_000_000);
+        board.uart_read(&mut reply);
+        ends(&reply)
+    });
+    spinner.finish_and_clear();
+    let reply = String::from_utf8_lossy(&reply);
+    if !answered {
+        bail!("`bench sine` did not end within {LIMIT} cycles; so far: {reply:?}");
+    }
+    parse(&reply).context("`bench sine` on the virtual board")
+}
+
+/// Whether a command's reply is whole: its last line is `ok` or an error.
+fn ends(reply: &[u8]) -> bool {
+    let last = reply.strip_suffix(PROMPT.as_bytes()).unwrap_or(reply);
+    let last = last
+        .strip_suffix(b"\n")
+        .map(|whole| whole.trim_ascii_end().rsplit(|&byte| byte == b'\n').next());
+    last.flatten()
+        .is_some_and(|line| line == b"ok" || line.starts_with(b"error:"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_found_among_others() {
+        let console = "glint> bench sine\r\nbench sin_cos_q14 min 90 median 101 max 260 cycles\r\n\
+                       bench idsp min 40 median 44 max 90 cycles\r\nok\r\nglint> ";
+        let cycles = parse(console).expect("two lines");
+        let expected = Figures {
+            min: 90,
+            median: 101,
+            max: 260,
+        };
+        assert_eq!(cycles["sin_cos_q14"], expected);
+        assert_eq!(cycles.len(), 2);
+    }
+
+    #[test]
+    fn a_reply_ends_in_ok_or_an_error() {
+        assert!(ends(
+            b"bench sine\r\nbench idsp min 1 median 1 max 1 cycles\r\nok\r\n"
+        ));
+        assert!(ends(b"bench sine\r\nok\r\nglint> "));
+        assert!(ends(b"bench sine\r\nerror: bench: no kernel\r\n"));
+        assert!(!ends(
+            b"bench sine\r\nbench idsp min 1 median 1 max 1 cycles\r\n"
+        ));
+        assert!(!ends(b"bench sine\r\nok"));
+    }
+
+    #[test]
+    fn what_is_no_figure_is_refused() {
+        assert!(parse("error: unknown command\n").is_err());
+        assert!(parse("bench idsp min 40 median many max 90 cycles\n").is_err());
+        assert!(parse("bench idsp min 40 max 90 cycles\n").is_err());
+    }
+}
