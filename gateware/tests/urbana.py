@@ -10,8 +10,10 @@ from litex.soc.integration.builder import Builder
 from glint_soc.register_map import OPTIONAL_BLOCKS
 from glint_soc.urbana import UrbanaSoC
 
-from tools import BUILD, TESTS
+from tools import BUILD, TESTS, run_yosys
 
+_OUTPUT = BUILD / "urbana"
+_GATEWARE = _OUTPUT / "gateware"
 _PINS = TESTS / "urbana_pins.csv"
 
 # Clocks that must come out of the FPGA's MMCMs and PLLs exactly: MHz and phase.
@@ -30,10 +32,9 @@ _CONSTRAINTS = [
 
 def generate():
     """Elaborates the board (no BIOS, no vendor tool) and returns its XDC, Verilog and Vivado script as text."""
-    folder = BUILD / "urbana"
     soc = UrbanaSoC(build_id=0, blocks=OPTIONAL_BLOCKS)
-    Builder(soc, output_dir=str(folder), compile_software=False, compile_gateware=False).build()
-    return tuple((folder / "gateware" / f"glint_urbana.{kind}").read_text() for kind in ("xdc", "v", "tcl"))
+    Builder(soc, output_dir=str(_OUTPUT), compile_software=False, compile_gateware=False).build()
+    return tuple((_GATEWARE / f"glint_urbana.{kind}").read_text() for kind in ("xdc", "v", "tcl"))
 
 
 def check_pins(xdc, verilog, _script):
@@ -104,8 +105,23 @@ def check_clocks(_xdc, verilog, _script):
     return problems
 
 
+def check_complete(_xdc, verilog, script):
+    """Each module of the design exists, the FPGA's own cells among them, and has the ports it is connected by."""
+    # LiteX ties the unused outputs of its serializers to 0, which Vivado takes and Yosys does not.
+    open_outputs = _GATEWARE / "open_outputs.v"
+    open_outputs.write_text(re.sub(r"(\.SHIFTOUT\d +)\(1'd0\)", r"\1()", verilog))
+    sources = [open_outputs if source.endswith("/glint_urbana.v") else source
+               for source in re.findall(r"^read_verilog (?:-v )?\{(.+)\}$", script, re.M)]
+    if open_outputs not in sources:
+        return ["the Vivado script does not read glint_urbana.v"]
+    run_yosys("read_verilog -lib +/xilinx/cells_sim.v +/xilinx/cells_xtra.v; hierarchy -check -top glint_urbana", sources,
+              folder=_GATEWARE) # where its memory images are
+    return []
+
+
 CHECKS = {
     "pins as in the table, both ways": check_pins,
     "constraints and script": check_constraints,
     "clocks exact": check_clocks,
+    "design complete": check_complete,
 }
