@@ -1,7 +1,7 @@
 //! The clipper, for triangles that cross the near plane or leave the guard band.
 //!
-//! It works on camera coordinates, before the division. An intersection depends on the two ends of its edge alone and
-//! always starts from the inside one, so both triangles at an edge cut it at the same vertex.
+//! It works on camera coordinates, before the division. An intersection is the exact one, rounded: it does not depend on
+//! the direction of its edge, so both triangles at an edge cut it at the same vertex.
 
 use crate::frame::FrameSetup;
 use crate::vertex::CameraVertex;
@@ -56,35 +56,37 @@ impl Plane {
     pub const ALL: [Self; 5] = [Self::Near, Self::Left, Self::Right, Self::Top, Self::Bottom];
 
     /// How far inside a vertex is, times a positive number that depends on the plane alone; negative is outside. Exact.
-    ///
-    /// The sides count in half pixels. |X|·2^14 < 2^55.7 and 5375·|Z| < 2^53.1, so the sum is below 2^56.
     pub fn distance(self, frame: &FrameSetup, vertex: &CameraVertex) -> i64 {
-        let side = |sign: i64, x: i64, size: u32| {
-            let from_centre = 4095 - sign * i64::from(size);
-            from_centre * vertex.z - sign * (x << (24 - frame.scale_shift))
-        };
+        let [width, height] = [frame.width, frame.height].map(i64::from);
         match self {
             Self::Near => vertex.z - frame.near,
-            Self::Left => side(-1, vertex.x, frame.width),
-            Self::Right => side(1, vertex.x, frame.width),
-            Self::Top => side(-1, vertex.y, frame.height),
-            Self::Bottom => side(1, vertex.y, frame.height),
+            Self::Left => (4095 + width) * vertex.z + half_pixels(frame, vertex.x),
+            Self::Right => (4095 - width) * vertex.z - half_pixels(frame, vertex.x),
+            Self::Top => (4095 + height) * vertex.z + half_pixels(frame, vertex.y),
+            Self::Bottom => (4095 - height) * vertex.z - half_pixels(frame, vertex.y),
         }
     }
 
-    fn cut(self, frame: &FrameSetup, polygon: &Polygon) -> Polygon {
-        let mut left = Polygon::EMPTY;
+    /// Puts what the plane leaves of `polygon` into `left`. Returns whether it cuts anything; if not, nothing is put.
+    fn cut(self, frame: &FrameSetup, polygon: &Polygon, left: &mut Polygon) -> bool {
         let vertices = polygon.vertices();
         let Some(mut from) = vertices.last() else {
-            return left;
+            return false;
         };
+        if vertices
+            .iter()
+            .all(|vertex| self.distance(frame, vertex) >= 0)
+        {
+            return false;
+        }
+        left.len = 0;
         let mut from_distance = self.distance(frame, from);
         for to in vertices {
             let to_distance = self.distance(frame, to);
             match (from_distance >= 0, to_distance >= 0) {
                 (true, true) => left.push(*to),
                 (true, false) => {
-                    left.push(self.intersection(frame, from, from_distance, to, to_distance))
+                    left.push(self.intersection(frame, from, from_distance, to, to_distance));
                 }
                 (false, true) => {
                     left.push(self.intersection(frame, to, to_distance, from, from_distance));
@@ -94,7 +96,7 @@ impl Plane {
             }
             (from, from_distance) = (to, to_distance);
         }
-        left
+        true
     }
 
     /// Where the edge from a vertex inside to one outside meets the plane.
@@ -120,13 +122,34 @@ impl Plane {
     }
 }
 
+/// X or Y of a vertex in half pixels, in the units of Z: below 2^55.7, and 5375·|Z| is below 2^53.1.
+fn half_pixels(frame: &FrameSetup, x: i64) -> i64 {
+    x << (24 - frame.scale_shift)
+}
+
+/// Whether a triangle is wholly off one side of the picture, behind the eye or not: the side's plane goes through the eye.
+///
+/// Clipping would find nothing that covers a pixel, in much more time.
+pub fn off_picture(frame: &FrameSetup, triangle: &[CameraVertex; 3]) -> bool {
+    let off = |x: fn(&CameraVertex) -> i64, size: u32| {
+        let places = triangle
+            .each_ref()
+            .map(|v| (half_pixels(frame, x(v)), i64::from(size) * v.z));
+        places.iter().all(|(x, border)| *x < -border) || places.iter().all(|(x, border)| x > border)
+    };
+    off(|v| v.x, frame.width) || off(|v| v.y, frame.height)
+}
+
 /// Cuts a triangle to the view volume, starting with its first vertex.
 pub fn clip(frame: &FrameSetup, triangle: [CameraVertex; 3]) -> Polygon {
-    let mut polygon = Polygon::EMPTY;
+    let (mut polygon, mut left) = (Polygon::EMPTY, Polygon::EMPTY);
     triangle.into_iter().for_each(|vertex| polygon.push(vertex));
-    Plane::ALL
-        .iter()
-        .fold(polygon, |polygon, plane| plane.cut(frame, &polygon))
+    for plane in Plane::ALL {
+        if plane.cut(frame, &polygon, &mut left) {
+            core::mem::swap(&mut polygon, &mut left);
+        }
+    }
+    polygon
 }
 
 /// x·part/whole to nearest, ties up, for part ≤ whole < 2^61 and whole > 0.

@@ -25,7 +25,8 @@ pub use render::{
 };
 pub use vertex::{Projected, ScreenVertex};
 
-/// x·2^−shift rounded to nearest, ties up. `shift` is at least 1, and x has room for half a unit of the result.
+/// x·2^−shift rounded to nearest, ties up. `shift` is in 1…31, and x has room for half a unit of the result.
 const fn nearest(x: i64, shift: u32) -> i64 {
-    (x + (1 << (shift - 1))) >> shift
+    // The mask changes nothing; with it, a 32-bit processor need not care for larger shifts.
+    (x + (1u32 << (shift - 1)) as i64) >> (shift & 31)
 }

@@ -5,7 +5,7 @@ use core::fmt;
 use glint_core::camera::View;
 use glint_core::mesh::{Chunk, Mesh, Rgb565, Triangle};
 
-use crate::clip::clip;
+use crate::clip::{clip, off_picture};
 use crate::frame::FrameSetup;
 use crate::raster;
 use crate::setup::{Bounds, Facing, Oriented, Setup};
@@ -164,11 +164,11 @@ pub fn trace(
 }
 
 /// Where a triangle goes after the vertex stage.
-enum Path {
+enum Path<'a> {
     /// Wholly off one side of the picture, or behind.
     Unseen,
     /// To the setup.
-    Regular([ScreenVertex; 3]),
+    Regular([&'a ScreenVertex; 3]),
     /// To the clipper.
     Exception,
 }
@@ -232,36 +232,30 @@ impl<F: FnMut(&DrawnTriangle)> Renderer<'_, '_, F> {
         }
     }
 
-    fn path(&self, triangle: &Triangle, scratch: &[Projected]) -> Path {
+    fn path<'s>(&self, triangle: &Triangle, scratch: &'s [Projected]) -> Path<'s> {
         // A checked mesh has all the vertices it names.
         let [Some(a), Some(b), Some(c)] = triangle.indices.map(|i| scratch.get(usize::from(i)))
         else {
             return Path::Unseen;
         };
-        match (*a, *b, *c) {
-            (Projected::Behind, Projected::Behind, Projected::Behind) => Path::Unseen,
-            (Projected::Behind, ..) | (_, Projected::Behind, _) | (.., Projected::Behind) => {
-                Path::Exception
-            }
-            (
-                Projected::Visible(a) | Projected::BeyondGuard(a),
-                Projected::Visible(b) | Projected::BeyondGuard(b),
-                Projected::Visible(c) | Projected::BeyondGuard(c),
-            ) if self.off_screen([a, b, c]) => Path::Unseen,
-            (Projected::Visible(a), Projected::Visible(b), Projected::Visible(c)) => {
-                Path::Regular([a, b, c])
+        match [a, b, c].map(Projected::place) {
+            [None, None, None] => Path::Unseen,
+            [Some(a), Some(b), Some(c)] if self.off_screen([a, b, c]) => Path::Unseen,
+            [Some(p), Some(q), Some(r)] if ![a, b, c].iter().any(|v| v.is_beyond_guard()) => {
+                Path::Regular([p, q, r])
             }
             _ => Path::Exception,
         }
     }
 
     /// Whether all vertices are off the same side of the picture.
-    fn off_screen(&self, vertices: [ScreenVertex; 3]) -> bool {
-        let off = |places: [i32; 3], size: u32| {
-            places.iter().all(|&x| x < 0) || places.iter().all(|&x| x >= (size << 8) as i32)
+    fn off_screen(&self, [a, b, c]: [&ScreenVertex; 3]) -> bool {
+        // A bitwise and is negative when all are.
+        let off = |[a, b, c]: [i32; 3], size: u32| {
+            let last = (size << 8) as i32 - 1;
+            a & b & c < 0 || (last - a) & (last - b) & (last - c) < 0
         };
-        off(vertices.map(|v| v.x), self.frame.width)
-            || off(vertices.map(|v| v.y), self.frame.height)
+        off([a.x, b.x, c.x], self.frame.width) || off([a.y, b.y, c.y], self.frame.height)
     }
 
     /// Clips a triangle and draws what is left as a fan. Returns whether a part of it reached the walker.
@@ -279,10 +273,11 @@ impl<F: FnMut(&DrawnTriangle)> Renderer<'_, '_, F> {
         } else {
             [c, a, b]
         };
-        let polygon = clip(
-            &self.frame,
-            positions.map(|position| transform(&self.frame, position)),
-        );
+        let corners = positions.map(|position| transform(&self.frame, position));
+        if off_picture(&self.frame, &corners) {
+            return false;
+        }
+        let polygon = clip(&self.frame, corners);
         let frame = self.frame;
         let mut places = polygon.vertices().iter().map(|vertex| snap(&frame, vertex));
         let (Some(first), Some(mut last)) = (places.next(), places.next()) else {
@@ -290,7 +285,7 @@ impl<F: FnMut(&DrawnTriangle)> Renderer<'_, '_, F> {
         };
         let mut any = false;
         for place in places {
-            any |= self.draw(index, triangle, [first, last, place], true);
+            any |= self.draw(index, triangle, [&first, &last, &place], true);
             last = place;
         }
         any
@@ -301,16 +296,17 @@ impl<F: FnMut(&DrawnTriangle)> Renderer<'_, '_, F> {
         &mut self,
         index: u32,
         triangle: &Triangle,
-        vertices: [ScreenVertex; 3],
+        vertices: [&ScreenVertex; 3],
         clipped: bool,
     ) -> bool {
-        let Some(oriented) = Oriented::new(vertices) else {
+        let Some(oriented) = Oriented::new(vertices.map(|v| *v)) else {
             return false;
         };
         if self.cull && oriented.facing == Facing::Back {
             return false;
         }
-        let Some(bounds) = Bounds::new(&vertices, self.frame.width, self.frame.height) else {
+        let Some(bounds) = Bounds::new(&oriented.vertices, self.frame.width, self.frame.height)
+        else {
             return false;
         };
         let colour = lit(

@@ -1,5 +1,6 @@
 //! Triangle setup: facing, bounds, edge functions and the depth plane.
 
+use crate::nearest;
 use crate::reciprocal::Reciprocal;
 use crate::vertex::ScreenVertex;
 
@@ -169,11 +170,11 @@ impl DepthPlane {
 const fn gradient(numerator: i64, Reciprocal { y, lead }: Reciprocal) -> i64 {
     let shift = lead + 8;
     let high = (numerator >> 24) * y as i64;
-    let low = (numerator & 0xFF_FFFF) * y as i64 + (1 << (shift - 1));
+    let low = (numerator & 0xFF_FFFF) * y as i64;
     if shift <= 24 {
-        (high << (24 - shift)) + (low >> shift)
+        (high << (24 - shift)) + nearest(low, shift)
     } else {
-        (high + (low >> 24)) >> (shift - 24)
+        nearest(high + (low >> 24), shift - 24)
     }
 }
 

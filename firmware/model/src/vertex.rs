@@ -40,6 +40,21 @@ pub enum Projected {
     BeyondGuard(ScreenVertex),
 }
 
+impl Projected {
+    /// Where on the screen it is, inside the guard band or not; `None` when it is behind.
+    pub const fn place(&self) -> Option<&ScreenVertex> {
+        match self {
+            Self::Visible(place) | Self::BeyondGuard(place) => Some(place),
+            Self::Behind => None,
+        }
+    }
+
+    /// Whether it is beyond the near plane but outside the guard band.
+    pub const fn is_beyond_guard(&self) -> bool {
+        matches!(self, Self::BeyondGuard(_))
+    }
+}
+
 /// Steps 1 and 2: into the camera's frame.
 ///
 /// |P| ≤ 2·√3 is less than 2^15.8 in its units and a row is shorter than 2^24.01 (2^23.01 for n), so each product is below 2^39.9;
