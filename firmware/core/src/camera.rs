@@ -199,9 +199,12 @@ fn scaled(r: Q32_32, x: i64) -> Q32_32 {
 }
 
 fn check_eye(eye: [Q32_32; 3]) -> Result<(), ViewError> {
-    let limit = i128::from(MAX_EYE) << 32;
-    // Three squares of 64-bit numbers do not overflow 128 bits.
-    let squared: i128 = eye.map(|x| i128::from(x.to_bits()).pow(2)).iter().sum();
+    let limit = u128::from(MAX_EYE) << 32;
+    // Each square is at most 2^126.
+    let squared: u128 = eye
+        .map(|x| u128::from(x.to_bits().unsigned_abs()).pow(2))
+        .iter()
+        .sum();
     if squared <= limit.pow(2) {
         Ok(())
     } else {

@@ -1,6 +1,6 @@
 //! Sine and cosine together, from one table.
 //!
-//! An octant of the circle is cut at 64 equal steps; [`NODES`] holds both functions there (512 bytes) and a Taylor
+//! An octant of the circle is cut at 64 equal steps; `NODES` holds both functions there (512 bytes) and a Taylor
 //! polynomial about the nearest node does the rest. With e = d − d³/6 and h = d²/2, where d is the distance to
 //! the node in radians, at most π/512:
 //!

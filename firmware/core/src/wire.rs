@@ -84,7 +84,48 @@ impl Manifest {
     }
 }
 
-/// What both sides have in common.
+/// Either side of a transfer, for code that carries bytes between it and a line.
+///
+/// The methods are those of [`Sender`] and [`Receiver`].
+pub trait Party {
+    /// Takes bytes that came and returns how many of them belong to the transfer.
+    fn on_bytes(&mut self, now_ms: u64, bytes: &[u8]) -> usize;
+    /// Writes the next frame, if there is one to send, and returns its length.
+    fn poll(&mut self, now_ms: u64, out: &mut [u8]) -> usize;
+    /// Gives the transfer up and tells the other side.
+    fn abort(&mut self, now_ms: u64);
+    /// Where the transfer is, as of the last `poll`.
+    fn state(&self) -> State;
+    /// Bytes that have arrived without a gap, and bytes in all.
+    fn progress(&self) -> (u32, u32);
+}
+
+macro_rules! party {
+    ($side:ident) => {
+        impl Party for $side<'_> {
+            fn on_bytes(&mut self, now_ms: u64, bytes: &[u8]) -> usize {
+                $side::on_bytes(self, now_ms, bytes)
+            }
+            fn poll(&mut self, now_ms: u64, out: &mut [u8]) -> usize {
+                $side::poll(self, now_ms, out)
+            }
+            fn abort(&mut self, now_ms: u64) {
+                $side::abort(self, now_ms);
+            }
+            fn state(&self) -> State {
+                $side::state(self)
+            }
+            fn progress(&self) -> (u32, u32) {
+                $side::progress(self)
+            }
+        }
+    };
+}
+
+party!(Sender);
+party!(Receiver);
+
+/// What both sides do with what they read.
 trait Peer {
     /// Acts on a valid frame.
     fn on_message(&mut self, now_ms: u64, session: u8, message: Message);

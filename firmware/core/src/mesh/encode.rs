@@ -53,7 +53,10 @@ pub fn encode(vertices: &[Vertex], triangles: &[IndexedTriangle]) -> Result<Vec<
                 (used.len() - 1) as u16
             });
         }
-        records.push(record(indices, triangle.colour.0, triangle.normal));
+        let normal = triangle.normal.map(|x| x as u16);
+        records.push(record(
+            indices.into_iter().chain([triangle.colour.0]).chain(normal),
+        ));
     }
     if used.is_empty() {
         if vertices.is_empty() {
@@ -65,36 +68,13 @@ pub fn encode(vertices: &[Vertex], triangles: &[IndexedTriangle]) -> Result<Vec<
     Ok(writer.finish())
 }
 
-fn record(first: [u16; 3], colour: u16, normal: [i16; 3]) -> [u8; RECORD] {
-    let mut bytes = [0; RECORD];
-    let halves = first
-        .into_iter()
-        .chain([colour])
-        .chain(normal.map(|x| x as u16));
-    bytes
-        .as_chunks_mut()
-        .0
-        .iter_mut()
-        .zip(halves)
-        .for_each(|(bytes, half)| *bytes = half.to_le_bytes());
-    bytes
-}
-
-fn vertex_record(vertex: &Vertex) -> [u8; RECORD] {
-    let mut bytes = [0; RECORD];
-    let halves = vertex
-        .position
-        .into_iter()
-        .chain(vertex.normal)
-        .map(|x| x as u16)
-        .chain([vertex.colour.0]);
-    bytes
-        .as_chunks_mut()
-        .0
-        .iter_mut()
-        .zip(halves)
-        .for_each(|(bytes, half)| *bytes = half.to_le_bytes());
-    bytes
+/// A record of half words, zeros behind them.
+fn record(halves: impl IntoIterator<Item = u16>) -> [u8; RECORD] {
+    let mut record = [0; RECORD];
+    for (bytes, half) in record.as_chunks_mut().0.iter_mut().zip(halves) {
+        *bytes = half.to_le_bytes();
+    }
+    record
 }
 
 /// Chunks so far, and the sums for the header.
@@ -131,7 +111,9 @@ impl Writer {
                 .map(|&x| u32::from(x.unsigned_abs()).pow(2))
                 .sum();
             self.squared_radius = self.squared_radius.max(squared);
-            self.records.push(vertex_record(vertex));
+            let vectors = [vertex.position, vertex.normal];
+            let halves = vectors.into_iter().flatten().map(|x| x as u16);
+            self.records.push(record(halves.chain([vertex.colour.0])));
         }
         self.records.extend(triangles);
         self.chunks += 1;

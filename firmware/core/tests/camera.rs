@@ -1,0 +1,331 @@
+//! Cameras against f64 and against what makes a camera.
+
+use std::f64::consts::TAU;
+
+use glint_core::camera::{DEFAULT_HALF_WIDTH, DEFAULT_NEAR, View, ViewError};
+use glint_core::fixed::{Q2_23, Q32_32, Turns, U4_28};
+
+type Vector = [f64; 3];
+
+fn dot(a: Vector, b: Vector) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn cross(a: Vector, b: Vector) -> Vector {
+    [[1, 2], [2, 0], [0, 1]].map(|[i, j]| a[i] * b[j] - a[j] * b[i])
+}
+
+fn difference(a: Vector, b: Vector) -> f64 {
+    a.iter()
+        .zip(b)
+        .map(|(a, b)| (a - b).abs())
+        .fold(0.0, f64::max)
+}
+
+fn basis(view: &View) -> [Vector; 3] {
+    [view.u(), view.v(), view.n()].map(|row| row.map(Q2_23::to_num))
+}
+
+/// How far a basis is from orthonormal and right-handed: the largest of |a·a − 1|, |a·b| and |u × v − n|.
+fn deviation(view: &View) -> f64 {
+    let [u, v, n] = basis(view);
+    [
+        dot(u, u) - 1.0,
+        dot(v, v) - 1.0,
+        dot(n, n) - 1.0,
+        dot(u, v),
+        dot(v, n),
+        dot(n, u),
+        difference(cross(u, v), n),
+    ]
+    .map(f64::abs)
+    .into_iter()
+    .fold(0.0, f64::max)
+}
+
+fn radians(angle: u32) -> f64 {
+    f64::from(angle) / 2f64.powi(32) * TAU
+}
+
+/// Angles that meet the axes, the diagonals and their neighbours, and many others.
+fn angles(count: u32) -> impl Iterator<Item = u32> + Clone {
+    let edges = (0..8_u32)
+        .flat_map(|octant| [u32::MAX, 0, 1].map(|offset| (octant << 29).wrapping_add(offset)));
+    edges.chain((0..count).map(|k| k.wrapping_mul(2_654_435_769).wrapping_add(k >> 3)))
+}
+
+/// Checks a view against what it should be and returns its deviation.
+#[track_caller]
+fn check(view: &View, expected: [Vector; 3]) -> f64 {
+    for (row, expected) in basis(view).into_iter().zip(expected) {
+        // Half a unit of Q2.23 and the errors of the sines and of one product.
+        assert!(
+            difference(row, expected) <= 2f64.powi(-24) * 1.05,
+            "{row:?} {expected:?}"
+        );
+    }
+    let again = View::new_checked(
+        view.eye(),
+        view.u(),
+        view.v(),
+        view.n(),
+        view.half_width(),
+        view.near(),
+    );
+    assert_eq!(again, Ok(*view));
+    deviation(view)
+}
+
+#[test]
+fn the_spherical_camera_is_what_it_should_be() {
+    let mut largest: f64 = 0.0;
+    let (mut eye_error, r) = (0.0_f64, Q32_32::lit("3.7"));
+    for theta in angles(700) {
+        for phi in angles(700).filter(|&phi| phi <= 1 << 31) {
+            let view = View::spherical(r, Turns(theta), Turns(phi)).expect("in range");
+            let ((st, ct), (sp, cp)) = (radians(theta).sin_cos(), radians(phi).sin_cos());
+            let outward = [sp * ct, sp * st, cp];
+            let expected = [[-st, ct, 0.0], [cp * ct, cp * st, -sp], outward.map(|x| -x)];
+            largest = largest.max(check(&view, expected));
+            let eye = view.eye().map(Q32_32::to_num);
+            eye_error = eye_error.max(difference(eye, outward.map(|x| x * r.to_num::<f64>())));
+        }
+    }
+    println!(
+        "spherical: orthonormal within 2^{:.2}, eye within {eye_error:.2e}",
+        largest.log2()
+    );
+    assert!(largest <= 2f64.powi(-20), "{largest}");
+    assert!(eye_error <= 1e-8, "{eye_error}");
+}
+
+#[test]
+fn the_free_camera_is_what_it_should_be() {
+    let mut largest: f64 = 0.0;
+    for yaw in angles(50) {
+        for pitch in angles(50) {
+            for roll in angles(50) {
+                let view = View::look([Q32_32::ONE; 3], Turns(yaw), Turns(pitch), Turns(roll))
+                    .expect("in range");
+                let ((sy, cy), (sp, cp), (sr, cr)) = (
+                    radians(yaw).sin_cos(),
+                    radians(pitch).sin_cos(),
+                    radians(roll).sin_cos(),
+                );
+                let (right, up) = ([cy, 0.0, -sy], [sp * sy, cp, sp * cy]);
+                let mix = |a: f64, b: f64| [0, 1, 2].map(|i| a * right[i] + b * up[i]);
+                let swap = |[x, y, z]: Vector| [x, z, y];
+                let expected = [
+                    swap(mix(cr, sr)),
+                    swap(mix(sr, -cr)),
+                    swap([cp * sy, -sp, cp * cy]),
+                ];
+                largest = largest.max(check(&view, expected));
+            }
+        }
+    }
+    println!("free: orthonormal within 2^{:.2}", largest.log2());
+    assert!(largest <= 2f64.powi(-20), "{largest}");
+}
+
+#[test]
+fn known_places_are_exact() {
+    let [zero, one] = [Q2_23::ZERO, Q2_23::ONE];
+    let r = Q32_32::from_num(2);
+    // On the x axis, z is up on the screen.
+    let view = View::spherical(r, Turns(0), Turns::QUARTER).expect("in range");
+    assert_eq!(view.eye(), [r, Q32_32::ZERO, Q32_32::ZERO]);
+    assert_eq!(
+        [view.u(), view.v(), view.n()],
+        [[zero, one, zero], [zero, zero, -one], [-one, zero, zero]]
+    );
+    assert_eq!(
+        (view.half_width(), view.near()),
+        (DEFAULT_HALF_WIDTH, DEFAULT_NEAR)
+    );
+    // At the poles the basis follows from theta.
+    let view = View::spherical(r, Turns(0), Turns(0)).expect("in range");
+    assert_eq!(view.eye(), [Q32_32::ZERO, Q32_32::ZERO, r]);
+    assert_eq!(
+        [view.u(), view.v(), view.n()],
+        [[zero, one, zero], [one, zero, zero], [zero, zero, -one]]
+    );
+    let view = View::spherical(r, Turns::QUARTER, Turns::HALF).expect("in range");
+    assert_eq!(view.eye(), [Q32_32::ZERO, Q32_32::ZERO, -r]);
+    assert_eq!(
+        [view.u(), view.v(), view.n()],
+        [[-one, zero, zero], [zero, -one, zero], [zero, zero, one]]
+    );
+    // With all angles 0 the free camera looks along +y; a positive pitch looks down, a positive yaw to the right.
+    let look =
+        |yaw, pitch, roll| View::look([Q32_32::ZERO; 3], yaw, pitch, roll).expect("in range");
+    let view = look(Turns(0), Turns(0), Turns(0));
+    assert_eq!(
+        [view.u(), view.v(), view.n()],
+        [[one, zero, zero], [zero, zero, -one], [zero, one, zero]]
+    );
+    assert_eq!(
+        look(Turns(0), Turns::QUARTER, Turns(0)).n(),
+        [zero, zero, -one]
+    );
+    assert_eq!(
+        look(Turns::QUARTER, Turns(0), Turns(0)).n(),
+        [one, zero, zero]
+    );
+    assert_eq!(
+        look(Turns(0), Turns(0), Turns::QUARTER).u(),
+        [zero, zero, one]
+    );
+}
+
+/// A good camera to spoil.
+fn numbers() -> ([Q32_32; 3], [[Q2_23; 3]; 3], U4_28, U4_28) {
+    let view = View::look(
+        [Q32_32::ONE; 3],
+        Turns(123_456_789),
+        Turns(987_654_321),
+        Turns(1 << 28),
+    )
+    .expect("in range");
+    (
+        view.eye(),
+        [view.u(), view.v(), view.n()],
+        view.half_width(),
+        view.near(),
+    )
+}
+
+#[test]
+fn what_is_out_of_range_is_refused() {
+    let (eye, [u, v, n], half_width, near) = numbers();
+    let with_eye = |eye| View::new_checked(eye, u, v, n, half_width, near).map(|view| view.eye());
+    let eight = Q32_32::from_num(8);
+    for eye in [
+        [eight, Q32_32::ZERO, Q32_32::ZERO],
+        [Q32_32::lit("4.6188"); 3],
+        [-Q32_32::lit("4.6188"); 3],
+    ] {
+        assert_eq!(with_eye(eye), Ok(eye));
+    }
+    let too_far = [
+        [eight + Q32_32::DELTA, Q32_32::ZERO, Q32_32::ZERO],
+        [Q32_32::lit("4.6189"); 3],
+        [Q32_32::MIN; 3],
+        [Q32_32::MAX; 3],
+    ];
+    for eye in too_far {
+        assert_eq!(with_eye(eye), Err(ViewError::Eye(eye)));
+        assert_eq!(
+            View::look(eye, Turns(0), Turns(0), Turns(0)),
+            Err(ViewError::Eye(eye))
+        );
+    }
+    let with_half_width =
+        |x| View::new_checked(eye, u, v, n, x, near).map(|view| view.half_width());
+    for x in ["0.05", "0.9", "4"].map(|x| x.parse().expect("a number")) {
+        assert_eq!(with_half_width(x), Ok(x));
+    }
+    for x in ["0", "0.0499", "4.0001", "15.9"].map(|x| x.parse().expect("a number")) {
+        assert_eq!(with_half_width(x), Err(ViewError::HalfWidth(x)));
+    }
+    let with_near = |x| View::new_checked(eye, u, v, n, half_width, x).map(|view| view.near());
+    for x in ["0.01", "0.1", "2"].map(|x| x.parse().expect("a number")) {
+        assert_eq!(with_near(x), Ok(x));
+    }
+    for x in ["0", "0.0099", "2.0001", "15.9"].map(|x| x.parse().expect("a number")) {
+        assert_eq!(with_near(x), Err(ViewError::Near(x)));
+    }
+    for r in [
+        Q32_32::lit("1.9999"),
+        Q32_32::lit("5.0001"),
+        Q32_32::MIN,
+        Q32_32::MAX,
+    ] {
+        assert_eq!(
+            View::spherical(r, Turns(0), Turns(0)),
+            Err(ViewError::Radius(r))
+        );
+    }
+    let beyond = Turns((1 << 31) + 1);
+    assert_eq!(
+        View::spherical(Q32_32::from_num(2), Turns(0), beyond),
+        Err(ViewError::Polar(beyond))
+    );
+}
+
+#[test]
+fn a_basis_is_orthonormal_to_1e_4() {
+    let (eye, [u, v, n], half_width, near) = numbers();
+    let make = |u, v, n| View::new_checked(eye, u, v, n, half_width, near);
+    let scaled = |row: [Q2_23; 3], by: f64| row.map(|x| Q2_23::from_num(x.to_num::<f64>() * by));
+    let tilted = |row: [Q2_23; 3], to: [Q2_23; 3], by: f64| {
+        [0, 1, 2].map(|i| row[i] + Q2_23::from_num(to[i].to_num::<f64>() * by))
+    };
+    for within in [-0.99e-4, -1e-6, 0.0, 1e-6, 0.99e-4] {
+        assert!(make(scaled(u, 1.0 + within), v, n).is_ok());
+        assert!(make(u, tilted(v, u, within), n).is_ok());
+        assert!(make(u, v, tilted(n, v, within)).is_ok());
+    }
+    for beyond in [-1e-2, -1.02e-4, 1.02e-4, 1e-2] {
+        assert!(matches!(
+            make(scaled(u, 1.0 + beyond), v, n),
+            Err(ViewError::Length { .. })
+        ));
+        assert!(matches!(
+            make(u, v, scaled(n, 1.0 + beyond)),
+            Err(ViewError::Length { .. })
+        ));
+    }
+    for beyond in [-9e-3, -1.02e-4, 1.02e-4, 9e-3] {
+        assert!(matches!(
+            make(u, tilted(v, u, beyond), n),
+            Err(ViewError::NotPerpendicular { .. } | ViewError::Length { .. })
+        ));
+        assert!(matches!(
+            make(u, v, tilted(n, v, beyond)),
+            Err(ViewError::NotPerpendicular { .. } | ViewError::Length { .. })
+        ));
+    }
+    assert_eq!(make(v, u, n), Err(ViewError::Mirrored));
+    assert_eq!(make(u, v, n.map(|x| -x)), Err(ViewError::Mirrored));
+    for extreme in [Q2_23::MIN, Q2_23::MAX, Q2_23::ZERO] {
+        assert!(matches!(
+            make([extreme; 3], v, n),
+            Err(ViewError::Length { .. })
+        ));
+    }
+}
+
+#[test]
+fn errors_say_what_was_expected() {
+    assert_eq!(
+        ViewError::Radius(Q32_32::lit("1.5")).to_string(),
+        "radius 1.5: expected 2 to 5"
+    );
+    assert_eq!(
+        ViewError::HalfWidth(U4_28::lit("5")).to_string(),
+        "half_width 5: expected 0.05 to 4"
+    );
+    assert_eq!(
+        ViewError::Near(U4_28::lit("3")).to_string(),
+        "near 3: expected 0.01 to 2"
+    );
+    assert_eq!(
+        ViewError::Eye([0, 0, 9].map(Q32_32::from_num)).to_string(),
+        "eye (0, 0, 9): expected within 8 of the origin"
+    );
+    assert_eq!(
+        ViewError::Polar(Turns::HALF.wrapping_add(Turns::QUARTER)).to_string(),
+        "phi 270 degrees: expected 0 to 180"
+    );
+    let (_, [u, v, n], half_width, near) = numbers();
+    let error =
+        View::new_checked([Q32_32::ZERO; 3], u, u, n, half_width, near).expect_err("u twice");
+    assert_eq!(error.to_string(), "u·v = 1: expected 0 within 1e-4");
+    let error = View::new_checked([Q32_32::ZERO; 3], u, [Q2_23::ONE; 3], v, half_width, near)
+        .expect_err("too long");
+    assert_eq!(
+        error.to_string(),
+        "v = (1, 1, 1): expected length 1 within 1e-4"
+    );
+}

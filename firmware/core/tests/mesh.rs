@@ -1,0 +1,389 @@
+//! Meshes: what is written is read, and what is wrong is named.
+
+use glint_core::mesh::{
+    EncodeError, Expected, IndexedTriangle, MAX_RADIUS, Mesh, MeshError, Rgb565, Vertex, encode,
+};
+use proptest::prelude::*;
+
+fn vertex(i: u32) -> Vertex {
+    let x = i.wrapping_mul(2_654_435_769);
+    Vertex {
+        position: [x >> 16, x >> 10, x >> 4].map(|x| (x as i16) >> 1),
+        normal: [x >> 3, x >> 7, x >> 11].map(|x| x as i16),
+        colour: Rgb565(x as u16),
+    }
+}
+
+fn triangle(indices: [u32; 3]) -> IndexedTriangle {
+    IndexedTriangle {
+        indices,
+        colour: Rgb565(indices[0] as u16),
+        normal: indices.map(|x| !(x as i16)),
+    }
+}
+
+/// A tetrahedron, 6 records and the header.
+fn small() -> Vec<u8> {
+    let vertices: Vec<Vertex> = (0..4).map(vertex).collect();
+    encode(&vertices, &[triangle([0, 1, 2]), triangle([0, 2, 3])]).expect("a good mesh")
+}
+
+/// The triangles of a mesh with their vertices in place of indices.
+fn triangles(mesh: &Mesh) -> Vec<([Vertex; 3], Rgb565, [i16; 3])> {
+    let corner =
+        |chunk: &glint_core::mesh::Chunk, i: u16| chunk.vertex(i.into()).expect("a checked index");
+    mesh.chunks()
+        .flat_map(|chunk| {
+            chunk.triangles().map(move |triangle| {
+                (
+                    triangle.indices.map(|i| corner(&chunk, i)),
+                    triangle.colour,
+                    triangle.normal,
+                )
+            })
+        })
+        .collect()
+}
+
+#[test]
+fn a_small_mesh_comes_back() {
+    let bytes = small();
+    let mesh = Mesh::new_checked(&bytes).expect("a good mesh");
+    assert_eq!(
+        (
+            mesh.vertex_count(),
+            mesh.triangle_count(),
+            mesh.chunks().count()
+        ),
+        (4, 2, 1)
+    );
+    let chunk = mesh.chunks().next().expect("a chunk");
+    assert_eq!((chunk.vertex_count(), chunk.triangle_count()), (4, 2));
+    assert!(chunk.vertices().eq((0..4).map(vertex)));
+    assert_eq!(chunk.vertex(3), Some(vertex(3)));
+    assert_eq!(chunk.vertex(4), None);
+    assert_eq!(
+        chunk.triangle(1).map(|triangle| triangle.indices),
+        Some([0, 2, 3])
+    );
+    assert_eq!(chunk.triangle(2), None);
+    let farthest = (0..4)
+        .map(|i| {
+            vertex(i)
+                .position
+                .iter()
+                .map(|&x| f64::from(x).powi(2))
+                .sum::<f64>()
+                .sqrt()
+        })
+        .fold(0.0, f64::max);
+    assert_eq!(f64::from(mesh.radius()), farthest.ceil());
+}
+
+#[test]
+fn the_layout_is_that_of_the_formats() {
+    let vertices = [Vertex {
+        position: [1, -2, 3],
+        normal: [-4, 5, 0x4000],
+        colour: Rgb565(0xF81F),
+    }];
+    let triangles = [IndexedTriangle {
+        indices: [0; 3],
+        colour: Rgb565(0x07E0),
+        normal: [0x4000, 0, -1],
+    }];
+    #[rustfmt::skip]
+    let expected = [
+        b'G', b'L', b'M', b'1', 80, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0,
+        1, 0, 0, 0, 4, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
+        1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
+        1, 0, 0xFE, 0xFF, 3, 0, 0xFC, 0xFF, 5, 0, 0, 0x40, 0x1F, 0xF8, 0, 0,
+        0, 0, 0, 0, 0, 0, 0xE0, 0x07, 0, 0x40, 0, 0, 0xFF, 0xFF, 0, 0,
+    ];
+    assert_eq!(
+        encode(&vertices, &triangles).expect("a good mesh"),
+        expected
+    );
+}
+
+#[test]
+fn a_large_mesh_is_cut_into_chunks_and_keeps_its_order() {
+    let vertices: Vec<Vertex> = (0..150_000).map(vertex).collect();
+    let list: Vec<IndexedTriangle> = (0..60_000)
+        .map(|i: u32| triangle([0, 49_999, 100_003].map(|step| (i * 2 + step) % 150_000)))
+        .collect();
+    let bytes = encode(&vertices, &list).expect("a good mesh");
+    let mesh = Mesh::new_checked(&bytes).expect("a good mesh");
+    assert!(mesh.chunks().count() > 2);
+    assert!(mesh.chunks().all(|chunk| chunk.vertex_count() <= 65_535));
+    let expected: Vec<_> = list
+        .iter()
+        .map(|t| (t.indices.map(|i| vertices[i as usize]), t.colour, t.normal))
+        .collect();
+    assert!(triangles(&mesh) == expected);
+}
+
+#[test]
+fn a_chunk_is_filled_to_the_last_vertex() {
+    let vertices: Vec<Vertex> = (0..65_538).map(vertex).collect();
+    let list: Vec<_> = (0..65_538 / 3)
+        .map(|i| triangle([3 * i, 3 * i + 1, 3 * i + 2]))
+        .collect();
+    let counts = |list: &[_]| {
+        let bytes = encode(&vertices, list).expect("a good mesh");
+        let mesh = Mesh::new_checked(&bytes).expect("a good mesh");
+        mesh.chunks()
+            .map(|chunk| chunk.vertex_count())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(counts(&list[..21_845]), [65_535]);
+    assert_eq!(counts(&list), [65_535, 3]);
+}
+
+#[test]
+fn what_cannot_be_written_is_refused() {
+    assert_eq!(encode(&[], &[]), Err(EncodeError::NoVertex));
+    assert_eq!(
+        encode(&[], &[triangle([0; 3])]),
+        Err(EncodeError::Index {
+            triangle: 0,
+            index: 0,
+            vertices: 0
+        })
+    );
+    let one = [vertex(1)];
+    assert_eq!(
+        encode(&one, &[triangle([0; 3]), triangle([0, 1, 0])]),
+        Err(EncodeError::Index {
+            triangle: 1,
+            index: 1,
+            vertices: 1
+        })
+    );
+    assert_eq!(
+        encode(&one, &vec![triangle([0; 3]); 2 << 20]),
+        Err(EncodeError::TooLarge)
+    );
+    let bytes = encode(&one, &[]).expect("a mesh without triangles");
+    assert_eq!(
+        Mesh::new_checked(&bytes).map(|mesh| mesh.triangle_count()),
+        Ok(0)
+    );
+}
+
+#[test]
+fn the_largest_radius_holds_every_position() {
+    let corner = Vertex {
+        position: [i16::MIN; 3],
+        ..Vertex::default()
+    };
+    let bytes = encode(&[corner], &[]).expect("a good mesh");
+    assert_eq!(
+        Mesh::new_checked(&bytes).map(|mesh| mesh.radius()),
+        Ok(MAX_RADIUS)
+    );
+}
+
+#[track_caller]
+fn assert_refused(spoil: impl FnOnce(&mut Vec<u8>), offset: u32, expected: Expected, found: u32) {
+    let mut bytes = small();
+    spoil(&mut bytes);
+    assert_eq!(
+        Mesh::new_checked(&bytes),
+        Err(MeshError {
+            offset,
+            expected,
+            found
+        })
+    );
+}
+
+fn set(offset: usize, value: u32) -> impl FnOnce(&mut Vec<u8>) {
+    move |bytes| bytes[offset..offset + 4].copy_from_slice(&value.to_le_bytes())
+}
+
+#[test]
+fn every_field_is_checked() {
+    use Expected::*;
+    let radius = Mesh::new_checked(&small()).expect("a good mesh").radius();
+    let length = small().len() as u32;
+    assert_eq!(length, 32 + 16 * 7);
+    assert_refused(Vec::clear, 0, AtLeast("bytes of header", 32), 0);
+    assert_refused(
+        |bytes| bytes.truncate(31),
+        0,
+        AtLeast("bytes of header", 32),
+        31,
+    );
+    assert_refused(
+        |bytes| bytes.push(0),
+        0,
+        MultipleOf("bytes", 16),
+        length + 1,
+    );
+    assert_refused(
+        |bytes| bytes.resize((32 << 20) + 16, 0),
+        0,
+        AtMost("bytes", 32 << 20),
+        (32 << 20) + 16,
+    );
+    assert_refused(set(0, 0x4D4C_4743), 0, Magic, 0x4D4C_4743);
+    assert_refused(
+        set(4, length - 16),
+        4,
+        Exactly("bytes in all", length),
+        length - 16,
+    );
+    assert_refused(set(8, 0), 8, AtLeast("chunks", 1), 0);
+    assert_refused(
+        set(8, 2),
+        length,
+        AtLeast("bytes for a chunk's header", 16),
+        0,
+    );
+    assert_refused(
+        set(8, u32::MAX),
+        length,
+        AtLeast("bytes for a chunk's header", 16),
+        0,
+    );
+    assert_refused(
+        set(12, 5),
+        12,
+        Exactly("vertices, as the chunks have", 4),
+        5,
+    );
+    assert_refused(
+        set(16, 1),
+        16,
+        Exactly("triangles, as the chunks have", 2),
+        1,
+    );
+    assert_refused(
+        set(20, MAX_RADIUS + 1),
+        20,
+        AtMost("radius in 2^-14", MAX_RADIUS),
+        MAX_RADIUS + 1,
+    );
+    assert_refused(set(24, 1), 24, Exactly("(reserved)", 0), 1);
+    assert_refused(set(28, 1 << 31), 24, Exactly("(reserved)", 0), 1 << 31);
+    assert_refused(set(32, 0), 32, AtLeast("vertices in a chunk", 1), 0);
+    assert_refused(
+        set(32, 65_536),
+        32,
+        AtMost("vertices in a chunk", 65_535),
+        65_536,
+    );
+    assert_refused(
+        set(32, 7),
+        32,
+        AtLeast("records for the chunk's vertices", 7),
+        6,
+    );
+    assert_refused(
+        set(36, 3),
+        36,
+        AtLeast("records for the chunk's triangles", 3),
+        2,
+    );
+    assert_refused(
+        set(36, u32::MAX),
+        36,
+        AtLeast("records for the chunk's triangles", u32::MAX),
+        2,
+    );
+    assert_refused(
+        set(36, 1),
+        length - 16,
+        Exactly("bytes after the last chunk", 0),
+        16,
+    );
+    assert_refused(set(40, 9), 40, Exactly("(reserved)", 0), 9);
+    assert_refused(
+        |bytes| bytes[48 + 14] = 1,
+        48 + 14,
+        Exactly("(reserved)", 0),
+        1,
+    );
+    assert_refused(
+        |bytes| bytes[48 + 64] = 4,
+        48 + 64,
+        Below("vertices of the chunk, as an index", 4),
+        4,
+    );
+    assert_refused(
+        |bytes| bytes[48 + 64 + 21] = 1,
+        48 + 64 + 20,
+        Below("vertices of the chunk, as an index", 4),
+        259,
+    );
+    assert_refused(
+        |bytes| bytes[48 + 64 + 15] = 1,
+        48 + 64 + 14,
+        Exactly("(reserved)", 0),
+        256,
+    );
+    let mut bytes = small();
+    set(20, radius - 1)(&mut bytes);
+    let error = Mesh::new_checked(&bytes).expect_err("a vertex is outside");
+    assert_eq!(
+        (error.expected, error.found),
+        (AtMost("(radius) from the origin", radius - 1), radius)
+    );
+}
+
+#[test]
+fn errors_say_where_what_was_expected_and_what_came() {
+    let message = |spoil: &dyn Fn(&mut Vec<u8>)| {
+        let mut bytes = small();
+        spoil(&mut bytes);
+        Mesh::new_checked(&bytes).expect_err("spoilt").to_string()
+    };
+    assert_eq!(
+        message(&|bytes| bytes[3] = b'9'),
+        "mesh byte 0: expected \"GLM1\", found \"GLM9\""
+    );
+    assert_eq!(
+        message(&|bytes| bytes[0] = 0xFF),
+        "mesh byte 0: expected \"GLM1\", found \"\\xffLM1\""
+    );
+    assert_eq!(
+        message(&|bytes| bytes[112] = 9),
+        "mesh byte 112: expected less than the 4 vertices of the chunk, as an index, found 9"
+    );
+    assert_eq!(
+        message(&|bytes| bytes.truncate(40)),
+        "mesh byte 0: expected a multiple of 16 bytes, found 40"
+    );
+    assert_eq!(
+        message(&|bytes| bytes[8] = 0),
+        "mesh byte 8: expected at least 1 chunks, found 0"
+    );
+}
+
+#[test]
+fn a_mesh_that_is_cut_off_is_refused_at_every_length() {
+    let bytes = small();
+    for length in 0..bytes.len() {
+        assert!(Mesh::new_checked(&bytes[..length]).is_err(), "{length}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 2_000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Whatever passes can be walked to its end, and its counts are true.
+    #[test]
+    fn no_bytes_upset_the_reader(changes in proptest::collection::vec((0..144_usize, any::<u8>()), 0..4), noise in any::<Vec<u8>>()) {
+        let mut bytes = small();
+        for (place, value) in changes {
+            bytes[place] = value;
+        }
+        for bytes in [bytes, noise] {
+            if let Ok(mesh) = Mesh::new_checked(&bytes) {
+                prop_assert_eq!(triangles(&mesh).len(), mesh.triangle_count() as usize);
+                prop_assert_eq!(mesh.chunks().map(|chunk| chunk.vertices().len()).sum::<usize>(), mesh.vertex_count() as usize);
+            }
+        }
+    }
+}
