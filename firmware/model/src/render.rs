@@ -75,8 +75,8 @@ impl Default for Options {
 pub struct Stats {
     /// Triangles in the mesh: `culled` + `drawn`.
     pub triangles_in: u32,
-    /// Triangles that did not reach the walker: back faces, those without area, those that hold no pixel's centre in their bounds
-    /// in the picture, and those behind the near plane.
+    /// Triangles that did not reach the walker: back faces, those without area, behind the near plane or off the picture,
+    /// and those without a pixel's centre in their bounds.
     pub culled: u32,
     /// Triangles that went through the clipper, whether something was left or not.
     pub clipped: u32,
@@ -107,8 +107,9 @@ pub struct DrawnTriangle {
 
 /// Draws a mesh.
 ///
-/// `scratch` holds the vertices of one chunk; what is in it does not matter. Where `target` is clear nothing was drawn. The order is that of the
-/// triangles, then that of those that had to be clipped, and the later wins where depths are equal.
+/// `scratch` has room for the vertices of the largest chunk; what is in it does not matter, and neither does what is in
+/// the target. Triangles are drawn in their order, then those that had to be clipped in theirs, and the later wins where
+/// depths are equal.
 ///
 /// # Errors
 /// [`RenderError`]; then nothing has been touched.
@@ -203,13 +204,13 @@ impl<F: FnMut(&DrawnTriangle)> Renderer<'_, '_, F> {
 
     /// Draws what needs clipping.
     fn exceptions(&mut self, mesh: &Mesh, scratch: &mut [Projected]) {
-        let several_chunks = mesh.chunks().nth(1).is_some();
         let mut left = self.stats.clipped;
+        if left == 0 {
+            return;
+        }
+        let several_chunks = mesh.chunks().nth(1).is_some();
         let mut index = 0;
         for chunk in mesh.chunks() {
-            if left == 0 {
-                return;
-            }
             // A single chunk is still in the scratch.
             if several_chunks {
                 self.project(&chunk, scratch);
@@ -219,6 +220,9 @@ impl<F: FnMut(&DrawnTriangle)> Renderer<'_, '_, F> {
                     let drawn = self.clip(index, &triangle, &chunk);
                     self.stats.drawn += u32::from(drawn);
                     left -= 1;
+                    if left == 0 {
+                        return;
+                    }
                 }
                 index += 1;
             }

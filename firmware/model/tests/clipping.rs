@@ -106,7 +106,7 @@ fn clipping_does_not_depend_on_the_first_vertex() {
                     .collect::<Vec<_>>()
             };
             let (mine, theirs) = (exceptions(&pictures[0]), exceptions(other));
-            // Their colours too: normals are made from the vertices, in f64, and shift with the order by a rounding at most.
+            // Not their colours: the test makes normals in f64, whose rounding depends on the order.
             assert_eq!(mine.len(), theirs.len());
             assert!(
                 mine.iter()
