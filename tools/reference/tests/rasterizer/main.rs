@@ -5,6 +5,7 @@
 mod cameras;
 mod coverage;
 mod fans;
+mod llvmpipe;
 mod renderer;
 mod scenes;
 mod shade;

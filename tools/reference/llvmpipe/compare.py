@@ -1,0 +1,138 @@
+"""Compares the coverage of triangles with that of Mesa's software rasterizer, llvmpipe.
+
+    python compare.py SCENES.json
+
+SCENES.json is `{"width": W, "height": H, "reach": R, "triangles": [...]}`. llvmpipe clips to the viewport, and a clipped edge is
+snapped anew; so the viewport is larger than the picture and reaches R pixels from its middle. A triangle has
+
+    clip      its corners in homogeneous clip coordinates (x, y, z, w) of that viewport, y down the screen, near plane
+              at z = -w
+    screen    its corners as they were snapped, in pixels from the top left, or null when it was clipped
+    covered   what is to be compared: [row, first column, column after the last] for each span
+
+Each triangle is drawn by itself, from `clip` and, where it is there, from `screen`. What comes out is, on the standard
+output, `{"renderer": R, "version": V, "triangles": [{"projected": D, "snapped": D or null}]}` with
+D = `{"missing": [[column, row], ...], "extra": [...]}`: pixels that llvmpipe covers and `covered` does not, and the reverse.
+
+Exits with 3, and says why on the standard error, where there is no llvmpipe to compare with.
+"""
+
+import json
+import os
+import struct
+import sys
+
+NOTHING_TO_COMPARE_WITH = 3
+
+os.environ["LIBGL_ALWAYS_SOFTWARE"] = "1"
+os.environ["GALLIUM_DRIVER"] = "llvmpipe"
+
+VERTEX_SHADER = """
+#version 330
+in vec4 corner;
+void main() { gl_Position = corner; }
+"""
+
+FRAGMENT_SHADER = """
+#version 330
+out float covered;
+void main() { covered = 1.0; }
+"""
+
+
+def give_up(reason):
+    print(reason, file=sys.stderr)
+    sys.exit(NOTHING_TO_COMPARE_WITH)
+
+
+def make_context():
+    try:
+        import moderngl
+    except ImportError as error:
+        give_up(f"moderngl is not installed ({error})")
+    try:
+        context = moderngl.create_context(standalone=True, backend="egl")
+    except Exception as error:  # moderngl raises plain Exception when EGL or a driver is missing
+        give_up(f"no OpenGL context without a display ({error})")
+    if "llvmpipe" not in context.info["GL_RENDERER"]:
+        give_up(f"OpenGL is drawn by {context.info['GL_RENDERER']}, not by llvmpipe")
+    return context
+
+
+class Rasterizer:
+    """Draws one triangle at a time and reads its coverage back: a byte a pixel, from the top left."""
+
+    def __init__(self, context, width, height, reach):
+        self.middle, self.reach = (width // 2, height // 2), reach
+        self.corners = context.buffer(reserve=3 * 16)
+        program = context.program(vertex_shader=VERTEX_SHADER, fragment_shader=FRAGMENT_SHADER)
+        self.triangle = context.vertex_array(program, [(self.corners, "4f", "corner")])
+        self.frame = context.framebuffer([context.texture((width, height), 1, dtype="f1")])
+        left, top = (middle - reach for middle in self.middle)
+        self.frame.viewport = left, top, 2 * reach, 2 * reach
+        self.frame.use()
+
+    def coverage(self, corners):
+        self.corners.write(b"".join(struct.pack("4f", *corner) for corner in corners))
+        self.frame.clear()
+        self.triangle.render()
+        # Row 0 of a texture is where y is least, and `clip` has the top of the picture there: no row is turned over, and
+        # llvmpipe fills by the top-left rule in this sense of y.
+        return self.frame.read(components=1, alignment=1)
+
+    def from_screen(self, points):
+        """Corners in clip coordinates for places in pixels."""
+        middle_x, middle_y = self.middle
+        return [((x - middle_x) / self.reach, (y - middle_y) / self.reach, 0, 1) for x, y in points]
+
+
+def expected_coverage(spans, width, height):
+    pixels = bytearray(width * height)
+    for row, first, end in spans:
+        pixels[row * width + first : row * width + end] = b"\xff" * (end - first)
+    return bytes(pixels)
+
+
+def differences(found, expected, width):
+    missing, extra = [], []
+    if found != expected:
+        for place, (drawn, wanted) in enumerate(zip(found, expected)):
+            if drawn != wanted:
+                pixel = [place % width, place // width]
+                (missing if drawn else extra).append(pixel)
+    return {"missing": missing, "extra": extra}
+
+
+def main():
+    if len(sys.argv) != 2:
+        sys.exit("usage: compare.py SCENES.json")
+    with open(sys.argv[1], encoding="utf-8") as file:
+        scenes = json.load(file)
+    width, height = scenes["width"], scenes["height"]
+    context = make_context()
+    rasterizer = Rasterizer(context, width, height, scenes["reach"])
+    results = []
+    for triangle in scenes["triangles"]:
+        expected = expected_coverage(triangle["covered"], width, height)
+
+        def compare(corners):
+            return differences(rasterizer.coverage(corners), expected, width)
+
+        screen = triangle["screen"]
+        results.append(
+            {
+                "projected": compare(triangle["clip"]),
+                "snapped": screen and compare(rasterizer.from_screen(screen)),
+            }
+        )
+    json.dump(
+        {
+            "renderer": context.info["GL_RENDERER"],
+            "version": context.info["GL_VERSION"],
+            "triangles": results,
+        },
+        sys.stdout,
+    )
+
+
+main()
