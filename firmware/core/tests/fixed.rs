@@ -24,10 +24,7 @@ fn assert_shortest<T: Fixed + std::str::FromStr>(x: T) {
             "{:.digits$}",
             x.to_num::<f64>() + 0.5 * 0.1_f64.powi(digits as i32) * x.to_num::<f64>().signum()
         );
-        assert!(
-            above.parse::<T>() != Ok(x),
-            "{decimal} {above}"
-        );
+        assert!(above.parse::<T>() != Ok(x), "{decimal} {above}");
     }
 }
 

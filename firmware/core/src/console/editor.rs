@@ -215,10 +215,16 @@ impl LineEditor {
     }
 
     fn insert(&mut self, byte: u8, echo: &mut dyn Write) -> fmt::Result {
-        if self.overlong || self.line.insert(self.cursor, byte).is_err() {
+        if self.overlong || self.line.is_full() {
             self.overlong = true;
             return Ok(());
         }
+        let mut carried = byte;
+        for place in self.line.iter_mut().skip(self.cursor) {
+            core::mem::swap(place, &mut carried);
+        }
+        // There is room.
+        let _ = self.line.push(carried);
         self.cursor += 1;
         echo.write_char(byte.into())?;
         self.write_tail(echo)
@@ -271,12 +277,14 @@ impl LineEditor {
 
     /// Deletes what lies between two places, one of which is the cursor's.
     fn delete(&mut self, start: usize, end: usize, echo: &mut dyn Write) -> fmt::Result {
-        let Some(tail) = self.line.get(end..).filter(|_| start < end) else {
+        if start >= end {
             return Ok(());
-        };
-        let length = start + tail.len();
-        self.line.copy_within(end.., start);
-        self.line.truncate(length);
+        }
+        let mut place = 0;
+        self.line.retain(|_| {
+            place += 1;
+            !(start + 1..=end).contains(&place)
+        });
         // What did not fit is lost, but what is left is a line again.
         self.overlong = false;
         self.move_to(start, echo)?;

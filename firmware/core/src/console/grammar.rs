@@ -204,9 +204,8 @@ fn hexadecimal(word: &str) -> Option<u32> {
 
 /// Digits only: no sign.
 fn digits(word: &str, radix: u32) -> Option<u32> {
-    word.chars()
-        .all(|c| c.is_digit(radix))
-        .then(|| u32::from_str_radix(word, radix).ok())?
+    let digits = word.bytes().all(|byte| byte.is_ascii_hexdigit());
+    u32::from_str_radix(word, radix).ok().filter(|_| digits)
 }
 
 /// A word and where it begins.
