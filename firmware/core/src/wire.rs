@@ -32,6 +32,7 @@ mod frame;
 mod pace;
 mod receiver;
 mod sender;
+mod window;
 
 use core::fmt;
 

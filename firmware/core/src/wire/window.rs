@@ -1,0 +1,192 @@
+//! What the sender knows of the blocks on their way.
+
+use super::WINDOW;
+use super::frame::Acknowledge;
+
+/// Numbers of data frames are modulo 256; with no more than this on their way, older and newer stay apart.
+const MAX_FRAMES: u8 = 120;
+
+/// Which blocks have been sent and have arrived.
+pub struct Window {
+    /// The first block that has not arrived.
+    pub next: u32,
+    /// Past the last block that has ever been sent.
+    pub end: u32,
+    /// Bit i: block `next` + i has arrived.
+    arrived: u128,
+    /// Bit i: block `next` + i has been sent and not been found lost.
+    sent: u128,
+    /// The data frame that carried a block last, by its number modulo the window.
+    carriers: [u8; WINDOW as usize],
+    /// The last data frame that was sent.
+    number: u8,
+    /// The last data frame that is known to have arrived.
+    heard: u8,
+}
+
+/// What an acknowledgement says about blocks that were on their way.
+pub struct Fate {
+    pub arrived: u32,
+    pub lost: u32,
+    pub lost_frames: u32,
+}
+
+/// Blocks to put into a frame.
+pub struct Run {
+    pub number: u8,
+    pub block: u32,
+    pub blocks: u32,
+}
+
+impl Window {
+    pub const fn new() -> Self {
+        Self {
+            next: 0,
+            end: 0,
+            arrived: 0,
+            sent: 0,
+            carriers: [0; WINDOW as usize],
+            number: 0,
+            heard: 0,
+        }
+    }
+
+    /// Takes over what has arrived; nothing, if it cannot be true.
+    pub fn update(&mut self, Acknowledge { number, next, map }: Acknowledge) -> Option<Fate> {
+        let past = next.checked_add(u128::BITS - map.leading_zeros())?;
+        let unheard = self.number.wrapping_sub(self.heard);
+        let far_back = self.next.saturating_sub(next) > WINDOW;
+        if past > self.end || far_back || number.wrapping_sub(self.heard) > unheard {
+            return None;
+        }
+        let shift = next.saturating_sub(self.next);
+        let moved = |bits: u128| bits.checked_shr(shift).unwrap_or(0);
+        let left_behind = shift.min(WINDOW) - (self.arrived & low_bits(shift)).count_ones();
+        let arrived = left_behind + (map & !moved(self.arrived)).count_ones();
+
+        // An acknowledgement that takes something back says that the one before was damaged.
+        let back = self.next.saturating_sub(next);
+        self.sent = moved(self.sent).checked_shl(back).unwrap_or(0);
+        self.arrived = map;
+        self.next = next;
+        self.heard = number;
+
+        let mut fate = Fate {
+            arrived,
+            lost: 0,
+            lost_frames: 0,
+        };
+        let mut last_carrier = None;
+        let mut missing = self.sent & !map;
+        while missing != 0 {
+            let bit = missing.trailing_zeros();
+            missing &= missing - 1;
+            let carrier = self.carrier(bit);
+            if is_before(carrier, number) {
+                self.sent &= !(1 << bit);
+                fate.lost += 1;
+                fate.lost_frames += u32::from(last_carrier != Some(carrier));
+                last_carrier = Some(carrier);
+            }
+        }
+        Some(fate)
+    }
+
+    /// Whether as many data frames are on their way as their numbers allow.
+    pub const fn is_full(&self) -> bool {
+        self.number.wrapping_sub(self.heard) >= MAX_FRAMES
+    }
+
+    /// Takes the first block that is on its way for lost.
+    pub const fn forget_first(&mut self) {
+        let on_the_way = self.sent & !self.arrived;
+        let first = on_the_way & on_the_way.wrapping_neg();
+        self.sent &= !first;
+    }
+
+    /// The next run of up to `most` blocks to send, of `total`; it counts as sent.
+    pub fn take(&mut self, most: u32, total: u32) -> Option<Run> {
+        let settled = self.sent | self.arrived;
+        let first = settled.trailing_ones();
+        let block = self.next.saturating_add(first);
+        if first >= WINDOW || block >= total {
+            return None;
+        }
+        let blocks = (settled >> first)
+            .trailing_zeros()
+            .min(most)
+            .min(WINDOW - first)
+            .min(total - block);
+        // When all numbers are taken, a probe repeats the last one, which is never taken for lost.
+        if !self.is_full() {
+            self.number = self.number.wrapping_add(1);
+        }
+        for bit in first..first + blocks {
+            self.sent |= 1 << bit;
+            if let Some(carrier) = self.carriers.get_mut(((self.next + bit) % WINDOW) as usize) {
+                *carrier = self.number;
+            }
+        }
+        self.end = self.end.max(block + blocks);
+        Some(Run {
+            number: self.number,
+            block,
+            blocks,
+        })
+    }
+
+    fn carrier(&self, bit: u32) -> u8 {
+        self.carriers
+            .get((self.next.wrapping_add(bit) % WINDOW) as usize)
+            .copied()
+            .unwrap_or(0)
+    }
+}
+
+/// The lowest `count` bits.
+const fn low_bits(count: u32) -> u128 {
+    if count >= u128::BITS {
+        u128::MAX
+    } else {
+        (1 << count) - 1
+    }
+}
+
+/// Whether one number was given before another, modulo 256.
+const fn is_before(number: u8, other: u8) -> bool {
+    (number.wrapping_sub(other) as i8) < 0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_acknowledgement_is_true_until_the_next_and_never_impossible() {
+        let mut window = Window::new();
+        for _ in 0..3 {
+            window.take(4, 100);
+        }
+        let says = |number, next, map| Acknowledge { number, next, map };
+        // Frames 1 and 3 came.
+        let fate = window.update(says(3, 4, 0b1111_0000)).expect("possible");
+        assert_eq!((fate.arrived, fate.lost, fate.lost_frames), (8, 4, 1));
+        assert_eq!(
+            window
+                .take(15, 100)
+                .map(|run| (run.number, run.block, run.blocks)),
+            Some((4, 4, 4))
+        );
+        // What was never sent cannot have come.
+        assert!(window.update(says(4, 13, 0)).is_none());
+        assert!(window.update(says(4, 12, 1)).is_none());
+        assert!(window.update(says(5, 12, 0)).is_none());
+        // A damaged one that was possible is taken back by the next.
+        assert!(window.update(says(4, 12, 0)).is_some());
+        assert!(window.update(says(4, 4, 0b1111_0000)).is_some());
+        assert_eq!(
+            window.take(15, 100).map(|run| (run.block, run.blocks)),
+            Some((4, 4))
+        );
+    }
+}
