@@ -1,4 +1,4 @@
-//! Uploads and downloads over a byte stream that may lose, change or repeat bytes.
+//! Uploads and downloads over a byte stream that may lose, change or repeat bytes (docs/formats.md, "Transfers").
 //!
 //! [`Sender`] and [`Receiver`] are state machines without clock or transport: bytes go in, bytes come out, and the caller
 //! says how late it is in milliseconds. They are the same on both sides of the line and in both directions.
