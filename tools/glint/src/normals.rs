@@ -19,13 +19,13 @@ impl Smooth {
 
     /// Adds a triangle between three points of the given numbers and places.
     pub fn add(&mut self, numbers: [usize; 3], places: [Vector; 3], normal: Vector) {
-        for i in 0..3 {
-            let [a, b, c] = [i, (i + 1) % 3, (i + 2) % 3].map(|i| places[i]);
+        let [a, b, c] = places;
+        for (number, [a, b, c]) in numbers.into_iter().zip([[a, b, c], [b, c, a], [c, a, b]]) {
             let (Some(ab), Some(ac)) = (unit(sub(b, a)), unit(sub(c, a))) else {
                 continue;
             };
             let angle = dot(ab, ac).clamp(-1.0, 1.0).acos();
-            for (sum, c) in self.sums[numbers[i]].iter_mut().zip(normal) {
+            for (sum, c) in self.sums[number].iter_mut().zip(normal) {
                 *sum += angle * c;
             }
         }

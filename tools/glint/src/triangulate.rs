@@ -72,9 +72,9 @@ fn project(polygons: &Polygons, corners: &[Corner], plane: &mut Vec<[f64; 2]>) {
     let mut normal = [0.0; 3];
     for (a, b) in corners.iter().zip(corners.iter().cycle().skip(1)) {
         let (a, b) = (local(a), local(b));
-        for i in 0..3 {
+        for (i, sum) in normal.iter_mut().enumerate() {
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-            normal[i] += (a[j] - b[j]) * (a[k] + b[k]);
+            *sum += (a[j] - b[j]) * (a[k] + b[k]);
         }
     }
     let axis = (0..3)

@@ -87,7 +87,7 @@ pub fn ply(polygons: &Polygons, out: &mut impl Write) -> io::Result<()> {
         "element face {}\nproperty list ushort uint vertex_indices\n",
         polygons.faces.len()
     )?;
-    write!(out, "{}end_header\n", if with_faces { COLOUR } else { "" })?;
+    writeln!(out, "{}end_header", if with_faces { COLOUR } else { "" })?;
     for (i, point) in polygons.points.iter().enumerate() {
         for c in point {
             out.write_all(&c.to_le_bytes())?;

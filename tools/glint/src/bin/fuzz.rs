@@ -1,0 +1,139 @@
+//! Fuzzes what takes bytes from outside, and says how fast.
+#![forbid(unsafe_code)]
+
+use anyhow::Context;
+use clap::Parser;
+use glint::fuzz::{Inputs, Outcome, Target};
+use indicatif::{ProgressBar, ProgressStyle};
+use std::cell::Cell;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+/// Give a target many inputs; a panic is a finding.
+///
+/// The bytes of an input follow from the seed and its number alone. A finding is written to a file, and --only runs it again.
+#[derive(Parser)]
+struct Arguments {
+    /// What to fuzz; all of them in turn unless told.
+    #[arg(value_enum)]
+    targets: Vec<Target>,
+    /// How many inputs each.
+    #[arg(long, default_value_t = 100_000)]
+    inputs: u64,
+    /// Which inputs.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Threads.
+    #[arg(long, default_value_t = 1)]
+    jobs: u64,
+    /// Run just the input of this number.
+    #[arg(long)]
+    only: Option<u64>,
+}
+
+/// Numbers that a thread takes at once.
+const STRIDE: u64 = 256;
+
+fn main() -> anyhow::Result<()> {
+    let arguments = Arguments::parse();
+    let targets = if arguments.targets.is_empty() {
+        Target::ALL.to_vec()
+    } else {
+        arguments.targets.clone()
+    };
+    let mut findings = 0;
+    for target in targets {
+        let inputs = Inputs::new(target, arguments.seed);
+        if let Some(number) = arguments.only {
+            println!("{target:?} {number}: {:?}", inputs.run(number));
+            continue;
+        }
+        findings += fuzz(target, &inputs, &arguments)?;
+    }
+    anyhow::ensure!(findings == 0, "{findings} inputs made a target panic");
+    Ok(())
+}
+
+/// What happened so far.
+#[derive(Default)]
+struct Tally {
+    next: AtomicU64,
+    done: AtomicU64,
+    accepted: AtomicU64,
+    findings: AtomicU64,
+    /// The longest time of an input in microseconds.
+    slowest: AtomicU64,
+}
+
+fn fuzz(target: Target, inputs: &Inputs, arguments: &Arguments) -> anyhow::Result<u64> {
+    let tally = Tally::default();
+    let bar = ProgressBar::new(arguments.inputs).with_message(format!("{target:?}"));
+    bar.set_style(ProgressStyle::with_template(
+        "{msg} {wide_bar} {pos}/{len} {per_sec} {eta}",
+    )?);
+    let start = Instant::now();
+    let quiet = std::panic::take_hook();
+    std::panic::set_hook(Box::new(|_| {}));
+    std::thread::scope(|scope| {
+        for _ in 0..arguments.jobs.max(1) {
+            scope.spawn(|| work(target, inputs, arguments, &tally, &bar));
+        }
+    });
+    std::panic::set_hook(quiet);
+    bar.finish_and_clear();
+    let seconds = start.elapsed().as_secs_f64();
+    let of = |count: &AtomicU64| count.load(Ordering::Relaxed);
+    let slowest = of(&tally.slowest);
+    println!(
+        "{target:?}: {} inputs (seed {}) in {seconds:.1} s, {:.0} a second; {:.1} % went the whole way; slowest {:.1} ms; {} panics",
+        of(&tally.done),
+        arguments.seed,
+        of(&tally.done) as f64 / seconds,
+        100.0 * of(&tally.accepted) as f64 / of(&tally.done).max(1) as f64,
+        slowest as f64 / 1000.0,
+        of(&tally.findings),
+    );
+    Ok(of(&tally.findings))
+}
+
+fn work(target: Target, inputs: &Inputs, arguments: &Arguments, tally: &Tally, bar: &ProgressBar) {
+    loop {
+        let first = tally.next.fetch_add(STRIDE, Ordering::Relaxed);
+        if first >= arguments.inputs {
+            return;
+        }
+        let mut accepted = 0;
+        let last = arguments.inputs.min(first + STRIDE);
+        for number in first..last {
+            let start = Instant::now();
+            let outcome = Cell::new(Outcome::Refused);
+            let run = catch_unwind(AssertUnwindSafe(|| outcome.set(inputs.run(number))));
+            tally.slowest.fetch_max(
+                start.elapsed().min(Duration::from_secs(3600)).as_micros() as u64,
+                Ordering::Relaxed,
+            );
+            accepted += u64::from(outcome.get() == Outcome::Accepted);
+            if run.is_err() {
+                tally.findings.fetch_add(1, Ordering::Relaxed);
+                if let Err(error) = keep(target, inputs, number) {
+                    eprintln!("{error:#}");
+                }
+            }
+        }
+        tally.accepted.fetch_add(accepted, Ordering::Relaxed);
+        let done = tally.done.fetch_add(last - first, Ordering::Relaxed);
+        bar.set_position(done);
+    }
+}
+
+/// Writes a finding where it can be looked at.
+fn keep(target: Target, inputs: &Inputs, number: u64) -> anyhow::Result<()> {
+    let path = format!("fuzz-{target:?}-{number}.bin").to_lowercase();
+    std::fs::write(&path, inputs.input(number))
+        .with_context(|| format!("{path}: cannot be written"))?;
+    eprintln!(
+        "{target:?} {number} panicked; its input is in {path}, and --only {number} shows the message"
+    );
+    Ok(())
+}

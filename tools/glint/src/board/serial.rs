@@ -1,0 +1,75 @@
+//! A board on a serial port.
+
+use super::{Board, BoardError};
+use serialport::SerialPort;
+use std::io::{self, Read, Write};
+use std::time::{Duration, Instant};
+
+/// The least time a read waits for, so that a loop around it does not spin.
+const SHORTEST: Duration = Duration::from_millis(1);
+
+/// A serial port, 8N1 without flow control.
+pub struct SerialBoard {
+    port: Box<dyn SerialPort>,
+    opened: Instant,
+}
+
+impl SerialBoard {
+    /// Opens a port.
+    ///
+    /// # Errors
+    /// There is no such port, or it is taken.
+    pub fn open(name: &str, baud: u32) -> Result<Self, BoardError> {
+        let port = serialport::new(name, baud)
+            .timeout(SHORTEST)
+            .open()
+            .map_err(|source| BoardError::Open {
+                port: name.to_owned(),
+                source,
+            })?;
+        Ok(Self {
+            port,
+            opened: Instant::now(),
+        })
+    }
+}
+
+impl Board for SerialBoard {
+    fn write(&mut self, mut bytes: &[u8]) -> Result<(), BoardError> {
+        while !bytes.is_empty() {
+            match self.port.write(bytes) {
+                Ok(written) => bytes = &bytes[written..],
+                // The port's buffer is full: it empties at the line's speed.
+                Err(error) if is_transient(&error) => {}
+                Err(error) => return Err(error.into()),
+            }
+        }
+        Ok(())
+    }
+
+    fn read(&mut self, bytes: &mut Vec<u8>, wait_ms: u64) -> Result<(), BoardError> {
+        let wait = Duration::from_millis(wait_ms).max(SHORTEST);
+        self.port.set_timeout(wait).map_err(io::Error::from)?;
+        let mut buffer = [0; 4096];
+        match self.port.read(&mut buffer) {
+            Ok(0) => Err(io::Error::from(io::ErrorKind::UnexpectedEof).into()),
+            Ok(length) => {
+                bytes.extend_from_slice(&buffer[..length]);
+                Ok(())
+            }
+            Err(error) if is_transient(&error) => Ok(()),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    fn now_ms(&self) -> u64 {
+        self.opened.elapsed().as_millis() as u64
+    }
+}
+
+fn is_transient(error: &io::Error) -> bool {
+    matches!(
+        error.kind(),
+        io::ErrorKind::TimedOut | io::ErrorKind::WouldBlock | io::ErrorKind::Interrupted
+    )
+}

@@ -1,0 +1,97 @@
+//! The virtual board as a board: reading from it is what makes it run.
+
+use super::{Board, BoardError, Memory};
+use std::path::{Path, PathBuf};
+use virtual_board::{Start, VirtualBoard};
+
+/// Cycles between looks at the line.
+const SLICE: u64 = 1000;
+
+/// A virtual board in this process.
+pub struct SimulatedBoard {
+    board: VirtualBoard,
+}
+
+impl SimulatedBoard {
+    /// Takes a board that has been built.
+    pub fn new(board: VirtualBoard) -> Self {
+        Self { board }
+    }
+
+    /// A board that starts with `firmware` in its memory, without the BIOS.
+    ///
+    /// # Errors
+    /// The virtual board cannot be made.
+    pub fn fast(firmware: &[u8]) -> Result<Self, BoardError> {
+        Ok(Self::new(
+            VirtualBoard::builder()
+                .start(Start::Fast { firmware })
+                .build()?,
+        ))
+    }
+
+    /// A board that starts with its BIOS.
+    ///
+    /// # Errors
+    /// The virtual board cannot be made.
+    pub fn full() -> Result<Self, BoardError> {
+        Ok(Self::new(
+            VirtualBoard::builder().start(Start::Full).build()?,
+        ))
+    }
+
+    /// The board behind the line: its pins, its monitor, its speed.
+    pub fn inner(&mut self) -> &mut VirtualBoard {
+        &mut self.board
+    }
+}
+
+/// The firmware as `cargo xtask firmware` leaves it in this checkout, and where it was looked for.
+///
+/// # Errors
+/// It is not there.
+pub fn built_firmware(path: Option<&Path>) -> Result<Vec<u8>, BoardError> {
+    let built = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target/firmware/glint.bin");
+    let path: PathBuf = path.map_or_else(built, Path::to_owned);
+    std::fs::read(&path).map_err(|source| BoardError::Firmware {
+        path: path.display().to_string(),
+        source,
+    })
+}
+
+impl Board for SimulatedBoard {
+    fn write(&mut self, bytes: &[u8]) -> Result<(), BoardError> {
+        self.board.uart_write(bytes);
+        Ok(())
+    }
+
+    fn read(&mut self, bytes: &mut Vec<u8>, wait_ms: u64) -> Result<(), BoardError> {
+        let before = bytes.len();
+        let limit = wait_ms.saturating_mul(u64::from(self.board.clock_hz()) / 1000);
+        let end = self.board.cycles().saturating_add(limit);
+        self.board.uart_read(bytes);
+        while bytes.len() == before && self.board.cycles() < end {
+            self.board.run(SLICE);
+            self.board.uart_read(bytes);
+        }
+        Ok(())
+    }
+
+    fn now_ms(&self) -> u64 {
+        self.board.cycles() / (u64::from(self.board.clock_hz()) / 1000).max(1)
+    }
+
+    fn memory(&mut self) -> Option<&mut dyn Memory> {
+        Some(self)
+    }
+}
+
+impl Memory for SimulatedBoard {
+    fn read_memory(&mut self, address: u32, bytes: &mut [u8]) -> Result<(), BoardError> {
+        Ok(self.board.ddr_read(address, bytes)?)
+    }
+
+    fn write_memory(&mut self, address: u32, bytes: &[u8]) -> Result<(), BoardError> {
+        Ok(self.board.ddr_write(address, bytes)?)
+    }
+}

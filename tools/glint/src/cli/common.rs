@@ -1,0 +1,94 @@
+//! What several commands share: boards, progress, printing.
+
+use anyhow::Context;
+use glint::board::{Board, SerialBoard, SimulatedBoard, built_firmware};
+use glint::console::Console;
+use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// How to reach a board.
+#[derive(clap::Args)]
+pub struct LineArguments {
+    /// Bits a second of a serial port.
+    #[arg(long, default_value_t = 115_200, value_name = "BITS")]
+    pub baud: u32,
+    /// The program that the virtual board starts with [default: that of `cargo xtask firmware`].
+    #[arg(long, value_name = "FILE")]
+    pub firmware: Option<PathBuf>,
+}
+
+impl LineArguments {
+    /// A virtual board whose firmware runs, and has shown its prompt.
+    pub fn virtual_board(&self) -> anyhow::Result<SimulatedBoard> {
+        let firmware = built_firmware(self.firmware.as_deref())?;
+        let mut board = SimulatedBoard::fast(&firmware)?;
+        let spinner = spinner("the virtual board starts");
+        Console::new(&mut board).greet()?;
+        spinner.finish_and_clear();
+        Ok(board)
+    }
+
+    /// A board on a serial port.
+    pub fn serial_board(&self, port: &str) -> anyhow::Result<SerialBoard> {
+        Ok(SerialBoard::open(port, self.baud)?)
+    }
+
+    /// The board of a name, running its firmware.
+    pub fn board(&self, name: &str) -> anyhow::Result<Box<dyn Board>> {
+        Ok(if name == "virtual" {
+            Box::new(self.virtual_board()?)
+        } else {
+            Box::new(self.serial_board(name)?)
+        })
+    }
+}
+
+/// Something that turns while something unmeasured goes on. It shows only on a terminal.
+pub fn spinner(what: &str) -> ProgressBar {
+    let spinner = ProgressBar::new_spinner().with_message(what.to_owned());
+    spinner.set_style(style("{spinner} {msg} {elapsed}"));
+    spinner.enable_steady_tick(Duration::from_millis(200));
+    spinner
+}
+
+/// A bar over bytes. It shows only on a terminal.
+pub fn bar(what: &str) -> ProgressBar {
+    let bar = ProgressBar::new(0).with_message(what.to_owned());
+    bar.set_style(style("{msg} {wide_bar} {bytes}/{total_bytes} {eta}"));
+    bar
+}
+
+fn style(template: &str) -> ProgressStyle {
+    ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
+}
+
+/// Moves a bar.
+pub fn advance(bar: &ProgressBar) -> impl FnMut(u64, u64) {
+    move |done, all| {
+        bar.set_length(all);
+        bar.set_position(done);
+    }
+}
+
+/// Prints a line. A reader that has gone, such as `head`, is no failure.
+pub fn say(line: impl std::fmt::Display) -> anyhow::Result<()> {
+    match writeln!(std::io::stdout(), "{line}") {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(error).context("standard output")
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Prints a value as JSON on one line.
+pub fn print_json(value: &impl Serialize) -> anyhow::Result<()> {
+    say(serde_json::to_string(value)?)
+}
+
+/// Writes a file whole.
+pub fn write_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
+    std::fs::write(path, bytes).with_context(|| format!("{}: cannot be written", path.display()))
+}

@@ -1,0 +1,175 @@
+//! `glint model` and `glint convert`.
+
+use super::common::{print_json, say, spinner, write_file};
+use anyhow::Context;
+use clap::Args;
+use glint::convert::{self, Options, Report};
+use glint::error::InputError;
+use glint::formats::{self, Format, write};
+use glint::polygons::Polygons;
+use glint::{generate, model};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// Make a model: cube, icosphere:N, torus-knot, gear, teapot or sponge:N.
+#[derive(Args)]
+pub struct ModelArguments {
+    /// The model's name.
+    name: String,
+    /// The file to write; its extension says the format: .obj, .stl, .ply or .glm.
+    out: PathBuf,
+    /// Leave the generator's coordinates as they are.
+    #[arg(long)]
+    keep_scale: bool,
+    /// Print what was done as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Convert a mesh: scale it to the 1×1×1 box about the origin, cut it into triangles, round it to Q2.14.
+///
+/// Reads OBJ (with the colours of its vertices, and of the material file beside it), STL and PLY, ASCII or binary, and GLM.
+/// GLM is what boards hold; OBJ, STL and PLY are written with scaled but unrounded coordinates.
+#[derive(Args)]
+pub struct ConvertArguments {
+    /// The mesh to read.
+    input: PathBuf,
+    /// The file to write; its extension says the format: .obj, .stl, .ply or .glm.
+    out: PathBuf,
+    /// Leave the coordinates as they are, and refuse those outside [-2, 2).
+    #[arg(long)]
+    keep_scale: bool,
+    /// Print what was done as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+impl ModelArguments {
+    pub fn run(self) -> anyhow::Result<()> {
+        let polygons = generate::named(&self.name).map_err(|error| error.in_file(&self.name))?;
+        let options = Options {
+            keep_scale: self.keep_scale,
+        };
+        convert_to(polygons, &self.name, &self.out, options, self.json)
+    }
+}
+
+impl ConvertArguments {
+    pub fn run(self) -> anyhow::Result<()> {
+        let spinner = spinner("reading");
+        let polygons = formats::read(&self.input)?;
+        spinner.finish_and_clear();
+        let options = Options {
+            keep_scale: self.keep_scale,
+        };
+        convert_to(
+            polygons,
+            &self.input.display().to_string(),
+            &self.out,
+            options,
+            self.json,
+        )
+    }
+}
+
+/// What was written when it was not a mesh for boards.
+#[derive(Serialize)]
+struct Copied {
+    points: usize,
+    faces: usize,
+    triangles: usize,
+    bytes: usize,
+    remarks: Vec<String>,
+}
+
+fn convert_to(
+    mut polygons: Polygons,
+    name: &str,
+    out: &Path,
+    options: Options,
+    json: bool,
+) -> anyhow::Result<()> {
+    let refused = |error: glint::error::FormatError| -> InputError {
+        error.in_file(name.escape_debug().to_string())
+    };
+    let format = Format::of(out)?;
+    if format == Format::Glm {
+        let spinner = spinner("converting");
+        let (mesh, report) = convert::convert(&polygons, options).map_err(refused)?;
+        write_file(out, &mesh)?;
+        spinner.finish_and_clear();
+        return if json {
+            print_json(&report)
+        } else {
+            print_report(&report)
+        };
+    }
+    convert::place(&mut polygons, options).map_err(refused)?;
+    let mut bytes = Vec::new();
+    match format {
+        Format::Obj => write::obj(&polygons, &mut bytes),
+        Format::Stl => write::stl(&polygons, &mut bytes),
+        Format::Ply | Format::Glm => write::ply(&polygons, &mut bytes),
+    }
+    .context("the mesh cannot be written")?;
+    write_file(out, &bytes)?;
+    let copied = Copied {
+        points: polygons.points.len(),
+        faces: polygons.faces.len(),
+        triangles: polygons.triangle_count(),
+        bytes: bytes.len(),
+        remarks: polygons.remarks,
+    };
+    if json {
+        return print_json(&copied);
+    }
+    say(format_args!(
+        "{} points, {} faces, {} bytes",
+        copied.points, copied.faces, copied.bytes
+    ))?;
+    copied
+        .remarks
+        .iter()
+        .try_for_each(|remark| say(format_args!("note: {remark}")))
+}
+
+/// Prints a report for people.
+pub fn print_report(report: &Report) -> anyhow::Result<()> {
+    let Report {
+        points,
+        faces,
+        vertices,
+        triangles,
+        degenerate,
+        chunks,
+        bytes,
+        scale,
+        centre,
+        ..
+    } = report;
+    let plural = if *chunks == 1 { "" } else { "s" };
+    say(format_args!("read       {points} points, {faces} faces"))?;
+    say(format_args!(
+        "written    {vertices} vertices, {triangles} triangles, {chunks} chunk{plural}, {bytes} bytes"
+    ))?;
+    say(format_args!(
+        "dropped    {degenerate} triangles without an area at 2^-14"
+    ))?;
+    say(format_args!("scaled     by {scale} about {centre:?}"))?;
+    say(format_args!(
+        "rounding   {:.3e} at most, {:.3e} RMS ({:.3} and {:.3} units of 2^-14)",
+        report.error_max, report.error_rms, report.error_max_lsb, report.error_rms_lsb
+    ))?;
+    report
+        .remarks
+        .iter()
+        .try_for_each(|remark| say(format_args!("note       {remark}")))
+}
+
+/// Loads the model of a command line.
+pub fn load(name: &str, keep_scale: bool) -> anyhow::Result<model::Model> {
+    let spinner = spinner("reading the model");
+    let model = model::load(name, Options { keep_scale })?;
+    spinner.finish_and_clear();
+    Ok(model)
+}

@@ -1,0 +1,113 @@
+//! `glint flash` and `glint upload`.
+
+use super::common::{LineArguments, advance, bar, print_json, say, spinner};
+use super::convert::load;
+use anyhow::Context;
+use clap::Args;
+use glint::board::{Board, SerialBoard, SimulatedBoard};
+use glint::console::Console;
+use glint::flash;
+use glint::render::{Renderer, Route};
+use std::path::PathBuf;
+
+/// Load a program onto a board through its BIOS and start it.
+///
+/// Speaks LiteX's serial boot (SFL), with retries: frames that a bad line damages are sent again, and get shorter.
+#[derive(Args)]
+pub struct FlashArguments {
+    /// The program, a flat binary.
+    program: PathBuf,
+    /// `virtual` or a serial port.
+    #[arg(long, default_value = "virtual")]
+    board: String,
+    /// Where it goes in memory, and where it starts.
+    #[arg(long, default_value = "0x40000000", value_parser = parse_address)]
+    address: u32,
+    /// Seconds of the board's time to wait for its BIOS. Press reset, or have the board's program do it.
+    #[arg(long, default_value_t = 60, value_name = "SECONDS")]
+    wait: u64,
+    /// Bits a second of a serial port.
+    #[arg(long, default_value_t = 115_200, value_name = "BITS")]
+    baud: u32,
+    /// Print what was done as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Upload a model to a board and show it.
+#[derive(Args)]
+pub struct UploadArguments {
+    /// A mesh file or a generator's name.
+    model: String,
+    /// `virtual` or a serial port.
+    #[arg(long)]
+    board: String,
+    /// Leave the model's coordinates as they are, and refuse those outside [-2, 2).
+    #[arg(long)]
+    keep_scale: bool,
+    #[command(flatten)]
+    line: LineArguments,
+    /// Print what was done as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+fn parse_address(text: &str) -> Result<u32, String> {
+    let digits = text
+        .strip_prefix("0x")
+        .ok_or("expected 0x and hexadecimal digits")?;
+    u32::from_str_radix(digits, 16).map_err(|error| error.to_string())
+}
+
+impl FlashArguments {
+    pub fn run(self) -> anyhow::Result<()> {
+        let program = std::fs::read(&self.program)
+            .with_context(|| format!("{}: expected a program to read", self.program.display()))?;
+        let mut board: Box<dyn Board> = match self.board.as_str() {
+            "virtual" => Box::new(SimulatedBoard::full()?),
+            port => Box::new(SerialBoard::open(port, self.baud)?),
+        };
+        let waiting = spinner("waiting for the BIOS");
+        let bar = bar("program");
+        let report = flash::flash(
+            &mut *board,
+            &program,
+            self.address,
+            self.wait * 1000,
+            &mut |done, all| {
+                waiting.finish_and_clear();
+                advance(&bar)(done, all);
+            },
+        )?;
+        bar.finish_and_clear();
+        if self.json {
+            return print_json(&report);
+        }
+        say(format_args!(
+            "{} bytes in {} ms of the board's time: {} frames, {} retries",
+            report.bytes, report.milliseconds, report.frames, report.retries
+        ))
+    }
+}
+
+impl UploadArguments {
+    pub fn run(self) -> anyhow::Result<()> {
+        let model = load(&self.model, self.keep_scale)?;
+        let mut board = self.line.board(&self.board)?;
+        let start = board.now_ms();
+        let bar = bar("mesh");
+        let mut console = Console::new(&mut *board);
+        Renderer::new(&mut console).upload(&model.mesh, Route::Serial, &mut advance(&bar))?;
+        bar.finish_and_clear();
+        let milliseconds = board.now_ms() - start;
+        if self.json {
+            return print_json(
+                &serde_json::json!({ "bytes": model.mesh.len(), "milliseconds": milliseconds }),
+            );
+        }
+        say(format_args!(
+            "{} bytes in {milliseconds} ms of the board's time",
+            model.mesh.len()
+        ))
+    }
+}

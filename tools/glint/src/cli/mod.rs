@@ -1,0 +1,45 @@
+//! The command line.
+
+mod common;
+mod convert;
+mod flash;
+mod render;
+mod terminal;
+
+use clap::{Parser, Subcommand};
+
+/// Glint's host program: models in, pictures out.
+///
+/// MODEL is a mesh file (.obj, .stl, .ply, .glm) or a generator's name: cube, icosphere:N (0 to 7), torus-knot, gear, teapot,
+/// sponge:N (0 to 4). BOARD is `virtual` or a serial port such as /dev/ttyUSB1. Bad input ends with exit code 2 and one line
+/// that says where and what; anything else that fails ends with 1.
+#[derive(Parser)]
+#[command(name = "glint", version, max_term_width = 110)]
+pub struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Model(convert::ModelArguments),
+    Convert(convert::ConvertArguments),
+    Render(render::RenderArguments),
+    Upload(flash::UploadArguments),
+    Flash(flash::FlashArguments),
+    Console(terminal::ConsoleArguments),
+}
+
+impl Arguments {
+    /// Does what was asked.
+    pub fn run(self) -> anyhow::Result<()> {
+        match self.command {
+            Command::Model(arguments) => arguments.run(),
+            Command::Convert(arguments) => arguments.run(),
+            Command::Render(arguments) => arguments.run(),
+            Command::Upload(arguments) => arguments.run(),
+            Command::Flash(arguments) => arguments.run(),
+            Command::Console(arguments) => arguments.run(),
+        }
+    }
+}

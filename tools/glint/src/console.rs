@@ -1,0 +1,317 @@
+//! The firmware's console from a program's side: a command goes out, its reply comes back line by line.
+
+use crate::board::{Board, BoardError};
+use glint_core::console::PROMPT;
+
+/// Why a command has no reply.
+#[derive(Debug, thiserror::Error)]
+pub enum ConsoleError {
+    /// The board cannot be talked to.
+    #[error(transparent)]
+    Board(#[from] BoardError),
+    /// The firmware said no.
+    #[error("the board refused `{command}`: {reason}")]
+    Refused {
+        /// What was asked.
+        command: String,
+        /// What it said behind `error: `.
+        reason: String,
+    },
+    /// Nothing more came, and the reply was not complete.
+    #[error(
+        "waited {waited_ms} ms of the board's time for {expected}; the last lines were {last:?}"
+    )]
+    Silence {
+        /// What was waited for.
+        expected: String,
+        /// For how long nothing came.
+        waited_ms: u64,
+        /// What came before.
+        last: String,
+    },
+    /// The reply has not the form it should have.
+    #[error("the reply to `{command}`: expected {expected}, found {found:?}")]
+    Reply {
+        /// What was asked.
+        command: String,
+        /// What the reply should have had.
+        expected: String,
+        /// What it was.
+        found: String,
+    },
+}
+
+/// How long a board may be silent before it has failed: the time for the slowest frame, of a board without engines.
+pub const PATIENCE_MS: u64 = 30_000;
+
+/// The console of a board.
+pub struct Console<'b> {
+    board: &'b mut dyn Board,
+    /// What came and has not been looked at.
+    pending: Vec<u8>,
+    patience_ms: u64,
+}
+
+impl<'b> Console<'b> {
+    /// On a board whose firmware runs.
+    pub fn new(board: &'b mut dyn Board) -> Self {
+        Self {
+            board,
+            pending: Vec::new(),
+            patience_ms: PATIENCE_MS,
+        }
+    }
+
+    /// With another time after which a silent board has failed, in milliseconds of its own time.
+    #[must_use]
+    pub fn patience(self, patience_ms: u64) -> Self {
+        Self {
+            patience_ms,
+            ..self
+        }
+    }
+
+    /// Waits for the first prompt after a start, and returns what was said before it.
+    ///
+    /// # Errors
+    /// [`ConsoleError::Silence`] when there is no prompt.
+    pub fn greet(&mut self) -> Result<String, ConsoleError> {
+        let mut said = String::new();
+        loop {
+            if let Some(at) = find(&self.pending, PROMPT.as_bytes()) {
+                let rest = self.pending.split_off(at);
+                said.push_str(&plain(&std::mem::replace(&mut self.pending, rest)));
+                self.pending.drain(..PROMPT.len());
+                return Ok(said);
+            }
+            while let Some(line) = self.take_line() {
+                said.push_str(&line);
+                said.push('\n');
+            }
+            self.receive("a prompt", &said)?;
+        }
+    }
+
+    /// Sends a command and returns the lines of its reply without the final `ok`.
+    ///
+    /// # Errors
+    /// The firmware refuses it, or does not answer.
+    pub fn command(&mut self, command: &str) -> Result<Vec<String>, ConsoleError> {
+        self.send(command)?;
+        self.reply(command)
+    }
+
+    /// Sends a command that leads to a transfer. Returns whether the board is ready for it; if not, the command is done
+    /// without one.
+    ///
+    /// # Errors
+    /// The firmware refuses it, or does not answer.
+    pub fn command_with_transfer(&mut self, command: &str) -> Result<bool, ConsoleError> {
+        self.send(command)?;
+        loop {
+            match self.next_line(command)?.as_str() {
+                "ready" => return Ok(true),
+                "ok" => return Ok(false),
+                line => refused(command, line)?,
+            }
+        }
+    }
+
+    /// The line during a transfer, and what has come of it already.
+    pub fn line(&mut self) -> (&mut dyn Board, &mut Vec<u8>) {
+        (self.board, &mut self.pending)
+    }
+
+    /// The rest of the reply to a command, up to `ok`.
+    ///
+    /// # Errors
+    /// The firmware refuses the command, or does not answer.
+    pub fn reply(&mut self, command: &str) -> Result<Vec<String>, ConsoleError> {
+        let mut lines = Vec::new();
+        loop {
+            let line = self.next_line(command)?;
+            if line == "ok" {
+                return Ok(lines);
+            }
+            refused(command, &line)?;
+            lines.push(line);
+        }
+    }
+
+    /// Sends a command's line and takes in its echo.
+    fn send(&mut self, command: &str) -> Result<(), ConsoleError> {
+        // A zero drops whatever is on the line already.
+        self.board.write(format!("\0{command}\r").as_bytes())?;
+        loop {
+            // What was on the way before, such as the prompt, stands before the echo.
+            if self.next_line(command)?.ends_with(command) {
+                return Ok(());
+            }
+        }
+    }
+
+    fn next_line(&mut self, command: &str) -> Result<String, ConsoleError> {
+        loop {
+            if let Some(line) = self.take_line() {
+                return Ok(line);
+            }
+            self.receive(&format!("the reply to `{command}`"), "")?;
+        }
+    }
+
+    /// The next whole line that came. Behind a transfer the text begins after the last zero byte.
+    fn take_line(&mut self) -> Option<String> {
+        let end = self.pending.iter().position(|&b| b == b'\n')?;
+        let line: Vec<u8> = self.pending.drain(..=end).collect();
+        let text = line.rsplit(|&b| b == 0).next().unwrap_or_default();
+        Some(plain(text).trim_end().to_owned())
+    }
+
+    fn receive(&mut self, expected: &str, said: &str) -> Result<(), ConsoleError> {
+        let before = self.pending.len();
+        self.board.read(&mut self.pending, self.patience_ms)?;
+        if self.pending.len() > before {
+            return Ok(());
+        }
+        let all = format!("{said}{}", plain(&self.pending));
+        let start = all.char_indices().rev().nth(199).map_or(0, |(at, _)| at);
+        Err(ConsoleError::Silence {
+            expected: expected.to_owned(),
+            waited_ms: self.patience_ms,
+            last: all[start..].to_owned(),
+        })
+    }
+}
+
+fn refused(command: &str, line: &str) -> Result<(), ConsoleError> {
+    match line.strip_prefix("error: ") {
+        Some(reason) => Err(ConsoleError::Refused {
+            command: command.to_owned(),
+            reason: reason.to_owned(),
+        }),
+        None => Ok(()),
+    }
+}
+
+/// The value of a reply's line `key value`.
+///
+/// # Errors
+/// There is no such line, or its value is of another kind.
+pub fn value<T: std::str::FromStr>(
+    command: &str,
+    lines: &[String],
+    key: &str,
+) -> Result<T, ConsoleError> {
+    let found = lines
+        .iter()
+        .find_map(|line| line.strip_prefix(key)?.strip_prefix(' '));
+    found
+        .and_then(|word| word.parse().ok())
+        .ok_or_else(|| ConsoleError::Reply {
+            command: command.to_owned(),
+            expected: format!("a line `{key}` with its value"),
+            found: lines.join("\n"),
+        })
+}
+
+fn find(bytes: &[u8], wanted: &[u8]) -> Option<usize> {
+    bytes
+        .windows(wanted.len())
+        .position(|window| window == wanted)
+}
+
+/// Text without the sequences that move a terminal's cursor.
+fn plain(bytes: &[u8]) -> String {
+    let mut text = Vec::with_capacity(bytes.len());
+    let mut rest = bytes.iter();
+    while let Some(&byte) = rest.next() {
+        match byte {
+            0x1b => {
+                // CSI: parameters up to a letter.
+                if rest.as_slice().first() == Some(&b'[') {
+                    rest.next();
+                    rest.by_ref().find(|b| (0x40..0x7f).contains(*b));
+                }
+            }
+            b'\r' | 0x07 | 0x08 => {}
+            _ => text.push(byte),
+        }
+    }
+    String::from_utf8_lossy(&text).into_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::VecDeque;
+
+    /// Plays what a board said after each line it was sent.
+    struct Script {
+        replies: VecDeque<&'static str>,
+        output: Vec<u8>,
+        now_ms: u64,
+    }
+
+    impl Board for Script {
+        fn write(&mut self, bytes: &[u8]) -> Result<(), BoardError> {
+            assert!(bytes.ends_with(b"\r"));
+            self.output
+                .extend(self.replies.pop_front().unwrap_or_default().bytes());
+            Ok(())
+        }
+
+        fn read(&mut self, bytes: &mut Vec<u8>, wait_ms: u64) -> Result<(), BoardError> {
+            // A byte at a time: no line comes whole.
+            if self.output.is_empty() {
+                self.now_ms += wait_ms;
+            } else {
+                bytes.push(self.output.remove(0));
+            }
+            Ok(())
+        }
+
+        fn now_ms(&self) -> u64 {
+            self.now_ms
+        }
+    }
+
+    fn script(start: &str, replies: &[&'static str]) -> Script {
+        Script {
+            replies: replies.iter().copied().collect(),
+            output: start.into(),
+            now_ms: 0,
+        }
+    }
+
+    #[test]
+    fn replies() {
+        let mut board = script(
+            "banner\r\nglint> ",
+            &[
+                "info\r\nversion 1\r\ntriangles 12\r\nok\r\nglint> ",
+                "noise\r\nglint> \x1b[2Kleds x\r\nerror: leds `x`: expected a number\r\nglint> ",
+                "load 1 2\r\nready\r\n",
+                "load 1 2\r\nok\r\nglint> ",
+                "hello",
+            ],
+        );
+        let mut console = Console::new(&mut board);
+        assert_eq!(console.greet().unwrap(), "banner\n");
+        let lines = console.command("info").unwrap();
+        assert_eq!(lines, ["version 1", "triangles 12"]);
+        assert_eq!(value::<u32>("info", &lines, "triangles").unwrap(), 12);
+        assert!(value::<u32>("info", &lines, "tri").is_err());
+        let refused = console.command("leds x").unwrap_err().to_string();
+        assert_eq!(
+            refused,
+            "the board refused `leds x`: leds `x`: expected a number"
+        );
+        assert!(console.command_with_transfer("load 1 2").unwrap());
+        assert!(!console.command_with_transfer("load 1 2").unwrap());
+        let silence = console.command("hello").unwrap_err();
+        assert!(
+            matches!(silence, ConsoleError::Silence { ref last, .. } if last == "glint> hello"),
+            "{silence}"
+        );
+    }
+}

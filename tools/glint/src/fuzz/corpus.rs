@@ -1,0 +1,136 @@
+//! The seeds: small, valid, and with every feature of their format.
+
+use super::targets::Target;
+use crate::convert::{self, Options};
+use crate::error::Place;
+use crate::formats::write;
+use crate::generate;
+use crate::polygons::{Corner, Polygons, Rgb8};
+use glint_core::wire::{MAX_FRAME, Manifest, Receiver, Sender, State, Timing};
+
+/// The seeds of a target, all of them shorter than an input may be.
+pub fn of(target: Target) -> Vec<Vec<u8>> {
+    let seeds = match target {
+        Target::Upload => transfers(),
+        Target::Console => texts(CONSOLE),
+        Target::Obj => texts(OBJ)
+            .into_iter()
+            .chain(written(|p, out| write::obj(p, out)))
+            .collect(),
+        Target::Stl => texts(STL)
+            .into_iter()
+            .chain(written(|p, out| write::stl(p, out)))
+            .collect(),
+        Target::Ply => texts(PLY)
+            .into_iter()
+            .chain(written(|p, out| write::ply(p, out)))
+            .collect(),
+        Target::Glm => meshes(),
+    };
+    seeds
+        .into_iter()
+        .filter(|seed| seed.len() <= super::MAX_INPUT)
+        .collect()
+}
+
+fn texts(texts: &[&str]) -> Vec<Vec<u8>> {
+    texts.iter().map(|text| text.as_bytes().to_vec()).collect()
+}
+
+/// Small models: generated ones, and a concave polygon with colours.
+fn models() -> Vec<Polygons> {
+    let mut models: Vec<Polygons> = ["cube", "icosphere:0", "icosphere:1", "sponge:0"]
+        .iter()
+        .filter_map(|name| generate::named(name).ok())
+        .collect();
+    let mut star = Polygons::default();
+    let corners: Vec<Corner> = (0..12)
+        .filter_map(|i| {
+            let (radius, angle) = (
+                if i % 2 == 0 { 1.0 } else { 0.4 },
+                f64::from(i) * std::f64::consts::TAU / 12.0,
+            );
+            star.point_colours.push(Rgb8([i as u8 * 20, 200, 100]));
+            let point = [
+                radius * angle.cos(),
+                radius * angle.sin(),
+                f64::from(i) * 0.01,
+            ];
+            star.add_point(point, Place::Whole).ok().map(Corner::at)
+        })
+        .collect();
+    let colour = Some(Rgb8([255, 0, 0]));
+    if star.add_face(&corners, colour, Place::Whole).is_ok() {
+        models.push(star);
+    }
+    models
+}
+
+fn written(write: impl Fn(&Polygons, &mut Vec<u8>) -> std::io::Result<()>) -> Vec<Vec<u8>> {
+    let one = |polygons: Polygons| {
+        let mut out = Vec::new();
+        write(&polygons, &mut out).ok().map(|()| out)
+    };
+    models().into_iter().filter_map(one).collect()
+}
+
+fn meshes() -> Vec<Vec<u8>> {
+    models()
+        .iter()
+        .filter_map(|polygons| convert::convert(polygons, Options::default()).ok())
+        .map(|(mesh, _)| mesh)
+        .collect()
+}
+
+/// What each side of a transfer says, behind three bytes that say how it is given to the other side.
+fn transfers() -> Vec<Vec<u8>> {
+    let mut seeds = Vec::new();
+    for length in [0, 1, 16, 100, 1500] {
+        let data = super::targets::upload_data(length);
+        let mut buffer = vec![0; length];
+        let mut sender = Sender::new(&data, 5, Timing::HOST, 0);
+        let mut receiver =
+            Receiver::new(&mut buffer, Some(Manifest::of(&data)), Timing::CONSOLE, 0);
+        let (mut from_sender, mut from_receiver) = (vec![0, 0, 40], vec![1, 0, 40]);
+        let mut frame = [0; MAX_FRAME];
+        for now in 0..1000 {
+            let sent = sender.poll(now, &mut frame);
+            from_sender.extend(&frame[..sent]);
+            receiver.on_bytes(now, &frame[..sent]);
+            let answered = receiver.poll(now, &mut frame);
+            from_receiver.extend(&frame[..answered]);
+            sender.on_bytes(now, &frame[..answered]);
+            if sender.state() != State::Running {
+                break;
+            }
+        }
+        seeds.extend([from_sender, from_receiver]);
+    }
+    seeds
+}
+
+const CONSOLE: &[&str] = &[
+    "help\rhelp camera\rinfo\rscene\rscene cube\rscene model\r",
+    "camera 2.5 30 60\rcamera 5 -720.125 179.99999\rorbit 12\rorbit\r",
+    "view\rview 0 -3 0 1 0 0 0 0 -1 0 1 0 0.9 0.1\r",
+    "look 10 20 -30.5\rsize 320 180\rsize 1280 720\rframe\rframe depth\r",
+    "load 4096 deadbeef\rrender\rcull on\rcull off\rstats\rstats json\r",
+    "backend\rbackend cpu\rbackend gateware\rbench\rbench sine\rselftest\r",
+    "leds 0xffff\rleds 7\rbuttons\rreboot\r",
+    "inf\x08\x08\x1b[A\x1b[B\x1b[C\x1b[D\x1b[H\x1b[F\x1b[3~\x01\x05\x0b\x15\x17\x0c\x03help\r\n",
+];
+
+const OBJ: &[&str] = &[
+    "# all kinds of faces\nmtllib beside.mtl\no thing\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.5 1\nvt 0 0\nvt 1 0\nvn 0 0 1\nvn 0 1 0\ng side\ns 1\nusemtl red\nf 1/1/1 2/2/1 3//1 4\nf -1 -2 -3\nf 1 2 5\nusemtl green\nf 2//2 3//2 5//2\nl 1 2\np 1\n",
+    "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0 0 0 1\nv 0 1 0 255 255 0\nv 0.2 0.5 0.0 1 1 1 1\nf 1 2 3 4 5\n",
+    "v 0 0 0 1.0\nv 3 0 0\nv 3 3 0\\\n\nv 1 1 0\nv 0 3 0\nf 1 2 \\\n3 4 5\n",
+];
+
+const STL: &[&str] = &[
+    "solid name with words\nfacet normal 0 0 1\n outer loop\n  vertex 0 0 0\n  vertex 1 0 0\n  vertex 0 1 0\n endloop\nendfacet\nfacet normal nan nan nan\n outer loop\n  vertex 0 0 1e-3\n  vertex 1 0 .5\n  vertex 0 1 -1e2\n endloop\nendfacet\nendsolid name\nsolid\nendsolid\n",
+];
+
+const PLY: &[&str] = &[
+    "ply\nformat ascii 1.0\ncomment made here\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\nproperty float nz\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n0 0 0 0 0 1 255 0 0\n1 0 0 0 0 1 0 255 0\n1 1 0 0 0 1 0 0 255\n0 1 0 0 0 1 9 9 9\n3 0 1 2\n4 0 1 2 3\n",
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty double z\nelement edge 1\nproperty int a\nproperty list uchar float b\nelement face 1\nproperty float red\nproperty float green\nproperty float blue\nproperty list uint uint vertex_index\nend_header\n0 0 0\n1 0 0\n0 1 0\n5 2 1 2\n0.5 0.25 1 3 0 1 2\n",
+];

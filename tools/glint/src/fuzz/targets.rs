@@ -1,0 +1,318 @@
+//! What is fuzzed.
+
+use crate::convert::{self, Options};
+use crate::formats::{glm, obj, ply, stl};
+use crate::polygons::Polygons;
+use clap::ValueEnum;
+use glint_core::console::{Command, Event, LineEditor, write_help};
+use glint_core::wire::{MAX_FRAME, Manifest, Receiver, Sender, State, Timing, crc32};
+
+/// Something that takes bytes from outside.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Target {
+    /// Both sides of an upload.
+    Upload,
+    /// The line editor and the grammar of commands.
+    Console,
+    /// OBJ and its material files.
+    Obj,
+    /// STL.
+    Stl,
+    /// PLY.
+    Ply,
+    /// Meshes as they lie in memory.
+    Glm,
+}
+
+/// What a target made of an input.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// It went the whole way.
+    Accepted,
+    /// It was refused somewhere.
+    Refused,
+}
+
+impl Target {
+    /// All of them.
+    pub const ALL: [Self; 6] = [
+        Self::Upload,
+        Self::Console,
+        Self::Obj,
+        Self::Stl,
+        Self::Ply,
+        Self::Glm,
+    ];
+
+    /// Words that mean something to it.
+    pub fn words(self) -> &'static [&'static str] {
+        match self {
+            Self::Upload | Self::Glm => &[],
+            Self::Console => &[
+                "help", "view", "camera", "load", "size", "on", "off", "depth", "json", "0x",
+                "1e5", "\r", "\x1b[",
+            ],
+            Self::Obj => &[
+                "v", "vn", "vt", "f", "usemtl", "mtllib", "newmtl", "Kd", "#", "\\\n", "1//1",
+                "1/1/1",
+            ],
+            Self::Stl => &[
+                "solid", "facet", "normal", "outer", "loop", "vertex", "endloop", "endfacet",
+                "endsolid", "COLOR=",
+            ],
+            Self::Ply => &[
+                "element",
+                "property",
+                "list",
+                "vertex",
+                "face",
+                "uchar",
+                "int8",
+                "ushort",
+                "int",
+                "uint",
+                "float",
+                "double",
+                "format",
+                "ascii",
+                "binary_little_endian",
+                "binary_big_endian",
+                "end_header",
+                "vertex_indices",
+                "red",
+            ],
+        }
+    }
+
+    /// Puts right what would stop an input before anything else is looked at: checksums and lengths.
+    pub fn repair(self, input: &mut Vec<u8>) {
+        match self {
+            Self::Upload => repair_frames(input),
+            Self::Stl => {
+                // The count that makes the file's length right.
+                let count = (input.len().saturating_sub(84) / 50) as u32;
+                if let (Some(field), false) = (input.get_mut(80..84), count == 0) {
+                    field.copy_from_slice(&count.to_le_bytes());
+                    input.truncate(84 + 50 * count as usize);
+                }
+            }
+            Self::Glm => {
+                input.truncate(input.len() / 16 * 16);
+                let length = input.len() as u32;
+                if let Some(field) = input.get_mut(4..8) {
+                    field.copy_from_slice(&length.to_le_bytes());
+                }
+            }
+            Self::Console | Self::Obj | Self::Ply => {}
+        }
+    }
+
+    /// Gives it an input. A bug is a panic.
+    pub fn run(self, input: &[u8]) -> Outcome {
+        match self {
+            Self::Upload => run_transfer(input),
+            Self::Console => run_console(input),
+            Self::Obj => {
+                // The same bytes are its material file, so that is fuzzed along.
+                let polygons = obj::parse(input, &mut |_| Some(input.to_vec()));
+                polygons.map_or(Outcome::Refused, |polygons| run_conversion(&polygons))
+            }
+            Self::Stl => {
+                stl::parse(input).map_or(Outcome::Refused, |polygons| run_conversion(&polygons))
+            }
+            Self::Ply => {
+                ply::parse(input).map_or(Outcome::Refused, |polygons| run_conversion(&polygons))
+            }
+            Self::Glm => glm::parse(input).map_or(Outcome::Refused, |polygons| {
+                run_conversion(&polygons);
+                run_model(input);
+                Outcome::Accepted
+            }),
+        }
+    }
+}
+
+/// What polygons go through after they have been read.
+fn run_conversion(polygons: &Polygons) -> Outcome {
+    // What does not fit is refused; what comes out is a mesh, or `convert` fails.
+    let _ = convert::convert(polygons, Options { keep_scale: true });
+    match convert::convert(polygons, Options::default()) {
+        Ok((mesh, report)) => {
+            assert!(
+                report.error_max_lsb <= 0.87,
+                "the rounding is to nearest: {}",
+                report.error_max_lsb
+            );
+            assert!(glm::check(&mesh).is_ok(), "what is converted is a mesh");
+            Outcome::Accepted
+        }
+        Err(_) => Outcome::Refused,
+    }
+}
+
+/// Renders a checked mesh.
+fn run_model(mesh: &[u8]) {
+    let (Ok(mesh_view), Ok(view)) = (glm::check(mesh), crate::view::spherical("2,30,60")) else {
+        return;
+    };
+    let vertices = mesh_view
+        .chunks()
+        .map(|chunk| chunk.vertex_count())
+        .max()
+        .unwrap_or(0);
+    let mut scratch = vec![glint_model::Projected::Behind; vertices];
+    let (width, height) = glint_model::SIZES[0];
+    let pixels = (width * height) as usize;
+    let (mut colour, mut depth) = (vec![0; pixels], vec![0; pixels]);
+    let mut target = glint_model::Target {
+        width,
+        height,
+        colour: &mut colour,
+        depth: &mut depth,
+    };
+    let rendered = glint_model::render(
+        &mesh_view,
+        &view,
+        &mut target,
+        &mut scratch,
+        &glint_model::Options::default(),
+    );
+    assert!(
+        rendered.is_ok(),
+        "a checked mesh and a checked camera are rendered"
+    );
+}
+
+fn run_console(input: &[u8]) -> Outcome {
+    let mut editor = LineEditor::new();
+    let (mut echo, mut text) = (String::new(), String::new());
+    let mut outcome = Outcome::Refused;
+    for &byte in input {
+        if let Event::Line(line) = editor.on_byte(byte, &mut echo) {
+            use std::fmt::Write;
+            match Command::parse(line) {
+                Ok(Command::Help(name)) => {
+                    // A string takes everything.
+                    let _ = write_help(&mut text, name);
+                }
+                Ok(_) => outcome = Outcome::Accepted,
+                Err(error) => {
+                    let _ = write!(text, "{error}");
+                    assert!(
+                        !text.contains(['\r', '\n']),
+                        "an error is one line: {text:?}"
+                    );
+                }
+            }
+            text.clear();
+        }
+        assert!(
+            echo.len() < 4096,
+            "a byte echoes less than a screen: {}",
+            echo.len()
+        );
+        echo.clear();
+    }
+    outcome
+}
+
+/// The data that transfers in the corpus carry.
+pub fn upload_data(length: usize) -> Vec<u8> {
+    (0..length).map(|i| (i * 7 / 3) as u8).collect()
+}
+
+/// Gives the input to one side of a transfer, in pieces and with time going by.
+fn run_transfer(input: &[u8]) -> Outcome {
+    let &[side, pace, piece, ref stream @ ..] = input else {
+        return Outcome::Refused;
+    };
+    let data = upload_data(1500);
+    let mut frame = [0; MAX_FRAME];
+    let mut now = 0;
+    if side & 1 == 0 {
+        let mut buffer = vec![0; 2000];
+        let announced = match side >> 1 & 3 {
+            0 => None,
+            n => Some(Manifest::of(&data[..[0, 100, 1500, 16][usize::from(n)]])),
+        };
+        let mut receiver = Receiver::new(&mut buffer, announced, Timing::CONSOLE, now);
+        for bytes in stream.chunks(usize::from(piece) + 1) {
+            let taken = receiver.on_bytes(now, bytes);
+            assert!(taken <= bytes.len());
+            assert!(receiver.poll(now, &mut frame) <= MAX_FRAME);
+            now += u64::from(pace) * 4;
+        }
+        let outcome = ended(receiver.state());
+        match (outcome, receiver.received(), announced) {
+            (Outcome::Accepted, None, _) => panic!("done without data"),
+            (Outcome::Refused, Some(_), _) => panic!("data without being done"),
+            (_, Some(got), Some(manifest)) => {
+                assert_eq!(
+                    (got.len() as u32, crc32(got)),
+                    (manifest.length, manifest.crc32)
+                );
+            }
+            _ => {}
+        }
+        for _ in 0..3 {
+            now += 10_000;
+            receiver.poll(now, &mut frame);
+        }
+        assert_ne!(
+            receiver.state(),
+            State::Running,
+            "a silent line ends a transfer"
+        );
+        outcome
+    } else {
+        let length = [1500, 0, 100, 16][usize::from(side >> 1 & 3)];
+        let mut sender = Sender::new(&data[..length], 5, Timing::HOST, now);
+        for bytes in stream.chunks(usize::from(piece) + 1) {
+            while sender.poll(now, &mut frame) > 0 {}
+            let taken = sender.on_bytes(now, bytes);
+            assert!(taken <= bytes.len());
+            now += u64::from(pace) * 4;
+        }
+        while sender.poll(now, &mut frame) > 0 {}
+        let outcome = ended(sender.state());
+        for _ in 0..5 {
+            now += 30_000;
+            while sender.poll(now, &mut frame) > 0 {}
+        }
+        assert_ne!(
+            sender.state(),
+            State::Running,
+            "a silent line ends a transfer"
+        );
+        outcome
+    }
+}
+
+fn ended(state: State) -> Outcome {
+    if state == State::Done {
+        Outcome::Accepted
+    } else {
+        Outcome::Refused
+    }
+}
+
+/// Gives every frame of a stream its right CRC-16.
+fn repair_frames(input: &mut Vec<u8>) {
+    const CRC: crc::Crc<u16> = crc::Crc::<u16>::new(&crc::CRC_16_IBM_3740);
+    let Some((head, stream)) = input.split_at_checked(3) else {
+        return;
+    };
+    let mut repaired = head.to_vec();
+    for frame in stream.split(|&byte| byte == 0) {
+        match cobs::decode_vec(frame) {
+            Ok(body) if body.len() > 2 => {
+                let body = &body[..body.len() - 2];
+                let with_crc = [body, &CRC.checksum(body).to_le_bytes()].concat();
+                repaired.extend(cobs::encode_vec(&with_crc));
+            }
+            _ => repaired.extend(frame),
+        }
+        repaired.push(0);
+    }
+    *input = repaired;
+}

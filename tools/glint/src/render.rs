@@ -1,0 +1,390 @@
+//! Rendering a mesh, by the model on this machine or by a board.
+
+use crate::board::BoardError;
+use crate::console::{self, Console, ConsoleError};
+use crate::picture::Frame;
+use crate::transfer::{self, Progress, TransferError};
+use glint_core::camera::View;
+use glint_core::console::Backend;
+use glint_core::mesh::{Mesh, MeshError};
+use glint_core::wire::crc32;
+use glint_model::{DepthScale, FrameSetup, Options, Projected, RenderError, Target};
+use serde::{Deserialize, Serialize};
+
+/// What is to be rendered, and how.
+#[derive(Clone, Debug)]
+pub struct Scene<'m> {
+    /// The mesh as it lies in memory.
+    pub mesh: &'m [u8],
+    /// The camera.
+    pub view: View,
+    /// Width and height in pixels, one of [`glint_model::SIZES`].
+    pub size: (u32, u32),
+    /// Whether back faces are left out.
+    pub cull: bool,
+    /// Who renders on a board.
+    pub backend: Backend,
+}
+
+/// What a frame took, as the file of `--stats` has it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Stats {
+    /// Cycles of the board's clock; nothing from the model, which has no clock.
+    pub cycles: Option<u64>,
+    /// Triangles in the mesh.
+    pub triangles_in: u32,
+    /// Those of them that did not reach the walker.
+    pub triangles_culled: u32,
+    /// Those that went through the clipper.
+    pub triangles_clipped: u32,
+    /// Those that reached the walker.
+    pub triangles_drawn: u32,
+    /// Pixels that the walker came to.
+    pub pixels_tested: u64,
+    /// Pixels covered by a triangle, each as often as it is.
+    pub pixels_covered: u64,
+    /// Pixels written.
+    pub pixels_drawn: u64,
+    /// The board's clock in Hz.
+    pub clock: Option<u64>,
+}
+
+/// A frame and what it took.
+#[derive(Clone, Debug)]
+pub struct Rendered {
+    /// The frame.
+    pub frame: Frame,
+    /// What it took.
+    pub stats: Stats,
+}
+
+/// Why there is no frame.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The mesh is damaged.
+    #[error("{0}")]
+    Mesh(MeshError),
+    /// The model refuses.
+    #[error("{0}")]
+    Render(RenderError),
+    /// The board cannot be talked to.
+    #[error(transparent)]
+    Board(#[from] BoardError),
+    /// The board's console says no, or nothing.
+    #[error(transparent)]
+    Console(#[from] ConsoleError),
+    /// An upload or a download failed.
+    #[error(transparent)]
+    Transfer(#[from] TransferError),
+    /// The way past the line was asked for where there is none.
+    #[error("this board has no way into its memory but its serial line")]
+    NoMemory,
+}
+
+/// How a mesh gets into a board, and a frame out of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Route {
+    /// Over the serial line.
+    Serial,
+    /// Past it, into the simulated memory: the virtual board only.
+    Memory,
+}
+
+/// What relates a scene's depth codes to distances.
+///
+/// # Errors
+/// The mesh is damaged, or the size is none of [`glint_model::SIZES`].
+pub fn depth_scale(scene: &Scene) -> Result<DepthScale, Error> {
+    let mesh = Mesh::new_checked(scene.mesh).map_err(Error::Mesh)?;
+    let (width, height) = scene.size;
+    Ok(FrameSetup::new(&scene.view, width, height, mesh.radius())
+        .map_err(Error::Render)?
+        .depth)
+}
+
+/// Renders with the model.
+///
+/// # Errors
+/// The mesh is damaged, or the size is none of [`glint_model::SIZES`].
+pub fn on_model(scene: &Scene) -> Result<Rendered, Error> {
+    let mesh = Mesh::new_checked(scene.mesh).map_err(Error::Mesh)?;
+    let (width, height) = scene.size;
+    let pixels = width as usize * height as usize;
+    let mut frame = Frame {
+        width,
+        height,
+        colour: vec![0; pixels],
+        depth: vec![0; pixels],
+    };
+    let vertices = mesh
+        .chunks()
+        .map(|chunk| chunk.vertex_count())
+        .max()
+        .unwrap_or(0);
+    let mut scratch = vec![Projected::Behind; vertices];
+    let mut target = Target {
+        width,
+        height,
+        colour: &mut frame.colour,
+        depth: &mut frame.depth,
+    };
+    let options = Options {
+        cull: scene.cull,
+        ..Options::default()
+    };
+    let stats = glint_model::render(&mesh, &scene.view, &mut target, &mut scratch, &options)
+        .map_err(Error::Render)?;
+    let stats = Stats {
+        cycles: None,
+        triangles_in: stats.triangles_in,
+        triangles_culled: stats.culled,
+        triangles_clipped: stats.clipped,
+        triangles_drawn: stats.drawn,
+        pixels_tested: stats.pixels_tested,
+        pixels_covered: stats.pixels_covered,
+        pixels_drawn: stats.pixels_drawn,
+        clock: None,
+    };
+    Ok(Rendered { frame, stats })
+}
+
+/// A board that renders.
+pub struct Renderer<'c, 'b> {
+    console: &'c mut Console<'b>,
+    /// Uploads so far: each is to have another number than the one before.
+    uploads: u8,
+}
+
+impl<'c, 'b> Renderer<'c, 'b> {
+    /// Renders on a board whose prompt has been seen.
+    pub fn new(console: &'c mut Console<'b>) -> Self {
+        Self {
+            console,
+            uploads: 0,
+        }
+    }
+
+    /// Makes the scene the one that is shown, uploads its mesh, and waits for its frame.
+    ///
+    /// # Errors
+    /// The firmware refuses, or the upload fails.
+    pub fn show(
+        &mut self,
+        scene: &Scene,
+        route: Route,
+        progress: &mut Progress,
+    ) -> Result<Stats, Error> {
+        let backend = match scene.backend {
+            Backend::Cpu => "cpu",
+            Backend::Gateware => "gateware",
+        };
+        self.console.command(&format!("backend {backend}"))?;
+        // Every change is drawn at once; what is cheap to draw goes first, so the mesh comes last.
+        self.console
+            .command(&format!("cull {}", if scene.cull { "on" } else { "off" }))?;
+        self.console
+            .command(&format!("size {} {}", scene.size.0, scene.size.1))?;
+        self.console.command(&view_command(&scene.view))?;
+        self.upload(scene.mesh, route, progress)?;
+        self.render()
+    }
+
+    /// Uploads a mesh and makes it the one that is shown.
+    ///
+    /// # Errors
+    /// The upload fails, or there is no such route.
+    pub fn upload(
+        &mut self,
+        mesh: &[u8],
+        route: Route,
+        progress: &mut Progress,
+    ) -> Result<(), Error> {
+        if route == Route::Memory {
+            // With the bytes in place already, `load` finds their CRC-32 right and skips the transfer.
+            let staging = self.info::<String>("staging")?;
+            let address = parse_address(&staging)?;
+            self.memory()?.write_memory(address, mesh)?;
+        }
+        self.uploads = self.uploads.wrapping_add(1);
+        Ok(transfer::upload(
+            self.console,
+            mesh,
+            self.uploads,
+            progress,
+        )?)
+    }
+
+    /// Moves the camera and waits for the frame.
+    ///
+    /// # Errors
+    /// The firmware refuses.
+    pub fn look(&mut self, view: &View) -> Result<Stats, Error> {
+        self.console.command(&view_command(view))?;
+        self.render()
+    }
+
+    /// The colours of the last frame.
+    ///
+    /// # Errors
+    /// The download fails, or there is no such route.
+    pub fn colour(
+        &mut self,
+        size: (u32, u32),
+        route: Route,
+        progress: &mut Progress,
+    ) -> Result<Vec<u16>, Error> {
+        let bytes = self.frame("frame", 2, size, route, progress)?;
+        Ok(bytes
+            .chunks_exact(2)
+            .map(|pixel| u16::from_le_bytes([pixel[0], pixel[1]]))
+            .collect())
+    }
+
+    /// The depth codes of the last frame.
+    ///
+    /// # Errors
+    /// The download fails, or there is no such route.
+    pub fn depth(
+        &mut self,
+        size: (u32, u32),
+        route: Route,
+        progress: &mut Progress,
+    ) -> Result<Vec<u32>, Error> {
+        let bytes = self.frame("depth", 4, size, route, progress)?;
+        let word = |pixel: &[u8]| u32::from_le_bytes([pixel[0], pixel[1], pixel[2], pixel[3]]);
+        Ok(bytes.chunks_exact(4).map(word).collect())
+    }
+
+    fn frame(
+        &mut self,
+        kind: &str,
+        pixel_bytes: usize,
+        (width, height): (u32, u32),
+        route: Route,
+        progress: &mut Progress,
+    ) -> Result<Vec<u8>, Error> {
+        let length = pixel_bytes * width as usize * height as usize;
+        match route {
+            Route::Serial => {
+                let command = if kind == "depth" {
+                    "frame depth"
+                } else {
+                    "frame"
+                };
+                Ok(transfer::download(self.console, command, length, progress)?)
+            }
+            Route::Memory => {
+                let address = parse_address(&self.info::<String>(kind)?)?;
+                let mut bytes = vec![0; length];
+                self.memory()?.read_memory(address, &mut bytes)?;
+                Ok(bytes)
+            }
+        }
+    }
+
+    fn render(&mut self) -> Result<Stats, Error> {
+        self.console.command("render")?;
+        let command = "stats json";
+        let lines = self.console.command(command)?;
+        let text = lines.last().map(String::as_str).unwrap_or_default();
+        serde_json::from_str(text).map_err(|error| {
+            Error::Console(ConsoleError::Reply {
+                command: command.to_owned(),
+                expected: format!("a line of JSON ({error})"),
+                found: text.to_owned(),
+            })
+        })
+    }
+
+    fn info<T: std::str::FromStr>(&mut self, key: &str) -> Result<T, Error> {
+        let lines = self.console.command("info")?;
+        // The value is one word; more may follow it on the line.
+        let first_words: Vec<String> = lines
+            .iter()
+            .map(|line| line.split(' ').take(2).collect::<Vec<_>>().join(" "))
+            .collect();
+        Ok(console::value("info", &first_words, key)?)
+    }
+
+    fn memory(&mut self) -> Result<&mut dyn crate::board::Memory, Error> {
+        self.console.line().0.memory().ok_or(Error::NoMemory)
+    }
+}
+
+fn parse_address(word: &str) -> Result<u32, Error> {
+    word.strip_prefix("0x")
+        .and_then(|digits| u32::from_str_radix(digits, 16).ok())
+        .ok_or_else(|| {
+            Error::Console(ConsoleError::Reply {
+                command: "info".to_owned(),
+                expected: "an address 0x…".to_owned(),
+                found: word.to_owned(),
+            })
+        })
+}
+
+/// The console's command for a view. Its decimals are those of the fixed-point numbers, so none is rounded again.
+fn view_command(view: &View) -> String {
+    let mut command = "view".to_owned();
+    let mut put = |number: &dyn std::fmt::Display| command.push_str(&format!(" {number}"));
+    view.eye().iter().for_each(|c| put(c));
+    for row in [view.u(), view.v(), view.n()] {
+        row.iter().for_each(|c| put(c));
+    }
+    put(&view.half_width());
+    put(&view.near());
+    command
+}
+
+/// A mesh's CRC-32 as the firmware and the wire have it.
+pub fn checksum(mesh: &[u8]) -> u32 {
+    crc32(mesh)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::convert;
+    use crate::generate;
+    use crate::view;
+
+    #[test]
+    fn the_cube_from_the_front() {
+        let (mesh, _) = convert::convert(
+            &generate::named("cube").unwrap(),
+            convert::Options::default(),
+        )
+        .unwrap();
+        let scene = Scene {
+            mesh: &mesh,
+            view: view::spherical("2.5,0,90").unwrap(),
+            size: (320, 180),
+            cull: true,
+            backend: Backend::Cpu,
+        };
+        let Rendered { frame, stats } = on_model(&scene).unwrap();
+        assert_eq!((stats.triangles_in, stats.triangles_drawn), (12, 2));
+        // The near side is a square at depth 2 in the middle: 0.5/2 of a half width of 0.9 at 160 pixels.
+        let half = (160.0 * 0.25 / 0.9) as usize;
+        let depth = |x: usize, y: usize| {
+            depth_scale(&scene)
+                .unwrap()
+                .distance(frame.depth[y * 320 + x])
+        };
+        assert!((depth(160, 90).unwrap().to_num::<f64>() - 2.0).abs() < 1e-4);
+        assert!(depth(160 + half - 1, 90).is_some() && depth(160 + half + 1, 90).is_none());
+        assert_eq!(
+            stats.pixels_drawn,
+            frame.depth.iter().filter(|&&code| code > 0).count() as u64
+        );
+    }
+
+    #[test]
+    fn a_view_survives_the_console() {
+        let view = view::spherical("3.3,33.3,66.6").unwrap();
+        let command = view_command(&view);
+        assert!(command.len() < glint_core::console::LINE_MAX);
+        let parsed = glint_core::console::Command::parse(&command).unwrap();
+        assert_eq!(parsed, glint_core::console::Command::View(Some(view)));
+    }
+}

@@ -1,0 +1,48 @@
+//! A short run of every fuzz target; the long ones are run by hand.
+
+use glint::fuzz::{Inputs, Outcome, Target};
+
+const INPUTS: u64 = 20_000;
+
+fn run(target: Target) {
+    let inputs = Inputs::new(target, 0x610e);
+    let accepted = (0..INPUTS)
+        .filter(|&number| inputs.run(number) == Outcome::Accepted)
+        .count();
+    // If nothing gets through, nothing behind the door is fuzzed; if everything does, nothing is.
+    let share = accepted as f64 / INPUTS as f64;
+    assert!(
+        (0.005..0.995).contains(&share),
+        "{target:?}: {accepted} of {INPUTS} went the whole way"
+    );
+}
+
+#[test]
+fn upload() {
+    run(Target::Upload);
+}
+
+#[test]
+fn console() {
+    run(Target::Console);
+}
+
+#[test]
+fn obj() {
+    run(Target::Obj);
+}
+
+#[test]
+fn stl() {
+    run(Target::Stl);
+}
+
+#[test]
+fn ply() {
+    run(Target::Ply);
+}
+
+#[test]
+fn glm() {
+    run(Target::Glm);
+}
