@@ -99,6 +99,11 @@ impl<const RX: usize, const TX: usize> Uart<RX, TX> {
         })
     }
 
+    /// Whether [`receive`](Self::receive) has something.
+    pub fn has_received(&self) -> bool {
+        self.with(|state| !state.received.is_empty())
+    }
+
     /// Bytes dropped since the start because the receive queue was full; it saturates.
     pub fn lost(&self) -> u32 {
         self.with(|state| state.lost)
@@ -230,7 +235,7 @@ impl<const RX: usize, const TX: usize> Read for Reader<'_, RX, TX> {
 
 impl<const RX: usize, const TX: usize> ReadReady for Reader<'_, RX, TX> {
     fn read_ready(&mut self) -> Result<bool, TimedOut> {
-        Ok(self.uart.with(|state| !state.received.is_empty()))
+        Ok(self.uart.has_received())
     }
 }
 

@@ -1,0 +1,352 @@
+//! What each command does.
+//!
+//! A reply is text, then `ok` or `error: …`. What a program reads are lines of a key and its value.
+
+use core::fmt::{self, Display};
+
+use glint_core::camera::{View, ViewError};
+use glint_core::console::{Backend, Command, ParseError, Size, write_help};
+use glint_core::fixed::Turns;
+use glint_core::mesh::MeshError;
+use glint_core::wire::{Failure, Manifest, crc32};
+use glint_model::RenderError;
+use litex_hal::display::Scale;
+use litex_hal::timer::FREQUENCY;
+use litex_pac::{cpu, ctrl};
+
+use crate::machine::{Job, Machine};
+use crate::models::Model;
+use crate::scene::{Scene, Sphere};
+use crate::{bench, selftest, transfer};
+
+/// What a command leads to.
+pub enum Reply<'l> {
+    /// Nothing was asked.
+    Nothing,
+    /// It is done, or refused.
+    Now(Result<(), Refusal<'l>>),
+    /// It is done when this is.
+    After(Job),
+}
+
+/// Why a command was not done; its `Display` is what follows `error: `.
+#[derive(Debug)]
+pub enum Refusal<'l> {
+    /// It is no command.
+    Parse(ParseError<'l>),
+    /// It was longer than any command.
+    Overlong,
+    /// Its camera is out of range.
+    View(ViewError),
+    /// There is no model of this name.
+    Scene(&'l str),
+    /// Nothing has been uploaded.
+    NoUpload,
+    /// There is no such renderer here.
+    NoEngine,
+    /// An upload is longer than there is room for.
+    TooLong {
+        /// Its bytes.
+        bytes: u32,
+        /// Bytes of room.
+        room: usize,
+    },
+    /// A transfer failed.
+    Transfer(Failure),
+    /// What was uploaded is not a mesh.
+    Mesh(MeshError),
+    /// The frame could not be drawn.
+    Render(RenderError),
+    /// No frame has been drawn yet.
+    NoFrame,
+    /// There is no kernel of this name.
+    Kernel(&'l str),
+    /// Some of the machine's own tests failed.
+    SelfTest(u32),
+    /// Devices are left alone on gateware of another build.
+    Mismatch,
+}
+
+impl Display for Refusal<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Parse(error) => error.fmt(f),
+            Self::Overlong => {
+                write!(f, "line: expected at most {} bytes, came more", glint_core::console::LINE_MAX)
+            }
+            Self::View(error) => error.fmt(f),
+            Self::Scene(name) => {
+                write!(f, "scene `{name}`: expected")?;
+                Model::ALL.iter().enumerate().try_for_each(|(index, model)| {
+                    write!(f, "{} {}", if index == 0 { "" } else { " or" }, model.name())
+                })
+            }
+            Self::NoUpload => f.write_str("scene model: nothing has been uploaded, expected a `load` before"),
+            Self::NoEngine => f.write_str("backend gateware: this SoC has no renderer, expected cpu"),
+            Self::TooLong { bytes, room } => write!(f, "load {bytes}: expected at most {room} bytes"),
+            Self::Transfer(failure) => failure.fmt(f),
+            Self::Mesh(error) => write!(f, "load: not a mesh, the model before stays: {error}"),
+            Self::Render(error) => write!(f, "render: {error}"),
+            Self::NoFrame => f.write_str("stats: no frame has been drawn yet, expected a `render` before"),
+            Self::Kernel(name) => {
+                write!(f, "bench `{name}`: expected one of")?;
+                bench::KERNELS.iter().try_for_each(|kernel| write!(f, " {kernel}"))
+            }
+            Self::SelfTest(failed) => write!(f, "selftest: {failed} failed, expected none"),
+            Self::Mismatch => f.write_str("devices are not touched on gateware of another build, expected a matching one"),
+        }
+    }
+}
+
+/// Does what `line` says.
+pub fn execute<'l>(machine: &mut Machine, line: &'l str) -> Reply<'l> {
+    let command = match Command::parse(line) {
+        Ok(command) => command,
+        Err(error) => return Reply::Now(Err(Refusal::Parse(error))),
+    };
+    let result = match command {
+        Command::Empty => return Reply::Nothing,
+        Command::Render => return Reply::After(Job::Render),
+        Command::Frame { depth } => return Reply::After(Job::Frame { depth }),
+        Command::Orbit { frames } => return Reply::After(Job::Orbit(Orbit::new(machine.scene.sphere(), frames))),
+        Command::Help(name) => {
+            // A line that takes nothing has nobody listening.
+            let _ = write_help(machine.terminal.output(), name);
+            Ok(())
+        }
+        Command::Info => {
+            info(machine);
+            Ok(())
+        }
+        Command::Scene(name) => scene(machine, name),
+        Command::Camera { r, theta, phi } => {
+            machine.scene.set_sphere(Sphere { r, theta, phi }).map_err(Refusal::View)
+        }
+        Command::View(None) => {
+            print_view(machine);
+            Ok(())
+        }
+        Command::View(Some(view)) => {
+            machine.scene.set_view(view);
+            Ok(())
+        }
+        Command::Look { yaw, pitch, roll } => {
+            View::look(machine.scene.view().eye(), yaw, pitch, roll)
+                .map(|view| machine.scene.set_view(view))
+                .map_err(Refusal::View)
+        }
+        Command::Size(size) => {
+            machine.scene.set_scale(match size {
+                Size::W320 => Scale::Four,
+                Size::W640 => Scale::Two,
+                Size::W1280 => Scale::One,
+            });
+            Ok(())
+        }
+        Command::Load { bytes, crc32 } => load(machine, Manifest { length: bytes, crc32 }),
+        Command::Cull(cull) => {
+            machine.scene.set_cull(cull);
+            Ok(())
+        }
+        Command::Stats { json } => stats(machine, json),
+        Command::Backend(None) => {
+            machine.terminal.print(format_args!("backend cpu\n"));
+            Ok(())
+        }
+        Command::Backend(Some(Backend::Cpu)) => Ok(()),
+        Command::Backend(Some(Backend::Gateware)) => Err(Refusal::NoEngine),
+        Command::Bench(kernel) => {
+            bench::run(&mut machine.terminal, kernel).map_err(|bench::Unknown(name)| Refusal::Kernel(name))
+        }
+        Command::SelfTest => match selftest::run(machine) {
+            0 => Ok(()),
+            failed => Err(Refusal::SelfTest(failed)),
+        },
+        Command::Leds(value) => leds(machine, value),
+        Command::Buttons => buttons(machine),
+        Command::Reboot => reboot(machine),
+    };
+    Reply::Now(result)
+}
+
+fn info(machine: &mut Machine) {
+    let Machine { terminal, identity, models, scene, canvas, clock, uart, .. } = machine;
+    let mesh = models.mesh();
+    let [width, height] = scene.scale().size();
+    terminal.print(format_args!(
+        "version {}\nfirmware_id {:#010x}\ngateware_id {:#010x}\nblocks {:#x}\nclock {FREQUENCY}\n\
+         scene {}\nvertices {}\ntriangles {}\nsize {width} {height}\nbackend cpu\n\
+         frame {:#010x}\ndepth {:#010x}\n",
+        env!("CARGO_PKG_VERSION"),
+        identity.firmware,
+        identity.gateware,
+        identity.blocks,
+        models.shown().name(),
+        mesh.vertex_count(),
+        mesh.triangle_count(),
+        canvas.display.front().as_ptr().addr(),
+        canvas.depth.as_ptr().addr(),
+    ));
+    let staging = models.staging();
+    let counters = canvas.display.counters();
+    terminal.print(format_args!(
+        "staging {:#010x} {}\nvideo_frames {}\nvideo_underflows {}\nuart_lost {}\nuptime_ms {}\n",
+        staging.as_ptr().addr(),
+        staging.len(),
+        counters.frames,
+        counters.underflows,
+        uart.lost(),
+        clock.milliseconds(),
+    ));
+}
+
+fn scene<'l>(machine: &mut Machine, name: Option<&'l str>) -> Result<(), Refusal<'l>> {
+    let Machine { terminal, models, scene, .. } = machine;
+    let Some(name) = name else {
+        for model in Model::ALL {
+            let state = match (model == models.shown(), models.has(model)) {
+                (true, _) => "shown",
+                (_, true) => "there",
+                (_, false) => "empty",
+            };
+            terminal.print(format_args!("scene {} {state}\n", model.name()));
+        }
+        return Ok(());
+    };
+    let model = Model::ALL.into_iter().find(|model| model.name() == name).ok_or(Refusal::Scene(name))?;
+    if model == models.shown() {
+        return Ok(());
+    }
+    if !models.show(model) {
+        return Err(Refusal::NoUpload);
+    }
+    scene.touch();
+    Ok(())
+}
+
+fn print_view(machine: &mut Machine) {
+    let view = *machine.scene.view();
+    let terminal = &mut machine.terminal;
+    let [x, y, z] = view.eye();
+    terminal.print(format_args!("view {x} {y} {z}"));
+    for [x, y, z] in [view.u(), view.v(), view.n()] {
+        terminal.print(format_args!(" {x} {y} {z}"));
+    }
+    terminal.print(format_args!(" {} {}\n", view.half_width(), view.near()));
+}
+
+fn load<'l>(machine: &mut Machine, manifest: Manifest) -> Result<(), Refusal<'l>> {
+    let Machine { terminal, models, scene, clock, uart, .. } = machine;
+    let length = manifest.length as usize;
+    let staging = models.staging();
+    let room = staging.len();
+    let Some(staging) = staging.get_mut(..length) else {
+        return Err(Refusal::TooLong { bytes: manifest.length, room });
+    };
+    // Another master may have written there: a tool's back door, or a transfer that was cut off near its end.
+    cpu::flush_data_cache();
+    if crc32(staging) != manifest.crc32 {
+        terminal.print(format_args!("ready\n"));
+        transfer::receive(uart, *clock, staging, manifest).map_err(Refusal::Transfer)?;
+    }
+    models.accept(length).map_err(Refusal::Mesh)?;
+    scene.touch();
+    Ok(())
+}
+
+/// Sends the frame drawn last.
+pub fn send_frame(machine: &mut Machine, depth: bool) -> Result<(), Refusal<'static>> {
+    let Machine { terminal, scene, canvas, clock, uart, downloads, .. } = machine;
+    scene.drawn().ok_or(Refusal::NoFrame)?.map_err(Refusal::Render)?;
+    let bytes = if depth {
+        bytemuck::cast_slice(canvas.depths(scene))
+    } else {
+        bytemuck::cast_slice(canvas.colours(scene))
+    };
+    terminal.print(format_args!("ready\n"));
+    *downloads = downloads.wrapping_add(1);
+    transfer::send(uart, *clock, bytes, *downloads).map_err(Refusal::Transfer)
+}
+
+/// Prints what the last frame took.
+pub fn stats(machine: &mut Machine, json: bool) -> Result<(), Refusal<'static>> {
+    let drawn = machine.scene.drawn().ok_or(Refusal::NoFrame)?.map_err(Refusal::Render)?;
+    let stats = drawn.stats;
+    let values: [(&str, u64); 9] = [
+        ("cycles", drawn.cycles),
+        ("triangles_in", stats.triangles_in.into()),
+        ("triangles_culled", stats.culled.into()),
+        ("triangles_clipped", stats.clipped.into()),
+        ("triangles_drawn", stats.drawn.into()),
+        ("pixels_tested", stats.pixels_tested),
+        ("pixels_covered", stats.pixels_covered),
+        ("pixels_drawn", stats.pixels_drawn),
+        ("clock", FREQUENCY.into()),
+    ];
+    let terminal = &mut machine.terminal;
+    if !json {
+        for (key, value) in values {
+            terminal.print(format_args!("{key} {value}\n"));
+        }
+        return Ok(());
+    }
+    let mut before = '{';
+    for (key, value) in values {
+        terminal.print(format_args!("{before}\"{key}\":{value}"));
+        before = ',';
+    }
+    terminal.print(format_args!("}}\n"));
+    Ok(())
+}
+
+fn leds<'l>(machine: &mut Machine, value: u16) -> Result<(), Refusal<'l>> {
+    machine.devices.as_ref().ok_or(Refusal::Mismatch)?.leds.set(value);
+    machine.heartbeat = false;
+    Ok(())
+}
+
+fn buttons<'l>(machine: &mut Machine) -> Result<(), Refusal<'l>> {
+    let devices = machine.devices.as_ref().ok_or(Refusal::Mismatch)?;
+    let (buttons, switches) = (devices.buttons.read(), devices.switches.read());
+    machine.terminal.print(format_args!("buttons {buttons:#x}\nswitches {switches:#06x}\n"));
+    Ok(())
+}
+
+fn reboot(machine: &mut Machine) -> ! {
+    machine.terminal.print(format_args!("ok\n"));
+    machine.terminal.flush();
+    machine.ctrl.reset().write(ctrl::Reset::default().with_soc_rst(true));
+    // The reset takes a few cycles.
+    loop {}
+}
+
+/// A turn of the spherical camera around the model, a frame at a time.
+#[derive(Clone, Copy)]
+pub struct Orbit {
+    start: Sphere,
+    frames: u32,
+    frame: u32,
+}
+
+/// Frames of a turn that says nothing else: one a degree and a half.
+const ORBIT_FRAMES: u32 = 240;
+
+impl Orbit {
+    fn new(start: Sphere, frames: Option<u32>) -> Self {
+        Self { start, frames: frames.unwrap_or(ORBIT_FRAMES), frame: 0 }
+    }
+
+    /// Moves the camera on; nothing when the turn is complete.
+    pub fn step(self, scene: &mut Scene) -> Option<Self> {
+        if self.frame == self.frames {
+            return None;
+        }
+        let frame = self.frame + 1;
+        // The product has 64 bits and the quotient is at most a whole turn, which wraps to none.
+        let turned = Turns(((u64::from(frame) << 32) / u64::from(self.frames)) as u32);
+        let sphere = Sphere { theta: self.start.theta.wrapping_add(turned), ..self.start };
+        // It starts from a legal camera and changes only the azimuth, and every azimuth is legal.
+        scene.set_sphere(sphere).ok()?;
+        Some(Self { frame, ..self })
+    }
+}

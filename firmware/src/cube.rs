@@ -1,0 +1,105 @@
+//! The model in the program: a cube of edge length 1 with a colour a side.
+
+/// Vertices and triangles.
+const VERTICES: usize = 8;
+const TRIANGLES: usize = 12;
+/// Bytes of a record (docs/formats.md, "Mesh in memory"); the header has two.
+const RECORD: usize = 16;
+/// 1 in Q2.14.
+const ONE: i16 = 1 << 14;
+/// √3/2, the distance of a corner from the centre, in u.14 and rounded up.
+const RADIUS: u32 = 14_189;
+/// 1/√3 in Q2.14, the size of a corner normal's components.
+const DIAGONAL: i16 = 9_459;
+
+/// Axis, colour towards plus and colour towards minus of three pairs of sides.
+const SIDES: [(usize, u16, u16); 3] = [(0, 0xf9c7, 0x0733), (1, 0xfe60, 0x2b9f), (2, 0xffff, 0xc2bf)];
+
+/// The mesh, as an upload would carry it.
+pub static BYTES: Aligned = Aligned(bytes());
+
+/// Bytes at a multiple of 16.
+#[repr(align(16))]
+pub struct Aligned([u8; LENGTH]);
+
+impl core::ops::Deref for Aligned {
+    type Target = [u8];
+
+    fn deref(&self) -> &[u8] {
+        &self.0
+    }
+}
+
+const LENGTH: usize = (2 + 1 + VERTICES + TRIANGLES) * RECORD;
+
+const fn bytes() -> [u8; LENGTH] {
+    let mut writer = Writer { bytes: [0; LENGTH], at: 0 };
+    writer = writer.word(u32::from_le_bytes(*b"GLM1")).word(LENGTH as u32).word(1);
+    writer = writer.word(VERTICES as u32).word(TRIANGLES as u32).word(RADIUS).word(0).word(0);
+    writer = writer.word(VERTICES as u32).word(TRIANGLES as u32).word(0).word(0);
+    let mut corner = 0;
+    while corner < VERTICES {
+        writer = writer.triple(corner_at(corner, ONE / 2)).triple(corner_at(corner, DIAGONAL));
+        writer = writer.half(0xffff).half(0);
+        corner += 1;
+    }
+    let mut side = 0;
+    while side < SIDES.len() {
+        writer = writer.side(SIDES[side].0, true, SIDES[side].1);
+        writer = writer.side(SIDES[side].0, false, SIDES[side].2);
+        side += 1;
+    }
+    writer.bytes
+}
+
+/// Corner `index`: bit k says whether coordinate k is `+size` or `−size`.
+const fn corner_at(index: usize, size: i16) -> [i16; 3] {
+    let mut position = [-size; 3];
+    let mut axis = 0;
+    while axis < 3 {
+        if index >> axis & 1 == 1 {
+            position[axis] = size;
+        }
+        axis += 1;
+    }
+    position
+}
+
+/// Appends little-endian numbers.
+struct Writer {
+    bytes: [u8; LENGTH],
+    at: usize,
+}
+
+impl Writer {
+    const fn half(mut self, value: u16) -> Self {
+        [self.bytes[self.at], self.bytes[self.at + 1]] = value.to_le_bytes();
+        self.at += 2;
+        self
+    }
+
+    const fn word(self, value: u32) -> Self {
+        self.half(value as u16).half((value >> 16) as u16)
+    }
+
+    const fn triple(self, [x, y, z]: [i16; 3]) -> Self {
+        self.half(x as u16).half(y as u16).half(z as u16)
+    }
+
+    /// Two triangles, counter-clockwise seen from outside.
+    const fn side(mut self, axis: usize, plus: bool, colour: u16) -> Self {
+        let (base, b, c) = ((plus as usize) << axis, 1 << ((axis + 1) % 3), 1 << ((axis + 2) % 3));
+        // Seen from plus, the axes b and c turn counter-clockwise; from minus, clockwise.
+        let (b, c) = if plus { (b, c) } else { (c, b) };
+        let mut normal = [0; 3];
+        normal[axis] = if plus { ONE } else { -ONE };
+        let quad = [base, base + b, base + b + c, base + c];
+        let mut triangle = 0;
+        while triangle < 2 {
+            self = self.half(quad[0] as u16).half(quad[1 + triangle] as u16).half(quad[2 + triangle] as u16);
+            self = self.half(colour).triple(normal).half(0);
+            triangle += 1;
+        }
+        self
+    }
+}

@@ -1,0 +1,44 @@
+//! What comes in by itself.
+
+use litex_hal::{display, interrupt};
+use litex_pac::{Interrupt, cpu};
+
+use crate::terminal::ConsoleUart;
+
+/// The UART, which its interrupt and the program share.
+pub static UART: ConsoleUart = ConsoleUart::new();
+
+/// Lets interrupts in. To be called once, when everything that [`handle`] touches has been started.
+pub fn start(with_scanout: bool) {
+    // SAFETY: `handle` is ready, and no critical section is open.
+    unsafe {
+        interrupt::enable(Interrupt::Uart);
+        if with_scanout {
+            interrupt::enable(Interrupt::Scanout);
+        }
+        riscv::register::mie::set_mext();
+        riscv::interrupt::enable();
+    }
+}
+
+/// Sleeps until an interrupt has come in, unless `awake` says that there is something to do.
+pub fn sleep_unless(awake: impl FnOnce() -> bool) {
+    // An interrupt between the question and the sleep would be slept through. Masked, it still ends the sleep, and is
+    // handled after it.
+    riscv::interrupt::free(|| {
+        if !awake() {
+            riscv::asm::wfi();
+        }
+    });
+}
+
+#[riscv_rt::core_interrupt(riscv::interrupt::Interrupt::MachineExternal)]
+fn handle() {
+    let unexpected = interrupt::dispatch(cpu::interrupts_pending(), |interrupt| match interrupt {
+        Interrupt::Uart => UART.on_interrupt(),
+        Interrupt::Scanout => display::acknowledge_vblank(),
+        // Nobody enables these.
+        Interrupt::Timer0 | Interrupt::Buttons => interrupt::disable(interrupt.bit()),
+    });
+    interrupt::disable(unexpected);
+}

@@ -1,0 +1,229 @@
+//! The machine and its main loop.
+//!
+//! Nothing in the loop waits: interrupts fill queues, and each turn takes what is there. A command whose answer has to
+//! wait for a frame leaves a [`Job`]; what is typed meanwhile is kept.
+
+use core::time::Duration;
+
+use embedded_hal::digital::StatefulOutputPin;
+use litex_hal::gpio::{InputPort, OutputPort};
+use litex_hal::i2c::I2c;
+use litex_hal::timer::{Clock, Deadline};
+use litex_pac::ctrl::Ctrl;
+
+use crate::canvas::Canvas;
+use crate::commands::{self, Orbit, Refusal, Reply};
+use crate::interrupts::{self, UART};
+use crate::models::Models;
+use crate::scene::Scene;
+use crate::terminal::{ConsoleUart, Input, Terminal};
+
+/// Who this program and the gateware under it are.
+#[derive(Clone, Copy)]
+pub struct Identity {
+    /// The id of the gateware that the program was built for.
+    pub firmware: u32,
+    /// The gateware's own id.
+    pub gateware: u32,
+    /// The gateware's blocks, a bit each.
+    pub blocks: u32,
+}
+
+impl Identity {
+    /// Whether registers lie where the program takes them to be.
+    pub const fn matches(&self) -> bool {
+        self.firmware == self.gateware
+    }
+}
+
+/// What is touched only on the gateware that the program was built for.
+pub struct Devices {
+    /// The four buttons.
+    pub buttons: InputPort<u8>,
+    /// The sixteen switches.
+    pub switches: InputPort<u16>,
+    /// The sixteen LEDs.
+    pub leds: OutputPort<u16>,
+    /// The bus of the sensors.
+    pub i2c: I2c,
+}
+
+/// What the reply to a command waits for.
+#[derive(Clone, Copy)]
+pub enum Job {
+    /// The frame of the scene as it is.
+    Render,
+    /// The frame of the scene as it is, to be sent.
+    Frame {
+        /// Its depth instead of its colours.
+        depth: bool,
+    },
+    /// A turn around the model.
+    Orbit(Orbit),
+}
+
+/// Half a period of the light that shows life.
+const HEARTBEAT: Duration = Duration::from_millis(500);
+
+/// Everything.
+pub struct Machine {
+    /// Who we are.
+    pub identity: Identity,
+    /// Time.
+    pub clock: Clock,
+    /// The line, for transfers.
+    pub uart: &'static ConsoleUart,
+    /// The console on the line.
+    pub terminal: Terminal,
+    /// What is to be seen.
+    pub scene: Scene,
+    /// Its models.
+    pub models: Models,
+    /// Where it is drawn.
+    pub canvas: Canvas,
+    /// Devices, where they may be touched.
+    pub devices: Option<Devices>,
+    /// The SoC's reset.
+    pub ctrl: Ctrl,
+    /// Whether the LEDs show life; not since a command has set them.
+    pub heartbeat: bool,
+    /// How often a frame was sent.
+    pub downloads: u8,
+    beat: Deadline,
+    job: Option<Job>,
+}
+
+impl Machine {
+    /// A machine about to run.
+    pub fn new(
+        identity: Identity,
+        clock: Clock,
+        scene: Scene,
+        models: Models,
+        canvas: Canvas,
+        devices: Option<Devices>,
+        ctrl: Ctrl,
+    ) -> Self {
+        Self {
+            identity,
+            clock,
+            uart: &UART,
+            terminal: Terminal::new(&UART, clock),
+            scene,
+            models,
+            canvas,
+            devices,
+            ctrl,
+            heartbeat: true,
+            downloads: 0,
+            beat: clock.after(Duration::ZERO),
+            job: None,
+        }
+    }
+
+    /// Runs for ever.
+    pub fn run(&mut self) -> ! {
+        self.terminal.print(format_args!("Type help for the commands.\n"));
+        self.terminal.prompt();
+        loop {
+            self.beat();
+            self.terminal.listen();
+            self.answer();
+            if self.answers_next() {
+                // Of several changes in a row only the last is drawn.
+                continue;
+            }
+            self.draw();
+            self.pursue();
+            interrupts::sleep_unless(|| self.is_busy());
+        }
+    }
+
+    /// Whether the next turn of the loop has something to do.
+    fn is_busy(&mut self) -> bool {
+        self.answers_next() || self.scene.changed() && self.canvas.display.back().is_some()
+    }
+
+    /// Whether the next turn of the loop has something to answer, or to hear.
+    fn answers_next(&self) -> bool {
+        if self.terminal.has_input() { self.takes_input() } else { self.uart.has_received() }
+    }
+
+    /// Whether a line is answered now; while an answer is owed it waits. An orbit ends when something else is wanted.
+    const fn takes_input(&self) -> bool {
+        matches!(self.job, None | Some(Job::Orbit(_)))
+    }
+
+    /// Answers what was typed.
+    fn answer(&mut self) {
+        if !self.takes_input() {
+            return;
+        }
+        let Some(input) = self.terminal.input() else { return };
+        if self.job.is_some() {
+            self.finish(Ok(()));
+        }
+        match input {
+            Input::Line(line) => match commands::execute(self, &line) {
+                Reply::Nothing => self.terminal.prompt(),
+                Reply::Now(result) => self.finish(result),
+                Reply::After(job) => self.job = Some(job),
+            },
+            Input::Overlong => self.finish(Err(Refusal::Overlong)),
+            Input::Interrupt => self.terminal.prompt(),
+        }
+    }
+
+    /// Draws what has changed, if there is a frame to draw on.
+    fn draw(&mut self) {
+        let Self { terminal, scene, models, canvas, .. } = self;
+        if scene.changed()
+            && let Some(drawn) = canvas.draw(models.mesh(), scene, || terminal.listen())
+        {
+            scene.set_drawn(drawn);
+        }
+    }
+
+    /// Goes on with the job once its frame is drawn.
+    fn pursue(&mut self) {
+        if self.scene.changed() {
+            return;
+        }
+        match self.job {
+            None => {}
+            Some(Job::Render) => {
+                let result = commands::stats(self, false);
+                self.finish(result);
+            }
+            Some(Job::Frame { depth }) => {
+                let result = commands::send_frame(self, depth);
+                self.finish(result);
+            }
+            Some(Job::Orbit(orbit)) => match orbit.step(&mut self.scene) {
+                Some(orbit) => self.job = Some(Job::Orbit(orbit)),
+                None => self.finish(Ok(())),
+            },
+        }
+    }
+
+    /// Ends a reply.
+    fn finish(&mut self, result: Result<(), Refusal>) {
+        self.job = None;
+        match result {
+            Ok(()) => self.terminal.print(format_args!("ok\n")),
+            Err(error) => self.terminal.print(format_args!("error: {error}\n")),
+        }
+        self.terminal.prompt();
+    }
+
+    /// Shows that the machine is alive.
+    fn beat(&mut self) {
+        if !self.heartbeat || !self.beat.passed() {
+            return;
+        }
+        self.beat = self.clock.after(HEARTBEAT);
+        if let Some(devices) = &self.devices {
+            let Ok(()) = devices.leds.pin(0).toggle();
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! What is to be seen: the camera and how the picture is drawn, and whether that has changed since it was drawn.
+
+use glint_core::camera::{View, ViewError};
+use glint_core::fixed::{Q32_32, Turns};
+use glint_model::{RenderError, Stats};
+use litex_hal::display::Scale;
+
+/// A camera on a sphere about the origin.
+#[derive(Clone, Copy)]
+pub struct Sphere {
+    /// Distance from the origin.
+    pub r: Q32_32,
+    /// Azimuth.
+    pub theta: Turns,
+    /// Angle from the z axis.
+    pub phi: Turns,
+}
+
+impl Sphere {
+    /// Where the machine starts: far enough to see all of a model, from above and in front.
+    const START: Self = Self {
+        r: Q32_32::lit("2.5"),
+        // 40° and 65°.
+        theta: Turns::from_degrees(Q32_32::lit("40")),
+        phi: Turns::from_degrees(Q32_32::lit("65")),
+    };
+
+    fn view(self) -> Result<View, ViewError> {
+        View::spherical(self.r, self.theta, self.phi)
+    }
+}
+
+/// The last frame.
+#[derive(Clone, Copy)]
+pub struct Drawn {
+    /// Clock cycles from the first to the last pixel, waiting not included.
+    pub cycles: u64,
+    /// What the renderer counted.
+    pub stats: Stats,
+}
+
+/// The state that a frame shows.
+pub struct Scene {
+    view: View,
+    sphere: Sphere,
+    scale: Scale,
+    cull: bool,
+    changed: bool,
+    drawn: Option<Result<Drawn, RenderError>>,
+}
+
+impl Scene {
+    /// The start.
+    ///
+    /// # Errors
+    /// When the first camera is none.
+    pub fn new() -> Result<Self, ViewError> {
+        let sphere = Sphere::START;
+        Ok(Self { view: sphere.view()?, sphere, scale: Scale::Four, cull: true, changed: true, drawn: None })
+    }
+
+    /// The camera.
+    pub const fn view(&self) -> &View {
+        &self.view
+    }
+
+    /// Sets any camera.
+    pub fn set_view(&mut self, view: View) {
+        self.changed |= self.view != view;
+        self.view = view;
+    }
+
+    /// The spherical camera that was set last.
+    pub const fn sphere(&self) -> Sphere {
+        self.sphere
+    }
+
+    /// Sets a spherical camera.
+    ///
+    /// # Errors
+    /// When it is out of range; then nothing changes.
+    pub fn set_sphere(&mut self, sphere: Sphere) -> Result<(), ViewError> {
+        self.set_view(sphere.view()?);
+        self.sphere = sphere;
+        Ok(())
+    }
+
+    /// The picture's size, as its scale on the screen.
+    pub const fn scale(&self) -> Scale {
+        self.scale
+    }
+
+    /// Sets the picture's size.
+    pub fn set_scale(&mut self, scale: Scale) {
+        self.changed |= self.scale != scale;
+        self.scale = scale;
+    }
+
+    /// Whether back faces are left out.
+    pub const fn cull(&self) -> bool {
+        self.cull
+    }
+
+    /// Sets whether back faces are left out.
+    pub fn set_cull(&mut self, cull: bool) {
+        self.changed |= self.cull != cull;
+        self.cull = cull;
+    }
+
+    /// Something else than the above has changed: the model.
+    pub const fn touch(&mut self) {
+        self.changed = true;
+    }
+
+    /// Whether a frame is to be drawn.
+    pub const fn changed(&self) -> bool {
+        self.changed
+    }
+
+    /// The last frame, if one was drawn.
+    pub const fn drawn(&self) -> Option<Result<Drawn, RenderError>> {
+        self.drawn
+    }
+
+    /// A frame has been drawn of what the scene is now.
+    pub const fn set_drawn(&mut self, drawn: Result<Drawn, RenderError>) {
+        self.drawn = Some(drawn);
+        self.changed = false;
+    }
+}

@@ -1,0 +1,103 @@
+//! From reset to a machine that runs.
+
+use core::fmt::{self, Write as _};
+
+use glint_core::camera::ViewError;
+use glint_core::mesh::MeshError;
+use litex_hal::display::{Display, Scanout};
+use litex_hal::gpio::{InputPort, OutputPort};
+use litex_hal::i2c::{Config, I2c};
+use litex_hal::timer::{Clock, FREQUENCY, Stopped};
+use litex_hal::uart::Direct;
+use litex_pac::{BUILD_ID, Peripherals};
+
+use crate::interrupts::{self, UART};
+use crate::canvas::Canvas;
+use crate::machine::{Devices, Identity, Machine};
+use crate::memory::Memory;
+use crate::models::Models;
+use crate::scene::Scene;
+
+/// The id of the gateware that this program was built for, under a name by which tools find it in the program.
+#[unsafe(no_mangle)]
+static GLINT_BUILD_ID: u32 = BUILD_ID;
+
+/// Why the machine does not start.
+pub enum Fault {
+    /// It has been started before.
+    Started,
+    /// There is no time.
+    Clock(Stopped),
+    /// The program's own model is none.
+    Cube(MeshError),
+    /// The first camera is none.
+    Camera(ViewError),
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Started => f.write_str("the machine has been started before"),
+            Self::Clock(stopped) => stopped.fmt(f),
+            Self::Cube(error) => write!(f, "the built-in cube: {error}"),
+            Self::Camera(error) => write!(f, "the first camera: {error}"),
+        }
+    }
+}
+
+/// Starts everything.
+///
+/// The banner comes first and needs only the UART, so that whatever fails afterwards fails visibly. Where the gateware
+/// is not the one that this program was built for, just the console is started.
+///
+/// # Errors
+/// When something is missing that nothing works without.
+pub fn machine() -> Result<Machine, Fault> {
+    // SAFETY: nobody has the UART yet.
+    let mut banner = unsafe { Direct::seize() };
+    // A line that takes nothing has nobody listening.
+    let _ = write!(banner, "\r\nGlint {}\r\n", env!("CARGO_PKG_VERSION"));
+
+    let peripherals = Peripherals::take().ok_or(Fault::Started)?;
+    let memory = Memory::take().ok_or(Fault::Started)?;
+    let identity = Identity {
+        // SAFETY: a static may be read. Volatile, because a tool may have changed it in the program's file.
+        firmware: unsafe { (&raw const GLINT_BUILD_ID).read_volatile() },
+        gateware: peripherals.identity.build_id().read(),
+        blocks: peripherals.identity.blocks().read(),
+    };
+    let _ = write!(banner, "gateware {:#010x}, {} kHz\r\n", identity.gateware, FREQUENCY / 1000);
+    if !identity.matches() {
+        let _ = write!(
+            banner,
+            "MISMATCH: this firmware was built for gateware {:#010x}, whose registers may lie elsewhere.\r\n\
+             Just the console is started. Build both from the same sources.\r\n",
+            identity.firmware
+        );
+    }
+
+    let clock = Clock::new(peripherals.timer0).map_err(Fault::Clock)?;
+    UART.start(peripherals.uart);
+    let (scanout, devices) = if identity.matches() {
+        let devices = Devices {
+            buttons: InputPort::new(peripherals.buttons.in_()),
+            switches: InputPort::new(peripherals.switches.in_()),
+            leds: OutputPort::new(peripherals.leds.out()),
+            i2c: I2c::new(peripherals.i2c, clock, Config::FAST),
+        };
+        (Scanout::probe(peripherals.scanout).ok(), Some(devices))
+    } else {
+        (None, None)
+    };
+    interrupts::start(scanout.is_some());
+
+    Ok(Machine::new(
+        identity,
+        clock,
+        Scene::new().map_err(Fault::Camera)?,
+        Models::new(memory.meshes).map_err(Fault::Cube)?,
+        Canvas { display: Display::new(scanout, memory.frames), depth: memory.depth, scratch: memory.scratch },
+        devices,
+        peripherals.ctrl,
+    ))
+}

@@ -1,0 +1,83 @@
+//! Uploads and downloads: `glint-core`'s transfer between a buffer and the UART.
+//!
+//! While one runs, the line is its own: nothing is echoed or printed. It ends when it is done, when it is given up, or
+//! after a silence.
+
+use glint_core::wire::{Failure, MAX_FRAME, Manifest, Receiver, Sender, State, Timing};
+use litex_hal::timer::Clock;
+
+use crate::terminal::ConsoleUart;
+
+/// Either side of a transfer.
+trait Party {
+    fn on_bytes(&mut self, now_ms: u64, bytes: &[u8]) -> usize;
+    fn poll(&mut self, now_ms: u64, out: &mut [u8]) -> usize;
+    fn state(&self) -> State;
+}
+
+impl Party for Receiver<'_> {
+    fn on_bytes(&mut self, now_ms: u64, bytes: &[u8]) -> usize {
+        self.on_bytes(now_ms, bytes)
+    }
+
+    fn poll(&mut self, now_ms: u64, out: &mut [u8]) -> usize {
+        self.poll(now_ms, out)
+    }
+
+    fn state(&self) -> State {
+        self.state()
+    }
+}
+
+impl Party for Sender<'_> {
+    fn on_bytes(&mut self, now_ms: u64, bytes: &[u8]) -> usize {
+        self.on_bytes(now_ms, bytes)
+    }
+
+    fn poll(&mut self, now_ms: u64, out: &mut [u8]) -> usize {
+        self.poll(now_ms, out)
+    }
+
+    fn state(&self) -> State {
+        self.state()
+    }
+}
+
+/// Receives what `manifest` announces into `buffer`.
+///
+/// # Errors
+/// When it does not come whole.
+pub fn receive(uart: &ConsoleUart, clock: Clock, buffer: &mut [u8], manifest: Manifest) -> Result<(), Failure> {
+    let receiver = Receiver::new(buffer, Some(manifest), Timing::CONSOLE, clock.milliseconds());
+    run(uart, clock, receiver)
+}
+
+/// Sends `data`. `session` is another number than the transfer before had.
+///
+/// # Errors
+/// When it does not arrive whole.
+pub fn send(uart: &ConsoleUart, clock: Clock, data: &[u8], session: u8) -> Result<(), Failure> {
+    run(uart, clock, Sender::new(data, session, Timing::CONSOLE, clock.milliseconds()))
+}
+
+fn run(uart: &ConsoleUart, clock: Clock, mut party: impl Party) -> Result<(), Failure> {
+    let mut received = [0; 256];
+    let mut frame = [0; MAX_FRAME];
+    // The part of the frame that still waits for room in the UART's queue.
+    let mut unsent = 0..0;
+    loop {
+        let now = clock.milliseconds();
+        let count = uart.receive(&mut received);
+        party.on_bytes(now, received.get(..count).unwrap_or_default());
+        if unsent.is_empty() {
+            unsent = 0..party.poll(now, &mut frame);
+        }
+        unsent.start += uart.send(frame.get(unsent.clone()).unwrap_or_default());
+        match party.state() {
+            State::Running => {}
+            _ if !unsent.is_empty() => {}
+            State::Done => return Ok(()),
+            State::Failed(failure) => return Err(failure),
+        }
+    }
+}
