@@ -3,9 +3,13 @@
 #![forbid(unsafe_code)]
 
 mod bootstrap;
+mod demo;
+mod firmware;
 mod gateware;
+mod pac;
 mod paths;
 mod run;
+mod test;
 
 use anyhow::Result;
 use clap::{Parser, Subcommand};
@@ -31,6 +35,34 @@ enum Task {
         #[arg(long)]
         waveforms: bool,
     },
+    /// Write the register access crate and the register map from the SoC's description
+    Pac {
+        /// Write nothing; fail when a file is not what would be written
+        #[arg(long)]
+        check: bool,
+    },
+    /// Build the program for the soft core
+    Firmware {
+        /// Features of the program; `peers` adds other crates' kernels to `bench`
+        #[arg(long, value_delimiter = ',')]
+        features: Vec<String>,
+    },
+    /// Build everything, run it on the virtual board, write its pictures into `out/`
+    Demo {
+        /// What `glint demo` takes: mesh files (none: generated ones)
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        arguments: Vec<String>,
+    },
+    /// Build everything and run every test
+    Test,
+    /// Measure error against run time and write docs/report
+    Report {
+        /// The page: `sine`
+        page: String,
+        /// What the page's program takes
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        arguments: Vec<String>,
+    },
 }
 
 fn main() -> Result<()> {
@@ -43,5 +75,13 @@ fn main() -> Result<()> {
             }
             Ok(())
         }
+        Task::Pac { check } => pac::generate(check),
+        Task::Firmware { features } => {
+            let features: Vec<_> = features.iter().map(String::as_str).collect();
+            firmware::build(&features).map(|_| ())
+        }
+        Task::Demo { arguments } => demo::demo(&arguments),
+        Task::Test => test::test(),
+        Task::Report { page, arguments } => demo::report(&page, &arguments),
     }
 }

@@ -20,6 +20,14 @@ const SHOWN_ON_FAILURE: usize = 60;
 /// # Errors
 /// When the program cannot be started or fails; the end of its output has then been printed.
 pub fn step(name: &str, command: &mut Command) -> Result<()> {
+    watched_step(name, command, |_| ())
+}
+
+/// Like [`step`], and hands each line of the output to `watch`.
+///
+/// # Errors
+/// As [`step`].
+pub fn watched_step(name: &str, command: &mut Command, mut watch: impl FnMut(&str)) -> Result<()> {
     let start = Instant::now();
     let bar = spinner(name);
     let log_path = log_path(name)?;
@@ -41,6 +49,7 @@ pub fn step(name: &str, command: &mut Command) -> Result<()> {
     while lines.read_until(b'\n', &mut raw)? > 0 {
         log.write_all(&raw)?;
         let line = String::from_utf8_lossy(&raw).trim_end().to_owned();
+        watch(&line);
         bar.set_message(line.chars().take(90).collect::<String>());
         if tail.len() == SHOWN_ON_FAILURE {
             tail.pop_front();

@@ -1,0 +1,48 @@
+//! `cargo xtask demo` and `cargo xtask report`: build what is needed, then hand over to the program that does it.
+
+use std::process::Command;
+
+use anyhow::Result;
+
+use crate::gateware::{self, Board};
+use crate::{bootstrap, firmware, paths, run};
+
+/// Builds everything and runs `glint demo` with `arguments` (mesh files; none: generated ones).
+///
+/// # Errors
+/// When a build or the demo fails.
+pub fn demo(arguments: &[String]) -> Result<()> {
+    bootstrap::bootstrap()?;
+    gateware::build(Board::Virtual)?;
+    firmware::build(&[])?;
+    tool("glint", "glint", "demo", arguments)
+}
+
+/// Builds everything and makes the page `name` of the error-against-run-time report.
+///
+/// # Errors
+/// When a build or a measurement fails.
+pub fn report(name: &str, arguments: &[String]) -> Result<()> {
+    bootstrap::bootstrap()?;
+    gateware::build(Board::Virtual)?;
+    firmware::build(&["peers"])?;
+    tool("glint-reference", "report", name, arguments)
+}
+
+/// Builds a program of the workspace behind a progress line, then gives it the terminal.
+fn tool(package: &str, program: &str, subcommand: &str, arguments: &[String]) -> Result<()> {
+    let select = ["--package", package, "--bin", program];
+    run::step(
+        &format!("build {program}"),
+        Command::new("cargo").arg("build").args(select).current_dir(paths::root()),
+    )?;
+    run::foreground(
+        &format!("{program} {subcommand}"),
+        Command::new("cargo")
+            .args(["run", "--quiet"])
+            .args(select)
+            .args(["--", subcommand])
+            .args(arguments)
+            .current_dir(paths::root()),
+    )
+}

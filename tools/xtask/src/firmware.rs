@@ -1,0 +1,97 @@
+//! `cargo xtask firmware`: the program for the soft core, as the bytes that the BIOS loads.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use anyhow::{Context, Result, ensure};
+use litex_pac::memories::MAIN_RAM;
+use object::{Object, ObjectSection, ObjectSegment, ObjectSymbol, SectionKind};
+
+use crate::{paths, run};
+
+/// What the soft core runs.
+pub const TARGET: &str = "riscv32im-unknown-none-elf";
+
+/// Builds the firmware with `features` and returns its image, `target/firmware/glint.bin`, or `glint-FEATURE….bin` with
+/// features. The program with its symbols lies beside it as `.elf`.
+///
+/// # Errors
+/// When it does not build, or does not fit the SoC's memory.
+pub fn build(features: &[&str]) -> Result<PathBuf> {
+    let name = [&["glint"], features].concat().join("-");
+    let built = paths::target().join("firmware-build");
+    let mut cargo = Command::new("cargo");
+    cargo.args(["build", "--package", "glint-firmware", "--profile", "firmware", "--target", TARGET]);
+    cargo.arg("--features").arg(features.join(","));
+    // Not the folder of the tools' builds: they would wait for each other.
+    cargo.arg("--target-dir").arg(&built).current_dir(paths::root());
+    run::step(&format!("build firmware {name}"), &mut cargo)?;
+
+    let elf = fs::read(built.join(TARGET).join("firmware/glint-firmware")).context("reading the firmware")?;
+    let (image, sizes) = image(&elf).with_context(|| format!("firmware {name}"))?;
+    let folder = paths::target().join("firmware");
+    fs::create_dir_all(&folder).with_context(|| format!("creating {}", folder.display()))?;
+    let path = folder.join(&name).with_extension("bin");
+    write(&path.with_extension("elf"), &elf)?;
+    write(&path, &image)?;
+    println!("  {name}.bin: {} bytes ({sizes})", image.len());
+    Ok(path)
+}
+
+/// Leaves a file alone that is already so, so that what depends on it is not rebuilt.
+fn write(path: &Path, bytes: &[u8]) -> Result<()> {
+    if fs::read(path).is_ok_and(|old| old == bytes) {
+        return Ok(());
+    }
+    fs::write(path, bytes).with_context(|| format!("writing {}", path.display()))
+}
+
+/// The bytes to load to the start of main memory, and what they are made of.
+fn image(elf: &[u8]) -> Result<(Vec<u8>, String)> {
+    let file = object::File::parse(elf).context("not an ELF file")?;
+    let (base, end) = (u64::from(MAIN_RAM.base), u64::from(MAIN_RAM.base) + u64::from(MAIN_RAM.size));
+    ensure!(
+        file.entry() == base,
+        "its entry is {:#010x}, expected {base:#010x}, where the BIOS jumps to",
+        file.entry()
+    );
+    let symbol = |name: &str| {
+        let found = file.symbols().find(|symbol| symbol.name() == Ok(name));
+        found.map(|symbol| symbol.address()).with_context(|| format!("it has no symbol {name}"))
+    };
+    let windows_end = symbol("_mesh_b")? + symbol("_mesh_size")?;
+    ensure!(
+        windows_end <= end,
+        "memory.x ends at {windows_end:#010x}, the SoC's main memory at {end:#010x}: expected no more"
+    );
+
+    let mut image = Vec::new();
+    for segment in file.segments() {
+        let (address, data) = (segment.address(), segment.data().context("a segment without data")?);
+        ensure!(
+            base <= address && address + segment.size() <= symbol("_frame_a")?,
+            "a segment lies at {address:#010x} to {:#010x}, expected it in the program's part of main memory",
+            address + segment.size()
+        );
+        if data.is_empty() {
+            continue;
+        }
+        let offset = (address - base) as usize;
+        ensure!(offset >= image.len(), "the segment at {address:#010x} overlaps the one before");
+        image.resize(offset, 0);
+        image.extend_from_slice(data);
+    }
+    let size = |wanted: &[SectionKind]| -> u64 {
+        let sections = file.sections().filter(|section| wanted.contains(&section.kind()));
+        sections.filter(|section| section.address() != 0 && section.name() != Ok(".stack")).map(|s| s.size()).sum()
+    };
+    let sizes = format!(
+        "code {}, constants {}, data {}, zeroed at start {}",
+        size(&[SectionKind::Text]),
+        size(&[SectionKind::ReadOnlyData, SectionKind::ReadOnlyString]),
+        size(&[SectionKind::Data]),
+        size(&[SectionKind::UninitializedData]),
+    );
+    Ok((image, sizes))
+}

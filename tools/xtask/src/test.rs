@@ -1,0 +1,105 @@
+//! `cargo xtask test`: every test there is, on a machine that it sets up itself.
+
+use std::process::Command;
+use std::time::Instant;
+
+use anyhow::{Result, bail};
+
+use crate::gateware::{self, Board};
+use crate::{bootstrap, firmware, pac, paths, run};
+
+/// Sets up, builds and tests everything. Checks go on after one that failed; builds do not.
+///
+/// # Errors
+/// When a build or a check fails; names the checks.
+pub fn test() -> Result<()> {
+    let start = Instant::now();
+    bootstrap::bootstrap()?;
+    gateware::build(Board::Virtual)?;
+    gateware::build(Board::Urbana)?;
+    firmware::build(&[])?;
+    firmware::build(&["peers"])?;
+
+    let mut failures = Vec::new();
+    let mut passed = 0;
+    let mut check = |outcome: Result<u32>| match outcome {
+        Ok(count) => passed += count,
+        Err(error) => failures.push(error.to_string()),
+    };
+    check(pac::generate(true).map(|()| 1));
+    check(cargo("formatting", &["fmt", "--all", "--check"]));
+    check(cargo("clippy", &["clippy", "--all-targets", "--", "-D", "warnings"]));
+    check(cargo(
+        "clippy of the firmware",
+        &["clippy", "--package", "glint-firmware", "--target", firmware::TARGET, "--", "-D", "warnings"],
+    ));
+    check(documentation());
+    check(gateware_tests());
+    check(cargo_tests());
+
+    let minutes = start.elapsed().as_secs_f64() / 60.0;
+    println!("{minutes:.1} minutes");
+    println!("{passed} passed, {} failed", failures.len());
+    if !failures.is_empty() {
+        bail!("{}", failures.join("\n"));
+    }
+    Ok(())
+}
+
+/// One cargo command as a check.
+fn cargo(name: &str, arguments: &[&str]) -> Result<u32> {
+    run::step(name, Command::new("cargo").args(arguments).current_dir(paths::root()))?;
+    Ok(1)
+}
+
+fn documentation() -> Result<u32> {
+    run::step(
+        "rustdoc",
+        Command::new("cargo")
+            .args(["doc", "--no-deps", "--document-private-items"])
+            .env("RUSTDOCFLAGS", "-D warnings")
+            .current_dir(paths::root()),
+    )?;
+    Ok(1)
+}
+
+/// The benches of the gateware's modules and the checks of the board files.
+fn gateware_tests() -> Result<u32> {
+    run::step(
+        "gateware tests",
+        Command::new(paths::venv_program("python"))
+            .arg("gateware/tests/run.py")
+            .current_dir(paths::root()),
+    )?;
+    Ok(1)
+}
+
+/// All Rust tests on the host, those on the virtual board among them; counts what passed.
+fn cargo_tests() -> Result<u32> {
+    let mut passed = 0;
+    run::watched_step(
+        "cargo test",
+        Command::new("cargo").args(["test", "--no-fail-fast"]).current_dir(paths::root()),
+        |line| passed += passed_tests(line).unwrap_or(0),
+    )?;
+    Ok(passed)
+}
+
+/// The count in a closing line of a Rust test program: `test result: ok. 12 passed; 0 failed; …`.
+fn passed_tests(line: &str) -> Option<u32> {
+    let counts = line.strip_prefix("test result: ")?;
+    let before = counts.split(" passed;").next()?;
+    before.rsplit(' ').next()?.parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::passed_tests;
+
+    #[test]
+    fn counts_the_tests_of_a_closing_line() {
+        let line = "test result: ok. 12 passed; 0 failed; 1 ignored; 0 measured; 0 filtered out";
+        assert_eq!(passed_tests(line), Some(12));
+        assert_eq!(passed_tests("running 12 tests"), None);
+    }
+}
