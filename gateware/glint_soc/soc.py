@@ -6,10 +6,13 @@ firmware can see is here.
 
 from litedram.modules import MT41K64M16
 from litex.soc.cores.gpio import GPIOIn, GPIOOut
+from litex.soc.integration.soc import SoCRegion
 from litex.soc.integration.soc_core import SoCCore
+from litex.soc.interconnect import wishbone
 
 from .i2c import OpenDrainI2C
 from .identity import Identity
+from .memory_bridge import MemoryBridge
 from .register_map import CSR_MAP, CSR_PAGING, OPTIONAL_BLOCKS, PINNED
 from .scanout import Scanout
 
@@ -18,6 +21,9 @@ SYS_CLK_FREQ = 81.25e6
 
 PIXEL_CLK_FREQ = 74.25e6
 """CEA-861 1280x720 at 60 Hz."""
+
+MAIN_RAM_SIZE = 128 * 1024 * 1024
+"""One MT41K64M16: 16 bits wide, 8 banks of 8192 rows of 1024 columns."""
 
 
 class GlintSoC(SoCCore):
@@ -60,7 +66,11 @@ class GlintSoC(SoCCore):
 
     def add_dram(self, phy):
         """Adds the DDR3 controller over the board's PHY, then what reads and writes memory through it."""
-        self.add_sdram(
-            "sdram", phy=phy, module=MT41K64M16(self.sys_clk_freq, "1:4"), l2_cache_size=0)
+        module = MT41K64M16(self.sys_clk_freq, "1:4")
+        self.add_sdram("sdram", phy=phy, module=module, with_soc_interconnect=False)
+        main_ram = SoCRegion(origin=self.mem_map["main_ram"], size=MAIN_RAM_SIZE, mode="rwx")
+        bus = wishbone.Interface(data_width=32, address_width=32, addressing="word")
+        self.memory_bridge = MemoryBridge(bus, self.sdram.crossbar.get_port(), main_ram.origin)
+        self.bus.add_slave("main_ram", bus, main_ram)
         if "scanout" in self.blocks:
             self.scanout = Scanout(self.platform, self.sdram.crossbar.get_port(mode="read"))

@@ -12,6 +12,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
 import benches  # noqa: E402
+import memory_bridge  # noqa: E402
 import size  # noqa: E402
 import urbana  # noqa: E402
 from modules import MODULES  # noqa: E402
@@ -54,6 +55,8 @@ def test():
         report.check(f"{module.top}: lint", lambda: run_lint(module))
         report.check(f"{module.top}: read by Yosys", lambda: size.read(module))
         report.bench(module)
+    for name, check in memory_bridge.CHECKS.items():
+        report.check(f"memory bridge: {name}", check)
     files = urbana.generate()
     for name, check in urbana.CHECKS.items():
         report.check(f"urbana: {name}", lambda: check(*files))

@@ -1,0 +1,121 @@
+"""From the CPU's bus to DDR3, a cache line at a time."""
+
+from litex.gen import LiteXModule
+from litex.soc.interconnect import stream
+from litex.soc.interconnect.wishbone import CTI_BURST_INCREMENTING
+from migen import FSM, Array, Cat, If, NextState, NextValue, Replicate, Signal
+
+_BUS_BITS = 32
+_PORT_BITS = 128
+_WORDS = _PORT_BITS // _BUS_BITS
+
+
+class MemoryBridge(LiteXModule):
+    """Wishbone slave of 32 bits over a native LiteDRAM port of 128 bits.
+
+    Reads: an incrementing burst that begins in the first half of 32 aligned bytes (the CPU's line fill) asks for both
+    16-byte words at once, and is then served a word of 32 bits a cycle. Anything else asks for one 16-byte word. What
+    was read is dropped with the end of the burst, so that nothing older than the burst is ever served: what DMA writes
+    is seen by the next fill.
+
+    Writes: acknowledged the cycle after the controller has taken the command, which fixes its place among all
+    accesses to the same bank; the data follow when the controller asks for them. Two cycles a word where the memory
+    keeps up.
+
+    A command is withdrawn only if the bus gives an access up before memory has taken it, which the CPU never does.
+    LiteX's own converter makes one access to memory for each 32-bit word, one after the other.
+    """
+
+    def __init__(self, bus, port, base_address):
+        if bus.data_width != _BUS_BITS or bus.addressing != "word":
+            raise ValueError(f"expected a word addressed bus of {_BUS_BITS} bits, got {bus.data_width}")
+        if port.data_width != _PORT_BITS:
+            raise ValueError(f"expected a memory port of {_PORT_BITS} bits, got {port.data_width}")
+
+        address = Signal.like(bus.adr)
+        beat = address[:2]
+        self.comb += address.eq(bus.adr - base_address // (_BUS_BITS // 8))
+
+        # Data of writes, from the command's acceptance to the moment the controller asks for them.
+        self.writes = writes = stream.SyncFIFO([("data", _BUS_BITS), ("sel", _BUS_BITS // 8), ("beat", 2)], depth=8)
+        # Both words of a line: the controller does not wait for anybody to take them.
+        self.reads = reads = stream.SyncFIFO([("data", _PORT_BITS)], depth=2)
+        self.comb += [
+            writes.sink.data.eq(bus.dat_w),
+            writes.sink.sel.eq(bus.sel),
+            writes.sink.beat.eq(beat),
+            writes.source.ready.eq(port.wdata.ready),
+            port.wdata.valid.eq(writes.source.valid),
+            port.wdata.data.eq(Replicate(writes.source.data, _WORDS)),
+            port.wdata.we.eq(Cat(*[
+                Replicate(writes.source.beat == word, _BUS_BITS // 8) & writes.source.sel for word in range(_WORDS)])),
+            port.rdata.connect(reads.sink, omit={"first", "last"}),
+            bus.dat_r.eq(Array(reads.source.data[_BUS_BITS * word:][:_BUS_BITS] for word in range(_WORDS))[beat]),
+        ]
+
+        # The second half of the line, kept because the bus may have gone when it is asked for.
+        second = Signal.like(port.cmd.addr)
+
+        # Words asked for and not yet taken out of `reads`.
+        owed = Signal(max=3)
+        asked = Signal()
+        taken = Signal()
+        more = Signal()
+        self.comb += [
+            asked.eq(port.cmd.valid & port.cmd.ready & ~port.cmd.we),
+            taken.eq(reads.source.valid & reads.source.ready),
+            more.eq(bus.cti == CTI_BURST_INCREMENTING),
+        ]
+        self.sync += owed.eq(owed + asked - taken)
+
+        self.fsm = fsm = FSM(reset_state="COMMAND")
+        fsm.act("COMMAND",
+            port.cmd.valid.eq(bus.cyc & bus.stb & (~bus.we | writes.sink.ready)),
+            port.cmd.we.eq(bus.we),
+            port.cmd.addr.eq(address[2:]),
+            If(port.cmd.valid & port.cmd.ready,
+                If(bus.we,
+                    writes.sink.valid.eq(1),
+                    NextState("WRITTEN"),
+                ).Elif(more & ~address[2],
+                    NextValue(second, Cat(1, address[3:])),
+                    NextState("SECOND"),
+                ).Else(
+                    NextState("SERVE"),
+                )
+            )
+        )
+        fsm.act("WRITTEN",
+            bus.ack.eq(bus.cyc & bus.stb),
+            NextState("COMMAND"),
+        )
+        fsm.act("SECOND",
+            port.cmd.valid.eq(1),
+            port.cmd.addr.eq(second),
+            If(port.cmd.ready,
+                NextState("SERVE"),
+            )
+        )
+        fsm.act("SERVE",
+            bus.ack.eq(bus.cyc & bus.stb & ~bus.we & reads.source.valid),
+            If(bus.ack,
+                # The burst's last word, or the last one that was asked for: what else it wants is asked for anew.
+                reads.source.ready.eq(~more | (beat == _WORDS - 1)),
+                If(~more | ((beat == _WORDS - 1) & (owed == 1)),
+                    NextState("DROP"),
+                    If(owed == 1,
+                        NextState("COMMAND"),
+                    )
+                )
+            ),
+            If(~bus.cyc | bus.we,
+                NextState("DROP"),
+            )
+        )
+        # A burst that ended early leaves words that nobody wants.
+        fsm.act("DROP",
+            reads.source.ready.eq(1),
+            If((owed == 0) | ((owed == 1) & reads.source.valid),
+                NextState("COMMAND"),
+            )
+        )

@@ -1,0 +1,193 @@
+"""The memory bridge under random traffic, against a memory that is never twice equally fast."""
+
+import random
+from collections import deque
+
+from litedram.common import LiteDRAMNativePort
+from litex.soc.interconnect import wishbone
+from migen import run_simulation, passive
+
+from glint_soc.memory_bridge import MemoryBridge
+
+BASE = 0x4000_0000
+WORDS = 256
+"""32-bit words of the memory: few, so that accesses meet."""
+
+TRANSACTIONS = 250
+
+
+class Memory:
+    """A native port's other side: takes commands when it likes, and answers without asking whether it is convenient."""
+
+    def __init__(self, bus, port, rng):
+        self.bus = bus
+        self.port = port
+        self.rng = rng
+        self.words = [rng.getrandbits(32) for _ in range(WORDS)]
+        self.changed = set()
+        self.commands = 0
+
+    @passive
+    def run(self):
+        """Commands in order, each some cycles after it was taken; a datum at most a cycle, as the controller does."""
+        port, rng = self.port, self.rng
+        queue = deque()
+        cycle, earliest = 0, 0
+        previous = None
+        while True:
+            # What the command channel shows must not change until it is taken, unless the bus gives the access up.
+            shown = None
+            if (yield port.cmd.valid):
+                shown = ((yield port.cmd.we), (yield port.cmd.addr))
+            withdrawn = shown is None and not (yield self.bus.cyc)
+            if previous is not None and shown != previous and not withdrawn:
+                raise AssertionError(f"command {previous} became {shown} before it was taken")
+            previous = shown
+            if shown is not None and (yield port.cmd.ready):
+                previous = None
+                self.commands += 1
+                earliest = max(earliest + 1, cycle + rng.randint(3, 9))
+                queue.append((earliest, *shown))
+            if (yield port.wdata.ready):
+                if not (yield port.wdata.valid):
+                    raise AssertionError("the controller asked for data that were not there")
+                self.write(address, (yield port.wdata.data), (yield port.wdata.we))
+            yield port.wdata.ready.eq(0)
+            yield port.rdata.valid.eq(0)
+            if queue and queue[0][0] <= cycle:
+                _, we, address = queue.popleft()
+                if we:
+                    yield port.wdata.ready.eq(1)
+                else:
+                    yield port.rdata.valid.eq(1)
+                    yield port.rdata.data.eq(self.read(address))
+            yield port.cmd.ready.eq(rng.random() < 0.6)
+            cycle += 1
+            yield
+
+    def read(self, address):
+        words = self.words[4 * address:4 * address + 4]
+        return sum(word << 32 * n for n, word in enumerate(words))
+
+    def write(self, address, data, strobes):
+        for byte in range(16):
+            if strobes >> byte & 1:
+                word, shift = 4 * address + byte // 4, byte % 4 * 8
+                self.words[word] = self.words[word] & ~(0xff << shift) | (data >> 8 * byte & 0xff) << shift
+
+
+def merged(old, new, sel):
+    """`old` with the bytes of `new` that `sel` selects."""
+    mask = sum(0xff << 8 * byte for byte in range(4) if sel >> byte & 1)
+    return old & ~mask | new & mask
+
+
+def master(bus, memory, rng, errors, counts):
+    """Random reads, bursts, bursts given up, and writes; keeps its own picture of the memory."""
+    expected = list(memory.words)
+
+    def beat():
+        for _ in range(200):
+            yield
+            if (yield bus.ack):
+                return (yield bus.dat_r)
+        raise AssertionError("no acknowledgement in 200 cycles")
+
+    for number in range(TRANSACTIONS):
+        kind = rng.choice(["write", "read", "line", "burst", "given up"])
+        word = rng.randrange(WORDS)
+        length = 1
+        if kind == "line":
+            word, length = word & ~7, 8
+        elif kind in ("burst", "given up"):
+            length = min(rng.randint(2, 12), WORDS - word)
+        counts[kind] = counts.get(kind, 0) + 1
+        stop = rng.randrange(length) if kind == "given up" else length
+        yield bus.cyc.eq(1)
+        yield bus.stb.eq(1)
+        yield bus.we.eq(kind == "write")
+        for n in range(stop):
+            last = n == length - 1
+            yield bus.adr.eq(BASE // 4 + word + n)
+            if length == 1:
+                yield bus.cti.eq(wishbone.CTI_BURST_NONE)
+            else:
+                yield bus.cti.eq(wishbone.CTI_BURST_END if last else wishbone.CTI_BURST_INCREMENTING)
+            if kind == "write":
+                data, sel = rng.getrandbits(32), rng.randrange(1, 16)
+                yield bus.dat_w.eq(data)
+                yield bus.sel.eq(sel)
+                yield from beat()
+                expected[word] = merged(expected[word], data, sel)
+            else:
+                found = yield from beat()
+                if found != expected[word + n]:
+                    errors.append(f"transaction {number}, {kind} of {length}, word {word + n}: "
+                                  f"expected {expected[word + n]:#010x}, got {found:#010x}")
+                    return
+        if kind == "given up" and stop == 0:
+            # It left after the command was sent, perhaps.
+            yield bus.adr.eq(BASE // 4 + word)
+            yield bus.cti.eq(wishbone.CTI_BURST_INCREMENTING)
+            for _ in range(rng.randint(1, 12)):
+                yield
+                if (yield bus.ack):
+                    break
+        yield bus.cyc.eq(0)
+        yield bus.stb.eq(0)
+        yield bus.we.eq(0)
+        yield bus.adr.eq(rng.getrandbits(20))
+        yield
+        for _ in range(rng.choice([0, 0, 1, 5, 20])):
+            yield
+    for _ in range(50):
+        yield
+    if memory.words != expected:
+        errors.append("the memory does not hold what was written")
+
+
+def random_traffic():
+    """Every read sees every write before it; commands are stable; data are there when asked for."""
+    rng = random.Random(1)
+    bus = wishbone.Interface(data_width=32, address_width=32, addressing="word")
+    port = LiteDRAMNativePort(mode="both", address_width=23, data_width=128)
+    bridge = MemoryBridge(bus, port, BASE)
+    memory = Memory(bus, port, rng)
+    errors, counts = [], {}
+    try:
+        run_simulation(bridge, [master(bus, memory, rng, errors, counts), memory.run()])
+    except AssertionError as error:
+        errors.append(str(error))
+    return errors
+
+
+def a_line_takes_two_accesses():
+    """A fill of 8 words asks the memory twice; a write asks once."""
+    rng = random.Random(2)
+    bus = wishbone.Interface(data_width=32, address_width=32, addressing="word")
+    port = LiteDRAMNativePort(mode="both", address_width=23, data_width=128)
+    bridge = MemoryBridge(bus, port, BASE)
+    memory = Memory(bus, port, rng)
+
+    def line():
+        yield bus.cyc.eq(1)
+        yield bus.stb.eq(1)
+        for n in range(8):
+            yield bus.adr.eq(BASE // 4 + 16 + n)
+            yield bus.cti.eq(wishbone.CTI_BURST_END if n == 7 else wishbone.CTI_BURST_INCREMENTING)
+            yield
+            while not (yield bus.ack):
+                yield
+        yield bus.cyc.eq(0)
+        yield bus.stb.eq(0)
+        for _ in range(30):
+            yield
+
+    run_simulation(bridge, [line(), memory.run()])
+    return [] if memory.commands == 2 else [f"expected 2 commands for a line, got {memory.commands}"]
+
+
+CHECKS = {
+    "random traffic": random_traffic,
+    "a line takes two accesses": a_line_takes_two_accesses,
+}
