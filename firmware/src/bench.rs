@@ -24,6 +24,9 @@ pub const KERNELS: [&str; 1] = ["sine"];
 /// Inputs of each kernel.
 const INPUTS: usize = 256;
 
+/// Inputs that find the quietest place.
+const TRIALS: usize = 16;
+
 /// There is no such kernel.
 pub struct Unknown<'l>(pub &'l str);
 
@@ -47,54 +50,63 @@ fn sine(terminal: &mut Terminal) {
 }
 
 /// Measures `kernel` for the inputs that `input` makes of phases all around the circle, and prints a line.
-fn measure<I, O>(terminal: &mut Terminal, name: &str, input: impl Fn(u32) -> I, kernel: impl Fn(I) -> O) {
-    let mut places = [
-        Cycles::measure::<0, _, _>(&input, &kernel),
-        Cycles::measure::<1, _, _>(&input, &kernel),
-        Cycles::measure::<2, _, _>(&input, &kernel),
-        Cycles::measure::<3, _, _>(&input, &kernel),
-    ];
-    places.sort_unstable_by_key(|cycles| cycles.median);
-    let [Cycles { min, median, max }, ..] = places;
-    terminal.print(format_args!("bench {name} min {min} median {median} max {max} cycles\n"));
-}
-
-/// Clock cycles of a kernel over its inputs.
-struct Cycles {
-    min: u32,
-    median: u32,
-    max: u32,
-}
-
-impl Cycles {
-    fn measure<const PLACE: usize, I, O>(input: impl Fn(u32) -> I, kernel: impl Fn(I) -> O) -> Self {
-        // Multiples of the golden section of 2^32 fill the circle evenly, in an order without a pattern.
-        let input = |index: usize| input((index as u32).wrapping_mul(0x9e37_79b9));
-        let mut cycles = [0; INPUTS];
+fn measure<I: Copy, O>(
+    terminal: &mut Terminal,
+    name: &str,
+    input: impl Fn(u32) -> I,
+    kernel: impl Fn(I) -> O,
+) {
+    // Multiples of the golden section of 2^32 fill the circle evenly, in an order without a pattern.
+    let input = |index: usize| input((index as u32).wrapping_mul(0x9e37_79b9));
+    let at = |index: usize, timer: Timer| {
+        let input = input(index);
+        timer(&mut || {
+            black_box(kernel(black_box(input)));
+        })
+    };
+    let quietest = TIMERS.into_iter().min_by_key(|&timer| {
+        let pass = || (0..TRIALS).map(|index| at(index, timer)).sum::<u32>();
         // The first pass brings code and tables into the caches.
-        for _ in 0..2 {
-            for (index, cycles) in cycles.iter_mut().enumerate() {
-                *cycles = timed::<PLACE, _, _>(&kernel, input(index));
-            }
-        }
-        let overhead = (0..INPUTS).map(|index| timed::<PLACE, _, _>(|input| input, input(index))).min();
-        let net = |cycles: u32| cycles.saturating_sub(overhead.unwrap_or(0));
-        cycles.sort_unstable();
-        let [min, .., max] = cycles;
-        Self { min: net(min), median: net(cycles[INPUTS / 2]), max: net(max) }
-    }
+        pass().min(pass())
+    });
+    let timer = quietest.unwrap_or(timed::<0>);
+    let mut cycles: [u32; INPUTS] = core::array::from_fn(|index| at(index, timer));
+    let nothing = |input: I| {
+        timer(&mut || {
+            black_box(black_box(input));
+        })
+    };
+    let overhead = (0..TRIALS)
+        .map(|index| nothing(input(index)))
+        .min()
+        .unwrap_or(0);
+    cycles.sort_unstable();
+    let [min, .., max] = cycles;
+    let [min, median, max] =
+        [min, cycles[INPUTS / 2], max].map(|cycles| cycles.saturating_sub(overhead));
+    terminal.print(format_args!(
+        "bench {name} min {min} median {median} max {max} cycles\n"
+    ));
 }
+
+/// One of the places of [`timed`].
+type Timer = fn(&mut dyn FnMut()) -> u32;
+
+/// All of them.
+const TIMERS: [Timer; 4] = [timed::<0>, timed::<1>, timed::<2>, timed::<3>];
 
 /// Clock cycles of a call, with those of asking for the time. Each `PLACE` has code of its own, 1 KiB further on in
 /// the cache.
 #[inline(never)]
 #[allow(unsafe_code)]
-fn timed<const PLACE: usize, I, O>(kernel: impl Fn(I) -> O, input: I) -> u32 {
+fn timed<const PLACE: usize>(call: &mut dyn FnMut()) -> u32 {
     // SAFETY: jumps over some space; nothing else.
-    unsafe { asm!("j 1f", ".space {}", "1:", const PLACE * 1024 + 4, options(nomem, nostack, preserves_flags)) };
+    unsafe {
+        asm!("j 1f", ".space {}", "1:", const PLACE * 1024 + 4, options(nomem, nostack, preserves_flags))
+    };
     riscv::interrupt::free(|| {
         let start = cpu::cycles_low();
-        black_box(kernel(black_box(input)));
+        call();
         cpu::cycles_low().wrapping_sub(start)
     })
 }

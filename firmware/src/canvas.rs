@@ -24,7 +24,12 @@ const TRIANGLES_A_LOOK: u32 = 32;
 impl Canvas {
     /// Draws `mesh` as `scene` wants it, and shows it from the next vertical blanking on. Now and then it calls `look`.
     /// Returns nothing while the frame to draw on is still on the screen.
-    pub fn draw(&mut self, mesh: &Mesh, scene: &Scene, mut look: impl FnMut()) -> Option<Result<Drawn, RenderError>> {
+    pub fn draw(
+        &mut self,
+        mesh: &Mesh,
+        scene: &Scene,
+        mut look: impl FnMut(),
+    ) -> Option<Result<Drawn, RenderError>> {
         let [width, height] = scene.scale().size();
         let pixels = width as usize * height as usize;
         let mut target = Target {
@@ -33,15 +38,29 @@ impl Canvas {
             colour: self.display.back()?.get_mut(..pixels).unwrap_or_default(),
             depth: self.depth.get_mut(..pixels).unwrap_or_default(),
         };
-        let vertices = mesh.chunks().map(|chunk| chunk.vertex_count()).max().unwrap_or(0);
+        let vertices = mesh
+            .chunks()
+            .map(|chunk| chunk.vertex_count())
+            .max()
+            .unwrap_or(0);
         let scratch = self.scratch.vertices(vertices);
-        let options = Options { cull: scene.cull(), ..Options::default() };
+        let options = Options {
+            cull: scene.cull(),
+            ..Options::default()
+        };
         let start = cpu::cycles();
-        let result = glint_model::trace(mesh, scene.view(), &mut target, scratch, &options, |triangle| {
-            if triangle.index % TRIANGLES_A_LOOK == 0 {
-                look();
-            }
-        });
+        let result = glint_model::trace(
+            mesh,
+            scene.view(),
+            &mut target,
+            scratch,
+            &options,
+            |triangle| {
+                if triangle.index % TRIANGLES_A_LOOK == 0 {
+                    look();
+                }
+            },
+        );
         let cycles = cpu::cycles() - start;
         if result.is_ok() {
             self.display.show(scene.scale());
@@ -51,7 +70,10 @@ impl Canvas {
 
     /// The frame drawn last: RGB565, row by row.
     pub fn colours(&self, scene: &Scene) -> &[u16] {
-        self.display.front().get(..pixels(scene)).unwrap_or_default()
+        self.display
+            .front()
+            .get(..pixels(scene))
+            .unwrap_or_default()
     }
 
     /// The depth codes of the frame drawn last, row by row.

@@ -72,28 +72,52 @@ impl Display for Refusal<'_> {
         match self {
             Self::Parse(error) => error.fmt(f),
             Self::Overlong => {
-                write!(f, "line: expected at most {} bytes, came more", glint_core::console::LINE_MAX)
+                write!(
+                    f,
+                    "line: expected at most {} bytes, came more",
+                    glint_core::console::LINE_MAX
+                )
             }
             Self::View(error) => error.fmt(f),
             Self::Scene(name) => {
                 write!(f, "scene `{name}`: expected")?;
-                Model::ALL.iter().enumerate().try_for_each(|(index, model)| {
-                    write!(f, "{} {}", if index == 0 { "" } else { " or" }, model.name())
-                })
+                Model::ALL
+                    .iter()
+                    .enumerate()
+                    .try_for_each(|(index, model)| {
+                        write!(
+                            f,
+                            "{} {}",
+                            if index == 0 { "" } else { " or" },
+                            model.name()
+                        )
+                    })
             }
-            Self::NoUpload => f.write_str("scene model: nothing has been uploaded, expected a `load` before"),
-            Self::NoEngine => f.write_str("backend gateware: this SoC has no renderer, expected cpu"),
-            Self::TooLong { bytes, room } => write!(f, "load {bytes}: expected at most {room} bytes"),
+            Self::NoUpload => {
+                f.write_str("scene model: nothing has been uploaded, expected a `load` before")
+            }
+            Self::NoEngine => {
+                f.write_str("backend gateware: this SoC has no renderer, expected cpu")
+            }
+            Self::TooLong { bytes, room } => {
+                write!(f, "load {bytes}: expected at most {room} bytes")
+            }
             Self::Transfer(failure) => failure.fmt(f),
             Self::Mesh(error) => write!(f, "load: not a mesh, the model before stays: {error}"),
             Self::Render(error) => write!(f, "render: {error}"),
-            Self::NoFrame => f.write_str("stats: no frame has been drawn yet, expected a `render` before"),
+            Self::NoFrame => {
+                f.write_str("stats: no frame has been drawn yet, expected a `render` before")
+            }
             Self::Kernel(name) => {
                 write!(f, "bench `{name}`: expected one of")?;
-                bench::KERNELS.iter().try_for_each(|kernel| write!(f, " {kernel}"))
+                bench::KERNELS
+                    .iter()
+                    .try_for_each(|kernel| write!(f, " {kernel}"))
             }
             Self::SelfTest(failed) => write!(f, "selftest: {failed} failed, expected none"),
-            Self::Mismatch => f.write_str("devices are not touched on gateware of another build, expected a matching one"),
+            Self::Mismatch => f.write_str(
+                "devices are not touched on gateware of another build, expected a matching one",
+            ),
         }
     }
 }
@@ -106,9 +130,14 @@ pub fn execute<'l>(machine: &mut Machine, line: &'l str) -> Reply<'l> {
     };
     let result = match command {
         Command::Empty => return Reply::Nothing,
-        Command::Render => return Reply::After(Job::Render),
+        Command::Render => {
+            machine.scene.touch();
+            return Reply::After(Job::Render);
+        }
         Command::Frame { depth } => return Reply::After(Job::Frame { depth }),
-        Command::Orbit { frames } => return Reply::After(Job::Orbit(Orbit::new(machine.scene.sphere(), frames))),
+        Command::Orbit { frames } => {
+            return Reply::After(Job::Orbit(Orbit::new(machine.scene.sphere(), frames)));
+        }
         Command::Help(name) => {
             // A line that takes nothing has nobody listening.
             let _ = write_help(machine.terminal.output(), name);
@@ -119,9 +148,10 @@ pub fn execute<'l>(machine: &mut Machine, line: &'l str) -> Reply<'l> {
             Ok(())
         }
         Command::Scene(name) => scene(machine, name),
-        Command::Camera { r, theta, phi } => {
-            machine.scene.set_sphere(Sphere { r, theta, phi }).map_err(Refusal::View)
-        }
+        Command::Camera { r, theta, phi } => machine
+            .scene
+            .set_sphere(Sphere { r, theta, phi })
+            .map_err(Refusal::View),
         Command::View(None) => {
             print_view(machine);
             Ok(())
@@ -143,7 +173,13 @@ pub fn execute<'l>(machine: &mut Machine, line: &'l str) -> Reply<'l> {
             });
             Ok(())
         }
-        Command::Load { bytes, crc32 } => load(machine, Manifest { length: bytes, crc32 }),
+        Command::Load { bytes, crc32 } => load(
+            machine,
+            Manifest {
+                length: bytes,
+                crc32,
+            },
+        ),
         Command::Cull(cull) => {
             machine.scene.set_cull(cull);
             Ok(())
@@ -155,9 +191,8 @@ pub fn execute<'l>(machine: &mut Machine, line: &'l str) -> Reply<'l> {
         }
         Command::Backend(Some(Backend::Cpu)) => Ok(()),
         Command::Backend(Some(Backend::Gateware)) => Err(Refusal::NoEngine),
-        Command::Bench(kernel) => {
-            bench::run(&mut machine.terminal, kernel).map_err(|bench::Unknown(name)| Refusal::Kernel(name))
-        }
+        Command::Bench(kernel) => bench::run(&mut machine.terminal, kernel)
+            .map_err(|bench::Unknown(name)| Refusal::Kernel(name)),
         Command::SelfTest => match selftest::run(machine) {
             0 => Ok(()),
             failed => Err(Refusal::SelfTest(failed)),
@@ -170,7 +205,16 @@ pub fn execute<'l>(machine: &mut Machine, line: &'l str) -> Reply<'l> {
 }
 
 fn info(machine: &mut Machine) {
-    let Machine { terminal, identity, models, scene, canvas, clock, uart, .. } = machine;
+    let Machine {
+        terminal,
+        identity,
+        models,
+        scene,
+        canvas,
+        clock,
+        uart,
+        ..
+    } = machine;
     let mesh = models.mesh();
     let [width, height] = scene.scale().size();
     terminal.print(format_args!(
@@ -201,7 +245,12 @@ fn info(machine: &mut Machine) {
 }
 
 fn scene<'l>(machine: &mut Machine, name: Option<&'l str>) -> Result<(), Refusal<'l>> {
-    let Machine { terminal, models, scene, .. } = machine;
+    let Machine {
+        terminal,
+        models,
+        scene,
+        ..
+    } = machine;
     let Some(name) = name else {
         for model in Model::ALL {
             let state = match (model == models.shown(), models.has(model)) {
@@ -213,7 +262,10 @@ fn scene<'l>(machine: &mut Machine, name: Option<&'l str>) -> Result<(), Refusal
         }
         return Ok(());
     };
-    let model = Model::ALL.into_iter().find(|model| model.name() == name).ok_or(Refusal::Scene(name))?;
+    let model = Model::ALL
+        .into_iter()
+        .find(|model| model.name() == name)
+        .ok_or(Refusal::Scene(name))?;
     if model == models.shown() {
         return Ok(());
     }
@@ -236,12 +288,22 @@ fn print_view(machine: &mut Machine) {
 }
 
 fn load<'l>(machine: &mut Machine, manifest: Manifest) -> Result<(), Refusal<'l>> {
-    let Machine { terminal, models, scene, clock, uart, .. } = machine;
+    let Machine {
+        terminal,
+        models,
+        scene,
+        clock,
+        uart,
+        ..
+    } = machine;
     let length = manifest.length as usize;
     let staging = models.staging();
     let room = staging.len();
     let Some(staging) = staging.get_mut(..length) else {
-        return Err(Refusal::TooLong { bytes: manifest.length, room });
+        return Err(Refusal::TooLong {
+            bytes: manifest.length,
+            room,
+        });
     };
     // Another master may have written there: a tool's back door, or a transfer that was cut off near its end.
     cpu::flush_data_cache();
@@ -256,8 +318,19 @@ fn load<'l>(machine: &mut Machine, manifest: Manifest) -> Result<(), Refusal<'l>
 
 /// Sends the frame drawn last.
 pub fn send_frame(machine: &mut Machine, depth: bool) -> Result<(), Refusal<'static>> {
-    let Machine { terminal, scene, canvas, clock, uart, downloads, .. } = machine;
-    scene.drawn().ok_or(Refusal::NoFrame)?.map_err(Refusal::Render)?;
+    let Machine {
+        terminal,
+        scene,
+        canvas,
+        clock,
+        uart,
+        downloads,
+        ..
+    } = machine;
+    scene
+        .drawn()
+        .ok_or(Refusal::NoFrame)?
+        .map_err(Refusal::Render)?;
     let bytes = if depth {
         bytemuck::cast_slice(canvas.depths(scene))
     } else {
@@ -270,7 +343,11 @@ pub fn send_frame(machine: &mut Machine, depth: bool) -> Result<(), Refusal<'sta
 
 /// Prints what the last frame took.
 pub fn stats(machine: &mut Machine, json: bool) -> Result<(), Refusal<'static>> {
-    let drawn = machine.scene.drawn().ok_or(Refusal::NoFrame)?.map_err(Refusal::Render)?;
+    let drawn = machine
+        .scene
+        .drawn()
+        .ok_or(Refusal::NoFrame)?
+        .map_err(Refusal::Render)?;
     let stats = drawn.stats;
     let values: [(&str, u64); 9] = [
         ("cycles", drawn.cycles),
@@ -300,7 +377,12 @@ pub fn stats(machine: &mut Machine, json: bool) -> Result<(), Refusal<'static>> 
 }
 
 fn leds<'l>(machine: &mut Machine, value: u16) -> Result<(), Refusal<'l>> {
-    machine.devices.as_ref().ok_or(Refusal::Mismatch)?.leds.set(value);
+    machine
+        .devices
+        .as_ref()
+        .ok_or(Refusal::Mismatch)?
+        .leds
+        .set(value);
     machine.heartbeat = false;
     Ok(())
 }
@@ -308,16 +390,23 @@ fn leds<'l>(machine: &mut Machine, value: u16) -> Result<(), Refusal<'l>> {
 fn buttons<'l>(machine: &mut Machine) -> Result<(), Refusal<'l>> {
     let devices = machine.devices.as_ref().ok_or(Refusal::Mismatch)?;
     let (buttons, switches) = (devices.buttons.read(), devices.switches.read());
-    machine.terminal.print(format_args!("buttons {buttons:#x}\nswitches {switches:#06x}\n"));
+    machine.terminal.print(format_args!(
+        "buttons {buttons:#x}\nswitches {switches:#06x}\n"
+    ));
     Ok(())
 }
 
 fn reboot(machine: &mut Machine) -> ! {
     machine.terminal.print(format_args!("ok\n"));
     machine.terminal.flush();
-    machine.ctrl.reset().write(ctrl::Reset::default().with_soc_rst(true));
+    machine
+        .ctrl
+        .reset()
+        .write(ctrl::Reset::default().with_soc_rst(true));
     // The reset takes a few cycles.
-    loop {}
+    loop {
+        core::hint::spin_loop();
+    }
 }
 
 /// A turn of the spherical camera around the model, a frame at a time.
@@ -333,7 +422,11 @@ const ORBIT_FRAMES: u32 = 240;
 
 impl Orbit {
     fn new(start: Sphere, frames: Option<u32>) -> Self {
-        Self { start, frames: frames.unwrap_or(ORBIT_FRAMES), frame: 0 }
+        Self {
+            start,
+            frames: frames.unwrap_or(ORBIT_FRAMES),
+            frame: 0,
+        }
     }
 
     /// Moves the camera on; nothing when the turn is complete.
@@ -344,7 +437,10 @@ impl Orbit {
         let frame = self.frame + 1;
         // The product has 64 bits and the quotient is at most a whole turn, which wraps to none.
         let turned = Turns(((u64::from(frame) << 32) / u64::from(self.frames)) as u32);
-        let sphere = Sphere { theta: self.start.theta.wrapping_add(turned), ..self.start };
+        let sphere = Sphere {
+            theta: self.start.theta.wrapping_add(turned),
+            ..self.start
+        };
         // It starts from a legal camera and changes only the azimuth, and every azimuth is legal.
         scene.set_sphere(sphere).ok()?;
         Some(Self { frame, ..self })

@@ -13,7 +13,11 @@ const RADIUS: u32 = 14_189;
 const DIAGONAL: i16 = 9_459;
 
 /// Axis, colour towards plus and colour towards minus of three pairs of sides.
-const SIDES: [(usize, u16, u16); 3] = [(0, 0xf9c7, 0x0733), (1, 0xfe60, 0x2b9f), (2, 0xffff, 0xc2bf)];
+const SIDES: [(usize, u16, u16); 3] = [
+    (0, 0xf9c7, 0x0733),
+    (1, 0xfe60, 0x2b9f),
+    (2, 0xffff, 0xc2bf),
+];
 
 /// The mesh, as an upload would carry it.
 pub static BYTES: Aligned = Aligned(bytes());
@@ -33,13 +37,30 @@ impl core::ops::Deref for Aligned {
 const LENGTH: usize = (2 + 1 + VERTICES + TRIANGLES) * RECORD;
 
 const fn bytes() -> [u8; LENGTH] {
-    let mut writer = Writer { bytes: [0; LENGTH], at: 0 };
-    writer = writer.word(u32::from_le_bytes(*b"GLM1")).word(LENGTH as u32).word(1);
-    writer = writer.word(VERTICES as u32).word(TRIANGLES as u32).word(RADIUS).word(0).word(0);
-    writer = writer.word(VERTICES as u32).word(TRIANGLES as u32).word(0).word(0);
+    let mut writer = Writer {
+        bytes: [0; LENGTH],
+        at: 0,
+    };
+    writer = writer
+        .word(u32::from_le_bytes(*b"GLM1"))
+        .word(LENGTH as u32)
+        .word(1);
+    writer = writer
+        .word(VERTICES as u32)
+        .word(TRIANGLES as u32)
+        .word(RADIUS)
+        .word(0)
+        .word(0);
+    writer = writer
+        .word(VERTICES as u32)
+        .word(TRIANGLES as u32)
+        .word(0)
+        .word(0);
     let mut corner = 0;
     while corner < VERTICES {
-        writer = writer.triple(corner_at(corner, ONE / 2)).triple(corner_at(corner, DIAGONAL));
+        writer = writer
+            .triple(corner_at(corner, ONE / 2))
+            .triple(corner_at(corner, DIAGONAL));
         writer = writer.half(0xffff).half(0);
         corner += 1;
     }
@@ -88,7 +109,11 @@ impl Writer {
 
     /// Two triangles, counter-clockwise seen from outside.
     const fn side(mut self, axis: usize, plus: bool, colour: u16) -> Self {
-        let (base, b, c) = ((plus as usize) << axis, 1 << ((axis + 1) % 3), 1 << ((axis + 2) % 3));
+        let (base, b, c) = (
+            (plus as usize) << axis,
+            1 << ((axis + 1) % 3),
+            1 << ((axis + 2) % 3),
+        );
         // Seen from plus, the axes b and c turn counter-clockwise; from minus, clockwise.
         let (b, c) = if plus { (b, c) } else { (c, b) };
         let mut normal = [0; 3];
@@ -96,7 +121,10 @@ impl Writer {
         let quad = [base, base + b, base + b + c, base + c];
         let mut triangle = 0;
         while triangle < 2 {
-            self = self.half(quad[0] as u16).half(quad[1 + triangle] as u16).half(quad[2 + triangle] as u16);
+            self = self
+                .half(quad[0] as u16)
+                .half(quad[1 + triangle] as u16)
+                .half(quad[2 + triangle] as u16);
             self = self.half(colour).triple(normal).half(0);
             triangle += 1;
         }

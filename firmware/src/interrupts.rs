@@ -8,7 +8,7 @@ use crate::terminal::ConsoleUart;
 /// The UART, which its interrupt and the program share.
 pub static UART: ConsoleUart = ConsoleUart::new();
 
-/// Lets interrupts in. To be called once, when everything that [`handle`] touches has been started.
+/// Lets interrupts in. To be called once, when everything that its handler touches has been started.
 pub fn start(with_scanout: bool) {
     // SAFETY: `handle` is ready, and no critical section is open.
     unsafe {

@@ -62,9 +62,15 @@ pub fn farewell(reason: core::fmt::Arguments) -> ! {
             continue;
         }
         let byte = peripherals.uart.rxtx().read();
-        peripherals.uart.ev_pending().write(litex_pac::uart::EvPending::default().with_rx(true));
+        peripherals
+            .uart
+            .ev_pending()
+            .write(litex_pac::uart::EvPending::default().with_rx(true));
         if byte == b'\r' || byte == b'\n' {
-            peripherals.ctrl.reset().write(litex_pac::ctrl::Reset::default().with_soc_rst(true));
+            peripherals
+                .ctrl
+                .reset()
+                .write(litex_pac::ctrl::Reset::default().with_soc_rst(true));
         }
     }
 }

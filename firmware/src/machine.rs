@@ -62,6 +62,10 @@ pub enum Job {
     Orbit(Orbit),
 }
 
+/// How long nothing is asked before a change is drawn. Who sends commands one by one gets one picture of them all, and
+/// nobody sees the delay.
+const QUIET: Duration = Duration::from_millis(2);
+
 /// Half a period of the light that shows life.
 const HEARTBEAT: Duration = Duration::from_millis(500);
 
@@ -90,6 +94,7 @@ pub struct Machine {
     /// How often a frame was sent.
     pub downloads: u8,
     beat: Deadline,
+    quiet: Deadline,
     job: Option<Job>,
 }
 
@@ -117,22 +122,20 @@ impl Machine {
             heartbeat: true,
             downloads: 0,
             beat: clock.after(Duration::ZERO),
+            quiet: clock.after(QUIET),
             job: None,
         }
     }
 
     /// Runs for ever.
     pub fn run(&mut self) -> ! {
-        self.terminal.print(format_args!("Type help for the commands.\n"));
+        self.terminal
+            .print(format_args!("Type help for the commands.\n"));
         self.terminal.prompt();
         loop {
             self.beat();
             self.terminal.listen();
             self.answer();
-            if self.answers_next() {
-                // Of several changes in a row only the last is drawn.
-                continue;
-            }
             self.draw();
             self.pursue();
             interrupts::sleep_unless(|| self.is_busy());
@@ -146,7 +149,11 @@ impl Machine {
 
     /// Whether the next turn of the loop has something to answer, or to hear.
     fn answers_next(&self) -> bool {
-        if self.terminal.has_input() { self.takes_input() } else { self.uart.has_received() }
+        if self.terminal.has_input() {
+            self.takes_input()
+        } else {
+            self.uart.has_received()
+        }
     }
 
     /// Whether a line is answered now; while an answer is owed it waits. An orbit ends when something else is wanted.
@@ -159,7 +166,9 @@ impl Machine {
         if !self.takes_input() {
             return;
         }
-        let Some(input) = self.terminal.input() else { return };
+        let Some(input) = self.terminal.input() else {
+            return;
+        };
         if self.job.is_some() {
             self.finish(Ok(()));
         }
@@ -176,8 +185,15 @@ impl Machine {
 
     /// Draws what has changed, if there is a frame to draw on.
     fn draw(&mut self) {
-        let Self { terminal, scene, models, canvas, .. } = self;
+        let Self {
+            terminal,
+            scene,
+            models,
+            canvas,
+            ..
+        } = self;
         if scene.changed()
+            && (self.job.is_some() || self.quiet.passed())
             && let Some(drawn) = canvas.draw(models.mesh(), scene, || terminal.listen())
         {
             scene.set_drawn(drawn);
@@ -209,6 +225,7 @@ impl Machine {
     /// Ends a reply.
     fn finish(&mut self, result: Result<(), Refusal>) {
         self.job = None;
+        self.quiet = self.clock.after(QUIET);
         match result {
             Ok(()) => self.terminal.print(format_args!("ok\n")),
             Err(error) => self.terminal.print(format_args!("error: {error}\n")),

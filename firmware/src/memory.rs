@@ -1,6 +1,7 @@
 //! The windows of main memory that `memory.x` sets aside, as what they hold.
 
 use core::mem::MaybeUninit;
+use core::ptr;
 use core::slice;
 use core::sync::atomic::{AtomicBool, Ordering};
 
@@ -53,9 +54,15 @@ impl Memory {
         }
         TAKEN.store(true, Ordering::Relaxed);
         Some(Self {
-            frames: [window!(_frame_a, _frame_size, u16), window!(_frame_b, _frame_size, u16)],
+            frames: [
+                window!(_frame_a, _frame_size, u16),
+                window!(_frame_b, _frame_size, u16),
+            ],
             depth: window!(_depth, _depth_size, u32),
-            scratch: Scratch { memory: window!(_scratch, _scratch_size, MaybeUninit<Projected>), ready: 0 },
+            scratch: Scratch {
+                memory: window!(_scratch, _scratch_size, MaybeUninit<Projected>),
+                ready: 0,
+            },
             meshes: [
                 Buffer::new(window!(_mesh_a, _mesh_size, u8)),
                 Buffer::new(window!(_mesh_b, _mesh_size, u8)),
@@ -79,7 +86,7 @@ impl Scratch {
             self.ready = count;
         }
         let ready = self.memory.get_mut(..self.ready).unwrap_or_default();
-        // SAFETY: the first `ready` have been filled.
-        unsafe { ready.assume_init_mut() }
+        // SAFETY: the first `ready` have been filled, and a `MaybeUninit` lies in memory as what it holds.
+        unsafe { &mut *(ptr::from_mut(ready) as *mut [Projected]) }
     }
 }

@@ -56,7 +56,12 @@ impl Models {
     /// When the program's own cube is not a mesh.
     pub fn new(buffers: [Buffer; 2]) -> Result<Self, MeshError> {
         let cube = Mesh::new_checked(&cube::BYTES)?;
-        Ok(Self { buffers, uploaded: None, shown: Model::Cube, cube })
+        Ok(Self {
+            buffers,
+            uploaded: None,
+            shown: Model::Cube,
+            cube,
+        })
     }
 
     /// The mesh that is shown.

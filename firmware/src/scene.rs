@@ -56,7 +56,14 @@ impl Scene {
     /// When the first camera is none.
     pub fn new() -> Result<Self, ViewError> {
         let sphere = Sphere::START;
-        Ok(Self { view: sphere.view()?, sphere, scale: Scale::Four, cull: true, changed: true, drawn: None })
+        Ok(Self {
+            view: sphere.view()?,
+            sphere,
+            scale: Scale::Four,
+            cull: true,
+            changed: true,
+            drawn: None,
+        })
     }
 
     /// The camera.

@@ -16,11 +16,20 @@ pub fn run(machine: &mut Machine) -> u32 {
         ("cycle counter", cpu::cycles_low() != cpu::cycles_low()),
         ("memory", memory),
         ("scan-out", machine.canvas.display.is_visible()),
-        ("i2c", machine.devices.as_mut().is_some_and(|devices| devices.i2c.clear_bus().is_ok())),
+        (
+            "i2c",
+            machine
+                .devices
+                .as_mut()
+                .is_some_and(|devices| devices.i2c.clear_bus().is_ok()),
+        ),
     ];
     let mut failed = 0;
     for (name, passed) in tests {
-        machine.terminal.print(format_args!("selftest {name} {}\n", if passed { "ok" } else { "FAILED" }));
+        machine.terminal.print(format_args!(
+            "selftest {name} {}\n",
+            if passed { "ok" } else { "FAILED" }
+        ));
         failed += u32::from(!passed);
     }
     failed
@@ -28,11 +37,18 @@ pub fn run(machine: &mut Machine) -> u32 {
 
 /// Whether memory keeps numbers that differ at every address, read back from behind the cache.
 fn memory(window: &mut [u8]) -> bool {
-    let (words, _) = window.get_mut(..TESTED).unwrap_or_default().as_chunks_mut::<4>();
+    let (words, _) = window
+        .get_mut(..TESTED)
+        .unwrap_or_default()
+        .as_chunks_mut::<4>();
     let pattern = |index: usize| (index as u32).wrapping_mul(0x9e37_79b9).to_le_bytes();
     for (index, word) in words.iter_mut().enumerate() {
         *word = pattern(index);
     }
     cpu::flush_data_cache();
-    !words.is_empty() && words.iter().enumerate().all(|(index, word)| *word == pattern(index))
+    !words.is_empty()
+        && words
+            .iter()
+            .enumerate()
+            .all(|(index, word)| *word == pattern(index))
 }

@@ -11,8 +11,8 @@ use litex_hal::timer::{Clock, FREQUENCY, Stopped};
 use litex_hal::uart::Direct;
 use litex_pac::{BUILD_ID, Peripherals};
 
-use crate::interrupts::{self, UART};
 use crate::canvas::Canvas;
+use crate::interrupts::{self, UART};
 use crate::machine::{Devices, Identity, Machine};
 use crate::memory::Memory;
 use crate::models::Models;
@@ -66,7 +66,12 @@ pub fn machine() -> Result<Machine, Fault> {
         gateware: peripherals.identity.build_id().read(),
         blocks: peripherals.identity.blocks().read(),
     };
-    let _ = write!(banner, "gateware {:#010x}, {} kHz\r\n", identity.gateware, FREQUENCY / 1000);
+    let _ = write!(
+        banner,
+        "gateware {:#010x}, {} kHz\r\n",
+        identity.gateware,
+        FREQUENCY / 1000
+    );
     if !identity.matches() {
         let _ = write!(
             banner,
@@ -96,7 +101,11 @@ pub fn machine() -> Result<Machine, Fault> {
         clock,
         Scene::new().map_err(Fault::Camera)?,
         Models::new(memory.meshes).map_err(Fault::Cube)?,
-        Canvas { display: Display::new(scanout, memory.frames), depth: memory.depth, scratch: memory.scratch },
+        Canvas {
+            display: Display::new(scanout, memory.frames),
+            depth: memory.depth,
+            scratch: memory.scratch,
+        },
         devices,
         peripherals.ctrl,
     ))

@@ -21,6 +21,10 @@ pub type ConsoleUart = Uart<RECEIVE_QUEUE, SEND_QUEUE>;
 const PATIENCE: Duration = Duration::from_millis(500);
 
 /// What somebody has typed.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "there is no heap to put the line on, and there is one of these"
+)]
 pub enum Input {
     /// A whole line.
     Line(String<LINE_MAX>),
@@ -41,8 +45,15 @@ pub struct Terminal {
 impl Terminal {
     /// A terminal on `uart`.
     pub fn new(uart: &'static ConsoleUart, clock: Clock) -> Self {
-        let output = Output { writer: uart.writer(clock, PATIENCE) };
-        Self { uart, editor: LineEditor::new(), output, waiting: None }
+        let output = Output {
+            writer: uart.writer(clock, PATIENCE),
+        };
+        Self {
+            uart,
+            editor: LineEditor::new(),
+            output,
+            waiting: None,
+        }
     }
 
     /// Takes what was typed until a line is complete, and echoes it. Further lines wait their turn in the UART's queue.
@@ -97,7 +108,11 @@ pub struct Output {
 
 impl fmt::Write for Output {
     fn write_str(&mut self, text: &str) -> fmt::Result {
-        let mut send = |text: &str| self.writer.write_all(text.as_bytes()).map_err(|_| fmt::Error);
+        let mut send = |text: &str| {
+            self.writer
+                .write_all(text.as_bytes())
+                .map_err(|_| fmt::Error)
+        };
         let mut lines = text.split('\n');
         send(lines.next().unwrap_or_default())?;
         for line in lines {

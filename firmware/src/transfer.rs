@@ -47,8 +47,18 @@ impl Party for Sender<'_> {
 ///
 /// # Errors
 /// When it does not come whole.
-pub fn receive(uart: &ConsoleUart, clock: Clock, buffer: &mut [u8], manifest: Manifest) -> Result<(), Failure> {
-    let receiver = Receiver::new(buffer, Some(manifest), Timing::CONSOLE, clock.milliseconds());
+pub fn receive(
+    uart: &ConsoleUart,
+    clock: Clock,
+    buffer: &mut [u8],
+    manifest: Manifest,
+) -> Result<(), Failure> {
+    let receiver = Receiver::new(
+        buffer,
+        Some(manifest),
+        Timing::CONSOLE,
+        clock.milliseconds(),
+    );
     run(uart, clock, receiver)
 }
 
@@ -57,7 +67,11 @@ pub fn receive(uart: &ConsoleUart, clock: Clock, buffer: &mut [u8], manifest: Ma
 /// # Errors
 /// When it does not arrive whole.
 pub fn send(uart: &ConsoleUart, clock: Clock, data: &[u8], session: u8) -> Result<(), Failure> {
-    run(uart, clock, Sender::new(data, session, Timing::CONSOLE, clock.milliseconds()))
+    run(
+        uart,
+        clock,
+        Sender::new(data, session, Timing::CONSOLE, clock.milliseconds()),
+    )
 }
 
 fn run(uart: &ConsoleUart, clock: Clock, mut party: impl Party) -> Result<(), Failure> {
