@@ -10,7 +10,7 @@ use clap::{Parser, Subcommand};
 
 /// Glint's host program: models in, pictures out.
 ///
-/// MODEL is a mesh file (.obj, .stl, .ply, .glm) or a generator's name: cube, icosphere:N (0 to 7), torus-knot, gear, teapot,
+/// MODEL is a mesh file (.obj, .stl, .ply, .glm) or a generator's name: cube, icosphere:N (frequency, 1 to 64), torus-knot, gear, teapot,
 /// sponge:N (0 to 4). BOARD is `virtual` or a serial port such as /dev/ttyUSB1. Bad input ends with exit code 2 and one line
 /// that says where and what; anything else that fails ends with 1.
 #[derive(Parser)]

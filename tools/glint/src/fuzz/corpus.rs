@@ -39,7 +39,7 @@ fn texts(texts: &[&str]) -> Vec<Vec<u8>> {
 
 /// Small models: generated ones, and a concave polygon with colours.
 fn models() -> Vec<Polygons> {
-    let mut models: Vec<Polygons> = ["cube", "icosphere:0", "icosphere:1", "sponge:0"]
+    let mut models: Vec<Polygons> = ["cube", "icosphere:1", "icosphere:2", "sponge:0"]
         .iter()
         .filter_map(|name| generate::named(name).ok())
         .collect();

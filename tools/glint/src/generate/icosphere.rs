@@ -1,12 +1,12 @@
-//! The icosphere: an icosahedron whose triangles are cut in four again and again.
+//! The icosphere of frequency f: an icosahedron whose edges are cut in f parts, all points pushed out to the sphere.
 
 use super::builder::Builder;
 use crate::error::FormatError;
 use crate::polygons::{Polygons, Rgb8, Vector};
 use crate::triangulate::unit;
 
-/// The sphere of radius 1 with 20·4^level triangles, coloured by direction.
-pub fn icosphere(level: u32) -> Result<Polygons, FormatError> {
+/// The sphere of radius 1 with 20·frequency² triangles, coloured by direction.
+pub fn icosphere(frequency: u32) -> Result<Polygons, FormatError> {
     let golden = (1.0 + 5f64.sqrt()) / 2.0;
     // Twelve points: the cyclic shifts of (0, ±1, ±golden).
     let corner = |axis: usize, a: f64, b: f64| -> Vector {
@@ -16,7 +16,7 @@ pub fn icosphere(level: u32) -> Result<Polygons, FormatError> {
         normalised(point)
     };
     let mut builder = Builder::default();
-    let mut emit = |triangle: [Vector; 3]| split(&mut builder, triangle, level);
+    let mut emit = |triangle: [Vector; 3]| divide(&mut builder, triangle, frequency);
     for sign in [1.0, -1.0] {
         for axis in 0..3 {
             // The two triangles on the edge between (0, 1, golden) and (0, -1, golden) …
@@ -58,16 +58,31 @@ fn facing_out([a, b, c]: [Vector; 3]) -> [Vector; 3] {
     }
 }
 
-fn split(builder: &mut Builder, triangle: [Vector; 3], level: u32) -> Result<(), FormatError> {
-    let Some(level) = level.checked_sub(1) else {
-        return builder.face(&triangle, None);
+/// Cuts a triangle's edges in `frequency` parts, and the triangle in the square of that.
+fn divide(
+    builder: &mut Builder,
+    [a, b, c]: [Vector; 3],
+    frequency: u32,
+) -> Result<(), FormatError> {
+    // Steps from `a` towards `b` and towards `c`. On an edge one of the three weights is zero and the sum of the other
+    // two has no order, so both triangles on the edge get the same bits.
+    let point = |to_b: u32, to_c: u32| -> Vector {
+        let weights = [frequency - to_b - to_c, to_b, to_c].map(f64::from);
+        normalised(
+            [0, 1, 2]
+                .map(|axis| weights[0] * a[axis] + weights[1] * b[axis] + weights[2] * c[axis]),
+        )
     };
-    let [a, b, c] = triangle;
-    // The sum of two numbers has no order, so both triangles on an edge get the same bits.
-    let middle = |p: Vector, q: Vector| normalised([p[0] + q[0], p[1] + q[1], p[2] + q[2]]);
-    let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
-    for part in [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]] {
-        split(builder, part, level)?;
+    for i in 0..frequency {
+        for j in 0..frequency - i {
+            builder.face(&[point(i, j), point(i + 1, j), point(i, j + 1)], None)?;
+            if i + j + 2 <= frequency {
+                builder.face(
+                    &[point(i + 1, j), point(i + 1, j + 1), point(i, j + 1)],
+                    None,
+                )?;
+            }
+        }
     }
     Ok(())
 }

@@ -12,7 +12,8 @@ use crate::error::FormatError;
 use crate::polygons::Polygons;
 
 /// The names that [`named`] knows, for messages and help.
-pub const NAMES: &str = "cube, icosphere:N (0 to 7), torus-knot, gear, teapot or sponge:N (0 to 4)";
+pub const NAMES: &str =
+    "cube, icosphere:N (frequency, 1 to 64), torus-knot, gear, teapot or sponge:N (0 to 4)";
 
 /// Whether a name is meant for [`named`] and not for a file.
 pub fn is_name(name: &str) -> bool {
@@ -40,7 +41,7 @@ pub fn named(name: &str) -> Result<Polygons, FormatError> {
     };
     match (stem, number) {
         ("cube", None) => cube::cube(),
-        ("icosphere", Some(level @ 0..=7)) => icosphere::icosphere(level),
+        ("icosphere", Some(frequency @ 1..=64)) => icosphere::icosphere(frequency),
         ("torus-knot", None) => torus_knot::torus_knot(),
         ("gear", None) => gear::gear(),
         ("teapot", None) => teapot::teapot(),
@@ -60,8 +61,8 @@ mod tests {
 
     pub const ALL: [&str; 8] = [
         "cube",
-        "icosphere:0",
-        "icosphere:3",
+        "icosphere:1",
+        "icosphere:8",
         "torus-knot",
         "gear",
         "teapot",
@@ -143,7 +144,8 @@ mod tests {
             "",
             "cube:1",
             "icosphere",
-            "icosphere:8",
+            "icosphere:0",
+            "icosphere:65",
             "icosphere:x",
             "sponge:5",
             "Teapot",
@@ -164,7 +166,7 @@ mod tests {
             );
         };
         close("cube", 1.0, 1e-12);
-        close("icosphere:4", 4.0 / 3.0 * std::f64::consts::PI, 0.01);
+        close("icosphere:16", 4.0 / 3.0 * std::f64::consts::PI, 0.01);
         close("sponge:2", (20.0f64 / 27.0).powi(2), 1e-12);
     }
 
