@@ -46,7 +46,10 @@ fn debian_packages() -> Result<()> {
     if missing.is_empty() {
         return Ok(());
     }
-    for (package, purpose) in PACKAGES.iter().filter(|(package, _)| missing.contains(package)) {
+    for (package, purpose) in PACKAGES
+        .iter()
+        .filter(|(package, _)| missing.contains(package))
+    {
         println!("  missing: {package} ({purpose})");
     }
     let by_hand = format!(
@@ -107,13 +110,20 @@ fn python_environment() -> Result<()> {
     }
     run::step(
         "python environment",
-        Command::new("python3").args(["-m", "venv", "--clear"]).arg(paths::venv()),
+        Command::new("python3")
+            .args(["-m", "venv", "--clear"])
+            .arg(paths::venv()),
     )
     .context("the Python environment: Debian's package python3-venv is needed")?;
     run::step(
         "python packages",
         Command::new(paths::venv_program("pip"))
-            .args(["install", "--disable-pip-version-check", "--requirement", REQUIREMENTS])
+            .args([
+                "install",
+                "--disable-pip-version-check",
+                "--requirement",
+                REQUIREMENTS,
+            ])
             .current_dir(paths::root()),
     )
     .context("the Python packages: is PyPI reachable?")?;

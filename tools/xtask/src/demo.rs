@@ -34,7 +34,10 @@ fn tool(package: &str, program: &str, subcommand: &str, arguments: &[String]) ->
     let select = ["--package", package, "--bin", program];
     run::step(
         &format!("build {program}"),
-        Command::new("cargo").arg("build").args(select).current_dir(paths::root()),
+        Command::new("cargo")
+            .arg("build")
+            .args(select)
+            .current_dir(paths::root()),
     )?;
     run::foreground(
         &format!("{program} {subcommand}"),

@@ -22,13 +22,25 @@ pub fn build(features: &[&str]) -> Result<PathBuf> {
     let name = [&["glint"], features].concat().join("-");
     let built = paths::target().join("firmware-build");
     let mut cargo = Command::new("cargo");
-    cargo.args(["build", "--package", "glint-firmware", "--profile", "firmware", "--target", TARGET]);
+    cargo.args([
+        "build",
+        "--package",
+        "glint-firmware",
+        "--profile",
+        "firmware",
+        "--target",
+        TARGET,
+    ]);
     cargo.arg("--features").arg(features.join(","));
     // Not the folder of the tools' builds: they would wait for each other.
-    cargo.arg("--target-dir").arg(&built).current_dir(paths::root());
+    cargo
+        .arg("--target-dir")
+        .arg(&built)
+        .current_dir(paths::root());
     run::step(&format!("build firmware {name}"), &mut cargo)?;
 
-    let elf = fs::read(built.join(TARGET).join("firmware/glint-firmware")).context("reading the firmware")?;
+    let elf = fs::read(built.join(TARGET).join("firmware/glint-firmware"))
+        .context("reading the firmware")?;
     let (image, sizes) = image(&elf).with_context(|| format!("firmware {name}"))?;
     let folder = paths::target().join("firmware");
     fs::create_dir_all(&folder).with_context(|| format!("creating {}", folder.display()))?;
@@ -50,7 +62,10 @@ fn write(path: &Path, bytes: &[u8]) -> Result<()> {
 /// The bytes to load to the start of main memory, and what they are made of.
 fn image(elf: &[u8]) -> Result<(Vec<u8>, String)> {
     let file = object::File::parse(elf).context("not an ELF file")?;
-    let (base, end) = (u64::from(MAIN_RAM.base), u64::from(MAIN_RAM.base) + u64::from(MAIN_RAM.size));
+    let (base, end) = (
+        u64::from(MAIN_RAM.base),
+        u64::from(MAIN_RAM.base) + u64::from(MAIN_RAM.size),
+    );
     ensure!(
         file.entry() == base,
         "its entry is {:#010x}, expected {base:#010x}, where the BIOS jumps to",
@@ -58,7 +73,9 @@ fn image(elf: &[u8]) -> Result<(Vec<u8>, String)> {
     );
     let symbol = |name: &str| {
         let found = file.symbols().find(|symbol| symbol.name() == Ok(name));
-        found.map(|symbol| symbol.address()).with_context(|| format!("it has no symbol {name}"))
+        found
+            .map(|symbol| symbol.address())
+            .with_context(|| format!("it has no symbol {name}"))
     };
     let windows_end = symbol("_mesh_b")? + symbol("_mesh_size")?;
     ensure!(
@@ -68,7 +85,10 @@ fn image(elf: &[u8]) -> Result<(Vec<u8>, String)> {
 
     let mut image = Vec::new();
     for segment in file.segments() {
-        let (address, data) = (segment.address(), segment.data().context("a segment without data")?);
+        let (address, data) = (
+            segment.address(),
+            segment.data().context("a segment without data")?,
+        );
         ensure!(
             base <= address && address + segment.size() <= symbol("_frame_a")?,
             "a segment lies at {address:#010x} to {:#010x}, expected it in the program's part of main memory",
@@ -78,13 +98,21 @@ fn image(elf: &[u8]) -> Result<(Vec<u8>, String)> {
             continue;
         }
         let offset = (address - base) as usize;
-        ensure!(offset >= image.len(), "the segment at {address:#010x} overlaps the one before");
+        ensure!(
+            offset >= image.len(),
+            "the segment at {address:#010x} overlaps the one before"
+        );
         image.resize(offset, 0);
         image.extend_from_slice(data);
     }
     let size = |wanted: &[SectionKind]| -> u64 {
-        let sections = file.sections().filter(|section| wanted.contains(&section.kind()));
-        sections.filter(|section| section.address() != 0 && section.name() != Ok(".stack")).map(|s| s.size()).sum()
+        let sections = file
+            .sections()
+            .filter(|section| wanted.contains(&section.kind()));
+        sections
+            .filter(|section| section.address() != 0 && section.name() != Ok(".stack"))
+            .map(|s| s.size())
+            .sum()
     };
     let sizes = format!(
         "code {}, constants {}, data {}, zeroed at start {}",

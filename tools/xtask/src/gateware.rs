@@ -68,7 +68,11 @@ fn generate(board: Board) -> Result<()> {
     let folder = board.folder();
     let gateware = root.join("gateware");
     let inputs = fingerprint(
-        &[gateware.join("glint_soc"), gateware.join("rtl"), gateware.join("requirements.txt")],
+        &[
+            gateware.join("glint_soc"),
+            gateware.join("rtl"),
+            gateware.join("requirements.txt"),
+        ],
         board.name(),
     )?;
     let stamp = folder.join("generated.stamp");
@@ -111,7 +115,12 @@ fn verilate(waveforms: Waveforms) -> Result<()> {
     let bios = folder.join("software/bios/bios.bin");
     let verilog = folder.join("gateware").join(TOP).with_extension("v");
     let inputs = fingerprint(
-        &[verilog.clone(), bios.clone(), harness.clone(), paths::root().join("gateware/rtl")],
+        &[
+            verilog.clone(),
+            bios.clone(),
+            harness.clone(),
+            paths::root().join("gateware/rtl"),
+        ],
         // How this function builds is an input as well.
         include_str!("gateware.rs"),
     )?;
@@ -130,8 +139,21 @@ fn verilate(waveforms: Waveforms) -> Result<()> {
     run::step(
         "Verilator",
         Command::new(verilator.join("bin/verilator_bin"))
-            .args(["--cc", "--no-timing", "--flatten", "-O3", "--x-assign", "fast", "--x-initial", "fast"])
-            .args(if waveforms == Waveforms::With { &["--trace-vcd"][..] } else { &[] })
+            .args([
+                "--cc",
+                "--no-timing",
+                "--flatten",
+                "-O3",
+                "--x-assign",
+                "fast",
+                "--x-initial",
+                "fast",
+            ])
+            .args(if waveforms == Waveforms::With {
+                &["--trace-vcd"][..]
+            } else {
+                &[]
+            })
             .args(["--prefix", "Vglint", "--top-module", TOP, "--Mdir"])
             .arg(&objects)
             .arg(harness.join("glint_soc.vlt"))
@@ -150,13 +172,25 @@ fn verilate(waveforms: Waveforms) -> Result<()> {
     if waveforms == Waveforms::With {
         sources.push(runtime.join("verilated_vcd_c.cpp"));
     }
-    sources.extend(files(&objects)?.into_iter().filter(|path| path.extension() == Some(OsStr::new("cpp"))));
+    sources.extend(
+        files(&objects)?
+            .into_iter()
+            .filter(|path| path.extension() == Some(OsStr::new("cpp"))),
+    );
     let flag = if waveforms == Waveforms::With { 1 } else { 0 };
-    let mut flags: Vec<String> = ["-std=gnu++17", "-O3", "-fPIC", "-fvisibility=hidden", "-w"].map(String::from).to_vec();
+    let mut flags: Vec<String> = ["-std=gnu++17", "-O3", "-fPIC", "-fvisibility=hidden", "-w"]
+        .map(String::from)
+        .to_vec();
     flags.extend(["SC", "COVERAGE", "TIMING"].map(|what| format!("-DVM_{what}=0")));
     flags.extend(["TRACE", "TRACE_VCD"].map(|what| format!("-DVM_{what}={flag}")));
     flags.push(format!("-DGLINT_BIOS=\"{}\"", bios.display()));
-    let includes = [&objects, &runtime, &runtime.join("vltstd"), &folder.join("software/include"), &harness];
+    let includes = [
+        &objects,
+        &runtime,
+        &runtime.join("vltstd"),
+        &folder.join("software/include"),
+        &harness,
+    ];
     flags.extend(includes.iter().map(|path| format!("-I{}", path.display())));
     compile(&sources, &objects, &flags)?;
 
@@ -180,7 +214,9 @@ fn compile(sources: &[PathBuf], folder: &Path, flags: &[String]) -> Result<()> {
     // The largest first: they decide when the last one is done.
     let mut queue: Vec<&PathBuf> = sources.iter().collect();
     queue.sort_by_key(|path| std::cmp::Reverse(fs::metadata(path).map_or(0, |data| data.len())));
-    let style = ProgressStyle::with_template("  {bar:30} {pos}/{len}  {elapsed}  compile the virtual board")?;
+    let style = ProgressStyle::with_template(
+        "  {bar:30} {pos}/{len}  {elapsed}  compile the virtual board",
+    )?;
     let bar = ProgressBar::new(queue.len() as u64).with_style(style);
     let next = AtomicUsize::new(0);
     let work = || -> Result<()> {
@@ -194,7 +230,11 @@ fn compile(sources: &[PathBuf], folder: &Path, flags: &[String]) -> Result<()> {
                 .output()
                 .context("g++: not found; `cargo xtask bootstrap` installs it")?;
             if !output.status.success() {
-                bail!("g++ {}:\n{}", source.display(), String::from_utf8_lossy(&output.stderr));
+                bail!(
+                    "g++ {}:\n{}",
+                    source.display(),
+                    String::from_utf8_lossy(&output.stderr)
+                );
             }
             bar.inc(1);
         }
@@ -203,22 +243,32 @@ fn compile(sources: &[PathBuf], folder: &Path, flags: &[String]) -> Result<()> {
     std::thread::scope(|scope| {
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let workers: Vec<_> = (0..cores).map(|_| scope.spawn(work)).collect();
-        workers.into_iter().try_for_each(|worker| worker.join().expect("a compiling thread does not panic"))
+        workers
+            .into_iter()
+            .try_for_each(|worker| worker.join().expect("a compiling thread does not panic"))
     })?;
     bar.finish_and_clear();
-    println!("  ok   {:6.1} s  compile the virtual board", start.elapsed().as_secs_f64());
+    println!(
+        "  ok   {:6.1} s  compile the virtual board",
+        start.elapsed().as_secs_f64()
+    );
     Ok(())
 }
 
 /// The object file of `source`.
 fn object(source: &Path, folder: &Path) -> PathBuf {
-    folder.join(source.file_name().unwrap_or_default()).with_extension("o")
+    folder
+        .join(source.file_name().unwrap_or_default())
+        .with_extension("o")
 }
 
 /// The folder of the pinned Verilator in the Python environment.
 fn verilator_root() -> Result<PathBuf> {
     let output = Command::new(paths::venv_program("python"))
-        .args(["-c", "import os, verilator; print(os.path.dirname(verilator.__file__), end='')"])
+        .args([
+            "-c",
+            "import os, verilator; print(os.path.dirname(verilator.__file__), end='')",
+        ])
         .output()
         .context("python: `cargo xtask bootstrap` makes the Python environment")?;
     if !output.status.success() {
@@ -234,7 +284,9 @@ fn fingerprint(roots: &[PathBuf], salt: &str) -> Result<String> {
     for root in roots {
         for path in files(root)? {
             path.hash(&mut hasher);
-            fs::read(&path).with_context(|| format!("reading {}", path.display()))?.hash(&mut hasher);
+            fs::read(&path)
+                .with_context(|| format!("reading {}", path.display()))?
+                .hash(&mut hasher);
         }
     }
     Ok(format!("{:016x}\n", hasher.finish()))
@@ -246,7 +298,11 @@ fn files(root: &Path) -> Result<Vec<PathBuf>> {
         return Ok(vec![root.to_owned()]);
     }
     let mut entries = fs::read_dir(root)
-        .and_then(|entries| entries.map(|entry| entry.map(|entry| entry.path())).collect::<Result<Vec<_>, _>>())
+        .and_then(|entries| {
+            entries
+                .map(|entry| entry.map(|entry| entry.path()))
+                .collect::<Result<Vec<_>, _>>()
+        })
         .with_context(|| format!("listing {}", root.display()))?;
     entries.sort();
     let mut found = Vec::new();

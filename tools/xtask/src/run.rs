@@ -31,7 +31,8 @@ pub fn watched_step(name: &str, command: &mut Command, mut watch: impl FnMut(&st
     let start = Instant::now();
     let bar = spinner(name);
     let log_path = log_path(name)?;
-    let mut log = File::create(&log_path).with_context(|| format!("creating {}", log_path.display()))?;
+    let mut log =
+        File::create(&log_path).with_context(|| format!("creating {}", log_path.display()))?;
     let (reader, writer) = std::io::pipe()?;
     command
         .stdin(Stdio::null())
@@ -68,7 +69,10 @@ pub fn watched_step(name: &str, command: &mut Command, mut watch: impl FnMut(&st
     for line in &tail {
         println!("    {line}");
     }
-    bail!("{name} failed ({status}); all of its output is in {}", log_path.display())
+    bail!(
+        "{name} failed ({status}); all of its output is in {}",
+        log_path.display()
+    )
 }
 
 /// Runs `command` with the terminal as its own, for programs that show their progress themselves.

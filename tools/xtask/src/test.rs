@@ -28,10 +28,22 @@ pub fn test() -> Result<()> {
     };
     check(pac::generate(true).map(|()| 1));
     check(cargo("formatting", &["fmt", "--all", "--check"]));
-    check(cargo("clippy", &["clippy", "--all-targets", "--", "-D", "warnings"]));
+    check(cargo(
+        "clippy",
+        &["clippy", "--all-targets", "--", "-D", "warnings"],
+    ));
     check(cargo(
         "clippy of the firmware",
-        &["clippy", "--package", "glint-firmware", "--target", firmware::TARGET, "--", "-D", "warnings"],
+        &[
+            "clippy",
+            "--package",
+            "glint-firmware",
+            "--target",
+            firmware::TARGET,
+            "--",
+            "-D",
+            "warnings",
+        ],
     ));
     check(documentation());
     check(gateware_tests());
@@ -48,7 +60,12 @@ pub fn test() -> Result<()> {
 
 /// One cargo command as a check.
 fn cargo(name: &str, arguments: &[&str]) -> Result<u32> {
-    run::step(name, Command::new("cargo").args(arguments).current_dir(paths::root()))?;
+    run::step(
+        name,
+        Command::new("cargo")
+            .args(arguments)
+            .current_dir(paths::root()),
+    )?;
     Ok(1)
 }
 
@@ -79,7 +96,9 @@ fn cargo_tests() -> Result<u32> {
     let mut passed = 0;
     run::watched_step(
         "cargo test",
-        Command::new("cargo").args(["test", "--no-fail-fast"]).current_dir(paths::root()),
+        Command::new("cargo")
+            .args(["test", "--no-fail-fast"])
+            .current_dir(paths::root()),
         |line| passed += passed_tests(line).unwrap_or(0),
     )?;
     Ok(passed)
