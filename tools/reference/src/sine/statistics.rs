@@ -70,6 +70,17 @@ impl Statistics {
     /// Adds one input's outputs.
     pub fn add(&mut self, input: u64, truth: SinCos, got: SinCos, weight: f64) {
         self.inputs += 1;
+        self.add_both(input, truth, got, weight);
+    }
+
+    /// Adds the outputs of `count` inputs that are images of one another, with outputs and truth alike but for signs and
+    /// order. `input` stands for all of them.
+    pub fn add_images(&mut self, input: u64, truth: SinCos, got: SinCos, count: u64) {
+        self.inputs += count;
+        self.add_both(input, truth, got, count as f64);
+    }
+
+    fn add_both(&mut self, input: u64, truth: SinCos, got: SinCos, weight: f64) {
         self.add_one(input, Function::Sin, truth.sin, got.sin, weight);
         self.add_one(input, Function::Cos, truth.cos, got.cos, weight);
         let norm = (got.sin * got.sin + got.cos * got.cos - 1.0).abs();

@@ -78,7 +78,7 @@ const LIMIT: u64 = 500_000_000;
 pub fn measure(library: &Path, firmware: &Path) -> Result<Cycles> {
     for (path, command) in [
         (library, "cargo xtask gateware"),
-        (firmware, "cargo xtask firmware"),
+        (firmware, "cargo xtask firmware --features peers"),
     ] {
         if !path.exists() {
             let path = path.strip_prefix(in_workspace("")).unwrap_or(path);

@@ -47,7 +47,7 @@ struct SineArguments {
     /// The verilated SoC that measures cycles [default: the one that `cargo xtask gateware` makes]
     #[arg(long, value_name = "FILE")]
     library: Option<PathBuf>,
-    /// The firmware that it runs [default: the one that `cargo xtask firmware` makes]
+    /// The firmware that it runs [default: the one that `cargo xtask firmware --features peers` makes]
     #[arg(long, value_name = "FILE")]
     firmware: Option<PathBuf>,
     /// Take the cycles from a console transcript of `bench sine`, from a real board say, instead of the virtual board
@@ -156,7 +156,7 @@ fn sine_cycles(arguments: &SineArguments) -> Result<Cycles> {
                     &arguments.library,
                     "target/gateware/virtual/libglint_soc.so",
                 ),
-                &built(&arguments.firmware, "target/firmware/glint.bin"),
+                &built(&arguments.firmware, "target/firmware/glint-peers.bin"),
             )
         }
     }

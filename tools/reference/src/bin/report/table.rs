@@ -135,10 +135,18 @@ impl Provenance {
             ));
         }
         Self {
-            commit: output("git", &["describe", "--always", "--dirty", "--abbrev=12"]),
+            commit: commit(),
             tools: tools.join(", "),
         }
     }
+}
+
+/// The last commit that touched what is measured, marked when there are changes since.
+fn commit() -> String {
+    const MEASURED: [&str; 4] = ["Cargo.lock", "firmware", "gateware", "tools/reference"];
+    let git = |arguments: &[&str]| output("git", &[arguments, &["--"], &MEASURED].concat());
+    let changed = !git(&["status", "--porcelain"]).is_empty();
+    git(&["log", "-1", "--format=%h", "--abbrev=12"]) + if changed { "-dirty" } else { "" }
 }
 
 /// What a program prints, or "unknown" where it is not there.
