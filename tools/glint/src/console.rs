@@ -45,16 +45,16 @@ pub enum ConsoleError {
 pub const PATIENCE_MS: u64 = 30_000;
 
 /// The console of a board.
-pub struct Console<'b> {
-    board: &'b mut dyn Board,
+pub struct Console<'b, B: ?Sized = dyn Board> {
+    board: &'b mut B,
     /// What came and has not been looked at.
     pending: Vec<u8>,
     patience_ms: u64,
 }
 
-impl<'b> Console<'b> {
+impl<'b, B: Board + ?Sized> Console<'b, B> {
     /// On a board whose firmware runs.
-    pub fn new(board: &'b mut dyn Board) -> Self {
+    pub fn new(board: &'b mut B) -> Self {
         Self {
             board,
             pending: Vec::new(),
@@ -69,6 +69,11 @@ impl<'b> Console<'b> {
             patience_ms,
             ..self
         }
+    }
+
+    /// Takes text that has been read from the board already.
+    pub fn hear(&mut self, said: &[u8]) {
+        self.pending.extend_from_slice(said);
     }
 
     /// Waits for the first prompt after a start, and returns what was said before it.
@@ -118,8 +123,13 @@ impl<'b> Console<'b> {
     }
 
     /// The line during a transfer, and what has come of it already.
-    pub fn line(&mut self) -> (&mut dyn Board, &mut Vec<u8>) {
+    pub fn line(&mut self) -> (&mut B, &mut Vec<u8>) {
         (self.board, &mut self.pending)
+    }
+
+    /// The board itself.
+    pub fn board(&mut self) -> &mut B {
+        self.board
     }
 
     /// The rest of the reply to a command, up to `ok`.

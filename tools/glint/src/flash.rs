@@ -6,8 +6,9 @@
 //!
 //! The letters carry no number, so a lost one could be taken for the next one's. Frames therefore go in batches: a batch has
 //! arrived when it has brought just as many `K` as it has frames, and is otherwise sent again as a whole, after the line has
-//! been quiet for long enough that both sides agree on where a frame begins. Batches grow while all goes well; after a
-//! failure batches and frames get smaller, as a short frame is hit less often.
+//! been quiet for long enough that both sides agree on where a frame begins. After a failure batches and frames get
+//! smaller, as a short frame is hit less often. While all goes well they grow: frames to what the BIOS can buffer, and batches
+//! where waiting for answers takes time. A line that answers at once has no need of them, and may be faster than the BIOS.
 
 use crate::board::{Board, BoardError};
 
@@ -21,10 +22,14 @@ pub const LOAD: u8 = 1;
 /// Jumps to an address.
 pub const JUMP: u8 = 2;
 
-/// The most data bytes a frame can have: 255 of payload, 4 of them address.
-const MAX_DATA: usize = 248;
-const MIN_DATA: usize = 16;
+/// The most data bytes of a frame. The protocol has room for 251, but a frame of 104 bytes, together with the answer to
+/// the request before the first, is sure to fit the 127 that the BIOS buffers when it is busy.
+const MAX_DATA: usize = 96;
+const MIN_DATA: usize = 12;
+/// The most frames of a batch: more than an adapter's delay and buffers hold at 1 Mbit/s.
 const MAX_BATCH: usize = 64;
+/// Answers that come sooner than this, for each frame, leave nothing to be gained by sending ahead.
+const PROMPT_MS: u64 = 2;
 /// Longer than the BIOS waits for the rest of a frame (250 ms).
 const QUIET_MS: u64 = 300;
 /// How long an answer may take: the frame's time on a slow line and an adapter's delays.
@@ -110,9 +115,9 @@ pub fn flash(
     while sent < program.len() {
         let frames = link.batch(program, address, sent);
         match link.deliver(&frames)? {
-            Delivery::Arrived => {
+            Delivery::Arrived { milliseconds } => {
                 sent = program.len().min(sent + link.data * frames.len());
-                link.grow();
+                link.grow(milliseconds >= PROMPT_MS * frames.len() as u64);
                 progress(sent as u64, program.len() as u64);
             }
             Delivery::Failed { found } => {
@@ -155,7 +160,7 @@ fn wait_for_request(board: &mut dyn Board, wait_ms: u64) -> Result<(), FlashErro
 }
 
 enum Delivery {
-    Arrived,
+    Arrived { milliseconds: u64 },
     Failed { found: String },
 }
 
@@ -186,6 +191,7 @@ impl Link<'_> {
 
     /// Sends frames and counts the answers.
     fn deliver(&mut self, frames: &[Vec<u8>]) -> Result<Delivery, BoardError> {
+        let start = self.board.now_ms();
         for frame in frames {
             self.board.write(frame)?;
             self.report.frames += 1;
@@ -205,7 +211,9 @@ impl Link<'_> {
             }
         }
         if answers.len() == frames.len() && answers.iter().all(|&answer| answer == b'K') {
-            return Ok(Delivery::Arrived);
+            return Ok(Delivery::Arrived {
+                milliseconds: self.board.now_ms() - start,
+            });
         }
         self.settle()?;
         let answers = &answers[..answers.len().min(40)];
@@ -228,12 +236,12 @@ impl Link<'_> {
         Ok(rest)
     }
 
-    fn grow(&mut self) {
+    fn grow(&mut self, answers_take_time: bool) {
         self.failures = 0;
-        if self.batch < MAX_BATCH {
-            self.batch *= 2;
-        } else {
+        if self.data < MAX_DATA {
             self.data = (self.data * 2).min(MAX_DATA);
+        } else if answers_take_time {
+            self.batch = (self.batch * 2).min(MAX_BATCH);
         }
     }
 
@@ -250,8 +258,7 @@ impl Link<'_> {
             });
         }
         self.batch = (self.batch / 4).max(1);
-        // A multiple of 8, so that the words of the memory are written whole.
-        self.data = (self.data / 16 * 8).max(MIN_DATA);
+        self.data = (self.data / 2).max(MIN_DATA);
         Ok(())
     }
 
@@ -446,7 +453,7 @@ mod tests {
         let report = loads(0);
         assert_eq!(
             (report.retries, report.frames),
-            (0, 20_001_u32.div_ceil(248) + 1)
+            (0, 20_001_u32.div_ceil(96) + 1)
         );
     }
 
@@ -462,7 +469,7 @@ mod tests {
         let error = flash(&mut bios, &program(1000), ADDRESS, 1000, &mut |_, _| {}).unwrap_err();
         assert!(
             error.to_string().starts_with(
-                "at 0x40000000: no batch got through 24 times, the last with 16 bytes"
+                "at 0x40000000: no batch got through 24 times, the last with 12 bytes"
             ),
             "{error}"
         );

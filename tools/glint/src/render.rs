@@ -1,6 +1,6 @@
 //! Rendering a mesh, by the model on this machine or by a board.
 
-use crate::board::BoardError;
+use crate::board::{Board, BoardError};
 use crate::console::{self, Console, ConsoleError};
 use crate::picture::Frame;
 use crate::transfer::{self, Progress, TransferError};
@@ -149,19 +149,24 @@ pub fn on_model(scene: &Scene) -> Result<Rendered, Error> {
 }
 
 /// A board that renders.
-pub struct Renderer<'c, 'b> {
-    console: &'c mut Console<'b>,
+pub struct Renderer<'b, B: ?Sized = dyn Board> {
+    console: Console<'b, B>,
     /// Uploads so far: each is to have another number than the one before.
     uploads: u8,
 }
 
-impl<'c, 'b> Renderer<'c, 'b> {
-    /// Renders on a board whose prompt has been seen.
-    pub fn new(console: &'c mut Console<'b>) -> Self {
+impl<'b, B: Board + ?Sized> Renderer<'b, B> {
+    /// Renders on a board whose firmware runs.
+    pub fn new(console: Console<'b, B>) -> Self {
         Self {
             console,
             uploads: 0,
         }
+    }
+
+    /// The board itself.
+    pub fn board(&mut self) -> &mut B {
+        self.console.board()
     }
 
     /// Makes the scene the one that is shown, uploads its mesh, and waits for its frame.
@@ -207,7 +212,7 @@ impl<'c, 'b> Renderer<'c, 'b> {
         }
         self.uploads = self.uploads.wrapping_add(1);
         Ok(transfer::upload(
-            self.console,
+            &mut self.console,
             mesh,
             self.uploads,
             progress,
@@ -271,7 +276,12 @@ impl<'c, 'b> Renderer<'c, 'b> {
                 } else {
                     "frame"
                 };
-                Ok(transfer::download(self.console, command, length, progress)?)
+                Ok(transfer::download(
+                    &mut self.console,
+                    command,
+                    length,
+                    progress,
+                )?)
             }
             Route::Memory => {
                 let address = parse_address(&self.info::<String>(kind)?)?;
@@ -307,7 +317,7 @@ impl<'c, 'b> Renderer<'c, 'b> {
     }
 
     fn memory(&mut self) -> Result<&mut dyn crate::board::Memory, Error> {
-        self.console.line().0.memory().ok_or(Error::NoMemory)
+        self.console.board().memory().ok_or(Error::NoMemory)
     }
 }
 

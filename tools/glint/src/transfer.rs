@@ -58,8 +58,8 @@ party!(Receiver);
 ///
 /// # Errors
 /// The transfer fails or the firmware refuses the mesh; the board goes on showing what it showed before.
-pub fn upload(
-    console: &mut Console,
+pub fn upload<B: Board + ?Sized>(
+    console: &mut Console<B>,
     mesh: &[u8],
     session: u8,
     progress: &mut Progress,
@@ -81,8 +81,8 @@ pub fn upload(
 ///
 /// # Errors
 /// The command is refused, the transfer fails, or another length comes.
-pub fn download(
-    console: &mut Console,
+pub fn download<B: Board + ?Sized>(
+    console: &mut Console<B>,
     command: &str,
     length: usize,
     progress: &mut Progress,
@@ -108,8 +108,8 @@ pub fn download(
 ///
 /// # Errors
 /// The transfer fails.
-pub fn send(
-    board: &mut dyn Board,
+pub fn send<B: Board + ?Sized>(
+    board: &mut B,
     pending: &mut Vec<u8>,
     data: &[u8],
     session: u8,
@@ -124,8 +124,8 @@ pub fn send(
 ///
 /// # Errors
 /// The transfer fails.
-pub fn receive(
-    board: &mut dyn Board,
+pub fn receive<B: Board + ?Sized>(
+    board: &mut B,
     pending: &mut Vec<u8>,
     buffer: &mut [u8],
     progress: &mut Progress,
@@ -135,8 +135,8 @@ pub fn receive(
     Ok(receiver.received().map_or(0, <[u8]>::len))
 }
 
-fn run(
-    board: &mut dyn Board,
+fn run<B: Board + ?Sized>(
+    board: &mut B,
     pending: &mut Vec<u8>,
     party: &mut impl Party,
     progress: &mut Progress,

@@ -96,8 +96,11 @@ impl UploadArguments {
         let mut board = self.line.board(&self.board)?;
         let start = board.now_ms();
         let bar = bar("mesh");
-        let mut console = Console::new(&mut *board);
-        Renderer::new(&mut console).upload(&model.mesh, Route::Serial, &mut advance(&bar))?;
+        Renderer::new(Console::new(&mut *board)).upload(
+            &model.mesh,
+            Route::Serial,
+            &mut advance(&bar),
+        )?;
         bar.finish_and_clear();
         let milliseconds = board.now_ms() - start;
         if self.json {

@@ -2,6 +2,7 @@
 
 mod common;
 mod convert;
+mod demo;
 mod flash;
 mod render;
 mod terminal;
@@ -28,6 +29,7 @@ enum Command {
     Upload(flash::UploadArguments),
     Flash(flash::FlashArguments),
     Console(terminal::ConsoleArguments),
+    Demo(demo::DemoArguments),
 }
 
 impl Arguments {
@@ -40,6 +42,7 @@ impl Arguments {
             Command::Upload(arguments) => arguments.run(),
             Command::Flash(arguments) => arguments.run(),
             Command::Console(arguments) => arguments.run(),
+            Command::Demo(arguments) => arguments.run(),
         }
     }
 }

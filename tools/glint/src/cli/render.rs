@@ -176,8 +176,7 @@ impl RenderArguments {
         scene: &Scene,
         route: Route,
     ) -> anyhow::Result<Rendered> {
-        let mut console = Console::new(board);
-        let mut renderer = Renderer::new(&mut console);
+        let mut renderer = Renderer::new(Console::new(board));
         let bar = bar("mesh and frames");
         let (width, height) = scene.size;
         let stats = renderer.show(scene, route, &mut advance(&bar))?;

@@ -1,0 +1,396 @@
+//! The program from outside: exit codes, messages, files.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// A folder of this test's own.
+fn folder(name: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR"))
+        .join("cli")
+        .join(name);
+    if path.exists() {
+        std::fs::remove_dir_all(&path).unwrap();
+    }
+    std::fs::create_dir_all(&path).unwrap();
+    path
+}
+
+/// Runs the program with a quarter of a gigabyte of address space: unbounded memory would show.
+fn glint(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new("sh")
+        .args([
+            "-c",
+            "ulimit -v 262144; exec \"$0\" \"$@\"",
+            env!("CARGO_BIN_EXE_glint"),
+        ])
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .unwrap()
+}
+
+fn succeed(folder: &Path, arguments: &[&str]) -> String {
+    let output = glint(folder, arguments);
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{arguments:?}: {error}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// The one line of a refusal.
+fn refused(folder: &Path, arguments: &[&str]) -> String {
+    let output = glint(folder, arguments);
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {error}");
+    assert_eq!(error.lines().count(), 1, "{arguments:?}: {error}");
+    assert!(output.stdout.is_empty(), "{arguments:?}");
+    assert!(
+        error.contains("expected ") && error.contains("found "),
+        "{arguments:?}: {error}"
+    );
+    error.trim_end().to_owned()
+}
+
+const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+
+#[test]
+fn bad_meshes() {
+    let folder = folder("bad_meshes");
+    let stl_of_2_31_faces = [&[0; 80][..], &(1_u32 << 31).to_le_bytes(), &[0; 50]].concat();
+    let ply = |faces: &str, body: &str| {
+        format!(
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face {faces}\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n{body}"
+        )
+        .into_bytes()
+    };
+    let million = "1 ".repeat(500_000);
+    let cases: Vec<(&str, Vec<u8>, &str)> = vec![
+        (
+            "empty.obj",
+            vec![],
+            "expected at least one face, found none",
+        ),
+        ("empty.stl", vec![], "expected an STL"),
+        ("empty.ply", vec![], "line 1: expected ply"),
+        (
+            "empty.glm",
+            vec![],
+            "byte 0: expected at least 32 bytes of header, found 0",
+        ),
+        (
+            "nan.obj",
+            SQUARE.replace("1 0 0", "1 NaN 0").into(),
+            "line 2: expected a number within ±1e15, found 'NaN'",
+        ),
+        (
+            "huge.obj",
+            SQUARE.replace("1 0 0", "1 1e300 0").into(),
+            "line 2: expected a number within ±1e15, found '1e300'",
+        ),
+        (
+            "zero.obj",
+            SQUARE.replace("f 1", "f 0").into(),
+            "line 5: expected a vertex index",
+        ),
+        (
+            "range.obj",
+            SQUARE.replace("f 1", "f 5").into(),
+            "line 5: expected a point of the 4 in the file, found one with index 4",
+        ),
+        (
+            "negative.obj",
+            SQUARE.replace("f 1", "f -5").into(),
+            "line 5: expected a vertex index",
+        ),
+        (
+            "faces.obj",
+            SQUARE.replace("f 1", "f 2147483648").into(),
+            "line 5: expected a point",
+        ),
+        (
+            "line.obj",
+            format!("{SQUARE}f {million}\n").into(),
+            "line 6: expected a line of at most 65536 bytes",
+        ),
+        (
+            "polygon.obj",
+            format!("{SQUARE}f {}\n", &million[..20_000]).into(),
+            "line 6: expected a face of 3 to 8192 corners, found 10000",
+        ),
+        (
+            "binary.obj",
+            (0..=255).collect(),
+            "line 1: expected an OBJ statement",
+        ),
+        (
+            "point.obj",
+            b"v 1 1 1\nf 1 1 1\n".to_vec(),
+            "expected a mesh with an extent, found one of 0e0",
+        ),
+        (
+            "flat.obj",
+            b"v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n".to_vec(),
+            "expected a triangle with an area",
+        ),
+        (
+            "faces.stl",
+            stl_of_2_31_faces,
+            "expected a binary STL of 2147483648 triangles",
+        ),
+        (
+            "cut.stl",
+            b"solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0".to_vec(),
+            "line 4: expected three numbers of a vertex, found 2",
+        ),
+        (
+            "line.stl",
+            format!("solid {million}").into(),
+            "line 1: expected a line of at most 65536 bytes",
+        ),
+        (
+            "faces.ply",
+            ply("2147483648", "3 0 1 2\n"),
+            "line 13: expected as many elements as the header declares, found the end of the file",
+        ),
+        (
+            "count.ply",
+            ply("-1", "3 0 1 2\n"),
+            "line 7: expected a count of elements up to 2^32 - 1",
+        ),
+        (
+            "range.ply",
+            ply("1", "3 0 1 3\n"),
+            "line 13: expected a point of the 3 in the file, found one with index 3",
+        ),
+        (
+            "nothing.ply",
+            b"ply\nformat binary_little_endian 1.0\nelement a 4000000000\nend_header\n".to_vec(),
+            "expected at least one face",
+        ),
+        (
+            "magic.glm",
+            [0; 64].to_vec(),
+            "byte 0: expected \"GLM1\", found '\\x00\\x00\\x00\\x00'",
+        ),
+    ];
+    for (name, contents, message) in cases {
+        std::fs::write(folder.join(name), contents).unwrap();
+        for arguments in [
+            &["convert", name, "out.glm"][..],
+            &["render", name, "--out", "out.png"],
+        ] {
+            let error = refused(&folder, arguments);
+            assert!(
+                error.starts_with(&format!("error: {name}: {message}")),
+                "{error}"
+            );
+        }
+    }
+    assert!(!folder.join("out.glm").exists() && !folder.join("out.png").exists());
+}
+
+#[test]
+fn bad_names_and_numbers() {
+    let folder = folder("bad_names");
+    std::fs::write(folder.join("square.obj"), SQUARE.replace("v 1", "v 9")).unwrap();
+    std::fs::write(folder.join("view.json"), "{}").unwrap();
+    let cases: &[(&[&str], &str)] = &[
+        (
+            &["convert", "gone.obj", "out.glm"],
+            "error: gone.obj: expected a file to read, found ",
+        ),
+        (
+            &["convert", ".", "out.glm"],
+            "error: .: expected a name that ends in .obj, .stl, .ply or .glm, found no extension",
+        ),
+        (
+            &["convert", "square.obj", "out.xyz"],
+            "error: out.xyz: expected a name that ends in .obj, .stl, .ply or .glm, found '.xyz'",
+        ),
+        (
+            &["convert", "square.obj", "out.glm", "--keep-scale"],
+            "error: square.obj: expected coordinates in [-2, 2 - 2^-14]",
+        ),
+        (
+            &["model", "sponge:5", "out.glm"],
+            "error: sponge:5: expected a model cube, icosphere:N (frequency, 1 to 64), torus-knot, gear, teapot or sponge:N (0 to 4), found 'sponge:5'",
+        ),
+        (
+            &["render", "icosphere:x", "--out", "out.png"],
+            "error: icosphere:x: expected a model",
+        ),
+        (
+            &["render", "cube", "--out", "out.png", "--camera", "1,2"],
+            "error: --camera: expected a camera R,THETA,PHI",
+        ),
+        (
+            &["render", "cube", "--out", "out.png", "--camera", "6,0,0"],
+            "error: --camera: expected a camera, found radius 6",
+        ),
+        (
+            &["render", "cube", "--out", "out.png", "--view", "view.json"],
+            "error: view.json: expected {\"eye\":[x,y,z]",
+        ),
+        (
+            &["render", "cube", "--out", "out.png", "--view", "gone.json"],
+            "error: gone.json: expected a file to read",
+        ),
+        (
+            &["render", "cube", "--out", "out.png", "--size", "320x200"],
+            "error: --size: expected 320x180, 640x360 or 1280x720, found '320x200'",
+        ),
+    ];
+    for (arguments, message) in cases {
+        let error = refused(&folder, arguments);
+        assert!(error.starts_with(message), "{error}");
+    }
+}
+
+#[test]
+fn failures_that_are_no_bad_input() {
+    let folder = folder("failures");
+    for (arguments, message) in [
+        (
+            &["upload", "cube", "--board", "/dev/no-such-port"][..],
+            "error: /dev/no-such-port: expected a serial port, found: ",
+        ),
+        (
+            &["model", "cube", "no-such-folder/cube.glm"],
+            "error: no-such-folder/cube.glm: cannot be written: ",
+        ),
+        (
+            &["render", "cube", "--out", "a.png", "--capture", "monitor"],
+            "error: --capture monitor: only the virtual board",
+        ),
+    ] {
+        let output = glint(&folder, arguments);
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(1), "{error}");
+        assert!(
+            error.starts_with(message) && error.lines().count() == 1,
+            "{error}"
+        );
+    }
+}
+
+#[test]
+fn conversions_by_every_way_agree() {
+    let folder = folder("conversions");
+    // A model whose faces have no colours of their own, so that no format loses any.
+    succeed(&folder, &["model", "icosphere:4", "straight.glm"]);
+    for extension in ["obj", "ply"] {
+        let between = format!("between.{extension}");
+        succeed(&folder, &["model", "icosphere:4", &between]);
+        succeed(&folder, &["convert", &between, "back.glm"]);
+        let read = |name: &str| std::fs::read(folder.join(name)).unwrap();
+        assert_eq!(read("straight.glm"), read("back.glm"), "{extension}");
+    }
+    // STL has neither shared points nor colours of points: each face has its own colour, and so its own vertices.
+    succeed(
+        &folder,
+        &["convert", "straight.glm", "between.stl", "--keep-scale"],
+    );
+    let report = succeed(
+        &folder,
+        &[
+            "convert",
+            "between.stl",
+            "back.glm",
+            "--keep-scale",
+            "--json",
+        ],
+    );
+    let report: serde_json::Value = serde_json::from_str(&report).unwrap();
+    assert_eq!(
+        (&report["vertices"], &report["triangles"]),
+        (&960.into(), &320.into())
+    );
+    assert_eq!(report["error_max"], 0.0);
+}
+
+#[test]
+fn a_material_file_beside_the_mesh() {
+    let folder = folder("materials");
+    std::fs::write(
+        folder.join("a.obj"),
+        format!("mtllib sub/a.mtl\nusemtl red\n{SQUARE}"),
+    )
+    .unwrap();
+    let text = succeed(&folder, &["convert", "a.obj", "a.glm"]);
+    assert!(
+        text.contains("note       no material file 'sub/a.mtl' beside the mesh"),
+        "{text}"
+    );
+    std::fs::write(folder.join("a.mtl"), "newmtl red\nKd 1 0 0\n").unwrap();
+    let text = succeed(&folder, &["convert", "a.obj", "a.glm"]);
+    assert!(!text.contains("note"), "{text}");
+    std::fs::write(folder.join("a.mtl"), "newmtl red\nKd 1 x 0\n").unwrap();
+    let error = refused(&folder, &["convert", "a.obj", "b.glm"]);
+    assert_eq!(
+        error,
+        "error: sub/a.mtl: line 2: expected a number within ±1e15, found 'x'"
+    );
+}
+
+#[test]
+fn renders_and_their_files() {
+    let folder = folder("renders");
+    let render = |out: &str, more: &[&str]| -> Vec<u8> {
+        let arguments = ["render", "teapot", "--out", out]
+            .iter()
+            .chain(more)
+            .copied()
+            .collect::<Vec<_>>();
+        succeed(&folder, &arguments);
+        let decoder = png::Decoder::new(std::io::BufReader::new(
+            std::fs::File::open(folder.join(out)).unwrap(),
+        ));
+        let mut reader = decoder.read_info().unwrap();
+        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+        let info = reader.next_frame(&mut pixels).unwrap();
+        assert_eq!(
+            (info.width * 9, info.color_type),
+            (info.height * 16, png::ColorType::Rgb)
+        );
+        pixels
+    };
+    let options = [
+        "--camera", "2,-90,90", "--depth", "a.f32", "--stats", "a.json", "--json",
+    ];
+    let picture = render("a.png", &options);
+    assert_eq!(picture.len(), 320 * 180 * 3);
+
+    let view =
+        r#"{"eye":[0,-2,0],"u":[1,0,0],"v":[0,0,-1],"n":[0,1,0],"half_width":0.9,"near":0.1}"#;
+    std::fs::write(folder.join("view.json"), view).unwrap();
+    assert_eq!(picture, render("b.png", &["--view", "view.json"]));
+    assert_ne!(picture, render("c.png", &["--camera", "2,-80,90"]));
+    assert_eq!(
+        render("d.png", &["--size", "1280x720"]).len(),
+        1280 * 720 * 3
+    );
+
+    let stats: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(folder.join("a.json")).unwrap()).unwrap();
+    let number = |key: &str| stats[key].as_u64().unwrap();
+    assert_eq!(
+        number("triangles_in"),
+        number("triangles_culled") + number("triangles_drawn")
+    );
+    assert!(number("pixels_tested") >= number("pixels_covered"));
+    assert!(stats["cycles"].is_null() && stats["clock"].is_null());
+
+    let depth: Vec<f32> = std::fs::read(folder.join("a.f32"))
+        .unwrap()
+        .chunks_exact(4)
+        .map(|bytes| f32::from_le_bytes(bytes.try_into().unwrap()))
+        .collect();
+    assert_eq!(depth.len(), 320 * 180);
+    for (z, pixel) in depth.iter().zip(picture.chunks_exact(3)) {
+        // The teapot lies between 1.5 and 2.5 from the eye along n.
+        assert!(
+            *z == f32::INFINITY && pixel == [0; 3] || (1.4..2.6).contains(z),
+            "{z} {pixel:?}"
+        );
+    }
+    assert!(depth.iter().any(|z| z.is_finite()));
+}
