@@ -4,8 +4,8 @@ use litex_pac::cpu;
 
 use crate::machine::Machine;
 
-/// Bytes of memory that are tested: far more than the data cache holds.
-const TESTED: usize = 64 << 10;
+/// Bytes of memory that are tested: four times what the data cache holds.
+const TESTED: usize = 16 << 10;
 
 /// Runs all tests, prints a line for each, and returns how many failed.
 pub fn run(machine: &mut Machine) -> u32 {

@@ -1,0 +1,73 @@
+//! What the tests of the firmware share: the program as `cargo xtask firmware` leaves it, on a board that has started.
+
+#![allow(dead_code)] // Each test program uses its part.
+
+use std::path::{Path, PathBuf};
+
+use litex_pac::memories::MAIN_RAM;
+use object::{Object, ObjectSymbol};
+use virtual_board::{Start, VirtualBoard};
+
+/// What the console writes before it reads a line.
+pub const PROMPT: &str = "glint> ";
+
+/// Many times the cycles of what is waited for, the bus's time-out of a million cycles included.
+pub const LIMIT: u64 = 30_000_000;
+
+/// The program's image.
+pub fn image() -> Vec<u8> {
+    read("glint.bin")
+}
+
+fn read(name: &str) -> Vec<u8> {
+    let path: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../target/firmware")
+        .join(name);
+    std::fs::read(&path)
+        .unwrap_or_else(|error| panic!("{}: {error}; run `cargo xtask firmware`", path.display()))
+}
+
+/// The address of the symbol whose mangled name contains all of `parts`.
+pub fn address(parts: &[&str]) -> u32 {
+    let elf = read("glint.elf");
+    let file = object::File::parse(elf.as_slice()).expect("an ELF file");
+    let mut found = file.symbols().filter(|symbol| {
+        let name = symbol.name().unwrap_or_default();
+        parts.iter().all(|part| name.contains(part))
+    });
+    let symbol = found
+        .next()
+        .unwrap_or_else(|| panic!("the firmware has no symbol with {parts:?}"));
+    assert!(
+        found.next().is_none(),
+        "the firmware has several symbols with {parts:?}"
+    );
+    u32::try_from(symbol.address()).expect("32 bits")
+}
+
+/// Puts words into the program's image.
+pub fn patch(image: &mut [u8], address: u32, words: &[u32]) {
+    let offset = (address - MAIN_RAM.base) as usize;
+    let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+    image[offset..][..bytes.len()].copy_from_slice(&bytes);
+}
+
+/// A board that runs `image`, and what it said up to its first prompt.
+pub fn started(image: &[u8]) -> (VirtualBoard, String) {
+    let start = Start::Fast { firmware: image };
+    let mut board = VirtualBoard::builder()
+        .start(start)
+        .build()
+        .expect("a virtual board");
+    let said = board.read_until(PROMPT, LIMIT).expect("a prompt");
+    (board, said)
+}
+
+/// Types a line and returns all that follows up to the next prompt, the echo first.
+pub fn command(board: &mut VirtualBoard, line: &str) -> String {
+    board.uart_write(line.as_bytes());
+    board.uart_write(b"\r");
+    board
+        .read_until(PROMPT, LIMIT)
+        .unwrap_or_else(|error| panic!("`{line}`: {error}"))
+}

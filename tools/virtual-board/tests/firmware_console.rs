@@ -1,0 +1,140 @@
+//! What the console says, word for word, and that nothing typed at it goes wrong or gets lost.
+
+mod firmware;
+
+use std::path::Path;
+
+use firmware::{PROMPT, command, image, started};
+
+/// Keys whose value is a time or depends on one.
+const TIMES: [&str; 3] = ["cycles ", "video_frames ", "uptime_ms "];
+
+/// `text` without what differs from build to build.
+fn lasting(text: &str) -> String {
+    let build_id = format!("{:#010x}", litex_pac::BUILD_ID);
+    let text = text.replace(&build_id, "BUILD_ID").replace("\r\n", "\n");
+    let line = |line: &str| match TIMES.iter().find(|key| line.starts_with(*key)) {
+        Some(key) => format!("{key}…"),
+        None => match line.split_once("\"cycles\":") {
+            Some((before, rest)) => format!(
+                "{before}\"cycles\":…{}",
+                &rest[rest.find(',').unwrap_or(0)..]
+            ),
+            None => line.to_owned(),
+        },
+    };
+    text.split('\n').map(line).collect::<Vec<_>>().join("\n")
+}
+
+/// Plays the committed transcript: what stands behind its prompts is typed, and the whole must come out again. With
+/// `GLINT_UPDATE` in the environment the transcript is written anew.
+#[test]
+fn the_console_speaks_as_in_the_transcript() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/firmware/console.txt");
+    let expected = std::fs::read_to_string(&path).expect("the transcript");
+    let (mut board, mut transcript) = started(&image());
+    for line in expected
+        .lines()
+        .filter_map(|line| line.strip_prefix(PROMPT))
+    {
+        transcript += &command(&mut board, line);
+    }
+    let transcript = lasting(
+        transcript
+            .strip_suffix(PROMPT)
+            .expect("a prompt at the end"),
+    );
+    if std::env::var_os("GLINT_UPDATE").is_some() {
+        std::fs::write(&path, &transcript).expect("the transcript can be written");
+        return;
+    }
+    for (number, (found, expected)) in transcript.lines().zip(expected.lines()).enumerate() {
+        assert_eq!(found, expected, "line {} of {}", number + 1, path.display());
+    }
+    assert_eq!(
+        transcript.lines().count(),
+        expected.lines().count(),
+        "lines of {}",
+        path.display()
+    );
+}
+
+#[test]
+fn noise_and_overlong_lines_are_refused_and_nothing_is_lost() {
+    let (mut board, _) = started(&image());
+    // Every byte but those that end a line: editing keys, halves of characters and escape sequences.
+    let noise = (0..500_u32).map(|index| (index.wrapping_mul(0x9e37_79b9) >> 24) as u8);
+    board.uart_write(
+        &noise
+            .filter(|byte| !b"\r\n\x03".contains(byte))
+            .collect::<Vec<_>>(),
+    );
+    // A zero drops what the noise has left in the line.
+    board.uart_write(b"\0leds 7\r");
+    board
+        .read_until("leds 7\r\nok\r\nglint> ", firmware::LIMIT)
+        .expect("an answer");
+    assert_eq!(board.leds(), 7);
+    board.uart_write(&[b'x'; 400]);
+    let answer = command(&mut board, "");
+    assert!(
+        answer.ends_with("\r\nerror: line: expected at most 320 bytes, came more\r\nglint> "),
+        "{answer:?}"
+    );
+    // Twenty commands typed ahead of the machine are all answered.
+    board.uart_write(b"buttons\r".repeat(20).as_slice());
+    for _ in 0..20 {
+        let answer = board
+            .read_until(PROMPT, firmware::LIMIT)
+            .expect("an answer");
+        assert!(
+            answer.ends_with("buttons 0x0\r\nswitches 0x0000\r\nok\r\nglint> "),
+            "{answer}"
+        );
+    }
+    assert!(command(&mut board, "info").contains("\r\nuart_lost 0\r\n"));
+}
+
+#[test]
+fn pins_are_read_and_driven() {
+    let (mut board, _) = started(&image());
+    board.set_buttons(0b0101);
+    board.set_switches(0xbeef);
+    assert!(command(&mut board, "buttons").contains("buttons 0x5\r\nswitches 0xbeef\r\nok"));
+    assert_eq!(board.leds(), 1, "the first LED shows life");
+    command(&mut board, "leds 42405");
+    assert_eq!(board.leds(), 42405);
+}
+
+#[test]
+fn a_still_scene_renders_nothing_and_a_change_is_rendered_once() {
+    let (mut board, _) = started(&image());
+    command(&mut board, "camera 3 10 80");
+    command(&mut board, "render");
+    // Frames and depth as nobody draws them.
+    let windows = [0x4100_0000, 0x4120_0000, 0x4140_0000];
+    for window in windows {
+        board
+            .ddr_write(window, &[0xa5; 320 * 180 * 2])
+            .expect("main RAM");
+    }
+    let untouched = |board: &mut virtual_board::VirtualBoard, window| {
+        let mut bytes = vec![0; 320 * 180 * 2];
+        board.ddr_read(window, &mut bytes).expect("main RAM");
+        bytes.iter().all(|byte| *byte == 0xa5)
+    };
+    // The same camera again, and more than the time of a frame.
+    command(&mut board, "camera 3 10 80");
+    board.run(1_500_000);
+    assert!(
+        windows
+            .map(|window| untouched(&mut board, window))
+            .iter()
+            .all(|untouched| *untouched)
+    );
+    // Another one is drawn without being asked for, on the frame that is not on the screen.
+    command(&mut board, "camera 3 11 80");
+    board.run(2_500_000);
+    let [a, b, depth] = windows.map(|window| untouched(&mut board, window));
+    assert!(a != b && !depth);
+}

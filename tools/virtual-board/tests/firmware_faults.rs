@@ -1,0 +1,81 @@
+//! The firmware when something is wrong: gateware of another build, and programs that trap.
+
+mod firmware;
+
+use firmware::{LIMIT, address, command, image, patch, started};
+use litex_pac::BUILD_ID;
+
+#[test]
+fn gateware_of_another_build_is_said_and_the_console_works() {
+    let mut image = image();
+    // A program that was built for other gateware.
+    patch(&mut image, address(&["GLINT_BUILD_ID"]), &[!BUILD_ID]);
+    let (mut board, said) = started(&image);
+    let (found, expected) = (
+        format!("gateware {BUILD_ID:#010x}"),
+        format!("built for gateware {:#010x}", !BUILD_ID),
+    );
+    assert!(
+        said.contains(&found) && said.contains("MISMATCH") && said.contains(&expected),
+        "{said}"
+    );
+    let info = command(&mut board, "info");
+    assert!(
+        info.contains(&format!(
+            "firmware_id {:#010x}\r\ngateware_id {BUILD_ID:#010x}",
+            !BUILD_ID
+        )),
+        "{info}"
+    );
+    // What needs no other register still works, the rest is refused.
+    assert!(command(&mut board, "render").contains("triangles_drawn 6\r\n"));
+    assert!(command(&mut board, "leds 1").contains("error: "));
+    assert_eq!(board.leds(), 0);
+    assert!(command(&mut board, "selftest").contains("selftest identity FAILED"));
+}
+
+/// Each trap's cause, the code for it, and the value that the CPU gives with it. (An address with nothing behind it is
+/// no trap: LiteX's bus answers for it after a while.)
+const TRAPS: [(&str, &[u32], u32); 2] = [
+    ("illegal instruction (mcause 2)", &[0x0000_0000], 0),
+    // li a0, 1; lw a0, 0(a0)
+    (
+        "load address misaligned (mcause 4)",
+        &[0x0010_0513, 0x0005_2503],
+        1,
+    ),
+];
+
+#[test]
+fn a_trap_says_its_cause_and_address_and_enter_restarts() {
+    let reboot = address(&["commands", "reboot"]);
+    let mut image = image();
+    for (cause, code, value) in TRAPS {
+        patch(&mut image, reboot, code);
+        let (mut board, _) = started(&image);
+        board.uart_write(b"reboot\r");
+        let said = board
+            .read_until("press Enter to restart\r\n", LIMIT)
+            .expect("last words");
+        let place = reboot + 4 * (code.len() as u32 - 1);
+        let trap = format!("trap: {cause} at {place:#010x}, mtval {value:#010x}");
+        assert!(said.contains(&trap), "expected {trap:?} in {said}");
+        assert!(
+            said.contains(&format!("build id {BUILD_ID:#010x}")),
+            "{said}"
+        );
+        board.uart_write(b"x\r");
+        board
+            .read_until("Glint ", LIMIT)
+            .expect("a banner after the restart");
+    }
+}
+
+#[test]
+fn reboot_starts_again() {
+    let (mut board, _) = started(&image());
+    board.uart_write(b"reboot\r");
+    board.read_until("ok\r\n", LIMIT).expect("an answer");
+    board.read_until("Glint ", LIMIT).expect("a banner");
+    board.read_until(firmware::PROMPT, LIMIT).expect("a prompt");
+}
