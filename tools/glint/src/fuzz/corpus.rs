@@ -13,18 +13,9 @@ pub fn of(target: Target) -> Vec<Vec<u8>> {
     let seeds = match target {
         Target::Upload => transfers(),
         Target::Console => texts(CONSOLE),
-        Target::Obj => texts(OBJ)
-            .into_iter()
-            .chain(written(|p, out| write::obj(p, out)))
-            .collect(),
-        Target::Stl => texts(STL)
-            .into_iter()
-            .chain(written(|p, out| write::stl(p, out)))
-            .collect(),
-        Target::Ply => texts(PLY)
-            .into_iter()
-            .chain(written(|p, out| write::ply(p, out)))
-            .collect(),
+        Target::Obj => texts(OBJ).into_iter().chain(written(write::obj)).collect(),
+        Target::Stl => texts(STL).into_iter().chain(written(write::stl)).collect(),
+        Target::Ply => texts(PLY).into_iter().chain(written(write::ply)).collect(),
         Target::Glm => meshes(),
     };
     seeds
