@@ -2,7 +2,7 @@
 //!
 //! This is the triangle pipeline of `docs/formats.md` in integers: the renderer of the CPU backend, and the oracle
 //! that the gateware's tests compare with. A vertex goes through [`vertex`], a triangle through [`setup`] and [`raster`], one
-//! that leaves the guard band or crosses the near plane through [`clip`]; [`render`] runs a whole frame.
+//! that leaves the guard band or crosses the near plane through [`clip`]; [`render()`] runs a whole frame.
 //!
 //! No floating point, no allocation, no 128-bit integers. Every sum and product fits its type for every camera that
 //! [`glint_core::camera::View`] accepts and for every mesh; the comments prove it, and tests with overflow checks
