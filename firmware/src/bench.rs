@@ -4,7 +4,7 @@
 //! kept out. What the measurement itself costs is measured the same way and taken off.
 //!
 //! The instruction cache is direct-mapped, and a miss costs more than a kernel. Where the measuring code happens to share
-//! cache lines with the kernel, it would measure their fight; so it exists at several places, and the quietest counts.
+//! cache lines with the kernel, it would measure their fight; so it exists at two places, and the quieter counts.
 
 use core::arch::asm;
 use core::hint::black_box;
@@ -24,7 +24,7 @@ pub const KERNELS: [&str; 1] = ["sine"];
 /// Inputs of each kernel.
 const INPUTS: usize = 256;
 
-/// Inputs that find the quietest place.
+/// Inputs that find the quieter place.
 const TRIALS: usize = 16;
 
 /// There is no such kernel.
@@ -58,26 +58,25 @@ fn measure<I: Copy, O>(
 ) {
     // Multiples of the golden section of 2^32 fill the circle evenly, in an order without a pattern.
     let input = |index: usize| input((index as u32).wrapping_mul(0x9e37_79b9));
-    let at = |index: usize, timer: Timer| {
-        let input = input(index);
-        timer(&mut || {
-            black_box(kernel(black_box(input)));
-        })
-    };
-    let quietest = TIMERS.into_iter().min_by_key(|&timer| {
-        let pass = || (0..TRIALS).map(|index| at(index, timer)).sum::<u32>();
+    let timers: [fn(&_, I) -> u32; 2] = [timed::<0, _, I, O>, timed::<1, _, I, O>];
+    let noise = |timer: &fn(&_, I) -> u32| {
+        let pass = || {
+            (0..TRIALS)
+                .map(|index| timer(&kernel, input(index)))
+                .sum::<u32>()
+        };
         // The first pass brings code and tables into the caches.
         pass().min(pass())
-    });
-    let timer = quietest.unwrap_or(timed::<0>);
-    let mut cycles: [u32; INPUTS] = core::array::from_fn(|index| at(index, timer));
-    let nothing = |input: I| {
-        timer(&mut || {
-            black_box(black_box(input));
-        })
     };
+    let quieter = if noise(&timers[0]) <= noise(&timers[1]) {
+        timers[0]
+    } else {
+        timers[1]
+    };
+    let mut cycles: [u32; INPUTS] = core::array::from_fn(|index| quieter(&kernel, input(index)));
+    let nothing = |input: I| input;
     let overhead = (0..TRIALS)
-        .map(|index| nothing(input(index)))
+        .map(|index| timed::<0, _, I, I>(&nothing, input(index)))
         .min()
         .unwrap_or(0);
     cycles.sort_unstable();
@@ -89,24 +88,17 @@ fn measure<I: Copy, O>(
     ));
 }
 
-/// One of the places of [`timed`].
-type Timer = fn(&mut dyn FnMut()) -> u32;
-
-/// All of them.
-const TIMERS: [Timer; 4] = [timed::<0>, timed::<1>, timed::<2>, timed::<3>];
-
-/// Clock cycles of a call, with those of asking for the time. Each `PLACE` has code of its own, 1 KiB further on in
-/// the cache.
+/// Clock cycles of a call, with those of asking for the time. Each `PLACE` has code of its own, half a cache further on.
 #[inline(never)]
 #[allow(unsafe_code)]
-fn timed<const PLACE: usize>(call: &mut dyn FnMut()) -> u32 {
+fn timed<const PLACE: usize, K: Fn(I) -> O, I, O>(kernel: &K, input: I) -> u32 {
     // SAFETY: jumps over some space; nothing else.
     unsafe {
-        asm!("j 1f", ".space {}", "1:", const PLACE * 1024 + 4, options(nomem, nostack, preserves_flags))
+        asm!("j 1f", ".space {}", "1:", const PLACE * 2048 + 4, options(nomem, nostack, preserves_flags))
     };
     riscv::interrupt::free(|| {
         let start = cpu::cycles_low();
-        call();
+        black_box(kernel(black_box(input)));
         cpu::cycles_low().wrapping_sub(start)
     })
 }

@@ -133,7 +133,19 @@ pub fn trace(
     target: &mut Target,
     scratch: &mut [Projected],
     options: &Options,
-    show: impl FnMut(&DrawnTriangle),
+    mut show: impl FnMut(&DrawnTriangle),
+) -> Result<Stats, RenderError> {
+    draw_frame(mesh, view, target, scratch, options, &mut show)
+}
+
+/// [`trace`], not generic: compiled here, once, and as this crate is optimised.
+fn draw_frame(
+    mesh: &Mesh,
+    view: &View,
+    target: &mut Target,
+    scratch: &mut [Projected],
+    options: &Options,
+    show: &mut dyn FnMut(&DrawnTriangle),
 ) -> Result<Stats, RenderError> {
     target.check()?;
     let frame = FrameSetup::new(view, target.width, target.height, mesh.radius())?;
@@ -174,15 +186,15 @@ enum Path<'a> {
     Exception,
 }
 
-struct Renderer<'a, 'b, F> {
+struct Renderer<'a, 'b> {
     frame: FrameSetup,
     cull: bool,
     target: &'a mut Target<'b>,
-    show: F,
+    show: &'a mut dyn FnMut(&DrawnTriangle),
     stats: Stats,
 }
 
-impl<F: FnMut(&DrawnTriangle)> Renderer<'_, '_, F> {
+impl Renderer<'_, '_> {
     /// Draws what needs no clipping, and counts what does.
     fn regular(&mut self, mesh: &Mesh, scratch: &mut [Projected]) {
         let mut index = 0;

@@ -32,6 +32,12 @@ pub fn build(features: &[&str]) -> Result<PathBuf> {
         TARGET,
     ]);
     cargo.arg("--features").arg(features.join(","));
+    if features.contains(&"peers") {
+        // Generic kernels are compiled with the program, and are to be as fast there as they can be.
+        for package in ["glint-firmware", "\"*\""] {
+            cargo.arg("--config").arg(format!("profile.firmware.package.{package}.opt-level = 3"));
+        }
+    }
     // Not the folder of the tools' builds: they would wait for each other.
     cargo
         .arg("--target-dir")
