@@ -48,10 +48,15 @@ constexpr size_t RUN_BYTES = WORD_BYTES << COLUMN_BITS;  // Contiguous bytes in 
 // Simulated time in units of 1 ps for waveforms.
 constexpr uint64_t HALF_PERIOD_PS = 500'000'000'000ull / CONFIG_CLOCK_FREQUENCY;
 
+// A context whose model runs in the caller's thread alone.
+struct Context : VerilatedContext {
+    Context() { threads(1); }
+};
+
 }  // namespace
 
 struct glint_soc {
-    VerilatedContext context;
+    Context context;
     Vglint top{&context, "soc"};
     uint64_t cycles = 0;
     uint32_t pixel_phase = 0;
@@ -76,6 +81,8 @@ struct glint_soc {
         if (trace) trace->close();
 #endif
         top.final();
+        // A model leaves the thread's context when it is destroyed, not its own: another board's would be wrong.
+        Verilated::threadContextp(&context);
     }
 
     void eval() {
@@ -114,12 +121,8 @@ struct glint_soc {
     }
 
     void record_pixel() {
-#ifdef CSR_SCANOUT_BASE
         video.push_back(uint32_t(top.vga_vsync) << 26 | uint32_t(top.vga_hsync) << 25 | uint32_t(top.vga_de) << 24 |
                         uint32_t(top.vga_r) << 16 | uint32_t(top.vga_g) << 8 | uint32_t(top.vga_b));
-#else
-        video.push_back(0);
-#endif
     }
 
     uint8_t i2c_wires() const {
@@ -127,6 +130,7 @@ struct glint_soc {
     }
 
     void run(uint64_t count) {
+        Verilated::threadContextp(&context);
         while (count--) cycle();
     }
 

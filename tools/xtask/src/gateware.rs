@@ -107,105 +107,126 @@ const TOP: &str = "glint_virtual";
 fn verilate(waveforms: Waveforms) -> Result<()> {
     let folder = Board::Virtual.folder();
     let harness = paths::root().join("tools/virtual-board/soc");
-    let (variant, library) = match waveforms {
+    let (objects, library) = match waveforms {
         Waveforms::Without => ("verilated", "libglint_soc.so"),
         Waveforms::With => ("verilated-trace", "libglint_soc_trace.so"),
     };
-    let objects = folder.join(variant);
+    let objects = folder.join(objects);
+    let library = folder.join(library);
     let bios = folder.join("software/bios/bios.bin");
     let verilog = folder.join("gateware").join(TOP).with_extension("v");
+    let exports = harness.join("glint_soc.vlt");
+    let verilator = verilator_root()?;
+    let mut flags = compiler_flags(waveforms);
+    let includes = [
+        &objects,
+        &verilator.join("include"),
+        &verilator.join("include/vltstd"),
+    ];
+    flags.extend(includes.iter().map(|path| format!("-I{}", path.display())));
+
+    // The model, which takes the time.
+    // How this file builds is an input as well.
     let inputs = fingerprint(
         &[
             verilog.clone(),
-            bios.clone(),
-            harness.clone(),
+            exports.clone(),
             paths::root().join("gateware/rtl"),
         ],
-        // How this function builds is an input as well.
         include_str!("gateware.rs"),
     )?;
-    let stamp = objects.join("stamp");
-    let library = folder.join(library);
+    let stamp = objects.join("model.stamp");
+    if !is_current(&stamp, &inputs) {
+        // Verilator names its output by what it contains: nothing of an older build may stay.
+        if objects.exists() {
+            fs::remove_dir_all(&objects)
+                .with_context(|| format!("clearing {}", objects.display()))?;
+        }
+        fs::create_dir_all(&objects).with_context(|| format!("creating {}", objects.display()))?;
+        run::step(
+            "Verilator",
+            Command::new(verilator.join("bin/verilator_bin"))
+                .args([
+                    "--cc",
+                    "--no-timing",
+                    "--flatten",
+                    "-O3",
+                    "--x-assign",
+                    "fast",
+                    "--x-initial",
+                    "fast",
+                ])
+                .args(if waveforms == Waveforms::With {
+                    &["--trace-vcd"][..]
+                } else {
+                    &[]
+                })
+                .args(["--prefix", "Vglint", "--top-module", TOP, "--Mdir"])
+                .arg(&objects)
+                .arg(&exports)
+                .arg(&verilog)
+                .arg("-f")
+                .arg(verilog.with_extension("f"))
+                .env("VERILATOR_ROOT", &verilator),
+        )?;
+        compile(
+            &model_sources(&objects, &verilator, waveforms)?,
+            &objects,
+            &flags,
+        )?;
+        fs::write(&stamp, &inputs).with_context(|| format!("writing {}", stamp.display()))?;
+    }
+
+    // The harness around it.
+    let inputs = fingerprint(&[harness.clone(), bios.clone()], &inputs)?;
+    let stamp = objects.join("library.stamp");
     if library.exists() && is_current(&stamp, &inputs) {
         return Ok(());
     }
-
-    // Verilator names its output by what it contains: nothing of an older build may stay.
-    if objects.exists() {
-        fs::remove_dir_all(&objects).with_context(|| format!("clearing {}", objects.display()))?;
-    }
-    fs::create_dir_all(&objects).with_context(|| format!("creating {}", objects.display()))?;
-    let verilator = verilator_root()?;
-    run::step(
-        "Verilator",
-        Command::new(verilator.join("bin/verilator_bin"))
-            .args([
-                "--cc",
-                "--no-timing",
-                "--flatten",
-                "-O3",
-                "--x-assign",
-                "fast",
-                "--x-initial",
-                "fast",
-            ])
-            .args(if waveforms == Waveforms::With {
-                &["--trace-vcd"][..]
-            } else {
-                &[]
-            })
-            .args(["--prefix", "Vglint", "--top-module", TOP, "--Mdir"])
-            .arg(&objects)
-            .arg(harness.join("glint_soc.vlt"))
-            .arg(&verilog)
-            .arg("-f")
-            .arg(verilog.with_extension("f"))
-            .env("VERILATOR_ROOT", &verilator),
-    )?;
-
-    let runtime = verilator.join("include");
-    let mut sources = vec![
-        harness.join("glint_soc.cpp"),
-        runtime.join("verilated.cpp"),
-        runtime.join("verilated_threads.cpp"),
-    ];
-    if waveforms == Waveforms::With {
-        sources.push(runtime.join("verilated_vcd_c.cpp"));
-    }
-    sources.extend(
-        files(&objects)?
-            .into_iter()
-            .filter(|path| path.extension() == Some(OsStr::new("cpp"))),
-    );
-    let flag = if waveforms == Waveforms::With { 1 } else { 0 };
-    let mut flags: Vec<String> = ["-std=gnu++17", "-O3", "-fPIC", "-fvisibility=hidden", "-w"]
-        .map(String::from)
-        .to_vec();
-    flags.extend(["SC", "COVERAGE", "TIMING"].map(|what| format!("-DVM_{what}=0")));
-    flags.extend(["TRACE", "TRACE_VCD"].map(|what| format!("-DVM_{what}={flag}")));
     flags.push(format!("-DGLINT_BIOS=\"{}\"", bios.display()));
-    let includes = [
-        &objects,
-        &runtime,
-        &runtime.join("vltstd"),
-        &folder.join("software/include"),
-        &harness,
-    ];
-    flags.extend(includes.iter().map(|path| format!("-I{}", path.display())));
-    compile(&sources, &objects, &flags)?;
-
+    flags.extend(
+        [&folder.join("software/include"), &harness].map(|path| format!("-I{}", path.display())),
+    );
+    compile(&[harness.join("glint_soc.cpp")], &objects, &flags)?;
     // A board that is running keeps the library it has opened: the new one takes its place by renaming.
     let linked = objects.join("library.so");
     run::step(
         "link the virtual board",
         Command::new("g++")
             .arg("-shared")
-            .args(sources.iter().map(|source| object(source, &objects)))
+            .args(
+                files(&objects)?
+                    .into_iter()
+                    .filter(|path| path.extension() == Some(OsStr::new("o"))),
+            )
             .arg("-o")
             .arg(&linked),
     )?;
     fs::rename(&linked, &library).with_context(|| format!("placing {}", library.display()))?;
     fs::write(&stamp, inputs).with_context(|| format!("writing {}", stamp.display()))
+}
+
+/// What g++ is told, but for where to look.
+fn compiler_flags(waveforms: Waveforms) -> Vec<String> {
+    let trace = if waveforms == Waveforms::With { 1 } else { 0 };
+    let mut flags = ["-std=gnu++17", "-O3", "-fPIC", "-fvisibility=hidden", "-w"]
+        .map(String::from)
+        .to_vec();
+    flags.extend(["SC", "COVERAGE", "TIMING"].map(|what| format!("-DVM_{what}=0")));
+    flags.extend(["TRACE", "TRACE_VCD"].map(|what| format!("-DVM_{what}={trace}")));
+    flags
+}
+
+/// What Verilator wrote to `objects`, and its runtime.
+fn model_sources(objects: &Path, verilator: &Path, waveforms: Waveforms) -> Result<Vec<PathBuf>> {
+    let mut sources = files(objects)?;
+    sources.retain(|path| path.extension() == Some(OsStr::new("cpp")));
+    let runtime = verilator.join("include");
+    sources.extend(["verilated.cpp", "verilated_threads.cpp"].map(|name| runtime.join(name)));
+    if waveforms == Waveforms::With {
+        sources.push(runtime.join("verilated_vcd_c.cpp"));
+    }
+    Ok(sources)
 }
 
 /// Compiles every source to an object in `folder`, as many at a time as there are cores.

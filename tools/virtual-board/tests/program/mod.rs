@@ -1,0 +1,48 @@
+//! Small programs for the soft core, assembled when a test runs.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// The image of `tests/programs/NAME.S`, to be put at the start of main RAM. `symbols` are its constants.
+pub fn assemble(name: &str, symbols: &[(&str, u32)]) -> Vec<u8> {
+    let source = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/programs")
+        .join(name)
+        .with_extension("S");
+    let output = PathBuf::from(env!("CARGO_TARGET_TMPDIR"));
+    let (elf, image) = (
+        output.join(name).with_extension("elf"),
+        output.join(name).with_extension("bin"),
+    );
+    run(Command::new("riscv64-unknown-elf-gcc")
+        .args([
+            "-march=rv32im",
+            "-mabi=ilp32",
+            "-nostdlib",
+            "-Wl,-Ttext=0x40000000,-e0x40000000",
+        ])
+        .args(
+            symbols
+                .iter()
+                .map(|(name, value)| format!("-D{name}={value:#x}")),
+        )
+        .arg(&source)
+        .arg("-o")
+        .arg(&elf));
+    run(Command::new("riscv64-unknown-elf-objcopy")
+        .args(["-O", "binary"])
+        .arg(&elf)
+        .arg(&image));
+    std::fs::read(&image).expect("the assembled program")
+}
+
+fn run(command: &mut Command) {
+    let output = command
+        .output()
+        .expect("Debian's gcc-riscv64-unknown-elf (`cargo xtask bootstrap` installs it)");
+    assert!(
+        output.status.success(),
+        "{command:?}: {}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+}

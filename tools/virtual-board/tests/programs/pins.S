@@ -1,0 +1,30 @@
+# Shows on the LEDs: switches 15:8 in the upper byte, and in the lower one buttons 3:0 over four bits of a word in DDR3,
+# which the data cache holds. For 16 rounds of 32 it is displaced from there in every round, for the other 16 it stays.
+# The instruction at `patch` can be exchanged at run time.
+    .option norelax
+    li   s0, BUTTONS_IN
+    li   s1, SWITCHES_IN
+    li   s2, LEDS_OUT
+    li   s3, WORD
+    li   s4, WORD + 4096
+    li   s5, 0xff00
+    li   s6, 0
+round:
+    addi s6, s6, 1
+    andi t0, s6, 16
+    beqz t0, stay
+    lw   zero, 0(s4)
+stay:
+    lw   t0, 0(s0)
+    lw   t1, 0(s1)
+    lw   t2, 0(s3)
+    and  t1, t1, s5
+    andi t2, t2, 15
+patch:
+    addi t2, t2, 0
+    andi t2, t2, 15
+    slli t0, t0, 4
+    or   t0, t0, t1
+    or   t0, t0, t2
+    sw   t0, 0(s2)
+    j    round

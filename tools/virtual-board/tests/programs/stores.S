@@ -1,0 +1,10 @@
+# Counts in a word of DDR3, and then shows the count on the LEDs.
+    .option norelax
+    li   s0, WORD
+    li   s1, LEDS_OUT
+    li   s2, 0
+again:
+    addi s2, s2, 1
+    sw   s2, 0(s0)
+    sw   s2, 0(s1)
+    j    again

@@ -1,0 +1,98 @@
+//! Scan-out to the monitor through the whole SoC: all scales, a flip, and a CPU that wants the memory as well.
+
+mod program;
+
+use litex_pac::{leds, scanout};
+use virtual_board::{HEIGHT, Start, VirtualBoard, WIDTH};
+
+/// Two frames, as far apart in memory as the largest is long.
+const FRAME: u32 = 0x4100_0000;
+const OTHER_FRAME: u32 = 0x4120_0000;
+
+/// What the program is told.
+const PARAMETERS: u32 = 0x4010_0000;
+
+/// What the program reads and writes all the time.
+const TRAFFIC: u32 = 0x4080_0000;
+
+/// A frame that has every colour bit in every place.
+fn frame(pixels: usize, seed: u32) -> Vec<u16> {
+    (0..pixels as u32)
+        .map(|i| (i.wrapping_add(seed).wrapping_mul(0x9e37_79b1) >> 13) as u16)
+        .collect()
+}
+
+fn bytes(frame: &[u16]) -> Vec<u8> {
+    frame.iter().flat_map(|pixel| pixel.to_le_bytes()).collect()
+}
+
+/// Shows a frame, flips to another, and compares what the monitor sees for `frames` frames.
+fn shows_and_flips(scale: usize, frames: u64) {
+    // SAFETY: only addresses are asked for.
+    let (scanout, leds) = unsafe { (scanout::Scanout::steal(), leds::Leds::steal()) };
+    let base = scanout::Scanout::BASE;
+    let firmware = program::assemble(
+        "scan_out",
+        &[
+            ("SCANOUT", base as u32),
+            ("CONTROL", (scanout.control().address() - base) as u32),
+            ("FB_NEXT", (scanout.fb_next().address() - base) as u32),
+            ("SCALE", (scanout.scale().address() - base) as u32),
+            ("FB_CURRENT", (scanout.fb_current().address() - base) as u32),
+            (
+                "UNDERFLOW_COUNT",
+                (scanout.underflow_count().address() - base) as u32,
+            ),
+            ("LEDS_OUT", leds.out().address() as u32),
+            ("FRAME", FRAME),
+            ("PARAMETERS", PARAMETERS),
+            ("TRAFFIC", TRAFFIC),
+        ],
+    );
+    let pixels = WIDTH * HEIGHT / (scale * scale);
+    let (first, second) = (frame(pixels, 1), frame(pixels, 1 << 20));
+    let start = Start::Fast {
+        firmware: &firmware,
+    };
+    let mut board = VirtualBoard::builder()
+        .start(start)
+        .build()
+        .expect("a virtual board");
+    for (address, data) in [
+        (FRAME, bytes(&first)),
+        (OTHER_FRAME, bytes(&second)),
+        (PARAMETERS, (scale as u32).to_le_bytes().to_vec()),
+        (PARAMETERS + 4, OTHER_FRAME.to_le_bytes().to_vec()),
+    ] {
+        board.ddr_write(address, &data).expect("main RAM");
+    }
+
+    board.monitor().turn_on();
+    for number in 0..frames {
+        let shown = board
+            .capture()
+            .expect("a frame")
+            .scaled_back(scale)
+            .expect("an enlarged frame");
+        let expected = if number == 0 { &first } else { &second };
+        assert!(shown == *expected, "frame {number} at scale {scale}");
+    }
+    assert_eq!(board.monitor().frames(), frames);
+    assert_eq!(board.monitor().errors(), [], "timing at scale {scale}");
+    assert_eq!(board.leds(), 0, "underflows at scale {scale}");
+}
+
+#[test]
+fn scale_4() {
+    shows_and_flips(4, 2);
+}
+
+#[test]
+fn scale_2() {
+    shows_and_flips(2, 2);
+}
+
+#[test]
+fn scale_1() {
+    shows_and_flips(1, 3);
+}
