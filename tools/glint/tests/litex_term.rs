@@ -73,7 +73,9 @@ impl Terminal {
                 return;
             }
             // Its progress bar goes on for megabytes.
-            let keep = self.seen.floor_char_boundary(self.seen.len().saturating_sub(KEPT));
+            let keep = self
+                .seen
+                .floor_char_boundary(self.seen.len().saturating_sub(KEPT));
             self.seen.drain(..keep);
             match self.output.recv_timeout(Duration::from_secs(1)) {
                 Ok(bytes) => self.seen.push_str(&String::from_utf8_lossy(&bytes)),
@@ -113,7 +115,10 @@ fn litex_term_loads_the_firmware_and_gets_an_answer() {
     let board = Pty::start(VirtualBoard::builder().start(Start::Full).build().unwrap()).unwrap();
     let kernel = format!("--kernel={}", firmware.display());
     let port = board.path().to_str().unwrap();
-    let mut terminal = Terminal::start(&root.join(".venv/bin/litex_term"), &["--safe", &kernel, port]);
+    let mut terminal = Terminal::start(
+        &root.join(".venv/bin/litex_term"),
+        &["--safe", &kernel, port],
+    );
     terminal.wait_for("Liftoff!", &board);
     terminal.wait_for("Glint", &board);
     terminal.wait_for("glint> ", &board);

@@ -35,7 +35,9 @@ pub fn build(features: &[&str]) -> Result<PathBuf> {
     if features.contains(&"peers") {
         // Generic kernels are compiled with the program, and are to be as fast there as they can be.
         for package in ["glint-firmware", "\"*\""] {
-            cargo.arg("--config").arg(format!("profile.firmware.package.{package}.opt-level = 3"));
+            cargo
+                .arg("--config")
+                .arg(format!("profile.firmware.package.{package}.opt-level = 3"));
         }
     }
     // Not the folder of the tools' builds: they would wait for each other.
