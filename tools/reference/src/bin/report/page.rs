@@ -25,8 +25,9 @@ fn page(rows: &[Row], reference_error: f64, unmeasured: Option<&anyhow::Error>) 
          ![Work-precision diagram: cycles against largest error](sine.svg)\n\n\
          Errors are absolute and over both outputs. ULP is the last place of the kernel's own output format (for floats \
          that just below 1). RMS, p99 and bias weigh an input by its part of the circle; bias is the mean error of the \
-         magnitude, positive when outputs are too far from zero. Cycles are those of one call that gives both, with the \
-         call, on the SoC's processor: smallest / median / largest of a run. Bold is what Glint uses.\n\n\
+         magnitude, positive when outputs are too far from zero. Cycles are those of one call that gives both, on the \
+         SoC's processor with code and tables in its caches: smallest / median / largest over 256 angles all around the \
+         circle. Bold is what Glint uses.\n\n\
          | kernel | config | output | inputs | max error | ULP | bits | worst at | RMS | p99 | bias | cycles |\n\
          |---|---|---|---|---|---|---|---|---|---|---|---|\n",
     );
