@@ -110,9 +110,7 @@ struct glint_soc {
         const uint8_t wires = i2c_wires();
         top.i2c_scl_in = wires & 1;
         top.i2c_sda_in = wires >> 1;
-        pixel_phase += PIXEL_TICKS;
-        const bool tick = pixel_phase >= PIXEL_PERIOD;
-        if (tick) pixel_phase -= PIXEL_PERIOD;
+        const bool tick = pixel_tick();
         top.sys_clk = 0;
         top.pix_clk = tick;
         eval();
@@ -132,6 +130,27 @@ struct glint_soc {
     void run(uint64_t count) {
         Verilated::threadContextp(&context);
         while (count--) cycle();
+    }
+
+    void run_bare(uint64_t count) {
+        Verilated::threadContextp(&context);
+        cycles += count;
+        while (count--) {
+            top.sys_clk = 1;
+            top.pix_clk = 0;
+            top.eval();
+            top.sys_clk = 0;
+            top.pix_clk = pixel_tick();
+            top.eval();
+        }
+    }
+
+    // Whether pix_clk rises in this cycle.
+    bool pixel_tick() {
+        pixel_phase += PIXEL_TICKS;
+        const bool tick = pixel_phase >= PIXEL_PERIOD;
+        if (tick) pixel_phase -= PIXEL_PERIOD;
+        return tick;
     }
 
     void rom_write(const uint8_t *bytes, size_t length) {
@@ -208,6 +227,7 @@ int glint_soc_trace(glint_soc *soc, const char *path) {
 }
 
 void glint_soc_run(glint_soc *soc, uint64_t cycles) { soc->run(cycles); }
+void glint_soc_run_bare(glint_soc *soc, uint64_t cycles) { soc->run_bare(cycles); }
 uint64_t glint_soc_cycles(const glint_soc *soc) { return soc->cycles; }
 
 void glint_soc_uart_write(glint_soc *soc, const uint8_t *bytes, size_t length) {

@@ -134,6 +134,14 @@ impl VirtualBoard {
         self.running += start.elapsed();
     }
 
+    /// Runs `cycles` cycles in a bare C++ loop around the model: the yardstick for [`run`](Self::run). What the SoC sends
+    /// and shows meanwhile is lost, and what is sent to it waits.
+    pub fn run_bare(&mut self, cycles: u64) {
+        let start = Instant::now();
+        self.soc.run_bare(cycles);
+        self.running += start.elapsed();
+    }
+
     /// Runs until `done` says so, which is asked every 1000 cycles, but no longer than `limit` cycles. Returns whether
     /// it was done.
     pub fn run_until(&mut self, limit: u64, mut done: impl FnMut(&mut Self) -> bool) -> bool {

@@ -10,7 +10,7 @@ use libloading::Library;
 use crate::Error;
 
 /// The version of the C interface that this file is written for (`GLINT_SOC_ABI`).
-const ABI: u32 = 1;
+const ABI: u32 = 2;
 
 /// `glint_soc`, which only the library can look into.
 #[repr(C)]
@@ -50,6 +50,7 @@ functions! {
     free: fn(Handle);
     trace: fn(Handle, *const c_char) -> c_int;
     run: fn(Handle, u64);
+    run_bare: fn(Handle, u64);
     cycles: fn(Handle) -> u64;
     uart_write: fn(Handle, *const u8, usize);
     uart_queued: fn(Handle) -> usize;
@@ -134,6 +135,12 @@ impl Soc {
     pub fn run(&mut self, cycles: u64) {
         // SAFETY: the handle is alive and ours alone.
         unsafe { (self.functions.run)(self.raw(), cycles) }
+    }
+
+    /// Moves the clocks and does nothing else.
+    pub fn run_bare(&mut self, cycles: u64) {
+        // SAFETY: the handle is alive and ours alone.
+        unsafe { (self.functions.run_bare)(self.raw(), cycles) }
     }
 
     pub fn cycles(&self) -> u64 {
