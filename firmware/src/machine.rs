@@ -144,7 +144,10 @@ impl Machine {
 
     /// Whether the next turn of the loop has something to do.
     fn is_busy(&mut self) -> bool {
-        self.answers_next() || self.scene.changed() && self.canvas.display.back().is_some()
+        // Without video nothing would wake the machine for its heartbeat.
+        self.answers_next()
+            || self.scene.changed() && self.canvas.display.back().is_some()
+            || !self.canvas.display.is_visible()
     }
 
     /// Whether the next turn of the loop has something to answer, or to hear.

@@ -142,6 +142,7 @@ impl<const RX: usize, const TX: usize> Uart<RX, TX> {
         });
     }
 
+    /// `action` is one of this file's and never calls back here, so the state is free.
     fn with<R>(&self, action: impl FnOnce(&mut State<RX, TX>) -> R) -> R {
         critical_section::with(|token| action(&mut self.state.borrow_ref_mut(token)))
     }
