@@ -56,6 +56,8 @@ class GlintSoC(SoCCore):
         )
         # A build time in the BIOS would make every build different.
         self.add_config("BIOS_NO_BUILD_TIME")
+        # The BIOS's interrupt drops what its buffer has no room for; polled, what waits in the UART holds the sender.
+        self.add_constant("UART_POLLING")
         self.add_constant("BUILD_ID", build_id)
 
         self.identity = Identity(build_id, sum(1 << OPTIONAL_BLOCKS[name] for name in self.blocks))
