@@ -47,6 +47,8 @@ def main():
     output = arguments.output.resolve()
     builder = Builder(
         soc, output_dir=str(output), gateware_dir=str(output / "gateware"), software_dir=str(output / "software"),
+        # Inlining keeps the serial boot's loop from evicting itself from the instruction cache.
+        bios_lto=True,
         # A vendor tool is run by hand, where it is installed.
         compile_gateware=False)
     builder.build()
