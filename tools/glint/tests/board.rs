@@ -7,17 +7,34 @@ use glint::console::{Console, ConsoleError, value};
 use glint::convert::{self, Options};
 use glint::render::{self, Renderer, Route, Scene, Stats};
 use glint::transfer::{self, TransferError};
-use glint::{flash, generate, view};
+use glint::{generate, view};
 use glint_core::camera::View;
 use glint_core::console::Backend;
 use glint_core::wire::{Failure, Manifest, Reason};
 
 /// The board's time after which a silent firmware has failed.
 const PATIENCE_MS: u64 = 2000;
-const MAIN_RAM: u32 = 0x4000_0000;
 
 fn running_board() -> SimulatedBoard {
     SimulatedBoard::fast(&built_firmware(None).unwrap()).unwrap()
+}
+
+/// A renderer on a board that has just started.
+fn renderer(board: &mut SimulatedBoard) -> Renderer<'_, SimulatedBoard> {
+    let mut console = Console::new(board).patience(PATIENCE_MS);
+    console.greet().unwrap();
+    Renderer::new(console)
+}
+
+/// The cube from a place outside.
+fn cube_scene<'m>(mesh: &'m [u8], camera: &str, size: (u32, u32)) -> Scene<'m> {
+    Scene {
+        mesh,
+        view: view::spherical(camera).unwrap(),
+        size,
+        cull: true,
+        backend: Backend::Cpu,
+    }
 }
 
 fn mesh(name: &str) -> Vec<u8> {
@@ -35,10 +52,9 @@ fn timeless(stats: Stats) -> Stats {
     }
 }
 
-/// Renders three models from three places on the board and compares with the model: the monitor's picture, the depth
-/// buffer, the counts.
-#[test]
-fn the_monitor_shows_what_the_model_renders() {
+/// Renders a model from three places, one of them inside it, on the board and compares with the model: the monitor's
+/// picture, the depth buffer, the counts.
+fn the_monitor_shows_what_the_model_renders(name: &str) {
     let size = (320, 180);
     let outside = |camera: &str| (view::spherical(camera).unwrap(), true);
     let inside = r#"{"eye":[0.21,-0.1,0.05],"u":[0.6,0.8,0],"v":[0,0,-1],"n":[-0.8,0.6,0],"half_width":1.5,"near":0.3}"#;
@@ -47,47 +63,104 @@ fn the_monitor_shows_what_the_model_renders() {
     let cameras = [outside("2,30,60"), outside("2.5,200,130"), (inside, false)];
 
     let mut board = running_board();
-    let mut console = Console::new(&mut board).patience(PATIENCE_MS);
-    console.greet().unwrap();
-    let mut renderer = Renderer::new(console);
-    for name in ["cube", "icosphere:4", "sponge:1"] {
-        let mesh = mesh(name);
-        for (number, &(view, cull)) in cameras.iter().enumerate() {
-            let scene = Scene {
-                mesh: &mesh,
-                view,
-                size,
-                cull,
-                backend: Backend::Cpu,
-            };
-            let expected = render::on_model(&scene).unwrap();
-            let stats = renderer
-                .show(&scene, Route::Memory, &mut |_, _| {})
-                .unwrap();
-            assert_eq!(timeless(stats), expected.stats, "{name}, camera {number}");
-            assert!(
-                number < 2 || expected.stats.triangles_clipped > 0,
-                "{name}: nothing was clipped"
-            );
-            let shown = renderer
-                .board()
-                .inner()
-                .capture()
-                .unwrap()
-                .scaled_back(4)
-                .unwrap();
-            assert!(
-                shown == expected.frame.colour,
-                "{name}, camera {number}: the monitor's picture"
-            );
-            let depth = renderer.depth(size, Route::Memory, &mut |_, _| {}).unwrap();
-            assert!(
-                depth == expected.frame.depth,
-                "{name}, camera {number}: the depths"
-            );
-        }
+    let mut renderer = renderer(&mut board);
+    let mesh = mesh(name);
+    for (number, &(view, cull)) in cameras.iter().enumerate() {
+        let scene = Scene {
+            mesh: &mesh,
+            view,
+            size,
+            cull,
+            backend: Backend::Cpu,
+        };
+        let expected = render::on_model(&scene).unwrap();
+        let stats = renderer
+            .show(&scene, Route::Memory, &mut |_, _| {})
+            .unwrap();
+        assert_eq!(timeless(stats), expected.stats, "camera {number}");
+        assert!(
+            number < 2 || expected.stats.triangles_clipped > 0,
+            "nothing was clipped"
+        );
+        assert!(
+            captured(&mut renderer, 4) == expected.frame.colour,
+            "camera {number}: the monitor's picture"
+        );
+        let depth = renderer.depth(size, Route::Memory, &mut |_, _| {}).unwrap();
+        assert!(depth == expected.frame.depth, "camera {number}: the depths");
     }
-    assert_eq!(renderer.board().inner().monitor().error_count(), 0);
+    assert_eq!(renderer.board().inner().monitor().errors(), []);
+}
+
+#[test]
+fn the_monitor_shows_the_cube() {
+    the_monitor_shows_what_the_model_renders("cube");
+}
+
+#[test]
+fn the_monitor_shows_the_icosphere() {
+    the_monitor_shows_what_the_model_renders("icosphere:4");
+}
+
+#[test]
+fn the_monitor_shows_the_sponge() {
+    the_monitor_shows_what_the_model_renders("sponge:1");
+}
+
+#[test]
+fn the_monitor_shows_the_larger_sizes() {
+    let mesh = mesh("cube");
+    let mut board = running_board();
+    let mut renderer = renderer(&mut board);
+    for (size, scale) in [((640, 360), 2), ((1280, 720), 1)] {
+        let scene = cube_scene(&mesh, "2,30,60", size);
+        renderer
+            .show(&scene, Route::Memory, &mut |_, _| {})
+            .unwrap();
+        let expected = render::on_model(&scene).unwrap().frame;
+        assert!(
+            captured(&mut renderer, scale) == expected.colour,
+            "{size:?}"
+        );
+    }
+}
+
+/// While the firmware draws one frame the monitor shows another: every picture is one or the other, never a part of each.
+#[test]
+fn no_frame_is_torn() {
+    let mesh = mesh("cube");
+    let mut board = running_board();
+    let mut renderer = renderer(&mut board);
+    let [old, new] = ["2,30,60", "2,200,100"].map(|camera| cube_scene(&mesh, camera, (320, 180)));
+    renderer.show(&old, Route::Memory, &mut |_, _| {}).unwrap();
+    let [old, new] = [old, new].map(|scene| {
+        let frame = render::on_model(&scene).unwrap().frame;
+        frame.colour
+    });
+    renderer.board().inner().monitor().turn_on();
+    assert!(captured(&mut renderer, 4) == old);
+    renderer.board().write(b"camera 2 200 100\r").unwrap();
+    let mut shown = 0;
+    while captured_is(&mut renderer, &old, &new) {
+        shown += 1;
+        assert!(shown < 20, "the new frame does not come");
+    }
+    assert!(shown > 0, "the frame changed before it can have been drawn");
+}
+
+/// Whether the monitor's next picture is the old one. It must be the new one otherwise.
+fn captured_is(renderer: &mut Renderer<SimulatedBoard>, old: &[u16], new: &[u16]) -> bool {
+    let shown = captured(renderer, 4);
+    assert!(shown == old || shown == new, "a torn frame");
+    shown == old
+}
+
+/// What the monitor shows, scaled back. The timing must be right.
+fn captured(renderer: &mut Renderer<SimulatedBoard>, scale: usize) -> Vec<u16> {
+    let board = renderer.board().inner();
+    let picture = board.capture().unwrap();
+    assert_eq!(board.monitor().errors(), []);
+    picture.scaled_back(scale).unwrap()
 }
 
 /// A line that drops, flips and repeats a byte in a hundred, in both directions.
@@ -143,7 +216,7 @@ fn an_upload_over_a_bad_line_arrives_bit_for_bit() {
     let mut board = running_board();
     let mut console = Console::new(&mut board).patience(PATIENCE_MS);
     console.greet().unwrap();
-    let staging: String = info(&mut console, "staging");
+    let staging = address(&mut console, "staging");
     let command = format!("load {length} {crc32:08x}");
     assert!(console.command_with_transfer(&command).unwrap());
     {
@@ -158,13 +231,12 @@ fn an_upload_over_a_bad_line_arrives_bit_for_bit() {
     }
     console.reply(&command).unwrap();
     assert_eq!(info::<String>(&mut console, "scene"), "model");
-    let address = u32::from_str_radix(staging.trim_start_matches("0x"), 16).unwrap();
     let mut arrived = vec![0; mesh.len()];
     console
         .board()
         .memory()
         .unwrap()
-        .read_memory(address, &mut arrived)
+        .read_memory(staging, &mut arrived)
         .unwrap();
     assert!(arrived == mesh);
 }
@@ -179,6 +251,22 @@ fn info<T: std::str::FromStr>(console: &mut Console<SimulatedBoard>, key: &str) 
     value("info", &short, key).unwrap()
 }
 
+/// The bytes of the frame that shows the scene, 320×180 pixels.
+fn frame(console: &mut Console<SimulatedBoard>) -> Vec<u8> {
+    console.command("render").unwrap();
+    let address = address(console, "frame");
+    let mut bytes = vec![0; 2 * 320 * 180];
+    let memory = console.board().memory().unwrap();
+    memory.read_memory(address, &mut bytes).unwrap();
+    bytes
+}
+
+/// A line of `info` that is an address.
+fn address(console: &mut Console<SimulatedBoard>, key: &str) -> u32 {
+    let word: String = info(console, key);
+    u32::from_str_radix(word.trim_start_matches("0x"), 16).unwrap()
+}
+
 #[test]
 fn a_bad_upload_leaves_the_old_model() {
     let (good, other) = (mesh("cube"), mesh("icosphere:1"));
@@ -187,6 +275,7 @@ fn a_bad_upload_leaves_the_old_model() {
     console.greet().unwrap();
     let quiet: &mut transfer::Progress = &mut |_, _| {};
     transfer::upload(&mut console, &good, 1, quiet).unwrap();
+    let shown = frame(&mut console);
 
     // Another mesh than was announced.
     let Manifest { length, crc32 } = Manifest::of(&good);
@@ -206,66 +295,51 @@ fn a_bad_upload_leaves_the_old_model() {
         Err(ConsoleError::Refused { .. })
     ));
 
-    // Bytes that arrive well and are no mesh.
-    let mut damaged = other.clone();
-    damaged[40] ^= 0x80;
-    let refused = transfer::upload(&mut console, &damaged, 3, quiet)
-        .unwrap_err()
-        .to_string();
-    assert!(refused.contains("not a mesh"), "{refused}");
+    // Bytes that arrive well and are no mesh: a chunk without end, an index to a vertex that is not there.
+    let last_triangle = other.len() - 16;
+    for (number, at) in [(3, 40), (4, last_triangle + 1)] {
+        let mut damaged = other.clone();
+        damaged[at] ^= 0x80;
+        let refused = transfer::upload(&mut console, &damaged, number, quiet)
+            .unwrap_err()
+            .to_string();
+        assert!(refused.contains("not a mesh"), "byte {at}: {refused}");
+    }
     assert_eq!(info::<u32>(&mut console, "triangles"), 12);
+    assert!(frame(&mut console) == shown);
 
     // And the line is as good as before.
-    transfer::upload(&mut console, &other, 4, quiet).unwrap();
+    transfer::upload(&mut console, &other, 5, quiet).unwrap();
     assert_eq!(info::<u32>(&mut console, "triangles"), 20);
+    assert!(frame(&mut console) != shown);
 }
 
 #[test]
-fn pictures_come_over_the_line() {
+fn colours_come_over_the_line() {
     let mesh = mesh("cube");
     let mut board = running_board();
-    let mut console = Console::new(&mut board).patience(PATIENCE_MS);
-    console.greet().unwrap();
-    let mut renderer = Renderer::new(console);
-    let view = view::spherical("3,10,80").unwrap();
-    let scene = Scene {
-        mesh: &mesh,
-        view,
-        size: (320, 180),
-        cull: true,
-        backend: Backend::Cpu,
-    };
+    let mut renderer = renderer(&mut board);
+    let scene = cube_scene(&mesh, "3,10,80", (320, 180));
     renderer
         .show(&scene, Route::Serial, &mut |_, _| {})
         .unwrap();
-    let expected = render::on_model(&scene).unwrap().frame;
-    assert!(
-        renderer
-            .colour(scene.size, Route::Serial, &mut |_, _| {})
-            .unwrap()
-            == expected.colour
-    );
+    let colour = renderer
+        .colour(scene.size, Route::Serial, &mut |_, _| {})
+        .unwrap();
+    assert!(colour == render::on_model(&scene).unwrap().frame.colour);
 }
 
 #[test]
-fn the_flash_command_boots_through_the_bios() {
-    let firmware = built_firmware(None).unwrap();
-    let mut board = SimulatedBoard::full().unwrap();
-    let report =
-        flash::flash(&mut board, &firmware, MAIN_RAM, PATIENCE_MS, &mut |_, _| {}).unwrap();
-    assert_eq!(
-        report.retries, 0,
-        "the line of the virtual board loses nothing"
-    );
-    let mut console = Console::new(&mut board).patience(PATIENCE_MS);
-    console.hear(&report.said);
-    let banner = console.greet().unwrap();
-    assert!(
-        banner.contains("Liftoff") && banner.contains("Glint"),
-        "{banner}"
-    );
-    assert_eq!(
-        info::<String>(&mut console, "firmware_id"),
-        info::<String>(&mut console, "gateware_id")
-    );
+fn depths_come_over_the_line() {
+    let mesh = mesh("cube");
+    let mut board = running_board();
+    let mut renderer = renderer(&mut board);
+    let scene = cube_scene(&mesh, "3,10,80", (320, 180));
+    renderer
+        .show(&scene, Route::Serial, &mut |_, _| {})
+        .unwrap();
+    let depth = renderer
+        .depth(scene.size, Route::Serial, &mut |_, _| {})
+        .unwrap();
+    assert!(depth == render::on_model(&scene).unwrap().frame.depth);
 }

@@ -271,8 +271,8 @@ impl VirtualBoard {
         &mut self.monitor
     }
 
-    /// Captures the next frame that is shown from its first line to its last. Takes up to two frames' time, 2.7
-    /// million cycles.
+    /// Captures the next frame that is shown from its first line to its last, or the one that is being shown when the
+    /// monitor is on already. Takes up to two frames' time, 2.7 million cycles.
     ///
     /// # Errors
     /// [`Error::Timeout`] when there is no video.

@@ -1,9 +1,12 @@
-//! LiteX's own terminal, on the virtual board's pseudo-terminal: loads the firmware and talks to it.
+//! The firmware goes in through the BIOS's serial boot, over the virtual board's pseudo-terminal: by LiteX's own terminal,
+//! and by `glint flash`.
 
+use glint::board::SerialBoard;
+use glint::console::Console;
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use std::fs::{File, OpenOptions};
 use std::io::{Read, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::Duration;
@@ -14,6 +17,23 @@ const LIMIT: u64 = 400_000_000;
 
 /// Bytes of output that are kept while something else is waited for: enough for a message of failure.
 const KEPT: usize = 1000;
+
+/// The host's time after which `glint flash` or a console has failed.
+const PATIENCE_MS: u64 = 300_000;
+
+/// The firmware that `cargo xtask firmware` builds.
+fn firmware() -> PathBuf {
+    root().join("target/firmware/glint.bin")
+}
+
+fn root() -> &'static Path {
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
+}
+
+/// A board that starts as it does at power on, on a pseudo-terminal.
+fn board() -> Pty {
+    Pty::start(VirtualBoard::builder().start(Start::Full).build().unwrap()).unwrap()
+}
 
 /// A program with a terminal for its input, which litex_term insists on.
 struct Terminal {
@@ -112,15 +132,10 @@ impl Drop for Terminal {
 
 #[test]
 fn litex_term_loads_the_firmware_and_gets_an_answer() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let firmware = root.join("target/firmware/glint.bin");
-    let board = Pty::start(VirtualBoard::builder().start(Start::Full).build().unwrap()).unwrap();
-    let kernel = format!("--kernel={}", firmware.display());
+    let board = board();
+    let kernel = format!("--kernel={}", firmware().display());
     let port = board.path().to_str().unwrap();
-    let mut terminal = Terminal::start(
-        &root.join(".venv/bin/litex_term"),
-        &[&kernel, port],
-    );
+    let mut terminal = Terminal::start(&root().join(".venv/bin/litex_term"), &[&kernel, port]);
     terminal.wait_for("Liftoff!", &board);
     terminal.wait_for("Glint", &board);
     terminal.wait_for("glint> ", &board);
@@ -132,4 +147,31 @@ fn litex_term_loads_the_firmware_and_gets_an_answer() {
     terminal.wait_for("^C", &board);
     terminal.type_in(b"\x03");
     assert!(terminal.child.wait().unwrap().success());
+}
+
+#[test]
+fn glint_flash_loads_the_firmware_and_it_answers() {
+    let board = board();
+    let port = board.path().to_str().unwrap();
+    let flashed = Command::new(env!("CARGO_BIN_EXE_glint"))
+        .arg("flash")
+        .arg(firmware())
+        .args(["--board", port, "--json"])
+        .output()
+        .unwrap();
+    assert!(flashed.status.success(), "{flashed:?}");
+    let report: serde_json::Value = serde_json::from_slice(&flashed.stdout).unwrap();
+    let bytes = std::fs::metadata(firmware()).unwrap().len();
+    assert_eq!(report["bytes"], bytes, "{report}");
+    assert_eq!(report["retries"], 0, "this line loses nothing: {report}");
+
+    let mut line = SerialBoard::open(port, 115_200).unwrap();
+    let mut console = Console::new(&mut line).patience(PATIENCE_MS);
+    let banner = console.greet().unwrap();
+    assert!(
+        banner.contains("Liftoff!") && banner.contains("Glint"),
+        "{banner}"
+    );
+    let info = console.command("info").unwrap();
+    assert!(info.iter().any(|line| line == "triangles 12"), "{info:?}");
 }
