@@ -12,14 +12,17 @@ const PACKAGES: [(&str, &str); 4] = [
     ("gcc-riscv64-unknown-elf", "compiles the LiteX BIOS"),
     ("g++", "compiles the verilated SoC"),
     ("make", "builds the LiteX BIOS"),
-    ("python3-venv", "holds the gateware's Python packages"),
+    ("python3-venv", "holds the Python packages"),
 ];
 
 /// What the soft core runs: RV32IM without an operating system.
 const RUST_TARGET: &str = "riscv32im-unknown-none-elf";
 
-/// What the Python environment holds, all pinned.
-const REQUIREMENTS: &str = "gateware/requirements.txt";
+/// What the Python environment holds, all pinned: for the gateware, and for the tests.
+const REQUIREMENTS: [&str; 2] = [
+    "gateware/requirements.txt",
+    "tools/reference/requirements.txt",
+];
 
 /// Does what is missing and says what it could not get. Quick when nothing is.
 ///
@@ -102,8 +105,11 @@ fn python_environment() -> Result<()> {
     if !run::succeeds(Command::new("python3").args(["-c", supported])) {
         bail!("python3: expected version 3.11 or later (Debian 12 has it)");
     }
-    let requirements = fs::read_to_string(paths::root().join(REQUIREMENTS))
-        .with_context(|| format!("reading {REQUIREMENTS}"))?;
+    let mut requirements = String::new();
+    for file in REQUIREMENTS {
+        requirements += &fs::read_to_string(paths::root().join(file))
+            .with_context(|| format!("reading {file}"))?;
+    }
     let stamp = paths::venv().join("requirements.installed");
     if fs::read_to_string(&stamp).is_ok_and(|installed| installed == requirements) {
         return Ok(());
@@ -118,12 +124,8 @@ fn python_environment() -> Result<()> {
     run::step(
         "python packages",
         Command::new(paths::venv_program("pip"))
-            .args([
-                "install",
-                "--disable-pip-version-check",
-                "--requirement",
-                REQUIREMENTS,
-            ])
+            .args(["install", "--disable-pip-version-check"])
+            .args(REQUIREMENTS.iter().flat_map(|file| ["--requirement", file]))
             .current_dir(paths::root()),
     )
     .context("the Python packages: is PyPI reachable?")?;
