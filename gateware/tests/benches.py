@@ -1,10 +1,9 @@
 """Builds a module's bench with Verilator and the C++ compiler, and runs it."""
 
-import hashlib
 import shutil
 from concurrent.futures import ThreadPoolExecutor
 
-from tools import BUILD, TESTS, VERILATOR_ROOT, ToolError, run, run_verilator
+from tools import BUILD, TESTS, VERILATOR_ROOT, ToolError, digest, run, run_verilator
 
 # Optimisation beyond this costs more than the benches give back.
 _COMPILE = ["g++", "-std=c++20", "-O1", "-pthread",
@@ -28,7 +27,8 @@ def _build(module):
     folder = BUILD / module.top
     program = folder / "bench"
     stamp = folder / "inputs"
-    inputs = _digest(module)
+    inputs = digest([*module.sources, *(TESTS / name for name in module.bench), VERILATOR_ROOT / "bin" / "verilator_bin"],
+                    _COMPILE, _VERILATE, module.variants, module.defines)
     if program.exists() and stamp.exists() and stamp.read_text() == inputs:
         return program
     shutil.rmtree(folder, ignore_errors=True)
@@ -57,11 +57,3 @@ def _build(module):
     run([*_COMPILE, *objects, "-o", program])
     stamp.write_text(inputs)
     return program
-
-
-def _digest(module):
-    """What the build depends on: this recipe, the sources and the verilator."""
-    digest = hashlib.sha256(repr((_COMPILE, _VERILATE, module.variants, module.defines)).encode())
-    for path in [*module.sources, *(TESTS / name for name in module.bench), VERILATOR_ROOT / "bin" / "verilator_bin"]:
-        digest.update(path.read_bytes())
-    return digest.hexdigest()

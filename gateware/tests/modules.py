@@ -7,11 +7,14 @@ from glint_soc import scanout
 
 @dataclass(frozen=True)
 class Module:
-    """A top module. `variants` are builds with other parameters, `defines` what the bench is told about them."""
+    """A top module. `variants` are builds with other parameters, `defines` what the bench is told about them.
+
+    A module without a bench is tested from Rust, by `tools/rtl`.
+    """
 
     top: str
     sources: list
-    bench: list
+    bench: list = field(default_factory=list)
     variants: dict = field(default_factory=dict)
     defines: list = field(default_factory=list)
 
@@ -28,4 +31,5 @@ MODULES = [
         variants={"scanout_small": _SMALL_RASTER},
         defines=["SMALL_RASTER=" + ",".join(str(value) for value in _SMALL_RASTER.values())],
     ),
+    Module(top="skid_buffer", sources=[scanout.RTL / "common" / "skid_buffer.sv"]),
 ]

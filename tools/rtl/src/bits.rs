@@ -1,0 +1,113 @@
+//! What a port carries.
+
+use std::fmt;
+
+/// The 32-bit words of the widest port.
+const WORDS: usize = 16;
+
+/// Up to 512 bits, those of a narrower port in the lowest.
+#[derive(Clone, Copy, Default, PartialEq, Eq, Hash)]
+pub struct Bits([u32; WORDS]);
+
+impl Bits {
+    /// From 32-bit words, the lowest first; those that are not there are 0.
+    ///
+    /// # Panics
+    /// With more than 512 bits.
+    #[must_use]
+    pub fn from_words(words: &[u32]) -> Self {
+        let mut bits = Self::default();
+        bits.0[..words.len()].copy_from_slice(words);
+        bits
+    }
+
+    /// As 32-bit words, the lowest first.
+    #[must_use]
+    pub fn words(&self) -> &[u32; WORDS] {
+        &self.0
+    }
+
+    /// The `width` bits from `low` on, at most 64.
+    ///
+    /// # Panics
+    /// When the field is wider, or not within 512 bits.
+    #[must_use]
+    pub fn field(&self, low: usize, width: usize) -> u64 {
+        assert!(width <= 64 && low + width <= 32 * WORDS);
+        (0..width).fold(0, |value, i| {
+            let at = low + i;
+            value | u64::from(self.0[at / 32] >> (at % 32) & 1) << i
+        })
+    }
+
+    /// The `width` bits from `low` on as a two's complement number.
+    ///
+    /// # Panics
+    /// As [`field`](Self::field), and for no bits.
+    #[must_use]
+    pub fn signed(&self, low: usize, width: usize) -> i64 {
+        let unused = 64 - width;
+        (self.field(low, width) << unused) as i64 >> unused
+    }
+
+    /// With the `width` bits from `low` on replaced by the lowest of `value`; a negative number is cut to its two's
+    /// complement.
+    ///
+    /// # Panics
+    /// When the field is not within 512 bits, or `value` does not fit, signed or unsigned.
+    #[must_use]
+    pub fn with(mut self, low: usize, width: usize, value: impl Into<i128>) -> Self {
+        let value = value.into();
+        assert!(
+            value >= -(1 << (width - 1)) && value < 1 << width,
+            "{value} in {width} bits"
+        );
+        for i in 0..width {
+            let at = low + i;
+            let bit = (value >> i & 1) as u32;
+            self.0[at / 32] = self.0[at / 32] & !(1 << (at % 32)) | bit << (at % 32);
+        }
+        self
+    }
+}
+
+impl From<u64> for Bits {
+    fn from(value: u64) -> Self {
+        Self::from_words(&[value as u32, (value >> 32) as u32])
+    }
+}
+
+impl fmt::Debug for Bits {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let used = WORDS - self.0.iter().rev().take_while(|&&word| word == 0).count();
+        write!(f, "0x")?;
+        match self.0[..used].split_last() {
+            None => write!(f, "0"),
+            Some((highest, rest)) => {
+                write!(f, "{highest:x}")?;
+                rest.iter()
+                    .rev()
+                    .try_for_each(|word| write!(f, "_{word:08x}"))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Bits;
+
+    #[test]
+    fn fields_across_words() {
+        let bits = Bits::default().with(20, 34, -5_i64).with(60, 8, 0xa5_i64);
+        assert_eq!((bits.signed(20, 34), bits.field(60, 8)), (-5, 0xa5));
+        assert_eq!(bits.field(0, 20), 0);
+        assert_eq!(format!("{:?}", Bits::from(0x1_0000_0002)), "0x1_00000002");
+    }
+
+    #[test]
+    #[should_panic(expected = "8 in 3 bits")]
+    fn a_value_that_does_not_fit() {
+        let _ = Bits::default().with(0, 3, 8_i64);
+    }
+}

@@ -1,0 +1,16 @@
+//! The gateware's modules, verilated, for tests in Rust: the bit-exact model and the RTL meet here.
+//!
+//! A [`Module`] is one instance of one module, with ports by name and a clock. A [`Source`] and a [`Sink`] speak its
+//! streams (valid/ready), stall at random, and hold both sides to the contract: a payload does not change while it is
+//! valid and not taken.
+//!
+//! `python gateware/tests/run.py --models` builds the modules; `cargo xtask test` sees to it.
+
+mod bits;
+mod library;
+mod module;
+mod stream;
+
+pub use bits::Bits;
+pub use module::{Module, Port};
+pub use stream::{Sink, Source, Stalls};
