@@ -12,7 +12,7 @@ use glint::picture::save_animation;
 use glint::render::{self, Renderer, Route, Scene, Stats};
 use glint_core::camera::View;
 use glint_core::console::Backend;
-use glint_core::fixed::{Q32_32, Turns};
+use glint_core::fixed::{Q32_32, Turns, U4_28};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -89,7 +89,7 @@ impl DemoArguments {
         number: u32,
     ) -> anyhow::Result<Row> {
         let (start, start_cycles) = (Instant::now(), renderer.board().inner().cycles());
-        let view = camera(number * 50 + 30)?;
+        let view = camera(Turns::from_degrees(Q32_32::from_num(number * 50 + 30)))?;
         let scene = Scene {
             mesh: &model.mesh,
             view,
@@ -128,11 +128,9 @@ impl DemoArguments {
         let frames = (0..self.orbit)
             .map(|number| {
                 let turned = Turns(((u64::from(number) << 32) / u64::from(self.orbit)) as u32);
-                let view = View::spherical(Q32_32::from_num(2), turned, Turns(POLAR))
-                    .map_err(anyhow::Error::msg)?;
                 let scene = Scene {
                     mesh: &model.mesh,
-                    view,
+                    view: camera(turned)?,
                     size: ORBIT_SIZE,
                     cull: true,
                     backend: Backend::Cpu,
@@ -150,10 +148,23 @@ impl DemoArguments {
 /// A polar angle of 60 degrees: a sixth of a turn.
 const POLAR: u32 = (1_u64 << 32).div_euclid(6) as u32;
 
-/// The camera at distance 2 and an azimuth in degrees.
-fn camera(azimuth: u32) -> anyhow::Result<View> {
-    let azimuth = Turns::from_degrees(Q32_32::from_num(azimuth));
-    View::spherical(Q32_32::from_num(2), azimuth, Turns(POLAR)).map_err(anyhow::Error::msg)
+/// The half width of the image plane at distance 1: models nearly fill the picture's height.
+const HALF_WIDTH: f64 = 0.6;
+
+/// The camera at distance 2 and an azimuth.
+fn camera(azimuth: Turns) -> anyhow::Result<View> {
+    let view = View::spherical(Q32_32::from_num(2), azimuth, Turns(POLAR));
+    view.and_then(|view| {
+        View::new_checked(
+            view.eye(),
+            view.u(),
+            view.v(),
+            view.n(),
+            U4_28::from_num(HALF_WIDTH),
+            view.near(),
+        )
+    })
+    .map_err(anyhow::Error::msg)
 }
 
 /// From reset through the BIOS's serial boot to the firmware's prompt.

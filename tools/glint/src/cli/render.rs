@@ -121,7 +121,8 @@ impl RenderArguments {
                 .with_context(|| format!("{}: cannot be written", path.display()))?;
         }
         if let Some(path) = &self.stats {
-            write_file(path, serde_json::to_string_pretty(&stats)?.as_bytes())?;
+            let json = serde_json::to_string_pretty(&stats)? + "\n";
+            write_file(path, json.as_bytes())?;
         }
         if self.json {
             let outcome = Outcome {
