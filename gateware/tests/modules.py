@@ -32,4 +32,5 @@ MODULES = [
         defines=["SMALL_RASTER=" + ",".join(str(value) for value in _SMALL_RASTER.values())],
     ),
     Module(top="skid_buffer", sources=[scanout.RTL / "common" / "skid_buffer.sv"]),
+    Module(top="fifo", sources=[scanout.RTL / "common" / "fifo.sv"], variants={"fifo_2": {"DEPTH": 2}}),
 ]

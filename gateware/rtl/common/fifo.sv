@@ -1,0 +1,57 @@
+// First in, first out: DEPTH places in LUTRAM and one in the output register, DEPTH + 1 in all.
+//
+// Latency 2 clocks, throughput one item a clock. Stream contract on both sides: an item moves in a clock in which valid
+// and ready are high; valid does not wait for ready, and a payload stays as it is until it has moved. `in_ready` and
+// `out_valid` come from registers alone. DEPTH is a power of two.
+//
+//            ┌──────────────┐    ┌──────────┐
+//   in ─────▶│ DEPTH places │───▶│  output  │──▶ out
+//            └──────────────┘    └──────────┘
+
+`default_nettype none
+
+module fifo #(
+    parameter int unsigned WIDTH = 8,
+    parameter int unsigned DEPTH = 16
+) (
+    input  wire              clk,
+    input  wire              rst,
+    input  wire              in_valid,
+    output logic             in_ready,
+    input  wire  [WIDTH-1:0] in_data,
+    output logic             out_valid,
+    input  wire              out_ready,
+    output logic [WIDTH-1:0] out_data
+);
+    localparam int unsigned PLACE_BITS = $clog2(DEPTH);
+
+    (* ram_style = "distributed" *) logic [WIDTH-1:0] places [0:DEPTH-1];
+
+    // One bit more than a place needs: equal pointers mean empty, pointers DEPTH apart mean full.
+    logic [PLACE_BITS:0] head, tail;
+    logic                stored, load;
+
+    assign stored   = head != tail;
+    assign in_ready = head != {~tail[PLACE_BITS], tail[PLACE_BITS-1:0]};
+    assign load     = !out_valid || out_ready;
+
+    always_ff @(posedge clk) begin
+        if (in_valid && in_ready) begin
+            places[head[PLACE_BITS-1:0]] <= in_data;
+            head <= head + 1'b1;
+        end
+        if (load) begin
+            out_valid <= stored;
+            out_data  <= places[tail[PLACE_BITS-1:0]];
+            if (stored) tail <= tail + 1'b1;
+        end
+
+        if (rst) begin
+            head      <= '0;
+            tail      <= '0;
+            out_valid <= 1'b0;
+        end
+    end
+endmodule
+
+`default_nettype wire
