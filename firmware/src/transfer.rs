@@ -3,45 +3,10 @@
 //! While one runs, the line is its own: nothing is echoed or printed. It ends when it is done, when it is given up, or
 //! after a silence.
 
-use glint_core::wire::{Failure, MAX_FRAME, Manifest, Receiver, Sender, State, Timing};
+use glint_core::wire::{Failure, MAX_FRAME, Manifest, Party, Receiver, Sender, State, Timing};
 use litex_hal::timer::Clock;
 
 use crate::terminal::ConsoleUart;
-
-/// Either side of a transfer.
-trait Party {
-    fn on_bytes(&mut self, now_ms: u64, bytes: &[u8]) -> usize;
-    fn poll(&mut self, now_ms: u64, out: &mut [u8]) -> usize;
-    fn state(&self) -> State;
-}
-
-impl Party for Receiver<'_> {
-    fn on_bytes(&mut self, now_ms: u64, bytes: &[u8]) -> usize {
-        self.on_bytes(now_ms, bytes)
-    }
-
-    fn poll(&mut self, now_ms: u64, out: &mut [u8]) -> usize {
-        self.poll(now_ms, out)
-    }
-
-    fn state(&self) -> State {
-        self.state()
-    }
-}
-
-impl Party for Sender<'_> {
-    fn on_bytes(&mut self, now_ms: u64, bytes: &[u8]) -> usize {
-        self.on_bytes(now_ms, bytes)
-    }
-
-    fn poll(&mut self, now_ms: u64, out: &mut [u8]) -> usize {
-        self.poll(now_ms, out)
-    }
-
-    fn state(&self) -> State {
-        self.state()
-    }
-}
 
 /// Receives what `manifest` announces into `buffer`.
 ///

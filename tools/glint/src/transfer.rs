@@ -2,7 +2,7 @@
 
 use crate::board::{Board, BoardError};
 use crate::console::{Console, ConsoleError};
-use glint_core::wire::{Failure, MAX_FRAME, Manifest, Receiver, Sender, State, Timing};
+use glint_core::wire::{Failure, MAX_FRAME, Manifest, Party, Receiver, Sender, State, Timing};
 
 /// Why a transfer did not come to its end.
 #[derive(Debug, thiserror::Error)]
@@ -23,36 +23,6 @@ pub type Progress<'p> = dyn FnMut(u64, u64) + 'p;
 
 /// How long a look for an answer takes, in the board's time.
 const LOOK_MS: u64 = 2;
-
-/// Either side of a transfer.
-trait Party {
-    fn on_bytes(&mut self, now_ms: u64, bytes: &[u8]) -> usize;
-    fn poll(&mut self, now_ms: u64, out: &mut [u8]) -> usize;
-    fn state(&self) -> State;
-    fn progress(&self) -> (u32, u32);
-}
-
-macro_rules! party {
-    ($name:ident) => {
-        impl Party for $name<'_> {
-            fn on_bytes(&mut self, now_ms: u64, bytes: &[u8]) -> usize {
-                self.on_bytes(now_ms, bytes)
-            }
-            fn poll(&mut self, now_ms: u64, out: &mut [u8]) -> usize {
-                self.poll(now_ms, out)
-            }
-            fn state(&self) -> State {
-                self.state()
-            }
-            fn progress(&self) -> (u32, u32) {
-                self.progress()
-            }
-        }
-    };
-}
-
-party!(Sender);
-party!(Receiver);
 
 /// Uploads a mesh and makes it the one that is shown.
 ///

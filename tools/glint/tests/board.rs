@@ -5,6 +5,7 @@
 use glint::board::{Board, BoardError, SimulatedBoard, built_firmware};
 use glint::console::{Console, ConsoleError, value};
 use glint::convert::{self, Options};
+use glint::picture::Frame;
 use glint::render::{self, Renderer, Route, Scene, Stats};
 use glint::transfer::{self, TransferError};
 use glint::{generate, view};
@@ -314,32 +315,33 @@ fn a_bad_upload_leaves_the_old_model() {
     assert!(frame(&mut console) != shown);
 }
 
-#[test]
-fn colours_come_over_the_line() {
+/// Shows the cube by way of the line alone, and says what it looks like.
+fn shown_over_the_line(board: &mut SimulatedBoard) -> (Renderer<'_, SimulatedBoard>, Frame) {
     let mesh = mesh("cube");
-    let mut board = running_board();
-    let mut renderer = renderer(&mut board);
     let scene = cube_scene(&mesh, "3,10,80", (320, 180));
+    let mut renderer = renderer(board);
     renderer
         .show(&scene, Route::Serial, &mut |_, _| {})
         .unwrap();
+    (renderer, render::on_model(&scene).unwrap().frame)
+}
+
+#[test]
+fn colours_come_over_the_line() {
+    let mut board = running_board();
+    let (mut renderer, expected) = shown_over_the_line(&mut board);
     let colour = renderer
-        .colour(scene.size, Route::Serial, &mut |_, _| {})
+        .colour((320, 180), Route::Serial, &mut |_, _| {})
         .unwrap();
-    assert!(colour == render::on_model(&scene).unwrap().frame.colour);
+    assert!(colour == expected.colour);
 }
 
 #[test]
 fn depths_come_over_the_line() {
-    let mesh = mesh("cube");
     let mut board = running_board();
-    let mut renderer = renderer(&mut board);
-    let scene = cube_scene(&mesh, "3,10,80", (320, 180));
-    renderer
-        .show(&scene, Route::Serial, &mut |_, _| {})
-        .unwrap();
+    let (mut renderer, expected) = shown_over_the_line(&mut board);
     let depth = renderer
-        .depth(scene.size, Route::Serial, &mut |_, _| {})
+        .depth((320, 180), Route::Serial, &mut |_, _| {})
         .unwrap();
-    assert!(depth == render::on_model(&scene).unwrap().frame.depth);
+    assert!(depth == expected.depth);
 }
