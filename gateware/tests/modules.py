@@ -22,6 +22,7 @@ class Module:
 # As much time for a memory word as 1280x720 has, in a two-hundredth of its frame.
 _SMALL_RASTER = {"H_ACTIVE": 160, "H_FRONT": 8, "H_SYNC": 4, "H_BACK": 12,
                  "V_ACTIVE": 24, "V_FRONT": 2, "V_SYNC": 2, "V_BACK": 4}
+_COMMON, _BAND = scanout.RTL / "common", scanout.RTL / "band"
 
 MODULES = [
     Module(
@@ -33,4 +34,8 @@ MODULES = [
     ),
     Module(top="skid_buffer", sources=[scanout.RTL / "common" / "skid_buffer.sv"]),
     Module(top="fifo", sources=[scanout.RTL / "common" / "fifo.sv"], variants={"fifo_2": {"DEPTH": 2}}),
+    Module(
+        top="band_buffer",
+        sources=[_COMMON / "fifo.sv"] + [_BAND / f"band_{part}.sv" for part in ("bank", "pipe", "flush", "buffer")],
+    ),
 ]

@@ -27,6 +27,14 @@ impl Bits {
         &self.0
     }
 
+    /// Whether all but the lowest `width` bits are 0.
+    #[must_use]
+    pub fn fits(&self, width: usize) -> bool {
+        let mut above = self.0.iter().skip(width / 32);
+        let cut = above.next().is_none_or(|word| word >> (width % 32) == 0);
+        cut && above.all(|&word| word == 0)
+    }
+
     /// The `width` bits from `low` on, at most 64.
     ///
     /// # Panics
@@ -102,6 +110,7 @@ mod tests {
         let bits = Bits::default().with(20, 34, -5_i64).with(60, 8, 0xa5_i64);
         assert_eq!((bits.signed(20, 34), bits.field(60, 8)), (-5, 0xa5));
         assert_eq!(bits.field(0, 20), 0);
+        assert!(bits.fits(68) && !bits.fits(67) && bits.fits(512));
         assert_eq!(format!("{:?}", Bits::from(0x1_0000_0002)), "0x1_00000002");
     }
 

@@ -95,6 +95,12 @@ impl Source {
         self.items.push_back(item);
     }
 
+    /// Drops what has not been taken, even the item that is shown: its giver has been reset.
+    pub fn clear(&mut self) {
+        self.items.clear();
+        self.shown = false;
+    }
+
     /// Items that have not been taken.
     #[must_use]
     pub fn len(&self) -> usize {
@@ -159,6 +165,11 @@ impl Sink {
     /// Takes out what was taken so far.
     pub fn take(&mut self) -> Vec<Vec<Bits>> {
         std::mem::take(&mut self.items)
+    }
+
+    /// Stalls in another way from now on, and returns how it did.
+    pub fn set_stalls(&mut self, stalls: Stalls) -> Stalls {
+        std::mem::replace(&mut self.stalls, stalls)
     }
 
     /// Is ready, or stalls.

@@ -1,0 +1,46 @@
+// One memory of the band buffer: 2^ROW_BITS rows of eight lanes, one block RAM a lane, so that each lane has a write enable.
+//
+//   read_row ─▶ register ─▶ RAM ─▶ register ─▶ read_data     3 clocks from `read_row` to its data
+//   write_*  ─▶ register ─▶ RAM                              a `read_row` one clock after `write_row` reads what was written
+//
+// One read and one write in every clock. A lane that is read and written in the same clock may give either value: the
+// users see to it that nobody looks at it then.
+
+`default_nettype none
+
+module band_bank #(
+    parameter int unsigned WIDTH    = 18,
+    parameter int unsigned ROW_BITS = 11
+) (
+    input  wire                 clk,
+    input  wire  [ROW_BITS-1:0] read_row,
+    output logic [8*WIDTH-1:0]  read_data,
+    input  wire  [ROW_BITS-1:0] write_row,
+    input  wire  [7:0]          write_lanes,
+    input  wire  [8*WIDTH-1:0]  write_data
+);
+    logic [ROW_BITS-1:0] from_row, to_row;
+    logic [7:0]          to_lanes;
+    logic [8*WIDTH-1:0]  to_store;
+
+    always_ff @(posedge clk) begin
+        from_row <= read_row;
+        to_row   <= write_row;
+        to_lanes <= write_lanes;
+        to_store <= write_data;
+    end
+
+    for (genvar lane = 0; lane < 8; lane++) begin : lanes
+        (* ram_style = "block", rw_addr_collision = "no", no_rw_check *)
+        logic [WIDTH-1:0] rows [0:2**ROW_BITS-1];
+        logic [WIDTH-1:0] latched;
+
+        always_ff @(posedge clk) begin
+            latched <= rows[from_row];
+            read_data[WIDTH*lane +: WIDTH] <= latched;
+            if (to_lanes[lane]) rows[to_row] <= to_store[WIDTH*lane +: WIDTH];
+        end
+    end
+endmodule
+
+`default_nettype wire

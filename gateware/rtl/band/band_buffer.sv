@@ -1,0 +1,177 @@
+// The band buffer: colour and depth of a band, at most 15,360 pixels, in block RAM, shared by all renderers. While one band
+// is drawn the one before it is written to memory.
+//
+//                        ┌────────────┐  drawn  ┌─────────────────┐ flushed  ┌────────────┐
+//   groups ─▶ band_pipe ─┤            ├────────▶│ colour bank 0/1 │─────────▶│            │─▶ cmd
+//                ▲       │            │         ├─────────────────┤          │ band_flush │
+//                └───────┤  compare   │◀───────▶│ depth (shared)  │┄ debug ┄▶│            │─▶ wdata
+//                        └────────────┘         └─────────────────┘          └────────────┘
+//
+// A row is eight pixels, and its address is y_in_band * (W/8) + x/8. Each pixel has, beside its colour, a bit that says
+// whether it has been written in this band; a bank is clear when no bit is set. Depth counts as 0 and colour as the clear
+// colour where the bit is not set, so that neither has to be stored, one depth memory serves both banks, and the clear
+// colour may change from band to band. The flush resets the bits behind itself: there is no clear pass. 24 RAMB36.
+//
+// Groups: {row, mask, eight depth codes u18, eight colours RGB565}, lane 0 (the leftmost) in the lowest bits. Lane i is
+// written where mask[i] is set and code[i] is at least the stored one. One group a clock; see band_pipe for hazards.
+//
+// Bands: an item of `band_*` says that the band is drawn and how it is to be flushed: address of its first 128-bit word,
+// `rows` (at least 1), clear colour; with `with_depth` also its depth, as 32-bit words from `depth_base` on. Groups taken up
+// to and including the first clock of `band_valid` belong to it; then no group is taken until the item has moved, which
+// is when the last group is written and the band before has gone to memory. So the banks have changed places.
+// `with_depth` is for debugging: the next band is drawn only after the flush, and takes three words a row.
+//
+// `restart` (and reset) drops the band being drawn and stops the flush; words that have been read, at most 32, still go to
+// memory. Then both banks are cleared, 2,048 clocks in which `clearing` is high and no stream is taken, whatever memory
+// does. The renderers are to be restarted too: a group or band that is still offered afterwards counts.
+//
+// Streams: an item moves in a clock in which valid and ready are high; valid does not wait for ready, a payload stays as it
+// is until it has moved. Memory side: see band_flush. `flushed`: memory has taken everything of all bands that have moved.
+// Counters run freely from reset: groups taken, clocks in which a group was held by a hazard, clocks in which the flush had
+// no place for a word because of memory, clocks in which a drawn band waited for the flush of the one before.
+
+`default_nettype none
+
+module band_buffer #(
+    parameter int unsigned ADDRESS_BITS = 23
+) (
+    input  wire                     clk,
+    input  wire                     rst,
+    input  wire                     restart,
+    output logic                    clearing,
+    output logic                    flushed,
+    // Groups.
+    input  wire                     group_valid,
+    output logic                    group_ready,
+    input  wire  [10:0]             group_row,
+    input  wire  [7:0]              group_mask,
+    input  wire  [8*18-1:0]         group_codes,
+    input  wire  [8*16-1:0]         group_colours,
+    // Bands.
+    input  wire                     band_valid,
+    output logic                    band_ready,
+    input  wire  [ADDRESS_BITS-1:0] band_base,
+    input  wire  [ADDRESS_BITS-1:0] band_depth_base,
+    input  wire  [10:0]             band_rows,
+    input  wire                     band_with_depth,
+    input  wire  [15:0]             band_clear,
+    // Memory.
+    output logic                    cmd_valid,
+    input  wire                     cmd_ready,
+    output logic [ADDRESS_BITS-1:0] cmd_addr,
+    output logic                    wdata_valid,
+    input  wire                     wdata_ready,
+    output logic [127:0]            wdata_data,
+    // Counters.
+    output logic [31:0]             groups_in,
+    output logic [31:0]             clocks_held,
+    output logic [31:0]             clocks_memory,
+    output logic [31:0]             clocks_flush
+);
+    localparam int unsigned ROW_BITS = 11;
+
+    // Which bank is drawn; the other one is flushed.
+    logic drawn, closing, swap;
+
+    // The draw side.
+    logic                open, empty, held;
+    logic [ROW_BITS-1:0] draw_read_row, draw_write_row;
+    logic [7:0]          draw_lanes, drawn_written;
+    logic [8*18-1:0]     draw_codes, stored_codes;
+    logic [8*16-1:0]     draw_colours;
+    // The flush side.
+    logic                flush_idle, flush_reads_depth, flush_waits, flush_clears;
+    logic [ROW_BITS-1:0] flush_row, flush_clear_row;
+    logic [8*16-1:0]     flushed_colours;
+    logic [7:0]          flushed_written;
+
+    assign flushed    = flush_idle;
+    assign open       = !clearing && !closing && !flush_reads_depth;
+    assign band_ready = closing && empty && flush_idle;
+    assign swap       = band_valid && band_ready;
+
+    always_ff @(posedge clk) begin
+        closing <= band_valid && !swap && !clearing;
+        if (swap) drawn <= !drawn;
+
+        if (rst || restart) closing <= 1'b0;
+        if (rst) drawn <= 1'b0;
+    end
+
+    band_pipe #(.ROW_BITS(ROW_BITS)) pipe (
+        .clk, .rst, .open,
+        .group_valid, .group_ready, .group_row, .group_mask, .group_codes, .group_colours,
+        .read_row(draw_read_row), .stored(stored_codes), .stored_written(drawn_written),
+        .write_row(draw_write_row), .write_lanes(draw_lanes), .write_codes(draw_codes), .write_colours(draw_colours),
+        .empty, .held
+    );
+
+    band_flush #(.ADDRESS_BITS(ADDRESS_BITS), .ROW_BITS(ROW_BITS)) flush (
+        .clk, .rst,
+        .start(swap), .base(band_base), .depth_base(band_depth_base), .rows(band_rows), .with_depth(band_with_depth),
+        .clear_colour(band_clear), .restart, .quiet(empty), .idle(flush_idle), .sweeping(clearing),
+        .reads_depth(flush_reads_depth), .waits(flush_waits),
+        .row(flush_row), .colours(flushed_colours), .codes(stored_codes), .written(flushed_written),
+        .clears(flush_clears), .clear_row(flush_clear_row),
+        .cmd_valid, .cmd_ready, .cmd_addr, .wdata_valid, .wdata_ready, .wdata_data
+    );
+
+    // A pixel in a colour bank is {written, colour}.
+    logic [8*17-1:0] bank_pixels [0:1];
+    logic [8*16-1:0] bank_colours [0:1];
+    logic [7:0]      bank_written [0:1];
+
+    for (genvar bank = 0; bank < 2; bank++) begin : banks
+        logic            flushes;
+        logic [8*17-1:0] store;
+        assign flushes = clearing || drawn != 1'(bank);
+
+        for (genvar lane = 0; lane < 8; lane++) begin : lanes
+            assign store[17*lane +: 17] = {!flushes, draw_colours[16*lane +: 16]};
+            assign {bank_written[bank][lane], bank_colours[bank][16*lane +: 16]} = bank_pixels[bank][17*lane +: 17];
+        end
+
+        band_bank #(.WIDTH(17), .ROW_BITS(ROW_BITS)) pixels (
+            .clk,
+            .read_row(flushes ? flush_row : draw_read_row),
+            .read_data(bank_pixels[bank]),
+            .write_row(flushes ? flush_clear_row : draw_write_row),
+            .write_lanes(flushes ? {8{flush_clears}} : draw_lanes),
+            .write_data(store)
+        );
+    end
+
+    assign drawn_written   = bank_written[drawn];
+    assign flushed_written = bank_written[!drawn];
+    assign flushed_colours = bank_colours[!drawn];
+
+    band_bank #(.WIDTH(18), .ROW_BITS(ROW_BITS)) depths (
+        .clk,
+        .read_row(flush_reads_depth ? flush_row : draw_read_row),
+        .read_data(stored_codes),
+        .write_row(draw_write_row),
+        .write_lanes(draw_lanes),
+        .write_data(draw_codes)
+    );
+
+    // The events are registered first: a carry chain of 32 bits is long enough by itself.
+    logic group_came, was_held, memory_waited, flush_waited;
+
+    always_ff @(posedge clk) begin
+        group_came    <= group_valid && group_ready;
+        was_held      <= held;
+        memory_waited <= flush_waits;
+        flush_waited  <= closing && empty && !flush_idle;
+        groups_in     <= groups_in + 32'(group_came);
+        clocks_held   <= clocks_held + 32'(was_held);
+        clocks_memory <= clocks_memory + 32'(memory_waited);
+        clocks_flush  <= clocks_flush + 32'(flush_waited);
+
+        if (rst) begin
+            {group_came, was_held, memory_waited, flush_waited} <= '0;
+            {groups_in, clocks_held, clocks_memory, clocks_flush} <= '0;
+        end
+    end
+endmodule
+
+`default_nettype wire

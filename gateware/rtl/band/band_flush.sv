@@ -1,0 +1,205 @@
+// Reads a finished band out of its bank, row by row, writes it to memory, and clears each row behind itself.
+//
+//   row ─▶ ┄┄ band_bank's read ┄┄ ─▶ compose ─▶ word ─▶ fifo ─▶ wdata
+//    └──▶ clear_row, a clock later                       └────▶ cmd, when the word is there
+//
+// One row is one 128-bit word: eight RGB565 pixels, the leftmost in the lowest bits; a pixel that nobody has drawn takes
+// the clear colour. With `with_depth` two words follow, four depths of 32 bits each, 0 where nobody has drawn. Colour words
+// go to `base` and the words after it, depth words to `depth_base` and the words after it.
+//
+// `start` takes these parameters and begins; it may come while `idle` is high, which falls until memory has taken the last
+// word. Throughput one word a clock where memory keeps up; the first command comes 8 clocks after `start`.
+//
+// Memory side, the LiteDRAM native write port: 128-bit word addresses by valid/ready, data by valid/ready in the order of
+// the addresses. LiteDRAM takes the data of a command some time after it without looking at `wdata_valid`, so a command is
+// offered only when its data is, and there is a place for a word before its row is read: memory may stall as it likes.
+//
+// `restart`, and reset, leave the band: words that have been read still go to memory, then all 2^ROW_BITS rows of both banks
+// are cleared, one a clock, as soon as `quiet` (nobody draws). `sweeping` is high meanwhile; memory is not waited for.
+
+`default_nettype none
+
+module band_flush #(
+    parameter int unsigned ADDRESS_BITS = 23,
+    parameter int unsigned ROW_BITS     = 11,
+    // Words on their way, a power of two.
+    parameter int unsigned WORDS        = 32
+) (
+    input  wire                     clk,
+    input  wire                     rst,
+    // Work.
+    input  wire                     start,
+    input  wire  [ADDRESS_BITS-1:0] base,
+    input  wire  [ADDRESS_BITS-1:0] depth_base,
+    input  wire  [ROW_BITS-1:0]     rows,
+    input  wire                     with_depth,
+    input  wire  [15:0]             clear_colour,
+    input  wire                     restart,
+    input  wire                     quiet,
+    output logic                    idle,
+    output logic                    sweeping,
+    output logic                    reads_depth,
+    output logic                    waits,
+    // Bank: what is there belongs to the `row` of 3 clocks before. `clears`: `clear_row` is to be marked as not written.
+    output logic [ROW_BITS-1:0]     row,
+    input  wire  [8*16-1:0]         colours,
+    input  wire  [8*18-1:0]         codes,
+    input  wire  [7:0]              written,
+    output logic                    clears,
+    output logic [ROW_BITS-1:0]     clear_row,
+    // Memory.
+    output logic                    cmd_valid,
+    input  wire                     cmd_ready,
+    output logic [ADDRESS_BITS-1:0] cmd_addr,
+    output logic                    wdata_valid,
+    input  wire                     wdata_ready,
+    output logic [127:0]            wdata_data
+);
+    localparam int unsigned COUNT_BITS = $clog2(WORDS + 1);
+
+    // The words of a row.
+    typedef enum logic [1:0] {COLOUR, DEPTH_LEFT, DEPTH_RIGHT} part_t;
+
+    function automatic part_t next_part(input part_t part, input logic depth);
+        case (part)
+            COLOUR:     next_part = depth ? DEPTH_LEFT : COLOUR;
+            DEPTH_LEFT: next_part = DEPTH_RIGHT;
+            default:    next_part = COLOUR;
+        endcase
+    endfunction
+
+    typedef enum logic [1:0] {IDLE, FLUSH, SWEEP} state_t;
+    state_t                state;
+    part_t                 part;
+    logic                  depth_too, issue, row_ends;
+    logic [ROW_BITS-1:0]   last_row;
+    logic [15:0]           background;
+    // Words that may still be asked for.
+    logic [COUNT_BITS-1:0] places;
+
+    assign idle        = state == IDLE && places == COUNT_BITS'(WORDS);
+    assign sweeping    = state == SWEEP;
+    assign reads_depth = state == FLUSH && depth_too;
+    assign waits       = state == FLUSH && places == '0;
+    assign issue       = state == FLUSH && places != '0;
+    assign row_ends    = part == (depth_too ? DEPTH_RIGHT : COLOUR);
+
+    // Rows, and their clearing a clock behind: the read is then under way.
+    always_ff @(posedge clk) begin
+        clears    <= 1'b0;
+        clear_row <= row;
+
+        case (state)
+            FLUSH: if (issue) begin
+                part   <= next_part(part, depth_too);
+                clears <= row_ends;
+                if (row_ends) begin
+                    row <= row + 1'b1;
+                    if (row == last_row) state <= IDLE;
+                end
+            end
+            SWEEP: if (quiet) begin
+                clears <= 1'b1;
+                row    <= row + 1'b1;
+                if (row == '1) state <= IDLE;
+            end
+            default: if (start) begin
+                state      <= FLUSH;
+                part       <= COLOUR;
+                row        <= '0;
+                last_row   <= rows - 1'b1;
+                depth_too  <= with_depth;
+                background <= clear_colour;
+            end
+        endcase
+
+        if (rst || restart) begin
+            state  <= SWEEP;
+            row    <= '0;
+            clears <= 1'b0;
+        end
+    end
+
+    // The way through the bank.
+    logic  asked_0, asked_1, asked_2;
+    part_t part_0, part_1, part_2;
+
+    always_ff @(posedge clk) begin
+        asked_0 <= issue;
+        asked_1 <= asked_0;
+        asked_2 <= asked_1;
+        part_0  <= part;
+        part_1  <= part_0;
+        part_2  <= part_1;
+
+        if (rst) begin
+            asked_0 <= 1'b0;
+            asked_1 <= 1'b0;
+            asked_2 <= 1'b0;
+        end
+    end
+
+    logic         word_valid, word_ready;
+    logic [127:0] word, colour_word, depth_left_word, depth_right_word;
+
+    for (genvar lane = 0; lane < 8; lane++) begin : lanes
+        assign colour_word[16*lane +: 16] = written[lane] ? colours[16*lane +: 16] : background;
+    end
+    for (genvar lane = 0; lane < 4; lane++) begin : depth_lanes
+        assign depth_left_word[32*lane +: 32]  = {14'b0, codes[18*lane +: 18] & {18{written[lane]}}};
+        assign depth_right_word[32*lane +: 32] = {14'b0, codes[18*(lane + 4) +: 18] & {18{written[lane + 4]}}};
+    end
+
+    always_ff @(posedge clk) begin
+        word_valid <= asked_2 && !rst;
+        case (part_2)
+            COLOUR:     word <= colour_word;
+            DEPTH_LEFT: word <= depth_left_word;
+            default:    word <= depth_right_word;
+        endcase
+    end
+
+    fifo #(.WIDTH(128), .DEPTH(WORDS)) words (
+        .clk, .rst,
+        .in_valid(word_valid), .in_ready(word_ready), .in_data(word),
+        .out_valid(wdata_valid), .out_ready(wdata_ready), .out_data(wdata_data)
+    );
+
+    // Commands, one for each word from the moment it is at the end of the FIFO or behind one that is.
+    logic                    stored, commanded, taken;
+    logic [COUNT_BITS-1:0]   to_command;
+    logic [ADDRESS_BITS-1:0] colour_address, depth_address;
+    part_t                   cmd_part;
+
+    assign cmd_valid = to_command != '0;
+    assign cmd_addr  = cmd_part == COLOUR ? colour_address : depth_address;
+    assign commanded = cmd_valid && cmd_ready;
+    assign taken     = wdata_valid && wdata_ready;
+
+    always_ff @(posedge clk) begin
+        stored <= word_valid && word_ready;
+        if (stored && !commanded)      to_command <= to_command + 1'b1;
+        else if (!stored && commanded) to_command <= to_command - 1'b1;
+        if (taken && !issue)           places <= places + 1'b1;
+        else if (!taken && issue)      places <= places - 1'b1;
+
+        if (commanded) begin
+            cmd_part <= next_part(cmd_part, depth_too);
+            if (cmd_part == COLOUR) colour_address <= colour_address + 1'b1;
+            else                    depth_address  <= depth_address + 1'b1;
+        end
+        if (start) begin
+            cmd_part       <= COLOUR;
+            colour_address <= base;
+            depth_address  <= depth_base;
+        end
+
+        if (rst) begin
+            stored     <= 1'b0;
+            to_command <= '0;
+            places     <= COUNT_BITS'(WORDS);
+        end
+    end
+endmodule
+
+`default_nettype wire

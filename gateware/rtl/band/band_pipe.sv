@@ -1,0 +1,103 @@
+// Draws groups of eight pixels into the band buffer's memories: reads the row, compares depths, writes the lanes that pass.
+//
+//   groups ─▶ issue ─▶ ┄┄┄┄┄┄┄┄ band_bank's read ┄┄┄┄┄┄┄┄ ─▶ compare ─▶ ┄┄ band_bank's write ┄┄
+//             read_row    reading[0]      reading[1]         write_*
+//
+// A lane is written where its mask is set and its code is at least the stored one, which counts as 0 where the pixel has
+// not been written in this band. Latency 3 clocks from `read_row` to `write_*`; throughput one group a clock.
+//
+// Hazard: a group may not read a lane that a group before it has still to write. One that shares a row and a lane with one
+// of the three groups before it is held until at least four clocks lie between them. Groups that share a row and no lane,
+// as neighbouring triangles do along their edge, pass without a stall: each lane is a memory of its own.
+//
+// Stream contract on the input: valid/ready, an item moves in a clock in which both are high; `group_ready` comes from
+// registers and from `open`, which lets groups in. `empty`: all groups are written as far as reads through `read_row` see.
+
+`default_nettype none
+
+module band_pipe #(
+    parameter int unsigned ROW_BITS = 11
+) (
+    input  wire                 clk,
+    input  wire                 rst,
+    input  wire                 open,
+    // Groups.
+    input  wire                 group_valid,
+    output logic                group_ready,
+    input  wire  [ROW_BITS-1:0] group_row,
+    input  wire  [7:0]          group_mask,
+    input  wire  [8*18-1:0]     group_codes,
+    input  wire  [8*16-1:0]     group_colours,
+    // Memories. `stored` and `stored_written` belong to the `read_row` of 3 clocks before.
+    output logic [ROW_BITS-1:0] read_row,
+    input  wire  [8*18-1:0]     stored,
+    input  wire  [7:0]          stored_written,
+    output logic [ROW_BITS-1:0] write_row,
+    output logic [7:0]          write_lanes,
+    output logic [8*18-1:0]     write_codes,
+    output logic [8*16-1:0]     write_colours,
+    // State.
+    output logic                empty,
+    output logic                held
+);
+    typedef struct packed {
+        logic [ROW_BITS-1:0] row;
+        logic [7:0]          mask;
+        logic [8*18-1:0]     codes;
+        logic [8*16-1:0]     colours;
+    } group_t;
+
+    group_t     issued, reading_0, reading_1, comparing;
+    logic       issued_valid, issue;
+    logic [2:0] occupied;
+    // Clocks that the issued group still has to wait.
+    logic [1:0] hold;
+
+    assign held        = issued_valid && hold != '0;
+    assign issue       = issued_valid && hold == '0;
+    assign group_ready = open && !held;
+    assign read_row    = issued.row;
+    assign empty       = !issued_valid && occupied == '0;
+
+    // Found while a group comes in, so that `group_ready` does not wait for a comparison. A place without a group has no mask.
+    logic conflict_issued, conflict_0, conflict_1;
+    assign conflict_issued = issued_valid && group_row == issued.row && (group_mask & issued.mask) != '0;
+    assign conflict_0      = group_row == reading_0.row && (group_mask & reading_0.mask) != '0;
+    assign conflict_1      = group_row == reading_1.row && (group_mask & reading_1.mask) != '0;
+
+    always_ff @(posedge clk) begin
+        if (hold != '0) hold <= hold - 1'b1;
+        if (!held) issued_valid <= group_valid && open;
+        if (group_valid && group_ready) begin
+            issued <= {group_row, group_mask, group_codes, group_colours};
+            if (conflict_issued) hold <= 2'd3;
+            else if (conflict_0) hold <= 2'd2;
+            else if (conflict_1) hold <= 2'd1;
+        end
+
+        reading_0 <= issued;
+        if (!issue) reading_0.mask <= '0;
+        reading_1 <= reading_0;
+        comparing <= reading_1;
+        occupied  <= {occupied[1:0], issue};
+
+        if (rst) begin
+            issued_valid   <= 1'b0;
+            hold           <= '0;
+            occupied       <= '0;
+            reading_0.mask <= '0;
+            reading_1.mask <= '0;
+            comparing.mask <= '0;
+        end
+    end
+
+    for (genvar lane = 0; lane < 8; lane++) begin : lanes
+        assign write_lanes[lane] = comparing.mask[lane]
+            && (!stored_written[lane] || comparing.codes[18*lane +: 18] >= stored[18*lane +: 18]);
+    end
+    assign write_row     = comparing.row;
+    assign write_codes   = comparing.codes;
+    assign write_colours = comparing.colours;
+endmodule
+
+`default_nettype wire

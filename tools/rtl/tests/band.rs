@@ -1,0 +1,519 @@
+//! The band buffer: what it draws is what a plain depth test draws, and memory gets every band whole and in order.
+
+use std::collections::VecDeque;
+
+use glint_rtl::{Bits, Module, Port, Sink, Source, Stalls};
+use rand::RngExt;
+use rand_pcg::Pcg64Mcg;
+
+const LANES: usize = 8;
+const ROWS_OF_A_BANK: u64 = 2048;
+/// Words that may be on their way to memory.
+const WORDS: usize = 32;
+
+#[derive(Clone, Debug)]
+struct Group {
+    row: usize,
+    mask: u8,
+    codes: [u32; LANES],
+    colours: [u16; LANES],
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Band {
+    base: u32,
+    depth_base: u32,
+    rows: usize,
+    with_depth: bool,
+    clear: u16,
+}
+
+type Word = (u32, [u32; 4]);
+
+/// Depth and colour of the pixels that have been drawn, by row.
+struct Pixels(Vec<[Option<(u32, u16)>; LANES]>);
+
+impl Pixels {
+    fn clear() -> Self {
+        Self(vec![[None; LANES]; ROWS_OF_A_BANK as usize])
+    }
+
+    fn draw(&mut self, group: &Group) {
+        for lane in (0..LANES).filter(|lane| group.mask >> lane & 1 == 1) {
+            let pixel = &mut self.0[group.row][lane];
+            if group.codes[lane] >= pixel.map_or(0, |(code, _)| code) {
+                *pixel = Some((group.codes[lane], group.colours[lane]));
+            }
+        }
+    }
+
+    /// What goes to memory, in order.
+    fn words(&self, band: &Band) -> Vec<Word> {
+        let mut words = Vec::new();
+        for (row, pixels) in (0..).zip(&self.0[..band.rows]) {
+            let colour = pixels.map(|pixel| u32::from(pixel.map_or(band.clear, |(_, c)| c)));
+            let pairs = [0, 1, 2, 3].map(|i| colour[2 * i] | colour[2 * i + 1] << 16);
+            words.push((band.base + row, pairs));
+            if band.with_depth {
+                let codes = pixels.map(|pixel| pixel.map_or(0, |(code, _)| code));
+                for (half, codes) in (0..).zip(codes.as_chunks::<4>().0) {
+                    words.push((band.depth_base + 2 * row + half, *codes));
+                }
+            }
+        }
+        words
+    }
+}
+
+/// LiteDRAM's native write port: it takes the data of a command when it wants to, and does not look whether they are there.
+struct Memory {
+    commands: Sink,
+    data_valid: Port,
+    data_ready: Port,
+    data: Port,
+    stalls: Stalls,
+    /// Addresses of commands whose data have not been taken.
+    owed: VecDeque<u32>,
+    takes: bool,
+    words: Vec<Word>,
+}
+
+impl Memory {
+    fn new(module: &Module, seed: u64, share: f64) -> Self {
+        Self {
+            commands: Sink::new(module, "cmd", &["addr"], Stalls::new(seed, share)),
+            data_valid: module.port("wdata_valid"),
+            data_ready: module.port("wdata_ready"),
+            data: module.port("wdata_data"),
+            stalls: Stalls::new(seed + 1, share),
+            owed: VecDeque::new(),
+            takes: false,
+            words: Vec::new(),
+        }
+    }
+
+    fn drive(&mut self, module: &mut Module) {
+        self.commands.drive(module);
+        self.takes = !self.stalls.next_stalled() && !self.owed.is_empty();
+        module.set(self.data_ready, u64::from(self.takes));
+    }
+
+    fn sample(&mut self, module: &Module) {
+        if self.takes {
+            let cycle = module.cycles();
+            assert!(
+                module.is_high(self.data_valid),
+                "no data for a command in cycle {cycle}"
+            );
+            let words = module.get(self.data);
+            let address = self.owed.pop_front().expect("takes only what is owed");
+            let data = std::array::from_fn(|i| words.words()[i]);
+            self.words.push((address, data));
+        }
+        self.commands.sample(module);
+        let addresses = self.commands.take().into_iter();
+        self.owed.extend(addresses.map(|item| item[0].words()[0]));
+    }
+}
+
+struct Bench {
+    module: Module,
+    group_source: Source,
+    band_source: Source,
+    memory: Memory,
+    groups: VecDeque<Group>,
+    bands: VecDeque<Band>,
+    band_valid: Port,
+    restart: Port,
+    clearing: Port,
+    flushed: Port,
+    /// `band_valid` in the clock before: groups are not taken any more.
+    closed: bool,
+    drawn: Pixels,
+    expected: Vec<Word>,
+}
+
+impl Bench {
+    /// A band buffer after reset, still clearing itself.
+    fn new(seed: u64, group_stalls: f64, memory_stalls: f64) -> Self {
+        let mut module = Module::new("band_buffer", seed as u32);
+        let restart = module.port("restart");
+        module.set(restart, 0_u64);
+        Self {
+            group_source: Source::new(
+                &module,
+                "group",
+                &["row", "mask", "codes", "colours"],
+                Stalls::new(seed, group_stalls),
+            ),
+            band_source: Source::new(
+                &module,
+                "band",
+                &["base", "depth_base", "rows", "with_depth", "clear"],
+                Stalls::new(seed + 100, group_stalls),
+            ),
+            memory: Memory::new(&module, seed + 200, memory_stalls),
+            groups: VecDeque::new(),
+            bands: VecDeque::new(),
+            band_valid: module.port("band_valid"),
+            restart,
+            clearing: module.port("clearing"),
+            flushed: module.port("flushed"),
+            closed: false,
+            drawn: Pixels::clear(),
+            expected: Vec::new(),
+            module,
+        }
+    }
+
+    /// As `new`, ready to draw.
+    fn ready(seed: u64, group_stalls: f64, memory_stalls: f64) -> Self {
+        let mut bench = Self::new(seed, group_stalls, memory_stalls);
+        bench.run_until(ROWS_OF_A_BANK + 10, |bench| !bench.is(bench.clearing));
+        bench
+    }
+
+    fn is(&self, port: Port) -> bool {
+        self.module.is_high(port)
+    }
+
+    fn counter(&self, name: &str) -> u64 {
+        self.module.value(self.module.port(name))
+    }
+
+    fn push_group(&mut self, group: Group) {
+        let (mut codes, mut colours) = (Bits::default(), Bits::default());
+        for lane in 0..LANES {
+            codes = codes.with(18 * lane, 18, i64::from(group.codes[lane]));
+            colours = colours.with(16 * lane, 16, i64::from(group.colours[lane]));
+        }
+        self.group_source.push(vec![
+            Bits::from(group.row as u64),
+            Bits::from(u64::from(group.mask)),
+            codes,
+            colours,
+        ]);
+        self.groups.push_back(group);
+    }
+
+    fn push_band(&mut self, band: Band) {
+        self.band_source.push(vec![
+            Bits::from(u64::from(band.base)),
+            Bits::from(u64::from(band.depth_base)),
+            Bits::from(band.rows as u64),
+            Bits::from(u64::from(band.with_depth)),
+            Bits::from(u64::from(band.clear)),
+        ]);
+        self.bands.push_back(band);
+    }
+
+    fn clock(&mut self) {
+        let module = &mut self.module;
+        self.group_source.drive(module);
+        self.band_source.drive(module);
+        self.memory.drive(module);
+        module.settle();
+        self.group_source.sample(module);
+        self.band_source.sample(module);
+        self.memory.sample(module);
+        if self.group_source.len() < self.groups.len() {
+            let group = self.groups.pop_front().expect("it was there");
+            let cycle = module.cycles();
+            assert!(
+                !self.closed,
+                "cycle {cycle}: a group was taken after its band's end"
+            );
+            self.drawn.draw(&group);
+        }
+        self.closed = module.is_high(self.band_valid);
+        if self.band_source.len() < self.bands.len() {
+            let band = self.bands.pop_front().expect("it was there");
+            self.expected.extend(self.drawn.words(&band));
+            self.drawn = Pixels::clear();
+            self.closed = false;
+        }
+        module.clock();
+    }
+
+    /// Clocks until something is so, and returns how often.
+    fn run_until(&mut self, limit: u64, done: impl Fn(&Self) -> bool) -> u64 {
+        for clocks in 0..limit {
+            self.module.settle();
+            if done(self) {
+                return clocks;
+            }
+            self.clock();
+        }
+        panic!("not done after {limit} clocks");
+    }
+
+    /// Draws groups and ends their band.
+    fn draw(&mut self, groups: impl IntoIterator<Item = Group>, band: Band) {
+        for group in groups {
+            self.push_group(group);
+        }
+        let limit = 200 * (self.groups.len() as u64 + 4 * ROWS_OF_A_BANK);
+        self.run_until(limit, |bench| bench.groups.is_empty());
+        self.push_band(band);
+    }
+
+    /// Waits until everything is in memory and compares it.
+    fn finish(&mut self) {
+        self.run_until(200 * 4 * ROWS_OF_A_BANK, |bench| {
+            bench.bands.is_empty() && bench.is(bench.flushed)
+        });
+        self.compare();
+    }
+
+    fn compare(&mut self) {
+        for (index, (found, expected)) in self.memory.words.iter().zip(&self.expected).enumerate() {
+            assert_eq!(found, expected, "word {index} (address, data)");
+        }
+        assert_eq!(self.memory.words.len(), self.expected.len(), "words");
+        assert!(self.memory.owed.is_empty(), "commands without data");
+        self.memory.words.clear();
+        self.expected.clear();
+    }
+}
+
+/// Groups of a few rows and few depths, so that they meet often.
+fn random_group(random: &mut Pcg64Mcg, rows: usize) -> Group {
+    Group {
+        row: random.random_range(0..rows),
+        mask: random.random(),
+        codes: std::array::from_fn(|_| match random.random_range(0..4) {
+            0 => 1,
+            1 => (1 << 18) - 1,
+            2 => random.random_range(1..=3),
+            _ => random.random_range(1..1 << 18),
+        }),
+        colours: random.random(),
+    }
+}
+
+fn random_band(random: &mut Pcg64Mcg, rows: usize) -> Band {
+    Band {
+        base: random.random_range(0..1 << 22),
+        depth_base: random.random_range(0..1 << 22),
+        rows,
+        with_depth: random.random(),
+        clear: random.random(),
+    }
+}
+
+/// A group that covers a whole row.
+fn full_group(row: usize, code: u32) -> Group {
+    Group {
+        row,
+        mask: 0xff,
+        codes: [code; LANES],
+        colours: std::array::from_fn(|lane| (row * LANES + lane) as u16),
+    }
+}
+
+fn plain_band(rows: usize) -> Band {
+    Band {
+        base: 0x12_3456,
+        depth_base: 0x65_4321,
+        rows,
+        with_depth: false,
+        clear: 0xa55a,
+    }
+}
+
+#[test]
+fn random_groups_in_many_bands_with_stalls() {
+    let shares = [(0.0, 0.0), (0.3, 0.3), (0.0, 0.9), (0.8, 0.1)];
+    for (seed, (group_stalls, memory_stalls)) in (1..).zip(shares) {
+        println!("seed {seed}, stalls {group_stalls} and {memory_stalls}");
+        let mut random = Pcg64Mcg::new(u128::from(seed));
+        let mut bench = Bench::ready(seed, group_stalls, memory_stalls);
+        // The same in all bands: groups that are taken just before a band ends belong to it, whoever they were meant for.
+        let rows = random.random_range(1..40);
+        for _ in 0..12 {
+            let count = random.random_range(0..300);
+            let groups: Vec<_> = (0..count)
+                .map(|_| random_group(&mut random, rows))
+                .collect();
+            let band = random_band(&mut random, rows);
+            bench.draw(groups, band);
+        }
+        bench.finish();
+    }
+}
+
+#[test]
+fn whole_bands_leave_nothing_to_the_next() {
+    let mut bench = Bench::ready(5, 0.0, 0.1);
+    for rows in [1920, 1920, 1800, 1800] {
+        bench.draw((0..rows).map(|row| full_group(row, 9)), plain_band(rows));
+    }
+    // Both banks, without a group.
+    for clear in [1, 2, 3] {
+        let band = Band {
+            clear,
+            with_depth: clear == 2,
+            ..plain_band(1920)
+        };
+        bench.draw([], band);
+    }
+    bench.finish();
+}
+
+#[test]
+fn a_bank_after_reset_is_clear() {
+    let mut bench = Bench::new(6, 0.0, 0.0);
+    assert!(bench.is(bench.clearing));
+    for _ in 0..2 {
+        bench.push_band(plain_band(1920));
+    }
+    bench.finish();
+    assert_eq!(bench.counter("groups_in"), 0);
+}
+
+#[test]
+fn one_group_a_clock_where_rows_or_lanes_differ() {
+    const COUNT: usize = 1920;
+    let mut bench = Bench::ready(7, 0.0, 0.0);
+    let rows = (0..COUNT).map(|i| full_group(i, 1));
+    // Neighbouring triangles: the same row, other lanes.
+    let lanes = (0..COUNT).map(|i| Group {
+        mask: 0x0f << (i % 2 * 4),
+        ..full_group(i / 2, 2)
+    });
+    let start = bench.module.cycles();
+    bench.draw(rows.chain(lanes), plain_band(COUNT));
+    let clocks = bench.module.cycles() - start;
+    assert!(clocks <= 2 * COUNT as u64 + 2, "{clocks} clocks");
+    bench.finish();
+    assert_eq!(bench.counter("clocks_held"), 0);
+    assert_eq!(bench.counter("groups_in"), 2 * COUNT as u64);
+}
+
+#[test]
+fn a_group_waits_for_the_lanes_it_shares() {
+    // Groups of other rows between two of the same row, and the clocks the second one is held.
+    for (between, held) in [(0, 3), (1, 2), (2, 1), (3, 0)] {
+        let mut bench = Bench::ready(8, 0.0, 0.0);
+        let others = (0..between).map(|i| full_group(100 + i, 5));
+        let groups = [full_group(7, 3)].into_iter().chain(others).chain([Group {
+            mask: 0x81,
+            codes: [3, 9, 9, 9, 9, 9, 9, 2],
+            colours: [0xffff; LANES],
+            row: 7,
+        }]);
+        bench.draw(groups, plain_band(200));
+        bench.finish();
+        assert_eq!(bench.counter("clocks_held"), held, "{between} between");
+    }
+}
+
+#[test]
+fn the_flush_keeps_up_with_memory_and_overlaps_with_drawing() {
+    let mut bench = Bench::ready(9, 0.0, 0.0);
+    for (with_depth, words) in [(false, 1920), (true, 3 * 1920)] {
+        let band = Band {
+            with_depth,
+            ..plain_band(1920)
+        };
+        bench.draw([], band);
+        let start = bench.module.cycles();
+        bench.finish();
+        let clocks = bench.module.cycles() - start;
+        assert!(clocks <= words + 16, "{clocks} clocks for {words} words");
+    }
+    // Six bands of as many groups as words.
+    let start = bench.module.cycles();
+    for _ in 0..6 {
+        bench.draw((0..1920).map(|row| full_group(row, 1)), plain_band(1920));
+    }
+    bench.finish();
+    let clocks = bench.module.cycles() - start;
+    assert!(clocks <= 7 * (1920 + 24), "{clocks} clocks");
+    let (memory, flush) = (
+        bench.counter("clocks_memory"),
+        bench.counter("clocks_flush"),
+    );
+    assert!(memory == 0 && flush < 6 * 24, "{memory} and {flush} clocks");
+}
+
+#[test]
+fn waits_for_memory_are_counted() {
+    let mut bench = Bench::ready(10, 0.0, 0.75);
+    for _ in 0..2 {
+        bench.draw([], plain_band(1000));
+    }
+    bench.finish();
+    assert!(bench.counter("clocks_memory") > 1000);
+    assert!(bench.counter("clocks_flush") > 1000);
+}
+
+#[test]
+fn a_restart_ends_whatever_goes_on() {
+    for seed in 20..60_u64 {
+        println!("seed {seed}");
+        let mut random = Pcg64Mcg::new(u128::from(seed));
+        let mut bench = Bench::ready(seed, 0.2, 0.3);
+        // One band on its way to memory, one being drawn.
+        let rows = random.random_range(50..300);
+        bench.draw(
+            (0..rows).map(|row| full_group(row, 9)),
+            random_band(&mut random, rows),
+        );
+        bench.run_until(100_000, |bench| bench.bands.is_empty());
+        for _ in 0..500 {
+            bench.push_group(random_group(&mut random, rows));
+        }
+        for _ in 0..random.random_range(0..400) {
+            bench.clock();
+        }
+        // Sometimes with a band's end waiting.
+        if random.random() {
+            bench.push_band(random_band(&mut random, rows));
+            bench.clock();
+        }
+
+        bench.restart_with_dead_memory();
+
+        for _ in 0..4 {
+            let groups: Vec<_> = (0..100).map(|_| random_group(&mut random, rows)).collect();
+            let band = random_band(&mut random, rows);
+            bench.draw(groups, band);
+        }
+        bench.finish();
+    }
+}
+
+impl Bench {
+    /// Memory stops, the buffer is restarted and gets clear all the same; then memory goes on.
+    fn restart_with_dead_memory(&mut self) {
+        let (stalls_of_commands, stalls) = (Stalls::new(1, 1.0), Stalls::new(1, 1.0));
+        let alive = self.memory.commands.set_stalls(stalls_of_commands);
+        let alive_data = std::mem::replace(&mut self.memory.stalls, stalls);
+
+        // The renderers are restarted in the same clock.
+        self.module.set(self.restart, 1_u64);
+        self.clock();
+        self.module.set(self.restart, 0_u64);
+        let seen = self.memory.words.len();
+        self.group_source.clear();
+        self.groups.clear();
+        self.band_source.clear();
+        self.bands.clear();
+        self.drawn = Pixels::clear();
+        self.closed = false;
+
+        self.module.settle();
+        assert!(self.is(self.clearing));
+        let clocks = self.run_until(2 * ROWS_OF_A_BANK, |bench| !bench.is(bench.clearing));
+        assert!(clocks <= ROWS_OF_A_BANK + 8, "{clocks} clocks");
+
+        self.memory.commands.set_stalls(alive);
+        self.memory.stalls = alive_data;
+        self.run_until(10_000, |bench| bench.is(bench.flushed));
+        let more = self.memory.words.len() - seen;
+        assert!(more <= WORDS, "{more} words after the restart");
+        self.expected.truncate(self.memory.words.len());
+        self.compare();
+    }
+}
