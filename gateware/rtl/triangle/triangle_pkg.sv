@@ -1,0 +1,36 @@
+// What travels between the parts of the triangle engine. Formats are those of docs/formats.md.
+
+`default_nettype none
+
+package triangle_pkg;
+    // A vertex on the screen: x and y in pixels, s12.8; w is the depth code before its rounding, u18.6.
+    typedef struct packed {
+        logic [23:0] w;
+        logic [20:0] y;
+        logic [20:0] x;
+    } screen_vertex_t;
+
+    // What E' of an edge gains with a pixel down and with one to the right, s21.
+    typedef struct packed {
+        logic [20:0] y;
+        logic [20:0] x;
+    } steps_t;
+
+    // A triangle after the setup, 384 bits, as it lies in memory: three words of 128, the lowest first.
+    // E' and depth are those of the first column of group_start in row top. A group is 8 columns.
+    typedef struct packed {
+        logic [15:0]      colour;       // RGB565, lit
+        logic [7:0]       group_start;  // the group of the topmost vertex, cut to the bounds
+        logic [7:0]       group_right;  // the last group within the bounds
+        logic [7:0]       group_left;   // the first
+        logic [9:0]       bottom;       // one past the last row
+        logic [9:0]       top;          // the first row
+        steps_t [2:0]     steps;        // of E', for each edge
+        logic [31:0]      depth_step_y; // 18.14, modulo 2^32
+        logic [31:0]      depth_step_x;
+        logic [31:0]      depth_start;
+        logic [2:0][33:0] start;        // E' of each edge, s34
+    } descriptor_t;
+endpackage
+
+`default_nettype wire
