@@ -10,6 +10,14 @@ package triangle_pkg;
         logic [20:0] x;
     } screen_vertex_t;
 
+    // What the vertex stage makes of a vertex: behind the near plane, with no place; or beyond the guard band, where the
+    // place only says on which sides of the picture it is.
+    typedef struct packed {
+        logic           behind;
+        logic           beyond;
+        screen_vertex_t place;
+    } projected_t;
+
     // What E' of an edge gains with a pixel down and with one to the right, s21.
     typedef struct packed {
         logic [20:0] y;

@@ -8,9 +8,11 @@
 
 mod bits;
 mod library;
+mod memory;
 mod module;
 mod stream;
 
 pub use bits::Bits;
+pub use memory::{Memory, ReadPort, WritePort};
 pub use module::{Module, Port};
 pub use stream::{Sink, Source, Stalls};

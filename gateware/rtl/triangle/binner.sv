@@ -1,0 +1,193 @@
+// Keeps what the setup makes of a frame in memory: each descriptor once, its number in the list of every band that it
+// touches, and the numbers of exceptional triangles in a list of their own.
+//
+// Layout in words of 16 bytes, entries being u32 (docs/formats.md "Band lists"):
+//   descriptors   descriptor_base + 3·number           3 words each
+//   lists         list_base                            16 words: the lengths of 64 lists
+//                 list_base + 16 + (band << list_shift) the list of a band, 4 entries a word
+//   exceptions    exception_base                       4 entries a word
+//
+// A descriptor takes 3 writes and one a band; throughput 4 clocks and one more a band. `restart` (while idle) empties all
+// lists, which takes 64 clocks; `finish` (a level, when nothing more comes) has the lengths written and ends with `done`.
+// What has no room left is dropped and `full` is set: the frame is not whole then.
+
+`default_nettype none
+
+module binner
+    import triangle_pkg::*;
+#(
+    parameter int unsigned ADDRESS_BITS = 23,
+    parameter int unsigned COUNT_BITS   = 20
+) (
+    input  wire                     clk,
+    input  wire                     rst,
+    input  wire                     restart,
+    input  wire                     finish,
+    output logic                    done,
+    output logic                    idle,
+    output logic                    full,
+    // 45, 24 or 12 rows a band: 0, 1, 2.
+    input  wire  [1:0]              size,
+    input  wire  [ADDRESS_BITS-1:0] descriptor_base,
+    input  wire  [COUNT_BITS-1:0]   descriptor_limit,
+    input  wire  [ADDRESS_BITS-1:0] list_base,
+    input  wire  [4:0]              list_shift,
+    input  wire  [ADDRESS_BITS-1:0] exception_base,
+    input  wire  [COUNT_BITS-1:0]   exception_limit,
+    output logic [COUNT_BITS-1:0]   descriptors,
+    output logic [COUNT_BITS-1:0]   exceptions,
+    input  wire                     in_valid,
+    output logic                    in_ready,
+    input  wire  descriptor_t       in_descriptor,
+    input  wire                     exception_valid,
+    output logic                    exception_ready,
+    input  wire  [31:0]             exception_number,
+    // To a write_port.
+    output logic                    write_valid,
+    input  wire                     write_ready,
+    output logic [ADDRESS_BITS-1:0] write_addr,
+    output logic [127:0]            write_data,
+    output logic [15:0]             write_strobe
+);
+    localparam int unsigned BANDS       = 64;
+    localparam int unsigned BAND_BITS   = $clog2(BANDS);
+    localparam int unsigned TABLE_WORDS = BANDS / 4;
+
+    // v/3 for 8 bits: 171/512 is near enough.
+    function automatic logic [6:0] third(input logic [7:0] v);
+        logic [15:0] product;
+        product = (16'(v) << 7) + (16'(v) << 5) + (16'(v) << 3) + (16'(v) << 1) + 16'(v);
+        third   = product[15:9];
+    endfunction
+
+    function automatic logic [BAND_BITS-1:0] band_of(input logic [9:0] row);
+        case (size)
+            2'd0:    band_of = BAND_BITS'(row >= 10'd45) + BAND_BITS'(row >= 10'd90) + BAND_BITS'(row >= 10'd135);
+            2'd1:    band_of = BAND_BITS'(third(8'(row[9:3])));
+            default: band_of = BAND_BITS'(third(row[9:2]));
+        endcase
+    endfunction
+
+    // Entry `lane` of a word, alone.
+    function automatic logic [15:0] entry_strobe(input logic [1:0] lane);
+        entry_strobe = 16'hf << {lane, 2'b00};
+    endfunction
+
+    typedef enum logic [3:0] {CLEAR, IDLE, LOCATE, WORD_0, WORD_1, WORD_2, LOOK, ENTRY, LENGTHS, LENGTHS_WORD, DONE} state_t;
+    state_t state;
+
+    // The lengths of the lists.
+    (* ram_style = "distributed" *) logic [COUNT_BITS-1:0] lengths [0:BANDS-1];
+    logic [BAND_BITS-1:0]  band, last_band;
+    logic [COUNT_BITS-1:0] length, stored;
+    logic                  store;
+
+    descriptor_t             descriptor;
+    logic [ADDRESS_BITS-1:0] descriptor_word;
+    logic [95:0]             gathered;
+    logic                    free, list_full;
+
+    assign idle            = state == IDLE;
+    assign done            = state == DONE;
+    assign free            = !write_valid || write_ready;
+    assign in_ready        = state == IDLE;
+    assign exception_ready = state == IDLE && !in_valid && free;
+    assign list_full       = (length >> list_shift) >> 2 != '0;
+
+    assign store  = state == CLEAR || state == ENTRY && free && !list_full;
+    assign stored = state == CLEAR ? '0 : length + 1'b1;
+
+    // Both follow `band` a clock later.
+    logic [ADDRESS_BITS-1:0] first_list, list_word;
+
+    always_ff @(posedge clk) begin
+        if (store) lengths[band] <= stored;
+        length     <= lengths[band];
+        first_list <= list_base + ADDRESS_BITS'(TABLE_WORDS);
+        list_word  <= first_list + (ADDRESS_BITS'(band) << list_shift);
+    end
+
+    always_ff @(posedge clk) begin
+        if (write_ready) write_valid <= 1'b0;
+
+        case (state)
+            CLEAR: begin
+                band <= band + 1'b1;
+                if (band == '1) state <= IDLE;
+            end
+            IDLE: begin
+                descriptor <= in_descriptor;
+                if (in_valid) begin
+                    state <= LOCATE;
+                end else if (exception_valid) begin
+                    if (free) begin
+                        exceptions   <= exceptions + COUNT_BITS'(exceptions != exception_limit);
+                        full         <= full || exceptions == exception_limit;
+                        write_valid  <= exceptions != exception_limit;
+                        write_addr   <= exception_base + ADDRESS_BITS'(exceptions >> 2);
+                        write_data   <= {4{exception_number}};
+                        write_strobe <= entry_strobe(exceptions[1:0]);
+                    end
+                end else if (finish) begin
+                    band  <= '0;
+                    state <= LENGTHS;
+                end
+            end
+            LOCATE: begin
+                band      <= band_of(descriptor.top);
+                last_band <= band_of(descriptor.bottom - 1'b1);
+                full      <= full || descriptors == descriptor_limit;
+                state     <= descriptors == descriptor_limit ? IDLE : WORD_0;
+            end
+            WORD_0, WORD_1, WORD_2: if (free) begin
+                write_valid     <= 1'b1;
+                write_addr      <= descriptor_word;
+                write_data      <= state == WORD_0 ? descriptor[127:0]
+                                 : state == WORD_1 ? descriptor[255:128] : descriptor[383:256];
+                write_strobe    <= '1;
+                descriptor_word <= descriptor_word + 1'b1;
+                state           <= state == WORD_0 ? WORD_1 : state == WORD_1 ? WORD_2 : ENTRY;
+            end
+            // One clock for the next list's length and place.
+            LOOK: state <= ENTRY;
+            ENTRY: if (free) begin
+                write_valid  <= !list_full;
+                write_addr   <= list_word + ADDRESS_BITS'(length >> 2);
+                write_data   <= {4{32'(descriptors)}};
+                write_strobe <= entry_strobe(length[1:0]);
+                full         <= full || list_full;
+                band         <= band + 1'b1;
+                state        <= LOOK;
+                if (band == last_band) begin
+                    descriptors <= descriptors + 1'b1;
+                    state       <= IDLE;
+                end
+            end
+            LENGTHS: state <= LENGTHS_WORD;
+            LENGTHS_WORD: if (free) begin
+                gathered <= {32'(length), gathered[95:32]};
+                band     <= band + 1'b1;
+                state    <= band == '1 ? DONE : LENGTHS;
+                if (band[1:0] == '1) begin
+                    write_valid  <= 1'b1;
+                    write_addr   <= list_base + ADDRESS_BITS'(band >> 2);
+                    write_data   <= {32'(length), gathered};
+                    write_strobe <= '1;
+                end
+            end
+            default: if (!finish) state <= IDLE;
+        endcase
+
+        if (rst || restart) begin
+            state           <= CLEAR;
+            band            <= '0;
+            descriptors     <= '0;
+            exceptions      <= '0;
+            descriptor_word <= descriptor_base;
+            full            <= 1'b0;
+            write_valid     <= 1'b0;
+        end
+    end
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,116 @@
+// Walks through a mesh in memory (docs/formats.md) and gives out its triangles, chunk by chunk.
+//
+// Reads words of 16 bytes by a client of read_port: a chunk's header, then its triangles one after the other; the
+// vertices between them are read by whoever needs them, from `vertex_base` on, which belongs to the triangles that are
+// out. So the next chunk begins only when the pipeline behind is `drained`: some hundred clocks a chunk of up to 65,535
+// vertices. Throughput within a chunk: a triangle a clock, if memory gives it.
+//
+// `start` (one clock, not while `busy`) takes the mesh from `first`, the word of its first chunk, to `last`, its last word.
+// A chunk that has no vertex or does not end by `last` ends the walk with `error`, which stays until the next start.
+
+`default_nettype none
+
+module mesh_walk #(
+    parameter int unsigned ADDRESS_BITS = 23
+) (
+    input  wire                     clk,
+    input  wire                     rst,
+    input  wire                     start,
+    input  wire  [ADDRESS_BITS-1:0] first,
+    input  wire  [ADDRESS_BITS-1:0] last,
+    input  wire                     drained,
+    output logic                    busy,
+    output logic                    error,
+    // The chunk of the triangles that are out. `chunk` is high for one clock when it changes.
+    output logic                    chunk,
+    output logic [ADDRESS_BITS-1:0] vertex_base,
+    // Memory.
+    output logic                    ask_valid,
+    input  wire                     ask_ready,
+    output logic [ADDRESS_BITS-1:0] ask_addr,
+    input  wire                     data_valid,
+    output logic                    data_ready,
+    input  wire  [127:0]            data,
+    // Triangles, as they are in memory.
+    output logic                    out_valid,
+    input  wire                     out_ready,
+    output logic [127:0]            out_triangle
+);
+    // Sums of addresses and counts, which may be wild, do not wrap.
+    localparam int unsigned SUM_BITS = 34;
+
+    typedef enum logic [2:0] {IDLE, ASK, HEADER, LOCATE, SUM, CHECK, TRIANGLES, DRAIN} state_t;
+    state_t state;
+
+    logic [ADDRESS_BITS-1:0] header;
+    logic [31:0]             vertices, triangles;
+    logic [SUM_BITS-1:0]     triangles_base, end_base;
+    logic [31:0]             to_ask, to_give;
+    logic                    asked, wild;
+
+    assign busy         = state != IDLE;
+    assign ask_valid    = state == ASK || state == TRIANGLES && to_ask != '0;
+    assign asked        = ask_valid && ask_ready;
+    assign out_triangle = data;
+    assign out_valid    = state == TRIANGLES && data_valid;
+    assign data_ready   = state == HEADER || state == TRIANGLES && out_ready;
+    assign wild         = vertices == '0 || end_base > SUM_BITS'(last) + 1'b1;
+
+    always_ff @(posedge clk) begin
+        chunk <= 1'b0;
+
+        case (state)
+            IDLE: begin
+                header   <= first;
+                ask_addr <= first;
+                if (start) begin
+                    error <= 1'b0;
+                    state <= ASK;
+                end
+            end
+            ASK: if (asked) state <= HEADER;
+            HEADER: begin
+                vertices  <= data[31:0];
+                triangles <= data[63:32];
+                if (data_valid) state <= LOCATE;
+            end
+            LOCATE: begin
+                vertex_base    <= header + 1'b1;
+                triangles_base <= SUM_BITS'(header) + SUM_BITS'(vertices) + 1'b1;
+                state          <= SUM;
+            end
+            SUM: begin
+                end_base <= triangles_base + SUM_BITS'(triangles);
+                ask_addr <= triangles_base[ADDRESS_BITS-1:0];
+                to_ask   <= triangles;
+                to_give  <= triangles;
+                chunk    <= 1'b1;
+                state    <= CHECK;
+            end
+            CHECK: begin
+                error <= wild;
+                state <= wild ? DRAIN : TRIANGLES;
+            end
+            TRIANGLES: begin
+                if (asked) begin
+                    to_ask   <= to_ask - 1'b1;
+                    ask_addr <= ask_addr + 1'b1;
+                end
+                if (out_valid && out_ready) to_give <= to_give - 1'b1;
+                if (to_give == '0) state <= DRAIN;
+            end
+            default: begin
+                header   <= end_base[ADDRESS_BITS-1:0];
+                ask_addr <= end_base[ADDRESS_BITS-1:0];
+                if (drained) state <= error || end_base > SUM_BITS'(last) ? IDLE : ASK;
+            end
+        endcase
+
+        if (rst) begin
+            state <= IDLE;
+            error <= 1'b0;
+        end
+    end
+endmodule
+
+`default_nettype wire

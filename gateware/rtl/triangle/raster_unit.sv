@@ -1,0 +1,159 @@
+// Draws a frame, band by band, from the lists that the geometry unit and the firmware have left in memory.
+//
+//   lists, descriptors ──▶ list_reader ──▶ triangle_raster ──▶ band_buffer ──▶ frame, depth
+//
+// `start` (one clock, not while `busy`) takes the parameters, which hold until `done` (one clock): everything is in memory
+// then. A band takes as long as its groups, and the memory accesses of its first triangle. `restart` may come at any time,
+// and gives the frame up; the unit is to be started again when it is `ready` and read_port has thrown away what was on its way.
+//
+// Memory: three clients of a read_port, and a native write port (band_flush).
+// Counters run freely: clocks busy, clocks without a triangle in the walker, clocks in which it stood in a group, and
+// those of the band buffer.
+
+`default_nettype none
+
+module raster_unit
+    import triangle_pkg::*;
+#(
+    parameter int unsigned ADDRESS_BITS = 23,
+    parameter int unsigned COUNT_BITS   = 20
+) (
+    input  wire                       clk,
+    input  wire                       rst,
+    input  wire                       restart,
+    output logic                      ready,
+    input  wire                       start,
+    output logic                      busy,
+    output logic                      done,
+    // 320x180, 640x360, 1280x720: 0, 1, 2.
+    input  wire  [1:0]                size,
+    input  wire  [ADDRESS_BITS-1:0]   frame_base,
+    input  wire  [ADDRESS_BITS-1:0]   depth_base,
+    input  wire                       with_depth,
+    input  wire  [15:0]               clear,
+    input  wire  [1:0]                present,
+    input  wire  [2*ADDRESS_BITS-1:0] list_base,
+    input  wire  [2*ADDRESS_BITS-1:0] descriptor_base,
+    input  wire  [4:0]                list_shift,
+    // Memory.
+    output logic [2:0]                ask_valid,
+    input  wire  [2:0]                ask_ready,
+    output logic [3*ADDRESS_BITS-1:0] ask_addr,
+    input  wire  [2:0]                data_valid,
+    output logic [2:0]                data_ready,
+    input  wire  [3*128-1:0]          data,
+    output logic                      cmd_valid,
+    input  wire                       cmd_ready,
+    output logic [ADDRESS_BITS-1:0]   cmd_addr,
+    output logic                      wdata_valid,
+    input  wire                       wdata_ready,
+    output logic [127:0]              wdata_data,
+    // Counters.
+    output logic [31:0]               clocks_busy,
+    output logic [31:0]               clocks_walking,
+    output logic [31:0]               clocks_empty,
+    output logic [31:0]               groups_in,
+    output logic [31:0]               clocks_held,
+    output logic [31:0]               clocks_memory,
+    output logic [31:0]               clocks_flush
+);
+    // Bands of a picture, rows of a band, groups of a row, words of a band.
+    logic [5:0]  last_band, rows;
+    logic [7:0]  stride;
+    logic [10:0] words;
+
+    always_comb begin
+        case (size)
+            2'd0:    {last_band, rows, stride, words} = {6'd3,  6'd45, 8'd40,  11'd1800};
+            2'd1:    {last_band, rows, stride, words} = {6'd14, 6'd24, 8'd80,  11'd1920};
+            default: {last_band, rows, stride, words} = {6'd59, 6'd12, 8'd160, 11'd1920};
+        endcase
+    end
+
+    typedef enum logic [2:0] {IDLE, BEGIN, DRAW, SETTLE, HAND_OVER, FLUSH} state_t;
+    state_t state;
+
+    logic [5:0]              band;
+    logic [9:0]              first_row;
+    logic [ADDRESS_BITS-1:0] base, band_depth_base;
+    logic                    reading, rastering, clearing, flushed, band_ready;
+
+    assign busy  = state != IDLE;
+    assign ready = !clearing && flushed;
+
+    always_ff @(posedge clk) begin
+        done <= 1'b0;
+        case (state)
+            IDLE: begin
+                band            <= '0;
+                first_row       <= '0;
+                base            <= frame_base;
+                band_depth_base <= depth_base;
+                if (start) state <= BEGIN;
+            end
+            // list_reader and triangle_raster take a clock to become busy.
+            BEGIN:  state <= DRAW;
+            DRAW:   if (!reading) state <= SETTLE;
+            SETTLE: if (!rastering) state <= HAND_OVER;
+            HAND_OVER: if (band_ready) begin
+                band            <= band + 1'b1;
+                first_row       <= first_row + 10'(rows);
+                base            <= base + ADDRESS_BITS'(words);
+                band_depth_base <= band_depth_base + (ADDRESS_BITS'(words) << 1);
+                state           <= band == last_band ? FLUSH : BEGIN;
+            end
+            default: if (flushed) begin
+                done  <= 1'b1;
+                state <= IDLE;
+            end
+        endcase
+        if (rst || restart) begin
+            state <= IDLE;
+            done  <= 1'b0;
+        end
+    end
+
+    logic        triangle_valid, triangle_ready, raster_idle;
+    descriptor_t descriptor;
+
+    list_reader #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS)) list_reader (
+        .clk, .rst(rst || restart), .start(state == BEGIN), .band, .present, .list_base, .descriptor_base, .list_shift, .busy(reading),
+        .ask_valid, .ask_ready, .ask_addr, .data_valid, .data_ready, .data,
+        .out_valid(triangle_valid), .out_ready(triangle_ready), .out_descriptor(descriptor)
+    );
+
+    logic            group_valid, group_ready, walking, candidate;
+    logic [10:0]     group_row;
+    logic [7:0]      group_mask;
+    logic [8*18-1:0] group_codes;
+    logic [8*16-1:0] group_colours;
+
+    assign rastering = !raster_idle;
+
+    /* verilator lint_off PINCONNECTEMPTY */
+    triangle_raster triangle_raster (
+        .clk, .rst(rst || restart), .y0(first_row), .rows, .stride, .idle(raster_idle), .walking, .candidate, .stalled(),
+        .triangle_valid, .triangle_ready, .triangle_descriptor(descriptor),
+        .group_valid, .group_ready, .group_row, .group_mask, .group_codes, .group_colours
+    );
+    /* verilator lint_on PINCONNECTEMPTY */
+
+    band_buffer #(.ADDRESS_BITS(ADDRESS_BITS)) band_buffer (
+        .clk, .rst, .restart, .clearing, .flushed,
+        .group_valid, .group_ready, .group_row, .group_mask, .group_codes, .group_colours,
+        .band_valid(state == HAND_OVER), .band_ready, .band_base(base), .band_depth_base, .band_rows(words),
+        .band_with_depth(with_depth), .band_clear(clear),
+        .cmd_valid, .cmd_ready, .cmd_addr, .wdata_valid, .wdata_ready, .wdata_data,
+        .groups_in, .clocks_held, .clocks_memory, .clocks_flush
+    );
+
+    always_ff @(posedge clk) begin
+        if (busy)                  clocks_busy    <= clocks_busy + 1'b1;
+        if (walking)               clocks_walking <= clocks_walking + 1'b1;
+        if (walking && !candidate) clocks_empty   <= clocks_empty + 1'b1;
+
+        if (rst) {clocks_busy, clocks_walking, clocks_empty} <= '0;
+    end
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,180 @@
+//! The memory as a module sees it: LiteDRAM's native ports, 16 bytes a word.
+
+use std::collections::VecDeque;
+
+use crate::{Bits, Module, Port, Stalls};
+
+/// What is in memory, by word.
+pub struct Memory {
+    words: Vec<[u8; 16]>,
+}
+
+impl Memory {
+    /// So many words of 0xa5, which nobody wrote.
+    #[must_use]
+    pub fn new(words: usize) -> Self {
+        Self {
+            words: vec![[0xa5; 16]; words],
+        }
+    }
+
+    /// Writes bytes from the word `address` on.
+    ///
+    /// # Panics
+    /// When they do not end within the memory.
+    pub fn write(&mut self, address: u32, bytes: &[u8]) {
+        for (i, chunk) in bytes.chunks(16).enumerate() {
+            self.words[address as usize + i][..chunk.len()].copy_from_slice(chunk);
+        }
+    }
+
+    /// A word.
+    ///
+    /// # Panics
+    /// Beyond the memory.
+    #[must_use]
+    pub fn word(&self, address: u32) -> Bits {
+        let bytes = self.words[address as usize];
+        Bits::from_words(
+            &bytes
+                .as_chunks()
+                .0
+                .iter()
+                .map(|&b| u32::from_le_bytes(b))
+                .collect::<Vec<_>>(),
+        )
+    }
+
+    /// The entry `index` of 32 bits from the word `address` on.
+    ///
+    /// # Panics
+    /// Beyond the memory.
+    #[must_use]
+    pub fn entry(&self, address: u32, index: u32) -> u32 {
+        self.word(address + index / 4)
+            .field(32 * (index as usize % 4), 32) as u32
+    }
+}
+
+/// Clocks from a command to its data.
+const LATENCY: u64 = 12;
+
+/// The memory's side of a read port: `cmd_valid`, `cmd_ready`, `cmd_addr`, `rdata_valid`, `rdata`, behind a prefix. Data comes
+/// when it comes, whether it is wanted or not.
+pub struct ReadPort {
+    cmd: [Port; 3],
+    rdata: [Port; 2],
+    /// Words on their way: the cycle from which on they come, and where they are.
+    queue: VecDeque<(u64, u32)>,
+    stalls: Stalls,
+    /// Words given so far.
+    pub given: u64,
+}
+
+impl ReadPort {
+    /// The port whose names begin with `prefix`.
+    #[must_use]
+    pub fn new(module: &Module, prefix: &str, stalls: Stalls) -> Self {
+        let port = |name: &str| module.port(&format!("{prefix}{name}"));
+        Self {
+            cmd: [port("cmd_valid"), port("cmd_ready"), port("cmd_addr")],
+            rdata: [port("rdata_valid"), port("rdata")],
+            queue: VecDeque::new(),
+            stalls,
+            given: 0,
+        }
+    }
+
+    /// Gives a word that is due, and takes a command or not.
+    pub fn drive(&mut self, module: &mut Module, memory: &Memory) {
+        let stalled = self.stalls.next_stalled();
+        module.set(self.cmd[1], u64::from(!stalled));
+        let due = self
+            .queue
+            .front()
+            .is_some_and(|&(cycle, _)| cycle <= module.cycles());
+        let given = due && !self.stalls.next_stalled();
+        module.set(self.rdata[0], u64::from(given));
+        if given && let Some((_, address)) = self.queue.pop_front() {
+            self.given += 1;
+            module.set(self.rdata[1], memory.word(address));
+        }
+    }
+
+    /// Takes the command that is there.
+    pub fn sample(&mut self, module: &Module) {
+        if module.is_high(self.cmd[0]) && module.is_high(self.cmd[1]) {
+            let address = module.value(self.cmd[2]) as u32;
+            self.queue.push_back((module.cycles() + LATENCY, address));
+        }
+    }
+}
+
+/// The memory's side of a write port: `cmd_valid`, `cmd_ready`, `cmd_addr`, `wdata_valid`, `wdata_ready`, `wdata` and
+/// `wdata_strobe`, behind a prefix. It takes the data of a command when it wants to, and they have to be there.
+pub struct WritePort {
+    cmd: [Port; 3],
+    wdata: [Port; 4],
+    /// Commands whose data have not been taken.
+    owed: VecDeque<u32>,
+    takes: bool,
+    stalls: Stalls,
+    /// Words written so far.
+    pub written: u64,
+}
+
+impl WritePort {
+    /// The port whose names begin with `prefix`.
+    #[must_use]
+    pub fn new(module: &Module, prefix: &str, stalls: Stalls) -> Self {
+        let port = |name: &str| module.port(&format!("{prefix}{name}"));
+        Self {
+            cmd: [port("cmd_valid"), port("cmd_ready"), port("cmd_addr")],
+            wdata: [
+                port("wdata_valid"),
+                port("wdata_ready"),
+                port("wdata"),
+                port("wdata_strobe"),
+            ],
+            owed: VecDeque::new(),
+            takes: false,
+            stalls,
+            written: 0,
+        }
+    }
+
+    /// Takes a command or not, and data or not.
+    pub fn drive(&mut self, module: &mut Module) {
+        let stalled = self.stalls.next_stalled();
+        module.set(self.cmd[1], u64::from(!stalled));
+        self.takes = !self.owed.is_empty() && !self.stalls.next_stalled();
+        module.set(self.wdata[1], u64::from(self.takes));
+    }
+
+    /// Writes what is there.
+    ///
+    /// # Panics
+    /// When the data of a command are missing, or the address is beyond the memory.
+    pub fn sample(&mut self, module: &Module, memory: &mut Memory) {
+        if self.takes
+            && let Some(address) = self.owed.pop_front()
+        {
+            let cycle = module.cycles();
+            assert!(
+                module.is_high(self.wdata[0]),
+                "no data for a command in cycle {cycle}"
+            );
+            let (data, strobe) = (module.get(self.wdata[2]), module.value(self.wdata[3]));
+            let word = &mut memory.words[address as usize];
+            for (i, byte) in word.iter_mut().enumerate() {
+                if strobe >> i & 1 == 1 {
+                    *byte = data.field(8 * i, 8) as u8;
+                }
+            }
+            self.written += 1;
+        }
+        if module.is_high(self.cmd[0]) && module.is_high(self.cmd[1]) {
+            self.owed.push_back(module.value(self.cmd[2]) as u32);
+        }
+    }
+}
