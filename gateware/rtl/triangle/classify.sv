@@ -41,11 +41,12 @@ module classify
         logic left, right, above, below;
     } sides_t;
 
-    function automatic sides_t off_sides(input screen_vertex_t vertex);
-        off_sides.left  = vertex.x[20];
-        off_sides.right = !vertex.x[20] && vertex.x[19:8] >= 12'(width);
-        off_sides.above = vertex.y[20];
-        off_sides.below = !vertex.y[20] && vertex.y[19:8] >= 12'(height);
+    // Of the whole pixels of a place.
+    function automatic sides_t off_sides(input logic [12:0] x, input logic [12:0] y);
+        off_sides.left  = x[12];
+        off_sides.right = !x[12] && x[11:0] >= 12'(width);
+        off_sides.above = y[12];
+        off_sides.below = !y[12] && y[11:0] >= 12'(height);
     endfunction
 
     logic                 held, known, moves;
@@ -77,7 +78,7 @@ module classify
             held     <= in_valid;
             vertices <= in_vertices;
             side     <= in_side;
-            for (int i = 0; i < 3; i++) off[i] <= off_sides(in_vertices[i].place);
+            for (int i = 0; i < 3; i++) off[i] <= off_sides(in_vertices[i].place.x[20:8], in_vertices[i].place.y[20:8]);
         end
 
         unseen <= 1'b0;
