@@ -25,7 +25,8 @@ package triangle_pkg;
     } steps_t;
 
     // A triangle after the setup, 384 bits, as it lies in memory: three words of 128, the lowest first.
-    // E' and depth are those of the first column of group_start in row top. A group is 8 columns.
+    // E' and depth are those of the first column of group_start in row top. A group is 8 columns. Edges are arrays of vectors:
+    // Yosys reads an array of structs as something narrower, and says nothing.
     typedef struct packed {
         logic [15:0]      colour;       // RGB565, lit
         logic [7:0]       group_start;  // the group of the topmost vertex, cut to the bounds
@@ -33,7 +34,7 @@ package triangle_pkg;
         logic [7:0]       group_left;   // the first
         logic [9:0]       bottom;       // one past the last row
         logic [9:0]       top;          // the first row
-        steps_t [2:0]     steps;        // of E', for each edge
+        logic [2:0][41:0] steps;        // of E', a steps_t for each edge
         logic [31:0]      depth_step_y; // 18.14, modulo 2^32
         logic [31:0]      depth_step_x;
         logic [31:0]      depth_start;
