@@ -1,0 +1,151 @@
+// Eight pixels of a triangle: which of them it covers, and their depth codes (docs/formats.md, "Pixels").
+//
+// Coverage by counting: from an edge's best lane, where E' is at least 0, it falls by |step_x| a lane. So it passes in that
+// lane and in the next min(7, floor(E' / |step_x|)), which three steps of a restoring division give; where it rises
+// these are counted from lane 7, else from lane 0. Where E' is 2^23 or more it passes everywhere: 7 * 2^20 is less.
+//
+// Depth by doubling: lane 4 from lane 0, then two lanes from each two before, and again.
+//
+//   stage    1           2            3           4
+//   count    4, bit 2    2, bit 1     1, bit 0    mask
+//   depth    0, 4        0, 2, 4, 6   all         codes, at least 1
+//
+// Streams are valid/ready; ready passes through. Latency 4 clocks, throughput a group a clock. A group that covers
+// nothing does not come out.
+
+`default_nettype none
+
+module lanes (
+    input  wire              clk,
+    input  wire              rst,
+    output logic             idle,
+    input  wire              in_valid,
+    output logic             in_ready,
+    input  wire raster_pkg::candidate_t  in_group,
+    output logic             out_valid,
+    input  wire              out_ready,
+    output logic [10:0]      out_row,
+    output logic [7:0]       out_mask,
+    output logic [7:0][17:0] out_codes,
+    output logic [15:0]      out_colour
+);
+    logic [4:1] valid;
+
+    assign in_ready = out_ready;
+    assign idle     = valid == '0;
+
+    always_ff @(posedge clk) begin
+        if (out_ready) valid <= {valid[3:1], in_valid};
+        if (rst) valid <= '0;
+    end
+
+    // Lanes beside the best one in which an edge passes.
+    logic [2:0]      rises_1, rises_2, rises_3;
+    logic [2:0]      all_1, all_2, all_3;
+    logic [2:0][2:0] count_3;
+
+    always_ff @(posedge clk) begin
+        if (out_ready) begin
+            rises_1 <= in_group.rises;
+            rises_2 <= rises_1;
+            rises_3 <= rises_2;
+            all_2   <= all_1;
+            all_3   <= all_2;
+        end
+    end
+
+    for (genvar k = 0; k < 3; k++) begin : edges
+        logic [22:0] best, rest_1, rest_2;
+        logic [19:0] slope_1, slope_2;
+        logic [20:0] less_4;
+        logic [21:0] less_2;
+        logic [22:0] less_1;
+        logic        below_4, below_2, below_1;
+        logic        bit_2, bit_1, bit_2_late;
+
+        assign best = in_group.best[k][22:0];
+        assign {below_4, less_4} = {1'b0, best[22:2]} - {2'd0, in_group.slope[k]};
+        assign {below_2, less_2} = {1'b0, rest_1[22:1]} - {3'd0, slope_1};
+        assign {below_1, less_1} = {1'b0, rest_2} - {4'd0, slope_2};
+
+        always_ff @(posedge clk) begin
+            if (out_ready) begin
+                all_1[k]   <= in_group.best[k][32:23] != '0;
+                bit_2      <= !below_4;
+                rest_1     <= below_4 ? best : {less_4, best[1:0]};
+                slope_1    <= in_group.slope[k];
+
+                bit_1      <= !below_2;
+                bit_2_late <= bit_2;
+                rest_2     <= below_2 ? rest_1 : {less_2, rest_1[0]};
+                slope_2    <= slope_1;
+
+                count_3[k] <= {bit_2_late, bit_1, !below_1};
+            end
+        end
+
+        wire _unused = &{1'b0, less_1};
+    end
+
+    always_ff @(posedge clk) begin
+        if (out_ready) begin
+            for (int i = 0; i < 8; i++) begin
+                out_mask[i] <= 1'b1;
+                for (int k = 0; k < 3; k++)
+                    if (!all_3[k] && count_3[k] < 3'(rises_3[k] ? 7 - i : i)) out_mask[i] <= 1'b0;
+            end
+        end
+    end
+
+    assign out_valid = valid[4] && out_mask != '0;
+
+    // Depth.
+    logic [31:0]      step_1, step_2;
+    logic [1:0][31:0] depth_1;
+    logic [3:0][31:0] depth_2;
+    logic [7:0][31:0] depth_3_sum;
+    logic [7:0][17:0] depth_3;
+
+    always_comb begin
+        for (int i = 0; i < 4; i++) begin
+            depth_3_sum[2 * i]     = depth_2[i];
+            depth_3_sum[2 * i + 1] = depth_2[i] + step_2;
+        end
+    end
+
+    always_ff @(posedge clk) begin
+        if (out_ready) begin
+            step_1     <= in_group.depth_step_x;
+            depth_1[0] <= in_group.depth;
+            depth_1[1] <= in_group.depth + (in_group.depth_step_x << 2);
+
+            step_2 <= step_1;
+            for (int i = 0; i < 2; i++) begin
+                depth_2[2 * i]     <= depth_1[i];
+                depth_2[2 * i + 1] <= depth_1[i] + (step_1 << 1);
+            end
+
+            for (int i = 0; i < 8; i++) begin
+                depth_3[i]   <= depth_3_sum[i][31:14];
+                out_codes[i] <= depth_3[i] == '0 ? 18'd1 : depth_3[i];
+            end
+        end
+    end
+
+    // The rest goes along.
+    logic [10:0] row_1, row_2, row_3;
+    logic [15:0] colour_1, colour_2, colour_3;
+
+    always_ff @(posedge clk) begin
+        if (out_ready) begin
+            {row_1, colour_1}     <= {in_group.row, in_group.colour};
+            {row_2, colour_2}     <= {row_1, colour_1};
+            {row_3, colour_3}     <= {row_2, colour_2};
+            {out_row, out_colour} <= {row_3, colour_3};
+        end
+    end
+
+    wire _unused = &{1'b0, depth_3_sum};
+endmodule
+
+`default_nettype wire

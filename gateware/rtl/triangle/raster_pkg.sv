@@ -1,0 +1,43 @@
+// What passes between the parts of triangle_raster.
+
+`default_nettype none
+
+package raster_pkg;
+    // A triangle at the row where it enters the band, in its start group. An edge function is linear, so in a group of eight
+    // lanes it is largest at one end and smallest at the other: lane 7 and lane 0 where it rises to the right, else
+    // lane 0 and lane 7.
+    typedef struct packed {
+        logic [2:0][33:0] best;         // E' at the lane where it is largest
+        logic [2:0][33:0] worst;        // E' at the lane where it is smallest
+        logic [31:0]      depth;        // accumulator at lane 0, with half a code added
+        logic [2:0][20:0] step_x;
+        logic [2:0][20:0] step_y;
+        logic [31:0]      depth_step_x;
+        logic [31:0]      depth_step_y;
+        logic [2:0][19:0] slope;        // |step_x|
+        logic [2:0]       rises;        // step_x > 0
+        logic [2:0]       falls;        // step_x < 0
+        logic [10:0]      row_address;  // of group 0, in the band buffer
+        logic [5:0]       rows;         // in the band, at least 1
+        logic [7:0]       group_left;
+        logic [7:0]       group_right;
+        logic [7:0]       group_start;
+        logic [15:0]      colour;
+    } placed_t;
+
+    // A group of eight pixels in which no edge fails everywhere: every `best` is at least 0.
+    typedef struct packed {
+        logic [10:0]      row;
+        logic [2:0][32:0] best;
+        logic [2:0][19:0] slope;
+        logic [2:0]       rises;
+        logic [31:0]      depth;
+        logic [31:0]      depth_step_x;
+        logic [15:0]      colour;
+    } candidate_t;
+
+    // Where the walker goes.
+    typedef enum logic [1:0] {DOWN, RIGHT, LEFT, LOAD} move_t;
+endpackage
+
+`default_nettype wire

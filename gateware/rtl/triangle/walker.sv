@@ -1,0 +1,209 @@
+// Walks over a triangle in groups of eight pixels, one group a clock, and gives out those where it may cover something.
+//
+//        ┌──────┐     row by row, from group_start:
+//        │ seek │───▶ until no edge fails in the whole group,
+//        └──────┘
+//   ◀─2─┤first├─1'─▶  then to the left while lane 0 is inside (1, 2, …), then from the snapshot of the first group
+//          │          to the right while lane 7 is inside (1', …), then down from the snapshot.
+//          ▼
+//
+// It is complete. Take the columns a row covers: those where all edges with step_x > 0 have E' >= 0, from column a on, and
+// all with step_x < 0, up to column b; a horizontal edge passes everywhere or nowhere.
+//  * An edge that fails at both ends of a group fails in all of it. If it rises, a is further right; if it falls, b is
+//    further left. Then the covered columns lie on that side. If edges disagree, if the way back leads where an edge has
+//    failed before, or out of the bounds, or if a horizontal edge fails, the row is empty: seeking never leaves a row that
+//    has something, and never ends in a group without it:
+//  * in a group g0…g7 where no edge fails everywhere a <= g7 and b >= g0; so if the row covers anything (a <= b), the group
+//    has some of it, max(a, g0)…min(b, g7). If it does not, this group comes out with nothing covered, and the row is done.
+//  * The covered columns are in one piece, so they go on to the left only if lane 0 is covered, and to the right only if
+//    lane 7 is. In a group where no edge fails everywhere, the edges that rise decide about lane 0 and those that fall about
+//    lane 7: the others have their best lane there.
+// A group comes out at most once: seeking passes only groups that do not come out, and both ways lead away from the first.
+// A row begins at the first group of the row above, or where that row was found empty; any place within the bounds is right.
+//
+// It stays within group_left…group_right and the rows: edge functions are in the picture, in their 34 bits.
+//
+// Both streams are valid/ready; ready passes through to the input, and nothing else does. Throughput one group a clock,
+// covered or not; the next triangle's first group follows the last one without a gap. `walking` is high in the clocks that
+// are spent on a group.
+
+`default_nettype none
+
+module walker (
+    input  wire              clk,
+    input  wire              rst,
+    input  wire  [7:0]       stride,
+    output logic             idle,
+    output logic             walking,
+    input  wire              in_valid,
+    output logic             in_ready,
+    input  wire raster_pkg::placed_t     in_triangle,
+    output logic             out_valid,
+    input  wire              out_ready,
+    output raster_pkg::candidate_t       out_group
+);
+    // The triangle.
+    logic [2:0][20:0] step_x, step_y;
+    logic [31:0]      depth_step_x, depth_step_y;
+    logic [2:0][19:0] slope;
+    logic [2:0]       rises, falls;
+    logic [7:0]       group_left, group_right;
+    logic [15:0]      colour;
+
+    // The place.
+    logic [2:0][33:0] best, worst;
+    logic [31:0]      depth;
+    logic [7:0]       group, next_group;
+    logic [10:0]      row_address;
+    logic [5:0]       rows_below;
+    logic             active, last_row;
+
+    // What the walker may do here. Seeking stops for good once a row's first group is found; `resume` is that there is
+    // something to the right of the snapshot.
+    logic seek_left, seek_right, extend_left, extend_right, resume;
+
+    // The decision: of sign bits and the above.
+    logic [2:0] best_fails, worst_fails;
+    logic       fails, go_right, go_left, open_left, open_right;
+    logic       extend, seek, left, leave;
+    raster_pkg::move_t      move;
+
+    always_comb begin
+        for (int k = 0; k < 3; k++) begin
+            best_fails[k]  = best[k][33];
+            worst_fails[k] = worst[k][33];
+        end
+    end
+
+    assign fails      = best_fails != '0;
+    assign go_right   = (best_fails & rises) != '0;
+    assign go_left    = (best_fails & falls) != '0;
+    assign open_left  = (worst_fails & rises) == '0;
+    assign open_right = (worst_fails & falls) == '0;
+
+    assign extend = !fails && (open_left && extend_left || open_right && extend_right);
+    assign left   = !fails && open_left && extend_left || go_left && !go_right && seek_left;
+    assign seek   = resume || go_right && !go_left && seek_right || go_left && !go_right && seek_left;
+    assign leave  = !extend && !seek && last_row;
+
+    always_comb begin
+        if (extend || seek) move = left ? raster_pkg::LEFT : raster_pkg::RIGHT;
+        else move = last_row ? raster_pkg::LOAD : raster_pkg::DOWN;
+    end
+
+    assign idle     = !active;
+    assign walking  = active && out_ready;
+    assign in_ready = leave && out_ready;
+
+    // While it seeks, the snapshot follows.
+    logic keep;
+
+    assign keep = extend || resume;
+
+    for (genvar k = 0; k < 3; k++) begin : edges
+        logic [33:0] group_step, row_step, next_best, next_worst;
+
+        assign group_step = {{10{step_x[k][20]}}, step_x[k], 3'b000};
+        assign row_step   = {{13{step_y[k][20]}}, step_y[k]};
+
+        stepper best_stepper (
+            .clk, .advance(out_ready), .from_current(extend), .keep, .move,
+            .load_value(in_triangle.best[k]), .step_x(group_step), .step_y(row_step),
+            .current(best[k]), .next(next_best)
+        );
+        stepper worst_stepper (
+            .clk, .advance(out_ready), .from_current(extend), .keep, .move,
+            .load_value(in_triangle.worst[k]), .step_x(group_step), .step_y(row_step),
+            .current(worst[k]), .next(next_worst)
+        );
+
+        wire _unused = &{1'b0, next_best, next_worst};
+    end
+
+    logic [31:0] next_depth;
+
+    stepper #(.WIDTH(32), .LOW(16)) depth_stepper (
+        .clk, .advance(out_ready), .from_current(extend), .keep, .move,
+        .load_value(in_triangle.depth), .step_x({depth_step_x[28:0], 3'b000}), .step_y(depth_step_y),
+        .current(depth), .next(next_depth)
+    );
+
+    stepper #(.WIDTH(8), .LOW(4)) group_stepper (
+        .clk, .advance(out_ready), .from_current(extend), .keep, .move,
+        .load_value(in_triangle.group_start), .step_x(8'd1), .step_y(8'd0),
+        .current(group), .next(next_group)
+    );
+
+    logic at_left, at_right, seeks, fresh;
+
+    assign at_left  = next_group == (leave ? in_triangle.group_left : group_left);
+    assign at_right = next_group == (leave ? in_triangle.group_right : group_right);
+    assign seeks    = !extend && !resume;
+    assign fresh    = !extend && !seek;
+
+    always_ff @(posedge clk) begin
+        if (out_ready) begin
+            seek_left    <= seeks && (fresh || left) && !at_left;
+            seek_right   <= seeks && (fresh || !left) && !at_right;
+            extend_left  <= (seeks || left) && !at_left;
+            extend_right <= (seeks || !left) && !at_right;
+            resume       <= extend && left && (resume || open_right && extend_right);
+
+            if (fresh && !last_row) begin
+                row_address <= row_address + 11'(stride);
+                rows_below  <= rows_below - 1'b1;
+                last_row    <= rows_below == 6'd1;
+            end
+
+            if (leave) begin
+                active       <= in_valid;
+                step_x       <= in_triangle.step_x;
+                step_y       <= in_triangle.step_y;
+                depth_step_x <= in_triangle.depth_step_x;
+                depth_step_y <= in_triangle.depth_step_y;
+                slope        <= in_triangle.slope;
+                rises        <= in_triangle.rises;
+                falls        <= in_triangle.falls;
+                group_left   <= in_triangle.group_left;
+                group_right  <= in_triangle.group_right;
+                colour       <= in_triangle.colour;
+                row_address  <= in_triangle.row_address;
+                rows_below   <= in_triangle.rows - 1'b1;
+                last_row     <= !in_valid || in_triangle.rows == 6'd1;
+            end
+            // Nothing to do: stay, ready to load.
+            if (leave && !in_valid) begin
+                seek_left    <= 1'b0;
+                seek_right   <= 1'b0;
+                extend_left  <= 1'b0;
+                extend_right <= 1'b0;
+            end
+        end
+
+        if (rst) begin
+            active       <= 1'b0;
+            last_row     <= 1'b1;
+            seek_left    <= 1'b0;
+            seek_right   <= 1'b0;
+            extend_left  <= 1'b0;
+            extend_right <= 1'b0;
+            resume       <= 1'b0;
+        end
+    end
+
+    assign out_valid              = active && !fails;
+    assign out_group.row          = row_address + 11'(group);
+    assign out_group.slope        = slope;
+    assign out_group.rises        = rises;
+    assign out_group.depth        = depth;
+    assign out_group.depth_step_x = depth_step_x;
+    assign out_group.colour       = colour;
+
+    for (genvar k = 0; k < 3; k++) begin : values
+        assign out_group.best[k] = best[k][32:0];
+    end
+
+    wire _unused = &{1'b0, next_depth};
+endmodule
+
+`default_nettype wire
