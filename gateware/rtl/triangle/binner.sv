@@ -57,7 +57,7 @@ module binner
     function automatic logic [6:0] third(input logic [7:0] v);
         logic [15:0] product;
         product = (16'(v) << 7) + (16'(v) << 5) + (16'(v) << 3) + (16'(v) << 1) + 16'(v);
-        third   = product[15:9];
+        third   = 7'(product >> 9);
     endfunction
 
     function automatic logic [BAND_BITS-1:0] band_of(input logic [9:0] row);

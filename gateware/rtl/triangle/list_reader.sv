@@ -50,23 +50,23 @@ module list_reader
     assign busy        = state != IDLE;
 
     // The length of the band's list.
-    logic [31:0] found;
+    logic [COUNT_BITS-1:0] found;
 
     assign ask_valid[0] = state == ASK && present[set];
     assign ask_addr[0 +: ADDRESS_BITS] = table_base + ADDRESS_BITS'(band >> 2);
     assign data_ready[0] = state == LENGTH;
-    assign found = data[32 * band[1:0] +: 32];
+    assign found = data[32 * band[1:0] +: COUNT_BITS];
 
     // The list: words are asked for ahead, entries taken out of the word that is there.
     logic [COUNT_BITS-1:0]   words_to_ask, entries_left;
     logic [ADDRESS_BITS-1:0] list_word;
     logic [1:0]              lane;
     logic                    entry_valid, entry_ready, entry_taken;
-    logic [31:0]             entry;
+    logic [ADDRESS_BITS-1:0] entry;
 
     assign ask_valid[1] = state == ENTRIES && words_to_ask != '0;
     assign ask_addr[ADDRESS_BITS +: ADDRESS_BITS] = list_word;
-    assign entry        = data[128 + 32 * lane +: 32];
+    assign entry        = data[128 + 32 * lane +: ADDRESS_BITS];
     assign entry_valid  = state == ENTRIES && entries_left != '0 && data_valid[1];
     assign entry_taken  = entry_valid && entry_ready;
     assign data_ready[1] = entry_taken && (lane == '1 || entries_left == COUNT_BITS'(1));
@@ -95,7 +95,7 @@ module list_reader
         if (entry_taken) begin
             asking          <= 1'b1;
             word_to_ask     <= '0;
-            descriptor_word <= descriptors + ADDRESS_BITS'(entry) + (ADDRESS_BITS'(entry) << 1);
+            descriptor_word <= descriptors + entry + (entry << 1);
             lane            <= lane + 1'b1;
             entries_left    <= entries_left - 1'b1;
         end
@@ -130,7 +130,7 @@ module list_reader
                 end
             end
             LENGTH: begin
-                length <= found[COUNT_BITS-1:0];
+                length <= found;
                 if (data_valid[0]) state <= LOCATE;
             end
             LOCATE: begin
