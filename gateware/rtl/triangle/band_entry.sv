@@ -17,25 +17,25 @@
 //   7      its high 8 bits      pass 5         depth
 //   8      stride * row         0              address of the row in the band buffer
 //
-// Streams are valid/ready, and neither side's ready depends on the other's. Latency 13 clocks, throughput a triangle in 14
-// clocks, while the one before is walked over. A triangle without a row in the band is taken and dropped. Band: its first
-// row `y0`, its `rows`, and `stride`, a row's groups of eight pixels; they hold while triangles are inside.
+// Streams are valid/ready, and ready comes from a register. Latency 13 clocks, throughput a triangle in 13 clocks; one is in
+// work and one waits, while another is walked over. A triangle without a row in the band is taken and dropped. Band: its
+// first row `y0`, its `rows`, and `stride`, a row's groups of eight pixels; they hold while triangles are inside.
 
 `default_nettype none
 
 module band_entry (
-    input  wire              clk,
-    input  wire              rst,
-    input  wire  [9:0]       y0,
-    input  wire  [5:0]       rows,
-    input  wire  [7:0]       stride,
-    output logic             idle,
-    input  wire              in_valid,
-    output logic             in_ready,
+    input  wire                            clk,
+    input  wire                            rst,
+    input  wire  [9:0]                     y0,
+    input  wire  [5:0]                     rows,
+    input  wire  [7:0]                     stride,
+    output logic                           idle,
+    input  wire                            in_valid,
+    output logic                           in_ready,
     input  wire triangle_pkg::descriptor_t in_descriptor,
-    output logic             out_valid,
-    input  wire              out_ready,
-    output raster_pkg::placed_t          out_triangle
+    output logic                           out_valid,
+    input  wire                            out_ready,
+    output raster_pkg::placed_t            out_triangle
 );
     localparam logic [31:0] HALF_A_CODE = 32'd1 << 13;
     localparam logic [3:0]  ROWS_KNOWN = 4'd4, LAST = 4'd11;
@@ -44,7 +44,7 @@ module band_entry (
     logic        busy;
     logic [3:0]  pass;
 
-    assign idle     = !busy;
+    assign idle     = !busy && !out_valid;
     assign in_ready = !busy;
 
     // Rows, from the band's first one.
@@ -62,20 +62,21 @@ module band_entry (
         count <= past > first ? past - first : '0;
     end
 
-    // The edge whose step_x is in use.
-    logic [20:0]      step_x;
+    // The step_x that is in use.
+    logic [2:0][20:0] step_x, step_y;
+    logic [20:0]      step;
     logic             rises, falls;
     logic [19:0]      slope;
 
     always_comb begin
         case (pass)
-            4'd2:    step_x = out_triangle.step_x[0];
-            4'd3:    step_x = out_triangle.step_x[1];
-            default: step_x = out_triangle.step_x[2];
+            4'd2:    step = step_x[0];
+            4'd3:    step = step_x[1];
+            default: step = step_x[2];
         endcase
-        falls = step_x[20];
-        rises = !falls && step_x != '0;
-        slope = falls ? 20'(-step_x) : step_x[19:0];
+        falls = step[20];
+        rises = !falls && step != '0;
+        slope = falls ? 20'(-step) : step[19:0];
     end
 
     logic signed [24:0] factor_a, a;
@@ -85,23 +86,24 @@ module band_entry (
 
     always_comb begin
         case (pass)
-            4'd0:    factor_a = 25'(signed'(out_triangle.step_y[0]));
-            4'd1:    factor_a = 25'(signed'(out_triangle.step_y[1]));
-            4'd4:    factor_a = 25'(signed'(out_triangle.step_y[2]));
-            4'd5:    factor_a = {1'b0, triangle.depth_step_y[23:0]};
-            4'd7:    factor_a = {triangle.depth_step_y[31:24], 17'd0};
-            4'd8:    factor_a = {17'd0, stride};
-            default: factor_a = 25'(signed'(step_x));
+            4'd0:             factor_a = 25'(signed'(step_y[0]));
+            4'd1:             factor_a = 25'(signed'(step_y[1]));
+            4'd4:             factor_a = 25'(signed'(step_y[2]));
+            4'd2, 4'd3, 4'd6: factor_a = 25'(signed'(step));
+            4'd5:             factor_a = {1'b0, triangle.depth_step_y[23:0]};
+            4'd7:             factor_a = {triangle.depth_step_y[31:24], 17'd0};
+            default:          factor_a = {17'd0, stride};
         endcase
         case (pass)
-            4'd2, 4'd3, 4'd6: factor_b = 18'sd7;
-            4'd7:             factor_b = {1'b0, offset, 7'd0};
-            4'd8:             factor_b = {12'd0, first};
-            default:          factor_b = {8'd0, offset};
+            4'd0, 4'd1, 4'd4, 4'd5: factor_b = {8'd0, offset};
+            4'd2, 4'd3, 4'd6:       factor_b = 18'sd7;
+            4'd7:                   factor_b = {1'b0, offset, 7'd0};
+            default:                factor_b = {12'd0, first};
         endcase
     end
 
-    // Operands of a pass are in `a` and `b` after it, its product and its `c` a clock later, its `sum` another one later.
+    // Operands of a pass are in `a` and `b` after it, its product and its `c` a clock later, its `sum` another one later. That of
+    // the last pass stays.
     always_ff @(posedge clk) begin
         a       <= factor_a;
         b       <= factor_b;
@@ -121,7 +123,6 @@ module band_entry (
     logic [2:0][19:0] slopes;
     logic [2:0]       all_rises, all_falls;
     logic [31:0]      depth;
-    logic [10:0]      row_address;
 
     for (genvar k = 0; k < 3; k++) begin : edges
         // The pass that has the edge's step_x in use, and the clocks that have its sums.
@@ -142,39 +143,40 @@ module band_entry (
         triangle_pkg::steps_t steps;
 
         assign steps = triangle.steps[k];
-        assign out_triangle.step_x[k] = steps.x;
-        assign out_triangle.step_y[k] = steps.y;
+        assign step_x[k] = steps.x;
+        assign step_y[k] = steps.y;
     end
 
-    assign out_triangle.best         = best;
-    assign out_triangle.worst        = worst;
-    assign out_triangle.slope        = slopes;
-    assign out_triangle.rises        = all_rises;
-    assign out_triangle.falls        = all_falls;
-    assign out_triangle.depth        = depth;
-    assign out_triangle.depth_step_x = triangle.depth_step_x;
-    assign out_triangle.depth_step_y = triangle.depth_step_y;
-    assign out_triangle.row_address  = row_address;
-    assign out_triangle.rows         = count;
-    assign out_triangle.group_left   = triangle.group_left;
-    assign out_triangle.group_right  = triangle.group_right;
-    assign out_triangle.group_start  = triangle.group_start;
-    assign out_triangle.colour       = triangle.colour;
-
     always_ff @(posedge clk) begin
+        if (pass == 4'd10) depth <= sum[31:0];
+
+        if (out_ready) out_valid <= 1'b0;
         if (in_ready) begin
             triangle <= in_descriptor;
             busy     <= in_valid;
             pass     <= '0;
-        end else begin
-            if (pass != LAST) pass <= pass + 1'b1;
-            if (pass == 4'd10) depth <= sum[31:0];
-            if (pass == LAST && !out_valid) begin
-                row_address <= sum[10:0];
-                out_valid   <= 1'b1;
-            end
-            if (out_valid && out_ready) out_valid <= 1'b0;
-            if (out_valid && out_ready || pass == ROWS_KNOWN && count == '0) busy <= 1'b0;
+        end else if (pass != LAST) begin
+            pass <= pass + 1'b1;
+            if (pass == ROWS_KNOWN && count == '0) busy <= 1'b0;
+        end else if (!out_valid || out_ready) begin
+            busy      <= 1'b0;
+            out_valid <= 1'b1;
+            out_triangle.best         <= best;
+            out_triangle.worst        <= worst;
+            out_triangle.depth        <= depth;
+            out_triangle.step_x       <= step_x;
+            out_triangle.step_y       <= step_y;
+            out_triangle.depth_step_x <= triangle.depth_step_x;
+            out_triangle.depth_step_y <= triangle.depth_step_y;
+            out_triangle.slope        <= slopes;
+            out_triangle.rises        <= all_rises;
+            out_triangle.falls        <= all_falls;
+            out_triangle.row_address  <= sum[10:0];
+            out_triangle.rows         <= count;
+            out_triangle.group_left   <= triangle.group_left;
+            out_triangle.group_right  <= triangle.group_right;
+            out_triangle.group_start  <= triangle.group_start;
+            out_triangle.colour       <= triangle.colour;
         end
 
         if (rst) begin

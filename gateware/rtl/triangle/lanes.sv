@@ -16,18 +16,18 @@
 `default_nettype none
 
 module lanes (
-    input  wire              clk,
-    input  wire              rst,
-    output logic             idle,
-    input  wire              in_valid,
-    output logic             in_ready,
-    input  wire raster_pkg::candidate_t  in_group,
-    output logic             out_valid,
-    input  wire              out_ready,
-    output logic [10:0]      out_row,
-    output logic [7:0]       out_mask,
-    output logic [7:0][17:0] out_codes,
-    output logic [15:0]      out_colour
+    input  wire                         clk,
+    input  wire                         rst,
+    output logic                        idle,
+    input  wire                         in_valid,
+    output logic                        in_ready,
+    input  wire raster_pkg::candidate_t in_group,
+    output logic                        out_valid,
+    input  wire                         out_ready,
+    output logic [10:0]                 out_row,
+    output logic [7:0]                  out_mask,
+    output logic [7:0][17:0]            out_codes,
+    output logic [15:0]                 out_colour
 );
     logic [4:1] valid;
 

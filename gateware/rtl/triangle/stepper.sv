@@ -14,16 +14,16 @@ module stepper #(
     parameter int unsigned WIDTH = 34,
     parameter int unsigned LOW   = 18
 ) (
-    input  wire              clk,
-    input  wire              advance,
-    input  wire              from_current,
-    input  wire              keep,
-    input  wire raster_pkg::move_t       move,
-    input  wire  [WIDTH-1:0] load_value,
-    input  wire  [WIDTH-1:0] step_x,
-    input  wire  [WIDTH-1:0] step_y,
-    output logic [WIDTH-1:0] current,
-    output logic [WIDTH-1:0] next
+    input  wire                    clk,
+    input  wire                    advance,
+    input  wire                    from_current,
+    input  wire                    keep,
+    input  wire raster_pkg::move_t move,
+    input  wire  [WIDTH-1:0]       load_value,
+    input  wire  [WIDTH-1:0]       step_x,
+    input  wire  [WIDTH-1:0]       step_y,
+    output logic [WIDTH-1:0]       current,
+    output logic [WIDTH-1:0]       next
 );
     logic [WIDTH-1:0]     snapshot, from, step;
     logic                 negate, carry;
@@ -39,7 +39,7 @@ module stepper #(
             raster_pkg::RIGHT:   step = step_x;
             raster_pkg::LEFT:    step = ~step_x;
             raster_pkg::LOAD:    step = '0;
-            default: step = step_y;
+            default:           step = step_y;
         endcase
     end
 

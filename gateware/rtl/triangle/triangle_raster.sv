@@ -8,7 +8,7 @@
 // (the leftmost) in the lowest bits, mask never 0. A triangle gives each of its groups once; triangles keep their order.
 //
 // Streams are valid/ready with a register between any two readies. Latency 19 clocks from a descriptor to its first group.
-// Throughput: a group of the walk a clock, at most a triangle in 14 clocks. The band's first row `y0`, its `rows` and its
+// Throughput: a group of the walk a clock, at most a triangle in 13 clocks. The band's first row `y0`, its `rows` and its
 // `stride` (groups in a row: W/8) hold while not `idle`, which is low from the clock after a descriptor was taken until its last
 // group was taken. For counters: `walking` in clocks in which the walker is at a group, `candidate` in those of them in
 // which it goes to the lanes, `stalled` in clocks in which a group waits to be taken.
@@ -16,31 +16,31 @@
 `default_nettype none
 
 module triangle_raster (
-    input  wire              clk,
-    input  wire              rst,
-    input  wire  [9:0]       y0,
-    input  wire  [5:0]       rows,
-    input  wire  [7:0]       stride,
-    output logic             idle,
-    output logic             walking,
-    output logic             candidate,
-    output logic             stalled,
+    input  wire                            clk,
+    input  wire                            rst,
+    input  wire  [9:0]                     y0,
+    input  wire  [5:0]                     rows,
+    input  wire  [7:0]                     stride,
+    output logic                           idle,
+    output logic                           walking,
+    output logic                           candidate,
+    output logic                           stalled,
     // Descriptors.
-    input  wire              triangle_valid,
-    output logic             triangle_ready,
+    input  wire                            triangle_valid,
+    output logic                           triangle_ready,
     input  wire triangle_pkg::descriptor_t triangle_descriptor,
     // Groups.
-    output logic             group_valid,
-    input  wire              group_ready,
-    output logic [10:0]      group_row,
-    output logic [7:0]       group_mask,
-    output logic [8*18-1:0]  group_codes,
-    output logic [8*16-1:0]  group_colours
+    output logic                           group_valid,
+    input  wire                            group_ready,
+    output logic [10:0]                    group_row,
+    output logic [7:0]                     group_mask,
+    output logic [8*18-1:0]                group_codes,
+    output logic [8*16-1:0]                group_colours
 );
-    logic       entry_idle, walker_idle, lanes_idle;
-    logic       placed_valid, placed_ready;
+    logic                   entry_idle, walker_idle, lanes_idle;
+    logic                   placed_valid, placed_ready;
     raster_pkg::placed_t    placed;
-    logic       walked_valid, walked_ready;
+    logic                   walked_valid, walked_ready;
     raster_pkg::candidate_t walked;
 
     assign idle      = entry_idle && walker_idle && lanes_idle && !group_valid;

@@ -30,17 +30,17 @@
 `default_nettype none
 
 module walker (
-    input  wire              clk,
-    input  wire              rst,
-    input  wire  [7:0]       stride,
-    output logic             idle,
-    output logic             walking,
-    input  wire              in_valid,
-    output logic             in_ready,
-    input  wire raster_pkg::placed_t     in_triangle,
-    output logic             out_valid,
-    input  wire              out_ready,
-    output raster_pkg::candidate_t       out_group
+    input  wire                      clk,
+    input  wire                      rst,
+    input  wire  [7:0]               stride,
+    output logic                     idle,
+    output logic                     walking,
+    input  wire                      in_valid,
+    output logic                     in_ready,
+    input  wire raster_pkg::placed_t in_triangle,
+    output logic                     out_valid,
+    input  wire                      out_ready,
+    output raster_pkg::candidate_t   out_group
 );
     // The triangle.
     logic [2:0][20:0] step_x, step_y;
@@ -63,10 +63,10 @@ module walker (
     logic seek_left, seek_right, extend_left, extend_right, resume;
 
     // The decision: of sign bits and the above.
-    logic [2:0] best_fails, worst_fails;
-    logic       fails, go_right, go_left, open_left, open_right;
-    logic       extend, seek, left, leave;
-    raster_pkg::move_t      move;
+    logic [2:0]        best_fails, worst_fails;
+    logic              fails, go_right, go_left, open_left, open_right;
+    logic              extend, seek, left, leave;
+    raster_pkg::move_t move;
 
     always_comb begin
         for (int k = 0; k < 3; k++) begin
