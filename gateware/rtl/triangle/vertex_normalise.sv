@@ -1,0 +1,73 @@
+// Step 6 of the vertex stage: X' = nearest(X·2^−sh) in 25 bits, saturated, and Y' the same by the same shifter.
+//
+// Clocks are those of a vertex in `vertex_stage`.
+//
+//   6, 9     X, Y come                  8      sh − 6 is there, until 13
+//   8, 11    shift by 16 and 8          9, 12  by 4 and 2
+//   10, 13   by 1, round                11, 14 saturate
+//   24…29    X', Y' are there, when the reciprocal comes
+
+`default_nettype none
+
+module vertex_normalise (
+    input  wire                clk,
+    input  wire                half,
+    input  wire  [1:0]         element,
+    input  wire  [4:0]         scale_shift,
+    // Without the lowest five bits; the next one may be half a unit.
+    input  wire  signed [38:0] planar,
+    // Of Z, leading: sh is f + lead − 34, and lead is 40 − zeros. There in clock 7.
+    input  wire  [3:0]         zeros,
+    output logic signed [24:0] x,
+    output logic signed [24:0] y
+);
+    logic signed [38:0] waiting, wide, by_eights, by_twos, shifted;
+    logic [4:0]         shift;
+    logic signed [25:0] rounded;
+    logic               sign, overflow;
+    logic signed [24:0] saturated;
+
+    assign shifted = shift[0] ? by_twos >>> 1 : by_twos;
+
+    always_comb begin
+        saturated = rounded[24:0];
+        // Rounding may reach the first number that is too large.
+        if (overflow || rounded[25] != rounded[24]) saturated = {sign, {24{!sign}}};
+    end
+
+    always_ff @(posedge clk) begin
+        waiting <= planar;
+        wide    <= waiting;
+        if (!half && element == 2'd0) shift <= scale_shift - 5'(zeros);
+        case (shift[4:3])
+            2'd0:    by_eights <= wide;
+            2'd1:    by_eights <= wide >>> 8;
+            default: by_eights <= wide >>> 16;
+        endcase
+        case (shift[2:1])
+            2'd0: by_twos <= by_eights;
+            2'd1: by_twos <= by_eights >>> 2;
+            2'd2: by_twos <= by_eights >>> 4;
+            2'd3: by_twos <= by_eights >>> 6;
+        endcase
+        rounded  <= 26'(signed'(shifted[25:1])) + 26'(shifted[0]);
+        sign     <= shifted[38];
+        overflow <= shifted[38:25] != {14{shifted[38]}};
+    end
+
+    // What waits for the reciprocal: X' from 12 on, Y' from 15 on.
+    logic signed [24:0] x_first, x_second, y_first, y_second;
+
+    always_ff @(posedge clk) begin
+        if (half && element == 2'd1) begin
+            x_first  <= saturated;
+            x_second <= x_first;
+            x        <= x_second;
+            y_second <= y_first;
+            y        <= y_second;
+        end
+        if (!half && element == 2'd1) y_first <= saturated;
+    end
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,72 @@
+// Step 5 of the vertex stage, the reciprocal of docs/formats.md, every 6 clocks: up to three vertices share one multiplier.
+//
+// Clocks are those of a vertex in `vertex_stage`; products are there three clocks after their factors.
+//
+//   9    m comes                 10, 13    −m·y0 and y0·e0'
+//   25   y is there, until 30    17, 20    −m·y1 and y1·e1'
+
+`default_nettype none
+
+module vertex_reciprocal (
+    input  wire         clk,
+    input  wire         half,
+    input  wire  [1:0]  element,
+    input  wire  [23:0] m,
+    output logic [23:0] y
+);
+    // nearest(2^10/(1 + (i + 1/2)/256)), which is nearest(2^19/(513 + 2·i)).
+    logic [9:0] seeds [0:255];
+
+    initial begin
+        for (int i = 0; i < 256; i++) seeds[i] = 10'(((1 << 20) + 513 + 2 * i) / (2 * (513 + 2 * i)));
+    end
+
+    // −m is there from 10 and, once more, from 16 on; y0 from 10; y1 from 17 and from 23.
+    logic signed [24:0] minus_m, minus_m_later;
+    logic        [9:0]  y0;
+    logic        [16:0] y1, y1_later;
+    logic signed [24:0] a;
+    logic signed [17:0] b, e;
+    logic signed [36:0] c, p;
+    logic        [24:0] sum;
+
+    // The powers of two that the residues e are short of are 0 in the bits that are kept.
+    assign e = p[25:8];
+
+    logic unused;
+    assign unused = &p[7:0];
+
+    always_comb begin
+        case ({half, element[0]})
+            2'b10: a = minus_m;
+            2'b00: a = {15'b0, y0};
+            2'b11: a = minus_m_later;
+            2'b01: a = {8'b0, y1};
+        endcase
+        b = e;
+        if (half) b = element[0] ? {1'b0, y1} : {8'b0, y0};
+        case ({half, element})
+            3'b010:  c = {2'b0, y0, 25'b0};
+            3'b100:  c = 37'd1 << 24;
+            default: c = '0;
+        endcase
+    end
+
+    multiply_add #(.BITS(37)) multiply (.clk(clk), .enable(1'b1), .a(a), .b(b), .c(c), .p(p));
+
+    always_ff @(posedge clk) begin
+        if (!half && element == 2'd2) begin
+            minus_m       <= -{1'b0, m};
+            minus_m_later <= minus_m;
+            y0            <= seeds[m[22:15]];
+        end
+        if (half && element == 2'd0) begin
+            y1       <= p[35] ? '1 : p[34:18];
+            y1_later <= y1;
+        end
+        sum <= {1'b0, y1_later, 7'b0} + 25'($signed(p[36:25]));
+        if (half && element == 2'd2) y <= sum[24] ? '1 : sum[23:0];
+    end
+endmodule
+
+`default_nettype wire

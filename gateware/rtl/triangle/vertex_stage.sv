@@ -1,0 +1,100 @@
+// The vertex stage (docs/formats.md, steps 1 to 8): a position of the mesh in, a place on the screen out, in order.
+//
+// A vertex in 6 clocks; latency 39 clocks, plus up to 5 until its turn. Four multipliers work through a schedule of 6
+// clocks that never stands still: `half` is 0, 0, 0, 1, 1, 1 and `element` 0, 1, 2, 0, 1, 2 in clocks 1 to 6 of a vertex
+// (clock 0 is the one in which it moves in) and in all that are multiples of 6 later. A vertex moves in only if there is
+// a place for it in the FIFO at the end, so nothing needs to stop.
+//
+//   clock  1         7            9                  25             37
+//     in ─▶ transform ─▶ lead ──────▶ m ─▶ reciprocal ──▶ y ─▶ snap ───▶ FIFO ─▶ out
+//                  └──▶ X, Y ─▶ normalise ──────────▶ X', Y' ─┘
+//
+// The frame's constants hold from its first vertex in to its last vertex out. A vertex that is behind is 0 otherwise;
+// one beyond the guard band has its x and y saturated to s12.8.
+
+`default_nettype none
+
+module vertex_stage (
+    input  wire                clk,
+    input  wire                rst,
+    // Frame constants.
+    input  wire  [4:0]         scale_shift, // f
+    input  wire  [2:0][24:0]   row_u,       // the first number lowest
+    input  wire  [2:0][24:0]   row_v,
+    input  wire  [2:0][24:0]   row_n,
+    input  wire  signed [43:0] tx,
+    input  wire  signed [43:0] ty,
+    input  wire  signed [43:0] tz,
+    input  wire  [38:0]        near_z,
+    input  wire  [9:0]         centre_x,
+    input  wire  [9:0]         centre_y,
+    input  wire  [16:0]        depth_mantissa,
+    input  wire  signed [3:0]  depth_exponent,
+    // Positions, s2.14 each.
+    input  wire                in_valid,
+    output logic               in_ready,
+    input  wire  [2:0][15:0]   in_position,
+    output logic               out_valid,
+    input  wire                out_ready,
+    output triangle_pkg::projected_t out_vertex
+);
+    localparam int unsigned PLACES = 16;
+
+    logic                    half, turn;
+    logic [1:0]              element;
+    logic [$clog2(PLACES):0] held;     // vertices between the two sides
+    logic [6:0]              ages;     // bit k: a vertex is in its clocks 6·k + 1 to 6·k + 6
+    logic [2:0][15:0]        position;
+
+    assign turn     = half && element == 2'd2;
+    assign in_ready = turn && !held[$clog2(PLACES)];
+
+    always_ff @(posedge clk) begin
+        element <= element == 2'd2 ? 2'd0 : element + 2'd1;
+        half    <= half ^ (element == 2'd2);
+        held    <= held + 5'(in_valid && in_ready) - 5'(out_valid && out_ready);
+        if (turn) begin
+            ages     <= {ages[5:0], in_valid && in_ready};
+            position <= in_position;
+        end
+
+        if (rst) begin
+            element <= 2'd0;
+            half    <= 1'b0;
+            held    <= '0;
+            ages    <= '0;
+        end
+    end
+
+    logic signed [38:0] planar;
+    logic        [3:0]  zeros;
+    logic               behind;
+    logic        [23:0] mantissa, inverse;
+    logic signed [24:0] x, y;
+    triangle_pkg::projected_t vertex;
+
+    vertex_transform transform (
+        .clk(clk), .half(half), .element(element), .row_u(row_u), .row_v(row_v), .row_n(row_n), .tx(tx), .ty(ty), .tz(tz),
+        .near_z(near_z), .position(position), .planar(planar), .zeros(zeros), .behind(behind), .mantissa(mantissa));
+
+    vertex_normalise normalise (
+        .clk(clk), .half(half), .element(element), .scale_shift(scale_shift), .planar(planar), .zeros(zeros),
+        .x(x), .y(y));
+
+    vertex_reciprocal reciprocal (.clk(clk), .half(half), .element(element), .m(mantissa), .y(inverse));
+
+    vertex_snap snap (
+        .clk(clk), .half(half), .element(element), .centre_x(centre_x), .centre_y(centre_y),
+        .depth_mantissa(depth_mantissa), .depth_exponent(depth_exponent), .zeros(zeros), .behind(behind), .x(x), .y(y),
+        .inverse(inverse), .vertex(vertex));
+
+    // Never full.
+    logic room, unused;
+    assign unused = room;
+
+    fifo #(.WIDTH($bits(vertex)), .DEPTH(PLACES)) finished (
+        .clk(clk), .rst(rst), .in_valid(ages[6] && !half && element == 2'd0), .in_ready(room), .in_data(vertex),
+        .out_valid(out_valid), .out_ready(out_ready), .out_data(out_vertex));
+endmodule
+
+`default_nettype wire
