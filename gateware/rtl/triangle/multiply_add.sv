@@ -1,0 +1,38 @@
+// p = a·b + c, made to be one DSP48: signed, 25 by 18 bits, with registers on both sides of the multiplier.
+//
+//   a, b ─▶│a, b│─▶ × ─▶│product│─▶ + ─▶│p│
+//                                   ▲
+//                                   c
+//
+// Latency 3 clocks in which `enable` is high, 1 from `c`. Throughput one product a clock. `c` may be made of `p`: then it
+// accumulates. A wide factor goes through in pieces of 17 bits without a sign, and one with the sign.
+
+`default_nettype none
+
+module multiply_add #(
+    parameter int unsigned BITS = 48
+) (
+    input  wire                    clk,
+    input  wire                    enable,
+    input  wire  signed [24:0]     a,
+    input  wire  signed [17:0]     b,
+    input  wire  signed [BITS-1:0] c,
+    output logic signed [BITS-1:0] p
+);
+    logic signed [24:0] factor_a;
+    logic signed [17:0] factor_b;
+    // 43 bits are all; p may be narrower.
+    localparam int unsigned PRODUCT_BITS = BITS < 43 ? BITS : 43;
+    logic signed [PRODUCT_BITS-1:0] product;
+
+    always_ff @(posedge clk) begin
+        if (enable) begin
+            factor_a <= a;
+            factor_b <= b;
+            product  <= factor_a * factor_b;
+            p        <= BITS'(product) + c;
+        end
+    end
+endmodule
+
+`default_nettype wire
