@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 
 from glint_soc import scanout
+from tools import TESTS
 
 
 @dataclass(frozen=True)
@@ -22,7 +23,20 @@ class Module:
 # As much time for a memory word as 1280x720 has, in a two-hundredth of its frame.
 _SMALL_RASTER = {"H_ACTIVE": 160, "H_FRONT": 8, "H_SYNC": 4, "H_BACK": 12,
                  "V_ACTIVE": 24, "V_FRONT": 2, "V_SYNC": 2, "V_BACK": 4}
-_COMMON, _BAND = scanout.RTL / "common", scanout.RTL / "band"
+_COMMON, _BAND, _TRIANGLE = (scanout.RTL / folder for folder in ("common", "band", "triangle"))
+
+BAND_BUFFER = [_COMMON / "fifo.sv", *(_BAND / f"band_{part}.sv" for part in ("bank", "pipe", "flush", "buffer"))]
+RASTER_MEMORY = [
+    _TRIANGLE / "triangle_pkg.sv", _TRIANGLE / "raster_pkg.sv", *BAND_BUFFER,
+    _COMMON / "skid_buffer.sv", _COMMON / "read_port.sv",
+    *(_TRIANGLE / f"{name}.sv" for name in ("list_reader", "stepper", "band_entry", "walker", "lanes", "triangle_raster",
+                                            "raster_unit")),
+    TESTS / "rtl" / "raster_memory.sv",
+]
+VERTEX_STAGE = [
+    _TRIANGLE / "triangle_pkg.sv", _COMMON / "fifo.sv", _TRIANGLE / "multiply_add.sv",
+    *(_TRIANGLE / f"vertex_{part}.sv" for part in ("transform", "normalise", "reciprocal", "snap", "stage")),
+]
 
 MODULES = [
     Module(
@@ -32,10 +46,10 @@ MODULES = [
         variants={"scanout_small": _SMALL_RASTER},
         defines=["SMALL_RASTER=" + ",".join(str(value) for value in _SMALL_RASTER.values())],
     ),
-    Module(top="skid_buffer", sources=[scanout.RTL / "common" / "skid_buffer.sv"]),
-    Module(top="fifo", sources=[scanout.RTL / "common" / "fifo.sv"], variants={"fifo_2": {"DEPTH": 2}}),
-    Module(
-        top="band_buffer",
-        sources=[_COMMON / "fifo.sv"] + [_BAND / f"band_{part}.sv" for part in ("bank", "pipe", "flush", "buffer")],
-    ),
+    Module(top="skid_buffer", sources=[_COMMON / "skid_buffer.sv"]),
+    Module(top="fifo", sources=[_COMMON / "fifo.sv"], variants={"fifo_2": {"DEPTH": 2}}),
+    Module(top="band_buffer", sources=BAND_BUFFER),
+    Module(top="binner", sources=[_TRIANGLE / "triangle_pkg.sv", _TRIANGLE / "binner.sv"]),
+    Module(top="vertex_stage", sources=VERTEX_STAGE),
+    Module(top="raster_memory", sources=RASTER_MEMORY),
 ]

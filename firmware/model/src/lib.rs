@@ -11,6 +11,7 @@
 #![forbid(unsafe_code)]
 
 pub mod clip;
+pub mod descriptor;
 pub mod frame;
 pub mod raster;
 pub mod reciprocal;

@@ -78,7 +78,7 @@ module read_port #(
     end
 
     // The owners of the words that are on their way, in order.
-    (* ram_style = "distributed" *) logic [CLIENT_BITS-1:0] owners [0:CLIENTS*DEPTH-1];
+    (* ram_style = "distributed" *) logic [CLIENT_BITS-1:0] owners [0:2**OWNER_BITS-1];
     logic [OWNER_BITS:0]    asked, answered;
     logic [CLIENT_BITS-1:0] owner;
 

@@ -45,6 +45,18 @@ impl Memory {
         )
     }
 
+    /// Writes the bytes of a word whose bit is set in `strobe`.
+    ///
+    /// # Panics
+    /// Beyond the memory.
+    pub fn store(&mut self, address: u32, data: Bits, strobe: u16) {
+        for (i, byte) in self.words[address as usize].iter_mut().enumerate() {
+            if strobe >> i & 1 == 1 {
+                *byte = data.field(8 * i, 8) as u8;
+            }
+        }
+    }
+
     /// The entry `index` of 32 bits from the word `address` on.
     ///
     /// # Panics
@@ -165,12 +177,7 @@ impl WritePort {
                 "no data for a command in cycle {cycle}"
             );
             let (data, strobe) = (module.get(self.wdata[2]), module.value(self.wdata[3]));
-            let word = &mut memory.words[address as usize];
-            for (i, byte) in word.iter_mut().enumerate() {
-                if strobe >> i & 1 == 1 {
-                    *byte = data.field(8 * i, 8) as u8;
-                }
-            }
+            memory.store(address, data, strobe as u16);
             self.written += 1;
         }
         if module.is_high(self.cmd[0]) && module.is_high(self.cmd[1]) {

@@ -16,8 +16,8 @@ pub struct Module {
 }
 
 impl Module {
-    /// The module `name`, or a variant of one, just out of reset. Registers without a reset start with noise that follows
-    /// from `seed`.
+    /// The module `name`, or a variant of one, just out of reset, with all inputs low. Registers without a reset start with
+    /// noise that follows from `seed`.
     ///
     /// # Panics
     /// When it has not been built.
@@ -35,6 +35,11 @@ impl Module {
             instance,
             cycles: 0,
         };
+        for port in 0..module.instance.shapes().len() {
+            if !module.instance.shapes()[port].is_output {
+                module.set(Port(port), 0);
+            }
+        }
         let rst = module.port("rst");
         module.set(rst, 1);
         module.clock();
