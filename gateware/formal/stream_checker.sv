@@ -1,0 +1,36 @@
+// Watches one stream: what is valid and not taken must be there again in the next clock, unchanged.
+//
+// GIVEN = 1 assumes it, for a stream that comes from outside the module under proof; GIVEN = 0 asserts it.
+
+`default_nettype none
+
+module stream_checker #(
+    parameter int unsigned WIDTH = 8,
+    parameter bit          GIVEN = 0
+) (
+    input wire             clk,
+    input wire             rst,
+    input wire             valid,
+    input wire             ready,
+    input wire [WIDTH-1:0] data
+);
+    logic             waiting = 1'b0;
+    logic [WIDTH-1:0] shown;
+
+    always_ff @(posedge clk) begin
+        waiting <= valid && !ready && !rst;
+        shown   <= data;
+    end
+
+    always_ff @(posedge clk) if (!rst && waiting) begin
+        if (GIVEN) begin
+            assume (valid);
+            assume (data == shown);
+        end else begin
+            valid_stays:    assert (valid);
+            payload_stable: assert (data == shown);
+        end
+    end
+endmodule
+
+`default_nettype wire
