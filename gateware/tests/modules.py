@@ -26,16 +26,22 @@ _SMALL_RASTER = {"H_ACTIVE": 160, "H_FRONT": 8, "H_SYNC": 4, "H_BACK": 12,
 _COMMON, _BAND, _TRIANGLE = (scanout.RTL / folder for folder in ("common", "band", "triangle"))
 
 BAND_BUFFER = [_COMMON / "fifo.sv", *(_BAND / f"band_{part}.sv" for part in ("bank", "pipe", "flush", "buffer"))]
+TRIANGLE_RASTER = [
+    _TRIANGLE / "triangle_pkg.sv", _TRIANGLE / "raster_pkg.sv", _COMMON / "skid_buffer.sv",
+    *(_TRIANGLE / f"{name}.sv" for name in ("stepper", "band_entry", "walker", "lanes", "triangle_raster")),
+]
 RASTER_MEMORY = [
-    _TRIANGLE / "triangle_pkg.sv", _TRIANGLE / "raster_pkg.sv", *BAND_BUFFER,
-    _COMMON / "skid_buffer.sv", _COMMON / "read_port.sv",
-    *(_TRIANGLE / f"{name}.sv" for name in ("list_reader", "stepper", "band_entry", "walker", "lanes", "triangle_raster",
-                                            "raster_unit")),
-    TESTS / "rtl" / "raster_memory.sv",
+    *TRIANGLE_RASTER, *BAND_BUFFER, _COMMON / "read_port.sv",
+    _TRIANGLE / "list_reader.sv", _TRIANGLE / "raster_unit.sv", TESTS / "rtl" / "raster_memory.sv",
 ]
 VERTEX_STAGE = [
     _TRIANGLE / "triangle_pkg.sv", _COMMON / "fifo.sv", _TRIANGLE / "multiply_add.sv",
     *(_TRIANGLE / f"vertex_{part}.sv" for part in ("transform", "normalise", "reciprocal", "snap", "stage")),
+]
+SETUP = [
+    *(_TRIANGLE / f"{name}.sv" for name in ("triangle_pkg", "setup_pkg", "multiply_add", "reciprocal", "normalise", "cull",
+                                            "flat_shade", "setup_edges", "setup_normal", "setup_gradient", "setup_depth",
+                                            "setup")),
 ]
 
 MODULES = [
@@ -51,5 +57,9 @@ MODULES = [
     Module(top="band_buffer", sources=BAND_BUFFER),
     Module(top="binner", sources=[_TRIANGLE / "triangle_pkg.sv", _TRIANGLE / "binner.sv"]),
     Module(top="vertex_stage", sources=VERTEX_STAGE),
+    Module(top="vertex_cache", sources=[_COMMON / "fifo.sv", _TRIANGLE / "vertex_cache.sv"]),
+    Module(top="reciprocal", sources=[_TRIANGLE / "multiply_add.sv", _TRIANGLE / "reciprocal.sv"]),
+    Module(top="setup", sources=SETUP),
+    Module(top="triangle_raster", sources=TRIANGLE_RASTER),
     Module(top="raster_memory", sources=RASTER_MEMORY),
 ]
