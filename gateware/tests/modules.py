@@ -38,11 +38,6 @@ VERTEX_STAGE = [
     _TRIANGLE / "triangle_pkg.sv", _COMMON / "fifo.sv", _TRIANGLE / "multiply_add.sv",
     *(_TRIANGLE / f"vertex_{part}.sv" for part in ("transform", "normalise", "reciprocal", "snap", "stage")),
 ]
-SETUP = [
-    *(_TRIANGLE / f"{name}.sv" for name in ("triangle_pkg", "setup_pkg", "multiply_add", "reciprocal", "normalise", "cull",
-                                            "flat_shade", "setup_edges", "setup_normal", "setup_gradient", "setup_depth",
-                                            "setup")),
-]
 
 MODULES = [
     Module(
@@ -57,9 +52,6 @@ MODULES = [
     Module(top="band_buffer", sources=BAND_BUFFER),
     Module(top="binner", sources=[_TRIANGLE / "triangle_pkg.sv", _TRIANGLE / "binner.sv"]),
     Module(top="vertex_stage", sources=VERTEX_STAGE),
-    Module(top="vertex_cache", sources=[_COMMON / "fifo.sv", _TRIANGLE / "vertex_cache.sv"]),
-    Module(top="reciprocal", sources=[_TRIANGLE / "multiply_add.sv", _TRIANGLE / "reciprocal.sv"]),
-    Module(top="setup", sources=SETUP),
     Module(top="triangle_raster", sources=TRIANGLE_RASTER),
     Module(top="raster_memory", sources=RASTER_MEMORY),
 ]
