@@ -1,0 +1,224 @@
+// A cache of vertices after the vertex stage: triangles of indices in, triangles of vertices out, both in order.
+//
+//           ┌──────┐  miss: index   ┌───────────────────────────┐ fetch                 memory, vertex stage
+//   in ────▶│ tags │───────────────▶│ 64 places                 │──────▶ … ─────────────┐
+//    │      │      │  slot, miss    ├───────────────────────────┤                       │ projected
+//    │      │      │───────────────▶│ 64 records                │──────▶ ┌──────────┐◀──┘
+//    │      └──────┘                └───────────────────────────┘        │ vertices │──▶ 3 vertices ─▶ out
+//    └─────────────────────────────────────────────────── side ─────────▶└──────────┘              ▲
+//                                                              └───────────────────────────────────┘
+// Direct mapped. Tags change in the order of the indices, at the front; vertices change in the same order, at the back,
+// where a record that missed takes the next vertex of `projected`. So a record that hit finds the vertex it was promised,
+// however late that one came, and there is no hazard. Within either memory there is none either: the tags are read and
+// replaced by one access, the old one first; and a record either reads its slot or writes it, on its way past one port.
+//
+// `clear` (one clock) forgets all vertices for the triangles that move in later: a chunk or a frame begins. Tags hold the
+// number of the time between two clears, so only every 2^EPOCH_BITS − 1 clears, and after a reset, all are swept: 1 clock
+// a slot.
+// Latency 15 clocks without a miss. Throughput an index a clock, a triangle in 3, while there are no misses. Each stream
+// goes by valid and ready.
+
+`default_nettype none
+
+module vertex_cache #(
+    parameter int unsigned SLOTS       = 512,
+    parameter int unsigned SIDE_BITS   = 96,
+    parameter int unsigned EPOCH_BITS  = 6,
+    localparam int unsigned VERTEX_BITS = 68 // a triangle_pkg::projected_t
+) (
+    input  wire                          clk,
+    input  wire                          rst,
+    input  wire                          clear,
+    // No triangle is inside.
+    output logic                         idle,
+    input  wire                          in_valid,
+    output logic                         in_ready,
+    input  wire  [2:0][15:0]             in_indices,
+    input  wire  [SIDE_BITS-1:0]         in_side,
+    output logic                         fetch_valid,
+    input  wire                          fetch_ready,
+    output logic [15:0]                  fetch_index,
+    input  wire                          projected_valid,
+    output logic                         projected_ready,
+    input  wire  [VERTEX_BITS-1:0]       projected_vertex,
+    output logic                         out_valid,
+    input  wire                          out_ready,
+    output logic [2:0][VERTEX_BITS-1:0]  out_vertices,
+    output logic [SIDE_BITS-1:0]         out_side
+);
+    localparam int unsigned SLOT_BITS  = $clog2(SLOTS);
+    localparam int unsigned TAG_BITS   = 16 - SLOT_BITS;
+    localparam int unsigned ENTRY_BITS = EPOCH_BITS + TAG_BITS;
+    localparam int unsigned RECORDS    = 64;
+    localparam int unsigned PLACES     = 16; // of vertices that are waiting for the rest of their triangle
+    localparam int unsigned TRIANGLES  = 32; // more than RECORDS and PLACES can be parts of
+
+    // Front: a triangle's indices go to the tags one by one, as long as there is room for their records.
+    logic [2:0][15:0]        indices;
+    logic [1:0]              to_look;
+    logic [$clog2(RECORDS):0] records;
+    logic                    look, taken, side_room, clearing, record_taken;
+
+    assign look     = to_look != 2'd0 && !records[$clog2(RECORDS)];
+    assign in_ready = (to_look == 2'd0 || to_look == 2'd1 && look) && side_room && !clearing;
+    assign taken    = in_valid && in_ready;
+
+    // Epoch 0 is no time at all.
+    logic [EPOCH_BITS-1:0] epoch;
+    logic                  sweeping;
+    logic [SLOT_BITS-1:0]  sweep;
+
+    always_ff @(posedge clk) begin
+        if (look) begin
+            indices <= {16'b0, indices[2:1]};
+            to_look <= to_look - 2'd1;
+        end
+        if (taken) begin
+            indices <= in_indices;
+            to_look <= 2'd3;
+        end
+        records <= records + 7'(look) - 7'(record_taken);
+
+        if (clearing && to_look == 2'd0) begin
+            if (sweeping) begin
+                sweep <= sweep + 1'b1;
+                if (sweep == '1) begin
+                    sweeping <= 1'b0;
+                    clearing <= 1'b0;
+                end
+            end else begin
+                epoch    <= epoch == '1 ? EPOCH_BITS'(1) : epoch + 1'b1;
+                sweeping <= epoch == '1;
+                clearing <= epoch == '1;
+            end
+        end
+        if (clear) clearing <= 1'b1;
+
+        if (rst) begin
+            to_look  <= 2'd0;
+            records  <= '0;
+            epoch    <= '1;
+            clearing <= 1'b1;
+            sweeping <= 1'b0;
+            sweep    <= '0;
+        end
+    end
+
+    // The tags: three clocks from an index to its record.
+    (* ram_style = "block" *) logic [ENTRY_BITS-1:0] tags [0:SLOTS-1];
+    logic                       replace;
+    logic [SLOT_BITS-1:0]       slot;
+    logic [ENTRY_BITS-1:0]      entry, entry_read, entry_old;
+    logic [2:0]                 looked;   // bit k: an index that was looked up k + 1 clocks ago
+    logic [1:0][15:0]           looked_index;
+    logic [1:0][EPOCH_BITS-1:0] looked_epoch;
+    logic                       found, missed;
+    logic [15:0]                found_index;
+
+    always_ff @(posedge clk) begin
+        replace <= look || sweeping;
+        slot    <= sweeping ? sweep : indices[0][SLOT_BITS-1:0];
+        entry   <= sweeping ? '0 : {epoch, indices[0][15:SLOT_BITS]};
+        if (replace) begin
+            entry_read <= tags[slot];
+            tags[slot] <= entry;
+        end
+        entry_old <= entry_read;
+
+        looked       <= {looked[1:0], look};
+        looked_index <= {looked_index[0], entry[TAG_BITS-1:0], slot};
+        looked_epoch <= {looked_epoch[0], entry[ENTRY_BITS-1:TAG_BITS]};
+        found        <= looked[2];
+        found_index  <= looked_index[1];
+        missed       <= entry_old != {looked_epoch[1], looked_index[1][15:SLOT_BITS]};
+        if (rst) begin
+            replace <= 1'b0;
+            looked  <= '0;
+            found   <= 1'b0;
+        end
+    end
+
+    // An index in the one FIFO has a record in the other, so `records` keeps both from being full.
+    logic                 record_valid, record_missed, fetch_room, record_room;
+    logic [SLOT_BITS-1:0] record_slot;
+
+    fifo #(.WIDTH(16), .DEPTH(RECORDS)) fetches (
+        .clk(clk), .rst(rst), .in_valid(found && missed), .in_ready(fetch_room), .in_data(found_index),
+        .out_valid(fetch_valid), .out_ready(fetch_ready), .out_data(fetch_index));
+
+    fifo #(.WIDTH(1 + SLOT_BITS), .DEPTH(RECORDS)) waiting (
+        .clk(clk), .rst(rst), .in_valid(found), .in_ready(record_room), .in_data({missed, found_index[SLOT_BITS-1:0]}),
+        .out_valid(record_valid), .out_ready(record_taken), .out_data({record_missed, record_slot}));
+
+    // Back: three clocks from a record to its vertex.
+    logic [$clog2(PLACES):0] held;
+    logic                    room, vertex_taken;
+
+    assign room            = !held[$clog2(PLACES)];
+    assign projected_ready = record_valid && record_missed && room;
+    assign record_taken    = record_valid && room && (!record_missed || projected_valid);
+
+    (* ram_style = "block" *) logic [VERTEX_BITS-1:0] vertices [0:SLOTS-1];
+    logic                        store, load;
+    logic [SLOT_BITS-1:0]        place;
+    logic [VERTEX_BITS-1:0]      vertex_read, vertex_old;
+    logic [2:0]                  passing, passing_missed;
+    logic [2:0][VERTEX_BITS-1:0] fresh;
+
+    assign store = passing[0] && passing_missed[0];
+    assign load  = passing[0] && !passing_missed[0];
+
+    always_ff @(posedge clk) begin
+        place          <= record_slot;
+        passing        <= {passing[1:0], record_taken};
+        passing_missed <= {passing_missed[1:0], record_missed};
+        fresh          <= {fresh[1:0], projected_vertex};
+        if (store) vertices[place] <= fresh[0];
+        if (load)  vertex_read     <= vertices[place];
+        vertex_old <= vertex_read;
+        held       <= held + 5'(record_taken) - 5'(vertex_taken);
+        if (rst) begin
+            passing <= '0;
+            held    <= '0;
+        end
+    end
+
+    // Triangles again.
+    logic                   vertex_valid, vertex_room, side_valid;
+    logic [VERTEX_BITS-1:0] vertex;
+    logic [1:0]             filled;
+    logic [5:0]             inside_count;
+
+    fifo #(.WIDTH(VERTEX_BITS), .DEPTH(PLACES)) gathered (
+        .clk(clk), .rst(rst), .in_valid(passing[2]), .in_ready(vertex_room),
+        .in_data(passing_missed[2] ? fresh[2] : vertex_old),
+        .out_valid(vertex_valid), .out_ready(vertex_taken), .out_data(vertex));
+
+    fifo #(.WIDTH(SIDE_BITS), .DEPTH(TRIANGLES)) sides (
+        .clk(clk), .rst(rst), .in_valid(taken), .in_ready(side_room), .in_data(in_side),
+        .out_valid(side_valid), .out_ready(out_valid && out_ready), .out_data(out_side));
+
+    assign vertex_taken = vertex_valid && (!out_valid || out_ready);
+    assign idle         = inside_count == '0;
+
+    always_ff @(posedge clk) begin
+        if (out_ready) out_valid <= 1'b0;
+        if (vertex_taken) begin
+            for (int i = 0; i < 3; i++) if (filled == 2'(i)) out_vertices[i] <= vertex;
+            filled    <= filled == 2'd2 ? 2'd0 : filled + 2'd1;
+            out_valid <= filled == 2'd2;
+        end
+        inside_count <= inside_count + 6'(taken) - 6'(out_valid && out_ready);
+        if (rst) begin
+            out_valid    <= 1'b0;
+            filled       <= 2'd0;
+            inside_count <= '0;
+        end
+    end
+
+    // Never full, and a triangle's side is there long before its vertices.
+    logic unused;
+    assign unused = fetch_room && record_room && vertex_room && side_valid;
+endmodule
+
+`default_nettype wire
