@@ -557,7 +557,7 @@ fn filling(mesh: &Mesh) -> View {
 /// How many pixels a clock the walker reaches on a body of small triangles.
 #[test]
 fn a_sphere_is_walked_efficiently() {
-    for (frequency, size, least) in [(6, SMALL, 2.5), (12, LARGE, 3.5)] {
+    for (frequency, size, least) in [(6, SMALL, 2.8), (12, LARGE, 4.0)] {
         let bytes = mesh(&format!("icosphere:{frequency}"));
         let mesh = Mesh::new_checked(&bytes).unwrap();
         let mut scratch = vec![Projected::Behind; 4096];
@@ -601,6 +601,6 @@ fn a_sphere_is_walked_efficiently() {
             rate(counts.walked),
             rate(counts.clocks),
         );
-        assert!(rate(counts.walked) > least);
+        assert!(rate(counts.clocks) > least);
     }
 }
