@@ -233,6 +233,43 @@ fn edges() {
     assert!(near_planes > 100 && guard_edges > 1000 && full_depths > 100);
 }
 
+/// The vertex at the origin is the translation itself: mantissas of Z at both ends of each seed of the reciprocal, and X' on
+/// both sides of every limit of its rounding.
+#[test]
+fn mantissas_and_shifts() {
+    let mut random = Random(4);
+    let mut bench = Bench::new(9, 0.0, 0.0);
+    let view = camera(&mut random, 0).rounded();
+    let mut seen = [false; 19];
+    for round in 0..3072 {
+        let (width, height) = SIZES[round as usize % 3];
+        let mut frame = FrameSetup::new(&view, width, height, RADIUS).unwrap();
+        // 0.01, the nearest that a near plane can be.
+        frame.near = 1_374_389_535;
+        let seed = round / 4 % 256;
+        let mantissa =
+            (1 << 23) + (seed << 15) + [0, 1, (1 << 15) - 1, 1 << 14][round as usize % 4];
+        let lead = random.integer(30, 40);
+        // What the mantissa cuts off is all zeros, all ones, or anything.
+        let below = (1 << (lead - 23)) - 1;
+        let z = mantissa << (lead - 23)
+            | [0, below, random.bits() as i64 & below][round as usize / 1024];
+        frame.scale_shift = random.integer(10, 18) as u32;
+        frame.depth.exponent = random.integer(-5, 5) as i32;
+        let shift = frame.scale_shift as usize + lead as usize - 34;
+        seen[shift - 6] = true;
+        let mut limit = || {
+            let half = 1 << (shift - 1);
+            let whole = [(1 << 24) - 1, 1 << 24, random.integer(0, 1 << 24)];
+            let x = (whole[random.integer(0, 2) as usize] << shift) + half + random.integer(-1, 0);
+            (if random.coin() { x } else { -x }).clamp(-1 << 42, (1 << 42) - 1)
+        };
+        frame.translation = [limit(), limit(), z];
+        bench.check(&frame, &[[0; 3]]);
+    }
+    assert_eq!(seen, [true; 19]);
+}
+
 #[test]
 fn a_vertex_in_six_clocks() {
     let mut random = Random(3);
