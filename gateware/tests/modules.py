@@ -3,7 +3,6 @@
 from dataclasses import dataclass, field
 
 from glint_soc import scanout
-from tools import TESTS
 
 
 @dataclass(frozen=True)
@@ -30,14 +29,18 @@ TRIANGLE_RASTER = [
     _TRIANGLE / "triangle_pkg.sv", _TRIANGLE / "raster_pkg.sv", _COMMON / "skid_buffer.sv",
     *(_TRIANGLE / f"{name}.sv" for name in ("stepper", "band_entry", "walker", "lanes", "triangle_raster")),
 ]
-RASTER_MEMORY = [
-    *TRIANGLE_RASTER, *BAND_BUFFER, _COMMON / "read_port.sv",
-    _TRIANGLE / "list_reader.sv", _TRIANGLE / "raster_unit.sv", TESTS / "rtl" / "raster_memory.sv",
-]
 VERTEX_STAGE = [
     _TRIANGLE / "triangle_pkg.sv", _COMMON / "fifo.sv", _TRIANGLE / "multiply_add.sv",
     *(_TRIANGLE / f"vertex_{part}.sv" for part in ("transform", "normalise", "reciprocal", "snap", "stage")),
 ]
+SETUP = [_TRIANGLE / f"{name}.sv" for name in (
+    "triangle_pkg", "setup_pkg", "multiply_add", "reciprocal", "normalise", "cull", "flat_shade", "setup_edges", "setup_normal",
+    "setup_gradient", "setup_depth", "setup")]
+TRIANGLE_ENGINE = [*dict.fromkeys([
+    *SETUP, *TRIANGLE_RASTER, *VERTEX_STAGE, *BAND_BUFFER, _COMMON / "read_port.sv", _COMMON / "write_port.sv",
+    *(_TRIANGLE / f"{name}.sv" for name in ("vertex_cache", "mesh_walk", "classify", "binner", "geometry_unit", "list_reader",
+                                            "raster_unit", "triangle_engine")),
+])]
 
 MODULES = [
     Module(
@@ -52,6 +55,9 @@ MODULES = [
     Module(top="band_buffer", sources=BAND_BUFFER),
     Module(top="binner", sources=[_TRIANGLE / "triangle_pkg.sv", _TRIANGLE / "binner.sv"]),
     Module(top="vertex_stage", sources=VERTEX_STAGE),
+    Module(top="vertex_cache", sources=[_COMMON / "fifo.sv", _TRIANGLE / "vertex_cache.sv"]),
+    Module(top="reciprocal", sources=[_TRIANGLE / "multiply_add.sv", _TRIANGLE / "reciprocal.sv"]),
+    Module(top="setup", sources=SETUP),
     Module(top="triangle_raster", sources=TRIANGLE_RASTER),
-    Module(top="raster_memory", sources=RASTER_MEMORY),
+    Module(top="triangle_engine", sources=TRIANGLE_ENGINE),
 ]

@@ -1,0 +1,212 @@
+// The first part of the triangle setup: area, facing, bounds and start group. A triangle without area, a back face while
+// `cull_back`, or one without a pixel's centre in the bounds ends here, with a pulse of `culled`. So does one that is off a
+// side of the picture: its bounds are empty.
+//
+// Throughput a triangle in 4 clocks, latency 8. Two triangles are inside, one after the other in time with `phase`:
+//
+//   in ─▶│ first 4 clocks: products of the area,  │─▶│ last 4 clocks: area,        │─▶ out
+//        │ minima and maxima, one in each clock   │  │ bounds, start; then verdict │
+//
+// All stands still while one that is drawn waits in phase 3 for `out`. A culled one waits for nothing. No path leads
+// from out_ready of the descriptor here, as that of this module is made of registers.
+
+`default_nettype none
+
+module cull (
+    input  wire                    clk,
+    input  wire                    rst,
+    input  wire  [10:0]            width,
+    input  wire  [9:0]             height,
+    input  wire                    cull_back,
+    output logic                   busy,
+    output logic                   culled,
+    input  wire                    in_valid,
+    output logic                   in_ready,
+    input  wire  [2:0][65:0]       in_vertices, // screen_vertex_t each
+    input  wire  [15:0]            in_colour,
+    input  wire  [2:0][15:0]       in_normal,
+    output logic                   out_valid,
+    input  wire                    out_ready,
+    output setup_pkg::oriented_t              out_triangle
+);
+    // What is known of a triangle from the beginning.
+    typedef struct packed {
+        triangle_pkg::screen_vertex_t v0, v1, v2;
+        logic [15:0]          colour;
+        logic [2:0][15:0]     normal;
+        logic [20:0]          x10, x20, y01, y20;
+        // Vertex i is before vertex k, for ik = 10, 21 and 12.
+        logic                 y_10, y_21, y_12;
+    } triangle_t;
+
+    triangle_pkg::screen_vertex_t v0, v1, v2;
+    assign v0 = in_vertices[0];
+    assign v1 = in_vertices[1];
+    assign v2 = in_vertices[2];
+
+    logic [1:0] phase;
+    logic       advance, drop;
+    logic       first_valid, last_valid, first_x_21;
+    triangle_t  first, last;
+
+    assign advance  = phase != 2'd3 || !last_valid || drop || !out_valid || out_ready;
+    assign in_ready = phase == 2'd3 && advance;
+    assign busy     = first_valid || last_valid || out_valid;
+
+    function automatic logic precedes(input logic [20:0] a, input logic [20:0] b);
+        precedes = $signed(a) < $signed(b);
+    endfunction
+
+    always_ff @(posedge clk) begin
+        if (advance) phase <= phase + 1'b1;
+        if (in_ready) begin
+            first_valid  <= in_valid;
+            first.v0     <= v0;
+            first.v1     <= v1;
+            first.v2     <= v2;
+            first.colour <= in_colour;
+            first.normal <= in_normal;
+            first.x10    <= v1.x - v0.x;
+            first.x20    <= v2.x - v0.x;
+            first.y01    <= v0.y - v1.y;
+            first.y20    <= v2.y - v0.y;
+            first_x_21   <= precedes(v2.x, v1.x);
+            first.y_10   <= precedes(v1.y, v0.y);
+            first.y_21   <= precedes(v2.y, v1.y);
+            first.y_12   <= precedes(v1.y, v2.y);
+            last_valid   <= first_valid;
+            last         <= first;
+        end
+        if (rst) begin
+            phase       <= '0;
+            first_valid <= 1'b0;
+            last_valid  <= 1'b0;
+        end
+    end
+
+    // 2A = x10·y20 + x20·y01, the highest four bits of y20 and y01 first. It is there in phase 2 of the last clocks.
+    logic signed [24:0] a;
+    logic signed [17:0] b;
+    logic signed [41:0] c, area;
+    logic        [20:0] factor;
+
+    always_comb begin
+        factor = phase[0] ? first.y01 : first.y20;
+        a      = 25'($signed(phase[0] ? first.x20 : first.x10));
+        b      = phase[1] ? {1'b0, factor[16:0]} : 18'($signed(factor[20:17]));
+        unique case (phase)
+            2'd2:    c = '0;
+            2'd0:    c = {area[24:0], 17'b0};
+            default: c = area;
+        endcase
+    end
+
+    multiply_add #(.BITS(42)) dsp (.clk, .enable(advance), .a, .b, .c, .p(area));
+
+    // Left, right, top, bottom: chosen in phases 0 to 3, rounded up to a centre a clock later, cut to the picture after that.
+    logic [20:0] extreme;
+    logic [12:0] pixel;
+    logic [10:0] size, cut, left, right;
+    logic [9:0]  top, bottom;
+    logic [1:0]  chosen;
+    logic        before_10, before_20, before_21;
+    logic [20:0] rounded;
+
+    always_comb begin
+        before_10 = phase[1] ? first.y_10    : first.x10[20];
+        before_20 = phase[1] ? first.y20[20] : first.x20[20];
+        before_21 = phase[1] ? first.y_21    : first_x_21;
+        unique case ({phase[0], before_10})
+            2'b00:   chosen = before_20 ? 2'd2 : 2'd0;
+            2'b01:   chosen = before_21 ? 2'd2 : 2'd1;
+            2'b10:   chosen = before_21 ? 2'd1 : 2'd2;
+            default: chosen = before_20 ? 2'd0 : 2'd2;
+        endcase
+        rounded = extreme + 21'd127;
+        size    = phase[1] ? width : {1'b0, height};
+        cut     = pixel[12] ? '0 : pixel[11:0] > {1'b0, size} ? size : pixel[10:0];
+    end
+
+    // The verdict and what follows of the facing, registered for phase 3.
+    logic        front, no_area, no_column, no_row;
+    logic [39:0] positive_area;
+    logic [9:0]  group_top;
+    logic [7:0]  group_left, group_right;
+    logic [1:0]  topmost;
+    logic [10:0] right_last;
+
+    assign right_last = right - 1'b1;
+
+    always_comb begin
+        // Among equals the lowest number, after the swap of a front face.
+        if (!last.y_10 && !last.y20[20]) topmost = 2'd0;
+        else if (area[41])               topmost = last.y_12 ? 2'd1 : 2'd2;
+        else                             topmost = last.y_21 ? 2'd2 : 2'd1;
+    end
+
+    always_ff @(posedge clk) begin
+        if (advance) begin
+            extreme <= phase[1] ? (chosen[1] ? first.v2.y : chosen[0] ? first.v1.y : first.v0.y)
+                                : (chosen[1] ? first.v2.x : chosen[0] ? first.v1.x : first.v0.x);
+            pixel   <= rounded[20:8];
+            unique case (phase)
+                2'd2: begin
+                    left          <= cut;
+                    front         <= area[41];
+                    no_area       <= area == '0;
+                    no_row        <= top >= bottom;
+                    positive_area <= area[41] ? 40'(-area[39:0]) : area[39:0];
+                    group_top     <= topmost[1] ? last.v2.x[20:11] : topmost[0] ? last.v1.x[20:11] : last.v0.x[20:11];
+                end
+                2'd3: right <= cut;
+                2'd0: top   <= cut[9:0];
+                2'd1: begin
+                    bottom      <= cut[9:0];
+                    group_left  <= left[10:3];
+                    group_right <= right_last[10:3];
+                    no_column   <= left >= right;
+                end
+            endcase
+        end
+    end
+
+    assign drop   = no_area || no_row || no_column || cull_back && !front;
+    assign culled = in_ready && last_valid && drop;
+
+    // A front face swaps its vertices 1 and 2.
+    setup_pkg::oriented_t oriented;
+
+    always_comb begin
+        oriented.front       = front;
+        oriented.normal      = last.normal;
+        oriented.colour      = last.colour;
+        oriented.top         = top;
+        oriented.bottom      = bottom;
+        oriented.group_left  = group_left;
+        oriented.group_right = group_right;
+        oriented.group_start = $signed(group_top) < $signed({2'b0, group_left})  ? group_left
+                             : $signed(group_top) > $signed({2'b0, group_right}) ? group_right : group_top[7:0];
+        oriented.area        = positive_area;
+        oriented.w10         = {1'b0, front ? last.v2.w : last.v1.w} - {1'b0, last.v0.w};
+        oriented.w20         = {1'b0, front ? last.v1.w : last.v2.w} - {1'b0, last.v0.w};
+        oriented.x10         = front ? last.x20 : last.x10;
+        oriented.x02         = -(front ? last.x10 : last.x20);
+        oriented.y01         = front ? -last.y20 : last.y01;
+        oriented.y20         = front ? -last.y01 : last.y20;
+        oriented.w0          = last.v0.w;
+        oriented.y0          = last.v0.y;
+        oriented.x0          = last.v0.x;
+    end
+
+    always_ff @(posedge clk) begin
+        if (!out_valid || out_ready) begin
+            out_valid    <= in_ready && last_valid && !drop;
+            out_triangle <= oriented;
+        end
+        if (rst) out_valid <= 1'b0;
+    end
+
+    wire _unused = &{1'b0, area[40], rounded[7:0], right_last[2:0]};
+endmodule
+
+`default_nettype wire

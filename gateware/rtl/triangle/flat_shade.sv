@@ -1,0 +1,62 @@
+// Flat shading with the light at the camera: intensity = clamp(nearest(∓N·n·2^8), 0, 1) and colour·intensity to nearest.
+//
+// Three products for N·n, one for blue and green side by side, one for red. Driven by the `count` of the setup's beat:
+// inputs hold during a beat, the colour is there in clock 10.
+
+`default_nettype none
+
+module flat_shade (
+    input  wire              clk,
+    input  wire              enable,
+    input  wire  [3:0]       count,
+    input  wire  [2:0][24:0] camera_n,
+    input  wire              front,
+    input  wire  [2:0][15:0] normal,
+    input  wire  [15:0]      colour,
+    output logic [15:0]      lit
+);
+    logic signed [24:0] a;
+    logic signed [17:0] b;
+    logic signed [43:0] c, p;
+    logic signed [16:0] component, towards;
+    logic        [8:0]  intensity;
+    logic        [10:0] green_blue;
+
+    always_comb begin
+        unique case (count[1:0])
+            2'd0:    component = 17'($signed(normal[0]));
+            2'd1:    component = 17'($signed(normal[1]));
+            default: component = 17'($signed(normal[2]));
+        endcase
+        towards = front ? -component : component;
+
+        unique case (count)
+            4'd0:    a = camera_n[0];
+            4'd1:    a = camera_n[1];
+            4'd2:    a = camera_n[2];
+            4'd6:    a = {6'b0, colour[10:5], 8'b0, colour[4:0]};
+            default: a = {20'b0, colour[15:11]};
+        endcase
+        b = count[2] ? {9'b0, intensity} : 18'(towards);
+
+        unique case (count)
+            4'd2:       c = 44'd1 << 28;
+            4'd3, 4'd4: c = p;
+            default:    c = 44'd1 << 20 | 44'd1 << 7;
+        endcase
+    end
+
+    // Below 0, or 1 and more, or a fraction.
+    always_ff @(posedge clk) begin
+        if (enable && count == 4'd5) intensity <= p[43] ? '0 : p[42:37] != '0 ? 9'h100 : {1'b0, p[36:29]};
+        if (enable && count == 4'd9) green_blue <= {p[26:21], p[12:8]};
+    end
+
+    assign lit = {p[12:8], green_blue};
+
+    multiply_add #(.BITS(44)) dsp (.clk, .enable, .a, .b, .c, .p);
+
+    wire _unused = &{1'b0, p[28:27], p[20:13], p[7:0]};
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,73 @@
+// The reciprocal of docs/formats.md: y = 2^47/m for a mantissa m in [2^23, 2^24), from a table and two Newton steps.
+//
+// `out_y` comes with `out_valid` (one clock) 14 clocks after m, and stays until the next one; nothing stalls. Throughput an
+// m in 10 clocks: `in_ready` tells. One DSP48 makes the four products:
+//
+//   clock  0        1          4             7           10            13         14
+//          m ─▶ seed y0 ─▶ e0 = −m·y0 ─▶ y1 = y0 + y0·e0 ─▶ e1 = −m·y1 ─▶ y1·e1 ─▶ y = y1 + y1·e1
+//
+// −m·y is made as ~m·y + y, so that no adder stands before the multiplier. The powers of two that e is short of are 0 in
+// the bits that are kept.
+
+`default_nettype none
+
+module reciprocal (
+    input  wire         clk,
+    input  wire         rst,
+    input  wire         in_valid,
+    output logic        in_ready,
+    input  wire  [23:0] in_m,
+    output logic        out_valid,
+    output logic [23:0] out_y
+);
+    // nearest(2^10/(1 + (i + 1/2)/256)), which is nearest(2^19/(513 + 2·i)).
+    logic [9:0] seeds [256];
+
+    initial begin
+        for (int i = 0; i < 256; i++) seeds[i] = 10'(((1 << 20) + 513 + 2 * i) / (2 * (513 + 2 * i)));
+    end
+
+    // since[k]: m came k + 1 clocks ago.
+    logic [13:0] since;
+    logic [23:0] m;
+    logic [9:0]  y0;
+    logic [16:0] y1, y1_held;
+
+    logic signed [24:0] a;
+    logic signed [17:0] b, e;
+    logic signed [36:0] c, p;
+    logic        [24:0] sum;
+
+    logic unused;
+    assign unused = &p[7:0];
+
+    assign in_ready  = since[8:0] == '0;
+    assign out_valid = since[13];
+    assign e         = p[25:8];
+    assign y1        = p[35] ? '1 : p[34:18];
+    assign sum       = {1'b0, y1_held, 7'b0} + 25'($signed(p[36:25]));
+
+    always_comb begin
+        a = since[0] || since[6] ? {1'b1, ~m} : 25'(e);
+        b = since[0] || since[3] ? {8'b0, y0} : {1'b0, since[6] ? y1 : y1_held};
+        c = since[2] ? {27'b0, y0}
+          : since[5] ? {2'b0, y0, 25'b0}
+          : since[8] ? {20'b0, y1_held}
+          : 37'd1 << 24;
+    end
+
+    always_ff @(posedge clk) begin
+        since <= {since[12:0], in_valid && in_ready};
+        if (in_ready) begin
+            m  <= in_m;
+            y0 <= seeds[in_m[22:15]];
+        end
+        if (since[6])  y1_held <= y1;
+        if (since[12]) out_y   <= sum[24] ? '1 : sum[23:0];
+        if (rst) since <= '0;
+    end
+
+    multiply_add #(.BITS(37)) dsp (.clk, .enable(1'b1), .a, .b, .c, .p);
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,261 @@
+// Cull, setup and flat shading of triangles: from three vertices on the screen to a descriptor (docs/formats.md, "Triangle
+// setup"; the start is that of descriptor_t).
+//
+//         4 clocks a triangle            11 clocks a triangle, all four in step with `count`
+//   in ─▶│ cull: area, facing, bounds │─▶│ 1 edges, normal, 1/a, shade │ 2 E1, 1/a │ 3 gradients │ 4 depth │─▶ out
+//            └▶ culled
+//
+// Throughput a drawn triangle in 11 clocks, a culled one in 4; latency at most 75 clocks. The stages 1 to 4 move together, in
+// the last clock of a beat, which lasts until there is room for what leaves stage 4; they move whether they hold a
+// triangle or not, so one alone gets through. A culled triangle leaves before them and waits for nothing but what is before
+// it. `culled` and `drawn` are high for one clock for each triangle, `drawn` when its descriptor is there.
+// The frame's constants (`width`, `height`, `cull_back`, `camera_n`) hold while `busy` and when a triangle comes.
+//
+// Edges 0 and 2 meet in vertex 0, so both take (px, py) from there. The third follows: E0 + E1 + E2 = 2A = a at every point,
+// since the three differences of vertices add up to 0, so the sum does not depend on the point, and at vertex 0 it is E1.
+
+`default_nettype none
+
+module setup (
+    input  wire              clk,
+    input  wire              rst,
+    input  wire  [10:0]      width,
+    input  wire  [9:0]       height,
+    input  wire              cull_back,
+    input  wire  [2:0][24:0] camera_n,    // row n, s2.23
+    output logic             busy,
+    output logic             culled,
+    output logic             drawn,
+    input  wire              in_valid,
+    output logic             in_ready,
+    input  wire  [2:0][65:0] in_vertices, // screen_vertex_t each, numbered as in the mesh
+    input  wire  [15:0]      in_colour,   // RGB565
+    input  wire  [2:0][15:0] in_normal,   // s2.14
+    output logic             out_valid,
+    input  wire              out_ready,
+    output triangle_pkg::descriptor_t out_descriptor
+);
+    // What goes through all stages as it is.
+    typedef struct packed {
+        logic [7:0]  group_start, group_right, group_left;
+        logic [9:0]  bottom, top;
+        logic [20:0] y20, x02, y01, x10;
+    } passed_t;
+
+    // The vertex and the start's centre from it, for the depth.
+    typedef struct packed {
+        logic [23:0] w0;
+        logic [20:0] px, py;
+    } origin_t;
+
+    localparam bit [3:0] LAST = 4'd10;
+
+    logic [3:0] count;
+    logic       enable, beat;
+    logic [4:1] valid;
+
+    assign enable = count != LAST || !valid[4] || !out_valid;
+    assign beat   = count == LAST && enable;
+
+    setup_pkg::oriented_t first;
+    logic                 first_valid, cull_busy;
+
+    cull cull_stage (
+        .clk, .rst, .width, .height, .cull_back, .busy(cull_busy), .culled,
+        .in_valid, .in_ready, .in_vertices, .in_colour, .in_normal,
+        .out_valid(first_valid), .out_ready(beat), .out_triangle(first)
+    );
+
+    always_ff @(posedge clk) begin
+        if (beat) begin
+            count <= '0;
+            valid <= {valid[3:1], first_valid};
+        end else if (enable) begin
+            count <= count + 1'b1;
+        end
+        if (rst) begin
+            count <= '0;
+            valid <= '0;
+        end
+    end
+
+    // Stage 1.
+    // 1 on an edge that is neither top nor left, of step_x and the sign of step_y. Both steps are 0 on no edge.
+    function automatic logic bias(input logic [20:0] step_x, input logic right_to_left);
+        bias = step_x[20] || step_x == '0 && right_to_left;
+    endfunction
+
+    setup_pkg::oriented_t t;
+    origin_t              origin_1;
+    logic                 bias_0, bias_1, bias_2;
+    logic [41:0]          e0, e2;
+    logic [45:0]          nx, ny;
+    logic [23:0]          m, y;
+    logic [5:0]           lead;
+    logic [15:0]          lit;
+    logic [20:0]          sum_x, sum_y, step_1_x, step_1_y;
+    logic                 reciprocal_ready, reciprocal_done;
+    passed_t              passed_1;
+
+    always_ff @(posedge clk) begin
+        if (beat) begin
+            t           <= first;
+            origin_1.w0 <= first.w0;
+            origin_1.px <= {2'b0, first.group_start, 11'h080} - first.x0;
+            origin_1.py <= {3'b0, first.top, 8'h80} - first.y0;
+            bias_0      <= bias(first.y01, first.x10[20]);
+            bias_2      <= bias(first.y20, first.x02[20]);
+        end
+        // Steady from the third clock on: the steps of the three edges add up to 0.
+        sum_x    <= t.y01 + t.y20;
+        sum_y    <= t.x10 + t.x02;
+        step_1_x <= -sum_x;
+        step_1_y <= -sum_y;
+        bias_1   <= bias(step_1_x, step_1_y[20]);
+    end
+
+    assign passed_1 = {t.group_start, t.group_right, t.group_left, t.bottom, t.top, t.y20, t.x02, t.y01, t.x10};
+
+    setup_edges edges (
+        .clk, .enable, .count, .px(origin_1.px), .py(origin_1.py), .x10(t.x10), .y01(t.y01), .x02(t.x02), .y20(t.y20),
+        .bias0(bias_0), .bias2(bias_2), .e0, .e2
+    );
+    setup_normal normal (
+        .clk, .enable, .count, .w10(t.w10), .w20(t.w20), .x10(t.x10), .y01(t.y01), .x02(t.x02), .y20(t.y20), .nx, .ny
+    );
+    flat_shade shade (
+        .clk, .enable, .count, .camera_n, .front(t.front), .normal(t.normal), .colour(t.colour), .lit
+    );
+    // From clock 3 of stage 1 to clock 6 of stage 2, or sooner where the beat is longer.
+    normalise normalised (.clk, .in(t.area), .m, .lead);
+    reciprocal reciprocal_of_area (
+        .clk, .rst, .in_valid(count == 4'd3), .in_ready(reciprocal_ready), .in_m(m),
+        .out_valid(reciprocal_done), .out_y(y)
+    );
+
+    // Stage 2: E1 − bias = a − (E0 − bias) − (E2 − bias) − all biases, over 2^8, from the carry of the lowest 8 bits.
+    passed_t            passed_2;
+    origin_t            origin_2;
+    logic        [45:0] nx_2, ny_2;
+    logic        [5:0]  lead_2;
+    logic        [23:0] y_2;
+    logic        [15:0] lit_2;
+    logic        [41:0] e0_2, e2_2;
+    logic        [7:0]  area_low;
+    logic        [1:0]  biases;
+    logic        [33:0] e1, addend;
+    logic        [10:0] low_sum;
+    logic        [2:0]  carry;
+
+    always_comb begin
+        low_sum = {3'b0, area_low} - {3'b0, e0_2[7:0]} - {3'b0, e2_2[7:0]} - {9'b0, biases};
+        // −e is ~e + 1; the two ones come with the carry.
+        unique case (count)
+            4'd1:    addend = ~e0_2[41:8];
+            4'd2:    addend = ~e2_2[41:8];
+            default: addend = 34'($signed(carry)) + 34'd2;
+        endcase
+    end
+
+    always_ff @(posedge clk) begin
+        carry <= low_sum[10:8];
+        if (count == 4'd8) y_2 <= y;
+        if (beat) begin
+            passed_2 <= passed_1;
+            origin_2 <= origin_1;
+            nx_2     <= nx;
+            ny_2     <= ny;
+            lead_2   <= lead;
+            lit_2    <= lit;
+            e0_2     <= e0;
+            e2_2     <= e2;
+            area_low <= t.area[7:0];
+            biases   <= {1'b0, bias_0} + {1'b0, bias_1} + {1'b0, bias_2};
+            e1       <= {2'b0, t.area[39:8]};
+        end else if (count == 4'd1 || count == 4'd2 || count == 4'd3) begin
+            e1 <= e1 + addend;
+        end
+    end
+
+    // Stage 3.
+    passed_t            passed_3;
+    origin_t            origin_3;
+    logic        [45:0] nx_3, ny_3;
+    logic        [5:0]  lead_3;
+    logic        [23:0] y_3;
+    logic        [15:0] lit_3;
+    logic [2:0][33:0]   start_3;
+    logic        [39:0] gx, gy;
+
+    always_ff @(posedge clk) begin
+        if (beat) begin
+            passed_3 <= passed_2;
+            origin_3 <= origin_2;
+            nx_3     <= nx_2;
+            ny_3     <= ny_2;
+            lead_3   <= lead_2;
+            y_3      <= y_2;
+            lit_3    <= lit_2;
+            start_3  <= {e2_2[41:8], e1, e0_2[41:8]};
+        end
+    end
+
+    setup_gradient gradient (.clk, .enable, .count, .nx(nx_3), .ny(ny_3), .y(y_3), .lead(lead_3), .gx, .gy);
+
+    // Stage 4.
+    passed_t            passed_4;
+    origin_t            origin_4;
+    logic        [39:0] gx_4, gy_4;
+    logic        [15:0] lit_4;
+    logic [2:0][33:0]   start_4;
+    logic        [31:0] depth_start;
+    logic        [20:0] sum_x_4, sum_y_4, step_1_x_4, step_1_y_4;
+
+    always_ff @(posedge clk) begin
+        if (beat) begin
+            passed_4 <= passed_3;
+            origin_4 <= origin_3;
+            gx_4     <= gx;
+            gy_4     <= gy;
+            lit_4    <= lit_3;
+            start_4  <= start_3;
+        end
+        sum_x_4    <= passed_4.y01 + passed_4.y20;
+        sum_y_4    <= passed_4.x10 + passed_4.x02;
+        step_1_x_4 <= -sum_x_4;
+        step_1_y_4 <= -sum_y_4;
+    end
+
+    setup_depth depth (
+        .clk, .enable, .count, .gx(gx_4), .gy(gy_4), .px(origin_4.px), .py(origin_4.py), .w0(origin_4.w0), .start(depth_start)
+    );
+
+    always_ff @(posedge clk) begin
+        drawn <= beat && valid[4];
+        if (out_ready) out_valid <= 1'b0;
+        if (beat && valid[4]) begin
+            out_valid                   <= 1'b1;
+            out_descriptor.colour       <= lit_4;
+            out_descriptor.group_start  <= passed_4.group_start;
+            out_descriptor.group_right  <= passed_4.group_right;
+            out_descriptor.group_left   <= passed_4.group_left;
+            out_descriptor.bottom       <= passed_4.bottom;
+            out_descriptor.top          <= passed_4.top;
+            out_descriptor.steps        <= {passed_4.x02, passed_4.y20, step_1_y_4, step_1_x_4, passed_4.x10, passed_4.y01};
+            out_descriptor.depth_step_y <= gy_4[31:0];
+            out_descriptor.depth_step_x <= gx_4[31:0];
+            out_descriptor.depth_start  <= depth_start;
+            out_descriptor.start        <= start_4;
+        end
+        if (rst) begin
+            out_valid <= 1'b0;
+            drawn     <= 1'b0;
+        end
+    end
+
+    assign busy = cull_busy || valid != '0 || out_valid;
+
+    wire _unused = &{1'b0, reciprocal_ready, reciprocal_done, t.w0, t.y0, t.x0, low_sum[7:0], step_1_y[19:0]};
+endmodule
+
+`default_nettype wire

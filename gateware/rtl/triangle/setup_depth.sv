@@ -1,0 +1,51 @@
+// The depth accumulator at the start: w0·2^8 + floor((Gx·px + Gy·py)/2^8) modulo 2^32, (px, py) from vertex 0.
+//
+// Two products each of 17, 17 and 6 bits of the gradients from the low end, of which bits 8 to 39 are right. Driven by the
+// `count` of the setup's beat: inputs hold during a beat, the result is there from clock 9.
+
+`default_nettype none
+
+module setup_depth (
+    input  wire         clk,
+    input  wire         enable,
+    input  wire  [3:0]  count,
+    input  wire  [39:0] gx,
+    input  wire  [39:0] gy,
+    input  wire  [20:0] px,
+    input  wire  [20:0] py,
+    input  wire  [23:0] w0,
+    output logic [31:0] start
+);
+    logic signed [24:0] a;
+    logic signed [17:0] b;
+    logic signed [43:0] c, p;
+    logic        [39:0] gradient;
+    logic        [8:0]  low;
+    logic        [16:0] middle;
+
+    // Clock 2·piece + term. The sum follows two clocks later.
+    always_comb begin
+        a        = 25'($signed(count[0] ? py : px));
+        gradient = count[0] ? gy : gx;
+        unique case (count[2:1])
+            2'd0:    b = {1'b0, gradient[16:0]};
+            2'd1:    b = {1'b0, gradient[33:17]};
+            default: b = {12'b0, gradient[39:34]};
+        endcase
+        if (count == 4'd2)  c = {4'b0, w0, 16'b0};
+        else if (!count[0]) c = p >>> 17;
+        else                c = p;
+    end
+
+    always_ff @(posedge clk) begin
+        if (enable) begin
+            if (count == 4'd4) low    <= p[16:8];
+            if (count == 4'd6) middle <= p[16:0];
+            if (count == 4'd8) start  <= {p[5:0], middle, low};
+        end
+    end
+
+    multiply_add #(.BITS(44)) dsp (.clk, .enable, .a, .b, .c, .p);
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,30 @@
+// What passes between the parts of the triangle setup.
+
+`default_nettype none
+
+package setup_pkg;
+    // A triangle with an area, clockwise on the screen, that is to be drawn. Some differences come with their sign
+    // turned: sums of products need no subtraction then.
+    typedef struct packed {
+        logic             front;
+        logic [2:0][15:0] normal;      // s2.14
+        logic [15:0]      colour;      // RGB565
+        logic [9:0]       top;         // as in descriptor_t
+        logic [9:0]       bottom;
+        logic [7:0]       group_left;
+        logic [7:0]       group_right;
+        logic [7:0]       group_start;
+        logic [39:0]      area;        // a
+        logic [24:0]      w20;
+        logic [24:0]      w10;
+        logic [20:0]      y20;
+        logic [20:0]      x02;
+        logic [20:0]      y01;
+        logic [20:0]      x10;
+        logic [23:0]      w0;
+        logic [20:0]      y0;
+        logic [20:0]      x0;
+    } oriented_t;
+endpackage
+
+`default_nettype wire
