@@ -13,7 +13,6 @@ module band_flush_proof (
     input wire [1:0] rows,
     input wire       with_depth,
     input wire       restart,
-    input wire       quiet,
     input wire       cmd_ready,
     input wire       wdata_ready
 );
@@ -33,7 +32,7 @@ module band_flush_proof (
     logic [7:0]       written;
 
     band_flush #(.ADDRESS_BITS(6), .ROW_BITS(2), .WORDS(4)) dut (
-        .clk, .rst, .start, .base, .depth_base, .rows, .with_depth, .clear_colour(BACKGROUND), .restart, .quiet,
+        .clk, .rst, .start, .base, .depth_base, .rows, .with_depth, .clear_colour(BACKGROUND), .restart,
         .idle, .sweeping, .reads_depth(), .waits(),
         .row, .colours, .codes, .written, .clears, .clear_row,
         .cmd_valid, .cmd_ready, .cmd_addr, .wdata_valid, .wdata_ready, .wdata_data
@@ -119,7 +118,7 @@ module band_flush_proof (
         end
 
         without_word <= idle || sweeping || word_moves || !cmd_ready || !wdata_ready ? '0 : without_word + 1'b1;
-        sweep_clocks <= !sweeping || restart || !quiet ? '0 : sweep_clocks + 1'b1;
+        sweep_clocks <= !sweeping || restart ? '0 : sweep_clocks + 1'b1;
 
         if (rst) begin
             owed         <= '0;

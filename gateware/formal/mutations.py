@@ -25,6 +25,10 @@ def _flush(old, new, fails):
     return Mutation("band_flush.sv", old, new, fails)
 
 
+def _pipe(old, new, fails):
+    return Mutation("band_pipe.sv", old, new, fails)
+
+
 _FIFO = [
     _fifo("out_valid <= stored;", "out_valid <= stored && in_valid;", "order.shown_in_time"),
     _fifo("load     = !out_valid || out_ready", "load     = !out_valid || out_ready || stored", "shown.payload_stable"),
@@ -70,10 +74,18 @@ MUTATIONS = {
         _flush("owed <= owed - 1'b1;", "owed <= owed;", "data_at_command"),
         _flush("if (row == '1) state", "if (row == '1 && idle) state", "sweep_ends"),
         # A restart that waits for memory.
-        _flush("SWEEP: if (quiet)", "SWEEP: if (quiet && places == COUNT_BITS'(WORDS))", "sweep_ends"),
+        _flush("SWEEP: begin", "SWEEP: if (places == COUNT_BITS'(WORDS)) begin", "sweep_ends"),
         # A restart that begins where the flush was.
         _flush("state  <= SWEEP;\n            row    <= '0;", "state  <= SWEEP;", "all_swept"),
         _flush("clears <= row_ends;", "clears <= row_ends && row != last_row;", "cleared_behind"),
         _flush("clear_row <= row;", "clear_row <= row + 1'b1;", "cleared_behind"),
+    ],
+    "band_pipe": [
+        _pipe("hold <= 2'd3;", "hold <= 2'd2;", "drawn_as_given"),
+        _pipe("hold <= 2'd2;", "hold <= 2'd1;", "drawn_as_given"),
+        _pipe("            else if (conflict_1) hold <= 2'd1;\n", "", "drawn_as_given"),
+        _pipe("comparing.codes[18*lane +: 18] >=", "comparing.codes[18*lane +: 18] >", "drawn_as_given"),
+        _pipe("!stored_written[lane] ||", "", "drawn_as_given"),
+        _pipe("hold <= hold - 1'b1;", "hold <= hold;", "taken_in_time"),
     ],
 }

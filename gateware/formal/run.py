@@ -51,6 +51,8 @@ PROOFS = [
     Proof("band_flush", "band_flush_proof",
           [FORMAL / "stream_checker.sv", FORMAL / "band_flush_proof.sv", _RTL / "common" / "fifo.sv",
            _RTL / "band" / "band_flush.sv"], 24),
+    Proof("band_pipe", "band_pipe_proof",
+          [FORMAL / "band_pipe_proof.sv", _RTL / "band" / "band_pipe.sv"], 14),
 ]
 
 # State as bit vectors and a fresh solver for each clock: z3 is slow with its defaults here.

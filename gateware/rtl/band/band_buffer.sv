@@ -109,7 +109,7 @@ module band_buffer #(
     band_flush #(.ADDRESS_BITS(ADDRESS_BITS), .ROW_BITS(ROW_BITS)) flush (
         .clk, .rst,
         .start(swap), .base(band_base), .depth_base(band_depth_base), .rows(band_rows), .with_depth(band_with_depth),
-        .clear_colour(band_clear), .restart, .quiet(empty), .idle(flush_idle), .sweeping(clearing),
+        .clear_colour(band_clear), .restart, .idle(flush_idle), .sweeping(clearing),
         .reads_depth(flush_reads_depth), .waits(flush_waits),
         .row(flush_row), .colours(flushed_colours), .codes(stored_codes), .written(flushed_written),
         .clears(flush_clears), .clear_row(flush_clear_row),
@@ -124,6 +124,7 @@ module band_buffer #(
     for (genvar bank = 0; bank < 2; bank++) begin : banks
         logic            flushes;
         logic [8*17-1:0] store;
+        // While the banks are cleared, groups that were still on their way are not written.
         assign flushes = clearing || drawn != 1'(bank);
 
         for (genvar lane = 0; lane < 8; lane++) begin : lanes

@@ -15,8 +15,8 @@
 // offered only when its data are in the FIFO, and data are valid from the clock after their command was taken on.
 // There is a place for a word before its row is read: memory may stall as it likes.
 //
-// `restart`, and reset, leave the band: words that have been read still go to memory, then all 2^ROW_BITS rows of both banks
-// are cleared, one a clock, as soon as `quiet` (nobody draws). `sweeping` is high meanwhile; memory is not waited for.
+// `restart`, and reset, leave the band and clear all 2^ROW_BITS rows of both banks, one a clock, while `sweeping` is high.
+// Nothing may be drawn then. Memory is not waited for: words that have been read go there whenever it takes them.
 
 `default_nettype none
 
@@ -36,7 +36,6 @@ module band_flush #(
     input  wire                     with_depth,
     input  wire  [15:0]             clear_colour,
     input  wire                     restart,
-    input  wire                     quiet,
     output logic                    idle,
     output logic                    sweeping,
     output logic                    reads_depth,
@@ -99,7 +98,7 @@ module band_flush #(
                     if (row == last_row) state <= IDLE;
                 end
             end
-            SWEEP: if (quiet) begin
+            SWEEP: begin
                 clears <= 1'b1;
                 row    <= row + 1'b1;
                 if (row == '1) state <= IDLE;

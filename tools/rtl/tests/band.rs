@@ -455,7 +455,8 @@ fn a_restart_ends_whatever_goes_on() {
         let mut random = Pcg64Mcg::new(u128::from(seed));
         let mut bench = Bench::ready(seed, 0.2, 0.3);
         // One band on its way to memory, one being drawn.
-        let rows = random.random_range(50..300);
+        // Few rows: what is drawn last is what is cleared first.
+        let rows = random.random_range(if seed % 2 == 0 { 1..4 } else { 50..300 });
         bench.draw(
             (0..rows).map(|row| full_group(row, 9)),
             random_band(&mut random, rows),

@@ -1,0 +1,115 @@
+// The read-modify-write hazard of the band buffer: what is drawn is what a memory without any latency would hold.
+//
+// Two rows, any groups at any time, on a depth memory and its marks with band_bank's latencies. One pixel, any lane of any
+// row, is followed beside them: each group that is taken acts on it at once. When the pipe is empty both must agree.
+
+`default_nettype none
+
+module band_pipe_proof (
+    input wire            clk,
+    input wire            open,
+    input wire            group_valid,
+    input wire            group_row,
+    input wire [7:0]      group_mask,
+    input wire [8*18-1:0] group_codes,
+    // In the colours, to tell groups of equal depth apart.
+    input wire [1:0]      group_tag
+);
+    // Clocks that a group may be held.
+    localparam int unsigned WITHIN = 4;
+
+    logic rst = 1'b1;
+    always_ff @(posedge clk) rst <= 1'b0;
+
+    (* anyconst *) logic       row;
+    (* anyconst *) logic [2:0] lane;
+
+    logic            group_ready, read_row, write_row, empty;
+    logic [8*18-1:0] stored, write_codes;
+    logic [8*16-1:0] write_colours;
+    logic [7:0]      stored_written, write_lanes;
+
+    band_pipe #(.ROW_BITS(1)) dut (
+        .clk, .rst, .open,
+        .group_valid, .group_ready, .group_row, .group_mask, .group_codes, .group_colours({8{14'b0, group_tag}}),
+        .read_row, .stored, .stored_written, .write_row, .write_lanes, .write_codes, .write_colours, .empty, .held()
+    );
+
+    // The followed pixel in the memory; the other ones may hold anything, and their groups do not matter.
+    logic        from_row, to_row, to_lane, latched_written, read_written, written;
+    logic [17:0] to_store, latched, read, code;
+    logic        latched_here, read_here;
+    logic [1:0]  to_tag, tag;
+    (* anyseq *) logic [8*18-1:0] other_codes;
+    (* anyseq *) logic [7:0]      other_written;
+
+    always_ff @(posedge clk) begin
+        from_row        <= read_row;
+        latched         <= code;
+        latched_written <= written;
+        latched_here    <= from_row == row;
+        read            <= latched;
+        read_written    <= latched_written;
+        read_here       <= latched_here;
+        to_row          <= write_row;
+        to_lane         <= write_lanes[lane];
+        to_store        <= write_codes[18*lane +: 18];
+        to_tag          <= write_colours[16*lane +: 2];
+        if (to_lane && to_row == row) begin
+            code    <= to_store;
+            tag     <= to_tag;
+            written <= 1'b1;
+        end
+        if (rst) begin
+            written <= 1'b0;
+            to_lane <= 1'b0;
+        end
+    end
+
+    always_comb begin
+        stored         = other_codes;
+        stored_written = other_written;
+        if (read_here) begin
+            stored[18*lane +: 18] = read;
+            stored_written[lane]  = read_written;
+        end
+    end
+
+    // The same pixel without latency.
+    logic        taken, drawn;
+    logic [17:0] nearest, given;
+    logic [1:0]  nearest_tag;
+    logic [2:0]  refused;
+
+    assign given = group_codes[18*lane +: 18];
+    assign taken = group_valid && group_ready;
+
+    // Memory is a clock behind `empty`.
+    logic was_empty, was_held;
+
+    always_ff @(posedge clk) begin
+        was_empty <= empty;
+        was_held  <= was_held || refused != '0;
+        refused   <= open && group_valid && !group_ready ? refused + 1'b1 : '0;
+        if (taken && group_row == row && group_mask[lane] && (!drawn || given >= nearest)) begin
+            drawn   <= 1'b1;
+            nearest <= given;
+            nearest_tag <= group_tag;
+        end
+        if (rst) begin
+            drawn     <= 1'b0;
+            was_empty <= 1'b0;
+            was_held  <= 1'b0;
+            refused   <= '0;
+        end
+    end
+
+    always_ff @(posedge clk) if (!rst) begin
+        drawn_as_given: assert (!(empty && was_empty)
+                                || (written == drawn && (!drawn || (code == nearest && tag == nearest_tag))));
+        taken_in_time:  assert (refused < 3'(WITHIN));
+        held_and_drawn: cover (empty && was_empty && was_held && drawn);
+    end
+endmodule
+
+`default_nettype wire
