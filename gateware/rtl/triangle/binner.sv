@@ -13,9 +13,7 @@
 
 `default_nettype none
 
-module binner
-    import triangle_pkg::*;
-#(
+module binner #(
     parameter int unsigned ADDRESS_BITS = 23,
     parameter int unsigned COUNT_BITS   = 20
 ) (
@@ -38,7 +36,7 @@ module binner
     output logic [COUNT_BITS-1:0]   exceptions,
     input  wire                     in_valid,
     output logic                    in_ready,
-    input  wire  descriptor_t       in_descriptor,
+    input  wire  triangle_pkg::descriptor_t       in_descriptor,
     input  wire                     exception_valid,
     output logic                    exception_ready,
     input  wire  [31:0]             exception_number,
@@ -82,7 +80,7 @@ module binner
     logic [COUNT_BITS-1:0] length, stored;
     logic                  store;
 
-    descriptor_t             descriptor;
+    triangle_pkg::descriptor_t             descriptor;
     logic [ADDRESS_BITS-1:0] descriptor_word;
     logic [95:0]             gathered;
     logic                    free, list_full;

@@ -10,9 +10,7 @@
 
 `default_nettype none
 
-module classify
-    import triangle_pkg::*;
-#(
+module classify #(
     parameter int unsigned SIDE_BITS = 64
 ) (
     input  wire                      clk,
@@ -26,46 +24,49 @@ module classify
     output logic [31:0]              count,
     input  wire                      in_valid,
     output logic                     in_ready,
-    input  wire  projected_t [2:0]   in_vertices,
+    input  wire  [2:0][67:0]         in_vertices,      // projected_t each
     input  wire  [SIDE_BITS-1:0]     in_side,
     output logic                     regular_valid,
     input  wire                      regular_ready,
-    output screen_vertex_t [2:0]     regular_vertices,
+    output logic [2:0][65:0]         regular_vertices, // screen_vertex_t each
     output logic [SIDE_BITS-1:0]     regular_side,
     output logic                     exception_valid,
     input  wire                      exception_ready,
     output logic [31:0]              exception_number
 );
-    // Sides of the picture that a vertex is off.
-    typedef struct packed {
-        logic left, right, above, below;
-    } sides_t;
-
-    // Of the whole pixels of a place.
-    function automatic sides_t off_sides(input logic [12:0] x, input logic [12:0] y);
-        off_sides.left  = x[12];
-        off_sides.right = !x[12] && x[11:0] >= 12'(width);
-        off_sides.above = y[12];
-        off_sides.below = !y[12] && y[11:0] >= 12'(height);
+    // Which sides of the picture a vertex is off: left, right, above, below. Of the whole pixels of its place.
+    function automatic logic [3:0] off_sides(input logic [12:0] x, input logic [12:0] y);
+        off_sides = {x[12], !x[12] && x[11:0] >= 12'(width), y[12], !y[12] && y[11:0] >= 12'(height)};
     endfunction
 
-    logic                 held, known, moves;
-    projected_t [2:0]     vertices;
+    logic                 held, known, moves, next_free;
     logic [SIDE_BITS-1:0] side;
-    sides_t [2:0]         off;
-    logic                 all_behind, any_behind, any_exceptional;
-
-    assign idle = !held && !known;
+    logic [2:0][65:0]     places;
+    logic [2:0][3:0]      off;
+    logic [2:0]           behind, beyond;
+    logic                 is_unseen, is_exceptional;
 
     // First what is known of each vertex, then what follows of all.
-    logic next_free, is_unseen;
+    assign idle           = !held && !known;
+    assign next_free      = !known || moves;
+    assign in_ready       = !held || next_free;
+    assign is_unseen      = behind == '1 || behind == '0 && (off[0] & off[1] & off[2]) != '0;
+    assign is_exceptional = behind != '0 || beyond != '0;
 
-    assign next_free  = !known || moves;
-    assign in_ready   = !held || next_free;
-    assign any_behind = vertices[0].behind || vertices[1].behind || vertices[2].behind;
-    assign all_behind = vertices[0].behind && vertices[1].behind && vertices[2].behind;
-    assign is_unseen  = all_behind || !any_behind && (off[0] & off[1] & off[2]) != '0;
-    assign any_exceptional = any_behind || vertices[0].beyond || vertices[1].beyond || vertices[2].beyond;
+    for (genvar i = 0; i < 3; i++) begin : vertices
+        triangle_pkg::projected_t vertex;
+
+        assign vertex = in_vertices[i];
+
+        always_ff @(posedge clk) begin
+            if (in_ready) begin
+                places[i] <= vertex.place;
+                behind[i] <= vertex.behind;
+                beyond[i] <= vertex.beyond;
+                off[i]    <= off_sides(vertex.place.x[20:8], vertex.place.y[20:8]);
+            end
+        end
+    end
 
     logic to_regular, to_exception;
 
@@ -75,19 +76,17 @@ module classify
 
     always_ff @(posedge clk) begin
         if (in_ready) begin
-            held     <= in_valid;
-            vertices <= in_vertices;
-            side     <= in_side;
-            for (int i = 0; i < 3; i++) off[i] <= off_sides(in_vertices[i].place.x[20:8], in_vertices[i].place.y[20:8]);
+            held <= in_valid;
+            side <= in_side;
         end
 
         unseen <= 1'b0;
         if (next_free) begin
             known        <= held;
-            to_regular   <= !is_unseen && !any_exceptional;
-            to_exception <= !is_unseen && any_exceptional;
+            to_regular   <= !is_unseen && !is_exceptional;
+            to_exception <= !is_unseen && is_exceptional;
             unseen       <= held && is_unseen;
-            for (int i = 0; i < 3; i++) regular_vertices[i] <= vertices[i].place;
+            regular_vertices <= places;
             regular_side     <= side;
             exception_number <= count;
             if (held) count <= count + 1'b1;

@@ -35,8 +35,8 @@ module cull (
         logic [15:0]          colour;
         logic [2:0][15:0]     normal;
         logic [20:0]          x10, x20, y01, y20;
-        // Vertex i is before vertex k, for ik = 10, 21 and 12.
-        logic                 y_10, y_21, y_12;
+        // Vertex 2 is above vertex 1; both are at the same height.
+        logic                 y_21, y_same;
     } triangle_t;
 
     triangle_pkg::screen_vertex_t v0, v1, v2;
@@ -71,9 +71,8 @@ module cull (
             first.y01    <= v0.y - v1.y;
             first.y20    <= v2.y - v0.y;
             first_x_21   <= precedes(v2.x, v1.x);
-            first.y_10   <= precedes(v1.y, v0.y);
             first.y_21   <= precedes(v2.y, v1.y);
-            first.y_12   <= precedes(v1.y, v2.y);
+            first.y_same <= v1.y == v2.y;
             last_valid   <= first_valid;
             last         <= first;
         end
@@ -113,9 +112,9 @@ module cull (
     logic [20:0] rounded;
 
     always_comb begin
-        before_10 = phase[1] ? first.y_10    : first.x10[20];
-        before_20 = phase[1] ? first.y20[20] : first.x20[20];
-        before_21 = phase[1] ? first.y_21    : first_x_21;
+        before_10 = phase[1] ? !first.y01[20] : first.x10[20];
+        before_20 = phase[1] ? first.y20[20]  : first.x20[20];
+        before_21 = phase[1] ? first.y_21     : first_x_21;
         unique case ({phase[0], before_10})
             2'b00:   chosen = before_20 ? 2'd2 : 2'd0;
             2'b01:   chosen = before_21 ? 2'd2 : 2'd1;
@@ -139,9 +138,9 @@ module cull (
 
     always_comb begin
         // Among equals the lowest number, after the swap of a front face.
-        if (!last.y_10 && !last.y20[20]) topmost = 2'd0;
-        else if (area[41])               topmost = last.y_12 ? 2'd1 : 2'd2;
-        else                             topmost = last.y_21 ? 2'd2 : 2'd1;
+        if ((last.y01[20] || last.y01 == '0) && !last.y20[20]) topmost = 2'd0;
+        else if (last.y_same)                                  topmost = area[41] ? 2'd2 : 2'd1;
+        else                                                   topmost = last.y_21 ? 2'd2 : 2'd1;
     end
 
     always_ff @(posedge clk) begin
@@ -155,7 +154,7 @@ module cull (
                     front         <= area[41];
                     no_area       <= area == '0;
                     no_row        <= top >= bottom;
-                    positive_area <= area[41] ? 40'(-area[39:0]) : area[39:0];
+                    positive_area <= (area[39:0] ^ {40{area[41]}}) + 40'(area[41]);
                     group_top     <= topmost[1] ? last.v2.x[20:11] : topmost[0] ? last.v1.x[20:11] : last.v0.x[20:11];
                 end
                 2'd3: right <= cut;
@@ -173,7 +172,7 @@ module cull (
     assign drop   = no_area || no_row || no_column || cull_back && !front;
     assign culled = in_ready && last_valid && drop;
 
-    // A front face swaps its vertices 1 and 2.
+    // A front face swaps its vertices 1 and 2. Where a sign turns with it: −v is ~v + 1.
     setup_pkg::oriented_t oriented;
 
     always_comb begin
@@ -191,8 +190,8 @@ module cull (
         oriented.w20         = {1'b0, front ? last.v1.w : last.v2.w} - {1'b0, last.v0.w};
         oriented.x10         = front ? last.x20 : last.x10;
         oriented.x02         = -(front ? last.x10 : last.x20);
-        oriented.y01         = front ? -last.y20 : last.y01;
-        oriented.y20         = front ? -last.y01 : last.y20;
+        oriented.y01         = (front ? ~last.y20 : last.y01) + 21'(front);
+        oriented.y20         = (front ? ~last.y01 : last.y20) + 21'(front);
         oriented.w0          = last.v0.w;
         oriented.y0          = last.v0.y;
         oriented.x0          = last.v0.x;

@@ -28,7 +28,7 @@ module flat_shade (
             2'd1:    component = 17'($signed(normal[1]));
             default: component = 17'($signed(normal[2]));
         endcase
-        towards = front ? -component : component;
+        towards = (component ^ {17{front}}) + 17'(front);
 
         unique case (count)
             4'd0:    a = camera_n[0];

@@ -9,9 +9,7 @@
 
 `default_nettype none
 
-module list_reader
-    import triangle_pkg::*;
-#(
+module list_reader #(
     parameter int unsigned ADDRESS_BITS = 23,
     parameter int unsigned COUNT_BITS   = 20
 ) (
@@ -34,7 +32,7 @@ module list_reader
     input  wire  [3*128-1:0]          data,
     output logic                      out_valid,
     input  wire                       out_ready,
-    output descriptor_t               out_descriptor
+    output triangle_pkg::descriptor_t               out_descriptor
 );
     localparam int unsigned TABLE_WORDS = 16;
 

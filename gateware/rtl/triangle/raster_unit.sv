@@ -12,9 +12,7 @@
 
 `default_nettype none
 
-module raster_unit
-    import triangle_pkg::*;
-#(
+module raster_unit #(
     parameter int unsigned ADDRESS_BITS = 23,
     parameter int unsigned COUNT_BITS   = 20
 ) (
@@ -114,7 +112,7 @@ module raster_unit
     end
 
     logic        triangle_valid, triangle_ready, raster_idle;
-    descriptor_t descriptor;
+    triangle_pkg::descriptor_t descriptor;
 
     list_reader #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS)) list_reader (
         .clk, .rst(rst || restart), .start(state == BEGIN), .band, .present, .list_base, .descriptor_base, .list_shift, .busy(reading),

@@ -93,7 +93,7 @@ module setup (
     logic [23:0]          m, y;
     logic [5:0]           lead;
     logic [15:0]          lit;
-    logic [20:0]          sum_x, sum_y, step_1_x, step_1_y;
+    logic [20:0]          sum_x, sum_y;
     logic                 reciprocal_ready, reciprocal_done;
     passed_t              passed_1;
 
@@ -106,14 +106,12 @@ module setup (
             bias_0      <= bias(first.y01, first.x10[20]);
             bias_2      <= bias(first.y20, first.x02[20]);
         end
-        // Steady from the third clock on: the steps of the three edges add up to 0.
-        sum_x    <= t.y01 + t.y20;
-        sum_y    <= t.x10 + t.x02;
-        step_1_x <= -sum_x;
-        step_1_y <= -sum_y;
-        bias_1   <= bias(step_1_x, step_1_y[20]);
+        // Steady from the second clock on. The steps of the three edges add up to 0: these are those of edge 1, negated.
+        sum_x <= t.y01 + t.y20;
+        sum_y <= t.x10 + t.x02;
     end
 
+    assign bias_1   = sum_x == '0 ? !sum_y[20] : !sum_x[20];
     assign passed_1 = {t.group_start, t.group_right, t.group_left, t.bottom, t.top, t.y20, t.x02, t.y01, t.x10};
 
     setup_edges edges (
@@ -153,12 +151,12 @@ module setup (
         unique case (count)
             4'd1:    addend = ~e0_2[41:8];
             4'd2:    addend = ~e2_2[41:8];
-            default: addend = 34'($signed(carry)) + 34'd2;
+            default: addend = 34'($signed(carry));
         endcase
     end
 
     always_ff @(posedge clk) begin
-        carry <= low_sum[10:8];
+        carry <= low_sum[10:8] + 3'd2;
         if (count == 4'd8) y_2 <= y;
         if (beat) begin
             passed_2 <= passed_1;
@@ -255,7 +253,7 @@ module setup (
 
     assign busy = cull_busy || valid != '0 || out_valid;
 
-    wire _unused = &{1'b0, reciprocal_ready, reciprocal_done, t.w0, t.y0, t.x0, low_sum[7:0], step_1_y[19:0]};
+    wire _unused = &{1'b0, reciprocal_ready, reciprocal_done, t.w0, t.y0, t.x0, low_sum[7:0], sum_y[19:0]};
 endmodule
 
 `default_nettype wire

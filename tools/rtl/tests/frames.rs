@@ -1,31 +1,38 @@
-//! Whole frames: the raster unit draws from memory what glint-model draws.
+//! Whole frames: the triangle engine makes of a mesh in memory what glint-model makes of it, with a clipper in the test as
+//! the firmware has one.
 
 use glint::{convert, generate, view};
 use glint_core::camera::View;
 use glint_core::mesh::Mesh;
 use glint_model::descriptor::{Descriptor, band_rows};
 use glint_model::setup::{Bounds, Oriented, Setup};
-use glint_model::{DrawnTriangle, Options, Projected, Target, trace};
+use glint_model::{DrawnTriangle, FrameSetup, Options, Projected, Stats, Target, trace};
 use glint_rtl::{Bits, Memory, Module, ReadPort, Stalls, WritePort};
 
 const SIZES: [(u32, u32); 3] = glint_model::SIZES;
 
-// Where things are in memory, by words of 16 bytes.
+// Where things are in memory, by words of 16 bytes. Set 0 is the engine's, set 1 that of the clipper.
 const FRAME: u32 = 0;
 const DEPTH: u32 = 0x2_0000;
 const LISTS: [u32; 2] = [0x8_0000, 0xc_0000];
 const DESCRIPTORS: [u32; 2] = [0x10_0000, 0x14_0000];
-const WORDS: usize = 0x18_0000;
+const EXCEPTIONS: u32 = 0x18_0000;
+const MESH: u32 = 0x1c_0000;
+const WORDS: usize = 0x20_0000;
 /// Words of a list, as a power of two.
 const LIST_SHIFT: u32 = 11;
+/// The most descriptors, and the most exceptions.
+const LIMIT: u32 = 80_000;
 
 /// What the model draws.
 struct Expected {
     size: (u32, u32),
     colour: Vec<u16>,
     depth: Vec<u32>,
-    drawn: Vec<DrawnTriangle>,
-    pixels_covered: u64,
+    frame: FrameSetup,
+    cull: bool,
+    clipped: Vec<DrawnTriangle>,
+    stats: Stats,
 }
 
 fn expected(mesh: &Mesh, view: &View, size: (u32, u32), cull: bool) -> Expected {
@@ -43,7 +50,7 @@ fn expected(mesh: &Mesh, view: &View, size: (u32, u32), cull: bool) -> Expected 
         cull,
         clear: 0x1234,
     };
-    let mut drawn = Vec::new();
+    let mut clipped = Vec::new();
     let stats = trace(
         mesh,
         view,
@@ -51,7 +58,9 @@ fn expected(mesh: &Mesh, view: &View, size: (u32, u32), cull: bool) -> Expected 
         &mut scratch,
         &options,
         |triangle| {
-            drawn.push(*triangle);
+            if triangle.clipped {
+                clipped.push(*triangle);
+            }
         },
     )
     .unwrap();
@@ -59,61 +68,61 @@ fn expected(mesh: &Mesh, view: &View, size: (u32, u32), cull: bool) -> Expected 
         size,
         colour,
         depth,
-        drawn,
-        pixels_covered: stats.pixels_covered,
+        frame: FrameSetup::new(view, size.0, size.1, mesh.radius()).unwrap(),
+        cull,
+        clipped,
+        stats,
     }
 }
 
-/// Lists and descriptors as the geometry unit and the firmware leave them; returns which sets there are.
-fn write_lists(memory: &mut Memory, expected: &Expected) -> u64 {
+/// Lists and descriptors of the clipped triangles, as the firmware leaves them.
+fn write_clipped(memory: &mut Memory, expected: &Expected) {
     let (width, height) = expected.size;
     let rows = band_rows(width);
-    let mut present = 0;
-    for (set, clipped) in [(0, false), (1, true)] {
-        let mut lists = vec![Vec::new(); 64];
-        let triangles = expected
-            .drawn
-            .iter()
-            .filter(|triangle| triangle.clipped == clipped);
-        for (number, triangle) in (0_u32..).zip(triangles) {
-            let oriented = Oriented::new(triangle.vertices).unwrap();
-            let bounds = Bounds::new(&oriented.vertices, width, height).unwrap();
-            let setup = Setup::new(&oriented, bounds);
-            let descriptor = Descriptor::new(&setup, triangle.colour);
-            memory.write(DESCRIPTORS[set] + 3 * number, &descriptor.to_bytes());
-            for band in bounds.top as u32 / rows..=(bounds.bottom as u32 - 1) / rows {
-                lists[band as usize].extend(number.to_le_bytes());
-            }
-            present |= 1 << set;
+    let mut lists = vec![Vec::new(); 64];
+    for (number, triangle) in (0_u32..).zip(&expected.clipped) {
+        let oriented = Oriented::new(triangle.vertices).unwrap();
+        let bounds = Bounds::new(&oriented.vertices, width, height).unwrap();
+        let descriptor = Descriptor::new(&Setup::new(&oriented, bounds), triangle.colour);
+        memory.write(DESCRIPTORS[1] + 3 * number, &descriptor.to_bytes());
+        for band in bounds.top as u32 / rows..=(bounds.bottom as u32 - 1) / rows {
+            lists[band as usize].extend(number.to_le_bytes());
         }
-        for (band, list) in (0..).zip(&lists) {
-            assert!(list.len() <= 16 << LIST_SHIFT);
-            memory.write(LISTS[set] + 16 + (band << LIST_SHIFT), list);
-        }
-        let lengths: Vec<u8> = lists
-            .iter()
-            .flat_map(|list| (list.len() as u32 / 4).to_le_bytes())
-            .collect();
-        memory.write(LISTS[set], &lengths);
     }
-    present
+    for (band, list) in (0..).zip(&lists) {
+        assert!(list.len() <= 16 << LIST_SHIFT);
+        memory.write(LISTS[1] + 16 + (band << LIST_SHIFT), list);
+    }
+    let lengths: Vec<u8> = lists
+        .iter()
+        .flat_map(|list| (list.len() as u32 / 4).to_le_bytes())
+        .collect();
+    memory.write(LISTS[1], &lengths);
 }
 
 struct Bench {
     module: Module,
     memory: Memory,
     read: ReadPort,
-    write: WritePort,
+    lists: WritePort,
+    frame: WritePort,
+}
+
+/// Clocks of the two passes.
+struct Clocks {
+    geometry: u64,
+    raster: u64,
 }
 
 impl Bench {
     fn new(seed: u32, stalls: f64) -> Self {
-        let module = Module::new("raster_memory", seed);
+        let module = Module::new("triangle_engine", seed);
         let seed = u64::from(seed);
         Self {
             memory: Memory::new(WORDS),
             read: ReadPort::new(&module, "read_", Stalls::new(seed, stalls)),
-            write: WritePort::new(&module, "write_", Stalls::new(seed + 1, stalls)),
+            lists: WritePort::new(&module, "lists_", Stalls::new(seed + 1, stalls)),
+            frame: WritePort::new(&module, "frame_", Stalls::new(seed + 2, stalls)),
             module,
         }
     }
@@ -129,10 +138,12 @@ impl Bench {
 
     fn clock(&mut self) {
         self.read.drive(&mut self.module, &self.memory);
-        self.write.drive(&mut self.module);
+        self.lists.drive(&mut self.module);
+        self.frame.drive(&mut self.module);
         self.module.settle();
         self.read.sample(&self.module);
-        self.write.sample(&self.module, &mut self.memory);
+        self.lists.sample(&self.module, &mut self.memory);
+        self.frame.sample(&self.module, &mut self.memory);
         self.module.clock();
     }
 
@@ -146,7 +157,7 @@ impl Bench {
                 "nothing for {clocks} clocks: busy {} given {} written {} groups {}",
                 self.count("busy"),
                 self.read.given,
-                self.write.written,
+                self.frame.written,
                 self.count("groups_in")
             );
             self.clock();
@@ -154,32 +165,85 @@ impl Bench {
         self.module.cycles() - start
     }
 
-    /// Draws a frame and compares it; returns the clocks it took.
-    fn draw(&mut self, name: &str, expected: &Expected) -> u64 {
-        let present = write_lists(&mut self.memory, expected);
-        self.set("rst", 0);
-        self.set("restart", 0);
+    fn pulse(&mut self, port: &str) {
+        self.set(port, 1);
+        self.clock();
+        self.set(port, 0);
+    }
+
+    /// The frame's constants and the places of everything.
+    fn configure(&mut self, expected: &Expected, mesh_bytes: usize) {
+        let frame = &expected.frame;
         let size = SIZES
             .iter()
             .position(|&size| size == expected.size)
-            .unwrap();
-        self.set("size", size as u64);
-        self.set("frame_base", u64::from(FRAME));
-        self.set("depth_base", u64::from(DEPTH));
-        self.set("with_depth", 1);
-        self.set("clear", 0x1234);
-        self.set("present", present);
-        self.set("list_shift", u64::from(LIST_SHIFT));
-        for (port, [low, high]) in [("list_base", LISTS), ("descriptor_base", DESCRIPTORS)] {
+            .unwrap() as u64;
+        let rows = |row: [i32; 3]| {
+            (0..).zip(row).fold(Bits::default(), |bits, (i, value)| {
+                bits.with(25 * i, 25, value)
+            })
+        };
+        let signed = |value: i64, width| Bits::default().with(0, width, value);
+        for (port, value) in [
+            ("mesh_first", u64::from(MESH) + 2),
+            ("mesh_last", u64::from(MESH) + mesh_bytes as u64 / 16 - 1),
+            ("geometry_descriptors", DESCRIPTORS[0].into()),
+            ("descriptor_limit", LIMIT.into()),
+            ("geometry_lists", LISTS[0].into()),
+            ("list_shift", LIST_SHIFT.into()),
+            ("exception_base", EXCEPTIONS.into()),
+            ("exception_limit", LIMIT.into()),
+            ("geometry_size", size),
+            ("raster_size", size),
+            ("cull_back", expected.cull.into()),
+            ("scale_shift", frame.scale_shift.into()),
+            ("near_z", frame.near as u64),
+            ("depth_mantissa", frame.depth.mantissa.into()),
+            ("frame_base", FRAME.into()),
+            ("depth_base", DEPTH.into()),
+            ("with_depth", 1),
+            ("clear", 0x1234),
+        ] {
+            self.set(port, value);
+        }
+        for (port, value) in [
+            ("row_u", rows(frame.u)),
+            ("row_v", rows(frame.v)),
+            ("row_n", rows(frame.n)),
+            ("tx", signed(frame.translation[0], 44)),
+            ("ty", signed(frame.translation[1], 44)),
+            ("tz", signed(frame.translation[2], 44)),
+            ("depth_exponent", signed(frame.depth.exponent.into(), 4)),
+        ] {
+            self.set(port, value);
+        }
+        for (port, [low, high]) in [("raster_lists", LISTS), ("raster_descriptors", DESCRIPTORS)] {
             self.set(port, Bits::default().with(0, 23, low).with(23, 23, high));
         }
+    }
+
+    /// Draws a frame and compares it.
+    fn draw(&mut self, name: &str, mesh: &[u8], expected: &Expected) -> Clocks {
+        self.memory.write(MESH, mesh);
+        self.configure(expected, mesh.len());
         self.wait_for("ready");
-        self.set("start", 1);
-        self.clock();
-        self.set("start", 0);
-        let clocks = self.wait_for("done");
-        let pixels = expected.colour.len() as u32;
-        for i in 0..pixels {
+        self.pulse("geometry_start");
+        let geometry = self.wait_for("geometry_done");
+        let counts = ["mesh_error", "full", "triangles", "exceptions"].map(|port| self.count(port));
+        let stats = &expected.stats;
+        let wanted = [0, 0, stats.triangles_in.into(), stats.clipped.into()];
+        assert_eq!(counts, wanted, "{name}: error, full, triangles, exceptions");
+
+        write_clipped(&mut self.memory, expected);
+        self.set("present", if expected.clipped.is_empty() { 1 } else { 3 });
+        self.pulse("raster_start");
+        let raster = self.wait_for("raster_done");
+        self.compare(name, expected);
+        Clocks { geometry, raster }
+    }
+
+    fn compare(&self, name: &str, expected: &Expected) {
+        for i in 0..expected.colour.len() as u32 {
             let (x, y) = (i % expected.size.0, i / expected.size.0);
             let colour = self.memory.entry(FRAME, i / 2) >> (16 * (i % 2)) & 0xffff;
             let depth = self.memory.entry(DEPTH, i);
@@ -193,7 +257,6 @@ impl Bench {
                 "{name}: colour and depth at {x}, {y}"
             );
         }
-        clocks
     }
 }
 
@@ -219,12 +282,11 @@ fn frames_equal_the_models() {
                     ("inside", inside, false),
                 ] {
                     let expected = expected(&mesh, &view, size, cull);
-                    let clocks = bench.draw(&format!("{name} {camera} {size:?}"), &expected);
-                    let rate = expected.pixels_covered as f64 / clocks as f64;
+                    let name = format!("{name} {camera} {size:?}");
+                    let Clocks { geometry, raster } = bench.draw(&name, &bytes, &expected);
+                    let rate = expected.stats.pixels_covered as f64 / raster as f64;
                     println!(
-                        "{name} {camera} {size:?}: {clocks} clocks, {rate:.2} pixels a clock, walking {}, empty {}",
-                        bench.count("clocks_walking"),
-                        bench.count("clocks_empty")
+                        "{name}: {geometry} clocks for the geometry, {raster} for the raster, {rate:.2} pixels a clock"
                     );
                 }
             }

@@ -1,0 +1,231 @@
+// Makes the descriptors and band lists of a frame from the mesh in memory.
+//
+//              ┌───────────┐   ┌──────────────┐   ┌──────────┐   ┌───────┐   ┌────────┐
+//   mesh ─────▶│ mesh_walk │──▶│ vertex_cache │──▶│ classify │──▶│ setup │──▶│ binner │──▶ descriptors, lists
+//              └───────────┘   └──────────────┘   └──────────┘   └───────┘   └────────┘
+//                                │ fetch  ▲ projected   └─ exception ─────────────▲
+//                                ▼        │
+//   vertices ─────────────────▶ vertex_stage
+//
+// `start` (one clock, not while `busy`) takes the parameters, which hold until `done` (one clock): everything is in memory
+// then. `mesh_error` (a chunk without vertices or beyond the mesh's end) and `full` (no room for all descriptors, list entries
+// or exceptions) tell then that the frame is not whole; what there is, is listed. `restart` may come at any time, and gives
+// the frame up; the unit is to be started again when read_port has thrown away what was on its way.
+//
+// Throughput: 11 clocks a drawn triangle, 4 a culled one, 6 a vertex that is not in the cache, 4 and one a band in the
+// binner; the slowest of these counts. Memory: two clients of a read_port, a native write port.
+// Counts are those of the frame; `clocks_busy` and `vertices` run freely.
+
+`default_nettype none
+
+module geometry_unit #(
+    parameter int unsigned ADDRESS_BITS = 23,
+    parameter int unsigned COUNT_BITS   = 20
+) (
+    input  wire                      clk,
+    input  wire                      rst,
+    input  wire                      restart,
+    input  wire                      start,
+    output logic                     busy,
+    output logic                     done,
+    output logic                     mesh_error,
+    output logic                     full,
+    // The mesh: its first chunk and its last word.
+    input  wire  [ADDRESS_BITS-1:0]  mesh_first,
+    input  wire  [ADDRESS_BITS-1:0]  mesh_last,
+    // Where things go (binner).
+    input  wire  [ADDRESS_BITS-1:0]  descriptor_base,
+    input  wire  [COUNT_BITS-1:0]    descriptor_limit,
+    input  wire  [ADDRESS_BITS-1:0]  list_base,
+    input  wire  [4:0]               list_shift,
+    input  wire  [ADDRESS_BITS-1:0]  exception_base,
+    input  wire  [COUNT_BITS-1:0]    exception_limit,
+    // The frame's constants (vertex_stage, setup). 320x180, 640x360, 1280x720: 0, 1, 2.
+    input  wire  [1:0]               size,
+    input  wire                      cull_back,
+    input  wire  [4:0]               scale_shift,
+    input  wire  [2:0][24:0]         row_u,
+    input  wire  [2:0][24:0]         row_v,
+    input  wire  [2:0][24:0]         row_n,
+    input  wire  signed [43:0]       tx,
+    input  wire  signed [43:0]       ty,
+    input  wire  signed [43:0]       tz,
+    input  wire  [38:0]              near_z,
+    input  wire  [16:0]              depth_mantissa,
+    input  wire  signed [3:0]        depth_exponent,
+    // Memory: the clients of the mesh and of the vertices.
+    output logic [1:0]               ask_valid,
+    input  wire  [1:0]               ask_ready,
+    output logic [2*ADDRESS_BITS-1:0] ask_addr,
+    input  wire  [1:0]               data_valid,
+    output logic [1:0]               data_ready,
+    input  wire  [2*128-1:0]         data,
+    output logic                     cmd_valid,
+    input  wire                      cmd_ready,
+    output logic [ADDRESS_BITS-1:0]  cmd_addr,
+    output logic                     wdata_valid,
+    input  wire                      wdata_ready,
+    output logic [127:0]             wdata,
+    output logic [15:0]              wdata_strobe,
+    // What became of the triangles.
+    output logic [31:0]              triangles,
+    output logic [31:0]              unseen_count,
+    output logic [31:0]              culled_count,
+    output logic [COUNT_BITS-1:0]    descriptors,
+    output logic [COUNT_BITS-1:0]    exceptions,
+    output logic [31:0]              clocks_busy,
+    output logic [31:0]              vertices
+);
+    // Colour and normal of a triangle.
+    localparam int unsigned SIDE_BITS = 64;
+    localparam int unsigned FLIGHT_BITS = 8;
+
+    logic [10:0] width;
+    logic [9:0]  height;
+
+    assign width  = 11'd320 << size;
+    assign height = 10'd180 << size;
+
+    typedef enum logic [2:0] {IDLE, PREPARE, BEGIN, WALK, FINISH} state_t;
+    state_t state;
+
+    logic clear, walk_busy, lists_idle, lists_done, writes_idle, drained;
+
+    assign busy  = state != IDLE;
+    assign clear = state == IDLE && start;
+
+    always_ff @(posedge clk) begin
+        done <= 1'b0;
+        case (state)
+            IDLE:    if (start) state <= PREPARE;
+            // The lists are emptied.
+            PREPARE: if (lists_idle) state <= BEGIN;
+            BEGIN:   state <= WALK;
+            WALK:    if (!walk_busy && drained && lists_idle) state <= FINISH;
+            default: if (lists_done && writes_idle) begin
+                done  <= 1'b1;
+                state <= IDLE;
+            end
+        endcase
+        if (rst || restart) begin
+            state <= IDLE;
+            done  <= 1'b0;
+        end
+    end
+
+    logic                    triangle_valid, triangle_ready, chunk;
+    logic [127:0]            triangle;
+    logic [ADDRESS_BITS-1:0] vertex_base;
+
+    mesh_walk #(.ADDRESS_BITS(ADDRESS_BITS)) mesh_walk (
+        .clk, .rst(rst || restart), .start(state == BEGIN), .first(mesh_first), .last(mesh_last), .drained,
+        .busy(walk_busy), .error(mesh_error), .chunk, .vertex_base,
+        .ask_valid(ask_valid[0]), .ask_ready(ask_ready[0]), .ask_addr(ask_addr[0 +: ADDRESS_BITS]),
+        .data_valid(data_valid[0]), .data_ready(data_ready[0]), .data(data[0 +: 128]),
+        .out_valid(triangle_valid), .out_ready(triangle_ready), .out_triangle(triangle)
+    );
+
+    logic             fetch_valid, fetch_ready, projected_valid, projected_ready, placed_valid, placed_ready;
+    logic [15:0]      fetch_index;
+    triangle_pkg::projected_t       projected;
+    logic [2:0][67:0] placed;
+    logic [SIDE_BITS-1:0] placed_side;
+
+    /* verilator lint_off PINCONNECTEMPTY */
+    vertex_cache #(.SIDE_BITS(SIDE_BITS)) vertex_cache (
+        .clk, .rst(rst || restart), .clear(chunk), .idle(),
+        .in_valid(triangle_valid), .in_ready(triangle_ready),
+        .in_indices(triangle[47:0]), .in_side(triangle[48 +: SIDE_BITS]),
+        .fetch_valid, .fetch_ready, .fetch_index,
+        .projected_valid, .projected_ready, .projected_vertex(projected),
+        .out_valid(placed_valid), .out_ready(placed_ready), .out_vertices(placed), .out_side(placed_side)
+    );
+    /* verilator lint_on PINCONNECTEMPTY */
+
+    assign ask_valid[1] = fetch_valid;
+    assign fetch_ready  = ask_ready[1];
+    assign ask_addr[ADDRESS_BITS +: ADDRESS_BITS] = vertex_base + ADDRESS_BITS'(fetch_index);
+
+    vertex_stage vertex_stage (
+        .clk, .rst(rst || restart), .scale_shift, .row_u, .row_v, .row_n, .tx, .ty, .tz, .near_z,
+        .centre_x(width[10:1]), .centre_y({1'b0, height[9:1]}), .depth_mantissa, .depth_exponent,
+        .in_valid(data_valid[1]), .in_ready(data_ready[1]), .in_position(data[128 +: 48]),
+        .out_valid(projected_valid), .out_ready(projected_ready), .out_vertex(projected)
+    );
+
+    logic                 regular_valid, regular_ready, exception_valid, exception_ready, unseen;
+    logic [2:0][65:0]     regular;
+    logic [SIDE_BITS-1:0] regular_side;
+    logic [31:0]          exception_number;
+
+    /* verilator lint_off PINCONNECTEMPTY */
+    classify #(.SIDE_BITS(SIDE_BITS)) classify (
+        .clk, .rst(rst || restart), .restart(clear), .width, .height, .idle(), .unseen, .count(triangles),
+        .in_valid(placed_valid), .in_ready(placed_ready), .in_vertices(placed), .in_side(placed_side),
+        .regular_valid, .regular_ready, .regular_vertices(regular), .regular_side,
+        .exception_valid, .exception_ready, .exception_number
+    );
+
+    logic        descriptor_valid, descriptor_ready, culled;
+    triangle_pkg::descriptor_t descriptor;
+
+    setup setup (
+        .clk, .rst(rst || restart), .width, .height, .cull_back, .camera_n(row_n), .busy(), .culled, .drawn(),
+        .in_valid(regular_valid), .in_ready(regular_ready), .in_vertices(regular),
+        .in_colour(regular_side[15:0]), .in_normal(regular_side[63:16]),
+        .out_valid(descriptor_valid), .out_ready(descriptor_ready), .out_descriptor(descriptor)
+    );
+    /* verilator lint_on PINCONNECTEMPTY */
+
+    logic                    write_valid, write_ready;
+    logic [ADDRESS_BITS-1:0] write_addr;
+    logic [127:0]            write_data;
+    logic [15:0]             write_strobe;
+
+    binner #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS)) binner (
+        .clk, .rst(rst || restart), .restart(clear), .finish(state == FINISH), .done(lists_done), .idle(lists_idle), .full,
+        .size, .descriptor_base, .descriptor_limit, .list_base, .list_shift, .exception_base, .exception_limit,
+        .descriptors, .exceptions,
+        .in_valid(descriptor_valid), .in_ready(descriptor_ready), .in_descriptor(descriptor),
+        .exception_valid, .exception_ready, .exception_number,
+        .write_valid, .write_ready, .write_addr, .write_data, .write_strobe
+    );
+
+    write_port #(.ADDRESS_BITS(ADDRESS_BITS)) write_port (
+        .clk, .rst, .idle(writes_idle),
+        .in_valid(write_valid), .in_ready(write_ready), .in_addr(write_addr), .in_data(write_data), .in_strobe(write_strobe),
+        .cmd_valid, .cmd_ready, .cmd_addr, .wdata_valid, .wdata_ready, .wdata, .wdata_strobe
+    );
+
+    // Triangles between the walk and the place where they end.
+    logic [FLIGHT_BITS-1:0] flight;
+    logic                   came, was_unseen, was_culled, was_kept, was_exception;
+
+    assign drained = flight == '0 && !came && !triangle_valid;
+
+    always_ff @(posedge clk) begin
+        came          <= triangle_valid && triangle_ready;
+        was_unseen    <= unseen;
+        was_culled    <= culled;
+        was_kept      <= descriptor_valid && descriptor_ready;
+        was_exception <= exception_valid && exception_ready;
+
+        flight       <= flight + FLIGHT_BITS'(came) - FLIGHT_BITS'(was_unseen) - FLIGHT_BITS'(was_culled)
+                      - FLIGHT_BITS'(was_kept) - FLIGHT_BITS'(was_exception);
+        unseen_count <= unseen_count + 32'(was_unseen);
+        culled_count <= culled_count + 32'(was_culled);
+        clocks_busy  <= clocks_busy + 32'(busy);
+        vertices     <= vertices + 32'(fetch_valid && fetch_ready);
+
+        if (clear) {unseen_count, culled_count} <= '0;
+        if (rst || restart) begin
+            {came, was_unseen, was_culled, was_kept, was_exception} <= '0;
+            flight <= '0;
+        end
+        if (rst) {unseen_count, culled_count, clocks_busy, vertices} <= '0;
+    end
+
+    wire _unused = &{1'b0, triangle[127:112], data[255:176]};
+endmodule
+
+`default_nettype wire

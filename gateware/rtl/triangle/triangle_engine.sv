@@ -1,0 +1,143 @@
+// The triangle engine: from a mesh in memory to a frame in memory, in two passes that may run at the same time, for two frames.
+//
+//              ┌───────────────┐                        ┌─────────────┐
+//   mesh ─────▶│ geometry_unit │──▶ descriptors, lists ─▶│ raster_unit │──▶ frame, depth
+//              └───────────────┘                        └─────────────┘
+//                                firmware's lists ──────────▲
+//
+// All reads share one native read port of the memory; each unit has a write port of its own. `cancel` (one clock, at any
+// time) gives both frames up; `ready` says that the memory has answered everything and the band buffer is clear, so that
+// either unit may start. What the units' parameters and results mean stands in their own files.
+
+`default_nettype none
+
+module triangle_engine #(
+    parameter int unsigned ADDRESS_BITS = 23,
+    parameter int unsigned COUNT_BITS   = 20
+) (
+    input  wire                       clk,
+    input  wire                       rst,
+    input  wire                       cancel,
+    output logic                      ready,
+    // Geometry.
+    input  wire                       geometry_start,
+    output logic                      geometry_busy,
+    output logic                      geometry_done,
+    output logic                      mesh_error,
+    output logic                      full,
+    input  wire  [ADDRESS_BITS-1:0]   mesh_first,
+    input  wire  [ADDRESS_BITS-1:0]   mesh_last,
+    input  wire  [ADDRESS_BITS-1:0]   geometry_descriptors,
+    input  wire  [COUNT_BITS-1:0]     descriptor_limit,
+    input  wire  [ADDRESS_BITS-1:0]   geometry_lists,
+    input  wire  [4:0]                list_shift,
+    input  wire  [ADDRESS_BITS-1:0]   exception_base,
+    input  wire  [COUNT_BITS-1:0]     exception_limit,
+    input  wire  [1:0]                geometry_size,
+    input  wire                       cull_back,
+    input  wire  [4:0]                scale_shift,
+    input  wire  [2:0][24:0]          row_u,
+    input  wire  [2:0][24:0]          row_v,
+    input  wire  [2:0][24:0]          row_n,
+    input  wire  signed [43:0]        tx,
+    input  wire  signed [43:0]        ty,
+    input  wire  signed [43:0]        tz,
+    input  wire  [38:0]               near_z,
+    input  wire  [16:0]               depth_mantissa,
+    input  wire  signed [3:0]         depth_exponent,
+    output logic [31:0]               triangles,
+    output logic [31:0]               unseen_count,
+    output logic [31:0]               culled_count,
+    output logic [COUNT_BITS-1:0]     descriptors,
+    output logic [COUNT_BITS-1:0]     exceptions,
+    output logic [31:0]               geometry_clocks,
+    output logic [31:0]               vertices,
+    // Raster.
+    input  wire                       raster_start,
+    output logic                      raster_busy,
+    output logic                      raster_done,
+    input  wire  [1:0]                raster_size,
+    input  wire  [ADDRESS_BITS-1:0]   frame_base,
+    input  wire  [ADDRESS_BITS-1:0]   depth_base,
+    input  wire                       with_depth,
+    input  wire  [15:0]               clear,
+    input  wire  [1:0]                present,
+    input  wire  [2*ADDRESS_BITS-1:0] raster_lists,
+    input  wire  [2*ADDRESS_BITS-1:0] raster_descriptors,
+    output logic [31:0]               raster_clocks,
+    output logic [31:0]               clocks_walking,
+    output logic [31:0]               clocks_empty,
+    output logic [31:0]               groups_in,
+    output logic [31:0]               clocks_held,
+    output logic [31:0]               clocks_memory,
+    output logic [31:0]               clocks_flush,
+    // Memory.
+    output logic                      read_cmd_valid,
+    input  wire                       read_cmd_ready,
+    output logic [ADDRESS_BITS-1:0]   read_cmd_addr,
+    input  wire                       read_rdata_valid,
+    input  wire  [127:0]              read_rdata,
+    output logic                      lists_cmd_valid,
+    input  wire                       lists_cmd_ready,
+    output logic [ADDRESS_BITS-1:0]   lists_cmd_addr,
+    output logic                      lists_wdata_valid,
+    input  wire                       lists_wdata_ready,
+    output logic [127:0]              lists_wdata,
+    output logic [15:0]               lists_wdata_strobe,
+    output logic                      frame_cmd_valid,
+    input  wire                       frame_cmd_ready,
+    output logic [ADDRESS_BITS-1:0]   frame_cmd_addr,
+    output logic                      frame_wdata_valid,
+    input  wire                       frame_wdata_ready,
+    output logic [127:0]              frame_wdata,
+    output logic [15:0]               frame_wdata_strobe
+);
+    localparam int unsigned CLIENTS = 5;
+
+    logic [CLIENTS-1:0]              ask_valid, ask_ready, data_valid, data_ready;
+    logic [CLIENTS*ADDRESS_BITS-1:0] ask_addr;
+    logic [CLIENTS*128-1:0]          data;
+    logic                            dropping, port_idle, raster_ready;
+
+    assign ready = !dropping && raster_ready;
+    assign frame_wdata_strobe = '1;
+
+    always_ff @(posedge clk) begin
+        if (port_idle) dropping <= 1'b0;
+        if (cancel)     dropping <= 1'b1;
+        if (rst)       dropping <= 1'b0;
+    end
+
+    read_port #(.CLIENTS(CLIENTS), .ADDRESS_BITS(ADDRESS_BITS)) read_port (
+        .clk, .rst, .drop(dropping), .idle(port_idle),
+        .ask_valid, .ask_ready, .ask_addr, .data_valid, .data_ready, .data,
+        .cmd_valid(read_cmd_valid), .cmd_ready(read_cmd_ready), .cmd_addr(read_cmd_addr),
+        .rdata_valid(read_rdata_valid), .rdata(read_rdata)
+    );
+
+    geometry_unit #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS)) geometry (
+        .clk, .rst, .restart(cancel), .start(geometry_start), .busy(geometry_busy), .done(geometry_done), .mesh_error, .full,
+        .mesh_first, .mesh_last, .descriptor_base(geometry_descriptors), .descriptor_limit, .list_base(geometry_lists),
+        .list_shift, .exception_base, .exception_limit, .size(geometry_size), .cull_back, .scale_shift,
+        .row_u, .row_v, .row_n, .tx, .ty, .tz, .near_z, .depth_mantissa, .depth_exponent,
+        .ask_valid(ask_valid[1:0]), .ask_ready(ask_ready[1:0]), .ask_addr(ask_addr[2*ADDRESS_BITS-1:0]),
+        .data_valid(data_valid[1:0]), .data_ready(data_ready[1:0]), .data(data[2*128-1:0]),
+        .cmd_valid(lists_cmd_valid), .cmd_ready(lists_cmd_ready), .cmd_addr(lists_cmd_addr),
+        .wdata_valid(lists_wdata_valid), .wdata_ready(lists_wdata_ready), .wdata(lists_wdata),
+        .wdata_strobe(lists_wdata_strobe),
+        .triangles, .unseen_count, .culled_count, .descriptors, .exceptions, .clocks_busy(geometry_clocks), .vertices
+    );
+
+    raster_unit #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS)) raster (
+        .clk, .rst, .restart(cancel), .ready(raster_ready), .start(raster_start), .busy(raster_busy), .done(raster_done),
+        .size(raster_size), .frame_base, .depth_base, .with_depth, .clear, .present, .list_base(raster_lists),
+        .descriptor_base(raster_descriptors), .list_shift,
+        .ask_valid(ask_valid[4:2]), .ask_ready(ask_ready[4:2]), .ask_addr(ask_addr[5*ADDRESS_BITS-1:2*ADDRESS_BITS]),
+        .data_valid(data_valid[4:2]), .data_ready(data_ready[4:2]), .data(data[5*128-1:2*128]),
+        .cmd_valid(frame_cmd_valid), .cmd_ready(frame_cmd_ready), .cmd_addr(frame_cmd_addr),
+        .wdata_valid(frame_wdata_valid), .wdata_ready(frame_wdata_ready), .wdata_data(frame_wdata),
+        .clocks_busy(raster_clocks), .clocks_walking, .clocks_empty, .groups_in, .clocks_held, .clocks_memory, .clocks_flush
+    );
+endmodule
+
+`default_nettype wire
