@@ -86,7 +86,7 @@ module cull (
     // 2A = x10·y20 + x20·y01, the highest four bits of y20 and y01 first. It is there in phase 2 of the last clocks.
     logic signed [24:0] a;
     logic signed [17:0] b;
-    logic signed [41:0] c, area;
+    logic signed [43:0] c, area;
     logic        [20:0] factor;
 
     always_comb begin
@@ -95,12 +95,12 @@ module cull (
         b      = phase[1] ? {1'b0, factor[16:0]} : 18'($signed(factor[20:17]));
         unique case (phase)
             2'd2:    c = '0;
-            2'd0:    c = {area[24:0], 17'b0};
+            2'd0:    c = {area[26:0], 17'b0};
             default: c = area;
         endcase
     end
 
-    multiply_add #(.BITS(42)) dsp (.clk, .enable(advance), .a, .b, .c, .p(area));
+    multiply_add #(.BITS(44)) dsp (.clk, .enable(advance), .a, .b, .c, .p(area));
 
     // Left, right, top, bottom: chosen in phases 0 to 3, rounded up to a centre a clock later, cut to the picture after that.
     logic [20:0] extreme;
@@ -128,7 +128,7 @@ module cull (
 
     // The verdict and what follows of the facing, registered for phase 3.
     logic        front, no_area, no_column, no_row;
-    logic [39:0] positive_area;
+    logic [39:0] flipped_area;
     logic [9:0]  group_top;
     logic [7:0]  group_left, group_right;
     logic [1:0]  topmost;
@@ -139,7 +139,7 @@ module cull (
     always_comb begin
         // Among equals the lowest number, after the swap of a front face.
         if ((last.y01[20] || last.y01 == '0) && !last.y20[20]) topmost = 2'd0;
-        else if (last.y_same)                                  topmost = area[41] ? 2'd2 : 2'd1;
+        else if (last.y_same)                                  topmost = area[43] ? 2'd2 : 2'd1;
         else                                                   topmost = last.y_21 ? 2'd2 : 2'd1;
     end
 
@@ -151,10 +151,10 @@ module cull (
             unique case (phase)
                 2'd2: begin
                     left          <= cut;
-                    front         <= area[41];
+                    front         <= area[43];
                     no_area       <= area == '0;
                     no_row        <= top >= bottom;
-                    positive_area <= (area[39:0] ^ {40{area[41]}}) + 40'(area[41]);
+                    flipped_area  <= area[39:0] ^ {40{area[43]}};
                     group_top     <= topmost[1] ? last.v2.x[20:11] : topmost[0] ? last.v1.x[20:11] : last.v0.x[20:11];
                 end
                 2'd3: right <= cut;
@@ -185,7 +185,7 @@ module cull (
         oriented.group_right = group_right;
         oriented.group_start = $signed(group_top) < $signed({2'b0, group_left})  ? group_left
                              : $signed(group_top) > $signed({2'b0, group_right}) ? group_right : group_top[7:0];
-        oriented.area        = positive_area;
+        oriented.area        = flipped_area + 40'(front);
         oriented.w10         = {1'b0, front ? last.v2.w : last.v1.w} - {1'b0, last.v0.w};
         oriented.w20         = {1'b0, front ? last.v1.w : last.v2.w} - {1'b0, last.v0.w};
         oriented.x10         = front ? last.x20 : last.x10;
@@ -205,7 +205,7 @@ module cull (
         if (rst) out_valid <= 1'b0;
     end
 
-    wire _unused = &{1'b0, area[40], rounded[7:0], right_last[2:0]};
+    wire _unused = &{1'b0, area[42:40], rounded[7:0], right_last[2:0]};
 endmodule
 
 `default_nettype wire

@@ -145,18 +145,16 @@ module setup (
     logic        [10:0] low_sum;
     logic        [2:0]  carry;
 
-    always_comb begin
-        low_sum = {3'b0, area_low} - {3'b0, e0_2[7:0]} - {3'b0, e2_2[7:0]} - {9'b0, biases};
-        // −e is ~e + 1; the two ones come with the carry.
-        unique case (count)
-            4'd1:    addend = ~e0_2[41:8];
-            4'd2:    addend = ~e2_2[41:8];
-            default: addend = 34'($signed(carry));
-        endcase
-    end
+    assign low_sum = {3'b0, area_low} - {3'b0, e0_2[7:0]} - {3'b0, e2_2[7:0]} - {9'b0, biases};
 
     always_ff @(posedge clk) begin
+        // −e is ~e + 1; the two ones come with the carry.
         carry <= low_sum[10:8] + 3'd2;
+        unique case (count)
+            4'd0:    addend <= ~e0_2[41:8];
+            4'd1:    addend <= ~e2_2[41:8];
+            default: addend <= 34'($signed(carry));
+        endcase
         if (count == 4'd8) y_2 <= y;
         if (beat) begin
             passed_2 <= passed_1;
@@ -183,7 +181,7 @@ module setup (
     logic        [23:0] y_3;
     logic        [15:0] lit_3;
     logic [2:0][33:0]   start_3;
-    logic        [39:0] gx, gy;
+    logic        [40:0] twice_gx, twice_gy;
 
     always_ff @(posedge clk) begin
         if (beat) begin
@@ -198,12 +196,14 @@ module setup (
         end
     end
 
-    setup_gradient gradient (.clk, .enable, .count, .nx(nx_3), .ny(ny_3), .y(y_3), .lead(lead_3), .gx, .gy);
+    setup_gradient gradient (.clk, .enable, .count, .nx(nx_3), .ny(ny_3), .y(y_3), .lead(lead_3), .twice_gx, .twice_gy);
 
-    // Stage 4.
+    // Stage 4, a clock late: first the gradients are rounded.
     passed_t            passed_4;
     origin_t            origin_4;
-    logic        [39:0] gx_4, gy_4;
+    logic        [40:0] twice_gx_4, twice_gy_4;
+    logic        [39:0] gx, gy;
+    logic        [3:0]  count_4;
     logic        [15:0] lit_4;
     logic [2:0][33:0]   start_4;
     logic        [31:0] depth_start;
@@ -213,11 +213,14 @@ module setup (
         if (beat) begin
             passed_4 <= passed_3;
             origin_4 <= origin_3;
-            gx_4     <= gx;
-            gy_4     <= gy;
+            twice_gx_4 <= twice_gx;
+            twice_gy_4 <= twice_gy;
             lit_4    <= lit_3;
             start_4  <= start_3;
         end
+        gx         <= twice_gx_4[40:1] + 40'(twice_gx_4[0]);
+        gy         <= twice_gy_4[40:1] + 40'(twice_gy_4[0]);
+        if (enable) count_4 <= count;
         sum_x_4    <= passed_4.y01 + passed_4.y20;
         sum_y_4    <= passed_4.x10 + passed_4.x02;
         step_1_x_4 <= -sum_x_4;
@@ -225,7 +228,7 @@ module setup (
     end
 
     setup_depth depth (
-        .clk, .enable, .count, .gx(gx_4), .gy(gy_4), .px(origin_4.px), .py(origin_4.py), .w0(origin_4.w0), .start(depth_start)
+        .clk, .enable, .count(count_4), .gx, .gy, .px(origin_4.px), .py(origin_4.py), .w0(origin_4.w0), .start(depth_start)
     );
 
     always_ff @(posedge clk) begin
@@ -240,8 +243,8 @@ module setup (
             out_descriptor.bottom       <= passed_4.bottom;
             out_descriptor.top          <= passed_4.top;
             out_descriptor.steps        <= {passed_4.x02, passed_4.y20, step_1_y_4, step_1_x_4, passed_4.x10, passed_4.y01};
-            out_descriptor.depth_step_y <= gy_4[31:0];
-            out_descriptor.depth_step_x <= gx_4[31:0];
+            out_descriptor.depth_step_y <= gy[31:0];
+            out_descriptor.depth_step_x <= gx[31:0];
             out_descriptor.depth_start  <= depth_start;
             out_descriptor.start        <= start_4;
         end

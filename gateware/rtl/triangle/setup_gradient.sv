@@ -1,7 +1,7 @@
-// The depth gradients of the triangle setup: Gx = nearest(Nx·y·2^−(lead + 8)) and Gy alike, modulo 2^40.
+// The depth gradients of the triangle setup before their rounding: floor(Nx·y·2^−(lead + 7)) modulo 2^41, and that of Ny.
 //
-// Three products each, of 17, 17 and 12 bits of N from the low end; then a shift in two clocks. Driven by the `count` of the
-// setup's beat: inputs hold during a beat, Gx is there from clock 8 and Gy in clock 10.
+// Three products each, of 17, 17 and 12 bits of N from the low end; then a shift in three parts: 16s, 4s and 1s. Driven by
+// the `count` of the setup's beat: inputs hold during a beat, that of Nx is there from clock 8 and that of Ny in clock 10.
 
 `default_nettype none
 
@@ -13,8 +13,8 @@ module setup_gradient (
     input  wire  [45:0] ny,
     input  wire  [23:0] y,
     input  wire  [5:0]  lead,
-    output logic [39:0] gx,
-    output logic [39:0] gy
+    output logic [40:0] twice_gx,
+    output logic [40:0] twice_gy
 );
     logic signed [24:0] a;
     logic signed [17:0] b;
@@ -35,25 +35,21 @@ module setup_gradient (
         c = count == 4'd2 || count == 4'd5 ? '0 : p >>> 17;
     end
 
-    // The bit below the result is kept for the rounding: nearest adds it.
-    logic signed [47:0] coarse;
-    logic        [40:0] fine;
-    logic        [39:0] nearest;
+    logic signed [55:0] by_16;
+    logic signed [43:0] by_4;
 
-    assign product = {p[35:0], middle, low};
-    assign nearest = fine[40:1] + 40'(fine[0]);
+    assign product  = {p[35:0], middle, low};
+    assign twice_gy = 41'(by_4 >>> lead[1:0]);
 
     always_ff @(posedge clk) begin
         if (enable) begin
             if (count == 4'd3 || count == 4'd6) low    <= p[16:0];
             if (count == 4'd4 || count == 4'd7) middle <= p[16:0];
-            coarse <= 48'($signed(product[69:7]) >>> {lead[5:3], 3'b0});
-            fine   <= 41'(coarse >>> lead[2:0]);
-            if (count == 4'd7) gx <= nearest;
+            by_16 <= 56'($signed(product[69:7]) >>> {lead[5:4], 4'b0});
+            by_4  <= 44'(by_16 >>> {lead[3:2], 2'b0});
+            if (count == 4'd7) twice_gx <= twice_gy;
         end
     end
-
-    assign gy = nearest;
 
     multiply_add #(.BITS(44)) dsp (.clk, .enable, .a, .b, .c, .p);
 
