@@ -109,7 +109,7 @@ module triangle_engine #(
     end
 
     read_port #(.CLIENTS(CLIENTS), .ADDRESS_BITS(ADDRESS_BITS)) read_port (
-        .clk, .rst, .drop(dropping), .idle(port_idle),
+        .clk, .rst, .drop(cancel || dropping), .idle(port_idle),
         .ask_valid, .ask_ready, .ask_addr, .data_valid, .data_ready, .data,
         .cmd_valid(read_cmd_valid), .cmd_ready(read_cmd_ready), .cmd_addr(read_cmd_addr),
         .rdata_valid(read_rdata_valid), .rdata(read_rdata)

@@ -42,10 +42,10 @@ impl Bits {
     #[must_use]
     pub fn field(&self, low: usize, width: usize) -> u64 {
         assert!(width <= 64 && low + width <= 32 * WORDS);
-        (0..width).fold(0, |value, i| {
-            let at = low + i;
-            value | u64::from(self.0[at / 32] >> (at % 32) & 1) << i
-        })
+        // 64 bits from anywhere are in three words.
+        let word = |i: usize| u128::from(self.0.get(low / 32 + i).copied().unwrap_or(0));
+        let three = word(0) | word(1) << 32 | word(2) << 64;
+        (three >> (low % 32)) as u64 & ((1_u128 << width) - 1) as u64
     }
 
     /// The `width` bits from `low` on as a two's complement number.

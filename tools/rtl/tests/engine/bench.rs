@@ -1,7 +1,5 @@
-//! Whole frames: the triangle engine makes of a mesh in memory what glint-model makes of it, with a clipper in the test as
-//! the firmware has one.
+//! The triangle engine with a memory around it, and what it should make of it.
 
-use glint::{convert, generate, view};
 use glint_core::camera::View;
 use glint_core::mesh::Mesh;
 use glint_model::descriptor::{Descriptor, band_rows};
@@ -9,7 +7,7 @@ use glint_model::setup::{Bounds, Oriented, Setup};
 use glint_model::{DrawnTriangle, FrameSetup, Options, Projected, Stats, Target, trace};
 use glint_rtl::{Bits, Memory, Module, ReadPort, Stalls, WritePort};
 
-const SIZES: [(u32, u32); 3] = glint_model::SIZES;
+pub const SIZES: [(u32, u32); 3] = glint_model::SIZES;
 
 // Where things are in memory, by words of 16 bytes. Set 0 is the engine's, set 1 that of the clipper.
 const FRAME: u32 = 0;
@@ -25,17 +23,19 @@ const LIST_SHIFT: u32 = 11;
 const LIMIT: u32 = 80_000;
 
 /// What the model draws.
-struct Expected {
-    size: (u32, u32),
+pub struct Expected {
+    pub size: (u32, u32),
     colour: Vec<u16>,
     depth: Vec<u32>,
     frame: FrameSetup,
     cull: bool,
     clipped: Vec<DrawnTriangle>,
-    stats: Stats,
+    pub stats: Stats,
 }
 
-fn expected(mesh: &Mesh, view: &View, size: (u32, u32), cull: bool) -> Expected {
+/// Draws with the model.
+pub fn expected(mesh: &[u8], view: &View, size: (u32, u32), cull: bool) -> Expected {
+    let mesh = &Mesh::new_checked(mesh).unwrap();
     let pixels = (size.0 * size.1) as usize;
     let (mut colour, mut depth) = (vec![0; pixels], vec![0; pixels]);
     let vertices = mesh.chunks().map(|chunk| chunk.vertex_count()).max();
@@ -100,22 +100,25 @@ fn write_clipped(memory: &mut Memory, expected: &Expected) {
     memory.write(LISTS[1], &lengths);
 }
 
-struct Bench {
-    module: Module,
+pub struct Bench {
+    pub module: Module,
     memory: Memory,
     read: ReadPort,
     lists: WritePort,
     frame: WritePort,
+    /// Whether depths are written and compared as well.
+    pub with_depth: bool,
 }
 
 /// Clocks of the two passes.
-struct Clocks {
-    geometry: u64,
-    raster: u64,
+pub struct Clocks {
+    pub geometry: u64,
+    pub raster: u64,
 }
 
 impl Bench {
-    fn new(seed: u32, stalls: f64) -> Self {
+    /// Stalls in a share of the clocks on every side of the memory.
+    pub fn new(seed: u32, stalls: f64) -> Self {
         let module = Module::new("triangle_engine", seed);
         let seed = u64::from(seed);
         Self {
@@ -124,19 +127,20 @@ impl Bench {
             lists: WritePort::new(&module, "lists_", Stalls::new(seed + 1, stalls)),
             frame: WritePort::new(&module, "frame_", Stalls::new(seed + 2, stalls)),
             module,
+            with_depth: true,
         }
     }
 
-    fn set(&mut self, port: &str, value: impl Into<Bits>) {
+    pub fn set(&mut self, port: &str, value: impl Into<Bits>) {
         let port = self.module.port(port);
         self.module.set(port, value);
     }
 
-    fn count(&self, port: &str) -> u64 {
+    pub fn count(&self, port: &str) -> u64 {
         self.module.value(self.module.port(port))
     }
 
-    fn clock(&mut self) {
+    pub fn clock(&mut self) {
         self.read.drive(&mut self.module, &self.memory);
         self.lists.drive(&mut self.module);
         self.frame.drive(&mut self.module);
@@ -148,7 +152,7 @@ impl Bench {
     }
 
     /// Clocks until a port is high.
-    fn wait_for(&mut self, port: &str) -> u64 {
+    pub fn wait_for(&mut self, port: &str) -> u64 {
         let (port, start) = (self.module.port(port), self.module.cycles());
         while !self.module.is_high(port) {
             let clocks = self.module.cycles() - start;
@@ -165,14 +169,15 @@ impl Bench {
         self.module.cycles() - start
     }
 
-    fn pulse(&mut self, port: &str) {
+    pub fn pulse(&mut self, port: &str) {
         self.set(port, 1);
         self.clock();
         self.set(port, 0);
     }
 
-    /// The frame's constants and the places of everything.
-    fn configure(&mut self, expected: &Expected, mesh_bytes: usize) {
+    /// Gives the engine a mesh, the frame's constants and the places of everything.
+    pub fn configure(&mut self, mesh: &[u8], expected: &Expected) {
+        self.memory.write(MESH, mesh);
         let frame = &expected.frame;
         let size = SIZES
             .iter()
@@ -186,7 +191,7 @@ impl Bench {
         let signed = |value: i64, width| Bits::default().with(0, width, value);
         for (port, value) in [
             ("mesh_first", u64::from(MESH) + 2),
-            ("mesh_last", u64::from(MESH) + mesh_bytes as u64 / 16 - 1),
+            ("mesh_last", u64::from(MESH) + mesh.len() as u64 / 16 - 1),
             ("geometry_descriptors", DESCRIPTORS[0].into()),
             ("descriptor_limit", LIMIT.into()),
             ("geometry_lists", LISTS[0].into()),
@@ -201,7 +206,7 @@ impl Bench {
             ("depth_mantissa", frame.depth.mantissa.into()),
             ("frame_base", FRAME.into()),
             ("depth_base", DEPTH.into()),
-            ("with_depth", 1),
+            ("with_depth", self.with_depth.into()),
             ("clear", 0x1234),
         ] {
             self.set(port, value);
@@ -223,9 +228,8 @@ impl Bench {
     }
 
     /// Draws a frame and compares it.
-    fn draw(&mut self, name: &str, mesh: &[u8], expected: &Expected) -> Clocks {
-        self.memory.write(MESH, mesh);
-        self.configure(expected, mesh.len());
+    pub fn draw(&mut self, name: &str, mesh: &[u8], expected: &Expected) -> Clocks {
+        self.configure(mesh, expected);
         self.wait_for("ready");
         self.pulse("geometry_start");
         let geometry = self.wait_for("geometry_done");
@@ -242,54 +246,19 @@ impl Bench {
         Clocks { geometry, raster }
     }
 
+    /// The frame in memory is the one expected.
     fn compare(&self, name: &str, expected: &Expected) {
         for i in 0..expected.colour.len() as u32 {
             let (x, y) = (i % expected.size.0, i / expected.size.0);
             let colour = self.memory.entry(FRAME, i / 2) >> (16 * (i % 2)) & 0xffff;
-            let depth = self.memory.entry(DEPTH, i);
-            let wanted = (
-                expected.colour[i as usize].into(),
-                expected.depth[i as usize],
-            );
+            let (found, wanted) = (self.memory.entry(DEPTH, i), expected.depth[i as usize]);
+            let depth = if self.with_depth { found } else { wanted };
+            let wanted = (expected.colour[i as usize].into(), wanted);
             assert_eq!(
                 (colour, depth),
                 wanted,
                 "{name}: colour and depth at {x}, {y}"
             );
-        }
-    }
-}
-
-fn mesh(name: &str) -> Vec<u8> {
-    let model = generate::named(name).unwrap();
-    convert::convert(&model, convert::Options::default())
-        .unwrap()
-        .0
-}
-
-#[test]
-fn frames_equal_the_models() {
-    let inside = r#"{"eye":[0.21,-0.1,0.05],"u":[0.6,0.8,0],"v":[0,0,-1],"n":[-0.8,0.6,0],"half_width":1.5,"near":0.05}"#;
-    let inside = view::parse(inside.as_bytes()).unwrap();
-    for (seed, stalls, sizes) in [(1, 0.0, &SIZES[..]), (2, 0.5, &SIZES[..1])] {
-        let mut bench = Bench::new(seed, stalls);
-        for name in ["icosphere:6", "sponge:1"] {
-            let bytes = mesh(name);
-            let mesh = Mesh::new_checked(&bytes).unwrap();
-            for &size in sizes {
-                for (camera, view, cull) in [
-                    ("outside", view::spherical("2,30,60").unwrap(), true),
-                    ("inside", inside, false),
-                ] {
-                    let expected = expected(&mesh, &view, size, cull);
-                    let name = format!("{name} {camera} {size:?}");
-                    let Clocks { geometry, raster } = bench.draw(&name, &bytes, &expected);
-                    let rate = expected.stats.pixels_covered as f64 / raster as f64;
-                    println!(
-                        "{name}: {geometry} clocks for the geometry, {raster} for the raster, {rate:.2} pixels a clock"
-                    );
-                }
-            }
         }
     }
 }

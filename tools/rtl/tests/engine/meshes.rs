@@ -1,0 +1,100 @@
+//! Meshes of a few triangles, or of very many, as they lie in memory.
+
+use glint::view;
+use glint_core::camera::View;
+use rand::RngExt;
+use rand_pcg::Pcg64Mcg;
+
+/// A unit in the mesh's coordinates.
+pub const ONE: i32 = 1 << 14;
+
+/// A triangle: its corners in 2^-14, its colour.
+pub type Triangle = ([[i16; 3]; 3], u16);
+
+/// The mesh of these triangles, each with vertices of its own, in chunks of at most `most` vertices.
+pub fn mesh(triangles: &[Triangle], most: usize) -> Vec<u8> {
+    let mut body = Vec::new();
+    let per_chunk = most / 3;
+    let chunks: Vec<&[Triangle]> = match triangles {
+        [] => vec![&[]],
+        some => some.chunks(per_chunk).collect(),
+    };
+    let mut vertices = 0;
+    for chunk in &chunks {
+        // A chunk has a vertex, even if nobody uses it.
+        let count = (3 * chunk.len()).max(1);
+        vertices += count;
+        for word in [count as u32, chunk.len() as u32, 0, 0] {
+            body.extend(word.to_le_bytes());
+        }
+        let corners = chunk.iter().flat_map(|(corners, _)| *corners);
+        for corner in corners.chain(std::iter::repeat([0; 3])).take(count) {
+            corner.iter().for_each(|c| body.extend(c.to_le_bytes()));
+            body.extend([0; 10]);
+        }
+        for (number, (corners, colour)) in (0_u16..).zip(*chunk) {
+            for index in 0..3 {
+                body.extend((3 * number + index).to_le_bytes());
+            }
+            body.extend(colour.to_le_bytes());
+            // Any normal does: it only dims the colour.
+            let normal = corners[0];
+            normal.iter().for_each(|c| body.extend(c.to_le_bytes()));
+            body.extend([0; 2]);
+        }
+    }
+    let radius = triangles
+        .iter()
+        .flat_map(|(corners, _)| *corners)
+        .map(|corner| corner.map(|c| f64::from(c).powi(2)).iter().sum::<f64>())
+        .fold(0.0, f64::max)
+        .sqrt()
+        .ceil();
+    let mut bytes = b"GLM1".to_vec();
+    let length = 32 + body.len();
+    for word in [
+        length,
+        chunks.len(),
+        vertices,
+        triangles.len(),
+        radius as usize,
+        0,
+        0,
+    ] {
+        bytes.extend((word as u32).to_le_bytes());
+    }
+    bytes.extend(body);
+    bytes
+}
+
+/// From (0, -2, 0) towards +y: a point at (x, y, z) is at distance y + 2, to the right with x and up with z.
+pub fn ahead(half_width: f64, near: f64) -> View {
+    let json = format!(
+        r#"{{"eye":[0,-2,0],"u":[1,0,0],"v":[0,0,-1],"n":[0,1,0],"half_width":{half_width},"near":{near}}}"#
+    );
+    view::parse(json.as_bytes()).unwrap()
+}
+
+/// A point in units.
+pub fn at(x: f64, y: f64, z: f64) -> [i16; 3] {
+    [x, y, z].map(|c| (c * f64::from(ONE)).round() as i16)
+}
+
+/// `count` triangles of about `size` units, somewhere.
+pub fn random(random: &mut Pcg64Mcg, count: usize, size: f64) -> Vec<Triangle> {
+    let reach = (size * f64::from(ONE)) as i32;
+    (0..count)
+        .map(|_| {
+            let centre: [i32; 3] = std::array::from_fn(|_| random.random_range(-ONE..ONE));
+            let corner = |random: &mut Pcg64Mcg| {
+                centre.map(|c| {
+                    (c + random.random_range(-reach..=reach)).clamp(-2 * ONE, 2 * ONE - 1) as i16
+                })
+            };
+            (
+                [corner(random), corner(random), corner(random)],
+                random.random(),
+            )
+        })
+        .collect()
+}
