@@ -29,6 +29,10 @@ def _pipe(old, new, fails):
     return Mutation("band_pipe.sv", old, new, fails)
 
 
+def _cull(old, new, fails):
+    return Mutation("cull.sv", old, new, fails)
+
+
 _FIFO = [
     _fifo("out_valid <= stored;", "out_valid <= stored && in_valid;", "order.shown_in_time"),
     _fifo("load     = !out_valid || out_ready", "load     = !out_valid || out_ready || stored", "shown.payload_stable"),
@@ -87,5 +91,14 @@ MUTATIONS = {
         _pipe("comparing.codes[18*lane +: 18] >=", "comparing.codes[18*lane +: 18] >", "drawn_as_given"),
         _pipe("!stored_written[lane] ||", "", "drawn_as_given"),
         _pipe("hold <= hold - 1'b1;", "hold <= hold;", "taken_in_time"),
+    ],
+    "cull": [
+        _cull("if (advance) phase", "if (advance && !drop) phase", "taken_in_time"),
+        _cull("if (advance) phase", "if (advance && !drop) phase", "leaves_in_time"),
+        _cull("last_valid && !drop;", "last_valid && !drop && !first_valid;", "nothing_too_many"),
+        _cull("in_ready && last_valid && drop;", "in_ready && drop;", "nothing_made_up"),
+        _cull("first_valid || last_valid || out_valid;", "first_valid || last_valid;", "busy_while_inside"),
+        _cull("if (!out_valid || out_ready) begin", "if (1'b1) begin", "shown.valid_stays"),
+        _cull("if (!out_valid || out_ready) begin", "if (1'b1) begin", "shown.payload_stable"),
     ],
 }

@@ -53,6 +53,9 @@ PROOFS = [
            _RTL / "band" / "band_flush.sv"], 24),
     Proof("band_pipe", "band_pipe_proof",
           [FORMAL / "band_pipe_proof.sv", _RTL / "band" / "band_pipe.sv"], 14),
+    Proof("cull", "cull_proof",
+          [*(_RTL / "triangle" / f"{name}.sv" for name in ("triangle_pkg", "setup_pkg", "cull")),
+           *(FORMAL / f"{name}.sv" for name in ("any_product", "stream_checker", "cull_proof"))], 20),
 ]
 
 # State as bit vectors and a fresh solver for each clock: z3 is slow with its defaults here.
