@@ -211,12 +211,12 @@ module setup (
 
     always_ff @(posedge clk) begin
         if (beat) begin
-            passed_4 <= passed_3;
-            origin_4 <= origin_3;
+            passed_4   <= passed_3;
+            origin_4   <= origin_3;
             twice_gx_4 <= twice_gx;
             twice_gy_4 <= twice_gy;
-            lit_4    <= lit_3;
-            start_4  <= start_3;
+            lit_4      <= lit_3;
+            start_4    <= start_3;
         end
         gx         <= twice_gx_4[40:1] + 40'(twice_gx_4[0]);
         gy         <= twice_gy_4[40:1] + 40'(twice_gy_4[0]);
