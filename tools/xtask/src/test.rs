@@ -46,7 +46,8 @@ pub fn test() -> Result<()> {
         ],
     ));
     check(documentation());
-    check(gateware_tests());
+    check(gateware_check("gateware tests", "gateware/tests/run.py"));
+    check(gateware_check("proofs", "gateware/formal/run.py"));
     check(cargo_tests());
 
     let minutes = start.elapsed().as_secs_f64() / 60.0;
@@ -80,28 +81,40 @@ fn documentation() -> Result<u32> {
     Ok(1)
 }
 
-/// The benches of the gateware's modules and the checks of the board files.
-fn gateware_tests() -> Result<u32> {
+/// A program of the gateware's checks: the benches of its modules with the board files, the proofs of its handshakes.
+fn gateware_check(name: &str, program: &str) -> Result<u32> {
     run::step(
-        "gateware tests",
+        name,
         Command::new(paths::venv_program("python"))
-            .arg("gateware/tests/run.py")
+            .arg(program)
             .current_dir(paths::root()),
     )?;
     Ok(1)
 }
 
-/// All Rust tests on the host, those on the virtual board among them; counts what passed.
+/// All Rust tests on the host, those on the virtual board among them; counts what passed. What failing tests print stands
+/// far above the end of the output, so it is shown again.
 fn cargo_tests() -> Result<u32> {
     let mut passed = 0;
-    run::watched_step(
+    let mut failures = Vec::new();
+    let mut in_failures = false;
+    let outcome = run::watched_step(
         "cargo test",
         Command::new("cargo")
             .args(["test", "--no-fail-fast"])
             .current_dir(paths::root()),
-        |line| passed += passed_tests(line).unwrap_or(0),
-    )?;
-    Ok(passed)
+        |line| {
+            passed += passed_tests(line).unwrap_or(0);
+            in_failures = line == "failures:" || in_failures && !line.starts_with("test result: ");
+            if in_failures {
+                failures.push(line.to_owned());
+            }
+        },
+    );
+    for line in failures {
+        println!("    {line}");
+    }
+    outcome.map(|()| passed)
 }
 
 /// The count in a closing line of a Rust test program: `test result: ok. 12 passed; 0 failed; …`.

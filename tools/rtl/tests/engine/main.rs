@@ -324,3 +324,38 @@ fn bad_meshes_and_full_lists_are_told() {
         bench.draw("with room", &mesh, &expected);
     }
 }
+
+/// Pixels drawn a clock on a sphere that fills 96 % of the picture's height, memory without stalls: of a frame alone, from
+/// the first fetch to the last word written, and of frames whose passes overlap, where the longer one counts.
+#[test]
+fn a_sphere_is_drawn_fast() {
+    for (name, size, alone, overlapped) in [
+        ("icosphere:6", SIZES[0], 1.5, 2.2),
+        ("icosphere:12", SIZES[2], 2.7, 3.2),
+    ] {
+        let mesh = generated(name);
+        let expected = expected(&mesh, &ahead(0.4781, 0.5), size, true);
+        let mut bench = Bench::new(9, 0.0);
+        bench.with_depth = false;
+        let clocks = bench.draw(name, &mesh, &expected);
+        let pixels = expected.stats.pixels_covered as f64;
+        let rates = [
+            pixels / (clocks.geometry + clocks.raster) as f64,
+            pixels / clocks.geometry.max(clocks.raster) as f64,
+        ];
+        println!(
+            "{name} at {size:?}: {pixels} pixels, {} clocks for the geometry, {} for the raster, {} walking, {} of them empty, \
+             {:.2} pixels a clock alone, {:.2} overlapped",
+            clocks.geometry,
+            clocks.raster,
+            bench.count("clocks_walking"),
+            bench.count("clocks_empty"),
+            rates[0],
+            rates[1]
+        );
+        assert!(
+            rates[0] >= alone && rates[1] >= overlapped,
+            "{name}: {rates:?}"
+        );
+    }
+}
