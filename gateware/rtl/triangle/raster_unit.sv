@@ -6,6 +6,11 @@
 // then. A band takes as long as its groups, and the memory accesses of its first triangle. `restart` may come at any time,
 // and gives the frame up; the unit is to be started again when it is `ready` and read_port has thrown away what was on its way.
 //
+// `frame_slot` says which of two frame buffers the frame is for. Only words that can differ from what the frame before in the
+// same slot has left there are written, unless `whole` says that all are to be: nothing is known of the frame buffer (it is
+// fresh, another size or another clear colour was drawn there, somebody else has written to it, or a frame for it was given up).
+// `with_depth` implies `whole`.
+//
 // Memory: three clients of a read_port, and a native write port (band_flush).
 // Counters run freely: clocks busy, clocks without a triangle in the walker, clocks in which it stood in a group, and
 // those of the band buffer.
@@ -29,6 +34,8 @@ module raster_unit #(
     input  wire  [ADDRESS_BITS-1:0]   depth_base,
     input  wire                       with_depth,
     input  wire  [15:0]               clear,
+    input  wire                       frame_slot,
+    input  wire                       whole,
     input  wire  [1:0]                present,
     input  wire  [2*ADDRESS_BITS-1:0] list_base,
     input  wire  [2*ADDRESS_BITS-1:0] descriptor_base,
@@ -67,6 +74,8 @@ module raster_unit #(
             default: {last_band, rows, stride, words} = {6'd59, 6'd12, 8'd160, 11'd1920};
         endcase
     end
+
+    wire _unused = &{1'b0, frame_slot, whole};
 
     typedef enum logic [2:0] {IDLE, BEGIN, DRAW, SETTLE, HAND_OVER, FLUSH} state_t;
     state_t state;

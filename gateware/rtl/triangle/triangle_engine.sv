@@ -61,6 +61,9 @@ module triangle_engine #(
     input  wire  [ADDRESS_BITS-1:0]   depth_base,
     input  wire                       with_depth,
     input  wire  [15:0]               clear,
+    // Which of the two frame buffers, and that nothing is known of what it holds: see raster_unit.
+    input  wire                       frame_slot,
+    input  wire                       whole,
     input  wire  [1:0]                present,
     input  wire  [2*ADDRESS_BITS-1:0] raster_lists,
     input  wire  [2*ADDRESS_BITS-1:0] raster_descriptors,
@@ -130,8 +133,8 @@ module triangle_engine #(
 
     raster_unit #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS)) raster (
         .clk, .rst, .restart(cancel), .ready(raster_ready), .start(raster_start), .busy(raster_busy), .done(raster_done),
-        .size(raster_size), .frame_base, .depth_base, .with_depth, .clear, .present, .list_base(raster_lists),
-        .descriptor_base(raster_descriptors), .list_shift,
+        .size(raster_size), .frame_base, .depth_base, .with_depth, .clear, .frame_slot, .whole, .present,
+        .list_base(raster_lists), .descriptor_base(raster_descriptors), .list_shift,
         .ask_valid(ask_valid[4:2]), .ask_ready(ask_ready[4:2]), .ask_addr(ask_addr[5*ADDRESS_BITS-1:2*ADDRESS_BITS]),
         .data_valid(data_valid[4:2]), .data_ready(data_ready[4:2]), .data(data[5*128-1:2*128]),
         .cmd_valid(frame_cmd_valid), .cmd_ready(frame_cmd_ready), .cmd_addr(frame_cmd_addr),

@@ -208,6 +208,7 @@ impl Bench {
             ("depth_base", DEPTH.into()),
             ("with_depth", self.with_depth.into()),
             ("clear", 0x1234),
+            ("whole", 1),
         ] {
             self.set(port, value);
         }
