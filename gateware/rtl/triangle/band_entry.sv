@@ -6,7 +6,7 @@
 //         band     ╱     ╲
 //      ═══════════════════════════
 //
-// One multiplier and adder does all in nine passes, one a clock:
+// One multiplier and adder does all in eight passes, one a clock:
 //
 //   pass   product              plus           gives
 //   0, 1   step_y * offset      start          E' at lane 0 of edges 0 and 1
@@ -15,11 +15,10 @@
 //   5      low 24 bits of the depth's step     depth start and half a code
 //   6      step_x * 7           pass 4
 //   7      its high 8 bits      pass 5         depth
-//   8      stride * row         0              address of the row in the band buffer
 //
-// Streams are valid/ready, and ready comes from a register. Latency 13 clocks, throughput a triangle in 13 clocks; one is in
-// work and one waits, while another is walked over. A triangle without a row in the band is taken and dropped. Band: its
-// first row `y0`, its `rows`, and `stride`, a row's groups of eight pixels; they hold while triangles are inside.
+// Streams are valid/ready, and ready comes from a register. Latency 12 clocks, throughput a triangle in 12 clocks; one is in
+// work and one waits, while another is walked over. A triangle without a row in the band is taken and dropped. The band's
+// first row `y0` and its `rows` hold while triangles are inside.
 
 `default_nettype none
 
@@ -28,7 +27,6 @@ module band_entry (
     input  wire                            rst,
     input  wire  [9:0]                     y0,
     input  wire  [5:0]                     rows,
-    input  wire  [7:0]                     stride,
     output logic                           idle,
     input  wire                            in_valid,
     output logic                           in_ready,
@@ -38,7 +36,7 @@ module band_entry (
     output raster_pkg::placed_t            out_triangle
 );
     localparam logic [31:0] HALF_A_CODE = 32'd1 << 13;
-    localparam logic [3:0]  ROWS_KNOWN = 4'd4, LAST = 4'd11;
+    localparam logic [3:0]  ROWS_KNOWN = 4'd4, LAST = 4'd10;
 
     triangle_pkg::descriptor_t triangle;
     logic        busy;
@@ -91,14 +89,12 @@ module band_entry (
             4'd4:             factor_a = 25'(signed'(step_y[2]));
             4'd2, 4'd3, 4'd6: factor_a = 25'(signed'(step));
             4'd5:             factor_a = {1'b0, triangle.depth_step_y[23:0]};
-            4'd7:             factor_a = {triangle.depth_step_y[31:24], 17'd0};
-            default:          factor_a = {17'd0, stride};
+            default:          factor_a = {triangle.depth_step_y[31:24], 17'd0};
         endcase
         case (pass)
             4'd0, 4'd1, 4'd4, 4'd5: factor_b = {8'd0, offset};
             4'd2, 4'd3, 4'd6:       factor_b = 18'sd7;
-            4'd7:                   factor_b = {1'b0, offset, 7'd0};
-            default:                factor_b = {12'd0, first};
+            default:                factor_b = {1'b0, offset, 7'd0};
         endcase
     end
 
@@ -115,14 +111,13 @@ module band_entry (
             4'd5:                   c <= {{14{triangle.start[2][33]}}, triangle.start[2]};
             4'd6:                   c <= {16'd0, triangle.depth_start + HALF_A_CODE};
             4'd3, 4'd4, 4'd7, 4'd8: c <= sum;
-            default:                c <= '0;
+            default: ;
         endcase
     end
 
     logic [2:0][33:0] best, worst;
     logic [2:0][19:0] slopes;
     logic [2:0]       all_rises, all_falls;
-    logic [31:0]      depth;
 
     for (genvar k = 0; k < 3; k++) begin : edges
         // The pass that has the edge's step_x in use, and the clocks that have its sums.
@@ -148,8 +143,6 @@ module band_entry (
     end
 
     always_ff @(posedge clk) begin
-        if (pass == 4'd10) depth <= sum[31:0];
-
         if (out_ready) out_valid <= 1'b0;
         if (in_ready) begin
             triangle <= in_descriptor;
@@ -163,7 +156,7 @@ module band_entry (
             out_valid <= 1'b1;
             out_triangle.best         <= best;
             out_triangle.worst        <= worst;
-            out_triangle.depth        <= depth;
+            out_triangle.depth        <= sum[31:0];
             out_triangle.step_x       <= step_x;
             out_triangle.step_y       <= step_y;
             out_triangle.depth_step_x <= triangle.depth_step_x;
@@ -171,7 +164,7 @@ module band_entry (
             out_triangle.slope        <= slopes;
             out_triangle.rises        <= all_rises;
             out_triangle.falls        <= all_falls;
-            out_triangle.row_address  <= sum[10:0];
+            out_triangle.line         <= first;
             out_triangle.rows         <= count;
             out_triangle.group_left   <= triangle.group_left;
             out_triangle.group_right  <= triangle.group_right;

@@ -9,6 +9,10 @@
 //   stage    1           2            3           4
 //   count    4, bit 2    2, bit 1     1, bit 0    mask
 //   depth    0, 4        0, 2, 4, 6   all         codes, at least 1
+//   address  5 * line    * stride / 5 + group
+//
+// `stride`, the groups of a line, is 40, 80 or 160 and holds while groups are inside. The address in the band buffer comes
+// with the line and the group of which it is made.
 //
 // Streams are valid/ready; ready passes through. Latency 4 clocks, throughput a group a clock. A group that covers
 // nothing does not come out.
@@ -18,6 +22,7 @@
 module lanes (
     input  wire                         clk,
     input  wire                         rst,
+    input  wire  [7:0]                  stride,
     output logic                        idle,
     input  wire                         in_valid,
     output logic                        in_ready,
@@ -25,6 +30,8 @@ module lanes (
     output logic                        out_valid,
     input  wire                         out_ready,
     output logic [10:0]                 out_row,
+    output logic [5:0]                  out_line,
+    output logic [7:0]                  out_column,
     output logic [7:0]                  out_mask,
     output logic [7:0][17:0]            out_codes,
     output logic [15:0]                 out_colour
@@ -132,20 +139,34 @@ module lanes (
         end
     end
 
-    // The rest goes along.
-    logic [10:0] row_1, row_2, row_3;
-    logic [15:0] colour_1, colour_2, colour_3;
+    // The place and the colour.
+    typedef struct packed {
+        logic [5:0]  line;
+        logic [7:0]  column;
+        logic [15:0] colour;
+    } place_t;
+
+    place_t      place_1, place_2, place_3;
+    logic [8:0]  line_times_5;
+    logic [10:0] first_row, row_3;
 
     always_ff @(posedge clk) begin
         if (out_ready) begin
-            {row_1, colour_1}     <= {in_group.row, in_group.colour};
-            {row_2, colour_2}     <= {row_1, colour_1};
-            {row_3, colour_3}     <= {row_2, colour_2};
-            {out_row, out_colour} <= {row_3, colour_3};
+            place_1 <= {in_group.line, in_group.group, in_group.colour};
+            place_2 <= place_1;
+            place_3 <= place_2;
+            {out_line, out_column, out_colour} <= place_3;
+
+            line_times_5 <= {1'b0, in_group.line, 2'd0} + 9'(in_group.line);
+            if (stride[7])      first_row <= {line_times_5[5:0], 5'd0};
+            else if (stride[6]) first_row <= {line_times_5[6:0], 4'd0};
+            else                first_row <= {line_times_5[7:0], 3'd0};
+            row_3   <= first_row + 11'(place_2.column);
+            out_row <= row_3;
         end
     end
 
-    wire _unused = &{1'b0, depth_3_sum};
+    wire _unused = &{1'b0, depth_3_sum, stride[5:0], line_times_5[8]};
 endmodule
 
 `default_nettype wire

@@ -17,7 +17,7 @@ package raster_pkg;
         logic [2:0][19:0] slope;        // |step_x|
         logic [2:0]       rises;        // step_x > 0
         logic [2:0]       falls;        // step_x < 0
-        logic [10:0]      row_address;  // of group 0, in the band buffer
+        logic [5:0]       line;         // the row, from the band's first one
         logic [5:0]       rows;         // in the band, at least 1
         logic [7:0]       group_left;
         logic [7:0]       group_right;
@@ -27,7 +27,8 @@ package raster_pkg;
 
     // A group of eight pixels in which no edge fails everywhere: every `best` is at least 0.
     typedef struct packed {
-        logic [10:0]      row;
+        logic [5:0]       line;
+        logic [7:0]       group;
         logic [2:0][32:0] best;
         logic [2:0][19:0] slope;
         logic [2:0]       rises;

@@ -75,8 +75,6 @@ module raster_unit #(
         endcase
     end
 
-    wire _unused = &{1'b0, frame_slot, whole};
-
     typedef enum logic [2:0] {IDLE, BEGIN, DRAW, SETTLE, HAND_OVER, FLUSH} state_t;
     state_t state;
 
@@ -131,17 +129,21 @@ module raster_unit #(
 
     logic            group_valid, group_ready, walking, candidate;
     logic [10:0]     group_row;
+    logic [5:0]      group_line;
+    logic [7:0]      group_column;
     logic [7:0]      group_mask;
     logic [8*18-1:0] group_codes;
     logic [8*16-1:0] group_colours;
 
     assign rastering = !raster_idle;
 
+    wire _unused = &{1'b0, frame_slot, whole, group_line, group_column};
+
     /* verilator lint_off PINCONNECTEMPTY */
     triangle_raster triangle_raster (
         .clk, .rst(rst || restart), .y0(first_row), .rows, .stride, .idle(raster_idle), .walking, .candidate, .stalled(),
         .triangle_valid, .triangle_ready, .triangle_descriptor(descriptor),
-        .group_valid, .group_ready, .group_row, .group_mask, .group_codes, .group_colours
+        .group_valid, .group_ready, .group_row, .group_line, .group_column, .group_mask, .group_codes, .group_colours
     );
     /* verilator lint_on PINCONNECTEMPTY */
 

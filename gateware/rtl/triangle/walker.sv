@@ -32,7 +32,6 @@
 module walker (
     input  wire                      clk,
     input  wire                      rst,
-    input  wire  [7:0]               stride,
     output logic                     idle,
     output logic                     walking,
     input  wire                      in_valid,
@@ -54,8 +53,7 @@ module walker (
     logic [2:0][33:0] best, worst;
     logic [31:0]      depth;
     logic [7:0]       group, next_group;
-    logic [10:0]      row_address;
-    logic [5:0]       rows_below;
+    logic [5:0]       line, rows_below;
     logic             active, last_row;
 
     // What the walker may do here. Seeking stops for good once a row's first group is found; `resume` is that there is
@@ -150,9 +148,9 @@ module walker (
             resume       <= extend && left && (resume || open_right && extend_right);
 
             if (fresh && !last_row) begin
-                row_address <= row_address + 11'(stride);
-                rows_below  <= rows_below - 1'b1;
-                last_row    <= rows_below == 6'd1;
+                line       <= line + 1'b1;
+                rows_below <= rows_below - 1'b1;
+                last_row   <= rows_below == 6'd1;
             end
 
             if (leave) begin
@@ -167,7 +165,7 @@ module walker (
                 group_left   <= in_triangle.group_left;
                 group_right  <= in_triangle.group_right;
                 colour       <= in_triangle.colour;
-                row_address  <= in_triangle.row_address;
+                line         <= in_triangle.line;
                 rows_below   <= in_triangle.rows - 1'b1;
                 last_row     <= !in_valid || in_triangle.rows == 6'd1;
             end
@@ -192,7 +190,8 @@ module walker (
     end
 
     assign out_valid              = active && !fails;
-    assign out_group.row          = row_address + 11'(group);
+    assign out_group.line         = line;
+    assign out_group.group        = group;
     assign out_group.slope        = slope;
     assign out_group.rises        = rises;
     assign out_group.depth        = depth;

@@ -87,7 +87,7 @@ impl Bench {
             sink: Sink::new(
                 &module,
                 "group",
-                &["row", "mask", "codes", "colours"],
+                &["row", "mask", "codes", "colours", "line", "column"],
                 stalls(2, sink_stalls),
             ),
             band: ["y0", "rows", "stride"].map(|name| module.port(name)),
@@ -153,7 +153,12 @@ impl Bench {
             for group in self.band([y0, rows, stride], here) {
                 let row = group[0].field(0, 11) as usize;
                 let mask = group[1].field(0, 8);
-                assert!(row < (rows * stride) as usize, "{name}: row {row}");
+                let [line, column] = [group[4].field(0, 6), group[5].field(0, 8)];
+                assert!(
+                    line < u64::from(rows) && column < u64::from(stride),
+                    "{name}: line {line}, column {column}"
+                );
+                assert_eq!(row as u64, line * u64::from(stride) + column, "{name}: row");
                 assert_ne!(mask, 0, "{name}: a group without a pixel");
                 self.counts.groups += 1;
                 for lane in (0..LANES).filter(|lane| mask >> lane & 1 == 1) {
