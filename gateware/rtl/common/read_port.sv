@@ -5,7 +5,7 @@
 // some time later, and cannot be held back. It need not be: a client is only served while the DEPTH places of its FIFO
 // have room for all that it has asked for. Clients take turns; one that is alone gets a word a clock.
 //
-// Latency: 1 clock from `ask` to the command, 3 from the memory's data to the client.
+// Latency: 2 clocks from `ask` to the command, 3 from the memory's data to the client.
 // `drop`, held until `idle`, forgets everything: nothing is asked, what is still to come from memory is thrown away.
 //
 //   ask ──┐                    ┌──▶ command
@@ -45,10 +45,11 @@ module read_port #(
     // All that can be on its way at once.
     localparam int unsigned OWNER_BITS  = $clog2(CLIENTS * DEPTH);
 
-    // Whose turn it is: the one after the last served, or the next that asks.
-    logic [CLIENT_BITS-1:0] first, chosen;
+    // Whose turn it is, chosen a clock ahead: the one after the last, or the next that asks. No path leads from what a client
+    // asks through the choice back to it. A turn that its client does not use passes.
+    logic [CLIENT_BITS-1:0] turn, first, chosen, asker;
     logic [CLIENTS-1:0]     servable, taken;
-    logic                   any, choose;
+    logic                   given, any, moves;
 
     always_comb begin
         any    = 1'b0;
@@ -62,15 +63,19 @@ module read_port #(
             if (servable[i] && CLIENT_BITS'(i) >= first) chosen = CLIENT_BITS'(i);
     end
 
-    assign choose = any && (!cmd_valid || cmd_ready);
+    assign moves = !cmd_valid || cmd_ready;
 
     always_ff @(posedge clk) begin
-        if (!cmd_valid || cmd_ready) begin
-            cmd_valid <= any;
-            cmd_addr  <= ask_addr[chosen * ADDRESS_BITS +: ADDRESS_BITS];
+        if (moves) begin
+            given     <= any;
+            turn      <= chosen;
+            cmd_valid <= given && ask_valid[turn];
+            cmd_addr  <= ask_addr[turn * ADDRESS_BITS +: ADDRESS_BITS];
+            asker     <= turn;
+            if (any) first <= chosen + 1'b1;
         end
-        if (choose) first <= chosen + 1'b1;
 
+        if (rst || drop) given <= 1'b0;
         if (rst) begin
             cmd_valid <= 1'b0;
             first     <= '0;
@@ -86,8 +91,8 @@ module read_port #(
     assign idle  = asked == answered && !cmd_valid;
 
     always_ff @(posedge clk) begin
-        if (choose) begin
-            owners[asked[OWNER_BITS-1:0]] <= chosen;
+        if (cmd_valid && cmd_ready) begin
+            owners[asked[OWNER_BITS-1:0]] <= asker;
             asked <= asked + 1'b1;
         end
         if (rdata_valid) answered <= answered + 1'b1;
@@ -110,13 +115,16 @@ module read_port #(
     for (genvar i = 0; i < CLIENTS; i++) begin : client
         // Places of the FIFO that are neither full nor promised.
         logic [ROOM_BITS-1:0] room;
+        logic                 has_turn, asks;
 
-        assign servable[i]  = ask_valid[i] && room != '0 && !drop;
-        assign ask_ready[i] = choose && chosen == CLIENT_BITS'(i);
+        assign has_turn     = given && turn == CLIENT_BITS'(i);
+        assign servable[i]  = ask_valid[i] && (room > ROOM_BITS'(1) || room[0] && !has_turn);
+        assign ask_ready[i] = moves && has_turn;
+        assign asks         = ask_valid[i] && ask_ready[i];
         assign taken[i]     = data_valid[i] && data_ready[i];
 
         always_ff @(posedge clk) begin
-            if (ask_ready[i] != taken[i]) room <= ask_ready[i] ? room - 1'b1 : room + 1'b1;
+            if (asks != taken[i]) room <= asks ? room - 1'b1 : room + 1'b1;
             if (rst || drop) room <= ROOM_BITS'(DEPTH);
         end
 
