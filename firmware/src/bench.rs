@@ -1,6 +1,6 @@
-//! Clock cycles of single kernels, measured on the soft core.
+//! Clock cycles of single kernels on the soft core, and of frames on the engine.
 //!
-//! Each kernel is called with [`INPUTS`] inputs spread over its range, its code and tables in the caches, with interrupts
+//! A kernel of the soft core is called with [`INPUTS`] inputs spread over its range, its code and tables in the caches, with interrupts
 //! kept out. What the measurement itself costs is measured the same way and taken off.
 //!
 //! The instruction cache is direct-mapped, and a miss costs more than a kernel. Where the measuring code happens to share
@@ -13,13 +13,15 @@ use glint_core::fixed::Turns;
 use glint_core::trig::{sin_cos_q14, sin_cos_q30};
 use litex_pac::cpu;
 
+use crate::commands::{self, Refusal};
+use crate::machine::Machine;
 use crate::terminal::Terminal;
 
 #[cfg(feature = "peers")]
 mod peers;
 
 /// What can be measured.
-pub const KERNELS: [&str; 1] = ["sine"];
+pub const KERNELS: [&str; 2] = ["sine", "triangle"];
 
 /// Inputs of each kernel.
 const INPUTS: usize = 256;
@@ -27,18 +29,53 @@ const INPUTS: usize = 256;
 /// Inputs that find the quieter place.
 const TRIALS: usize = 16;
 
-/// There is no such kernel.
-pub struct Unknown<'l>(pub &'l str);
+/// Frames that the engine draws back to back.
+const FRAMES: u32 = 8;
 
-/// Measures the kernels of a name, or all.
+/// Measures the kernels of a name, or all that there are here.
 ///
 /// # Errors
-/// When there is none of this name.
-pub fn run<'l>(terminal: &mut Terminal, kernel: Option<&'l str>) -> Result<(), Unknown<'l>> {
+/// When there is none of this name, or not here.
+pub fn run<'l>(machine: &mut Machine, kernel: Option<&'l str>) -> Result<(), Refusal<'l>> {
     match kernel {
-        None | Some("sine") => sine(terminal),
-        Some(name) => return Err(Unknown(name)),
+        None => {
+            sine(&mut machine.terminal);
+            if machine.canvas.painter.is_some() {
+                triangle(machine)?;
+            }
+        }
+        Some("sine") => sine(&mut machine.terminal),
+        Some("triangle") if machine.canvas.painter.is_none() => return Err(Refusal::NoEngine),
+        Some("triangle") => triangle(machine)?,
+        Some(name) => return Err(Refusal::Kernel(name)),
     }
+    Ok(())
+}
+
+/// Frames of the scene as it is, back to back: the geometry of one is made while the one before it is rastered. Nothing
+/// waits for the screen, and nothing is shown.
+fn triangle<'l>(machine: &mut Machine) -> Result<(), Refusal<'l>> {
+    let Machine {
+        terminal,
+        scene,
+        models,
+        canvas,
+        ..
+    } = machine;
+    // The frame before has to leave the screen.
+    let painted = loop {
+        if let Some(painted) = canvas.repeat(models.mesh(), scene, FRAMES) {
+            break painted.map_err(Refusal::Engine)?;
+        }
+    };
+    terminal.print(format_args!(
+        "bench triangle frames {FRAMES} cycles {}",
+        painted.cycles
+    ));
+    for (name, value) in commands::engine_values(&painted.counters) {
+        terminal.print(format_args!(" {name} {value}"));
+    }
+    terminal.print(format_args!("\n"));
     Ok(())
 }
 

@@ -1,41 +1,114 @@
-//! Where frames are drawn: two frames with their display, one depth buffer, room for vertices.
+//! Where frames are drawn: two frames with their display, one depth buffer, room for vertices, and who draws.
 
+use glint_core::console::Backend;
 use glint_core::mesh::Mesh;
-use glint_model::{Options, RenderError, Target};
+use glint_model::{FrameSetup, Options, RenderError, Target};
 use litex_hal::display::Display;
+use litex_hal::triangle::Fault;
 use litex_pac::cpu;
 
 use crate::memory::Scratch;
-use crate::scene::{Drawn, Scene};
+use crate::painter::{self, Painted, Painter};
+use crate::scene::{self, Drawn, Scene};
 
 /// The frames and what drawing them needs.
 pub struct Canvas {
     /// Two frames, one of which is shown.
     pub display: Display,
-    /// Depth codes, one a pixel, of the frame drawn last.
+    /// Depth codes, one a pixel, of the last frame that has any.
     pub depth: &'static mut [u32],
     /// Room for projected vertices.
     pub scratch: Scratch,
+    /// The triangle engine, where there is one.
+    pub painter: Option<Painter>,
 }
 
 /// How many triangles are drawn between two looks at what else there is to do.
 const TRIANGLES_A_LOOK: u32 = 32;
 
 impl Canvas {
-    /// Draws `mesh` as `scene` wants it, and shows it from the next vertical blanking on. Now and then it calls `look`.
-    /// Returns nothing while the frame to draw on is still on the screen.
+    /// Draws `mesh` as `scene` wants it, and shows it from the next vertical blanking on. Returns nothing while the engine
+    /// is at work, and while the frame to draw on is still on the screen; `mesh` and `scene` have to stay the same then.
+    /// What takes long calls `look` now and then.
     pub fn draw(
         &mut self,
         mesh: &Mesh,
         scene: &Scene,
+        look: impl FnMut(),
+    ) -> Option<Result<Drawn, RenderError>> {
+        let drawn = match self.paint(mesh, scene)? {
+            Ok(Painted {
+                cycles,
+                stats,
+                counters,
+            }) => Ok(Drawn {
+                cycles,
+                stats,
+                by: scene::Painter::Engine(counters),
+                has_depth: scene.wants_depth(),
+            }),
+            Err(fault) => self.draw_by_cpu(mesh, scene, fault, look)?,
+        };
+        if drawn.is_ok() {
+            self.display.show(scene.scale());
+        }
+        Some(drawn)
+    }
+
+    /// Whether the engine is drawing.
+    pub fn is_busy(&self) -> bool {
+        self.painter.as_ref().is_some_and(Painter::is_busy)
+    }
+
+    /// Whether [`draw`](Self::draw) would get on with `scene`.
+    pub fn is_ready(&mut self, scene: &Scene) -> bool {
+        match &self.painter {
+            Some(painter) if painter.is_busy() => painter.has_news(),
+            _ => scene.changed() && self.display.back().is_some(),
+        }
+    }
+
+    /// Draws by the engine. `Err` is the CPU's: because there is no engine, it is not wanted, or it failed.
+    fn paint(&mut self, mesh: &Mesh, scene: &Scene) -> Option<Result<Painted, Option<Fault>>> {
+        let colour = self.display.back()?;
+        let Some(painter) = &mut self.painter else {
+            return Some(Err(None));
+        };
+        if scene.backend() == Backend::Cpu && !painter.is_busy() {
+            return Some(Err(None));
+        }
+        let [width, height] = scene.scale().size();
+        let Ok(frame) = FrameSetup::new(scene.view(), width, height, mesh.radius()) else {
+            return Some(Err(None));
+        };
+        let mut target = painter::Target {
+            mesh,
+            frame: &frame,
+            cull: scene.cull(),
+            colour,
+            depth: scene.wants_depth().then_some(&mut *self.depth),
+        };
+        let result = painter.advance(&mut target)?;
+        Some(result.map_err(Some))
+    }
+
+    fn draw_by_cpu(
+        &mut self,
+        mesh: &Mesh,
+        scene: &Scene,
+        fault: Option<Fault>,
         mut look: impl FnMut(),
     ) -> Option<Result<Drawn, RenderError>> {
         let [width, height] = scene.scale().size();
         let pixels = width as usize * height as usize;
+        let back = self.display.back()?;
+        if let Some(painter) = &mut self.painter {
+            painter.forget(back);
+        }
         let mut target = Target {
             width,
             height,
-            colour: self.display.back()?.get_mut(..pixels).unwrap_or_default(),
+            colour: back.get_mut(..pixels).unwrap_or_default(),
             depth: self.depth.get_mut(..pixels).unwrap_or_default(),
         };
         let vertices = mesh
@@ -62,10 +135,33 @@ impl Canvas {
             },
         );
         let cycles = cpu::cycles() - start;
-        if result.is_ok() {
-            self.display.show(scene.scale());
-        }
-        Some(result.map(|stats| Drawn { cycles, stats }))
+        Some(result.map(|stats| Drawn {
+            cycles,
+            stats,
+            by: scene::Painter::Cpu(fault),
+            has_depth: true,
+        }))
+    }
+
+    /// Draws `mesh` `count` times by the engine, back to back and without showing it.
+    pub fn repeat(
+        &mut self,
+        mesh: &Mesh,
+        scene: &Scene,
+        count: u32,
+    ) -> Option<Result<Painted, Fault>> {
+        let colour = self.display.back()?;
+        let painter = self.painter.as_mut()?;
+        let [width, height] = scene.scale().size();
+        let frame = FrameSetup::new(scene.view(), width, height, mesh.radius()).ok()?;
+        let mut target = painter::Target {
+            mesh,
+            frame: &frame,
+            cull: scene.cull(),
+            colour,
+            depth: None,
+        };
+        Some(painter.repeat(&mut target, count))
     }
 
     /// The frame drawn last: RGB565, row by row.

@@ -10,13 +10,15 @@ use glint_core::fixed::Turns;
 use glint_core::mesh::MeshError;
 use glint_core::wire::{Failure, Manifest, crc32};
 use glint_model::RenderError;
+use heapless::Vec;
 use litex_hal::display::Scale;
 use litex_hal::timer::FREQUENCY;
+use litex_hal::triangle::Counters;
 use litex_pac::{cpu, ctrl};
 
 use crate::machine::{Job, Machine};
 use crate::models::Model;
-use crate::scene::{Scene, Sphere};
+use crate::scene::{Painter, Scene, Sphere};
 use crate::{bench, selftest, transfer};
 
 /// What a command leads to.
@@ -44,6 +46,8 @@ pub enum Refusal<'l> {
     NoUpload,
     /// There is no such renderer here.
     NoEngine,
+    /// The engine could not draw.
+    Engine(litex_hal::triangle::Fault),
     /// An upload is longer than there is room for.
     TooLong {
         /// Its bytes.
@@ -97,8 +101,9 @@ impl Display for Refusal<'_> {
                 f.write_str("scene model: nothing has been uploaded, expected a `load` before")
             }
             Self::NoEngine => {
-                f.write_str("backend gateware: this SoC has no renderer, expected cpu")
+                f.write_str("gateware: this SoC has no triangle engine, expected cpu")
             }
+            Self::Engine(fault) => fault.fmt(f),
             Self::TooLong { bytes, room } => {
                 write!(f, "load {bytes}: expected at most {room} bytes")
             }
@@ -130,11 +135,15 @@ pub fn execute<'l>(machine: &mut Machine, line: &'l str) -> Reply<'l> {
     };
     let result = match command {
         Command::Empty => return Reply::Nothing,
-        Command::Render => {
+        Command::Render { depth } => {
             machine.scene.touch();
+            machine.scene.want_depth(depth);
             return Reply::After(Job::Render);
         }
-        Command::Frame { depth } => return Reply::After(Job::Frame { depth }),
+        Command::Frame { depth } => {
+            machine.scene.want_depth(depth);
+            return Reply::After(Job::Frame { depth });
+        }
         Command::Orbit { frames } => {
             return Reply::After(Job::Orbit(Orbit::new(machine.scene.sphere(), frames)));
         }
@@ -186,13 +195,18 @@ pub fn execute<'l>(machine: &mut Machine, line: &'l str) -> Reply<'l> {
         }
         Command::Stats { json } => stats(machine, json),
         Command::Backend(None) => {
-            machine.terminal.print(format_args!("backend cpu\n"));
+            let backend = backend_name(machine.scene.backend());
+            machine.terminal.print(format_args!("backend {backend}\n"));
             Ok(())
         }
-        Command::Backend(Some(Backend::Cpu)) => Ok(()),
-        Command::Backend(Some(Backend::Gateware)) => Err(Refusal::NoEngine),
-        Command::Bench(kernel) => bench::run(&mut machine.terminal, kernel)
-            .map_err(|bench::Unknown(name)| Refusal::Kernel(name)),
+        Command::Backend(Some(Backend::Gateware)) if machine.canvas.painter.is_none() => {
+            Err(Refusal::NoEngine)
+        }
+        Command::Backend(Some(backend)) => {
+            machine.scene.set_backend(backend);
+            Ok(())
+        }
+        Command::Bench(kernel) => bench::run(machine, kernel),
         Command::SelfTest => match selftest::run(machine) {
             0 => Ok(()),
             failed => Err(Refusal::SelfTest(failed)),
@@ -219,7 +233,7 @@ fn info(machine: &mut Machine) {
     let [width, height] = scene.scale().size();
     terminal.print(format_args!(
         "version {}\nfirmware_id {:#010x}\ngateware_id {:#010x}\nblocks {:#x}\nclock {FREQUENCY}\n\
-         scene {}\nvertices {}\ntriangles {}\nsize {width} {height}\nbackend cpu\n\
+         scene {}\nvertices {}\ntriangles {}\nsize {width} {height}\nbackend {}\n\
          frame {:#010x}\ndepth {:#010x}\n",
         env!("CARGO_PKG_VERSION"),
         identity.firmware,
@@ -228,6 +242,7 @@ fn info(machine: &mut Machine) {
         models.shown().name(),
         mesh.vertex_count(),
         mesh.triangle_count(),
+        backend_name(scene.backend()),
         canvas.display.front().as_ptr().addr(),
         canvas.depth.as_ptr().addr(),
     ));
@@ -331,6 +346,8 @@ pub fn send_frame(machine: &mut Machine, depth: bool) -> Result<(), Refusal<'sta
         .drawn()
         .ok_or(Refusal::NoFrame)?
         .map_err(Refusal::Render)?;
+    // The engine writes beside the cache.
+    cpu::flush_data_cache();
     let bytes = if depth {
         bytemuck::cast_slice(canvas.depths(scene))
     } else {
@@ -349,7 +366,21 @@ pub fn stats(machine: &mut Machine, json: bool) -> Result<(), Refusal<'static>> 
         .ok_or(Refusal::NoFrame)?
         .map_err(Refusal::Render)?;
     let stats = drawn.stats;
-    let values: [(&str, u64); 9] = [
+    let mut values: Vec<(&str, u64), 24> = Vec::new();
+    let (by, engine) = match drawn.by {
+        Painter::Cpu(fault) => {
+            if let Some(fault) = fault
+                && !json
+            {
+                machine.terminal.print(format_args!("fallback {fault}\n"));
+            }
+            (Backend::Cpu, None)
+        }
+        Painter::Engine(counters) => (Backend::Gateware, Some(counters)),
+    };
+    let backend = backend_name(by);
+    // There is room for them all.
+    let _ = values.extend_from_slice(&[
         ("cycles", drawn.cycles),
         ("triangles_in", stats.triangles_in.into()),
         ("triangles_culled", stats.culled.into()),
@@ -359,21 +390,52 @@ pub fn stats(machine: &mut Machine, json: bool) -> Result<(), Refusal<'static>> 
         ("pixels_covered", stats.pixels_covered),
         ("pixels_drawn", stats.pixels_drawn),
         ("clock", FREQUENCY.into()),
-    ];
+    ]);
+    if let Some(counters) = engine {
+        let _ = values.extend_from_slice(&engine_values(&counters));
+    }
     let terminal = &mut machine.terminal;
     if !json {
+        terminal.print(format_args!("backend {backend}\n"));
         for (key, value) in values {
             terminal.print(format_args!("{key} {value}\n"));
         }
         return Ok(());
     }
-    let mut before = '{';
+    terminal.print(format_args!("{{\"backend\":\"{backend}\""));
     for (key, value) in values {
-        terminal.print(format_args!("{before}\"{key}\":{value}"));
-        before = ',';
+        terminal.print(format_args!(",\"{key}\":{value}"));
     }
     terminal.print(format_args!("}}\n"));
     Ok(())
+}
+
+/// The engine's counters by name.
+pub fn engine_values(counters: &Counters) -> [(&'static str, u64); 13] {
+    [
+        ("cycles_busy", counters.busy),
+        ("cycles_stalled", counters.stalled),
+        ("words_read", counters.words_read),
+        ("words_written", counters.words_written),
+        ("cycles_geometry", counters.geometry),
+        ("vertices", counters.vertices),
+        ("cycles_raster", counters.raster),
+        ("cycles_walking", counters.walking),
+        ("cycles_empty", counters.empty),
+        ("groups", counters.groups),
+        ("cycles_held", counters.held),
+        ("cycles_memory", counters.memory),
+        ("cycles_flush", counters.flush),
+    ]
+    .map(|(name, value)| (name, value.into()))
+}
+
+/// A backend's name on the console.
+const fn backend_name(backend: Backend) -> &'static str {
+    match backend {
+        Backend::Cpu => "cpu",
+        Backend::Gateware => "gateware",
+    }
 }
 
 fn leds<'l>(machine: &mut Machine, value: u16) -> Result<(), Refusal<'l>> {

@@ -1,6 +1,6 @@
 //! What comes in by itself.
 
-use litex_hal::{display, interrupt};
+use litex_hal::{display, interrupt, triangle};
 use litex_pac::{Interrupt, cpu};
 
 use crate::terminal::ConsoleUart;
@@ -9,12 +9,15 @@ use crate::terminal::ConsoleUart;
 pub static UART: ConsoleUart = ConsoleUart::new();
 
 /// Lets interrupts in. To be called once, when everything that its handler touches has been started.
-pub fn start(with_scanout: bool) {
+pub fn start(with_scanout: bool, with_triangle: bool) {
     // SAFETY: `handle` is ready, and no critical section is open.
     unsafe {
         interrupt::enable(Interrupt::Uart);
         if with_scanout {
             interrupt::enable(Interrupt::Scanout);
+        }
+        if with_triangle {
+            interrupt::enable(Interrupt::Triangle);
         }
         riscv::register::mie::set_mext();
         riscv::interrupt::enable();
@@ -37,6 +40,7 @@ fn handle() {
     let unexpected = interrupt::dispatch(cpu::interrupts_pending(), |interrupt| match interrupt {
         Interrupt::Uart => UART.on_interrupt(),
         Interrupt::Scanout => display::acknowledge_vblank(),
+        Interrupt::Triangle => triangle::acknowledge(),
         // Nobody enables these.
         Interrupt::Timer0 | Interrupt::Buttons => interrupt::disable(interrupt.bit()),
     });

@@ -146,7 +146,7 @@ impl Machine {
     fn is_busy(&mut self) -> bool {
         // Without video nothing would wake the machine for its heartbeat.
         self.answers_next()
-            || self.scene.changed() && self.canvas.display.back().is_some()
+            || self.canvas.is_ready(&self.scene)
             || !self.canvas.display.is_visible()
     }
 
@@ -159,9 +159,10 @@ impl Machine {
         }
     }
 
-    /// Whether a line is answered now; while an answer is owed it waits. An orbit ends when something else is wanted.
-    const fn takes_input(&self) -> bool {
-        matches!(self.job, None | Some(Job::Orbit(_)))
+    /// Whether a line is answered now; while an answer is owed it waits, and while the engine draws what a command may
+    /// change. An orbit ends when something else is wanted.
+    fn takes_input(&self) -> bool {
+        matches!(self.job, None | Some(Job::Orbit(_))) && !self.canvas.is_busy()
     }
 
     /// Answers what was typed.
@@ -195,8 +196,7 @@ impl Machine {
             canvas,
             ..
         } = self;
-        if scene.changed()
-            && (self.job.is_some() || self.quiet.passed())
+        if (canvas.is_busy() || scene.changed() && (self.job.is_some() || self.quiet.passed()))
             && let Some(drawn) = canvas.draw(models.mesh(), scene, || terminal.listen())
         {
             scene.set_drawn(drawn);
@@ -228,6 +228,7 @@ impl Machine {
     /// Ends a reply.
     fn finish(&mut self, result: Result<(), Refusal>) {
         self.job = None;
+        self.scene.want_depth(false);
         self.quiet = self.clock.after(QUIET);
         match result {
             Ok(()) => self.terminal.print(format_args!("ok\n")),

@@ -26,6 +26,8 @@ mod machine;
 mod memory;
 #[allow(unsafe_code)] // A mesh that outlives the borrow of its buffer.
 mod models;
+#[allow(unsafe_code)] // Memory that the triangle engine reads and writes.
+mod painter;
 mod scene;
 mod selftest;
 #[allow(unsafe_code)] // The UART before it has an owner.

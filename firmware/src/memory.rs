@@ -19,6 +19,8 @@ pub struct Memory {
     pub scratch: Scratch,
     /// Room for two meshes.
     pub meshes: [Buffer; 2],
+    /// What passes between the passes of the triangle engine.
+    pub lists: &'static mut [u32],
 }
 
 unsafe extern "C" {
@@ -32,6 +34,8 @@ unsafe extern "C" {
     static mut _mesh_a: u8;
     static mut _mesh_b: u8;
     static _mesh_size: u8;
+    static mut _lists: u8;
+    static _lists_size: u8;
 }
 
 /// The windows, from symbol to slice: `window!(first byte, bytes, kind of element)`.
@@ -67,6 +71,7 @@ impl Memory {
                 Buffer::new(window!(_mesh_a, _mesh_size, u8)),
                 Buffer::new(window!(_mesh_b, _mesh_size, u8)),
             ],
+            lists: window!(_lists, _lists_size, u32),
         })
     }
 }

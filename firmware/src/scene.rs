@@ -1,9 +1,11 @@
 //! What is to be seen: the camera and how the picture is drawn, and whether that has changed since it was drawn.
 
 use glint_core::camera::{View, ViewError};
+use glint_core::console::Backend;
 use glint_core::fixed::{Q32_32, Turns};
 use glint_model::{RenderError, Stats};
 use litex_hal::display::Scale;
+use litex_hal::triangle::{Counters, Fault};
 
 /// A camera on a sphere about the origin.
 #[derive(Clone, Copy)]
@@ -33,10 +35,23 @@ impl Sphere {
 /// The last frame.
 #[derive(Clone, Copy)]
 pub struct Drawn {
-    /// Clock cycles from the first to the last pixel, waiting not included.
+    /// Clock cycles that it took, waiting for the screen not included.
     pub cycles: u64,
     /// What the renderer counted.
     pub stats: Stats,
+    /// Who drew it.
+    pub by: Painter,
+    /// Whether its depth codes are in memory.
+    pub has_depth: bool,
+}
+
+/// Who has drawn a frame.
+#[derive(Clone, Copy)]
+pub enum Painter {
+    /// The CPU, because it was to, or because the engine could not.
+    Cpu(Option<Fault>),
+    /// The triangle engine, with its counters.
+    Engine(Counters),
 }
 
 /// The state that a frame shows.
@@ -45,23 +60,27 @@ pub struct Scene {
     sphere: Sphere,
     scale: Scale,
     cull: bool,
+    backend: Backend,
     changed: bool,
+    wants_depth: bool,
     drawn: Option<Result<Drawn, RenderError>>,
 }
 
 impl Scene {
-    /// The start.
+    /// The start, to be drawn by `backend`.
     ///
     /// # Errors
     /// When the first camera is none.
-    pub fn new() -> Result<Self, ViewError> {
+    pub fn new(backend: Backend) -> Result<Self, ViewError> {
         let sphere = Sphere::START;
         Ok(Self {
             view: sphere.view()?,
             sphere,
             scale: Scale::Four,
             cull: true,
+            backend,
             changed: true,
+            wants_depth: false,
             drawn: None,
         })
     }
@@ -114,6 +133,27 @@ impl Scene {
         self.cull = cull;
     }
 
+    /// Who is to draw.
+    pub const fn backend(&self) -> Backend {
+        self.backend
+    }
+
+    /// Sets who is to draw.
+    pub fn set_backend(&mut self, backend: Backend) {
+        self.changed |= self.backend != backend;
+        self.backend = backend;
+    }
+
+    /// Whether depth codes are to be in memory with the next frame.
+    pub const fn wants_depth(&self) -> bool {
+        self.wants_depth
+    }
+
+    /// Wants the depth codes of what is shown in memory, or no longer. The engine writes them only for those who do.
+    pub const fn want_depth(&mut self, wanted: bool) {
+        self.wants_depth = wanted;
+    }
+
     /// Something else than the above has changed: the model.
     pub const fn touch(&mut self) {
         self.changed = true;
@@ -122,6 +162,14 @@ impl Scene {
     /// Whether a frame is to be drawn.
     pub const fn changed(&self) -> bool {
         self.changed
+            || self.wants_depth
+                && matches!(
+                    self.drawn,
+                    Some(Ok(Drawn {
+                        has_depth: false,
+                        ..
+                    }))
+                )
     }
 
     /// The last frame, if one was drawn.

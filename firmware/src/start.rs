@@ -3,11 +3,13 @@
 use core::fmt::{self, Write as _};
 
 use glint_core::camera::ViewError;
+use glint_core::console::Backend;
 use glint_core::mesh::MeshError;
 use litex_hal::display::{Display, Scanout};
 use litex_hal::gpio::{InputPort, OutputPort};
 use litex_hal::i2c::{Config, I2c};
 use litex_hal::timer::{Clock, FREQUENCY, Stopped};
+use litex_hal::triangle::Engine;
 use litex_hal::uart::Direct;
 use litex_pac::{BUILD_ID, Peripherals};
 
@@ -16,6 +18,7 @@ use crate::interrupts::{self, UART};
 use crate::machine::{Devices, Identity, Machine};
 use crate::memory::Memory;
 use crate::models::Models;
+use crate::painter::Painter;
 use crate::scene::Scene;
 
 /// The id of the gateware that this program was built for, under a name by which tools find it in the program.
@@ -83,28 +86,42 @@ pub fn machine() -> Result<Machine, Fault> {
 
     let clock = Clock::new(peripherals.timer0).map_err(Fault::Clock)?;
     UART.start(peripherals.uart);
-    let (scanout, devices) = if identity.matches() {
+    let (scanout, engine, devices) = if identity.matches() {
         let devices = Devices {
             buttons: InputPort::new(peripherals.buttons.in_()),
             switches: InputPort::new(peripherals.switches.in_()),
             leds: OutputPort::new(peripherals.leds.out()),
             i2c: I2c::new(peripherals.i2c, clock, Config::FAST),
         };
-        (Scanout::probe(peripherals.scanout).ok(), Some(devices))
+        (
+            Scanout::probe(peripherals.scanout).ok(),
+            Engine::probe(peripherals.triangle).ok(),
+            Some(devices),
+        )
     } else {
-        (None, None)
+        (None, None, None)
     };
-    interrupts::start(scanout.is_some());
+    interrupts::start(scanout.is_some(), engine.is_some());
+    let painter = engine.and_then(|engine| {
+        let first_buffer = memory.frames[0].as_ptr().addr() as u32;
+        Painter::new(engine, memory.lists, first_buffer)
+    });
+    let backend = if painter.is_some() {
+        Backend::Gateware
+    } else {
+        Backend::Cpu
+    };
 
     Ok(Machine::new(
         identity,
         clock,
-        Scene::new().map_err(Fault::Camera)?,
+        Scene::new(backend).map_err(Fault::Camera)?,
         Models::new(memory.meshes).map_err(Fault::Cube)?,
         Canvas {
             display: Display::new(scanout, memory.frames),
             depth: memory.depth,
             scratch: memory.scratch,
+            painter,
         },
         devices,
         peripherals.ctrl,

@@ -11,4 +11,4 @@ class Identity(LiteXModule):
         self.build_id = CSRStatus(
             32, reset=build_id, description="CRC-32 of the register map of the full build.")
         self.blocks = CSRStatus(
-            32, reset=blocks, description="Accelerators in this build, a bit each: 0 scan-out.")
+            32, reset=blocks, description="Accelerators in this build, a bit each: 0 scan-out, 1 triangle engine.")

@@ -32,6 +32,7 @@ PINNED = {
     "switches": Location(7),
     "leds": Location(8),
     "scanout": Location(9, irq=3),
+    "triangle": Location(10, irq=4),
     # Physical layers differ between boards. They are outside the map that the build id covers.
     "ddrphy": Location(30),
     "uart_phy": Location(31),
@@ -40,7 +41,7 @@ PINNED = {
 BOARD_SPECIFIC = ("ddrphy", "uart_phy")
 
 # Blocks that a build may leave out, with their bit in the register `identity_blocks`.
-OPTIONAL_BLOCKS = {"scanout": 0}
+OPTIONAL_BLOCKS = {"scanout": 0, "triangle": 1}
 
 CSR_MAP = {name: location.window for name, location in PINNED.items()}
 

@@ -15,6 +15,7 @@ from .identity import Identity
 from .memory_bridge import MemoryBridge
 from .register_map import CSR_MAP, CSR_PAGING, OPTIONAL_BLOCKS, PINNED
 from .scanout import Scanout
+from .triangle import TriangleEngine
 
 SYS_CLK_FREQ = 81.25e6
 """Keeps DDR3-650 and the fabric within the specification of the -1 speed grade."""
@@ -76,3 +77,6 @@ class GlintSoC(SoCCore):
         self.bus.add_slave("main_ram", bus, main_ram)
         if "scanout" in self.blocks:
             self.scanout = Scanout(self.platform, self.sdram.crossbar.get_port(mode="read"))
+        if "triangle" in self.blocks:
+            reader, list_writer, frame_writer = (self.sdram.crossbar.get_port(mode=mode) for mode in ("read", "write", "write"))
+            self.triangle = TriangleEngine(self.platform, reader, list_writer, frame_writer, main_ram)

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 
 from glint_soc import scanout
+from glint_soc.triangle import BAND_BUFFER, SETUP, TRIANGLE_CONTROL, TRIANGLE_ENGINE, TRIANGLE_RASTER, VERTEX_STAGE
 
 
 @dataclass(frozen=True)
@@ -22,25 +23,7 @@ class Module:
 # As much time for a memory word as 1280x720 has, in a two-hundredth of its frame.
 _SMALL_RASTER = {"H_ACTIVE": 160, "H_FRONT": 8, "H_SYNC": 4, "H_BACK": 12,
                  "V_ACTIVE": 24, "V_FRONT": 2, "V_SYNC": 2, "V_BACK": 4}
-_COMMON, _BAND, _TRIANGLE = (scanout.RTL / folder for folder in ("common", "band", "triangle"))
-
-BAND_BUFFER = [_COMMON / "fifo.sv", *(_BAND / f"band_{part}.sv" for part in ("bank", "pipe", "flush", "buffer"))]
-TRIANGLE_RASTER = [
-    _TRIANGLE / "triangle_pkg.sv", _TRIANGLE / "raster_pkg.sv", _COMMON / "skid_buffer.sv",
-    *(_TRIANGLE / f"{name}.sv" for name in ("stepper", "band_entry", "walker", "lanes", "triangle_raster")),
-]
-VERTEX_STAGE = [
-    _TRIANGLE / "triangle_pkg.sv", _COMMON / "fifo.sv", _TRIANGLE / "multiply_add.sv",
-    *(_TRIANGLE / f"vertex_{part}.sv" for part in ("transform", "normalise", "reciprocal", "snap", "stage")),
-]
-SETUP = [_TRIANGLE / f"{name}.sv" for name in (
-    "triangle_pkg", "setup_pkg", "multiply_add", "reciprocal", "normalise", "cull", "flat_shade", "setup_edges", "setup_normal",
-    "setup_gradient", "setup_depth", "setup")]
-TRIANGLE_ENGINE = [*dict.fromkeys([
-    *SETUP, *TRIANGLE_RASTER, *VERTEX_STAGE, *BAND_BUFFER, _COMMON / "read_port.sv", _COMMON / "write_port.sv",
-    *(_TRIANGLE / f"{name}.sv" for name in ("vertex_cache", "mesh_walk", "classify", "binner", "geometry_unit", "list_reader",
-                                            "raster_unit", "triangle_engine")),
-])]
+_COMMON, _TRIANGLE = (scanout.RTL / folder for folder in ("common", "triangle"))
 
 MODULES = [
     Module(
@@ -60,4 +43,5 @@ MODULES = [
     Module(top="setup", sources=SETUP),
     Module(top="triangle_raster", sources=TRIANGLE_RASTER),
     Module(top="triangle_engine", sources=TRIANGLE_ENGINE),
+    Module(top="triangle_control", sources=TRIANGLE_CONTROL),
 ]

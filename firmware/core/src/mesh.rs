@@ -144,6 +144,11 @@ impl<'a> Mesh<'a> {
         self.radius
     }
 
+    /// All chunks as they lie in memory, from the header of the first on.
+    pub const fn records(&self) -> &'a [[u8; RECORD]] {
+        self.records
+    }
+
     /// The chunks in order.
     pub fn chunks(&self) -> impl Iterator<Item = Chunk<'a>> + Clone + use<'a> {
         Chunks(Walk {

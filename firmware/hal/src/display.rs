@@ -10,10 +10,11 @@
 //! # Limits
 //! A SoC may lack the scan-out block. Then nothing is shown, and a frame is always free.
 
-use core::fmt;
 use core::sync::atomic::{Ordering, compiler_fence};
 
 use litex_pac::scanout::{self, Control, EvEnable, EvPending};
+
+use crate::Absent;
 
 /// The video picture, in pixels.
 pub const SCREEN: [u32; 2] = [1280, 720];
@@ -49,25 +50,6 @@ impl Scale {
     }
 }
 
-/// The block's `ident` is not scan-out's.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Absent {
-    /// What `ident` reads; 0 where the block was left out.
-    pub found: u32,
-}
-
-impl fmt::Display for Absent {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(
-            f,
-            "scanout: expected ident {IDENT:#010x}, found {:#010x}",
-            self.found
-        )
-    }
-}
-
-impl core::error::Error for Absent {}
-
 /// The scan-out block, known to be there.
 pub struct Scanout {
     registers: scanout::Scanout,
@@ -86,7 +68,10 @@ impl Scanout {
                     .write(EvEnable::default().with_vblank(true));
                 Ok(Self { registers })
             }
-            found => Err(Absent { found }),
+            found => Err(Absent {
+                expected: IDENT,
+                found,
+            }),
         }
     }
 
@@ -323,7 +308,7 @@ mod tests {
     #[test]
     fn without_scanout_a_frame_is_always_free() {
         let (scanout, _) = probe(0);
-        assert_eq!(scanout.map(|_| ()), Err(Absent { found: 0 }));
+        assert_eq!(scanout.map(|_| ()).map_err(|absent| absent.found), Err(0));
         let mut display = Display::new(None, frames());
         display.back().unwrap()[0] = 1;
         display.show(Scale::One);

@@ -8,6 +8,7 @@
 //! | [`gpio`] | `buttons`, `switches`, `leds` | [`InputPin`](embedded_hal::digital::InputPin), [`StatefulOutputPin`](embedded_hal::digital::StatefulOutputPin) |
 //! | [`interrupt`] | the CPU's interrupt lines | |
 //! | [`display`] | `scanout` and its two frames | |
+//! | [`triangle`] | `triangle`, the engine that draws meshes | |
 //!
 //! Registers are reached through `litex-pac` alone, which on a host has a modelled bus: the tests run these drivers
 //! unchanged.
@@ -22,4 +23,25 @@ pub mod gpio;
 pub mod i2c;
 pub mod interrupt;
 pub mod timer;
+pub mod triangle;
 pub mod uart;
+
+use core::fmt;
+
+/// A block's `ident` is not its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Absent {
+    /// What `ident` reads where the block is present: four letters of ASCII.
+    pub expected: u32,
+    /// What it reads; 0 where the block was left out.
+    pub found: u32,
+}
+
+impl fmt::Display for Absent {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Self { expected, found } = self;
+        write!(f, "expected ident {expected:#010x}, found {found:#010x}")
+    }
+}
+
+impl core::error::Error for Absent {}

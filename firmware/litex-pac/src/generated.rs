@@ -2,7 +2,7 @@
 // fails when this file is not what the generator makes of the SoC.
 
 /// CRC-32 of the SoC's pinned register map. A SoC whose `identity.build_id` differs has other registers.
-pub const BUILD_ID: u32 = 0xfbdb_6e4b;
+pub const BUILD_ID: u32 = 0x0cd9_a95c;
 
 /// The interrupt lines, numbered by their bit in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,11 +16,13 @@ pub enum Interrupt {
     Buttons = 2,
     /// An enabled event of `scanout` is pending.
     Scanout = 3,
+    /// An enabled event of `triangle` is pending.
+    Triangle = 4,
 }
 
 impl Interrupt {
     /// Every interrupt, by number.
-    pub const ALL: [Self; 4] = [Self::Uart, Self::Timer0, Self::Buttons, Self::Scanout];
+    pub const ALL: [Self; 5] = [Self::Uart, Self::Timer0, Self::Buttons, Self::Scanout, Self::Triangle];
 }
 
 /// Constants of the SoC.
@@ -34,7 +36,7 @@ pub mod constants {
     /// `config_clock_frequency`.
     pub const CONFIG_CLOCK_FREQUENCY: u32 = 81_250_000;
     /// `config_cpu_interrupts`.
-    pub const CONFIG_CPU_INTERRUPTS: u32 = 4;
+    pub const CONFIG_CPU_INTERRUPTS: u32 = 5;
     /// `config_cpu_reset_addr`.
     pub const CONFIG_CPU_RESET_ADDR: u32 = 0;
     /// `config_csr_alignment`.
@@ -77,6 +79,8 @@ pub struct Peripherals {
     pub leds: leds::Leds,
     /// `scanout`.
     pub scanout: scanout::Scanout,
+    /// `triangle`.
+    pub triangle: triangle::Triangle,
 }
 
 impl Peripherals {
@@ -99,6 +103,7 @@ impl Peripherals {
                 switches: switches::Switches::steal(),
                 leds: leds::Leds::steal(),
                 scanout: scanout::Scanout::steal(),
+                triangle: triangle::Triangle::steal(),
             }
         }
     }
@@ -226,7 +231,7 @@ pub mod identity {
             unsafe { Register::at(0xf000_0800) }
         }
 
-        /// `blocks`, 32 bits: Accelerators in this build, a bit each: 0 scan-out.
+        /// `blocks`, 32 bits: Accelerators in this build, a bit each: 0 scan-out, 1 triangle engine.
         #[inline]
         #[must_use]
         pub const fn blocks(&self) -> Register<u32, ReadOnly> {
@@ -2231,6 +2236,979 @@ pub mod scanout {
         #[must_use]
         pub const fn with_vblank(self, value: bool) -> Self {
             Self(self.0 & !0x1 | value as u32 & 0x1)
+        }
+    }
+}
+
+/// The registers of `triangle`.
+pub mod triangle {
+    use crate::register::{ReadOnly, ReadWrite, Register, Value};
+
+    /// Access to `triangle`.
+    pub struct Triangle {
+        _private: (),
+    }
+
+    impl Triangle {
+        /// Address of the first register.
+        pub const BASE: usize = 0xf000_5000;
+
+        /// A handle, whether or not somebody holds one already.
+        ///
+        /// # Safety
+        /// Whoever holds the other handle must be prepared for its registers to change.
+        #[must_use]
+        pub const unsafe fn steal() -> Self {
+            Self { _private: () }
+        }
+
+        /// `ident`, 32 bits: `TRIA` in ASCII; 0 where the block is absent.
+        #[inline]
+        #[must_use]
+        pub const fn ident(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5000) }
+        }
+
+        /// `caps`, 14 bits: What this block can do.
+        #[inline]
+        #[must_use]
+        pub const fn caps(&self) -> Register<Caps, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5004) }
+        }
+
+        /// `control`, 1 bit: Operation.
+        #[inline]
+        #[must_use]
+        pub const fn control(&self) -> Register<Control, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5008) }
+        }
+
+        /// `status`, 11 bits: State.
+        #[inline]
+        #[must_use]
+        pub const fn status(&self) -> Register<Status, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_500c) }
+        }
+
+        /// `ev_status`, 2 bits: Level of each event's trigger.
+        #[inline]
+        #[must_use]
+        pub const fn ev_status(&self) -> Register<EvStatus, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5010) }
+        }
+
+        /// `ev_pending`, 2 bits: Events that have occurred; writing a 1 clears an event.
+        #[inline]
+        #[must_use]
+        pub const fn ev_pending(&self) -> Register<EvPending, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5014) }
+        }
+
+        /// `ev_enable`, 2 bits: Events that raise the interrupt.
+        #[inline]
+        #[must_use]
+        pub const fn ev_enable(&self) -> Register<EvEnable, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5018) }
+        }
+
+        /// `geometry`, 4 bits: Starts the geometry pass. All other registers of geometry have to hold while it runs.
+        #[inline]
+        #[must_use]
+        pub const fn geometry(&self) -> Register<Geometry, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_501c) }
+        }
+
+        /// `mesh`, 32 bits: Byte address, a multiple of 16, of the mesh's first chunk.
+        #[inline]
+        #[must_use]
+        pub const fn mesh(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5020) }
+        }
+
+        /// `mesh_bytes`, 32 bits: Length of all its chunks, a multiple of 16.
+        #[inline]
+        #[must_use]
+        pub const fn mesh_bytes(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5024) }
+        }
+
+        /// `geometry_descriptors`, 32 bits: Byte address, a multiple of 16, of the descriptors to make.
+        #[inline]
+        #[must_use]
+        pub const fn geometry_descriptors(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5028) }
+        }
+
+        /// `descriptor_limit`, 20 bits: Room there, 48 bytes each.
+        #[inline]
+        #[must_use]
+        pub const fn descriptor_limit(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_502c) }
+        }
+
+        /// `geometry_lists`, 32 bits: Byte address, a multiple of 16, of the band lists to make.
+        #[inline]
+        #[must_use]
+        pub const fn geometry_lists(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5030) }
+        }
+
+        /// `list_shift`, 5 bits: A band's list has room for 4 \<\< list_shift entries. Of both passes.
+        #[inline]
+        #[must_use]
+        pub const fn list_shift(&self) -> Register<u8, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5034) }
+        }
+
+        /// `exceptions`, 32 bits: Byte address, a multiple of 16, of the list of exceptions to make.
+        #[inline]
+        #[must_use]
+        pub const fn exceptions(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5038) }
+        }
+
+        /// `exception_limit`, 20 bits: Room there, 4 bytes each.
+        #[inline]
+        #[must_use]
+        pub const fn exception_limit(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_503c) }
+        }
+
+        /// `scale_shift`, 5 bits: Scale shift f of rows U and V.
+        #[inline]
+        #[must_use]
+        pub const fn scale_shift(&self) -> Register<u8, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5040) }
+        }
+
+        /// `row_u0`, 25 bits: Row U, x, two's complement.
+        #[inline]
+        #[must_use]
+        pub const fn row_u0(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5044) }
+        }
+
+        /// `row_u1`, 25 bits: Row U, y, two's complement.
+        #[inline]
+        #[must_use]
+        pub const fn row_u1(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5048) }
+        }
+
+        /// `row_u2`, 25 bits: Row U, z, two's complement.
+        #[inline]
+        #[must_use]
+        pub const fn row_u2(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_504c) }
+        }
+
+        /// `row_v0`, 25 bits: Row V, x, two's complement.
+        #[inline]
+        #[must_use]
+        pub const fn row_v0(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5050) }
+        }
+
+        /// `row_v1`, 25 bits: Row V, y, two's complement.
+        #[inline]
+        #[must_use]
+        pub const fn row_v1(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5054) }
+        }
+
+        /// `row_v2`, 25 bits: Row V, z, two's complement.
+        #[inline]
+        #[must_use]
+        pub const fn row_v2(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5058) }
+        }
+
+        /// `row_n0`, 25 bits: Row n, x, two's complement.
+        #[inline]
+        #[must_use]
+        pub const fn row_n0(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_505c) }
+        }
+
+        /// `row_n1`, 25 bits: Row n, y, two's complement.
+        #[inline]
+        #[must_use]
+        pub const fn row_n1(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5060) }
+        }
+
+        /// `row_n2`, 25 bits: Row n, z, two's complement.
+        #[inline]
+        #[must_use]
+        pub const fn row_n2(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5064) }
+        }
+
+        /// `tx_low`, 32 bits: Translation tx, 14 + f fraction bits: bits 0 to 31.
+        #[inline]
+        #[must_use]
+        pub const fn tx_low(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5068) }
+        }
+
+        /// `tx_high`, 12 bits: Translation tx: bits 32 to 43.
+        #[inline]
+        #[must_use]
+        pub const fn tx_high(&self) -> Register<u16, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_506c) }
+        }
+
+        /// `ty_low`, 32 bits: Translation ty, 14 + f fraction bits: bits 0 to 31.
+        #[inline]
+        #[must_use]
+        pub const fn ty_low(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5070) }
+        }
+
+        /// `ty_high`, 12 bits: Translation ty: bits 32 to 43.
+        #[inline]
+        #[must_use]
+        pub const fn ty_high(&self) -> Register<u16, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5074) }
+        }
+
+        /// `tz_low`, 32 bits: Translation tz, 37 fraction bits: bits 0 to 31.
+        #[inline]
+        #[must_use]
+        pub const fn tz_low(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5078) }
+        }
+
+        /// `tz_high`, 12 bits: Translation tz: bits 32 to 43.
+        #[inline]
+        #[must_use]
+        pub const fn tz_high(&self) -> Register<u16, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_507c) }
+        }
+
+        /// `near_low`, 32 bits: Near plane, 37 fraction bits: bits 0 to 31.
+        #[inline]
+        #[must_use]
+        pub const fn near_low(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5080) }
+        }
+
+        /// `near_high`, 7 bits: Near plane: bits 32 to 38.
+        #[inline]
+        #[must_use]
+        pub const fn near_high(&self) -> Register<u8, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5084) }
+        }
+
+        /// `depth_scale`, 21 bits: Depth scale K = km * 2^ke.
+        #[inline]
+        #[must_use]
+        pub const fn depth_scale(&self) -> Register<DepthScale, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5088) }
+        }
+
+        /// `raster`, 8 bits: Starts the raster pass. All other registers of the raster have to hold while it runs.
+        #[inline]
+        #[must_use]
+        pub const fn raster(&self) -> Register<Raster, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_508c) }
+        }
+
+        /// `frame`, 32 bits: Byte address, a multiple of 16, of the frame to write, RGB565.
+        #[inline]
+        #[must_use]
+        pub const fn frame(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5090) }
+        }
+
+        /// `depth`, 32 bits: Byte address, a multiple of 16, of the depths to write, 32 bits each.
+        #[inline]
+        #[must_use]
+        pub const fn depth(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5094) }
+        }
+
+        /// `clear`, 16 bits: Colour where nothing is drawn, RGB565.
+        #[inline]
+        #[must_use]
+        pub const fn clear(&self) -> Register<u16, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5098) }
+        }
+
+        /// `lists_0`, 32 bits: Byte address, a multiple of 16, of the first set's lists.
+        #[inline]
+        #[must_use]
+        pub const fn lists_0(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_509c) }
+        }
+
+        /// `descriptors_0`, 32 bits: Byte address, a multiple of 16, of the first set's descriptors.
+        #[inline]
+        #[must_use]
+        pub const fn descriptors_0(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_50a0) }
+        }
+
+        /// `count_0`, 20 bits: Descriptors of the first set.
+        #[inline]
+        #[must_use]
+        pub const fn count_0(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_50a4) }
+        }
+
+        /// `lists_1`, 32 bits: Byte address, a multiple of 16, of the second set's lists.
+        #[inline]
+        #[must_use]
+        pub const fn lists_1(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_50a8) }
+        }
+
+        /// `descriptors_1`, 32 bits: Byte address, a multiple of 16, of the second set's descriptors.
+        #[inline]
+        #[must_use]
+        pub const fn descriptors_1(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_50ac) }
+        }
+
+        /// `count_1`, 20 bits: Descriptors of the second set.
+        #[inline]
+        #[must_use]
+        pub const fn count_1(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_50b0) }
+        }
+
+        /// `triangles`, 32 bits: Triangles of the mesh.
+        #[inline]
+        #[must_use]
+        pub const fn triangles(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_50b4) }
+        }
+
+        /// `unseen`, 32 bits: Triangles that were behind, or off one side of the picture.
+        #[inline]
+        #[must_use]
+        pub const fn unseen(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_50b8) }
+        }
+
+        /// `culled`, 32 bits: Triangles left out by the setup: back faces, those without area or without a pixel's centre in their bounds.
+        #[inline]
+        #[must_use]
+        pub const fn culled(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_50bc) }
+        }
+
+        /// `descriptor_count`, 32 bits: Descriptors made.
+        #[inline]
+        #[must_use]
+        pub const fn descriptor_count(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_50c0) }
+        }
+
+        /// `exception_count`, 32 bits: Triangles that need clipping, listed in `exceptions`.
+        #[inline]
+        #[must_use]
+        pub const fn exception_count(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_50c4) }
+        }
+
+        /// `cycles_busy`, 32 bits: Clock cycles in which a pass ran, modulo 2^32.
+        #[inline]
+        #[must_use]
+        pub const fn cycles_busy(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_50c8) }
+        }
+
+        /// `cycles_stalled`, 32 bits: Clock cycles in which memory did not take a command, modulo 2^32.
+        #[inline]
+        #[must_use]
+        pub const fn cycles_stalled(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_50cc) }
+        }
+
+        /// `items_in`, 32 bits: Words of 16 bytes read from memory, modulo 2^32.
+        #[inline]
+        #[must_use]
+        pub const fn items_in(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_50d0) }
+        }
+
+        /// `items_out`, 32 bits: Words of 16 bytes written to memory, modulo 2^32.
+        #[inline]
+        #[must_use]
+        pub const fn items_out(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_50d4) }
+        }
+
+        /// `cycles_geometry`, 32 bits: Clock cycles of geometry passes, modulo 2^32.
+        #[inline]
+        #[must_use]
+        pub const fn cycles_geometry(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_50d8) }
+        }
+
+        /// `vertices`, 32 bits: Vertices transformed, modulo 2^32.
+        #[inline]
+        #[must_use]
+        pub const fn vertices(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_50dc) }
+        }
+
+        /// `cycles_raster`, 32 bits: Clock cycles of raster passes, modulo 2^32.
+        #[inline]
+        #[must_use]
+        pub const fn cycles_raster(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_50e0) }
+        }
+
+        /// `cycles_walking`, 32 bits: Clock cycles in which a triangle was walked over, modulo 2^32.
+        #[inline]
+        #[must_use]
+        pub const fn cycles_walking(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_50e4) }
+        }
+
+        /// `cycles_empty`, 32 bits: Those of them without a pixel, modulo 2^32.
+        #[inline]
+        #[must_use]
+        pub const fn cycles_empty(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_50e8) }
+        }
+
+        /// `groups`, 32 bits: Groups of eight pixels of which some are covered, modulo 2^32.
+        #[inline]
+        #[must_use]
+        pub const fn groups(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_50ec) }
+        }
+
+        /// `cycles_held`, 32 bits: Clock cycles in which a group waited for the one before it, modulo 2^32.
+        #[inline]
+        #[must_use]
+        pub const fn cycles_held(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_50f0) }
+        }
+
+        /// `cycles_memory`, 32 bits: Clock cycles in which a band waited for memory, modulo 2^32.
+        #[inline]
+        #[must_use]
+        pub const fn cycles_memory(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_50f4) }
+        }
+
+        /// `cycles_flush`, 32 bits: Clock cycles in which a band was being written to memory, modulo 2^32.
+        #[inline]
+        #[must_use]
+        pub const fn cycles_flush(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_50f8) }
+        }
+    }
+
+    /// A value of `caps`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct Caps(u32);
+
+    impl Value for Caps {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl Caps {
+        /// `sizes`, bits 2 to 0: Bit k is set if `size` k is supported.
+        #[inline]
+        #[must_use]
+        pub const fn sizes(self) -> u8 {
+            (self.0 & 0x7) as u8
+        }
+
+        /// `gouraud`, bit 3: Colours are interpolated between vertices.
+        #[inline]
+        #[must_use]
+        pub const fn gouraud(self) -> bool {
+            (self.0 >> 3) & 1 != 0
+        }
+
+        /// `count_bits`, bits 13 to 8: Bits of a count of descriptors or entries.
+        #[inline]
+        #[must_use]
+        pub const fn count_bits(self) -> u8 {
+            ((self.0 >> 8) & 0x3f) as u8
+        }
+    }
+
+    /// A value of `control`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct Control(u32);
+
+    impl Value for Control {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl Control {
+        /// `cancel`, bit 0: Write 1 to give up both passes. What is started after it waits until memory has answered what was asked and the band buffer is clear.
+        #[inline]
+        #[must_use]
+        pub const fn cancel(self) -> bool {
+            self.0 & 1 != 0
+        }
+
+        /// This value with another `cancel`.
+        #[inline]
+        #[must_use]
+        pub const fn with_cancel(self, value: bool) -> Self {
+            Self(self.0 & !0x1 | value as u32 & 0x1)
+        }
+    }
+
+    /// A value of `status`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct Status(u32);
+
+    impl Value for Status {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl Status {
+        /// `geometry_busy`, bit 0: The geometry pass runs.
+        #[inline]
+        #[must_use]
+        pub const fn geometry_busy(self) -> bool {
+            self.0 & 1 != 0
+        }
+
+        /// `raster_busy`, bit 1: The raster pass runs.
+        #[inline]
+        #[must_use]
+        pub const fn raster_busy(self) -> bool {
+            (self.0 >> 1) & 1 != 0
+        }
+
+        /// `geometry_error`, bits 6 to 4: How the geometry pass that was started last has ended.
+        #[inline]
+        #[must_use]
+        pub const fn geometry_error(self) -> u8 {
+            ((self.0 >> 4) & 0x7) as u8
+        }
+
+        /// `raster_error`, bits 10 to 8: How the raster pass that was started last has ended.
+        #[inline]
+        #[must_use]
+        pub const fn raster_error(self) -> u8 {
+            ((self.0 >> 8) & 0x7) as u8
+        }
+    }
+
+    /// A value of `ev_status`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct EvStatus(u32);
+
+    impl Value for EvStatus {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl EvStatus {
+        /// `geometry`, bit 0: Level of the `geometry` event
+        #[inline]
+        #[must_use]
+        pub const fn geometry(self) -> bool {
+            self.0 & 1 != 0
+        }
+
+        /// `raster`, bit 1: Level of the `raster` event
+        #[inline]
+        #[must_use]
+        pub const fn raster(self) -> bool {
+            (self.0 >> 1) & 1 != 0
+        }
+    }
+
+    /// A value of `ev_pending`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct EvPending(u32);
+
+    impl Value for EvPending {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl EvPending {
+        /// `geometry`, bit 0: The geometry pass has ended, see `status`; what it made is in memory.
+        #[inline]
+        #[must_use]
+        pub const fn geometry(self) -> bool {
+            self.0 & 1 != 0
+        }
+
+        /// This value with another `geometry`.
+        #[inline]
+        #[must_use]
+        pub const fn with_geometry(self, value: bool) -> Self {
+            Self(self.0 & !0x1 | value as u32 & 0x1)
+        }
+
+        /// `raster`, bit 1: The raster pass has ended, see `status`; the frame is in memory.
+        #[inline]
+        #[must_use]
+        pub const fn raster(self) -> bool {
+            (self.0 >> 1) & 1 != 0
+        }
+
+        /// This value with another `raster`.
+        #[inline]
+        #[must_use]
+        pub const fn with_raster(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 1) | (value as u32 & 0x1) << 1)
+        }
+    }
+
+    /// A value of `ev_enable`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct EvEnable(u32);
+
+    impl Value for EvEnable {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl EvEnable {
+        /// `geometry`, bit 0: Write a `1` to enable the `geometry` Event
+        #[inline]
+        #[must_use]
+        pub const fn geometry(self) -> bool {
+            self.0 & 1 != 0
+        }
+
+        /// This value with another `geometry`.
+        #[inline]
+        #[must_use]
+        pub const fn with_geometry(self, value: bool) -> Self {
+            Self(self.0 & !0x1 | value as u32 & 0x1)
+        }
+
+        /// `raster`, bit 1: Write a `1` to enable the `raster` Event
+        #[inline]
+        #[must_use]
+        pub const fn raster(self) -> bool {
+            (self.0 >> 1) & 1 != 0
+        }
+
+        /// This value with another `raster`.
+        #[inline]
+        #[must_use]
+        pub const fn with_raster(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 1) | (value as u32 & 0x1) << 1)
+        }
+    }
+
+    /// A value of `geometry`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct Geometry(u32);
+
+    impl Value for Geometry {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl Geometry {
+        /// `start`, bit 0: Write 1 to make descriptors and lists of the mesh.
+        #[inline]
+        #[must_use]
+        pub const fn start(self) -> bool {
+            self.0 & 1 != 0
+        }
+
+        /// This value with another `start`.
+        #[inline]
+        #[must_use]
+        pub const fn with_start(self, value: bool) -> Self {
+            Self(self.0 & !0x1 | value as u32 & 0x1)
+        }
+
+        /// `cull`, bit 1: Back faces are left out.
+        #[inline]
+        #[must_use]
+        pub const fn cull(self) -> bool {
+            (self.0 >> 1) & 1 != 0
+        }
+
+        /// This value with another `cull`.
+        #[inline]
+        #[must_use]
+        pub const fn with_cull(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 1) | (value as u32 & 0x1) << 1)
+        }
+
+        /// `size`, bits 3 to 2: Size of the picture.
+        #[inline]
+        #[must_use]
+        pub const fn size(self) -> u8 {
+            ((self.0 >> 2) & 0x3) as u8
+        }
+
+        /// This value with another `size`: the low 2 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_size(self, value: u8) -> Self {
+            Self(self.0 & !(0x3 << 2) | (value as u32 & 0x3) << 2)
+        }
+    }
+
+    /// A value of `depth_scale`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct DepthScale(u32);
+
+    impl Value for DepthScale {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl DepthScale {
+        /// `mantissa`, bits 16 to 0: km, in 2^16 to 2^17 - 1.
+        #[inline]
+        #[must_use]
+        pub const fn mantissa(self) -> u32 {
+            self.0 & 0x0001_ffff
+        }
+
+        /// This value with another `mantissa`: the low 17 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_mantissa(self, value: u32) -> Self {
+            Self(self.0 & !0x0001_ffff | value & 0x0001_ffff)
+        }
+
+        /// `exponent`, bits 20 to 17: ke, two's complement.
+        #[inline]
+        #[must_use]
+        pub const fn exponent(self) -> u8 {
+            ((self.0 >> 17) & 0xf) as u8
+        }
+
+        /// This value with another `exponent`: the low 4 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_exponent(self, value: u8) -> Self {
+            Self(self.0 & !(0xf << 17) | (value as u32 & 0xf) << 17)
+        }
+    }
+
+    /// A value of `raster`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct Raster(u32);
+
+    impl Value for Raster {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl Raster {
+        /// `start`, bit 0: Write 1 to draw a frame from lists.
+        #[inline]
+        #[must_use]
+        pub const fn start(self) -> bool {
+            self.0 & 1 != 0
+        }
+
+        /// This value with another `start`.
+        #[inline]
+        #[must_use]
+        pub const fn with_start(self, value: bool) -> Self {
+            Self(self.0 & !0x1 | value as u32 & 0x1)
+        }
+
+        /// `size`, bits 2 to 1: Size of the picture.
+        #[inline]
+        #[must_use]
+        pub const fn size(self) -> u8 {
+            ((self.0 >> 1) & 0x3) as u8
+        }
+
+        /// This value with another `size`: the low 2 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_size(self, value: u8) -> Self {
+            Self(self.0 & !(0x3 << 1) | (value as u32 & 0x3) << 1)
+        }
+
+        /// `first`, bit 3: There is a first set of lists.
+        #[inline]
+        #[must_use]
+        pub const fn first(self) -> bool {
+            (self.0 >> 3) & 1 != 0
+        }
+
+        /// This value with another `first`.
+        #[inline]
+        #[must_use]
+        pub const fn with_first(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 3) | (value as u32 & 0x1) << 3)
+        }
+
+        /// `second`, bit 4: There is a second set, drawn after the first in each band.
+        #[inline]
+        #[must_use]
+        pub const fn second(self) -> bool {
+            (self.0 >> 4) & 1 != 0
+        }
+
+        /// This value with another `second`.
+        #[inline]
+        #[must_use]
+        pub const fn with_second(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 4) | (value as u32 & 0x1) << 4)
+        }
+
+        /// `depth`, bit 5: Depths go to memory as well; the whole frame is written then.
+        #[inline]
+        #[must_use]
+        pub const fn depth(self) -> bool {
+            (self.0 >> 5) & 1 != 0
+        }
+
+        /// This value with another `depth`.
+        #[inline]
+        #[must_use]
+        pub const fn with_depth(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 5) | (value as u32 & 0x1) << 5)
+        }
+
+        /// `slot`, bit 6: Which of two frame buffers `frame` is: what was drawn there is remembered.
+        #[inline]
+        #[must_use]
+        pub const fn slot(self) -> bool {
+            (self.0 >> 6) & 1 != 0
+        }
+
+        /// This value with another `slot`.
+        #[inline]
+        #[must_use]
+        pub const fn with_slot(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 6) | (value as u32 & 0x1) << 6)
+        }
+
+        /// `whole`, bit 7: Nothing is known of what the frame buffer holds: all of it is written. To be set for a buffer's first frame, after a cancelled one, after another size or `clear`, and after anybody else has written there.
+        #[inline]
+        #[must_use]
+        pub const fn whole(self) -> bool {
+            (self.0 >> 7) & 1 != 0
+        }
+
+        /// This value with another `whole`.
+        #[inline]
+        #[must_use]
+        pub const fn with_whole(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 7) | (value as u32 & 0x1) << 7)
         }
     }
 }

@@ -22,7 +22,8 @@ pub mod vertex;
 
 pub use frame::{DepthScale, FrameSetup};
 pub use render::{
-    Buffer, DrawnTriangle, Options, RenderError, SIZES, Stats, Target, render, trace,
+    Buffer, DrawnTriangle, Options, RenderError, SIZES, Stats, Target, clip_exceptions, render,
+    trace,
 };
 pub use vertex::{Projected, ScreenVertex};
 

@@ -274,36 +274,13 @@ impl Renderer<'_, '_> {
         off([a.x, b.x, c.x], self.frame.width) || off([a.y, b.y, c.y], self.frame.height)
     }
 
-    /// Clips a triangle and draws what is left as a fan. Returns whether a part of it reached the walker.
+    /// Clips a triangle and draws what is left. Returns whether a part of it reached the walker.
     fn clip(&mut self, index: u32, triangle: &Triangle, chunk: &Chunk) -> bool {
-        let [Some(a), Some(b), Some(c)] = triangle.indices.map(|i| chunk.vertex(usize::from(i)))
-        else {
-            return false;
-        };
-        let [a, b, c] = [a, b, c].map(|vertex| vertex.position);
-        // Starting at the smallest position, so that it does not matter which vertex the triangle names first.
-        let positions = if a <= b && a <= c {
-            [a, b, c]
-        } else if b <= c {
-            [b, c, a]
-        } else {
-            [c, a, b]
-        };
-        let corners = positions.map(|position| transform(&self.frame, position));
-        if off_picture(&self.frame, &corners) {
-            return false;
-        }
-        let polygon = clip(&self.frame, corners);
         let frame = self.frame;
-        let mut places = polygon.vertices().iter().map(|vertex| snap(&frame, vertex));
-        let (Some(first), Some(mut last)) = (places.next(), places.next()) else {
-            return false;
-        };
         let mut any = false;
-        for place in places {
-            any |= self.draw(index, triangle, [&first, &last, &place], true);
-            last = place;
-        }
+        clip_fan(&frame, triangle, chunk, &mut |vertices| {
+            any |= self.draw(index, triangle, vertices, true);
+        });
         any
     }
 
@@ -315,20 +292,14 @@ impl Renderer<'_, '_> {
         vertices: [&ScreenVertex; 3],
         clipped: bool,
     ) -> bool {
-        let Some(oriented) = Oriented::new(vertices.map(|v| *v)) else {
+        let Some(placed) = Placed::new(&self.frame, self.cull, triangle, vertices) else {
             return false;
         };
-        if self.cull && oriented.facing == Facing::Back {
-            return false;
-        }
-        let Some(bounds) = Bounds::new(&oriented.vertices, self.frame.width, self.frame.height)
-        else {
-            return false;
-        };
-        let colour = lit(
-            triangle.colour,
-            intensity(triangle.normal, &self.frame.n, oriented.facing),
-        );
+        let Placed {
+            oriented,
+            bounds,
+            colour,
+        } = placed;
         (self.show)(&DrawnTriangle {
             index,
             vertices: oriented.vertices,
@@ -342,6 +313,111 @@ impl Renderer<'_, '_> {
         self.stats.pixels_drawn += u64::from(coverage.drawn);
         true
     }
+}
+
+/// A screen triangle that reaches the walker.
+struct Placed {
+    oriented: Oriented,
+    bounds: Bounds,
+    colour: Rgb565,
+}
+
+impl Placed {
+    /// Nothing for a back face that is culled, and where no pixel can be covered.
+    fn new(
+        frame: &FrameSetup,
+        cull: bool,
+        triangle: &Triangle,
+        vertices: [&ScreenVertex; 3],
+    ) -> Option<Self> {
+        let oriented = Oriented::new(vertices.map(|v| *v))?;
+        if cull && oriented.facing == Facing::Back {
+            return None;
+        }
+        let bounds = Bounds::new(&oriented.vertices, frame.width, frame.height)?;
+        let intensity = intensity(triangle.normal, &frame.n, oriented.facing);
+        Some(Self {
+            oriented,
+            bounds,
+            colour: lit(triangle.colour, intensity),
+        })
+    }
+}
+
+/// Clips a triangle, and gives out what is left as a fan.
+fn clip_fan(
+    frame: &FrameSetup,
+    triangle: &Triangle,
+    chunk: &Chunk,
+    emit: &mut dyn FnMut([&ScreenVertex; 3]),
+) {
+    let [Some(a), Some(b), Some(c)] = triangle.indices.map(|i| chunk.vertex(usize::from(i))) else {
+        return;
+    };
+    let [a, b, c] = [a, b, c].map(|vertex| vertex.position);
+    // Starting at the smallest position, so that it does not matter which vertex the triangle names first.
+    let positions = if a <= b && a <= c {
+        [a, b, c]
+    } else if b <= c {
+        [b, c, a]
+    } else {
+        [c, a, b]
+    };
+    let corners = positions.map(|position| transform(frame, position));
+    if off_picture(frame, &corners) {
+        return;
+    }
+    let polygon = clip(frame, corners);
+    let mut places = polygon.vertices().iter().map(|vertex| snap(frame, vertex));
+    let (Some(first), Some(mut last)) = (places.next(), places.next()) else {
+        return;
+    };
+    for place in places {
+        emit([&first, &last, &place]);
+        last = place;
+    }
+}
+
+/// Clips the triangles that the gateware has left as exceptions, by their `numbers` in the mesh, and gives out the setup
+/// and the colour of every part that is left. Returns how many triangles have one.
+///
+/// Numbers come in ascending order from the gateware; in another order they take longer. One that the mesh has not is
+/// passed over.
+pub fn clip_exceptions(
+    mesh: &Mesh,
+    frame: &FrameSetup,
+    cull: bool,
+    numbers: &mut dyn Iterator<Item = u32>,
+    emit: &mut dyn FnMut(&Setup, Rgb565),
+) -> u32 {
+    let mut chunks = mesh.chunks();
+    let (mut chunk, mut first) = (chunks.next(), 0);
+    let mut drawn = 0;
+    for number in numbers {
+        if number < first {
+            chunks = mesh.chunks();
+            (chunk, first) = (chunks.next(), 0);
+        }
+        while let Some(passed) = &chunk
+            && number - first >= passed.triangle_count() as u32
+        {
+            first += passed.triangle_count() as u32;
+            chunk = chunks.next();
+        }
+        let Some(chunk) = &chunk else { continue };
+        let Some(triangle) = chunk.triangle((number - first) as usize) else {
+            continue;
+        };
+        let mut any = false;
+        clip_fan(frame, &triangle, chunk, &mut |vertices| {
+            if let Some(placed) = Placed::new(frame, cull, &triangle, vertices) {
+                emit(&Setup::new(&placed.oriented, placed.bounds), placed.colour);
+                any = true;
+            }
+        });
+        drawn += u32::from(any);
+    }
+    drawn
 }
 
 /// A buffer of the target.

@@ -22,8 +22,8 @@ pub struct Scene<'m> {
     pub size: (u32, u32),
     /// Whether back faces are left out.
     pub cull: bool,
-    /// Who renders on a board.
-    pub backend: Backend,
+    /// Who renders on a board; the board's own choice unless told: its engine if it has one.
+    pub backend: Option<Backend>,
 }
 
 /// What a frame took, as the file of `--stats` has it.
@@ -47,6 +47,43 @@ pub struct Stats {
     pub pixels_drawn: u64,
     /// The board's clock in Hz.
     pub clock: Option<u64>,
+    /// Who rendered on a board: `cpu` or `gateware`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub backend: Option<String>,
+    /// What the triangle engine counted, if it rendered.
+    #[serde(flatten)]
+    pub engine: Option<EngineStats>,
+}
+
+/// What the triangle engine counted for a frame: cycles, and words of 16 bytes.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct EngineStats {
+    /// Cycles in which a pass ran.
+    pub cycles_busy: u64,
+    /// Cycles in which memory did not take a command.
+    pub cycles_stalled: u64,
+    /// Words read from memory.
+    pub words_read: u64,
+    /// Words written to memory.
+    pub words_written: u64,
+    /// Cycles of the geometry pass.
+    pub cycles_geometry: u64,
+    /// Vertices transformed.
+    pub vertices: u64,
+    /// Cycles of the raster pass.
+    pub cycles_raster: u64,
+    /// Cycles in which a triangle was walked over.
+    pub cycles_walking: u64,
+    /// Those of them without a pixel.
+    pub cycles_empty: u64,
+    /// Groups of eight pixels of which some were covered.
+    pub groups: u64,
+    /// Cycles in which a group waited for the one before it.
+    pub cycles_held: u64,
+    /// Cycles in which a band waited for memory.
+    pub cycles_memory: u64,
+    /// Cycles in which a band was being written.
+    pub cycles_flush: u64,
 }
 
 /// A frame and what it took.
@@ -144,6 +181,8 @@ pub fn on_model(scene: &Scene) -> Result<Rendered, Error> {
         pixels_covered: stats.pixels_covered,
         pixels_drawn: stats.pixels_drawn,
         clock: None,
+        backend: None,
+        engine: None,
     };
     Ok(Rendered { frame, stats })
 }
@@ -179,11 +218,13 @@ impl<'b, B: Board + ?Sized> Renderer<'b, B> {
         route: Route,
         progress: &mut Progress,
     ) -> Result<Stats, Error> {
-        let backend = match scene.backend {
-            Backend::Cpu => "cpu",
-            Backend::Gateware => "gateware",
-        };
-        self.console.command(&format!("backend {backend}"))?;
+        if let Some(backend) = scene.backend {
+            let name = match backend {
+                Backend::Cpu => "cpu",
+                Backend::Gateware => "gateware",
+            };
+            self.console.command(&format!("backend {name}"))?;
+        }
         // Every change is drawn at once; what is cheap to draw goes first, so the mesh comes last.
         self.console
             .command(&format!("cull {}", if scene.cull { "on" } else { "off" }))?;
@@ -245,7 +286,7 @@ impl<'b, B: Board + ?Sized> Renderer<'b, B> {
             .collect())
     }
 
-    /// The depth codes of the last frame.
+    /// The depth codes of the scene that is shown.
     ///
     /// # Errors
     /// The download fails, or there is no such route.
@@ -255,6 +296,10 @@ impl<'b, B: Board + ?Sized> Renderer<'b, B> {
         route: Route,
         progress: &mut Progress,
     ) -> Result<Vec<u32>, Error> {
+        if route == Route::Memory {
+            // An engine leaves them out unless told.
+            self.console.command("render depth")?;
+        }
         let bytes = self.frame("depth", 4, size, route, progress)?;
         let word = |pixel: &[u8]| u32::from_le_bytes([pixel[0], pixel[1], pixel[2], pixel[3]]);
         Ok(bytes.chunks_exact(4).map(word).collect())
@@ -370,7 +415,7 @@ mod tests {
             view: view::spherical("2.5,0,90").unwrap(),
             size: (320, 180),
             cull: true,
-            backend: Backend::Cpu,
+            backend: None,
         };
         let Rendered { frame, stats } = on_model(&scene).unwrap();
         assert_eq!((stats.triangles_in, stats.triangles_drawn), (12, 2));

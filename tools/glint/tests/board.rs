@@ -34,7 +34,7 @@ fn cube_scene<'m>(mesh: &'m [u8], camera: &str, size: (u32, u32)) -> Scene<'m> {
         view: view::spherical(camera).unwrap(),
         size,
         cull: true,
-        backend: Backend::Cpu,
+        backend: Some(Backend::Cpu),
     }
 }
 
@@ -49,6 +49,8 @@ fn timeless(stats: Stats) -> Stats {
     Stats {
         cycles: None,
         clock: None,
+        backend: None,
+        engine: None,
         ..stats
     }
 }
@@ -72,7 +74,7 @@ fn the_monitor_shows_what_the_model_renders(name: &str) {
             view,
             size,
             cull,
-            backend: Backend::Cpu,
+            backend: Some(Backend::Cpu),
         };
         let expected = render::on_model(&scene).unwrap();
         let stats = renderer

@@ -62,8 +62,11 @@ pub enum Command<'a> {
         /// Its CRC-32.
         crc32: u32,
     },
-    /// `render`
-    Render,
+    /// `render [depth]`
+    Render {
+        /// With its depth codes in memory, which an engine leaves out unless told.
+        depth: bool,
+    },
     /// `cull on|off`
     Cull(bool),
     /// `stats [json]`
@@ -209,7 +212,11 @@ static COMMANDS: [(Syntax, Build); 19] = [
             _ => None,
         },
     ),
-    (Syntax::new("render", "draws the picture again and says what it took"), |_| accept(Command::Render)),
+    (
+        Syntax::new("render", "draws the picture again and says what it took; with its depth in memory, or without")
+            .with_optional(&[("depth", Choice(&["depth"]))]),
+        |values| accept(Command::Render { depth: !values.is_empty() }),
+    ),
     (
         Syntax::new("cull", "leaves back faces out, or draws them").with(&[("on|off", Choice(&["on", "off"]))]),
         |values| match *values {

@@ -95,7 +95,7 @@ impl DemoArguments {
             view,
             size: SIZE,
             cull: true,
-            backend: Backend::Cpu,
+            backend: Some(Backend::Cpu),
         };
         let bar = bar(name);
         let stats = renderer.show(&scene, Route::Serial, &mut advance(&bar))?;
@@ -133,7 +133,7 @@ impl DemoArguments {
                     view: camera(turned)?,
                     size: ORBIT_SIZE,
                     cull: true,
-                    backend: Backend::Cpu,
+                    backend: Some(Backend::Cpu),
                 };
                 Ok(render::on_model(&scene)?.frame)
             })

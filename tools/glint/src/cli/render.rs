@@ -35,9 +35,10 @@ pub struct RenderArguments {
     /// Who renders: `model` (the bit-exact model, on this machine), `virtual` (the verilated SoC) or a serial port.
     #[arg(long, default_value = "model")]
     board: String,
-    /// Which renderer of a board. The model stands for both, as they are bit-exact.
-    #[arg(long, value_enum, default_value_t = Backend::Cpu)]
-    backend: Backend,
+    /// Which renderer of a board [default: gateware where the board has it]. The model stands for both, as they are
+    /// bit-exact.
+    #[arg(long, value_enum)]
+    backend: Option<Backend>,
     /// 320x180, 640x360 or 1280x720.
     #[arg(long, value_name = "WxH", default_value = "320x180")]
     size: String,
@@ -105,10 +106,10 @@ impl RenderArguments {
             view,
             size,
             cull: !self.no_cull,
-            backend: match self.backend {
+            backend: self.backend.map(|backend| match backend {
                 Backend::Cpu => glint_core::console::Backend::Cpu,
                 Backend::Gateware => glint_core::console::Backend::Gateware,
-            },
+            }),
         };
         let Rendered { frame, stats } = self.render(&scene)?;
         frame
@@ -233,7 +234,8 @@ fn print_stats(stats: &Stats) -> anyhow::Result<()> {
     if let (Some(cycles), Some(clock)) = (stats.cycles, stats.clock) {
         let (rate, megahertz) = (clock as f64 / cycles as f64, clock as f64 / 1e6);
         say(format_args!(
-            "cycles     {cycles}, {rate:.2} frames a second at {megahertz} MHz"
+            "cycles     {cycles} by the {}, {rate:.2} frames a second at {megahertz} MHz",
+            stats.backend.as_deref().unwrap_or("board")
         ))?;
     }
     Ok(())

@@ -1,0 +1,251 @@
+// Starts the passes of the triangle engine, if what they are asked for can be done, and says why not.
+//
+//   ask ──▶ pending ──▶ regions, one a clock ──▶ start ──▶ busy ──▶ done ──▶ ended, error
+//                                     └── refused ─────────────────────────────▲
+//
+// A pass names regions of memory by the byte address of their first word of 16 bytes, in the CPU's 32-bit space, and by
+// numbers that say how long they are. A region that is not aligned, or not wholly in memory (2^ADDRESS_BITS words from
+// BASE on), is refused with ERROR_ADDRESS before anything has been read or written. `ended` (one clock) closes each ask:
+// refused, done, or cancelled; `error` then holds until the next ask of this pass.
+//
+// A pass is `active` from its ask until its error stands.
+//
+// `cancel` (one clock, at any time) ends both passes; what is asked for after it begins when the engine is `ready` again.
+// Latency 15 clocks from `ask` to `start`. The flags of a pass are kept from its `ask` on; all else has to hold until `ended`.
+
+`default_nettype none
+
+module triangle_control #(
+    parameter int unsigned ADDRESS_BITS = 23,
+    parameter int unsigned COUNT_BITS   = 20,
+    parameter logic [31:0] BASE         = 32'h4000_0000
+) (
+    input  wire                    clk,
+    input  wire                    rst,
+    input  wire                    cancel,
+    // Geometry: flags {cull back faces, size}.
+    input  wire                    geometry_ask,
+    input  wire  [2:0]             geometry_flags,
+    output logic [2:0]             geometry_kept,
+    output logic                   geometry_active,
+    output logic                   geometry_ended,
+    output logic [2:0]             geometry_error,
+    input  wire  [31:0]            mesh,
+    input  wire  [31:0]            mesh_bytes,
+    input  wire  [31:0]            geometry_descriptors,
+    input  wire  [COUNT_BITS-1:0]  descriptor_limit,
+    input  wire  [31:0]            geometry_lists,
+    input  wire  [4:0]             list_shift,
+    input  wire  [31:0]            exceptions,
+    input  wire  [COUNT_BITS-1:0]  exception_limit,
+    // Raster: flags {whole, slot, with depth, second set, first set, size}.
+    input  wire                    raster_ask,
+    input  wire  [6:0]             raster_flags,
+    output logic [6:0]             raster_kept,
+    output logic                   raster_active,
+    output logic                   raster_ended,
+    output logic [2:0]             raster_error,
+    input  wire  [31:0]            frame,
+    input  wire  [31:0]            depth,
+    input  wire  [31:0]            lists_0,
+    input  wire  [31:0]            lists_1,
+    input  wire  [31:0]            descriptors_0,
+    input  wire  [31:0]            descriptors_1,
+    input  wire  [COUNT_BITS-1:0]  count_0,
+    input  wire  [COUNT_BITS-1:0]  count_1,
+    // Engine.
+    input  wire                    ready,
+    output logic                   geometry_start,
+    input  wire                    geometry_busy,
+    input  wire                    geometry_done,
+    input  wire                    mesh_error,
+    input  wire                    full,
+    output logic                   raster_start,
+    input  wire                    raster_busy,
+    input  wire                    raster_done,
+    input  wire                    list_error
+);
+    localparam logic [2:0] ERROR_NONE = 3'd0, ERROR_SIZE = 3'd1, ERROR_ADDRESS = 3'd2, ERROR_BUSY = 3'd3, ERROR_MESH = 3'd4,
+                           ERROR_FULL = 3'd5, ERROR_LIST = 3'd6, ERROR_CANCELLED = 3'd7;
+
+    // Words of a region: more than memory has are still told apart.
+    localparam int unsigned WORD_BITS  = ADDRESS_BITS + 2;
+    localparam int unsigned TABLE_WORDS = 16;
+    // Lists of more entries than can be counted are of no use.
+    localparam logic [4:0]  LAST_SHIFT = 5'(COUNT_BITS - 3);
+    // 320x180 pixels of two bytes.
+    localparam int unsigned SMALL_FRAME_WORDS = 7200;
+
+    typedef enum logic [2:0] {IDLE, CHECK, SETTLE, JUDGE, START} state_t;
+    state_t state;
+
+    localparam logic [3:0] FIRST_GEOMETRY = 4'd0, LAST_GEOMETRY = 4'd3, FIRST_RASTER = 4'd4, LAST_RASTER = 4'd9;
+
+    logic       geometry_pending, raster_pending, recovering, rastering, misplaced;
+    logic [3:0] region;
+    logic [1:0] size;
+    logic [5:0] bands;
+
+    assign geometry_active = geometry_pending || geometry_start || geometry_busy || geometry_done;
+    assign raster_active   = raster_pending || raster_start || raster_busy || raster_done;
+
+    assign size = rastering ? raster_kept[1:0] : geometry_kept[1:0];
+
+    always_comb begin
+        case (size)
+            2'd0:    bands = 6'd4;
+            2'd1:    bands = 6'd15;
+            default: bands = 6'd60;
+        endcase
+    end
+
+    // Lengths, for the one region that is looked at.
+    logic [31:0]          first;
+    logic [WORD_BITS-1:0] words, mesh_words, list_words, frame_words;
+    logic [COUNT_BITS-1:0] count;
+    logic                 used;
+
+    assign mesh_words  = mesh_bytes[31:WORD_BITS] != '0 ? '1 : WORD_BITS'(mesh_bytes >> 4);
+    assign list_words  = list_shift > LAST_SHIFT ? '1 : WORD_BITS'(TABLE_WORDS) + (WORD_BITS'(bands) << list_shift);
+    assign frame_words = WORD_BITS'(SMALL_FRAME_WORDS) << {size, 1'b0};
+
+    always_comb begin
+        used = 1'b1;
+        case (region)
+            4'd1:    count = descriptor_limit;
+            4'd3:    count = exception_limit;
+            4'd8:    count = count_0;
+            default: count = count_1;
+        endcase
+        case (region)
+            4'd0:    begin first = mesh;                 words = mesh_words; end
+            4'd1:    begin first = geometry_descriptors; words = WORD_BITS'(count) + (WORD_BITS'(count) << 1); end
+            4'd2:    begin first = geometry_lists;       words = list_words; end
+            4'd3:    begin first = exceptions;           words = (WORD_BITS'(count) + WORD_BITS'(3)) >> 2; end
+            4'd4:    begin first = frame;                words = frame_words; end
+            4'd5:    begin first = depth;                words = frame_words << 1; used = raster_kept[4]; end
+            4'd6:    begin first = lists_0;              words = list_words; used = raster_kept[2]; end
+            4'd7:    begin first = lists_1;              words = list_words; used = raster_kept[3]; end
+            4'd8:    begin first = descriptors_0;        words = WORD_BITS'(count) + (WORD_BITS'(count) << 1); used = raster_kept[2]; end
+            default: begin first = descriptors_1;        words = WORD_BITS'(count) + (WORD_BITS'(count) << 1); used = raster_kept[3]; end
+        endcase
+    end
+
+    // Two clocks: the region, then its end.
+    logic                 looked, was_used;
+    logic [31:0]          was_first;
+    logic [WORD_BITS-1:0] was_words;
+    logic [WORD_BITS:0]   past;
+
+    assign past = {{(WORD_BITS + 1 - ADDRESS_BITS){1'b0}}, was_first[4 +: ADDRESS_BITS]} + {1'b0, was_words};
+
+    always_ff @(posedge clk) begin
+        looked    <= state == CHECK;
+        was_used  <= used;
+        was_first <= first;
+        was_words <= words;
+
+        if (looked && was_used && (was_first[3:0] != '0 || was_first[31:4+ADDRESS_BITS] != BASE[31:4+ADDRESS_BITS]
+                                   || past > (WORD_BITS+1)'(1) << ADDRESS_BITS))
+            misplaced <= 1'b1;
+        if (state == IDLE) misplaced <= 1'b0;
+    end
+
+    always_ff @(posedge clk) begin
+        geometry_start <= 1'b0;
+        raster_start   <= 1'b0;
+        geometry_ended <= 1'b0;
+        raster_ended   <= 1'b0;
+
+        if (ready) recovering <= 1'b0;
+
+        case (state)
+            IDLE: begin
+                rastering <= !geometry_pending;
+                region    <= geometry_pending ? FIRST_GEOMETRY : FIRST_RASTER;
+                if (geometry_pending || raster_pending) state <= CHECK;
+            end
+            CHECK: begin
+                region <= region + 1'b1;
+                if (region == (rastering ? LAST_RASTER : LAST_GEOMETRY)) state <= SETTLE;
+            end
+            // The last region's end.
+            SETTLE: state <= JUDGE;
+            JUDGE: begin
+                if (rastering) raster_error   <= size == 2'd3 ? ERROR_SIZE : misplaced ? ERROR_ADDRESS : ERROR_NONE;
+                else           geometry_error <= size == 2'd3 ? ERROR_SIZE : misplaced ? ERROR_ADDRESS : ERROR_NONE;
+                if (size == 2'd3 || misplaced) begin
+                    if (rastering) {raster_pending, raster_ended}     <= 2'b01;
+                    else           {geometry_pending, geometry_ended} <= 2'b01;
+                    state <= IDLE;
+                end else begin
+                    state <= START;
+                end
+            end
+            default: if (!recovering) begin
+                if (rastering) {raster_pending, raster_start}     <= 2'b01;
+                else           {geometry_pending, geometry_start} <= 2'b01;
+                state <= IDLE;
+            end
+        endcase
+
+        // Asked while the same pass is asked for or busy: refused, and the pass goes on.
+        if (geometry_ask) begin
+            if (geometry_active) begin
+                geometry_error <= ERROR_BUSY;
+            end else begin
+                geometry_pending <= 1'b1;
+                geometry_kept    <= geometry_flags;
+                geometry_error   <= ERROR_NONE;
+            end
+        end
+        if (raster_ask) begin
+            if (raster_active) begin
+                raster_error <= ERROR_BUSY;
+            end else begin
+                raster_pending <= 1'b1;
+                raster_kept    <= raster_flags;
+                raster_error   <= ERROR_NONE;
+            end
+        end
+
+        if (geometry_done) begin
+            geometry_ended <= 1'b1;
+            if (mesh_error) geometry_error <= ERROR_MESH;
+            else if (full)  geometry_error <= ERROR_FULL;
+        end
+        if (raster_done) begin
+            raster_ended <= 1'b1;
+            if (list_error) raster_error <= ERROR_LIST;
+        end
+
+        if (cancel) begin
+            if (geometry_active) begin
+                geometry_ended <= 1'b1;
+                geometry_error <= ERROR_CANCELLED;
+            end
+            if (raster_active) begin
+                raster_ended <= 1'b1;
+                raster_error <= ERROR_CANCELLED;
+            end
+        end
+        if (rst || cancel) begin
+            state            <= IDLE;
+            geometry_pending <= 1'b0;
+            raster_pending   <= 1'b0;
+            geometry_start   <= 1'b0;
+            raster_start     <= 1'b0;
+            recovering       <= 1'b1;
+        end
+        if (rst) begin
+            geometry_ended <= 1'b0;
+            raster_ended   <= 1'b0;
+            geometry_error <= ERROR_NONE;
+            raster_error   <= ERROR_NONE;
+        end
+    end
+
+    wire _unused = &{1'b0, mesh_bytes[3:0]};
+endmodule
+
+`default_nettype wire
