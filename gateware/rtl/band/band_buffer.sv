@@ -1,28 +1,39 @@
 // The band buffer: colour and depth of a band, at most 15,360 pixels, in block RAM, shared by all renderers. While one band
-// is drawn the one before it is written to memory.
+// is drawn the one before it is written to memory: in each line, what was drawn now and what was drawn there last.
 //
 //                        ┌────────────┐  drawn  ┌─────────────────┐ flushed  ┌────────────┐
 //   groups ─▶ band_pipe ─┤            ├────────▶│ colour bank 0/1 │─────────▶│            │─▶ cmd
-//                ▲       │            │         ├─────────────────┤          │ band_flush │
-//                └───────┤  compare   │◀───────▶│ depth (shared)  │┄ debug ┄▶│            │─▶ wdata
-//                        └────────────┘         └─────────────────┘          └────────────┘
+//        │       ▲       │            │         ├─────────────────┤          │ band_flush │
+//        │       └───────┤  compare   │◀───────▶│ depth (shared)  │┄ debug ┄▶│            │─▶ wdata
+//        │               └────────────┘         └─────────────────┘          └─────▲──────┘
+//        │               ┌──────────────┐             rows to write                │
+//        └──────────────▶│ band_extents │──────────────────────────────────────────┘
+//                        └──────────────┘
 //
-// A row is eight pixels, and its address is y_in_band * (W/8) + x/8. Each pixel has, beside its colour, a bit that says
+// A row is eight pixels, and its address is line * (W/8) + column: y in the band and x/8. Each pixel has, beside its colour, a bit that says
 // whether it has been written in this band; a bank is clear when no bit is set. Depth counts as 0 and colour as the clear
 // colour where the bit is not set, so that neither has to be stored, one depth memory serves both banks, and the clear
-// colour may change from band to band. The flush resets the bits behind itself: there is no clear pass. 24 RAMB36.
+// colour may change from band to band. The flush resets the bits behind itself: there is no clear pass. 25 RAMB36.
 //
-// Groups: {row, mask, eight depth codes u18, eight colours RGB565}, lane 0 (the leftmost) in the lowest bits. Lane i is
-// written where mask[i] is set and code[i] is at least the stored one. One group a clock; see band_pipe for hazards.
+// Groups: {row, line, column, mask, eight depth codes u18, eight colours RGB565}, lane 0 (the leftmost) in the lowest bits. Lane
+// i is written where mask[i] is set and code[i] is at least the stored one. One group a clock; see band_pipe for hazards.
 //
-// Bands: an item of `band_*` says that the band is drawn and how it is to be flushed: address of its first 128-bit word,
-// `rows` (at least 1), clear colour; with `with_depth` also its depth, as 32-bit words from `depth_base` on. Groups taken up
-// to and including the first clock of `band_valid` belong to it; then no group is taken until the item has moved, which
-// is when the last group is written and the band before has gone to memory. So the banks have changed places.
-// `with_depth` is for debugging: the next band is drawn only after the flush, and takes three words a row.
+// Bands: an item of `band_*` says that the band is drawn and how it is to be flushed: address of its first 128-bit word, its
+// `lines` (at least 1) and `stride`, the rows of a line; clear colour. Groups taken up to and including the first clock of
+// `band_valid` belong to it; then no group is taken until the item has moved, which is when the last group is written and the
+// band before has gone to memory. So the banks have changed places.
+//
+// Of two frame buffers, `slot` 0 and 1, and `first_line`, the band's place in the picture, it is known which words of each line
+// the flush before may have left other than clear: from the first to the last that had been drawn in. Those and the ones that
+// have been drawn in now go to memory, from the first to the last of both together. With `whole` all words go: when it is not
+// known what the lines in the frame buffer hold, or it is not what was flushed there last with this clear colour and stride.
+//
+// `with_depth` is for debugging: depth goes to memory too, as 32-bit words from `depth_base` on, and all of the band as with
+// `whole`. The next band is drawn only after the flush, and takes three words a row.
 //
 // `restart` (and reset) drops the band being drawn and stops the flush; words that have been read, at most 32, still go to
-// memory. Then both banks are cleared, 2,048 clocks in which `clearing` is high and no stream is taken, whatever memory
+// memory. The lines of the band that was being flushed, after reset all lines, are to be flushed with `whole` in this slot before
+// they are flushed without. Then both banks are cleared, 2,048 clocks in which `clearing` is high and no stream is taken, whatever memory
 // does. The renderers are to be restarted too: a group or band that is still offered afterwards counts.
 //
 // Streams: an item moves in a clock in which valid and ready are high; valid does not wait for ready, a payload stays as it
@@ -44,6 +55,8 @@ module band_buffer #(
     input  wire                     group_valid,
     output logic                    group_ready,
     input  wire  [10:0]             group_row,
+    input  wire  [5:0]              group_line,
+    input  wire  [7:0]              group_column,
     input  wire  [7:0]              group_mask,
     input  wire  [8*18-1:0]         group_codes,
     input  wire  [8*16-1:0]         group_colours,
@@ -52,7 +65,11 @@ module band_buffer #(
     output logic                    band_ready,
     input  wire  [ADDRESS_BITS-1:0] band_base,
     input  wire  [ADDRESS_BITS-1:0] band_depth_base,
-    input  wire  [10:0]             band_rows,
+    input  wire  [5:0]              band_lines,
+    input  wire  [7:0]              band_stride,
+    input  wire  [9:0]              band_first_line,
+    input  wire                     band_slot,
+    input  wire                     band_whole,
     input  wire                     band_with_depth,
     input  wire  [15:0]             band_clear,
     // Memory.
@@ -106,11 +123,22 @@ module band_buffer #(
         .empty, .held
     );
 
+    logic                span_valid, span_ready, spans_busy;
+    logic [ROW_BITS-1:0] span_first, span_last;
+
+    band_extents #(.ROW_BITS(ROW_BITS)) extents (
+        .clk, .rst, .sweep(clearing), .drawn,
+        .group_valid(group_valid && group_ready && group_mask != '0), .group_line, .group_column,
+        .start(swap), .lines(band_lines), .stride(band_stride), .first_line(band_first_line), .slot(band_slot),
+        .whole(band_whole || band_with_depth), .busy(spans_busy), .span_valid, .span_ready, .span_first, .span_last
+    );
+
     band_flush #(.ADDRESS_BITS(ADDRESS_BITS), .ROW_BITS(ROW_BITS)) flush (
         .clk, .rst,
-        .start(swap), .base(band_base), .depth_base(band_depth_base), .rows(band_rows), .with_depth(band_with_depth),
+        .start(swap), .base(band_base), .depth_base(band_depth_base), .with_depth(band_with_depth),
         .clear_colour(band_clear), .restart, .idle(flush_idle), .sweeping(clearing),
         .reads_depth(flush_reads_depth), .waits(flush_waits),
+        .span_valid, .span_ready, .span_first, .span_last, .spans_busy,
         .row(flush_row), .colours(flushed_colours), .codes(stored_codes), .written(flushed_written),
         .clears(flush_clears), .clear_row(flush_clear_row),
         .cmd_valid, .cmd_ready, .cmd_addr, .wdata_valid, .wdata_ready, .wdata_data

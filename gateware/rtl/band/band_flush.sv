@@ -1,14 +1,16 @@
-// Reads a finished band out of its bank, row by row, writes it to memory, and clears each row behind itself.
+// Reads spans of rows of a finished band out of its bank, writes them to memory, and clears each row behind itself.
 //
-//   row ─▶ ┄┄ band_bank's read ┄┄ ─▶ compose ─▶ word ─▶ fifo ─▶ wdata
-//    └──▶ clear_row, a clock later                         └─▶ cmd ─▶ owed ┘
+//   span ─▶ row ─▶ ┄┄ band_bank's read ┄┄ ─▶ compose ─▶ word ──▶ fifo ─▶ wdata
+//            └──▶ clear_row, a clock later, ─▶ address ─▶ fifo ─▶ cmd ─▶ owed ┘
 //
 // One row is one 128-bit word: eight RGB565 pixels, the leftmost in the lowest bits; a pixel that nobody has drawn takes
-// the clear colour. With `with_depth` two words follow, four depths of 32 bits each, 0 where nobody has drawn. Colour words
-// go to `base` and the words after it, depth words to `depth_base` and the words after it.
+// the clear colour. With `with_depth` two words follow, four depths of 32 bits each, 0 where nobody has drawn. The colour word
+// of row r goes to `base` + r, its depth words to `depth_base` + 2r and the word after it.
 //
 // `start` takes these parameters and begins; it may come while `idle` is high, which falls until memory has taken the last
-// word. Throughput one word a clock where memory keeps up; the first command comes 6 clocks after `start`.
+// word. The rows are those of the spans, an item {first, last} each, last >= first, in their order; `spans_busy`
+// is high until the last of them has been taken. Throughput one word a clock where spans are there in time and memory keeps up;
+// the first command comes 7 clocks after the first span was taken.
 //
 // Memory side, the LiteDRAM native write port: 128-bit word addresses by valid/ready, data by valid/ready in the order of
 // the addresses. LiteDRAM takes the data of a command some time after it without looking at `wdata_valid`, so a command is
@@ -32,7 +34,6 @@ module band_flush #(
     input  wire                     start,
     input  wire  [ADDRESS_BITS-1:0] base,
     input  wire  [ADDRESS_BITS-1:0] depth_base,
-    input  wire  [ROW_BITS-1:0]     rows,
     input  wire                     with_depth,
     input  wire  [15:0]             clear_colour,
     input  wire                     restart,
@@ -40,6 +41,12 @@ module band_flush #(
     output logic                    sweeping,
     output logic                    reads_depth,
     output logic                    waits,
+    // Spans.
+    input  wire                     span_valid,
+    output logic                    span_ready,
+    input  wire  [ROW_BITS-1:0]     span_first,
+    input  wire  [ROW_BITS-1:0]     span_last,
+    input  wire                     spans_busy,
     // Bank: what is there belongs to the `row` of 3 clocks before. `clears`: `clear_row` is to be marked as not written.
     output logic [ROW_BITS-1:0]     row,
     input  wire  [8*16-1:0]         colours,
@@ -71,18 +78,21 @@ module band_flush #(
     typedef enum logic [1:0] {IDLE, FLUSH, SWEEP} state_t;
     state_t                state;
     part_t                 part;
-    logic                  depth_too, issue, row_ends;
+    logic                  depth_too, in_span, issue, row_ends, span_ends;
     logic [ROW_BITS-1:0]   last_row;
     logic [15:0]           background;
+    logic [ADDRESS_BITS-1:0] colour_base, depth_words_base;
     // Words that may still be asked for.
     logic [COUNT_BITS-1:0] places;
 
     assign idle        = state == IDLE && places == COUNT_BITS'(WORDS);
     assign sweeping    = state == SWEEP;
     assign reads_depth = state == FLUSH && depth_too;
-    assign waits       = state == FLUSH && places == '0;
-    assign issue       = state == FLUSH && places != '0;
+    assign waits       = state == FLUSH && in_span && places == '0;
+    assign issue       = state == FLUSH && in_span && places != '0;
     assign row_ends    = part == (depth_too ? DEPTH_RIGHT : COLOUR);
+    assign span_ends   = issue && row_ends && row == last_row;
+    assign span_ready  = state == FLUSH && (!in_span || span_ends);
 
     // Rows, and their clearing a clock behind: the read is then under way.
     always_ff @(posedge clk) begin
@@ -90,13 +100,18 @@ module band_flush #(
         clear_row <= row;
 
         case (state)
-            FLUSH: if (issue) begin
-                part   <= next_part(part, depth_too);
-                clears <= row_ends;
-                if (row_ends) begin
-                    row <= row + 1'b1;
-                    if (row == last_row) state <= IDLE;
+            FLUSH: begin
+                if (issue) begin
+                    part   <= next_part(part, depth_too);
+                    clears <= row_ends;
+                    if (row_ends) row <= row + 1'b1;
                 end
+                if (span_ready) begin
+                    in_span  <= span_valid;
+                    row      <= span_first;
+                    last_row <= span_last;
+                end
+                if (!in_span && !spans_busy) state <= IDLE;
             end
             SWEEP: begin
                 clears <= 1'b1;
@@ -104,12 +119,13 @@ module band_flush #(
                 if (row == '1) state <= IDLE;
             end
             default: if (start) begin
-                state      <= FLUSH;
-                part       <= COLOUR;
-                row        <= '0;
-                last_row   <= rows - 1'b1;
-                depth_too  <= with_depth;
-                background <= clear_colour;
+                state            <= FLUSH;
+                part             <= COLOUR;
+                in_span          <= 1'b0;
+                colour_base      <= base;
+                depth_words_base <= depth_base;
+                depth_too        <= with_depth;
+                background       <= clear_colour;
             end
         endcase
 
@@ -123,8 +139,18 @@ module band_flush #(
     // The way through the bank.
     logic  asked_0, asked_1, asked_2;
     part_t part_0, part_1, part_2;
+    logic [ADDRESS_BITS-1:0] address_1, address_2, address;
 
     always_ff @(posedge clk) begin
+        // Here `clear_row` is the row that was asked for.
+        case (part_0)
+            COLOUR:     address_1 <= colour_base + ADDRESS_BITS'(clear_row);
+            DEPTH_LEFT: address_1 <= depth_words_base + ADDRESS_BITS'({clear_row, 1'b0});
+            default:    address_1 <= depth_words_base + ADDRESS_BITS'({clear_row, 1'b1});
+        endcase
+        address_2 <= address_1;
+        address   <= address_2;
+
         asked_0 <= issue;
         asked_1 <= asked_0;
         asked_2 <= asked_1;
@@ -140,7 +166,7 @@ module band_flush #(
     end
 
     logic                  word_valid, word_ready, word_stored;
-    logic [COUNT_BITS-1:0] to_command, owed;
+    logic [COUNT_BITS-1:0] owed;
     logic [127:0]          word, colour_word, depth_left_word, depth_right_word;
 
     for (genvar lane = 0; lane < 8; lane++) begin : lanes
@@ -166,42 +192,31 @@ module band_flush #(
         .out_valid(word_stored), .out_ready(wdata_ready && owed != '0), .out_data(wdata_data)
     );
 
-    // Commands, one for each word that has entered the FIFO. `owed`: words of commands that memory has taken. The FIFO is
-    // never too slow: a word that enters it is at its end when a command that is taken in the next clock shows in `owed`.
-    logic                    entered, commanded, taken;
-    logic [ADDRESS_BITS-1:0] colour_address, depth_address;
-    part_t                   cmd_part;
+    // Commands: a word's address enters its FIFO with the word, so it comes out of it no sooner, and a word is at the end of the
+    // words' FIFO when its command shows in `owed`: words of commands that memory has taken. There are places in both.
+    logic commanded, taken, address_ready;
 
-    assign cmd_valid   = to_command != '0;
-    assign cmd_addr    = cmd_part == COLOUR ? colour_address : depth_address;
+    fifo #(.WIDTH(ADDRESS_BITS), .DEPTH(WORDS)) addresses (
+        .clk, .rst,
+        .in_valid(word_valid), .in_ready(address_ready), .in_data(address),
+        .out_valid(cmd_valid), .out_ready(cmd_ready), .out_data(cmd_addr)
+    );
+
+    wire _unused = &{1'b0, word_ready, address_ready};
+
     assign wdata_valid = word_stored && owed != '0;
-    assign entered     = word_valid && word_ready;
     assign commanded   = cmd_valid && cmd_ready;
     assign taken       = wdata_valid && wdata_ready;
 
     always_ff @(posedge clk) begin
-        if (entered && !commanded)      to_command <= to_command + 1'b1;
-        else if (!entered && commanded) to_command <= to_command - 1'b1;
         if (commanded && !taken)        owed <= owed + 1'b1;
         else if (!commanded && taken)   owed <= owed - 1'b1;
         if (taken && !issue)            places <= places + 1'b1;
         else if (!taken && issue)       places <= places - 1'b1;
 
-        if (commanded) begin
-            cmd_part <= next_part(cmd_part, depth_too);
-            if (cmd_part == COLOUR) colour_address <= colour_address + 1'b1;
-            else                    depth_address  <= depth_address + 1'b1;
-        end
-        if (start) begin
-            cmd_part       <= COLOUR;
-            colour_address <= base;
-            depth_address  <= depth_base;
-        end
-
         if (rst) begin
-            to_command <= '0;
-            owed       <= '0;
-            places     <= COUNT_BITS'(WORDS);
+            owed   <= '0;
+            places <= COUNT_BITS'(WORDS);
         end
     end
 endmodule

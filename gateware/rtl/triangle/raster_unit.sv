@@ -8,8 +8,8 @@
 //
 // `frame_slot` says which of two frame buffers the frame is for. Only words that can differ from what the frame before in the
 // same slot has left there are written, unless `whole` says that all are to be: nothing is known of the frame buffer (it is
-// fresh, another size or another clear colour was drawn there, somebody else has written to it, or a frame for it was given up).
-// `with_depth` implies `whole`.
+// fresh, or elsewhere; another size or another clear colour was drawn there, or somebody else has written to it). `with_depth`
+// implies `whole`, and so does a slot in which no frame is whole: after reset, and after a frame for it was given up.
 //
 // Memory: three clients of a read_port, and a native write port (band_flush).
 // Counters run freely: clocks busy, clocks without a triangle in the walker, clocks in which it stood in a group, and
@@ -62,7 +62,7 @@ module raster_unit #(
     output logic [31:0]               clocks_memory,
     output logic [31:0]               clocks_flush
 );
-    // Bands of a picture, rows of a band, groups of a row, words of a band.
+    // Bands of a picture, lines of a band, groups of a line, words of a band.
     logic [5:0]  last_band, rows;
     logic [7:0]  stride;
     logic [10:0] words;
@@ -82,6 +82,19 @@ module raster_unit #(
     logic [9:0]              first_row;
     logic [ADDRESS_BITS-1:0] base, band_depth_base;
     logic                    reading, rastering, clearing, flushed, band_ready;
+
+    // The frame buffers that hold a whole frame: not the one that is being drawn.
+    logic [1:0] known;
+    logic       all_words;
+
+    always_ff @(posedge clk) begin
+        if (state == IDLE) begin
+            all_words <= whole || !known[frame_slot];
+            if (start) known[frame_slot] <= 1'b0;
+        end
+        if (state == FLUSH && flushed) known[frame_slot] <= 1'b1;
+        if (rst) known <= '0;
+    end
 
     assign busy  = state != IDLE;
     assign ready = !clearing && flushed;
@@ -137,8 +150,6 @@ module raster_unit #(
 
     assign rastering = !raster_idle;
 
-    wire _unused = &{1'b0, frame_slot, whole, group_line, group_column};
-
     /* verilator lint_off PINCONNECTEMPTY */
     triangle_raster triangle_raster (
         .clk, .rst(rst || restart), .y0(first_row), .rows, .stride, .idle(raster_idle), .walking, .candidate, .stalled(),
@@ -149,8 +160,9 @@ module raster_unit #(
 
     band_buffer #(.ADDRESS_BITS(ADDRESS_BITS)) band_buffer (
         .clk, .rst, .restart, .clearing, .flushed,
-        .group_valid, .group_ready, .group_row, .group_mask, .group_codes, .group_colours,
-        .band_valid(state == HAND_OVER), .band_ready, .band_base(base), .band_depth_base, .band_rows(words),
+        .group_valid, .group_ready, .group_row, .group_line, .group_column, .group_mask, .group_codes, .group_colours,
+        .band_valid(state == HAND_OVER), .band_ready, .band_base(base), .band_depth_base, .band_lines(rows), .band_stride(stride),
+        .band_first_line(first_row), .band_slot(frame_slot), .band_whole(all_words),
         .band_with_depth(with_depth), .band_clear(clear),
         .cmd_valid, .cmd_ready, .cmd_addr, .wdata_valid, .wdata_ready, .wdata_data,
         .groups_in, .clocks_held, .clocks_memory, .clocks_flush

@@ -1,6 +1,7 @@
-//! The band buffer: what it draws is what a plain depth test draws, and memory gets every band whole and in order.
+//! The band buffer: what it draws is what a plain depth test draws, and memory gets of every band what may have changed, in order.
 
 use std::collections::VecDeque;
+use std::ops::Range;
 
 use glint_rtl::{Bits, Module, Port, Sink, Source, Stalls};
 use rand::RngExt;
@@ -10,6 +11,7 @@ const LANES: usize = 8;
 const ROWS_OF_A_BANK: u64 = 2048;
 /// Words that may be on their way to memory.
 const WORDS: usize = 32;
+const PICTURE_LINES: usize = 720;
 
 #[derive(Clone, Debug)]
 struct Group {
@@ -23,12 +25,26 @@ struct Group {
 struct Band {
     base: u32,
     depth_base: u32,
-    rows: usize,
+    lines: usize,
+    stride: usize,
+    first_line: usize,
+    slot: usize,
+    whole: bool,
     with_depth: bool,
     clear: u16,
 }
 
+impl Band {
+    /// Its lines in the picture.
+    fn picture_lines(&self) -> Range<usize> {
+        self.first_line..self.first_line + self.lines
+    }
+}
+
 type Word = (u32, [u32; 4]);
+
+/// Of each line in each frame buffer the columns from the first to the last that were drawn in last, where that is known.
+type Left = [Vec<Option<Range<usize>>>; 2];
 
 /// Depth and colour of the pixels that have been drawn, by row.
 struct Pixels(Vec<[Option<(u32, u16)>; LANES]>);
@@ -48,9 +64,30 @@ impl Pixels {
     }
 
     /// What goes to memory, in order.
-    fn words(&self, band: &Band) -> Vec<Word> {
+    fn words(&self, band: &Band, left: &mut Left) -> Vec<Word> {
+        let mut flushed = Vec::new();
+        for (line, picture_line) in band.picture_lines().enumerate() {
+            let rows = line * band.stride..(line + 1) * band.stride;
+            let drawn = |row: &usize| self.0[*row].iter().any(Option::is_some);
+            let now = match (rows.clone().find(drawn), rows.clone().rfind(drawn)) {
+                (Some(first), Some(last)) => first - rows.start..last + 1 - rows.start,
+                _ => 0..0,
+            };
+            let before = left[band.slot][picture_line].replace(now.clone());
+            let both = if band.whole || band.with_depth {
+                0..band.stride
+            } else {
+                match before.expect("a line of which nothing is known is flushed whole") {
+                    before if before.is_empty() => now,
+                    before if now.is_empty() => before,
+                    before => now.start.min(before.start)..now.end.max(before.end),
+                }
+            };
+            flushed.extend(both.map(|column| rows.start + column));
+        }
         let mut words = Vec::new();
-        for (row, pixels) in (0..).zip(&self.0[..band.rows]) {
+        for row in flushed {
+            let (pixels, row) = (&self.0[row], row as u32);
             let colour = pixels.map(|pixel| u32::from(pixel.map_or(band.clear, |(_, c)| c)));
             let pairs = [0, 1, 2, 3].map(|i| colour[2 * i] | colour[2 * i + 1] << 16);
             words.push((band.base + row, pairs));
@@ -130,7 +167,12 @@ struct Bench {
     /// `band_valid` in the clock before: groups are not taken any more.
     closed: bool,
     drawn: Pixels,
+    left: Left,
+    /// The band that went to memory last.
+    flushed_last: Option<Band>,
     expected: Vec<Word>,
+    /// Rows of a line.
+    stride: usize,
 }
 
 impl Bench {
@@ -143,13 +185,23 @@ impl Bench {
             group_source: Source::new(
                 &module,
                 "group",
-                &["row", "mask", "codes", "colours"],
+                &["row", "line", "column", "mask", "codes", "colours"],
                 Stalls::new(seed, group_stalls),
             ),
             band_source: Source::new(
                 &module,
                 "band",
-                &["base", "depth_base", "rows", "with_depth", "clear"],
+                &[
+                    "base",
+                    "depth_base",
+                    "lines",
+                    "stride",
+                    "first_line",
+                    "slot",
+                    "whole",
+                    "with_depth",
+                    "clear",
+                ],
                 Stalls::new(seed + 100, group_stalls),
             ),
             memory: Memory::new(&module, seed + 200, memory_stalls),
@@ -161,7 +213,10 @@ impl Bench {
             flushed: module.port("flushed"),
             closed: false,
             drawn: Pixels::clear(),
+            left: [(); 2].map(|()| vec![None; PICTURE_LINES]),
+            flushed_last: None,
             expected: Vec::new(),
+            stride: 40,
             module,
         }
     }
@@ -189,6 +244,8 @@ impl Bench {
         }
         self.group_source.push(vec![
             Bits::from(group.row as u64),
+            Bits::from((group.row / self.stride) as u64),
+            Bits::from((group.row % self.stride) as u64),
             Bits::from(u64::from(group.mask)),
             codes,
             colours,
@@ -196,11 +253,21 @@ impl Bench {
         self.groups.push_back(group);
     }
 
-    fn push_band(&mut self, band: Band) {
+    /// Ends a band, which is flushed whole where anything is unknown.
+    fn push_band(&mut self, mut band: Band) {
+        assert_eq!(band.stride, self.stride);
+        let waiting = self.bands.iter().filter(|other| other.slot == band.slot);
+        let mut known: Vec<_> = self.left[band.slot].iter().map(Option::is_some).collect();
+        waiting.for_each(|other| known[other.picture_lines()].fill(true));
+        band.whole |= known[band.picture_lines()].contains(&false);
         self.band_source.push(vec![
             Bits::from(u64::from(band.base)),
             Bits::from(u64::from(band.depth_base)),
-            Bits::from(band.rows as u64),
+            Bits::from(band.lines as u64),
+            Bits::from(band.stride as u64),
+            Bits::from(band.first_line as u64),
+            Bits::from(band.slot as u64),
+            Bits::from(u64::from(band.whole)),
             Bits::from(u64::from(band.with_depth)),
             Bits::from(u64::from(band.clear)),
         ]);
@@ -228,7 +295,9 @@ impl Bench {
         self.closed = module.is_high(self.band_valid);
         if self.band_source.len() < self.bands.len() {
             let band = self.bands.pop_front().expect("it was there");
-            self.expected.extend(self.drawn.words(&band));
+            self.expected
+                .extend(self.drawn.words(&band, &mut self.left));
+            self.flushed_last = Some(band);
             self.drawn = Pixels::clear();
             self.closed = false;
         }
@@ -280,7 +349,11 @@ impl Bench {
 fn random_group(random: &mut Pcg64Mcg, rows: usize) -> Group {
     Group {
         row: random.random_range(0..rows),
-        mask: random.random(),
+        mask: if random.random_ratio(1, 10) {
+            0
+        } else {
+            random.random()
+        },
         codes: std::array::from_fn(|_| match random.random_range(0..4) {
             0 => 1,
             1 => (1 << 18) - 1,
@@ -291,12 +364,17 @@ fn random_group(random: &mut Pcg64Mcg, rows: usize) -> Group {
     }
 }
 
-fn random_band(random: &mut Pcg64Mcg, rows: usize) -> Band {
+/// A band somewhere in one of few places of the picture: most were there before.
+fn random_band(random: &mut Pcg64Mcg, [lines, stride]: [usize; 2]) -> Band {
     Band {
         base: random.random_range(0..1 << 22),
         depth_base: random.random_range(0..1 << 22),
-        rows,
-        with_depth: random.random(),
+        lines,
+        stride,
+        first_line: [0, 2, PICTURE_LINES - lines][random.random_range(0..3)],
+        slot: random.random_range(0..2),
+        whole: random.random_ratio(1, 8),
+        with_depth: random.random_ratio(1, 4),
         clear: random.random(),
     }
 }
@@ -311,11 +389,16 @@ fn full_group(row: usize, code: u32) -> Group {
     }
 }
 
-fn plain_band(rows: usize) -> Band {
+/// A band of which nothing is known.
+fn plain_band([lines, stride]: [usize; 2]) -> Band {
     Band {
         base: 0x12_3456,
         depth_base: 0x65_4321,
-        rows,
+        lines,
+        stride,
+        first_line: 0,
+        slot: 0,
+        whole: true,
         with_depth: false,
         clear: 0xa55a,
     }
@@ -329,13 +412,15 @@ fn random_groups_in_many_bands_with_stalls() {
         let mut random = Pcg64Mcg::new(u128::from(seed));
         let mut bench = Bench::ready(seed, group_stalls, memory_stalls);
         // The same in all bands: groups that are taken just before a band ends belong to it, whoever they were meant for.
-        let rows = random.random_range(1..40);
-        for _ in 0..12 {
-            let count = random.random_range(0..300);
-            let groups: Vec<_> = (0..count)
-                .map(|_| random_group(&mut random, rows))
+        let shape @ [lines, stride] = [random.random_range(1..8), random.random_range(1..12)];
+        bench.stride = stride;
+        for _ in 0..60 {
+            // Often few, so that lines are empty and extents differ.
+            let most = [4, 20, 200][random.random_range(0..3)];
+            let groups: Vec<_> = (0..random.random_range(0..most))
+                .map(|_| random_group(&mut random, lines * stride))
                 .collect();
-            let band = random_band(&mut random, rows);
+            let band = random_band(&mut random, shape);
             bench.draw(groups, band);
         }
         bench.finish();
@@ -345,19 +430,71 @@ fn random_groups_in_many_bands_with_stalls() {
 #[test]
 fn whole_bands_leave_nothing_to_the_next() {
     let mut bench = Bench::ready(5, 0.0, 0.1);
-    for rows in [1920, 1920, 1800, 1800] {
-        bench.draw((0..rows).map(|row| full_group(row, 9)), plain_band(rows));
+    for shape @ [lines, stride] in [[12, 160], [24, 80], [45, 40], [45, 40]] {
+        bench.stride = stride;
+        let groups = (0..lines * stride).map(|row| full_group(row, 9));
+        bench.draw(groups, plain_band(shape));
     }
+    bench.stride = 160;
     // Both banks, without a group.
     for clear in [1, 2, 3] {
         let band = Band {
             clear,
             with_depth: clear == 2,
-            ..plain_band(1920)
+            ..plain_band([12, 160])
         };
         bench.draw([], band);
     }
     bench.finish();
+}
+
+/// Extents at all four corners of the largest bands, and of the picture.
+#[test]
+fn only_what_was_drawn_now_or_last_is_flushed() {
+    let mut bench = Bench::ready(11, 0.0, 0.1);
+    for shape @ [lines, stride] in [[45, 40], [24, 80], [12, 160]] {
+        bench.stride = stride;
+        let places = [0, PICTURE_LINES - lines];
+        let bands = places.map(|first_line| {
+            [0, 1].map(|slot| Band {
+                first_line,
+                slot,
+                ..plain_band(shape)
+            })
+        });
+        for band in bands.iter().flatten() {
+            bench.draw([], *band);
+        }
+        let last = lines * stride - 1;
+        // A row in the first line and one in the last; nothing.
+        for rows in [
+            [0, last],
+            [stride - 1, last + 1 - stride],
+            [1, 1],
+            [0, last],
+        ] {
+            for band in bands.iter().flatten() {
+                let groups = rows.map(|row| full_group(row, 9));
+                bench.draw(
+                    groups.into_iter().take(2 - band.slot),
+                    Band {
+                        whole: false,
+                        ..*band
+                    },
+                );
+            }
+        }
+        for band in bands.iter().flatten() {
+            bench.draw(
+                [],
+                Band {
+                    whole: false,
+                    ..*band
+                },
+            );
+        }
+        bench.finish();
+    }
 }
 
 #[test]
@@ -365,7 +502,7 @@ fn a_bank_after_reset_is_clear() {
     let mut bench = Bench::new(6, 0.0, 0.0);
     assert!(bench.is(bench.clearing));
     for _ in 0..2 {
-        bench.push_band(plain_band(1920));
+        bench.push_band(plain_band([48, 40]));
     }
     bench.finish();
     assert_eq!(bench.counter("groups_in"), 0);
@@ -382,7 +519,7 @@ fn one_group_a_clock_where_rows_or_lanes_differ() {
         ..full_group(i / 2, 2)
     });
     let start = bench.module.cycles();
-    bench.draw(rows.chain(lanes), plain_band(COUNT));
+    bench.draw(rows.chain(lanes), plain_band([COUNT / 40, 40]));
     let clocks = bench.module.cycles() - start;
     assert!(clocks <= 2 * COUNT as u64 + 2, "{clocks} clocks");
     bench.finish();
@@ -402,7 +539,7 @@ fn a_group_waits_for_the_lanes_it_shares() {
             colours: [0xffff; LANES],
             row: 7,
         }]);
-        bench.draw(groups, plain_band(200));
+        bench.draw(groups, plain_band([5, 40]));
         bench.finish();
         assert_eq!(bench.counter("clocks_held"), held, "{between} between");
     }
@@ -414,7 +551,7 @@ fn the_flush_keeps_up_with_memory_and_overlaps_with_drawing() {
     for (with_depth, words) in [(false, 1920), (true, 3 * 1920)] {
         let band = Band {
             with_depth,
-            ..plain_band(1920)
+            ..plain_band([48, 40])
         };
         bench.draw([], band);
         let start = bench.module.cycles();
@@ -425,7 +562,11 @@ fn the_flush_keeps_up_with_memory_and_overlaps_with_drawing() {
     // Six bands of as many groups as words.
     let start = bench.module.cycles();
     for _ in 0..6 {
-        bench.draw((0..1920).map(|row| full_group(row, 1)), plain_band(1920));
+        let band = Band {
+            whole: false,
+            ..plain_band([48, 40])
+        };
+        bench.draw((0..1920).map(|row| full_group(row, 1)), band);
     }
     bench.finish();
     let clocks = bench.module.cycles() - start;
@@ -437,11 +578,40 @@ fn the_flush_keeps_up_with_memory_and_overlaps_with_drawing() {
     assert!(memory == 0 && flush < 6 * 24, "{memory} and {flush} clocks");
 }
 
+/// No clock is lost between lines, and an empty line takes one.
+#[test]
+fn a_line_takes_a_clock_for_each_word_and_one_at_least() {
+    let mut bench = Bench::ready(12, 0.0, 0.0);
+    let band = Band {
+        whole: false,
+        ..plain_band([45, 40])
+    };
+    bench.draw([], band);
+    bench.finish();
+    // Words in every so many lines, and the clocks they take when the lines before were the same.
+    for (words, every, clocks) in [(1, 1, 45), (2, 1, 90), (5, 3, 75), (1, 3, 45), (1, 45, 45)] {
+        for same in [false, true] {
+            let rows = (0..45)
+                .step_by(every)
+                .flat_map(|line| 40 * line + 7..40 * line + 7 + words);
+            bench.draw(rows.map(|row| full_group(row, 1)), band);
+            bench.run_until(100, |bench| bench.bands.is_empty());
+            let start = bench.module.cycles();
+            bench.finish();
+            let found = bench.module.cycles() - start;
+            assert!(
+                !same || found <= clocks + 14,
+                "{found} clocks for {words} words in every line of {every}"
+            );
+        }
+    }
+}
+
 #[test]
 fn waits_for_memory_are_counted() {
     let mut bench = Bench::ready(10, 0.0, 0.75);
     for _ in 0..2 {
-        bench.draw([], plain_band(1000));
+        bench.draw([], plain_band([25, 40]));
     }
     bench.finish();
     assert!(bench.counter("clocks_memory") > 1000);
@@ -456,10 +626,21 @@ fn a_restart_ends_whatever_goes_on() {
         let mut bench = Bench::ready(seed, 0.2, 0.3);
         // One band on its way to memory, one being drawn.
         // Few rows: what is drawn last is what is cleared first.
-        let rows = random.random_range(if seed % 2 == 0 { 1..4 } else { 50..300 });
+        let lines = random.random_range(if seed % 2 == 0 { 1..4 } else { 10..40 });
+        let stride = random.random_range(1..10);
+        let (shape, rows) = ([lines, stride], lines * stride);
+        bench.stride = stride;
+        // What is known of these lines stays so.
+        bench.draw(
+            (0..rows / 2).map(|row| full_group(row, 9)),
+            Band {
+                first_line: 300,
+                ..plain_band(shape)
+            },
+        );
         bench.draw(
             (0..rows).map(|row| full_group(row, 9)),
-            random_band(&mut random, rows),
+            random_band(&mut random, shape),
         );
         bench.run_until(100_000, |bench| bench.bands.is_empty());
         for _ in 0..500 {
@@ -470,7 +651,7 @@ fn a_restart_ends_whatever_goes_on() {
         }
         // Sometimes with a band's end waiting.
         if random.random() {
-            bench.push_band(random_band(&mut random, rows));
+            bench.push_band(random_band(&mut random, shape));
             bench.clock();
         }
 
@@ -478,9 +659,15 @@ fn a_restart_ends_whatever_goes_on() {
 
         for _ in 0..4 {
             let groups: Vec<_> = (0..100).map(|_| random_group(&mut random, rows)).collect();
-            let band = random_band(&mut random, rows);
+            let band = random_band(&mut random, shape);
             bench.draw(groups, band);
         }
+        let elsewhere = Band {
+            first_line: 300,
+            whole: false,
+            ..plain_band(shape)
+        };
+        bench.draw([full_group(0, 1)], elsewhere);
         bench.finish();
     }
 }
@@ -497,6 +684,9 @@ impl Bench {
         self.clock();
         self.module.set(self.restart, 0_u64);
         let seen = self.memory.words.len();
+        if let Some(band) = self.flushed_last {
+            self.left[band.slot][band.picture_lines()].fill(None);
+        }
         self.group_source.clear();
         self.groups.clear();
         self.band_source.clear();

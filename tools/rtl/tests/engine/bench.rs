@@ -10,7 +10,7 @@ use glint_rtl::{Bits, Memory, Module, ReadPort, Stalls, WritePort};
 pub const SIZES: [(u32, u32); 3] = glint_model::SIZES;
 
 // Where things are in memory, by words of 16 bytes. Set 0 is the engine's, set 1 that of the clipper.
-const FRAME: u32 = 0;
+const FRAMES: [u32; 2] = [0, 0x6_0000];
 const DEPTH: u32 = 0x2_0000;
 const LISTS: [u32; 2] = [0x8_0000, 0xc_0000];
 const DESCRIPTORS: [u32; 2] = [0x10_0000, 0x14_0000];
@@ -21,10 +21,12 @@ const WORDS: usize = 0x20_0000;
 const LIST_SHIFT: u32 = 11;
 /// The most descriptors, and the most exceptions.
 const LIMIT: u32 = 80_000;
+pub const CLEAR: u16 = 0x1234;
 
 /// What the model draws.
 pub struct Expected {
     pub size: (u32, u32),
+    clear: u16,
     colour: Vec<u16>,
     depth: Vec<u32>,
     frame: FrameSetup,
@@ -35,6 +37,11 @@ pub struct Expected {
 
 /// Draws with the model.
 pub fn expected(mesh: &[u8], view: &View, size: (u32, u32), cull: bool) -> Expected {
+    expected_on(CLEAR, mesh, view, size, cull)
+}
+
+/// Draws with the model, on another colour.
+pub fn expected_on(clear: u16, mesh: &[u8], view: &View, size: (u32, u32), cull: bool) -> Expected {
     let mesh = &Mesh::new_checked(mesh).unwrap();
     let pixels = (size.0 * size.1) as usize;
     let (mut colour, mut depth) = (vec![0; pixels], vec![0; pixels]);
@@ -46,10 +53,7 @@ pub fn expected(mesh: &[u8], view: &View, size: (u32, u32), cull: bool) -> Expec
         colour: &mut colour,
         depth: &mut depth,
     };
-    let options = Options {
-        cull,
-        clear: 0x1234,
-    };
+    let options = Options { cull, clear };
     let mut clipped = Vec::new();
     let stats = trace(
         mesh,
@@ -66,6 +70,7 @@ pub fn expected(mesh: &[u8], view: &View, size: (u32, u32), cull: bool) -> Expec
     .unwrap();
     Expected {
         size,
+        clear,
         colour,
         depth,
         frame: FrameSetup::new(view, size.0, size.1, mesh.radius()).unwrap(),
@@ -108,12 +113,17 @@ pub struct Bench {
     frame: WritePort,
     /// Whether depths are written and compared as well.
     pub with_depth: bool,
+    /// The frame buffer that is drawn in.
+    pub slot: usize,
+    /// Size and clear colour of what is in the frame buffers, where it is not the engine that knows that it is nothing whole.
+    left: [Option<((u32, u32), u16)>; 2],
 }
 
-/// Clocks of the two passes.
+/// Clocks of the two passes, and the words of the frame and its depth that were written.
 pub struct Clocks {
     pub geometry: u64,
     pub raster: u64,
+    pub written: u64,
 }
 
 impl Bench {
@@ -128,6 +138,8 @@ impl Bench {
             frame: WritePort::new(&module, "frame_", Stalls::new(seed + 2, stalls)),
             module,
             with_depth: true,
+            slot: 0,
+            left: [None; 2],
         }
     }
 
@@ -189,6 +201,8 @@ impl Bench {
             })
         };
         let signed = |value: i64, width| Bits::default().with(0, width, value);
+        let whole =
+            self.left[self.slot].is_some_and(|left| left != (expected.size, expected.clear));
         for (port, value) in [
             ("mesh_first", u64::from(MESH) + 2),
             ("mesh_last", u64::from(MESH) + mesh.len() as u64 / 16 - 1),
@@ -204,11 +218,12 @@ impl Bench {
             ("scale_shift", frame.scale_shift.into()),
             ("near_z", frame.near as u64),
             ("depth_mantissa", frame.depth.mantissa.into()),
-            ("frame_base", FRAME.into()),
+            ("frame_base", FRAMES[self.slot].into()),
             ("depth_base", DEPTH.into()),
             ("with_depth", self.with_depth.into()),
-            ("clear", 0x1234),
-            ("whole", 1),
+            ("clear", expected.clear.into()),
+            ("frame_slot", self.slot as u64),
+            ("whole", whole.into()),
         ] {
             self.set(port, value);
         }
@@ -242,23 +257,37 @@ impl Bench {
         write_clipped(&mut self.memory, expected);
         self.set("present", if expected.clipped.is_empty() { 1 } else { 3 });
         self.pulse("raster_start");
+        let written = self.frame.written;
         let raster = self.wait_for("raster_done");
+        self.left[self.slot] = Some((expected.size, expected.clear));
         self.compare(name, expected);
-        Clocks { geometry, raster }
+        Clocks {
+            geometry,
+            raster,
+            written: self.frame.written - written,
+        }
+    }
+
+    /// Writes a picture's worth of something else into the frame buffer.
+    pub fn scribble(&mut self) {
+        self.memory
+            .write(FRAMES[self.slot], &[0x99; 1280 * 720 * 2]);
+        self.left[self.slot] = Some(((0, 0), 0));
     }
 
     /// The frame in memory is the one expected.
     fn compare(&self, name: &str, expected: &Expected) {
         for i in 0..expected.colour.len() as u32 {
             let (x, y) = (i % expected.size.0, i / expected.size.0);
-            let colour = self.memory.entry(FRAME, i / 2) >> (16 * (i % 2)) & 0xffff;
+            let colour = self.memory.entry(FRAMES[self.slot], i / 2) >> (16 * (i % 2)) & 0xffff;
             let (found, wanted) = (self.memory.entry(DEPTH, i), expected.depth[i as usize]);
             let depth = if self.with_depth { found } else { wanted };
             let wanted = (expected.colour[i as usize].into(), wanted);
             assert_eq!(
                 (colour, depth),
                 wanted,
-                "{name}: colour and depth at {x}, {y}"
+                "{name}: colour and depth at {x}, {y} in slot {}",
+                self.slot
             );
         }
     }

@@ -4,7 +4,7 @@
 mod bench;
 mod meshes;
 
-use bench::{Bench, SIZES, expected};
+use bench::{Bench, CLEAR, SIZES, expected, expected_on};
 use glint::{convert, generate, view};
 use glint_core::camera::View;
 use glint_core::fixed::{Q32_32, Turns};
@@ -191,11 +191,17 @@ fn scenes() -> Vec<Scene> {
     ]
 }
 
-/// Draws every scene at one size.
+/// Draws every scene at one size, with its depth and without, in one frame buffer or the other.
 fn all_scenes(size: (u32, u32), stalls: f64) {
     let mut bench = Bench::new(size.0, stalls);
+    let mut random = Pcg64Mcg::new(size.0.into());
     for (name, mesh, view, cull) in scenes() {
         let expected = expected(&mesh, &view, size, cull);
+        bench.slot = random.random_range(0..2);
+        bench.with_depth = true;
+        bench.draw(name, &mesh, &expected);
+        bench.slot = random.random_range(0..2);
+        bench.with_depth = false;
         let clocks = bench.draw(name, &mesh, &expected);
         println!(
             "{name}: {} clocks for the geometry, {} for the raster, {} clipped, {} pixels",
@@ -244,6 +250,90 @@ fn random_lists_with_random_stalls() {
         };
         let expected = expected(&mesh, &view, SIZES[0], random.random());
         bench.draw(&format!("list {seed}"), &mesh, &expected);
+    }
+}
+
+/// A frame buffer holds the frame that was drawn last, whatever was there before: only what can differ is written.
+#[test]
+fn frames_after_each_other() {
+    for seed in 0..4_u32 {
+        let mut random = Pcg64Mcg::new(u128::from(seed) + 77);
+        let stalls = [0.0, 0.4][seed as usize % 2];
+        let mut bench = Bench::new(seed, stalls);
+        let (mut size, mut clear) = (SIZES[0], CLEAR);
+        for frame in 0..40 {
+            let name = format!("seed {seed}, frame {frame}");
+            bench.slot = random.random_range(0..2);
+            bench.with_depth = random.random_ratio(1, 10);
+            match random.random_range(0..20) {
+                0 => size = SIZES[random.random_range(0..3)],
+                1 => clear = random.random(),
+                2 => bench.scribble(),
+                _ => {}
+            }
+            // Few triangles: most lines are empty, and others than in the frame before.
+            let count = random.random_range(0..8);
+            let extent = [0.02, 0.3, 1.0][random.random_range(0..3)];
+            let mesh = meshes::mesh(&meshes::random(&mut random, count, extent), 65_535);
+            let expected = expected_on(clear, &mesh, &ahead(1.0, 0.1), size, false);
+            if random.random_ratio(1, 8) {
+                bench.configure(&mesh, &expected);
+                bench.wait_for("ready");
+                bench.pulse("geometry_start");
+                bench.wait_for("geometry_done");
+                bench.pulse("raster_start");
+                for _ in 0..random.random_range(0..3000) {
+                    bench.clock();
+                }
+                bench.pulse("cancel");
+            }
+            bench.draw(&name, &mesh, &expected);
+        }
+    }
+}
+
+#[test]
+fn nothing_new_is_not_written() {
+    let mut bench = Bench::new(11, 0.0);
+    bench.with_depth = false;
+    let nothing = meshes::mesh(&[], 100);
+    // In a picture of 1280x720 from -2 to 2 it covers 160 pixels, at most 21 words, in 90 lines.
+    let square = |x: f64| {
+        let [left, right, top, bottom] = [x, x + 0.5, -0.14, 0.14];
+        let corner = |x, z| at(x, 0.0, z);
+        meshes::mesh(
+            &[
+                (
+                    [corner(left, top), corner(right, top), corner(right, bottom)],
+                    0xf800,
+                ),
+                (
+                    [
+                        corner(left, top),
+                        corner(right, bottom),
+                        corner(left, bottom),
+                    ],
+                    0x001f,
+                ),
+            ],
+            100,
+        )
+    };
+    for (name, mesh, slot, words) in [
+        ("fresh", &nothing, 0, 115_200..=115_200),
+        ("nothing again", &nothing, 0, 0..=0),
+        ("a square", &square(0.0), 0, 1600..=1932),
+        ("the other slot", &square(0.0), 1, 115_200..=115_200),
+        ("the same square", &square(0.0), 0, 1600..=1932),
+        ("the next square", &square(0.5), 0, 3200..=3864),
+        ("the other slot again", &square(0.0), 1, 1600..=1932),
+        ("nothing left", &nothing, 0, 1600..=1932),
+        ("and nothing new", &nothing, 0, 0..=0),
+    ] {
+        bench.slot = slot;
+        let expected = expected(mesh, &ahead(1.0, 0.1), SIZES[2], false);
+        let written = bench.draw(name, mesh, &expected).written;
+        assert!(words.contains(&written), "{name}: {written} words");
     }
 }
 
@@ -325,8 +415,8 @@ fn bad_meshes_and_full_lists_are_told() {
     }
 }
 
-/// Pixels drawn a clock on a sphere that fills 96 % of the picture's height, memory without stalls: of a frame alone, from
-/// the first fetch to the last word written, and of frames whose passes overlap, where the longer one counts.
+/// Pixels drawn a clock on a sphere that fills 96 % of the picture's height, memory without stalls, after the same frame: of a
+/// frame alone, from the first fetch to the last word written, and of frames whose passes overlap, where the longer one counts.
 #[test]
 fn a_sphere_is_drawn_fast() {
     for (name, size, alone, overlapped) in [
@@ -337,6 +427,8 @@ fn a_sphere_is_drawn_fast() {
         let expected = expected(&mesh, &ahead(0.4781, 0.5), size, true);
         let mut bench = Bench::new(9, 0.0);
         bench.with_depth = false;
+        bench.draw("before it", &mesh, &expected);
+        let counts = ["clocks_walking", "clocks_empty"].map(|count| bench.count(count));
         let clocks = bench.draw(name, &mesh, &expected);
         let pixels = expected.stats.pixels_covered as f64;
         let rates = [
@@ -348,8 +440,8 @@ fn a_sphere_is_drawn_fast() {
              {:.2} pixels a clock alone, {:.2} overlapped",
             clocks.geometry,
             clocks.raster,
-            bench.count("clocks_walking"),
-            bench.count("clocks_empty"),
+            bench.count("clocks_walking") - counts[0],
+            bench.count("clocks_empty") - counts[1],
             rates[0],
             rates[1]
         );

@@ -1,0 +1,174 @@
+// Finds out which words of a band have to go to memory: in each line those from the first to the last one that has been drawn
+// now or was drawn in the frame before in the same frame buffer. All others hold the clear colour there already.
+//
+//               ┌───────────────┐
+//   groups ────▶│ now, bank 0/1 │──┬──────────────▶ union ─▶ + line's first row ─▶ skid_buffer ─▶ spans
+//               └───────────────┘  ▼                 ▲
+//                          ┌───────────────┐         │
+//                          │ last, slot 0/1├─────────┘
+//                          └───────────────┘
+//
+// `now` keeps a line's extent, its first and its last column (of eight pixels), in LUT memory, a memory for each bank: what a
+// group adds is read and written in one clock, so there is no hazard. `last` keeps those of all lines of both frame buffers in
+// a block RAM. An empty extent goes from the largest column down to 0, which makes it neutral: it is never asked about, and the
+// largest column, all ones, may not be drawn in.
+//
+// `start` (one clock, not while `busy` or `sweep` is high) plans the band in the bank that is not drawn from the next clock on:
+// its `lines` (at least 1) from the picture's line `first_line` on, of `stride` columns each. A span comes out for every line
+// that is not empty, its first and its last row in the band buffer, in order. With `whole` nothing is known of the frame buffer,
+// and it is all of each line. `busy` falls when the last span has been taken. The lines' extents are then empty in `now`, and
+// are those of `last`. Latency 6 clocks from `start` to the first span, throughput a line a clock, empty or not.
+//
+// `sweep` empties `now`; it must last 2^LINE_BITS clocks at least. It and reset give up what is being planned: its lines' extents
+// in `last` are not known any more, as after reset those of all lines. The next band of such lines is to be `whole`.
+
+`default_nettype none
+
+module band_extents #(
+    parameter int unsigned ROW_BITS     = 11,
+    parameter int unsigned LINE_BITS    = 6,
+    parameter int unsigned COLUMN_BITS  = 8,
+    parameter int unsigned PICTURE_BITS = 10
+) (
+    input  wire                     clk,
+    input  wire                     rst,
+    input  wire                     sweep,
+    // The bank that is drawn.
+    input  wire                     drawn,
+    // Groups that have a pixel.
+    input  wire                     group_valid,
+    input  wire  [LINE_BITS-1:0]    group_line,
+    input  wire  [COLUMN_BITS-1:0]  group_column,
+    // Band.
+    input  wire                     start,
+    input  wire  [LINE_BITS-1:0]    lines,
+    input  wire  [COLUMN_BITS-1:0]  stride,
+    input  wire  [PICTURE_BITS-1:0] first_line,
+    input  wire                     slot,
+    input  wire                     whole,
+    output logic                    busy,
+    // Spans.
+    output logic                    span_valid,
+    input  wire                     span_ready,
+    output logic [ROW_BITS-1:0]     span_first,
+    output logic [ROW_BITS-1:0]     span_last
+);
+    localparam int unsigned EXTENT_BITS = 2 * COLUMN_BITS;
+    localparam int unsigned PLACE_BITS  = PICTURE_BITS + 1;
+
+    // {last column, first column}
+    localparam logic [EXTENT_BITS-1:0] EMPTY = {{COLUMN_BITS{1'b0}}, {COLUMN_BITS{1'b1}}};
+
+    function automatic logic [EXTENT_BITS-1:0] united(input logic [EXTENT_BITS-1:0] a, input logic [EXTENT_BITS-1:0] b);
+        logic [COLUMN_BITS-1:0] a_first, a_last, b_first, b_last;
+        {a_last, a_first} = a;
+        {b_last, b_first} = b;
+        united = {a_last > b_last ? a_last : b_last, a_first < b_first ? a_first : b_first};
+    endfunction
+
+    // Lines in planning.
+    logic                    planning, plan;
+    logic [LINE_BITS-1:0]    line, last_line;
+    logic [PLACE_BITS-1:0]   place;
+    logic [COLUMN_BITS-1:0]  columns, last_column;
+    logic                    all;
+    logic                    advance;
+
+    assign plan = planning && advance;
+
+    // What the groups add.
+    logic                   adds;
+    logic [LINE_BITS-1:0]   add_line;
+    logic [COLUMN_BITS-1:0] add_column;
+
+    always_ff @(posedge clk) begin
+        adds       <= group_valid && !rst;
+        add_line   <= group_line;
+        add_column <= group_column;
+    end
+
+    logic [EXTENT_BITS-1:0] kept [0:1];
+
+    for (genvar bank = 0; bank < 2; bank++) begin : banks
+        (* ram_style = "distributed" *) logic [EXTENT_BITS-1:0] now [0:2**LINE_BITS-1];
+        logic                 empties;
+        logic [LINE_BITS-1:0] at;
+
+        assign empties       = sweep || drawn != 1'(bank);
+        assign at            = empties ? line : add_line;
+        assign kept[bank] = now[at];
+
+        always_ff @(posedge clk) begin
+            if (empties ? sweep || plan : adds)
+                now[at] <= empties ? EMPTY : united(kept[bank], {add_column, add_column});
+        end
+    end
+
+    always_ff @(posedge clk) begin
+        if (sweep || plan) line <= line + 1'b1;
+        if (plan) begin
+            place[PICTURE_BITS-1:0] <= place[PICTURE_BITS-1:0] + 1'b1;
+            if (line == last_line) planning <= 1'b0;
+        end
+        if (start) begin
+            planning    <= 1'b1;
+            line        <= '0;
+            last_line   <= lines - 1'b1;
+            place       <= {slot, first_line};
+            columns     <= stride;
+            last_column <= stride - 1'b1;
+            all         <= whole;
+        end
+
+        if (rst || sweep) planning <= 1'b0;
+    end
+
+    // What was there, and what is there now, which is written a clock after that has been read.
+    (* ram_style = "block", rw_addr_collision = "no", no_rw_check *)
+    logic [EXTENT_BITS-1:0] last [0:2**PLACE_BITS-1];
+    logic [PLACE_BITS-1:0]  from, to;
+    logic [EXTENT_BITS-1:0] to_store, latched, earlier, now_1, now_2, now_3, united_4;
+    logic                   to_write;
+    logic [4:1]             valid;
+    // Of the line in the last stage.
+    logic [ROW_BITS-1:0]    line_row;
+
+    always_ff @(posedge clk) begin
+        to_write <= valid[1] && advance;
+        to       <= from;
+        to_store <= now_1;
+        if (to_write) last[to] <= to_store;
+
+        if (advance) begin
+            valid    <= {valid[3:1], planning};
+            from     <= place;
+            now_1    <= kept[!drawn];
+            now_2    <= now_1;
+            now_3    <= now_2;
+            latched  <= last[from];
+            earlier  <= latched;
+            united_4 <= all ? {last_column, {COLUMN_BITS{1'b0}}} : united(earlier, now_3);
+            if (valid[4]) line_row <= line_row + ROW_BITS'(columns);
+        end
+        if (start) line_row <= '0;
+
+        if (rst || sweep) begin
+            valid    <= '0;
+            to_write <= 1'b0;
+        end
+    end
+
+    logic [ROW_BITS-1:0] first, final_row;
+
+    assign first     = line_row + ROW_BITS'(united_4[COLUMN_BITS-1:0]);
+    assign final_row = line_row + ROW_BITS'(united_4[EXTENT_BITS-1:COLUMN_BITS]);
+    assign busy      = planning || valid != '0 || span_valid;
+
+    skid_buffer #(.WIDTH(2 * ROW_BITS)) spans (
+        .clk, .rst(rst || sweep),
+        .in_valid(valid[4] && united_4[COLUMN_BITS-1:0] != '1), .in_ready(advance), .in_data({first, final_row}),
+        .out_valid(span_valid), .out_ready(span_ready), .out_data({span_first, span_last})
+    );
+endmodule
+
+`default_nettype wire
