@@ -20,7 +20,7 @@
 module read_port #(
     parameter int unsigned CLIENTS      = 4,
     parameter int unsigned ADDRESS_BITS = 23,
-    parameter int unsigned DEPTH        = 16
+    parameter int unsigned DEPTH        = 32
 ) (
     input  wire                             clk,
     input  wire                             rst,

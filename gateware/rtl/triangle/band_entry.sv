@@ -6,44 +6,57 @@
 //         band     ╱     ╲
 //      ═══════════════════════════
 //
-// One multiplier and adder does all in eight passes, one a clock:
+// A multiplier and adder, and for `beside` a second one, do all in eight passes, one a clock:
 //
 //   pass   product              plus           gives
 //   0, 1   step_y * offset      start          E' at lane 0 of edges 0 and 1
-//   2, 3   step_x * 7           pass 0, 1      E' at lane 7
+//   2, 3   step_x * 7           pass 0, 1      E' at lane 7, and beside the group: step_x * 8 or -step_x
 //   4      step_y * offset      start          edge 2
 //   5      low 24 bits of the depth's step     depth start and half a code
-//   6      step_x * 7           pass 4
+//   6      step_x * 7           pass 4         lane 7 and beside
 //   7      its high 8 bits      pass 5         depth
 //
-// Streams are valid/ready, and ready comes from a register. Latency 12 clocks, throughput a triangle in 12 clocks; one is in
-// work and one waits, while another is walked over. A triangle without a row in the band is taken and dropped. The band's
-// first row `y0` and its `rows` hold while triangles are inside.
+// Streams are valid/ready, and ready comes from registers. Latency 13 clocks, throughput a triangle in 8 clocks: while one is in
+// its passes the one before ends, or is held until there is room, and another one waits. A triangle without a row in the band is
+// taken and dropped. The band's first row `in_y0` and whether it is an odd one (`in_odd`) come with the triangle; `holds`
+// tells whether there are triangles of an even band, and of an odd one. The bands' `rows` hold while triangles are inside.
 
 `default_nettype none
 
 module band_entry (
     input  wire                            clk,
     input  wire                            rst,
-    input  wire  [9:0]                     y0,
     input  wire  [5:0]                     rows,
-    output logic                           idle,
+    output logic [1:0]                     holds,
     input  wire                            in_valid,
     output logic                           in_ready,
+    input  wire  [9:0]                     in_y0,
+    input  wire                            in_odd,
     input  wire triangle_pkg::descriptor_t in_descriptor,
     output logic                           out_valid,
     input  wire                            out_ready,
+    output logic                           out_odd,
     output raster_pkg::placed_t            out_triangle
 );
     localparam logic [31:0] HALF_A_CODE = 32'd1 << 13;
-    localparam logic [3:0]  ROWS_KNOWN = 4'd4, LAST = 4'd10;
+    localparam logic [2:0]  STALLS = 3'd3, ROWS_KNOWN = 3'd4, LAST = 3'd7;
 
+    // The triangle in its passes, then in its three `ending` clocks, then held.
     triangle_pkg::descriptor_t triangle;
-    logic        busy;
-    logic [3:0]  pass;
+    logic [9:0]  y0;
+    logic        busy, odd, held_valid, held_odd, advance, next_free;
+    logic [2:0]  pass;
+    logic [3:1]  ending;
 
-    assign idle     = !busy && !out_valid;
-    assign in_ready = !busy;
+    // The first result of a triangle takes the place of that of the one before.
+    assign advance   = pass != STALLS || !held_valid || !out_valid;
+    assign next_free = !out_valid || out_ready;
+    assign in_ready  = !busy || pass == LAST;
+
+    for (genvar b = 0; b < 2; b++) begin : bands
+        assign holds[b] = busy && odd == 1'(b) || (ending != '0 || held_valid) && held_odd == 1'(b)
+                        || out_valid && out_odd == 1'(b);
+    end
 
     // Rows, from the band's first one.
     logic [10:0] above, below;
@@ -68,8 +81,8 @@ module band_entry (
 
     always_comb begin
         case (pass)
-            4'd2:    step = step_x[0];
-            4'd3:    step = step_x[1];
+            3'd2:    step = step_x[0];
+            3'd3:    step = step_x[1];
             default: step = step_x[2];
         endcase
         falls = step[20];
@@ -80,50 +93,59 @@ module band_entry (
     logic signed [24:0] factor_a, a;
     logic signed [17:0] factor_b, b;
     logic signed [42:0] product;
+    logic signed [33:0] product_beside;
+    logic signed [17:0] b_beside;
     logic        [47:0] c, sum;
+    logic        [33:0] beside;
 
     always_comb begin
         case (pass)
-            4'd0:             factor_a = 25'(signed'(step_y[0]));
-            4'd1:             factor_a = 25'(signed'(step_y[1]));
-            4'd4:             factor_a = 25'(signed'(step_y[2]));
-            4'd2, 4'd3, 4'd6: factor_a = 25'(signed'(step));
-            4'd5:             factor_a = {1'b0, triangle.depth_step_y[23:0]};
+            3'd0:             factor_a = 25'(signed'(step_y[0]));
+            3'd1:             factor_a = 25'(signed'(step_y[1]));
+            3'd4:             factor_a = 25'(signed'(step_y[2]));
+            3'd2, 3'd3, 3'd6: factor_a = 25'(signed'(step));
+            3'd5:             factor_a = {1'b0, triangle.depth_step_y[23:0]};
             default:          factor_a = {triangle.depth_step_y[31:24], 17'd0};
         endcase
         case (pass)
-            4'd0, 4'd1, 4'd4, 4'd5: factor_b = {8'd0, offset};
-            4'd2, 4'd3, 4'd6:       factor_b = 18'sd7;
+            3'd0, 3'd1, 3'd4, 3'd5: factor_b = {8'd0, offset};
+            3'd2, 3'd3, 3'd6:       factor_b = 18'sd7;
             default:                factor_b = {1'b0, offset, 7'd0};
         endcase
     end
 
-    // Operands of a pass are in `a` and `b` after it, its product and its `c` a clock later, its `sum` another one later. That of
-    // the last pass stays.
+    // Operands of a pass are in `a` and `b` after it, its product and its `c` a clock later, its `sum` another one later.
     always_ff @(posedge clk) begin
-        a       <= factor_a;
-        b       <= factor_b;
-        product <= a * b;
-        sum     <= {{5{product[42]}}, product} + c;
-        case (pass)
-            4'd1:                   c <= {{14{triangle.start[0][33]}}, triangle.start[0]};
-            4'd2:                   c <= {{14{triangle.start[1][33]}}, triangle.start[1]};
-            4'd5:                   c <= {{14{triangle.start[2][33]}}, triangle.start[2]};
-            4'd6:                   c <= {16'd0, triangle.depth_start + HALF_A_CODE};
-            4'd3, 4'd4, 4'd7, 4'd8: c <= sum;
-            default: ;
-        endcase
+        if (advance) begin
+            a              <= factor_a;
+            b              <= factor_b;
+            b_beside       <= rises ? -18'sd1 : 18'sd8;
+            product        <= a * b;
+            product_beside <= 34'(a * b_beside);
+            sum            <= {{5{product[42]}}, product} + c;
+            beside         <= product_beside + c[33:0];
+            case (pass)
+                3'd1:    c <= {{14{triangle.start[0][33]}}, triangle.start[0]};
+                3'd2:    c <= {{14{triangle.start[1][33]}}, triangle.start[1]};
+                3'd5:    c <= {{14{triangle.start[2][33]}}, triangle.start[2]};
+                3'd6:    c <= {16'd0, triangle.depth_start + HALF_A_CODE};
+                default: c <= sum;
+            endcase
+        end
     end
 
-    logic [2:0][33:0] best, worst;
-    logic [2:0][19:0] slopes;
-    logic [2:0]       all_rises, all_falls;
+    raster_pkg::placed_t placed;
+    logic [2:0][19:0]    slopes;
+    logic [2:0]          all_rises, all_falls;
 
     for (genvar k = 0; k < 3; k++) begin : edges
         // The pass that has the edge's step_x in use, and the clocks that have its sums.
-        localparam logic [3:0] LANE_0 = k == 2 ? 4'd7 : 4'd3 + 4'(k);
-        localparam logic [3:0] STEP   = k == 2 ? 4'd6 : 4'd2 + 4'(k);
-        localparam logic [3:0] LANE_7 = k == 2 ? 4'd9 : 4'd5 + 4'(k);
+        localparam logic [2:0] LANE_0 = k == 2 ? 3'd7 : 3'd3 + 3'(k);
+        localparam logic [2:0] STEP   = k == 2 ? 3'd6 : 3'd2 + 3'(k);
+        logic at_lane_0, at_lane_7;
+
+        assign at_lane_0 = busy && pass == LANE_0 && advance;
+        assign at_lane_7 = k == 2 ? ending[2] : busy && pass == 3'd5 + 3'(k);
 
         always_ff @(posedge clk) begin
             if (pass == STEP) begin
@@ -131,8 +153,8 @@ module band_entry (
                 all_rises[k] <= rises;
                 all_falls[k] <= falls;
             end
-            if (pass == LANE_0 || pass == LANE_7 && all_rises[k]) best[k] <= sum[33:0];
-            if (pass == LANE_0 || pass == LANE_7 && !all_rises[k]) worst[k] <= sum[33:0];
+            if (at_lane_0 || at_lane_7 && all_rises[k]) placed.best[k] <= sum[33:0];
+            if (at_lane_7) placed.beside[k] <= beside;
         end
 
         triangle_pkg::steps_t steps;
@@ -142,39 +164,54 @@ module band_entry (
         assign step_y[k] = steps.y;
     end
 
+    // What is held: the results stay where they came, the rest is taken from the triangle after its last pass.
     always_ff @(posedge clk) begin
-        if (out_ready) out_valid <= 1'b0;
+        if (pass == LAST) begin
+            held_odd            <= odd;
+            placed.step_x       <= step_x;
+            placed.step_y       <= step_y;
+            placed.depth_step_x <= triangle.depth_step_x;
+            placed.depth_step_y <= triangle.depth_step_y;
+            placed.slope        <= slopes;
+            placed.rises        <= all_rises;
+            placed.falls        <= all_falls;
+            placed.line         <= first;
+            placed.rows         <= count;
+            placed.group_left   <= triangle.group_left;
+            placed.group_right  <= triangle.group_right;
+            placed.group_start  <= triangle.group_start;
+            placed.colour       <= triangle.colour;
+        end
+        if (ending[3]) placed.depth <= sum[31:0];
+    end
+
+    always_ff @(posedge clk) begin
+        ending <= {ending[2:1], busy && pass == LAST};
+
         if (in_ready) begin
             triangle <= in_descriptor;
+            y0       <= in_y0;
+            odd      <= in_odd;
             busy     <= in_valid;
             pass     <= '0;
-        end else if (pass != LAST) begin
+        end else if (advance) begin
             pass <= pass + 1'b1;
             if (pass == ROWS_KNOWN && count == '0) busy <= 1'b0;
-        end else if (!out_valid || out_ready) begin
-            busy      <= 1'b0;
-            out_valid <= 1'b1;
-            out_triangle.best         <= best;
-            out_triangle.worst        <= worst;
-            out_triangle.depth        <= sum[31:0];
-            out_triangle.step_x       <= step_x;
-            out_triangle.step_y       <= step_y;
-            out_triangle.depth_step_x <= triangle.depth_step_x;
-            out_triangle.depth_step_y <= triangle.depth_step_y;
-            out_triangle.slope        <= slopes;
-            out_triangle.rises        <= all_rises;
-            out_triangle.falls        <= all_falls;
-            out_triangle.line         <= first;
-            out_triangle.rows         <= count;
-            out_triangle.group_left   <= triangle.group_left;
-            out_triangle.group_right  <= triangle.group_right;
-            out_triangle.group_start  <= triangle.group_start;
-            out_triangle.colour       <= triangle.colour;
         end
 
+        if (next_free) begin
+            held_valid   <= 1'b0;
+            out_valid    <= held_valid;
+            out_odd      <= held_odd;
+            out_triangle <= placed;
+        end
+        if (ending[3]) held_valid <= 1'b1;
+
         if (rst) begin
-            busy      <= 1'b0;
-            out_valid <= 1'b0;
+            busy       <= 1'b0;
+            ending     <= '0;
+            held_valid <= 1'b0;
+            out_valid  <= 1'b0;
         end
     end
 endmodule

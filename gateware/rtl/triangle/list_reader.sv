@@ -1,11 +1,18 @@
-// Reads the descriptors of one band, in the order of its lists: those of the geometry unit first, then a second set that
-// the firmware has made (clipped triangles), where there is one.
+// Reads the descriptors of a frame, band by band, in the order of their lists: in each band those of the geometry unit first,
+// then a second set that the firmware has made (clipped triangles), where there is one. Layout as binner writes it.
 //
-// Layout as binner writes it. Three clients of a read_port: the lengths of the lists, the lists, the descriptors. The
-// lists and the descriptors are read ahead as far as read_port's FIFOs reach, so that memory's latency is paid once a
-// band. Latency some memory accesses, throughput a descriptor in 3 clocks.
+//             words               entries              addresses            words
+//   lengths ─────────▶ lists ────────┬──────▶ triangles ────────▶ memory ─────────▶ out
+//                        └─▶ jobs ───┘            └────────────▶ marks ──────────────┘
 //
-// `start` (one clock, not while `busy`) begins with band `band`; `busy` falls when the last descriptor has been taken.
+// Each part runs ahead of the one behind it as far as its FIFO reaches, through the ends of lists and bands: lengths of 16 bands,
+// lists of 8 jobs (a list of a band each) or 128 entries, 10 descriptors. So memory's latency is hidden while what has been
+// read lasts. Three clients of a read_port: the lengths of the lists, the lists, the descriptors. Throughput a descriptor in
+// 4 clocks; a list takes 3 clocks, if it is empty too.
+//
+// `start` (one clock, not while a frame is read) begins with band 0. An item of `out` is a descriptor, or with `out_end` the end
+// of a band. All is read after the end of `last_band`. Streams: an item moves in a clock in which valid and ready are high;
+// valid does not wait for ready, and a payload stays as it is until it has moved.
 
 `default_nettype none
 
@@ -16,13 +23,12 @@ module list_reader #(
     input  wire                       clk,
     input  wire                       rst,
     input  wire                       start,
-    input  wire  [5:0]                band,
+    input  wire  [5:0]                last_band,
     // Set 0 is the geometry unit's, set 1 the firmware's.
     input  wire  [1:0]                present,
     input  wire  [2*ADDRESS_BITS-1:0] list_base,
     input  wire  [2*ADDRESS_BITS-1:0] descriptor_base,
     input  wire  [4:0]                list_shift,
-    output logic                      busy,
     // Memory: the clients of the lengths, the lists, the descriptors.
     output logic [2:0]                ask_valid,
     input  wire  [2:0]                ask_ready,
@@ -32,124 +38,185 @@ module list_reader #(
     input  wire  [3*128-1:0]          data,
     output logic                      out_valid,
     input  wire                       out_ready,
-    output triangle_pkg::descriptor_t               out_descriptor
+    output logic                      out_end,
+    output triangle_pkg::descriptor_t out_descriptor
 );
     localparam int unsigned TABLE_WORDS = 16;
+    localparam int unsigned JOBS        = 8;
+    localparam int unsigned MARKS       = 16;
 
-    typedef enum logic [2:0] {IDLE, ASK, LENGTH, LOCATE, ENTRIES} state_t;
-    state_t state;
+    logic [1:0][ADDRESS_BITS-1:0] lists, descriptors;
 
-    logic                    set;
-    logic [ADDRESS_BITS-1:0] table_base, descriptors;
-    logic [COUNT_BITS-1:0]   length;
+    assign lists       = list_base;
+    assign descriptors = descriptor_base;
 
-    assign table_base  = set ? list_base[ADDRESS_BITS +: ADDRESS_BITS] : list_base[0 +: ADDRESS_BITS];
-    assign descriptors = set ? descriptor_base[ADDRESS_BITS +: ADDRESS_BITS] : descriptor_base[0 +: ADDRESS_BITS];
-    assign busy        = state != IDLE;
+    // Lengths: a word for each list, since a word of the table has those of four bands, and the sets take turns.
+    logic       asks_lengths, length_set;
+    logic [5:0] length_band;
 
-    // The length of the band's list.
-    logic [COUNT_BITS-1:0] found;
-
-    assign ask_valid[0] = state == ASK && present[set];
-    assign ask_addr[0 +: ADDRESS_BITS] = table_base + ADDRESS_BITS'(band >> 2);
-    assign data_ready[0] = state == LENGTH;
-    assign found = data[32 * band[1:0] +: COUNT_BITS];
-
-    // The list: words are asked for ahead, entries taken out of the word that is there.
-    logic [COUNT_BITS-1:0]   words_to_ask, entries_left;
-    logic [ADDRESS_BITS-1:0] list_word;
-    logic [1:0]              lane;
-    logic                    entry_valid, entry_ready, entry_taken;
-    logic [ADDRESS_BITS-1:0] entry;
-
-    assign ask_valid[1] = state == ENTRIES && words_to_ask != '0;
-    assign ask_addr[ADDRESS_BITS +: ADDRESS_BITS] = list_word;
-    assign entry        = data[128 + 32 * lane +: ADDRESS_BITS];
-    assign entry_valid  = state == ENTRIES && entries_left != '0 && data_valid[1];
-    assign entry_taken  = entry_valid && entry_ready;
-    assign data_ready[1] = entry_taken && (lane == '1 || entries_left == COUNT_BITS'(1));
-
-    // Descriptors: three addresses for an entry, three words for a descriptor.
-    logic                    asking;
-    logic [1:0]              word_to_ask, word;
-    logic [ADDRESS_BITS-1:0] descriptor_word;
-    logic [COUNT_BITS-1:0]   descriptors_left;
-    logic [255:0]            gathered;
-    logic                    gather;
-
-    assign entry_ready   = !asking || word_to_ask == 2'd2 && ask_ready[2];
-    assign ask_valid[2]  = asking;
-    assign ask_addr[2*ADDRESS_BITS +: ADDRESS_BITS] = descriptor_word;
-    assign gather        = word != 2'd3 && data_valid[2];
-    assign data_ready[2] = word != 2'd3;
-    assign out_valid     = word == 2'd3;
+    assign ask_valid[0] = asks_lengths && present[length_set];
+    assign ask_addr[0 +: ADDRESS_BITS] = lists[length_set] + ADDRESS_BITS'(length_band >> 2);
 
     always_ff @(posedge clk) begin
-        if (asking && ask_ready[2]) begin
-            word_to_ask     <= word_to_ask + 1'b1;
-            descriptor_word <= descriptor_word + 1'b1;
-            if (word_to_ask == 2'd2) asking <= 1'b0;
-        end
-        if (entry_taken) begin
-            asking          <= 1'b1;
-            word_to_ask     <= '0;
-            descriptor_word <= descriptors + entry + (entry << 1);
-            lane            <= lane + 1'b1;
-            entries_left    <= entries_left - 1'b1;
-        end
-        if (ask_valid[1] && ask_ready[1]) begin
-            words_to_ask <= words_to_ask - 1'b1;
-            list_word    <= list_word + 1'b1;
-        end
-        if (gather) begin
-            word <= word + 1'b1;
-            case (word)
-                2'd0:    gathered[127:0]   <= data[256 +: 128];
-                2'd1:    gathered[255:128] <= data[256 +: 128];
-                default: out_descriptor    <= {data[256 +: 128], gathered};
-            endcase
-        end
-        if (out_valid && out_ready) begin
-            word             <= '0;
-            descriptors_left <= descriptors_left - 1'b1;
-        end
-
-        case (state)
-            IDLE: begin
-                set <= 1'b0;
-                if (start) state <= ASK;
+        if (!asks_lengths) begin
+            asks_lengths <= start;
+            length_set   <= 1'b0;
+            length_band  <= '0;
+        end else if (!present[length_set] || ask_ready[0]) begin
+            length_set <= !length_set;
+            if (length_set) begin
+                length_band <= length_band + 1'b1;
+                if (length_band == last_band) asks_lengths <= 1'b0;
             end
-            ASK: begin
-                if (!present[set]) begin
-                    set   <= 1'b1;
-                    state <= set ? IDLE : ASK;
-                end else if (ask_ready[0]) begin
-                    state <= LENGTH;
-                end
+        end
+        if (rst) asks_lengths <= 1'b0;
+    end
+
+    // Lists: a job is the length of a list, 0 where there is none; its words follow in time.
+    typedef enum logic [1:0] {IDLE, LENGTH, JOB, WORDS} list_state_t;
+    list_state_t list_state;
+
+    logic                    list_set, job_ready;
+    logic [5:0]              list_band;
+    logic [ADDRESS_BITS-1:0] list_offset, list_word;
+    logic [COUNT_BITS-1:0]   length;
+    logic [COUNT_BITS-3:0]   words_left;
+    logic                    list_ends;
+
+    assign ask_valid[1] = list_state == WORDS;
+    assign ask_addr[ADDRESS_BITS +: ADDRESS_BITS] = list_word;
+    assign data_ready[0] = list_state == LENGTH && present[list_set];
+    assign list_ends = list_state == JOB && job_ready && length == '0
+                    || list_state == WORDS && ask_ready[1] && words_left == '0;
+
+    always_ff @(posedge clk) begin
+        case (list_state)
+            IDLE: begin
+                list_set    <= 1'b0;
+                list_band   <= '0;
+                list_offset <= '0;
+                if (start) list_state <= LENGTH;
             end
             LENGTH: begin
-                length <= found;
-                if (data_valid[0]) state <= LOCATE;
+                length <= present[list_set] ? data[32 * list_band[1:0] +: COUNT_BITS] : '0;
+                if (!present[list_set] || data_valid[0]) list_state <= JOB;
             end
-            LOCATE: begin
-                list_word        <= table_base + ADDRESS_BITS'(TABLE_WORDS) + (ADDRESS_BITS'(band) << list_shift);
-                words_to_ask     <= (length >> 2) + COUNT_BITS'(length[1:0] != '0);
-                entries_left     <= length;
-                descriptors_left <= length;
-                lane             <= '0;
-                state            <= ENTRIES;
+            JOB: begin
+                list_word  <= lists[list_set] + list_offset + ADDRESS_BITS'(TABLE_WORDS);
+                words_left <= length[COUNT_BITS-1:2] - (COUNT_BITS - 2)'(length[1:0] == '0);
+                if (job_ready) list_state <= WORDS;
             end
-            default: if (descriptors_left == '0) begin
-                set   <= 1'b1;
-                state <= set ? IDLE : ASK;
+            default: if (ask_ready[1]) begin
+                list_word  <= list_word + 1'b1;
+                words_left <= words_left - 1'b1;
             end
         endcase
-
-        if (rst) begin
-            state  <= IDLE;
-            asking <= 1'b0;
-            word   <= '0;
+        if (list_ends) begin
+            list_set   <= !list_set;
+            list_state <= list_set && list_band == last_band ? IDLE : LENGTH;
+            if (list_set) begin
+                list_band   <= list_band + 1'b1;
+                list_offset <= list_offset + (ADDRESS_BITS'(1) << list_shift);
+            end
         end
+        if (rst) list_state <= IDLE;
+    end
+
+    logic                  next_valid, next_ready;
+    logic [COUNT_BITS-1:0] next_length;
+
+    fifo #(.WIDTH(COUNT_BITS), .DEPTH(JOBS)) jobs (
+        .clk, .rst, .in_valid(list_state == JOB), .in_ready(job_ready), .in_data(length),
+        .out_valid(next_valid), .out_ready(next_ready), .out_data(next_length)
+    );
+
+    // Triangles: entries are taken out of the words of the list; after both lists of a band comes its end. Each leaves a mark.
+    logic                    job_valid, set, left, last_entry, mark_valid, mark_ready, entry_taken, end_taken;
+    logic                    number_valid, number_ready, number_taken, number_set;
+    logic [COUNT_BITS-1:0]   entries_after;
+    logic [1:0]              lane;
+    logic [ADDRESS_BITS-1:0] number;
+
+    assign next_ready    = !job_valid;
+    assign last_entry    = entries_after == '0;
+    assign entry_taken   = job_valid && left && data_valid[1] && number_ready && mark_ready;
+    assign end_taken     = job_valid && !left && (!set || mark_ready);
+    assign mark_valid    = job_valid && (left ? data_valid[1] && number_ready : set);
+    assign data_ready[1] = job_valid && left && number_ready && mark_ready && (lane == '1 || last_entry);
+
+    always_ff @(posedge clk) begin
+        if (next_ready) begin
+            job_valid     <= next_valid;
+            left          <= next_length != '0;
+            entries_after <= next_length - 1'b1;
+            lane          <= '0;
+        end
+        if (entry_taken) begin
+            lane          <= lane + 1'b1;
+            entries_after <= entries_after - 1'b1;
+            left          <= !last_entry;
+        end
+        if (end_taken) begin
+            job_valid <= 1'b0;
+            set       <= !set;
+        end
+        if (number_ready) begin
+            number_valid <= entry_taken;
+            number       <= data[128 + 32 * lane +: ADDRESS_BITS];
+            number_set   <= set;
+        end else if (number_taken) begin
+            number_valid <= 1'b0;
+        end
+        if (rst) begin
+            job_valid    <= 1'b0;
+            set          <= 1'b0;
+            number_valid <= 1'b0;
+        end
+    end
+
+    // Three addresses for a triangle.
+    logic                    asks_words, last_address;
+    logic [1:0]              address;
+    logic [ADDRESS_BITS-1:0] descriptor_word;
+
+    assign last_address = address[1] && ask_ready[2];
+    assign number_taken = !asks_words || last_address;
+    assign number_ready = !number_valid;
+    assign ask_valid[2] = asks_words;
+    assign ask_addr[2*ADDRESS_BITS +: ADDRESS_BITS] = descriptor_word;
+
+    always_ff @(posedge clk) begin
+        if (number_taken) begin
+            asks_words      <= number_valid;
+            address         <= '0;
+            descriptor_word <= descriptors[number_set] + number + (number << 1);
+        end else if (ask_ready[2]) begin
+            address         <= address + 1'b1;
+            descriptor_word <= descriptor_word + 1'b1;
+        end
+        if (rst) asks_words <= 1'b0;
+    end
+
+    // Three words for a descriptor.
+    logic       marked, mark_is_end;
+    logic [1:0] words;
+
+    fifo #(.WIDTH(1), .DEPTH(MARKS)) marks (
+        .clk, .rst, .in_valid(mark_valid), .in_ready(mark_ready), .in_data(!left),
+        .out_valid(marked), .out_ready(out_valid && out_ready), .out_data(mark_is_end)
+    );
+
+    assign data_ready[2] = words != 2'd3;
+    assign out_valid     = marked && (mark_is_end || words == 2'd3);
+    assign out_end       = mark_is_end;
+
+    always_ff @(posedge clk) begin
+        if (data_ready[2] && data_valid[2]) begin
+            words          <= words + 1'b1;
+            out_descriptor <= {data[256 +: 128], out_descriptor[383:128]};
+        end
+        if (out_valid && out_ready && !mark_is_end) words <= '0;
+        if (rst) words <= '0;
     end
 endmodule
 

@@ -4,11 +4,11 @@
 
 package raster_pkg;
     // A triangle at the row where it enters the band, in its start group. An edge function is linear, so in a group of eight
-    // lanes it is largest at one end and smallest at the other: lane 7 and lane 0 where it rises to the right, else
-    // lane 0 and lane 7.
+    // lanes it is largest at one end: lane 7 where it rises to the right, else lane 0. Beside the other end is a lane that tells
+    // whether it passes somewhere in the next group: lane -1 where it rises, else lane 8.
     typedef struct packed {
         logic [2:0][33:0] best;         // E' at the lane where it is largest
-        logic [2:0][33:0] worst;        // E' at the lane where it is smallest
+        logic [2:0][33:0] beside;       // E' at the lane beside
         logic [31:0]      depth;        // accumulator at lane 0, with half a code added
         logic [2:0][20:0] step_x;
         logic [2:0][20:0] step_y;

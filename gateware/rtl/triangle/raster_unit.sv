@@ -3,8 +3,8 @@
 //   lists, descriptors ──▶ list_reader ──▶ triangle_raster ──▶ band_buffer ──▶ frame, depth
 //
 // `start` (one clock, not while `busy`) takes the parameters, which hold until `done` (one clock): everything is in memory
-// then. A band takes as long as its groups, and the memory accesses of its first triangle. `restart` may come at any time,
-// and gives the frame up; the unit is to be started again when it is `ready` and read_port has thrown away what was on its way.
+// then. A band takes as long as its groups, and about 16 clocks to be handed over; descriptors are read ahead meanwhile, and the
+// first triangles of the next band prepared. `restart` may come at any time, and gives the frame up; the unit is to be started again when it is `ready` and read_port has thrown away what was on its way.
 //
 // `frame_slot` says which of two frame buffers the frame is for. Only words that can differ from what the frame before in the
 // same slot has left there are written, unless `whole` says that all are to be: nothing is known of the frame buffer (it is
@@ -75,13 +75,16 @@ module raster_unit #(
         endcase
     end
 
-    typedef enum logic [2:0] {IDLE, BEGIN, DRAW, SETTLE, HAND_OVER, FLUSH} state_t;
+    typedef enum logic [1:0] {IDLE, DRAW, HAND_OVER, FLUSH} state_t;
     state_t state;
 
     logic [5:0]              band;
     logic [9:0]              first_row;
     logic [ADDRESS_BITS-1:0] base, band_depth_base;
-    logic                    reading, rastering, clearing, flushed, band_ready;
+    logic                    clearing, flushed, band_ready, begins, drawn;
+    // The band whose triangles are read: that which is drawn, or the next one.
+    logic [9:0]              read_row;
+    logic                    read_odd;
 
     // The frame buffers that hold a whole frame: not the one that is being drawn.
     logic [1:0] known;
@@ -98,6 +101,7 @@ module raster_unit #(
 
     assign busy  = state != IDLE;
     assign ready = !clearing && flushed;
+    assign begins = state == IDLE && start;
 
     always_ff @(posedge clk) begin
         done <= 1'b0;
@@ -107,18 +111,15 @@ module raster_unit #(
                 first_row       <= '0;
                 base            <= frame_base;
                 band_depth_base <= depth_base;
-                if (start) state <= BEGIN;
+                if (start) state <= DRAW;
             end
-            // list_reader and triangle_raster take a clock to become busy.
-            BEGIN:  state <= DRAW;
-            DRAW:   if (!reading) state <= SETTLE;
-            SETTLE: if (!rastering) state <= HAND_OVER;
+            DRAW: if (drawn) state <= HAND_OVER;
             HAND_OVER: if (band_ready) begin
                 band            <= band + 1'b1;
                 first_row       <= first_row + 10'(rows);
                 base            <= base + ADDRESS_BITS'(words);
                 band_depth_base <= band_depth_base + (ADDRESS_BITS'(words) << 1);
-                state           <= band == last_band ? FLUSH : BEGIN;
+                state           <= band == last_band ? FLUSH : DRAW;
             end
             default: if (flushed) begin
                 done  <= 1'b1;
@@ -131,13 +132,28 @@ module raster_unit #(
         end
     end
 
-    logic        triangle_valid, triangle_ready, raster_idle;
+    logic        item_valid, item_ready, band_ends, triangle_valid, triangle_ready, raster_idle;
     triangle_pkg::descriptor_t descriptor;
 
+    // The end of the band that is read waits until it is that which is drawn.
+    assign triangle_valid = item_valid && !band_ends;
+    assign item_ready     = band_ends ? read_odd == band[0] : triangle_ready;
+    assign drawn          = read_odd != band[0] && raster_idle;
+
+    always_ff @(posedge clk) begin
+        if (begins) begin
+            read_row <= '0;
+            read_odd <= 1'b0;
+        end else if (item_valid && item_ready && band_ends) begin
+            read_row <= read_row + 10'(rows);
+            read_odd <= !read_odd;
+        end
+    end
+
     list_reader #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS)) list_reader (
-        .clk, .rst(rst || restart), .start(state == BEGIN), .band, .present, .list_base, .descriptor_base, .list_shift, .busy(reading),
+        .clk, .rst(rst || restart), .start(begins), .last_band, .present, .list_base, .descriptor_base, .list_shift,
         .ask_valid, .ask_ready, .ask_addr, .data_valid, .data_ready, .data,
-        .out_valid(triangle_valid), .out_ready(triangle_ready), .out_descriptor(descriptor)
+        .out_valid(item_valid), .out_ready(item_ready), .out_end(band_ends), .out_descriptor(descriptor)
     );
 
     logic            group_valid, group_ready, walking, candidate;
@@ -148,12 +164,10 @@ module raster_unit #(
     logic [8*18-1:0] group_codes;
     logic [8*16-1:0] group_colours;
 
-    assign rastering = !raster_idle;
-
     /* verilator lint_off PINCONNECTEMPTY */
     triangle_raster triangle_raster (
-        .clk, .rst(rst || restart), .y0(first_row), .rows, .stride, .idle(raster_idle), .walking, .candidate, .stalled(),
-        .triangle_valid, .triangle_ready, .triangle_descriptor(descriptor),
+        .clk, .rst(rst || restart), .odd(band[0]), .rows, .stride, .idle(raster_idle), .walking, .candidate, .stalled(),
+        .triangle_valid, .triangle_ready, .triangle_y0(read_row), .triangle_odd(read_odd), .triangle_descriptor(descriptor),
         .group_valid, .group_ready, .group_row, .group_line, .group_column, .group_mask, .group_codes, .group_colours
     );
     /* verilator lint_on PINCONNECTEMPTY */

@@ -8,18 +8,21 @@
 // colours RGB565}, lane 0 (the leftmost) in the lowest bits, mask never 0. A triangle gives each of its groups once; triangles
 // keep their order.
 //
-// Streams are valid/ready with a register between any two readies. Latency 18 clocks from a descriptor to its first group.
-// Throughput: a group of the walk a clock, at most a triangle in 12 clocks. The band's first row `y0`, its `rows` and its
-// `stride` (groups in a line: 40, 80 or 160) hold while not `idle`, which is low from the clock after a descriptor was taken until its last
-// group was taken. For counters: `walking` in clocks in which the walker is at a group, `candidate` in those of them in
-// which it goes to the lanes, `stalled` in clocks in which a group waits to be taken.
+// Streams are valid/ready with a register between any two readies. Latency 19 clocks from a descriptor to its first group.
+// Throughput: a group of the walk a clock, at most a triangle in 8 clocks. A band's first row `triangle_y0` comes with each of
+// its triangles, and so does `triangle_odd`, which tells it from the bands before and after: triangles of the next band may
+// come and are prepared, but wait until `odd`, that of the band that is drawn, is theirs. `idle` is high when nothing of that
+// band is inside, and low from the clock after its descriptor was taken until its last group was taken. `rows` of a band and
+// `stride` (groups in a line: 40, 80 or 160) hold while triangles are inside. For counters: `walking` in clocks in which the
+// walker is at a group, `candidate` in those of them in which it goes to the lanes, `stalled` in clocks in which a group waits to
+// be taken.
 
 `default_nettype none
 
 module triangle_raster (
     input  wire                            clk,
     input  wire                            rst,
-    input  wire  [9:0]                     y0,
+    input  wire                            odd,
     input  wire  [5:0]                     rows,
     input  wire  [7:0]                     stride,
     output logic                           idle,
@@ -29,6 +32,8 @@ module triangle_raster (
     // Descriptors.
     input  wire                            triangle_valid,
     output logic                           triangle_ready,
+    input  wire  [9:0]                     triangle_y0,
+    input  wire                            triangle_odd,
     input  wire triangle_pkg::descriptor_t triangle_descriptor,
     // Groups.
     output logic                           group_valid,
@@ -40,25 +45,28 @@ module triangle_raster (
     output logic [8*18-1:0]                group_codes,
     output logic [8*16-1:0]                group_colours
 );
-    logic                   entry_idle, walker_idle, lanes_idle;
-    logic                   placed_valid, placed_ready;
+    logic                   walker_idle, lanes_idle, waits;
+    logic [1:0]             holds;
+    logic                   placed_valid, placed_ready, placed_odd;
     raster_pkg::placed_t    placed;
     logic                   walked_valid, walked_ready;
     raster_pkg::candidate_t walked;
 
-    assign idle      = entry_idle && walker_idle && lanes_idle && !group_valid;
+    assign waits     = placed_odd != odd;
+    assign idle      = !holds[odd] && walker_idle && lanes_idle && !group_valid;
     assign candidate = walked_valid && walked_ready;
     assign stalled   = group_valid && !group_ready;
 
     band_entry band_entry (
-        .clk, .rst, .y0, .rows, .idle(entry_idle),
-        .in_valid(triangle_valid), .in_ready(triangle_ready), .in_descriptor(triangle_descriptor),
-        .out_valid(placed_valid), .out_ready(placed_ready), .out_triangle(placed)
+        .clk, .rst, .rows, .holds,
+        .in_valid(triangle_valid), .in_ready(triangle_ready), .in_y0(triangle_y0), .in_odd(triangle_odd),
+        .in_descriptor(triangle_descriptor),
+        .out_valid(placed_valid), .out_ready(placed_ready && !waits), .out_odd(placed_odd), .out_triangle(placed)
     );
 
     walker walker (
         .clk, .rst, .idle(walker_idle), .walking,
-        .in_valid(placed_valid), .in_ready(placed_ready), .in_triangle(placed),
+        .in_valid(placed_valid && !waits), .in_ready(placed_ready), .in_triangle(placed),
         .out_valid(walked_valid), .out_ready(walked_ready), .out_group(walked)
     );
 

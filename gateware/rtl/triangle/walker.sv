@@ -3,8 +3,8 @@
 //        ┌──────┐     row by row, from group_start:
 //        │ seek │───▶ until no edge fails in the whole group,
 //        └──────┘
-//   ◀─2─┤first├─1'─▶  then to the left while lane 0 is inside (1, 2, …), then from the snapshot of the first group
-//          │          to the right while lane 7 is inside (1', …), then down from the snapshot.
+//   ◀─2─┤first├─1'─▶  then to the left while lane -1 is inside (1, 2, …), then from the snapshot of the first group
+//          │          to the right while lane 8 is inside (1', …), then down from the snapshot.
 //          ▼
 //
 // It is complete. Take the columns a row covers: those where all edges with step_x > 0 have E' >= 0, from column a on, and
@@ -15,13 +15,13 @@
 //    has something, and never ends in a group without it:
 //  * in a group g0…g7 where no edge fails everywhere a <= g7 and b >= g0; so if the row covers anything (a <= b), the group
 //    has some of it, max(a, g0)…min(b, g7). If it does not, this group comes out with nothing covered, and the row is done.
-//  * The covered columns are in one piece, so they go on to the left only if lane 0 is covered, and to the right only if
-//    lane 7 is. In a group where no edge fails everywhere, the edges that rise decide about lane 0 and those that fall about
-//    lane 7: the others have their best lane there.
+//  * The covered columns are in one piece, so they go on to the left only if lane -1 is covered, and to the right only if
+//    lane 8 is. In a group where no edge fails everywhere, the edges that rise decide about lane -1 and those that fall about
+//    lane 8: the others are larger there than at their best lane here. A group that follows another one has no edge that fails.
 // A group comes out at most once: seeking passes only groups that do not come out, and both ways lead away from the first.
 // A row begins at the first group of the row above, or where that row was found empty; any place within the bounds is right.
 //
-// It stays within group_left…group_right and the rows: edge functions are in the picture, in their 34 bits.
+// It stays within group_left…group_right and the rows: edge functions are at most a pixel beside the picture, in their 34 bits.
 //
 // Both streams are valid/ready; ready passes through to the input, and nothing else does. Throughput one group a clock,
 // covered or not; the next triangle's first group follows the last one without a gap. `walking` is high in the clocks that
@@ -50,7 +50,7 @@ module walker (
     logic [15:0]      colour;
 
     // The place.
-    logic [2:0][33:0] best, worst;
+    logic [2:0][33:0] best, beside;
     logic [31:0]      depth;
     logic [7:0]       group, next_group;
     logic [5:0]       line, rows_below;
@@ -61,7 +61,7 @@ module walker (
     logic seek_left, seek_right, extend_left, extend_right, resume;
 
     // The decision: of sign bits and the above.
-    logic [2:0]        best_fails, worst_fails;
+    logic [2:0]        best_fails, beside_fails;
     logic              fails, go_right, go_left, open_left, open_right;
     logic              extend, seek, left, leave;
     raster_pkg::move_t move;
@@ -69,15 +69,15 @@ module walker (
     always_comb begin
         for (int k = 0; k < 3; k++) begin
             best_fails[k]  = best[k][33];
-            worst_fails[k] = worst[k][33];
+            beside_fails[k] = beside[k][33];
         end
     end
 
     assign fails      = best_fails != '0;
     assign go_right   = (best_fails & rises) != '0;
     assign go_left    = (best_fails & falls) != '0;
-    assign open_left  = (worst_fails & rises) == '0;
-    assign open_right = (worst_fails & falls) == '0;
+    assign open_left  = (beside_fails & rises) == '0;
+    assign open_right = (beside_fails & falls) == '0;
 
     assign extend = !fails && (open_left && extend_left || open_right && extend_right);
     assign left   = !fails && open_left && extend_left || go_left && !go_right && seek_left;
@@ -99,7 +99,7 @@ module walker (
     assign keep = extend || resume;
 
     for (genvar k = 0; k < 3; k++) begin : edges
-        logic [33:0] group_step, row_step, next_best, next_worst;
+        logic [33:0] group_step, row_step, next_best, next_beside;
 
         assign group_step = {{10{step_x[k][20]}}, step_x[k], 3'b000};
         assign row_step   = {{13{step_y[k][20]}}, step_y[k]};
@@ -109,13 +109,13 @@ module walker (
             .load_value(in_triangle.best[k]), .step_x(group_step), .step_y(row_step),
             .current(best[k]), .next(next_best)
         );
-        stepper worst_stepper (
+        stepper beside_stepper (
             .clk, .advance(out_ready), .from_current(extend), .keep, .move,
-            .load_value(in_triangle.worst[k]), .step_x(group_step), .step_y(row_step),
-            .current(worst[k]), .next(next_worst)
+            .load_value(in_triangle.beside[k]), .step_x(group_step), .step_y(row_step),
+            .current(beside[k]), .next(next_beside)
         );
 
-        wire _unused = &{1'b0, next_best, next_worst};
+        wire _unused = &{1'b0, next_best, next_beside};
     end
 
     logic [31:0] next_depth;

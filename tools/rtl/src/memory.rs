@@ -68,7 +68,7 @@ impl Memory {
     }
 }
 
-/// Clocks from a command to its data.
+/// Clocks from a command to its data, unless told.
 const LATENCY: u64 = 12;
 
 /// The memory's side of a read port: `cmd_valid`, `cmd_ready`, `cmd_addr`, `rdata_valid`, `rdata`, behind a prefix. Data comes
@@ -79,6 +79,8 @@ pub struct ReadPort {
     /// Words on their way: the cycle from which on they come, and where they are.
     queue: VecDeque<(u64, u32)>,
     stalls: Stalls,
+    /// Clocks from a command to its data, at least.
+    pub latency: u64,
     /// Words given so far.
     pub given: u64,
 }
@@ -93,6 +95,7 @@ impl ReadPort {
             rdata: [port("rdata_valid"), port("rdata")],
             queue: VecDeque::new(),
             stalls,
+            latency: LATENCY,
             given: 0,
         }
     }
@@ -117,7 +120,8 @@ impl ReadPort {
     pub fn sample(&mut self, module: &Module) {
         if module.is_high(self.cmd[0]) && module.is_high(self.cmd[1]) {
             let address = module.value(self.cmd[2]) as u32;
-            self.queue.push_back((module.cycles() + LATENCY, address));
+            self.queue
+                .push_back((module.cycles() + self.latency, address));
         }
     }
 }

@@ -108,7 +108,7 @@ fn write_clipped(memory: &mut Memory, expected: &Expected) {
 pub struct Bench {
     pub module: Module,
     memory: Memory,
-    read: ReadPort,
+    pub read: ReadPort,
     lists: WritePort,
     frame: WritePort,
     /// Whether depths are written and compared as well.
