@@ -36,9 +36,6 @@ package raster_pkg;
         logic [31:0]      depth_step_x;
         logic [15:0]      colour;
     } candidate_t;
-
-    // Where the walker goes.
-    typedef enum logic [1:0] {DOWN, RIGHT, LEFT, LOAD} move_t;
 endpackage
 
 `default_nettype wire

@@ -131,9 +131,10 @@ module setup (
         .out_valid(reciprocal_done), .out_y(y)
     );
 
+    // What is only passed on from stage to stage stays in flip-flops: shift registers would take LUTs.
     // Stage 2: E1 − bias = a − (E0 − bias) − (E2 − bias) − all biases, over 2^8, from the carry of the lowest 8 bits.
-    passed_t            passed_2;
-    origin_t            origin_2;
+    (* keep *) passed_t passed_2;
+    (* keep *) origin_t origin_2;
     logic        [45:0] nx_2, ny_2;
     logic        [5:0]  lead_2;
     logic        [23:0] y_2;
@@ -174,8 +175,8 @@ module setup (
     end
 
     // Stage 3.
-    passed_t            passed_3;
-    origin_t            origin_3;
+    (* keep *) passed_t passed_3;
+    (* keep *) origin_t origin_3;
     logic        [45:0] nx_3, ny_3;
     logic        [5:0]  lead_3;
     logic        [23:0] y_3;
@@ -199,8 +200,8 @@ module setup (
     setup_gradient gradient (.clk, .enable, .count, .nx(nx_3), .ny(ny_3), .y(y_3), .lead(lead_3), .twice_gx, .twice_gy);
 
     // Stage 4, a clock late: first the gradients are rounded.
-    passed_t            passed_4;
-    origin_t            origin_4;
+    (* keep *) passed_t passed_4;
+    (* keep *) origin_t origin_4;
     logic        [40:0] twice_gx_4, twice_gy_4;
     logic        [39:0] gx, gy;
     logic        [3:0]  count_4;

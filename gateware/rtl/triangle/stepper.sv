@@ -2,11 +2,13 @@
 //
 // In each clock with `advance` it moves from one of the two, or takes `load_value`; `keep` leaves the snapshot as it is.
 //
-//   DOWN   snapshot + step_y
-//   RIGHT  + step_x, LEFT  − step_x, from the current value or from the snapshot
-//   LOAD   load_value
+//   extend        current + step_x, with `left` - step_x
+//   else seek     snapshot + step_x, with `left` - step_x
+//   else last     load_value
+//   else          snapshot + step_y
 //
-// The addition is what the walker's loop waits for, so the upper part is there for both carries. Sums are modulo 2^WIDTH.
+// The addition is what the walker's loop waits for, so the upper part is there for both carries, and what comes before is made for
+// LUTs of six inputs: one for `from`, one for the sum of a bit. Sums are modulo 2^WIDTH.
 
 `default_nettype none
 
@@ -16,9 +18,11 @@ module stepper #(
 ) (
     input  wire                    clk,
     input  wire                    advance,
-    input  wire                    from_current,
     input  wire                    keep,
-    input  wire raster_pkg::move_t move,
+    input  wire                    extend,
+    input  wire                    seek,
+    input  wire                    left,
+    input  wire                    last,
     input  wire  [WIDTH-1:0]       load_value,
     input  wire  [WIDTH-1:0]       step_x,
     input  wire  [WIDTH-1:0]       step_y,
@@ -26,22 +30,15 @@ module stepper #(
     output logic [WIDTH-1:0]       next
 );
     logic [WIDTH-1:0]     snapshot, from, step;
-    logic                 negate, carry;
+    logic                 sideways, negate, carry;
     logic [LOW-1:0]       low;
     logic [WIDTH-LOW-1:0] high, high_with_carry;
     logic                 below_low, below_high;
 
-    assign from   = from_current ? current : move == raster_pkg::LOAD ? load_value : snapshot;
-    assign negate = move == raster_pkg::LEFT;
-
-    always_comb begin
-        case (move)
-            raster_pkg::RIGHT:   step = step_x;
-            raster_pkg::LEFT:    step = ~step_x;
-            raster_pkg::LOAD:    step = '0;
-            default:           step = step_y;
-        endcase
-    end
+    assign sideways = extend || seek;
+    assign negate   = sideways && left;
+    assign from     = extend ? current : !seek && last ? load_value : snapshot;
+    assign step     = sideways ? step_x ^ {WIDTH{left}} : last ? '0 : step_y;
 
     // A bit below makes the carry in.
     assign {carry, low, below_low}       = {1'b0, from[LOW-1:0], negate} + {1'b0, step[LOW-1:0], negate};

@@ -64,7 +64,6 @@ module walker (
     logic [2:0]        best_fails, beside_fails;
     logic              fails, go_right, go_left, open_left, open_right;
     logic              extend, seek, left, leave;
-    raster_pkg::move_t move;
 
     always_comb begin
         for (int k = 0; k < 3; k++) begin
@@ -84,11 +83,6 @@ module walker (
     assign seek   = resume || go_right && !go_left && seek_right || go_left && !go_right && seek_left;
     assign leave  = !extend && !seek && last_row;
 
-    always_comb begin
-        if (extend || seek) move = left ? raster_pkg::LEFT : raster_pkg::RIGHT;
-        else move = last_row ? raster_pkg::LOAD : raster_pkg::DOWN;
-    end
-
     assign idle     = !active;
     assign walking  = active && out_ready;
     assign in_ready = leave && out_ready;
@@ -105,12 +99,12 @@ module walker (
         assign row_step   = {{13{step_y[k][20]}}, step_y[k]};
 
         stepper best_stepper (
-            .clk, .advance(out_ready), .from_current(extend), .keep, .move,
+            .clk, .advance(out_ready), .keep, .extend, .seek, .left, .last(last_row),
             .load_value(in_triangle.best[k]), .step_x(group_step), .step_y(row_step),
             .current(best[k]), .next(next_best)
         );
         stepper beside_stepper (
-            .clk, .advance(out_ready), .from_current(extend), .keep, .move,
+            .clk, .advance(out_ready), .keep, .extend, .seek, .left, .last(last_row),
             .load_value(in_triangle.beside[k]), .step_x(group_step), .step_y(row_step),
             .current(beside[k]), .next(next_beside)
         );
@@ -121,13 +115,13 @@ module walker (
     logic [31:0] next_depth;
 
     stepper #(.WIDTH(32), .LOW(16)) depth_stepper (
-        .clk, .advance(out_ready), .from_current(extend), .keep, .move,
+        .clk, .advance(out_ready), .keep, .extend, .seek, .left, .last(last_row),
         .load_value(in_triangle.depth), .step_x({depth_step_x[28:0], 3'b000}), .step_y(depth_step_y),
         .current(depth), .next(next_depth)
     );
 
     stepper #(.WIDTH(8), .LOW(4)) group_stepper (
-        .clk, .advance(out_ready), .from_current(extend), .keep, .move,
+        .clk, .advance(out_ready), .keep, .extend, .seek, .left, .last(last_row),
         .load_value(in_triangle.group_start), .step_x(8'd1), .step_y(8'd0),
         .current(group), .next(next_group)
     );
