@@ -1,16 +1,19 @@
-// The flush of the band buffer, small: four rows, four words on their way, any memory, any restart.
+// The flush of the band buffer, small: any of four rows in any spans, four words on their way, any memory, any restart.
 //
 // The bank's row r holds r in every colour and r + 1 in every depth, and all of it is drawn. So the words that must come
-// are known: n-th word, n-th address. The bank has band_bank's latencies and loses a row when it is cleared.
+// are known: those of the rows in the spans, in their order, each once, and their addresses; and those rows are clear afterwards,
+// the others are not. The bank has band_bank's latencies and loses a row when it is cleared.
 
 `default_nettype none
 
 module band_flush_proof (
     input wire       clk,
     input wire       start,
-    input wire [5:0] base,
-    input wire [5:0] depth_base,
-    input wire [1:0] rows,
+    // The rows to flush, given as spans when it pleases whoever gives them, in pieces or not.
+    input wire [3:0] rows,
+    input wire       gives,
+    input wire       in_pieces,
+    input wire       lingers,
     input wire       with_depth,
     input wire       restart,
     input wire       cmd_ready,
@@ -18,8 +21,9 @@ module band_flush_proof (
 );
     localparam logic [15:0] BACKGROUND = 16'h8421;
     // Clocks that may pass without a word while memory takes whatever there is.
-    localparam int unsigned WITHIN = 8;
+    localparam int unsigned WITHIN = 10;
 
+    (* anyconst *) logic [5:0] base, depth_base;
     logic rst = 1'b1;
     always_ff @(posedge clk) rst <= 1'b0;
 
@@ -31,9 +35,13 @@ module band_flush_proof (
     logic [8*18-1:0]  codes;
     logic [7:0]       written;
 
+    logic             span_valid, span_ready, spans_busy;
+    logic [1:0]       span_first, span_last;
+
     band_flush #(.ADDRESS_BITS(6), .ROW_BITS(2), .WORDS(4)) dut (
-        .clk, .rst, .start, .base, .depth_base, .rows, .with_depth, .clear_colour(BACKGROUND), .restart,
+        .clk, .rst, .start, .base, .depth_base, .with_depth, .clear_colour(BACKGROUND), .restart,
         .idle, .sweeping, .reads_depth(), .waits(),
+        .span_valid, .span_ready, .span_first, .span_last, .spans_busy,
         .row, .colours, .codes, .written, .clears, .clear_row,
         .cmd_valid, .cmd_ready, .cmd_addr, .wdata_valid, .wdata_ready, .wdata_data
     );
@@ -67,16 +75,52 @@ module band_flush_proof (
         if (rst) to_clear <= 1'b0;
     end
 
-    // What is to come: the next command and the next word.
+    function automatic logic [1:0] first_of(input logic [3:0] of_rows);
+        first_of = of_rows[0] ? 2'd0 : of_rows[1] ? 2'd1 : of_rows[2] ? 2'd2 : 2'd3;
+    endfunction
+
+    // Spans: rows that have not been given, and whether there may be more.
+    logic [3:0] to_give;
+    logic       offered, pieces, lingering;
+
+    assign span_valid = to_give != '0 && offered;
+    assign span_first = first_of(to_give);
+    assign spans_busy = to_give != '0 || lingering;
+
+    always_comb begin
+        span_last = span_first;
+        for (int i = 1; i < 4; i++)
+            if (!pieces && to_give[i] && span_last == 2'(i - 1) && 2'(i) > span_first) span_last = 2'(i);
+    end
+
+    always_ff @(posedge clk) begin
+        offered <= span_valid && !span_ready || gives;
+        if (!span_valid || span_ready) pieces <= in_pieces;
+        for (int i = 0; i < 4; i++)
+            if (span_valid && span_ready && 2'(i) <= span_last) to_give[i] <= 1'b0;
+        if (!lingers) lingering <= 1'b0;
+        if (start) begin
+            to_give   <= rows;
+            lingering <= 1'b1;
+        end
+        if (rst || sweeping) begin
+            to_give   <= '0;
+            lingering <= 1'b0;
+        end
+    end
+
+    // What is to come: the rows of the next command and the next word.
     logic [5:0] flush_base, flush_depth_base, cmd_expected;
-    logic [1:0] flush_last, cmd_row, word_row, cmd_part, word_part;
+    logic [3:0] flush_rows, cmd_rows, word_rows;
+    logic [1:0] cmd_row, word_row, cmd_part, word_part;
     logic       flush_depth, flushing, cmd_moves, word_moves, dropped;
-    // Words of commands that memory has taken, and of the whole flush.
+    // Words of commands that memory has taken.
     logic [3:0] owed;
-    logic [4:0] words_left;
 
     assign cmd_moves  = cmd_valid && cmd_ready;
     assign word_moves = wdata_valid && wdata_ready;
+    assign cmd_row    = first_of(cmd_rows);
+    assign word_row   = first_of(word_rows);
 
     logic [127:0] word_expected;
     always_comb begin
@@ -96,33 +140,35 @@ module band_flush_proof (
         owed <= owed + 4'(cmd_moves) - 4'(word_moves);
         if (cmd_moves) begin
             cmd_part <= !flush_depth || cmd_part == 2'd2 ? 2'd0 : cmd_part + 1'b1;
-            if (!flush_depth || cmd_part == 2'd2) cmd_row <= cmd_row + 1'b1;
+            if (!flush_depth || cmd_part == 2'd2) cmd_rows[cmd_row] <= 1'b0;
         end
         if (word_moves) begin
-            words_left <= words_left - 1'b1;
             word_part <= !flush_depth || word_part == 2'd2 ? 2'd0 : word_part + 1'b1;
-            if (!flush_depth || word_part == 2'd2) word_row <= word_row + 1'b1;
+            if (!flush_depth || word_part == 2'd2) word_rows[word_row] <= 1'b0;
         end
         if (start) begin
             flushing         <= 1'b1;
             dropped          <= restart;
             flush_base       <= base;
             flush_depth_base <= depth_base;
-            flush_last       <= rows - 1'b1;
             flush_depth      <= with_depth;
-            words_left       <= with_depth ? 5'd3 * (5'(2'(rows - 1'b1)) + 5'd1) : 5'(2'(rows - 1'b1)) + 5'd1;
-            {cmd_row, word_row, cmd_part, word_part} <= '0;
+            flush_rows       <= rows;
+            cmd_rows         <= rows;
+            word_rows        <= rows;
+            {cmd_part, word_part} <= '0;
         end else begin
             if (idle) flushing <= 1'b0;
             if (restart) dropped <= 1'b1;
         end
 
-        without_word <= idle || sweeping || word_moves || !cmd_ready || !wdata_ready ? '0 : without_word + 1'b1;
+        without_word <= idle || sweeping || word_moves || !cmd_ready || !wdata_ready || spans_busy && !span_valid
+                      ? '0 : without_word + 1'b1;
         sweep_clocks <= !sweeping || restart ? '0 : sweep_clocks + 1'b1;
 
         if (rst) begin
             owed         <= '0;
-            words_left   <= '0;
+            cmd_rows     <= '0;
+            word_rows    <= '0;
             flushing     <= 1'b0;
             dropped      <= 1'b1;
             without_word <= '0;
@@ -153,19 +199,20 @@ module band_flush_proof (
     always_ff @(posedge clk) if (!rst) begin
         assume (!start || idle);
 
-        commands_in_order: assert (!cmd_valid || cmd_addr == cmd_expected);
+        commands_in_order: assert (!cmd_valid || cmd_rows != '0 && cmd_addr == cmd_expected);
         words_in_order:    assert (!wdata_valid || wdata_data == word_expected);
-        none_made_up:      assert (!wdata_valid || words_left != '0);
+        none_made_up:      assert (!wdata_valid || word_rows != '0);
         data_at_command:   assert (wdata_valid == (owed != '0));
         commands_match:    assert (!idle || (owed == '0 && !cmd_valid));
-        none_left_out:     assert (!(flushing && idle) || dropped || words_left == '0);
+        none_left_out:     assert (!(flushing && idle) || dropped || (cmd_rows == '0 && word_rows == '0));
         no_standstill:     assert (without_word < 4'(WITHIN));
         sweep_ends:        assert (sweep_clocks < 4'd5);
         all_swept:         assert (!(fresh && settled == 2'd2) || drawn == '0);
         // Of the rows that were flushed, and of no others.
-        cleared_behind:    assert (!(flushing && idle) || dropped || drawn == 4'b1110 << flush_last);
-        flushed:           cover (flushing && idle && !dropped && flush_depth && flush_last == 2'd1);
-        stopped:           cover (flushing && idle && dropped && words_left != '0);
+        cleared_behind:    assert (!(flushing && idle) || dropped || drawn == ~flush_rows);
+        flushed:           cover (flushing && idle && !dropped && flush_rows == 4'b1001);
+        deep:              cover (flushing && idle && !dropped && flush_depth && flush_rows == 4'b0100);
+        stopped:           cover (flushing && idle && dropped && word_rows != '0);
     end
 endmodule
 

@@ -25,6 +25,10 @@ def _flush(old, new, fails):
     return Mutation("band_flush.sv", old, new, fails)
 
 
+def _extents(old, new, fails):
+    return Mutation("band_extents.sv", old, new, fails)
+
+
 def _pipe(old, new, fails):
     return Mutation("band_pipe.sv", old, new, fails)
 
@@ -58,22 +62,30 @@ MUTATIONS = {
     "fifo of 2": _FIFO,
     "fifo of 4": _FIFO,
     "band_flush": [
-        _flush("to_command != '0;", "to_command != '0 && !word_valid;", "commands.valid_stays"),
-        _flush("if (commanded) begin", "if (cmd_valid) begin", "commands.payload_stable"),
+        _flush(".out_ready(cmd_ready)", ".out_ready(1'b1)", "commands.valid_stays"),
+        _flush(".out_ready(cmd_ready)", ".out_ready(1'b1)", "commands.payload_stable"),
         _flush("word_stored && owed != '0;", "word_stored && owed != '0 && !word_valid;", "words.valid_stays"),
         _flush(".out_ready(wdata_ready && owed != '0)", ".out_ready(owed != '0)", "words.payload_stable"),
-        _flush("depth_address  <= depth_base;", "depth_address  <= base;", "commands_in_order"),
-        _flush("            cmd_part       <= COLOUR;\n", "", "commands_in_order"),
+        _flush("depth_words_base <= depth_base;", "depth_words_base <= base;", "commands_in_order"),
+        _flush("{clear_row, 1'b1}", "{clear_row, 1'b0}", "commands_in_order"),
+        _flush("address   <= address_2;", "address   <= address_1;", "commands_in_order"),
+        # A span that begins where the one before has ended.
+        _flush("row      <= span_first;", "row      <= row + 1'b1;", "commands_in_order"),
         # More words than there are places.
-        _flush("state == FLUSH && places != '0;", "state == FLUSH;", "words_in_order"),
+        _flush("in_span && places != '0;", "in_span;", "words_in_order"),
         # A row that is cleared before its depth has been read.
         _flush("clears <= row_ends;", "clears <= 1'b1;", "words_in_order"),
         _flush("{18{written[lane]}}", "18'b0", "words_in_order"),
-        _flush("if (row == last_row)", "if (row == '1)", "none_made_up"),
+        _flush("row_ends && row == last_row;", "row_ends && row == '1;", "none_made_up"),
         # A command before its data.
-        _flush("word_valid && word_ready;", "asked_2 && word_ready;", "data_at_command"),
+        _flush(".in_valid(word_valid), .in_ready(address_ready)", ".in_valid(asked_1), .in_ready(address_ready)",
+               "data_at_command"),
         _flush("if (taken && !issue)", "if (commanded && !issue)", "commands_match"),
-        _flush("last_row   <= rows - 1'b1;", "last_row   <= rows - 2'd2;", "none_left_out"),
+        _flush("last_row <= span_last;", "last_row <= span_first;", "none_left_out"),
+        # An end while a span is in work, or before the last one has come.
+        _flush("if (!in_span && !spans_busy)", "if (!spans_busy)", "none_left_out"),
+        _flush("if (!in_span && !spans_busy)", "if (!in_span && !span_valid)", "none_left_out"),
+        _flush("(!in_span || span_ends);", "span_ends;", "no_standstill"),
         _flush("places <= places + 1'b1;", "places <= places;", "no_standstill"),
         _flush("owed <= owed - 1'b1;", "owed <= owed;", "data_at_command"),
         _flush("if (row == '1) state", "if (row == '1 && idle) state", "sweep_ends"),
@@ -83,6 +95,24 @@ MUTATIONS = {
         _flush("state  <= SWEEP;\n            row    <= '0;", "state  <= SWEEP;", "all_swept"),
         _flush("clears <= row_ends;", "clears <= row_ends && row != last_row;", "cleared_behind"),
         _flush("clear_row <= row;", "clear_row <= row + 1'b1;", "cleared_behind"),
+    ],
+    "band_extents": [
+        Mutation("skid_buffer.sv", "if (!out_valid || out_ready)", "if (1'b1)", "spans.valid_stays"),
+        Mutation("skid_buffer.sv", "if (!out_valid || out_ready)", "if (!out_valid || out_ready || in_valid)",
+                 "spans.payload_stable"),
+        # What was there is forgotten, is that of another frame buffer, or is overwritten before it has been read.
+        _extents("united(earlier, now_3);", "now_3;", "in_order"),
+        _extents("place       <= {slot, first_line};", "place       <= {1'b0, first_line};", "in_order"),
+        _extents("to_write <= valid[1] && advance;", "to_write <= valid[1];", "in_order"),
+        # What is there now is left for the next band, or only its last group counts.
+        _extents("empties ? EMPTY : united", "united", "in_order"),
+        _extents("united(kept[bank], {add_column, add_column})", "{add_column, add_column}", "in_order"),
+        _extents("if (valid[4]) line_row", "line_row", "in_order"),
+        _extents("all ? {last_column, {COLUMN_BITS{1'b0}}} : united", "united", "in_order"),
+        _extents(" && united_4[COLUMN_BITS-1:0] != '1", "", "nothing_made_up"),
+        _extents("busy      = planning || valid != '0 || span_valid;", "busy      = planning || span_valid;", "none_left_out"),
+        _extents("valid    <= {valid[3:1], planning};", "valid    <= {valid[3:1], 1'b0};", "no_standstill"),
+        _extents("if (line == last_line) planning", "if (line == last_line && span_valid) planning", "ends"),
     ],
     "band_pipe": [
         _pipe("hold <= 2'd3;", "hold <= 2'd2;", "drawn_as_given"),

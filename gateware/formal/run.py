@@ -11,6 +11,7 @@ import re
 import shutil
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -24,6 +25,8 @@ import mutations  # noqa: E402
 _BUILD = GATEWARE.parent / "target" / "gateware" / "formal"
 _PROGRAMS = Path(sys.executable).parent
 _RTL = GATEWARE / "rtl"
+
+_AT_A_TIME = 2
 
 
 @dataclass(frozen=True)
@@ -50,7 +53,10 @@ PROOFS = [
     Proof("fifo of 4", "buffer_proof", _BUFFER, 24, {"DEPTH": 4}),
     Proof("band_flush", "band_flush_proof",
           [FORMAL / "stream_checker.sv", FORMAL / "band_flush_proof.sv", _RTL / "common" / "fifo.sv",
-           _RTL / "band" / "band_flush.sv"], 24),
+           _RTL / "band" / "band_flush.sv"], 23),
+    Proof("band_extents", "band_extents_proof",
+          [FORMAL / "stream_checker.sv", FORMAL / "band_extents_proof.sv", _RTL / "common" / "skid_buffer.sv",
+           _RTL / "band" / "band_extents.sv"], 24),
     Proof("band_pipe", "band_pipe_proof",
           [FORMAL / "band_pipe_proof.sv", _RTL / "band" / "band_pipe.sv"], 14),
     Proof("cull", "cull_proof",
@@ -101,21 +107,22 @@ def check(proof, mode, folder, sources=None, only=None):
 
 
 def prove(proofs):
-    """Runs proofs and returns the number of those that failed."""
-    failures = 0
-    for proof in proofs:
-        start = time.monotonic()
-        folder = _BUILD / proof.name.replace(" ", "_")
-        # The covers show that the assumptions leave something to be proven.
-        verdicts = [(mode, *check(proof, mode, folder / mode)) for mode in ("bmc", "cover")]
-        bad = [f"{mode}: {verdict}: {', '.join(found)}" for mode, verdict, found in verdicts if verdict != "PASS"]
-        failures += bool(bad)
-        outcome = f"{len(proof.properties())} properties, {proof.depth} clocks"
-        if bad:
-            print(f"FAIL  {proof.name}:", *bad, sep="\n      ", flush=True)
-        else:
-            print(f"ok    {proof.name}: {outcome} ({time.monotonic() - start:.0f} s)", flush=True)
-    return failures
+    """Runs proofs, two at a time, and returns the number of those that failed."""
+    with ThreadPoolExecutor(_AT_A_TIME) as pool:
+        return sum(pool.map(_fails, proofs))
+
+
+def _fails(proof):
+    start = time.monotonic()
+    folder = _BUILD / proof.name.replace(" ", "_")
+    # The covers show that the assumptions leave something to be proven.
+    verdicts = [(mode, *check(proof, mode, folder / mode)) for mode in ("bmc", "cover")]
+    bad = [f"{mode}: {verdict}: {', '.join(found)}" for mode, verdict, found in verdicts if verdict != "PASS"]
+    outcome = f"{len(proof.properties())} properties, {proof.depth} clocks"
+    lines = ([f"FAIL  {proof.name}:", *bad] if bad
+             else [f"ok    {proof.name}: {outcome} ({time.monotonic() - start:.0f} s)"])
+    print("\n      ".join(lines), flush=True)
+    return bool(bad)
 
 
 def mutate(proofs):

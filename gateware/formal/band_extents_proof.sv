@@ -1,0 +1,152 @@
+// What has to go to memory, small: bands of one to four lines with one to three columns, in two frame buffers of four lines, any
+// groups, any bands, any traffic.
+//
+// Beside the module each column that is drawn is marked, in this band and, for each line of a frame buffer, in the last one there.
+// What must come of a line is from the first to the last column of both together. Nothing is known of a line at first, and of
+// those of a band that was given up: a band with one of them is whole.
+
+`default_nettype none
+
+module band_extents_proof (
+    input wire       clk,
+    input wire       group_valid,
+    input wire [1:0] group_line,
+    input wire [1:0] group_column,
+    input wire       start,
+    input wire [1:0] first_line,
+    input wire       slot,
+    input wire       whole,
+    input wire       span_ready,
+    input wire       restart
+);
+    // Clocks that may pass without a span that is to come while spans are taken.
+    localparam int unsigned WITHIN = 10;
+
+    logic rst = 1'b1;
+    always_ff @(posedge clk) rst <= 1'b0;
+
+    (* anyconst *) logic [1:0] last_line, stride;
+
+    logic       sweep, drawn, busy, span_valid;
+    logic [3:0] span_first, span_last;
+
+    band_extents #(.ROW_BITS(4), .LINE_BITS(2), .COLUMN_BITS(2), .PICTURE_BITS(2)) dut (
+        .clk, .rst, .sweep, .drawn, .group_valid, .group_line, .group_column,
+        .start, .lines(last_line + 1'b1), .stride, .first_line, .slot, .whole, .busy,
+        .span_valid, .span_ready, .span_first, .span_last
+    );
+
+    stream_checker #(.WIDTH(8)) spans (
+        .clk, .rst(rst || sweep), .valid(span_valid), .ready(span_ready), .data({span_first, span_last})
+    );
+
+    // Columns of the lines: being drawn, drawn last, and to come out. Band and sweep.
+    logic [3:0][2:0]      marked, to_come;
+    logic [1:0][3:0][2:0] left;
+    logic [1:0][3:0]      known;
+    logic [1:0]           band_line, swept;
+    logic                 band_slot, all_known;
+    logic [2:0]           all;
+
+    assign all = {stride == 2'd3, stride >= 2'd2, 1'b1};
+
+    function automatic logic [2:0] hull(input logic [2:0] columns);
+        hull = columns == 3'b101 ? 3'b111 : columns;
+    endfunction
+
+    // The next line to come out.
+    logic       comes;
+    logic [1:0] next_line;
+    logic [3:0] next_row;
+    logic [2:0] next;
+
+    always_comb begin
+        comes     = 1'b0;
+        next_line = '0;
+        for (int i = 3; i >= 0; i--) begin
+            if (to_come[i] != '0) begin
+                comes     = 1'b1;
+                next_line = 2'(i);
+            end
+        end
+        next     = to_come[next_line];
+        next_row = next_line * stride;
+
+        all_known = 1'b1;
+        for (int i = 0; i < 4; i++)
+            if (2'(i) <= last_line && !known[slot][2'(first_line + i)]) all_known = 1'b0;
+    end
+
+    logic [3:0] without_span = '0;
+    logic       again = 1'b0, far = 1'b0;
+
+    always_ff @(posedge clk) begin
+        if (group_valid) marked[group_line][group_column] <= 1'b1;
+        if (span_valid && span_ready) to_come[next_line] <= '0;
+        if (start) begin
+            drawn     <= !drawn;
+            band_line <= first_line;
+            band_slot <= slot;
+            marked    <= '0;
+            again     <= !whole;
+            far       <= 1'b0;
+            for (int i = 0; i < 4; i++) begin
+                to_come[i] <= '0;
+                if (2'(i) <= last_line) begin
+                    to_come[i] <= whole ? all : hull(marked[i] | left[slot][2'(first_line + i)]);
+                    left[slot][2'(first_line + i)]  <= marked[i];
+                    known[slot][2'(first_line + i)] <= 1'b1;
+                    // Something is left of what was there, and something else is there now.
+                    if (!whole && marked[i] != '0 && (left[slot][2'(first_line + i)] & ~marked[i]) != '0) far <= 1'b1;
+                end
+            end
+        end
+
+        if (sweep) begin
+            swept <= swept + 1'b1;
+            if (swept == '1 && !restart) sweep <= 1'b0;
+            marked  <= '0;
+            to_come <= '0;
+        end
+        if (restart) begin
+            sweep <= 1'b1;
+            swept <= '0;
+            if (busy || start)
+                for (int i = 0; i < 4; i++)
+                    if (2'(i) <= last_line)
+                        known[start ? slot : band_slot][2'((start ? first_line : band_line) + i)] <= 1'b0;
+        end
+
+        without_span <= !comes || span_valid || sweep ? '0 : without_span + 1'b1;
+
+        if (rst) begin
+            sweep   <= 1'b1;
+            swept   <= '0;
+            drawn   <= 1'b0;
+            known   <= '0;
+            to_come <= '0;
+            marked  <= '0;
+        end
+    end
+
+    always_ff @(posedge clk) if (!rst) begin
+        assume (stride != '0);
+        assume (group_column < stride && group_line <= last_line);
+        assume (!(group_valid && (start || sweep)));
+        assume (!start || !busy && !sweep && (whole || all_known));
+
+        in_order:        assert (!span_valid || sweep || !comes
+                                 || (span_first == next_row + (next[0] ? 4'd0 : next[1] ? 4'd1 : 4'd2)
+                                     && span_last == next_row + (next[2] ? 4'd2 : next[1] ? 4'd1 : 4'd0)));
+        nothing_made_up: assert (!span_valid || sweep || comes);
+        none_left_out:   assert (busy || sweep || !comes);
+        no_standstill:   assert (without_span < 4'(WITHIN));
+        ends:            assert (!busy || sweep || comes || without_end < 4'(WITHIN));
+        drawn_again:     cover (again && far && !busy && last_line != '0);
+    end
+
+    logic [3:0] without_end = '0;
+    always_ff @(posedge clk) without_end <= !busy || sweep || comes ? '0 : without_end + 1'b1;
+endmodule
+
+`default_nettype wire
