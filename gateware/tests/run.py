@@ -1,11 +1,14 @@
 """Tests of the gateware that need no SoC: modules on their benches, lint, and the Urbana's generated files.
 
     python gateware/tests/run.py           runs everything, one line a test; ends with 1 if anything failed
-    python gateware/tests/run.py --size    prints what each module costs on the FPGA instead
     python gateware/tests/run.py --models  builds what the tests in tools/rtl need instead
+    python gateware/tests/run.py --size NAME
+                                           prints what a module, or `soc`, costs on the FPGA instead, as JSON:
+                                           `cargo xtask resources` makes tables of it
 """
 
 import argparse
+import json
 import logging
 import sys
 from pathlib import Path
@@ -62,6 +65,8 @@ def test():
             report.check(f"{module.top}: built for tools/rtl", lambda: models.build(module))
     for name, check in memory_bridge.CHECKS.items():
         report.check(f"memory bridge: {name}", check)
+    for name, check in size.CHECKS.items():
+        report.check(f"sizes: {name}", check)
     files = urbana.generate()
     for name, check in urbana.CHECKS.items():
         report.check(f"urbana: {name}", lambda: check(*files))
@@ -73,15 +78,14 @@ def run_lint(module):
     run_verilator("--lint-only", "-Wall", "--top-module", module.top, *module.sources)
 
 
-def print_sizes():
-    """Prints a table of sizes and returns the number of modules with a path that is too long."""
-    too_long = 0
-    for module in MODULES:
-        measured = size.measure(module)
-        print(f"{module.top}: " + ", ".join(f"{count} {row}" for row, count in measured.items() if row != "path" and count)
-              + f"; longest path {measured['path']} cells (at most {size.LONGEST_PATH})")
-        too_long += measured["path"] > size.LONGEST_PATH
-    return too_long
+def print_size(name):
+    """Prints a line of JSON. Returns whether it failed."""
+    try:
+        print(json.dumps({"name": name, **size.measure(name)}), flush=True)
+    except ToolError as error:
+        print(error)
+        return True
+    return False
 
 
 def build_models():
@@ -96,10 +100,14 @@ def build_models():
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     what = parser.add_mutually_exclusive_group()
-    what.add_argument("--size", dest="action", action="store_const", const=print_sizes, default=test,
-                      help="print sizes instead")
-    what.add_argument("--models", dest="action", action="store_const", const=build_models,
-                      help="build what the tests in tools/rtl need instead")
+    what.add_argument("--size", metavar="NAME", help="print a size instead")
+    what.add_argument("--models", action="store_true", help="build what the tests in tools/rtl need instead")
     arguments = parser.parse_args()
     logging.disable(logging.INFO) # LiteX describes all it does
-    sys.exit(1 if arguments.action() else 0)
+    if arguments.size:
+        failed = print_size(arguments.size)
+    elif arguments.models:
+        failed = build_models()
+    else:
+        failed = test()
+    sys.exit(1 if failed else 0)

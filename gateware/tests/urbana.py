@@ -10,7 +10,7 @@ from litex.soc.integration.builder import Builder
 from glint_soc.register_map import OPTIONAL_BLOCKS
 from glint_soc.urbana import UrbanaSoC
 
-from tools import BUILD, TESTS, run_yosys
+from tools import BUILD, TESTS, ToolError, run_yosys
 
 _OUTPUT = BUILD / "urbana"
 _GATEWARE = _OUTPUT / "gateware"
@@ -105,18 +105,27 @@ def check_clocks(_xdc, verilog, _script):
     return problems
 
 
-def check_complete(_xdc, verilog, script):
+def check_complete(_xdc, _verilog, _script):
     """Each module of the design exists, the FPGA's own cells among them, and has the ports it is connected by."""
-    # LiteX ties the unused outputs of its serializers to 0, which Vivado takes and Yosys does not.
-    open_outputs = _GATEWARE / "open_outputs.v"
-    open_outputs.write_text(re.sub(r"(\.SHIFTOUT\d +)\(1'd0\)", r"\1()", verilog))
-    sources = [open_outputs if source.endswith("/glint_urbana.v") else source
-               for source in re.findall(r"^read_verilog (?:-v )?\{(.+)\}$", script, re.M)]
-    if open_outputs not in sources:
-        return ["the Vivado script does not read glint_urbana.v"]
-    run_yosys("read_verilog -lib +/xilinx/cells_sim.v +/xilinx/cells_xtra.v; hierarchy -check -top glint_urbana", sources,
-              folder=_GATEWARE) # where its memory images are
+    run_yosys("read_verilog -lib +/xilinx/cells_sim.v +/xilinx/cells_xtra.v; hierarchy -check -top glint_urbana",
+              synthesis_sources(_GATEWARE), folder=_GATEWARE) # where its memory images are
     return []
+
+
+def synthesis_sources(folder):
+    """The Verilog that the Vivado script in `folder` reads, such that Yosys takes it as well."""
+    verilog, script = folder / "glint_urbana.v", folder / "glint_urbana.tcl"
+    for path in (verilog, script):
+        if not path.exists():
+            raise ToolError(f"{path} is missing; `cargo xtask gateware --board urbana` makes it")
+    # LiteX ties the unused outputs of its serializers to 0, which Vivado takes and Yosys does not.
+    open_outputs = folder / "open_outputs.v"
+    open_outputs.write_text(re.sub(r"(\.SHIFTOUT\d +)\(1'd0\)", r"\1()", verilog.read_text()))
+    sources = [open_outputs if source.endswith(f"/{verilog.name}") else source
+               for source in re.findall(r"^read_verilog (?:-v )?\{(.+)\}$", script.read_text(), re.M)]
+    if open_outputs not in sources:
+        raise ToolError(f"{script} does not read {verilog.name}")
+    return sources
 
 
 CHECKS = {

@@ -8,6 +8,7 @@ mod firmware;
 mod gateware;
 mod pac;
 mod paths;
+mod resources;
 mod run;
 mod test;
 
@@ -55,6 +56,17 @@ enum Task {
     },
     /// Build everything and run every test
     Test,
+    /// Measure what the gateware takes of the FPGA; fail beyond gateware/budget.toml
+    Resources {
+        /// What to measure: own blocks, `flat_build`, `soc` (none: all of them)
+        blocks: Vec<String>,
+        /// Print JSON; progress goes to standard error
+        #[arg(long)]
+        json: bool,
+        /// Write docs/resources.md
+        #[arg(long, conflicts_with = "blocks")]
+        write: bool,
+    },
     /// Measure error against run time and write docs/report
     Report {
         /// The page: `sine`
@@ -82,6 +94,15 @@ fn main() -> Result<()> {
         }
         Task::Demo { arguments } => demo::demo(&arguments),
         Task::Test => test::test(),
+        Task::Resources {
+            blocks,
+            json,
+            write,
+        } => resources::resources(&resources::Options {
+            blocks,
+            json,
+            write,
+        }),
         Task::Report { page, arguments } => demo::report(&page, &arguments),
     }
 }

@@ -4,15 +4,39 @@ use std::collections::VecDeque;
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader, IsTerminal, Write};
 use std::process::{Command, Stdio};
+use std::sync::LazyLock;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail};
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 
 use crate::paths;
 
 /// Lines of output shown when a step fails; the log has them all.
 const SHOWN_ON_FAILURE: usize = 60;
+
+/// The moving lines of the steps that run now, one below the other.
+static SPINNERS: LazyLock<MultiProgress> = LazyLock::new(MultiProgress::new);
+
+/// Whether standard output is for something else than progress.
+static TO_STDERR: AtomicBool = AtomicBool::new(false);
+
+/// Has steps print to standard error from now on, because standard output is a program's.
+pub fn progress_to_stderr() {
+    TO_STDERR.store(true, Ordering::Relaxed);
+}
+
+/// Prints a line about progress, above the moving ones.
+pub fn say(line: &str) {
+    SPINNERS.suspend(|| {
+        if TO_STDERR.load(Ordering::Relaxed) {
+            eprintln!("{line}");
+        } else {
+            println!("{line}");
+        }
+    });
+}
 
 /// Runs `command` as the step `name`: shows its latest line while it runs, keeps all of its output in
 /// `target/log`, and prints one line with the time it took.
@@ -62,13 +86,12 @@ pub fn watched_step(name: &str, command: &mut Command, mut watch: impl FnMut(&st
     bar.finish_and_clear();
     let seconds = start.elapsed().as_secs_f64();
     if status.success() {
-        println!("  ok   {seconds:6.1} s  {name}");
+        say(&format!("  ok   {seconds:6.1} s  {name}"));
         return Ok(());
     }
-    println!("  FAIL {seconds:6.1} s  {name}");
-    for line in &tail {
-        println!("    {line}");
-    }
+    // In one piece: another step may print at the same time.
+    let tail: String = tail.iter().map(|line| format!("\n    {line}")).collect();
+    say(&format!("  FAIL {seconds:6.1} s  {name}{tail}"));
     bail!(
         "{name} failed ({status}); all of its output is in {}",
         log_path.display()
@@ -103,14 +126,16 @@ pub fn succeeds(command: &mut Command) -> bool {
 /// A spinner named `name`; where there is no terminal, a line that says what begins.
 fn spinner(name: &str) -> ProgressBar {
     if !std::io::stderr().is_terminal() {
-        println!("  ...            {name}");
+        say(&format!("  ...            {name}"));
         return ProgressBar::hidden();
     }
     let style = ProgressStyle::with_template("  {spinner} {elapsed:>8}  {prefix}  {msg:.dim}")
         .expect("the template is constant and valid");
-    let bar = ProgressBar::new_spinner()
-        .with_style(style)
-        .with_prefix(name.to_owned());
+    let bar = SPINNERS.add(
+        ProgressBar::new_spinner()
+            .with_style(style)
+            .with_prefix(name.to_owned()),
+    );
     bar.enable_steady_tick(Duration::from_millis(120));
     bar
 }

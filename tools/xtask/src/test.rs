@@ -6,7 +6,7 @@ use std::time::Instant;
 use anyhow::{Result, bail};
 
 use crate::gateware::{self, Board};
-use crate::{bootstrap, firmware, pac, paths, run};
+use crate::{bootstrap, firmware, pac, paths, resources, run};
 
 /// Sets up, builds and tests everything. Checks go on after one that failed; builds do not.
 ///
@@ -48,6 +48,7 @@ pub fn test() -> Result<()> {
     check(documentation());
     check(gateware_check("gateware tests", "gateware/tests/run.py"));
     check(gateware_check("proofs", "gateware/formal/run.py"));
+    check(resources::check_own_blocks().map(|()| 1));
     check(cargo_tests());
 
     let minutes = start.elapsed().as_secs_f64() / 60.0;

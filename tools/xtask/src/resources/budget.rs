@@ -1,0 +1,206 @@
+//! What the gateware may cost: `gateware/budget.toml`.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::fs;
+
+use anyhow::{Context, Result, bail};
+use serde::{Deserialize, Serialize};
+
+use super::size::{Resource, Size};
+use super::{ROWS, SOC, table};
+use crate::paths;
+
+/// The most of some resources.
+pub type Limits = BTreeMap<Resource, u32>;
+
+/// The budget file.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Budget {
+    /// What the FPGA has; it limits the SoC.
+    pub device: Limits,
+    /// Limits of every own block.
+    own: Limits,
+    /// Limits of single blocks.
+    block: BTreeMap<String, Limits>,
+}
+
+/// A resource of which a block takes more than it may.
+#[derive(Debug, PartialEq, Serialize)]
+pub struct Excess {
+    /// The block.
+    pub block: String,
+    /// What it takes too much of.
+    pub resource: Resource,
+    /// What it may take.
+    pub budget: u32,
+    /// What it takes.
+    pub measured: f64,
+}
+
+impl fmt::Display for Excess {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{}: {}: budget {}, measured {}",
+            self.block,
+            self.resource.name(),
+            table::number(self.budget.into()),
+            table::number(self.measured)
+        )
+    }
+}
+
+impl Budget {
+    /// Reads the budget file.
+    ///
+    /// # Errors
+    /// When it cannot be read, or limits what does not exist.
+    pub fn read() -> Result<Self> {
+        let path = "gateware/budget.toml";
+        fs::read_to_string(paths::root().join(path))
+            .map_err(anyhow::Error::from)
+            .and_then(|text| Self::parse(&text))
+            .with_context(|| format!("reading {path}"))
+    }
+
+    fn parse(text: &str) -> Result<Self> {
+        let budget: Self = toml::from_str(text)?;
+        for name in budget.block.keys() {
+            if !ROWS.contains(&name.as_str()) {
+                bail!("no block is named {name}; there are: {}", ROWS.join(" "));
+            }
+        }
+        Ok(budget)
+    }
+
+    /// What a block may take: its own limits, and those of its kind where it has none.
+    pub fn limits(&self, block: &str) -> Limits {
+        let common = if block == SOC {
+            &self.device
+        } else {
+            &self.own
+        };
+        let mut limits = common.clone();
+        limits.extend(self.block.get(block).into_iter().flatten());
+        limits
+    }
+
+    /// All that is beyond the budget.
+    pub fn excesses(&self, sizes: &[Size]) -> Vec<Excess> {
+        let mut excesses = Vec::new();
+        for size in sizes {
+            for (resource, budget) in self.limits(&size.name) {
+                let measured = size.of(resource);
+                if measured > f64::from(budget) {
+                    excesses.push(Excess {
+                        block: size.name.clone(),
+                        resource,
+                        budget,
+                        measured,
+                    });
+                }
+            }
+        }
+        excesses
+    }
+}
+
+#[cfg(test)]
+pub mod tests {
+    use super::super::size::tests::size;
+    use super::*;
+
+    /// A budget that blocks of [`size`] keep, but for the SoC.
+    pub const BUDGET: &str = "device = { lut = 32600, ff = 65200, dsp48 = 120, ramb36 = 75 }
+        own = { path = 9 }
+        [block]
+        setup = { lut = 1234, ramb36 = 3 }
+        band_buffer = { path = 8 }
+        soc = { ramb36 = 2 }";
+
+    fn excesses(budget: &str, name: &str) -> Vec<String> {
+        let budget = Budget::parse(budget).unwrap();
+        let found = budget.excesses(&[size(name)]);
+        found.iter().map(ToString::to_string).collect()
+    }
+
+    #[test]
+    fn a_budget_is_kept_when_reached_and_broken_by_one_more() {
+        assert_eq!(excesses(BUDGET, "setup"), [""; 0]);
+        let less = BUDGET.replace("1234", "1233");
+        assert_eq!(
+            excesses(&less, "setup"),
+            ["setup: LUT: budget 1,233, measured 1,234"]
+        );
+    }
+
+    #[test]
+    fn half_a_block_ram_counts() {
+        assert_eq!(
+            excesses(BUDGET, "soc"),
+            ["soc: RAMB36: budget 2, measured 2.5"]
+        );
+    }
+
+    #[test]
+    fn every_own_block_has_a_path_and_may_have_its_own() {
+        let less = BUDGET.replace("path = 9", "path = 7");
+        for block in ["setup", "scanout", "binner"] {
+            assert_eq!(
+                excesses(&less, block),
+                [format!("{block}: path: budget 7, measured 9")]
+            );
+        }
+        assert_eq!(
+            excesses(BUDGET, "band_buffer"),
+            ["band_buffer: path: budget 8, measured 9"]
+        );
+    }
+
+    #[test]
+    fn the_soc_has_to_fit_the_device_and_may_have_a_longer_path() {
+        let small = BUDGET
+            .replace("ff = 65200", "ff = 1999")
+            .replace("path = 9", "path = 1");
+        assert_eq!(
+            excesses(&small, "soc"),
+            [
+                "soc: FF: budget 1,999, measured 2,000",
+                "soc: RAMB36: budget 2, measured 2.5"
+            ]
+        );
+    }
+
+    #[test]
+    fn refuses_unknown_blocks_and_resources() {
+        for (from, to, said) in [
+            ("setup", "set_up", "no block is named set_up"),
+            ("lut = 1234", "luts = 1234", "unknown variant `luts`"),
+            ("own =", "owned =", "unknown field `owned`"),
+            ("lut = 1234", "lut = -1", "invalid value"),
+        ] {
+            let error = format!(
+                "{:#}",
+                Budget::parse(&BUDGET.replace(from, to)).unwrap_err()
+            );
+            assert!(error.contains(said), "expected `{said}` in: {error}");
+        }
+    }
+
+    #[test]
+    fn the_budget_file_is_sound() {
+        let budget = Budget::read().unwrap();
+        for block in ROWS.iter().filter(|block| **block != SOC) {
+            assert!(
+                budget.limits(block)[&Resource::Path] <= 12,
+                "{block} may have a longer path than timing bears"
+            );
+        }
+        for (resource, limit) in &budget.device {
+            assert!(budget.limits(SOC)[resource] <= *limit, "{resource:?}");
+        }
+        assert_eq!(budget.device.len(), 4);
+    }
+}

@@ -1,0 +1,165 @@
+//! What a block takes of the FPGA.
+
+use std::collections::BTreeMap;
+
+use anyhow::{Context, Result};
+use serde::{Deserialize, Serialize};
+
+/// What a budget can limit, in the order of the tables.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Resource {
+    /// All that takes a LUT.
+    Lut,
+    /// Flip-flops.
+    Ff,
+    /// Multipliers.
+    Dsp48,
+    /// Block RAMs.
+    Ramb36,
+    /// Carry chains of four bits.
+    Carry4,
+    /// Cells between registers.
+    Path,
+}
+
+impl Resource {
+    /// All of them.
+    pub const ALL: [Self; 6] = [
+        Self::Lut,
+        Self::Ff,
+        Self::Dsp48,
+        Self::Ramb36,
+        Self::Carry4,
+        Self::Path,
+    ];
+
+    /// The name in tables and messages.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Lut => "LUT",
+            Self::Ff => "FF",
+            Self::Dsp48 => "DSP48",
+            Self::Ramb36 => "RAMB36",
+            Self::Carry4 => "CARRY4",
+            Self::Path => "path",
+        }
+    }
+}
+
+/// One line of `gateware/tests/run.py --size`: cells of a mapped netlist.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Size {
+    /// The block.
+    pub name: String,
+    /// What measured it, with its version.
+    pub yosys: String,
+    /// LUTs as logic.
+    pub logic: u32,
+    /// LUTs as shift registers.
+    pub srl: u32,
+    /// LUTs as memory.
+    pub lutram: u32,
+    /// Flip-flops.
+    pub ff: u32,
+    /// Multipliers.
+    pub dsp48: u32,
+    /// Whole block RAMs.
+    pub ramb36: u32,
+    /// Half block RAMs.
+    pub ramb18: u32,
+    /// Carry chains of four bits.
+    pub carry4: u32,
+    /// Cells on the longest path between registers.
+    pub path: u32,
+    /// All other cells by their names.
+    pub others: BTreeMap<String, u32>,
+}
+
+impl Size {
+    /// Reads a line of JSON.
+    ///
+    /// # Errors
+    /// When it is not a size.
+    pub fn parse(line: &str) -> Result<Self> {
+        serde_json::from_str(line).with_context(|| format!("not a size: `{line}`"))
+    }
+
+    /// Several blocks as one; the longest path is the longest of any.
+    pub fn sum(name: &str, parts: &[&Self]) -> Self {
+        let total = |count: fn(&Self) -> u32| parts.iter().map(|part| count(part)).sum();
+        let mut others = BTreeMap::new();
+        for (cell, count) in parts.iter().flat_map(|part| &part.others) {
+            *others.entry(cell.clone()).or_default() += count;
+        }
+        Self {
+            name: name.to_owned(),
+            yosys: parts
+                .first()
+                .map_or_else(String::new, |part| part.yosys.clone()),
+            logic: total(|part| part.logic),
+            srl: total(|part| part.srl),
+            lutram: total(|part| part.lutram),
+            ff: total(|part| part.ff),
+            dsp48: total(|part| part.dsp48),
+            ramb36: total(|part| part.ramb36),
+            ramb18: total(|part| part.ramb18),
+            carry4: total(|part| part.carry4),
+            path: parts.iter().map(|part| part.path).max().unwrap_or(0),
+            others,
+        }
+    }
+
+    /// How much of `resource` it takes.
+    pub fn of(&self, resource: Resource) -> f64 {
+        match resource {
+            Resource::Lut => f64::from(self.logic + self.srl + self.lutram),
+            Resource::Ff => f64::from(self.ff),
+            Resource::Dsp48 => f64::from(self.dsp48),
+            Resource::Ramb36 => f64::from(self.ramb36) + f64::from(self.ramb18) / 2.0,
+            Resource::Carry4 => f64::from(self.carry4),
+            Resource::Path => f64::from(self.path),
+        }
+    }
+}
+
+#[cfg(test)]
+pub mod tests {
+    use super::*;
+
+    /// A block with a different count of everything.
+    pub fn size(name: &str) -> Size {
+        let line = r#"{"name": "NAME", "yosys": "Yosys 0.70", "logic": 1200, "srl": 30, "lutram": 4, "ff": 2000, "dsp48": 7,
+            "ramb36": 2, "ramb18": 1, "carry4": 50, "path": 9, "others": {"MUXF7": 3}}"#;
+        Size::parse(&line.replace("NAME", name)).unwrap()
+    }
+
+    #[test]
+    fn counts_shift_registers_memories_and_halves() {
+        let counts = Resource::ALL.map(|resource| size("setup").of(resource));
+        assert_eq!(counts, [1234.0, 2000.0, 7.0, 2.5, 50.0, 9.0]);
+    }
+
+    #[test]
+    fn refuses_what_is_no_size() {
+        assert!(Size::parse("").is_err());
+        let line = r#"{"name": "a", "yosys": "b", "logic": 1}"#;
+        assert!(format!("{:#}", Size::parse(line).unwrap_err()).contains("missing field `srl`"));
+    }
+
+    #[test]
+    fn a_sum_has_the_longest_path_of_its_parts() {
+        let (mut a, mut b) = (size("a"), size("b"));
+        a.path = 11;
+        b.logic = 1;
+        b.others.insert("BUFG".to_owned(), 1);
+        let sum = Size::sum("both", &[&a, &b]);
+        assert_eq!(
+            (sum.logic, sum.srl, sum.ramb18, sum.path),
+            (1201, 60, 2, 11)
+        );
+        assert_eq!(sum.of(Resource::Ramb36), 5.0);
+        assert_eq!((sum.others["MUXF7"], sum.others["BUFG"]), (6, 1));
+    }
+}
