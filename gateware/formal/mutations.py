@@ -100,10 +100,11 @@ MUTATIONS = {
         Mutation("skid_buffer.sv", "if (!out_valid || out_ready)", "if (1'b1)", "spans.valid_stays"),
         Mutation("skid_buffer.sv", "if (!out_valid || out_ready)", "if (!out_valid || out_ready || in_valid)",
                  "spans.payload_stable"),
-        # What was there is forgotten, is that of another frame buffer, or is overwritten before it has been read.
+        # What was there is forgotten, or is that of another frame buffer.
         _extents("united(earlier, now_3);", "now_3;", "in_order"),
-        _extents("place       <= {slot, first_line};", "place       <= {1'b0, first_line};", "in_order"),
-        _extents("to_write <= valid[1] && advance;", "to_write <= valid[1];", "in_order"),
+        _extents("to       <= from;", "to       <= {1'b0, from[PLACE_BITS-2:0]};", "in_order"),
+        # Lines that are overtaken while spans are not taken.
+        _extents("        if (advance) begin", "        if (1'b1) begin", "none_left_out"),
         # What is there now is left for the next band, or only its last group counts.
         _extents("empties ? EMPTY : united", "united", "in_order"),
         _extents("united(kept[bank], {add_column, add_column})", "{add_column, add_column}", "in_order"),

@@ -412,7 +412,7 @@ fn random_groups_in_many_bands_with_stalls() {
         let mut random = Pcg64Mcg::new(u128::from(seed));
         let mut bench = Bench::ready(seed, group_stalls, memory_stalls);
         // The same in all bands: groups that are taken just before a band ends belong to it, whoever they were meant for.
-        let shape @ [lines, stride] = [random.random_range(1..8), random.random_range(1..12)];
+        let shape @ [lines, stride] = [random.random_range(1..20), random.random_range(1..6)];
         bench.stride = stride;
         for _ in 0..60 {
             // Often few, so that lines are empty and extents differ.

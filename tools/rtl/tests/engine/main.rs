@@ -436,12 +436,13 @@ fn a_sphere_is_drawn_fast() {
             pixels / clocks.geometry.max(clocks.raster) as f64,
         ];
         println!(
-            "{name} at {size:?}: {pixels} pixels, {} clocks for the geometry, {} for the raster, {} walking, {} of them empty, \
+            "{name} at {size:?}: {pixels} pixels, {} clocks for the geometry, {} for the raster, {} walking, {} of them empty, {} words written, \
              {:.2} pixels a clock alone, {:.2} overlapped",
             clocks.geometry,
             clocks.raster,
             bench.count("clocks_walking") - counts[0],
             bench.count("clocks_empty") - counts[1],
+            clocks.written,
             rates[0],
             rates[1]
         );
