@@ -19,7 +19,7 @@ module band_extents_proof (
     input wire       span_ready,
     input wire       restart
 );
-    // Clocks that may pass without a span that is to come while spans are taken.
+    // Clocks that may pass without a span that is to come, or without an end when none is.
     localparam int unsigned WITHIN = 10;
 
     logic rst = 1'b1;
@@ -40,13 +40,14 @@ module band_extents_proof (
         .clk, .rst(rst || sweep), .valid(span_valid), .ready(span_ready), .data({span_first, span_last})
     );
 
-    // Columns of the lines: being drawn, drawn last, and to come out. Band and sweep.
+    // Columns of lines: being drawn, drawn last, and to come out.
     logic [3:0][2:0]      marked, to_come;
     logic [1:0][3:0][2:0] left;
     logic [1:0][3:0]      known;
+    logic [2:0]           all;
+    // The band that is planned, and the sweep.
     logic [1:0]           band_line, swept;
     logic                 band_slot, all_known;
-    logic [2:0]           all;
 
     assign all = {stride == 2'd3, stride >= 2'd2, 1'b1};
 
@@ -77,8 +78,9 @@ module band_extents_proof (
             if (2'(i) <= last_line && !known[slot][2'(first_line + i)]) all_known = 1'b0;
     end
 
-    logic [3:0] without_span = '0;
-    logic       again = 1'b0, far = 1'b0;
+    logic [3:0] without_span, without_end;
+    // The band is not whole; something is left of what was there, and something else is there now.
+    logic       united;
 
     always_ff @(posedge clk) begin
         if (group_valid) marked[group_line][group_column] <= 1'b1;
@@ -88,16 +90,14 @@ module band_extents_proof (
             band_line <= first_line;
             band_slot <= slot;
             marked    <= '0;
-            again     <= !whole;
-            far       <= 1'b0;
+            united    <= 1'b0;
             for (int i = 0; i < 4; i++) begin
                 to_come[i] <= '0;
                 if (2'(i) <= last_line) begin
                     to_come[i] <= whole ? all : hull(marked[i] | left[slot][2'(first_line + i)]);
                     left[slot][2'(first_line + i)]  <= marked[i];
                     known[slot][2'(first_line + i)] <= 1'b1;
-                    // Something is left of what was there, and something else is there now.
-                    if (!whole && marked[i] != '0 && (left[slot][2'(first_line + i)] & ~marked[i]) != '0) far <= 1'b1;
+                    if (!whole && marked[i] != '0 && (left[slot][2'(first_line + i)] & ~marked[i]) != '0) united <= 1'b1;
                 end
             end
         end
@@ -118,14 +118,18 @@ module band_extents_proof (
         end
 
         without_span <= !comes || span_valid || sweep ? '0 : without_span + 1'b1;
+        without_end  <= comes || !busy || sweep ? '0 : without_end + 1'b1;
 
         if (rst) begin
-            sweep   <= 1'b1;
-            swept   <= '0;
-            drawn   <= 1'b0;
-            known   <= '0;
-            to_come <= '0;
-            marked  <= '0;
+            sweep        <= 1'b1;
+            swept        <= '0;
+            drawn        <= 1'b0;
+            known        <= '0;
+            to_come      <= '0;
+            marked       <= '0;
+            united       <= 1'b0;
+            without_span <= '0;
+            without_end  <= '0;
         end
     end
 
@@ -141,12 +145,9 @@ module band_extents_proof (
         nothing_made_up: assert (!span_valid || sweep || comes);
         none_left_out:   assert (busy || sweep || !comes);
         no_standstill:   assert (without_span < 4'(WITHIN));
-        ends:            assert (!busy || sweep || comes || without_end < 4'(WITHIN));
-        drawn_again:     cover (again && far && !busy && last_line != '0);
+        ends:            assert (without_end < 4'(WITHIN));
+        both:            cover (united && !busy && last_line != '0);
     end
-
-    logic [3:0] without_end = '0;
-    always_ff @(posedge clk) without_end <= !busy || sweep || comes ? '0 : without_end + 1'b1;
 endmodule
 
 `default_nettype wire

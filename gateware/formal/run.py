@@ -47,16 +47,17 @@ class Proof:
 _BUFFER = [FORMAL / f"{name}.sv" for name in ("stream_checker", "order_checker", "buffer_proof")] + [
     _RTL / "common" / "skid_buffer.sv", _RTL / "common" / "fifo.sv"]
 
+# The longest first.
 PROOFS = [
-    Proof("skid_buffer", "buffer_proof", _BUFFER, 24),
-    Proof("fifo of 2", "buffer_proof", _BUFFER, 24, {"DEPTH": 2}),
-    Proof("fifo of 4", "buffer_proof", _BUFFER, 24, {"DEPTH": 4}),
     Proof("band_flush", "band_flush_proof",
           [FORMAL / "stream_checker.sv", FORMAL / "band_flush_proof.sv", _RTL / "common" / "fifo.sv",
            _RTL / "band" / "band_flush.sv"], 23),
     Proof("band_extents", "band_extents_proof",
           [FORMAL / "stream_checker.sv", FORMAL / "band_extents_proof.sv", _RTL / "common" / "skid_buffer.sv",
            _RTL / "band" / "band_extents.sv"], 24),
+    Proof("skid_buffer", "buffer_proof", _BUFFER, 24),
+    Proof("fifo of 2", "buffer_proof", _BUFFER, 24, {"DEPTH": 2}),
+    Proof("fifo of 4", "buffer_proof", _BUFFER, 24, {"DEPTH": 4}),
     Proof("band_pipe", "band_pipe_proof",
           [FORMAL / "band_pipe_proof.sv", _RTL / "band" / "band_pipe.sv"], 14),
     Proof("cull", "cull_proof",
