@@ -2,7 +2,7 @@
 
 use glint_core::console::Backend;
 use glint_core::mesh::Mesh;
-use glint_model::{FrameSetup, Options, RenderError, Target};
+use glint_model::{Options, RenderError, Target};
 use litex_hal::display::Display;
 use litex_hal::triangle::Fault;
 use litex_pac::cpu;
@@ -77,17 +77,8 @@ impl Canvas {
         if scene.backend() == Backend::Cpu && !painter.is_busy() {
             return Some(Err(None));
         }
-        let [width, height] = scene.scale().size();
-        let Ok(frame) = FrameSetup::new(scene.view(), width, height, mesh.radius()) else {
-            return Some(Err(None));
-        };
-        let mut target = painter::Target {
-            mesh,
-            frame: &frame,
-            cull: scene.cull(),
-            colour,
-            depth: scene.wants_depth().then_some(&mut *self.depth),
-        };
+        let depth = scene.wants_depth().then_some(&mut *self.depth);
+        let mut target = target(mesh, scene, colour, depth);
         let result = painter.advance(&mut target)?;
         Some(result.map_err(Some))
     }
@@ -152,16 +143,7 @@ impl Canvas {
     ) -> Option<Result<Painted, Fault>> {
         let colour = self.display.back()?;
         let painter = self.painter.as_mut()?;
-        let [width, height] = scene.scale().size();
-        let frame = FrameSetup::new(scene.view(), width, height, mesh.radius()).ok()?;
-        let mut target = painter::Target {
-            mesh,
-            frame: &frame,
-            cull: scene.cull(),
-            colour,
-            depth: None,
-        };
-        Some(painter.repeat(&mut target, count))
+        Some(painter.repeat(&mut target(mesh, scene, colour, None), count))
     }
 
     /// The frame drawn last: RGB565, row by row.
@@ -175,6 +157,24 @@ impl Canvas {
     /// The depth codes of the frame drawn last, row by row.
     pub fn depths(&self, scene: &Scene) -> &[u32] {
         self.depth.get(..pixels(scene)).unwrap_or_default()
+    }
+}
+
+/// What the engine is to draw of a scene.
+fn target<'a>(
+    mesh: &'a Mesh<'a>,
+    scene: &'a Scene,
+    colour: &'a mut [u16],
+    depth: Option<&'a mut [u32]>,
+) -> painter::Target<'a> {
+    let [width, height] = scene.scale().size();
+    painter::Target {
+        mesh,
+        view: scene.view(),
+        size: (width, height),
+        cull: scene.cull(),
+        colour,
+        depth,
     }
 }
 

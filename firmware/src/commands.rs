@@ -366,7 +366,7 @@ pub fn stats(machine: &mut Machine, json: bool) -> Result<(), Refusal<'static>> 
         .ok_or(Refusal::NoFrame)?
         .map_err(Refusal::Render)?;
     let stats = drawn.stats;
-    let mut values: Vec<(&str, u64), 24> = Vec::new();
+    let mut values: Vec<(&str, u64), 32> = Vec::new();
     let (by, engine) = match drawn.by {
         Painter::Cpu(fault) => {
             if let Some(fault) = fault
@@ -411,10 +411,13 @@ pub fn stats(machine: &mut Machine, json: bool) -> Result<(), Refusal<'static>> 
 }
 
 /// The engine's counters by name.
-pub fn engine_values(counters: &Counters) -> [(&'static str, u64); 13] {
+pub fn engine_values(counters: &Counters) -> [(&'static str, u64); 16] {
     [
         ("cycles_busy", counters.busy),
         ("cycles_stalled", counters.stalled),
+        ("stalled_reads", counters.stalled_reads),
+        ("stalled_lists", counters.stalled_lists),
+        ("stalled_frame", counters.stalled_frame),
         ("words_read", counters.words_read),
         ("words_written", counters.words_written),
         ("cycles_geometry", counters.geometry),

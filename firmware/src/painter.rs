@@ -2,6 +2,7 @@
 
 use core::mem;
 
+use glint_core::camera::View;
 use glint_core::mesh::Mesh;
 use glint_model::descriptor::{Descriptor, band_rows};
 use glint_model::{FrameSetup, Stats, clip_exceptions};
@@ -34,8 +35,10 @@ const fn list_shift(width: u32) -> u8 {
 pub struct Target<'a> {
     /// The mesh.
     pub mesh: &'a Mesh<'a>,
-    /// The camera and the picture's size.
-    pub frame: &'a FrameSetup,
+    /// The camera.
+    pub view: &'a View,
+    /// The picture's size.
+    pub size: (u32, u32),
     /// Whether back faces are left out.
     pub cull: bool,
     /// RGB565, row by row.
@@ -97,6 +100,8 @@ pub struct Painter {
     first_buffer: u32,
     known: [Known; 2],
     stage: Stage,
+    /// The constants of the frame whose geometry was begun last.
+    frame: Option<FrameSetup>,
     watch: Watch,
     start: (u64, Counters),
 }
@@ -121,6 +126,7 @@ impl Painter {
             first_buffer,
             known: [None; 2],
             stage: Stage::Idle,
+            frame: None,
             watch: Watch::default(),
         })
     }
@@ -156,7 +162,9 @@ impl Painter {
             Stage::Idle => {
                 self.start = (cpu::cycles(), self.engine.counters());
                 self.watch = Watch::default();
-                self.start_geometry(target);
+                if let Err(fault) = self.start_geometry(target) {
+                    return Some(Err(fault));
+                }
                 self.stage = Stage::Geometry;
                 return None;
             }
@@ -198,7 +206,7 @@ impl Painter {
         self.start = (cpu::cycles(), self.engine.counters());
         self.watch = Watch::default();
         for frame in 0..count {
-            self.start_geometry(target);
+            self.start_geometry(target)?;
             self.wait(Engine::geometry, target)?;
             if let Err(fault) = self.clip(target) {
                 return self.give_up(target, fault);
@@ -233,11 +241,15 @@ impl Painter {
         }
     }
 
-    fn start_geometry(&mut self, target: &Target) {
+    fn start_geometry(&mut self, target: &Target) -> Result<(), Fault> {
+        let (width, height) = target.size;
+        let frame = FrameSetup::new(target.view, width, height, target.mesh.radius())
+            .map_err(|_| Fault::Size)?;
+        let frame = self.frame.insert(frame);
         let room = &self.rooms[0];
         let pass = Geometry {
             mesh: target.mesh,
-            frame: target.frame,
+            frame,
             cull: target.cull,
             lists: Lists {
                 descriptors: address(room.descriptors),
@@ -249,15 +261,13 @@ impl Painter {
         };
         // SAFETY: the room is this painter's own, and looked at when the pass has ended; the mesh is kept while the
         // painter is busy.
-        unsafe {
-            self.engine
-                .start_geometry(&pass, list_shift(target.frame.width));
-        }
+        unsafe { self.engine.start_geometry(&pass, list_shift(width)) };
+        Ok(())
     }
 
     fn start_raster(&mut self, target: &mut Target) {
         let slot = self.slot(target.colour);
-        let size = (target.frame.width, target.frame.height);
+        let size = target.size;
         let known = &mut self.known[usize::from(slot)];
         let pass = Raster {
             size,
@@ -276,6 +286,7 @@ impl Painter {
 
     /// Makes descriptors of what the engine has left to be clipped.
     fn clip(&mut self, target: &Target) -> Result<(), Fault> {
+        let frame = self.frame.as_ref().ok_or(Fault::Size)?;
         let room = &mut self.rooms[0];
         let counts = self.engine.counts();
         room.sets = [
@@ -298,12 +309,12 @@ impl Painter {
                 lists: room.clipped_lists,
                 lengths: [0; TABLE_WORDS],
                 count: 0,
-                width: target.frame.width,
+                width: frame.width,
                 full: false,
             };
             clipped_drawn = clip_exceptions(
                 target.mesh,
-                target.frame,
+                frame,
                 target.cull,
                 &mut numbers.iter().copied(),
                 &mut |setup, colour| {

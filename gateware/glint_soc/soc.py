@@ -4,6 +4,7 @@ A board brings its platform, its clocks (domains `sys` and `pix`), its DDR3 PHY 
 firmware can see is here.
 """
 
+from litedram.core.controller import ControllerSettings
 from litedram.modules import MT41K64M16
 from litex.soc.cores.gpio import GPIOIn, GPIOOut
 from litex.soc.integration.soc import SoCRegion
@@ -70,7 +71,9 @@ class GlintSoC(SoCCore):
     def add_dram(self, phy):
         """Adds the DDR3 controller over the board's PHY, then what reads and writes memory through it."""
         module = MT41K64M16(self.sys_clk_freq, "1:4")
-        self.add_sdram("sdram", phy=phy, module=module, with_soc_interconnect=False)
+        # Turning from reads to writes and back takes a dozen clocks: longer turns than LiteDRAM's 16 writes waste fewer.
+        self.add_sdram("sdram", phy=phy, module=module, with_soc_interconnect=False,
+                       controller_settings=ControllerSettings(read_time=32, write_time=64))
         main_ram = SoCRegion(origin=self.mem_map["main_ram"], size=MAIN_RAM_SIZE, mode="rwx")
         bus = wishbone.Interface(data_width=32, address_width=32, addressing="word")
         self.memory_bridge = MemoryBridge(bus, self.sdram.crossbar.get_port(), main_ram.origin)
@@ -78,5 +81,6 @@ class GlintSoC(SoCCore):
         if "scanout" in self.blocks:
             self.scanout = Scanout(self.platform, self.sdram.crossbar.get_port(mode="read"))
         if "triangle" in self.blocks:
-            reader, list_writer, frame_writer = (self.sdram.crossbar.get_port(mode=mode) for mode in ("read", "write", "write"))
-            self.triangle = TriangleEngine(self.platform, reader, list_writer, frame_writer, main_ram)
+            readers = [self.sdram.crossbar.get_port(mode="read") for _ in range(3)]
+            writers = [self.sdram.crossbar.get_port(mode="write") for _ in range(2)]
+            self.triangle = TriangleEngine(self.platform, readers, writers, main_ram)

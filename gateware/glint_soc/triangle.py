@@ -51,12 +51,12 @@ _SIZES = [("0", "w320", "320x180"), ("1", "w640", "640x360"), ("2", "w1280", "12
 class TriangleEngine(LiteXModule):
     """Draws meshes, in two passes that may run at the same time for two frames.
 
-    `reader` is a native 128-bit LiteDRAM read port, `list_writer` and `frame_writer` are write ports, all in the domain
-    `sys`. `main_ram` is the region they reach.
+    `readers` are three native 128-bit LiteDRAM read ports (triangles, vertices, raster), `writers` two write ports (lists,
+    frame), all in the domain `sys`. `main_ram` is the region they reach.
     """
 
-    def __init__(self, platform, reader, list_writer, frame_writer, main_ram):
-        for port in (reader, list_writer, frame_writer):
+    def __init__(self, platform, readers, writers, main_ram):
+        for port in (*readers, *writers):
             if port.data_width != 128 or port.address_width != _ADDRESS_BITS:
                 raise ValueError(f"the triangle engine needs memory ports of 128 bits and {_ADDRESS_BITS} address bits, "
                                  f"got {port.data_width} and {port.address_width}")
@@ -160,6 +160,9 @@ class TriangleEngine(LiteXModule):
         counters = {
             "cycles_busy": "Clock cycles in which a pass ran.",
             "cycles_stalled": "Clock cycles in which memory did not take a command.",
+            "stalled_reads": "Clock cycles in which memory did not take a read.",
+            "stalled_lists": "Clock cycles in which memory did not take a write of the geometry pass.",
+            "stalled_frame": "Clock cycles in which memory did not take a write of the raster pass.",
             "items_in": "Words of 16 bytes read from memory.",
             "items_out": "Words of 16 bytes written to memory.",
             "cycles_geometry": "Clock cycles of geometry passes.",
@@ -182,15 +185,16 @@ class TriangleEngine(LiteXModule):
 
         # # #
 
+        mesh_reader, vertex_reader, raster_reader = readers
+        list_writer, frame_writer = writers
         geometry_kept, raster_kept = Signal(3), Signal(7)
         link = {name: Signal() for name in (
             "ready", "geometry_start", "geometry_busy", "geometry_done", "mesh_error", "full",
             "raster_start", "raster_busy", "raster_done", "list_error")}
         cancel = self._control.fields.cancel
         self.comb += [
-            reader.rdata.ready.eq(1),
-            list_writer.cmd.we.eq(1),
-            frame_writer.cmd.we.eq(1),
+            *(port.rdata.ready.eq(1) for port in readers),
+            *(port.cmd.we.eq(1) for port in writers),
         ]
         controlled = {"ready", "geometry_busy", "geometry_done", "mesh_error", "full", "raster_busy", "raster_done", "list_error"}
         self.specials += Instance("triangle_control", name="triangle_control",
@@ -278,23 +282,25 @@ class TriangleEngine(LiteXModule):
             o_clocks_held          = status["cycles_held"].status,
             o_clocks_memory        = status["cycles_memory"].status,
             o_clocks_flush         = status["cycles_flush"].status,
-            o_read_cmd_valid       = reader.cmd.valid,
-            i_read_cmd_ready       = reader.cmd.ready,
-            o_read_cmd_addr        = reader.cmd.addr,
-            i_read_rdata_valid     = reader.rdata.valid,
-            i_read_rdata           = reader.rdata.data,
+            **_read_port("mesh_read", mesh_reader),
+            **_read_port("vertex_read", vertex_reader),
+            **_read_port("raster_read", raster_reader),
             **_write_port("lists", list_writer),
             **_write_port("frame", frame_writer),
         )
-        ports = (reader, list_writer, frame_writer)
+        reads_stalled = _any(port.cmd.valid & ~port.cmd.ready for port in readers)
+        stalls = [reads_stalled, *(port.cmd.valid & ~port.cmd.ready for port in writers)]
         self.sync += [
             If(link["geometry_busy"] | link["raster_busy"],
                 status["cycles_busy"].status.eq(status["cycles_busy"].status + 1)),
-            If(_any(port.cmd.valid & ~port.cmd.ready for port in ports),
+            If(_any(stalls),
                 status["cycles_stalled"].status.eq(status["cycles_stalled"].status + 1)),
-            status["items_in"].status.eq(status["items_in"].status + reader.rdata.valid),
-            status["items_out"].status.eq(status["items_out"].status + sum(
-                (port.wdata.valid & port.wdata.ready) for port in (list_writer, frame_writer))),
+            *(If(stall, status[name].status.eq(status[name].status + 1))
+              for name, stall in zip(("stalled_reads", "stalled_lists", "stalled_frame"), stalls, strict=True)),
+            # The controller answers one port at a time, and takes data from one.
+            status["items_in"].status.eq(status["items_in"].status + _any(port.rdata.valid for port in readers)),
+            status["items_out"].status.eq(status["items_out"].status + _any(
+                port.wdata.valid & port.wdata.ready for port in writers)),
         ]
         for source in TRIANGLE_CONTROL + TRIANGLE_ENGINE:
             platform.add_source(str(source))
@@ -305,6 +311,17 @@ def _any(signals):
     for signal in signals:
         result = signal | result
     return result
+
+
+def _read_port(name, port):
+    """The engine's read port `name` at a native port."""
+    return {
+        f"o_{name}_cmd_valid": port.cmd.valid,
+        f"i_{name}_cmd_ready": port.cmd.ready,
+        f"o_{name}_cmd_addr": port.cmd.addr,
+        f"i_{name}_rdata_valid": port.rdata.valid,
+        f"i_{name}_rdata": port.rdata.data,
+    }
 
 
 def _write_port(name, port):

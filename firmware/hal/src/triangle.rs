@@ -164,6 +164,12 @@ pub struct Counters {
     pub busy: u32,
     /// Cycles in which memory did not take a command.
     pub stalled: u32,
+    /// Cycles in which memory did not take a read.
+    pub stalled_reads: u32,
+    /// Cycles in which memory did not take a write of the geometry pass.
+    pub stalled_lists: u32,
+    /// Cycles in which memory did not take a write of the raster pass.
+    pub stalled_frame: u32,
     /// Words of 16 bytes read.
     pub words_read: u32,
     /// Words of 16 bytes written.
@@ -196,6 +202,9 @@ impl Sub for Counters {
         Self {
             busy: d(self.busy, earlier.busy),
             stalled: d(self.stalled, earlier.stalled),
+            stalled_reads: d(self.stalled_reads, earlier.stalled_reads),
+            stalled_lists: d(self.stalled_lists, earlier.stalled_lists),
+            stalled_frame: d(self.stalled_frame, earlier.stalled_frame),
             words_read: d(self.words_read, earlier.words_read),
             words_written: d(self.words_written, earlier.words_written),
             geometry: d(self.geometry, earlier.geometry),
@@ -378,6 +387,9 @@ impl Engine {
         Counters {
             busy: registers.cycles_busy().read(),
             stalled: registers.cycles_stalled().read(),
+            stalled_reads: registers.stalled_reads().read(),
+            stalled_lists: registers.stalled_lists().read(),
+            stalled_frame: registers.stalled_frame().read(),
             words_read: registers.items_in().read(),
             words_written: registers.items_out().read(),
             geometry: registers.cycles_geometry().read(),

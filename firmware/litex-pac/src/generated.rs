@@ -2,7 +2,7 @@
 // fails when this file is not what the generator makes of the SoC.
 
 /// CRC-32 of the SoC's pinned register map. A SoC whose `identity.build_id` differs has other registers.
-pub const BUILD_ID: u32 = 0x0cd9_a95c;
+pub const BUILD_ID: u32 = 0xbca7_e8dc;
 
 /// The interrupt lines, numbered by their bit in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -2678,12 +2678,36 @@ pub mod triangle {
             unsafe { Register::at(0xf000_50cc) }
         }
 
+        /// `stalled_reads`, 32 bits: Clock cycles in which memory did not take a read, modulo 2^32.
+        #[inline]
+        #[must_use]
+        pub const fn stalled_reads(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_50d0) }
+        }
+
+        /// `stalled_lists`, 32 bits: Clock cycles in which memory did not take a write of the geometry pass, modulo 2^32.
+        #[inline]
+        #[must_use]
+        pub const fn stalled_lists(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_50d4) }
+        }
+
+        /// `stalled_frame`, 32 bits: Clock cycles in which memory did not take a write of the raster pass, modulo 2^32.
+        #[inline]
+        #[must_use]
+        pub const fn stalled_frame(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_50d8) }
+        }
+
         /// `items_in`, 32 bits: Words of 16 bytes read from memory, modulo 2^32.
         #[inline]
         #[must_use]
         pub const fn items_in(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50d0) }
+            unsafe { Register::at(0xf000_50dc) }
         }
 
         /// `items_out`, 32 bits: Words of 16 bytes written to memory, modulo 2^32.
@@ -2691,7 +2715,7 @@ pub mod triangle {
         #[must_use]
         pub const fn items_out(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50d4) }
+            unsafe { Register::at(0xf000_50e0) }
         }
 
         /// `cycles_geometry`, 32 bits: Clock cycles of geometry passes, modulo 2^32.
@@ -2699,7 +2723,7 @@ pub mod triangle {
         #[must_use]
         pub const fn cycles_geometry(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50d8) }
+            unsafe { Register::at(0xf000_50e4) }
         }
 
         /// `vertices`, 32 bits: Vertices transformed, modulo 2^32.
@@ -2707,7 +2731,7 @@ pub mod triangle {
         #[must_use]
         pub const fn vertices(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50dc) }
+            unsafe { Register::at(0xf000_50e8) }
         }
 
         /// `cycles_raster`, 32 bits: Clock cycles of raster passes, modulo 2^32.
@@ -2715,7 +2739,7 @@ pub mod triangle {
         #[must_use]
         pub const fn cycles_raster(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50e0) }
+            unsafe { Register::at(0xf000_50ec) }
         }
 
         /// `cycles_walking`, 32 bits: Clock cycles in which a triangle was walked over, modulo 2^32.
@@ -2723,7 +2747,7 @@ pub mod triangle {
         #[must_use]
         pub const fn cycles_walking(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50e4) }
+            unsafe { Register::at(0xf000_50f0) }
         }
 
         /// `cycles_empty`, 32 bits: Those of them without a pixel, modulo 2^32.
@@ -2731,7 +2755,7 @@ pub mod triangle {
         #[must_use]
         pub const fn cycles_empty(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50e8) }
+            unsafe { Register::at(0xf000_50f4) }
         }
 
         /// `groups`, 32 bits: Groups of eight pixels of which some are covered, modulo 2^32.
@@ -2739,7 +2763,7 @@ pub mod triangle {
         #[must_use]
         pub const fn groups(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50ec) }
+            unsafe { Register::at(0xf000_50f8) }
         }
 
         /// `cycles_held`, 32 bits: Clock cycles in which a group waited for the one before it, modulo 2^32.
@@ -2747,7 +2771,7 @@ pub mod triangle {
         #[must_use]
         pub const fn cycles_held(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50f0) }
+            unsafe { Register::at(0xf000_50fc) }
         }
 
         /// `cycles_memory`, 32 bits: Clock cycles in which a band waited for memory, modulo 2^32.
@@ -2755,7 +2779,7 @@ pub mod triangle {
         #[must_use]
         pub const fn cycles_memory(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50f4) }
+            unsafe { Register::at(0xf000_5100) }
         }
 
         /// `cycles_flush`, 32 bits: Clock cycles in which a band was being written to memory, modulo 2^32.
@@ -2763,7 +2787,7 @@ pub mod triangle {
         #[must_use]
         pub const fn cycles_flush(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50f8) }
+            unsafe { Register::at(0xf000_5104) }
         }
     }
 

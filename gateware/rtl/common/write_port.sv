@@ -1,19 +1,27 @@
-// Writes words of 16 bytes to memory through a native write port.
+// Writes words of 16 bytes to memory through a native write port, in bursts.
 //
 // In: a stream of {address, data, strobe}, strobe bit k for byte k. Memory side, the LiteDRAM native write port: commands
-// by valid/ready, and the data of each in the same order, by a valid/ready of its own, with the command or later. So a
-// word's data goes into a FIFO of DEPTH places when its command goes out.
+// by valid/ready, and the data of each in the same order, by a valid/ready of its own, some time after the command and
+// whether it is valid or not: it always is, as it waits in its FIFO since before the command went out.
 //
-// Latency 1 clock to the command, throughput a word a clock. `idle` when all that came in has been taken by the memory.
+// A memory that turns from reads to writes and back takes a dozen clocks for it. So words gather until there are BURST of
+// them, and then go out together; with `hurry` they go out at once, which the last ones need.
+//
+//   in ──┬─▶ addresses ─▶ gate ─▶ command
+//        └─▶ words ─────────────▶ data
+//
+// Latency 3 clocks to the command in a burst, throughput a word a clock. `idle` when memory has taken all that came in.
 
 `default_nettype none
 
 module write_port #(
     parameter int unsigned ADDRESS_BITS = 23,
-    parameter int unsigned DEPTH        = 16
+    parameter int unsigned DEPTH        = 32,
+    parameter int unsigned BURST        = 24
 ) (
     input  wire                     clk,
     input  wire                     rst,
+    input  wire                     hurry,
     output logic                    idle,
     input  wire                     in_valid,
     output logic                    in_ready,
@@ -29,24 +37,32 @@ module write_port #(
     output logic [127:0]            wdata,
     output logic [15:0]             wdata_strobe
 );
-    // A word waits here until the memory takes its command and the FIFO its data.
-    logic room, move;
+    localparam int unsigned COUNT_BITS = $clog2(DEPTH + 2) + 1;
+
+    logic move, room, address_valid, address_ready, gone;
+    logic [ADDRESS_BITS-1:0] address;
 
     assign move     = in_valid && in_ready;
-    assign in_ready = room && (!cmd_valid || cmd_ready);
+    assign in_ready = room;
 
-    always_ff @(posedge clk) begin
-        if (!cmd_valid || cmd_ready) begin
-            cmd_valid <= move;
-            cmd_addr  <= in_addr;
-        end
-        if (rst) cmd_valid <= 1'b0;
-    end
+    // Addresses leave before their data: where there is room for data there is room for them.
+    /* verilator lint_off PINCONNECTEMPTY */
+    fifo #(.WIDTH(ADDRESS_BITS), .DEPTH(DEPTH)) addresses (
+        .clk       (clk),
+        .rst       (rst),
+        .in_valid  (move),
+        .in_ready  (),
+        .in_data   (in_addr),
+        .out_valid (address_valid),
+        .out_ready (address_ready),
+        .out_data  (address)
+    );
+    /* verilator lint_on PINCONNECTEMPTY */
 
     fifo #(.WIDTH(144), .DEPTH(DEPTH)) words (
         .clk       (clk),
         .rst       (rst),
-        .in_valid  (move),
+        .in_valid  (in_valid),
         .in_ready  (room),
         .in_data   ({in_strobe, in_data}),
         .out_valid (wdata_valid),
@@ -54,16 +70,32 @@ module write_port #(
         .out_data  ({wdata_strobe, wdata})
     );
 
-    // Words whose data the memory has not taken.
-    logic [$clog2(DEPTH + 2):0] waiting;
-    logic                       gone;
+    // Words without a command, and words whose data the memory has not taken.
+    logic [COUNT_BITS-1:0] gathered, waiting;
+    logic                  bursting, sent;
 
-    assign gone = wdata_valid && wdata_ready;
-    assign idle = waiting == '0 && !cmd_valid;
+    assign address_ready = bursting && (!cmd_valid || cmd_ready);
+    assign sent          = address_valid && address_ready;
+    assign gone          = wdata_valid && wdata_ready;
+    assign idle          = waiting == '0;
 
     always_ff @(posedge clk) begin
-        if (move != gone) waiting <= move ? waiting + 1'b1 : waiting - 1'b1;
-        if (rst) waiting <= '0;
+        if (gathered >= COUNT_BITS'(BURST) || hurry) bursting <= 1'b1;
+        else if (gathered == '0)                     bursting <= 1'b0;
+
+        if (!cmd_valid || cmd_ready) begin
+            cmd_valid <= sent;
+            cmd_addr  <= address;
+        end
+        if (move != sent) gathered <= move ? gathered + 1'b1 : gathered - 1'b1;
+        if (move != gone) waiting  <= move ? waiting + 1'b1 : waiting - 1'b1;
+
+        if (rst) begin
+            bursting  <= 1'b0;
+            cmd_valid <= 1'b0;
+            gathered  <= '0;
+            waiting   <= '0;
+        end
     end
 endmodule
 

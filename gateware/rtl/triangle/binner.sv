@@ -7,7 +7,10 @@
 //                 list_base + 16 + (band << list_shift) the list of a band, 4 entries a word
 //   exceptions    exception_base                       4 entries a word
 //
-// A descriptor takes 3 writes and one a band; throughput 4 clocks and one more a band. `restart` (while idle) empties all
+// The entries of a list are kept here until there are four of them: a word is written whole. Turning from the descriptors to
+// a list and back costs memory several clocks, so one write for four entries counts.
+//
+// Throughput 6 clocks a descriptor and 2 more for each further band. `restart` (while idle) empties all
 // lists, which takes 64 clocks; `finish` (a level, when nothing more comes) has the lengths written and ends with `done`.
 // What has no room left is dropped and `full` is set: the frame is not whole then.
 
@@ -74,11 +77,13 @@ module binner #(
     typedef enum logic [3:0] {CLEAR, IDLE, LOCATE, WORD_0, WORD_1, WORD_2, LOOK, ENTRY, LENGTHS, LENGTHS_WORD, DONE} state_t;
     state_t state;
 
-    // The lengths of the lists.
-    (* ram_style = "distributed" *) logic [COUNT_BITS-1:0] lengths [0:BANDS-1];
-    logic [BAND_BITS-1:0]  band, last_band;
-    logic [COUNT_BITS-1:0] length, stored;
-    logic                  store;
+    // The lengths of the lists, and the first three entries of the word that each ends with.
+    (* ram_style = "distributed" *) logic [COUNT_BITS-1:0]   lengths [0:BANDS-1];
+    (* ram_style = "distributed" *) logic [3*COUNT_BITS-1:0] ends [0:BANDS-1];
+    logic [BAND_BITS-1:0]    band, last_band;
+    logic [COUNT_BITS-1:0]   length, stored;
+    logic [3*COUNT_BITS-1:0] list_end, stored_end;
+    logic                    store, word_ends, end_written;
 
     triangle_pkg::descriptor_t             descriptor;
     logic [ADDRESS_BITS-1:0] descriptor_word;
@@ -92,15 +97,33 @@ module binner #(
     assign exception_ready = state == IDLE && !in_valid && free;
     assign list_full       = (length >> list_shift) >> 2 != '0;
 
-    assign store  = state == CLEAR || state == ENTRY && free && !list_full;
-    assign stored = state == CLEAR ? '0 : length + 1'b1;
+    assign word_ends = length[1:0] == 2'd3;
+    assign store     = state == CLEAR || state == ENTRY && (free || !word_ends) && !list_full;
+    assign stored    = state == CLEAR ? '0 : length + 1'b1;
 
-    // Both follow `band` a clock later.
+    always_comb begin
+        stored_end = list_end;
+        case (length[1:0])
+            2'd0:    stored_end[0            +: COUNT_BITS] = descriptors;
+            2'd1:    stored_end[COUNT_BITS   +: COUNT_BITS] = descriptors;
+            default: stored_end[2*COUNT_BITS +: COUNT_BITS] = descriptors;
+        endcase
+    end
+
+    // What is there follows `band` a clock later.
     logic [ADDRESS_BITS-1:0] first_list, list_word;
+    logic [127:0]            list_data;
+
+    assign list_data = {32'(descriptors), 32'(list_end[2*COUNT_BITS +: COUNT_BITS]), 32'(list_end[COUNT_BITS +: COUNT_BITS]),
+                        32'(list_end[0 +: COUNT_BITS])};
 
     always_ff @(posedge clk) begin
-        if (store) lengths[band] <= stored;
+        if (store) begin
+            lengths[band] <= stored;
+            ends[band]    <= stored_end;
+        end
         length     <= lengths[band];
+        list_end   <= ends[band];
         first_list <= list_base + ADDRESS_BITS'(TABLE_WORDS);
         list_word  <= first_list + (ADDRESS_BITS'(band) << list_shift);
     end
@@ -148,11 +171,13 @@ module binner #(
             end
             // One clock for the next list's length and place.
             LOOK: state <= ENTRY;
-            ENTRY: if (free) begin
-                write_valid  <= !list_full;
-                write_addr   <= list_word + ADDRESS_BITS'(length >> 2);
-                write_data   <= {4{32'(descriptors)}};
-                write_strobe <= entry_strobe(length[1:0]);
+            ENTRY: if (free || !word_ends) begin
+                if (word_ends) begin
+                    write_valid  <= !list_full;
+                    write_addr   <= list_word + ADDRESS_BITS'(length >> 2);
+                    write_data   <= list_data;
+                    write_strobe <= '1;
+                end
                 full         <= full || list_full;
                 band         <= band + 1'b1;
                 state        <= LOOK;
@@ -161,8 +186,17 @@ module binner #(
                     state       <= IDLE;
                 end
             end
-            LENGTHS: state <= LENGTHS_WORD;
-            LENGTHS_WORD: if (free) begin
+            LENGTHS: begin
+                end_written <= 1'b0;
+                state       <= LENGTHS_WORD;
+            end
+            LENGTHS_WORD: if (free && length[1:0] != '0 && !end_written) begin
+                write_valid  <= 1'b1;
+                write_addr   <= list_word + ADDRESS_BITS'(length >> 2);
+                write_data   <= list_data;
+                write_strobe <= '1;
+                end_written  <= 1'b1;
+            end else if (free) begin
                 gathered <= {32'(length), gathered[95:32]};
                 band     <= band + 1'b1;
                 state    <= band == '1 ? DONE : LENGTHS;

@@ -192,7 +192,7 @@ module geometry_unit #(
     );
 
     write_port #(.ADDRESS_BITS(ADDRESS_BITS)) write_port (
-        .clk, .rst, .idle(writes_idle),
+        .clk, .rst, .hurry(state == FINISH || state == IDLE), .idle(writes_idle),
         .in_valid(write_valid), .in_ready(write_ready), .in_addr(write_addr), .in_data(write_data), .in_strobe(write_strobe),
         .cmd_valid, .cmd_ready, .cmd_addr, .wdata_valid, .wdata_ready, .wdata, .wdata_strobe
     );

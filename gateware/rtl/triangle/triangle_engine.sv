@@ -5,7 +5,9 @@
 //              └───────────────┘                        └─────────────┘
 //                                firmware's lists ──────────▲
 //
-// All reads share one native read port of the memory; each unit has a write port of its own. `cancel` (one clock, at any
+// Reads go through three native read ports of the memory: triangles, vertices, and what the raster reads. LiteDRAM lets a
+// port turn to another bank only when the bank before has done all its work, which takes four clocks; streams on ports of
+// their own do not turn for each other. Each unit has a write port. `cancel` (one clock, at any
 // time) gives both frames up; `ready` says that the memory has answered everything and the band buffer is clear, so that
 // either unit may start. What the units' parameters and results mean stands in their own files.
 
@@ -75,11 +77,21 @@ module triangle_engine #(
     output logic [31:0]               clocks_memory,
     output logic [31:0]               clocks_flush,
     // Memory.
-    output logic                      read_cmd_valid,
-    input  wire                       read_cmd_ready,
-    output logic [ADDRESS_BITS-1:0]   read_cmd_addr,
-    input  wire                       read_rdata_valid,
-    input  wire  [127:0]              read_rdata,
+    output logic                       mesh_read_cmd_valid,
+    input  wire                        mesh_read_cmd_ready,
+    output logic  [ADDRESS_BITS-1:0]   mesh_read_cmd_addr,
+    input  wire                        mesh_read_rdata_valid,
+    input  wire   [127:0]              mesh_read_rdata,
+    output logic                       vertex_read_cmd_valid,
+    input  wire                        vertex_read_cmd_ready,
+    output logic  [ADDRESS_BITS-1:0]   vertex_read_cmd_addr,
+    input  wire                        vertex_read_rdata_valid,
+    input  wire   [127:0]              vertex_read_rdata,
+    output logic                       raster_read_cmd_valid,
+    input  wire                        raster_read_cmd_ready,
+    output logic  [ADDRESS_BITS-1:0]   raster_read_cmd_addr,
+    input  wire                        raster_read_rdata_valid,
+    input  wire   [127:0]              raster_read_rdata,
     output logic                      lists_cmd_valid,
     input  wire                       lists_cmd_ready,
     output logic [ADDRESS_BITS-1:0]   lists_cmd_addr,
@@ -95,27 +107,47 @@ module triangle_engine #(
     output logic [127:0]              frame_wdata,
     output logic [15:0]               frame_wdata_strobe
 );
-    localparam int unsigned CLIENTS = 5;
+    localparam int unsigned RASTER_CLIENTS = 3;
+    localparam int unsigned CLIENTS        = 2 + RASTER_CLIENTS;
 
     logic [CLIENTS-1:0]              ask_valid, ask_ready, data_valid, data_ready;
     logic [CLIENTS*ADDRESS_BITS-1:0] ask_addr;
     logic [CLIENTS*128-1:0]          data;
-    logic                            dropping, port_idle, raster_ready;
+    logic [2:0]                      ports_idle;
+    logic                            dropping, drop, raster_ready;
 
+    assign drop = cancel || dropping;
     assign ready = !dropping && raster_ready;
     assign frame_wdata_strobe = '1;
 
     always_ff @(posedge clk) begin
-        if (port_idle) dropping <= 1'b0;
+        if (&ports_idle) dropping <= 1'b0;
         if (cancel)     dropping <= 1'b1;
         if (rst)       dropping <= 1'b0;
     end
 
-    read_port #(.CLIENTS(CLIENTS), .ADDRESS_BITS(ADDRESS_BITS)) read_port (
-        .clk, .rst, .drop(cancel || dropping), .idle(port_idle),
-        .ask_valid, .ask_ready, .ask_addr, .data_valid, .data_ready, .data,
-        .cmd_valid(read_cmd_valid), .cmd_ready(read_cmd_ready), .cmd_addr(read_cmd_addr),
-        .rdata_valid(read_rdata_valid), .rdata(read_rdata)
+    read_port #(.CLIENTS(1), .ADDRESS_BITS(ADDRESS_BITS)) mesh_read (
+        .clk, .rst, .drop, .idle(ports_idle[0]),
+        .ask_valid(ask_valid[0]), .ask_ready(ask_ready[0]), .ask_addr(ask_addr[1*ADDRESS_BITS-1:0]),
+        .data_valid(data_valid[0]), .data_ready(data_ready[0]), .data(data[1*128-1:0]),
+        .cmd_valid(mesh_read_cmd_valid), .cmd_ready(mesh_read_cmd_ready), .cmd_addr(mesh_read_cmd_addr),
+        .rdata_valid(mesh_read_rdata_valid), .rdata(mesh_read_rdata)
+    );
+
+    read_port #(.CLIENTS(1), .ADDRESS_BITS(ADDRESS_BITS)) vertex_read (
+        .clk, .rst, .drop, .idle(ports_idle[1]),
+        .ask_valid(ask_valid[1]), .ask_ready(ask_ready[1]), .ask_addr(ask_addr[2*ADDRESS_BITS-1:1*ADDRESS_BITS]),
+        .data_valid(data_valid[1]), .data_ready(data_ready[1]), .data(data[2*128-1:1*128]),
+        .cmd_valid(vertex_read_cmd_valid), .cmd_ready(vertex_read_cmd_ready), .cmd_addr(vertex_read_cmd_addr),
+        .rdata_valid(vertex_read_rdata_valid), .rdata(vertex_read_rdata)
+    );
+
+    read_port #(.CLIENTS(RASTER_CLIENTS), .ADDRESS_BITS(ADDRESS_BITS)) raster_read (
+        .clk, .rst, .drop, .idle(ports_idle[2]),
+        .ask_valid(ask_valid[4:2]), .ask_ready(ask_ready[4:2]), .ask_addr(ask_addr[5*ADDRESS_BITS-1:2*ADDRESS_BITS]),
+        .data_valid(data_valid[4:2]), .data_ready(data_ready[4:2]), .data(data[5*128-1:2*128]),
+        .cmd_valid(raster_read_cmd_valid), .cmd_ready(raster_read_cmd_ready), .cmd_addr(raster_read_cmd_addr),
+        .rdata_valid(raster_read_rdata_valid), .rdata(raster_read_rdata)
     );
 
     geometry_unit #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS)) geometry (

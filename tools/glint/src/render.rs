@@ -62,6 +62,12 @@ pub struct EngineStats {
     pub cycles_busy: u64,
     /// Cycles in which memory did not take a command.
     pub cycles_stalled: u64,
+    /// Cycles in which memory did not take a read.
+    pub stalled_reads: u64,
+    /// Cycles in which memory did not take a write of the geometry pass.
+    pub stalled_lists: u64,
+    /// Cycles in which memory did not take a write of the raster pass.
+    pub stalled_frame: u64,
     /// Words read from memory.
     pub words_read: u64,
     /// Words written to memory.
@@ -206,6 +212,11 @@ impl<'b, B: Board + ?Sized> Renderer<'b, B> {
     /// The board itself.
     pub fn board(&mut self) -> &mut B {
         self.console.board()
+    }
+
+    /// The board's console.
+    pub fn console(&mut self) -> &mut Console<'b, B> {
+        &mut self.console
     }
 
     /// Makes the scene the one that is shown, uploads its mesh, and waits for its frame.

@@ -108,7 +108,7 @@ fn write_clipped(memory: &mut Memory, expected: &Expected) {
 pub struct Bench {
     pub module: Module,
     memory: Memory,
-    pub read: ReadPort,
+    pub reads: [ReadPort; 3],
     lists: WritePort,
     frame: WritePort,
     /// Whether depths are written and compared as well.
@@ -133,7 +133,8 @@ impl Bench {
         let seed = u64::from(seed);
         Self {
             memory: Memory::new(WORDS),
-            read: ReadPort::new(&module, "read_", Stalls::new(seed, stalls)),
+            reads: ["mesh_read_", "vertex_read_", "raster_read_"]
+                .map(|name| ReadPort::new(&module, name, Stalls::new(seed, stalls))),
             lists: WritePort::new(&module, "lists_", Stalls::new(seed + 1, stalls)),
             frame: WritePort::new(&module, "frame_", Stalls::new(seed + 2, stalls)),
             module,
@@ -153,11 +154,15 @@ impl Bench {
     }
 
     pub fn clock(&mut self) {
-        self.read.drive(&mut self.module, &self.memory);
+        for read in &mut self.reads {
+            read.drive(&mut self.module, &self.memory);
+        }
         self.lists.drive(&mut self.module);
         self.frame.drive(&mut self.module);
         self.module.settle();
-        self.read.sample(&self.module);
+        for read in &mut self.reads {
+            read.sample(&self.module);
+        }
         self.lists.sample(&self.module, &mut self.memory);
         self.frame.sample(&self.module, &mut self.memory);
         self.module.clock();
@@ -170,9 +175,8 @@ impl Bench {
             let clocks = self.module.cycles() - start;
             assert!(
                 clocks < 2_000_000,
-                "nothing for {clocks} clocks: busy {} given {} written {} groups {}",
-                self.count("busy"),
-                self.read.given,
+                "nothing for {clocks} clocks: given {:?} written {} groups {}",
+                self.reads.each_ref().map(|read| read.given),
                 self.frame.written,
                 self.count("groups_in")
             );

@@ -6,6 +6,7 @@ mod cycles;
 mod page;
 mod plot;
 mod table;
+mod triangle;
 
 use std::path::{Path, PathBuf};
 
@@ -31,6 +32,8 @@ struct Arguments {
 enum Page {
     /// Sine and cosine, over all inputs, beside other libraries
     Sine(SineArguments),
+    /// The triangle engine on the whole SoC, beside its targets
+    Triangle(triangle::Arguments),
 }
 
 #[derive(Args)]
@@ -58,6 +61,7 @@ struct SineArguments {
 fn main() -> Result<()> {
     match Arguments::parse().page {
         Page::Sine(arguments) => sine(&arguments),
+        Page::Triangle(arguments) => triangle::report(&arguments),
     }
 }
 

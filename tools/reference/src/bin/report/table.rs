@@ -115,8 +115,8 @@ impl Row {
 
 /// What the figures were made from.
 pub struct Provenance {
-    commit: String,
-    tools: String,
+    pub commit: String,
+    pub tools: String,
 }
 
 impl Provenance {

@@ -1,0 +1,434 @@
+//! The page `triangle.md`: the triangle engine on the whole SoC, with LiteDRAM and scan-out running.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use anyhow::{Context, Result, ensure};
+use glint::board::{SimulatedBoard, built_firmware};
+use glint::console::Console;
+use glint::convert::{self, Options};
+use glint::error::Place;
+use glint::generate;
+use glint::polygons::{Corner, Polygons};
+use glint::render::{self, EngineStats, Renderer, Route, Scene, Stats};
+use glint::view;
+use glint_core::camera::View;
+use glint_core::console::Backend;
+use serde::Serialize;
+
+use crate::in_workspace;
+use crate::table::Provenance;
+
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// Print the rows as JSON instead of a table
+    #[arg(long)]
+    json: bool,
+    /// Only scenes whose name contains this
+    #[arg(long, value_name = "TEXT")]
+    only: Option<String>,
+    /// Folder for triangle.csv and triangle.md [default: docs/report, or target/report with --only]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+/// The clock that the targets in frames a second are for, and the faster one.
+const CLOCKS: [f64; 2] = [81.25e6, 100e6];
+
+/// What is asked of a scene.
+#[derive(Clone, Copy)]
+enum Target {
+    /// Pixels a clock while a triangle is walked over, at least.
+    Fill(f64),
+    /// Pixels a clock, frames back to back: at least, and the aim.
+    Sustained(f64, f64),
+    /// Clocks a triangle: at most, and the aim.
+    Triangle(f64, f64),
+    /// Frames a second at 81.25 MHz: at least, and the aim.
+    Frames(f64, Option<f64>),
+}
+
+struct Case {
+    name: &'static str,
+    mesh: fn() -> Result<Vec<u8>>,
+    size: (u32, u32),
+    half_width: f64,
+    target: Target,
+}
+
+/// Half the image plane's width at distance 1 for which a sphere of diameter 1 at distance 2 fills 96 % of the height.
+const FILLING: f64 = 0.4781;
+
+const CASES: [Case; 7] = [
+    Case {
+        name: "one triangle over the whole screen",
+        mesh: screen,
+        size: (1280, 720),
+        half_width: 0.5,
+        target: Target::Fill(8.0),
+    },
+    Case {
+        name: "icosphere:6",
+        mesh: || named("icosphere:6"),
+        size: (320, 180),
+        half_width: FILLING,
+        target: Target::Sustained(2.1, 2.6),
+    },
+    Case {
+        name: "icosphere:12",
+        mesh: || named("icosphere:12"),
+        size: (1280, 720),
+        half_width: FILLING,
+        target: Target::Sustained(3.9, 4.4),
+    },
+    Case {
+        name: "icosphere:32, small triangles",
+        mesh: || named("icosphere:32"),
+        size: (320, 180),
+        half_width: FILLING,
+        target: Target::Triangle(28.0, 10.0),
+    },
+    Case {
+        name: "icosphere:10, 2,000 triangles",
+        mesh: || named("icosphere:10"),
+        size: (320, 180),
+        half_width: FILLING,
+        target: Target::Frames(600.0, Some(1000.0)),
+    },
+    Case {
+        name: "icosphere:23, 10,580 triangles",
+        mesh: || named("icosphere:23"),
+        size: (1280, 720),
+        half_width: FILLING,
+        target: Target::Frames(60.0, None),
+    },
+    Case {
+        name: "icosphere:39, 30,420 triangles",
+        mesh: || named("icosphere:39"),
+        size: (1280, 720),
+        half_width: FILLING,
+        target: Target::Frames(60.0, None),
+    },
+];
+
+fn named(name: &str) -> Result<Vec<u8>> {
+    let polygons = generate::named(name).map_err(|error| anyhow::anyhow!("{name}: {error}"))?;
+    Ok(convert::convert(&polygons, Options::default())
+        .map_err(|error| anyhow::anyhow!("{name}: {error}"))?
+        .0)
+}
+
+/// A triangle that is seen over the whole screen at distance 1, inside the guard band.
+fn screen() -> Result<Vec<u8>> {
+    let mut polygons = Polygons::default();
+    let corners = [[-1.2, -1.0, -0.4], [1.2, -1.0, -0.4], [0.0, -1.0, 1.2]];
+    let made = || -> Result<Polygons, glint::error::FormatError> {
+        let mut numbers = Vec::new();
+        for corner in corners {
+            numbers.push(Corner::at(polygons.add_point(corner, Place::Whole)?));
+        }
+        polygons.add_face(&numbers, None, Place::Whole)?;
+        Ok(polygons)
+    }();
+    let options = Options {
+        keep_scale: true,
+        ..Options::default()
+    };
+    made.and_then(|polygons| convert::convert(&polygons, options))
+        .map(|(mesh, _)| mesh)
+        .map_err(|error| anyhow::anyhow!("{error}"))
+}
+
+/// From (0, −2, 0) along y.
+fn ahead(half_width: f64) -> Result<View> {
+    let json = format!(
+        r#"{{"eye":[0,-2,0],"u":[1,0,0],"v":[0,0,-1],"n":[0,1,0],"half_width":{half_width},"near":0.5}}"#
+    );
+    view::parse(json.as_bytes()).map_err(|error| anyhow::anyhow!("{error}"))
+}
+
+/// A line of the CSV. Cycles are those of one frame, of the SoC's clock.
+#[derive(Serialize)]
+struct Row {
+    scene: &'static str,
+    width: u32,
+    height: u32,
+    triangles: u32,
+    drawn: u32,
+    clipped: u32,
+    /// Pixels covered, counted by the model.
+    pixels: u64,
+    /// A frame alone: from the first register written to the end seen.
+    cycles_alone: u64,
+    /// Its passes.
+    cycles_geometry: u64,
+    cycles_raster: u64,
+    /// A frame of many that follow each other.
+    cycles_frame: f64,
+    /// The same scene by the CPU.
+    cycles_cpu: u64,
+    /// Shares of the raster pass alone.
+    covered: f64,
+    empty: f64,
+    memory: f64,
+    other: f64,
+    /// Shares of the geometry pass alone in which memory did not take a read, a write.
+    geometry_reads: f64,
+    geometry_writes: f64,
+    measured: f64,
+    unit: &'static str,
+    at_least: f64,
+    aim: Option<f64>,
+    met: bool,
+    commit: String,
+}
+
+pub fn report(arguments: &Arguments) -> Result<()> {
+    let provenance = Provenance::find();
+    let firmware = built_firmware(None)?;
+    let mut board = SimulatedBoard::fast(&firmware)?;
+    let mut console = Console::new(&mut board);
+    console.greet()?;
+    let mut renderer = Renderer::new(console);
+    let mut rows = Vec::new();
+    let wanted = |case: &&Case| {
+        arguments
+            .only
+            .as_ref()
+            .is_none_or(|text| case.name.contains(text.as_str()))
+    };
+    for case in CASES.iter().filter(wanted) {
+        eprintln!("{} at {}x{} …", case.name, case.size.0, case.size.1);
+        rows.push(measure(&mut renderer, case, &provenance.commit)?);
+    }
+    if arguments.json {
+        println!("{}", serde_json::to_string_pretty(&rows)?);
+    } else {
+        print!("{}", table(&rows)?);
+    }
+    let out = match (&arguments.out, &arguments.only) {
+        (Some(out), _) => out.clone(),
+        (None, None) => in_workspace("docs/report"),
+        (None, Some(_)) => in_workspace("target/report"),
+    };
+    std::fs::create_dir_all(&out)
+        .with_context(|| format!("cannot make the folder {}", out.display()))?;
+    let mut csv = csv::Writer::from_path(out.join("triangle.csv"))?;
+    for row in &rows {
+        csv.serialize(row)?;
+    }
+    csv.flush()?;
+    std::fs::write(out.join("triangle.md"), page(&rows, &provenance)?)?;
+    eprintln!("wrote triangle.csv and triangle.md to {}", out.display());
+    Ok(())
+}
+
+fn measure(renderer: &mut Renderer<SimulatedBoard>, case: &Case, commit: &str) -> Result<Row> {
+    let mesh = (case.mesh)()?;
+    let mut scene = Scene {
+        mesh: &mesh,
+        view: ahead(case.half_width)?,
+        size: case.size,
+        cull: true,
+        backend: Some(Backend::Gateware),
+    };
+    let expected = render::on_model(&scene)?;
+    let alone = renderer.show(&scene, Route::Memory, &mut |_, _| {})?;
+    let found = renderer.colour(case.size, Route::Memory, &mut |_, _| {})?;
+    ensure!(
+        found == expected.frame.colour,
+        "{}: the engine's frame is not the model's",
+        case.name
+    );
+    let engine = alone
+        .engine
+        .clone()
+        .with_context(|| format!("{}: the engine did not draw", case.name))?;
+    // A frame that follows others, so that memory is in the state that they leave.
+    let again = renderer.look(&scene.view)?;
+    let together = bench(renderer)?;
+    scene.backend = Some(Backend::Cpu);
+    let cpu = renderer.show(&scene, Route::Memory, &mut |_, _| {})?;
+    row(
+        case,
+        commit,
+        &expected.stats,
+        &again,
+        &engine,
+        together,
+        &cpu,
+    )
+}
+
+/// Cycles of a frame, of many that follow each other.
+fn bench(renderer: &mut Renderer<SimulatedBoard>) -> Result<f64> {
+    let lines = renderer.console().command("bench triangle")?;
+    let words: Vec<&str> = lines
+        .iter()
+        .flat_map(|line| line.split_whitespace())
+        .collect();
+    let number = |key: &str| -> Result<f64> {
+        let at = words.iter().position(|word| *word == key);
+        at.and_then(|at| words.get(at + 1))
+            .and_then(|word| word.parse().ok())
+            .with_context(|| format!("bench triangle: expected `{key} NUMBER`, found {lines:?}"))
+    };
+    Ok(number("cycles")? / number("frames")?)
+}
+
+fn row(
+    case: &Case,
+    commit: &str,
+    expected: &Stats,
+    alone: &Stats,
+    engine: &EngineStats,
+    cycles_frame: f64,
+    cpu: &Stats,
+) -> Result<Row> {
+    let pixels = expected.pixels_covered;
+    let share = |part: u64, whole: u64| part as f64 / whole as f64;
+    let raster = engine.cycles_raster;
+    let walking = engine.cycles_walking;
+    let (measured, unit, at_least, aim, met) = match case.target {
+        Target::Fill(least) => {
+            let fill = pixels as f64 / walking as f64;
+            (
+                fill,
+                "pixels a clock of the walk",
+                least,
+                None,
+                fill >= least,
+            )
+        }
+        Target::Sustained(least, aim) => {
+            let rate = pixels as f64 / cycles_frame;
+            (rate, "pixels a clock", least, Some(aim), rate >= least)
+        }
+        Target::Triangle(most, aim) => {
+            let clocks = cycles_frame / f64::from(expected.triangles_in);
+            (clocks, "clocks a triangle", most, Some(aim), clocks <= most)
+        }
+        Target::Frames(least, aim) => {
+            let rate = CLOCKS[0] / cycles_frame;
+            (
+                rate,
+                "frames a second at 81.25 MHz",
+                least,
+                aim,
+                rate >= least,
+            )
+        }
+    };
+    Ok(Row {
+        scene: case.name,
+        width: case.size.0,
+        height: case.size.1,
+        triangles: alone.triangles_in,
+        drawn: alone.triangles_drawn,
+        clipped: alone.triangles_clipped,
+        pixels,
+        cycles_alone: alone.cycles.context("no cycles")?,
+        cycles_geometry: engine.cycles_geometry,
+        cycles_raster: raster,
+        cycles_frame,
+        cycles_cpu: cpu.cycles.context("no cycles")?,
+        covered: share(engine.groups, raster),
+        empty: share(engine.cycles_empty, raster),
+        memory: share(engine.cycles_memory, raster),
+        other: 1.0
+            - share(
+                engine.groups + engine.cycles_empty + engine.cycles_memory,
+                raster,
+            ),
+        geometry_reads: share(engine.stalled_reads, engine.cycles_geometry),
+        geometry_writes: share(engine.stalled_lists, engine.cycles_geometry),
+        measured,
+        unit,
+        at_least,
+        aim,
+        met,
+        commit: commit.to_owned(),
+    })
+}
+
+/// The rows as they stand in the page.
+fn table(rows: &[Row]) -> Result<String> {
+    let mut text = String::from(
+        "| scene | size | triangles in, drawn, clipped | pixels | measured | asked | aim |\n|---|---|---|---|---|---|---|\n",
+    );
+    for row in rows {
+        writeln!(
+            text,
+            "| {} | {}×{} | {}, {}, {} | {} | {}{:.2} {}{} | {} | {} |",
+            row.scene,
+            row.width,
+            row.height,
+            row.triangles,
+            row.drawn,
+            row.clipped,
+            row.pixels,
+            if row.met { "" } else { "**" },
+            row.measured,
+            row.unit,
+            if row.met { "" } else { "**" },
+            row.at_least,
+            row.aim.map_or(String::new(), |aim| aim.to_string()),
+        )?;
+    }
+    text.push_str(
+        "\n| scene | cycles a frame alone | its geometry | its raster | cycles a frame, back to back | fps at 81.25 MHz | at 100 MHz | by the CPU |\n\
+         |---|---|---|---|---|---|---|---|\n",
+    );
+    for row in rows {
+        writeln!(
+            text,
+            "| {} | {} | {} | {} | {:.0} | {:.1} | {:.1} | {} |",
+            row.scene,
+            row.cycles_alone,
+            row.cycles_geometry,
+            row.cycles_raster,
+            row.cycles_frame,
+            CLOCKS[0] / row.cycles_frame,
+            CLOCKS[1] / row.cycles_frame,
+            row.cycles_cpu,
+        )?;
+    }
+    text.push_str(
+        "\n| scene | raster: covered groups | empty groups | waiting for memory | other | geometry: memory takes no read | no write |\n\
+         |---|---|---|---|---|---|---|\n",
+    );
+    for row in rows {
+        let percent = |share: f64| format!("{:.0} %", 100.0 * share);
+        writeln!(
+            text,
+            "| {} | {} | {} | {} | {} | {} | {} |",
+            row.scene,
+            percent(row.covered),
+            percent(row.empty),
+            percent(row.memory),
+            percent(row.other),
+            percent(row.geometry_reads),
+            percent(row.geometry_writes),
+        )?;
+    }
+    Ok(text)
+}
+
+fn page(rows: &[Row], provenance: &Provenance) -> Result<String> {
+    let mut text = String::from(
+        "# The triangle engine on the whole SoC\n\n\
+         Generated by `cargo xtask report triangle`; the same numbers are in [triangle.csv](triangle.csv).\n\n\
+         Clock cycles of the SoC by the engine's own counters, with LiteDRAM and the scan-out at work. Every frame was compared \
+         with the model's, bit for bit, before its cycles were taken. A frame *alone* counts everything from the first register \
+         that the firmware writes to the end that it sees. *Back to back* means that the geometry of a frame is made while the \
+         one before it is rastered, and that nothing waits for the screen; sustained pixels a clock are of such frames. What \
+         was asked and is not met is bold.\n\n",
+    );
+    text.push_str(&table(rows)?);
+    writeln!(
+        text,
+        "\nMade at commit {} with {}.",
+        provenance.commit, provenance.tools
+    )?;
+    Ok(text)
+}
