@@ -134,7 +134,7 @@ module band_flush_proof (
         endcase
     end
 
-    logic [3:0] without_word, sweep_clocks;
+    logic [3:0] without_word, without_end, sweep_clocks;
 
     always_ff @(posedge clk) begin
         owed <= owed + 4'(cmd_moves) - 4'(word_moves);
@@ -163,6 +163,7 @@ module band_flush_proof (
 
         without_word <= idle || sweeping || word_moves || !cmd_ready || !wdata_ready || spans_busy && !span_valid
                       ? '0 : without_word + 1'b1;
+        without_end  <= idle || sweeping || dropped || spans_busy || word_rows != '0 ? '0 : without_end + 1'b1;
         sweep_clocks <= !sweeping || restart ? '0 : sweep_clocks + 1'b1;
 
         if (rst) begin
@@ -172,6 +173,7 @@ module band_flush_proof (
             flushing     <= 1'b0;
             dropped      <= 1'b1;
             without_word <= '0;
+            without_end  <= '0;
             sweep_clocks <= '0;
         end
     end
@@ -206,6 +208,7 @@ module band_flush_proof (
         commands_match:    assert (!idle || (owed == '0 && !cmd_valid));
         none_left_out:     assert (!(flushing && idle) || dropped || (cmd_rows == '0 && word_rows == '0));
         no_standstill:     assert (without_word < 4'(WITHIN));
+        ends:              assert (without_end < 4'd4);
         sweep_ends:        assert (sweep_clocks < 4'd5);
         all_swept:         assert (!(fresh && settled == 2'd2) || drawn == '0);
         // Of the rows that were flushed, and of no others.

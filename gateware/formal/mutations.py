@@ -86,7 +86,7 @@ MUTATIONS = {
         _flush("if (!in_span && !spans_busy)", "if (!spans_busy)", "none_left_out"),
         _flush("if (!in_span && !spans_busy)", "if (!in_span && !span_valid)", "none_left_out"),
         _flush("(!in_span || span_ends);", "span_ends;", "no_standstill"),
-        _flush("places <= places + 1'b1;", "places <= places;", "no_standstill"),
+        _flush("places <= places + 1'b1;", "places <= places;", "ends"),
         _flush("owed <= owed - 1'b1;", "owed <= owed;", "data_at_command"),
         _flush("if (row == '1) state", "if (row == '1 && idle) state", "sweep_ends"),
         # A restart that waits for memory.
