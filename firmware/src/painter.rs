@@ -22,6 +22,9 @@ const TABLE_WORDS: usize = LIST_TABLE_BYTES / 4;
 /// Cycles without anything read, written or drawn after which the engine is given up: a tenth of a second.
 const STUCK: u64 = litex_hal::timer::FREQUENCY as u64 / 10;
 
+/// Questions whether a pass has ended between two whether it moves at all.
+const POLLS: u32 = 100;
+
 /// Entries of a list are 4 << this: what fits [`LIST_WORDS`] for the bands of a picture of this width.
 const fn list_shift(width: u32) -> u8 {
     match width {
@@ -162,8 +165,9 @@ impl Painter {
             Stage::Idle => {
                 self.start = (cpu::cycles(), self.engine.counters());
                 self.watch = Watch::default();
-                if let Err(fault) = self.start_geometry(target) {
-                    return Some(Err(fault));
+                match constants(target) {
+                    Ok(frame) => self.start_geometry(target, frame),
+                    Err(fault) => return Some(Err(fault)),
                 }
                 self.stage = Stage::Geometry;
                 return None;
@@ -205,8 +209,11 @@ impl Painter {
     pub fn repeat(&mut self, target: &mut Target, count: u32) -> Result<Painted, Fault> {
         self.start = (cpu::cycles(), self.engine.counters());
         self.watch = Watch::default();
+        let mut constants = constants(target)?;
         for frame in 0..count {
-            self.start_geometry(target)?;
+            self.start_geometry(target, constants);
+            // Those of the next frame, while the engine works.
+            constants = self::constants(target)?;
             self.wait(Engine::geometry, target)?;
             if let Err(fault) = self.clip(target) {
                 return self.give_up(target, fault);
@@ -230,10 +237,12 @@ impl Painter {
     /// Waits for the end of a pass.
     fn wait(&mut self, outcome: fn(&Engine) -> Outcome, target: &mut Target) -> Result<(), Fault> {
         loop {
-            match outcome(&self.engine) {
-                Some(Ok(())) => return Ok(()),
-                Some(Err(fault)) => return self.give_up(target, fault).map(drop),
-                None => {}
+            for _ in 0..POLLS {
+                match outcome(&self.engine) {
+                    Some(Ok(())) => return Ok(()),
+                    Some(Err(fault)) => return self.give_up(target, fault).map(drop),
+                    None => {}
+                }
             }
             if let Some(stuck) = self.watch(target) {
                 return stuck.map(drop);
@@ -241,10 +250,7 @@ impl Painter {
         }
     }
 
-    fn start_geometry(&mut self, target: &Target) -> Result<(), Fault> {
-        let (width, height) = target.size;
-        let frame = FrameSetup::new(target.view, width, height, target.mesh.radius())
-            .map_err(|_| Fault::Size)?;
+    fn start_geometry(&mut self, target: &Target, frame: FrameSetup) {
         let frame = self.frame.insert(frame);
         let room = &self.rooms[0];
         let pass = Geometry {
@@ -261,8 +267,7 @@ impl Painter {
         };
         // SAFETY: the room is this painter's own, and looked at when the pass has ended; the mesh is kept while the
         // painter is busy.
-        unsafe { self.engine.start_geometry(&pass, list_shift(width)) };
-        Ok(())
+        unsafe { self.engine.start_geometry(&pass, list_shift(target.size.0)) };
     }
 
     fn start_raster(&mut self, target: &mut Target) {
@@ -430,6 +435,12 @@ impl Watch {
             }
         }
     }
+}
+
+/// The constants of a frame.
+fn constants(target: &Target) -> Result<FrameSetup, Fault> {
+    let (width, height) = target.size;
+    FrameSetup::new(target.view, width, height, target.mesh.radius()).map_err(|_| Fault::Size)
 }
 
 fn address(memory: &[u32]) -> u32 {

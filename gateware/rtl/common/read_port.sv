@@ -3,7 +3,11 @@
 //
 // Memory side, the LiteDRAM native read port: commands by valid/ready, one word each; data comes in the commands' order,
 // some time later, and cannot be held back. It need not be: a client is only served while the DEPTH places of its FIFO
-// have room for all that it has asked for. Clients take turns; one that is alone gets a word a clock.
+// have room for all that it has asked for. A word a clock.
+//
+// Memory takes four clocks to turn to another bank, and a dozen from writes to reads and back. So a client is served in
+// bursts: until it asks no more or its FIFO is full, and then not before half of that is empty again; in the meantime it
+// is the others' turn.
 //
 // Latency: 2 clocks from `ask` to the command, 3 from the memory's data to the client.
 // `drop`, held until `idle`, forgets everything: nothing is asked, what is still to come from memory is thrown away.
@@ -45,7 +49,7 @@ module read_port #(
     // All that can be on its way at once.
     localparam int unsigned OWNER_BITS  = $clog2(CLIENTS * DEPTH);
 
-    // Whose turn it is, chosen a clock ahead: the one after the last, or the next that asks. No path leads from what a client
+    // Whose turn it is, chosen a clock ahead: the last one's while it may go on, or that of the next that asks. No path leads from what a client
     // asks through the choice back to it. A turn that its client does not use passes.
     logic [CLIENT_BITS-1:0] turn, first, chosen, asker;
     logic [CLIENTS-1:0]     servable, taken;
@@ -72,7 +76,7 @@ module read_port #(
             cmd_valid <= given && ask_valid[turn];
             cmd_addr  <= ask_addr[turn * ADDRESS_BITS +: ADDRESS_BITS];
             asker     <= turn;
-            if (any) first <= chosen + 1'b1;
+            if (any) first <= chosen;
         end
 
         if (rst || drop) given <= 1'b0;
@@ -115,17 +119,23 @@ module read_port #(
     for (genvar i = 0; i < CLIENTS; i++) begin : client
         // Places of the FIFO that are neither full nor promised.
         logic [ROOM_BITS-1:0] room;
-        logic                 has_turn, asks;
+        logic                 has_turn, asks, bursting;
 
         assign has_turn     = given && turn == CLIENT_BITS'(i);
-        assign servable[i]  = ask_valid[i] && (room > ROOM_BITS'(1) || room[0] && !has_turn);
+        assign servable[i]  = ask_valid[i] && bursting && (room > ROOM_BITS'(1) || room[0] && !has_turn);
         assign ask_ready[i] = moves && has_turn;
         assign asks         = ask_valid[i] && ask_ready[i];
         assign taken[i]     = data_valid[i] && data_ready[i];
 
         always_ff @(posedge clk) begin
             if (asks != taken[i]) room <= asks ? room - 1'b1 : room + 1'b1;
-            if (rst || drop) room <= ROOM_BITS'(DEPTH);
+            if (room == '0)                       bursting <= 1'b0;
+            else if (room >= ROOM_BITS'(DEPTH/2)) bursting <= 1'b1;
+
+            if (rst || drop) begin
+                room     <= ROOM_BITS'(DEPTH);
+                bursting <= 1'b1;
+            end
         end
 
         // The places are there: `in_ready` is always high when something comes.

@@ -1,5 +1,6 @@
 //! The page `triangle.md`: the triangle engine on the whole SoC, with LiteDRAM and scan-out running.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
@@ -10,7 +11,7 @@ use glint::convert::{self, Options};
 use glint::error::Place;
 use glint::generate;
 use glint::polygons::{Corner, Polygons};
-use glint::render::{self, EngineStats, Renderer, Route, Scene, Stats};
+use glint::render::{self, Renderer, Route, Scene, Stats};
 use glint::view;
 use glint_core::camera::View;
 use glint_core::console::Backend;
@@ -24,10 +25,13 @@ pub struct Arguments {
     /// Print the rows as JSON instead of a table
     #[arg(long)]
     json: bool,
+    /// Leave the CPU's frames out, which take most of the time
+    #[arg(long)]
+    quick: bool,
     /// Only scenes whose name contains this
     #[arg(long, value_name = "TEXT")]
     only: Option<String>,
-    /// Folder for triangle.csv and triangle.md [default: docs/report, or target/report with --only]
+    /// Folder for triangle.csv and triangle.md [default: docs/report, or target/report with --only or --quick]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
@@ -165,15 +169,17 @@ struct Row {
     cycles_raster: u64,
     /// A frame of many that follow each other.
     cycles_frame: f64,
+    /// Its passes, which share memory then.
+    cycles_geometry_together: f64,
+    cycles_raster_together: f64,
     /// The same scene by the CPU.
-    cycles_cpu: u64,
+    cycles_cpu: Option<u64>,
     /// Shares of the raster pass alone.
     covered: f64,
     empty: f64,
     memory: f64,
     other: f64,
-    /// Shares of the geometry pass alone in which memory did not take a read, a write.
-    geometry_reads: f64,
+    /// Share of the geometry pass alone in which memory did not take a write of it.
     geometry_writes: f64,
     measured: f64,
     unit: &'static str,
@@ -199,17 +205,26 @@ pub fn report(arguments: &Arguments) -> Result<()> {
     };
     for case in CASES.iter().filter(wanted) {
         eprintln!("{} at {}x{} …", case.name, case.size.0, case.size.1);
-        rows.push(measure(&mut renderer, case, &provenance.commit)?);
+        rows.push(measure(
+            &mut renderer,
+            case,
+            arguments.quick,
+            &provenance.commit,
+        )?);
     }
     if arguments.json {
         println!("{}", serde_json::to_string_pretty(&rows)?);
     } else {
         print!("{}", table(&rows)?);
     }
-    let out = match (&arguments.out, &arguments.only) {
-        (Some(out), _) => out.clone(),
-        (None, None) => in_workspace("docs/report"),
-        (None, Some(_)) => in_workspace("target/report"),
+    let partial = arguments.quick || arguments.only.is_some();
+    let out = match &arguments.out {
+        Some(out) => out.clone(),
+        None => in_workspace(if partial {
+            "target/report"
+        } else {
+            "docs/report"
+        }),
     };
     std::fs::create_dir_all(&out)
         .with_context(|| format!("cannot make the folder {}", out.display()))?;
@@ -223,7 +238,12 @@ pub fn report(arguments: &Arguments) -> Result<()> {
     Ok(())
 }
 
-fn measure(renderer: &mut Renderer<SimulatedBoard>, case: &Case, commit: &str) -> Result<Row> {
+fn measure(
+    renderer: &mut Renderer<SimulatedBoard>,
+    case: &Case,
+    quick: bool,
+    commit: &str,
+) -> Result<Row> {
     let mesh = (case.mesh)()?;
     let mut scene = Scene {
         mesh: &mesh,
@@ -233,47 +253,56 @@ fn measure(renderer: &mut Renderer<SimulatedBoard>, case: &Case, commit: &str) -
         backend: Some(Backend::Gateware),
     };
     let expected = render::on_model(&scene)?;
-    let alone = renderer.show(&scene, Route::Memory, &mut |_, _| {})?;
+    renderer.show(&scene, Route::Memory, &mut |_, _| {})?;
     let found = renderer.colour(case.size, Route::Memory, &mut |_, _| {})?;
     ensure!(
         found == expected.frame.colour,
         "{}: the engine's frame is not the model's",
         case.name
     );
-    let engine = alone
-        .engine
-        .clone()
-        .with_context(|| format!("{}: the engine did not draw", case.name))?;
-    // A frame that follows others, so that memory is in the state that they leave.
-    let again = renderer.look(&scene.view)?;
+    // Both frame buffers hold such a frame then, of which only what differs is written.
+    renderer.look(&scene.view)?;
+    let alone = renderer.look(&scene.view)?;
     let together = bench(renderer)?;
-    scene.backend = Some(Backend::Cpu);
-    let cpu = renderer.show(&scene, Route::Memory, &mut |_, _| {})?;
-    row(
-        case,
-        commit,
-        &expected.stats,
-        &again,
-        &engine,
-        together,
-        &cpu,
-    )
+    let cpu = if quick {
+        None
+    } else {
+        scene.backend = Some(Backend::Cpu);
+        renderer.show(&scene, Route::Memory, &mut |_, _| {})?.cycles
+    };
+    row(case, commit, &expected.stats, &alone, &together, cpu)
 }
 
-/// Cycles of a frame, of many that follow each other.
-fn bench(renderer: &mut Renderer<SimulatedBoard>) -> Result<f64> {
+/// What many frames that follow each other took, by the names of the console's line.
+struct Bench(BTreeMap<String, f64>);
+
+impl Bench {
+    /// Of one frame.
+    fn frame(&self, name: &str) -> Result<f64> {
+        let value = |name: &str| {
+            self.0
+                .get(name)
+                .with_context(|| format!("bench triangle: no {name} in {:?}", self.0))
+        };
+        Ok(value(name)? / value("frames")?)
+    }
+}
+
+fn bench(renderer: &mut Renderer<SimulatedBoard>) -> Result<Bench> {
     let lines = renderer.console().command("bench triangle")?;
-    let words: Vec<&str> = lines
+    let line = lines
         .iter()
-        .flat_map(|line| line.split_whitespace())
-        .collect();
-    let number = |key: &str| -> Result<f64> {
-        let at = words.iter().position(|word| *word == key);
-        at.and_then(|at| words.get(at + 1))
-            .and_then(|word| word.parse().ok())
-            .with_context(|| format!("bench triangle: expected `{key} NUMBER`, found {lines:?}"))
-    };
-    Ok(number("cycles")? / number("frames")?)
+        .find_map(|line| line.strip_prefix("bench triangle "))
+        .with_context(|| format!("bench triangle: no such line in {lines:?}"))?;
+    let words: Vec<&str> = line.split_whitespace().collect();
+    words
+        .chunks(2)
+        .map(|pair| match pair {
+            [name, value] => Ok((name.to_string(), value.parse()?)),
+            _ => anyhow::bail!("bench triangle: expected names and numbers, found {line:?}"),
+        })
+        .collect::<Result<_>>()
+        .map(Bench)
 }
 
 fn row(
@@ -281,14 +310,18 @@ fn row(
     commit: &str,
     expected: &Stats,
     alone: &Stats,
-    engine: &EngineStats,
-    cycles_frame: f64,
-    cpu: &Stats,
+    together: &Bench,
+    cycles_cpu: Option<u64>,
 ) -> Result<Row> {
     let pixels = expected.pixels_covered;
+    let engine = alone
+        .engine
+        .as_ref()
+        .with_context(|| format!("{}: the engine did not draw", case.name))?;
     let share = |part: u64, whole: u64| part as f64 / whole as f64;
     let raster = engine.cycles_raster;
     let walking = engine.cycles_walking;
+    let cycles_frame = together.frame("cycles")?;
     let (measured, unit, at_least, aim, met) = match case.target {
         Target::Fill(least) => {
             let fill = pixels as f64 / walking as f64;
@@ -331,7 +364,9 @@ fn row(
         cycles_geometry: engine.cycles_geometry,
         cycles_raster: raster,
         cycles_frame,
-        cycles_cpu: cpu.cycles.context("no cycles")?,
+        cycles_geometry_together: together.frame("cycles_geometry")?,
+        cycles_raster_together: together.frame("cycles_raster")?,
+        cycles_cpu,
         covered: share(engine.groups, raster),
         empty: share(engine.cycles_empty, raster),
         memory: share(engine.cycles_memory, raster),
@@ -340,7 +375,6 @@ fn row(
                 engine.groups + engine.cycles_empty + engine.cycles_memory,
                 raster,
             ),
-        geometry_reads: share(engine.stalled_reads, engine.cycles_geometry),
         geometry_writes: share(engine.stalled_lists, engine.cycles_geometry),
         measured,
         unit,
@@ -376,38 +410,40 @@ fn table(rows: &[Row]) -> Result<String> {
         )?;
     }
     text.push_str(
-        "\n| scene | cycles a frame alone | its geometry | its raster | cycles a frame, back to back | fps at 81.25 MHz | at 100 MHz | by the CPU |\n\
-         |---|---|---|---|---|---|---|---|\n",
+        "\n| scene | cycles a frame alone | its geometry | its raster | cycles a frame, back to back | geometry, raster then | fps at 81.25 MHz | at 100 MHz | by the CPU |\n\
+         |---|---|---|---|---|---|---|---|---|\n",
     );
     for row in rows {
         writeln!(
             text,
-            "| {} | {} | {} | {} | {:.0} | {:.1} | {:.1} | {} |",
+            "| {} | {} | {} | {} | {:.0} | {:.0}, {:.0} | {:.1} | {:.1} | {} |",
             row.scene,
             row.cycles_alone,
             row.cycles_geometry,
             row.cycles_raster,
             row.cycles_frame,
+            row.cycles_geometry_together,
+            row.cycles_raster_together,
             CLOCKS[0] / row.cycles_frame,
             CLOCKS[1] / row.cycles_frame,
-            row.cycles_cpu,
+            row.cycles_cpu
+                .map_or("not measured".to_owned(), |cycles| cycles.to_string()),
         )?;
     }
     text.push_str(
-        "\n| scene | raster: covered groups | empty groups | waiting for memory | other | geometry: memory takes no read | no write |\n\
-         |---|---|---|---|---|---|---|\n",
+        "\n| scene | raster: covered groups | empty groups | waiting for memory | other | geometry: waiting to write |\n\
+         |---|---|---|---|---|---|\n",
     );
     for row in rows {
         let percent = |share: f64| format!("{:.0} %", 100.0 * share);
         writeln!(
             text,
-            "| {} | {} | {} | {} | {} | {} | {} |",
+            "| {} | {} | {} | {} | {} | {} |",
             row.scene,
             percent(row.covered),
             percent(row.empty),
             percent(row.memory),
             percent(row.other),
-            percent(row.geometry_reads),
             percent(row.geometry_writes),
         )?;
     }
