@@ -37,6 +37,22 @@ def _cull(old, new, fails):
     return Mutation("cull.sv", old, new, fails)
 
 
+def _setup(old, new, fails):
+    return Mutation("setup.sv", old, new, fails)
+
+
+def _entry(old, new, fails):
+    return Mutation("band_entry.sv", old, new, fails)
+
+
+def _walker(old, new, fails):
+    return Mutation("walker.sv", old, new, fails)
+
+
+def _lanes(old, new, fails):
+    return Mutation("lanes.sv", old, new, fails)
+
+
 _FIFO = [
     _fifo("out_valid <= stored;", "out_valid <= stored && in_valid;", "order.shown_in_time"),
     _fifo("load     = !out_valid || out_ready", "load     = !out_valid || out_ready || stored", "shown.payload_stable"),
@@ -131,5 +147,50 @@ MUTATIONS = {
         _cull("first_valid || last_valid || out_valid;", "first_valid || last_valid;", "busy_while_inside"),
         _cull("if (!out_valid || out_ready) begin", "if (1'b1) begin", "shown.valid_stays"),
         _cull("if (!out_valid || out_ready) begin", "if (1'b1) begin", "shown.payload_stable"),
+    ],
+    "setup": [
+        _setup("if (out_ready) out_valid <= 1'b0;", "out_valid <= 1'b0;", "shown.valid_stays"),
+        _setup("count != LAST || !valid[4] || !out_valid;", "1'b1;", "shown.payload_stable"),
+        _setup("if (beat && valid[4]) begin", "if (beat) begin", "nothing_made_up"),
+        _setup("lit_4      <= lit_3;", "lit_4      <= lit_2;", "in_order"),
+        _setup("drawn <= beat && valid[4];", "drawn <= beat;", "counted"),
+        _setup("cull_busy || valid != '0 || out_valid", "cull_busy || valid[3:1] != '0 || out_valid", "busy_while_inside"),
+        _setup("valid <= {valid[3:1], first_valid};", "valid <= {1'b0, valid[2:1], first_valid};", "busy_while_inside"),
+        # Triangles that wait for those behind them, or for the consumer.
+        _setup("end else if (enable) begin", "end else if (enable && first_valid) begin", "no_standstill"),
+        _setup("end else if (enable) begin", "end else if (enable && out_ready) begin", "taken_in_time"),
+    ],
+    "band_entry": [
+        _entry("if (next_free) begin", "if (1'b1) begin", "shown.valid_stays"),
+        _entry("if (next_free) begin", "if (1'b1) begin", "shown.payload_stable"),
+        _entry("            if (pass == ROWS_KNOWN && count == '0) busy <= 1'b0;\n", "", "nothing_made_up"),
+        # What is held is overwritten by the next triangle.
+        _entry("pass != STALLS || !held_valid || !out_valid;", "1'b1;", "in_order"),
+        _entry("if (pass == LAST) begin", "if (busy) begin", "in_order"),
+        _entry("k == 2 ? ending[2] :", "k == 2 ? ending[1] :", "in_order"),
+        _entry("!busy || pass == LAST;", "1'b1;", "nothing_too_many"),
+        _entry("(ending != '0 || held_valid) && held_odd", "held_valid && held_odd", "held_is_told"),
+        _entry("{ending[2:1], busy && pass == LAST}", "{ending[2:1], busy && pass == LAST && in_valid}", "shown_in_time"),
+        _entry("end else if (advance) begin", "end else if (advance && out_ready) begin", "taken_in_time"),
+    ],
+    "walker": [
+        _walker("if (out_ready) begin\n            seek_left", "if (1'b1) begin\n            seek_left", "shown.valid_stays"),
+        _walker("if (out_ready) begin\n            seek_left", "if (1'b1) begin\n            seek_left", "shown.payload_stable"),
+        _walker("= active && !fails;", "= !fails;", "nothing_made_up"),
+        _walker("(seeks || !left) && !at_right;", "(seeks || !left);", "within_bounds"),
+        _walker("(seeks || left) && !at_left;", "!at_left;", "none_twice"),
+        _walker("(seeks || left) && !at_left;", "!at_left;", "left_in_time"),
+        _walker("!in_valid || in_triangle.rows == 6'd1;", "1'b1;", "none_left_out"),
+        _walker("            active       <= 1'b0;", "            active       <= 1'b1;", "busy_while_it_walks"),
+    ],
+    "lanes": [
+        _skid("if (!out_valid || out_ready)", "if (1'b1)", "shown.valid_stays"),
+        _skid("if (!out_valid || out_ready)", "if (!out_valid || out_ready || in_valid)", "shown.payload_stable"),
+        _lanes("= valid[4] && out_mask != '0;", "= valid[4];", "nothing_made_up"),
+        _lanes("place_3 <= place_2;", "place_3 <= place_1;", "in_order"),
+        _lanes("assign in_ready = out_ready;", "assign in_ready = 1'b1;", "nothing_too_many"),
+        _lanes("valid == '0;", "valid[3:1] == '0;", "idle_when_empty"),
+        _lanes("if (out_ready) valid <=", "if (out_ready && in_valid) valid <=", "shown_in_time"),
+        _skid(": spare;\n            in_ready  <= 1'b1;", ": spare;", "taken_in_time"),
     ],
 }

@@ -47,6 +47,15 @@ class Proof:
 _BUFFER = [FORMAL / f"{name}.sv" for name in ("stream_checker", "order_checker", "buffer_proof")] + [
     _RTL / "common" / "skid_buffer.sv", _RTL / "common" / "fifo.sv"]
 
+
+def _triangle(*names):
+    return [_RTL / "triangle" / f"{name}.sv" for name in ("triangle_pkg", *names)]
+
+
+def _formal(*names):
+    return [FORMAL / f"{name}.sv" for name in ("stream_checker", *names)]
+
+
 # The longest first.
 PROOFS = [
     Proof("band_flush", "band_flush_proof",
@@ -55,14 +64,19 @@ PROOFS = [
     Proof("band_extents", "band_extents_proof",
           [FORMAL / "stream_checker.sv", FORMAL / "band_extents_proof.sv", _RTL / "common" / "skid_buffer.sv",
            _RTL / "band" / "band_extents.sv"], 24),
+    Proof("setup", "setup_proof", [*_triangle("setup_pkg", "setup"), *_formal("plain_setup", "setup_proof")], 25),
+    Proof("band_entry", "band_entry_proof",
+          [*_triangle("raster_pkg", "band_entry"), *_formal("no_product", "band_entry_proof")], 24),
+    Proof("walker", "walker_proof", [*_triangle("raster_pkg", "walker"), *_formal("any_stepper", "walker_proof")], 15),
+    Proof("lanes", "lanes_proof",
+          [*_triangle("raster_pkg", "lanes"), _RTL / "common" / "skid_buffer.sv", *_formal("lanes_proof")], 14),
     Proof("skid_buffer", "buffer_proof", _BUFFER, 24),
     Proof("fifo of 2", "buffer_proof", _BUFFER, 24, {"DEPTH": 2}),
     Proof("fifo of 4", "buffer_proof", _BUFFER, 24, {"DEPTH": 4}),
     Proof("band_pipe", "band_pipe_proof",
           [FORMAL / "band_pipe_proof.sv", _RTL / "band" / "band_pipe.sv"], 14),
     Proof("cull", "cull_proof",
-          [*(_RTL / "triangle" / f"{name}.sv" for name in ("triangle_pkg", "setup_pkg", "cull")),
-           *(FORMAL / f"{name}.sv" for name in ("any_product", "stream_checker", "cull_proof"))], 20),
+          [*_triangle("setup_pkg", "cull"), *_formal("any_product", "cull_proof")], 20),
 ]
 
 # State as bit vectors and a fresh solver for each clock: z3 is slow with its defaults here.

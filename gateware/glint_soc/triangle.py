@@ -13,7 +13,7 @@ BAND_BUFFER = [_COMMON / "fifo.sv", _COMMON / "skid_buffer.sv",
                *(_BAND / f"band_{part}.sv" for part in ("bank", "pipe", "extents", "flush", "buffer"))]
 TRIANGLE_RASTER = [
     _TRIANGLE / "triangle_pkg.sv", _TRIANGLE / "raster_pkg.sv", _COMMON / "skid_buffer.sv",
-    *(_TRIANGLE / f"{name}.sv" for name in ("stepper", "band_entry", "walker", "lanes", "triangle_raster")),
+    *(_TRIANGLE / f"{name}.sv" for name in ("stepper", "multiply_add", "band_entry", "walker", "lanes", "triangle_raster")),
 ]
 VERTEX_STAGE = [
     _TRIANGLE / "triangle_pkg.sv", _COMMON / "fifo.sv", _TRIANGLE / "multiply_add.sv",

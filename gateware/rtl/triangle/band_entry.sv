@@ -90,40 +90,34 @@ module band_entry (
         slope = falls ? 20'(-step) : step[19:0];
     end
 
-    logic signed [24:0] factor_a, a;
-    logic signed [17:0] factor_b, b;
-    logic signed [42:0] product;
-    logic signed [33:0] product_beside;
-    logic signed [17:0] b_beside;
-    logic        [47:0] c, sum;
-    logic        [33:0] beside;
+    // Operands of a pass, its `c` a clock later; its `sum` and `beside` are there two more clocks later.
+    logic signed [24:0] a;
+    logic signed [17:0] b, b_beside;
+    logic signed [47:0] c, sum;
+    logic signed [33:0] beside;
 
     always_comb begin
         case (pass)
-            3'd0:             factor_a = 25'(signed'(step_y[0]));
-            3'd1:             factor_a = 25'(signed'(step_y[1]));
-            3'd4:             factor_a = 25'(signed'(step_y[2]));
-            3'd2, 3'd3, 3'd6: factor_a = 25'(signed'(step));
-            3'd5:             factor_a = {1'b0, triangle.depth_step_y[23:0]};
-            default:          factor_a = {triangle.depth_step_y[31:24], 17'd0};
+            3'd0:             a = 25'(signed'(step_y[0]));
+            3'd1:             a = 25'(signed'(step_y[1]));
+            3'd4:             a = 25'(signed'(step_y[2]));
+            3'd2, 3'd3, 3'd6: a = 25'(signed'(step));
+            3'd5:             a = {1'b0, triangle.depth_step_y[23:0]};
+            default:          a = {triangle.depth_step_y[31:24], 17'd0};
         endcase
         case (pass)
-            3'd0, 3'd1, 3'd4, 3'd5: factor_b = {8'd0, offset};
-            3'd2, 3'd3, 3'd6:       factor_b = 18'sd7;
-            default:                factor_b = {1'b0, offset, 7'd0};
+            3'd0, 3'd1, 3'd4, 3'd5: b = {8'd0, offset};
+            3'd2, 3'd3, 3'd6:       b = 18'sd7;
+            default:                b = {1'b0, offset, 7'd0};
         endcase
+        b_beside = rises ? -18'sd1 : 18'sd8;
     end
 
-    // Operands of a pass are in `a` and `b` after it, its product and its `c` a clock later, its `sum` another one later.
+    multiply_add #(.BITS(48)) dsp (.clk, .enable(advance), .a, .b, .c, .p(sum));
+    multiply_add #(.BITS(34)) dsp_beside (.clk, .enable(advance), .a, .b(b_beside), .c(c[33:0]), .p(beside));
+
     always_ff @(posedge clk) begin
         if (advance) begin
-            a              <= factor_a;
-            b              <= factor_b;
-            b_beside       <= rises ? -18'sd1 : 18'sd8;
-            product        <= a * b;
-            product_beside <= 34'(a * b_beside);
-            sum            <= {{5{product[42]}}, product} + c;
-            beside         <= product_beside + c[33:0];
             case (pass)
                 3'd1:    c <= {{14{triangle.start[0][33]}}, triangle.start[0]};
                 3'd2:    c <= {{14{triangle.start[1][33]}}, triangle.start[1]};

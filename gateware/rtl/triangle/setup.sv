@@ -16,7 +16,10 @@
 
 `default_nettype none
 
-module setup (
+module setup #(
+    // The last clock of a beat. Fewer than 11 clocks are for proofs of the control.
+    parameter bit [3:0] LAST = 4'd10
+) (
     input  wire              clk,
     input  wire              rst,
     input  wire  [10:0]      width,
@@ -47,8 +50,6 @@ module setup (
         logic [23:0] w0;
         logic [20:0] px, py;
     } origin_t;
-
-    localparam bit [3:0] LAST = 4'd10;
 
     logic [3:0] count;
     logic       enable, beat;

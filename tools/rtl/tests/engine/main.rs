@@ -469,8 +469,8 @@ fn latency_of_memory_is_hidden() {
             bench.draw(name, &mesh, &expected).raster
         });
         println!("{name} at {size:?}: {raster:?} clocks for the raster");
-        // Lengths, lists and descriptors wait for each other in the first band.
-        assert!(raster[1] < raster[0] + 4 * 64, "{name}: {raster:?}");
+        // Lengths, lists and descriptors wait for each other in the first band, and a few times later.
+        assert!(raster[1] < raster[0] + 8 * 64, "{name}: {raster:?}");
     }
 }
 

@@ -1,0 +1,85 @@
+// From the walker's groups to those that are drawn: lanes and the skid buffer behind them, with any traffic on both sides. Groups are
+// numbered, and cover all pixels or none. Those that cover some come out, each once, in their order, with all fields their own;
+// the others leave no trace. Nothing waits for the consumer to be ready first.
+
+`default_nettype none
+
+module lanes_proof (
+    input wire clk,
+    input wire in_valid,
+    input wire in_kept,
+    input wire out_ready
+);
+    localparam int unsigned BITS = 4;
+
+    logic rst = 1'b1;
+    always_ff @(posedge clk) rst <= 1'b0;
+
+    typedef struct packed {
+        logic [10:0]      row;
+        logic [5:0]       line;
+        logic [7:0]       column;
+        logic [7:0]       mask;
+        logic [7:0][17:0] codes;
+        logic [15:0]      colour;
+    } group_t;
+
+    logic                   idle, in_ready, made_valid, made_ready, out_valid, right;
+    group_t                 made, group;
+    raster_pkg::candidate_t candidate;
+    logic [BITS-1:0]        kept = '0, went = '0, number;
+    logic [2:0]             unseen = '0, refused = '0;
+
+    // What covers nothing has a number that never comes: two edges, of which one passes in lane 7 only and one in lane 0.
+    assign number = in_kept ? kept : '1;
+
+    always_comb begin
+        candidate        = '0;
+        candidate.line   = 6'd2;
+        candidate.group  = {4'd0, number};
+        candidate.depth  = {14'd1, number, 14'd0};
+        candidate.colour = {12'd1, number};
+        for (int k = 0; k < 3; k++) begin
+            candidate.best[k]  = {in_kept, 32'd0};
+            candidate.slope[k] = 20'd1;
+        end
+        candidate.rises[0] = 1'b1;
+    end
+
+    lanes dut (
+        .clk, .rst, .stride(8'd40), .idle, .in_valid, .in_ready, .in_group(candidate),
+        .out_valid(made_valid), .out_ready(made_ready), .out_row(made.row), .out_line(made.line), .out_column(made.column),
+        .out_mask(made.mask), .out_codes(made.codes), .out_colour(made.colour)
+    );
+    skid_buffer #(.WIDTH($bits(made))) buffer (
+        .clk, .rst, .in_valid(made_valid), .in_ready(made_ready), .in_data(made), .out_valid, .out_ready, .out_data(group)
+    );
+
+    stream_checker #(.WIDTH(1), .GIVEN(1)) given (
+        .clk, .rst, .valid(in_valid), .ready(in_ready), .data(in_kept)
+    );
+    stream_checker #(.WIDTH($bits(group))) shown (
+        .clk, .rst, .valid(out_valid), .ready(out_ready), .data(group)
+    );
+
+    assign right = group == {11'd80 + 11'(went), 6'd2, {4'd0, went}, 8'hff, {8{14'd1, went}}, {12'd1, went}};
+
+    always_ff @(posedge clk) if (!rst) begin
+        if (in_valid && in_ready && in_kept) kept <= kept + 1'b1;
+        if (out_valid && out_ready)          went <= went + 1'b1;
+        unseen  <= kept != went && !out_valid ? unseen + 1'b1 : '0;
+        refused <= in_valid && !in_ready && out_ready ? refused + 1'b1 : '0;
+
+        assume (kept != '1);
+        nothing_made_up:  assert (!out_valid || kept != went);
+        in_order:         assert (!out_valid || right);
+        nothing_too_many: assert (kept - went <= BITS'(6));
+        idle_when_empty:  assert (!idle || out_valid || kept == went);
+        shown_in_time:    assert (unseen < 3'd5);
+        taken_in_time:    assert (refused < 3'd2);
+
+        six_inside: cover (kept - went == BITS'(6) && !in_ready);
+    end
+endmodule
+
+`default_nettype wire

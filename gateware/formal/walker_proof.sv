@@ -1,0 +1,102 @@
+// Walking over triangles, with any edge functions and any traffic on both sides. Triangles are numbered in their colour; bounds are up
+// to three groups wide and two lines high.
+//
+// Groups are those of triangles that were taken, in their order, within their lines and bounds, none twice. Where
+// edges fail nowhere, every group of the bounds has to come. A triangle is left in time.
+
+`default_nettype none
+
+module walker_proof (
+    input wire       clk,
+    input wire       in_valid,
+    input wire       in_two,     // lines
+    input wire [1:0] in_left,
+    input wire [1:0] in_right,
+    input wire [1:0] in_start,
+    input wire [2:0] in_rises,
+    input wire [2:0] in_falls,
+    input wire       out_ready
+);
+    localparam int unsigned BITS = 3;
+
+    // All of the triangles' edges fail nowhere.
+    (* anyconst *) logic solid;
+
+    logic rst = 1'b1;
+    always_ff @(posedge clk) rst <= 1'b0;
+
+    logic                   idle, walking, in_ready, out_valid, taken, goes;
+    raster_pkg::placed_t    placed;
+    raster_pkg::candidate_t group;
+
+    // The triangle that is walked over: its number, its groups (bit 4·line + column), and which of them have come.
+    logic [BITS-1:0] came = '0, number;
+    logic            some = 1'b0;
+    logic [7:0]      bounds, gone, group_bit;
+    logic [3:0]      columns;
+    logic [4:0]      walked = '0;
+
+    always_comb begin
+        placed             = '0;
+        placed.colour      = 16'(came);
+        placed.line        = 6'd0;
+        placed.rows        = in_two ? 6'd2 : 6'd1;
+        placed.group_left  = 8'(in_left);
+        placed.group_right = 8'(in_right);
+        placed.group_start = 8'(in_start);
+        placed.rises       = in_rises;
+        placed.falls       = in_falls;
+        for (int i = 0; i < 4; i++) columns[i] = 2'(i) >= in_left && 2'(i) <= in_right;
+    end
+
+    walker dut (
+        .clk, .rst, .idle, .walking, .in_valid, .in_ready, .in_triangle(placed), .out_valid, .out_ready, .out_group(group)
+    );
+
+    stream_checker #(.WIDTH(13), .GIVEN(1)) given (
+        .clk, .rst, .valid(in_valid), .ready(in_ready), .data({in_two, in_left, in_right, in_start, in_rises, in_falls})
+    );
+    stream_checker #(.WIDTH(16 + 6 + 8 + 32)) shown (
+        .clk, .rst, .valid(out_valid), .ready(out_ready), .data({group.colour, group.line, group.group, group.depth})
+    );
+
+    assign taken     = in_valid && in_ready;
+    assign goes      = out_valid && out_ready;
+    assign group_bit = 8'd1 << {group.line[0], group.group[1:0]};
+
+    always_ff @(posedge clk) if (!rst) begin
+        if (taken) begin
+            came   <= came + 1'b1;
+            number <= came;
+            some   <= 1'b1;
+            bounds <= {in_two ? columns : 4'd0, columns};
+            gone   <= '0;
+            walked <= '0;
+        end else begin
+            if (goes) gone <= gone | group_bit;
+            if (walking) walked <= walked + 1'b1;
+        end
+
+        assume (came != '1);
+        assume (in_left <= in_right && in_left <= in_start && in_start <= in_right && in_right - in_left <= 2'd2);
+        assume ((in_rises & in_falls) == '0);
+        if (solid) begin
+            assume (in_rises == '0 && in_falls == '0);
+            assume (!walking || out_valid);
+        end
+
+        if (out_valid) begin
+            nothing_made_up: assert (some && group.colour == 16'(number));
+            within_bounds:   assert (group.line[5:1] == '0 && group.group[7:2] == '0 && (group_bit & bounds) != '0);
+            none_twice:      assert ((group_bit & gone) == '0);
+        end
+        // Of a line's three groups two may fail on the way to the first one, and be tried again from there.
+        left_in_time:  assert (!walking || walked < 5'd10);
+        none_left_out: assert (!solid || !some || !(taken || idle) || (gone | (goes ? group_bit : '0)) == bounds);
+        busy_while_it_walks: assert (idle || some);
+
+        three_walked: cover (came == BITS'(3) && idle && gone == 8'h77);
+    end
+endmodule
+
+`default_nettype wire
