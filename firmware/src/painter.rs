@@ -4,10 +4,10 @@ use core::mem;
 
 use glint_core::camera::View;
 use glint_core::mesh::Mesh;
-use glint_model::descriptor::{Descriptor, band_rows};
+use glint_model::descriptor::{Descriptor, TABLE_WORDS, band_rows, list_word};
 use glint_model::{FrameSetup, Stats, clip_exceptions};
 use litex_hal::triangle::{
-    Counters, Engine, Fault, Geometry, LIST_TABLE_BYTES, Lists, Outcome, Raster, Set,
+    Counters, Engine, Fault, Geometry, Lists, Outcome, Raster, Set,
 };
 use litex_pac::cpu;
 
@@ -15,9 +15,9 @@ use litex_pac::cpu;
 const DESCRIPTORS: usize = 1 << 16;
 /// Numbers in a descriptor.
 const DESCRIPTOR_WORDS: usize = 48 / 4;
-/// Numbers of all lists of a set, and of the table before them.
-const LIST_WORDS: usize = 1 << 20;
-const TABLE_WORDS: usize = LIST_TABLE_BYTES / 4;
+/// Numbers of all lists of a set, and of the table of their lengths.
+const LIST_NUMBERS: usize = 1 << 20;
+const LENGTHS: usize = 4 * TABLE_WORDS as usize;
 
 /// Cycles without anything read, written or drawn after which the engine is given up: a tenth of a second.
 const STUCK: u64 = litex_hal::timer::FREQUENCY as u64 / 10;
@@ -25,8 +25,8 @@ const STUCK: u64 = litex_hal::timer::FREQUENCY as u64 / 10;
 /// Questions whether a pass has ended between two whether it moves at all.
 const POLLS: u32 = 100;
 
-/// Entries of a list are 4 << this: what fits [`LIST_WORDS`] for the bands of a picture of this width.
-const fn list_shift(width: u32) -> u8 {
+/// Entries of a list are 4 << this: what fits [`LIST_NUMBERS`] for the bands of a picture of this width.
+const fn list_shift(width: u32) -> u32 {
     match width {
         320 => 15,
         640 => 14,
@@ -74,10 +74,10 @@ impl Room {
         };
         Some(Self {
             descriptors: piece(DESCRIPTORS * DESCRIPTOR_WORDS)?,
-            lists: piece(LIST_WORDS)?,
+            lists: piece(LIST_NUMBERS)?,
             exceptions: piece(DESCRIPTORS)?,
             clipped_descriptors: piece(DESCRIPTORS * DESCRIPTOR_WORDS)?,
-            clipped_lists: piece(LIST_WORDS)?,
+            clipped_lists: piece(LIST_NUMBERS)?,
             sets: [None; 2],
             stats: Stats::default(),
         })
@@ -201,16 +201,16 @@ impl Painter {
         }
     }
 
-    /// Draws a frame `count` times, back to back and to the end: while one is rastered the next one's geometry is made.
-    /// Nobody looks at the console meanwhile.
+    /// Draws a frame again and again, back to back: while one is rastered the next one's geometry is made. What is returned
+    /// is of `count` frames, from the beginning of a raster pass to the beginning of a later one. Nobody looks at the
+    /// console meanwhile.
     ///
     /// # Errors
     /// As [`advance`](Self::advance).
     pub fn repeat(&mut self, target: &mut Target, count: u32) -> Result<Painted, Fault> {
-        self.start = (cpu::cycles(), self.engine.counters());
         self.watch = Watch::default();
         let mut constants = constants(target)?;
-        for frame in 0..count {
+        for frame in 0..=count {
             self.start_geometry(target, constants);
             // Those of the next frame, while the engine works.
             constants = self::constants(target)?;
@@ -221,11 +221,16 @@ impl Painter {
             if frame > 0 {
                 self.wait(Engine::raster, target)?;
             }
+            if frame == 0 {
+                self.start = (cpu::cycles(), self.engine.counters());
+            }
+            if frame == count {
+                break;
+            }
             self.start_raster(target);
             // What is being drawn stays where it is.
             self.rooms.swap(0, 1);
         }
-        self.wait(Engine::raster, target)?;
         let (start, counters) = self.start;
         Ok(Painted {
             cycles: cpu::cycles() - start,
@@ -267,7 +272,7 @@ impl Painter {
         };
         // SAFETY: the room is this painter's own, and looked at when the pass has ended; the mesh is kept while the
         // painter is busy.
-        unsafe { self.engine.start_geometry(&pass, list_shift(target.size.0)) };
+        unsafe { self.engine.start_geometry(&pass, list_shift(target.size.0) as u8) };
     }
 
     fn start_raster(&mut self, target: &mut Target) {
@@ -312,7 +317,7 @@ impl Painter {
             let mut writer = ListWriter {
                 descriptors: room.clipped_descriptors,
                 lists: room.clipped_lists,
-                lengths: [0; TABLE_WORDS],
+                lengths: [0; LENGTHS],
                 count: 0,
                 width: frame.width,
                 full: false,
@@ -371,7 +376,7 @@ impl Painter {
 struct ListWriter<'a> {
     descriptors: &'a mut [u32],
     lists: &'a mut [u32],
-    lengths: [u32; TABLE_WORDS],
+    lengths: [u32; LENGTHS],
     count: u32,
     width: u32,
     full: bool,
@@ -388,11 +393,10 @@ impl ListWriter<'_> {
         let rows = band_rows(self.width);
         let room = 4 << list_shift(self.width);
         for band in top / rows..=(bottom - 1) / rows {
-            let band = band as usize;
-            let Some(length) = self.lengths.get_mut(band) else {
+            let Some(length) = self.lengths.get_mut(band as usize) else {
                 continue;
             };
-            let at = TABLE_WORDS + band * room + *length as usize;
+            let at = 4 * list_word(band, list_shift(self.width)) as usize + *length as usize;
             match self.lists.get_mut(at) {
                 Some(entry) if (*length as usize) < room => {
                     *entry = self.count;

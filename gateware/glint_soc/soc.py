@@ -71,9 +71,10 @@ class GlintSoC(SoCCore):
     def add_dram(self, phy):
         """Adds the DDR3 controller over the board's PHY, then what reads and writes memory through it."""
         module = MT41K64M16(self.sys_clk_freq, "1:4")
-        # Turning from reads to writes and back takes a dozen clocks: longer turns than LiteDRAM's 16 writes waste fewer.
+        # Turning from reads to writes and back takes a dozen clocks, so longer turns than LiteDRAM's 32 reads and 16 writes
+        # waste fewer. A port goes on to another bank when the commands before are done: fewer of them keep it waiting less.
         self.add_sdram("sdram", phy=phy, module=module, with_soc_interconnect=False,
-                       controller_settings=ControllerSettings(read_time=32, write_time=64))
+                       controller_settings=ControllerSettings(read_time=64, write_time=128, cmd_buffer_depth=4))
         main_ram = SoCRegion(origin=self.mem_map["main_ram"], size=MAIN_RAM_SIZE, mode="rwx")
         bus = wishbone.Interface(data_width=32, address_width=32, addressing="word")
         self.memory_bridge = MemoryBridge(bus, self.sdram.crossbar.get_port(), main_ram.origin)
@@ -82,5 +83,5 @@ class GlintSoC(SoCCore):
             self.scanout = Scanout(self.platform, self.sdram.crossbar.get_port(mode="read"))
         if "triangle" in self.blocks:
             readers = [self.sdram.crossbar.get_port(mode="read") for _ in range(3)]
-            writers = [self.sdram.crossbar.get_port(mode="write") for _ in range(2)]
+            writers = [self.sdram.crossbar.get_port(mode="write") for _ in range(3)]
             self.triangle = TriangleEngine(self.platform, readers, writers, main_ram)

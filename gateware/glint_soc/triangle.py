@@ -23,11 +23,11 @@ SETUP = [_TRIANGLE / f"{name}.sv" for name in (
     "triangle_pkg", "setup_pkg", "multiply_add", "reciprocal", "normalise", "cull", "flat_shade", "setup_edges", "setup_normal",
     "setup_gradient", "setup_depth", "setup")]
 TRIANGLE_ENGINE = [*dict.fromkeys([
-    *SETUP, *TRIANGLE_RASTER, *VERTEX_STAGE, *BAND_BUFFER, _COMMON / "read_port.sv", _COMMON / "write_port.sv",
+    _TRIANGLE / "list_pkg.sv", *SETUP, *TRIANGLE_RASTER, *VERTEX_STAGE, *BAND_BUFFER, _COMMON / "read_port.sv", _COMMON / "write_port.sv",
     *(_TRIANGLE / f"{name}.sv" for name in ("vertex_cache", "mesh_walk", "classify", "binner", "geometry_unit", "list_reader",
                                             "raster_unit", "triangle_engine")),
 ])]
-TRIANGLE_CONTROL = [_TRIANGLE / "triangle_control.sv"]
+TRIANGLE_CONTROL = [_TRIANGLE / "list_pkg.sv", _TRIANGLE / "triangle_control.sv"]
 
 IDENT = int.from_bytes(b"TRIA", "big")
 
@@ -41,7 +41,7 @@ _ERRORS = [
     ("3", "busy", "started while it was busy; the pass under way went on"),
     ("4", "mesh", "a chunk without vertices, or one beyond `mesh_bytes`; what came before it was drawn"),
     ("5", "full", "no room for all descriptors, list entries or exceptions; what had room was drawn"),
-    ("6", "list", "a list longer than it may be, or a number beyond its descriptors; the frame ended there"),
+    ("6", "list", "a list was longer than it may be, or named a descriptor beyond the count; what it drew is wrong"),
     ("7", "cancelled", "ended by `cancel`"),
 ]
 
@@ -51,8 +51,8 @@ _SIZES = [("0", "w320", "320x180"), ("1", "w640", "640x360"), ("2", "w1280", "12
 class TriangleEngine(LiteXModule):
     """Draws meshes, in two passes that may run at the same time for two frames.
 
-    `readers` are three native 128-bit LiteDRAM read ports (triangles, vertices, raster), `writers` two write ports (lists,
-    frame), all in the domain `sys`. `main_ram` is the region they reach.
+    `readers` are three native 128-bit LiteDRAM read ports (triangles, vertices, raster), `writers` three write ports
+    (descriptors, lists, frame), all in the domain `sys`. `main_ram` is the region they reach.
     """
 
     def __init__(self, platform, readers, writers, main_ram):
@@ -186,7 +186,7 @@ class TriangleEngine(LiteXModule):
         # # #
 
         mesh_reader, vertex_reader, raster_reader = readers
-        list_writer, frame_writer = writers
+        descriptor_writer, list_writer, frame_writer = writers
         geometry_kept, raster_kept = Signal(3), Signal(7)
         link = {name: Signal() for name in (
             "ready", "geometry_start", "geometry_busy", "geometry_done", "mesh_error", "full",
@@ -241,7 +241,7 @@ class TriangleEngine(LiteXModule):
             i_rst                  = ResetSignal("sys"),
             i_cancel               = cancel,
             **{f"{'o' if name in controlled else 'i'}_{name}": signal
-               for name, signal in link.items() if name != "list_error"},
+               for name, signal in link.items()},
             i_mesh_first           = self._mesh.storage[word],
             i_mesh_last            = mesh_last,
             i_geometry_descriptors = self._geometry_descriptors.storage[word],
@@ -274,6 +274,7 @@ class TriangleEngine(LiteXModule):
             i_depth_base           = self._depth.storage[word],
             i_clear                = self._clear.storage,
             i_raster_lists         = Cat(self._lists_0.storage[word], self._lists_1.storage[word]),
+            i_raster_counts        = Cat(self._count_0.storage, self._count_1.storage),
             i_raster_descriptors   = Cat(self._descriptors_0.storage[word], self._descriptors_1.storage[word]),
             o_raster_clocks        = status["cycles_raster"].status,
             o_clocks_walking       = status["cycles_walking"].status,
@@ -285,11 +286,12 @@ class TriangleEngine(LiteXModule):
             **_read_port("mesh_read", mesh_reader),
             **_read_port("vertex_read", vertex_reader),
             **_read_port("raster_read", raster_reader),
+            **_write_port("descriptors", descriptor_writer),
             **_write_port("lists", list_writer),
             **_write_port("frame", frame_writer),
         )
         reads_stalled = _any(port.cmd.valid & ~port.cmd.ready for port in readers)
-        stalls = [reads_stalled, *(port.cmd.valid & ~port.cmd.ready for port in writers)]
+        stalls = [reads_stalled, *(_any(port.cmd.valid & ~port.cmd.ready for port in some) for some in (writers[:2], writers[2:]))]
         self.sync += [
             If(link["geometry_busy"] | link["raster_busy"],
                 status["cycles_busy"].status.eq(status["cycles_busy"].status + 1)),
@@ -302,7 +304,7 @@ class TriangleEngine(LiteXModule):
             status["items_out"].status.eq(status["items_out"].status + _any(
                 port.wdata.valid & port.wdata.ready for port in writers)),
         ]
-        for source in TRIANGLE_CONTROL + TRIANGLE_ENGINE:
+        for source in dict.fromkeys(TRIANGLE_CONTROL + TRIANGLE_ENGINE):
             platform.add_source(str(source))
 
 

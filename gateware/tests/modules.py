@@ -36,7 +36,7 @@ MODULES = [
     Module(top="skid_buffer", sources=[_COMMON / "skid_buffer.sv"]),
     Module(top="fifo", sources=[_COMMON / "fifo.sv"], variants={"fifo_2": {"DEPTH": 2}}),
     Module(top="band_buffer", sources=BAND_BUFFER),
-    Module(top="binner", sources=[_TRIANGLE / "triangle_pkg.sv", _TRIANGLE / "binner.sv"]),
+    Module(top="binner", sources=[_TRIANGLE / "triangle_pkg.sv", _TRIANGLE / "list_pkg.sv", _TRIANGLE / "binner.sv"]),
     Module(top="vertex_stage", sources=VERTEX_STAGE),
     Module(top="vertex_cache", sources=[_COMMON / "fifo.sv", _TRIANGLE / "vertex_cache.sv"]),
     Module(top="reciprocal", sources=[_TRIANGLE / "multiply_add.sv", _TRIANGLE / "reciprocal.sv"]),

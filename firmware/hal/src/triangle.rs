@@ -24,9 +24,6 @@ use crate::Absent;
 /// What `ident` reads where the block is present: `TRIA` in ASCII.
 const IDENT: u32 = u32::from_be_bytes(*b"TRIA");
 
-/// Words before the first list of a set: the lengths of 64 lists.
-pub const LIST_TABLE_BYTES: usize = 256;
-
 /// Why a pass has not done what it was asked for; the error codes of the register `status`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {

@@ -75,6 +75,15 @@ impl Packer {
     }
 }
 
+/// Words of 16 bytes before the first list of a set: the lengths of 64 lists.
+pub const TABLE_WORDS: u32 = 16;
+
+/// Where the list of a band begins, in words of 16 bytes from the beginning of its set. Lists have room for 4 << `shift`
+/// entries, and a row of a memory's bank lies between them, so that neighbours are in different banks.
+pub const fn list_word(band: u32, shift: u32) -> u32 {
+    TABLE_WORDS + (band << shift) + 128 * band
+}
+
 /// Rows of a band of a picture of this width, one of [`SIZES`](crate::SIZES): at most 15,360 pixels.
 pub const fn band_rows(width: u32) -> u32 {
     match width {

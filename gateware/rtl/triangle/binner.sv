@@ -4,7 +4,7 @@
 // Layout in words of 16 bytes, entries being u32 (docs/formats.md "Band lists"):
 //   descriptors   descriptor_base + 3·number           3 words each
 //   lists         list_base                            16 words: the lengths of 64 lists
-//                 list_base + 16 + (band << list_shift) the list of a band, 4 entries a word
+//                 list_base + 16 + (band << list_shift) + 128·band  the list of a band, 4 entries a word
 //   exceptions    exception_base                       4 entries a word
 //
 // The entries of a list are kept here until there are four of them: a word is written whole. Turning from the descriptors to
@@ -48,11 +48,12 @@ module binner #(
     input  wire                     write_ready,
     output logic [ADDRESS_BITS-1:0] write_addr,
     output logic [127:0]            write_data,
-    output logic [15:0]             write_strobe
+    output logic [15:0]             write_strobe,
+    // A word of a descriptor, or else of a list.
+    output logic                    write_descriptor
 );
     localparam int unsigned BANDS       = 64;
     localparam int unsigned BAND_BITS   = $clog2(BANDS);
-    localparam int unsigned TABLE_WORDS = BANDS / 4;
 
     // v/3 for 8 bits: 171/512 is near enough.
     function automatic logic [6:0] third(input logic [7:0] v);
@@ -124,8 +125,9 @@ module binner #(
         end
         length     <= lengths[band];
         list_end   <= ends[band];
-        first_list <= list_base + ADDRESS_BITS'(TABLE_WORDS);
-        list_word  <= first_list + (ADDRESS_BITS'(band) << list_shift);
+        first_list <= list_base + ADDRESS_BITS'(list_pkg::TABLE_WORDS);
+        list_word  <= first_list + (ADDRESS_BITS'(band) << list_shift)
+                    + ADDRESS_BITS'(band) * ADDRESS_BITS'(list_pkg::SKEW_WORDS);
     end
 
     always_ff @(posedge clk) begin
@@ -148,6 +150,7 @@ module binner #(
                         write_addr   <= exception_base + ADDRESS_BITS'(exceptions >> 2);
                         write_data   <= {4{exception_number}};
                         write_strobe <= entry_strobe(exceptions[1:0]);
+                        write_descriptor <= 1'b0;
                     end
                 end else if (finish) begin
                     band  <= '0;
@@ -166,6 +169,7 @@ module binner #(
                 write_data      <= state == WORD_0 ? descriptor[127:0]
                                  : state == WORD_1 ? descriptor[255:128] : descriptor[383:256];
                 write_strobe    <= '1;
+                write_descriptor <= 1'b1;
                 descriptor_word <= descriptor_word + 1'b1;
                 state           <= state == WORD_0 ? WORD_1 : state == WORD_1 ? WORD_2 : ENTRY;
             end
@@ -177,6 +181,7 @@ module binner #(
                     write_addr   <= list_word + ADDRESS_BITS'(length >> 2);
                     write_data   <= list_data;
                     write_strobe <= '1;
+                    write_descriptor <= 1'b0;
                 end
                 full         <= full || list_full;
                 band         <= band + 1'b1;
@@ -195,6 +200,7 @@ module binner #(
                 write_addr   <= list_word + ADDRESS_BITS'(length >> 2);
                 write_data   <= list_data;
                 write_strobe <= '1;
+                write_descriptor <= 1'b0;
                 end_written  <= 1'b1;
             end else if (free) begin
                 gathered <= {32'(length), gathered[95:32]};
@@ -205,6 +211,7 @@ module binner #(
                     write_addr   <= list_base + ADDRESS_BITS'(band >> 2);
                     write_data   <= {32'(length), gathered};
                     write_strobe <= '1;
+                    write_descriptor <= 1'b0;
                 end
             end
             default: if (!finish) state <= IDLE;

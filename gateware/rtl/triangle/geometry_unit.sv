@@ -13,7 +13,7 @@
 // the frame up; the unit is to be started again when read_port has thrown away what was on its way.
 //
 // Throughput: 11 clocks a drawn triangle, 4 a culled one, 6 a vertex that is not in the cache, 4 and one a band in the
-// binner; the slowest of these counts. Memory: two clients of a read_port, a native write port.
+// binner; the slowest of these counts. Memory: two clients of a read_port, two native write ports.
 // Counts are those of the frame; `clocks_busy` and `vertices` run freely.
 
 `default_nettype none
@@ -60,13 +60,19 @@ module geometry_unit #(
     input  wire  [1:0]               data_valid,
     output logic [1:0]               data_ready,
     input  wire  [2*128-1:0]         data,
-    output logic                     cmd_valid,
-    input  wire                      cmd_ready,
-    output logic [ADDRESS_BITS-1:0]  cmd_addr,
-    output logic                     wdata_valid,
-    input  wire                      wdata_ready,
-    output logic [127:0]             wdata,
-    output logic [15:0]              wdata_strobe,
+    output logic                     descriptors_cmd_valid,
+    input  wire                      descriptors_cmd_ready,
+    output logic [ADDRESS_BITS-1:0]  descriptors_cmd_addr,
+    output logic                     descriptors_wdata_valid,
+    input  wire                      descriptors_wdata_ready,
+    output logic [127:0]             descriptors_wdata,
+    output logic                     lists_cmd_valid,
+    input  wire                      lists_cmd_ready,
+    output logic [ADDRESS_BITS-1:0]  lists_cmd_addr,
+    output logic                     lists_wdata_valid,
+    input  wire                      lists_wdata_ready,
+    output logic [127:0]             lists_wdata,
+    output logic [15:0]              lists_wdata_strobe,
     // What became of the triangles.
     output logic [31:0]              triangles,
     output logic [31:0]              unseen_count,
@@ -89,7 +95,8 @@ module geometry_unit #(
     typedef enum logic [2:0] {IDLE, PREPARE, BEGIN, WALK, FINISH} state_t;
     state_t state;
 
-    logic clear, walk_busy, lists_idle, lists_done, writes_idle, drained;
+    logic clear, walk_busy, lists_idle, lists_done, drained, hurry;
+    logic [1:0] writes_idle;
 
     assign busy  = state != IDLE;
     assign clear = state == IDLE && start;
@@ -102,7 +109,7 @@ module geometry_unit #(
             PREPARE: if (lists_idle) state <= BEGIN;
             BEGIN:   state <= WALK;
             WALK:    if (!walk_busy && drained && lists_idle) state <= FINISH;
-            default: if (lists_done && writes_idle) begin
+            default: if (lists_done && &writes_idle) begin
                 done  <= 1'b1;
                 state <= IDLE;
             end
@@ -177,7 +184,7 @@ module geometry_unit #(
     );
     /* verilator lint_on PINCONNECTEMPTY */
 
-    logic                    write_valid, write_ready;
+    logic                    write_valid, write_ready, write_descriptor, descriptors_ready, lists_ready;
     logic [ADDRESS_BITS-1:0] write_addr;
     logic [127:0]            write_data;
     logic [15:0]             write_strobe;
@@ -188,13 +195,29 @@ module geometry_unit #(
         .descriptors, .exceptions,
         .in_valid(descriptor_valid), .in_ready(descriptor_ready), .in_descriptor(descriptor),
         .exception_valid, .exception_ready, .exception_number,
-        .write_valid, .write_ready, .write_addr, .write_data, .write_strobe
+        .write_valid, .write_ready, .write_addr, .write_data, .write_strobe, .write_descriptor
     );
 
-    write_port #(.ADDRESS_BITS(ADDRESS_BITS)) write_port (
-        .clk, .rst, .hurry(state == FINISH || state == IDLE), .idle(writes_idle),
-        .in_valid(write_valid), .in_ready(write_ready), .in_addr(write_addr), .in_data(write_data), .in_strobe(write_strobe),
-        .cmd_valid, .cmd_ready, .cmd_addr, .wdata_valid, .wdata_ready, .wdata, .wdata_strobe
+    assign hurry       = state == FINISH || state == IDLE;
+    assign write_ready = write_descriptor ? descriptors_ready : lists_ready;
+
+    // Descriptors follow each other in memory and lists do not: neither waits for the other's turns.
+    /* verilator lint_off PINCONNECTEMPTY */
+    write_port #(.ADDRESS_BITS(ADDRESS_BITS)) descriptors_port (
+        .clk, .rst, .hurry, .idle(writes_idle[0]),
+        .in_valid(write_valid && write_descriptor), .in_ready(descriptors_ready), .in_addr(write_addr), .in_data(write_data),
+        .in_strobe(write_strobe),
+        .cmd_valid(descriptors_cmd_valid), .cmd_ready(descriptors_cmd_ready), .cmd_addr(descriptors_cmd_addr),
+        .wdata_valid(descriptors_wdata_valid), .wdata_ready(descriptors_wdata_ready), .wdata(descriptors_wdata), .wdata_strobe()
+    );
+    /* verilator lint_on PINCONNECTEMPTY */
+
+    write_port #(.ADDRESS_BITS(ADDRESS_BITS)) lists_port (
+        .clk, .rst, .hurry, .idle(writes_idle[1]),
+        .in_valid(write_valid && !write_descriptor), .in_ready(lists_ready), .in_addr(write_addr), .in_data(write_data),
+        .in_strobe(write_strobe),
+        .cmd_valid(lists_cmd_valid), .cmd_ready(lists_cmd_ready), .cmd_addr(lists_cmd_addr),
+        .wdata_valid(lists_wdata_valid), .wdata_ready(lists_wdata_ready), .wdata(lists_wdata), .wdata_strobe(lists_wdata_strobe)
     );
 
     // Triangles between the walk and the place where they end.

@@ -8,7 +8,10 @@
 // Each part runs ahead of the one behind it as far as its FIFO reaches, through the ends of lists and bands: lengths of 16 bands,
 // lists of 8 jobs (a list of a band each) or 128 entries, 10 descriptors. So memory's latency is hidden while what has been
 // read lasts. Three clients of a read_port: the lengths of the lists, the lists, the descriptors. Throughput a descriptor in
-// 4 clocks; a list takes 3 clocks, if it is empty too.
+// 4 clocks; a list takes 4 clocks, if it is empty too.
+//
+// `list_error`: since `start` there was a list longer than lists may be, which was taken as empty, or an entry that is none of
+// the set's `counts` descriptors, which was read from where it would be.
 //
 // `start` (one clock, not while a frame is read) begins with band 0. An item of `out` is a descriptor, or with `out_end` the end
 // of a band. All is read after the end of `last_band`. Streams: an item moves in a clock in which valid and ready are high;
@@ -28,7 +31,9 @@ module list_reader #(
     input  wire  [1:0]                present,
     input  wire  [2*ADDRESS_BITS-1:0] list_base,
     input  wire  [2*ADDRESS_BITS-1:0] descriptor_base,
+    input  wire  [2*COUNT_BITS-1:0]   counts,
     input  wire  [4:0]                list_shift,
+    output logic                      list_error,
     // Memory: the clients of the lengths, the lists, the descriptors.
     output logic [2:0]                ask_valid,
     input  wire  [2:0]                ask_ready,
@@ -41,7 +46,6 @@ module list_reader #(
     output logic                      out_end,
     output triangle_pkg::descriptor_t out_descriptor
 );
-    localparam int unsigned TABLE_WORDS = 16;
     localparam int unsigned JOBS        = 8;
     localparam int unsigned MARKS       = 16;
 
@@ -73,19 +77,22 @@ module list_reader #(
     end
 
     // Lists: a job is the length of a list, 0 where there is none; its words follow in time.
-    typedef enum logic [1:0] {IDLE, LENGTH, JOB, WORDS} list_state_t;
+    typedef enum logic [2:0] {IDLE, LENGTH, CHECK, JOB, WORDS} list_state_t;
     list_state_t list_state;
 
     logic                    list_set, job_ready;
     logic [5:0]              list_band;
     logic [ADDRESS_BITS-1:0] list_offset, list_word;
     logic [COUNT_BITS-1:0]   length;
+    logic [31:0]             found;
     logic [COUNT_BITS-3:0]   words_left;
-    logic                    list_ends;
+    logic                    list_ends, too_long;
 
     assign ask_valid[1] = list_state == WORDS;
     assign ask_addr[ADDRESS_BITS +: ADDRESS_BITS] = list_word;
     assign data_ready[0] = list_state == LENGTH && present[list_set];
+    // A list has room for 4 << list_shift entries.
+    assign too_long  = found != '0 && ((found - 1'b1) >> list_shift) >> 2 != '0;
     assign list_ends = list_state == JOB && job_ready && length == '0
                     || list_state == WORDS && ask_ready[1] && words_left == '0;
 
@@ -98,11 +105,15 @@ module list_reader #(
                 if (start) list_state <= LENGTH;
             end
             LENGTH: begin
-                length <= present[list_set] ? data[32 * list_band[1:0] +: COUNT_BITS] : '0;
-                if (!present[list_set] || data_valid[0]) list_state <= JOB;
+                found <= present[list_set] ? data[32 * list_band[1:0] +: 32] : '0;
+                if (!present[list_set] || data_valid[0]) list_state <= CHECK;
+            end
+            CHECK: begin
+                length     <= too_long ? '0 : found[COUNT_BITS-1:0];
+                list_state <= JOB;
             end
             JOB: begin
-                list_word  <= lists[list_set] + list_offset + ADDRESS_BITS'(TABLE_WORDS);
+                list_word  <= lists[list_set] + list_offset + ADDRESS_BITS'(list_pkg::TABLE_WORDS);
                 words_left <= length[COUNT_BITS-1:2] - (COUNT_BITS - 2)'(length[1:0] == '0);
                 if (job_ready) list_state <= WORDS;
             end
@@ -116,7 +127,7 @@ module list_reader #(
             list_state <= list_set && list_band == last_band ? IDLE : LENGTH;
             if (list_set) begin
                 list_band   <= list_band + 1'b1;
-                list_offset <= list_offset + (ADDRESS_BITS'(1) << list_shift);
+                list_offset <= list_offset + (ADDRESS_BITS'(1) << list_shift) + ADDRESS_BITS'(list_pkg::SKEW_WORDS);
             end
         end
         if (rst) list_state <= IDLE;
@@ -135,7 +146,7 @@ module list_reader #(
     logic                    number_valid, number_ready, number_taken, number_set;
     logic [COUNT_BITS-1:0]   entries_after;
     logic [1:0]              lane;
-    logic [ADDRESS_BITS-1:0] number;
+    logic [31:0]             number;
 
     assign next_ready    = !job_valid;
     assign last_entry    = entries_after == '0;
@@ -162,7 +173,7 @@ module list_reader #(
         end
         if (number_ready) begin
             number_valid <= entry_taken;
-            number       <= data[128 + 32 * lane +: ADDRESS_BITS];
+            number       <= data[128 + 32 * lane +: 32];
             number_set   <= set;
         end else if (number_taken) begin
             number_valid <= 1'b0;
@@ -172,6 +183,17 @@ module list_reader #(
             set          <= 1'b0;
             number_valid <= 1'b0;
         end
+    end
+
+    logic [1:0][COUNT_BITS-1:0] limits;
+    logic                       beyond;
+
+    assign limits = counts;
+
+    always_ff @(posedge clk) begin
+        beyond <= number_valid && number >= 32'(limits[number_set]);
+        if (beyond || list_state == CHECK && too_long) list_error <= 1'b1;
+        if (rst || start) list_error <= 1'b0;
     end
 
     // Three addresses for a triangle.
@@ -189,7 +211,7 @@ module list_reader #(
         if (number_taken) begin
             asks_words      <= number_valid;
             address         <= '0;
-            descriptor_word <= descriptors[number_set] + number + (number << 1);
+            descriptor_word <= descriptors[number_set] + ADDRESS_BITS'(number) + (ADDRESS_BITS'(number) << 1);
         end else if (ask_ready[2]) begin
             address         <= address + 1'b1;
             descriptor_word <= descriptor_word + 1'b1;

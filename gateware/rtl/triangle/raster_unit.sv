@@ -39,7 +39,10 @@ module raster_unit #(
     input  wire  [1:0]                present,
     input  wire  [2*ADDRESS_BITS-1:0] list_base,
     input  wire  [2*ADDRESS_BITS-1:0] descriptor_base,
+    input  wire  [2*COUNT_BITS-1:0]   counts,
     input  wire  [4:0]                list_shift,
+    // With `done`: a list was damaged (list_reader).
+    output logic                      list_error,
     // Memory.
     output logic [2:0]                ask_valid,
     input  wire  [2:0]                ask_ready,
@@ -151,7 +154,7 @@ module raster_unit #(
     end
 
     list_reader #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS)) list_reader (
-        .clk, .rst(rst || restart), .start(begins), .last_band, .present, .list_base, .descriptor_base, .list_shift,
+        .clk, .rst(rst || restart), .start(begins), .last_band, .present, .list_base, .descriptor_base, .counts, .list_shift, .list_error,
         .ask_valid, .ask_ready, .ask_addr, .data_valid, .data_ready, .data,
         .out_valid(item_valid), .out_ready(item_ready), .out_end(band_ends), .out_descriptor(descriptor)
     );

@@ -70,7 +70,6 @@ module triangle_control #(
 
     // Words of a region: more than memory has are still told apart.
     localparam int unsigned WORD_BITS  = ADDRESS_BITS + 2;
-    localparam int unsigned TABLE_WORDS = 16;
     // Lists of more entries than can be counted are of no use.
     localparam logic [4:0]  LAST_SHIFT = 5'(COUNT_BITS - 3);
     // 320x180 pixels of two bytes.
@@ -106,7 +105,8 @@ module triangle_control #(
     logic                 used;
 
     assign mesh_words  = mesh_bytes[31:WORD_BITS] != '0 ? '1 : WORD_BITS'(mesh_bytes >> 4);
-    assign list_words  = list_shift > LAST_SHIFT ? '1 : WORD_BITS'(TABLE_WORDS) + (WORD_BITS'(bands) << list_shift);
+    assign list_words  = list_shift > LAST_SHIFT ? '1 : WORD_BITS'(list_pkg::TABLE_WORDS)
+                      + (WORD_BITS'(bands) << list_shift) + WORD_BITS'(bands * list_pkg::SKEW_WORDS);
     assign frame_words = WORD_BITS'(SMALL_FRAME_WORDS) << {size, 1'b0};
 
     always_comb begin

@@ -7,7 +7,7 @@
 //
 // Reads go through three native read ports of the memory: triangles, vertices, and what the raster reads. LiteDRAM lets a
 // port turn to another bank only when the bank before has done all its work, which takes four clocks; streams on ports of
-// their own do not turn for each other. Each unit has a write port. `cancel` (one clock, at any
+// their own do not turn for each other. The units have write ports of their own. `cancel` (one clock, at any
 // time) gives both frames up; `ready` says that the memory has answered everything and the band buffer is clear, so that
 // either unit may start. What the units' parameters and results mean stands in their own files.
 
@@ -69,6 +69,8 @@ module triangle_engine #(
     input  wire  [1:0]                present,
     input  wire  [2*ADDRESS_BITS-1:0] raster_lists,
     input  wire  [2*ADDRESS_BITS-1:0] raster_descriptors,
+    input  wire  [2*COUNT_BITS-1:0]   raster_counts,
+    output logic                      list_error,
     output logic [31:0]               raster_clocks,
     output logic [31:0]               clocks_walking,
     output logic [31:0]               clocks_empty,
@@ -92,6 +94,13 @@ module triangle_engine #(
     output logic  [ADDRESS_BITS-1:0]   raster_read_cmd_addr,
     input  wire                        raster_read_rdata_valid,
     input  wire   [127:0]              raster_read_rdata,
+    output logic                      descriptors_cmd_valid,
+    input  wire                       descriptors_cmd_ready,
+    output logic [ADDRESS_BITS-1:0]   descriptors_cmd_addr,
+    output logic                      descriptors_wdata_valid,
+    input  wire                       descriptors_wdata_ready,
+    output logic [127:0]              descriptors_wdata,
+    output logic [15:0]               descriptors_wdata_strobe,
     output logic                      lists_cmd_valid,
     input  wire                       lists_cmd_ready,
     output logic [ADDRESS_BITS-1:0]   lists_cmd_addr,
@@ -118,7 +127,8 @@ module triangle_engine #(
 
     assign drop = cancel || dropping;
     assign ready = !dropping && raster_ready;
-    assign frame_wdata_strobe = '1;
+    assign frame_wdata_strobe       = '1;
+    assign descriptors_wdata_strobe = '1;
 
     always_ff @(posedge clk) begin
         if (&ports_idle) dropping <= 1'b0;
@@ -157,16 +167,17 @@ module triangle_engine #(
         .row_u, .row_v, .row_n, .tx, .ty, .tz, .near_z, .depth_mantissa, .depth_exponent,
         .ask_valid(ask_valid[1:0]), .ask_ready(ask_ready[1:0]), .ask_addr(ask_addr[2*ADDRESS_BITS-1:0]),
         .data_valid(data_valid[1:0]), .data_ready(data_ready[1:0]), .data(data[2*128-1:0]),
-        .cmd_valid(lists_cmd_valid), .cmd_ready(lists_cmd_ready), .cmd_addr(lists_cmd_addr),
-        .wdata_valid(lists_wdata_valid), .wdata_ready(lists_wdata_ready), .wdata(lists_wdata),
-        .wdata_strobe(lists_wdata_strobe),
+        .descriptors_cmd_valid, .descriptors_cmd_ready, .descriptors_cmd_addr,
+        .descriptors_wdata_valid, .descriptors_wdata_ready, .descriptors_wdata,
+        .lists_cmd_valid, .lists_cmd_ready, .lists_cmd_addr,
+        .lists_wdata_valid, .lists_wdata_ready, .lists_wdata, .lists_wdata_strobe,
         .triangles, .unseen_count, .culled_count, .descriptors, .exceptions, .clocks_busy(geometry_clocks), .vertices
     );
 
     raster_unit #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS)) raster (
         .clk, .rst, .restart(cancel), .ready(raster_ready), .start(raster_start), .busy(raster_busy), .done(raster_done),
         .size(raster_size), .frame_base, .depth_base, .with_depth, .clear, .frame_slot, .whole, .present,
-        .list_base(raster_lists), .descriptor_base(raster_descriptors), .list_shift,
+        .list_base(raster_lists), .descriptor_base(raster_descriptors), .counts(raster_counts), .list_shift, .list_error,
         .ask_valid(ask_valid[4:2]), .ask_ready(ask_ready[4:2]), .ask_addr(ask_addr[5*ADDRESS_BITS-1:2*ADDRESS_BITS]),
         .data_valid(data_valid[4:2]), .data_ready(data_ready[4:2]), .data(data[5*128-1:2*128]),
         .cmd_valid(frame_cmd_valid), .cmd_ready(frame_cmd_ready), .cmd_addr(frame_cmd_addr),

@@ -1,6 +1,6 @@
 //! The band lists, as the binner leaves them in memory.
 
-use glint_model::descriptor::band_rows;
+use glint_model::descriptor::{band_rows, list_word};
 use glint_rtl::{Bits, Memory, Module, Port, Sink, Source, Stalls};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
@@ -158,7 +158,7 @@ fn every_band_lists_what_touches_it() {
                         .map(|(number, _)| number)
                         .collect();
                     let length = bench.memory.entry(LISTS, band);
-                    let list = LISTS + 16 + (band << LIST_SHIFT);
+                    let list = LISTS + list_word(band, LIST_SHIFT);
                     let found: Vec<u32> =
                         (0..length).map(|i| bench.memory.entry(list, i)).collect();
                     assert_eq!(found, expected, "band {band} of {width}x{height}");

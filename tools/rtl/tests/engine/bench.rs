@@ -2,7 +2,7 @@
 
 use glint_core::camera::View;
 use glint_core::mesh::Mesh;
-use glint_model::descriptor::{Descriptor, band_rows};
+use glint_model::descriptor::{Descriptor, band_rows, list_word};
 use glint_model::setup::{Bounds, Oriented, Setup};
 use glint_model::{DrawnTriangle, FrameSetup, Options, Projected, Stats, Target, trace};
 use glint_rtl::{Bits, Memory, Module, ReadPort, Stalls, WritePort};
@@ -96,7 +96,7 @@ fn write_clipped(memory: &mut Memory, expected: &Expected) {
     }
     for (band, list) in (0..).zip(&lists) {
         assert!(list.len() <= 16 << LIST_SHIFT);
-        memory.write(LISTS[1] + 16 + (band << LIST_SHIFT), list);
+        memory.write(LISTS[1] + list_word(band, LIST_SHIFT), list);
     }
     let lengths: Vec<u8> = lists
         .iter()
@@ -109,8 +109,7 @@ pub struct Bench {
     pub module: Module,
     memory: Memory,
     pub reads: [ReadPort; 3],
-    lists: WritePort,
-    frame: WritePort,
+    writes: [WritePort; 3],
     /// Whether depths are written and compared as well.
     pub with_depth: bool,
     /// The frame buffer that is drawn in.
@@ -135,8 +134,8 @@ impl Bench {
             memory: Memory::new(WORDS),
             reads: ["mesh_read_", "vertex_read_", "raster_read_"]
                 .map(|name| ReadPort::new(&module, name, Stalls::new(seed, stalls))),
-            lists: WritePort::new(&module, "lists_", Stalls::new(seed + 1, stalls)),
-            frame: WritePort::new(&module, "frame_", Stalls::new(seed + 2, stalls)),
+            writes: ["descriptors_", "lists_", "frame_"]
+                .map(|name| WritePort::new(&module, name, Stalls::new(seed + 1, stalls))),
             module,
             with_depth: true,
             slot: 0,
@@ -157,14 +156,16 @@ impl Bench {
         for read in &mut self.reads {
             read.drive(&mut self.module, &self.memory);
         }
-        self.lists.drive(&mut self.module);
-        self.frame.drive(&mut self.module);
+        for write in &mut self.writes {
+            write.drive(&mut self.module);
+        }
         self.module.settle();
         for read in &mut self.reads {
             read.sample(&self.module);
         }
-        self.lists.sample(&self.module, &mut self.memory);
-        self.frame.sample(&self.module, &mut self.memory);
+        for write in &mut self.writes {
+            write.sample(&self.module, &mut self.memory);
+        }
         self.module.clock();
     }
 
@@ -177,7 +178,7 @@ impl Bench {
                 clocks < 2_000_000,
                 "nothing for {clocks} clocks: given {:?} written {} groups {}",
                 self.reads.each_ref().map(|read| read.given),
-                self.frame.written,
+                self.writes[2].written,
                 self.count("groups_in")
             );
             self.clock();
@@ -259,16 +260,25 @@ impl Bench {
         assert_eq!(counts, wanted, "{name}: error, full, triangles, exceptions");
 
         write_clipped(&mut self.memory, expected);
+        let counts = [
+            self.count("descriptors") as u32,
+            expected.clipped.len() as u32,
+        ];
+        let counts = Bits::default()
+            .with(0, 20, counts[0])
+            .with(20, 20, counts[1]);
+        self.set("raster_counts", counts);
         self.set("present", if expected.clipped.is_empty() { 1 } else { 3 });
         self.pulse("raster_start");
-        let written = self.frame.written;
+        let written = self.writes[2].written;
         let raster = self.wait_for("raster_done");
         self.left[self.slot] = Some((expected.size, expected.clear));
+        assert_eq!(self.count("list_error"), 0, "{name}: the lists");
         self.compare(name, expected);
         Clocks {
             geometry,
             raster,
-            written: self.frame.written - written,
+            written: self.writes[2].written - written,
         }
     }
 
