@@ -64,7 +64,7 @@ PROOFS = [
     Proof("band_extents", "band_extents_proof",
           [FORMAL / "stream_checker.sv", FORMAL / "band_extents_proof.sv", _RTL / "common" / "skid_buffer.sv",
            _RTL / "band" / "band_extents.sv"], 24),
-    Proof("setup", "setup_proof", [*_triangle("setup_pkg", "setup"), *_formal("plain_setup", "setup_proof")], 28),
+    Proof("setup", "setup_proof", [*_triangle("setup_pkg", "setup"), *_formal("plain_setup", "setup_proof")], 22),
     Proof("band_entry", "band_entry_proof",
           [*_triangle("raster_pkg", "band_entry"), *_formal("no_product", "band_entry_proof")], 24),
     Proof("walker", "walker_proof", [*_triangle("raster_pkg", "walker"), *_formal("any_stepper", "walker_proof")], 15),

@@ -1,4 +1,4 @@
-// The beats of the setup, shortened to four clocks, with any traffic on both sides: each triangle that goes on comes out, once, in its
+// The beats of the setup, shortened to three clocks, with any traffic on both sides: each triangle that goes on comes out, once, in its
 // order, with what belongs to it in every field; nothing stands still, whether there are triangles behind it or not; `culled`
 // and `drawn` count each of them, and `busy` tells whether there are some.
 
@@ -6,7 +6,7 @@
 
 module setup_proof #(
     // Clocks from one taken or given to the next, while nothing holds it up: five beats and a clock.
-    parameter int unsigned WITHIN = 21
+    parameter int unsigned WITHIN = 16
 ) (
     input wire clk,
     input wire in_valid,
@@ -28,7 +28,7 @@ module setup_proof #(
     // What is culled has a number that never comes.
     assign number = in_culled ? '1 : kept;
 
-    setup #(.LAST(4'd3)) dut (
+    setup #(.LAST(4'd2)) dut (
         .clk, .rst, .width(11'd320), .height(10'd180), .cull_back(1'b1), .camera_n('0), .busy, .culled, .drawn,
         .in_valid, .in_ready, .in_vertices('0), .in_colour({in_culled, 11'd0, number}), .in_normal('0),
         .out_valid, .out_ready, .out_descriptor(descriptor)
