@@ -55,6 +55,13 @@ impl Canvas {
         Some(drawn)
     }
 
+    /// Makes room for another frame, at the cost of one that has not been seen yet.
+    pub fn hurry(&mut self) {
+        if !self.is_busy() {
+            self.display.withdraw();
+        }
+    }
+
     /// Whether the engine is drawing.
     pub fn is_busy(&self) -> bool {
         self.painter.as_ref().is_some_and(Painter::is_busy)

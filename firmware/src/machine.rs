@@ -189,6 +189,9 @@ impl Machine {
 
     /// Draws what has changed, if there is a frame to draw on.
     fn draw(&mut self) {
+        if matches!(self.job, Some(Job::Render | Job::Frame { .. })) && self.scene.changed() {
+            self.canvas.hurry();
+        }
         let Self {
             terminal,
             scene,

@@ -113,7 +113,7 @@ pub struct Painter {
 pub struct Painted {
     /// Clock cycles from the first register written to the end seen.
     pub cycles: u64,
-    /// What was counted; pixels are not.
+    /// What was counted; of many frames, triangles of the last and no pixels.
     pub stats: Stats,
     /// The engine's counters for this frame.
     pub counters: Counters,
@@ -182,10 +182,17 @@ impl Painter {
                 Some(Ok(())) => {
                     self.stage = Stage::Idle;
                     let (start, counters) = self.start;
+                    let counters = self.engine.counters() - counters;
                     return Some(Ok(Painted {
                         cycles: cpu::cycles() - start,
-                        stats: self.rooms[0].stats,
-                        counters: self.engine.counters() - counters,
+                        stats: Stats {
+                            // The walker comes to a group of eight a clock.
+                            pixels_tested: 8 * u64::from(counters.walking),
+                            pixels_covered: counters.pixels_covered.into(),
+                            pixels_drawn: counters.pixels_drawn.into(),
+                            ..self.rooms[0].stats
+                        },
+                        counters,
                     }));
                 }
                 Some(fault) => fault,

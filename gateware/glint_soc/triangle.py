@@ -171,9 +171,11 @@ class TriangleEngine(LiteXModule):
             "cycles_walking": "Clock cycles in which a triangle was walked over.",
             "cycles_empty": "Those of them without a pixel.",
             "groups": "Groups of eight pixels of which some are covered.",
+            "pixels_covered": "Pixels covered by a triangle, each as often as it is.",
+            "pixels_drawn": "Pixels of which the depth was nearer, or as near.",
             "cycles_held": "Clock cycles in which a group waited for the one before it.",
-            "cycles_memory": "Clock cycles in which a band waited for memory.",
-            "cycles_flush": "Clock cycles in which a band was being written to memory.",
+            "cycles_memory": "Clock cycles in which the flush of a band waited for memory.",
+            "cycles_flush": "Clock cycles in which a drawn band waited for the flush of the one before it.",
         }
         status = {}
         for name, description in results.items():
@@ -280,6 +282,8 @@ class TriangleEngine(LiteXModule):
             o_clocks_walking       = status["cycles_walking"].status,
             o_clocks_empty         = status["cycles_empty"].status,
             o_groups_in            = status["groups"].status,
+            o_pixels_covered       = status["pixels_covered"].status,
+            o_pixels_drawn         = status["pixels_drawn"].status,
             o_clocks_held          = status["cycles_held"].status,
             o_clocks_memory        = status["cycles_memory"].status,
             o_clocks_flush         = status["cycles_flush"].status,

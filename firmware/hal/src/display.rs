@@ -75,6 +75,25 @@ impl Scanout {
         }
     }
 
+    /// Has `shown` stay on the screen instead of `next`, if that is not on it yet; returns whether that is so. Not if the two
+    /// have different scales: one of them would be seen with the other's.
+    fn withdraw(&self, next: u32, shown: u32) -> bool {
+        let registers = &self.registers;
+        if registers.fb_next().read() != next
+            || registers.fb_current().read() != shown
+            || registers.scale().read() != registers.status().read().scale()
+        {
+            return false;
+        }
+        registers.fb_next().write(shown);
+        // A vertical blanking may have come before the write.
+        let withdrawn = registers.fb_current().read() == shown;
+        if !withdrawn {
+            registers.fb_next().write(next);
+        }
+        withdrawn
+    }
+
     /// Whether the frame at `address` is shown or will be: then it may not be drawn on.
     fn holds(&self, address: u32) -> bool {
         // In this order: what becomes current between the two readings is still found as the next one was.
@@ -146,6 +165,18 @@ impl Display {
             .as_ref()
             .is_some_and(|scanout| scanout.holds(address));
         (!held).then_some(&mut *self.back)
+    }
+
+    /// Takes back the frame shown last if it is not on the screen yet, so that there is a frame to draw on: for those who
+    /// want another picture rather than to see this one.
+    pub fn withdraw(&mut self) {
+        let withdrawn = self
+            .scanout
+            .as_ref()
+            .is_some_and(|scanout| scanout.withdraw(address(self.front), address(self.back)));
+        if withdrawn {
+            core::mem::swap(&mut self.front, &mut self.back);
+        }
     }
 
     /// The frame shown last, or still to be taken over.
@@ -228,6 +259,8 @@ mod tests {
             match address - scanout::Scanout::BASE {
                 0x00 => video.ident,
                 0x08 => video.control,
+                // The scale in force.
+                0x0c => video.current[2] << 4,
                 0x1c => video.next,
                 0x20 => video.scale,
                 0x24 => video.current[1],
@@ -284,6 +317,41 @@ mod tests {
         video.borrow_mut().blank();
         assert_eq!(display.back().unwrap()[0], 1);
         assert_eq!(display.front()[0], 2);
+    }
+
+    #[test]
+    fn a_frame_is_withdrawn_before_it_is_seen() {
+        // A vertical blanking in the last moment, or none.
+        for blanking in [Some(0), None] {
+            let (scanout, video) = probe(IDENT);
+            let mut display = Display::new(Some(scanout.unwrap()), frames());
+            for mark in [1, 2] {
+                display.back().unwrap()[0] = mark;
+                display.show(Scale::Four);
+                if mark == 1 {
+                    video.borrow_mut().blank();
+                }
+            }
+            assert!(display.back().is_none());
+            video.borrow_mut().blank_before = blanking;
+            display.withdraw();
+            let seen_first = blanking.is_none();
+            assert_eq!(
+                display.back().map(|frame| frame[0]),
+                Some(if seen_first { 2 } else { 1 })
+            );
+            video.borrow_mut().blank();
+            assert_eq!(display.front()[0], if seen_first { 1 } else { 2 });
+            assert_eq!(video.borrow().current[1], address(display.front()));
+        }
+        // Another scale is waited for.
+        let (scanout, video) = probe(IDENT);
+        let mut display = Display::new(Some(scanout.unwrap()), frames());
+        display.show(Scale::Four);
+        video.borrow_mut().blank();
+        display.show(Scale::Two);
+        display.withdraw();
+        assert!(display.back().is_none());
     }
 
     #[test]

@@ -183,11 +183,15 @@ pub struct Counters {
     pub empty: u32,
     /// Groups of eight pixels of which some were covered.
     pub groups: u32,
+    /// Pixels covered by a triangle, each as often as it is.
+    pub pixels_covered: u32,
+    /// Pixels written: covered, and not behind what was there.
+    pub pixels_drawn: u32,
     /// Cycles in which a group waited for the one before it.
     pub held: u32,
-    /// Cycles in which a band waited for memory.
+    /// Cycles in which the flush of a band waited for memory.
     pub memory: u32,
-    /// Cycles in which a band was being written.
+    /// Cycles in which a drawn band waited for the flush of the one before it.
     pub flush: u32,
 }
 
@@ -210,6 +214,8 @@ impl Sub for Counters {
             walking: d(self.walking, earlier.walking),
             empty: d(self.empty, earlier.empty),
             groups: d(self.groups, earlier.groups),
+            pixels_covered: d(self.pixels_covered, earlier.pixels_covered),
+            pixels_drawn: d(self.pixels_drawn, earlier.pixels_drawn),
             held: d(self.held, earlier.held),
             memory: d(self.memory, earlier.memory),
             flush: d(self.flush, earlier.flush),
@@ -395,6 +401,8 @@ impl Engine {
             walking: registers.cycles_walking().read(),
             empty: registers.cycles_empty().read(),
             groups: registers.groups().read(),
+            pixels_covered: registers.pixels_covered().read(),
+            pixels_drawn: registers.pixels_drawn().read(),
             held: registers.cycles_held().read(),
             memory: registers.cycles_memory().read(),
             flush: registers.cycles_flush().read(),

@@ -2,7 +2,7 @@
 // fails when this file is not what the generator makes of the SoC.
 
 /// CRC-32 of the SoC's pinned register map. A SoC whose `identity.build_id` differs has other registers.
-pub const BUILD_ID: u32 = 0xbca7_e8dc;
+pub const BUILD_ID: u32 = 0xabf2_76cc;
 
 /// The interrupt lines, numbered by their bit in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -2766,28 +2766,44 @@ pub mod triangle {
             unsafe { Register::at(0xf000_50f8) }
         }
 
+        /// `pixels_covered`, 32 bits: Pixels covered by a triangle, each as often as it is, modulo 2^32.
+        #[inline]
+        #[must_use]
+        pub const fn pixels_covered(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_50fc) }
+        }
+
+        /// `pixels_drawn`, 32 bits: Pixels of which the depth was nearer, or as near, modulo 2^32.
+        #[inline]
+        #[must_use]
+        pub const fn pixels_drawn(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5100) }
+        }
+
         /// `cycles_held`, 32 bits: Clock cycles in which a group waited for the one before it, modulo 2^32.
         #[inline]
         #[must_use]
         pub const fn cycles_held(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50fc) }
+            unsafe { Register::at(0xf000_5104) }
         }
 
-        /// `cycles_memory`, 32 bits: Clock cycles in which a band waited for memory, modulo 2^32.
+        /// `cycles_memory`, 32 bits: Clock cycles in which the flush of a band waited for memory, modulo 2^32.
         #[inline]
         #[must_use]
         pub const fn cycles_memory(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5100) }
+            unsafe { Register::at(0xf000_5108) }
         }
 
-        /// `cycles_flush`, 32 bits: Clock cycles in which a band was being written to memory, modulo 2^32.
+        /// `cycles_flush`, 32 bits: Clock cycles in which a drawn band waited for the flush of the one before it, modulo 2^32.
         #[inline]
         #[must_use]
         pub const fn cycles_flush(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5104) }
+            unsafe { Register::at(0xf000_510c) }
         }
     }
 

@@ -61,6 +61,8 @@ module raster_unit #(
     output logic [31:0]               clocks_walking,
     output logic [31:0]               clocks_empty,
     output logic [31:0]               groups_in,
+    output logic [31:0]               pixels_covered,
+    output logic [31:0]               pixels_drawn,
     output logic [31:0]               clocks_held,
     output logic [31:0]               clocks_memory,
     output logic [31:0]               clocks_flush
@@ -182,7 +184,7 @@ module raster_unit #(
         .band_first_line(first_row), .band_slot(frame_slot), .band_whole(all_words),
         .band_with_depth(with_depth), .band_clear(clear),
         .cmd_valid, .cmd_ready, .cmd_addr, .wdata_valid, .wdata_ready, .wdata_data,
-        .groups_in, .clocks_held, .clocks_memory, .clocks_flush
+        .groups_in, .pixels_covered, .pixels_drawn, .clocks_held, .clocks_memory, .clocks_flush
     );
 
     always_ff @(posedge clk) begin

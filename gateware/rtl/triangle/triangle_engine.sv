@@ -75,6 +75,8 @@ module triangle_engine #(
     output logic [31:0]               clocks_walking,
     output logic [31:0]               clocks_empty,
     output logic [31:0]               groups_in,
+    output logic [31:0]               pixels_covered,
+    output logic [31:0]               pixels_drawn,
     output logic [31:0]               clocks_held,
     output logic [31:0]               clocks_memory,
     output logic [31:0]               clocks_flush,
@@ -182,7 +184,7 @@ module triangle_engine #(
         .data_valid(data_valid[4:2]), .data_ready(data_ready[4:2]), .data(data[5*128-1:2*128]),
         .cmd_valid(frame_cmd_valid), .cmd_ready(frame_cmd_ready), .cmd_addr(frame_cmd_addr),
         .wdata_valid(frame_wdata_valid), .wdata_ready(frame_wdata_ready), .wdata_data(frame_wdata),
-        .clocks_busy(raster_clocks), .clocks_walking, .clocks_empty, .groups_in, .clocks_held, .clocks_memory, .clocks_flush
+        .clocks_busy(raster_clocks), .clocks_walking, .clocks_empty, .groups_in, .pixels_covered, .pixels_drawn, .clocks_held, .clocks_memory, .clocks_flush
     );
 endmodule
 

@@ -39,7 +39,7 @@ pub struct Stats {
     pub triangles_clipped: u32,
     /// Those that reached the walker.
     pub triangles_drawn: u32,
-    /// Pixels that the walker came to.
+    /// Pixels that the walker came to: an engine's comes to eight at a time.
     pub pixels_tested: u64,
     /// Pixels covered by a triangle, each as often as it is.
     pub pixels_covered: u64,
@@ -86,9 +86,9 @@ pub struct EngineStats {
     pub groups: u64,
     /// Cycles in which a group waited for the one before it.
     pub cycles_held: u64,
-    /// Cycles in which a band waited for memory.
+    /// Cycles in which the flush of a band waited for memory.
     pub cycles_memory: u64,
-    /// Cycles in which a band was being written.
+    /// Cycles in which a drawn band waited for the flush of the one before it.
     pub cycles_flush: u64,
 }
 
@@ -390,7 +390,7 @@ fn parse_address(word: &str) -> Result<u32, Error> {
 }
 
 /// The console's command for a view. Its decimals are those of the fixed-point numbers, so none is rounded again.
-fn view_command(view: &View) -> String {
+pub fn view_command(view: &View) -> String {
     let mut command = "view".to_owned();
     let mut put = |number: &dyn std::fmt::Display| command.push_str(&format!(" {number}"));
     view.eye().iter().for_each(|c| put(c));

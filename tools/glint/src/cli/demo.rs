@@ -8,7 +8,7 @@ use glint::board::{Board, SimulatedBoard, built_firmware};
 use glint::console::Console;
 use glint::flash;
 use glint::model::Model;
-use glint::picture::save_animation;
+use glint::picture::{Frame, save_animation};
 use glint::render::{self, Renderer, Route, Scene, Stats};
 use glint_core::camera::View;
 use glint_core::console::Backend;
@@ -45,6 +45,8 @@ const BOOT_MS: u64 = 10_000;
 struct Row {
     picture: PathBuf,
     stats: Stats,
+    /// Cycles of the same frame by the soft core.
+    cpu_cycles: u64,
     cycles_per_second: f64,
 }
 
@@ -69,14 +71,18 @@ impl DemoArguments {
         for (number, (name, model)) in models.iter().enumerate() {
             rows.push(self.show(&mut renderer, name, model, number as u32)?);
         }
-        let (name, model) = models.last().context("a model to orbit")?;
+        let (name, _) = models.last().context("a model to orbit")?;
         let orbit = self.out.join("orbit.png");
-        self.orbit(model, &orbit)?;
+        let cycles = self.orbit(&mut renderer, &orbit)?;
         print_table(&rows)?;
         say(format_args!(
-            "{}: {} frames around {name}, rendered by the model on this machine: the gateware has no engine yet",
+            "{}: {} frames around {name}, {}x{}, by the gateware in {} cycles each, {:.0} frames a second at 81.25 MHz",
             orbit.display(),
-            self.orbit
+            self.orbit,
+            ORBIT_SIZE.0,
+            ORBIT_SIZE.1,
+            cycles,
+            81.25e6 / cycles as f64
         ))
     }
 
@@ -95,7 +101,7 @@ impl DemoArguments {
             view,
             size: SIZE,
             cull: true,
-            backend: Some(Backend::Cpu),
+            backend: Some(Backend::Gateware),
         };
         let bar = bar(name);
         let stats = renderer.show(&scene, Route::Serial, &mut advance(&bar))?;
@@ -114,34 +120,48 @@ impl DemoArguments {
             picture.scaled_back(scale)? == expected,
             "{name}: the monitor's picture is not the model's"
         );
+        let spinner = self::spinner("the soft core draws the same");
+        renderer.console().command("backend cpu")?;
+        let by_cpu = renderer.look(&view)?;
+        spinner.finish_and_clear();
         let cycles = renderer.board().inner().cycles() - start_cycles;
         Ok(Row {
             picture: path,
             stats,
+            cpu_cycles: by_cpu.cycles.unwrap_or_default(),
             cycles_per_second: cycles as f64 / start.elapsed().as_secs_f64(),
         })
     }
 
-    /// Renders a turn about a model.
-    fn orbit(&self, model: &Model, path: &Path) -> anyhow::Result<()> {
-        let spinner = spinner("the orbit");
-        let frames = (0..self.orbit)
-            .map(|number| {
-                let turned = Turns(((u64::from(number) << 32) / u64::from(self.orbit)) as u32);
-                let scene = Scene {
-                    mesh: &model.mesh,
-                    view: camera(turned)?,
-                    size: ORBIT_SIZE,
-                    cull: true,
-                    backend: Some(Backend::Cpu),
-                };
-                Ok(render::on_model(&scene)?.frame)
-            })
-            .collect::<anyhow::Result<Vec<_>>>()?;
+    /// Renders a turn about the model that is shown; returns the cycles of a frame, the mean of all.
+    fn orbit(&self, renderer: &mut Renderer<SimulatedBoard>, path: &Path) -> anyhow::Result<u64> {
+        let bar = bar("the orbit");
+        let (width, height) = ORBIT_SIZE;
+        let console = renderer.console();
+        console.command("backend gateware")?;
+        console.command(&format!("size {width} {height}"))?;
+        let mut cycles = 0;
+        let mut frames = Vec::new();
+        for number in 0..self.orbit {
+            let turned = Turns(((u64::from(number) << 32) / u64::from(self.orbit)) as u32);
+            let stats = renderer.look(&camera(turned)?)?;
+            anyhow::ensure!(
+                stats.backend.as_deref() == Some("gateware"),
+                "frame {number} of the orbit was drawn by the soft core"
+            );
+            cycles += stats.cycles.unwrap_or_default();
+            frames.push(Frame {
+                width,
+                height,
+                colour: renderer.colour(ORBIT_SIZE, Route::Memory, &mut |_, _| {})?,
+                depth: Vec::new(),
+            });
+            advance(&bar)(u64::from(number) + 1, u64::from(self.orbit));
+        }
+        bar.finish_and_clear();
         save_animation(path, &frames, ORBIT_FRAMES_PER_SECOND)
             .with_context(|| format!("{}: cannot be written", path.display()))?;
-        spinner.finish_and_clear();
-        Ok(())
+        Ok(cycles / u64::from(self.orbit.max(1)))
     }
 }
 
@@ -207,24 +227,27 @@ fn file_stem(name: &str) -> String {
 
 fn print_table(rows: &[Row]) -> anyhow::Result<()> {
     say(
-        "                                            cycles a frame   frames a second        simulated",
+        "                                        cycles a frame      speed-up   frames a second    simulated",
     )?;
     say(
-        "picture                         triangles  (soft core)       81.25 MHz  100 MHz     cycles/s",
+        "picture                triangles   gateware   soft core             81.25 MHz  100 MHz   cycles/s",
     )?;
     for Row {
         picture,
         stats,
+        cpu_cycles,
         cycles_per_second,
     } in rows
     {
         let cycles = stats.cycles.unwrap_or_default();
         let rate = |hertz: f64| hertz / cycles as f64;
         say(format_args!(
-            "{:<32}{:>9}{:>13}{:>16.2}{:>9.2}{:>13.0}",
+            "{:<23}{:>9}{:>11}{:>12}{:>11.0}x{:>12.0}{:>9.0}{:>11.0}",
             picture.display(),
             stats.triangles_in,
             cycles,
+            cpu_cycles,
+            *cpu_cycles as f64 / cycles as f64,
             rate(81.25e6),
             rate(100e6),
             cycles_per_second

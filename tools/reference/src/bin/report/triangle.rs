@@ -177,7 +177,7 @@ struct Row {
     /// Shares of the raster pass alone.
     covered: f64,
     empty: f64,
-    memory: f64,
+    flush: f64,
     other: f64,
     /// Share of the geometry pass alone in which memory did not take a write of it.
     geometry_writes: f64,
@@ -334,7 +334,7 @@ fn row(
             )
         }
         Target::Sustained(least, aim) => {
-            let rate = pixels as f64 / cycles_frame;
+            let rate = pixels as f64 / together.frame("cycles_busy")?;
             (rate, "pixels a clock", least, Some(aim), rate >= least)
         }
         Target::Triangle(most, aim) => {
@@ -431,7 +431,7 @@ fn table(rows: &[Row]) -> Result<String> {
         )?;
     }
     text.push_str(
-        "\n| scene | raster: covered groups | empty groups | waiting for memory | other | geometry: waiting to write |\n\
+        "\n| scene | raster: covered groups | empty groups | waiting for the flush | other: entering triangles, reading them | geometry: waiting to write |\n\
          |---|---|---|---|---|---|\n",
     );
     for row in rows {
@@ -442,7 +442,7 @@ fn table(rows: &[Row]) -> Result<String> {
             row.scene,
             percent(row.covered),
             percent(row.empty),
-            percent(row.memory),
+            percent(row.flush),
             percent(row.other),
             percent(row.geometry_writes),
         )?;
@@ -457,7 +457,8 @@ fn page(rows: &[Row], provenance: &Provenance) -> Result<String> {
          Clock cycles of the SoC by the engine's own counters, with LiteDRAM and the scan-out at work. Every frame was compared \
          with the model's, bit for bit, before its cycles were taken. A frame *alone* counts everything from the first register \
          that the firmware writes to the end that it sees. *Back to back* means that the geometry of a frame is made while the \
-         one before it is rastered, and that nothing waits for the screen; sustained pixels a clock are of such frames. What \
+         one before it is rastered, and that nothing waits for the screen; sustained pixels a clock are of such frames, over the \
+         clocks in which a pass runs. What \
          was asked and is not met is bold.\n\n",
     );
     text.push_str(&table(rows)?);
