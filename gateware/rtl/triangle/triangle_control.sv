@@ -8,9 +8,11 @@
 // BASE on), is refused with ERROR_ADDRESS before anything has been read or written. `ended` (one clock) closes each ask:
 // refused, done, or cancelled; `error` then holds until the next ask of this pass.
 //
-// A pass is `active` from its ask until its error stands.
+// A pass is `active` from its ask until its error stands. Asked for meanwhile, it goes on; ERROR_BUSY then stays unless it ends
+// with an error of its own.
 //
-// `cancel` (one clock, at any time) ends both passes; what is asked for after it begins when the engine is `ready` again.
+// `cancel` (one clock, at any time) ends both passes, also those asked for in its clock; what is asked for after it begins when
+// the engine is `ready` again.
 // Latency 15 clocks from `ask` to `start`. The flags of a pass are kept from its `ask` on; all else has to hold until `ended`.
 
 `default_nettype none
@@ -104,7 +106,7 @@ module triangle_control #(
     logic [COUNT_BITS-1:0] count;
     logic                 used;
 
-    assign mesh_words  = mesh_bytes[31:WORD_BITS] != '0 ? '1 : WORD_BITS'(mesh_bytes >> 4);
+    assign mesh_words  = mesh_bytes[31:WORD_BITS+4] != '0 ? '1 : WORD_BITS'(mesh_bytes >> 4);
     assign list_words  = list_shift > LAST_SHIFT ? '1 : WORD_BITS'(list_pkg::TABLE_WORDS)
                       + (WORD_BITS'(bands) << list_shift) + WORD_BITS'(bands * list_pkg::SKEW_WORDS);
     assign frame_words = WORD_BITS'(SMALL_FRAME_WORDS) << {size, 1'b0};
@@ -159,36 +161,6 @@ module triangle_control #(
 
         if (ready) recovering <= 1'b0;
 
-        case (state)
-            IDLE: begin
-                rastering <= !geometry_pending;
-                region    <= geometry_pending ? FIRST_GEOMETRY : FIRST_RASTER;
-                if (geometry_pending || raster_pending) state <= CHECK;
-            end
-            CHECK: begin
-                region <= region + 1'b1;
-                if (region == (rastering ? LAST_RASTER : LAST_GEOMETRY)) state <= SETTLE;
-            end
-            // The last region's end.
-            SETTLE: state <= JUDGE;
-            JUDGE: begin
-                if (rastering) raster_error   <= size == 2'd3 ? ERROR_SIZE : misplaced ? ERROR_ADDRESS : ERROR_NONE;
-                else           geometry_error <= size == 2'd3 ? ERROR_SIZE : misplaced ? ERROR_ADDRESS : ERROR_NONE;
-                if (size == 2'd3 || misplaced) begin
-                    if (rastering) {raster_pending, raster_ended}     <= 2'b01;
-                    else           {geometry_pending, geometry_ended} <= 2'b01;
-                    state <= IDLE;
-                end else begin
-                    state <= START;
-                end
-            end
-            default: if (!recovering) begin
-                if (rastering) {raster_pending, raster_start}     <= 2'b01;
-                else           {geometry_pending, geometry_start} <= 2'b01;
-                state <= IDLE;
-            end
-        endcase
-
         // Asked while the same pass is asked for or busy: refused, and the pass goes on.
         if (geometry_ask) begin
             if (geometry_active) begin
@@ -209,6 +181,39 @@ module triangle_control #(
             end
         end
 
+        case (state)
+            IDLE: begin
+                rastering <= !geometry_pending;
+                region    <= geometry_pending ? FIRST_GEOMETRY : FIRST_RASTER;
+                if (geometry_pending || raster_pending) state <= CHECK;
+            end
+            CHECK: begin
+                region <= region + 1'b1;
+                if (region == (rastering ? LAST_RASTER : LAST_GEOMETRY)) state <= SETTLE;
+            end
+            // The last region's end.
+            SETTLE: state <= JUDGE;
+            JUDGE: begin
+                if (size == 2'd3 || misplaced) begin
+                    if (rastering) begin
+                        {raster_pending, raster_ended} <= 2'b01;
+                        raster_error <= size == 2'd3 ? ERROR_SIZE : ERROR_ADDRESS;
+                    end else begin
+                        {geometry_pending, geometry_ended} <= 2'b01;
+                        geometry_error <= size == 2'd3 ? ERROR_SIZE : ERROR_ADDRESS;
+                    end
+                    state <= IDLE;
+                end else begin
+                    state <= START;
+                end
+            end
+            default: if (!recovering) begin
+                if (rastering) {raster_pending, raster_start}     <= 2'b01;
+                else           {geometry_pending, geometry_start} <= 2'b01;
+                state <= IDLE;
+            end
+        endcase
+
         if (geometry_done) begin
             geometry_ended <= 1'b1;
             if (mesh_error) geometry_error <= ERROR_MESH;
@@ -220,11 +225,11 @@ module triangle_control #(
         end
 
         if (cancel) begin
-            if (geometry_active) begin
+            if (geometry_active || geometry_ask) begin
                 geometry_ended <= 1'b1;
                 geometry_error <= ERROR_CANCELLED;
             end
-            if (raster_active) begin
+            if (raster_active || raster_ask) begin
                 raster_ended <= 1'b1;
                 raster_error <= ERROR_CANCELLED;
             end
