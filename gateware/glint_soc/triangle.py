@@ -52,7 +52,7 @@ class TriangleEngine(LiteXModule):
     """Draws meshes, in two passes that may run at the same time for two frames.
 
     `readers` are three native 128-bit LiteDRAM read ports (triangles, vertices, raster), `writers` three write ports
-    (descriptors, lists, frame), all in the domain `sys`. `main_ram` is the region they reach.
+    (descriptors, lists, frame), all in the domain `sys`. `clk`, to be driven, is its clock, or that gated by `clock_enable`. `main_ram` is the region they reach.
     """
 
     def __init__(self, platform, readers, writers, main_ram):
@@ -189,6 +189,19 @@ class TriangleEngine(LiteXModule):
 
         mesh_reader, vertex_reader, raster_reader = readers
         descriptor_writer, list_writer, frame_writer = writers
+        # The engine stands still but for these times, so its clock may.
+        self.clk = Signal()
+        self.clock_enable = Signal()
+        recovering, linger = Signal(), Signal(5)
+        working = Signal()
+        self.comb += [
+            working.eq(ResetSignal("sys") | recovering | self._control.fields.cancel
+                       | self._status.fields.geometry_busy | self._status.fields.raster_busy),
+            self.clock_enable.eq(working | (linger != 0)),
+        ]
+        # The last counts are some clocks late.
+        self.sync += If(working, linger.eq(31)).Elif(linger != 0, linger.eq(linger - 1))
+
         geometry_kept, raster_kept = Signal(3), Signal(7)
         link = {name: Signal() for name in (
             "ready", "geometry_start", "geometry_busy", "geometry_done", "mesh_error", "full",
@@ -208,6 +221,7 @@ class TriangleEngine(LiteXModule):
             i_cancel               = cancel,
             i_geometry_ask         = self._geometry.fields.start,
             i_geometry_flags       = Cat(self._geometry.fields.size, self._geometry.fields.cull),
+            o_recovering           = recovering,
             o_geometry_kept        = geometry_kept,
             o_geometry_active      = self._status.fields.geometry_busy,
             o_geometry_ended       = self.ev.geometry.trigger,
@@ -239,7 +253,7 @@ class TriangleEngine(LiteXModule):
         self.specials += Instance("triangle_engine", name="triangle_engine",
             p_ADDRESS_BITS         = _ADDRESS_BITS,
             p_COUNT_BITS           = _COUNT_BITS,
-            i_clk                  = ClockSignal("sys"),
+            i_clk                  = self.clk,
             i_rst                  = ResetSignal("sys"),
             i_cancel               = cancel,
             **{f"{'o' if name in controlled else 'i'}_{name}": signal

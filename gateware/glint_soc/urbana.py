@@ -88,6 +88,8 @@ class UrbanaSoC(GlintSoC):
         # Set here because `add_electrical_settings` keeps it under a name that the initialisation does not read.
         self.ddrphy.settings.rtt_nom = "40ohm"
         self.add_dram(self.ddrphy)
+        if "triangle" in self.blocks:
+            self.comb += self.triangle.clk.eq(self.crg.cd_sys.clk)
         if "scanout" in self.blocks:
             self.hdmi = VideoS7HDMIPHY(platform.request("hdmi_out"), clock_domain="pix")
             self.comb += self.hdmi.sink.valid.eq(1)

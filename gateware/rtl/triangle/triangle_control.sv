@@ -57,6 +57,7 @@ module triangle_control #(
     input  wire  [COUNT_BITS-1:0]  count_1,
     // Engine.
     input  wire                    ready,
+    output logic                   recovering,
     output logic                   geometry_start,
     input  wire                    geometry_busy,
     input  wire                    geometry_done,
@@ -82,7 +83,7 @@ module triangle_control #(
 
     localparam logic [3:0] FIRST_GEOMETRY = 4'd0, LAST_GEOMETRY = 4'd3, FIRST_RASTER = 4'd4, LAST_RASTER = 4'd9;
 
-    logic       geometry_pending, raster_pending, recovering, rastering, misplaced;
+    logic       geometry_pending, raster_pending, rastering, misplaced;
     logic [3:0] region;
     logic [1:0] size;
     logic [5:0] bands;

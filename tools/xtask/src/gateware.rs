@@ -242,8 +242,11 @@ fn compile(sources: &[PathBuf], folder: &Path, flags: &[String]) -> Result<()> {
     let next = AtomicUsize::new(0);
     let work = || -> Result<()> {
         while let Some(source) = queue.get(next.fetch_add(1, Ordering::Relaxed)) {
+            // What Verilator itself calls slow runs once.
+            let slow = source.to_string_lossy().contains("__Slow");
             let output = Command::new("g++")
                 .args(flags)
+                .args(slow.then_some("-O1"))
                 .arg("-c")
                 .arg(source)
                 .arg("-o")

@@ -1,0 +1,19 @@
+// A clock that stands while `enable` is low, without a glitch: it is let through from the falling edge on. For simulation; an
+// FPGA has cells for this.
+
+`default_nettype none
+
+module clock_gate (
+    input  wire  clk,
+    input  wire  enable,
+    output logic gated
+);
+    // Open from the start, so that the first edge finds the reset.
+    logic open = 1'b1;
+
+    always_ff @(negedge clk) open <= enable;
+
+    assign gated = clk && open;
+endmodule
+
+`default_nettype wire
