@@ -1,0 +1,189 @@
+//! Scenes that both the engine and the whole SoC draw.
+
+use glint::{convert, generate, view};
+use glint_core::camera::View;
+use rand_pcg::Pcg64Mcg;
+
+use crate::meshes::{self, Triangle, ahead, at};
+
+/// A mesh, a camera, and whether back faces are culled.
+pub type Scene = (&'static str, Vec<u8>, View, bool);
+
+/// A generated model's mesh.
+pub fn generated(name: &str) -> Vec<u8> {
+    let model = generate::named(name).unwrap();
+    convert::convert(&model, convert::Options::default())
+        .unwrap()
+        .0
+}
+
+/// From near the middle of a model, with a wide angle.
+pub fn inside() -> View {
+    let json = r#"{"eye":[0.21,-0.1,0.05],"u":[0.6,0.8,0],"v":[0,0,-1],"n":[-0.8,0.6,0],"half_width":1.5,"near":0.05}"#;
+    view::parse(json.as_bytes()).unwrap()
+}
+
+/// Front faces, seen from the front, at the distance y + 2: around a centre, from angle to angle.
+fn fan(y: f64, radius: f64, parts: usize) -> Vec<Triangle> {
+    let rim = |part: usize| {
+        let (sin, cos) = (std::f64::consts::TAU * part as f64 / parts as f64).sin_cos();
+        at(radius * cos, y, radius * sin)
+    };
+    (0..parts)
+        .map(|part| {
+            (
+                [at(0.01, y, 0.02), rim(part), rim(part + 1)],
+                0x1111 * (part as u16 % 15 + 1),
+            )
+        })
+        .collect()
+}
+
+/// All of them.
+pub fn scenes() -> Vec<Scene> {
+    let mut random = Pcg64Mcg::new(1);
+    let many = usize::from(u16::MAX);
+    let mesh = |triangles: &[Triangle]| meshes::mesh(triangles, many);
+    let slivers: Vec<Triangle> = (0..60)
+        .map(|i| {
+            let (sin, cos) = f64::from(i).sin_cos();
+            let (x, z) = (
+                0.5 * (1.7 * f64::from(i)).sin(),
+                0.3 * (2.3 * f64::from(i)).cos(),
+            );
+            let thin = 0.5e-3;
+            let corners = [(1.0, 0.0), (0.0, 1.0), (-1.0, -1.0)];
+            (
+                corners.map(|(long, across)| {
+                    at(
+                        x + long * cos - across * thin * sin,
+                        0.0,
+                        z + long * sin + across * thin * cos,
+                    )
+                }),
+                0x1081_u16.wrapping_mul(i as u16 + 1),
+            )
+        })
+        .collect();
+    let screen = [
+        (
+            [
+                at(-1.9, -1.0, -1.9),
+                at(1.9, -1.0, -1.9),
+                at(1.9, -1.0, 1.9),
+            ],
+            0xf800,
+        ),
+        (
+            [
+                at(-1.9, -1.0, -1.9),
+                at(1.9, -1.0, 1.9),
+                at(-1.9, -0.9, 1.9),
+            ],
+            0x07e0,
+        ),
+    ];
+    // Pixel centres at 320x180 and corners of pixels at the other sizes, with 128 pixels a unit.
+    let centre = |x: i32, z: i32| {
+        at(
+            f64::from(2 * x + 1) / 256.0,
+            -1.0,
+            f64::from(2 * z + 1) / 256.0,
+        )
+    };
+    let centres: Vec<Triangle> = (-12..12)
+        .flat_map(|i| {
+            let (x, z) = (8 * i, 3 * i);
+            [
+                (
+                    [centre(x, z), centre(x + 8, z), centre(x + 8, z + 5)],
+                    0xffe0,
+                ),
+                (
+                    [centre(x, z), centre(x + 8, z + 5), centre(x, z + 5)],
+                    0x001f,
+                ),
+            ]
+        })
+        .collect();
+    let equal: Vec<Triangle> = (0..6)
+        .flat_map(|_| fan(0.0, 0.6, 7))
+        .zip(1..)
+        .map(|((c, _), i)| (c, 0x0841_u16.wrapping_mul(i)))
+        .collect();
+    let turned: Vec<Triangle> = fan(0.0, 0.6, 9)
+        .iter()
+        .map(|&([a, b, c], colour)| ([a, c, b], colour))
+        .collect();
+    let at_near = [
+        (
+            [
+                at(-0.5, -1.0, -0.5),
+                at(0.5, -1.0, -0.5),
+                at(0.0, -1.0, 0.5),
+            ],
+            0xffff,
+        ),
+        (
+            [
+                at(-0.5, -1.0 - 1.0 / 16384.0, 0.0),
+                at(0.5, -1.0, -0.4),
+                at(0.0, 0.5, 0.5),
+            ],
+            0x07ff,
+        ),
+    ];
+    let wide = [
+        (
+            [at(-1.99, -1.93, 0.3), at(1.0, 1.0, -0.6), at(0.3, 1.5, 0.5)],
+            0xf81f,
+        ),
+        (
+            [
+                at(1.99, -1.95, -0.8),
+                at(0.2, 0.1, 0.4),
+                at(-0.4, 0.2, -0.3),
+            ],
+            0x7bef,
+        ),
+        (
+            [
+                at(-1.5, -1.99, -1.5),
+                at(1.5, -1.99, -1.5),
+                at(0.0, 1.0, 1.5),
+            ],
+            0x39e7,
+        ),
+    ];
+    let full = meshes::random(&mut random, many / 3, 0.02);
+    let beyond = meshes::random(&mut random, many / 3 + 400, 0.02);
+    let tiny = meshes::random(&mut random, 3000, 0.002);
+    vec![
+        ("slivers", mesh(&slivers), ahead(1.0, 0.5), false),
+        ("triangles of a pixel", mesh(&tiny), ahead(0.6, 0.1), false),
+        ("the whole screen", mesh(&screen), ahead(1.0, 0.5), false),
+        ("pixel centres", mesh(&centres), ahead(1.25, 0.5), true),
+        ("a fan", mesh(&fan(0.0, 0.7, 40)), ahead(1.0, 0.5), true),
+        ("equal depths", mesh(&equal), ahead(1.0, 0.5), true),
+        ("all culled", mesh(&turned), ahead(1.0, 0.5), true),
+        ("none culled", mesh(&turned), ahead(1.0, 0.5), false),
+        ("no triangle", mesh(&[]), ahead(1.0, 0.5), true),
+        ("inside a sponge", generated("sponge:1"), inside(), false),
+        ("inside a sphere", generated("icosphere:6"), inside(), false),
+        (
+            "a sphere",
+            generated("icosphere:6"),
+            view::spherical("2,30,60").unwrap(),
+            true,
+        ),
+        ("at the near plane", mesh(&at_near), ahead(1.0, 1.0), false),
+        (
+            "beyond the guard band",
+            mesh(&wide),
+            ahead(1.0, 0.01),
+            false,
+        ),
+        ("65,535 vertices", mesh(&full), ahead(0.8, 0.5), false),
+        ("two chunks", mesh(&beyond), ahead(0.8, 0.5), true),
+    ]
+}

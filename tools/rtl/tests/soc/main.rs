@@ -1,0 +1,326 @@
+//! The whole SoC draws with its triangle engine what glint-model draws: the pictures on the monitor, the depths in
+//! memory, the counts.
+//!
+//! Needs what `cargo xtask gateware` and `cargo xtask firmware` build; `cargo xtask test` sees to it.
+//!
+//! A board draws one frame while the monitor takes in the one before, so that a scene costs one frame of the video, which
+//! is most of the time that this takes (three frames at 1280x720, where depths take more than one to write):
+//!
+//! ```text
+//! video   |      nothing      |   scene 0   |   scene 1   |   scene 2 ...
+//! board     load 0, draw 0      load 1, d 1   load 2, d 2   load 3, d 3
+//! ```
+
+#[path = "../engine/meshes.rs"]
+mod meshes;
+#[path = "../engine/scenes.rs"]
+mod scenes;
+
+use glint::board::{Board, BoardError, Memory, SimulatedBoard, built_firmware};
+use glint::console::{Console, value};
+use glint::render::{self, Rendered, Scene};
+use glint::view;
+use glint_core::console::Backend;
+use glint_core::wire::Manifest;
+use rand_pcg::Pcg64Mcg;
+
+/// The board's time after which a silent firmware has failed.
+const PATIENCE_MS: u64 = 2000;
+
+/// Three frames of the video.
+const MOST_WAIT_MS: u64 = 50;
+
+/// A board whose monitor is always on.
+struct Watched {
+    board: SimulatedBoard,
+    /// Pixels of the picture to one of the frame, along a side.
+    scale: usize,
+    /// What is to be seen, in this order; first there is nothing, which is black.
+    expected: Vec<(String, Vec<u16>)>,
+    /// How many of them were seen.
+    seen: usize,
+    /// Pictures that were looked at.
+    pictures: u64,
+    /// Lines of the picture may be late.
+    late: bool,
+}
+
+impl Watched {
+    /// This is to be seen next.
+    fn expect(&mut self, name: &str, frame: Vec<u16>) {
+        match self.expected.last_mut() {
+            // They cannot be told apart.
+            Some((last, old)) if *old == frame => name.clone_into(last),
+            _ => self.expected.push((name.to_owned(), frame)),
+        }
+    }
+
+    /// The picture is the one before, or the next one, and never a part of each.
+    fn look(&mut self) {
+        let Some(picture) = self.board.inner().monitor().take_picture() else {
+            return;
+        };
+        self.pictures += 1;
+        let frame = picture.scaled_back(self.scale).unwrap();
+        let next = &self.expected[self.seen - 1..];
+        let Some(at) = next.iter().take(2).position(|(_, wanted)| *wanted == frame) else {
+            if self.late {
+                return;
+            }
+            let (name, wanted) = next.get(1).unwrap_or(&next[0]);
+            let at = (0..frame.len()).find(|&i| frame[i] != wanted[i]);
+            let (at, width) = (at.unwrap_or_default(), 1280 / self.scale);
+            panic!(
+                "{name}: the monitor shows {:#06x} at {}, {}, expected {:#06x}, or all of the frame before",
+                frame[at],
+                at % width,
+                at / width,
+                wanted[at]
+            );
+        };
+        self.seen += at;
+    }
+
+    /// Runs until all that is expected was seen.
+    fn see(&mut self) {
+        self.run_until(|board| board.seen == board.expected.len());
+    }
+
+    /// Runs until the picture is whole that is being shown.
+    fn wait_for_picture(&mut self) {
+        let before = self.pictures;
+        self.run_until(|board| board.pictures > before);
+    }
+
+    fn run_until(&mut self, done: impl Fn(&Self) -> bool) {
+        for _ in 0..MOST_WAIT_MS {
+            if done(self) {
+                return;
+            }
+            self.read(&mut Vec::new(), 1).unwrap();
+        }
+        let names: Vec<_> = self.expected.iter().map(|(name, _)| name).collect();
+        panic!("{} of {names:?} were shown", self.seen);
+    }
+}
+
+impl Board for Watched {
+    fn write(&mut self, bytes: &[u8]) -> Result<(), BoardError> {
+        self.board.write(bytes)
+    }
+
+    fn read(&mut self, bytes: &mut Vec<u8>, wait_ms: u64) -> Result<(), BoardError> {
+        // Often enough to see every picture.
+        let (before, end) = (bytes.len(), self.now_ms() + wait_ms);
+        while bytes.len() == before && self.now_ms() < end {
+            self.board.read(bytes, 1)?;
+            self.look();
+        }
+        Ok(())
+    }
+
+    fn now_ms(&self) -> u64 {
+        self.board.now_ms()
+    }
+
+    fn memory(&mut self) -> Option<&mut dyn Memory> {
+        self.board.memory()
+    }
+}
+
+/// What the firmware tells of the last frame, and of the machine.
+struct Told {
+    lines: Vec<String>,
+}
+
+impl Told {
+    fn text(&self, key: &str) -> String {
+        let line = |line: &String| line.starts_with(&format!("{key} "));
+        let lines: Vec<String> = self
+            .lines
+            .iter()
+            .filter(|l| line(l))
+            .take(1)
+            .cloned()
+            .collect();
+        value("render", &lines, key).unwrap_or_else(|_| panic!("{key} in {:#?}", self.lines))
+    }
+
+    fn number(&self, key: &str) -> u32 {
+        self.text(key).parse().unwrap()
+    }
+
+    fn address(&self, key: &str) -> u32 {
+        let text = self.text(key);
+        let digits = text.trim_start_matches("0x").split(' ').next().unwrap();
+        u32::from_str_radix(digits, 16).unwrap()
+    }
+}
+
+/// Sends lines at once, so that nothing is drawn between them, and collects all replies.
+fn send(console: &mut Console<Watched>, lines: &[String]) -> Told {
+    let text: String = lines.iter().map(|line| format!("{line}\r")).collect();
+    console.board().write(text.as_bytes()).unwrap();
+    let replies = lines.iter().map(|line| console.reply(line).unwrap());
+    Told {
+        lines: replies.flatten().collect(),
+    }
+}
+
+/// The most bytes of a mesh: the firmware takes some 20 cycles for each when it is loaded, a second of ours for 10 kB.
+const SMALL: usize = 256 << 10;
+
+/// The scenes whose meshes are small, or the others, and one that has what a large one may have: two chunks.
+fn scenes(small: bool) -> Vec<scenes::Scene> {
+    let mut scenes = scenes::scenes();
+    scenes.retain(|(_, mesh, ..)| (mesh.len() <= SMALL) == small);
+    if small {
+        let triangles = meshes::random(&mut Pcg64Mcg::new(2), 500, 0.1);
+        let mesh = meshes::mesh(&triangles, 900);
+        scenes.push(("two small chunks", mesh, meshes::ahead(0.8, 0.5), false));
+    }
+    scenes
+}
+
+fn draw(size: (u32, u32), scenes: Vec<scenes::Scene>) {
+    let board = SimulatedBoard::fast(&built_firmware(None).unwrap()).unwrap();
+    let mut board = Watched {
+        board,
+        scale: (1280 / size.0) as usize,
+        expected: vec![("nothing".to_owned(), vec![0; (size.0 * size.1) as usize])],
+        seen: 1,
+        pictures: 0,
+        late: false,
+    };
+    let mut console = Console::new(&mut board).patience(PATIENCE_MS);
+    console.greet().unwrap();
+    let mut told = send(
+        &mut console,
+        &["backend gateware".to_owned(), "info".to_owned()],
+    );
+    console.board().board.inner().monitor().turn_on();
+    let mut underflows = 0;
+
+    for (name, mesh, view, cull) in scenes {
+        // Without its depth only the part of a frame is written that can differ.
+        let others = if name == "a sphere" {
+            ["2,60,100", "3,200,60"].map(view::spherical).to_vec()
+        } else {
+            vec![]
+        };
+        let views = others.into_iter().map(|view| (view.unwrap(), false));
+        for (number, (view, with_depth)) in [(view, true)].into_iter().chain(views).enumerate() {
+            let name = format!("{name} {number} at {size:?}");
+            let scene = Scene {
+                mesh: &mesh,
+                view,
+                size,
+                cull,
+                backend: Some(Backend::Gateware),
+            };
+            let Rendered { frame, stats } = render::on_model(&scene).unwrap();
+            let mut lines = vec![
+                format!("cull {}", if cull { "on" } else { "off" }),
+                format!("size {} {}", size.0, size.1),
+                render::view_command(&view),
+            ];
+            if number == 0 {
+                // With the bytes in place already, `load` finds their CRC-32 right and skips the transfer.
+                let Manifest { length, crc32 } = Manifest::of(&mesh);
+                let memory = console.board().memory().unwrap();
+                memory.write_memory(told.address("staging"), &mesh).unwrap();
+                lines.push(format!("load {length} {crc32:08x}"));
+            }
+            lines.push(format!("render{}", if with_depth { " depth" } else { "" }));
+            lines.push("info".to_owned());
+            // While the engine writes depths, some lines of the largest picture come late: it is looked at when they are
+            // written. Without depths none may.
+            let late = with_depth && size.0 == 1280;
+            if late {
+                // Nothing is to be seen only then.
+                console.board().see();
+            }
+            console.board().late = late;
+            console.board().expect(&name, frame.colour);
+            told = send(&mut console, &lines);
+
+            assert_eq!(
+                told.text("backend"),
+                "gateware",
+                "{name}: {:#?}",
+                told.lines
+            );
+            let counts = ["in", "culled", "clipped", "drawn"]
+                .map(|key| told.number(&format!("triangles_{key}")));
+            let expected = [
+                stats.triangles_in,
+                stats.triangles_culled,
+                stats.triangles_clipped,
+                stats.triangles_drawn,
+            ];
+            assert_eq!(
+                counts, expected,
+                "{name}: triangles in, culled, clipped, drawn"
+            );
+            if with_depth {
+                let mut bytes = vec![0; 4 * frame.depth.len()];
+                let memory = console.board().memory().unwrap();
+                memory
+                    .read_memory(told.address("depth"), &mut bytes)
+                    .unwrap();
+                for (at, (found, &wanted)) in bytes.chunks_exact(4).zip(&frame.depth).enumerate() {
+                    let found = u32::from_le_bytes([found[0], found[1], found[2], found[3]]);
+                    let (x, y) = (at as u32 % size.0, at as u32 / size.0);
+                    assert_eq!(found, wanted, "{name}: the depth at {x}, {y}");
+                }
+            }
+            // The next `render` would take back what is not on the screen yet.
+            let drawn = told.number("video_frames");
+            while told.number("video_frames") == drawn {
+                console.board().wait_for_picture();
+                told = send(&mut console, &["info".to_owned()]);
+            }
+            if late {
+                console.board().see();
+                told = send(&mut console, &["info".to_owned()]);
+            } else {
+                assert_eq!(
+                    told.number("video_underflows"),
+                    underflows,
+                    "{name}: late lines"
+                );
+            }
+            underflows = told.number("video_underflows");
+        }
+    }
+    let board = console.board();
+    board.see();
+    assert_eq!(board.board.inner().monitor().errors(), []);
+    let board = board.board.inner();
+    println!(
+        "{size:?}: {} cycles, {:.0} a second",
+        board.cycles(),
+        board.cycles_per_second()
+    );
+}
+
+#[test]
+fn the_soc_draws_at_320x180() {
+    draw((320, 180), scenes(true));
+}
+
+#[test]
+fn the_soc_draws_at_640x360() {
+    draw((640, 360), scenes(true));
+}
+
+#[test]
+fn the_soc_draws_at_1280x720() {
+    draw((1280, 720), scenes(true));
+}
+
+#[test]
+#[ignore = "takes minutes, nearly all of them for the firmware's look at the meshes"]
+fn the_soc_draws_large_meshes() {
+    draw((1280, 720), scenes(false));
+}
