@@ -6,9 +6,7 @@ use glint_core::camera::View;
 use glint_core::mesh::Mesh;
 use glint_model::descriptor::{Descriptor, TABLE_WORDS, band_rows, list_word};
 use glint_model::{FrameSetup, Stats, clip_exceptions};
-use litex_hal::triangle::{
-    Counters, Engine, Fault, Geometry, Lists, Outcome, Raster, Set,
-};
+use litex_hal::triangle::{Counters, Engine, Fault, Geometry, Lists, Outcome, Raster, Set};
 use litex_pac::cpu;
 
 /// The most descriptors of a set, and the most exceptions. A frame with more is the CPU's.
@@ -279,7 +277,10 @@ impl Painter {
         };
         // SAFETY: the room is this painter's own, and looked at when the pass has ended; the mesh is kept while the
         // painter is busy.
-        unsafe { self.engine.start_geometry(&pass, list_shift(target.size.0) as u8) };
+        unsafe {
+            self.engine
+                .start_geometry(&pass, list_shift(target.size.0) as u8)
+        };
     }
 
     fn start_raster(&mut self, target: &mut Target) {

@@ -291,7 +291,8 @@ fn every_command_is_understood() {
             crc32: 0,
         },
     );
-    assert_parses("render", Command::Render);
+    assert_parses("render", Command::Render { depth: false });
+    assert_parses("render depth", Command::Render { depth: true });
     assert_parses("cull on", Command::Cull(true));
     assert_parses("cull off", Command::Cull(false));
     assert_parses("stats", Command::Stats { json: false });

@@ -167,6 +167,13 @@ fn send(console: &mut Console<Watched>, lines: &[String]) -> Told {
     }
 }
 
+fn read(console: &mut Console<Watched>, address: u32, length: usize) -> Vec<u8> {
+    let mut bytes = vec![0; length];
+    let memory = console.board().memory().unwrap();
+    memory.read_memory(address, &mut bytes).unwrap();
+    bytes
+}
+
 /// The most bytes of a mesh: the firmware takes some 20 cycles for each when it is loaded, a second of ours for 10 kB.
 const SMALL: usize = 256 << 10;
 
@@ -199,6 +206,8 @@ fn draw(size: (u32, u32), scenes: Vec<scenes::Scene>) {
         &["backend gateware".to_owned(), "info".to_owned()],
     );
     console.board().board.inner().monitor().turn_on();
+    // Frames of the video when the last scene was drawn.
+    let mut drawn = u32::MAX;
     let mut underflows = 0;
 
     for (name, mesh, view, cull) in scenes {
@@ -231,7 +240,6 @@ fn draw(size: (u32, u32), scenes: Vec<scenes::Scene>) {
                 memory.write_memory(told.address("staging"), &mesh).unwrap();
                 lines.push(format!("load {length} {crc32:08x}"));
             }
-            lines.push(format!("render{}", if with_depth { " depth" } else { "" }));
             lines.push("info".to_owned());
             // While the engine writes depths, some lines of the largest picture come late: it is looked at when they are
             // written. Without depths none may.
@@ -243,6 +251,14 @@ fn draw(size: (u32, u32), scenes: Vec<scenes::Scene>) {
             console.board().late = late;
             console.board().expect(&name, frame.colour);
             told = send(&mut console, &lines);
+            // `render` would take back what is not on the screen yet.
+            while told.number("video_frames") == drawn {
+                console.board().wait_for_picture();
+                told = send(&mut console, &["info".to_owned()]);
+            }
+            let render = format!("render{}", if with_depth { " depth" } else { "" });
+            told = send(&mut console, &[render, "info".to_owned()]);
+            drawn = told.number("video_frames");
 
             assert_eq!(
                 told.text("backend"),
@@ -262,23 +278,19 @@ fn draw(size: (u32, u32), scenes: Vec<scenes::Scene>) {
                 counts, expected,
                 "{name}: triangles in, culled, clipped, drawn"
             );
+            let place = |at: usize| (at as u32 % size.0, at as u32 / size.0);
+            let bytes = read(&mut console, told.address("frame"), 2 * frame.depth.len());
+            let (_, colour) = console.board().expected.last().unwrap();
+            for (at, (found, &wanted)) in bytes.chunks_exact(2).zip(colour).enumerate() {
+                let found = u16::from_le_bytes([found[0], found[1]]);
+                assert_eq!(found, wanted, "{name}: the colour at {:?}", place(at));
+            }
             if with_depth {
-                let mut bytes = vec![0; 4 * frame.depth.len()];
-                let memory = console.board().memory().unwrap();
-                memory
-                    .read_memory(told.address("depth"), &mut bytes)
-                    .unwrap();
+                let bytes = read(&mut console, told.address("depth"), 4 * frame.depth.len());
                 for (at, (found, &wanted)) in bytes.chunks_exact(4).zip(&frame.depth).enumerate() {
                     let found = u32::from_le_bytes([found[0], found[1], found[2], found[3]]);
-                    let (x, y) = (at as u32 % size.0, at as u32 / size.0);
-                    assert_eq!(found, wanted, "{name}: the depth at {x}, {y}");
+                    assert_eq!(found, wanted, "{name}: the depth at {:?}", place(at));
                 }
-            }
-            // The next `render` would take back what is not on the screen yet.
-            let drawn = told.number("video_frames");
-            while told.number("video_frames") == drawn {
-                console.board().wait_for_picture();
-                told = send(&mut console, &["info".to_owned()]);
             }
             if late {
                 console.board().see();

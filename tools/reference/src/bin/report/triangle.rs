@@ -134,10 +134,7 @@ fn screen() -> Result<Vec<u8>> {
         polygons.add_face(&numbers, None, Place::Whole)?;
         Ok(polygons)
     }();
-    let options = Options {
-        keep_scale: true,
-        ..Options::default()
-    };
+    let options = Options { keep_scale: true };
     made.and_then(|polygons| convert::convert(&polygons, options))
         .map(|(mesh, _)| mesh)
         .map_err(|error| anyhow::anyhow!("{error}"))
@@ -369,10 +366,10 @@ fn row(
         cycles_cpu,
         covered: share(engine.groups, raster),
         empty: share(engine.cycles_empty, raster),
-        memory: share(engine.cycles_memory, raster),
+        flush: share(engine.cycles_flush, raster),
         other: 1.0
             - share(
-                engine.groups + engine.cycles_empty + engine.cycles_memory,
+                engine.groups + engine.cycles_empty + engine.cycles_flush,
                 raster,
             ),
         geometry_writes: share(engine.stalled_lists, engine.cycles_geometry),
