@@ -348,16 +348,23 @@ impl<'b, B: Board + ?Sized> Renderer<'b, B> {
         }
     }
 
+    /// Has the frame drawn again, and reads what it took: lines of a key and its value.
     fn render(&mut self) -> Result<Stats, Error> {
-        self.console.command("render")?;
-        let command = "stats json";
+        let command = "render";
         let lines = self.console.command(command)?;
-        let text = lines.last().map(String::as_str).unwrap_or_default();
-        serde_json::from_str(text).map_err(|error| {
+        let values = lines
+            .iter()
+            .filter_map(|line| line.split_once(' '))
+            .map(|(key, value)| {
+                let number = value.parse::<u64>().map(serde_json::Value::from);
+                (key.to_owned(), number.unwrap_or_else(|_| value.into()))
+            })
+            .collect();
+        serde_json::from_value(serde_json::Value::Object(values)).map_err(|error| {
             Error::Console(ConsoleError::Reply {
                 command: command.to_owned(),
-                expected: format!("a line of JSON ({error})"),
-                found: text.to_owned(),
+                expected: format!("what the frame took ({error})"),
+                found: lines.join(", "),
             })
         })
     }
