@@ -109,7 +109,7 @@ module geometry_unit #(
             PREPARE: if (lists_idle) state <= BEGIN;
             BEGIN:   state <= WALK;
             WALK:    if (!walk_busy && drained && lists_idle) state <= FINISH;
-            default: if (lists_done && &writes_idle) begin
+            default: if (lists_done && !write_valid && &writes_idle) begin
                 done  <= 1'b1;
                 state <= IDLE;
             end

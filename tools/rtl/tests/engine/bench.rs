@@ -186,6 +186,11 @@ impl Bench {
         self.module.cycles() - start
     }
 
+    /// Words written so far.
+    pub fn written(&self) -> u64 {
+        self.writes.iter().map(|write| write.written).sum()
+    }
+
     pub fn pulse(&mut self, port: &str) {
         self.set(port, 1);
         self.clock();

@@ -159,6 +159,38 @@ fn nothing_new_is_not_written() {
     }
 }
 
+/// Its clock may stand still when a pass has ended: nothing comes afterwards, the last lengths of lists neither.
+#[test]
+fn all_is_in_memory_when_a_pass_has_ended() {
+    for (stalls, mesh) in [0.0, 0.3, 0.6, 0.9].into_iter().flat_map(|stalls| {
+        let meshes = [meshes::mesh(&[], 100), generated("icosphere:4")];
+        meshes.map(|mesh| (stalls, mesh))
+    }) {
+        for seed in 0..3 {
+            let expected = expected(&mesh, &inside(), SIZES[0], false);
+            let mut bench = Bench::new(seed, stalls);
+            bench.configure(&mesh, &expected);
+            bench.wait_for("ready");
+            for (start, done) in [
+                ("geometry_start", "geometry_done"),
+                ("raster_start", "raster_done"),
+            ] {
+                bench.pulse(start);
+                bench.wait_for(done);
+                let written = bench.written();
+                for _ in 0..300 {
+                    bench.clock();
+                }
+                assert_eq!(
+                    bench.written(),
+                    written,
+                    "words after {done}, stalls {stalls}"
+                );
+            }
+        }
+    }
+}
+
 /// Whatever happens to a frame, the next one is right.
 #[test]
 fn a_cancelled_frame_leaves_a_working_engine() {
