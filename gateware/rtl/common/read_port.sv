@@ -49,8 +49,8 @@ module read_port #(
     // All that can be on its way at once.
     localparam int unsigned OWNER_BITS  = $clog2(CLIENTS * DEPTH);
 
-    // Whose turn it is, chosen a clock ahead: the last one's while it may go on, or that of the next that asks. No path leads from what a client
-    // asks through the choice back to it. A turn that its client does not use passes.
+    // Whose turn it is, chosen a clock ahead: the last one's while it may go on, or that of the next that asks. No path leads
+    // from what a client asks through the choice back to it. A turn that its client does not use passes.
     logic [CLIENT_BITS-1:0] turn, first, chosen, asker;
     logic [CLIENTS-1:0]     servable, taken;
     logic                   given, any, moves;

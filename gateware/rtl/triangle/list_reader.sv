@@ -86,17 +86,19 @@ module list_reader #(
     logic [COUNT_BITS-1:0]   length;
     logic [31:0]             found;
     logic [COUNT_BITS-3:0]   words_left;
+    logic [33:0]             list_room;
     logic                    list_ends, too_long;
 
     assign ask_valid[1] = list_state == WORDS;
     assign ask_addr[ADDRESS_BITS +: ADDRESS_BITS] = list_word;
     assign data_ready[0] = list_state == LENGTH && present[list_set];
-    // A list has room for 4 << list_shift entries.
-    assign too_long  = found != '0 && ((found - 1'b1) >> list_shift) >> 2 != '0;
+    assign too_long  = 34'(found) > list_room;
     assign list_ends = list_state == JOB && job_ready && length == '0
                     || list_state == WORDS && ask_ready[1] && words_left == '0;
 
     always_ff @(posedge clk) begin
+        list_room <= 34'd4 << list_shift;
+
         case (list_state)
             IDLE: begin
                 list_set    <= 1'b0;
