@@ -1,8 +1,9 @@
-// The flush of the band buffer, small: any of four rows in any spans, four words on their way, any memory, any restart.
+// The flush of the band buffer, small: any of four rows in any spans, four words on their way, whoever takes them, any restart.
 //
 // The bank's row r holds r in every colour and r + 1 in every depth, and all of it is drawn. So the words that must come
-// are known: those of the rows in the spans, in their order, each once, and their addresses; and those rows are clear afterwards,
-// the others are not. The bank has band_bank's latencies and loses a row when it is cleared.
+// are known: the colours of the rows in the spans, in their order, each once, and of each row both halves of the depths after the
+// colours; and those rows are clear afterwards, the others are not. The bank has band_bank's latencies and loses a row when it
+// is cleared.
 
 `default_nettype none
 
@@ -16,8 +17,7 @@ module band_flush_proof (
     input wire       lingers,
     input wire       with_depth,
     input wire       restart,
-    input wire       cmd_ready,
-    input wire       wdata_ready
+    input wire       out_ready
 );
     localparam logic [15:0] BACKGROUND = 16'h8421;
     // Clocks that may pass without a word while memory takes whatever there is.
@@ -27,10 +27,10 @@ module band_flush_proof (
     logic rst = 1'b1;
     always_ff @(posedge clk) rst <= 1'b0;
 
-    logic             idle, sweeping, clears, cmd_valid, wdata_valid;
+    logic             idle, sweeping, clears, out_valid;
     logic [1:0]       row, clear_row;
-    logic [5:0]       cmd_addr;
-    logic [127:0]     wdata_data;
+    logic [5:0]       out_addr;
+    logic [127:0]     out_data;
     logic [8*16-1:0]  colours;
     logic [8*18-1:0]  codes;
     logic [7:0]       written;
@@ -43,7 +43,7 @@ module band_flush_proof (
         .idle, .sweeping, .reads_depth(), .waits(),
         .span_valid, .span_ready, .span_first, .span_last, .spans_busy,
         .row, .colours, .codes, .written, .clears, .clear_row,
-        .cmd_valid, .cmd_ready, .cmd_addr, .wdata_valid, .wdata_ready, .wdata_data
+        .out_valid, .out_ready, .out_addr, .out_data
     );
 
     function automatic logic [17:0] depth_of(input logic [1:0] of_row);
@@ -109,43 +109,31 @@ module band_flush_proof (
         end
     end
 
-    // What is to come: the rows of the next command and the next word.
-    logic [5:0] flush_base, flush_depth_base, cmd_expected;
-    logic [3:0] flush_rows, cmd_rows, word_rows;
-    logic [1:0] cmd_row, word_row, cmd_part, word_part;
-    logic       flush_depth, flushing, cmd_moves, word_moves, dropped;
-    // Words of commands that memory has taken.
-    logic [3:0] owed;
+    // What is to come: rows whose colours and whose depths have not, and the half of the next depths.
+    logic [5:0] flush_base, flush_depth_base, expected_addr;
+    logic [3:0] flush_rows, colour_rows, depth_rows;
+    logic [1:0] colour_row, depth_row;
+    logic       half, flush_depth, flushing, moves, is_depth, dropped, none_left;
 
-    assign cmd_moves  = cmd_valid && cmd_ready;
-    assign word_moves = wdata_valid && wdata_ready;
-    assign cmd_row    = first_of(cmd_rows);
-    assign word_row   = first_of(word_rows);
+    assign moves      = out_valid && out_ready;
+    assign colour_row = first_of(colour_rows);
+    assign depth_row  = first_of(depth_rows);
+    assign none_left  = colour_rows == '0 && depth_rows == '0;
+    // Depths are never 0, and their upper half-words always are; those of colours are as the lower ones.
+    assign is_depth   = out_data[31:16] != out_data[15:0];
 
-    logic [127:0] word_expected;
-    always_comb begin
-        case (word_part)
-            2'd0:    word_expected = {8{14'b0, word_row}};
-            default: word_expected = {4{14'b0, depth_of(word_row)}};
-        endcase
-        case (cmd_part)
-            2'd0:    cmd_expected = flush_base + 6'(cmd_row);
-            default: cmd_expected = flush_depth_base + {3'b0, cmd_row, cmd_part[1]};
-        endcase
-    end
+    logic [127:0] expected;
+    assign expected      = is_depth ? {4{14'b0, depth_of(depth_row)}} : {8{14'b0, colour_row}};
+    assign expected_addr = is_depth ? flush_depth_base + {3'b0, depth_row, half} : flush_base + 6'(colour_row);
 
     logic [3:0] without_word, without_end, sweep_clocks;
 
     always_ff @(posedge clk) begin
-        owed <= owed + 4'(cmd_moves) - 4'(word_moves);
-        if (cmd_moves) begin
-            cmd_part <= !flush_depth || cmd_part == 2'd2 ? 2'd0 : cmd_part + 1'b1;
-            if (!flush_depth || cmd_part == 2'd2) cmd_rows[cmd_row] <= 1'b0;
+        if (moves && is_depth) begin
+            half <= !half;
+            if (half) depth_rows[depth_row] <= 1'b0;
         end
-        if (word_moves) begin
-            word_part <= !flush_depth || word_part == 2'd2 ? 2'd0 : word_part + 1'b1;
-            if (!flush_depth || word_part == 2'd2) word_rows[word_row] <= 1'b0;
-        end
+        if (moves && !is_depth) colour_rows[colour_row] <= 1'b0;
         if (start) begin
             flushing         <= 1'b1;
             dropped          <= restart;
@@ -153,23 +141,21 @@ module band_flush_proof (
             flush_depth_base <= depth_base;
             flush_depth      <= with_depth;
             flush_rows       <= rows;
-            cmd_rows         <= rows;
-            word_rows        <= rows;
-            {cmd_part, word_part} <= '0;
+            colour_rows      <= rows;
+            depth_rows       <= with_depth ? rows : '0;
+            half             <= 1'b0;
         end else begin
             if (idle) flushing <= 1'b0;
             if (restart) dropped <= 1'b1;
         end
 
-        without_word <= idle || sweeping || word_moves || !cmd_ready || !wdata_ready || spans_busy && !span_valid
-                      ? '0 : without_word + 1'b1;
-        without_end  <= idle || sweeping || dropped || spans_busy || word_rows != '0 ? '0 : without_end + 1'b1;
+        without_word <= idle || sweeping || moves || !out_ready || spans_busy && !span_valid ? '0 : without_word + 1'b1;
+        without_end  <= idle || sweeping || dropped || spans_busy || !none_left ? '0 : without_end + 1'b1;
         sweep_clocks <= !sweeping || restart ? '0 : sweep_clocks + 1'b1;
 
         if (rst) begin
-            owed         <= '0;
-            cmd_rows     <= '0;
-            word_rows    <= '0;
+            colour_rows  <= '0;
+            depth_rows   <= '0;
             flushing     <= 1'b0;
             dropped      <= 1'b1;
             without_word <= '0;
@@ -178,11 +164,8 @@ module band_flush_proof (
         end
     end
 
-    stream_checker #(.WIDTH(6)) commands (
-        .clk, .rst, .valid(cmd_valid), .ready(cmd_ready), .data(cmd_addr)
-    );
-    stream_checker #(.WIDTH(128)) words (
-        .clk, .rst, .valid(wdata_valid), .ready(wdata_ready), .data(wdata_data)
+    stream_checker #(.WIDTH(6 + 128)) words (
+        .clk, .rst, .valid(out_valid), .ready(out_ready), .data({out_addr, out_data})
     );
 
     // The clearing takes two clocks to be seen in the bank.
@@ -201,12 +184,12 @@ module band_flush_proof (
     always_ff @(posedge clk) if (!rst) begin
         assume (!start || idle);
 
-        commands_in_order: assert (!cmd_valid || cmd_rows != '0 && cmd_addr == cmd_expected);
-        words_in_order:    assert (!wdata_valid || wdata_data == word_expected);
-        none_made_up:      assert (!wdata_valid || word_rows != '0);
-        data_at_command:   assert (wdata_valid == (owed != '0));
-        commands_match:    assert (!idle || (owed == '0 && !cmd_valid));
-        none_left_out:     assert (!(flushing && idle) || dropped || (cmd_rows == '0 && word_rows == '0));
+        words_in_order:    assert (!out_valid || out_data == expected);
+        in_their_places:   assert (!out_valid || out_addr == expected_addr);
+        none_made_up:      assert (!out_valid || (is_depth ? depth_rows : colour_rows) != '0);
+        colour_first:      assert (!out_valid || !is_depth || !colour_rows[depth_row]);
+        all_taken:         assert (!idle || !out_valid);
+        none_left_out:     assert (!(flushing && idle) || dropped || none_left);
         no_standstill:     assert (without_word < 4'(WITHIN));
         ends:              assert (without_end < 4'd4);
         sweep_ends:        assert (sweep_clocks < 4'd5);
@@ -215,7 +198,7 @@ module band_flush_proof (
         cleared_behind:    assert (!(flushing && idle) || dropped || drawn == ~flush_rows);
         flushed:           cover (flushing && idle && !dropped && flush_rows == 4'b1001);
         deep:              cover (flushing && idle && !dropped && flush_depth && flush_rows == 4'b0100);
-        stopped:           cover (flushing && idle && dropped && word_rows != '0);
+        stopped:           cover (flushing && idle && dropped && !none_left);
     end
 endmodule
 

@@ -25,6 +25,10 @@ def _flush(old, new, fails):
     return Mutation("band_flush.sv", old, new, fails)
 
 
+def _write(old, new, fails):
+    return Mutation("write_port.sv", old, new, fails)
+
+
 def _extents(old, new, fails):
     return Mutation("band_extents.sv", old, new, fails)
 
@@ -78,39 +82,50 @@ MUTATIONS = {
     "fifo of 2": _FIFO,
     "fifo of 4": _FIFO,
     "band_flush": [
-        _flush(".out_ready(cmd_ready)", ".out_ready(1'b1)", "commands.valid_stays"),
-        _flush(".out_ready(cmd_ready)", ".out_ready(1'b1)", "commands.payload_stable"),
-        _flush("word_stored && owed != '0;", "word_stored && owed != '0 && !word_valid;", "words.valid_stays"),
-        _flush(".out_ready(wdata_ready && owed != '0)", ".out_ready(owed != '0)", "words.payload_stable"),
-        _flush("depth_words_base <= depth_base;", "depth_words_base <= base;", "commands_in_order"),
-        _flush("{clear_row, 1'b1}", "{clear_row, 1'b0}", "commands_in_order"),
-        _flush("address   <= address_2;", "address   <= address_1;", "commands_in_order"),
+        _flush(".out_valid, .out_ready,", ".out_valid, .out_ready(1'b1),", "words.valid_stays"),
+        _flush(".out_valid, .out_ready,", ".out_valid, .out_ready(1'b1),", "words.payload_stable"),
+        _flush("depth_words_base <= depth_base;", "depth_words_base <= base;", "in_their_places"),
+        _flush("{clear_row, 1'b1}", "{clear_row, 1'b0}", "in_their_places"),
+        _flush("address   <= address_2;", "address   <= address_1;", "in_their_places"),
         # A span that begins where the one before has ended.
-        _flush("row      <= span_first;", "row      <= row + 1'b1;", "commands_in_order"),
+        _flush("row       <= span_first;", "row       <= row + 1'b1;", "in_their_places"),
         # More words than there are places.
         _flush("in_span && places != '0;", "in_span;", "words_in_order"),
         # A row that is cleared before its depth has been read.
-        _flush("clears <= row_ends;", "clears <= 1'b1;", "words_in_order"),
+        _flush("clears <= part == last_part;", "clears <= 1'b1;", "words_in_order"),
         _flush("{18{written[lane]}}", "18'b0", "words_in_order"),
-        _flush("row_ends && row == last_row;", "row_ends && row == '1;", "none_made_up"),
-        # A command before its data.
-        _flush(".in_valid(word_valid), .in_ready(address_ready)", ".in_valid(asked_1), .in_ready(address_ready)",
-               "data_at_command"),
-        _flush("if (taken && !issue)", "if (commanded && !issue)", "commands_match"),
-        _flush("last_row <= span_last;", "last_row <= span_first;", "none_left_out"),
+        _flush("&& row == last_row;", "&& row == '1;", "none_made_up"),
+        _flush("if (part_ends)               row <= first_row;", "if (part_ends) row <= row;", "none_left_out"),
+        _flush("COLOUR:     if (part_ends && depth_too)", "COLOUR: if (depth_too)", "colour_first"),
+        _flush("if (taken && !issue) ", "if (out_valid && !issue) ", "all_taken"),
+        _flush("last_row  <= span_last;", "last_row  <= span_first;", "none_left_out"),
         # An end while a span is in work, or before the last one has come.
         _flush("if (!in_span && !spans_busy)", "if (!spans_busy)", "none_left_out"),
         _flush("if (!in_span && !spans_busy)", "if (!in_span && !span_valid)", "none_left_out"),
         _flush("(!in_span || span_ends);", "span_ends;", "no_standstill"),
         _flush("places <= places + 1'b1;", "places <= places;", "ends"),
-        _flush("owed <= owed - 1'b1;", "owed <= owed;", "data_at_command"),
         _flush("if (row == '1) state", "if (row == '1 && idle) state", "sweep_ends"),
-        # A restart that waits for memory.
+        # A restart that waits for the words to be taken.
         _flush("SWEEP: begin", "SWEEP: if (places == COUNT_BITS'(WORDS)) begin", "sweep_ends"),
         # A restart that begins where the flush was.
         _flush("state  <= SWEEP;\n            row    <= '0;", "state  <= SWEEP;", "all_swept"),
-        _flush("clears <= row_ends;", "clears <= row_ends && row != last_row;", "cleared_behind"),
+        _flush("clears <= part == last_part;", "clears <= part == last_part && row != last_row;", "cleared_behind"),
         _flush("clear_row <= row;", "clear_row <= row + 1'b1;", "cleared_behind"),
+    ],
+    "write_port": [
+        _write("cmd_valid <= sent;", "cmd_valid <= sent && hurry;", "commands_in_order"),
+        _write("if (!cmd_valid || cmd_ready) begin", "if (1'b1) begin", "commands.valid_stays"),
+        _write("            cmd_addr  <= address;\n        end", "        end\n        cmd_addr <= address;", "commands.payload_stable"),
+        _write("bursting && (!cmd_valid || cmd_ready);", "bursting;", "commands_in_order"),
+        _write(".in_data   ({in_strobe, in_data})", ".in_data   ({in_strobe, in_data << 1})", "data_in_order"),
+        _write(".in_valid  (in_valid),\n        .in_ready  (room)", ".in_valid  (in_valid && gone),\n        .in_ready  (room)",
+               "data_at_command"),
+        _write(".out_ready (wdata_ready)", ".out_ready (1'b1)", "data_at_command"),
+        _write(".in_valid  (in_valid),\n        .in_ready  (room)", ".in_valid  (1'b1),\n        .in_ready  (room)",
+               "none_made_up"),
+        _write("waiting  <= move ? waiting + 1'b1", "waiting  <= move && !hurry ? waiting + 1'b1", "idle_is_empty"),
+        _write("|| hurry) bursting", ") bursting", "goes_in_a_hurry"),
+        _write("if (gathered >= COUNT_BITS'(BURST) || hurry)", "if (hurry)", "full_goes"),
     ],
     "band_extents": [
         Mutation("skid_buffer.sv", "if (!out_valid || out_ready)", "if (1'b1)", "spans.valid_stays"),

@@ -83,5 +83,5 @@ class GlintSoC(SoCCore):
             self.scanout = Scanout(self.platform, self.sdram.crossbar.get_port(mode="read"))
         if "triangle" in self.blocks:
             readers = [self.sdram.crossbar.get_port(mode="read") for _ in range(3)]
-            writers = [self.sdram.crossbar.get_port(mode="write") for _ in range(3)]
+            writers = [self.sdram.crossbar.get_port(mode="write") for _ in range(4)]
             self.triangle = TriangleEngine(self.platform, readers, writers, main_ram)

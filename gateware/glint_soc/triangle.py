@@ -24,8 +24,8 @@ SETUP = [_TRIANGLE / f"{name}.sv" for name in (
     "setup_gradient", "setup_depth", "setup")]
 TRIANGLE_ENGINE = [*dict.fromkeys([
     _TRIANGLE / "list_pkg.sv", *SETUP, *TRIANGLE_RASTER, *VERTEX_STAGE, *BAND_BUFFER, _COMMON / "read_port.sv", _COMMON / "write_port.sv",
-    *(_TRIANGLE / f"{name}.sv" for name in ("vertex_cache", "mesh_walk", "classify", "binner", "geometry_unit", "list_reader",
-                                            "raster_unit", "triangle_engine")),
+    *(_TRIANGLE / f"{name}.sv" for name in ("vertex_cache", "mesh_walk", "classify", "binner", "geometry_unit", "descriptor_cache",
+                                            "list_reader", "raster_unit", "triangle_engine")),
 ])]
 TRIANGLE_CONTROL = [_TRIANGLE / "list_pkg.sv", _TRIANGLE / "triangle_control.sv"]
 
@@ -51,8 +51,8 @@ _SIZES = [("0", "w320", "320x180"), ("1", "w640", "640x360"), ("2", "w1280", "12
 class TriangleEngine(LiteXModule):
     """Draws meshes, in two passes that may run at the same time for two frames.
 
-    `readers` are three native 128-bit LiteDRAM read ports (triangles, vertices, raster), `writers` three write ports
-    (descriptors, lists, frame), all in the domain `sys`. `clk`, to be driven, is its clock, or that gated by `clock_enable`. `main_ram` is the region they reach.
+    `readers` are three native 128-bit LiteDRAM read ports (triangles, vertices, raster), `writers` four write ports
+    (descriptors, lists, frame in even and in odd banks), all in the domain `sys`. `clk`, to be driven, is its clock, or that gated by `clock_enable`. `main_ram` is the region they reach.
     """
 
     def __init__(self, platform, readers, writers, main_ram):
@@ -188,7 +188,7 @@ class TriangleEngine(LiteXModule):
         # # #
 
         mesh_reader, vertex_reader, raster_reader = readers
-        descriptor_writer, list_writer, frame_writer = writers
+        descriptor_writer, list_writer, even_writer, odd_writer = writers
         # The engine stands still but for these times, so its clock may.
         self.clk = Signal()
         self.clock_enable = Signal()
@@ -306,7 +306,8 @@ class TriangleEngine(LiteXModule):
             **_read_port("raster_read", raster_reader),
             **_write_port("descriptors", descriptor_writer),
             **_write_port("lists", list_writer),
-            **_write_port("frame", frame_writer),
+            **_write_port("frame_even", even_writer),
+            **_write_port("frame_odd", odd_writer),
         )
         reads_stalled = _any(port.cmd.valid & ~port.cmd.ready for port in readers)
         stalls = [reads_stalled, *(_any(port.cmd.valid & ~port.cmd.ready for port in some) for some in (writers[:2], writers[2:]))]

@@ -2,9 +2,9 @@
 // is drawn the one before it is written to memory: in each line, what was drawn now and what was drawn there last.
 //
 //                        ┌────────────┐  drawn  ┌─────────────────┐ flushed  ┌────────────┐
-//   groups ─▶ band_pipe ─┤            ├────────▶│ colour bank 0/1 │─────────▶│            │─▶ cmd
-//        │       ▲       │            │         ├─────────────────┤          │ band_flush │
-//        │       └───────┤  compare   │◀───────▶│ depth (shared)  │┄ debug ┄▶│            │─▶ wdata
+//   groups ─▶ band_pipe ─┤            ├────────▶│ colour bank 0/1 │─────────▶│            │
+//        │       ▲       │            │         ├─────────────────┤          │ band_flush │─▶ words
+//        │       └───────┤  compare   │◀───────▶│ depth (shared)  │┄ debug ┄▶│            │
 //        │               └────────────┘         └─────────────────┘          └─────▲──────┘
 //        │               ┌──────────────┐             rows to write                │
 //        └──────────────▶│ band_extents │──────────────────────────────────────────┘
@@ -31,15 +31,15 @@
 // `with_depth` is for debugging: depth goes to memory too, as 32-bit words from `depth_base` on, and all of the band as with
 // `whole`. The next band is drawn only after the flush, and takes three words a row.
 //
-// `restart` (and reset) drops the band being drawn and stops the flush; words that have been read, at most 32, still go to
-// memory. The lines of the band that was being flushed, after reset all lines, are to be flushed with `whole` in this slot before
+// `restart` (and reset) drops the band being drawn and stops the flush; words that have been read, at most 16, still come
+// out. The lines of the band that was being flushed, after reset all lines, are to be flushed with `whole` in this slot before
 // they are flushed without. Then both banks are cleared, 2,048 clocks in which `clearing` is high and no stream is taken, whatever memory
 // does. The renderers are to be restarted too: a group or band that is still offered afterwards counts.
 //
 // Streams: an item moves in a clock in which valid and ready are high; valid does not wait for ready, a payload stays as it
-// is until it has moved. Memory side: see band_flush. `flushed`: memory has taken everything of all bands that have moved.
+// is until it has moved. Words for memory: see band_flush. `flushed`: all of all bands that have moved has been taken.
 // Counters run freely from reset: groups taken, clocks in which a group was held by a hazard, clocks in which the flush had
-// no place for a word because of memory, clocks in which a drawn band waited for the flush of the one before.
+// no place for a word because none was taken, clocks in which a drawn band waited for the flush of the one before.
 
 `default_nettype none
 
@@ -72,13 +72,11 @@ module band_buffer #(
     input  wire                     band_whole,
     input  wire                     band_with_depth,
     input  wire  [15:0]             band_clear,
-    // Memory.
-    output logic                    cmd_valid,
-    input  wire                     cmd_ready,
-    output logic [ADDRESS_BITS-1:0] cmd_addr,
-    output logic                    wdata_valid,
-    input  wire                     wdata_ready,
-    output logic [127:0]            wdata_data,
+    // Words for memory.
+    output logic                    word_valid,
+    input  wire                     word_ready,
+    output logic [ADDRESS_BITS-1:0] word_addr,
+    output logic [127:0]            word_data,
     // Counters.
     output logic [31:0]             groups_in,
     output logic [31:0]             pixels_covered,
@@ -143,7 +141,7 @@ module band_buffer #(
         .span_valid, .span_ready, .span_first, .span_last, .spans_busy,
         .row(flush_row), .colours(flushed_colours), .codes(stored_codes), .written(flushed_written),
         .clears(flush_clears), .clear_row(flush_clear_row),
-        .cmd_valid, .cmd_ready, .cmd_addr, .wdata_valid, .wdata_ready, .wdata_data
+        .out_valid(word_valid), .out_ready(word_ready), .out_addr(word_addr), .out_data(word_data)
     );
 
     // A pixel in a colour bank is {written, colour}.

@@ -1,32 +1,31 @@
-// Reads spans of rows of a finished band out of its bank, writes them to memory, and clears each row behind itself.
+// Reads spans of rows of a finished band out of its bank, gives out their words, and clears each row behind itself.
 //
-//   span ─▶ row ─▶ ┄┄ band_bank's read ┄┄ ─▶ compose ─▶ word ──▶ fifo ─▶ wdata
-//            └──▶ clear_row, a clock later, ─▶ address ─▶ fifo ─▶ cmd ─▶ owed ┘
+//   span ─▶ row ─▶ ┄┄ band_bank's read ┄┄ ─▶ compose ─▶ fifo ─▶ out
+//            └──▶ clear_row, a clock later, ─▶ address ──┘
 //
 // One row is one 128-bit word: eight RGB565 pixels, the leftmost in the lowest bits; a pixel that nobody has drawn takes
-// the clear colour. With `with_depth` two words follow, four depths of 32 bits each, 0 where nobody has drawn. The colour word
-// of row r goes to `base` + r, its depth words to `depth_base` + 2r and the word after it.
+// the clear colour. The colour word of row r goes to `base` + r. With `with_depth`, when the colours of a span are out its rows
+// are read again: two words a row follow, four depths of 32 bits each, 0 where nobody has drawn, for `depth_base` + 2r and the
+// word after it. So neighbours in memory follow each other, and memory seldom turns to another bank.
 //
-// `start` takes these parameters and begins; it may come while `idle` is high, which falls until memory has taken the last
-// word. The rows are those of the spans, an item {first, last} each, last >= first, in their order; `spans_busy`
-// is high until the last of them has been taken. Throughput one word a clock where spans are there in time and memory keeps up;
-// the first command comes 7 clocks after the first span was taken.
+// `start` takes these parameters and begins; it may come while `idle` is high, which falls until the last word has been
+// taken. The rows are those of the spans, an item {first, last} each, last >= first, in their order; `spans_busy`
+// is high until the last of them has been taken. Throughput one word a clock where spans are there in time and words are taken;
+// the first one comes 6 clocks after the first span was taken.
 //
-// Memory side, the LiteDRAM native write port: 128-bit word addresses by valid/ready, data by valid/ready in the order of
-// the addresses. LiteDRAM takes the data of a command some time after it without looking at `wdata_valid`, so a command is
-// offered only when its data are in the FIFO, and data are valid from the clock after their command was taken on.
-// There is a place for a word before its row is read: memory may stall as it likes.
+// Out: a stream of {address, data}; valid does not wait for ready, and a word stays as it is until it has moved. There is a
+// place for a word before its row is read: `out_ready` may stay low as long as it likes.
 //
 // `restart`, and reset, leave the band and clear all 2^ROW_BITS rows of both banks, one a clock, while `sweeping` is high.
-// Nothing may be drawn then. Memory is not waited for: words that have been read go there whenever it takes them.
+// Nothing may be drawn then. Words that have been read are not waited for: they go whenever they are taken.
 
 `default_nettype none
 
 module band_flush #(
     parameter int unsigned ADDRESS_BITS = 23,
     parameter int unsigned ROW_BITS     = 11,
-    // Words on their way, a power of two.
-    parameter int unsigned WORDS        = 32
+    // Words on their way, a power of two. A place is free again 7 clocks after its row was asked for.
+    parameter int unsigned WORDS        = 16
 ) (
     input  wire                     clk,
     input  wire                     rst,
@@ -54,32 +53,22 @@ module band_flush #(
     input  wire  [7:0]              written,
     output logic                    clears,
     output logic [ROW_BITS-1:0]     clear_row,
-    // Memory.
-    output logic                    cmd_valid,
-    input  wire                     cmd_ready,
-    output logic [ADDRESS_BITS-1:0] cmd_addr,
-    output logic                    wdata_valid,
-    input  wire                     wdata_ready,
-    output logic [127:0]            wdata_data
+    // Words.
+    output logic                    out_valid,
+    input  wire                     out_ready,
+    output logic [ADDRESS_BITS-1:0] out_addr,
+    output logic [127:0]            out_data
 );
     localparam int unsigned COUNT_BITS = $clog2(WORDS + 1);
 
     // The words of a row.
     typedef enum logic [1:0] {COLOUR, DEPTH_LEFT, DEPTH_RIGHT} part_t;
 
-    function automatic part_t next_part(input part_t part, input logic depth);
-        case (part)
-            COLOUR:     next_part = depth ? DEPTH_LEFT : COLOUR;
-            DEPTH_LEFT: next_part = DEPTH_RIGHT;
-            default:    next_part = COLOUR;
-        endcase
-    endfunction
-
     typedef enum logic [1:0] {IDLE, FLUSH, SWEEP} state_t;
     state_t                state;
-    part_t                 part;
-    logic                  depth_too, in_span, issue, row_ends, span_ends;
-    logic [ROW_BITS-1:0]   last_row;
+    part_t                 part, last_part;
+    logic                  depth_too, in_span, issue, part_ends, span_ends;
+    logic [ROW_BITS-1:0]   first_row, last_row;
     logic [15:0]           background;
     logic [ADDRESS_BITS-1:0] colour_base, depth_words_base;
     // Words that may still be asked for.
@@ -90,8 +79,9 @@ module band_flush #(
     assign reads_depth = state == FLUSH && depth_too;
     assign waits       = state == FLUSH && in_span && places == '0;
     assign issue       = state == FLUSH && in_span && places != '0;
-    assign row_ends    = part == (depth_too ? DEPTH_RIGHT : COLOUR);
-    assign span_ends   = issue && row_ends && row == last_row;
+    assign last_part   = depth_too ? DEPTH_RIGHT : COLOUR;
+    assign part_ends   = part != DEPTH_LEFT && row == last_row;
+    assign span_ends   = issue && part_ends && part == last_part;
     assign span_ready  = state == FLUSH && (!in_span || span_ends);
 
     // Rows, and their clearing a clock behind: the read is then under way.
@@ -102,14 +92,20 @@ module band_flush #(
         case (state)
             FLUSH: begin
                 if (issue) begin
-                    part   <= next_part(part, depth_too);
-                    clears <= row_ends;
-                    if (row_ends) row <= row + 1'b1;
+                    clears <= part == last_part;
+                    case (part)
+                        COLOUR:     if (part_ends && depth_too) part <= DEPTH_LEFT;
+                        DEPTH_LEFT: part <= DEPTH_RIGHT;
+                        default:    part <= part_ends ? COLOUR : DEPTH_LEFT;
+                    endcase
+                    if (part_ends)               row <= first_row;
+                    else if (part != DEPTH_LEFT) row <= row + 1'b1;
                 end
                 if (span_ready) begin
-                    in_span  <= span_valid;
-                    row      <= span_first;
-                    last_row <= span_last;
+                    in_span   <= span_valid;
+                    row       <= span_first;
+                    first_row <= span_first;
+                    last_row  <= span_last;
                 end
                 if (!in_span && !spans_busy) state <= IDLE;
             end
@@ -165,9 +161,8 @@ module band_flush #(
         end
     end
 
-    logic                  word_valid, word_ready, word_stored;
-    logic [COUNT_BITS-1:0] owed;
-    logic [127:0]          word, colour_word, depth_left_word, depth_right_word;
+    logic         word_valid, word_ready, taken;
+    logic [127:0] word, colour_word, depth_left_word, depth_right_word;
 
     for (genvar lane = 0; lane < 8; lane++) begin : lanes
         assign colour_word[16*lane +: 16] = written[lane] ? colours[16*lane +: 16] : background;
@@ -186,39 +181,23 @@ module band_flush #(
         endcase
     end
 
-    fifo #(.WIDTH(128), .DEPTH(WORDS)) words (
+    // There is a place: `word_ready` is always high when a word comes.
+    fifo #(.WIDTH(ADDRESS_BITS + 128), .DEPTH(WORDS)) words (
         .clk, .rst,
-        .in_valid(word_valid), .in_ready(word_ready), .in_data(word),
-        .out_valid(word_stored), .out_ready(wdata_ready && owed != '0), .out_data(wdata_data)
+        .in_valid(word_valid), .in_ready(word_ready), .in_data({address, word}),
+        .out_valid, .out_ready, .out_data({out_addr, out_data})
     );
 
-    // Commands: a word's address enters its FIFO with the word, so it comes out of it no sooner, and a word is at the end of the
-    // words' FIFO when its command shows in `owed`: words of commands that memory has taken. There are places in both.
-    logic commanded, taken, address_ready;
-
-    fifo #(.WIDTH(ADDRESS_BITS), .DEPTH(WORDS)) addresses (
-        .clk, .rst,
-        .in_valid(word_valid), .in_ready(address_ready), .in_data(address),
-        .out_valid(cmd_valid), .out_ready(cmd_ready), .out_data(cmd_addr)
-    );
-
-    wire _unused = &{1'b0, word_ready, address_ready};
-
-    assign wdata_valid = word_stored && owed != '0;
-    assign commanded   = cmd_valid && cmd_ready;
-    assign taken       = wdata_valid && wdata_ready;
+    assign taken = out_valid && out_ready;
 
     always_ff @(posedge clk) begin
-        if (commanded && !taken)        owed <= owed + 1'b1;
-        else if (!commanded && taken)   owed <= owed - 1'b1;
-        if (taken && !issue)            places <= places + 1'b1;
-        else if (!taken && issue)       places <= places - 1'b1;
+        if (taken && !issue)      places <= places + 1'b1;
+        else if (!taken && issue) places <= places - 1'b1;
 
-        if (rst) begin
-            owed   <= '0;
-            places <= COUNT_BITS'(WORDS);
-        end
+        if (rst) places <= COUNT_BITS'(WORDS);
     end
+
+    wire _unused = &{1'b0, word_ready};
 endmodule
 
 `default_nettype wire

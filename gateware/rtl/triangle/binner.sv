@@ -127,7 +127,7 @@ module binner #(
         list_end   <= ends[band];
         first_list <= list_base + ADDRESS_BITS'(list_pkg::TABLE_WORDS);
         list_word  <= first_list + (ADDRESS_BITS'(band) << list_shift)
-                    + ADDRESS_BITS'(band) * ADDRESS_BITS'(list_pkg::SKEW_WORDS);
+                    + ADDRESS_BITS'(band) * ADDRESS_BITS'(list_pkg::BANK_WORDS);
     end
 
     always_ff @(posedge clk) begin

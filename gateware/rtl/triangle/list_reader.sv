@@ -1,19 +1,19 @@
 // Reads the descriptors of a frame, band by band, in the order of their lists: in each band those of the geometry unit first,
 // then a second set that the firmware has made (clipped triangles), where there is one. Layout as binner writes it.
 //
-//             words               entries              addresses            words
-//   lengths ─────────▶ lists ────────┬──────▶ triangles ────────▶ memory ─────────▶ out
-//                        └─▶ jobs ───┘            └────────────▶ marks ──────────────┘
+//             words               entries   ┌──────────────────┐
+//   lengths ─────────▶ lists ────────┬─────▶│ descriptor_cache │──▶ out
+//                        └─▶ jobs ───┘      └──────────────────┘
 //
 // Each part runs ahead of the one behind it as far as its FIFO reaches, through the ends of lists and bands: lengths of 16 bands,
 // lists of 8 jobs (a list of a band each) or 128 entries, 10 descriptors. So memory's latency is hidden while what has been
 // read lasts. Three clients of a read_port: the lengths of the lists, the lists, the descriptors. Throughput a descriptor in
-// 4 clocks; a list takes 4 clocks, if it is empty too.
+// 5 clocks; a list takes 4 clocks, if it is empty too.
 //
 // `list_error`: since `start` there was a list longer than lists may be, which was taken as empty, or an entry that is none of
-// the set's `counts` descriptors, which was read from where it would be.
+// the set's `counts` descriptors, for which something else was drawn.
 //
-// `start` (one clock, not while a frame is read) begins with band 0. An item of `out` is a descriptor, or with `out_end` the end
+// `start` (one clock, not while a frame is read) begins with band 0. `forget`: descriptor_cache. An item of `out` is a descriptor, or with `out_end` the end
 // of a band. All is read after the end of `last_band`. Streams: an item moves in a clock in which valid and ready are high;
 // valid does not wait for ready, and a payload stays as it is until it has moved.
 
@@ -26,6 +26,7 @@ module list_reader #(
     input  wire                       clk,
     input  wire                       rst,
     input  wire                       start,
+    input  wire                       forget,
     input  wire  [5:0]                last_band,
     // Set 0 is the geometry unit's, set 1 the firmware's.
     input  wire  [1:0]                present,
@@ -46,13 +47,11 @@ module list_reader #(
     output logic                      out_end,
     output triangle_pkg::descriptor_t out_descriptor
 );
-    localparam int unsigned JOBS        = 8;
-    localparam int unsigned MARKS       = 16;
+    localparam int unsigned JOBS = 8;
 
-    logic [1:0][ADDRESS_BITS-1:0] lists, descriptors;
+    logic [1:0][ADDRESS_BITS-1:0] lists;
 
-    assign lists       = list_base;
-    assign descriptors = descriptor_base;
+    assign lists = list_base;
 
     // Lengths: a word for each list, since a word of the table has those of four bands, and the sets take turns.
     logic       asks_lengths, length_set;
@@ -129,7 +128,7 @@ module list_reader #(
             list_state <= list_set && list_band == last_band ? IDLE : LENGTH;
             if (list_set) begin
                 list_band   <= list_band + 1'b1;
-                list_offset <= list_offset + (ADDRESS_BITS'(1) << list_shift) + ADDRESS_BITS'(list_pkg::SKEW_WORDS);
+                list_offset <= list_offset + (ADDRESS_BITS'(1) << list_shift) + ADDRESS_BITS'(list_pkg::BANK_WORDS);
             end
         end
         if (rst) list_state <= IDLE;
@@ -143,19 +142,19 @@ module list_reader #(
         .out_valid(next_valid), .out_ready(next_ready), .out_data(next_length)
     );
 
-    // Triangles: entries are taken out of the words of the list; after both lists of a band comes its end. Each leaves a mark.
-    logic                    job_valid, set, left, last_entry, mark_valid, mark_ready, entry_taken, end_taken;
-    logic                    number_valid, number_ready, number_taken, number_set;
+    // Triangles: entries are taken out of the words of the list; after both lists of a band comes its end.
+    logic                    job_valid, set, left, last_entry, entry_taken, end_taken;
+    logic                    item_valid, item_ready, item_free, item_end, item_set;
     logic [COUNT_BITS-1:0]   entries_after;
     logic [1:0]              lane;
     logic [31:0]             number;
 
     assign next_ready    = !job_valid;
     assign last_entry    = entries_after == '0;
-    assign entry_taken   = job_valid && left && data_valid[1] && number_ready && mark_ready;
-    assign end_taken     = job_valid && !left && (!set || mark_ready);
-    assign mark_valid    = job_valid && (left ? data_valid[1] && number_ready : set);
-    assign data_ready[1] = job_valid && left && number_ready && mark_ready && (lane == '1 || last_entry);
+    assign item_free     = !item_valid || item_ready;
+    assign entry_taken   = job_valid && left && data_valid[1] && item_free;
+    assign end_taken     = job_valid && !left && item_free;
+    assign data_ready[1] = job_valid && left && item_free && (lane == '1 || last_entry);
 
     always_ff @(posedge clk) begin
         if (next_ready) begin
@@ -173,17 +172,16 @@ module list_reader #(
             job_valid <= 1'b0;
             set       <= !set;
         end
-        if (number_ready) begin
-            number_valid <= entry_taken;
-            number       <= data[128 + 32 * lane +: 32];
-            number_set   <= set;
-        end else if (number_taken) begin
-            number_valid <= 1'b0;
+        if (item_free) begin
+            item_valid <= entry_taken || end_taken && set;
+            item_end   <= !left;
+            item_set   <= set;
+            number     <= data[128 + 32 * lane +: 32];
         end
         if (rst) begin
-            job_valid    <= 1'b0;
-            set          <= 1'b0;
-            number_valid <= 1'b0;
+            job_valid  <= 1'b0;
+            set        <= 1'b0;
+            item_valid <= 1'b0;
         end
     end
 
@@ -193,55 +191,18 @@ module list_reader #(
     assign limits = counts;
 
     always_ff @(posedge clk) begin
-        beyond <= number_valid && number >= 32'(limits[number_set]);
+        beyond <= item_valid && !item_end && number >= 32'(limits[item_set]);
         if (beyond || list_state == CHECK && too_long) list_error <= 1'b1;
         if (rst || start) list_error <= 1'b0;
     end
 
-    // Three addresses for a triangle.
-    logic                    asks_words, last_address;
-    logic [1:0]              address;
-    logic [ADDRESS_BITS-1:0] descriptor_word;
-
-    assign last_address = address[1] && ask_ready[2];
-    assign number_taken = !asks_words || last_address;
-    assign number_ready = !number_valid;
-    assign ask_valid[2] = asks_words;
-    assign ask_addr[2*ADDRESS_BITS +: ADDRESS_BITS] = descriptor_word;
-
-    always_ff @(posedge clk) begin
-        if (number_taken) begin
-            asks_words      <= number_valid;
-            address         <= '0;
-            descriptor_word <= descriptors[number_set] + ADDRESS_BITS'(number) + (ADDRESS_BITS'(number) << 1);
-        end else if (ask_ready[2]) begin
-            address         <= address + 1'b1;
-            descriptor_word <= descriptor_word + 1'b1;
-        end
-        if (rst) asks_words <= 1'b0;
-    end
-
-    // Three words for a descriptor.
-    logic       marked, mark_is_end;
-    logic [1:0] words;
-
-    fifo #(.WIDTH(1), .DEPTH(MARKS)) marks (
-        .clk, .rst, .in_valid(mark_valid), .in_ready(mark_ready), .in_data(!left),
-        .out_valid(marked), .out_ready(out_valid && out_ready), .out_data(mark_is_end)
+    descriptor_cache #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS)) descriptors (
+        .clk, .rst, .forget, .base(descriptor_base),
+        .in_valid(item_valid), .in_ready(item_ready), .in_end(item_end), .in_set(item_set), .in_number(number[COUNT_BITS-1:0]),
+        .ask_valid(ask_valid[2]), .ask_ready(ask_ready[2]), .ask_addr(ask_addr[2*ADDRESS_BITS +: ADDRESS_BITS]),
+        .data_valid(data_valid[2]), .data_ready(data_ready[2]), .data(data[256 +: 128]),
+        .out_valid, .out_ready, .out_end, .out_descriptor
     );
-
-    assign data_ready[2] = words != 2'd3;
-    assign out_valid     = marked && (mark_is_end || words == 2'd3);
-    assign out_end       = mark_is_end;
-
-    always_ff @(posedge clk) begin
-        if (data_ready[2] && data_valid[2]) begin
-            words          <= words + 1'b1;
-            out_descriptor <= {data[256 +: 128], out_descriptor[383:128]};
-        end
-        if (out_valid && out_ready && !mark_is_end) words <= '0;
-        if (rst) words <= '0;
-    end
 endmodule
 
 `default_nettype wire

@@ -1,17 +1,21 @@
 // Draws a frame, band by band, from the lists that the geometry unit and the firmware have left in memory.
 //
-//   lists, descriptors ──▶ list_reader ──▶ triangle_raster ──▶ band_buffer ──▶ frame, depth
+//                                                                             ┌─▶ write_port 0 ─┐
+//   lists, descriptors ──▶ list_reader ──▶ triangle_raster ──▶ band_buffer ───┴─▶ write_port 1 ─┴─▶ frame, depth
 //
 // `start` (one clock, not while `busy`) takes the parameters, which hold until `done` (one clock): everything is in memory
 // then. A band takes as long as its groups, and about 16 clocks to be handed over; descriptors are read ahead meanwhile, and the
-// first triangles of the next band prepared. `restart` may come at any time, and gives the frame up; the unit is to be started again when it is `ready` and read_port has thrown away what was on its way.
+// first triangles of the next band prepared. `restart` may come at any time, and gives the frame up; the unit is to be started
+// again when it is `ready` and read_port has thrown away what was on its way.
 //
 // `frame_slot` says which of two frame buffers the frame is for. Only words that can differ from what the frame before in the
 // same slot has left there are written, unless `whole` says that all are to be: nothing is known of the frame buffer (it is
 // fresh, or elsewhere; another size or another clear colour was drawn there, or somebody else has written to it). `with_depth`
 // implies `whole`, and so does a slot in which no frame is whole: after reset, and after a frame for it was given up.
 //
-// Memory: three clients of a read_port, and a native write port (band_flush).
+// Memory: three clients of a read_port, and two native write ports, one for the even banks of memory and one for the odd ones.
+// A port turns to another bank only when the bank before has done its work, a dozen clocks later, and a band's lines change the
+// bank at every step: while one port waits for its bank the other one has begun.
 // Counters run freely: clocks busy, clocks without a triangle in the walker, clocks in which it stood in a group, and
 // those of the band buffer.
 
@@ -50,12 +54,12 @@ module raster_unit #(
     input  wire  [2:0]                data_valid,
     output logic [2:0]                data_ready,
     input  wire  [3*128-1:0]          data,
-    output logic                      cmd_valid,
-    input  wire                       cmd_ready,
-    output logic [ADDRESS_BITS-1:0]   cmd_addr,
-    output logic                      wdata_valid,
-    input  wire                       wdata_ready,
-    output logic [127:0]              wdata_data,
+    output logic [1:0]                cmd_valid,
+    input  wire  [1:0]                cmd_ready,
+    output logic [2*ADDRESS_BITS-1:0] cmd_addr,
+    output logic [1:0]                wdata_valid,
+    input  wire  [1:0]                wdata_ready,
+    output logic [2*128-1:0]          wdata,
     // Counters.
     output logic [31:0]               clocks_busy,
     output logic [31:0]               clocks_walking,
@@ -86,7 +90,7 @@ module raster_unit #(
     logic [5:0]              band;
     logic [9:0]              first_row;
     logic [ADDRESS_BITS-1:0] base, band_depth_base;
-    logic                    clearing, flushed, band_ready, begins, drawn;
+    logic                    clearing, flushed, in_memory, band_ready, begins, drawn;
     // The band whose triangles are read: that which is drawn, or the next one.
     logic [9:0]              read_row;
     logic                    read_odd;
@@ -100,12 +104,12 @@ module raster_unit #(
             all_words <= whole || !known[frame_slot];
             if (start) known[frame_slot] <= 1'b0;
         end
-        if (state == FLUSH && flushed) known[frame_slot] <= 1'b1;
+        if (state == FLUSH && in_memory) known[frame_slot] <= 1'b1;
         if (rst) known <= '0;
     end
 
     assign busy  = state != IDLE;
-    assign ready = !clearing && flushed;
+    assign ready = !clearing && in_memory;
     assign begins = state == IDLE && start;
 
     always_ff @(posedge clk) begin
@@ -126,7 +130,7 @@ module raster_unit #(
                 band_depth_base <= band_depth_base + (ADDRESS_BITS'(words) << 1);
                 state           <= band == last_band ? FLUSH : DRAW;
             end
-            default: if (flushed) begin
+            default: if (in_memory) begin
                 done  <= 1'b1;
                 state <= IDLE;
             end
@@ -156,7 +160,7 @@ module raster_unit #(
     end
 
     list_reader #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS)) list_reader (
-        .clk, .rst(rst || restart), .start(begins), .last_band, .present, .list_base, .descriptor_base, .counts, .list_shift, .list_error,
+        .clk, .rst(rst || restart), .start(begins), .forget(state == IDLE), .last_band, .present, .list_base, .descriptor_base, .counts, .list_shift, .list_error,
         .ask_valid, .ask_ready, .ask_addr, .data_valid, .data_ready, .data,
         .out_valid(item_valid), .out_ready(item_ready), .out_end(band_ends), .out_descriptor(descriptor)
     );
@@ -177,15 +181,36 @@ module raster_unit #(
     );
     /* verilator lint_on PINCONNECTEMPTY */
 
+    logic                    word_valid, word_ready, odd_bank;
+    logic [ADDRESS_BITS-1:0] word_addr;
+    logic [127:0]            word_data;
+    logic [1:0]              port_ready, port_idle;
+
     band_buffer #(.ADDRESS_BITS(ADDRESS_BITS)) band_buffer (
         .clk, .rst, .restart, .clearing, .flushed,
         .group_valid, .group_ready, .group_row, .group_line, .group_column, .group_mask, .group_codes, .group_colours,
         .band_valid(state == HAND_OVER), .band_ready, .band_base(base), .band_depth_base, .band_lines(rows), .band_stride(stride),
         .band_first_line(first_row), .band_slot(frame_slot), .band_whole(all_words),
         .band_with_depth(with_depth), .band_clear(clear),
-        .cmd_valid, .cmd_ready, .cmd_addr, .wdata_valid, .wdata_ready, .wdata_data,
+        .word_valid, .word_ready, .word_addr, .word_data,
         .groups_in, .pixels_covered, .pixels_drawn, .clocks_held, .clocks_memory, .clocks_flush
     );
+
+    assign odd_bank   = word_addr[$clog2(list_pkg::BANK_WORDS)];
+    assign word_ready = port_ready[odd_bank];
+    assign in_memory  = flushed && &port_idle;
+
+    for (genvar bank = 0; bank < 2; bank++) begin : ports
+        /* verilator lint_off PINCONNECTEMPTY */
+        write_port #(.ADDRESS_BITS(ADDRESS_BITS)) write (
+            .clk, .rst, .hurry(1'b1), .idle(port_idle[bank]),
+            .in_valid(word_valid && odd_bank == 1'(bank)), .in_ready(port_ready[bank]), .in_addr(word_addr), .in_data(word_data),
+            .in_strobe('1),
+            .cmd_valid(cmd_valid[bank]), .cmd_ready(cmd_ready[bank]), .cmd_addr(cmd_addr[bank*ADDRESS_BITS +: ADDRESS_BITS]),
+            .wdata_valid(wdata_valid[bank]), .wdata_ready(wdata_ready[bank]), .wdata(wdata[bank*128 +: 128]), .wdata_strobe()
+        );
+        /* verilator lint_on PINCONNECTEMPTY */
+    end
 
     always_ff @(posedge clk) begin
         if (busy)                  clocks_busy    <= clocks_busy + 1'b1;

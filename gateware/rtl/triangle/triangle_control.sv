@@ -109,7 +109,7 @@ module triangle_control #(
 
     assign mesh_words  = mesh_bytes[31:WORD_BITS+4] != '0 ? '1 : WORD_BITS'(mesh_bytes >> 4);
     assign list_words  = list_shift > LAST_SHIFT ? '1 : WORD_BITS'(list_pkg::TABLE_WORDS)
-                      + (WORD_BITS'(bands) << list_shift) + WORD_BITS'(bands * list_pkg::SKEW_WORDS);
+                      + (WORD_BITS'(bands) << list_shift) + WORD_BITS'(bands * list_pkg::BANK_WORDS);
     assign frame_words = WORD_BITS'(SMALL_FRAME_WORDS) << {size, 1'b0};
 
     always_comb begin

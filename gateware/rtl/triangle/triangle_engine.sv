@@ -7,7 +7,7 @@
 //
 // Reads go through three native read ports of the memory: triangles, vertices, and what the raster reads. LiteDRAM lets a
 // port turn to another bank only when the bank before has done all its work, which takes four clocks; streams on ports of
-// their own do not turn for each other. The units have write ports of their own. `cancel` (one clock, at any
+// their own do not turn for each other. Descriptors, lists, and the frame's words in even and in odd banks have write ports. `cancel` (one clock, at any
 // time) gives both frames up; `ready` says that the memory has answered everything and the band buffer is clear, so that
 // either unit may start. What the units' parameters and results mean stands in their own files.
 
@@ -110,13 +110,20 @@ module triangle_engine #(
     input  wire                       lists_wdata_ready,
     output logic [127:0]              lists_wdata,
     output logic [15:0]               lists_wdata_strobe,
-    output logic                      frame_cmd_valid,
-    input  wire                       frame_cmd_ready,
-    output logic [ADDRESS_BITS-1:0]   frame_cmd_addr,
-    output logic                      frame_wdata_valid,
-    input  wire                       frame_wdata_ready,
-    output logic [127:0]              frame_wdata,
-    output logic [15:0]               frame_wdata_strobe
+    output logic                      frame_even_cmd_valid,
+    input  wire                       frame_even_cmd_ready,
+    output logic [ADDRESS_BITS-1:0]   frame_even_cmd_addr,
+    output logic                      frame_even_wdata_valid,
+    input  wire                       frame_even_wdata_ready,
+    output logic [127:0]              frame_even_wdata,
+    output logic [15:0]               frame_even_wdata_strobe,
+    output logic                      frame_odd_cmd_valid,
+    input  wire                       frame_odd_cmd_ready,
+    output logic [ADDRESS_BITS-1:0]   frame_odd_cmd_addr,
+    output logic                      frame_odd_wdata_valid,
+    input  wire                       frame_odd_wdata_ready,
+    output logic [127:0]              frame_odd_wdata,
+    output logic [15:0]               frame_odd_wdata_strobe
 );
     localparam int unsigned RASTER_CLIENTS = 3;
     localparam int unsigned CLIENTS        = 2 + RASTER_CLIENTS;
@@ -129,7 +136,8 @@ module triangle_engine #(
 
     assign drop = cancel || dropping;
     assign ready = !dropping && raster_ready;
-    assign frame_wdata_strobe       = '1;
+    assign frame_even_wdata_strobe  = '1;
+    assign frame_odd_wdata_strobe   = '1;
     assign descriptors_wdata_strobe = '1;
 
     always_ff @(posedge clk) begin
@@ -182,8 +190,10 @@ module triangle_engine #(
         .list_base(raster_lists), .descriptor_base(raster_descriptors), .counts(raster_counts), .list_shift, .list_error,
         .ask_valid(ask_valid[4:2]), .ask_ready(ask_ready[4:2]), .ask_addr(ask_addr[5*ADDRESS_BITS-1:2*ADDRESS_BITS]),
         .data_valid(data_valid[4:2]), .data_ready(data_ready[4:2]), .data(data[5*128-1:2*128]),
-        .cmd_valid(frame_cmd_valid), .cmd_ready(frame_cmd_ready), .cmd_addr(frame_cmd_addr),
-        .wdata_valid(frame_wdata_valid), .wdata_ready(frame_wdata_ready), .wdata_data(frame_wdata),
+        .cmd_valid({frame_odd_cmd_valid, frame_even_cmd_valid}), .cmd_ready({frame_odd_cmd_ready, frame_even_cmd_ready}),
+        .cmd_addr({frame_odd_cmd_addr, frame_even_cmd_addr}),
+        .wdata_valid({frame_odd_wdata_valid, frame_even_wdata_valid}),
+        .wdata_ready({frame_odd_wdata_ready, frame_even_wdata_ready}), .wdata({frame_odd_wdata, frame_even_wdata}),
         .clocks_busy(raster_clocks), .clocks_walking, .clocks_empty, .groups_in, .pixels_covered, .pixels_drawn, .clocks_held, .clocks_memory, .clocks_flush
     );
 endmodule

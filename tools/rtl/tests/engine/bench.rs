@@ -109,7 +109,7 @@ pub struct Bench {
     pub module: Module,
     memory: Memory,
     pub reads: [ReadPort; 3],
-    writes: [WritePort; 3],
+    writes: [WritePort; 4],
     /// Whether depths are written and compared as well.
     pub with_depth: bool,
     /// The frame buffer that is drawn in.
@@ -134,7 +134,7 @@ impl Bench {
             memory: Memory::new(WORDS),
             reads: ["mesh_read_", "vertex_read_", "raster_read_"]
                 .map(|name| ReadPort::new(&module, name, Stalls::new(seed, stalls))),
-            writes: ["descriptors_", "lists_", "frame_"]
+            writes: ["descriptors_", "lists_", "frame_even_", "frame_odd_"]
                 .map(|name| WritePort::new(&module, name, Stalls::new(seed + 1, stalls))),
             module,
             with_depth: true,
@@ -178,7 +178,7 @@ impl Bench {
                 clocks < 2_000_000,
                 "nothing for {clocks} clocks: given {:?} written {} groups {}",
                 self.reads.each_ref().map(|read| read.given),
-                self.writes[2].written,
+                self.frame_words(),
                 self.count("groups_in")
             );
             self.clock();
@@ -189,6 +189,11 @@ impl Bench {
     /// Words written so far.
     pub fn written(&self) -> u64 {
         self.writes.iter().map(|write| write.written).sum()
+    }
+
+    /// Words of frames and depths written so far.
+    fn frame_words(&self) -> u64 {
+        self.writes[2].written + self.writes[3].written
     }
 
     pub fn pulse(&mut self, port: &str) {
@@ -275,7 +280,7 @@ impl Bench {
         self.set("raster_counts", counts);
         self.set("present", if expected.clipped.is_empty() { 1 } else { 3 });
         self.pulse("raster_start");
-        let written = self.writes[2].written;
+        let written = self.frame_words();
         let raster = self.wait_for("raster_done");
         self.left[self.slot] = Some((expected.size, expected.clear));
         assert_eq!(self.count("list_error"), 0, "{name}: the lists");
@@ -283,7 +288,7 @@ impl Bench {
         Clocks {
             geometry,
             raster,
-            written: self.writes[2].written - written,
+            written: self.frame_words() - written,
         }
     }
 

@@ -4,7 +4,7 @@
 //! Needs what `cargo xtask gateware` and `cargo xtask firmware` build; `cargo xtask test` sees to it.
 //!
 //! A board draws one frame while the monitor takes in the one before, so that a scene costs one frame of the video, which
-//! is most of the time that this takes (three frames at 1280x720, where depths take more than one to write):
+//! is most of the time that this takes:
 //!
 //! ```text
 //! video   |      nothing      |   scene 0   |   scene 1   |   scene 2 ...
@@ -41,8 +41,6 @@ struct Watched {
     seen: usize,
     /// Pictures that were looked at.
     pictures: u64,
-    /// Lines of the picture may be late.
-    late: bool,
 }
 
 impl Watched {
@@ -64,9 +62,6 @@ impl Watched {
         let frame = picture.scaled_back(self.scale).unwrap();
         let next = &self.expected[self.seen - 1..];
         let Some(at) = next.iter().take(2).position(|(_, wanted)| *wanted == frame) else {
-            if self.late {
-                return;
-            }
             let (name, wanted) = next.get(1).unwrap_or(&next[0]);
             let at = (0..frame.len()).find(|&i| frame[i] != wanted[i]);
             let (at, width) = (at.unwrap_or_default(), 1280 / self.scale);
@@ -197,7 +192,6 @@ fn draw(size: (u32, u32), scenes: Vec<scenes::Scene>) {
         expected: vec![("nothing".to_owned(), vec![0; (size.0 * size.1) as usize])],
         seen: 1,
         pictures: 0,
-        late: false,
     };
     let mut console = Console::new(&mut board).patience(PATIENCE_MS);
     console.greet().unwrap();
@@ -208,7 +202,6 @@ fn draw(size: (u32, u32), scenes: Vec<scenes::Scene>) {
     console.board().board.inner().monitor().turn_on();
     // Frames of the video when the last scene was drawn.
     let mut drawn = u32::MAX;
-    let mut underflows = 0;
 
     for (name, mesh, view, cull) in scenes {
         // Without its depth only the part of a frame is written that can differ.
@@ -241,14 +234,6 @@ fn draw(size: (u32, u32), scenes: Vec<scenes::Scene>) {
                 lines.push(format!("load {length} {crc32:08x}"));
             }
             lines.push("info".to_owned());
-            // While the engine writes depths, some lines of the largest picture come late: it is looked at when they are
-            // written. Without depths none may.
-            let late = with_depth && size.0 == 1280;
-            if late {
-                // Nothing is to be seen only then.
-                console.board().see();
-            }
-            console.board().late = late;
             console.board().expect(&name, frame.colour);
             told = send(&mut console, &lines);
             // `render` would take back what is not on the screen yet.
@@ -292,17 +277,7 @@ fn draw(size: (u32, u32), scenes: Vec<scenes::Scene>) {
                     assert_eq!(found, wanted, "{name}: the depth at {:?}", place(at));
                 }
             }
-            if late {
-                console.board().see();
-                told = send(&mut console, &["info".to_owned()]);
-            } else {
-                assert_eq!(
-                    told.number("video_underflows"),
-                    underflows,
-                    "{name}: late lines"
-                );
-            }
-            underflows = told.number("video_underflows");
+            assert_eq!(told.number("video_underflows"), 0, "{name}: late lines");
         }
     }
     let board = console.board();

@@ -1,0 +1,65 @@
+// The write port, small: four places, bursts of two, any traffic and any memory.
+//
+// The words are numbered: word n has address n and data n. Whatever the port carries it never looks at, so what holds for the
+// numbers holds for any address and data. Memory takes the data of a command when it likes and does not look whether they are there.
+
+`default_nettype none
+
+module write_port_proof (
+    input wire clk,
+    input wire hurry,
+    input wire in_valid,
+    input wire cmd_ready,
+    input wire wdata_ready
+);
+    localparam int unsigned DEPTH = 4, NUMBER_BITS = 5;
+    // Clocks that may pass until a word is in memory that takes whatever there is: through both FIFOs, all places full.
+    localparam int unsigned WITHIN = 8;
+
+    logic rst = 1'b1;
+    always_ff @(posedge clk) rst <= 1'b0;
+
+    logic [NUMBER_BITS-1:0] came, commanded, went, cmd_addr;
+    logic [127:0]           wdata;
+    logic [15:0]            wdata_strobe;
+    logic                   in_ready, cmd_valid, wdata_valid, idle;
+
+    write_port #(.ADDRESS_BITS(NUMBER_BITS), .DEPTH(DEPTH), .BURST(2)) dut (
+        .clk, .rst, .hurry, .idle, .in_valid, .in_ready, .in_addr(came), .in_data(128'(came)), .in_strobe(16'(~came)),
+        .cmd_valid, .cmd_ready, .cmd_addr, .wdata_valid, .wdata_ready, .wdata, .wdata_strobe
+    );
+
+    stream_checker #(.WIDTH(1), .GIVEN(1)) given (
+        .clk, .rst, .valid(in_valid), .ready(in_ready), .data(1'b0)
+    );
+    stream_checker #(.WIDTH(NUMBER_BITS)) commands (
+        .clk, .rst, .valid(cmd_valid), .ready(cmd_ready), .data(cmd_addr)
+    );
+
+    // Clocks in which memory took what there was and should have got more.
+    logic [3:0] unmoved, refused;
+
+    always_ff @(posedge clk) begin
+        came      <= came + NUMBER_BITS'(in_valid && in_ready);
+        commanded <= commanded + NUMBER_BITS'(cmd_valid && cmd_ready);
+        went      <= went + NUMBER_BITS'(wdata_ready);
+        unmoved   <= idle || !hurry || !cmd_ready || commanded != went && !wdata_ready || wdata_ready ? '0 : unmoved + 1'b1;
+        refused   <= in_ready || !cmd_ready || commanded != went && !wdata_ready || wdata_ready ? '0 : refused + 1'b1;
+        if (rst) {came, commanded, went, unmoved, refused} <= '0;
+    end
+
+    always_ff @(posedge clk) if (!rst) begin
+        assume (!wdata_ready || commanded != went);
+
+        commands_in_order: assert (!cmd_valid || commanded != came && cmd_addr == commanded);
+        data_in_order:     assert (!wdata_valid || wdata == 128'(went) && wdata_strobe == 16'(~went));
+        data_at_command:   assert (commanded == went || wdata_valid);
+        none_made_up:      assert (!wdata_valid || went != came);
+        idle_is_empty:     assert (idle == (went == came));
+        goes_in_a_hurry:   assert (unmoved < 4'(WITHIN));
+        full_goes:         assert (refused < 4'(WITHIN));
+        burst:             cover (went == NUMBER_BITS'(2 * DEPTH) && idle);
+    end
+endmodule
+
+`default_nettype wire

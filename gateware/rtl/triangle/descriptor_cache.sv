@@ -1,0 +1,161 @@
+// Gives out the descriptors whose numbers come in, and keeps those of late: a triangle is drawn in several bands, one after
+// the other, and so is read from memory once, most of the time.
+//
+//                 ┌──────┐ miss                              ┌───────┐
+//   numbers ─────▶│ tags ├──────▶ addresses ─▶ memory ─words▶│       │
+//                 └──┬───┘                                   │ lines ├──▶ out
+//                    └─────────────▶ marks ─────────────────▶│       │
+//                                                            └───────┘
+//
+// Direct-mapped: a number's low bits choose the line. Tags change in the order of the numbers, in front, and lines in the same
+// order at the end, so what a hit finds in its line is what its tag said. An item that is no descriptor (`in_end`) passes in
+// its order.
+//
+// Latency 5 clocks for a hit, that of memory and 6 more for a miss. Throughput a hit in 4 clocks, a miss in 5.
+// Descriptors must not change in memory while `forget` is low. A clock in which it is high, when nothing is inside, makes
+// what is kept be forgotten, a line a clock; numbers wait for it.
+//
+// Streams: an item moves in a clock in which valid and ready are high; valid does not wait for ready, and a payload stays as
+// it is until it has moved. Memory: a client of read_port.
+
+`default_nettype none
+
+module descriptor_cache #(
+    parameter int unsigned ADDRESS_BITS = 23,
+    parameter int unsigned COUNT_BITS   = 20,
+    parameter int unsigned LINE_BITS    = 8
+) (
+    input  wire                       clk,
+    input  wire                       rst,
+    input  wire                       forget,
+    // Where the descriptors of the two sets are.
+    input  wire  [2*ADDRESS_BITS-1:0] base,
+    input  wire                       in_valid,
+    output logic                      in_ready,
+    input  wire                       in_end,
+    input  wire                       in_set,
+    input  wire  [COUNT_BITS-1:0]     in_number,
+    // Memory.
+    output logic                      ask_valid,
+    input  wire                       ask_ready,
+    output logic [ADDRESS_BITS-1:0]   ask_addr,
+    input  wire                       data_valid,
+    output logic                      data_ready,
+    input  wire  [127:0]              data,
+    output logic                      out_valid,
+    input  wire                       out_ready,
+    output logic                      out_end,
+    output triangle_pkg::descriptor_t out_descriptor
+);
+    localparam int unsigned WORDS    = 3;
+    localparam int unsigned MARKS    = 16;
+    // Set and the number's high bits, and that there is something.
+    localparam int unsigned TAG_BITS = COUNT_BITS - LINE_BITS + 2;
+
+    // In front: an item waits a clock for the tag of its line, and then for its place among the marks and the addresses.
+    (* ram_style = "distributed" *) logic [TAG_BITS-1:0] tags [0:2**LINE_BITS-1];
+    logic                    looked, is_end, set, hit, passes, asks;
+    logic [COUNT_BITS-1:0]   number;
+    logic [TAG_BITS-1:0]     tag, found;
+    logic [LINE_BITS-1:0]    line, swept_line;
+    logic                    swept, used;
+    logic                    mark_ready, words_asked;
+    logic [ADDRESS_BITS-1:0] set_base;
+
+    assign line     = number[LINE_BITS-1:0];
+    assign tag      = {1'b1, set, number[COUNT_BITS-1:LINE_BITS]};
+    assign hit      = found == tag;
+    assign passes   = looked && mark_ready && (is_end || hit || words_asked);
+    assign asks     = passes && !is_end && !hit;
+    assign in_ready = !looked && swept;
+
+    always_ff @(posedge clk) begin
+        if (in_ready) begin
+            looked   <= in_valid;
+            is_end   <= in_end;
+            set      <= in_set;
+            number   <= in_number;
+            found    <= tags[in_number[LINE_BITS-1:0]];
+            set_base <= in_set ? base[ADDRESS_BITS +: ADDRESS_BITS] : base[0 +: ADDRESS_BITS];
+        end
+        if (passes) looked <= 1'b0;
+
+        if (asks || !swept) tags[swept ? line : swept_line] <= swept ? tag : '0;
+        if (asks) used <= 1'b1;
+        if (!swept) begin
+            swept_line <= swept_line + 1'b1;
+            swept      <= swept_line == '1;
+        end else if (forget && used) begin
+            swept <= 1'b0;
+            used  <= 1'b0;
+        end
+
+        if (rst) begin
+            looked     <= 1'b0;
+            swept      <= 1'b0;
+            swept_line <= '0;
+            used       <= 1'b0;
+        end
+    end
+
+    // Addresses of a descriptor.
+    logic [1:0] word;
+
+    assign words_asked = !ask_valid || ask_ready && word == 2'(WORDS - 1);
+
+    always_ff @(posedge clk) begin
+        if (words_asked) begin
+            ask_valid <= asks;
+            ask_addr  <= set_base + ADDRESS_BITS'(number) + (ADDRESS_BITS'(number) << 1);
+            word      <= '0;
+        end else if (ask_ready) begin
+            ask_addr <= ask_addr + 1'b1;
+            word     <= word + 1'b1;
+        end
+        if (rst) ask_valid <= 1'b0;
+    end
+
+    logic                 marked, mark_hit;
+    logic [LINE_BITS-1:0] mark_line;
+
+    fifo #(.WIDTH(2 + LINE_BITS), .DEPTH(MARKS)) marks (
+        .clk, .rst, .in_valid(passes), .in_ready(mark_ready), .in_data({is_end, hit, line}),
+        .out_valid(marked), .out_ready(out_valid && out_ready), .out_data({out_end, mark_hit, mark_line})
+    );
+
+    // At the end: the words of a miss are gathered, and its line is written when it goes out; that of a hit is read.
+    (* ram_style = "block", rw_addr_collision = "no", no_rw_check *)
+    logic [128*WORDS-1:0]    lines [0:2**LINE_BITS-1];
+    logic [128*WORDS-1:0]    cached;
+    logic                    fills, read;
+    logic [1:0]              words;
+
+    assign data_ready = marked && !out_end && !mark_hit && words != 2'(WORDS);
+    assign out_valid  = marked && (out_end || words == 2'(WORDS));
+    assign fills      = out_valid && out_ready && !out_end && !mark_hit;
+
+    always_ff @(posedge clk) begin
+        cached <= lines[mark_line];
+        if (fills) lines[mark_line] <= out_descriptor;
+    end
+
+    always_ff @(posedge clk) begin
+        read <= marked && mark_hit && !out_valid;
+        if (read) begin
+            words          <= 2'(WORDS);
+            out_descriptor <= cached;
+            read           <= 1'b0;
+        end
+        if (data_ready && data_valid) begin
+            words          <= words + 1'b1;
+            out_descriptor <= {data, out_descriptor[128*WORDS-1:128]};
+        end
+        if (out_valid && out_ready) words <= '0;
+        if (rst) begin
+            words <= '0;
+            read  <= 1'b0;
+        end
+    end
+endmodule
+
+`default_nettype wire
