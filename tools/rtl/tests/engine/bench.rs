@@ -118,10 +118,11 @@ pub struct Bench {
     left: [Option<((u32, u32), u16)>; 2],
 }
 
-/// Clocks of the two passes, and the words of the frame and its depth that were written.
+/// Clocks of the two passes, the words that the raster pass read, and those of the frame and its depth that were written.
 pub struct Clocks {
     pub geometry: u64,
     pub raster: u64,
+    pub read: u64,
     pub written: u64,
 }
 
@@ -280,7 +281,7 @@ impl Bench {
         self.set("raster_counts", counts);
         self.set("present", if expected.clipped.is_empty() { 1 } else { 3 });
         self.pulse("raster_start");
-        let written = self.frame_words();
+        let (read, written) = (self.reads[2].given, self.frame_words());
         let raster = self.wait_for("raster_done");
         self.left[self.slot] = Some((expected.size, expected.clear));
         assert_eq!(self.count("list_error"), 0, "{name}: the lists");
@@ -288,6 +289,7 @@ impl Bench {
         Clocks {
             geometry,
             raster,
+            read: self.reads[2].given - read,
             written: self.frame_words() - written,
         }
     }
