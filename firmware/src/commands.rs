@@ -40,6 +40,8 @@ pub enum Refusal<'l> {
     Overlong,
     /// Its camera is out of range.
     View(ViewError),
+    /// There is no such line of `info`.
+    Key(&'l str),
     /// There is no model of this name.
     Scene(&'l str),
     /// Nothing has been uploaded.
@@ -83,6 +85,7 @@ impl Display for Refusal<'_> {
                 )
             }
             Self::View(error) => error.fmt(f),
+            Self::Key(key) => write!(f, "info `{key}`: expected a key that `info` alone lists"),
             Self::Scene(name) => {
                 write!(f, "scene `{name}`: expected")?;
                 Model::ALL
@@ -152,10 +155,7 @@ pub fn execute<'l>(machine: &mut Machine, line: &'l str) -> Reply<'l> {
             let _ = write_help(machine.terminal.output(), name);
             Ok(())
         }
-        Command::Info => {
-            info(machine);
-            Ok(())
-        }
+        Command::Info(key) => info(machine, key),
         Command::Scene(name) => scene(machine, name),
         Command::Camera { r, theta, phi } => machine
             .scene
@@ -171,7 +171,7 @@ pub fn execute<'l>(machine: &mut Machine, line: &'l str) -> Reply<'l> {
         }
         Command::Look { yaw, pitch, roll } => {
             View::look(machine.scene.view().eye(), yaw, pitch, roll)
-                .map(|view| machine.scene.set_view(view))
+                .map(|view| machine.scene.move_view(view))
                 .map_err(Refusal::View)
         }
         Command::Size(size) => {
@@ -218,7 +218,7 @@ pub fn execute<'l>(machine: &mut Machine, line: &'l str) -> Reply<'l> {
     Reply::Now(result)
 }
 
-fn info(machine: &mut Machine) {
+fn info<'l>(machine: &mut Machine, key: Option<&'l str>) -> Result<(), Refusal<'l>> {
     let Machine {
         terminal,
         identity,
@@ -229,34 +229,42 @@ fn info(machine: &mut Machine) {
         uart,
         ..
     } = machine;
+    let staging = models.staging();
+    let (address, room) = (staging.as_ptr().addr(), staging.len());
     let mesh = models.mesh();
     let [width, height] = scene.scale().size();
-    terminal.print(format_args!(
-        "version {}\nfirmware_id {:#010x}\ngateware_id {:#010x}\nblocks {:#x}\nclock {FREQUENCY}\n\
-         scene {}\nvertices {}\ntriangles {}\nsize {width} {height}\nbackend {}\n\
-         frame {:#010x}\ndepth {:#010x}\n",
-        env!("CARGO_PKG_VERSION"),
-        identity.firmware,
-        identity.gateware,
-        identity.blocks,
-        models.shown().name(),
-        mesh.vertex_count(),
-        mesh.triangle_count(),
-        backend_name(scene.backend()),
-        canvas.display.front().as_ptr().addr(),
-        canvas.depth.as_ptr().addr(),
-    ));
-    let staging = models.staging();
+    let (frame, depth) = (canvas.display.front().as_ptr(), canvas.depth.as_ptr());
     let counters = canvas.display.counters();
-    terminal.print(format_args!(
-        "staging {:#010x} {}\nvideo_frames {}\nvideo_underflows {}\nuart_lost {}\nuptime_ms {}\n",
-        staging.as_ptr().addr(),
-        staging.len(),
-        counters.frames,
-        counters.underflows,
-        uart.lost(),
-        clock.milliseconds(),
-    ));
+    let lines: [(&str, fmt::Arguments); 17] = [
+        ("version", format_args!("{}", env!("CARGO_PKG_VERSION"))),
+        ("firmware_id", format_args!("{:#010x}", identity.firmware)),
+        ("gateware_id", format_args!("{:#010x}", identity.gateware)),
+        ("blocks", format_args!("{:#x}", identity.blocks)),
+        ("clock", format_args!("{FREQUENCY}")),
+        ("scene", format_args!("{}", models.shown().name())),
+        ("vertices", format_args!("{}", mesh.vertex_count())),
+        ("triangles", format_args!("{}", mesh.triangle_count())),
+        ("size", format_args!("{width} {height}")),
+        ("backend", format_args!("{}", backend_name(scene.backend()))),
+        ("frame", format_args!("{:#010x}", frame.addr())),
+        ("depth", format_args!("{:#010x}", depth.addr())),
+        ("staging", format_args!("{address:#010x} {room}")),
+        ("video_frames", format_args!("{}", counters.frames)),
+        ("video_underflows", format_args!("{}", counters.underflows)),
+        ("uart_lost", format_args!("{}", uart.lost())),
+        ("uptime_ms", format_args!("{}", clock.milliseconds())),
+    ];
+    let mut found = key.is_none();
+    for (name, value) in lines {
+        if key.is_none_or(|key| key == name) {
+            terminal.print(format_args!("{name} {value}\n"));
+            found = true;
+        }
+    }
+    match key {
+        Some(key) if !found => Err(Refusal::Key(key)),
+        _ => Ok(()),
+    }
 }
 
 fn scene<'l>(machine: &mut Machine, name: Option<&'l str>) -> Result<(), Refusal<'l>> {

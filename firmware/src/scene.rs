@@ -101,12 +101,17 @@ impl Scene {
         self.sphere
     }
 
-    /// Sets a spherical camera.
+    /// Moves and turns the camera, and leaves its lens.
+    pub fn move_view(&mut self, view: View) {
+        self.set_view(view.with_lens_of(&self.view));
+    }
+
+    /// Sets a spherical camera, and leaves its lens.
     ///
     /// # Errors
     /// When it is out of range; then nothing changes.
     pub fn set_sphere(&mut self, sphere: Sphere) -> Result<(), ViewError> {
-        self.set_view(sphere.view()?);
+        self.move_view(sphere.view()?);
         self.sphere = sphere;
         Ok(())
     }

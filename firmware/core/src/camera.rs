@@ -133,6 +133,16 @@ impl View {
         })
     }
 
+    /// This camera with the half width and the near plane of another one.
+    #[must_use]
+    pub const fn with_lens_of(self, other: &Self) -> Self {
+        Self {
+            half_width: other.half_width,
+            near: other.near,
+            ..self
+        }
+    }
+
     /// The eye, at most 8 from the origin.
     pub const fn eye(&self) -> [Q32_32; 3] {
         self.eye

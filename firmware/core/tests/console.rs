@@ -240,7 +240,8 @@ fn every_command_is_understood() {
     assert_parses(" \t ", Command::Empty);
     assert_parses("help", Command::Help(None));
     assert_parses("help view", Command::Help(Some("view")));
-    assert_parses("info", Command::Info);
+    assert_parses("info", Command::Info(None));
+    assert_parses("info frame", Command::Info(Some("frame")));
     assert_parses("scene", Command::Scene(None));
     assert_parses("  scene   menger ", Command::Scene(Some("menger")));
     let camera = Command::Camera {

@@ -349,7 +349,10 @@ impl<'b, B: Board + ?Sized> Renderer<'b, B> {
     }
 
     /// Has the frame drawn again, and reads what it took: lines of a key and its value.
-    fn render(&mut self) -> Result<Stats, Error> {
+    ///
+    /// # Errors
+    /// The firmware refuses.
+    pub fn render(&mut self) -> Result<Stats, Error> {
         let command = "render";
         let lines = self.console.command(command)?;
         let values = lines
@@ -370,7 +373,7 @@ impl<'b, B: Board + ?Sized> Renderer<'b, B> {
     }
 
     fn info<T: std::str::FromStr>(&mut self, key: &str) -> Result<T, Error> {
-        let lines = self.console.command("info")?;
+        let lines = self.console.command(&format!("info {key}"))?;
         // The value is one word; more may follow it on the line.
         let first_words: Vec<String> = lines
             .iter()

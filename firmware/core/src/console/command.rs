@@ -19,8 +19,8 @@ pub enum Command<'a> {
     Empty,
     /// `help [COMMAND]`: write [`write_help`].
     Help(Option<&'a str>),
-    /// `info`
-    Info,
+    /// `info [KEY]`; with a key only its line.
+    Info(Option<&'a str>),
     /// `scene [NAME]`; without a name it lists the scenes.
     Scene(Option<&'a str>),
     /// `camera R THETA PHI`
@@ -135,7 +135,14 @@ static COMMANDS: [(Syntax, Build); 19] = [
             _ => None,
         },
     ),
-    (Syntax::new("info", "says what this machine is and what it holds"), |_| accept(Command::Info)),
+    (
+        Syntax::new("info", "says what this machine is and what it holds, or one line of it").with_optional(&[("KEY", Name)]),
+        |values| match *values {
+            [] => accept(Command::Info(None)),
+            [Value::Name(key)] => accept(Command::Info(Some(key))),
+            _ => None,
+        },
+    ),
     (
         Syntax::new("scene", "lists the scenes, or shows one").with_optional(&[("NAME", Name)]),
         |values| match *values {

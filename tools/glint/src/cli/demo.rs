@@ -9,7 +9,7 @@ use glint::console::Console;
 use glint::flash;
 use glint::model::Model;
 use glint::picture::{Frame, save_animation};
-use glint::render::{self, Renderer, Route, Scene, Stats};
+use glint::render::{self, Renderer, Route, Scene, Stats, view_command};
 use glint_core::camera::View;
 use glint_core::console::Backend;
 use glint_core::fixed::{Q32_32, Turns, U4_28};
@@ -20,7 +20,7 @@ use std::time::Instant;
 /// Show the whole machine: boot the virtual board, load its firmware, upload models, render, capture the monitor.
 #[derive(Args)]
 pub struct DemoArguments {
-    /// Mesh files or generators' names; icosphere:8, gear and teapot unless told. The first is uploaded over the serial
+    /// Mesh files or generators' names; icosphere:6, gear and teapot unless told. The first is uploaded over the serial
     /// line of a board that has booted through its BIOS; the others are put into the memory of a second board meanwhile.
     models: Vec<String>,
     /// The folder for the pictures.
@@ -34,7 +34,7 @@ pub struct DemoArguments {
     orbit: u16,
 }
 
-const MODELS: [&str; 3] = ["icosphere:8", "gear", "teapot"];
+const MODELS: [&str; 3] = ["icosphere:6", "gear", "teapot"];
 /// Where a program goes and starts.
 const MAIN_RAM: u32 = 0x4000_0000;
 const SIZE: (u32, u32) = (320, 180);
@@ -182,11 +182,15 @@ impl DemoArguments {
         let console = renderer.console();
         console.command("backend gateware")?;
         console.command(&format!("size {width} {height}"))?;
+        console.command(&view_command(&camera(Turns(0))?))?;
         let mut cycles = 0;
         let mut frames = Vec::new();
         for number in 0..self.orbit {
-            let turned = Turns(((u64::from(number) << 32) / u64::from(self.orbit)) as u32);
-            let stats = renderer.look(&camera(turned)?)?;
+            // Shorter than the view's numbers: the line takes most of the time of a frame.
+            let degrees = f64::from(number) * 360.0 / f64::from(self.orbit);
+            let command = format!("camera {DISTANCE} {degrees:.3} {POLAR_DEGREES}");
+            renderer.console().command(&command)?;
+            let stats = renderer.render()?;
             anyhow::ensure!(
                 stats.backend.as_deref() == Some("gateware"),
                 "frame {number} of the orbit was drawn by the soft core"
@@ -210,15 +214,16 @@ fn azimuth(number: u32) -> Turns {
     Turns::from_degrees(Q32_32::from_num(number * 50 + 30))
 }
 
-/// A polar angle of 60 degrees: a sixth of a turn.
-const POLAR: u32 = (1_u64 << 32).div_euclid(6) as u32;
+const DISTANCE: u32 = 2;
+const POLAR_DEGREES: u32 = 60;
 
 /// The half width of the image plane at distance 1: models nearly fill the picture's height.
 const HALF_WIDTH: f64 = 0.6;
 
-/// The camera at distance 2 and an azimuth.
+/// The camera at an azimuth.
 fn camera(azimuth: Turns) -> anyhow::Result<View> {
-    let view = View::spherical(Q32_32::from_num(2), azimuth, Turns(POLAR));
+    let polar = Turns::from_degrees(Q32_32::from_num(POLAR_DEGREES));
+    let view = View::spherical(Q32_32::from_num(DISTANCE), azimuth, polar);
     view.and_then(|view| {
         View::new_checked(
             view.eye(),
