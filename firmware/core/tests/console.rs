@@ -332,8 +332,8 @@ fn mistakes_are_named_with_their_place() {
         "help: COMMAND is \"cube\" (column 6): expected a command, `help` lists them",
     );
     assert_refused(
-        "info now",
-        "info: \"now\" (column 6): expected the end of the line, as in `info`",
+        "buttons now",
+        "buttons: \"now\" (column 9): expected the end of the line, as in `buttons`",
     );
     assert_refused(
         "camera 3 4",
