@@ -41,7 +41,7 @@ _ERRORS = [
     ("3", "busy", "started while it was busy; the pass under way went on"),
     ("4", "mesh", "a chunk without vertices, or one beyond `mesh_bytes`; what came before it was drawn"),
     ("5", "full", "no room for all descriptors, list entries or exceptions; what had room was drawn"),
-    ("6", "list", "a list was longer than it may be, or named a descriptor beyond the count; what it drew is wrong"),
+    ("6", "list", "a list was longer than it may be, or named a descriptor beyond the count, or what was no descriptor; the frame is wrong"),
     ("7", "cancelled", "ended by `cancel`"),
 ]
 

@@ -37,7 +37,7 @@ pub enum Fault {
     Mesh,
     /// There was no room for all descriptors, list entries or exceptions.
     Full,
-    /// A list was longer than lists are, or named a descriptor that is not there.
+    /// A list was longer than lists are, or named a descriptor that is not there, or none.
     List,
     /// The pass was cancelled.
     Cancelled,
@@ -426,3 +426,6 @@ fn size_code(size: (u32, u32)) -> u8 {
         .position(|&known| known == size)
         .map_or(3, |code| code as u8)
 }
+
+#[cfg(test)]
+mod tests;

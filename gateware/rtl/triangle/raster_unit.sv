@@ -45,7 +45,7 @@ module raster_unit #(
     input  wire  [2*ADDRESS_BITS-1:0] descriptor_base,
     input  wire  [2*COUNT_BITS-1:0]   counts,
     input  wire  [4:0]                list_shift,
-    // With `done`: a list was damaged (list_reader).
+    // With `done`: a list was damaged (list_reader), or what it named was no descriptor and was left out.
     output logic                      list_error,
     // Memory.
     output logic [2:0]                ask_valid,
@@ -144,12 +144,21 @@ module raster_unit #(
     logic        item_valid, item_ready, band_ends, triangle_valid, triangle_ready, raster_idle;
     triangle_pkg::descriptor_t descriptor;
 
+    // What cannot be a descriptor is left out: it would be drawn beside the picture.
+    logic stray, list_damaged;
+
+    assign stray = descriptor.group_left > descriptor.group_start || descriptor.group_start > descriptor.group_right
+                || descriptor.group_right >= stride;
+
     // The end of the band that is read waits until it is that which is drawn.
-    assign triangle_valid = item_valid && !band_ends;
-    assign item_ready     = band_ends ? read_odd == band[0] : triangle_ready;
+    assign triangle_valid = item_valid && !band_ends && !stray;
+    assign item_ready     = band_ends ? read_odd == band[0] : stray || triangle_ready;
     assign drawn          = read_odd != band[0] && raster_idle;
 
     always_ff @(posedge clk) begin
+        list_error <= !begins && (list_error || list_damaged || item_valid && !band_ends && stray);
+        if (rst) list_error <= 1'b0;
+
         if (begins) begin
             read_row <= '0;
             read_odd <= 1'b0;
@@ -160,7 +169,8 @@ module raster_unit #(
     end
 
     list_reader #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS)) list_reader (
-        .clk, .rst(rst || restart), .start(begins), .forget(state == IDLE), .last_band, .present, .list_base, .descriptor_base, .counts, .list_shift, .list_error,
+        .clk, .rst(rst || restart), .start(begins), .forget(state == IDLE), .last_band, .present, .list_base, .descriptor_base, .counts, .list_shift,
+        .list_error(list_damaged),
         .ask_valid, .ask_ready, .ask_addr, .data_valid, .data_ready, .data,
         .out_valid(item_valid), .out_ready(item_ready), .out_end(band_ends), .out_descriptor(descriptor)
     );

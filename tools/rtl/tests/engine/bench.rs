@@ -19,6 +19,8 @@ const MESH: u32 = 0x1c_0000;
 const WORDS: usize = 0x20_0000;
 /// Words of a list, as a power of two.
 const LIST_SHIFT: u32 = 11;
+/// Words behind a picture that nobody may touch: more than a bank of the band buffer has.
+const BEHIND: usize = 4096;
 /// The most descriptors, and the most exceptions.
 const LIMIT: u32 = 80_000;
 pub const CLEAR: u16 = 0x1234;
@@ -291,6 +293,46 @@ impl Bench {
             raster,
             read: self.reads[2].given - read,
             written: self.frame_words() - written,
+        }
+    }
+
+    /// Draws whatever these descriptors and lists are: the list of each band has so many entries, of which there are
+    /// `lists`, for all bands the same.
+    ///
+    /// # Panics
+    /// When that does not end, or anything is written behind the picture.
+    pub fn draw_whatever(
+        &mut self,
+        name: &str,
+        expected: &Expected,
+        descriptors: &[u8],
+        lengths: [u32; 64],
+        list: &[u32],
+    ) {
+        self.configure(&[], expected);
+        self.memory.write(DESCRIPTORS[0], descriptors);
+        let table = lengths.map(u32::to_le_bytes);
+        self.memory.write(LISTS[0], table.as_flattened());
+        let list: Vec<_> = list.iter().flat_map(|entry| entry.to_le_bytes()).collect();
+        for band in 0..64 {
+            self.memory
+                .write(LISTS[0] + list_word(band, LIST_SHIFT), &list);
+        }
+        let behind = FRAMES[self.slot] + expected.size.0 * expected.size.1 / 8;
+        self.memory.write(behind, &[0x77; 16 * BEHIND]);
+        self.set("raster_counts", descriptors.len() as u64 / 48);
+        self.set("present", 1);
+        self.wait_for("ready");
+        self.pulse("raster_start");
+        self.wait_for("raster_done");
+        self.left[self.slot] = Some((expected.size, expected.clear));
+        for word in 0..BEHIND as u32 {
+            let found = self.memory.word(behind + word);
+            assert_eq!(
+                found,
+                Bits::from_words(&[0x7777_7777; 4]),
+                "{name}: word {word} behind the picture"
+            );
         }
     }
 

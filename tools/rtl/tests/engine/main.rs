@@ -269,6 +269,37 @@ fn bad_meshes_and_full_lists_are_told() {
     }
 }
 
+/// Descriptors and lists of random bits: the frame ends, keeps to its place, is said to be wrong, and the next one is right.
+#[test]
+fn whatever_lies_in_memory_a_frame_ends() {
+    let mesh = generated("icosphere:4");
+    let mut bench = Bench::new(13, 0.1);
+    bench.with_depth = false;
+    for seed in 0..12 {
+        let mut random = Pcg64Mcg::new(seed);
+        let size = SIZES[seed as usize % 3];
+        let expected = expected(&mesh, &inside(), size, false);
+        let mut descriptors: Vec<u8> = (0..48 * 300).map(|_| random.random()).collect();
+        if seed % 4 > 0 {
+            // Groups within the picture, which alone are drawn: the bits from 344 on.
+            let last = (size.0 / 8 - 1) as u8;
+            for descriptor in descriptors.as_chunks_mut::<48>().0 {
+                let mut groups: [u8; 3] = std::array::from_fn(|_| random.random_range(0..=last));
+                groups.sort_unstable();
+                descriptor[43..46].copy_from_slice(&[groups[0], groups[2], groups[1]]);
+            }
+        }
+        let longest = if seed % 4 == 3 { u32::MAX } else { 40 };
+        let lengths = std::array::from_fn(|_| random.random_range(0..=longest));
+        let list: Vec<_> = (0..40).map(|_| random.random_range(0..300)).collect();
+        let name = format!("seed {seed}");
+        bench.draw_whatever(&name, &expected, &descriptors, lengths, &list);
+        let wrong = bench.count("list_error");
+        assert_eq!(wrong, u64::from(matches!(seed % 4, 0 | 3)), "{name}");
+        bench.draw(&format!("after {name}"), &mesh, &expected);
+    }
+}
+
 /// Pixels drawn a clock on a sphere that fills 96 % of the picture's height, memory without stalls, after the same frame: of a
 /// frame alone, from the first fetch to the last word written, and of frames whose passes overlap, where the longer one counts.
 #[test]

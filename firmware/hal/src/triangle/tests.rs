@@ -1,0 +1,217 @@
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::rc::Rc;
+use std::vec::Vec;
+
+use glint_core::camera::View;
+use glint_core::fixed::{Q32_32, Turns};
+use litex_pac::Peripherals;
+use litex_pac::bus::{self, Bus};
+
+use super::*;
+
+/// Registers that keep what is written, and the addresses in the order of their writes.
+#[derive(Default)]
+struct Block {
+    values: BTreeMap<usize, u32>,
+    writes: Vec<usize>,
+}
+
+struct Registers(Rc<RefCell<Block>>);
+
+impl Bus for Registers {
+    fn read(&mut self, address: usize) -> u32 {
+        self.0.borrow().values.get(&address).copied().unwrap_or(0)
+    }
+
+    fn write(&mut self, address: usize, value: u32) {
+        let mut block = self.0.borrow_mut();
+        block.values.insert(address, value);
+        block.writes.push(address);
+    }
+}
+
+fn registers() -> triangle::Triangle {
+    // SAFETY: the registers are a model's.
+    unsafe { Peripherals::steal() }.triangle
+}
+
+fn probe(ident: u32) -> (Result<Engine, Absent>, Rc<RefCell<Block>>) {
+    let block = Rc::new(RefCell::new(Block::default()));
+    let address = registers().ident().address();
+    block.borrow_mut().values.insert(address, ident);
+    bus::connect(Registers(block.clone()));
+    (Engine::probe(registers()), block)
+}
+
+/// A chunk of a triangle, behind a header.
+fn mesh() -> Vec<u8> {
+    let mut bytes = b"GLM1".to_vec();
+    let mut put = |words: &[u32]| bytes.extend(words.iter().flat_map(|word| word.to_le_bytes()));
+    put(&[112, 1, 3, 1, 1 << 15, 0, 0]);
+    put(&[3, 1, 0, 0]);
+    for place in [0, 1, 1 << 16] {
+        put(&[place, 0, 0, 0]);
+    }
+    put(&[1 << 16, 2, 0, 0]);
+    bytes
+}
+
+#[test]
+fn something_else_is_not_taken_for_the_engine() {
+    for ident in [0, IDENT + 1] {
+        let absent = Absent {
+            expected: IDENT,
+            found: ident,
+        };
+        assert_eq!(probe(ident).0.err(), Some(absent));
+    }
+    assert!(probe(IDENT).0.is_ok());
+}
+
+#[test]
+fn a_geometry_pass_is_described_before_it_is_started() {
+    let (engine, block) = probe(IDENT);
+    let bytes = mesh();
+    let mesh = Mesh::new_checked(&bytes).unwrap();
+    let view = View::spherical(Q32_32::from_num(3), Turns(1 << 30), Turns(1 << 29)).unwrap();
+    let frame = FrameSetup::new(&view, 640, 360, mesh.radius()).unwrap();
+    let pass = Geometry {
+        mesh: &mesh,
+        frame: &frame,
+        cull: true,
+        lists: Lists {
+            descriptors: 0x4600_0000,
+            descriptor_limit: 77,
+            lists: 0x4700_0000,
+        },
+        exceptions: 0x4710_0000,
+        exception_limit: 5,
+    };
+    // SAFETY: nothing is behind the registers.
+    unsafe { engine.unwrap().start_geometry(&pass, 9) };
+
+    let r = registers();
+    let wide = |low: u32, high: u16| {
+        let bits = u64::from(high) << 32 | u64::from(low);
+        // 44 bits with a sign.
+        (bits << 20).cast_signed() >> 20
+    };
+    let translation = [
+        wide(r.tx_low().read(), r.tx_high().read()),
+        wide(r.ty_low().read(), r.ty_high().read()),
+        wide(r.tz_low().read(), r.tz_high().read()),
+    ];
+    assert_eq!(translation, frame.translation);
+    let row = [r.row_u0().read(), r.row_u1().read(), r.row_u2().read()];
+    assert_eq!(
+        row.map(|value| value.cast_signed() << 7 >> 7),
+        frame.u,
+        "of 25 bits"
+    );
+    assert_eq!(r.mesh_bytes().read(), 80, "chunks alone");
+    assert_eq!(
+        r.mesh().read(),
+        mesh.records().as_ptr().addr() as u32,
+        "the first chunk"
+    );
+    assert_eq!(
+        [r.geometry_descriptors().read(), r.geometry_lists().read()],
+        [0x4600_0000, 0x4700_0000]
+    );
+    assert_eq!(r.exceptions().read(), 0x4710_0000);
+    assert_eq!(
+        [r.descriptor_limit().read(), r.exception_limit().read()],
+        [77, 5]
+    );
+    assert_eq!(r.list_shift().read(), 9);
+    let start = r.geometry().read();
+    assert!(start.start() && start.cull());
+    assert_eq!(start.size(), 1);
+    assert_eq!(block.borrow().writes.last(), Some(&r.geometry().address()));
+}
+
+#[test]
+fn a_raster_pass_is_described_before_it_is_started() {
+    let (engine, block) = probe(IDENT);
+    let set = |number: u32| Set {
+        descriptors: 0x4600_0000 + number,
+        count: 10 + number,
+        lists: 0x4700_0000 + number,
+    };
+    let mut engine = engine.unwrap();
+    let pass = Raster {
+        size: (1280, 720),
+        frame: 0x4100_0000,
+        slot: true,
+        whole: false,
+        depth: None,
+        clear: 0xabcd,
+        sets: [Some(set(0)), None],
+    };
+    let r = registers();
+    for (pass, second, depth) in [
+        (pass, false, false),
+        (
+            Raster {
+                depth: Some(0x4140_0000),
+                sets: [None, Some(set(16))],
+                ..pass
+            },
+            true,
+            true,
+        ),
+    ] {
+        // SAFETY: nothing is behind the registers.
+        unsafe { engine.start_raster(&pass) };
+        let start = r.raster().read();
+        assert!(start.start() && start.slot() && !start.whole());
+        assert_eq!(
+            [start.first(), start.second(), start.depth()],
+            [!second, second, depth]
+        );
+        assert_eq!(start.size(), 2);
+        assert_eq!(block.borrow().writes.last(), Some(&r.raster().address()));
+    }
+    assert_eq!([r.count_0().read(), r.count_1().read()], [10, 26]);
+    assert_eq!(
+        [r.lists_0().read(), r.lists_1().read()],
+        [0x4700_0000, 0x4700_0010]
+    );
+    assert_eq!(r.depth().read(), 0x4140_0000);
+    assert_eq!(r.clear().read(), 0xabcd);
+}
+
+#[test]
+fn how_a_pass_ends_is_told() {
+    let (engine, block) = probe(IDENT);
+    let engine = engine.unwrap();
+    let address = registers().status().address();
+    let faults = [
+        Ok(()),
+        Err(Fault::Size),
+        Err(Fault::Address),
+        Err(Fault::Busy),
+        Err(Fault::Mesh),
+        Err(Fault::Full),
+        Err(Fault::List),
+        Err(Fault::Cancelled),
+    ];
+    for (code, outcome) in (0..).zip(faults) {
+        let tell = |status: u32| block.borrow_mut().values.insert(address, status);
+        tell(code << 4 | 0b10);
+        assert_eq!((engine.geometry(), engine.raster()), (Some(outcome), None));
+        tell(code << 8 | 0b01);
+        assert_eq!((engine.geometry(), engine.raster()), (None, Some(outcome)));
+    }
+}
+
+#[test]
+fn differences_of_counters_wrap() {
+    let at = |value: u32| Counters {
+        busy: value,
+        flush: value,
+        ..Counters::default()
+    };
+    assert_eq!(at(5) - at(u32::MAX), at(6));
+}
