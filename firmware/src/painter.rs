@@ -6,7 +6,9 @@ use glint_core::camera::View;
 use glint_core::mesh::Mesh;
 use glint_model::descriptor::{Descriptor, TABLE_WORDS, band_rows, list_word};
 use glint_model::{FrameSetup, Stats, clip_exceptions};
-use litex_hal::triangle::{Counters, Engine, Fault, Geometry, Lists, Outcome, Raster, Set};
+use litex_hal::triangle::{
+    Counters, Engine, Fault, Geometry, Lists, Outcome, Prepared, Raster, Set,
+};
 use litex_pac::cpu;
 
 /// The most descriptors of a set, and the most exceptions. A frame with more is the CPU's.
@@ -164,7 +166,10 @@ impl Painter {
                 self.start = (cpu::cycles(), self.engine.counters());
                 self.watch = Watch::default();
                 match constants(target) {
-                    Ok(frame) => self.start_geometry(target, frame),
+                    Ok(frame) => {
+                        let prepared = self.prepare_geometry(target, frame, 0);
+                        self.start_geometry(prepared);
+                    }
                     Err(fault) => return Some(Err(fault)),
                 }
                 self.stage = Stage::Geometry;
@@ -214,15 +219,17 @@ impl Painter {
     /// As [`advance`](Self::advance).
     pub fn repeat(&mut self, target: &mut Target, count: u32) -> Result<Painted, Fault> {
         self.watch = Watch::default();
-        let mut constants = constants(target)?;
+        let mut prepared = self.prepare_geometry(target, constants(target)?, 0);
         for frame in 0..=count {
-            self.start_geometry(target, constants);
-            // Those of the next frame, while the engine works.
-            constants = self::constants(target)?;
+            self.start_geometry(prepared);
+            // The next frame's, while the engine works.
+            let constants = constants(target)?;
             self.wait(Engine::geometry, target)?;
             if let Err(fault) = self.clip(target) {
                 return self.give_up(target, fault);
             }
+            // It goes where the raster pass still reads.
+            prepared = self.prepare_geometry(target, constants, 1);
             if frame > 0 {
                 self.wait(Engine::raster, target)?;
             }
@@ -260,9 +267,10 @@ impl Painter {
         }
     }
 
-    fn start_geometry(&mut self, target: &Target, frame: FrameSetup) {
+    /// Prepares a geometry pass that goes into a room.
+    fn prepare_geometry(&mut self, target: &Target, frame: FrameSetup, room: usize) -> Prepared {
         let frame = self.frame.insert(frame);
-        let room = &self.rooms[0];
+        let room = &self.rooms[room];
         let pass = Geometry {
             mesh: target.mesh,
             frame,
@@ -275,12 +283,14 @@ impl Painter {
             exceptions: address(room.exceptions),
             exception_limit: DESCRIPTORS as u32,
         };
-        // SAFETY: the room is this painter's own, and looked at when the pass has ended; the mesh is kept while the
-        // painter is busy.
-        unsafe {
-            self.engine
-                .start_geometry(&pass, list_shift(target.size.0) as u8)
-        };
+        self.engine
+            .prepare_geometry(&pass, list_shift(target.size.0) as u8)
+    }
+
+    fn start_geometry(&mut self, pass: Prepared) {
+        // SAFETY: the room is this painter's own, free of the pass before, and looked at when this one has ended; the mesh
+        // is kept while the painter is busy.
+        unsafe { self.engine.start_geometry(pass) };
     }
 
     fn start_raster(&mut self, target: &mut Target) {

@@ -109,6 +109,12 @@ pub struct Geometry<'a> {
     pub exception_limit: u32,
 }
 
+/// A geometry pass whose registers are written.
+#[must_use]
+pub struct Prepared {
+    start: GeometryStart,
+}
+
 /// A set of lists to draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Set {
@@ -251,11 +257,9 @@ impl Engine {
         }
     }
 
-    /// Starts a geometry pass. `list_shift`: a list has room for 4 << `list_shift` entries; that of both passes.
-    ///
-    /// # Safety
-    /// Until the pass has ended nobody writes the mesh, and nobody reads or writes what it makes; what is there is lost.
-    pub unsafe fn start_geometry(&mut self, pass: &Geometry, list_shift: u8) {
+    /// Writes down a geometry pass, which is the longer part of starting it, while none runs. `list_shift`: a list has room for
+    /// 4 << `list_shift` entries; that of both passes.
+    pub fn prepare_geometry(&mut self, pass: &Geometry, list_shift: u8) -> Prepared {
         let registers = &self.registers;
         let frame = pass.frame;
         let records = pass.mesh.records();
@@ -304,14 +308,22 @@ impl Engine {
                 .with_mantissa(frame.depth.mantissa)
                 .with_exponent(frame.depth.exponent as u8),
         );
-        // What the CPU has written must be on its way to memory before the engine is started.
-        compiler_fence(Ordering::SeqCst);
-        registers.geometry().write(
-            GeometryStart::default()
+        Prepared {
+            start: GeometryStart::default()
                 .with_start(true)
                 .with_cull(pass.cull)
                 .with_size(size_code((frame.width, frame.height))),
-        );
+        }
+    }
+
+    /// Starts the geometry pass that was prepared last.
+    ///
+    /// # Safety
+    /// Until the pass has ended nobody writes its mesh, and nobody reads or writes what it makes; what is there is lost.
+    pub unsafe fn start_geometry(&mut self, pass: Prepared) {
+        // What the CPU has written must be on its way to memory before the engine is started.
+        compiler_fence(Ordering::SeqCst);
+        self.registers.geometry().write(pass.start);
     }
 
     /// Starts a raster pass.

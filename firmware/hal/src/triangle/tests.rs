@@ -88,10 +88,13 @@ fn a_geometry_pass_is_described_before_it_is_started() {
         exceptions: 0x4710_0000,
         exception_limit: 5,
     };
-    // SAFETY: nothing is behind the registers.
-    unsafe { engine.unwrap().start_geometry(&pass, 9) };
+    let mut engine = engine.unwrap();
+    let prepared = engine.prepare_geometry(&pass, 9);
 
     let r = registers();
+    assert!(!r.geometry().read().start(), "not yet");
+    // SAFETY: nothing is behind the registers.
+    unsafe { engine.start_geometry(prepared) };
     let wide = |low: u32, high: u16| {
         let bits = u64::from(high) << 32 | u64::from(low);
         // 44 bits with a sign.
