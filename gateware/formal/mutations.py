@@ -177,7 +177,7 @@ MUTATIONS = {
     ],
     "band_entry": [
         _entry("if (next_free) begin", "if (1'b1) begin", "shown.valid_stays"),
-        _entry("if (next_free) begin", "if (1'b1) begin", "shown.payload_stable"),
+        _entry("            out_triangle <= placed;\n        end", "        end\n        out_triangle <= placed;", "shown.payload_stable"),
         _entry("            if (pass == ROWS_KNOWN && count == '0) busy <= 1'b0;\n", "", "nothing_made_up"),
         # What is held is overwritten by the next triangle.
         _entry("pass != STALLS || !held_valid || !out_valid;", "1'b1;", "in_order"),

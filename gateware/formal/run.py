@@ -66,7 +66,7 @@ PROOFS = [
            _RTL / "band" / "band_extents.sv"], 24),
     Proof("setup", "setup_proof", [*_triangle("setup_pkg", "setup"), *_formal("plain_setup", "setup_proof")], 22),
     Proof("band_entry", "band_entry_proof",
-          [*_triangle("raster_pkg", "band_entry"), *_formal("no_product", "band_entry_proof")], 24),
+          [*_triangle("raster_pkg", "band_entry"), *_formal("no_product", "band_entry_proof")], 27),
     Proof("walker", "walker_proof", [*_triangle("raster_pkg", "walker"), *_formal("any_stepper", "walker_proof")], 15),
     Proof("lanes", "lanes_proof",
           [*_triangle("raster_pkg", "lanes"), _RTL / "common" / "skid_buffer.sv", *_formal("lanes_proof")], 14),
