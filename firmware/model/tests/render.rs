@@ -5,7 +5,9 @@ mod common;
 use common::{CLEAR, Camera, Model, Picture, Random};
 use glint_core::mesh::Mesh;
 use glint_model::setup::{Facing, Oriented};
-use glint_model::{Buffer, FrameSetup, Options, Projected, RenderError, SIZES, Target, render};
+use glint_model::{
+    Buffer, FrameSetup, Options, Projected, RenderError, SIZES, Target, render,
+};
 
 const SIZE: (u32, u32) = SIZES[0];
 
@@ -189,6 +191,7 @@ fn frames_do_not_depend_on_what_was_before() {
         let options = Options {
             cull: i % 2 == 0,
             clear: CLEAR,
+            ..Options::default()
         };
         let stats = render(
             &mesh,

@@ -9,7 +9,7 @@ use glint_model::descriptor::{Descriptor, band_rows};
 use glint_model::raster::draw;
 use glint_model::setup::{Bounds, Oriented, Setup};
 use glint_model::vertex::GUARD;
-use glint_model::{Options, Projected, ScreenVertex, Target, trace};
+use glint_model::{Options, Projected, ScreenVertex, Shading, Target, trace};
 use glint_rtl::{Bits, Module, Port, Sink, Source, Stalls};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
@@ -111,7 +111,8 @@ impl Bench {
         }
         for triangle in triangles {
             let descriptor = Descriptor::new(&triangle.setup, triangle.colour);
-            self.source.push(vec![Bits::from_words(&descriptor.words)]);
+            let words = descriptor.words(Shading::Flat);
+            self.source.push(vec![Bits::from_words(words)]);
             self.counts.entries += 1;
         }
         let start = self.module.cycles();
@@ -574,10 +575,7 @@ fn a_sphere_is_walked_efficiently() {
             colour: &mut vec![0; pixels],
             depth: &mut vec![0; pixels],
         };
-        let options = Options {
-            cull: true,
-            clear: 0,
-        };
+        let options = Options::default();
         trace(
             &mesh,
             &filling(&mesh),

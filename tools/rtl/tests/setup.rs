@@ -5,7 +5,7 @@ use glint_model::descriptor::Descriptor;
 use glint_model::reciprocal::recip;
 use glint_model::setup::{Bounds, Facing, Oriented, Setup};
 use glint_model::shade::{intensity, lit};
-use glint_model::{SIZES, ScreenVertex};
+use glint_model::{SIZES, ScreenVertex, Shading};
 use glint_rtl::{Bits, Module, Port, Sink, Source, Stalls};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
@@ -59,7 +59,7 @@ fn expected(frame: &Frame, input: &Input) -> Option<Bits> {
         intensity(input.normal, &frame.n, oriented.facing),
     );
     let descriptor = Descriptor::new(&Setup::new(&oriented, bounds), colour);
-    Some(Bits::from_words(&descriptor.words))
+    Some(Bits::from_words(descriptor.words(Shading::Flat)))
 }
 
 struct Bench {

@@ -4,7 +4,7 @@ use glint_core::camera::View;
 use glint_core::mesh::Mesh;
 use glint_model::descriptor::{Descriptor, band_rows, list_word};
 use glint_model::setup::{Bounds, Oriented, Setup};
-use glint_model::{DrawnTriangle, FrameSetup, Options, Projected, Stats, Target, trace};
+use glint_model::{DrawnTriangle, FrameSetup, Options, Projected, Shading, Stats, Target, trace};
 use glint_rtl::{Bits, Memory, Module, ReadPort, Stalls, WritePort};
 
 pub const SIZES: [(u32, u32); 3] = glint_model::SIZES;
@@ -53,7 +53,11 @@ pub fn expected_on(clear: u16, mesh: &[u8], view: &View, size: (u32, u32), cull:
         colour: &mut colour,
         depth: &mut depth,
     };
-    let options = Options { cull, clear };
+    let options = Options {
+        cull,
+        clear,
+        ..Options::default()
+    };
     let mut clipped = Vec::new();
     let stats = trace(
         mesh,
@@ -89,7 +93,9 @@ fn write_clipped(memory: &mut Memory, expected: &Expected) {
         let oriented = Oriented::new(triangle.vertices).unwrap();
         let bounds = Bounds::new(&oriented.vertices, width, height).unwrap();
         let descriptor = Descriptor::new(&Setup::new(&oriented, bounds), triangle.colour);
-        memory.write(DESCRIPTORS[1] + 3 * number, &descriptor.to_bytes());
+        let words = descriptor.words(Shading::Flat);
+        let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+        memory.write(DESCRIPTORS[1] + bytes.len() as u32 / 16 * number, &bytes);
         for band in bounds.top as u32 / rows..=(bounds.bottom as u32 - 1) / rows {
             lists[band as usize].extend(number.to_le_bytes());
         }
