@@ -5,9 +5,7 @@ mod common;
 use common::{CLEAR, Camera, Model, Picture, Random};
 use glint_core::mesh::Mesh;
 use glint_model::setup::{Facing, Oriented};
-use glint_model::{
-    Buffer, FrameSetup, Options, Projected, RenderError, SIZES, Target, render,
-};
+use glint_model::{Buffer, FrameSetup, Options, Projected, RenderError, SIZES, Target, render};
 
 const SIZE: (u32, u32) = SIZES[0];
 
