@@ -6,9 +6,9 @@
 //                        └─▶ jobs ───┘            └────────────▶ marks ──────────────┘
 //
 // Each part runs ahead of the one behind it as far as its FIFO reaches, through the ends of lists and bands: lengths of 16 bands,
-// lists of 8 jobs (a list of a band each) or 128 entries, 10 descriptors. So memory's latency is hidden while what has been
+// lists of 8 jobs (a list of a band each) or 128 entries, 10 descriptors (5 with SMOOTH). So memory's latency is hidden while what has been
 // read lasts. Three clients of a read_port: the lengths of the lists, the lists, the descriptors. Throughput a descriptor in
-// 4 clocks; a list takes 4 clocks, if it is empty too.
+// 4 clocks, with SMOOTH in 7; a list takes 4 clocks, if it is empty too.
 //
 // `list_error`: since `start` there was a list longer than lists may be, which was taken as empty, or an entry that is none of
 // the set's `counts` descriptors, which was read from where it would be.
@@ -21,7 +21,9 @@
 
 module list_reader #(
     parameter int unsigned ADDRESS_BITS = 23,
-    parameter int unsigned COUNT_BITS   = 20
+    parameter int unsigned COUNT_BITS   = 20,
+    parameter bit          SMOOTH       = 1'b0,
+    localparam int unsigned PLANES_BITS = SMOOTH ? 289 : 1
 ) (
     input  wire                       clk,
     input  wire                       rst,
@@ -44,10 +46,13 @@ module list_reader #(
     output logic                      out_valid,
     input  wire                       out_ready,
     output logic                      out_end,
-    output triangle_pkg::descriptor_t out_descriptor
+    output triangle_pkg::descriptor_t out_descriptor,
+    output logic [PLANES_BITS-1:0]    out_planes
 );
     localparam int unsigned JOBS        = 8;
     localparam int unsigned MARKS       = 16;
+    localparam int unsigned DESCRIPTOR_WORDS = 3 << SMOOTH;
+    localparam int unsigned WORD_BITS        = $clog2(DESCRIPTOR_WORDS + 1);
 
     logic [1:0][ADDRESS_BITS-1:0] lists, descriptors;
 
@@ -198,12 +203,12 @@ module list_reader #(
         if (rst || start) list_error <= 1'b0;
     end
 
-    // Three addresses for a triangle.
+    // The addresses of a triangle's words.
     logic                    asks_words, last_address;
-    logic [1:0]              address;
+    logic [WORD_BITS-1:0]    address;
     logic [ADDRESS_BITS-1:0] descriptor_word;
 
-    assign last_address = address[1] && ask_ready[2];
+    assign last_address = address == WORD_BITS'(DESCRIPTOR_WORDS - 1) && ask_ready[2];
     assign number_taken = !asks_words || last_address;
     assign number_ready = !number_valid;
     assign ask_valid[2] = asks_words;
@@ -213,7 +218,7 @@ module list_reader #(
         if (number_taken) begin
             asks_words      <= number_valid;
             address         <= '0;
-            descriptor_word <= descriptors[number_set] + ADDRESS_BITS'(number) + (ADDRESS_BITS'(number) << 1);
+            descriptor_word <= descriptors[number_set] + ((ADDRESS_BITS'(number) + (ADDRESS_BITS'(number) << 1)) << SMOOTH);
         end else if (ask_ready[2]) begin
             address         <= address + 1'b1;
             descriptor_word <= descriptor_word + 1'b1;
@@ -221,23 +226,33 @@ module list_reader #(
         if (rst) asks_words <= 1'b0;
     end
 
-    // Three words for a descriptor.
-    logic       marked, mark_is_end;
-    logic [1:0] words;
+    // The words of a descriptor.
+    logic                 marked, mark_is_end;
+    logic [WORD_BITS-1:0] words;
+    logic [128*DESCRIPTOR_WORDS-1:0] descriptor;
 
     fifo #(.WIDTH(1), .DEPTH(MARKS)) marks (
         .clk, .rst, .in_valid(mark_valid), .in_ready(mark_ready), .in_data(!left),
         .out_valid(marked), .out_ready(out_valid && out_ready), .out_data(mark_is_end)
     );
 
-    assign data_ready[2] = words != 2'd3;
-    assign out_valid     = marked && (mark_is_end || words == 2'd3);
-    assign out_end       = mark_is_end;
+    assign data_ready[2]  = words != WORD_BITS'(DESCRIPTOR_WORDS);
+    assign out_valid      = marked && (mark_is_end || words == WORD_BITS'(DESCRIPTOR_WORDS));
+    assign out_end        = mark_is_end;
+    assign out_descriptor = descriptor[383:0];
+
+    if (SMOOTH) begin : light
+        assign out_planes = descriptor[384 +: PLANES_BITS];
+
+        wire _unused = &{1'b0, descriptor[767:673]};
+    end else begin : flat
+        assign out_planes = '0;
+    end
 
     always_ff @(posedge clk) begin
         if (data_ready[2] && data_valid[2]) begin
-            words          <= words + 1'b1;
-            out_descriptor <= {data[256 +: 128], out_descriptor[383:128]};
+            words      <= words + 1'b1;
+            descriptor <= {data[256 +: 128], descriptor[128*DESCRIPTOR_WORDS-1:128]};
         end
         if (out_valid && out_ready && !mark_is_end) words <= '0;
         if (rst) words <= '0;
