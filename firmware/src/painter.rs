@@ -4,8 +4,8 @@ use core::mem;
 
 use glint_core::camera::View;
 use glint_core::mesh::Mesh;
-use glint_model::descriptor::{Descriptor, TABLE_WORDS, band_rows, list_word};
-use glint_model::{FrameSetup, Stats, clip_exceptions};
+use glint_model::descriptor::{self, Descriptor, TABLE_WORDS, band_rows, list_word};
+use glint_model::{FrameSetup, Options, Shading, Stats, clip_exceptions};
 use litex_hal::triangle::{
     Counters, Engine, Fault, Geometry, Lists, Outcome, Prepared, Raster, Set,
 };
@@ -14,7 +14,7 @@ use litex_pac::cpu;
 /// The most descriptors of a set, and the most exceptions. A frame with more is the CPU's.
 const DESCRIPTORS: usize = 1 << 16;
 /// Numbers in a descriptor.
-const DESCRIPTOR_WORDS: usize = 48 / 4;
+const DESCRIPTOR_WORDS: usize = descriptor::words(Shading::Flat);
 /// Numbers of all lists of a set, and of the table of their lengths.
 const LIST_NUMBERS: usize = 1 << 20;
 const LENGTHS: usize = 4 * TABLE_WORDS as usize;
@@ -340,10 +340,14 @@ impl Painter {
                 width: frame.width,
                 full: false,
             };
+            let options = Options {
+                cull: target.cull,
+                ..Options::default()
+            };
             clipped_drawn = clip_exceptions(
                 target.mesh,
                 frame,
-                target.cull,
+                &options,
                 &mut numbers.iter().copied(),
                 &mut |setup, colour| {
                     let (top, bottom) = (setup.bounds.top, setup.bounds.bottom);
@@ -407,7 +411,7 @@ impl ListWriter<'_> {
             self.full = true;
             return;
         };
-        to.copy_from_slice(&descriptor.words);
+        to.copy_from_slice(descriptor.words(Shading::Flat));
         let rows = band_rows(self.width);
         let room = 4 << list_shift(self.width);
         for band in top / rows..=(bottom - 1) / rows {

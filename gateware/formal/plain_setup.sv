@@ -3,7 +3,9 @@
 
 `default_nettype none
 
-module cull (
+module cull #(
+    parameter bit SMOOTH = 1'b0
+) (
     input  wire              clk,
     input  wire              rst,
     input  wire  [10:0]      width,
@@ -16,9 +18,11 @@ module cull (
     input  wire  [2:0][65:0] in_vertices,
     input  wire  [15:0]      in_colour,
     input  wire  [2:0][15:0] in_normal,
+    input  wire  [2:0]       in_light,
     output logic             out_valid,
     input  wire              out_ready,
-    output setup_pkg::oriented_t out_triangle
+    output setup_pkg::oriented_t out_triangle,
+    output logic [2:0]       out_lit
 );
     logic [3:0] number;
 
@@ -143,7 +147,7 @@ module setup_gradient (
     assign twice_gy = {ny[39:0], 1'b0};
 endmodule
 
-module setup_depth (
+module setup_start (
     input  wire         clk,
     input  wire         enable,
     input  wire  [3:0]  count,
@@ -151,10 +155,10 @@ module setup_depth (
     input  wire  [39:0] gy,
     input  wire  [20:0] px,
     input  wire  [20:0] py,
-    input  wire  [23:0] w0,
+    input  wire  [23:0] value,
     output logic [31:0] start
 );
-    assign start = {8'd0, w0};
+    assign start = {8'd0, value};
 endmodule
 
 `default_nettype wire

@@ -3,7 +3,7 @@
 from litex.gen import LiteXModule
 from litex.soc.interconnect.csr import CSRField, CSRStatus, CSRStorage
 from litex.soc.interconnect.csr_eventmanager import EventManager, EventSourcePulse
-from migen import Cat, ClockSignal, If, Instance, ResetSignal, Signal
+from migen import Cat, ClockSignal, Constant, If, Instance, ResetSignal, Signal
 
 from .scanout import RTL
 
@@ -12,8 +12,9 @@ _COMMON, _BAND, _TRIANGLE = (RTL / folder for folder in ("common", "band", "tria
 BAND_BUFFER = [_COMMON / "fifo.sv", _COMMON / "skid_buffer.sv",
                *(_BAND / f"band_{part}.sv" for part in ("bank", "pipe", "extents", "flush", "buffer"))]
 TRIANGLE_RASTER = [
-    _TRIANGLE / "triangle_pkg.sv", _TRIANGLE / "raster_pkg.sv", _COMMON / "skid_buffer.sv",
-    *(_TRIANGLE / f"{name}.sv" for name in ("stepper", "multiply_add", "band_entry", "walker", "lanes", "triangle_raster")),
+    _TRIANGLE / "triangle_pkg.sv", _TRIANGLE / "raster_pkg.sv", _COMMON / "skid_buffer.sv", _COMMON / "delay.sv",
+    *(_TRIANGLE / f"{name}.sv" for name in ("stepper", "multiply_add", "plane_entry", "band_entry", "walker", "lane_values", "lanes",
+                                            "lane_colours", "lane_shades", "triangle_raster")),
 ]
 VERTEX_STAGE = [
     _TRIANGLE / "triangle_pkg.sv", _COMMON / "fifo.sv", _TRIANGLE / "multiply_add.sv",
@@ -21,11 +22,11 @@ VERTEX_STAGE = [
 ]
 SETUP = [_TRIANGLE / f"{name}.sv" for name in (
     "triangle_pkg", "setup_pkg", "multiply_add", "reciprocal", "normalise", "cull", "flat_shade", "setup_edges", "setup_normal",
-    "setup_gradient", "setup_depth", "setup")]
+    "setup_gradient", "setup_start", "setup_plane", "setup_light", "setup")]
 TRIANGLE_ENGINE = [*dict.fromkeys([
     _TRIANGLE / "list_pkg.sv", *SETUP, *TRIANGLE_RASTER, *VERTEX_STAGE, *BAND_BUFFER, _COMMON / "read_port.sv", _COMMON / "write_port.sv",
-    *(_TRIANGLE / f"{name}.sv" for name in ("vertex_cache", "mesh_walk", "classify", "binner", "geometry_unit", "descriptor_cache",
-                                            "list_reader", "raster_unit", "triangle_engine")),
+    *(_TRIANGLE / f"{name}.sv" for name in ("vertex_light", "vertex_cache", "mesh_walk", "classify", "binner", "geometry_unit",
+                                            "descriptor_cache", "list_reader", "raster_unit", "triangle_engine")),
 ])]
 TRIANGLE_CONTROL = [_TRIANGLE / "list_pkg.sv", _TRIANGLE / "triangle_control.sv"]
 
@@ -202,7 +203,7 @@ class TriangleEngine(LiteXModule):
         # The last counts are some clocks late.
         self.sync += If(working, linger.eq(31)).Elif(linger != 0, linger.eq(linger - 1))
 
-        geometry_kept, raster_kept = Signal(3), Signal(7)
+        geometry_kept, raster_kept = Signal(4), Signal(7)
         link = {name: Signal() for name in (
             "ready", "geometry_start", "geometry_busy", "geometry_done", "mesh_error", "full",
             "raster_start", "raster_busy", "raster_done", "list_error")}
@@ -220,7 +221,7 @@ class TriangleEngine(LiteXModule):
             i_rst                  = ResetSignal("sys"),
             i_cancel               = cancel,
             i_geometry_ask         = self._geometry.fields.start,
-            i_geometry_flags       = Cat(self._geometry.fields.size, self._geometry.fields.cull),
+            i_geometry_flags       = Cat(self._geometry.fields.size, self._geometry.fields.cull, Constant(0)),
             o_recovering           = recovering,
             o_geometry_kept        = geometry_kept,
             o_geometry_active      = self._status.fields.geometry_busy,
@@ -268,6 +269,7 @@ class TriangleEngine(LiteXModule):
             i_exception_limit      = self._exception_limit.storage,
             i_geometry_size        = geometry_kept[:2],
             i_cull_back            = geometry_kept[2],
+            i_smooth               = geometry_kept[3],
             i_scale_shift          = self._scale_shift.storage,
             **{f"i_row_{row}": Cat(*values) for row, values in rows.items()},
             **{f"i_t{axis}": value for axis, value in translation.items()},

@@ -23,6 +23,7 @@ class Module:
 # As much time for a memory word as 1280x720 has, in a two-hundredth of its frame.
 _SMALL_RASTER = {"H_ACTIVE": 160, "H_FRONT": 8, "H_SYNC": 4, "H_BACK": 12,
                  "V_ACTIVE": 24, "V_FRONT": 2, "V_SYNC": 2, "V_BACK": 4}
+_SMOOTH = {"SMOOTH": 1}
 _COMMON, _TRIANGLE = (scanout.RTL / folder for folder in ("common", "triangle"))
 
 MODULES = [
@@ -40,8 +41,8 @@ MODULES = [
     Module(top="vertex_stage", sources=VERTEX_STAGE),
     Module(top="vertex_cache", sources=[_COMMON / "fifo.sv", _TRIANGLE / "vertex_cache.sv"]),
     Module(top="reciprocal", sources=[_TRIANGLE / "multiply_add.sv", _TRIANGLE / "reciprocal.sv"]),
-    Module(top="setup", sources=SETUP),
-    Module(top="triangle_raster", sources=TRIANGLE_RASTER),
-    Module(top="triangle_engine", sources=TRIANGLE_ENGINE),
-    Module(top="triangle_control", sources=TRIANGLE_CONTROL),
+    Module(top="setup", sources=SETUP, variants={"setup_smooth": _SMOOTH}),
+    Module(top="triangle_raster", sources=TRIANGLE_RASTER, variants={"triangle_raster_smooth": _SMOOTH}),
+    Module(top="triangle_engine", sources=TRIANGLE_ENGINE, variants={"triangle_engine_smooth": _SMOOTH}),
+    Module(top="triangle_control", sources=TRIANGLE_CONTROL, variants={"triangle_control_smooth": _SMOOTH}),
 ]

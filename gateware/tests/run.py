@@ -57,8 +57,9 @@ def test():
     """Runs everything and returns the number of failures."""
     report = Report()
     for module in MODULES:
-        report.check(f"{module.top}: lint", lambda: run_lint(module))
-        report.check(f"{module.top}: read by Yosys", lambda: size.read(module))
+        for name, parameters in {module.top: {}, **module.variants}.items():
+            report.check(f"{name}: lint", lambda: run_lint(module, parameters))
+            report.check(f"{name}: read by Yosys", lambda: size.read(module, parameters))
         if module.bench:
             report.bench(module)
         else:
@@ -73,9 +74,10 @@ def test():
     return report.failures
 
 
-def run_lint(module):
+def run_lint(module, parameters):
     """All of Verilator's warnings, none of them allowed."""
-    run_verilator("--lint-only", "-Wall", "--top-module", module.top, *module.sources)
+    run_verilator("--lint-only", "-Wall", "--top-module", module.top,
+                  *(f"-G{key}={value}" for key, value in parameters.items()), *module.sources)
 
 
 def print_size(name):

@@ -35,30 +35,37 @@ tee -q -o {folder}/path.txt ltp"""
 
 
 def measure(name):
-    """Returns a dictionary of what a block, or the SoC, takes of each resource, and its longest path in cells.
+    """Returns a dictionary of what a block, a variant of one, or the SoC takes of each resource, and its longest path in cells.
 
     What Yosys said stays in `target/gateware/size/NAME`; `path.txt` there names the cells of the path.
     """
     if name == SOC:
         return _measure(Module("glint_urbana", urbana.synthesis_sources(_SOC_FILES)), SOC, _MARKS, _SOC_FILES)
-    known = {module.top: module for module in MODULES}
+    known = {name: (module, parameters) for module in MODULES
+             for name, parameters in {module.top: {}, **module.variants}.items()}
     if name not in known:
         raise ToolError(f"no block is named {name}; there are: {' '.join(known)} {SOC}")
-    return _measure(known[name], name)
+    module, parameters = known[name]
+    return _measure(module, name, parameters=parameters)
 
 
-def _measure(module, name, ignored=_MARKS | _PADS, cwd=BUILD):
+def _measure(module, name, ignored=_MARKS | _PADS, cwd=BUILD, parameters=None):
     folder = _FOLDER / name
     folder.mkdir(parents=True, exist_ok=True)
     cells, path, log = (folder / file for file in ("cells.json", "path.txt", "yosys.log"))
     for result in (cells, path, log):
         result.unlink(missing_ok=True)
-    script = _SCRIPT.format(top=module.top, folder=os.path.relpath(folder, cwd),
+    script = _set(module, parameters or {}) + _SCRIPT.format(top=module.top, folder=os.path.relpath(folder, cwd),
                             reads=os.path.relpath(TESTS / "lutram_reads.v", cwd))
     run_yosys(script, module.sources, cwd, log)
     stat = json.loads(cells.read_text())
     return {"yosys": stat["creator"].split(" (")[0], **sort_cells(stat["design"]["num_cells_by_type"], ignored),
             "path": longest_path(path.read_text())}
+
+
+def _set(module, parameters):
+    """The commands that give a module its parameters."""
+    return "".join(f"chparam -set {key} {value} {module.top};\n" for key, value in parameters.items())
 
 
 def sort_cells(cells, ignored=frozenset()):
@@ -86,9 +93,9 @@ def longest_path(report):
     return int(found[1])
 
 
-def read(module):
+def read(module, parameters):
     """Checks that Yosys understands a module."""
-    run_yosys(f"hierarchy -check -top {module.top}; proc; check -assert", module.sources)
+    run_yosys(f"{_set(module, parameters)}hierarchy -check -top {module.top}; proc; check -assert", module.sources)
 
 
 def check_sample():

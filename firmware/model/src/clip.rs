@@ -18,10 +18,12 @@ pub struct Polygon {
 }
 
 impl Polygon {
-    const EMPTY: Self = Self {
-        vertices: [CameraVertex { x: 0, y: 0, z: 0 }; MAX_VERTICES],
-        len: 0,
-    };
+    fn empty() -> Self {
+        Self {
+            vertices: [CameraVertex::default(); MAX_VERTICES],
+            len: 0,
+        }
+    }
 
     /// The vertices in order; fewer than three when nothing is left.
     pub fn vertices(&self) -> &[CameraVertex] {
@@ -118,6 +120,9 @@ impl Plane {
             } else {
                 between(a.z, b.z)
             },
+            light: a
+                .light
+                .zip_with(b.light, |a, b| between(a.into(), b.into()) as u16),
         }
     }
 }
@@ -142,7 +147,7 @@ pub fn off_picture(frame: &FrameSetup, triangle: &[CameraVertex; 3]) -> bool {
 
 /// Cuts a triangle to the view volume, starting with its first vertex.
 pub fn clip(frame: &FrameSetup, triangle: [CameraVertex; 3]) -> Polygon {
-    let (mut polygon, mut left) = (Polygon::EMPTY, Polygon::EMPTY);
+    let (mut polygon, mut left) = (Polygon::empty(), Polygon::empty());
     triangle.into_iter().for_each(|vertex| polygon.push(vertex));
     for plane in Plane::ALL {
         if plane.cut(frame, &polygon, &mut left) {

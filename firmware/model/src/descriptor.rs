@@ -2,20 +2,33 @@
 
 use glint_core::colour::Rgb565;
 
-use crate::setup::Setup;
+use crate::setup::{Plane, Setup};
+use crate::shade::Shading;
 
 /// Columns of a group: what the raster unit draws in one clock.
 pub const GROUP: i32 = 8;
 
-/// A triangle after its setup, 48 bytes in memory.
+/// A triangle after its setup: what gateware without smooth shading knows, and then the light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Descriptor {
-    /// The bits, the lowest in the lowest of the first word.
-    pub words: [u32; 12],
+    words: [u32; SMOOTH_WORDS],
+}
+
+/// Words of 32 bits that gateware without smooth shading has for a descriptor: 48 bytes.
+const FLAT_WORDS: usize = 12;
+/// Words of 32 bits that gateware with smooth shading has for a descriptor: 96 bytes.
+const SMOOTH_WORDS: usize = 24;
+
+/// Words of 32 bits of a descriptor, a multiple of four, for gateware that can shade as far as this.
+pub const fn words(ability: Shading) -> usize {
+    match ability {
+        Shading::Flat => FLAT_WORDS,
+        Shading::Smooth => SMOOTH_WORDS,
+    }
 }
 
 impl Descriptor {
-    /// Of a triangle in one colour.
+    /// Of a triangle; the colour is that of one that has no light of its own.
     pub fn new(setup: &Setup, colour: Rgb565) -> Self {
         let bounds = setup.bounds;
         // Bounds are in the picture, so divisions need not look at signs.
@@ -25,13 +38,7 @@ impl Descriptor {
         for edge in &setup.edges {
             bits.put(edge.start - i64::from(back) * i64::from(edge.step_x), 34);
         }
-        let depth = setup.depth;
-        let depth_start = depth
-            .start
-            .wrapping_sub(depth.step_x.wrapping_mul(back as u32));
-        for value in [depth_start, depth.step_x, depth.step_y] {
-            bits.put(value.into(), 32);
-        }
+        bits.put_plane(&setup.depth, back);
         for edge in &setup.edges {
             bits.put(edge.step_x.into(), 21);
             bits.put(edge.step_y.into(), 21);
@@ -42,23 +49,23 @@ impl Descriptor {
         bits.put(((bounds.right - 1) / GROUP).into(), 8);
         bits.put(group_start.into(), 8);
         bits.put(colour.0.into(), 16);
+        if let Some(light) = &setup.light {
+            light.iter().for_each(|plane| bits.put_plane(plane, back));
+            bits.put(1, 1);
+        }
         Self { words: bits.words }
     }
 
-    /// As it lies in memory.
-    pub fn to_bytes(&self) -> [u8; 48] {
-        let mut bytes = [0; 48];
-        for (to, word) in bytes.as_chunks_mut().0.iter_mut().zip(self.words) {
-            *to = word.to_le_bytes();
-        }
-        bytes
+    /// The bits for gateware that can shade as far as this, the lowest in the lowest of the first word.
+    pub fn words(&self, ability: Shading) -> &[u32] {
+        self.words.get(..words(ability)).unwrap_or_default()
     }
 }
 
 /// Puts fields behind each other.
 #[derive(Default)]
 struct Packer {
-    words: [u32; 12],
+    words: [u32; SMOOTH_WORDS],
     used: usize,
 }
 
@@ -72,6 +79,16 @@ impl Packer {
             }
         }
         self.used += width;
+    }
+
+    /// A plane, with its start moved to the left.
+    fn put_plane(&mut self, plane: &Plane, back: i32) {
+        let start = plane
+            .start
+            .wrapping_sub(plane.step_x.wrapping_mul(back as u32));
+        for value in [start, plane.step_x, plane.step_y] {
+            self.put(value.into(), 32);
+        }
     }
 }
 

@@ -13,6 +13,7 @@
 pub mod clip;
 pub mod descriptor;
 pub mod frame;
+pub mod quotient;
 pub mod raster;
 pub mod reciprocal;
 mod render;
@@ -25,6 +26,7 @@ pub use render::{
     Buffer, DrawnTriangle, Options, RenderError, SIZES, Stats, Target, clip_exceptions, render,
     trace,
 };
+pub use shade::Shading;
 pub use vertex::{Projected, ScreenVertex};
 
 /// x·2^−shift rounded to nearest, ties up. `shift` is in 1…31, and x has room for half a unit of the result.

@@ -9,8 +9,9 @@ use core::ops::{Add, BitOr, Sub};
 
 use glint_core::colour::Rgb565;
 
+use crate::quotient;
 use crate::render::Target;
-use crate::setup::{Edge, Setup};
+use crate::setup::{Edge, Plane, Setup};
 
 /// What drawing one triangle took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -23,12 +24,83 @@ pub struct Coverage {
     pub drawn: u32,
 }
 
-/// Draws a triangle in one colour.
+/// Draws a triangle; the colour is that of one that has no light of its own.
 pub fn draw(setup: &Setup, colour: Rgb565, target: &mut Target) -> Coverage {
+    match &setup.light {
+        None => draw_with(setup, colour, target),
+        Some(light) => draw_with(setup, light.map(Accumulation::new), target),
+    }
+}
+
+fn draw_with(setup: &Setup, brush: impl Brush, target: &mut Target) -> Coverage {
     if setup.narrow {
-        walk::<i32>(setup, colour, target)
+        walk::<i32>(setup, brush, target)
     } else {
-        walk::<i64>(setup, colour, target)
+        walk::<i64>(setup, brush, target)
+    }
+}
+
+/// What gives pixels their colours, and goes over the triangle with the depth.
+trait Brush {
+    /// Goes to the column `offset` from the start, in the row where it is.
+    fn go_to(&mut self, offset: u32);
+    /// Goes one pixel to the right.
+    fn go_right(&mut self);
+    /// Goes to the next row; which column does not matter.
+    fn go_down(&mut self);
+    /// The colour here; the accumulator of the depth has half a code added.
+    fn colour(&self, depth: u32) -> Rgb565;
+}
+
+/// One colour everywhere.
+impl Brush for Rgb565 {
+    fn go_to(&mut self, _: u32) {}
+    fn go_right(&mut self) {}
+    fn go_down(&mut self) {}
+    fn colour(&self, _: u32) -> Rgb565 {
+        *self
+    }
+}
+
+/// A plane's value, and the one at the start column.
+#[derive(Clone, Copy)]
+struct Accumulation {
+    plane: Plane,
+    row: u32,
+    value: u32,
+}
+
+impl Accumulation {
+    fn new(plane: Plane) -> Self {
+        Self {
+            plane,
+            row: plane.start,
+            value: plane.start,
+        }
+    }
+}
+
+/// The light.
+impl Brush for [Accumulation; 3] {
+    fn go_to(&mut self, offset: u32) {
+        for light in self {
+            light.value = light
+                .row
+                .wrapping_add(light.plane.step_x.wrapping_mul(offset));
+        }
+    }
+    fn go_right(&mut self) {
+        for light in self {
+            light.value = light.value.wrapping_add(light.plane.step_x);
+        }
+    }
+    fn go_down(&mut self) {
+        for light in self {
+            light.row = light.row.wrapping_add(light.plane.step_y);
+        }
+    }
+    fn colour(&self, depth: u32) -> Rgb565 {
+        quotient::colour(self.map(|light| light.value), depth)
     }
 }
 
@@ -47,7 +119,7 @@ trait Accumulator:
 impl Accumulator for i32 {}
 impl Accumulator for i64 {}
 
-fn walk<A: Accumulator>(setup: &Setup, colour: Rgb565, target: &mut Target) -> Coverage {
+fn walk<A: Accumulator>(setup: &Setup, mut brush: impl Brush, target: &mut Target) -> Coverage {
     let bounds = setup.bounds;
     let mut left = End::<A>::new(
         setup,
@@ -68,6 +140,7 @@ fn walk<A: Accumulator>(setup: &Setup, colour: Rgb565, target: &mut Target) -> C
         if left.column <= right.column {
             let offset = (left.column - setup.start_column) as u32;
             let depth = row_depth.wrapping_add(setup.depth.step_x.wrapping_mul(offset));
+            brush.go_to(offset);
             coverage.drawn += fill(
                 target,
                 row,
@@ -75,13 +148,14 @@ fn walk<A: Accumulator>(setup: &Setup, colour: Rgb565, target: &mut Target) -> C
                 right.column,
                 depth,
                 setup.depth.step_x,
-                colour,
+                &mut brush,
             );
             coverage.covered += (right.column - left.column + 1) as u32;
         }
         left.go_down();
         right.go_down();
         row_depth = row_depth.wrapping_add(setup.depth.step_y);
+        brush.go_down();
     }
     coverage.tested += coverage.covered;
     coverage
@@ -96,7 +170,7 @@ fn fill(
     to: i32,
     mut depth: u32,
     step: u32,
-    colour: Rgb565,
+    brush: &mut impl Brush,
 ) -> u32 {
     let start = row as usize * target.width as usize;
     let span = start + from as usize..start + to as usize + 1;
@@ -108,10 +182,11 @@ fn fill(
         let code = (depth >> 14).max(1);
         if code >= *stored {
             *stored = code;
-            *pixel = colour.0;
+            *pixel = brush.colour(depth).0;
             drawn += 1;
         }
         depth = depth.wrapping_add(step);
+        brush.go_right();
     }
     drawn
 }

@@ -9,8 +9,8 @@ use crate::clip::{clip, off_picture};
 use crate::frame::FrameSetup;
 use crate::raster;
 use crate::setup::{Bounds, Facing, Oriented, Setup};
-use crate::shade::{intensity, lit};
-use crate::vertex::{Projected, ScreenVertex, project, snap, transform};
+use crate::shade::{Light, Lit, Shading, intensity, lit};
+use crate::vertex::{CameraVertex, Projected, ScreenVertex, project, snap, transform};
 
 /// The sizes of a picture: width and height in pixels.
 pub const SIZES: [(u32, u32); 3] = [(320, 180), (640, 360), (1280, 720)];
@@ -58,14 +58,17 @@ pub struct Options {
     pub cull: bool,
     /// The colour where nothing is drawn, RGB565.
     pub clear: u16,
+    /// Where colours come from.
+    pub shading: Shading,
 }
 
 impl Default for Options {
-    /// Back faces left out, on black.
+    /// Back faces left out, on black, flat.
     fn default() -> Self {
         Self {
             cull: true,
             clear: 0,
+            shading: Shading::Flat,
         }
     }
 }
@@ -99,8 +102,10 @@ pub struct DrawnTriangle {
     pub vertices: [ScreenVertex; 3],
     /// The side that is seen.
     pub facing: Facing,
-    /// Its colour after shading.
+    /// Its colour after flat shading.
     pub colour: Rgb565,
+    /// The light of its vertices under smooth shading, which counts instead.
+    pub lit: Option<[Lit; 3]>,
     /// Whether it comes from the clipper.
     pub clipped: bool,
 }
@@ -163,7 +168,7 @@ fn draw_frame(
 
     let mut renderer = Renderer {
         frame,
-        cull: options.cull,
+        options: *options,
         target,
         show,
         stats: Stats::default(),
@@ -188,7 +193,7 @@ enum Path<'a> {
 
 struct Renderer<'a, 'b> {
     frame: FrameSetup,
-    cull: bool,
+    options: Options,
     target: &'a mut Target<'b>,
     show: &'a mut dyn FnMut(&DrawnTriangle),
     stats: Stats,
@@ -197,6 +202,7 @@ struct Renderer<'a, 'b> {
 impl Renderer<'_, '_> {
     /// Draws what needs no clipping, and counts what does.
     fn regular(&mut self, mesh: &Mesh, scratch: &mut [Projected]) {
+        let frame = self.frame;
         let mut index = 0;
         for chunk in mesh.chunks() {
             self.project(&chunk, scratch);
@@ -204,7 +210,8 @@ impl Renderer<'_, '_> {
                 match self.path(&triangle, scratch) {
                     Path::Unseen => {}
                     Path::Regular(vertices) => {
-                        let drawn = self.draw(index, &triangle, vertices, false);
+                        let light = || vertex_light(&frame, &triangle, &chunk);
+                        let drawn = self.draw(index, &triangle, vertices, light, false);
                         self.stats.drawn += u32::from(drawn);
                     }
                     Path::Exception => self.stats.clipped += 1,
@@ -276,10 +283,11 @@ impl Renderer<'_, '_> {
 
     /// Clips a triangle and draws what is left. Returns whether a part of it reached the walker.
     fn clip(&mut self, index: u32, triangle: &Triangle, chunk: &Chunk) -> bool {
-        let frame = self.frame;
+        let (frame, shading) = (self.frame, self.options.shading);
         let mut any = false;
-        clip_fan(&frame, triangle, chunk, &mut |vertices| {
-            any |= self.draw(index, triangle, vertices, true);
+        clip_fan(&frame, shading, triangle, chunk, &mut |corners| {
+            let light = || corners.map(|corner| corner.light);
+            any |= self.draw(index, triangle, corners.map(|c| &c.place), light, true);
         });
         any
     }
@@ -290,24 +298,22 @@ impl Renderer<'_, '_> {
         index: u32,
         triangle: &Triangle,
         vertices: [&ScreenVertex; 3],
+        light: impl FnOnce() -> [Light; 3],
         clipped: bool,
     ) -> bool {
-        let Some(placed) = Placed::new(&self.frame, self.cull, triangle, vertices) else {
+        let Some(placed) = Placed::new(&self.frame, &self.options, triangle, vertices, light)
+        else {
             return false;
         };
-        let Placed {
-            oriented,
-            bounds,
-            colour,
-        } = placed;
         (self.show)(&DrawnTriangle {
             index,
-            vertices: oriented.vertices,
-            facing: oriented.facing,
-            colour,
+            vertices: placed.oriented.vertices,
+            facing: placed.oriented.facing,
+            colour: placed.colour,
+            lit: placed.lit,
             clipped,
         });
-        let coverage = raster::draw(&Setup::new(&oriented, bounds), colour, self.target);
+        let coverage = raster::draw(&placed.setup(), placed.colour, self.target);
         self.stats.pixels_tested += u64::from(coverage.tested);
         self.stats.pixels_covered += u64::from(coverage.covered);
         self.stats.pixels_drawn += u64::from(coverage.drawn);
@@ -320,61 +326,99 @@ struct Placed {
     oriented: Oriented,
     bounds: Bounds,
     colour: Rgb565,
+    lit: Option<[Lit; 3]>,
 }
 
 impl Placed {
     /// Nothing for a back face that is culled, and where no pixel can be covered.
     fn new(
         frame: &FrameSetup,
-        cull: bool,
+        options: &Options,
         triangle: &Triangle,
         vertices: [&ScreenVertex; 3],
+        light: impl FnOnce() -> [Light; 3],
     ) -> Option<Self> {
         let oriented = Oriented::new(vertices.map(|v| *v))?;
-        if cull && oriented.facing == Facing::Back {
+        let facing = oriented.facing;
+        if options.cull && facing == Facing::Back {
             return None;
         }
         let bounds = Bounds::new(&oriented.vertices, frame.width, frame.height)?;
-        let intensity = intensity(triangle.normal, &frame.n, oriented.facing);
+        let intensity = intensity(triangle.normal, &frame.n, facing);
         Some(Self {
             oriented,
             bounds,
             colour: lit(triangle.colour, intensity),
+            lit: (options.shading == Shading::Smooth)
+                .then(|| facing.order(light().map(|light| light.to(facing)))),
         })
     }
+
+    fn setup(&self) -> Setup {
+        match &self.lit {
+            None => Setup::new(&self.oriented, self.bounds),
+            Some(lit) => Setup::smooth(&self.oriented, self.bounds, lit),
+        }
+    }
+}
+
+/// The light of a triangle's vertices.
+fn vertex_light(frame: &FrameSetup, triangle: &Triangle, chunk: &Chunk) -> [Light; 3] {
+    triangle.indices.map(|i| {
+        // A checked mesh has all the vertices it names.
+        chunk.vertex(usize::from(i)).map_or(Light::default(), |v| {
+            Light::new(v.colour, v.normal, &frame.n)
+        })
+    })
+}
+
+/// A vertex of what the clipper leaves, with its light under smooth shading.
+struct Corner {
+    place: ScreenVertex,
+    light: Light,
 }
 
 /// Clips a triangle, and gives out what is left as a fan.
 fn clip_fan(
     frame: &FrameSetup,
+    shading: Shading,
     triangle: &Triangle,
     chunk: &Chunk,
-    emit: &mut dyn FnMut([&ScreenVertex; 3]),
+    emit: &mut dyn FnMut([&Corner; 3]),
 ) {
     let [Some(a), Some(b), Some(c)] = triangle.indices.map(|i| chunk.vertex(usize::from(i))) else {
         return;
     };
-    let [a, b, c] = [a, b, c].map(|vertex| vertex.position);
     // Starting at the smallest position, so that it does not matter which vertex the triangle names first.
-    let positions = if a <= b && a <= c {
+    let [p, q, r] = [&a, &b, &c].map(|vertex| vertex.position);
+    let vertices = if p <= q && p <= r {
         [a, b, c]
-    } else if b <= c {
+    } else if q <= r {
         [b, c, a]
     } else {
         [c, a, b]
     };
-    let corners = positions.map(|position| transform(frame, position));
+    let corners = vertices.map(|vertex| CameraVertex {
+        light: match shading {
+            Shading::Flat => Light::default(),
+            Shading::Smooth => Light::new(vertex.colour, vertex.normal, &frame.n),
+        },
+        ..transform(frame, vertex.position)
+    });
     if off_picture(frame, &corners) {
         return;
     }
     let polygon = clip(frame, corners);
-    let mut places = polygon.vertices().iter().map(|vertex| snap(frame, vertex));
-    let (Some(first), Some(mut last)) = (places.next(), places.next()) else {
+    let mut left = polygon.vertices().iter().map(|vertex| Corner {
+        place: snap(frame, vertex),
+        light: vertex.light,
+    });
+    let (Some(first), Some(mut last)) = (left.next(), left.next()) else {
         return;
     };
-    for place in places {
-        emit([&first, &last, &place]);
-        last = place;
+    for corner in left {
+        emit([&first, &last, &corner]);
+        last = corner;
     }
 }
 
@@ -386,7 +430,7 @@ fn clip_fan(
 pub fn clip_exceptions(
     mesh: &Mesh,
     frame: &FrameSetup,
-    cull: bool,
+    options: &Options,
     numbers: &mut dyn Iterator<Item = u32>,
     emit: &mut dyn FnMut(&Setup, Rgb565),
 ) -> u32 {
@@ -409,9 +453,11 @@ pub fn clip_exceptions(
             continue;
         };
         let mut any = false;
-        clip_fan(frame, &triangle, chunk, &mut |vertices| {
-            if let Some(placed) = Placed::new(frame, cull, &triangle, vertices) {
-                emit(&Setup::new(&placed.oriented, placed.bounds), placed.colour);
+        clip_fan(frame, options.shading, &triangle, chunk, &mut |corners| {
+            let light = || corners.map(|corner| corner.light);
+            let vertices = corners.map(|corner| &corner.place);
+            if let Some(placed) = Placed::new(frame, options, &triangle, vertices, light) {
+                emit(&placed.setup(), placed.colour);
                 any = true;
             }
         });

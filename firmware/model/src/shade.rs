@@ -1,11 +1,21 @@
-//! Flat shading with the light at the camera.
+//! Shading with the light at the camera.
 
 use glint_core::colour::Rgb565;
 
 use crate::nearest;
 use crate::setup::Facing;
 
-/// clamp(−N·n, 0, 1) of a face normal N (s2.14) and the forward direction n (s2.23), u1.8; a back face negates N.
+/// Where a triangle's colours come from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Shading {
+    /// From its own colour and normal.
+    #[default]
+    Flat,
+    /// From those of its vertices, interpolated.
+    Smooth,
+}
+
+/// clamp(−N·n, 0, 1) of a normal N (s2.14) and the forward direction n (s2.23), u1.8; a back face negates N.
 pub fn intensity(normal: [i16; 3], n: &[i32; 3], facing: Facing) -> u32 {
     // Below 2^41.
     let product: i64 = core::iter::zip(normal, n)
@@ -24,4 +34,62 @@ pub fn lit(colour: Rgb565, intensity: u32) -> Rgb565 {
         .channels()
         .map(|c| ((u32::from(c) * intensity + (1 << 7)) >> 8) as u16);
     Rgb565(r << 11 | g << 5 | b)
+}
+
+/// L: red, green and blue of a vertex after shading, u0.14 of the channel's range: at most 63/64.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Lit(pub [u16; 3]);
+
+impl Lit {
+    /// Each channel times the intensity (u1.8, at most 1), exact.
+    pub fn new(colour: Rgb565, intensity: u32) -> Self {
+        let [r, g, b] = colour.channels().map(|c| u32::from(c) * intensity);
+        Self([2 * r, g, 2 * b].map(|x| x as u16))
+    }
+
+    /// P: each channel times w (u18.6) and half a code, to nearest, u18.6.
+    pub fn weighted(self, w: u32) -> [u32; 3] {
+        // 24 by 14 bits.
+        self.0
+            .map(|x| nearest(i64::from(x) * i64::from(w + 32), 14) as u32)
+    }
+}
+
+/// The light of a vertex: what it gives to triangles of which the front is seen, and to others.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Light {
+    /// To a front face.
+    pub front: Lit,
+    /// To a back face.
+    pub back: Lit,
+}
+
+impl Light {
+    /// That of a vertex of the mesh.
+    pub fn new(colour: Rgb565, normal: [i16; 3], n: &[i32; 3]) -> Self {
+        let to = |facing| Lit::new(colour, intensity(normal, n, facing));
+        Self {
+            front: to(Facing::Front),
+            back: to(Facing::Back),
+        }
+    }
+
+    /// What a triangle gets of which this side is seen.
+    pub const fn to(self, facing: Facing) -> Lit {
+        match facing {
+            Facing::Front => self.front,
+            Facing::Back => self.back,
+        }
+    }
+
+    /// Each number of two lights by itself.
+    pub fn zip_with(self, other: Self, operation: impl Fn(u16, u16) -> u16) -> Self {
+        let both = |Lit(a): Lit, Lit(b): Lit| {
+            Lit([0, 1, 2].map(|channel| operation(a[channel], b[channel])))
+        };
+        Self {
+            front: both(self.front, other.front),
+            back: both(self.back, other.back),
+        }
+    }
 }

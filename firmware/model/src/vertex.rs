@@ -3,6 +3,7 @@
 use crate::frame::FrameSetup;
 use crate::nearest;
 use crate::reciprocal::Reciprocal;
+use crate::shade::Light;
 
 /// The guard band: 2047 pixels from the top left corner to every side, s12.8.
 pub const GUARD: i32 = 2047 << 8;
@@ -16,6 +17,8 @@ pub struct CameraVertex {
     pub y: i64,
     /// D·n in world units, s44 with 37 fraction bits.
     pub z: i64,
+    /// What smooth shading makes of it; nothing where nobody asks.
+    pub light: Light,
 }
 
 /// A vertex on the screen.
@@ -70,6 +73,7 @@ pub fn transform(frame: &FrameSetup, position: [i16; 3]) -> CameraVertex {
         x: dot(&frame.u) + tx,
         y: dot(&frame.v) + ty,
         z: dot(&frame.n) + tz,
+        light: Light::default(),
     }
 }
 

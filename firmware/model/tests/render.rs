@@ -189,6 +189,7 @@ fn frames_do_not_depend_on_what_was_before() {
         let options = Options {
             cull: i % 2 == 0,
             clear: CLEAR,
+            ..Options::default()
         };
         let stats = render(
             &mesh,

@@ -20,10 +20,14 @@
 // its passes the one before ends, or is held until there is room, and another one waits. A triangle without a row in the band is
 // taken and dropped. The band's first row `in_y0` and whether it is an odd one (`in_odd`) come with the triangle; `holds`
 // tells whether there are triangles of an even band, and of an odd one. The bands' `rows` hold while triangles are inside.
+// With SMOOTH, planes of light go the same way, each with a multiplier of its own.
 
 `default_nettype none
 
-module band_entry (
+module band_entry #(
+    parameter bit SMOOTH = 1'b0,
+    localparam int unsigned PLANES_BITS = SMOOTH ? 289 : 1
+) (
     input  wire                            clk,
     input  wire                            rst,
     input  wire  [5:0]                     rows,
@@ -33,10 +37,13 @@ module band_entry (
     input  wire  [9:0]                     in_y0,
     input  wire                            in_odd,
     input  wire triangle_pkg::descriptor_t in_descriptor,
+    input  wire  [PLANES_BITS-1:0]         in_planes,
     output logic                           out_valid,
     input  wire                            out_ready,
     output logic                           out_odd,
-    output raster_pkg::placed_t            out_triangle
+    output raster_pkg::placed_t            out_triangle,
+    // Their starts are the values at the row, in lane 0.
+    output logic [PLANES_BITS-1:0]         out_planes
 );
     localparam logic [31:0] HALF_A_CODE = 32'd1 << 13;
     localparam logic [2:0]  STALLS = 3'd3, ROWS_KNOWN = 3'd4, LAST = 3'd7;
@@ -177,6 +184,27 @@ module band_entry (
             placed.colour       <= triangle.colour;
         end
         if (ending[3]) placed.depth <= sum[31:0];
+    end
+
+    if (SMOOTH) begin : light
+        logic smooth, held_smooth;
+
+        always_ff @(posedge clk) begin
+            if (in_ready)     smooth <= in_planes[288];
+            if (pass == LAST) held_smooth <= smooth;
+            if (next_free)    out_planes[288] <= held_smooth;
+        end
+
+        for (genvar k = 0; k < 3; k++) begin : channels
+            plane_entry plane (
+                .clk, .take(in_ready), .pass, .advance, .offset, .hold(pass == LAST), .result(ending[3]), .give(next_free),
+                .in_plane(in_planes[96 * k +: 96]), .out_plane(out_planes[96 * k +: 96])
+            );
+        end
+    end else begin : flat
+        assign out_planes = '0;
+
+        wire _unused = &{1'b0, in_planes};
     end
 
     always_ff @(posedge clk) begin

@@ -2,7 +2,7 @@
 // touches, and the numbers of exceptional triangles in a list of their own.
 //
 // Layout in words of 16 bytes, entries being u32 (docs/formats.md "Band lists"):
-//   descriptors   descriptor_base + 3·number           3 words each
+//   descriptors   descriptor_base + 3·number           3 words each; with SMOOTH 6, and 6·number
 //   lists         list_base                            16 words: the lengths of 64 lists
 //                 list_base + 16 + (band << list_shift) + 128·band  the list of a band, 4 entries a word
 //   exceptions    exception_base                       4 entries a word
@@ -10,7 +10,7 @@
 // The entries of a list are kept here until there are four of them: a word is written whole. Turning from the descriptors to
 // a list and back costs memory several clocks, so one write for four entries counts.
 //
-// Throughput 6 clocks a descriptor and 2 more for each further band. `restart` (while idle) empties all
+// Throughput 6 clocks a descriptor, with SMOOTH 9, and 2 more for each further band. `restart` (while idle) empties all
 // lists, which takes 64 clocks; `finish` (a level, when nothing more comes) has the lengths written and ends with `done`.
 // What has no room left is dropped and `full` is set: the frame is not whole then.
 
@@ -18,7 +18,9 @@
 
 module binner #(
     parameter int unsigned ADDRESS_BITS = 23,
-    parameter int unsigned COUNT_BITS   = 20
+    parameter int unsigned COUNT_BITS   = 20,
+    parameter bit          SMOOTH       = 1'b0,
+    localparam int unsigned PLANES_BITS = SMOOTH ? 289 : 1
 ) (
     input  wire                     clk,
     input  wire                     rst,
@@ -40,6 +42,7 @@ module binner #(
     input  wire                     in_valid,
     output logic                    in_ready,
     input  wire  triangle_pkg::descriptor_t       in_descriptor,
+    input  wire  [PLANES_BITS-1:0]  in_planes,
     input  wire                     exception_valid,
     output logic                    exception_ready,
     input  wire  [31:0]             exception_number,
@@ -54,6 +57,8 @@ module binner #(
 );
     localparam int unsigned BANDS       = 64;
     localparam int unsigned BAND_BITS   = $clog2(BANDS);
+    localparam int unsigned DESCRIPTOR_WORDS = 3 << SMOOTH;
+    localparam int unsigned WORD_BITS        = $clog2(DESCRIPTOR_WORDS);
 
     // v/3 for 8 bits: 171/512 is near enough.
     function automatic logic [6:0] third(input logic [7:0] v);
@@ -75,7 +80,7 @@ module binner #(
         entry_strobe = 16'hf << {lane, 2'b00};
     endfunction
 
-    typedef enum logic [3:0] {CLEAR, IDLE, LOCATE, WORD_0, WORD_1, WORD_2, LOOK, ENTRY, LENGTHS, LENGTHS_WORD, DONE} state_t;
+    typedef enum logic [3:0] {CLEAR, IDLE, LOCATE, WORD, LOOK, ENTRY, LENGTHS, LENGTHS_WORD, DONE} state_t;
     state_t state;
 
     // The lengths of the lists, and the first three entries of the word that each ends with.
@@ -87,9 +92,20 @@ module binner #(
     logic                    store, word_ends, end_written;
 
     triangle_pkg::descriptor_t             descriptor;
+    logic [PLANES_BITS-1:0]  planes;
+    logic [128*DESCRIPTOR_WORDS-1:0]    words;
+    logic [WORD_BITS-1:0]    word;
     logic [ADDRESS_BITS-1:0] descriptor_word;
     logic [95:0]             gathered;
     logic                    free, list_full;
+
+    if (SMOOTH) begin : light
+        assign words = {95'd0, planes, descriptor};
+    end else begin : flat
+        assign words = descriptor;
+
+        wire _unused = &{1'b0, planes};
+    end
 
     assign idle            = state == IDLE;
     assign done            = state == DONE;
@@ -140,6 +156,8 @@ module binner #(
             end
             IDLE: begin
                 descriptor <= in_descriptor;
+                planes     <= in_planes;
+                word       <= '0;
                 if (in_valid) begin
                     state <= LOCATE;
                 end else if (exception_valid) begin
@@ -161,17 +179,17 @@ module binner #(
                 band      <= band_of(descriptor.top);
                 last_band <= band_of(descriptor.bottom - 1'b1);
                 full      <= full || descriptors == descriptor_limit;
-                state     <= descriptors == descriptor_limit ? IDLE : WORD_0;
+                state     <= descriptors == descriptor_limit ? IDLE : WORD;
             end
-            WORD_0, WORD_1, WORD_2: if (free) begin
+            WORD: if (free) begin
                 write_valid     <= 1'b1;
                 write_addr      <= descriptor_word;
-                write_data      <= state == WORD_0 ? descriptor[127:0]
-                                 : state == WORD_1 ? descriptor[255:128] : descriptor[383:256];
+                write_data      <= words[128 * word +: 128];
                 write_strobe    <= '1;
                 write_descriptor <= 1'b1;
                 descriptor_word <= descriptor_word + 1'b1;
-                state           <= state == WORD_0 ? WORD_1 : state == WORD_1 ? WORD_2 : ENTRY;
+                word            <= word + 1'b1;
+                if (word == WORD_BITS'(DESCRIPTOR_WORDS - 1)) state <= ENTRY;
             end
             // One clock for the next list's length and place.
             LOOK: state <= ENTRY;

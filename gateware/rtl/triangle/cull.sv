@@ -12,7 +12,11 @@
 
 `default_nettype none
 
-module cull (
+module cull #(
+    parameter bit SMOOTH = 1'b0,
+    localparam int unsigned LIGHT_BITS = SMOOTH ? 41 : 1,
+    localparam int unsigned LIT_BITS   = SMOOTH ? 40 : 1
+) (
     input  wire                    clk,
     input  wire                    rst,
     input  wire  [10:0]            width,
@@ -25,9 +29,12 @@ module cull (
     input  wire  [2:0][65:0]       in_vertices, // screen_vertex_t each
     input  wire  [15:0]            in_colour,
     input  wire  [2:0][15:0]       in_normal,
+    input  wire  [2:0][LIGHT_BITS-1:0] in_light,
     output logic                   out_valid,
     input  wire                    out_ready,
-    output setup_pkg::oriented_t              out_triangle
+    output setup_pkg::oriented_t              out_triangle,
+    // L of its vertices for the side that is seen.
+    output logic [2:0][LIT_BITS-1:0] out_lit
 );
     // What is known of a triangle from the beginning.
     typedef struct packed {
@@ -203,6 +210,33 @@ module cull (
             out_triangle <= oriented;
         end
         if (rst) out_valid <= 1'b0;
+    end
+
+    // With the vertices' turn, and dark where it is the other side that has the light.
+    if (SMOOTH) begin : light
+        // Vectors: Yosys knows no arrays in here.
+        logic [3*LIGHT_BITS-1:0] first_light, last_light;
+        logic [3*LIT_BITS-1:0]   lit;
+
+        for (genvar i = 0; i < 3; i++) begin : vertices
+            localparam int unsigned OTHER = i == 0 ? 0 : 3 - i;
+            triangle_pkg::light_t vertex;
+
+            assign vertex = front ? last_light[LIGHT_BITS * OTHER +: LIGHT_BITS] : last_light[LIGHT_BITS * i +: LIGHT_BITS];
+            assign lit[LIT_BITS * i +: LIT_BITS] = vertex.back != front ? {vertex.red, vertex.green, vertex.blue} : '0;
+        end
+
+        always_ff @(posedge clk) begin
+            if (in_ready) begin
+                first_light <= in_light;
+                last_light  <= first_light;
+            end
+            if (!out_valid || out_ready) out_lit <= lit;
+        end
+    end else begin : flat
+        assign out_lit = '0;
+
+        wire _unused = &{1'b0, in_light};
     end
 
     wire _unused = &{1'b0, area[42:40], rounded[7:0], right_last[2:0]};

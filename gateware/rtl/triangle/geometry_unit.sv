@@ -20,7 +20,8 @@
 
 module geometry_unit #(
     parameter int unsigned ADDRESS_BITS = 23,
-    parameter int unsigned COUNT_BITS   = 20
+    parameter int unsigned COUNT_BITS   = 20,
+    parameter bit          SMOOTH       = 1'b0
 ) (
     input  wire                      clk,
     input  wire                      rst,
@@ -43,6 +44,8 @@ module geometry_unit #(
     // The frame's constants (vertex_stage, setup). 320x180, 640x360, 1280x720: 0, 1, 2.
     input  wire  [1:0]               size,
     input  wire                      cull_back,
+    // Colours from the vertices, where there is SMOOTH.
+    input  wire                      smooth,
     input  wire  [4:0]               scale_shift,
     input  wire  [2:0][24:0]         row_u,
     input  wire  [2:0][24:0]         row_v,
@@ -84,6 +87,9 @@ module geometry_unit #(
 );
     // Colour and normal of a triangle.
     localparam int unsigned SIDE_BITS = 64;
+    // A light_t.
+    localparam int unsigned LIGHT_BITS  = SMOOTH ? 41 : 1;
+    localparam int unsigned VERTEX_BITS = SMOOTH ? 68 + LIGHT_BITS : 68;
     localparam int unsigned FLIGHT_BITS = 8;
 
     logic [10:0] width;
@@ -135,17 +141,20 @@ module geometry_unit #(
     logic             fetch_valid, fetch_ready, projected_valid, projected_ready, placed_valid, placed_ready;
     logic [15:0]      fetch_index;
     triangle_pkg::projected_t       projected;
+    logic [VERTEX_BITS-1:0] shaded;
+    logic [2:0][VERTEX_BITS-1:0] cached;
     logic [2:0][67:0] placed;
+    logic [2:0][LIGHT_BITS-1:0] placed_light, regular_light;
     logic [SIDE_BITS-1:0] placed_side;
 
     /* verilator lint_off PINCONNECTEMPTY */
-    vertex_cache #(.SIDE_BITS(SIDE_BITS)) vertex_cache (
+    vertex_cache #(.SIDE_BITS(SIDE_BITS), .VERTEX_BITS(VERTEX_BITS)) vertex_cache (
         .clk, .rst(rst || restart), .clear(chunk), .idle(),
         .in_valid(triangle_valid), .in_ready(triangle_ready),
         .in_indices(triangle[47:0]), .in_side(triangle[48 +: SIDE_BITS]),
         .fetch_valid, .fetch_ready, .fetch_index,
-        .projected_valid, .projected_ready, .projected_vertex(projected),
-        .out_valid(placed_valid), .out_ready(placed_ready), .out_vertices(placed), .out_side(placed_side)
+        .projected_valid, .projected_ready, .projected_vertex(shaded),
+        .out_valid(placed_valid), .out_ready(placed_ready), .out_vertices(cached), .out_side(placed_side)
     );
     /* verilator lint_on PINCONNECTEMPTY */
 
@@ -160,27 +169,53 @@ module geometry_unit #(
         .out_valid(projected_valid), .out_ready(projected_ready), .out_vertex(projected)
     );
 
+    for (genvar i = 0; i < 3; i++) begin : places
+        assign placed[i] = cached[i][67:0];
+    end
+
+    if (SMOOTH) begin : light
+        logic [LIGHT_BITS-1:0] projected_light;
+
+        vertex_light vertex_light (
+            .clk, .rst(rst || restart), .row_n, .take(data_valid[1] && data_ready[1]),
+            .in_normal(data[128 + 48 +: 48]), .in_colour(data[128 + 96 +: 16]),
+            .give(projected_valid && projected_ready), .out_light(projected_light)
+        );
+
+        assign shaded = {projected_light, projected};
+
+        for (genvar i = 0; i < 3; i++) begin : vertices
+            assign placed_light[i] = cached[i][68 +: LIGHT_BITS];
+        end
+    end else begin : flat
+        assign shaded       = projected;
+        assign placed_light = '0;
+    end
+
     logic                 regular_valid, regular_ready, exception_valid, exception_ready, unseen;
     logic [2:0][65:0]     regular;
     logic [SIDE_BITS-1:0] regular_side;
     logic [31:0]          exception_number;
 
     /* verilator lint_off PINCONNECTEMPTY */
-    classify #(.SIDE_BITS(SIDE_BITS)) classify (
+    classify #(.SIDE_BITS(SIDE_BITS + 3 * LIGHT_BITS)) classify (
         .clk, .rst(rst || restart), .restart(clear), .width, .height, .idle(), .unseen, .count(triangles),
-        .in_valid(placed_valid), .in_ready(placed_ready), .in_vertices(placed), .in_side(placed_side),
-        .regular_valid, .regular_ready, .regular_vertices(regular), .regular_side,
+        .in_valid(placed_valid), .in_ready(placed_ready), .in_vertices(placed), .in_side({placed_light, placed_side}),
+        .regular_valid, .regular_ready, .regular_vertices(regular),
+        .regular_side({regular_light, regular_side}),
         .exception_valid, .exception_ready, .exception_number
     );
 
     logic        descriptor_valid, descriptor_ready, culled;
     triangle_pkg::descriptor_t descriptor;
+    logic [(SMOOTH ? 289 : 1)-1:0] planes;
 
-    setup setup (
-        .clk, .rst(rst || restart), .width, .height, .cull_back, .camera_n(row_n), .busy(), .culled, .drawn(),
+    setup #(.SMOOTH(SMOOTH)) setup (
+        .clk, .rst(rst || restart), .width, .height, .cull_back, .camera_n(row_n), .smooth, .busy(), .culled, .drawn(),
         .in_valid(regular_valid), .in_ready(regular_ready), .in_vertices(regular),
-        .in_colour(regular_side[15:0]), .in_normal(regular_side[63:16]),
-        .out_valid(descriptor_valid), .out_ready(descriptor_ready), .out_descriptor(descriptor)
+        .in_colour(regular_side[15:0]), .in_normal(regular_side[63:16]), .in_light(regular_light),
+        .out_valid(descriptor_valid), .out_ready(descriptor_ready), .out_descriptor(descriptor),
+        .out_planes(planes)
     );
     /* verilator lint_on PINCONNECTEMPTY */
 
@@ -189,11 +224,11 @@ module geometry_unit #(
     logic [127:0]            write_data;
     logic [15:0]             write_strobe;
 
-    binner #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS)) binner (
+    binner #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS), .SMOOTH(SMOOTH)) binner (
         .clk, .rst(rst || restart), .restart(clear), .finish(state == FINISH), .done(lists_done), .idle(lists_idle), .full,
         .size, .descriptor_base, .descriptor_limit, .list_base, .list_shift, .exception_base, .exception_limit,
         .descriptors, .exceptions,
-        .in_valid(descriptor_valid), .in_ready(descriptor_ready), .in_descriptor(descriptor),
+        .in_valid(descriptor_valid), .in_ready(descriptor_ready), .in_descriptor(descriptor), .in_planes(planes),
         .exception_valid, .exception_ready, .exception_number,
         .write_valid, .write_ready, .write_addr, .write_data, .write_strobe, .write_descriptor
     );

@@ -4,18 +4,18 @@
 // lane and in the next min(7, floor(E' / |step_x|)), which three steps of a restoring division give; where it rises
 // these are counted from lane 7, else from lane 0. Where E' is 2^23 or more it passes everywhere: 7 * 2^20 is less.
 //
-// Depth by doubling: lane 4 from lane 0, then two lanes from each two before, and again.
+// Depth by `lane_values`.
 //
 //   stage    1           2            3           4
 //   count    4, bit 2    2, bit 1     1, bit 0    mask
-//   depth    0, 4        0, 2, 4, 6   all         codes, at least 1
+//   depth    lane_values                          codes, at least 1
 //   address  5 * line    * stride / 5 + group
 //
 // `stride`, the groups of a line, is 40, 80 or 160 and holds while groups are inside. The address in the band buffer comes
 // with the line and the group of which it is made.
 //
 // Streams are valid/ready; ready passes through. Latency 4 clocks, throughput a group a clock. A group that covers
-// nothing does not come out.
+// nothing does not come out. `early_depths`, the accumulators, are those of a group a clock before it comes out.
 
 `default_nettype none
 
@@ -34,7 +34,8 @@ module lanes (
     output logic [7:0]                  out_column,
     output logic [7:0]                  out_mask,
     output logic [7:0][17:0]            out_codes,
-    output logic [15:0]                 out_colour
+    output logic [15:0]                 out_colour,
+    output logic [7:0][31:0]            early_depths
 );
     logic [4:1] valid;
 
@@ -106,36 +107,12 @@ module lanes (
 
     assign out_valid = valid[4] && out_mask != '0;
 
-    // Depth.
-    logic [31:0]      step_1, step_2;
-    logic [1:0][31:0] depth_1;
-    logic [3:0][31:0] depth_2;
-    logic [7:0][31:0] depth_3_sum;
-    logic [7:0][17:0] depth_3;
-
-    always_comb begin
-        for (int i = 0; i < 4; i++) begin
-            depth_3_sum[2 * i]     = depth_2[i];
-            depth_3_sum[2 * i + 1] = depth_2[i] + step_2;
-        end
-    end
+    lane_values depths (.clk, .enable(out_ready), .in(in_group.depth), .step_x(in_group.depth_step_x), .values(early_depths));
 
     always_ff @(posedge clk) begin
         if (out_ready) begin
-            step_1     <= in_group.depth_step_x;
-            depth_1[0] <= in_group.depth;
-            depth_1[1] <= in_group.depth + (in_group.depth_step_x << 2);
-
-            step_2 <= step_1;
-            for (int i = 0; i < 2; i++) begin
-                depth_2[2 * i]     <= depth_1[i];
-                depth_2[2 * i + 1] <= depth_1[i] + (step_1 << 1);
-            end
-
-            for (int i = 0; i < 8; i++) begin
-                depth_3[i]   <= depth_3_sum[i][31:14];
-                out_codes[i] <= depth_3[i] == '0 ? 18'd1 : depth_3[i];
-            end
+            for (int i = 0; i < 8; i++)
+                out_codes[i] <= early_depths[i][31:14] == '0 ? 18'd1 : early_depths[i][31:14];
         end
     end
 
@@ -166,7 +143,7 @@ module lanes (
         end
     end
 
-    wire _unused = &{1'b0, depth_3_sum, stride[5:0], line_times_5[8]};
+    wire _unused = &{1'b0, early_depths, stride[5:0], line_times_5[8]};
 endmodule
 
 `default_nettype wire

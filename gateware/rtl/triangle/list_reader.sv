@@ -6,9 +6,9 @@
 //                        └─▶ jobs ───┘      └──────────────────┘
 //
 // Each part runs ahead of the one behind it as far as its FIFO reaches, through the ends of lists and bands: lengths of 16 bands,
-// lists of 8 jobs (a list of a band each) or 128 entries, 10 descriptors. So memory's latency is hidden while what has been
+// lists of 8 jobs (a list of a band each) or 128 entries, 10 descriptors (5 with SMOOTH). So memory's latency is hidden while what has been
 // read lasts. Three clients of a read_port: the lengths of the lists, the lists, the descriptors. Throughput a descriptor in
-// 5 clocks; a list takes 4 clocks, if it is empty too.
+// 5 clocks, with SMOOTH in 8; a list takes 4 clocks, if it is empty too.
 //
 // `list_error`: since `start` there was a list longer than lists may be, which was taken as empty, or an entry that is none of
 // the set's `counts` descriptors, for which something else was drawn.
@@ -21,7 +21,9 @@
 
 module list_reader #(
     parameter int unsigned ADDRESS_BITS = 23,
-    parameter int unsigned COUNT_BITS   = 20
+    parameter int unsigned COUNT_BITS   = 20,
+    parameter bit          SMOOTH       = 1'b0,
+    localparam int unsigned PLANES_BITS = SMOOTH ? 289 : 1
 ) (
     input  wire                       clk,
     input  wire                       rst,
@@ -45,7 +47,8 @@ module list_reader #(
     output logic                      out_valid,
     input  wire                       out_ready,
     output logic                      out_end,
-    output triangle_pkg::descriptor_t out_descriptor
+    output triangle_pkg::descriptor_t out_descriptor,
+    output logic [PLANES_BITS-1:0]    out_planes
 );
     localparam int unsigned JOBS = 8;
 
@@ -196,12 +199,12 @@ module list_reader #(
         if (rst || start) list_error <= 1'b0;
     end
 
-    descriptor_cache #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS)) descriptors (
+    descriptor_cache #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS), .SMOOTH(SMOOTH)) descriptors (
         .clk, .rst, .forget, .base(descriptor_base),
         .in_valid(item_valid), .in_ready(item_ready), .in_end(item_end), .in_set(item_set), .in_number(number[COUNT_BITS-1:0]),
         .ask_valid(ask_valid[2]), .ask_ready(ask_ready[2]), .ask_addr(ask_addr[2*ADDRESS_BITS +: ADDRESS_BITS]),
         .data_valid(data_valid[2]), .data_ready(data_ready[2]), .data(data[256 +: 128]),
-        .out_valid, .out_ready, .out_end, .out_descriptor
+        .out_valid, .out_ready, .out_end, .out_descriptor, .out_planes
     );
 endmodule
 

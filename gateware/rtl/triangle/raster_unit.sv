@@ -23,7 +23,8 @@
 
 module raster_unit #(
     parameter int unsigned ADDRESS_BITS = 23,
-    parameter int unsigned COUNT_BITS   = 20
+    parameter int unsigned COUNT_BITS   = 20,
+    parameter bit          SMOOTH       = 1'b0
 ) (
     input  wire                       clk,
     input  wire                       rst,
@@ -143,6 +144,7 @@ module raster_unit #(
 
     logic        item_valid, item_ready, band_ends, triangle_valid, triangle_ready, raster_idle;
     triangle_pkg::descriptor_t descriptor;
+    logic [(SMOOTH ? 289 : 1)-1:0] planes;
 
     // What cannot be a descriptor is left out: it would be drawn beside the picture.
     logic stray, list_damaged;
@@ -168,11 +170,12 @@ module raster_unit #(
         end
     end
 
-    list_reader #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS)) list_reader (
+    list_reader #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS), .SMOOTH(SMOOTH)) list_reader (
         .clk, .rst(rst || restart), .start(begins), .forget(state == IDLE), .last_band, .present, .list_base, .descriptor_base, .counts, .list_shift,
         .list_error(list_damaged),
         .ask_valid, .ask_ready, .ask_addr, .data_valid, .data_ready, .data,
-        .out_valid(item_valid), .out_ready(item_ready), .out_end(band_ends), .out_descriptor(descriptor)
+        .out_valid(item_valid), .out_ready(item_ready), .out_end(band_ends), .out_descriptor(descriptor),
+        .out_planes(planes)
     );
 
     logic            group_valid, group_ready, walking, candidate;
@@ -184,9 +187,10 @@ module raster_unit #(
     logic [8*16-1:0] group_colours;
 
     /* verilator lint_off PINCONNECTEMPTY */
-    triangle_raster triangle_raster (
+    triangle_raster #(.SMOOTH(SMOOTH)) triangle_raster (
         .clk, .rst(rst || restart), .odd(band[0]), .rows, .stride, .idle(raster_idle), .walking, .candidate, .stalled(),
         .triangle_valid, .triangle_ready, .triangle_y0(read_row), .triangle_odd(read_odd), .triangle_descriptor(descriptor),
+        .triangle_planes(planes),
         .group_valid, .group_ready, .group_row, .group_line, .group_column, .group_mask, .group_codes, .group_colours
     );
     /* verilator lint_on PINCONNECTEMPTY */

@@ -9,16 +9,22 @@
 // the last clock of a beat, which lasts until there is room for what leaves stage 4; they move whether they hold a
 // triangle or not, so one alone gets through. A culled triangle leaves before them and waits for nothing but what is before
 // it. `culled` and `drawn` are high for one clock for each triangle, `drawn` when its descriptor is there.
-// The frame's constants (`width`, `height`, `cull_back`, `camera_n`) hold while `busy` and when a triangle comes.
+// The frame's constants (`width`, `height`, `cull_back`, `camera_n`, `smooth`) hold while `busy` and when a triangle comes.
 //
 // Edges 0 and 2 meet in vertex 0, so both take (px, py) from there. The third follows: E0 + E1 + E2 = 2A = a at every point,
 // since the three differences of vertices add up to 0, so the sum does not depend on the point, and at vertex 0 it is E1.
+//
+// With SMOOTH, light goes along, in planes of its own: stage 1 makes P of it, stage 2 the planes' normals.
 
 `default_nettype none
 
 module setup #(
     // The last clock of a beat. Fewer than 11 clocks are for proofs of the control.
-    parameter bit [3:0] LAST = 4'd10
+    parameter bit [3:0] LAST = 4'd10,
+    parameter bit SMOOTH = 1'b0,
+    localparam int unsigned LIGHT_BITS  = SMOOTH ? 41 : 1,
+    localparam int unsigned LIT_BITS    = SMOOTH ? 40 : 1,
+    localparam int unsigned PLANES_BITS = SMOOTH ? 289 : 1
 ) (
     input  wire              clk,
     input  wire              rst,
@@ -26,6 +32,7 @@ module setup #(
     input  wire  [9:0]       height,
     input  wire              cull_back,
     input  wire  [2:0][24:0] camera_n,    // row n, s2.23
+    input  wire              smooth,
     output logic             busy,
     output logic             culled,
     output logic             drawn,
@@ -34,9 +41,11 @@ module setup #(
     input  wire  [2:0][65:0] in_vertices, // screen_vertex_t each, numbered as in the mesh
     input  wire  [15:0]      in_colour,   // RGB565
     input  wire  [2:0][15:0] in_normal,   // s2.14
+    input  wire  [2:0][LIGHT_BITS-1:0] in_light,
     output logic             out_valid,
     input  wire              out_ready,
-    output triangle_pkg::descriptor_t out_descriptor
+    output triangle_pkg::descriptor_t out_descriptor,
+    output logic [PLANES_BITS-1:0]    out_planes
 );
     // What goes through all stages as it is.
     typedef struct packed {
@@ -58,13 +67,14 @@ module setup #(
     assign enable = count != LAST || !valid[4] || !out_valid;
     assign beat   = count == LAST && enable;
 
-    setup_pkg::oriented_t first;
-    logic                 first_valid, cull_busy;
+    setup_pkg::oriented_t     first;
+    logic [2:0][LIT_BITS-1:0] first_lit;
+    logic                     first_valid, cull_busy;
 
-    cull cull_stage (
+    cull #(.SMOOTH(SMOOTH)) cull_stage (
         .clk, .rst, .width, .height, .cull_back, .busy(cull_busy), .culled,
-        .in_valid, .in_ready, .in_vertices, .in_colour, .in_normal,
-        .out_valid(first_valid), .out_ready(beat), .out_triangle(first)
+        .in_valid, .in_ready, .in_vertices, .in_colour, .in_normal, .in_light,
+        .out_valid(first_valid), .out_ready(beat), .out_triangle(first), .out_lit(first_lit)
     );
 
     always_ff @(posedge clk) begin
@@ -178,19 +188,15 @@ module setup #(
     // Stage 3.
     (* keep *) passed_t passed_3;
     (* keep *) origin_t origin_3;
-    logic        [45:0] nx_3, ny_3;
     logic        [5:0]  lead_3;
     logic        [23:0] y_3;
     logic        [15:0] lit_3;
     logic [2:0][33:0]   start_3;
-    logic        [40:0] twice_gx, twice_gy;
 
     always_ff @(posedge clk) begin
         if (beat) begin
             passed_3 <= passed_2;
             origin_3 <= origin_2;
-            nx_3     <= nx_2;
-            ny_3     <= ny_2;
             lead_3   <= lead_2;
             y_3      <= y_2;
             lit_3    <= lit_2;
@@ -198,14 +204,10 @@ module setup #(
         end
     end
 
-    setup_gradient gradient (.clk, .enable, .count, .nx(nx_3), .ny(ny_3), .y(y_3), .lead(lead_3), .twice_gx, .twice_gy);
-
-    // Stage 4, a clock late: first the gradients are rounded.
+    // Stage 4.
     (* keep *) passed_t passed_4;
     (* keep *) origin_t origin_4;
-    logic        [40:0] twice_gx_4, twice_gy_4;
-    logic        [39:0] gx, gy;
-    logic        [3:0]  count_4;
+    logic        [31:0] step_x, step_y;
     logic        [15:0] lit_4;
     logic [2:0][33:0]   start_4;
     logic        [31:0] depth_start;
@@ -215,23 +217,62 @@ module setup #(
         if (beat) begin
             passed_4   <= passed_3;
             origin_4   <= origin_3;
-            twice_gx_4 <= twice_gx;
-            twice_gy_4 <= twice_gy;
             lit_4      <= lit_3;
             start_4    <= start_3;
         end
-        gx         <= twice_gx_4[40:1] + 40'(twice_gx_4[0]);
-        gy         <= twice_gy_4[40:1] + 40'(twice_gy_4[0]);
-        if (enable) count_4 <= count;
         sum_x_4    <= passed_4.y01 + passed_4.y20;
         sum_y_4    <= passed_4.x10 + passed_4.x02;
         step_1_x_4 <= -sum_x_4;
         step_1_y_4 <= -sum_y_4;
     end
 
-    setup_depth depth (
-        .clk, .enable, .count(count_4), .gx, .gy, .px(origin_4.px), .py(origin_4.py), .w0(origin_4.w0), .start(depth_start)
+    setup_plane depth (
+        .clk, .enable, .beat, .count, .nx(nx_2), .ny(ny_2), .y(y_3), .lead(lead_3),
+        .px(origin_4.px), .py(origin_4.py), .value(origin_4.w0), .step_x, .step_y, .start(depth_start)
     );
+
+    // The planes of light. Their normals are made in stage 2, where that of the depth waits for 1/a.
+    if (SMOOTH) begin : light
+        // Vectors: Yosys knows no arrays in here.
+        logic [3*LIT_BITS-1:0] lit_1;
+        logic [3*24-1:0]       p0;
+        logic [3*25-1:0]       p10, p20;
+        logic [3*96-1:0]       planes;
+
+        always_ff @(posedge clk) if (beat) lit_1 <= first_lit;
+
+        setup_light products (.clk, .enable, .beat, .count, .next_w0(first.w0), .w10(t.w10), .w20(t.w20), .lit(lit_1), .p0, .p10, .p20);
+
+        for (genvar k = 0; k < 3; k++) begin : channels
+            (* keep *) logic [23:0] p0_3, p0_4;
+            logic [45:0] light_nx, light_ny;
+            logic [31:0] light_step_x, light_step_y, light_start;
+
+            always_ff @(posedge clk) begin
+                if (beat) begin
+                    p0_3 <= p0[24 * k +: 24];
+                    p0_4 <= p0_3;
+                end
+            end
+
+            setup_normal light_normal (
+                .clk, .enable, .count, .w10(p10[25 * k +: 25]), .w20(p20[25 * k +: 25]),
+                .x10(passed_2.x10), .y01(passed_2.y01), .x02(passed_2.x02), .y20(passed_2.y20), .nx(light_nx), .ny(light_ny)
+            );
+            setup_plane plane (
+                .clk, .enable, .beat, .count, .nx(light_nx), .ny(light_ny), .y(y_3), .lead(lead_3),
+                .px(origin_4.px), .py(origin_4.py), .value(p0_4), .step_x(light_step_x), .step_y(light_step_y), .start(light_start)
+            );
+
+            assign planes[96 * k +: 96] = {light_step_y, light_step_x, light_start};
+        end
+
+        always_ff @(posedge clk) if (beat && valid[4]) out_planes <= {smooth, planes};
+    end else begin : flat
+        assign out_planes = '0;
+
+        wire _unused = &{1'b0, smooth, first_lit};
+    end
 
     always_ff @(posedge clk) begin
         drawn <= beat && valid[4];
@@ -245,8 +286,8 @@ module setup #(
             out_descriptor.bottom       <= passed_4.bottom;
             out_descriptor.top          <= passed_4.top;
             out_descriptor.steps        <= {passed_4.x02, passed_4.y20, step_1_y_4, step_1_x_4, passed_4.x10, passed_4.y01};
-            out_descriptor.depth_step_y <= gy[31:0];
-            out_descriptor.depth_step_x <= gx[31:0];
+            out_descriptor.depth_step_y <= step_y;
+            out_descriptor.depth_step_x <= step_x;
             out_descriptor.depth_start  <= depth_start;
             out_descriptor.start        <= start_4;
         end

@@ -20,15 +20,16 @@
 module triangle_control #(
     parameter int unsigned ADDRESS_BITS = 23,
     parameter int unsigned COUNT_BITS   = 20,
-    parameter logic [31:0] BASE         = 32'h4000_0000
+    parameter logic [31:0] BASE         = 32'h4000_0000,
+    parameter bit          SMOOTH       = 1'b0
 ) (
     input  wire                    clk,
     input  wire                    rst,
     input  wire                    cancel,
-    // Geometry: flags {cull back faces, size}.
+    // Geometry: flags {smooth, cull back faces, size}.
     input  wire                    geometry_ask,
-    input  wire  [2:0]             geometry_flags,
-    output logic [2:0]             geometry_kept,
+    input  wire  [3:0]             geometry_flags,
+    output logic [3:0]             geometry_kept,
     output logic                   geometry_active,
     output logic                   geometry_ended,
     output logic [2:0]             geometry_error,
@@ -103,7 +104,7 @@ module triangle_control #(
 
     // Lengths, for the one region that is looked at.
     logic [31:0]          first;
-    logic [WORD_BITS-1:0] words, mesh_words, list_words, frame_words;
+    logic [WORD_BITS-1:0] words, mesh_words, list_words, frame_words, descriptor_words;
     logic [COUNT_BITS-1:0] count;
     logic                 used;
 
@@ -120,17 +121,18 @@ module triangle_control #(
             4'd8:    count = count_0;
             default: count = count_1;
         endcase
+        descriptor_words = (WORD_BITS'(count) + (WORD_BITS'(count) << 1)) << SMOOTH;
         case (region)
             4'd0:    begin first = mesh;                 words = mesh_words; end
-            4'd1:    begin first = geometry_descriptors; words = WORD_BITS'(count) + (WORD_BITS'(count) << 1); end
+            4'd1:    begin first = geometry_descriptors; words = descriptor_words; end
             4'd2:    begin first = geometry_lists;       words = list_words; end
             4'd3:    begin first = exceptions;           words = (WORD_BITS'(count) + WORD_BITS'(3)) >> 2; end
             4'd4:    begin first = frame;                words = frame_words; end
             4'd5:    begin first = depth;                words = frame_words << 1; used = raster_kept[4]; end
             4'd6:    begin first = lists_0;              words = list_words; used = raster_kept[2]; end
             4'd7:    begin first = lists_1;              words = list_words; used = raster_kept[3]; end
-            4'd8:    begin first = descriptors_0;        words = WORD_BITS'(count) + (WORD_BITS'(count) << 1); used = raster_kept[2]; end
-            default: begin first = descriptors_1;        words = WORD_BITS'(count) + (WORD_BITS'(count) << 1); used = raster_kept[3]; end
+            4'd8:    begin first = descriptors_0;        words = descriptor_words; used = raster_kept[2]; end
+            default: begin first = descriptors_1;        words = descriptor_words; used = raster_kept[3]; end
         endcase
     end
 

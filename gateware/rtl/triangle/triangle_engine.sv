@@ -10,12 +10,16 @@
 // their own do not turn for each other. Descriptors, lists, and the frame's words in even and in odd banks have write ports. `cancel` (one clock, at any
 // time) gives both frames up; `ready` says that the memory has answered everything and the band buffer is clear, so that
 // either unit may start. What the units' parameters and results mean stands in their own files.
+//
+// SMOOTH builds smooth shading, which a frame then has or not, by `smooth` of its geometry: light of the vertices, interpolated
+// over the depth and divided at each pixel (docs/formats.md, "Smooth shading"). Descriptors have twice the words then.
 
 `default_nettype none
 
 module triangle_engine #(
     parameter int unsigned ADDRESS_BITS = 23,
-    parameter int unsigned COUNT_BITS   = 20
+    parameter int unsigned COUNT_BITS   = 20,
+    parameter bit          SMOOTH       = 1'b0
 ) (
     input  wire                       clk,
     input  wire                       rst,
@@ -37,6 +41,7 @@ module triangle_engine #(
     input  wire  [COUNT_BITS-1:0]     exception_limit,
     input  wire  [1:0]                geometry_size,
     input  wire                       cull_back,
+    input  wire                       smooth,
     input  wire  [4:0]                scale_shift,
     input  wire  [2:0][24:0]          row_u,
     input  wire  [2:0][24:0]          row_v,
@@ -170,10 +175,10 @@ module triangle_engine #(
         .rdata_valid(raster_read_rdata_valid), .rdata(raster_read_rdata)
     );
 
-    geometry_unit #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS)) geometry (
+    geometry_unit #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS), .SMOOTH(SMOOTH)) geometry (
         .clk, .rst, .restart(cancel), .start(geometry_start), .busy(geometry_busy), .done(geometry_done), .mesh_error, .full,
         .mesh_first, .mesh_last, .descriptor_base(geometry_descriptors), .descriptor_limit, .list_base(geometry_lists),
-        .list_shift, .exception_base, .exception_limit, .size(geometry_size), .cull_back, .scale_shift,
+        .list_shift, .exception_base, .exception_limit, .size(geometry_size), .cull_back, .smooth, .scale_shift,
         .row_u, .row_v, .row_n, .tx, .ty, .tz, .near_z, .depth_mantissa, .depth_exponent,
         .ask_valid(ask_valid[1:0]), .ask_ready(ask_ready[1:0]), .ask_addr(ask_addr[2*ADDRESS_BITS-1:0]),
         .data_valid(data_valid[1:0]), .data_ready(data_ready[1:0]), .data(data[2*128-1:0]),
@@ -184,7 +189,7 @@ module triangle_engine #(
         .triangles, .unseen_count, .culled_count, .descriptors, .exceptions, .clocks_busy(geometry_clocks), .vertices
     );
 
-    raster_unit #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS)) raster (
+    raster_unit #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS), .SMOOTH(SMOOTH)) raster (
         .clk, .rst, .restart(cancel), .ready(raster_ready), .start(raster_start), .busy(raster_busy), .done(raster_done),
         .size(raster_size), .frame_base, .depth_base, .with_depth, .clear, .frame_slot, .whole, .present,
         .list_base(raster_lists), .descriptor_base(raster_descriptors), .counts(raster_counts), .list_shift, .list_error,

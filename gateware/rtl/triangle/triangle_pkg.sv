@@ -40,6 +40,28 @@ package triangle_pkg;
         logic [31:0]      depth_start;
         logic [2:0][33:0] start;        // E' of each edge, s34
     } descriptor_t;
+
+    // Smooth shading. Where it is not built, one bit that is 0 stands for each of these.
+    // The light of a vertex: whether it goes to back faces, and L of each channel, in 2^-13, 2^-14 and 2^-13.
+    typedef struct packed {
+        logic        back;
+        logic [12:0] red;
+        logic [13:0] green;
+        logic [12:0] blue;
+    } light_t;
+
+    // An accumulator at a place, as that of the depth.
+    typedef struct packed {
+        logic [31:0] step_y;
+        logic [31:0] step_x;
+        logic [31:0] start;
+    } plane_t;
+
+    // What follows descriptor_t in memory: red in the lowest; without `smooth` the triangle is in one colour.
+    typedef struct packed {
+        logic             smooth;
+        logic [2:0][95:0] light; // a plane_t each
+    } planes_t;
 endpackage
 
 `default_nettype wire

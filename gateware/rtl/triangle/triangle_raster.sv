@@ -4,6 +4,8 @@
 //   triangle ──▶│ band_entry │────▶│ walker │────▶│ lanes │────▶│ skid_buffer │──▶ group
 //               └────────────┘     └────────┘     └───────┘     └─────────────┘
 //
+// With SMOOTH, the planes of a triangle go with it, and lane_shades is between the lanes and the buffer: latency 25.
+//
 // A group is {line = y - y0, column = x / 8, row address in the band = line * stride + column, mask, eight depth codes u18, eight
 // colours RGB565}, lane 0 (the leftmost) in the lowest bits, mask never 0. A triangle gives each of its groups once; triangles
 // keep their order.
@@ -19,7 +21,11 @@
 
 `default_nettype none
 
-module triangle_raster (
+module triangle_raster #(
+    parameter bit SMOOTH = 1'b0,
+    localparam int unsigned PLANES_BITS = SMOOTH ? 289 : 1,
+    localparam int unsigned LIGHT_BITS  = SMOOTH ? 193 : 1
+) (
     input  wire                            clk,
     input  wire                            rst,
     input  wire                            odd,
@@ -35,6 +41,7 @@ module triangle_raster (
     input  wire  [9:0]                     triangle_y0,
     input  wire                            triangle_odd,
     input  wire triangle_pkg::descriptor_t triangle_descriptor,
+    input  wire  [PLANES_BITS-1:0]         triangle_planes,
     // Groups.
     output logic                           group_valid,
     input  wire                            group_ready,
@@ -45,29 +52,32 @@ module triangle_raster (
     output logic [8*18-1:0]                group_codes,
     output logic [8*16-1:0]                group_colours
 );
-    logic                   walker_idle, lanes_idle, waits;
+    logic                   walker_idle, lanes_idle, shades_idle, waits;
     logic [1:0]             holds;
     logic                   placed_valid, placed_ready, placed_odd;
     raster_pkg::placed_t    placed;
+    logic [PLANES_BITS-1:0] placed_planes;
     logic                   walked_valid, walked_ready;
     raster_pkg::candidate_t walked;
+    logic [LIGHT_BITS-1:0]  walked_light;
 
     assign waits     = placed_odd != odd;
-    assign idle      = !holds[odd] && walker_idle && lanes_idle && !group_valid;
+    assign idle      = !holds[odd] && walker_idle && lanes_idle && shades_idle && !group_valid;
     assign candidate = walked_valid && walked_ready;
     assign stalled   = group_valid && !group_ready;
 
-    band_entry band_entry (
+    band_entry #(.SMOOTH(SMOOTH)) band_entry (
         .clk, .rst, .rows, .holds,
         .in_valid(triangle_valid), .in_ready(triangle_ready), .in_y0(triangle_y0), .in_odd(triangle_odd),
-        .in_descriptor(triangle_descriptor),
-        .out_valid(placed_valid), .out_ready(placed_ready && !waits), .out_odd(placed_odd), .out_triangle(placed)
+        .in_descriptor(triangle_descriptor), .in_planes(triangle_planes),
+        .out_valid(placed_valid), .out_ready(placed_ready && !waits), .out_odd(placed_odd), .out_triangle(placed),
+        .out_planes(placed_planes)
     );
 
-    walker walker (
+    walker #(.SMOOTH(SMOOTH)) walker (
         .clk, .rst, .idle(walker_idle), .walking,
-        .in_valid(placed_valid && !waits), .in_ready(placed_ready), .in_triangle(placed),
-        .out_valid(walked_valid), .out_ready(walked_ready), .out_group(walked)
+        .in_valid(placed_valid && !waits), .in_ready(placed_ready), .in_triangle(placed), .in_planes(placed_planes),
+        .out_valid(walked_valid), .out_ready(walked_ready), .out_group(walked), .out_light(walked_light)
     );
 
     typedef struct packed {
@@ -76,23 +86,48 @@ module triangle_raster (
         logic [7:0]       column;
         logic [7:0]       mask;
         logic [7:0][17:0] codes;
-        logic [15:0]      colour;
     } group_t;
 
-    group_t made, group;
-    logic   made_valid, made_ready;
+    group_t found, made, group;
+
+    localparam int unsigned GROUP_BITS   = $bits(found);
+    localparam int unsigned COLOURS_BITS = SMOOTH ? 8 * 16 : 16;
+
+    logic [15:0]             found_colour;
+    logic [COLOURS_BITS-1:0] made_colours, colours;
+    logic [7:0][31:0]        early_depths;
+    logic                    found_valid, made_valid, made_ready;
 
     lanes lanes (
         .clk, .rst, .stride, .idle(lanes_idle),
         .in_valid(walked_valid), .in_ready(walked_ready), .in_group(walked),
-        .out_valid(made_valid), .out_ready(made_ready), .out_row(made.row), .out_line(made.line), .out_column(made.column),
-        .out_mask(made.mask),
-        .out_codes(made.codes), .out_colour(made.colour)
+        .out_valid(found_valid), .out_ready(made_ready), .out_row(found.row), .out_line(found.line), .out_column(found.column),
+        .out_mask(found.mask), .out_codes(found.codes), .out_colour(found_colour), .early_depths
     );
 
-    skid_buffer #(.WIDTH($bits(made))) skid_buffer (
-        .clk, .rst, .in_valid(made_valid), .in_ready(made_ready), .in_data(made),
-        .out_valid(group_valid), .out_ready(group_ready), .out_data(group)
+    if (SMOOTH) begin : light
+        lane_shades #(.GROUP_BITS(GROUP_BITS)) lane_shades (
+            .clk, .rst, .enable(made_ready), .idle(shades_idle),
+            .in_light({walked_light[128 +: 32], walked_light[64 +: 32], walked_light[0 +: 32]}),
+            .in_step_x({walked_light[160 +: 32], walked_light[96 +: 32], walked_light[32 +: 32]}), .in_smooth(walked_light[192]),
+            .in_depths(early_depths), .in_valid(found_valid), .in_group(found), .in_colour(found_colour),
+            .out_valid(made_valid), .out_group(made), .out_colours(made_colours)
+        );
+
+        assign group_colours = colours;
+    end else begin : flat
+        assign shades_idle   = 1'b1;
+        assign made_valid    = found_valid;
+        assign made          = found;
+        assign made_colours  = found_colour;
+        assign group_colours = {8{colours}};
+
+        wire _unused = &{1'b0, walked_light, early_depths};
+    end
+
+    skid_buffer #(.WIDTH(GROUP_BITS + COLOURS_BITS)) skid_buffer (
+        .clk, .rst, .in_valid(made_valid), .in_ready(made_ready), .in_data({made, made_colours}),
+        .out_valid(group_valid), .out_ready(group_ready), .out_data({group, colours})
     );
 
     assign group_row     = group.row;
@@ -100,7 +135,6 @@ module triangle_raster (
     assign group_column  = group.column;
     assign group_mask    = group.mask;
     assign group_codes   = group.codes;
-    assign group_colours = {8{group.colour}};
 endmodule
 
 `default_nettype wire

@@ -24,7 +24,7 @@ module vertex_cache #(
     parameter int unsigned SLOTS       = 512,
     parameter int unsigned SIDE_BITS   = 96,
     parameter int unsigned EPOCH_BITS  = 6,
-    localparam int unsigned VERTEX_BITS = 68 // a triangle_pkg::projected_t
+    parameter int unsigned VERTEX_BITS = 68 // a triangle_pkg::projected_t
 ) (
     input  wire                          clk,
     input  wire                          rst,

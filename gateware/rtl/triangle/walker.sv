@@ -29,7 +29,11 @@
 
 `default_nettype none
 
-module walker (
+module walker #(
+    parameter bit SMOOTH = 1'b0,
+    localparam int unsigned PLANES_BITS = SMOOTH ? 289 : 1,
+    localparam int unsigned LIGHT_BITS  = SMOOTH ? 193 : 1
+) (
     input  wire                      clk,
     input  wire                      rst,
     output logic                     idle,
@@ -37,9 +41,12 @@ module walker (
     input  wire                      in_valid,
     output logic                     in_ready,
     input  wire raster_pkg::placed_t in_triangle,
+    input  wire  [PLANES_BITS-1:0]   in_planes,
     output logic                     out_valid,
     input  wire                      out_ready,
-    output raster_pkg::candidate_t   out_group
+    output raster_pkg::candidate_t   out_group,
+    // A clock after its group: {smooth, blue, green, red}, each {step_x, accumulator at lane 0}.
+    output logic [LIGHT_BITS-1:0]    out_light
 );
     // The triangle.
     logic [2:0][20:0] step_x, step_y;
@@ -119,6 +126,41 @@ module walker (
         .load_value(in_triangle.depth), .step_x({depth_step_x[28:0], 3'b000}), .step_y(depth_step_y),
         .current(depth), .next(next_depth)
     );
+
+    // Nothing is decided by the light: it goes the same way a clock later.
+    if (SMOOTH) begin : light
+        logic [PLANES_BITS-1:0] planes;
+        logic                   was_keep, was_extend, was_seek, was_left, was_last;
+
+        always_ff @(posedge clk) begin
+            if (out_ready) begin
+                {was_keep, was_extend, was_seek, was_left, was_last} <= {keep, extend, seek, left, last_row};
+                if (leave) planes <= in_planes;
+                out_light[192] <= planes[288];
+            end
+        end
+
+        for (genvar k = 0; k < 3; k++) begin : channels
+            triangle_pkg::plane_t plane;
+            logic [31:0]          next_value;
+
+            assign plane = planes[96 * k +: 96];
+
+            stepper #(.WIDTH(32), .LOW(16)) light_stepper (
+                .clk, .advance(out_ready), .keep(was_keep), .extend(was_extend), .seek(was_seek), .left(was_left), .last(was_last),
+                .load_value(plane.start), .step_x({plane.step_x[28:0], 3'b000}), .step_y(plane.step_y),
+                .current(out_light[64 * k +: 32]), .next(next_value)
+            );
+
+            always_ff @(posedge clk) if (out_ready) out_light[64 * k + 32 +: 32] <= plane.step_x;
+
+            wire _unused = &{1'b0, next_value};
+        end
+    end else begin : flat
+        assign out_light = '0;
+
+        wire _unused = &{1'b0, in_planes};
+    end
 
     stepper #(.WIDTH(8), .LOW(4)) group_stepper (
         .clk, .advance(out_ready), .keep, .extend, .seek, .left, .last(last_row),

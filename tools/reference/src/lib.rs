@@ -4,10 +4,12 @@
 //! - [`camera`]: the camera in f64.
 //! - [`surface`]: what each pixel of the unsnapped scene shows, and where that depends on snapping.
 //! - [`sine`]: exhaustive error tables of sine and cosine, beside other libraries.
+//! - [`smooth`]: what interpolation of light between vertices makes of named scenes, and the errors of it.
 
 #![forbid(unsafe_code)]
 
 pub mod camera;
 pub mod exact;
 pub mod sine;
+pub mod smooth;
 pub mod surface;

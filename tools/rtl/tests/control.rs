@@ -79,7 +79,12 @@ impl Pass {
 }
 
 /// The regions of a pass: the port with the address, and the bytes; only those that are looked at.
-fn regions(which: usize, pass: &Pass, list_shift: u64) -> Vec<(&'static str, u64)> {
+fn regions(
+    which: usize,
+    pass: &Pass,
+    list_shift: u64,
+    descriptor: u64,
+) -> Vec<(&'static str, u64)> {
     let size = pass.size();
     let bands = [4, 15, 60, 60][size];
     let lists = match list_shift {
@@ -92,7 +97,10 @@ fn regions(which: usize, pass: &Pass, list_shift: u64) -> Vec<(&'static str, u64
     match which {
         GEOMETRY => vec![
             ("mesh", pass.get("mesh_bytes") & !15),
-            ("geometry_descriptors", 48 * pass.get("descriptor_limit")),
+            (
+                "geometry_descriptors",
+                descriptor * pass.get("descriptor_limit"),
+            ),
             ("geometry_lists", lists),
             ("exceptions", 4 * pass.get("exception_limit")),
         ],
@@ -101,8 +109,8 @@ fn regions(which: usize, pass: &Pass, list_shift: u64) -> Vec<(&'static str, u64
             (flag(4), "depth", 4 * pixels),
             (flag(2), "lists_0", lists),
             (flag(3), "lists_1", lists),
-            (flag(2), "descriptors_0", 48 * pass.get("count_0")),
-            (flag(3), "descriptors_1", 48 * pass.get("count_1")),
+            (flag(2), "descriptors_0", descriptor * pass.get("count_0")),
+            (flag(3), "descriptors_1", descriptor * pass.get("count_1")),
         ]
         .into_iter()
         .filter_map(|(used, name, bytes)| used.then_some((name, bytes)))
@@ -111,7 +119,7 @@ fn regions(which: usize, pass: &Pass, list_shift: u64) -> Vec<(&'static str, u64
 }
 
 /// Why a pass is refused.
-fn refusal(which: usize, pass: &Pass, list_shift: u64) -> u64 {
+fn refusal(which: usize, pass: &Pass, list_shift: u64, descriptor: u64) -> u64 {
     let misplaced = |&(port, bytes): &(&str, u64)| {
         let first = pass.get(port);
         !first.is_multiple_of(16)
@@ -120,7 +128,10 @@ fn refusal(which: usize, pass: &Pass, list_shift: u64) -> u64 {
     };
     if pass.size() == 3 {
         SIZE
-    } else if regions(which, pass, list_shift).iter().any(misplaced) {
+    } else if regions(which, pass, list_shift, descriptor)
+        .iter()
+        .any(misplaced)
+    {
         ADDRESS
     } else {
         NONE
@@ -147,6 +158,8 @@ enum Recovery {
 /// The controller, an engine behind it, and what both should do.
 struct Bench {
     module: Module,
+    /// Bytes of a descriptor.
+    descriptor: u64,
     passes: [Pass; 2],
     list_shift: u64,
     states: [State; 2],
@@ -175,8 +188,18 @@ struct Events {
 
 impl Bench {
     fn new(seed: u32) -> Self {
+        Self::of("triangle_control", 48, seed)
+    }
+
+    /// Of an engine that shades smoothly.
+    fn smooth(seed: u32) -> Self {
+        Self::of("triangle_control_smooth", 96, seed)
+    }
+
+    fn of(name: &str, descriptor: u64, seed: u32) -> Self {
         let mut bench = Self {
-            module: Module::new("triangle_control", seed),
+            module: Module::new(name, seed),
+            descriptor,
             passes: Pass::good(),
             list_shift: 9,
             states: [State::Idle; 2],
@@ -192,6 +215,37 @@ impl Bench {
         // A clock with `ready`, which it waits for.
         bench.clock(Events::default());
         bench
+    }
+
+    /// A region of a pass with counts from nothing to the most: it ends with memory, or a word beyond it.
+    fn lengths(&mut self, which: usize, count: &str, region: &str, item: u64) {
+        const MOST: u64 = (1 << 20) - 1;
+        let counts: &[u64] = if item == 1 {
+            &[
+                16,
+                0xf0,
+                1 << 24,
+                (1 << 25) - 16,
+                1 << 25,
+                1 << 26,
+                MEMORY - 16,
+                MEMORY,
+            ]
+        } else {
+            &[0, 1, 2, 3, 4, 5, 6, 7, 8, 255, 256, 1 << 19, MOST - 1, MOST]
+        };
+        self.passes = Pass::good();
+        for &count_value in counts {
+            self.passes[which].set(count, count_value);
+            let bytes = (count_value * item).next_multiple_of(16);
+            let asks = [which == GEOMETRY, which == RASTER];
+            let last = BASE + MEMORY - bytes.max(16);
+            for (address, expected) in [(last, NONE), (last + 16, ADDRESS)] {
+                self.passes[which].set(region, address);
+                let error = self.ask(asks)[which];
+                assert_eq!(error, expected, "{count} {count_value} at {address:#x}");
+            }
+        }
     }
 
     fn port(&self, which: usize, name: &str) -> Port {
@@ -253,7 +307,8 @@ impl Bench {
                 if self.is_active(which) {
                     self.errors[which] = BUSY;
                 } else {
-                    let refusal = refusal(which, &self.passes[which], self.list_shift);
+                    let refusal =
+                        refusal(which, &self.passes[which], self.list_shift, self.descriptor);
                     self.states[which] = State::Asked(now, refusal);
                     self.errors[which] = NONE;
                     self.kept[which] = Some(self.passes[which].flags);
@@ -402,7 +457,12 @@ fn regions_are_wholly_in_memory() {
             bench.passes = Pass::good();
             // All that there is, of the raster.
             bench.passes[which].flags = if which == RASTER { 0b111_1100 } else { 0b100 } | size;
-            for (port, bytes) in regions(which, &bench.passes[which], bench.list_shift) {
+            for (port, bytes) in regions(
+                which,
+                &bench.passes[which],
+                bench.list_shift,
+                bench.descriptor,
+            ) {
                 let right = bench.passes[which].get(port);
                 let last = BASE + MEMORY - bytes.next_multiple_of(16);
                 for (address, expected) in [
@@ -443,42 +503,23 @@ fn regions_are_wholly_in_memory() {
 /// Counts and lengths from nothing to the largest that there is: the region ends with memory, or a word beyond it.
 #[test]
 fn lengths_are_counted_to_the_last_word() {
-    const MOST: u64 = (1 << 20) - 1;
     let mut bench = Bench::new(2);
     for (which, count, region, item) in [
-        (GEOMETRY, "descriptor_limit", "geometry_descriptors", 48),
         (GEOMETRY, "exception_limit", "exceptions", 4),
         (GEOMETRY, "mesh_bytes", "mesh", 1),
-        (RASTER, "count_0", "descriptors_0", 48),
-        (RASTER, "count_1", "descriptors_1", 48),
     ] {
-        let counts: &[u64] = if item == 1 {
-            &[
-                16,
-                0xf0,
-                1 << 24,
-                (1 << 25) - 16,
-                1 << 25,
-                1 << 26,
-                MEMORY - 16,
-                MEMORY,
-            ]
-        } else {
-            &[0, 1, 2, 3, 4, 5, 6, 7, 8, 255, 256, 1 << 19, MOST - 1, MOST]
-        };
-        bench.passes = Pass::good();
-        for &count_value in counts {
-            bench.passes[which].set(count, count_value);
-            let bytes = (count_value * item).next_multiple_of(16);
-            let asks = [which == GEOMETRY, which == RASTER];
-            let last = BASE + MEMORY - bytes.max(16);
-            for (address, expected) in [(last, NONE), (last + 16, ADDRESS)] {
-                bench.passes[which].set(region, address);
-                let error = bench.ask(asks)[which];
-                assert_eq!(error, expected, "{count} {count_value} at {address:#x}");
-            }
+        bench.lengths(which, count, region, item);
+    }
+    for mut bench in [Bench::new(2), Bench::smooth(2)] {
+        for (which, count, region) in [
+            (GEOMETRY, "descriptor_limit", "geometry_descriptors"),
+            (RASTER, "count_0", "descriptors_0"),
+            (RASTER, "count_1", "descriptors_1"),
+        ] {
+            bench.lengths(which, count, region, bench.descriptor);
         }
     }
+
     // Longer than memory, wherever.
     bench.passes = Pass::good();
     bench.passes[GEOMETRY].set("mesh", BASE);
@@ -501,8 +542,8 @@ fn lengths_are_counted_to_the_last_word() {
                 bench.passes[RASTER].set(port, BASE);
             }
             bench.passes[GEOMETRY].set("geometry_lists", BASE);
-            let expected =
-                [GEOMETRY, RASTER].map(|which| refusal(which, &bench.passes[which], shift));
+            let expected = [GEOMETRY, RASTER]
+                .map(|which| refusal(which, &bench.passes[which], shift, bench.descriptor));
             assert_eq!(expected[GEOMETRY], expected[RASTER]);
             assert_eq!(
                 bench.ask([true, true]),

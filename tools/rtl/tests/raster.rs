@@ -8,8 +8,9 @@ use glint_core::mesh::Mesh;
 use glint_model::descriptor::{Descriptor, band_rows};
 use glint_model::raster::draw;
 use glint_model::setup::{Bounds, Oriented, Setup};
+use glint_model::shade::Lit;
 use glint_model::vertex::GUARD;
-use glint_model::{Options, Projected, ScreenVertex, Target, trace};
+use glint_model::{Options, Projected, ScreenVertex, Shading, Target, trace};
 use glint_rtl::{Bits, Module, Port, Sink, Source, Stalls};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
@@ -21,7 +22,7 @@ const LANES: usize = 8;
 
 type Corners = [ScreenVertex; 3];
 
-/// A triangle to be drawn. Its colour is its number.
+/// A triangle to be drawn. If it is flat its colour is its number.
 struct Triangle {
     corners: Corners,
     setup: Setup,
@@ -38,6 +39,13 @@ impl Triangle {
             setup: Setup::new(&oriented, bounds),
             colour: Rgb565(u16::try_from(number).unwrap()),
         })
+    }
+
+    /// The same with light.
+    fn with_light(mut self, lit: &[Lit; 3]) -> Self {
+        let oriented = Oriented::new(self.corners).unwrap();
+        self.setup = Setup::smooth(&oriented, self.setup.bounds, lit);
+        self
     }
 }
 
@@ -74,14 +82,24 @@ struct Bench {
 }
 
 impl Bench {
+    /// Of flat triangles, which are told by their colours.
     fn new(seed: u32, source_stalls: f64, sink_stalls: f64) -> Self {
-        let module = Module::new("triangle_raster", seed);
+        Self::of("triangle_raster", seed, source_stalls, sink_stalls)
+    }
+
+    /// Of flat and smooth ones.
+    fn smooth(seed: u32, source_stalls: f64, sink_stalls: f64) -> Self {
+        Self::of("triangle_raster_smooth", seed, source_stalls, sink_stalls)
+    }
+
+    fn of(name: &str, seed: u32, source_stalls: f64, sink_stalls: f64) -> Self {
+        let module = Module::new(name, seed);
         let stalls = |offset, share| Stalls::new(u64::from(seed) + offset, share);
         Self {
             source: Source::new(
                 &module,
                 "triangle",
-                &["descriptor"],
+                &["descriptor", "planes"],
                 stalls(1, source_stalls),
             ),
             sink: Sink::new(
@@ -111,7 +129,9 @@ impl Bench {
         }
         for triangle in triangles {
             let descriptor = Descriptor::new(&triangle.setup, triangle.colour);
-            self.source.push(vec![Bits::from_words(&descriptor.words)]);
+            let (first, planes) = descriptor.words(Shading::Smooth).split_at(12);
+            self.source
+                .push([first, planes].map(Bits::from_words).to_vec());
             self.counts.entries += 1;
         }
         let start = self.module.cycles();
@@ -141,6 +161,7 @@ impl Bench {
         let mut picture = vec![blank; (width * height) as usize];
         // The last triangle that came out at a pixel.
         let mut last = vec![None; picture.len()];
+        let all_flat = triangles.iter().all(|t| t.setup.light.is_none());
         self.counts = Counts::default();
         let (stride, band_rows) = (width / LANES as u32, band_rows(width));
         for y0 in (0..height).step_by(band_rows as usize) {
@@ -165,17 +186,19 @@ impl Bench {
                     let colour = group[3].field(16 * lane, 16) as u16;
                     let depth = group[2].field(18 * lane, 18) as u32;
                     let corners = || triangles.get(usize::from(colour)).map(|t| t.corners);
-                    assert!(colour >= previous, "{name}: out of order: {:?}", corners());
-                    previous = colour;
                     assert_ne!(depth, 0, "{name}: {:?}", corners());
                     let at = (y0 * width) as usize + LANES * row + lane;
-                    assert_ne!(
-                        last[at],
-                        Some(colour),
-                        "{name}: {at} twice: {:?}",
-                        corners()
-                    );
-                    last[at] = Some(colour);
+                    if all_flat {
+                        assert!(colour >= previous, "{name}: out of order: {:?}", corners());
+                        previous = colour;
+                        assert_ne!(
+                            last[at],
+                            Some(colour),
+                            "{name}: {at} twice: {:?}",
+                            corners()
+                        );
+                        last[at] = Some(colour);
+                    }
                     self.counts.pixels += 1;
                     if depth >= picture[at].depth {
                         picture[at] = Pixel { colour, depth };
@@ -205,14 +228,23 @@ impl Bench {
                 depth: depth[at],
             };
             let (x, y) = (at as u32 % size.0, at as u32 / size.0);
-            let corners =
-                |pixel: Pixel| triangles.get(usize::from(pixel.colour)).map(|t| t.corners);
+            let possible = || {
+                let there = |t: &&Triangle| {
+                    let bounds = t.setup.bounds;
+                    (bounds.left..bounds.right).contains(&(x as i32))
+                        && (bounds.top..bounds.bottom).contains(&(y as i32))
+                };
+                triangles
+                    .iter()
+                    .filter(there)
+                    .map(|t| (t.corners, t.colour, t.setup.light))
+                    .collect::<Vec<_>>()
+            };
             assert_eq!(
                 found,
                 expected,
-                "{name} at {x}, {y}: {:?} instead of {:?}",
-                corners(found),
-                corners(expected)
+                "{name} at {x}, {y}, one of {:#?}",
+                possible()
             );
         }
         assert_eq!(self.counts.pixels, covered, "{name}: pixels in all");
@@ -259,6 +291,14 @@ impl Random {
             1 => ((1 << 18) - 4) * 64,
             _ => self.0.random_range(0..((1 << 18) - 4) * 64),
         }
+    }
+
+    fn lit(&mut self) -> Lit {
+        let colour = [0, u16::MAX, self.0.random()][self.within(0, 2) as usize];
+        Lit::new(
+            Rgb565(colour),
+            [256, self.within(0, 256) as u32][self.within(0, 1) as usize],
+        )
     }
 
     fn anywhere(&mut self) -> ScreenVertex {
@@ -310,6 +350,72 @@ fn random_triangles() {
         let counts = bench.check("random", SMALL, &triangles);
         println!("{} triangles: {counts:?}", triangles.len());
         assert!(triangles.len() > 150 && counts.pixels > 200_000);
+    }
+}
+
+/// Smooth triangles and flat ones among each other, at depths that a frame can have.
+#[test]
+fn random_triangles_smooth() {
+    for (seed, source_stalls, sink_stalls) in [(4, 0.0, 0.0), (5, 0.5, 0.2), (6, 0.1, 0.7)] {
+        let mut random = Random::new(seed.into());
+        let mut bench = Bench::smooth(seed, source_stalls, sink_stalls);
+        for (name, size, count) in [("small", SMALL, 120), ("large", LARGE, 12)] {
+            let triangles = (0..count).map(|_| random.triangle(size).map(visible));
+            let triangles: Vec<Triangle> = numbered(size, triangles.collect::<Vec<_>>())
+                .into_iter()
+                .map(|triangle| match random.within(0, 3) {
+                    0 => triangle,
+                    _ => triangle.with_light(&[0; 3].map(|_| random.lit())),
+                })
+                .collect();
+            let counts = bench.check(name, size, &triangles);
+            println!("{} triangles: {counts:?}", triangles.len());
+            assert!(counts.pixels > 50_000);
+        }
+    }
+}
+
+/// Light from none to all over every range of depths, each triangle alone; and light that is the same everywhere.
+#[test]
+fn extreme_light() {
+    let (near, far) = (((1 << 18) - 4) * 64, 228 * 64);
+    let mut bench = Bench::smooth(7, 0.0, 0.3);
+    let white = Lit::new(Rgb565::WHITE, 256);
+    let dark = Lit::default();
+    let any = Lit::new(Rgb565(0x5AA5), 77);
+    for depths in [[near, far, far], [far, near, far], [far; 3], [near; 3]] {
+        for lit in [
+            [white, dark, dark],
+            [dark, white, dark],
+            [white, white, dark],
+            [white; 3],
+            [dark; 3],
+            [any; 3],
+        ] {
+            for shape in [
+                pixels([[-2000.0, -1500.0], [2000.0, 60.0], [-1900.0, 2000.0]]),
+                pixels([[100.2, 50.1], [103.3, 50.4], [101.1, 53.7]]),
+                pixels([[5.0, 5.0], [5.3, 5.0], [300.0, 170.0]]),
+            ] {
+                let mut corners = shape;
+                corners
+                    .iter_mut()
+                    .zip(depths)
+                    .for_each(|(corner, w)| corner.w = w);
+                let triangles = numbered(SMALL, [corners]);
+                let lit: Vec<Triangle> =
+                    triangles.into_iter().map(|t| t.with_light(&lit)).collect();
+                bench.check("light", SMALL, &lit);
+            }
+        }
+    }
+}
+
+/// No farther than a frame can have.
+fn visible(corner: ScreenVertex) -> ScreenVertex {
+    ScreenVertex {
+        w: corner.w.max(228 * 64),
+        ..corner
     }
 }
 
@@ -574,10 +680,7 @@ fn a_sphere_is_walked_efficiently() {
             colour: &mut vec![0; pixels],
             depth: &mut vec![0; pixels],
         };
-        let options = Options {
-            cull: true,
-            clear: 0,
-        };
+        let options = Options::default();
         trace(
             &mesh,
             &filling(&mesh),

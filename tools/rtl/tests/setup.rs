@@ -4,8 +4,8 @@ use glint_core::colour::Rgb565;
 use glint_model::descriptor::Descriptor;
 use glint_model::reciprocal::recip;
 use glint_model::setup::{Bounds, Facing, Oriented, Setup};
-use glint_model::shade::{intensity, lit};
-use glint_model::{SIZES, ScreenVertex};
+use glint_model::shade::{Light, Lit, intensity, lit};
+use glint_model::{SIZES, ScreenVertex, Shading};
 use glint_rtl::{Bits, Module, Port, Sink, Source, Stalls};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
@@ -21,6 +21,7 @@ struct Frame {
     size: (u32, u32),
     cull: bool,
     n: [i32; 3],
+    shading: Shading,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -28,10 +29,21 @@ struct Input {
     vertices: [ScreenVertex; 3],
     colour: u16,
     normal: [i16; 3],
+    light: [Light; 3],
+}
+
+/// The light of a vertex as the gateware has it: for the one side that gets any.
+fn light_bits(bits: Bits, low: usize, light: Light) -> Bits {
+    let back = light.back != Lit::default();
+    let Lit([r, g, b]) = if back { light.back } else { light.front };
+    bits.with(low, 13, b / 2)
+        .with(low + 13, 14, g)
+        .with(low + 27, 13, r / 2)
+        .with(low + 40, 1, u8::from(back))
 }
 
 impl Input {
-    fn item(&self) -> Vec<Bits> {
+    fn item(&self, ability: Shading) -> Vec<Bits> {
         let vertices = (0..)
             .zip(self.vertices)
             .fold(Bits::default(), |bits, (i, v)| {
@@ -42,12 +54,20 @@ impl Input {
         let normal = (0..)
             .zip(self.normal)
             .fold(Bits::default(), |bits, (i, x)| bits.with(16 * i, 16, x));
-        vec![vertices, Bits::from(u64::from(self.colour)), normal]
+        let light = match ability {
+            Shading::Flat => Bits::default(),
+            Shading::Smooth => (0..)
+                .zip(self.light)
+                .fold(Bits::default(), |bits, (i, light)| {
+                    light_bits(bits, 41 * i, light)
+                }),
+        };
+        vec![vertices, Bits::from(u64::from(self.colour)), normal, light]
     }
 }
 
-/// The descriptor of a triangle; `None` when it is culled.
-fn expected(frame: &Frame, input: &Input) -> Option<Bits> {
+/// The descriptor of a triangle, its first part and what follows; `None` when it is culled.
+fn expected(frame: &Frame, input: &Input) -> Option<[Bits; 2]> {
     let oriented = Oriented::new(input.vertices)?;
     if frame.cull && oriented.facing == Facing::Back {
         return None;
@@ -58,12 +78,22 @@ fn expected(frame: &Frame, input: &Input) -> Option<Bits> {
         Rgb565(input.colour),
         intensity(input.normal, &frame.n, oriented.facing),
     );
-    let descriptor = Descriptor::new(&Setup::new(&oriented, bounds), colour);
-    Some(Bits::from_words(&descriptor.words))
+    let facing = oriented.facing;
+    let setup = match frame.shading {
+        Shading::Flat => Setup::new(&oriented, bounds),
+        Shading::Smooth => {
+            let lit = facing.order(input.light.map(|light| light.to(facing)));
+            Setup::smooth(&oriented, bounds, &lit)
+        }
+    };
+    let descriptor = Descriptor::new(&setup, colour);
+    let (first, planes) = descriptor.words(Shading::Smooth).split_at(12);
+    Some([first, planes].map(Bits::from_words))
 }
 
 struct Bench {
     module: Module,
+    ability: Shading,
     source: Source,
     sink: Sink,
     busy: Port,
@@ -72,13 +102,23 @@ struct Bench {
 }
 
 impl Bench {
-    fn new(seed: u32, source_stalls: f64, sink_stalls: f64) -> Self {
-        let module = Module::new("setup", seed);
+    fn new(ability: Shading, seed: u32, source_stalls: f64, sink_stalls: f64) -> Self {
+        let name = match ability {
+            Shading::Flat => "setup",
+            Shading::Smooth => "setup_smooth",
+        };
+        let module = Module::new(name, seed);
         let stalls = |number, share| Stalls::new(u64::from(seed) + number, share);
-        let payload = ["vertices", "colour", "normal"];
+        let payload = ["vertices", "colour", "normal", "light"];
         Self {
             source: Source::new(&module, "in", &payload, stalls(1, source_stalls)),
-            sink: Sink::new(&module, "out", &["descriptor"], stalls(2, sink_stalls)),
+            sink: Sink::new(
+                &module,
+                "out",
+                &["descriptor", "planes"],
+                stalls(2, sink_stalls),
+            ),
+            ability,
             busy: module.port("busy"),
             culled: module.port("culled"),
             drawn: module.port("drawn"),
@@ -96,13 +136,17 @@ impl Bench {
             ("height", Bits::from(u64::from(frame.size.1))),
             ("cull_back", Bits::from(u64::from(frame.cull))),
             ("camera_n", n),
+            (
+                "smooth",
+                Bits::from(u64::from(frame.shading == Shading::Smooth)),
+            ),
         ] {
             let port = self.module.port(name);
             self.module.set(port, value);
         }
         inputs
             .iter()
-            .for_each(|input| self.source.push(input.item()));
+            .for_each(|input| self.source.push(input.item(self.ability)));
         let start = self.module.cycles();
         let (mut culled, mut drawn) = (0, 0);
         loop {
@@ -125,7 +169,11 @@ impl Bench {
         let mut found = self.sink.take().into_iter();
         for input in inputs {
             if let Some(expected) = expected(frame, input) {
-                let descriptor = found.next().map(|item| item[0]);
+                let mut descriptor = found.next().map(|item| [item[0], item[1]]);
+                // Planes of a flat triangle mean nothing.
+                if let (Some([_, planes]), Shading::Flat) = (&mut descriptor, frame.shading) {
+                    *planes = Bits::from(planes.field(288, 1));
+                }
                 assert_eq!(descriptor, Some(expected), "{input:?} in {frame:?}");
             }
         }
@@ -195,7 +243,18 @@ fn triangle(random: &mut Pcg64Mcg, (width, height): (u32, u32)) -> Input {
             3 => random.random_range(-1 << 14..=1 << 14),
             _ => random.random_range(i16::MIN..=i16::MAX),
         }),
+        light: [0; 3].map(|_| light(random)),
     }
+}
+
+/// The light of a vertex that is turned to one side, or edge on.
+fn light(random: &mut Pcg64Mcg) -> Light {
+    let colour = [0, u16::MAX, random.random()][random.random_range(0..3)];
+    let intensity = [0, 1, 256, random.random_range(0..=256)][random.random_range(0..4)];
+    let lit = Lit::new(Rgb565(colour), intensity);
+    let dark = Lit::default();
+    let [front, back] = [[lit, dark], [dark, lit]][random.random_range(0..2)];
+    Light { front, back }
 }
 
 fn frame(random: &mut Pcg64Mcg, round: usize) -> Frame {
@@ -209,20 +268,34 @@ fn frame(random: &mut Pcg64Mcg, round: usize) -> Frame {
         size: SIZES[round % 3],
         cull: round.is_multiple_of(2),
         n,
+        shading: Shading::Flat,
     }
 }
 
 #[test]
 fn random_triangles() {
+    random_triangles_of(Shading::Flat);
+}
+
+/// Flat and smooth frames in turns.
+#[test]
+fn random_triangles_smooth() {
+    random_triangles_of(Shading::Smooth);
+}
+
+fn random_triangles_of(ability: Shading) {
     let mut random = Pcg64Mcg::new(1);
     let shares = [(0.0, 0.0), (0.5, 0.5), (0.0, 0.95), (0.95, 0.0)];
     let mut benches: Vec<Bench> = (0..)
         .zip(shares)
-        .map(|(seed, (source, sink))| Bench::new(seed, source, sink))
+        .map(|(seed, (source, sink))| Bench::new(ability, seed, source, sink))
         .collect();
     let (mut drawn, mut culled) = (0, 0);
     for round in 0..48 {
-        let frame = frame(&mut random, round);
+        let mut frame = frame(&mut random, round);
+        if round % 3 > 0 {
+            frame.shading = ability;
+        }
         let inputs: Vec<Input> = (0..250)
             .map(|_| triangle(&mut random, frame.size))
             .collect();
@@ -248,13 +321,26 @@ fn input(places: [[i32; 2]; 3], w: [u32; 3]) -> Input {
         }),
         colour: 0xFFFF,
         normal: [0, 0, -1 << 14],
+        light: [[0, 256], [256, 0], [200, 0]].map(|[front, back]| Light {
+            front: Lit::new(Rgb565::WHITE, front),
+            back: Lit::new(Rgb565::WHITE, back),
+        }),
     }
 }
 
 /// Every order of the vertices of triangles at the ends of what there is, in every size, with every facing.
 #[test]
 fn corners_of_the_guard_band_and_of_the_picture() {
-    let mut bench = Bench::new(7, 0.2, 0.2);
+    corners(Shading::Flat);
+}
+
+#[test]
+fn corners_of_the_guard_band_and_of_the_picture_smooth() {
+    corners(Shading::Smooth);
+}
+
+fn corners(shading: Shading) {
+    let mut bench = Bench::new(shading, 7, 0.2, 0.2);
     for size in SIZES {
         let [w, h] = [size.0, size.1].map(|x| (x << 8) as i32);
         let corners = [
@@ -284,6 +370,7 @@ fn corners_of_the_guard_band_and_of_the_picture() {
                 size,
                 cull,
                 n: [0, 0, 1 << 23],
+                shading,
             };
             bench.check(&frame, &inputs);
         }
@@ -315,8 +402,17 @@ fn off_the_picture_is_without_a_centre() {
 
 #[test]
 fn clocks_a_triangle() {
+    clocks(Shading::Flat);
+}
+
+#[test]
+fn clocks_a_triangle_smooth() {
+    clocks(Shading::Smooth);
+}
+
+fn clocks(shading: Shading) {
     const COUNT: u64 = 200;
-    let mut bench = Bench::new(3, 0.0, 0.0);
+    let mut bench = Bench::new(shading, 3, 0.0, 0.0);
     let places = [[1000, 1000], [1000, 9000], [9000, 1000]];
     let front = input(places, [5000, 6000, 7000]);
     let back = input([places[0], places[2], places[1]], [5000, 6000, 7000]);
@@ -324,6 +420,7 @@ fn clocks_a_triangle() {
         size: SIZES[0],
         cull: true,
         n: [0, 0, 1 << 23],
+        shading,
     };
     let latency = bench.check(&frame, &[front]);
     let drawn = bench.check(&frame, &[front; COUNT as usize]);

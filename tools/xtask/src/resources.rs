@@ -21,7 +21,8 @@ use budget::{Budget, Excess};
 use size::Size;
 
 /// The own blocks, the slowest to measure first.
-const OWN: [&str; 6] = [
+const OWN: [&str; 7] = [
+    "triangle_engine_smooth",
     "triangle_engine",
     "setup",
     "triangle_raster",
@@ -38,7 +39,7 @@ const FLAT: &str = "flat_build";
 const SOC: &str = "soc";
 
 /// The rows of the tables in their order; other modules come after them.
-const ROWS: [&str; 8] = [
+const ROWS: [&str; 9] = [
     "scanout",
     "vertex_stage",
     "setup",
@@ -46,6 +47,7 @@ const ROWS: [&str; 8] = [
     FLAT,
     "band_buffer",
     "triangle_engine",
+    "triangle_engine_smooth",
     SOC,
 ];
 

@@ -351,7 +351,11 @@ impl Picture {
         picture.colour.fill(0xDEAD);
         picture.depth.fill(0xDEAD);
         let mut drawn = Vec::new();
-        let options = Options { cull, clear: CLEAR };
+        let options = Options {
+            cull,
+            clear: CLEAR,
+            ..Options::default()
+        };
         let stats = trace(
             &mesh,
             view,

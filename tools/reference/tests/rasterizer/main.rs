@@ -9,6 +9,7 @@ mod llvmpipe;
 mod renderer;
 mod scenes;
 mod shade;
+mod smooth;
 mod special;
 mod vertices;
 mod visible;

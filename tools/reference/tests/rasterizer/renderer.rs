@@ -40,7 +40,10 @@ impl Renderer {
             colour: &mut self.colour,
             depth: &mut self.depth,
         };
-        let options = Options { cull, clear: 0 };
+        let options = Options {
+            cull,
+            ..Options::default()
+        };
         trace(
             &mesh,
             view,

@@ -2,9 +2,9 @@
 
 use glint_core::camera::View;
 use glint_core::mesh::Mesh;
-use glint_model::descriptor::{Descriptor, band_rows, list_word};
+use glint_model::descriptor::{Descriptor, band_rows, list_word, words};
 use glint_model::setup::{Bounds, Oriented, Setup};
-use glint_model::{DrawnTriangle, FrameSetup, Options, Projected, Stats, Target, trace};
+use glint_model::{DrawnTriangle, FrameSetup, Options, Projected, Shading, Stats, Target, trace};
 use glint_rtl::{Bits, Memory, Module, ReadPort, Stalls, WritePort};
 
 pub const SIZES: [(u32, u32); 3] = glint_model::SIZES;
@@ -21,18 +21,17 @@ const WORDS: usize = 0x20_0000;
 const LIST_SHIFT: u32 = 11;
 /// Words behind a picture that nobody may touch: more than a bank of the band buffer has.
 const BEHIND: usize = 4096;
-/// The most descriptors, and the most exceptions.
+/// The most exceptions, and the most descriptors of three words.
 const LIMIT: u32 = 80_000;
 pub const CLEAR: u16 = 0x1234;
 
 /// What the model draws.
 pub struct Expected {
     pub size: (u32, u32),
-    clear: u16,
+    options: Options,
     colour: Vec<u16>,
     depth: Vec<u32>,
     frame: FrameSetup,
-    cull: bool,
     clipped: Vec<DrawnTriangle>,
     pub stats: Stats,
 }
@@ -44,6 +43,25 @@ pub fn expected(mesh: &[u8], view: &View, size: (u32, u32), cull: bool) -> Expec
 
 /// Draws with the model, on another colour.
 pub fn expected_on(clear: u16, mesh: &[u8], view: &View, size: (u32, u32), cull: bool) -> Expected {
+    let options = Options {
+        cull,
+        clear,
+        ..Options::default()
+    };
+    expected_with(options, mesh, view, size)
+}
+
+/// Draws with the model, smoothly.
+pub fn expected_smooth(mesh: &[u8], view: &View, size: (u32, u32), cull: bool) -> Expected {
+    let options = Options {
+        cull,
+        clear: CLEAR,
+        shading: Shading::Smooth,
+    };
+    expected_with(options, mesh, view, size)
+}
+
+fn expected_with(options: Options, mesh: &[u8], view: &View, size: (u32, u32)) -> Expected {
     let mesh = &Mesh::new_checked(mesh).unwrap();
     let pixels = (size.0 * size.1) as usize;
     let (mut colour, mut depth) = (vec![0; pixels], vec![0; pixels]);
@@ -55,7 +73,6 @@ pub fn expected_on(clear: u16, mesh: &[u8], view: &View, size: (u32, u32), cull:
         colour: &mut colour,
         depth: &mut depth,
     };
-    let options = Options { cull, clear };
     let mut clipped = Vec::new();
     let stats = trace(
         mesh,
@@ -72,26 +89,31 @@ pub fn expected_on(clear: u16, mesh: &[u8], view: &View, size: (u32, u32), cull:
     .unwrap();
     Expected {
         size,
-        clear,
+        options,
         colour,
         depth,
         frame: FrameSetup::new(view, size.0, size.1, mesh.radius()).unwrap(),
-        cull,
         clipped,
         stats,
     }
 }
 
 /// Lists and descriptors of the clipped triangles, as the firmware leaves them.
-fn write_clipped(memory: &mut Memory, expected: &Expected) {
+fn write_clipped(memory: &mut Memory, expected: &Expected, ability: Shading) {
     let (width, height) = expected.size;
     let rows = band_rows(width);
     let mut lists = vec![Vec::new(); 64];
     for (number, triangle) in (0_u32..).zip(&expected.clipped) {
         let oriented = Oriented::new(triangle.vertices).unwrap();
         let bounds = Bounds::new(&oriented.vertices, width, height).unwrap();
-        let descriptor = Descriptor::new(&Setup::new(&oriented, bounds), triangle.colour);
-        memory.write(DESCRIPTORS[1] + 3 * number, &descriptor.to_bytes());
+        let setup = match &triangle.lit {
+            None => Setup::new(&oriented, bounds),
+            Some(lit) => Setup::smooth(&oriented, bounds, lit),
+        };
+        let descriptor = Descriptor::new(&setup, triangle.colour);
+        let words = descriptor.words(ability);
+        let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+        memory.write(DESCRIPTORS[1] + bytes.len() as u32 / 16 * number, &bytes);
         for band in bounds.top as u32 / rows..=(bounds.bottom as u32 - 1) / rows {
             lists[band as usize].extend(number.to_le_bytes());
         }
@@ -109,6 +131,7 @@ fn write_clipped(memory: &mut Memory, expected: &Expected) {
 
 pub struct Bench {
     pub module: Module,
+    ability: Shading,
     memory: Memory,
     pub reads: [ReadPort; 3],
     writes: [WritePort; 4],
@@ -131,7 +154,20 @@ pub struct Clocks {
 impl Bench {
     /// Stalls in a share of the clocks on every side of the memory.
     pub fn new(seed: u32, stalls: f64) -> Self {
-        let module = Module::new("triangle_engine", seed);
+        Self::of(Shading::Flat, seed, stalls)
+    }
+
+    /// The same with gateware that shades smoothly too.
+    pub fn smooth(seed: u32, stalls: f64) -> Self {
+        Self::of(Shading::Smooth, seed, stalls)
+    }
+
+    fn of(ability: Shading, seed: u32, stalls: f64) -> Self {
+        let name = match ability {
+            Shading::Flat => "triangle_engine",
+            Shading::Smooth => "triangle_engine_smooth",
+        };
+        let module = Module::new(name, seed);
         let seed = u64::from(seed);
         Self {
             memory: Memory::new(WORDS),
@@ -140,6 +176,7 @@ impl Bench {
             writes: ["descriptors_", "lists_", "frame_even_", "frame_odd_"]
                 .map(|name| WritePort::new(&module, name, Stalls::new(seed + 1, stalls))),
             module,
+            ability,
             with_depth: true,
             slot: 0,
             left: [None; 2],
@@ -219,27 +256,34 @@ impl Bench {
             })
         };
         let signed = |value: i64, width| Bits::default().with(0, width, value);
-        let whole =
-            self.left[self.slot].is_some_and(|left| left != (expected.size, expected.clear));
+        let whole = self.left[self.slot]
+            .is_some_and(|left| left != (expected.size, expected.options.clear));
         for (port, value) in [
             ("mesh_first", u64::from(MESH) + 2),
             ("mesh_last", u64::from(MESH) + mesh.len() as u64 / 16 - 1),
             ("geometry_descriptors", DESCRIPTORS[0].into()),
-            ("descriptor_limit", LIMIT.into()),
+            (
+                "descriptor_limit",
+                (LIMIT * 12 / words(self.ability) as u32).into(),
+            ),
             ("geometry_lists", LISTS[0].into()),
             ("list_shift", LIST_SHIFT.into()),
             ("exception_base", EXCEPTIONS.into()),
             ("exception_limit", LIMIT.into()),
             ("geometry_size", size),
             ("raster_size", size),
-            ("cull_back", expected.cull.into()),
+            ("cull_back", expected.options.cull.into()),
+            (
+                "smooth",
+                (expected.options.shading == Shading::Smooth).into(),
+            ),
             ("scale_shift", frame.scale_shift.into()),
             ("near_z", frame.near as u64),
             ("depth_mantissa", frame.depth.mantissa.into()),
             ("frame_base", FRAMES[self.slot].into()),
             ("depth_base", DEPTH.into()),
             ("with_depth", self.with_depth.into()),
-            ("clear", expected.clear.into()),
+            ("clear", expected.options.clear.into()),
             ("frame_slot", self.slot as u64),
             ("whole", whole.into()),
         ] {
@@ -272,7 +316,7 @@ impl Bench {
         let wanted = [0, 0, stats.triangles_in.into(), stats.clipped.into()];
         assert_eq!(counts, wanted, "{name}: error, full, triangles, exceptions");
 
-        write_clipped(&mut self.memory, expected);
+        write_clipped(&mut self.memory, expected, self.ability);
         let counts = [
             self.count("descriptors") as u32,
             expected.clipped.len() as u32,
@@ -285,7 +329,7 @@ impl Bench {
         self.pulse("raster_start");
         let (read, written) = (self.reads[2].given, self.frame_words());
         let raster = self.wait_for("raster_done");
-        self.left[self.slot] = Some((expected.size, expected.clear));
+        self.left[self.slot] = Some((expected.size, expected.options.clear));
         assert_eq!(self.count("list_error"), 0, "{name}: the lists");
         self.compare(name, expected);
         Clocks {
@@ -325,7 +369,7 @@ impl Bench {
         self.wait_for("ready");
         self.pulse("raster_start");
         self.wait_for("raster_done");
-        self.left[self.slot] = Some((expected.size, expected.clear));
+        self.left[self.slot] = Some((expected.size, expected.options.clear));
         for word in 0..BEHIND as u32 {
             let found = self.memory.word(behind + word);
             assert_eq!(

@@ -5,7 +5,7 @@ mod bench;
 mod meshes;
 mod scenes;
 
-use bench::{Bench, CLEAR, SIZES, expected, expected_on};
+use bench::{Bench, CLEAR, SIZES, expected, expected_on, expected_smooth};
 use glint_core::camera::View;
 use glint_core::fixed::{Q32_32, Turns};
 use meshes::{ahead, at};
@@ -47,6 +47,27 @@ fn scenes_at_1280x720() {
     all_scenes(SIZES[2], 0.0);
 }
 
+/// Smooth frames and flat ones in turns, with stalls and without.
+#[test]
+fn scenes_with_smooth_shading() {
+    for stalls in [0.0, 0.4] {
+        let mut bench = Bench::smooth(5, stalls);
+        for (name, mesh, view, cull) in scenes() {
+            let flat = expected(&mesh, &view, SIZES[0], cull);
+            let smooth = expected_smooth(&mesh, &view, SIZES[0], cull);
+            bench.with_depth = true;
+            let clocks = bench.draw(name, &mesh, &smooth);
+            bench.with_depth = false;
+            bench.slot ^= 1;
+            bench.draw(&format!("{name}, flat"), &mesh, &flat);
+            println!(
+                "{name}: {} clocks for the geometry, {} for the raster, {} clipped, {} pixels",
+                clocks.geometry, clocks.raster, smooth.stats.clipped, smooth.stats.pixels_covered
+            );
+        }
+    }
+}
+
 /// The same frame whatever the stalls. `GLINT_RTL_LISTS` says how many lists, 25 unless told.
 #[test]
 fn random_lists_with_random_stalls() {
@@ -54,7 +75,12 @@ fn random_lists_with_random_stalls() {
     for seed in 0..lists {
         let mut random = Pcg64Mcg::new(u128::from(seed) * 2 + 1);
         let stalls = [0.0, 0.2, 0.5, 0.7][seed as usize % 4];
-        let mut bench = Bench::new(seed, stalls);
+        let smooth = seed % 3 == 0;
+        let mut bench = if smooth {
+            Bench::smooth(seed, stalls)
+        } else {
+            Bench::new(seed, stalls)
+        };
         // Depths take three times as long.
         bench.with_depth = seed % 5 == 0;
         let count = random.random_range(1..200);
@@ -70,7 +96,8 @@ fn random_lists_with_random_stalls() {
         } else {
             View::spherical(r, theta, phi).unwrap()
         };
-        let expected = expected(&mesh, &view, SIZES[0], random.random());
+        let draw = if smooth { expected_smooth } else { expected };
+        let expected = draw(&mesh, &view, SIZES[0], random.random());
         bench.draw(&format!("list {seed}"), &mesh, &expected);
     }
 }
@@ -304,13 +331,21 @@ fn whatever_lies_in_memory_a_frame_ends() {
 /// frame alone, from the first fetch to the last word written, and of frames whose passes overlap, where the longer one counts.
 #[test]
 fn a_sphere_is_drawn_fast() {
-    for (name, size, alone, overlapped, most_read) in [
-        ("icosphere:6", SIZES[0], 1.8, 3.0, 1000),
-        ("icosphere:12", SIZES[2], 3.7, 4.6, 6000),
+    for (name, size, smooth, alone, overlapped, most_read) in [
+        ("icosphere:6", SIZES[0], false, 1.8, 3.0, 1000),
+        ("icosphere:12", SIZES[2], false, 3.7, 4.6, 6000),
+        ("icosphere:6", SIZES[0], true, 1.8, 3.0, 2000),
+        ("icosphere:12", SIZES[2], true, 3.6, 4.6, 10_000),
     ] {
         let mesh = generated(name);
-        let expected = expected(&mesh, &ahead(0.4781, 0.5), size, true);
-        let mut bench = Bench::new(9, 0.0);
+        let view = ahead(0.4781, 0.5);
+        let (expected, mut bench) = if smooth {
+            let expected = expected_smooth(&mesh, &view, size, true);
+            (expected, Bench::smooth(9, 0.0))
+        } else {
+            let expected = expected(&mesh, &view, size, true);
+            (expected, Bench::new(9, 0.0))
+        };
         bench.with_depth = false;
         bench.draw("before it", &mesh, &expected);
         let counts = ["clocks_walking", "clocks_empty"].map(|count| bench.count(count));
@@ -321,7 +356,7 @@ fn a_sphere_is_drawn_fast() {
             pixels / clocks.geometry.max(clocks.raster) as f64,
         ];
         println!(
-            "{name} at {size:?}: {pixels} pixels, {} clocks for the geometry, {} for the raster, {} walking, {} of them empty, {} words read, {} written, \
+            "{name} at {size:?}, smooth {smooth}: {pixels} pixels, {} clocks for the geometry, {} for the raster, {} walking, {} of them empty, {} words read, {} written, \
              {:.2} pixels a clock alone, {:.2} overlapped",
             clocks.geometry,
             clocks.raster,

@@ -28,9 +28,16 @@ pub fn mesh(triangles: &[Triangle], most: usize) -> Vec<u8> {
             body.extend(word.to_le_bytes());
         }
         let corners = chunk.iter().flat_map(|(corners, _)| *corners);
+        // Any colours and normals, of any length: they count only when shading is smooth.
+        let mut random = Pcg64Mcg::new(count as u128);
         for corner in corners.chain(std::iter::repeat([0; 3])).take(count) {
             corner.iter().for_each(|c| body.extend(c.to_le_bytes()));
-            body.extend([0; 10]);
+            let reach = [1 << 7, 1 << 13, i16::MAX][random.random_range(0..3)];
+            for _ in 0..3 {
+                body.extend(random.random_range(-reach..=reach).to_le_bytes());
+            }
+            body.extend(random.random::<u16>().to_le_bytes());
+            body.extend([0; 2]);
         }
         for (number, (corners, colour)) in (0_u16..).zip(*chunk) {
             for index in 0..3 {

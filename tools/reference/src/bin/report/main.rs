@@ -3,6 +3,7 @@
 #![forbid(unsafe_code)]
 
 mod cycles;
+mod gouraud;
 mod page;
 mod plot;
 mod table;
@@ -34,6 +35,8 @@ enum Page {
     Sine(SineArguments),
     /// The triangle engine on the whole SoC, beside its targets
     Triangle(triangle::Arguments),
+    /// Smooth shading beside light that is linear on the screen
+    Gouraud(gouraud::Arguments),
 }
 
 #[derive(Args)]
@@ -62,6 +65,7 @@ fn main() -> Result<()> {
     match Arguments::parse().page {
         Page::Sine(arguments) => sine(&arguments),
         Page::Triangle(arguments) => triangle::report(&arguments),
+        Page::Gouraud(arguments) => gouraud::report(&arguments),
     }
 }
 

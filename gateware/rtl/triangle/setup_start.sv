@@ -1,11 +1,12 @@
-// The depth accumulator at the start: w0·2^8 + floor((Gx·px + Gy·py)/2^8) modulo 2^32, (px, py) from vertex 0.
+// A plane's accumulator at the start: value·2^8 + floor((Gx·px + Gy·py)/2^8) modulo 2^32, with the value at vertex 0 and (px, py)
+// from there.
 //
 // Two products each of 17, 17 and 6 bits of the gradients from the low end, of which bits 8 to 39 are right. Driven by the
 // `count` of the setup's beat: inputs hold during a beat, the result is there from clock 9.
 
 `default_nettype none
 
-module setup_depth (
+module setup_start (
     input  wire         clk,
     input  wire         enable,
     input  wire  [3:0]  count,
@@ -13,7 +14,7 @@ module setup_depth (
     input  wire  [39:0] gy,
     input  wire  [20:0] px,
     input  wire  [20:0] py,
-    input  wire  [23:0] w0,
+    input  wire  [23:0] value,
     output logic [31:0] start
 );
     logic signed [24:0] a;
@@ -32,7 +33,7 @@ module setup_depth (
             2'd1:    b = {1'b0, gradient[33:17]};
             default: b = {12'b0, gradient[39:34]};
         endcase
-        if (count == 4'd2)  c = {4'b0, w0, 16'b0};
+        if (count == 4'd2)  c = {4'b0, value, 16'b0};
         else if (!count[0]) c = p >>> 17;
         else                c = p;
     end

@@ -1,0 +1,43 @@
+//! The division of a pixel under smooth shading: colours from the planes of its light and its depth (docs/formats.md,
+//! "Smooth shading").
+
+use glint_core::colour::Rgb565;
+
+/// `INVERSE[i]` is 2^17/(1 + (i + 1/2)/1024) to nearest, u0.17.
+pub const INVERSE: [u32; 1024] = inverses();
+
+const fn inverses() -> [u32; 1024] {
+    let mut table = [0; 1024];
+    let mut i = 0;
+    while i < table.len() {
+        // The value is 2^28/d.
+        let d = 2049 + 2 * i as u32;
+        table[i] = ((1 << 29) + d) / (2 * d);
+        i += 1;
+    }
+    table
+}
+
+/// The bits of red, green and blue.
+const CHANNEL_BITS: [u32; 3] = [5, 6, 5];
+
+/// The colour where the light and the depth, with half a code, have these accumulators.
+///
+/// Covered pixels have a depth of 2^7 codes or more; any other numbers give a meaningless colour.
+pub fn colour(light: [u32; 3], depth: u32) -> Rgb565 {
+    let shift = depth.leading_zeros().min(11);
+    let inverse = INVERSE[((depth << shift) >> 21 & 0x3FF) as usize];
+    let mut colour = 0;
+    for (value, bits) in core::iter::zip(light, CHANNEL_BITS) {
+        // Light is at most 63/64 of the depth, so this is 0 from which the rounding has taken something.
+        let product = if value >> 26 == 0x3F {
+            0
+        } else {
+            u64::from(value >> 8) * u64::from(inverse)
+        };
+        let cut = 40 - bits - shift;
+        let channel = (product + (1 << (cut - 1))) >> cut;
+        colour = colour << bits | channel as u16 & ((1 << bits) - 1);
+    }
+    Rgb565(colour)
+}

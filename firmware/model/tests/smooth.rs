@@ -1,0 +1,145 @@
+//! Smooth shading: what is exact about it. `tools/reference` has its errors.
+
+mod common;
+
+use common::triangles::{SIZE, random_triangle};
+use common::{Camera, Picture, Random};
+use glint_core::colour::Rgb565;
+use glint_model::clip::clip;
+use glint_model::quotient::{INVERSE, colour};
+use glint_model::raster::draw;
+use glint_model::setup::{Bounds, Facing, Oriented, Setup};
+use glint_model::shade::{Light, Lit, intensity, lit};
+use glint_model::vertex::{CameraVertex, transform};
+use glint_model::{FrameSetup, SIZES};
+
+fn any_colour(random: &mut Random) -> Rgb565 {
+    Rgb565(random.bits() as u16)
+}
+
+/// Light that is the same everywhere comes out as it is, at all depths and on every shape.
+#[test]
+fn equal_light_is_a_flat_colour() {
+    let mut random = Random(1);
+    let mut covered = 0;
+    for _ in 0..2000 {
+        let mut vertices = random_triangle(&mut random);
+        for vertex in &mut vertices {
+            vertex.w = match random.integer(0, 3) {
+                0 => 228 * 64,
+                1 => ((1 << 18) - 4) * 64,
+                _ => random.integer(228 * 64, ((1 << 18) - 4) * 64) as u32,
+            };
+        }
+        let Some(triangle) = Oriented::new(vertices) else {
+            continue;
+        };
+        let Some(bounds) = Bounds::new(&triangle.vertices, SIZE.0, SIZE.1) else {
+            continue;
+        };
+        let colour = any_colour(&mut random);
+        let setup = Setup::smooth(&triangle, bounds, &[Lit::new(colour, 256); 3]);
+        let mut picture = Picture::blank(SIZE);
+        covered += draw(&setup, Rgb565(0), &mut picture.target()).covered;
+        for (found, code) in picture.colour.iter().zip(&picture.depth) {
+            assert!(
+                *code == 0 || *found == colour.0,
+                "{found:04x} for {colour:04x?}, {vertices:?}"
+            );
+        }
+    }
+    assert!(covered > 100_000, "{covered}");
+}
+
+/// Any accumulators give some colour, and the table is monotonous and fits 17 bits.
+#[test]
+fn quotients_of_anything() {
+    assert!(INVERSE.is_sorted_by(|a, b| a > b));
+    assert!(INVERSE[0] < 1 << 17 && INVERSE[1023] >= 1 << 16);
+    let mut random = Random(2);
+    for shift in 0..=32 {
+        for _ in 0..2000 {
+            let light = [0; 3].map(|_| (random.bits() >> random.integer(32, 63)) as u32);
+            colour(light, ((random.bits() & 0xFFFF_FFFF) >> shift) as u32);
+        }
+    }
+    // The largest light, and what is just below none, at either end of the depths.
+    for codes in [228u32, (1 << 18) - 4] {
+        let depth = (codes << 14) + (1 << 13);
+        let most = (u64::from(depth) * 63 / 64) as u32;
+        let found = colour([(u64::from(depth) * 31 / 32) as u32, most, 0], depth);
+        assert_eq!(found, Rgb565(0xFFE0));
+        assert_eq!(colour([u32::MAX - (1 << 13); 3], depth), Rgb565(0));
+    }
+}
+
+/// A vertex gives to each side what flat shading with its normal would, and to one of both nothing.
+#[test]
+fn light_is_that_of_flat_shading() {
+    let mut random = Random(3);
+    let frame = random_frame(&mut random);
+    let (mut front, mut back) = (0, 0);
+    for _ in 0..10_000 {
+        let normal = [0; 3].map(|_| random.integer(-32768, 32767) as i16);
+        let colour = any_colour(&mut random);
+        let light = Light::new(colour, normal, &frame.n);
+        for facing in [Facing::Front, Facing::Back] {
+            let Lit(found) = light.to(facing);
+            let [r, g, b] = lit(colour, intensity(normal, &frame.n, facing))
+                .channels()
+                .map(u32::from);
+            let rounded = [(found[0], 9), (found[1], 8), (found[2], 9)]
+                .map(|(x, cut)| (u32::from(x) + (1 << (cut - 1))) >> cut);
+            assert_eq!(rounded, [r, g, b]);
+        }
+        let dark = Lit::default();
+        assert!(light.front == dark || light.back == dark);
+        front += u32::from(light.front != dark);
+        back += u32::from(light.back != dark);
+    }
+    assert!(front > 3000 && back > 3000, "{front}, {back}");
+}
+
+fn random_frame(random: &mut Random) -> FrameSetup {
+    let (width, height) = SIZES[random.integer(0, 2) as usize];
+    FrameSetup::new(&Camera::inside(random).rounded(), width, height, 56_756).unwrap()
+}
+
+/// The clipper's light is between that of the ends, nearest to the part of the edge at which it cuts, and the same for
+/// both neighbours at an edge.
+#[test]
+fn cut_edges_have_light_in_between() {
+    let mut random = Random(4);
+    let mut cuts = 0;
+    for _ in 0..20_000 {
+        let frame = random_frame(&mut random);
+        let [a, b, c] = [0; 3].map(|_| {
+            let normal = [0; 3].map(|_| random.integer(-32768, 32767) as i16);
+            CameraVertex {
+                light: Light::new(any_colour(&mut random), normal, &frame.n),
+                ..transform(&frame, [0; 3].map(|_| random.integer(-32768, 32767) as i16))
+            }
+        });
+        for end in clip(&frame, [a, b, b]).vertices() {
+            assert!(clip(&frame, [b, a, c]).vertices().contains(end));
+            if *end == a || *end == b {
+                continue;
+            }
+            cuts += 1;
+            // A second cut rounds again.
+            let part = (end.z - a.z) as f64 / (b.z - a.z) as f64;
+            if (b.z - a.z).abs() < 1 << 30 {
+                continue;
+            }
+            for facing in [Facing::Front, Facing::Back] {
+                let [Lit(from), Lit(to), Lit(found)] = [a, b, *end].map(|v| v.light.to(facing));
+                for channel in 0..3 {
+                    let [from, to, found] = [from, to, found].map(|x| f64::from(x[channel]));
+                    let exact = from + (to - from) * part;
+                    assert!((found - exact).abs() < 1.6, "{found} for {exact}");
+                }
+            }
+        }
+    }
+    assert!(cuts > 5000, "{cuts}");
+}

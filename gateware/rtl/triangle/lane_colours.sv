@@ -1,0 +1,119 @@
+// The division in two lanes (docs/formats.md, "Smooth shading"): colours from the accumulators of depth and light.
+//
+//   clock   0          1           2               3                      4, 5, 6        7
+//           depth ─▶ zeros by 4 ─▶ zeros, index ─▶ table: inverse y ──┐
+//                                                  light ─────────────┴▶ light·y + half ─▶ five or six bits, by the zeros
+//
+// Both lanes share a table in half a block RAM, which has two ports. Latency 7 clocks in which `enable` is high, from light 4;
+// throughput two pixels a clock.
+
+`default_nettype none
+
+module lane_colours (
+    input  wire                   clk,
+    input  wire                   enable,
+    input  wire  [1:0][31:0]      depths, // with half a code
+    input  wire  [1:0][2:0][31:0] lights, // red in the lowest; three clocks after the depths
+    output logic [1:0][15:0]      colours
+);
+    // nearest(2^17/(1 + (i + 1/2)/1024)), which is nearest(2^28/(2049 + 2·i)).
+    (* ram_style = "block" *) logic [16:0] inverses [0:1023];
+
+    initial begin
+        for (int i = 0; i < 1024; i++) inverses[i] = 17'(((1 << 29) + 2049 + 2 * i) / (2 * (2049 + 2 * i)));
+    end
+
+    logic [1:0][9:0]  index;
+    logic [1:0][16:0] inverse;
+
+    always_ff @(posedge clk) if (enable) inverse[0] <= inverses[index[0]];
+    always_ff @(posedge clk) if (enable) inverse[1] <= inverses[index[1]];
+
+    for (genvar lane = 0; lane < 2; lane++) begin : lanes
+        logic [31:0] depth;
+        logic [1:0]  fours, ones, fours_1;
+        logic [13:0] by_4;
+        logic [3:0]  zeros, zeros_4, zeros_6;
+        logic [41:0] half;
+
+        assign depth = depths[lane];
+        assign fours = depth[31:28] != '0 ? 2'd0 : depth[27:24] != '0 ? 2'd1 : 2'd2;
+        assign ones  = by_4[13] ? 2'd0 : by_4[12] ? 2'd1 : by_4[11] ? 2'd2 : 2'd3;
+
+        always_ff @(posedge clk) begin
+            if (enable) begin
+                fours_1 <= fours;
+                case (fours)
+                    2'd0:    by_4 <= depth[31:18];
+                    2'd1:    by_4 <= depth[27:14];
+                    default: by_4 <= depth[23:10];
+                endcase
+                zeros <= {fours_1, ones};
+                case (ones)
+                    2'd0: index[lane] <= by_4[12:3];
+                    2'd1: index[lane] <= by_4[11:2];
+                    2'd2: index[lane] <= by_4[10:1];
+                    2'd3: index[lane] <= by_4[9:0];
+                endcase
+                half <= 42'd1 << (6'd34 - 6'(zeros_4));
+            end
+        end
+
+        delay #(.WIDTH(4), .CLOCKS(2)) zeros_delay (.clk, .enable, .in(zeros), .out(zeros_4));
+        delay #(.WIDTH(4), .CLOCKS(2)) zeros_delay_4 (.clk, .enable, .in(zeros_4), .out(zeros_6));
+
+        for (genvar k = 0; k < 3; k++) begin : channels
+            localparam int unsigned BITS = k == 1 ? 6 : 5;
+            logic [31:0]        light;
+            logic signed [41:0] product;
+            logic [8:0]         window;
+            logic [BITS-1:0]    channel;
+            logic               dark, dark_6;
+
+            assign light = lights[lane][k];
+
+            multiply_add #(.BITS(42)) dsp (
+                .clk, .enable, .a({1'b0, light[31:8]}), .b({1'b0, inverse[lane]}), .c(half >> (BITS - 5)), .p(product)
+            );
+
+            // Just below 0.
+            assign dark = light[31:26] == '1;
+
+            delay #(.WIDTH(1), .CLOCKS(3)) dark_delay (.clk, .enable, .in(dark), .out(dark_6));
+
+            always_comb begin
+                case (zeros_6[3:2])
+                    2'd0:    window = product[39:31];
+                    2'd1:    window = product[35:27];
+                    default: window = product[31:23];
+                endcase
+            end
+
+            always_ff @(posedge clk) begin
+                if (enable) begin
+                    case (zeros_6[1:0])
+                        2'd0: channel <= window[8 -: BITS];
+                        2'd1: channel <= window[7 -: BITS];
+                        2'd2: channel <= window[6 -: BITS];
+                        2'd3: channel <= window[5 -: BITS];
+                    endcase
+                    if (dark_6) channel <= '0;
+                end
+            end
+
+            if (k == 0) begin : red
+                assign colours[lane][15:11] = channel;
+            end else if (k == 1) begin : green
+                assign colours[lane][10:5] = channel;
+            end else begin : blue
+                assign colours[lane][4:0] = channel;
+            end
+
+            wire _unused = &{1'b0, product[41:40], product[22:0], light[7:0], window[0]};
+        end
+
+        wire _unused = &{1'b0, depth[9:0]};
+    end
+endmodule
+
+`default_nettype wire

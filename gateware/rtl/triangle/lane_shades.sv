@@ -1,0 +1,81 @@
+// Eight pixels under smooth shading: the colours of a group beside `lanes`, and what that gives out as late as they come.
+//
+//   stage   1         3                4                    6              10
+//           light ───────────────────────▶ lane_values ─────▶ ┌──────────────┐
+//                     depths ───────────────────────────────▶ │ lane_colours │─▶ colours
+//                                      group ─────────────────└──────────────┘─▶ group
+//
+// Stages are those of `lanes`; all move with `enable`. Latency 6 clocks from the group, throughput a group a clock.
+
+`default_nettype none
+
+module lane_shades #(
+    parameter int unsigned GROUP_BITS = 8
+) (
+    input  wire                    clk,
+    input  wire                    rst,
+    input  wire                    enable,
+    output logic                   idle,
+    // Stage 1.
+    input  wire  [2:0][31:0]       in_light,  // red in the lowest
+    input  wire  [2:0][31:0]       in_step_x,
+    input  wire                    in_smooth,
+    // Stage 3.
+    input  wire  [7:0][31:0]       in_depths, // with half a code
+    // Stage 4.
+    input  wire                    in_valid,
+    input  wire  [GROUP_BITS-1:0]  in_group,
+    input  wire  [15:0]            in_colour, // of a flat triangle
+    output logic                   out_valid,
+    output logic [GROUP_BITS-1:0]  out_group,
+    output logic [7:0][15:0]       out_colours
+);
+    localparam int unsigned LATENCY = 6;
+
+    logic [LATENCY-1:0] valid;
+
+    assign idle      = valid == '0;
+    assign out_valid = valid[LATENCY-1];
+
+    always_ff @(posedge clk) begin
+        if (enable) valid <= {valid[LATENCY-2:0], in_valid};
+        if (rst) valid <= '0;
+    end
+
+    logic        smooth_9, smooth;
+    logic [15:0] colour;
+
+    delay #(.WIDTH(GROUP_BITS + 16), .CLOCKS(LATENCY)) group_delay (
+        .clk, .enable, .in({in_colour, in_group}), .out({colour, out_group})
+    );
+    delay #(.WIDTH(1), .CLOCKS(8)) smooth_delay (.clk, .enable, .in(in_smooth), .out(smooth_9));
+
+    always_ff @(posedge clk) if (enable) smooth <= smooth_9;
+
+    // A group's light waits for its depths: before the lanes it has two numbers, behind them eight.
+    logic [2:0][7:0][31:0] lights;
+
+    for (genvar k = 0; k < 3; k++) begin : channels
+        logic [31:0] light, step_x;
+
+        delay #(.WIDTH(64), .CLOCKS(2)) light_delay (.clk, .enable, .in({in_light[k], in_step_x[k]}), .out({light, step_x}));
+        lane_values spread (.clk, .enable, .in(light), .step_x, .values(lights[k]));
+    end
+
+    for (genvar pair = 0; pair < 4; pair++) begin : pairs
+        // Vectors: Yosys knows no arrays in here.
+        logic [2*96-1:0] pair_lights;
+        logic [2*16-1:0] colours;
+
+        for (genvar lane = 0; lane < 2; lane++) begin : lanes
+            localparam int unsigned LANE = 2 * pair + lane;
+
+            assign pair_lights[96 * lane +: 96] = {lights[2][LANE], lights[1][LANE], lights[0][LANE]};
+            assign out_colours[LANE] = smooth ? colours[16 * lane +: 16] : colour;
+        end
+
+        lane_colours quotients (.clk, .enable, .depths(in_depths[2 * pair +: 2]), .lights(pair_lights), .colours);
+    end
+endmodule
+
+`default_nettype wire

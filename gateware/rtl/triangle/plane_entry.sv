@@ -1,0 +1,41 @@
+// Places a plane of light where `band_entry` places the triangle: what it has at the row `first` of the band is
+// start + step_y * offset, modulo 2^32.
+//
+// Driven by band_entry, in whose passes it goes along: the step's low 24 bits in pass 5, its high 8 bits in pass 7.
+
+`default_nettype none
+
+module plane_entry (
+    input  wire         clk,
+    input  wire         take,      // the plane comes
+    input  wire  [2:0]  pass,
+    input  wire         advance,
+    input  wire  [9:0]  offset,
+    input  wire         hold,      // its triangle is to be held
+    input  wire         result,    // what it has there is made
+    input  wire         give,      // what is held goes out
+    input  wire  [95:0] in_plane,  // {step_y, step_x, start}
+    output logic [95:0] out_plane  // {step_y, step_x, value there}
+);
+    localparam logic [2:0] LOW = 3'd5, START = 3'd6;
+
+    logic [31:0]        start, step_x, step_y, held_step_x, held_step_y, held;
+    logic signed [24:0] a;
+    logic signed [17:0] b;
+    logic signed [47:0] c, sum;
+
+    assign a = pass == LOW ? {1'b0, step_y[23:0]} : {step_y[31:24], 17'd0};
+    assign b = pass == LOW ? {8'd0, offset}       : {1'b0, offset, 7'd0};
+
+    multiply_add #(.BITS(48)) dsp (.clk, .enable(advance), .a, .b, .c, .p(sum));
+
+    always_ff @(posedge clk) begin
+        if (take)    {step_y, step_x, start} <= in_plane;
+        if (advance) c <= pass == START ? {16'd0, start} : sum;
+        if (hold)    {held_step_y, held_step_x} <= {step_y, step_x};
+        if (result)  held <= sum[31:0];
+        if (give)    out_plane <= {held_step_y, held_step_x, held};
+    end
+endmodule
+
+`default_nettype wire

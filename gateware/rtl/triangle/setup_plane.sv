@@ -1,0 +1,51 @@
+// A plane's gradients and its accumulator at the start, from its normal: stages 3 and 4 of the triangle setup.
+//
+// Driven by the `count` and the `beat` of the setup. The normal is there at the end of a beat; the reciprocal holds
+// in the next one, what concerns vertex 0 in the one after that, at the end of which everything is there.
+
+`default_nettype none
+
+module setup_plane (
+    input  wire         clk,
+    input  wire         enable,
+    input  wire         beat,
+    input  wire  [3:0]  count,
+    input  wire  [45:0] nx,
+    input  wire  [45:0] ny,
+    // Stage 3.
+    input  wire  [23:0] y,
+    input  wire  [5:0]  lead,
+    // Stage 4: the start's centre from vertex 0, and the value there, u18.6.
+    input  wire  [20:0] px,
+    input  wire  [20:0] py,
+    input  wire  [23:0] value,
+    output logic [31:0] step_x,
+    output logic [31:0] step_y,
+    output logic [31:0] start
+);
+    logic [45:0] nx_3, ny_3;
+    logic [40:0] twice_gx, twice_gy, twice_gx_4, twice_gy_4;
+    logic [39:0] gx, gy;
+    logic [3:0]  count_4;
+
+    assign step_x = gx[31:0];
+    assign step_y = gy[31:0];
+
+    // Stage 4 is a clock late: first the gradients are rounded.
+    always_ff @(posedge clk) begin
+        if (beat) begin
+            nx_3       <= nx;
+            ny_3       <= ny;
+            twice_gx_4 <= twice_gx;
+            twice_gy_4 <= twice_gy;
+        end
+        gx <= twice_gx_4[40:1] + 40'(twice_gx_4[0]);
+        gy <= twice_gy_4[40:1] + 40'(twice_gy_4[0]);
+        if (enable) count_4 <= count;
+    end
+
+    setup_gradient gradient (.clk, .enable, .count, .nx(nx_3), .ny(ny_3), .y, .lead, .twice_gx, .twice_gy);
+    setup_start at_start (.clk, .enable, .count(count_4), .gx, .gy, .px, .py, .value, .start);
+endmodule
+
+`default_nettype wire
