@@ -5,6 +5,7 @@
 use core::fmt::{self, Display};
 
 use glint_core::camera::{View, ViewError};
+use glint_core::colour::Shading;
 use glint_core::console::{Backend, Command, ParseError, Size, write_help};
 use glint_core::fixed::Turns;
 use glint_core::mesh::MeshError;
@@ -206,6 +207,15 @@ pub fn execute<'l>(machine: &mut Machine, line: &'l str) -> Reply<'l> {
             machine.scene.set_backend(backend);
             Ok(())
         }
+        Command::Shading(None) => {
+            let shading = shading_name(machine.scene.shading());
+            machine.terminal.print(format_args!("shading {shading}\n"));
+            Ok(())
+        }
+        Command::Shading(Some(shading)) => {
+            machine.scene.set_shading(shading);
+            Ok(())
+        }
         Command::Bench(kernel) => bench::run(machine, kernel),
         Command::SelfTest => match selftest::run(machine) {
             0 => Ok(()),
@@ -233,7 +243,7 @@ fn info(machine: &mut Machine) {
     let [width, height] = scene.scale().size();
     terminal.print(format_args!(
         "version {}\nfirmware_id {:#010x}\ngateware_id {:#010x}\nblocks {:#x}\nclock {FREQUENCY}\n\
-         scene {}\nvertices {}\ntriangles {}\nsize {width} {height}\nbackend {}\n\
+         scene {}\nvertices {}\ntriangles {}\nsize {width} {height}\nshading {}\nbackend {}\n\
          frame {:#010x}\ndepth {:#010x}\n",
         env!("CARGO_PKG_VERSION"),
         identity.firmware,
@@ -242,6 +252,7 @@ fn info(machine: &mut Machine) {
         models.shown().name(),
         mesh.vertex_count(),
         mesh.triangle_count(),
+        shading_name(scene.shading()),
         backend_name(scene.backend()),
         canvas.display.front().as_ptr().addr(),
         canvas.depth.as_ptr().addr(),
@@ -431,6 +442,14 @@ pub fn engine_values(counters: &Counters) -> [(&'static str, u64); 16] {
         ("cycles_flush", counters.flush),
     ]
     .map(|(name, value)| (name, value.into()))
+}
+
+/// A way of shading on the console.
+const fn shading_name(shading: Shading) -> &'static str {
+    match shading {
+        Shading::Flat => "flat",
+        Shading::Smooth => "smooth",
+    }
 }
 
 /// A backend's name on the console.
