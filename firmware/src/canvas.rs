@@ -117,6 +117,7 @@ impl Canvas {
         let scratch = self.scratch.vertices(vertices);
         let options = Options {
             cull: scene.cull(),
+            shading: scene.shading(),
             ..Options::default()
         };
         let start = cpu::cycles();
@@ -180,6 +181,7 @@ fn target<'a>(
         view: scene.view(),
         size: (width, height),
         cull: scene.cull(),
+        shading: scene.shading(),
         colour,
         depth,
     }

@@ -5,6 +5,7 @@
 use core::fmt::{self, Display};
 
 use glint_core::camera::{View, ViewError};
+use glint_core::colour::Shading;
 use glint_core::console::{Backend, Command, ParseError, Size, write_help};
 use glint_core::fixed::Turns;
 use glint_core::mesh::MeshError;
@@ -206,6 +207,15 @@ pub fn execute<'l>(machine: &mut Machine, line: &'l str) -> Reply<'l> {
             machine.scene.set_backend(backend);
             Ok(())
         }
+        Command::Shading(None) => {
+            let shading = shading_name(machine.scene.shading());
+            machine.terminal.print(format_args!("shading {shading}\n"));
+            Ok(())
+        }
+        Command::Shading(Some(shading)) => {
+            machine.scene.set_shading(shading);
+            Ok(())
+        }
         Command::Bench(kernel) => bench::run(machine, kernel),
         Command::SelfTest => match selftest::run(machine) {
             0 => Ok(()),
@@ -235,7 +245,7 @@ fn info<'l>(machine: &mut Machine, key: Option<&'l str>) -> Result<(), Refusal<'
     let [width, height] = scene.scale().size();
     let (frame, depth) = (canvas.display.front().as_ptr(), canvas.depth.as_ptr());
     let counters = canvas.display.counters();
-    let lines: [(&str, fmt::Arguments); 17] = [
+    let lines: [(&str, fmt::Arguments); 18] = [
         ("version", format_args!("{}", env!("CARGO_PKG_VERSION"))),
         ("firmware_id", format_args!("{:#010x}", identity.firmware)),
         ("gateware_id", format_args!("{:#010x}", identity.gateware)),
@@ -245,6 +255,7 @@ fn info<'l>(machine: &mut Machine, key: Option<&'l str>) -> Result<(), Refusal<'
         ("vertices", format_args!("{}", mesh.vertex_count())),
         ("triangles", format_args!("{}", mesh.triangle_count())),
         ("size", format_args!("{width} {height}")),
+        ("shading", format_args!("{}", shading_name(scene.shading()))),
         ("backend", format_args!("{}", backend_name(scene.backend()))),
         ("frame", format_args!("{:#010x}", frame.addr())),
         ("depth", format_args!("{:#010x}", depth.addr())),
@@ -439,6 +450,14 @@ pub fn engine_values(counters: &Counters) -> [(&'static str, u64); 16] {
         ("cycles_flush", counters.flush),
     ]
     .map(|(name, value)| (name, value.into()))
+}
+
+/// A way of shading on the console.
+const fn shading_name(shading: Shading) -> &'static str {
+    match shading {
+        Shading::Flat => "flat",
+        Shading::Smooth => "smooth",
+    }
 }
 
 /// A backend's name on the console.

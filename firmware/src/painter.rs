@@ -11,10 +11,10 @@ use litex_hal::triangle::{
 };
 use litex_pac::cpu;
 
-/// The most descriptors of a set, and the most exceptions. A frame with more is the CPU's.
+/// The most descriptors of a set, where they are small, and the most exceptions. A frame with more is the CPU's.
 const DESCRIPTORS: usize = 1 << 16;
-/// Numbers in a descriptor.
-const DESCRIPTOR_WORDS: usize = descriptor::words(Shading::Flat);
+/// Numbers of a set's descriptors; where these are large there is room for half as many.
+const DESCRIPTOR_NUMBERS: usize = DESCRIPTORS * descriptor::words(Shading::Flat);
 /// Numbers of all lists of a set, and of the table of their lengths.
 const LIST_NUMBERS: usize = 1 << 20;
 const LENGTHS: usize = 4 * TABLE_WORDS as usize;
@@ -44,6 +44,8 @@ pub struct Target<'a> {
     pub size: (u32, u32),
     /// Whether back faces are left out.
     pub cull: bool,
+    /// Where colours come from.
+    pub shading: Shading,
     /// RGB565, row by row.
     pub colour: &'a mut [u16],
     /// Depth codes, if they are wanted.
@@ -73,10 +75,10 @@ impl Room {
             Some(piece)
         };
         Some(Self {
-            descriptors: piece(DESCRIPTORS * DESCRIPTOR_WORDS)?,
+            descriptors: piece(DESCRIPTOR_NUMBERS)?,
             lists: piece(LIST_NUMBERS)?,
             exceptions: piece(DESCRIPTORS)?,
-            clipped_descriptors: piece(DESCRIPTORS * DESCRIPTOR_WORDS)?,
+            clipped_descriptors: piece(DESCRIPTOR_NUMBERS)?,
             clipped_lists: piece(LIST_NUMBERS)?,
             sets: [None; 2],
             stats: Stats::default(),
@@ -98,6 +100,8 @@ enum Stage {
 /// The engine and its memory.
 pub struct Painter {
     engine: Engine,
+    /// How far the engine can shade.
+    ability: Shading,
     rooms: [Room; 2],
     /// The first frame buffer's address, and what both hold.
     first_buffer: u32,
@@ -124,6 +128,7 @@ impl Painter {
     pub fn new(engine: Engine, mut memory: &'static mut [u32], first_buffer: u32) -> Option<Self> {
         Some(Self {
             start: (0, engine.counters()),
+            ability: engine.ability(),
             engine,
             rooms: [Room::cut(&mut memory)?, Room::cut(&mut memory)?],
             first_buffer,
@@ -165,7 +170,7 @@ impl Painter {
             Stage::Idle => {
                 self.start = (cpu::cycles(), self.engine.counters());
                 self.watch = Watch::default();
-                match constants(target) {
+                match self.constants(target) {
                     Ok(frame) => {
                         let prepared = self.prepare_geometry(target, frame, 0);
                         self.start_geometry(prepared);
@@ -219,11 +224,11 @@ impl Painter {
     /// As [`advance`](Self::advance).
     pub fn repeat(&mut self, target: &mut Target, count: u32) -> Result<Painted, Fault> {
         self.watch = Watch::default();
-        let mut prepared = self.prepare_geometry(target, constants(target)?, 0);
+        let mut prepared = self.prepare_geometry(target, self.constants(target)?, 0);
         for frame in 0..=count {
             self.start_geometry(prepared);
             // The next frame's, while the engine works.
-            let constants = constants(target)?;
+            let constants = self.constants(target)?;
             self.wait(Engine::geometry, target)?;
             if let Err(fault) = self.clip(target) {
                 return self.give_up(target, fault);
@@ -267,6 +272,15 @@ impl Painter {
         }
     }
 
+    /// The constants of a frame that the engine can draw.
+    fn constants(&self, target: &Target) -> Result<FrameSetup, Fault> {
+        if target.shading == Shading::Smooth && self.ability == Shading::Flat {
+            return Err(Fault::Shading);
+        }
+        let (width, height) = target.size;
+        FrameSetup::new(target.view, width, height, target.mesh.radius()).map_err(|_| Fault::Size)
+    }
+
     /// Prepares a geometry pass that goes into a room.
     fn prepare_geometry(&mut self, target: &Target, frame: FrameSetup, room: usize) -> Prepared {
         let frame = self.frame.insert(frame);
@@ -275,9 +289,10 @@ impl Painter {
             mesh: target.mesh,
             frame,
             cull: target.cull,
+            shading: target.shading,
             lists: Lists {
                 descriptors: address(room.descriptors),
-                descriptor_limit: DESCRIPTORS as u32,
+                descriptor_limit: (DESCRIPTOR_NUMBERS / descriptor::words(self.ability)) as u32,
                 lists: address(room.lists),
             },
             exceptions: address(room.exceptions),
@@ -338,10 +353,12 @@ impl Painter {
                 lengths: [0; LENGTHS],
                 count: 0,
                 width: frame.width,
+                ability: self.ability,
                 full: false,
             };
             let options = Options {
                 cull: target.cull,
+                shading: target.shading,
                 ..Options::default()
             };
             clipped_drawn = clip_exceptions(
@@ -401,17 +418,19 @@ struct ListWriter<'a> {
     lengths: [u32; LENGTHS],
     count: u32,
     width: u32,
+    ability: Shading,
     full: bool,
 }
 
 impl ListWriter<'_> {
     fn put(&mut self, descriptor: &Descriptor, top: u32, bottom: u32) {
-        let at = self.count as usize * DESCRIPTOR_WORDS;
-        let Some(to) = self.descriptors.get_mut(at..at + DESCRIPTOR_WORDS) else {
+        let words = descriptor.words(self.ability);
+        let at = self.count as usize * words.len();
+        let Some(to) = self.descriptors.get_mut(at..at + words.len()) else {
             self.full = true;
             return;
         };
-        to.copy_from_slice(descriptor.words(Shading::Flat));
+        to.copy_from_slice(words);
         let rows = band_rows(self.width);
         let room = 4 << list_shift(self.width);
         for band in top / rows..=(bottom - 1) / rows {
@@ -461,12 +480,6 @@ impl Watch {
             }
         }
     }
-}
-
-/// The constants of a frame.
-fn constants(target: &Target) -> Result<FrameSetup, Fault> {
-    let (width, height) = target.size;
-    FrameSetup::new(target.view, width, height, target.mesh.radius()).map_err(|_| Fault::Size)
 }
 
 fn address(memory: &[u32]) -> u32 {

@@ -1,6 +1,7 @@
 //! What is to be seen: the camera and how the picture is drawn, and whether that has changed since it was drawn.
 
 use glint_core::camera::{View, ViewError};
+use glint_core::colour::Shading;
 use glint_core::console::Backend;
 use glint_core::fixed::{Q32_32, Turns};
 use glint_model::{RenderError, Stats};
@@ -60,6 +61,7 @@ pub struct Scene {
     sphere: Sphere,
     scale: Scale,
     cull: bool,
+    shading: Shading,
     backend: Backend,
     changed: bool,
     wants_depth: bool,
@@ -78,6 +80,7 @@ impl Scene {
             sphere,
             scale: Scale::Four,
             cull: true,
+            shading: Shading::Flat,
             backend,
             changed: true,
             wants_depth: false,
@@ -136,6 +139,17 @@ impl Scene {
     pub fn set_cull(&mut self, cull: bool) {
         self.changed |= self.cull != cull;
         self.cull = cull;
+    }
+
+    /// Where colours come from.
+    pub const fn shading(&self) -> Shading {
+        self.shading
+    }
+
+    /// Sets where colours come from.
+    pub fn set_shading(&mut self, shading: Shading) {
+        self.changed |= self.shading != shading;
+        self.shading = shading;
     }
 
     /// Who is to draw.

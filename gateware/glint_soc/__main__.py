@@ -13,13 +13,13 @@ from . import register_map
 from .register_map import OPTIONAL_BLOCKS
 
 
-def make_soc(board, build_id, blocks):
+def make_soc(board, build_id, blocks, smooth=False):
     """The SoC of `board`, not yet finalized."""
     if board == "virtual":
         from .virtual import VirtualSoC
-        return VirtualSoC(build_id, blocks)
+        return VirtualSoC(build_id, blocks, smooth)
     from .urbana import UrbanaSoC
-    return UrbanaSoC(build_id, blocks)
+    return UrbanaSoC(build_id, blocks, smooth)
 
 
 def main():
@@ -29,6 +29,7 @@ def main():
     parser.add_argument("--output", type=Path, required=True, help="directory to write to")
     parser.add_argument("--blocks", nargs="*", default=sorted(OPTIONAL_BLOCKS), choices=sorted(OPTIONAL_BLOCKS),
                         help="optional blocks of this build (default: all)")
+    parser.add_argument("--smooth", action="store_true", help="build smooth shading into the triangle engine")
     arguments = parser.parse_args()
     logging.getLogger().setLevel(logging.WARNING)
     # The BIOS build calls meson and ninja of the virtual environment that runs this.
@@ -41,7 +42,7 @@ def main():
     full.finalize()
     build_id = register_map.build_id(full)
 
-    soc = make_soc(arguments.board, build_id, arguments.blocks)
+    soc = make_soc(arguments.board, build_id, arguments.blocks, arguments.smooth)
     soc.finalize()
     register_map.check_subset(soc, full)
     output = arguments.output.resolve()

@@ -32,16 +32,17 @@ class GlintSoC(SoCCore):
     """VexRiscv `full` with BIOS in ROM, 128 MB of DDR3 without a second cache level, and Glint's peripherals.
 
     `blocks` names the optional accelerators of this build, a subset of `OPTIONAL_BLOCKS`; `build_id` is what the
-    full build's register map gives (see `register_map.build_id`).
+    full build's register map gives (see `register_map.build_id`). `smooth` builds smooth shading into the triangle engine.
     """
 
     csr_map = CSR_MAP
 
-    def __init__(self, platform, crg, build_id, blocks, uart_name, sys_clk_freq=SYS_CLK_FREQ):
+    def __init__(self, platform, crg, build_id, blocks, uart_name, smooth=False, sys_clk_freq=SYS_CLK_FREQ):
         unknown = set(blocks) - set(OPTIONAL_BLOCKS)
         if unknown:
             raise ValueError(f"unknown blocks {sorted(unknown)}, expected some of {sorted(OPTIONAL_BLOCKS)}")
         self.blocks = frozenset(blocks)
+        self.smooth = smooth
         # Before SoCCore, which adds uart and timer0: both use the location that exists.
         self.interrupt_map = {
             name: location.irq for name, location in PINNED.items()
@@ -84,4 +85,4 @@ class GlintSoC(SoCCore):
         if "triangle" in self.blocks:
             readers = [self.sdram.crossbar.get_port(mode="read") for _ in range(3)]
             writers = [self.sdram.crossbar.get_port(mode="write") for _ in range(4)]
-            self.triangle = TriangleEngine(self.platform, readers, writers, main_ram)
+            self.triangle = TriangleEngine(self.platform, readers, writers, main_ram, self.smooth)

@@ -3,7 +3,7 @@
 from litex.gen import LiteXModule
 from litex.soc.interconnect.csr import CSRField, CSRStatus, CSRStorage
 from litex.soc.interconnect.csr_eventmanager import EventManager, EventSourcePulse
-from migen import Cat, ClockSignal, Constant, If, Instance, ResetSignal, Signal
+from migen import Cat, ClockSignal, If, Instance, ResetSignal, Signal
 
 from .scanout import RTL
 
@@ -53,10 +53,11 @@ class TriangleEngine(LiteXModule):
     """Draws meshes, in two passes that may run at the same time for two frames.
 
     `readers` are three native 128-bit LiteDRAM read ports (triangles, vertices, raster), `writers` four write ports
-    (descriptors, lists, frame in even and in odd banks), all in the domain `sys`. `clk`, to be driven, is its clock, or that gated by `clock_enable`. `main_ram` is the region they reach.
+    (descriptors, lists, frame in even and in odd banks), all in the domain `sys`. `clk`, to be driven, is its clock, or that
+    gated by `clock_enable`. `main_ram` is the region they reach. `smooth` builds smooth shading.
     """
 
-    def __init__(self, platform, readers, writers, main_ram):
+    def __init__(self, platform, readers, writers, main_ram, smooth=False):
         for port in (*readers, *writers):
             if port.data_width != 128 or port.address_width != _ADDRESS_BITS:
                 raise ValueError(f"the triangle engine needs memory ports of 128 bits and {_ADDRESS_BITS} address bits, "
@@ -67,7 +68,8 @@ class TriangleEngine(LiteXModule):
         self._ident = CSRStatus(32, name="ident", reset=IDENT, description="`TRIA` in ASCII; 0 where the block is absent.")
         self._caps = CSRStatus(name="caps", fields=[
             CSRField("sizes", size=3, offset=0, reset=0b111, description="Bit k is set if `size` k is supported."),
-            CSRField("gouraud", offset=3, reset=0, description="Colours are interpolated between vertices."),
+            CSRField("gouraud", offset=3, reset=int(smooth), description="Smooth shading: colours can be interpolated between "
+                     "vertices. A descriptor has 96 bytes then, and 48 where it is not built."),
             CSRField("count_bits", size=6, offset=8, reset=_COUNT_BITS, description="Bits of a count of descriptors or entries."),
         ], description="What this block can do.")
         self._control = CSRStorage(name="control", fields=[
@@ -94,12 +96,13 @@ class TriangleEngine(LiteXModule):
             CSRField("start", offset=0, pulse=True, description="Write 1 to make descriptors and lists of the mesh."),
             CSRField("cull", offset=1, description="Back faces are left out."),
             CSRField("size", size=2, offset=2, values=_SIZES, description="Size of the picture."),
+            CSRField("smooth", offset=4, description="Colours come from the vertices. Without effect where `caps` has no `gouraud`."),
         ], description="Starts the geometry pass. All other registers of geometry have to hold while it runs.")
         address = "Byte address, a multiple of 16, of"
         self._mesh = CSRStorage(32, name="mesh", description=f"{address} the mesh's first chunk.")
         self._mesh_bytes = CSRStorage(32, name="mesh_bytes", description="Length of all its chunks, a multiple of 16.")
         self._geometry_descriptors = CSRStorage(32, name="geometry_descriptors", description=f"{address} the descriptors to make.")
-        self._descriptor_limit = CSRStorage(_COUNT_BITS, name="descriptor_limit", description="Room there, 48 bytes each.")
+        self._descriptor_limit = CSRStorage(_COUNT_BITS, name="descriptor_limit", description="Room there, 48 or 96 bytes each, see `caps`.")
         self._geometry_lists = CSRStorage(32, name="geometry_lists", description=f"{address} the band lists to make.")
         self._list_shift = CSRStorage(5, name="list_shift", description="A band's list has room for 4 << list_shift entries. "
             "Of both passes.")
@@ -217,11 +220,13 @@ class TriangleEngine(LiteXModule):
             p_ADDRESS_BITS         = _ADDRESS_BITS,
             p_COUNT_BITS           = _COUNT_BITS,
             p_BASE                 = main_ram.origin,
+            p_SMOOTH               = int(smooth),
             i_clk                  = ClockSignal("sys"),
             i_rst                  = ResetSignal("sys"),
             i_cancel               = cancel,
             i_geometry_ask         = self._geometry.fields.start,
-            i_geometry_flags       = Cat(self._geometry.fields.size, self._geometry.fields.cull, Constant(0)),
+            i_geometry_flags       = Cat(*(getattr(self._geometry.fields, name) for name in (
+                                         "size", "cull", "smooth"))),
             o_recovering           = recovering,
             o_geometry_kept        = geometry_kept,
             o_geometry_active      = self._status.fields.geometry_busy,
@@ -254,6 +259,7 @@ class TriangleEngine(LiteXModule):
         self.specials += Instance("triangle_engine", name="triangle_engine",
             p_ADDRESS_BITS         = _ADDRESS_BITS,
             p_COUNT_BITS           = _COUNT_BITS,
+            p_SMOOTH               = int(smooth),
             i_clk                  = self.clk,
             i_rst                  = ResetSignal("sys"),
             i_cancel               = cancel,

@@ -79,9 +79,9 @@ class CRG(LiteXModule):
 class UrbanaSoC(GlintSoC):
     """The SoC on the board."""
 
-    def __init__(self, build_id, blocks):
+    def __init__(self, build_id, blocks, smooth=False):
         platform = Platform()
-        GlintSoC.__init__(self, platform, CRG(platform, SYS_CLK_FREQ), build_id, blocks, uart_name="serial")
+        GlintSoC.__init__(self, platform, CRG(platform, SYS_CLK_FREQ), build_id, blocks, uart_name="serial", smooth=smooth)
         self.ddrphy = A7DDRPHY(
             platform.request("ddram"), memtype="DDR3", nphases=4,
             sys_clk_freq=SYS_CLK_FREQ, iodelay_clk_freq=_IDELAY_CLK_FREQ)

@@ -85,9 +85,9 @@ class CRG(LiteXModule):
 class VirtualSoC(GlintSoC):
     """The SoC as the virtual board runs it."""
 
-    def __init__(self, build_id, blocks):
+    def __init__(self, build_id, blocks, smooth=False):
         platform = Platform()
-        GlintSoC.__init__(self, platform, CRG(platform), build_id, blocks, uart_name="sim")
+        GlintSoC.__init__(self, platform, CRG(platform), build_id, blocks, uart_name="sim", smooth=smooth)
         self.ddrphy = SDRAMPHYModel(
             module=MT41K64M16(SYS_CLK_FREQ, "1:4"), data_width=16, clk_freq=SYS_CLK_FREQ)
         self._name_banks()

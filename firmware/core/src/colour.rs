@@ -1,4 +1,4 @@
-//! Colours in RGB565.
+//! Colours in RGB565, and where they come from.
 
 /// A colour as the frame buffer holds it: red in bits 15–11, green in 10–5, blue in 4–0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -30,6 +30,16 @@ impl Rgb565 {
             (self.0 & 0x1F) as u8,
         ]
     }
+}
+
+/// Where a triangle's colours come from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Shading {
+    /// From its own colour and normal.
+    #[default]
+    Flat,
+    /// From those of its vertices, interpolated.
+    Smooth,
 }
 
 #[cfg(test)]

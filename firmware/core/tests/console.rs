@@ -1,6 +1,7 @@
 //! The console: what is typed, what is shown, and what is understood.
 
 use glint_core::camera::View;
+use glint_core::colour::Shading;
 use glint_core::console::{
     Backend, Command, Event, HISTORY, LINE_MAX, LineEditor, Size, write_help,
 };
@@ -298,6 +299,9 @@ fn every_command_is_understood() {
     assert_parses("cull off", Command::Cull(false));
     assert_parses("stats", Command::Stats { json: false });
     assert_parses("stats json", Command::Stats { json: true });
+    assert_parses("shading", Command::Shading(None));
+    assert_parses("shading flat", Command::Shading(Some(Shading::Flat)));
+    assert_parses("shading smooth", Command::Shading(Some(Shading::Smooth)));
     assert_parses("backend", Command::Backend(None));
     assert_parses("backend cpu", Command::Backend(Some(Backend::Cpu)));
     assert_parses(
@@ -434,7 +438,7 @@ fn the_help_lists_every_command_and_how_it_is_used() {
             assert!(Command::parse(name).is_ok(), "{name}");
         }
     }
-    assert_eq!(list.lines().count(), 20);
+    assert_eq!(list.lines().count(), 21);
     assert_eq!(
         help(Some("camera")),
         "camera R THETA PHI\n  looks at the origin from a distance of 2 to 5, by azimuth and angle from the z axis\n  \

@@ -13,7 +13,7 @@ use core::ops::Sub;
 use core::sync::atomic::{Ordering, compiler_fence};
 
 use glint_core::mesh::Mesh;
-use glint_model::{FrameSetup, SIZES};
+use glint_model::{FrameSetup, SIZES, Shading};
 use litex_pac::triangle::{
     self, Control, DepthScale, EvEnable, EvPending, Geometry as GeometryStart,
     Raster as RasterStart,
@@ -43,6 +43,8 @@ pub enum Fault {
     Cancelled,
     /// Nothing was read, written or drawn for long: no code of the engine's, but what a program finds.
     Stuck,
+    /// Smooth shading was wanted of an engine without: what a program finds, too.
+    Shading,
 }
 
 impl Fault {
@@ -75,6 +77,7 @@ impl fmt::Display for Fault {
             Self::List => "triangle engine: a list is damaged",
             Self::Cancelled => "triangle engine: cancelled",
             Self::Stuck => "triangle engine: nothing moves",
+            Self::Shading => "triangle engine: this gateware has no smooth shading",
         })
     }
 }
@@ -84,7 +87,7 @@ impl core::error::Error for Fault {}
 /// Where a geometry pass puts what it makes; every address is a multiple of 16.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lists {
-    /// Address of the descriptors, 48 bytes each.
+    /// Address of the descriptors, of as many bytes as the engine's [`ability`](Engine::ability) gives them.
     pub descriptors: u32,
     /// How many there is room for.
     pub descriptor_limit: u32,
@@ -101,6 +104,8 @@ pub struct Geometry<'a> {
     pub frame: &'a FrameSetup,
     /// Whether back faces are left out.
     pub cull: bool,
+    /// Where colours come from, as far as the engine can.
+    pub shading: Shading,
     /// What it makes.
     pub lists: Lists,
     /// Address of the numbers of exceptions, 4 bytes each.
@@ -257,6 +262,16 @@ impl Engine {
         }
     }
 
+    /// How far it can shade; descriptors have more words where that is smoothly (`glint_model::descriptor::words`).
+    #[must_use]
+    pub fn ability(&self) -> Shading {
+        if self.registers.caps().read().gouraud() {
+            Shading::Smooth
+        } else {
+            Shading::Flat
+        }
+    }
+
     /// Writes down a geometry pass, which is the longer part of starting it, while none runs. `list_shift`: a list has room for
     /// 4 << `list_shift` entries; that of both passes.
     pub fn prepare_geometry(&mut self, pass: &Geometry, list_shift: u8) -> Prepared {
@@ -312,6 +327,7 @@ impl Engine {
             start: GeometryStart::default()
                 .with_start(true)
                 .with_cull(pass.cull)
+                .with_smooth(pass.shading == Shading::Smooth)
                 .with_size(size_code((frame.width, frame.height))),
         }
     }

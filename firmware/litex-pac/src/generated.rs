@@ -2,7 +2,7 @@
 // fails when this file is not what the generator makes of the SoC.
 
 /// CRC-32 of the SoC's pinned register map. A SoC whose `identity.build_id` differs has other registers.
-pub const BUILD_ID: u32 = 0xabf2_76cc;
+pub const BUILD_ID: u32 = 0x0edd_75ae;
 
 /// The interrupt lines, numbered by their bit in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -2318,7 +2318,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5018) }
         }
 
-        /// `geometry`, 4 bits: Starts the geometry pass. All other registers of geometry have to hold while it runs.
+        /// `geometry`, 5 bits: Starts the geometry pass. All other registers of geometry have to hold while it runs.
         #[inline]
         #[must_use]
         pub const fn geometry(&self) -> Register<Geometry, ReadWrite> {
@@ -2350,7 +2350,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5028) }
         }
 
-        /// `descriptor_limit`, 20 bits: Room there, 48 bytes each.
+        /// `descriptor_limit`, 20 bits: Room there, 48 or 96 bytes each, see `caps`.
         #[inline]
         #[must_use]
         pub const fn descriptor_limit(&self) -> Register<u32, ReadWrite> {
@@ -2829,7 +2829,7 @@ pub mod triangle {
             (self.0 & 0x7) as u8
         }
 
-        /// `gouraud`, bit 3: Colours are interpolated between vertices.
+        /// `gouraud`, bit 3: Smooth shading: colours can be interpolated between vertices. A descriptor has 96 bytes then, and 48 where it is not built.
         #[inline]
         #[must_use]
         pub const fn gouraud(self) -> bool {
@@ -3091,6 +3091,20 @@ pub mod triangle {
         #[must_use]
         pub const fn with_size(self, value: u8) -> Self {
             Self(self.0 & !(0x3 << 2) | (value as u32 & 0x3) << 2)
+        }
+
+        /// `smooth`, bit 4: Colours come from the vertices. Without effect where `caps` has no `gouraud`.
+        #[inline]
+        #[must_use]
+        pub const fn smooth(self) -> bool {
+            (self.0 >> 4) & 1 != 0
+        }
+
+        /// This value with another `smooth`.
+        #[inline]
+        #[must_use]
+        pub const fn with_smooth(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 4) | (value as u32 & 0x1) << 4)
         }
     }
 

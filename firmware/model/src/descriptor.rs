@@ -1,9 +1,8 @@
 //! Descriptors and band lists: what the raster unit draws from (docs/formats.md).
 
-use glint_core::colour::Rgb565;
+use glint_core::colour::{Rgb565, Shading};
 
 use crate::setup::{Plane, Setup};
-use crate::shade::Shading;
 
 /// Columns of a group: what the raster unit draws in one clock.
 pub const GROUP: i32 = 8;

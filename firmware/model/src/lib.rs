@@ -22,11 +22,11 @@ pub mod shade;
 pub mod vertex;
 
 pub use frame::{DepthScale, FrameSetup};
+pub use glint_core::colour::Shading;
 pub use render::{
     Buffer, DrawnTriangle, Options, RenderError, SIZES, Stats, Target, clip_exceptions, render,
     trace,
 };
-pub use shade::Shading;
 pub use vertex::{Projected, ScreenVertex};
 
 /// x·2^−shift rounded to nearest, ties up. `shift` is in 1…31, and x has room for half a unit of the result.

@@ -3,13 +3,14 @@
 use core::fmt;
 
 use glint_core::camera::View;
+use glint_core::colour::Shading;
 use glint_core::mesh::{Chunk, Mesh, Rgb565, Triangle};
 
 use crate::clip::{clip, off_picture};
 use crate::frame::FrameSetup;
 use crate::raster;
 use crate::setup::{Bounds, Facing, Oriented, Setup};
-use crate::shade::{Light, Lit, Shading, intensity, lit};
+use crate::shade::{Light, Lit, intensity, lit};
 use crate::vertex::{CameraVertex, Projected, ScreenVertex, project, snap, transform};
 
 /// The sizes of a picture: width and height in pixels.

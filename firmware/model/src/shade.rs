@@ -5,16 +5,6 @@ use glint_core::colour::Rgb565;
 use crate::nearest;
 use crate::setup::Facing;
 
-/// Where a triangle's colours come from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Shading {
-    /// From its own colour and normal.
-    #[default]
-    Flat,
-    /// From those of its vertices, interpolated.
-    Smooth,
-}
-
 /// clamp(−N·n, 0, 1) of a normal N (s2.14) and the forward direction n (s2.23), u1.8; a back face negates N.
 pub fn intensity(normal: [i16; 3], n: &[i32; 3], facing: Facing) -> u32 {
     // Below 2^41.

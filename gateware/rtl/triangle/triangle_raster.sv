@@ -24,7 +24,7 @@
 module triangle_raster #(
     parameter bit SMOOTH = 1'b0,
     localparam int unsigned PLANES_BITS = SMOOTH ? 289 : 1,
-    localparam int unsigned LIGHT_BITS  = SMOOTH ? 193 : 1
+    localparam int unsigned VALUES_BITS = SMOOTH ? 193 : 1
 ) (
     input  wire                            clk,
     input  wire                            rst,
@@ -59,7 +59,7 @@ module triangle_raster #(
     logic [PLANES_BITS-1:0] placed_planes;
     logic                   walked_valid, walked_ready;
     raster_pkg::candidate_t walked;
-    logic [LIGHT_BITS-1:0]  walked_light;
+    logic [VALUES_BITS-1:0] walked_light;
 
     assign waits     = placed_odd != odd;
     assign idle      = !holds[odd] && walker_idle && lanes_idle && shades_idle && !group_valid;

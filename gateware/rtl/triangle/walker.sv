@@ -32,7 +32,7 @@
 module walker #(
     parameter bit SMOOTH = 1'b0,
     localparam int unsigned PLANES_BITS = SMOOTH ? 289 : 1,
-    localparam int unsigned LIGHT_BITS  = SMOOTH ? 193 : 1
+    localparam int unsigned VALUES_BITS = SMOOTH ? 193 : 1
 ) (
     input  wire                      clk,
     input  wire                      rst,
@@ -46,7 +46,7 @@ module walker #(
     input  wire                      out_ready,
     output raster_pkg::candidate_t   out_group,
     // A clock after its group: {smooth, blue, green, red}, each {step_x, accumulator at lane 0}.
-    output logic [LIGHT_BITS-1:0]    out_light
+    output logic [VALUES_BITS-1:0]   out_light
 );
     // The triangle.
     logic [2:0][20:0] step_x, step_y;

@@ -8,7 +8,7 @@ use glint_core::camera::View;
 use glint_core::console::Backend;
 use glint_core::mesh::{Mesh, MeshError};
 use glint_core::wire::crc32;
-use glint_model::{DepthScale, FrameSetup, Options, Projected, RenderError, Target};
+use glint_model::{DepthScale, FrameSetup, Options, Projected, RenderError, Shading, Target};
 use serde::{Deserialize, Serialize};
 
 /// What is to be rendered, and how.
@@ -22,6 +22,8 @@ pub struct Scene<'m> {
     pub size: (u32, u32),
     /// Whether back faces are left out.
     pub cull: bool,
+    /// Where colours come from.
+    pub shading: Shading,
     /// Who renders on a board; the board's own choice unless told: its engine if it has one.
     pub backend: Option<Backend>,
 }
@@ -173,6 +175,7 @@ pub fn on_model(scene: &Scene) -> Result<Rendered, Error> {
     };
     let options = Options {
         cull: scene.cull,
+        shading: scene.shading,
         ..Options::default()
     };
     let stats = glint_model::render(&mesh, &scene.view, &mut target, &mut scratch, &options)
@@ -239,6 +242,11 @@ impl<'b, B: Board + ?Sized> Renderer<'b, B> {
         // Every change is drawn at once; what is cheap to draw goes first, so the mesh comes last.
         self.console
             .command(&format!("cull {}", if scene.cull { "on" } else { "off" }))?;
+        let shading = match scene.shading {
+            Shading::Flat => "flat",
+            Shading::Smooth => "smooth",
+        };
+        self.console.command(&format!("shading {shading}"))?;
         self.console
             .command(&format!("size {} {}", scene.size.0, scene.size.1))?;
         self.console.command(&view_command(&scene.view))?;
@@ -436,6 +444,7 @@ mod tests {
             view: view::spherical("2.5,0,90").unwrap(),
             size: (320, 180),
             cull: true,
+            shading: Shading::Flat,
             backend: None,
         };
         let Rendered { frame, stats } = on_model(&scene).unwrap();

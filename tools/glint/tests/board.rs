@@ -10,6 +10,7 @@ use glint::render::{self, Renderer, Route, Scene, Stats};
 use glint::transfer::{self, TransferError};
 use glint::{generate, view};
 use glint_core::camera::View;
+use glint_core::colour::Shading;
 use glint_core::console::Backend;
 use glint_core::wire::{Failure, Manifest, Reason};
 
@@ -34,6 +35,7 @@ fn cube_scene<'m>(mesh: &'m [u8], camera: &str, size: (u32, u32)) -> Scene<'m> {
         view: view::spherical(camera).unwrap(),
         size,
         cull: true,
+        shading: Shading::Flat,
         backend: Some(Backend::Cpu),
     }
 }
@@ -52,6 +54,39 @@ fn timeless(stats: Stats) -> Stats {
         backend: None,
         engine: None,
         ..stats
+    }
+}
+
+/// Smooth shading, by whoever can: the engine where the gateware has it, else the CPU, which is told.
+#[test]
+fn smooth_shading_is_the_models_whoever_draws() {
+    let mut board = running_board();
+    let mut renderer = renderer(&mut board);
+    let mesh = mesh("icosphere:2");
+    for backend in [None, Some(Backend::Cpu)] {
+        let scene = Scene {
+            shading: Shading::Smooth,
+            backend,
+            ..cube_scene(&mesh, "2,30,60", (320, 180))
+        };
+        let expected = render::on_model(&scene).unwrap();
+        let stats = renderer
+            .show(&scene, Route::Memory, &mut |_, _| {})
+            .unwrap();
+        let colour = renderer
+            .colour(scene.size, Route::Memory, &mut |_, _| {})
+            .unwrap();
+        assert!(colour == expected.frame.colour);
+        let told = renderer.console().command("stats").unwrap();
+        let fallback = "fallback triangle engine: this gateware has no smooth shading";
+        let fell_back = told.iter().any(|line| line == fallback);
+        let by_cpu = stats.backend.as_deref() == Some("cpu");
+        assert_eq!(fell_back, by_cpu && backend.is_none(), "{told:#?}");
+        let info = renderer.console().command("info").unwrap();
+        assert!(
+            info.iter().any(|line| line == "shading smooth"),
+            "{info:#?}"
+        );
     }
 }
 
@@ -74,6 +109,7 @@ fn the_monitor_shows_what_the_model_renders(name: &str) {
             view,
             size,
             cull,
+            shading: Shading::Flat,
             backend: Some(Backend::Cpu),
         };
         let expected = render::on_model(&scene).unwrap();

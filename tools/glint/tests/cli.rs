@@ -364,6 +364,10 @@ fn renders_and_their_files() {
     std::fs::write(folder.join("view.json"), view).unwrap();
     assert_eq!(picture, render("b.png", &["--view", "view.json"]));
     assert_ne!(picture, render("c.png", &["--camera", "2,-80,90"]));
+    assert_ne!(
+        picture,
+        render("s.png", &["--view", "view.json", "--shading", "smooth"])
+    );
     assert_eq!(
         render("d.png", &["--size", "1280x720"]).len(),
         1280 * 720 * 3

@@ -46,7 +46,20 @@ impl Board {
 /// # Errors
 /// When a tool is missing or fails; its output has then been printed.
 pub fn build(board: Board) -> Result<()> {
-    generate(board)?;
+    build_with(board, &[])
+}
+
+/// Builds `board` with smooth shading in its triangle engine, in place of the build without.
+///
+/// # Errors
+/// As [`build`].
+pub fn build_smooth(board: Board) -> Result<()> {
+    build_with(board, &["--smooth"])
+}
+
+/// Builds what is out of date, with options of `glint_soc`.
+fn build_with(board: Board, options: &[&str]) -> Result<()> {
+    generate(board, options)?;
     if board == Board::Virtual {
         verilate(Waveforms::Without)?;
     }
@@ -58,12 +71,12 @@ pub fn build(board: Board) -> Result<()> {
 /// # Errors
 /// As [`build`].
 pub fn build_with_waveforms() -> Result<()> {
-    generate(Board::Virtual)?;
+    generate(Board::Virtual, &[])?;
     verilate(Waveforms::With)
 }
 
 /// Runs LiteX: Verilog, BIOS, `csr.json` and `soc.svd`.
-fn generate(board: Board) -> Result<()> {
+fn generate(board: Board, options: &[&str]) -> Result<()> {
     let root = paths::root();
     let folder = board.folder();
     let gateware = root.join("gateware");
@@ -73,7 +86,7 @@ fn generate(board: Board) -> Result<()> {
             gateware.join("rtl"),
             gateware.join("requirements.txt"),
         ],
-        board.name(),
+        &[&[board.name()], options].concat().join(" "),
     )?;
     let stamp = folder.join("generated.stamp");
     if is_current(&stamp, &inputs) {
@@ -85,6 +98,7 @@ fn generate(board: Board) -> Result<()> {
         Command::new(paths::venv_program("python"))
             .args(["-m", "glint_soc", "--board", board.name(), "--output"])
             .arg(&folder)
+            .args(options)
             .current_dir(&folder)
             .env("PYTHONPATH", gateware)
             .env("PYTHONDONTWRITEBYTECODE", "1"),

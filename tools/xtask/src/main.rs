@@ -32,8 +32,11 @@ enum Task {
         /// Which board
         #[arg(long, value_enum, default_value = "virtual")]
         board: gateware::Board,
-        /// Also build the virtual board's library that writes waveforms
+        /// Build smooth shading into the triangle engine
         #[arg(long)]
+        smooth: bool,
+        /// Also build the virtual board's library that writes waveforms
+        #[arg(long, conflicts_with = "smooth")]
         waveforms: bool,
     },
     /// Write the register access crate and the register map from the SoC's description
@@ -80,8 +83,16 @@ enum Task {
 fn main() -> Result<()> {
     match Arguments::parse().task {
         Task::Bootstrap => bootstrap::bootstrap(),
-        Task::Gateware { board, waveforms } => {
-            gateware::build(board)?;
+        Task::Gateware {
+            board,
+            smooth,
+            waveforms,
+        } => {
+            if smooth {
+                gateware::build_smooth(board)?;
+            } else {
+                gateware::build(board)?;
+            }
             if waveforms {
                 gateware::build_with_waveforms()?;
             }

@@ -9,6 +9,7 @@ use super::grammar::Kind::{
 };
 use super::grammar::{Syntax, Value, Words};
 use crate::camera::View;
+use crate::colour::Shading;
 use crate::fixed::{Q32_32, Turns};
 use crate::mesh::MAX_BYTES;
 
@@ -76,6 +77,8 @@ pub enum Command<'a> {
     },
     /// `backend [cpu|gateware]`; without one it prints the present one.
     Backend(Option<Backend>),
+    /// `shading [flat|smooth]`; without one it prints the present one.
+    Shading(Option<Shading>),
     /// `bench [KERNEL]`; without a name it runs all.
     Bench(Option<&'a str>),
     /// `selftest`
@@ -126,7 +129,7 @@ impl Size {
 pub(super) type Build = for<'a> fn(&[Value<'a>]) -> Option<Result<Command<'a>, Fault<'a>>>;
 
 /// Every command, in the order of the help.
-static COMMANDS: [(Syntax, Build); 19] = [
+static COMMANDS: [(Syntax, Build); 20] = [
     (
         Syntax::new("help", "lists the commands, or explains one").with_optional(&[("COMMAND", Kind::Command)]),
         |values| match *values {
@@ -241,6 +244,16 @@ static COMMANDS: [(Syntax, Build); 19] = [
             [] => accept(Command::Backend(None)),
             [Value::Choice(0)] => accept(Command::Backend(Some(Backend::Cpu))),
             [Value::Choice(_)] => accept(Command::Backend(Some(Backend::Gateware))),
+            _ => None,
+        },
+    ),
+    (
+        Syntax::new("shading", "says where colours come from, or chooses: faces, or vertices")
+            .with_optional(&[("flat|smooth", Choice(&["flat", "smooth"]))]),
+        |values| match *values {
+            [] => accept(Command::Shading(None)),
+            [Value::Choice(0)] => accept(Command::Shading(Some(Shading::Flat))),
+            [Value::Choice(_)] => accept(Command::Shading(Some(Shading::Smooth))),
             _ => None,
         },
     ),

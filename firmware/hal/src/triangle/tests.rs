@@ -70,6 +70,16 @@ fn something_else_is_not_taken_for_the_engine() {
 }
 
 #[test]
+fn it_says_how_it_can_shade() {
+    let (engine, block) = probe(IDENT);
+    let engine = engine.unwrap();
+    assert_eq!(engine.ability(), Shading::Flat);
+    let address = registers().caps().address();
+    block.borrow_mut().values.insert(address, 1 << 3);
+    assert_eq!(engine.ability(), Shading::Smooth);
+}
+
+#[test]
 fn a_geometry_pass_is_described_before_it_is_started() {
     let (engine, block) = probe(IDENT);
     let bytes = mesh();
@@ -80,6 +90,7 @@ fn a_geometry_pass_is_described_before_it_is_started() {
         mesh: &mesh,
         frame: &frame,
         cull: true,
+        shading: Shading::Smooth,
         lists: Lists {
             descriptors: 0x4600_0000,
             descriptor_limit: 77,
@@ -129,7 +140,7 @@ fn a_geometry_pass_is_described_before_it_is_started() {
     );
     assert_eq!(r.list_shift().read(), 9);
     let start = r.geometry().read();
-    assert!(start.start() && start.cull());
+    assert!(start.start() && start.cull() && start.smooth());
     assert_eq!(start.size(), 1);
     assert_eq!(block.borrow().writes.last(), Some(&r.geometry().address()));
 }

@@ -11,6 +11,7 @@ use glint::model::Model;
 use glint::picture::{Frame, save_animation};
 use glint::render::{self, Renderer, Route, Scene, Stats, view_command};
 use glint_core::camera::View;
+use glint_core::colour::Shading;
 use glint_core::console::Backend;
 use glint_core::fixed::{Q32_32, Turns, U4_28};
 use indicatif::ProgressBar;
@@ -146,6 +147,7 @@ impl DemoArguments {
             view: camera(azimuth(number))?,
             size: SIZE,
             cull: true,
+            shading: Shading::Flat,
             backend: Some(Backend::Gateware),
         };
         let bar = match route {

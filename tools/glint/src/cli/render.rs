@@ -54,6 +54,9 @@ pub struct RenderArguments {
     /// Draw back faces too.
     #[arg(long)]
     no_cull: bool,
+    /// Where colours come from: faces, or vertices.
+    #[arg(long, value_enum, default_value_t = Shading::Flat)]
+    shading: Shading,
     /// Leave the model's coordinates as they are, and refuse those outside [-2, 2).
     #[arg(long)]
     keep_scale: bool,
@@ -76,6 +79,14 @@ enum Backend {
     Cpu,
     /// The engines.
     Gateware,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Shading {
+    /// A triangle's own colour and normal.
+    Flat,
+    /// Those of its vertices, interpolated.
+    Smooth,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -106,6 +117,10 @@ impl RenderArguments {
             view,
             size,
             cull: !self.no_cull,
+            shading: match self.shading {
+                Shading::Flat => glint_model::Shading::Flat,
+                Shading::Smooth => glint_model::Shading::Smooth,
+            },
             backend: self.backend.map(|backend| match backend {
                 Backend::Cpu => glint_core::console::Backend::Cpu,
                 Backend::Gateware => glint_core::console::Backend::Gateware,

@@ -106,7 +106,7 @@ const CONSOLE: &[&str] = &[
     "view\rview 0 -3 0 1 0 0 0 0 -1 0 1 0 0.9 0.1\r",
     "look 10 20 -30.5\rsize 320 180\rsize 1280 720\rframe\rframe depth\r",
     "load 4096 deadbeef\rrender\rcull on\rcull off\rstats\rstats json\r",
-    "backend\rbackend cpu\rbackend gateware\rbench\rbench sine\rselftest\r",
+    "backend\rbackend cpu\rbackend gateware\rshading\rshading smooth\rbench\rbench sine\rselftest\r",
     "leds 0xffff\rleds 7\rbuttons\rreboot\r",
     "inf\x08\x08\x1b[A\x1b[B\x1b[C\x1b[D\x1b[H\x1b[F\x1b[3~\x01\x05\x0b\x15\x17\x0c\x03help\r\n",
 ];

@@ -20,6 +20,7 @@ use glint::board::{Board, BoardError, Memory, SimulatedBoard, built_firmware};
 use glint::console::{Console, value};
 use glint::render::{self, Rendered, Scene};
 use glint::view;
+use glint_core::colour::Shading;
 use glint_core::console::Backend;
 use glint_core::wire::Manifest;
 use rand_pcg::Pcg64Mcg;
@@ -218,6 +219,7 @@ fn draw(size: (u32, u32), scenes: Vec<scenes::Scene>) {
                 view,
                 size,
                 cull,
+                shading: Shading::Flat,
                 backend: Some(Backend::Gateware),
             };
             let Rendered { frame, stats } = render::on_model(&scene).unwrap();

@@ -14,6 +14,7 @@ use glint::polygons::{Corner, Polygons};
 use glint::render::{self, Renderer, Route, Scene, Stats};
 use glint::view;
 use glint_core::camera::View;
+use glint_core::colour::Shading;
 use glint_core::console::Backend;
 use serde::Serialize;
 
@@ -247,6 +248,7 @@ fn measure(
         view: ahead(case.half_width)?,
         size: case.size,
         cull: true,
+        shading: Shading::Flat,
         backend: Some(Backend::Gateware),
     };
     let expected = render::on_model(&scene)?;
