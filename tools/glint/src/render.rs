@@ -315,8 +315,8 @@ impl<'b, B: Board + ?Sized> Renderer<'b, B> {
         route: Route,
         progress: &mut Progress,
     ) -> Result<Vec<u32>, Error> {
-        if route == Route::Memory {
-            // An engine leaves them out unless told.
+        // An engine leaves them out unless told; over the line it is told by the command.
+        if route == Route::Memory && self.info::<String>("backend")? == "gateware" {
             self.console.command("render depth")?;
         }
         let bytes = self.frame("depth", 4, size, route, progress)?;
