@@ -28,8 +28,14 @@ pub struct Coverage {
 pub fn draw(setup: &Setup, colour: Rgb565, target: &mut Target) -> Coverage {
     match &setup.light {
         None => draw_with(setup, colour, target),
-        Some(light) => draw_with(setup, light.map(Accumulation::new), target),
+        Some(light) => draw_smooth(setup, light, target),
     }
+}
+
+/// Not inlined, so that flat triangles need no room for it in an instruction cache.
+#[inline(never)]
+fn draw_smooth(setup: &Setup, light: &[Plane; 3], target: &mut Target) -> Coverage {
+    draw_with(setup, light.map(Accumulation::new), target)
 }
 
 fn draw_with(setup: &Setup, brush: impl Brush, target: &mut Target) -> Coverage {

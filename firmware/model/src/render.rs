@@ -203,7 +203,6 @@ struct Renderer<'a, 'b> {
 impl Renderer<'_, '_> {
     /// Draws what needs no clipping, and counts what does.
     fn regular(&mut self, mesh: &Mesh, scratch: &mut [Projected]) {
-        let frame = self.frame;
         let mut index = 0;
         for chunk in mesh.chunks() {
             self.project(&chunk, scratch);
@@ -211,8 +210,13 @@ impl Renderer<'_, '_> {
                 match self.path(&triangle, scratch) {
                     Path::Unseen => {}
                     Path::Regular(vertices) => {
-                        let light = || vertex_light(&frame, &triangle, &chunk);
-                        let drawn = self.draw(index, &triangle, vertices, light, false);
+                        let light = match self.options.shading {
+                            Shading::Flat => None,
+                            Shading::Smooth => {
+                                Some(vertex_light(&self.frame, triangle.indices, &chunk))
+                            }
+                        };
+                        let drawn = self.draw(index, &triangle, vertices, light.as_ref(), false);
                         self.stats.drawn += u32::from(drawn);
                     }
                     Path::Exception => self.stats.clipped += 1,
@@ -287,8 +291,14 @@ impl Renderer<'_, '_> {
         let (frame, shading) = (self.frame, self.options.shading);
         let mut any = false;
         clip_fan(&frame, shading, triangle, chunk, &mut |corners| {
-            let light = || corners.map(|corner| corner.light);
-            any |= self.draw(index, triangle, corners.map(|c| &c.place), light, true);
+            let light = lit_corners(shading, corners);
+            any |= self.draw(
+                index,
+                triangle,
+                corners.map(|c| &c.place),
+                light.as_ref(),
+                true,
+            );
         });
         any
     }
@@ -299,10 +309,10 @@ impl Renderer<'_, '_> {
         index: u32,
         triangle: &Triangle,
         vertices: [&ScreenVertex; 3],
-        light: impl FnOnce() -> [Light; 3],
+        light: Option<&[Light; 3]>,
         clipped: bool,
     ) -> bool {
-        let Some(placed) = Placed::new(&self.frame, &self.options, triangle, vertices, light)
+        let Some(placed) = Placed::new(&self.frame, self.options.cull, triangle, vertices, light)
         else {
             return false;
         };
@@ -334,14 +344,14 @@ impl Placed {
     /// Nothing for a back face that is culled, and where no pixel can be covered.
     fn new(
         frame: &FrameSetup,
-        options: &Options,
+        cull: bool,
         triangle: &Triangle,
         vertices: [&ScreenVertex; 3],
-        light: impl FnOnce() -> [Light; 3],
+        light: Option<&[Light; 3]>,
     ) -> Option<Self> {
         let oriented = Oriented::new(vertices.map(|v| *v))?;
         let facing = oriented.facing;
-        if options.cull && facing == Facing::Back {
+        if cull && facing == Facing::Back {
             return None;
         }
         let bounds = Bounds::new(&oriented.vertices, frame.width, frame.height)?;
@@ -350,8 +360,7 @@ impl Placed {
             oriented,
             bounds,
             colour: lit(triangle.colour, intensity),
-            lit: (options.shading == Shading::Smooth)
-                .then(|| facing.order(light().map(|light| light.to(facing)))),
+            lit: light.map(|light| facing.order(light.map(|light| light.to(facing)))),
         })
     }
 
@@ -364,8 +373,11 @@ impl Placed {
 }
 
 /// The light of a triangle's vertices.
-fn vertex_light(frame: &FrameSetup, triangle: &Triangle, chunk: &Chunk) -> [Light; 3] {
-    triangle.indices.map(|i| {
+///
+/// Not inlined, so that flat triangles need no room for it in an instruction cache.
+#[inline(never)]
+fn vertex_light(frame: &FrameSetup, indices: [u16; 3], chunk: &Chunk) -> [Light; 3] {
+    indices.map(|i| {
         // A checked mesh has all the vertices it names.
         chunk.vertex(usize::from(i)).map_or(Light::default(), |v| {
             Light::new(v.colour, v.normal, &frame.n)
@@ -377,6 +389,11 @@ fn vertex_light(frame: &FrameSetup, triangle: &Triangle, chunk: &Chunk) -> [Ligh
 struct Corner {
     place: ScreenVertex,
     light: Light,
+}
+
+/// The light of what the clipper leaves, where it counts.
+fn lit_corners(shading: Shading, corners: [&Corner; 3]) -> Option<[Light; 3]> {
+    (shading == Shading::Smooth).then(|| corners.map(|corner| corner.light))
 }
 
 /// Clips a triangle, and gives out what is left as a fan.
@@ -455,9 +472,11 @@ pub fn clip_exceptions(
         };
         let mut any = false;
         clip_fan(frame, options.shading, &triangle, chunk, &mut |corners| {
-            let light = || corners.map(|corner| corner.light);
+            let light = lit_corners(options.shading, corners);
             let vertices = corners.map(|corner| &corner.place);
-            if let Some(placed) = Placed::new(frame, options, &triangle, vertices, light) {
+            if let Some(placed) =
+                Placed::new(frame, options.cull, &triangle, vertices, light.as_ref())
+            {
                 emit(&placed.setup(), placed.colour);
                 any = true;
             }

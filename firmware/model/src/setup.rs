@@ -41,17 +41,19 @@ impl Oriented {
     /// A difference of two places is s21 (at most 4095 pixels), a product below 2^40.
     pub fn new(vertices: [ScreenVertex; 3]) -> Option<Self> {
         let [v0, v1, v2] = vertices;
-        let area = cross(v0, v1, v2);
-        let facing = match area {
-            0 => return None,
-            1.. => Facing::Back,
-            _ => Facing::Front,
-        };
-        Some(Self {
-            vertices: facing.order(vertices),
-            doubled_area: area.unsigned_abs(),
-            facing,
-        })
+        match cross(v0, v1, v2) {
+            0 => None,
+            area @ 1.. => Some(Self {
+                vertices,
+                doubled_area: area.unsigned_abs(),
+                facing: Facing::Back,
+            }),
+            area => Some(Self {
+                vertices: [v0, v2, v1],
+                doubled_area: area.unsigned_abs(),
+                facing: Facing::Front,
+            }),
+        }
     }
 }
 
@@ -140,48 +142,35 @@ pub struct Plane {
     pub step_y: u32,
 }
 
-/// What all planes of a triangle have in common.
-struct Slopes {
-    x10: i64,
-    y10: i64,
-    x20: i64,
-    y20: i64,
-    /// The start pixel's centre from vertex 0.
-    px: i64,
-    py: i64,
-    reciprocal: Reciprocal,
-}
-
-impl Slopes {
-    /// Step 6.
-    fn new(triangle: &Oriented, [i, j]: [i32; 2]) -> Self {
-        let [v0, v1, v2] = triangle.vertices;
-        Self {
-            x10: (v1.x - v0.x).into(),
-            y10: (v1.y - v0.y).into(),
-            x20: (v2.x - v0.x).into(),
-            y20: (v2.y - v0.y).into(),
-            px: (256 * i + 128 - v0.x).into(),
-            py: (256 * j + 128 - v0.y).into(),
-            reciprocal: Reciprocal::of(triangle.doubled_area),
-        }
-    }
-
-    /// Steps 7 and 8 for three values, u18.6.
+impl Plane {
+    /// Steps 6 to 8 for the values at the vertices, u18.6.
     ///
-    /// A difference of values is below 2^24 and one of places below 2^20, so N < 2^45.
-    fn plane(&self, values: [u32; 3]) -> Plane {
-        let [w0, w1, w2] = values.map(i64::from);
-        let (w10, w20) = (w1 - w0, w2 - w0);
-        let gx = gradient(w10 * self.y20 - w20 * self.y10, self.reciprocal);
-        let gy = gradient(w20 * self.x10 - w10 * self.x20, self.reciprocal);
+    /// A difference of values is below 2^24 and one of places below 2^20, so N < 2^45. Inlined for flat triangles, which would pay
+    /// for the call with some percent of a frame.
+    #[inline(always)]
+    fn new(triangle: &Oriented, [w0, w1, w2]: [u32; 3], [i, j]: [i32; 2]) -> Self {
+        let [v0, v1, v2] = triangle.vertices;
+        let (x10, y10, w10) = (
+            i64::from(v1.x - v0.x),
+            i64::from(v1.y - v0.y),
+            i64::from(w1) - i64::from(w0),
+        );
+        let (x20, y20, w20) = (
+            i64::from(v2.x - v0.x),
+            i64::from(v2.y - v0.y),
+            i64::from(w2) - i64::from(w0),
+        );
+        let reciprocal = Reciprocal::of(triangle.doubled_area);
+        let gx = gradient(w10 * y20 - w20 * y10, reciprocal);
+        let gy = gradient(w20 * x10 - w10 * x20, reciprocal);
         // Modulo 2^64 here, so that bits 8 to 39 are right.
-        let from_v0 = gx
-            .wrapping_mul(self.px)
-            .wrapping_add(gy.wrapping_mul(self.py))
-            >> 8;
-        Plane {
-            start: ((w0 as u32) << 8).wrapping_add(from_v0 as u32),
+        let (px, py) = (
+            i64::from(256 * i + 128 - v0.x),
+            i64::from(256 * j + 128 - v0.y),
+        );
+        let from_v0 = gx.wrapping_mul(px).wrapping_add(gy.wrapping_mul(py)) >> 8;
+        Self {
+            start: (w0 << 8).wrapping_add(from_v0 as u32),
             step_x: gx as u32,
             step_y: gy as u32,
         }
@@ -222,15 +211,6 @@ pub struct Setup {
 impl Setup {
     /// Steps 4 to 8 for a triangle in one colour and its bounds.
     pub fn new(triangle: &Oriented, bounds: Bounds) -> Self {
-        Self::of(triangle, bounds, None)
-    }
-
-    /// Steps 4 to 9 for a triangle with the light of its vertices, in their order, and its bounds.
-    pub fn smooth(triangle: &Oriented, bounds: Bounds, lit: &[Lit; 3]) -> Self {
-        Self::of(triangle, bounds, Some(lit))
-    }
-
-    fn of(triangle: &Oriented, bounds: Bounds, lit: Option<&[Lit; 3]>) -> Self {
         let [v0, v1, v2] = triangle.vertices;
         let topmost = if v0.y <= v1.y && v0.y <= v2.y {
             v0
@@ -241,11 +221,6 @@ impl Setup {
         };
         let start_column = (topmost.x >> 8).clamp(bounds.left, bounds.right - 1);
         let start = [start_column, bounds.top];
-        let slopes = Slopes::new(triangle, start);
-        let weighted = |lit: &[Lit; 3]| {
-            let [a, b, c] = [0, 1, 2].map(|i| lit[i].weighted(triangle.vertices[i].w));
-            [0, 1, 2].map(|channel| slopes.plane([a[channel], b[channel], c[channel]]))
-        };
         Self {
             bounds,
             start_column,
@@ -254,9 +229,25 @@ impl Setup {
                 Edge::new(v1, v2, start),
                 Edge::new(v2, v0, start),
             ],
-            depth: slopes.plane(triangle.vertices.map(|v| v.w)),
-            light: lit.map(weighted),
+            depth: Plane::new(triangle, triangle.vertices.map(|v| v.w), start),
+            light: None,
             narrow: narrow(&triangle.vertices),
+        }
+    }
+
+    /// Steps 4 to 9 for a triangle with the light of its vertices, in their order, and its bounds.
+    ///
+    /// Not inlined, so that flat triangles need no room for it in an instruction cache.
+    #[inline(never)]
+    pub fn smooth(triangle: &Oriented, bounds: Bounds, lit: &[Lit; 3]) -> Self {
+        let setup = Self::new(triangle, bounds);
+        let start = [setup.start_column, bounds.top];
+        let [a, b, c] = [0, 1, 2].map(|i| lit[i].weighted(triangle.vertices[i].w));
+        let light = [0, 1, 2]
+            .map(|channel| Plane::new(triangle, [a[channel], b[channel], c[channel]], start));
+        Self {
+            light: Some(light),
+            ..setup
         }
     }
 }
