@@ -145,8 +145,8 @@ pub struct Plane {
 impl Plane {
     /// Steps 6 to 8 for the values at the vertices, u18.6.
     ///
-    /// A difference of values is below 2^24 and one of places below 2^20, so N < 2^45. Inlined for flat triangles, which would pay
-    /// for the call with some percent of a frame.
+    /// A difference of values is below 2^24 and one of places below 2^20, so N < 2^45. Inlined for flat triangles, which have
+    /// one plane and should not pay for the call.
     #[inline(always)]
     fn new(triangle: &Oriented, [w0, w1, w2]: [u32; 3], [i, j]: [i32; 2]) -> Self {
         let [v0, v1, v2] = triangle.vertices;
