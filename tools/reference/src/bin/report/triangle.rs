@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::PathBuf;
+use std::sync::{Mutex, PoisonError};
+use std::thread;
 
 use anyhow::{Context, Result, ensure};
 use glint::board::{SimulatedBoard, built_firmware};
@@ -126,7 +128,7 @@ fn named(name: &str) -> Result<Vec<u8>> {
 /// A triangle that is seen over the whole screen at distance 1, inside the guard band.
 fn screen() -> Result<Vec<u8>> {
     let mut polygons = Polygons::default();
-    let corners = [[-1.2, -1.0, -0.4], [1.2, -1.0, -0.4], [0.0, -1.0, 1.2]];
+    let corners = [[-1.09, -1.0, -0.4], [1.09, -1.0, -0.4], [0.0, -1.0, 1.2]];
     let made = || -> Result<Polygons, glint::error::FormatError> {
         let mut numbers = Vec::new();
         for corner in corners {
@@ -190,26 +192,38 @@ struct Row {
 pub fn report(arguments: &Arguments) -> Result<()> {
     let provenance = Provenance::find();
     let firmware = built_firmware(None)?;
-    let mut board = SimulatedBoard::fast(&firmware)?;
-    let mut console = Console::new(&mut board);
-    console.greet()?;
-    let mut renderer = Renderer::new(console);
-    let mut rows = Vec::new();
     let wanted = |case: &&Case| {
         arguments
             .only
             .as_ref()
             .is_none_or(|text| case.name.contains(text.as_str()))
     };
-    for case in CASES.iter().filter(wanted) {
-        eprintln!("{} at {}x{} …", case.name, case.size.0, case.size.1);
-        rows.push(measure(
-            &mut renderer,
-            case,
-            arguments.quick,
-            &provenance.commit,
-        )?);
-    }
+    let cases = Mutex::new(CASES.iter().filter(wanted).enumerate());
+    let work = || -> Result<Vec<(usize, Row)>> {
+        let mut rows = Vec::new();
+        loop {
+            let next = cases.lock().unwrap_or_else(PoisonError::into_inner).next();
+            let Some((number, case)) = next else {
+                return Ok(rows);
+            };
+            eprintln!("{} at {}x{} …", case.name, case.size.0, case.size.1);
+            let row = measure(&firmware, case, arguments.quick, &provenance.commit)?;
+            rows.push((number, row));
+        }
+    };
+    // Two boards at a time: a simulation keeps one core busy.
+    let mut rows = thread::scope(|scope| {
+        let other = scope.spawn(work);
+        let mut rows = work()?;
+        rows.extend(
+            other
+                .join()
+                .map_err(|_| anyhow::anyhow!("a board has failed"))??,
+        );
+        anyhow::Ok(rows)
+    })?;
+    rows.sort_by_key(|(number, _)| *number);
+    let rows: Vec<_> = rows.into_iter().map(|(_, row)| row).collect();
     if arguments.json {
         println!("{}", serde_json::to_string_pretty(&rows)?);
     } else {
@@ -236,12 +250,12 @@ pub fn report(arguments: &Arguments) -> Result<()> {
     Ok(())
 }
 
-fn measure(
-    renderer: &mut Renderer<SimulatedBoard>,
-    case: &Case,
-    quick: bool,
-    commit: &str,
-) -> Result<Row> {
+/// Measures a case on a board of its own.
+fn measure(firmware: &[u8], case: &Case, quick: bool, commit: &str) -> Result<Row> {
+    let mut board = SimulatedBoard::fast(firmware)?;
+    let mut console = Console::new(&mut board);
+    console.greet()?;
+    let mut renderer = Renderer::new(console);
     let mesh = (case.mesh)()?;
     let mut scene = Scene {
         mesh: &mesh,
@@ -262,7 +276,7 @@ fn measure(
     // Both frame buffers hold such a frame then, of which only what differs is written.
     renderer.look(&scene.view)?;
     let alone = renderer.look(&scene.view)?;
-    let together = bench(renderer)?;
+    let together = bench(&mut renderer)?;
     let cpu = if quick {
         None
     } else {
