@@ -31,7 +31,7 @@ pub struct DemoArguments {
     #[arg(long, value_name = "FILE")]
     firmware: Option<PathBuf>,
     /// Frames of the orbit.
-    #[arg(long, default_value_t = 36)]
+    #[arg(long, default_value_t = 24)]
     orbit: u16,
 }
 
