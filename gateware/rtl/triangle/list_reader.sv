@@ -6,15 +6,15 @@
 //                        └─▶ jobs ───┘      └──────────────────┘
 //
 // Each part runs ahead of the one behind it as far as its FIFO reaches, through the ends of lists and bands: lengths of 16 bands,
-// lists of 8 jobs (a list of a band each) or 128 entries, 10 descriptors (5 with SMOOTH). So memory's latency is hidden while what has been
-// read lasts. Three clients of a read_port: the lengths of the lists, the lists, the descriptors. Throughput a descriptor in
-// 5 clocks, with SMOOTH in 8; a list takes 4 clocks, if it is empty too.
+// lists of 8 jobs (a list of a band each) or 128 entries, 10 descriptors (5 with SMOOTH). So memory's latency is hidden while
+// what has been read lasts. Three clients of a read_port: the lengths of the lists, the lists, the descriptors. Throughput a
+// descriptor in 5 clocks, with SMOOTH in 8; a list takes 4 clocks, if it is empty too.
 //
 // `list_error`: since `start` there was a list longer than lists may be, which was taken as empty, or an entry that is none of
 // the set's `counts` descriptors, for which something else was drawn.
 //
-// `start` (one clock, not while a frame is read) begins with band 0. `forget`: descriptor_cache. An item of `out` is a descriptor, or with `out_end` the end
-// of a band. All is read after the end of `last_band`. Streams: an item moves in a clock in which valid and ready are high;
+// `start` (one clock, not while a frame is read) begins with band 0. `forget`: descriptor_cache. An item of `out` is a
+// descriptor, or with `out_end` the end of a band. All is read after the end of `last_band`. Streams: an item moves in a clock in which valid and ready are high;
 // valid does not wait for ready, and a payload stays as it is until it has moved.
 
 `default_nettype none
