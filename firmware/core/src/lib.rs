@@ -12,6 +12,7 @@ extern crate std;
 pub mod camera;
 pub mod colour;
 pub mod console;
+pub mod field;
 pub mod fixed;
 pub mod mesh;
 pub mod trig;

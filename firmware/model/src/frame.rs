@@ -117,13 +117,29 @@ impl DepthScale {
     fn new(origin: i64, near: i64, radius: u32) -> Self {
         let radius = i64::from(radius);
         let reach = (radius << 23) + (radius << 10);
-        // At most 8·(1 + 10^−4) in 37 fraction bits, so that the product is below 2^59.
-        let nearest = near.max(origin - reach);
+        Self::from_nearest(near.max(origin - reach))
+    }
+
+    /// (2^18 − 4) times a depth above 0, 37 fraction bits, at most 64.
+    pub(crate) fn from_nearest(nearest: i64) -> Self {
+        // The product is below 2^61.
         let scale = nearest as u64 * ((1 << 18) - 4);
-        let lead = scale.ilog2();
+        Self::cut(scale, -37)
+    }
+
+    /// This times a number above 0 and 2^`shift`, to 17 bits.
+    pub(crate) fn times(&self, scale: Q32_32, shift: u32) -> Self {
+        // 17 by 40 bits.
+        let product = u64::from(self.mantissa) * (scale.to_bits() as u64 >> 8);
+        Self::cut(product, self.exponent - 24 + shift as i32)
+    }
+
+    /// value·2^exponent, cut to 17 bits.
+    fn cut(value: u64, exponent: i32) -> Self {
+        let lead = value.ilog2();
         Self {
-            mantissa: (scale >> (lead - 16)) as u32,
-            exponent: lead as i32 - 16 - 37,
+            mantissa: (value >> (lead - 16)) as u32,
+            exponent: lead as i32 - 16 + exponent,
         }
     }
 

@@ -13,6 +13,7 @@
 pub mod clip;
 pub mod descriptor;
 pub mod frame;
+pub mod march;
 pub mod quotient;
 pub mod raster;
 pub mod reciprocal;

@@ -30,7 +30,7 @@ pub struct Target<'a> {
 }
 
 impl Target<'_> {
-    fn check(&self) -> Result<(), RenderError> {
+    pub(crate) fn check(&self) -> Result<(), RenderError> {
         let &Self { width, height, .. } = self;
         if !SIZES.contains(&(width, height)) {
             return Err(RenderError::Size { width, height });

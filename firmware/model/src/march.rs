@@ -1,0 +1,20 @@
+//! The raymarcher: frames of a distance field (formats.md, "Distance fields").
+//!
+//! A ray's direction is scaled so that its largest component is just below 1. Distances in the maximum norm say how large a
+//! cube about a point is empty, and such a ray leaves this cube exactly at its side: so a step is the whole distance, up to
+//! √3 times what a Euclidean distance and a unit vector would allow.
+//!
+//! [`Setup`] makes the constants of a frame, [`Ray`] is where a pixel's ray begins, [`Setup::march`] how it ends,
+//! [`paint`] what it shows.
+
+mod field;
+mod paint;
+mod ray;
+mod render;
+mod setup;
+
+pub use field::{Sample, Solid, Surface};
+pub use paint::{Palette, paint};
+pub use ray::{Outcome, Ray, State};
+pub use render::{FieldStats, render_field};
+pub use setup::{DEFAULT_TUNING, Eye, FieldOptions, Setup, Stereo, Tint, Tuning};

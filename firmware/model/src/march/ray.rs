@@ -1,0 +1,163 @@
+//! A pixel's ray: where it begins, and where it ends.
+
+use super::field::Surface;
+use super::setup::Setup;
+
+/// Below 1/m for every m that begins with these ten bits behind its point: 2^10/(i + 1), cut so that no product
+/// with m rounds to 1. u8.9, 17 bits.
+pub(super) const INVERSE: [u32; 1024] = inverses();
+
+const fn inverses() -> [u32; 1024] {
+    let mut table = [0; 1024];
+    let mut i = 0;
+    while i < table.len() {
+        let inverse = ((1 << 19) - 2) / (i as u32 + 1);
+        table[i] = if inverse < 1 << 17 {
+            inverse
+        } else {
+            (1 << 17) - 1
+        };
+        i += 1;
+    }
+    table
+}
+
+/// A ray at its beginning.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Ray {
+    /// Which eye it starts from: 0 is the left one, or the only one.
+    pub eye: usize,
+    /// Its direction, s1.17, of at most length 1 in the maximum norm.
+    pub direction: [i32; 3],
+    /// The first ten bits of the largest component of D: the entry of the table that made the direction.
+    pub length: u32,
+    /// Where it begins, u11.12: at the near plane, or where it comes to the box.
+    pub start: u32,
+}
+
+/// How a ray has ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum State {
+    /// At a surface.
+    Hit(Surface),
+    /// In nothing.
+    Miss,
+    /// Nobody knows: it was given up.
+    Undecided,
+}
+
+/// The end of a ray.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Outcome {
+    /// How.
+    pub state: State,
+    /// Where, u11.12.
+    pub t: u32,
+    /// Evaluations of the field.
+    pub steps: u32,
+}
+
+/// The largest t.
+const MAX_T: u64 = (1 << 23) - 1;
+
+impl Setup {
+    /// The ray of a pixel.
+    pub fn ray(&self, eye: usize, x: u32, y: u32) -> Ray {
+        // s1.24.
+        let direction = [0, 1, 2].map(|i: usize| {
+            let across = self.steps[0][i].wrapping_mul(x as i32);
+            let down = self.steps[1][i].wrapping_mul(y as i32);
+            self.eyes[eye].first[i]
+                .wrapping_add(across)
+                .wrapping_add(down)
+                >> 6
+        });
+        let largest = direction.map(i32::unsigned_abs).into_iter().max();
+        let length = largest.unwrap_or(0) >> 14 & 0x3FF;
+        let inverse = INVERSE[length as usize];
+        // 24, 9 and 17 fraction bits.
+        let direction =
+            direction.map(|d| ((i64::from(d) * i64::from(inverse) + (1 << 15)) >> 16) as i32);
+        let near = (u64::from(self.near) * (u64::from(length) + 1)) >> 10;
+        let entry = self
+            .bounds
+            .map_or(0, |bounds| self.entry(eye, &direction, &bounds));
+        Ray {
+            eye,
+            direction,
+            length,
+            start: near.max(entry).min(MAX_T) as u32,
+        }
+    }
+
+    /// Where a ray comes to the box if it does: never beyond it.
+    fn entry(&self, eye: usize, direction: &[i32; 3], bounds: &[i32; 3]) -> u64 {
+        (0..3)
+            .map(|i| {
+                let origin = self.eyes[eye].origin[i];
+                let outside = i64::from(origin.abs()) - i64::from(bounds[i]);
+                let comes = (origin < 0) != (direction[i] < 0);
+                if outside <= 0 || !comes {
+                    return 0;
+                }
+                let index = (direction[i].unsigned_abs() >> 7).min(0x3FF);
+                (outside as u64 * u64::from(INVERSE[index as usize])) >> 9
+            })
+            .max()
+            .unwrap_or(0)
+    }
+
+    /// Follows a ray to its end.
+    pub fn march(&self, ray: &Ray) -> Outcome {
+        let tuning = &self.tuning;
+        let mut t = ray.start;
+        let mut steps = 0;
+        if t > tuning.far {
+            return Outcome {
+                state: State::Miss,
+                t,
+                steps,
+            };
+        }
+        loop {
+            let point = self.point(ray, t);
+            let sample = self.solid.sample(point.map(|x| x << 10 >> 10));
+            steps += 1;
+            // A ray that has left the box, or never came to it, and goes away from it.
+            let gone = self.bounds.is_some_and(|bounds| {
+                (0..3)
+                    .any(|i| point[i].abs() > bounds[i] && (point[i] < 0) == (ray.direction[i] < 0))
+            });
+            let threshold = tuning.threshold + (t >> tuning.footprint);
+            let next = (t + sample.distance.max(0) as u32).min(MAX_T as u32);
+            let state = if gone {
+                Some(State::Miss)
+            } else if sample.distance < threshold as i32 {
+                Some(State::Hit(sample.surface))
+            } else if next > tuning.far || next == MAX_T as u32 {
+                Some(State::Miss)
+            } else if steps >= tuning.cap {
+                Some(State::Undecided)
+            } else {
+                None
+            };
+            t = next;
+            if let Some(state) = state {
+                return Outcome { state, t, steps };
+            }
+        }
+    }
+
+    /// The point of a ray, s13.12.
+    pub fn point(&self, ray: &Ray, t: u32) -> [i32; 3] {
+        [0, 1, 2].map(|i: usize| {
+            let way = i64::from(t) * i64::from(ray.direction[i]);
+            self.eyes[ray.eye].origin[i] + (way >> 17) as i32
+        })
+    }
+
+    /// The depth of a point of a ray along n in field units times 2^e, 21 fraction bits.
+    pub fn depth_of(&self, ray: &Ray, t: u32) -> u64 {
+        u64::from(t) * u64::from(INVERSE[ray.length as usize])
+    }
+}

@@ -1,0 +1,114 @@
+//! A whole frame.
+
+use super::paint::{Palette, paint};
+use super::ray::{Outcome, Ray, State};
+use super::setup::{Setup, Tint};
+use crate::reciprocal::Reciprocal;
+use crate::render::{RenderError, Target};
+
+/// What drawing a frame of a field took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FieldStats {
+    /// Rays: one a pixel and eye.
+    pub rays: u32,
+    /// Evaluations of the field.
+    pub evaluations: u64,
+    /// Rays that came to a surface.
+    pub hits: u32,
+    /// Rays that went by.
+    pub misses: u32,
+    /// Rays that were given up.
+    pub undecided: u32,
+}
+
+impl FieldStats {
+    fn count(&mut self, outcome: &Outcome) {
+        self.rays += 1;
+        self.evaluations += u64::from(outcome.steps);
+        *match outcome.state {
+            State::Hit(_) => &mut self.hits,
+            State::Miss => &mut self.misses,
+            State::Undecided => &mut self.undecided,
+        } += 1;
+    }
+}
+
+/// Draws a field over what is in the target: where a depth code is larger, and nothing of it where two eyes look.
+///
+/// With two eyes `palette` is grey, and depths are the left eye's.
+///
+/// # Errors
+/// [`RenderError`] if the target has not the size of the setup; then nothing has been touched.
+pub fn render_field(
+    setup: &Setup,
+    palette: &Palette,
+    target: &mut Target,
+    show: &mut dyn FnMut(u32, u32, &Ray, &Outcome),
+) -> Result<FieldStats, RenderError> {
+    target.check()?;
+    let &Setup { width, height, .. } = setup;
+    if (target.width, target.height) != (width, height) {
+        return Err(RenderError::Size { width, height });
+    }
+    let mut stats = FieldStats::default();
+    let mut look = |eye, x, y| {
+        let ray = setup.ray(eye, x, y);
+        let outcome = setup.march(&ray);
+        stats.count(&outcome);
+        show(x, y, &ray, &outcome);
+        let code = match outcome.state {
+            State::Hit(_) => setup.depth_code(&ray, outcome.t),
+            _ => 0,
+        };
+        (paint(setup, palette, &ray, &outcome), code)
+    };
+    let pixels = core::iter::zip(target.colour.iter_mut(), target.depth.iter_mut());
+    for (at, (colour, depth)) in pixels.enumerate() {
+        let (x, y) = (at as u32 % width, at as u32 / width);
+        let (left, code) = look(0, x, y);
+        match setup.stereo {
+            None => {
+                if code >= *depth {
+                    (*colour, *depth) = (rgb565(left), code);
+                }
+            }
+            Some(tint) => {
+                let (right, _) = look(1, x, y);
+                (*colour, *depth) = (compose(tint, left[1], right[1]), code);
+            }
+        }
+    }
+    Ok(stats)
+}
+
+impl Setup {
+    /// The depth code of a point of a ray.
+    pub fn depth_code(&self, ray: &Ray, t: u32) -> u32 {
+        let Reciprocal { y, lead } = Reciprocal::of(self.depth_of(ray, t));
+        // The depth has 21 fraction bits.
+        let shift = lead as i32 + 3 - self.depth.exponent;
+        const MOST: u32 = (1 << 18) - 1;
+        if shift < 22 {
+            // At least 2^(16 + 23 − 21).
+            return MOST;
+        }
+        let product = u64::from(self.depth.mantissa) * u64::from(y);
+        ((((product >> (shift - 1)) + 1) >> 1) as u32).clamp(1, MOST)
+    }
+}
+
+/// The colour nearest to three channels of eight bits, but for a half step near white.
+fn rgb565([r, g, b]: [u8; 3]) -> u16 {
+    let narrow = |x: u8, bits: u32| {
+        ((u32::from(x) + (0x80 >> bits)) >> (8 - bits)).min((1 << bits) - 1) as u16
+    };
+    narrow(r, 5) << 11 | narrow(g, 6) << 5 | narrow(b, 5)
+}
+
+/// What two eyes see, of their luminances.
+pub fn compose(tint: Tint, left: u8, right: u8) -> u16 {
+    rgb565(match tint {
+        Tint::RedBlue => [left, left.min(right), right],
+        Tint::RedCyan => [left, right, right],
+    })
+}

@@ -1,0 +1,325 @@
+//! The constants of a frame of a field, made once from the field, the camera and the picture's size.
+
+use glint_core::camera::View;
+use glint_core::field::Field;
+use glint_core::fixed::{Q2_23, Q32_32};
+
+use super::field::Solid;
+use super::paint::Palette;
+use crate::frame::DepthScale;
+use crate::render::{RenderError, SIZES};
+
+/// Fraction bits of field units.
+pub(super) const FRACTION: u32 = 12;
+
+/// Half the side of what a bounded field spans where the world's is 1: S of the sponge's levels is then 27, 9, 3, 1.
+const HALF_SIDE: Q32_32 = Q32_32::lit("40.5");
+/// The period of a repeated field.
+const PERIOD: Q32_32 = Q32_32::lit("64");
+
+/// The farthest that a ray goes: t is u11.12.
+const FARTHEST: u32 = (1 << 23) - 1;
+
+/// How finely a field is marched: what its error and its time depend on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tuning {
+    /// A ray has arrived where the distance is below this (field units, 12 fraction bits, below 2^16) ...
+    pub threshold: u32,
+    /// ... and this power of two (7 to 15) of the distance that it has gone: t·2^−shift.
+    pub footprint: u32,
+    /// The evaluations after which a ray is given up, undecided: 1 to 255.
+    pub cap: u32,
+    /// t beyond which there is nothing, u11.12.
+    pub far: u32,
+}
+
+/// What is used unless told otherwise. The report shows what it is worth.
+pub const DEFAULT_TUNING: Tuning = Tuning {
+    threshold: 40,
+    footprint: 10,
+    cap: 255,
+    far: FARTHEST,
+};
+
+/// Which colour an eye sees.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Tint {
+    /// The left one red, the right one blue; green is the darker of both.
+    #[default]
+    RedBlue,
+    /// The left one red, the right one green and blue.
+    RedCyan,
+}
+
+/// Two eyes, beside each other along u.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stereo {
+    /// From the camera's eye to each of the two, in world units: 0 to 1.
+    pub half_separation: Q32_32,
+    /// The distance along n at which both see the same place of the picture: at least the half separation, and 0.1.
+    pub zero_parallax: Q32_32,
+    /// Their colours.
+    pub tint: Tint,
+}
+
+/// How a field is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FieldOptions {
+    /// One eye, or two.
+    pub stereo: Option<Stereo>,
+    /// How finely.
+    pub tuning: Tuning,
+    /// In which colours.
+    pub palette: Palette,
+}
+
+impl Default for FieldOptions {
+    fn default() -> Self {
+        Self {
+            stereo: None,
+            tuning: DEFAULT_TUNING,
+            palette: Palette::default(),
+        }
+    }
+}
+
+/// Where an eye is, and where it looks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Eye {
+    /// In field units, s13.12.
+    pub origin: [i32; 3],
+    /// D of the first pixel, 30 fraction bits, modulo 2^32.
+    pub first: [i32; 3],
+}
+
+/// The constants of a frame (formats.md, "Distance fields").
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Setup {
+    /// Width of the picture in pixels.
+    pub width: u32,
+    /// Height of the picture in pixels.
+    pub height: u32,
+    /// What there is.
+    pub solid: Solid,
+    /// Half the sides of the box about the origin that holds it, s10.12, where it has an end.
+    pub bounds: Option<[i32; 3]>,
+    /// The left and the right eye; the second is unused without stereo.
+    pub eyes: [Eye; 2],
+    /// What D grows by with a pixel to the right and one down, 30 fraction bits.
+    pub steps: [[i32; 3]; 2],
+    /// D is 2^−e of the direction whose part along n is 1; e is 0 to 3.
+    pub exponent: u32,
+    /// The near plane's distance in field units times 2^e, 12 fraction bits, u11.12.
+    pub near: u32,
+    /// K for depths in field units times 2^e.
+    pub depth: DepthScale,
+    /// K for depths in world units: the host's.
+    pub world_depth: DepthScale,
+    /// How finely.
+    pub tuning: Tuning,
+    /// Two eyes, and in which colours.
+    pub stereo: Option<Tint>,
+}
+
+impl Setup {
+    /// The constants for a field, a camera and one of the [`SIZES`].
+    ///
+    /// # Errors
+    /// [`RenderError::Size`].
+    pub fn new(
+        field: &Field,
+        view: &View,
+        (width, height): (u32, u32),
+        options: &FieldOptions,
+    ) -> Result<Self, RenderError> {
+        if !SIZES.contains(&(width, height)) {
+            return Err(RenderError::Size { width, height });
+        }
+        let (solid, scale, extent) = in_units(field);
+        let bounds = extent.map(|extent| extent.map(|half| units(half, scale) as i32));
+
+        let (shift, parallax) = match options.stereo {
+            Some(Stereo {
+                half_separation,
+                zero_parallax,
+                ..
+            }) => (
+                half_separation,
+                // At most 1.
+                (half_separation.to_bits() << 24) / (zero_parallax.to_bits() >> 4).max(1),
+            ),
+            None => (Q32_32::ZERO, 0),
+        };
+        let rays = Directions::new(view, width, height, parallax);
+        let eye = |sign: i64, first: [i64; 3]| Eye {
+            origin: [0, 1, 2].map(|i: usize| {
+                // |C| ≤ 32 and e ≤ 1.
+                let moved =
+                    sign * ((shift.to_bits() >> 8) * i64::from(view.u()[i].to_bits()) >> 15);
+                let place = units(Q32_32::from_bits(view.eye()[i].to_bits() + moved), scale);
+                match solid {
+                    // The same place in the cell about the origin.
+                    Solid::Box { repeated: true, .. } => (place as i32) << 14 >> 14,
+                    _ => place as i32,
+                }
+            }),
+            first: first.map(|x| rays.narrow(x)),
+        };
+
+        let near = i64::from(view.near().to_bits()) << 4;
+        // At most 2 world units.
+        let near_units = units(Q32_32::from_bits(near), scale) << rays.exponent;
+        let world_depth = depth_scale(view, near, extent);
+        Ok(Self {
+            width,
+            height,
+            solid,
+            bounds,
+            eyes: [eye(-1, rays.first[0]), eye(1, rays.first[1])],
+            steps: [rays.across, rays.down].map(|step| step.map(|x| rays.narrow(x))),
+            exponent: rays.exponent,
+            near: near_units.clamp(0, i64::from(FARTHEST)) as u32,
+            depth: world_depth.times(scale, rays.exponent),
+            world_depth,
+            tuning: options.tuning,
+            stereo: options.stereo.map(|stereo| stereo.tint),
+        })
+    }
+}
+
+/// The solid, its units in one world unit, and half the sides of its box in world units.
+fn in_units(field: &Field) -> (Solid, Q32_32, Option<[Q32_32; 3]>) {
+    let solid_units = |x: Q32_32, scale| units(x, scale) as i32;
+    match *field {
+        Field::Menger { depth } => {
+            // 81/3^i, each an even number of 2^−12.
+            let levels = [27, 9, 3, 1].map(|s| s << FRACTION);
+            let levels = [levels[0], levels[1], levels[2], levels[3], 1366, 456];
+            let last = levels[usize::from(depth.clamp(1, 6)) - 1];
+            let solid = Solid::Menger {
+                levels,
+                depth,
+                half: last / 2,
+            };
+            (solid, HALF_SIDE, Some([Q32_32::ONE; 3]))
+        }
+        Field::Box { half } => {
+            let solid = Solid::Box {
+                half: half.map(|x| Some(solid_units(x, HALF_SIDE))),
+                room: false,
+                repeated: false,
+            };
+            (solid, HALF_SIDE, Some(half))
+        }
+        Field::Cubes { period, half } => {
+            let scale =
+                Q32_32::from_bits(((PERIOD.to_bits() << 16) / (period.to_bits() >> 8).max(1)) << 8);
+            let solid = Solid::Box {
+                half: [Some(solid_units(half, scale)); 3],
+                room: false,
+                repeated: true,
+            };
+            (solid, scale, None)
+        }
+        Field::Planes { half } => {
+            let solid = Solid::Box {
+                half: [None, None, Some(solid_units(half, HALF_SIDE))],
+                room: true,
+                repeated: false,
+            };
+            (solid, HALF_SIDE, None)
+        }
+        // A field that this gateware has not.
+        _ => (
+            Solid::Box {
+                half: [Some(0); 3],
+                room: false,
+                repeated: false,
+            },
+            HALF_SIDE,
+            None,
+        ),
+    }
+}
+
+/// A length in world units in field units, 12 fraction bits, nearest. |x| is at most 64 and the scale 256.
+fn units(x: Q32_32, scale: Q32_32) -> i64 {
+    // 24 and 20 fraction bits.
+    let product = (x.to_bits() >> 8) * (scale.to_bits() >> 12);
+    (product + (1 << 31)) >> 32
+}
+
+/// K from the nearest depth: at least the near plane's, or else that of the box.
+fn depth_scale(view: &View, near: i64, extent: Option<[Q32_32; 3]>) -> DepthScale {
+    let nearest = extent.map_or(0, |half| -> i64 {
+        (0..3)
+            .map(|i| {
+                let n = i64::from(view.n()[i].to_bits());
+                // 14 and 23 fraction bits; a little more for a length that is not quite 1.
+                let place = n * (view.eye()[i].to_bits() >> 18);
+                let reach = n.abs() * ((half[i].to_bits() >> 18) + 2);
+                -place - reach - (reach >> 13)
+            })
+            .sum()
+    });
+    DepthScale::from_nearest(nearest.max(near << 5))
+}
+
+/// The directions of the rays, D with 51 fraction bits before they are narrowed.
+struct Directions {
+    first: [[i64; 3]; 2],
+    across: [i64; 3],
+    down: [i64; 3],
+    exponent: u32,
+}
+
+impl Directions {
+    /// `parallax` is what the left eye's direction takes of u and the right eye's gives, 28 fraction bits, at most 1.
+    fn new(view: &View, width: u32, height: u32, parallax: i64) -> Self {
+        let half_width = i64::from(view.half_width().to_bits());
+        // Twice the half width over the pixels: below 2^54 before the division.
+        let step = |row: [Q2_23; 3]| {
+            row.map(|x| (2 * half_width * i64::from(x.to_bits())) / i64::from(width))
+        };
+        let (across, down) = (step(view.u()), step(view.v()));
+        let first = [1, -1].map(|sign| {
+            [0, 1, 2].map(|i: usize| {
+                (i64::from(view.n()[i].to_bits()) << 28)
+                    + sign * parallax * i64::from(view.u()[i].to_bits())
+                    - (i64::from(width - 1) * across[i] + i64::from(height - 1) * down[i]) / 2
+            })
+        });
+        // D is linear on the picture, so its largest components are in the corners.
+        let largest = first
+            .iter()
+            .flat_map(|&first| {
+                [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(x, y)| {
+                    [0, 1, 2].map(|i: usize| {
+                        (first[i]
+                            + x * i64::from(width - 1) * across[i]
+                            + y * i64::from(height - 1) * down[i])
+                            .abs()
+                    })
+                })
+            })
+            .flatten()
+            .max()
+            .unwrap_or(0);
+        // A little below 1, as steps are rounded.
+        const ONE: i64 = (1 << 51) - (1 << 36);
+        let exponent = (0..3).find(|&e| largest >> e < ONE).unwrap_or(3);
+        Self {
+            first,
+            across,
+            down,
+            exponent,
+        }
+    }
+
+    /// 30 fraction bits, nearest, times 2^−e.
+    fn narrow(&self, x: i64) -> i32 {
+        let shift = 21 + self.exponent;
+        ((x + (1 << (shift - 1))) >> shift) as i32
+    }
+}
