@@ -68,6 +68,8 @@ impl Solid {
 }
 
 /// A coordinate on its way through the folds: its value, and the direction in the world in which it grows.
+///
+/// A coordinate k stands for k + 1/2, the middle of what was cut to k: so −x is exactly `!k`, and a mirror takes no carry.
 #[derive(Clone, Copy)]
 struct Folded {
     value: i32,
@@ -80,7 +82,7 @@ impl Folded {
         let Self { value, grows } = self;
         if negate {
             Self {
-                value: -value,
+                value: !value,
                 grows: Surface {
                     positive: !grows.positive,
                     ..grows

@@ -1,7 +1,7 @@
 //! A pixel's ray: where it begins, and where it ends.
 
 use super::field::Surface;
-use super::setup::Setup;
+use super::setup::{Eye, Setup};
 
 /// Below 1/m for every m that begins with these ten bits behind its point: 2^10/(i + 1), cut so that no product
 /// with m rounds to 1. u8.9, 17 bits.
@@ -20,6 +20,11 @@ const fn inverses() -> [u32; 1024] {
         i += 1;
     }
     table
+}
+
+/// |x|, or one less: |x| − 1 of a negative x.
+const fn magnitude(x: i32) -> u32 {
+    (x ^ (x >> 31)) as u32
 }
 
 /// A ray at its beginning.
@@ -72,16 +77,14 @@ impl Setup {
                 .wrapping_add(down)
                 >> 6
         });
-        let largest = direction.map(i32::unsigned_abs).into_iter().max();
-        let length = largest.unwrap_or(0) >> 14 & 0x3FF;
+        let [a, b, c] = direction.map(magnitude);
+        let length = a.max(b).max(c) >> 14 & 0x3FF;
         let inverse = INVERSE[length as usize];
         // 24, 9 and 17 fraction bits.
         let direction =
             direction.map(|d| ((i64::from(d) * i64::from(inverse) + (1 << 15)) >> 16) as i32);
         let near = (u64::from(self.near) * (u64::from(length) + 1)) >> 10;
-        let entry = self
-            .bounds
-            .map_or(0, |bounds| self.entry(eye, &direction, &bounds));
+        let entry = self.entry(eye, &direction);
         Ray {
             eye,
             direction,
@@ -91,17 +94,15 @@ impl Setup {
     }
 
     /// Where a ray comes to the box if it does: never beyond it.
-    fn entry(&self, eye: usize, direction: &[i32; 3], bounds: &[i32; 3]) -> u64 {
+    fn entry(&self, eye: usize, direction: &[i32; 3]) -> u64 {
+        let Eye {
+            origin, outside, ..
+        } = &self.eyes[eye];
         (0..3)
+            .filter(|&i| (origin[i] < 0) != (direction[i] < 0))
             .map(|i| {
-                let origin = self.eyes[eye].origin[i];
-                let outside = i64::from(origin.abs()) - i64::from(bounds[i]);
-                let comes = (origin < 0) != (direction[i] < 0);
-                if outside <= 0 || !comes {
-                    return 0;
-                }
-                let index = (direction[i].unsigned_abs() >> 7).min(0x3FF);
-                (outside as u64 * u64::from(INVERSE[index as usize])) >> 9
+                let inverse = INVERSE[(magnitude(direction[i]) >> 7) as usize & 0x3FF];
+                (u64::from(outside[i]) * u64::from(inverse)) >> 9
             })
             .max()
             .unwrap_or(0)
@@ -112,30 +113,20 @@ impl Setup {
         let tuning = &self.tuning;
         let mut t = ray.start;
         let mut steps = 0;
-        if t > tuning.far {
-            return Outcome {
-                state: State::Miss,
-                t,
-                steps,
-            };
-        }
         loop {
             let point = self.point(ray, t);
             let sample = self.solid.sample(point.map(|x| x << 10 >> 10));
             steps += 1;
             // A ray that has left the box, or never came to it, and goes away from it.
-            let gone = self.bounds.is_some_and(|bounds| {
-                (0..3)
-                    .any(|i| point[i].abs() > bounds[i] && (point[i] < 0) == (ray.direction[i] < 0))
+            let gone = (0..3).any(|i| {
+                magnitude(point[i]) > self.bounds[i] && (point[i] < 0) == (ray.direction[i] < 0)
             });
             let threshold = tuning.threshold + (t >> tuning.footprint);
-            let next = (t + sample.distance.max(0) as u32).min(MAX_T as u32);
-            let state = if gone {
+            let next = t + sample.distance.max(0) as u32;
+            let state = if gone || next > tuning.far {
                 Some(State::Miss)
             } else if sample.distance < threshold as i32 {
                 Some(State::Hit(sample.surface))
-            } else if next > tuning.far || next == MAX_T as u32 {
-                Some(State::Miss)
             } else if steps >= tuning.cap {
                 Some(State::Undecided)
             } else {

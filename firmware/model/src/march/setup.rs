@@ -17,6 +17,9 @@ const HALF_SIDE: Q32_32 = Q32_32::lit("40.5");
 /// The period of a repeated field.
 const PERIOD: Q32_32 = Q32_32::lit("64");
 
+/// More than any coordinate: those of points are s13.12.
+const UNBOUNDED: u32 = (1 << 24) - 1;
+
 /// The farthest that a ray goes: t is u11.12.
 const FARTHEST: u32 = (1 << 23) - 1;
 
@@ -88,6 +91,8 @@ impl Default for FieldOptions {
 pub struct Eye {
     /// In field units, s13.12.
     pub origin: [i32; 3],
+    /// How far it is outside of the box along each axis, u12.12; 0 inside, and where there is no box.
+    pub outside: [u32; 3],
     /// D of the first pixel, 30 fraction bits, modulo 2^32.
     pub first: [i32; 3],
 }
@@ -102,8 +107,8 @@ pub struct Setup {
     pub height: u32,
     /// What there is.
     pub solid: Solid,
-    /// Half the sides of the box about the origin that holds it, s10.12, where it has an end.
-    pub bounds: Option<[i32; 3]>,
+    /// Half the sides of the box about the origin that holds it, u12.12; [`UNBOUNDED`] where it has no end.
+    pub bounds: [u32; 3],
     /// The left and the right eye; the second is unused without stereo.
     pub eyes: [Eye; 2],
     /// What D grows by with a pixel to the right and one down, 30 fraction bits.
@@ -137,7 +142,9 @@ impl Setup {
             return Err(RenderError::Size { width, height });
         }
         let (solid, scale, extent) = in_units(field);
-        let bounds = extent.map(|extent| extent.map(|half| units(half, scale) as i32));
+        let bounds = extent.map_or([UNBOUNDED; 3], |extent| {
+            extent.map(|half| units(half, scale) as u32)
+        });
 
         let (shift, parallax) = match options.stereo {
             Some(Stereo {
@@ -152,19 +159,24 @@ impl Setup {
             None => (Q32_32::ZERO, 0),
         };
         let rays = Directions::new(view, width, height, parallax);
-        let eye = |sign: i64, first: [i64; 3]| Eye {
-            origin: [0, 1, 2].map(|i: usize| {
+        let eye = |sign: i64, first: [i64; 3]| {
+            let origin = [0, 1, 2].map(|i: usize| {
                 // |C| ≤ 32 and e ≤ 1.
-                let moved =
-                    sign * ((shift.to_bits() >> 8) * i64::from(view.u()[i].to_bits()) >> 15);
-                let place = units(Q32_32::from_bits(view.eye()[i].to_bits() + moved), scale);
+                let aside = (shift.to_bits() >> 8) * i64::from(view.u()[i].to_bits());
+                let place = Q32_32::from_bits(view.eye()[i].to_bits() + sign * (aside >> 15));
+                let place = units(place, scale) as i32;
                 match solid {
                     // The same place in the cell about the origin.
-                    Solid::Box { repeated: true, .. } => (place as i32) << 14 >> 14,
-                    _ => place as i32,
+                    Solid::Box { repeated: true, .. } => place << 14 >> 14,
+                    _ => place,
                 }
-            }),
-            first: first.map(|x| rays.narrow(x)),
+            });
+            Eye {
+                origin,
+                outside: [0, 1, 2]
+                    .map(|i: usize| origin[i].unsigned_abs().saturating_sub(bounds[i])),
+                first: first.map(|x| rays.narrow(x)),
+            }
         };
 
         let near = i64::from(view.near().to_bits()) << 4;

@@ -1,0 +1,195 @@
+// A lane of the raymarcher: rays go round a ring, one evaluation of the field in every round, one a clock in all.
+//
+//   rays ──▶ slot ─▶ o + t·d ─▶ field_unit ─▶ distance small? ─▶ far? given up? ─┐
+//             ▲                                                                   ├─▶ fifo ─▶ ends
+//             └───────────────────── t + distance ◀───────────────────────────────┘
+//
+// The ring has march_pkg::field_clocks + 6 slots and never stalls; p = o + t·d is made anew in each round, so nothing drifts. A
+// slot whose ray has ended takes the next one in the same clock. A ray is let in only while there is a place for its end in the
+// fifo: PLACES, of which those in the ring count as taken. `evaluates` is high in clocks in which a slot that is occupied
+// passes the field, `waits` where one was empty though a ray was offered.
+//
+// Streams are valid/ready, each item moves in a clock in which both are high, payloads stay until then; ready depends on
+// registers alone. Parameters hold while rays are inside. `restart` throws all rays away.
+
+`default_nettype none
+
+module ring_lane #(
+    parameter int unsigned LEVELS = 4,
+    parameter bit          BOXES  = 1'b0,
+    parameter bit          STEREO = 1'b1,
+    parameter int unsigned PLACES = 64
+) (
+    input  wire                      clk,
+    input  wire                      rst,
+    // Frame.
+    input  wire  [1:0][2:0][24:0]    origins,
+    input  wire  [2:0][23:0]         bounds,
+    input  wire march_pkg::solid_t   solid,
+    input  wire march_pkg::tuning_t  tuning,
+    // Rays.
+    input  wire                      in_valid,
+    output logic                     in_ready,
+    input  wire march_pkg::ray_t     in_ray,
+    // Ends.
+    output logic                     out_valid,
+    input  wire                      out_ready,
+    output march_pkg::end_t          out_end,
+    // Events.
+    output logic                     evaluates,
+    output logic                     waits
+);
+    import march_pkg::*;
+
+    // The clock in which the distance is there, counted from the slot.
+    localparam int unsigned DISTANCE = 3 + field_clocks(LEVELS, BOXES);
+    localparam int unsigned COUNT_BITS = $clog2(PLACES + 1);
+
+    // What a ray takes round with it, beside t.
+    typedef struct packed {
+        place_t                         place;
+        logic [9:0]                     length;
+        logic [2:0][DIRECTION_BITS-1:0] direction;
+    } cargo_t;
+
+    logic [DISTANCE+2:0] occupied;
+    logic [COUNT_BITS-1:0] places;
+    logic              enter, finished, again, ended, end_ready, gone_out;
+
+    // The slot.
+    cargo_t            cargo;
+    logic [T_BITS-1:0] t;
+    logic [7:0]        steps;
+
+    // After the last stage.
+    cargo_t            last_cargo;
+    logic [T_BITS-1:0] last_t;
+    logic [7:0]        last_steps;
+    state_t            last_state;
+    logic [2:0]        last_surface;
+
+    assign again    = occupied[DISTANCE+2] && !finished;
+    assign ended    = occupied[DISTANCE+2] && finished;
+    assign in_ready = !again && places != '0;
+    assign enter    = in_valid && in_ready;
+    assign gone_out = out_valid && out_ready;
+
+    always_ff @(posedge clk) begin
+        occupied <= {occupied[DISTANCE+1:0], again || enter};
+        cargo    <= again ? last_cargo : {in_ray.place, in_ray.length, in_ray.direction};
+        t        <= again ? last_t : in_ray.start;
+        steps    <= again ? last_steps : '0;
+        if (enter != gone_out) places <= enter ? places - 1'b1 : places + 1'b1;
+
+        evaluates <= occupied[0];
+        waits     <= in_valid && !again && places == '0;
+
+        if (rst) begin
+            occupied <= '0;
+            places   <= COUNT_BITS'(PLACES);
+        end
+    end
+
+    // The point. Its origin comes when the product is there.
+    logic                  eye_2;
+    logic [2:0]            backwards;
+    logic [2:0][WIDE_BITS-1:0] point;
+
+    if (STEREO) begin : two_eyes
+        delay #(.WIDTH(1), .CLOCKS(2)) eyes (.clk, .enable(1'b1), .in(cargo.place.eye), .out(eye_2));
+    end else begin : one_eye
+        assign eye_2 = 1'b0;
+    end
+
+    for (genvar i = 0; i < 3; i++) begin : axes
+        logic [WIDE_BITS-1:0]           origin;
+        logic signed [WIDE_BITS+16:0]   sum;
+
+        assign origin = STEREO && eye_2 ? origins[1][i] : origins[0][i];
+
+        multiply_add #(.BITS(WIDE_BITS + 17)) place (
+            .clk, .enable(1'b1), .a({2'b0, t}), .b(cargo.direction[i]), .c({origin, 17'b0}), .p(sum)
+        );
+        assign point[i] = sum[WIDE_BITS+16:17];
+
+        delay #(.WIDTH(1), .CLOCKS(3)) sign (
+            .clk, .enable(1'b1), .in(cargo.direction[i][DIRECTION_BITS-1]), .out(backwards[i])
+        );
+        wire _unused = &{1'b0, sum[16:0]};
+    end
+
+    // A ray that is outside of the box and goes away from it.
+    logic [2:0] leaves;
+    logic       gone, gone_late;
+
+    always_ff @(posedge clk) begin
+        for (int i = 0; i < 3; i++)
+            leaves[i] <= (point[i][23:0] ^ {24{point[i][24]}}) > bounds[i] && point[i][24] == backwards[i];
+        gone <= leaves != '0;
+    end
+
+    delay #(.WIDTH(1), .CLOCKS(DISTANCE - 4)) going (.clk, .enable(1'b1), .in(gone), .out(gone_late));
+
+    logic signed [21:0] distance;
+    logic [2:0]         surface;
+
+    field_unit #(.LEVELS(LEVELS), .BOXES(BOXES)) field (
+        .clk, .solid, .point({point[2][21:0], point[1][21:0], point[0][21:0]}), .distance, .surface
+    );
+
+    // With the distance come the t it was taken at and what is near enough.
+    logic [T_BITS-1:0] t_early, t_1;
+    logic [16:0]       threshold;
+    logic [7:0]        steps_1, steps_2;
+
+    delay #(.WIDTH(T_BITS), .CLOCKS(DISTANCE - 1)) way (.clk, .enable(1'b1), .in(t), .out(t_early));
+    delay #(.WIDTH(8), .CLOCKS(DISTANCE)) counted (.clk, .enable(1'b1), .in(steps), .out(steps_1));
+    delay #(.WIDTH($bits(cargo_t)), .CLOCKS(DISTANCE + 2)) carried (.clk, .enable(1'b1), .in(cargo), .out(last_cargo));
+
+    always_ff @(posedge clk) begin
+        t_1       <= t_early;
+        threshold <= {1'b0, tuning.threshold} + 17'(t_early >> tuning.footprint);
+    end
+
+    // Is it near? Then: is it too far, or has it taken too long?
+    logic            near_2, gone_2, late_2;
+    logic [T_BITS:0] next_2;
+    logic [2:0]      surface_2;
+    logic            beyond;
+
+    assign beyond = gone_2 || next_2 > {1'b0, tuning.far};
+
+    always_ff @(posedge clk) begin
+        near_2    <= distance < $signed({5'b0, threshold});
+        next_2    <= {1'b0, t_1} + 24'(distance[20:0] & {21{!distance[21]}});
+        gone_2    <= gone_late;
+        steps_2   <= steps_1 + 1'b1;
+        surface_2 <= surface;
+
+        finished     <= beyond || near_2 || late_2;
+        last_state   <= beyond ? MISS : near_2 ? HIT : UNDECIDED;
+        last_t       <= next_2[T_BITS-1:0];
+        last_steps   <= steps_2;
+        last_surface <= surface_2;
+    end
+
+    // One less, and counted before its round.
+    always_ff @(posedge clk) late_2 <= steps_1 + 8'd1 >= tuning.cap;
+
+    end_t end_in;
+
+    assign end_in = '{
+        place: last_cargo.place, length: last_cargo.length, t: last_t, steps: last_steps, state: last_state,
+        surface: last_surface,
+        height: last_cargo.direction[2][DIRECTION_BITS-1] ? '0 : last_cargo.direction[2][DIRECTION_BITS-2 -: 8]
+    };
+
+    // There is a place: `end_ready` is always high when a ray ends.
+    fifo #(.WIDTH($bits(end_t)), .DEPTH(PLACES)) ends (
+        .clk, .rst, .in_valid(ended), .in_ready(end_ready), .in_data(end_in), .out_valid, .out_ready, .out_data(out_end)
+    );
+
+    wire _unused = &{1'b0, end_ready};
+endmodule
+
+`default_nettype wire
