@@ -19,6 +19,58 @@ pub(crate) fn cross(a: Vector, b: Vector) -> Vector {
     ]
 }
 
+pub(crate) fn add_scaled(a: Vector, b: Vector, factor: f64) -> Vector {
+    [
+        a[0] + b[0] * factor,
+        a[1] + b[1] * factor,
+        a[2] + b[2] * factor,
+    ]
+}
+
+pub(crate) fn length(a: Vector) -> f64 {
+    dot(a, a).sqrt()
+}
+
+/// At length 1; `a` is not zero.
+pub(crate) fn normalised(a: Vector) -> Vector {
+    let length = length(a);
+    a.map(|c| c / length)
+}
+
+/// A half line whose points are origin + t·direction, t at least 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// Where t is 0, in world units.
+    pub origin: Vector,
+    /// What one unit of t adds, in world units; of any length but 0.
+    pub direction: Vector,
+}
+
+impl Ray {
+    /// The point at the parameter `t`.
+    pub fn at(&self, t: f64) -> Vector {
+        add_scaled(self.origin, self.direction, t)
+    }
+}
+
+/// One of the two eyes of a stereo picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// At eye − offset·u.
+    Left,
+    /// At eye + offset·u.
+    Right,
+}
+
+/// Two eyes beside each other that look in parallel, their pictures shifted (an off-axis pair, not toed in).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stereo {
+    /// From the camera's eye to each of the two along u, in world units.
+    pub offset: f64,
+    /// The depth at which both pictures show a point in the same pixel, in world units.
+    pub zero: f64,
+}
+
 /// A pinhole camera: an eye, an orthonormal basis with u × v = n, and its picture's plane at distance 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
@@ -60,6 +112,50 @@ pub struct Size {
 }
 
 impl Camera {
+    /// A camera at `eye` that looks at `target` and holds +z up.
+    ///
+    /// `half_width` and `near` are the fields of that name. The line from `eye` to `target` must not be parallel to z: then
+    /// there is no such camera, and u and v are not numbers.
+    pub fn looking_at(eye: Vector, target: Vector, half_width: f64, near: f64) -> Self {
+        let n = normalised(subtract(target, eye));
+        let u = normalised(cross(n, [0.0, 0.0, 1.0]));
+        Self {
+            eye,
+            u,
+            v: cross(n, u),
+            n,
+            half_width,
+            near,
+        }
+    }
+
+    /// The ray through a pixel's centre, `pixel` its column and row counted from 0; fractions lie between the centres.
+    ///
+    /// Its direction is 1 long along n, so that its parameter is the depth.
+    pub fn ray(&self, [x, y]: [f64; 2], size: Size) -> Ray {
+        let width = f64::from(size.width);
+        let right = (2.0 * x + 1.0 - width) / width * self.half_width;
+        let down = (2.0 * y + 1.0 - f64::from(size.height)) / width * self.half_width;
+        let direction = add_scaled(add_scaled(self.n, self.u, right), self.v, down);
+        Ray {
+            origin: self.eye,
+            direction,
+        }
+    }
+
+    /// As [`Self::ray`], from one eye of a pair; the parameter is still the depth.
+    pub fn stereo_ray(&self, side: Side, stereo: Stereo, pixel: [f64; 2], size: Size) -> Ray {
+        let offset = match side {
+            Side::Left => -stereo.offset,
+            Side::Right => stereo.offset,
+        };
+        let middle = self.ray(pixel, size);
+        Ray {
+            origin: add_scaled(middle.origin, self.u, offset),
+            direction: add_scaled(middle.direction, self.u, -offset / stereo.zero),
+        }
+    }
+
     /// The camera coordinates of a point of the world: right, down and forward of the eye, in world units.
     pub fn coordinates(&self, point: Vector) -> Vector {
         let d = subtract(point, self.eye);
@@ -137,6 +233,46 @@ mod tests {
         assert_eq!(CAMERA.screen(ahead, SIZE), [160.0, 90.0]);
         let border = CAMERA.coordinates([1.0, -0.5, -1.0]);
         assert_eq!(CAMERA.screen(border, SIZE), [320.0, 10.0]);
+    }
+
+    #[test]
+    fn a_ray_goes_to_what_its_pixel_shows_and_its_parameter_is_the_depth() {
+        for pixel in [[0.0, 0.0], [319.0, 179.0], [17.25, 140.5]] {
+            let point = CAMERA.coordinates(CAMERA.ray(pixel, SIZE).at(6.0));
+            assert!((point[2] - 6.0).abs() < 1e-12);
+            let [x, y] = CAMERA.screen(point, SIZE);
+            assert!((x - pixel[0] - 0.5).abs() < 1e-9 && (y - pixel[1] - 0.5).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn both_eyes_meet_in_the_plane_of_no_parallax() {
+        let stereo = Stereo {
+            offset: 0.1,
+            zero: 4.0,
+        };
+        let pixel = [100.0, 20.0];
+        let [left, right] =
+            [Side::Left, Side::Right].map(|side| CAMERA.stereo_ray(side, stereo, pixel, SIZE));
+        assert_eq!([left.origin[0], right.origin[0]], [-0.1, 0.1]);
+        let meeting = CAMERA.ray(pixel, SIZE).at(stereo.zero);
+        for ray in [left, right] {
+            assert!(length(subtract(ray.at(stereo.zero), meeting)) < 1e-12);
+        }
+        // Nearer than that the left eye sees a point further to the right.
+        assert!(left.at(1.0)[0] < right.at(1.0)[0]);
+    }
+
+    #[test]
+    fn looking_at_makes_a_right_handed_basis_with_z_up() {
+        let camera = Camera::looking_at([0.0, -3.0, 0.0], [0.0, 5.0, 0.0], 0.9, 0.1);
+        assert_eq!(
+            [camera.u, camera.v, camera.n],
+            [[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]
+        );
+        let tilted = Camera::looking_at([2.0, 1.0, 1.5], [0.0, 0.5, -0.25], 0.9, 0.1);
+        assert!(length(subtract(cross(tilted.u, tilted.v), tilted.n)) < 1e-12);
+        assert!(tilted.v[2] < 0.0);
     }
 
     #[test]
