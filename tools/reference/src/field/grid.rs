@@ -1,0 +1,46 @@
+//! Solids repeated in all three axes.
+
+use super::Hit;
+use crate::camera::Ray;
+
+/// The first hit of a ray with copies of a solid about all points whose coordinates are integer multiples of the period.
+///
+/// `hit` is that of the solid about the origin with the ray given to it. The ray's cells are visited in the order in which it
+/// passes them (Amanatides and Woo 1987), up to `t_max`; the solid is nowhere nearer to another centre than to its own.
+pub(super) fn nearest(
+    period: f64,
+    ray: &Ray,
+    t_min: f64,
+    t_max: f64,
+    hit: impl Fn(&Ray) -> Option<Hit>,
+) -> Option<Hit> {
+    let mut cell = ray.at(t_min).map(|c| (c / period).round());
+    let mut enter = t_min;
+    let mut best: Option<Hit> = None;
+    while enter <= best.map_or(t_max, |best| best.t.min(t_max)) {
+        let [x, y, z] = [0, 1, 2].map(|axis| ray.origin[axis] - cell[axis] * period);
+        let local = Ray {
+            origin: [x, y, z],
+            direction: ray.direction,
+        };
+        best = Hit::nearer(best, hit(&local));
+        // Each border from its cell's number: a sum of steps would drift.
+        let border = |axis: usize| {
+            let d = ray.direction[axis];
+            if d == 0.0 {
+                return f64::INFINITY;
+            }
+            ((cell[axis] + d.signum() / 2.0) * period - ray.origin[axis]) / d
+        };
+        let next = (0..3).fold(0, |next, axis| {
+            if border(axis) < border(next) {
+                axis
+            } else {
+                next
+            }
+        });
+        enter = border(next);
+        cell[next] += ray.direction[next].signum();
+    }
+    best
+}

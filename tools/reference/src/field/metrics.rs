@@ -1,0 +1,299 @@
+//! How far a picture is from the reference.
+
+use super::{Face, Field, Hit};
+use crate::camera::{Ray, Size, Vector, cross, dot, length};
+
+/// How far beside a pixel's centre its surroundings are looked at, in pixels.
+const BESIDE: f64 = 0.05;
+
+/// How much nearer or farther the surroundings may be, as a part of the depth.
+const STEADY: f64 = 1e-3;
+
+/// What the reference shows in a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Expected {
+    /// The hit of the ray through the pixel's centre.
+    pub hit: Option<Hit>,
+    /// Whether the rays 0.05 pixels to the left and right of it, up and down, hit the same face of the same member at a depth
+    /// within a thousandth, or miss as it does. Elsewhere a picture may be good and differ.
+    pub stable: bool,
+}
+
+/// The picture of a field, row by row, with what is hit at parameters from `t_min` to `t_max`.
+///
+/// `ray` is that of a pixel, such as [`Camera::ray`](crate::camera::Camera::ray).
+///
+/// # Panics
+/// As [`Field::hit`].
+pub fn expected(
+    field: &Field,
+    size: Size,
+    (t_min, t_max): (f64, f64),
+    ray: impl Fn([f64; 2]) -> Ray,
+) -> Vec<Expected> {
+    let at = |x: f64, y: f64| {
+        let ray = ray([x, y]);
+        field.hit(ray.origin, ray.direction, t_min, t_max)
+    };
+    let rows = 0..size.height;
+    rows.flat_map(|row| (0..size.width).map(move |column| (f64::from(column), f64::from(row))))
+        .map(|(x, y)| {
+            let hit = at(x, y);
+            let stable = [(-BESIDE, 0.0), (BESIDE, 0.0), (0.0, -BESIDE), (0.0, BESIDE)]
+                .into_iter()
+                .all(|(dx, dy)| alike(hit, at(x + dx, y + dy)));
+            Expected { hit, stable }
+        })
+        .collect()
+}
+
+/// Whether a hit beside a pixel's centre is on the same surface.
+fn alike(centre: Option<Hit>, beside: Option<Hit>) -> bool {
+    match (centre, beside) {
+        (None, None) => true,
+        (Some(a), Some(b)) => {
+            (a.face, a.member) == (b.face, b.member) && (a.t - b.t).abs() <= STEADY * a.t
+        }
+        _ => false,
+    }
+}
+
+/// What a picture shows in a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Outcome {
+    /// A surface.
+    Hit {
+        /// The ray's parameter.
+        t: f64,
+        /// The face.
+        face: Face,
+        /// Out of the solid, of any length; not looked at unless the face is round.
+        normal: Vector,
+    },
+    /// None.
+    Miss,
+    /// The method gave up.
+    Undecided,
+}
+
+/// Of some numbers, by nearest rank: the smallest that at least such a part of them does not exceed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quantiles {
+    /// Of one half.
+    pub median: f64,
+    /// Of 99 in 100.
+    pub p99: f64,
+    /// Of all.
+    pub max: f64,
+}
+
+impl Quantiles {
+    /// `None` without numbers.
+    fn new(mut values: Vec<f64>) -> Option<Self> {
+        values.sort_by(f64::total_cmp);
+        let max = *values.last()?;
+        let rank = |percent: usize| values[(values.len() * percent).div_ceil(100) - 1];
+        Some(Self {
+            median: rank(50),
+            p99: rank(99),
+            max,
+        })
+    }
+}
+
+/// How far a picture is from the reference. All pixels count, unstable ones too.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Accuracy {
+    /// Pixels, one ray each.
+    pub rays: usize,
+    /// The part of them that is not stable.
+    pub unstable: f64,
+    /// Pixels where both hit among those where either does; 1 when none does. What is undecided is no hit.
+    pub iou: f64,
+    /// Pixels where the reference hits and the picture misses.
+    pub false_miss: usize,
+    /// Pixels where the picture hits and the reference misses.
+    pub false_hit: usize,
+    /// Pixels that the picture left undecided.
+    pub undecided: usize,
+    /// The difference of the parameters, without its sign, where both hit.
+    pub depth: Option<Quantiles>,
+    /// The part of the pixels where both hit that have another face; 0 when there are none.
+    pub wrong_faces: f64,
+    /// The angle between the normals in degrees, where both hit a round face.
+    pub normal: Option<Quantiles>,
+}
+
+/// Compares a picture with the reference, pixel by pixel.
+///
+/// # Panics
+/// When they are not of one size.
+pub fn accuracy(expected: &[Expected], found: &[Outcome]) -> Accuracy {
+    assert_eq!(expected.len(), found.len(), "pixels of both");
+    let (mut false_miss, mut false_hit, mut undecided) = (0, 0, 0);
+    let (mut either, mut wrong) = (0, 0);
+    let (mut depths, mut angles) = (Vec::new(), Vec::new());
+    for (expected, found) in expected.iter().zip(found) {
+        match (expected.hit, *found) {
+            (Some(hit), Outcome::Hit { t, face, normal }) => {
+                depths.push((t - hit.t).abs());
+                wrong += usize::from(face != hit.face);
+                if (face, hit.face) == (Face::Round, Face::Round) {
+                    angles.push(degrees(normal, hit.normal));
+                }
+            }
+            (Some(_), Outcome::Miss) => false_miss += 1,
+            (None, Outcome::Hit { .. }) => false_hit += 1,
+            (_, Outcome::Undecided) => undecided += 1,
+            (None, Outcome::Miss) => {}
+        }
+        either += usize::from(expected.hit.is_some() || matches!(found, Outcome::Hit { .. }));
+    }
+    let part = |count: usize, of: usize| count as f64 / of.max(1) as f64;
+    let both = depths.len();
+    Accuracy {
+        rays: expected.len(),
+        unstable: part(
+            expected.iter().filter(|e| !e.stable).count(),
+            expected.len(),
+        ),
+        iou: if either == 0 { 1.0 } else { part(both, either) },
+        false_miss,
+        false_hit,
+        undecided,
+        depth: Quantiles::new(depths),
+        wrong_faces: part(wrong, both),
+        normal: Quantiles::new(angles),
+    }
+}
+
+/// The angle between two directions.
+fn degrees(a: Vector, b: Vector) -> f64 {
+    // Not by the arc cosine, which loses small angles.
+    length(cross(a, b)).atan2(dot(a, b)).to_degrees()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::Camera;
+
+    const TOP: Face = Face::Axis {
+        axis: 2,
+        positive: true,
+    };
+    const SIDE: Face = Face::Axis {
+        axis: 0,
+        positive: true,
+    };
+
+    fn shows(t: f64, face: Face, normal: Vector) -> Expected {
+        Expected {
+            hit: Some(Hit {
+                t,
+                normal,
+                face,
+                member: 0,
+            }),
+            stable: true,
+        }
+    }
+
+    fn hit(t: f64, face: Face, normal: Vector) -> Outcome {
+        Outcome::Hit { t, face, normal }
+    }
+
+    #[test]
+    fn each_difference_is_counted_once() {
+        let x = [1.0, 0.0, 0.0];
+        let background = Expected {
+            hit: None,
+            stable: false,
+        };
+        let expected = [
+            shows(1.0, TOP, x),
+            shows(1.0, TOP, x),
+            shows(2.0, Face::Round, x),
+            shows(2.0, TOP, x),
+            shows(2.0, TOP, x),
+            background,
+            background,
+            background,
+        ];
+        let found = [
+            hit(1.0, TOP, x),
+            hit(1.25, SIDE, x),
+            hit(1.5, Face::Round, [3.0, 3.0, 0.0]),
+            Outcome::Miss,
+            Outcome::Undecided,
+            hit(9.0, TOP, x),
+            Outcome::Miss,
+            Outcome::Undecided,
+        ];
+        let accuracy = accuracy(&expected, &found);
+        let normal = accuracy.normal.expect("a round pixel");
+        assert!((normal.median - 45.0).abs() < 1e-12 && normal.median == normal.max);
+        let depth = Quantiles {
+            median: 0.25,
+            p99: 0.5,
+            max: 0.5,
+        };
+        let hand_made = Accuracy {
+            rays: 8,
+            unstable: 0.375,
+            iou: 0.5,
+            false_miss: 1,
+            false_hit: 1,
+            undecided: 2,
+            depth: Some(depth),
+            wrong_faces: 1.0 / 3.0,
+            normal: Some(normal),
+        };
+        assert_eq!(accuracy, hand_made);
+    }
+
+    #[test]
+    fn nothing_to_compare_is_no_error() {
+        let accuracy = accuracy(&[], &[]);
+        assert_eq!((accuracy.iou, accuracy.wrong_faces), (1.0, 0.0));
+        assert_eq!((accuracy.depth, accuracy.normal), (None, None));
+    }
+
+    #[test]
+    fn quantiles_are_by_nearest_rank() {
+        let upto = |n: u32| Quantiles::new((1..=n).rev().map(f64::from).collect());
+        let some = |median, p99, max| Some(Quantiles { median, p99, max });
+        assert_eq!(upto(0), None);
+        assert_eq!(upto(1), some(1.0, 1.0, 1.0));
+        assert_eq!(upto(4), some(2.0, 4.0, 4.0));
+        assert_eq!(upto(200), some(100.0, 198.0, 200.0));
+    }
+
+    #[test]
+    fn pixels_are_unstable_along_edges_and_where_the_depth_changes_fast() {
+        let size = Size {
+            width: 101,
+            height: 101,
+        };
+        let seen = |field: &Field, eye, target| {
+            let camera = Camera::looking_at(eye, target, 0.5, 0.01);
+            let ray = |pixel| camera.ray(pixel, size);
+            expected(field, size, (camera.near, 100.0), ray)
+        };
+        // The face fills 33 2/3 pixels to each side of the middle: no ray is beside its border.
+        let cube = Field::Box { half: [1.0; 3] };
+        let front = seen(&cube, [0.0, -4.0, 0.0], [0.0; 3]);
+        assert!(front.iter().all(|pixel| pixel.stable));
+        let hits = front.iter().filter(|pixel| pixel.hit.is_some()).count();
+        assert_eq!(hits, 67 * 67);
+        // An edge runs down the middle column.
+        let edge = seen(&cube, [4.0, -4.0, 0.0], [0.0; 3]);
+        for pixel in edge.chunks(101).map(|row| row[50]) {
+            assert_eq!(pixel.stable, pixel.hit.is_none());
+        }
+        let floor = Field::Planes { half: 1.0 };
+        let grazed = seen(&floor, [0.0, 0.0, 0.95], [50.0, 0.0, 0.95]);
+        let unstable = grazed.iter().filter(|pixel| !pixel.stable).count();
+        assert!((1000..10_000).contains(&unstable), "{unstable}");
+    }
+}

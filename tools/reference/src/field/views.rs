@@ -1,0 +1,70 @@
+//! Cameras that look at the sponge, as everyone who draws it takes them.
+
+use crate::camera::{Camera, Vector};
+
+/// Half the width of all the pictures in the plane at distance 1.
+pub const HALF_WIDTH: f64 = 0.9;
+
+/// Distance of the near plane of all the pictures, in world units.
+pub const NEAR: f64 = 0.01;
+
+/// A name, the eye and what the camera looks at, in world units, with +z up.
+///
+/// Every coordinate is a multiple of 1/64, so that any fixed-point format has it exactly.
+pub fn views() -> [(&'static str, Vector, Vector); 4] {
+    [
+        ("outside", [2.1875, 1.6875, 1.3125], [0.0; 3]),
+        // A quarter before the face at y = −1, at a slant to a corner of the largest hole.
+        ("close", [0.5, -1.25, 0.4375], [0.375, -1.0, 0.3125]),
+        // In the largest tunnel along y.
+        (
+            "tunnel",
+            [0.0625, -0.8125, 0.09375],
+            [-0.125, 0.9375, 0.03125],
+        ),
+        // A sixteenth above the face at z = 1, and down to it by less than two degrees.
+        ("grazing", [-1.1875, -0.9375, 1.0625], [0.8125, 0.5625, 1.0]),
+    ]
+}
+
+/// The camera of a view.
+pub fn camera(eye: Vector, target: Vector) -> Camera {
+    Camera::looking_at(eye, target, HALF_WIDTH, NEAR)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::{Size, dot};
+    use crate::field::Field;
+
+    #[test]
+    fn every_view_starts_in_the_open_and_shows_the_sponge() {
+        let size = Size {
+            width: 64,
+            height: 36,
+        };
+        for (name, eye, target) in views() {
+            let camera = camera(eye, target);
+            for (axis, other) in [
+                (camera.u, camera.v),
+                (camera.v, camera.n),
+                (camera.n, camera.u),
+            ] {
+                let right = (dot(axis, axis) - 1.0).abs() < 1e-12 && dot(axis, other).abs() < 1e-12;
+                assert!(right, "{name}");
+            }
+            for depth in 1..=6 {
+                let sponge = Field::Menger { depth };
+                assert!(sponge.distance(eye) > NEAR, "{name} at depth {depth}");
+                let shown = (0..size.width * size.height).filter(|i| {
+                    let pixel = [i % size.width, i / size.width].map(f64::from);
+                    let ray = camera.ray(pixel, size);
+                    sponge.hit(ray.origin, ray.direction, NEAR, 100.0).is_some()
+                });
+                let shown = shown.count();
+                assert!(shown > 500, "{name} at depth {depth}");
+            }
+        }
+    }
+}
