@@ -111,7 +111,7 @@ pub struct Hit {
     pub normal: Vector,
     /// What was hit.
     pub face: Face,
-    /// The number of the ball in [`Field::Spheres`], or of the outermost union's member; otherwise 0.
+    /// The number of the ball in [`Field::Spheres`], or of the outermost union's member; otherwise, and inside, 0.
     pub member: usize,
 }
 
@@ -136,6 +136,14 @@ impl Hit {
             face: Face::entered(axis, direction),
             member: 0,
         }
+    }
+
+    /// As the hit of a member of more; where the ray starts may be in several.
+    fn of(mut self, member: usize) -> Self {
+        if self.face != Face::Inside {
+            self.member = member;
+        }
+        self
     }
 
     /// The nearer of two, the first when they are equally near.
@@ -172,7 +180,7 @@ impl Field {
             Self::Union(a, b) => {
                 let [a, b] = [(a, 0), (b, 1)].map(|(field, member)| {
                     let hit = field.hit(origin, direction, t_min, t_max)?;
-                    Some(Hit { member, ..hit })
+                    Some(hit.of(member))
                 });
                 Hit::nearer(a, b)
             }

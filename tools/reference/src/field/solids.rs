@@ -88,8 +88,7 @@ pub(super) fn spheres_hit(spheres: &[Sphere], ray: &Ray, t_min: f64) -> Option<H
             origin: subtract(ray.origin, sphere.centre),
             direction: ray.direction,
         };
-        let hit = sphere_hit(sphere.radius, &ray, t_min)?;
-        Some(Hit { member, ..hit })
+        Some(sphere_hit(sphere.radius, &ray, t_min)?.of(member))
     });
     hits.fold(None, Hit::nearer)
 }
