@@ -133,6 +133,8 @@ mod tests {
         let (a, b) = (ball(-2.0), ball(2.0));
         let union = Field::SmoothUnion { k: 0.5, a, b };
         assert_eq!(union.distance([0.0; 3]), 1.0 - 0.125);
+        // Half of the reach from there, a quarter as much.
+        assert_eq!(union.distance([0.125, 0.0, 0.0]), 0.875 - 0.03125);
         assert_eq!(union.distance([-4.0, 0.0, 0.0]), 1.0);
     }
 }
