@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 
 from glint_soc import scanout
+from glint_soc.march import RING_LANE
 from glint_soc.triangle import BAND_BUFFER, SETUP, TRIANGLE_CONTROL, TRIANGLE_ENGINE, TRIANGLE_RASTER, VERTEX_STAGE
 
 
@@ -24,6 +25,8 @@ class Module:
 _SMALL_RASTER = {"H_ACTIVE": 160, "H_FRONT": 8, "H_SYNC": 4, "H_BACK": 12,
                  "V_ACTIVE": 24, "V_FRONT": 2, "V_SYNC": 2, "V_BACK": 4}
 _SMOOTH = {"SMOOTH": 1}
+# Every field there is.
+_ALL_FIELDS = {"LEVELS": 6, "BOXES": 1}
 _COMMON, _TRIANGLE = (scanout.RTL / folder for folder in ("common", "triangle"))
 
 MODULES = [
@@ -44,5 +47,6 @@ MODULES = [
     Module(top="setup", sources=SETUP, variants={"setup_smooth": _SMOOTH}),
     Module(top="triangle_raster", sources=TRIANGLE_RASTER, variants={"triangle_raster_smooth": _SMOOTH}),
     Module(top="triangle_engine", sources=TRIANGLE_ENGINE, variants={"triangle_engine_smooth": _SMOOTH}),
+    Module(top="ring_lane", sources=RING_LANE, variants={"ring_lane_all": _ALL_FIELDS}),
     Module(top="triangle_control", sources=TRIANGLE_CONTROL, variants={"triangle_control_smooth": _SMOOTH}),
 ]

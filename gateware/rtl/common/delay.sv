@@ -15,7 +15,12 @@ module delay #(
 
     assign out = passing[CLOCKS-1];
 
-    always_ff @(posedge clk) if (enable) passing <= {passing[CLOCKS-2:0], in};
+    always_ff @(posedge clk) begin
+        if (enable) begin
+            passing[0] <= in;
+            for (int i = 1; i < CLOCKS; i++) passing[i] <= passing[i-1];
+        end
+    end
 endmodule
 
 `default_nettype wire

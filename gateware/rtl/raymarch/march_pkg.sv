@@ -57,7 +57,7 @@ package march_pkg;
         logic [15:0]       threshold;
         logic [3:0]        footprint;
         logic [7:0]        cap;
-        logic [T_BITS-1:0] far;
+        logic [T_BITS-1:0] far_limit;
     } tuning_t;
 
     // Clocks from a point to its distance, of fields with so many levels of the sponge, with boxes or without.

@@ -39,17 +39,15 @@ module ring_lane #(
     output logic                     evaluates,
     output logic                     waits
 );
-    import march_pkg::*;
-
     // The clock in which the distance is there, counted from the slot.
-    localparam int unsigned DISTANCE = 3 + field_clocks(LEVELS, BOXES);
+    localparam int unsigned DISTANCE = 3 + march_pkg::field_clocks(LEVELS, BOXES);
     localparam int unsigned COUNT_BITS = $clog2(PLACES + 1);
 
     // What a ray takes round with it, beside t.
     typedef struct packed {
-        place_t                         place;
+        march_pkg::place_t                         place;
         logic [9:0]                     length;
-        logic [2:0][DIRECTION_BITS-1:0] direction;
+        logic [2:0][march_pkg::DIRECTION_BITS-1:0] direction;
     } cargo_t;
 
     logic [DISTANCE+2:0] occupied;
@@ -58,14 +56,14 @@ module ring_lane #(
 
     // The slot.
     cargo_t            cargo;
-    logic [T_BITS-1:0] t;
+    logic [march_pkg::T_BITS-1:0] t;
     logic [7:0]        steps;
 
     // After the last stage.
     cargo_t            last_cargo;
-    logic [T_BITS-1:0] last_t;
+    logic [march_pkg::T_BITS-1:0] last_t;
     logic [7:0]        last_steps;
-    state_t            last_state;
+    march_pkg::state_t            last_state;
     logic [2:0]        last_surface;
 
     assign again    = occupied[DISTANCE+2] && !finished;
@@ -93,7 +91,7 @@ module ring_lane #(
     // The point. Its origin comes when the product is there.
     logic                  eye_2;
     logic [2:0]            backwards;
-    logic [2:0][WIDE_BITS-1:0] point;
+    logic [2:0][march_pkg::WIDE_BITS-1:0] point;
 
     if (STEREO) begin : two_eyes
         delay #(.WIDTH(1), .CLOCKS(2)) eyes (.clk, .enable(1'b1), .in(cargo.place.eye), .out(eye_2));
@@ -102,18 +100,18 @@ module ring_lane #(
     end
 
     for (genvar i = 0; i < 3; i++) begin : axes
-        logic [WIDE_BITS-1:0]           origin;
-        logic signed [WIDE_BITS+16:0]   sum;
+        logic [march_pkg::WIDE_BITS-1:0]           origin;
+        logic signed [march_pkg::WIDE_BITS+16:0]   sum;
 
         assign origin = STEREO && eye_2 ? origins[1][i] : origins[0][i];
 
-        multiply_add #(.BITS(WIDE_BITS + 17)) place (
+        multiply_add #(.BITS(march_pkg::WIDE_BITS + 17)) place (
             .clk, .enable(1'b1), .a({2'b0, t}), .b(cargo.direction[i]), .c({origin, 17'b0}), .p(sum)
         );
-        assign point[i] = sum[WIDE_BITS+16:17];
+        assign point[i] = sum[march_pkg::WIDE_BITS+16:17];
 
         delay #(.WIDTH(1), .CLOCKS(3)) sign (
-            .clk, .enable(1'b1), .in(cargo.direction[i][DIRECTION_BITS-1]), .out(backwards[i])
+            .clk, .enable(1'b1), .in(cargo.direction[i][march_pkg::DIRECTION_BITS-1]), .out(backwards[i])
         );
         wire _unused = &{1'b0, sum[16:0]};
     end
@@ -128,7 +126,7 @@ module ring_lane #(
         gone <= leaves != '0;
     end
 
-    delay #(.WIDTH(1), .CLOCKS(DISTANCE - 4)) going (.clk, .enable(1'b1), .in(gone), .out(gone_late));
+    delay #(.WIDTH(1), .CLOCKS(DISTANCE - 5)) going (.clk, .enable(1'b1), .in(gone), .out(gone_late));
 
     logic signed [21:0] distance;
     logic [2:0]         surface;
@@ -138,11 +136,11 @@ module ring_lane #(
     );
 
     // With the distance come the t it was taken at and what is near enough.
-    logic [T_BITS-1:0] t_early, t_1;
+    logic [march_pkg::T_BITS-1:0] t_early, t_1;
     logic [16:0]       threshold;
     logic [7:0]        steps_1, steps_2;
 
-    delay #(.WIDTH(T_BITS), .CLOCKS(DISTANCE - 1)) way (.clk, .enable(1'b1), .in(t), .out(t_early));
+    delay #(.WIDTH(march_pkg::T_BITS), .CLOCKS(DISTANCE - 1)) way (.clk, .enable(1'b1), .in(t), .out(t_early));
     delay #(.WIDTH(8), .CLOCKS(DISTANCE)) counted (.clk, .enable(1'b1), .in(steps), .out(steps_1));
     delay #(.WIDTH($bits(cargo_t)), .CLOCKS(DISTANCE + 2)) carried (.clk, .enable(1'b1), .in(cargo), .out(last_cargo));
 
@@ -153,11 +151,11 @@ module ring_lane #(
 
     // Is it near? Then: is it too far, or has it taken too long?
     logic            near_2, gone_2, late_2;
-    logic [T_BITS:0] next_2;
+    logic [march_pkg::T_BITS:0] next_2;
     logic [2:0]      surface_2;
     logic            beyond;
 
-    assign beyond = gone_2 || next_2 > {1'b0, tuning.far};
+    assign beyond = gone_2 || next_2 > {1'b0, tuning.far_limit};
 
     always_ff @(posedge clk) begin
         near_2    <= distance < $signed({5'b0, threshold});
@@ -167,8 +165,8 @@ module ring_lane #(
         surface_2 <= surface;
 
         finished     <= beyond || near_2 || late_2;
-        last_state   <= beyond ? MISS : near_2 ? HIT : UNDECIDED;
-        last_t       <= next_2[T_BITS-1:0];
+        last_state   <= beyond ? march_pkg::MISS : near_2 ? march_pkg::HIT : march_pkg::UNDECIDED;
+        last_t       <= next_2[march_pkg::T_BITS-1:0];
         last_steps   <= steps_2;
         last_surface <= surface_2;
     end
@@ -176,16 +174,16 @@ module ring_lane #(
     // One less, and counted before its round.
     always_ff @(posedge clk) late_2 <= steps_1 + 8'd1 >= tuning.cap;
 
-    end_t end_in;
+    march_pkg::end_t end_in;
 
     assign end_in = '{
         place: last_cargo.place, length: last_cargo.length, t: last_t, steps: last_steps, state: last_state,
         surface: last_surface,
-        height: last_cargo.direction[2][DIRECTION_BITS-1] ? '0 : last_cargo.direction[2][DIRECTION_BITS-2 -: 8]
+        height: last_cargo.direction[2][march_pkg::DIRECTION_BITS-1] ? '0 : last_cargo.direction[2][march_pkg::DIRECTION_BITS-2 -: 8]
     };
 
     // There is a place: `end_ready` is always high when a ray ends.
-    fifo #(.WIDTH($bits(end_t)), .DEPTH(PLACES)) ends (
+    fifo #(.WIDTH($bits(march_pkg::end_t)), .DEPTH(PLACES)) ends (
         .clk, .rst, .in_valid(ended), .in_ready(end_ready), .in_data(end_in), .out_valid, .out_ready, .out_data(out_end)
     );
 

@@ -1,0 +1,9 @@
+"""The raymarcher: distance fields, beside the triangles in the band buffer. The work is done by rtl/raymarch."""
+
+from .scanout import RTL
+
+_COMMON, _TRIANGLE, _MARCH = (RTL / folder for folder in ("common", "triangle", "raymarch"))
+
+FIELD_UNIT = [_MARCH / "march_pkg.sv", _COMMON / "delay.sv",
+              *(_MARCH / f"{name}.sv" for name in ("menger_level", "field_menger", "field_box", "field_unit"))]
+RING_LANE = [*FIELD_UNIT, _COMMON / "fifo.sv", _TRIANGLE / "multiply_add.sv", _MARCH / "ring_lane.sv"]

@@ -1,0 +1,7 @@
+//! The raymarcher's parts against the model's.
+
+#[path = "../../../../firmware/model/tests/common/mod.rs"]
+mod common;
+mod lane;
+mod ports;
+mod scenes;

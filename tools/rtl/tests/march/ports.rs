@@ -1,0 +1,137 @@
+//! The raymarcher's constants and items as its ports have them.
+
+use glint_model::march::{Outcome, Ray, Setup, Solid, State};
+use glint_rtl::{Bits, Module};
+
+/// A pixel's place: parity of its band, line in it, column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Place {
+    pub odd: bool,
+    pub line: u32,
+    pub column: u32,
+    pub eye: usize,
+}
+
+const PLACE_BITS: usize = 19;
+
+impl Place {
+    fn number(&self) -> u64 {
+        let flags = u64::from(self.odd) << 18 | (self.eye as u64) << 17;
+        flags | u64::from(self.line) << 11 | u64::from(self.column)
+    }
+
+    fn of(number: u64) -> Self {
+        Self {
+            odd: number >> 18 & 1 == 1,
+            eye: (number >> 17 & 1) as usize,
+            line: (number >> 11 & 0x3F) as u32,
+            column: (number & 0x7FF) as u32,
+        }
+    }
+}
+
+/// Three numbers of so many bits, the first in the lowest.
+pub fn three(bits: usize, numbers: [i64; 3]) -> Bits {
+    (0..3).fold(Bits::default(), |all, i| {
+        all.with(bits * i, bits, numbers[i])
+    })
+}
+
+pub fn ray(place: Place, ray: &Ray) -> Bits {
+    three(18, ray.direction.map(i64::from))
+        .with(54, 23, ray.start)
+        .with(77, 10, ray.length)
+        .with(87, PLACE_BITS, place.number())
+}
+
+/// Where a ray has come to, as the end of one says. What does not count is 0: surface and t without a hit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct End {
+    pub state: u64,
+    pub surface: u64,
+    pub t: u64,
+    pub steps: u64,
+    pub length: u64,
+    pub height: u64,
+}
+
+impl End {
+    pub fn expected(ray: &Ray, outcome: &Outcome) -> Self {
+        let (state, surface, t) = match outcome.state {
+            State::Miss => (0, 0, 0),
+            State::Hit(surface) => (1, surface.code().into(), outcome.t.into()),
+            State::Undecided => (2, 0, 0),
+        };
+        Self {
+            state,
+            surface,
+            t,
+            steps: outcome.steps.into(),
+            length: ray.length.into(),
+            height: (ray.direction[2].max(0) >> 9) as u64,
+        }
+    }
+
+    pub fn of(item: &Bits) -> (Place, Self) {
+        let state = item.field(11, 2);
+        let if_hit = |value| if state == 1 { value } else { 0 };
+        let end = Self {
+            height: item.field(0, 8),
+            surface: if_hit(item.field(8, 3)),
+            state,
+            steps: item.field(13, 8),
+            t: if_hit(item.field(21, 23)),
+            length: item.field(44, 10),
+        };
+        (Place::of(item.field(54, PLACE_BITS)), end)
+    }
+}
+
+fn solid(solid: &Solid) -> Bits {
+    let all = Bits::default();
+    match *solid {
+        Solid::Menger { depth, half, .. } => {
+            all.with(93, 6, (1_i64 << depth) - 1).with(71, 22, half)
+        }
+        Solid::Box {
+            half,
+            room,
+            repeated,
+        } => {
+            let all = (0..3).fold(all, |all, i| {
+                all.with(2 + i, 1, u8::from(half[i].is_some())).with(
+                    5 + 22 * i,
+                    22,
+                    half[i].unwrap_or(0),
+                )
+            });
+            all.with(0, 1, u8::from(repeated))
+                .with(1, 1, u8::from(room))
+                .with(99, 1, 1)
+        }
+        _ => panic!("{solid:?}: no port for it"),
+    }
+}
+
+/// Sets what holds during a frame, as far as a lane wants it.
+pub fn set_lane(module: &mut Module, setup: &Setup) {
+    let [left, right] = setup.eyes.map(|eye| eye.origin.map(i64::from));
+    let origins = (0..3).fold(three(25, left), |all, i| {
+        all.with(75 + 25 * i, 25, right[i])
+    });
+    let tuning = &setup.tuning;
+    let tuning = Bits::default()
+        .with(0, 23, tuning.far)
+        .with(23, 8, tuning.cap)
+        .with(31, 4, tuning.footprint)
+        .with(35, 16, tuning.threshold);
+    for (name, value) in [
+        ("origins", origins),
+        ("bounds", three(24, setup.bounds.map(i64::from))),
+        ("solid", solid(&setup.solid)),
+        ("tuning", tuning),
+    ] {
+        let port = module.port(name);
+        module.set(port, value);
+    }
+}

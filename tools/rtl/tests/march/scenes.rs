@@ -1,0 +1,76 @@
+//! Fields and cameras: those that somebody would look at, and those at the limits.
+
+use glint_core::camera::View;
+use glint_core::field::Field;
+use glint_core::fixed::Q32_32;
+use glint_model::SIZES;
+use glint_model::march::{FieldOptions, Setup, Stereo, Tint};
+
+use crate::common::{Camera, Random};
+
+/// What is built without anything but the sponge.
+pub const SPONGES: [&str; 4] = ["menger:4", "menger:3", "menger:2", "menger:1"];
+
+/// Every field that there is.
+pub const FIELDS: [&str; 12] = [
+    "menger:4",
+    "menger:6",
+    "menger:5",
+    "menger:1",
+    "box:1,0.5,0.25",
+    "box:0.01,12,3",
+    "cubes:2,0.5",
+    "cubes:0.25,0.1",
+    "cubes:16,7.9",
+    "planes:0.5",
+    "planes:12",
+    "planes:0.01",
+];
+
+/// A camera somewhere in a field or beside it, that looks anywhere.
+pub fn camera(random: &mut Random) -> View {
+    let distance = match random.bits() % 4 {
+        0 => random.real(0.0, 1.0),
+        1 => random.real(0.5, 2.0),
+        2 => random.real(0.0, 8.0),
+        _ => 1.2,
+    };
+    let eye = random.direction().map(|x| x * distance);
+    let towards = match random.bits() % 4 {
+        0 => random.direction(),
+        // Along an axis, but for a little.
+        1 => {
+            let axis = (random.bits() % 3) as usize;
+            let little = random.logarithmic(1e-7, 1e-1);
+            let mut towards = random.direction().map(|x| x * little);
+            towards[axis] = if random.coin() { 1.0 } else { -1.0 };
+            towards
+        }
+        _ => eye.map(|x| random.real(-0.7, 0.7) - x),
+    };
+    let half_width = random.logarithmic(0.05, 4.0);
+    let near = random.logarithmic(0.01, 2.0);
+    Camera::aimed(random, eye, towards, [0.0; 2], half_width, near).rounded()
+}
+
+/// The constants of a frame: how finely it is marched is random too, and how many eyes look.
+pub fn setup(random: &mut Random, fields: &[&str]) -> Setup {
+    let field = Field::parse(fields[random.bits() as usize % fields.len()]).unwrap();
+    let mut options = FieldOptions::default();
+    if random.coin() {
+        options.stereo = Some(Stereo {
+            half_separation: Q32_32::from_num(random.real(0.0, 1.0)),
+            zero_parallax: Q32_32::from_num(random.real(1.0, 5.0)),
+            tint: Tint::RedBlue,
+        });
+    }
+    if random.coin() {
+        let tuning = &mut options.tuning;
+        tuning.threshold = random.logarithmic(1.0, 65536.0) as u32;
+        tuning.footprint = random.integer(7, 15) as u32;
+        tuning.cap = random.logarithmic(1.0, 256.0) as u32;
+        tuning.far = random.logarithmic(1.0, 8_388_608.0) as u32;
+    }
+    let size = SIZES[random.bits() as usize % SIZES.len()];
+    Setup::new(&field, &camera(random), size, &options).unwrap()
+}
