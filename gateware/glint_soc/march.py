@@ -7,3 +7,5 @@ _COMMON, _TRIANGLE, _MARCH = (RTL / folder for folder in ("common", "triangle", 
 FIELD_UNIT = [_MARCH / "march_pkg.sv", _COMMON / "delay.sv",
               *(_MARCH / f"{name}.sv" for name in ("menger_level", "field_menger", "field_box", "field_unit"))]
 RING_LANE = [*FIELD_UNIT, _COMMON / "fifo.sv", _TRIANGLE / "multiply_add.sv", _MARCH / "ring_lane.sv"]
+RAY_GENERATOR = [_MARCH / "march_pkg.sv", _COMMON / "delay.sv", _COMMON / "skid_buffer.sv", _TRIANGLE / "multiply_add.sv",
+                 _MARCH / "inverse_table.sv", _MARCH / "ray_generator.sv"]

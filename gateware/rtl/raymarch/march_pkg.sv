@@ -3,6 +3,8 @@
 `default_nettype none
 
 package march_pkg;
+    // Each module uses some.
+    /* verilator lint_off UNUSEDPARAM */
     // t, u11.12; a coordinate of a point as fields see it, s10.12, and before that, s13.12; a direction, s1.17.
     localparam int unsigned T_BITS         = 23;
     localparam int unsigned POINT_BITS     = 22;
@@ -16,6 +18,8 @@ package march_pkg;
         logic [5:0]  line;
         logic [10:0] column;
     } place_t;
+
+    localparam int unsigned PLACE_BITS = 19;
 
     // A ray at its beginning.
     typedef struct packed {
@@ -37,6 +41,7 @@ package march_pkg;
         logic [2:0]        surface;
         logic [7:0]        height;
     } end_t;
+    localparam int unsigned END_BITS = PLACE_BITS + 10 + T_BITS + 8 + 2 + 3 + 8;
 
     // What there is; all of it holds while a frame is drawn.
     typedef struct packed {
@@ -64,6 +69,7 @@ package march_pkg;
     function automatic int unsigned field_clocks(input int unsigned levels, input bit boxes);
         field_clocks = levels == 0 ? 3 : 3 * levels + 3 + (boxes ? 1 : 0);
     endfunction
+    /* verilator lint_on UNUSEDPARAM */
 endpackage
 
 `default_nettype wire

@@ -18,7 +18,7 @@ module ring_lane #(
     parameter int unsigned LEVELS = 4,
     parameter bit          BOXES  = 1'b0,
     parameter bit          STEREO = 1'b1,
-    parameter int unsigned PLACES = 64
+    parameter int unsigned PLACES = 32
 ) (
     input  wire                      clk,
     input  wire                      rst,
@@ -49,6 +49,7 @@ module ring_lane #(
         logic [9:0]                     length;
         logic [2:0][march_pkg::DIRECTION_BITS-1:0] direction;
     } cargo_t;
+    localparam int unsigned CARGO_BITS = march_pkg::PLACE_BITS + 10 + 3 * march_pkg::DIRECTION_BITS;
 
     logic [DISTANCE+2:0] occupied;
     logic [COUNT_BITS-1:0] places;
@@ -142,7 +143,7 @@ module ring_lane #(
 
     delay #(.WIDTH(march_pkg::T_BITS), .CLOCKS(DISTANCE - 1)) way (.clk, .enable(1'b1), .in(t), .out(t_early));
     delay #(.WIDTH(8), .CLOCKS(DISTANCE)) counted (.clk, .enable(1'b1), .in(steps), .out(steps_1));
-    delay #(.WIDTH($bits(cargo_t)), .CLOCKS(DISTANCE + 2)) carried (.clk, .enable(1'b1), .in(cargo), .out(last_cargo));
+    delay #(.WIDTH(CARGO_BITS), .CLOCKS(DISTANCE + 2)) carried (.clk, .enable(1'b1), .in(cargo), .out(last_cargo));
 
     always_ff @(posedge clk) begin
         t_1       <= t_early;
@@ -176,14 +177,13 @@ module ring_lane #(
 
     march_pkg::end_t end_in;
 
-    assign end_in = '{
-        place: last_cargo.place, length: last_cargo.length, t: last_t, steps: last_steps, state: last_state,
-        surface: last_surface,
-        height: last_cargo.direction[2][march_pkg::DIRECTION_BITS-1] ? '0 : last_cargo.direction[2][march_pkg::DIRECTION_BITS-2 -: 8]
+    assign end_in = {
+        last_cargo.place, last_cargo.length, last_t, last_steps, last_state, last_surface,
+        last_cargo.direction[2][17] ? 8'd0 : last_cargo.direction[2][16:9]
     };
 
     // There is a place: `end_ready` is always high when a ray ends.
-    fifo #(.WIDTH($bits(march_pkg::end_t)), .DEPTH(PLACES)) ends (
+    fifo #(.WIDTH(march_pkg::END_BITS), .DEPTH(PLACES)) ends (
         .clk, .rst, .in_valid(ended), .in_ready(end_ready), .in_data(end_in), .out_valid, .out_ready, .out_data(out_end)
     );
 

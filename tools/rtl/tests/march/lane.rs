@@ -88,9 +88,9 @@ impl Bench {
     }
 }
 
-/// Rays of each test: two million with `GLINT_RTL_RAYS=2000000`.
+/// Rays of each test: a million, or `GLINT_RTL_RAYS`.
 fn rays() -> usize {
-    std::env::var("GLINT_RTL_RAYS").map_or(100_000, |text| text.parse().unwrap())
+    std::env::var("GLINT_RTL_RAYS").map_or(1_000_000, |text| text.parse().unwrap())
 }
 
 fn random_rays(name: &str, fields: &[&str]) {

@@ -2,6 +2,7 @@
 
 #[path = "../../../../firmware/model/tests/common/mod.rs"]
 mod common;
+mod generator;
 mod lane;
 mod ports;
 mod scenes;

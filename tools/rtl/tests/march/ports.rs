@@ -135,3 +135,36 @@ pub fn set_lane(module: &mut Module, setup: &Setup) {
         module.set(port, value);
     }
 }
+
+/// Sets what holds during a frame, as far as the generator wants it, in bands of so many lines.
+pub fn set_generator(module: &mut Module, setup: &Setup, band_lines: u32) {
+    let [left, right] = setup.eyes;
+    let both = |bits: usize, [left, right]: [[i64; 3]; 2]| {
+        (0..3).fold(three(bits, left), |all, i| {
+            all.with(bits * (3 + i), bits, right[i])
+        })
+    };
+    let eyes = [left, right];
+    let number = |value: u32| Bits::from(u64::from(value));
+    for (name, value) in [
+        ("last_column", number(setup.width - 1)),
+        ("last_line", number(band_lines - 1)),
+        ("last_band", number(setup.height / band_lines - 1)),
+        ("stereo", number(setup.stereo.is_some().into())),
+        ("first", both(32, eyes.map(|eye| eye.first.map(i64::from)))),
+        ("across", three(32, setup.steps[0].map(i64::from))),
+        ("down", three(32, setup.steps[1].map(i64::from))),
+        ("near_limit", number(setup.near)),
+        (
+            "outside",
+            both(24, eyes.map(|eye| eye.outside.map(i64::from))),
+        ),
+        (
+            "negative",
+            both(1, eyes.map(|eye| eye.origin.map(|x| i64::from(x < 0)))),
+        ),
+    ] {
+        let port = module.port(name);
+        module.set(port, value);
+    }
+}

@@ -1,0 +1,35 @@
+// What is below 1/m for every m that begins with ten given bits: 2^10/(i + 1), u8.9 (docs/formats.md, "Rays"). Two of them at a time.
+//
+// Latency 2 clocks in which `enable` is high, throughput an answer a clock at each port.
+
+`default_nettype none
+
+module inverse_table (
+    input  wire         clk,
+    input  wire         enable,
+    input  wire  [9:0]  index_a,
+    output logic [16:0] inverse_a,
+    input  wire  [9:0]  index_b,
+    output logic [16:0] inverse_b
+);
+    (* ram_style = "block" *)
+    logic [16:0] inverses [0:1023];
+    logic [16:0] latched_a, latched_b;
+
+    initial begin
+        for (int i = 0; i < 1024; i++) inverses[i] = 17'(((1 << 19) - 2) / (i + 1));
+        // What is more than there are bits.
+        for (int i = 0; i < 3; i++) inverses[i] = '1;
+    end
+
+    always_ff @(posedge clk) begin
+        if (enable) begin
+            latched_a <= inverses[index_a];
+            latched_b <= inverses[index_b];
+            inverse_a <= latched_a;
+            inverse_b <= latched_b;
+        end
+    end
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,197 @@
+// The rays of a frame, one a clock, without division or square root (docs/formats.md, "Rays").
+//
+//   columns, lines ─▶ D = first + x·across + y·down ─▶ largest part ─▶ its inverse ─▶ direction = D·inverse
+//                                                          │                             │
+//                                 near·largest part ◀──────┘     inverses of its parts ◀─┘
+//                                        └─▶ start: the largest of it and of outside·inverses: where the ray comes to the box
+//
+// D grows by additions of 32 bits, so it is exactly what the formula says. Rays of the bands follow each other, in a band its lines
+// from the top, in a line the columns from the left; with `stereo` each line comes for the left eye and then for the right one.
+//
+// `start` (one clock, not while `busy`) begins the frame; parameters hold until it has ended. Latency 16 clocks, throughput a ray a
+// clock. Out: a stream, valid/ready, a ray stays until it has moved. `rst` ends the frame.
+
+`default_nettype none
+
+module ray_generator #(
+    parameter bit STEREO = 1'b1
+) (
+    input  wire                       clk,
+    input  wire                       rst,
+    input  wire                       start,
+    output logic                      busy,
+    // Frame: columns - 1, lines - 1 of a band, bands - 1.
+    input  wire  [10:0]               last_column,
+    input  wire  [5:0]                last_line,
+    input  wire  [5:0]                last_band,
+    input  wire                       stereo,
+    input  wire  [1:0][2:0][31:0]     first,
+    input  wire  [2:0][31:0]          across,
+    input  wire  [2:0][31:0]          down,
+    input  wire  [22:0]               near_limit,
+    // Of both eyes: how far they are outside of the box along each axis, and on which side.
+    input  wire  [1:0][2:0][23:0]     outside,
+    input  wire  [1:0][2:0]           negative,
+    // Rays.
+    output logic                      out_valid,
+    input  wire                       out_ready,
+    output march_pkg::ray_t           out_ray
+);
+    // Rays that leave together with the clocks since their D was there.
+    localparam int unsigned LAST = 15;
+
+    logic          enable, running, ends_line, ends_eye, ends_band, ends;
+    logic [LAST:0] valid;
+    march_pkg::place_t place;
+    logic [5:0]    band;
+    logic [2:0][31:0] d, row, next_row;
+
+    assign ends_line = place.column == last_column;
+    assign ends_eye  = ends_line && (!STEREO || !stereo || place.eye);
+    assign ends_band = ends_eye && place.line == last_line;
+    assign ends      = ends_band && band == last_band;
+    assign valid[0]  = running;
+    assign busy      = valid != '0 || out_valid;
+
+    always_ff @(posedge clk) begin
+        if (start) begin
+            running <= 1'b1;
+            place   <= '0;
+            band    <= '0;
+            d       <= first[0];
+            row     <= '0;
+            next_row <= down;
+        end else if (running && enable) begin
+            place.column <= ends_line ? '0 : place.column + 1'b1;
+            for (int i = 0; i < 3; i++) begin
+                if (!ends_line)    d[i] <= d[i] + across[i];
+                else if (ends_eye) d[i] <= first[0][i] + next_row[i];
+                else               d[i] <= first[1][i] + row[i];
+            end
+            if (ends_line) place.eye <= !ends_eye;
+            if (ends_eye) begin
+                place.line <= ends_band ? '0 : place.line + 1'b1;
+                row        <= next_row;
+                for (int i = 0; i < 3; i++) next_row[i] <= next_row[i] + down[i];
+            end
+            if (ends_band) begin
+                place.odd <= !place.odd;
+                band      <= band + 1'b1;
+            end
+            if (ends) running <= 1'b0;
+        end
+        if (enable) valid[LAST:1] <= valid[LAST-1:0];
+
+        if (rst) begin
+            running       <= 1'b0;
+            valid[LAST:1] <= '0;
+        end
+    end
+
+    // 1: the first bits of each part; 2: the largest; 4: its inverse.
+    logic [9:0]  part_x, part_y, part_z, length_2, length_10;
+    logic [16:0] inverse_4;
+    logic [2:0][24:0] d_0, d_4;
+
+    always_comb begin
+        for (int i = 0; i < 3; i++) d_0[i] = d[i][30:6];
+    end
+
+    always_ff @(posedge clk) begin
+        if (enable) begin
+            part_x <= d_0[0][23:14] ^ {10{d_0[0][24]}};
+            part_y <= d_0[1][23:14] ^ {10{d_0[1][24]}};
+            part_z <= d_0[2][23:14] ^ {10{d_0[2][24]}};
+            if (part_z > part_x && part_z > part_y) length_2 <= part_z;
+            else if (part_x > part_y)               length_2 <= part_x;
+            else                                    length_2 <= part_y;
+        end
+    end
+
+    delay #(.WIDTH(75), .CLOCKS(4)) wait_for_inverse (.clk, .enable, .in(d_0), .out(d_4));
+
+    // 7: the direction. 9: the inverses of its parts.
+    logic [2:0][17:0] direction_7;
+    logic [2:0][9:0]  index_7;
+    logic [2:0][16:0] inverse_9;
+
+    inverse_table length_and_x (
+        .clk, .enable, .index_a(length_2), .inverse_a(inverse_4), .index_b(index_7[0]), .inverse_b(inverse_9[0])
+    );
+    inverse_table y_and_z (
+        .clk, .enable, .index_a(index_7[1]), .inverse_a(inverse_9[1]), .index_b(index_7[2]), .inverse_b(inverse_9[2])
+    );
+
+    march_pkg::place_t place_9;
+    logic [22:0]      near_13;
+    logic [33:0]      near_product;
+    logic [2:0][22:0] entry_13;
+
+    delay #(.WIDTH(march_pkg::PLACE_BITS), .CLOCKS(9)) place_waits (.clk, .enable, .in(place), .out(place_9));
+    delay #(.WIDTH(10), .CLOCKS(8)) length_waits (.clk, .enable, .in(length_2), .out(length_10));
+
+    // 10 to 12: where the ray comes to the box, along each axis.
+    for (genvar i = 0; i < 3; i++) begin : axes
+        logic signed [42:0] scaled;
+        logic signed [41:0] product;
+        logic [23:0]        outside_9;
+        logic               backwards_9, negative_9, comes_12;
+
+        multiply_add #(.BITS(43)) scale (
+            .clk, .enable, .a(d_4[i]), .b({1'b0, inverse_4}), .c(43'd1 << 15), .p(scaled)
+        );
+        assign direction_7[i] = scaled[33:16];
+        assign index_7[i]     = direction_7[i][16:7] ^ {10{direction_7[i][17]}};
+
+        delay #(.WIDTH(1), .CLOCKS(2)) sign (.clk, .enable, .in(direction_7[i][17]), .out(backwards_9));
+        assign outside_9  = STEREO && place_9.eye ? outside[1][i] : outside[0][i];
+        assign negative_9 = STEREO && place_9.eye ? negative[1][i] : negative[0][i];
+        delay #(.WIDTH(1), .CLOCKS(3)) coming (.clk, .enable, .in(negative_9 != backwards_9), .out(comes_12));
+
+        multiply_add #(.BITS(42)) entry (
+            .clk, .enable, .a({1'b0, outside_9}), .b({1'b0, inverse_9[i]}), .c('0), .p(product)
+        );
+
+        // Saturates.
+        always_ff @(posedge clk) begin
+            if (enable) entry_13[i] <= product[31:9] | {23{product[41:32] != '0}};
+            if (enable && !comes_12) entry_13[i] <= '0;
+        end
+
+        wire _unused = &{1'b0, scaled[42:34], scaled[15:0], product[8:0]};
+    end
+
+    // 13: the near plane. Its product comes with those of the box.
+    multiply_add #(.BITS(34)) at_near (
+        .clk, .enable, .a({2'b0, near_limit}), .b({7'b0, {1'b0, length_10}} + 18'd1), .c('0), .p(near_product)
+    );
+    assign near_13 = near_product[32:10];
+
+    // 14, 15: the largest of the four.
+    logic [22:0] farther_14, later_14, start_15;
+
+    always_ff @(posedge clk) begin
+        if (enable) begin
+            farther_14 <= entry_13[0] > entry_13[1] ? entry_13[0] : entry_13[1];
+            later_14   <= entry_13[2] > near_13 ? entry_13[2] : near_13;
+            start_15   <= farther_14 > later_14 ? farther_14 : later_14;
+        end
+    end
+
+    march_pkg::place_t place_15;
+    logic [9:0]        length_15;
+    logic [2:0][17:0]  direction_15;
+
+    delay #(.WIDTH(march_pkg::PLACE_BITS), .CLOCKS(6)) place_goes (.clk, .enable, .in(place_9), .out(place_15));
+    delay #(.WIDTH(10), .CLOCKS(5)) length_goes (.clk, .enable, .in(length_10), .out(length_15));
+    delay #(.WIDTH(54), .CLOCKS(8)) direction_goes (.clk, .enable, .in(direction_7), .out(direction_15));
+
+    skid_buffer #(.WIDTH(march_pkg::PLACE_BITS + 10 + 23 + 54)) leaving (
+        .clk, .rst, .in_valid(valid[LAST]), .in_ready(enable), .in_data({place_15, length_15, start_15, direction_15}),
+        .out_valid, .out_ready, .out_data(out_ray)
+    );
+
+    wire _unused = &{1'b0, d[0][31], d[0][5:0], d[1][31], d[1][5:0], d[2][31], d[2][5:0], near_product[33], near_product[9:0]};
+endmodule
+
+`default_nettype wire
