@@ -110,6 +110,7 @@ endmodule
 
 module normalise (
     input  wire         clk,
+    input  wire         enable,
     input  wire  [39:0] in,
     output logic [23:0] m,
     output logic [5:0]  lead

@@ -9,3 +9,6 @@ FIELD_UNIT = [_MARCH / "march_pkg.sv", _COMMON / "delay.sv",
 RING_LANE = [*FIELD_UNIT, _COMMON / "fifo.sv", _TRIANGLE / "multiply_add.sv", _MARCH / "ring_lane.sv"]
 RAY_GENERATOR = [_MARCH / "march_pkg.sv", _COMMON / "delay.sv", _COMMON / "skid_buffer.sv", _TRIANGLE / "multiply_add.sv",
                  _MARCH / "inverse_table.sv", _MARCH / "ray_generator.sv"]
+RAY_PAINT = [_MARCH / "march_pkg.sv", _COMMON / "delay.sv", _COMMON / "skid_buffer.sv", _TRIANGLE / "multiply_add.sv",
+             _TRIANGLE / "normalise.sv",
+             *(_MARCH / f"{name}.sv" for name in ("inverse_table", "depth_code", "paint_table", "ray_paint"))]

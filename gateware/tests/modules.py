@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 
 from glint_soc import scanout
-from glint_soc.march import RAY_GENERATOR, RING_LANE
+from glint_soc.march import RAY_GENERATOR, RAY_PAINT, RING_LANE
 from glint_soc.triangle import BAND_BUFFER, SETUP, TRIANGLE_CONTROL, TRIANGLE_ENGINE, TRIANGLE_RASTER, VERTEX_STAGE
 
 
@@ -48,6 +48,7 @@ MODULES = [
     Module(top="triangle_raster", sources=TRIANGLE_RASTER, variants={"triangle_raster_smooth": _SMOOTH}),
     Module(top="triangle_engine", sources=TRIANGLE_ENGINE, variants={"triangle_engine_smooth": _SMOOTH}),
     Module(top="ray_generator", sources=RAY_GENERATOR),
+    Module(top="ray_paint", sources=RAY_PAINT),
     Module(top="ring_lane", sources=RING_LANE, variants={"ring_lane_all": _ALL_FIELDS}),
     Module(top="triangle_control", sources=TRIANGLE_CONTROL, variants={"triangle_control_smooth": _SMOOTH}),
 ]

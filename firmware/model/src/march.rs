@@ -16,5 +16,5 @@ mod setup;
 pub use field::{Sample, Solid, Surface};
 pub use paint::{Palette, paint};
 pub use ray::{Outcome, Ray, State};
-pub use render::{FieldStats, render_field};
+pub use render::{FieldStats, compose, render_field, rgb565};
 pub use setup::{DEFAULT_TUNING, Eye, FieldOptions, Setup, Stereo, Tint, Tuning};

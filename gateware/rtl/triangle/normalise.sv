@@ -1,11 +1,12 @@
 // A u40 that is not 0 as m·2^(lead − 23): lead = floor(log2 in), m = floor(in·2^(23 − lead)) in [2^23, 2^24).
 //
-// Latency 3 clocks for m and lead, throughput one a clock. A shift in three parts: 16s, 4s and 1s.
+// Latency 3 clocks in which `enable` is high for m and lead, throughput one a clock. A shift in three parts: 16s, 4s and 1s.
 
 `default_nettype none
 
 module normalise (
     input  wire         clk,
+    input  wire         enable,
     input  wire  [39:0] in,
     output logic [23:0] m,
     output logic [5:0]  lead
@@ -22,27 +23,29 @@ module normalise (
     end
 
     always_ff @(posedge clk) begin
-        unique case (sixteens)
-            2'd0:    by_16 <= in;
-            2'd1:    by_16 <= {in[23:0], 16'b0};
-            default: by_16 <= {in[7:0], 32'b0};
-        endcase
-        sixteens_1 <= sixteens;
-        unique case (fours)
-            2'd0:    by_4 <= by_16[39:13];
-            2'd1:    by_4 <= by_16[35:9];
-            2'd2:    by_4 <= by_16[31:5];
-            default: by_4 <= by_16[27:1];
-        endcase
-        sixteens_2 <= sixteens_1;
-        fours_2    <= fours;
-        unique case (ones)
-            2'd0:    m <= by_4[26:3];
-            2'd1:    m <= by_4[25:2];
-            2'd2:    m <= by_4[24:1];
-            default: m <= by_4[23:0];
-        endcase
-        lead <= 6'd39 - {sixteens_2, fours_2, ones};
+        if (enable) begin
+            unique case (sixteens)
+                2'd0:    by_16 <= in;
+                2'd1:    by_16 <= {in[23:0], 16'b0};
+                default: by_16 <= {in[7:0], 32'b0};
+            endcase
+            sixteens_1 <= sixteens;
+            unique case (fours)
+                2'd0:    by_4 <= by_16[39:13];
+                2'd1:    by_4 <= by_16[35:9];
+                2'd2:    by_4 <= by_16[31:5];
+                default: by_4 <= by_16[27:1];
+            endcase
+            sixteens_2 <= sixteens_1;
+            fours_2    <= fours;
+            unique case (ones)
+                2'd0:    m <= by_4[26:3];
+                2'd1:    m <= by_4[25:2];
+                2'd2:    m <= by_4[24:1];
+                default: m <= by_4[23:0];
+            endcase
+            lead <= 6'd39 - {sixteens_2, fours_2, ones};
+        end
     end
 
     wire _unused = by_16[0];

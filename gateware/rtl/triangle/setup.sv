@@ -136,7 +136,7 @@ module setup #(
         .clk, .enable, .count, .camera_n, .front(t.front), .normal(t.normal), .colour(t.colour), .lit
     );
     // From clock 3 of stage 1 to clock 6 of stage 2, or sooner where the beat is longer.
-    normalise normalised (.clk, .in(t.area), .m, .lead);
+    normalise normalised (.clk, .enable(1'b1), .in(t.area), .m, .lead);
     reciprocal reciprocal_of_area (
         .clk, .rst, .in_valid(count == 4'd3), .in_ready(reciprocal_ready), .in_m(m),
         .out_valid(reciprocal_done), .out_y(y)

@@ -98,7 +98,7 @@ impl Setup {
 }
 
 /// The colour nearest to three channels of eight bits, but for a half step near white.
-fn rgb565([r, g, b]: [u8; 3]) -> u16 {
+pub fn rgb565([r, g, b]: [u8; 3]) -> u16 {
     let narrow = |x: u8, bits: u32| {
         ((u32::from(x) + (0x80 >> bits)) >> (8 - bits)).min((1 << bits) - 1) as u16
     };

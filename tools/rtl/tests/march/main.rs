@@ -4,5 +4,6 @@
 mod common;
 mod generator;
 mod lane;
+mod paint;
 mod ports;
 mod scenes;

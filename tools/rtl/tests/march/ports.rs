@@ -1,6 +1,6 @@
 //! The raymarcher's constants and items as its ports have them.
 
-use glint_model::march::{Outcome, Ray, Setup, Solid, State};
+use glint_model::march::{Outcome, Palette, Ray, Setup, Solid, State, paint, rgb565};
 use glint_rtl::{Bits, Module};
 
 /// A pixel's place: parity of its band, line in it, column.
@@ -166,5 +166,103 @@ pub fn set_generator(module: &mut Module, setup: &Setup, band_lines: u32) {
     ] {
         let port = module.port(name);
         module.set(port, value);
+    }
+}
+
+/// The end of a ray.
+pub fn end(place: Place, ray: &Ray, outcome: &Outcome) -> Bits {
+    let End {
+        state,
+        surface,
+        t,
+        steps,
+        length,
+        height,
+    } = End::expected(ray, outcome);
+    Bits::default()
+        .with(0, 8, height)
+        .with(8, 3, surface)
+        .with(11, 2, state)
+        .with(13, 8, steps)
+        .with(21, 23, t)
+        .with(44, 10, length)
+        .with(54, PLACE_BITS, place.number())
+}
+
+fn colour([r, g, b]: [u8; 3]) -> u64 {
+    u64::from(b) << 16 | u64::from(g) << 8 | u64::from(r)
+}
+
+/// Sets what holds during a frame, as far as painting wants it, and fills its tables.
+pub fn set_paint(module: &mut Module, setup: &Setup, palette: &Palette) {
+    let colours = palette
+        .faces
+        .into_iter()
+        .chain([palette.undecided, palette.zenith]);
+    let colours = (0..).zip(colours).fold(Bits::default(), |all, (i, one)| {
+        all.with(24 * i, 24, colour(one))
+    });
+    let number = |bits: usize, value: i64| Bits::default().with(0, bits, value);
+    for (name, value) in [
+        ("stereo", number(2, setup.stereo.is_some().into())),
+        ("stride", number(8, (setup.width / 8).into())),
+        ("depth_mantissa", number(17, setup.depth.mantissa.into())),
+        ("depth_exponent", number(6, setup.depth.exponent.into())),
+        ("fog_shift", number(3, palette.fog_shift.into())),
+        ("palette", colours),
+        ("horizon", number(24, colour(palette.horizon) as i64)),
+    ] {
+        let port = module.port(name);
+        module.set(port, value);
+    }
+    let [write, entry, part] =
+        ["table_write", "table_entry", "table_part"].map(|name| module.port(name));
+    module.set(write, 1);
+    let parts = palette.fog.iter().chain(&palette.occlusion);
+    for (number, &value) in (0..).zip(parts) {
+        module.set(entry, number);
+        module.set(part, u64::from(value));
+        module.clock();
+    }
+    module.set(write, 0);
+}
+
+/// A pixel as it goes to the band buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Pixel {
+    pub eye: u64,
+    pub row: u64,
+    pub line: u64,
+    pub column: u64,
+    pub mask: u64,
+    pub code: u64,
+    pub colour: u64,
+}
+
+/// What painting makes of an end.
+pub fn pixel(
+    setup: &Setup,
+    palette: &Palette,
+    place: Place,
+    ray: &Ray,
+    outcome: &Outcome,
+) -> Pixel {
+    let colour = paint(setup, palette, ray, outcome);
+    let code = match outcome.state {
+        State::Hit(_) => setup.depth_code(ray, outcome.t),
+        _ => 0,
+    };
+    let colour = match setup.stereo {
+        None => rgb565(colour),
+        Some(_) => u16::from_le_bytes([colour[1]; 2]),
+    };
+    Pixel {
+        eye: place.eye as u64,
+        row: u64::from(place.line * setup.width / 8 + place.column / 8),
+        line: place.line.into(),
+        column: u64::from(place.column / 8),
+        mask: 1 << (place.column % 8),
+        code: code.into(),
+        colour: colour.into(),
     }
 }

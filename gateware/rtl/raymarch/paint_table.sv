@@ -1,0 +1,37 @@
+// What fog hides and what light is left, 256 entries of 8 bits each, in one block RAM.
+//
+// Latency 2 clocks in which `enable` is high, throughput a pair a clock. A write takes the place of a look at the fog.
+
+`default_nettype none
+
+module paint_table (
+    input  wire        clk,
+    input  wire        enable,
+    input  wire        write,
+    // {1: light, 0: fog; entry}
+    input  wire  [8:0] write_entry,
+    input  wire  [7:0] write_part,
+    input  wire  [7:0] fog_entry,
+    output logic [7:0] fog,
+    input  wire  [7:0] light_entry,
+    output logic [7:0] light
+);
+    (* ram_style = "block", no_rw_check *)
+    logic [7:0] parts [0:511];
+    logic [7:0] latched_fog, latched_light;
+    logic [8:0] entry_a;
+
+    assign entry_a = write ? write_entry : {1'b0, fog_entry};
+
+    always_ff @(posedge clk) begin
+        if (write)       parts[entry_a] <= write_part;
+        else if (enable) latched_fog <= parts[entry_a];
+        if (enable) begin
+            latched_light <= parts[{1'b1, light_entry}];
+            fog           <= latched_fog;
+            light         <= latched_light;
+        end
+    end
+endmodule
+
+`default_nettype wire

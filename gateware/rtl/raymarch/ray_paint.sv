@@ -1,0 +1,191 @@
+// Pixels of the ends of rays: colour by surface, darkened and faded, and depth (docs/formats.md, "Ends").
+//
+//             ┌─▶ t·inverse ─▶ depth ─┬─▶ depth_code ───────────────────────────────┐
+//   ends ─────┤                       └─▶ fog ─┐                                    ├─▶ group of one pixel
+//             ├─▶ steps ─▶ light ─────┐        ▼                                    │
+//             └─▶ surface ─▶ colour ─▶ × ─▶ mixed with the horizon ─▶ RGB565, L8 ───┘
+//
+// A pixel comes out as a group of the band buffer: its row, line and column of eight pixels, a mask of one lane, and one
+// code and colour for all lanes. With `stereo` the colour is the luminance, twice, and `out_eye` says which half counts.
+//
+// Streams are valid/ready. Latency 30 clocks, throughput a pixel a clock. Parameters hold while anything is inside.
+
+`default_nettype none
+
+module ray_paint (
+    input  wire                     clk,
+    input  wire                     rst,
+    // Frame.
+    input  wire                     stereo,
+    // Columns of eight of a line: 40, 80, 160.
+    input  wire  [7:0]              stride,
+    input  wire  [16:0]             depth_mantissa,
+    input  wire  signed [5:0]       depth_exponent,
+    input  wire  [2:0]              fog_shift,
+    // {blue, green, red} of eight bits: the six faces, a ray that was given up, the zenith.
+    input  wire  [7:0][23:0]        palette,
+    input  wire  [23:0]             horizon,
+    input  wire                     table_write,
+    input  wire  [8:0]              table_entry,
+    input  wire  [7:0]              table_part,
+    // Ends.
+    input  wire                     in_valid,
+    output logic                    in_ready,
+    input  wire march_pkg::end_t    in_end,
+    // Groups.
+    output logic                    out_valid,
+    input  wire                     out_ready,
+    output logic                    out_eye,
+    output logic [10:0]             out_row,
+    output logic [5:0]              out_line,
+    output logic [7:0]              out_column,
+    output logic [7:0]              out_mask,
+    output logic [17:0]             out_code,
+    output logic [15:0]             out_colour,
+    output logic                    idle
+);
+    localparam int unsigned LAST = 29;
+
+    logic          enable;
+    logic [LAST:1] valid;
+
+    assign in_ready = enable;
+    assign idle     = valid == '0 && !out_valid;
+
+    always_ff @(posedge clk) begin
+        if (enable) valid <= {valid[LAST-1:1], in_valid};
+        if (rst) valid <= '0;
+    end
+
+    // 2: inverse. 5: depth.
+    logic [16:0]        inverse_2, unused_inverse;
+    logic [22:0]        t_2;
+    logic signed [42:0] product_5;
+    logic [17:0]        code_28;
+
+    inverse_table length_inverse (
+        .clk, .enable, .index_a(in_end.length), .inverse_a(inverse_2), .index_b('0), .inverse_b(unused_inverse)
+    );
+    delay #(.WIDTH(23), .CLOCKS(2)) t_waits (.clk, .enable, .in(in_end.t), .out(t_2));
+    multiply_add #(.BITS(43)) along (.clk, .enable, .a({2'b0, t_2}), .b({1'b0, inverse_2}), .c('0), .p(product_5));
+
+    depth_code coded (
+        .clk, .enable, .mantissa(depth_mantissa), .exponent(depth_exponent), .depth(product_5[39:0]), .code(code_28)
+    );
+
+    // 7: the entries of the tables. 9: what they say.
+    logic [18:0] deep_6;
+    logic [7:0]  fog_entry_7, fog_9, light_9, height_9, steps_7;
+
+    always_ff @(posedge clk) begin
+        if (enable) begin
+            deep_6      <= product_5[39:21] >> fog_shift;
+            fog_entry_7 <= deep_6[18:8] != '0 ? '1 : deep_6[7:0];
+        end
+    end
+
+    delay #(.WIDTH(8), .CLOCKS(7)) steps_wait (.clk, .enable, .in(in_end.steps), .out(steps_7));
+    delay #(.WIDTH(8), .CLOCKS(9)) height_waits (.clk, .enable, .in(in_end.height), .out(height_9));
+    paint_table fog_and_light (
+        .clk, .enable, .write(table_write), .write_entry(table_entry), .write_part(table_part),
+        .fog_entry(fog_entry_7), .fog(fog_9), .light_entry(steps_7), .light(light_9)
+    );
+
+    // 9: the colour. 10: of what there are how many 256ths.
+    march_pkg::state_t state_8, state_9;
+    logic [2:0]        surface_8;
+    logic [2:0][7:0]   colour_9, colour_10;
+    logic [7:0]        fog_part;
+    logic [8:0]        light_10, fog_10, fog_14;
+
+    delay #(.WIDTH(5), .CLOCKS(8)) ending (
+        .clk, .enable, .in({in_end.state, in_end.surface}), .out({state_8, surface_8})
+    );
+
+    assign fog_part = state_9 == march_pkg::HIT ? fog_9 : ~height_9;
+
+    always_ff @(posedge clk) begin
+        if (enable) begin
+            state_9  <= state_8;
+            colour_9 <= palette[state_8 == march_pkg::HIT ? surface_8 : state_8 == march_pkg::MISS ? 3'd7 : 3'd6];
+
+            colour_10 <= colour_9;
+            light_10  <= state_9 == march_pkg::HIT ? {1'b0, light_9} + 9'(light_9[7]) : 9'd256;
+            fog_10    <= state_9 == march_pkg::UNDECIDED ? '0 : {1'b0, fog_part} + 9'(fog_part[7]);
+        end
+    end
+
+    delay #(.WIDTH(9), .CLOCKS(4)) fog_waits (.clk, .enable, .in(fog_10), .out(fog_14));
+
+    // 13: darkened. 14: how far the horizon is from that. 17: faded.
+    logic [2:0][7:0] faded_17;
+
+    for (genvar i = 0; i < 3; i++) begin : channels
+        logic signed [25:0] lit_13, faded;
+        logic signed [8:0]  apart_14;
+        logic [7:0]         lit_16;
+
+        multiply_add #(.BITS(26)) darken (
+            .clk, .enable, .a({17'b0, colour_10[i]}), .b({9'b0, light_10}), .c('0), .p(lit_13)
+        );
+        always_ff @(posedge clk) if (enable) apart_14 <= $signed({1'b0, horizon[8*i +: 8]}) - $signed({1'b0, lit_13[15:8]});
+        delay #(.WIDTH(8), .CLOCKS(3)) lit_waits (.clk, .enable, .in(lit_13[15:8]), .out(lit_16));
+        multiply_add #(.BITS(26)) fade (
+            .clk, .enable, .a(25'(apart_14)), .b({9'b0, fog_14}), .c({10'b0, lit_16, 8'd128}), .p(faded)
+        );
+        assign faded_17[i] = faded[15:8];
+
+        wire _unused = &{1'b0, lit_13[25:16], lit_13[7:0], faded[25:16], faded[7:0]};
+    end
+
+    // 18: as the frame has it.
+    logic [15:0] colour_18, colour_29;
+
+    // Rounded, but for what would be too large.
+    function automatic logic [4:0] five(input logic [5:0] channel);
+        five = channel[5:1] == '1 ? '1 : channel[5:1] + 5'(channel[0]);
+    endfunction
+    function automatic logic [5:0] six(input logic [6:0] channel);
+        six = channel[6:1] == '1 ? '1 : channel[6:1] + 6'(channel[0]);
+    endfunction
+
+    always_ff @(posedge clk) begin
+        if (enable) colour_18 <= stereo ? {faded_17[1], faded_17[1]} : {five(faded_17[0][7:2]), six(faded_17[1][7:1]), five(faded_17[2][7:2])};
+    end
+
+    delay #(.WIDTH(16), .CLOCKS(11)) colour_waits (.clk, .enable, .in(colour_18), .out(colour_29));
+
+    // 29: all of it. A miss has no depth.
+    march_pkg::place_t place_26, place_29;
+    logic              hit_28;
+    logic [17:0]       code_29;
+    logic [8:0]        line_times_5;
+    logic [10:0]       first_row_28, row_29;
+    logic [7:0]        column_28;
+
+    delay #(.WIDTH(march_pkg::PLACE_BITS), .CLOCKS(26)) place_waits (.clk, .enable, .in(in_end.place), .out(place_26));
+    delay #(.WIDTH(march_pkg::PLACE_BITS), .CLOCKS(3)) place_goes (.clk, .enable, .in(place_26), .out(place_29));
+    delay #(.WIDTH(8), .CLOCKS(2)) column_waits (.clk, .enable, .in(place_26.column[10:3]), .out(column_28));
+    delay #(.WIDTH(1), .CLOCKS(28)) hit_waits (.clk, .enable, .in(in_end.state == march_pkg::HIT), .out(hit_28));
+
+    always_ff @(posedge clk) begin
+        if (enable) begin
+            line_times_5 <= {1'b0, place_26.line, 2'd0} + 9'(place_26.line);
+            if (stride[7])      first_row_28 <= {line_times_5[5:0], 5'd0};
+            else if (stride[6]) first_row_28 <= {line_times_5[6:0], 4'd0};
+            else                first_row_28 <= {line_times_5[7:0], 3'd0};
+            row_29  <= first_row_28 + 11'(column_28);
+            code_29 <= hit_28 ? code_28 : '0;
+        end
+    end
+
+    skid_buffer #(.WIDTH(1 + 11 + 6 + 8 + 8 + 18 + 16)) leaving (
+        .clk, .rst, .in_valid(valid[LAST]), .in_ready(enable),
+        .in_data({place_29.eye, row_29, place_29.line, place_29.column[10:3], 8'b1 << place_29.column[2:0], code_29, colour_29}),
+        .out_valid, .out_ready, .out_data({out_eye, out_row, out_line, out_column, out_mask, out_code, out_colour})
+    );
+
+    wire _unused = &{1'b0, unused_inverse, product_5[42:40], place_29.odd, line_times_5[8], stride[5:0]};
+endmodule
+
+`default_nettype wire
