@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 
 from glint_soc import scanout
-from glint_soc.march import RAY_GENERATOR, RAY_PAINT, RING_LANE
+from glint_soc.march import RAY_GENERATOR, RAY_PAINT, RAYMARCHER, RING_LANE
 from glint_soc.triangle import BAND_BUFFER, SETUP, TRIANGLE_CONTROL, TRIANGLE_ENGINE, TRIANGLE_RASTER, VERTEX_STAGE
 
 
@@ -49,6 +49,7 @@ MODULES = [
     Module(top="triangle_engine", sources=TRIANGLE_ENGINE, variants={"triangle_engine_smooth": _SMOOTH}),
     Module(top="ray_generator", sources=RAY_GENERATOR),
     Module(top="ray_paint", sources=RAY_PAINT),
+    Module(top="raymarcher", sources=RAYMARCHER, variants={"raymarcher_menger": {"LANES": 4, "LEVELS": 4, "BOXES": 0}}),
     Module(top="ring_lane", sources=RING_LANE, variants={"ring_lane_all": _ALL_FIELDS}),
     Module(top="triangle_control", sources=TRIANGLE_CONTROL, variants={"triangle_control_smooth": _SMOOTH}),
 ]

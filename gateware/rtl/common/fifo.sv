@@ -1,4 +1,4 @@
-// First in, first out: DEPTH places in LUTRAM and one in the output register, DEPTH + 1 in all.
+// First in, first out: DEPTH places in LUTRAM, or with BLOCK in block RAM, and one in the output register, DEPTH + 1 in all.
 //
 // Latency 2 clocks, throughput one item a clock. Stream contract on both sides: an item moves in a clock in which valid
 // and ready are high; valid does not wait for ready, and a payload stays as it is until it has moved. `in_ready` and
@@ -12,7 +12,8 @@
 
 module fifo #(
     parameter int unsigned WIDTH = 8,
-    parameter int unsigned DEPTH = 16
+    parameter int unsigned DEPTH = 16,
+    parameter bit          BLOCK = 1'b0
 ) (
     input  wire              clk,
     input  wire              rst,
@@ -25,8 +26,6 @@ module fifo #(
 );
     localparam int unsigned PLACE_BITS = $clog2(DEPTH);
 
-    (* ram_style = "distributed" *) logic [WIDTH-1:0] places [0:DEPTH-1];
-
     // One bit more than a place needs: equal pointers mean empty, pointers DEPTH apart mean full.
     logic [PLACE_BITS:0] head, tail;
     logic                stored, load;
@@ -36,13 +35,9 @@ module fifo #(
     assign load     = !out_valid || out_ready;
 
     always_ff @(posedge clk) begin
-        if (in_valid && in_ready) begin
-            places[head[PLACE_BITS-1:0]] <= in_data;
-            head <= head + 1'b1;
-        end
+        if (in_valid && in_ready) head <= head + 1'b1;
         if (load) begin
             out_valid <= stored;
-            out_data  <= places[tail[PLACE_BITS-1:0]];
             if (stored) tail <= tail + 1'b1;
         end
 
@@ -50,6 +45,22 @@ module fifo #(
             head      <= '0;
             tail      <= '0;
             out_valid <= 1'b0;
+        end
+    end
+
+    if (BLOCK) begin : in_block
+        (* ram_style = "block", no_rw_check *) logic [WIDTH-1:0] places [0:DEPTH-1];
+
+        always_ff @(posedge clk) begin
+            if (in_valid && in_ready) places[head[PLACE_BITS-1:0]] <= in_data;
+            if (load) out_data <= places[tail[PLACE_BITS-1:0]];
+        end
+    end else begin : in_luts
+        (* ram_style = "distributed" *) logic [WIDTH-1:0] places [0:DEPTH-1];
+
+        always_ff @(posedge clk) begin
+            if (in_valid && in_ready) places[head[PLACE_BITS-1:0]] <= in_data;
+            if (load) out_data <= places[tail[PLACE_BITS-1:0]];
         end
     end
 endmodule

@@ -31,8 +31,8 @@ module field_box (
     logic [2:0]         negative_1, negative_2;
     logic               z_over_x, z_over_y, x_over_y, big_is_z, big_is_x;
 
-    function automatic logic signed [22:0] beyond(input logic [21:0] k, input logic [21:0] side, input logic there);
-        beyond = there ? $signed({2'b0, k[20:0] ^ {21{k[21]}}}) - $signed({1'b0, side}) : {1'b1, 22'b0};
+    function automatic logic signed [22:0] over(input logic [21:0] k, input logic [21:0] side, input logic there);
+        over = there ? $signed({2'b0, k[20:0] ^ {21{k[21]}}}) - $signed({1'b0, side}) : {1'b1, 22'b0};
     endfunction
 
     assign big_is_z = z_over_x && z_over_y;
@@ -40,9 +40,9 @@ module field_box (
     assign big      = big_is_z ? z_2 : big_is_x ? x_2 : y_2;
 
     always_ff @(posedge clk) begin
-        x_1 <= beyond(place[0], half[0], has[0]);
-        y_1 <= beyond(place[1], half[1], has[1]);
-        z_1 <= beyond(place[2], half[2], has[2]);
+        x_1 <= over(place[0], half[0], has[0]);
+        y_1 <= over(place[1], half[1], has[1]);
+        z_1 <= over(place[2], half[2], has[2]);
         negative_1 <= {place[2][21], place[1][21], place[0][21]};
 
         {x_2, y_2, z_2} <= {x_1, y_1, z_1};

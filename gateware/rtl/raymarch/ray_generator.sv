@@ -29,9 +29,9 @@ module ray_generator #(
     input  wire  [2:0][31:0]          across,
     input  wire  [2:0][31:0]          down,
     input  wire  [22:0]               near_limit,
-    // Of both eyes: how far they are outside of the box along each axis, and on which side.
+    // Of both eyes: where they are, and how far outside of the box along each axis.
+    input  wire  [1:0][2:0][24:0]     origins,
     input  wire  [1:0][2:0][23:0]     outside,
-    input  wire  [1:0][2:0]           negative,
     // Rays.
     output logic                      out_valid,
     input  wire                       out_ready,
@@ -145,7 +145,7 @@ module ray_generator #(
 
         delay #(.WIDTH(1), .CLOCKS(2)) sign (.clk, .enable, .in(direction_7[i][17]), .out(backwards_9));
         assign outside_9  = STEREO && place_9.eye ? outside[1][i] : outside[0][i];
-        assign negative_9 = STEREO && place_9.eye ? negative[1][i] : negative[0][i];
+        assign negative_9 = STEREO && place_9.eye ? origins[1][i][24] : origins[0][i][24];
         delay #(.WIDTH(1), .CLOCKS(3)) coming (.clk, .enable, .in(negative_9 != backwards_9), .out(comes_12));
 
         multiply_add #(.BITS(42)) entry (
@@ -191,7 +191,8 @@ module ray_generator #(
         .out_valid, .out_ready, .out_data(out_ray)
     );
 
-    wire _unused = &{1'b0, d[0][31], d[0][5:0], d[1][31], d[1][5:0], d[2][31], d[2][5:0], near_product[33], near_product[9:0]};
+    // Of the origins only the signs count.
+    wire _unused = &{1'b0, origins, d[0][31], d[0][5:0], d[1][31], d[1][5:0], d[2][31], d[2][5:0], near_product[33], near_product[9:0]};
 endmodule
 
 `default_nettype wire

@@ -85,7 +85,7 @@ module ray_paint (
     end
 
     delay #(.WIDTH(8), .CLOCKS(7)) steps_wait (.clk, .enable, .in(in_end.steps), .out(steps_7));
-    delay #(.WIDTH(8), .CLOCKS(9)) height_waits (.clk, .enable, .in(in_end.height), .out(height_9));
+    delay #(.WIDTH(8), .CLOCKS(7)) height_waits (.clk, .enable, .in(t_2[7:0]), .out(height_9));
     paint_table fog_and_light (
         .clk, .enable, .write(table_write), .write_entry(table_entry), .write_part(table_part),
         .fog_entry(fog_entry_7), .fog(fog_9), .light_entry(steps_7), .light(light_9)

@@ -176,10 +176,12 @@ module ring_lane #(
     always_ff @(posedge clk) late_2 <= steps_1 + 8'd1 >= tuning.cap;
 
     march_pkg::end_t end_in;
+    logic [7:0]      height;
 
+    assign height = last_cargo.direction[2][17] ? '0 : last_cargo.direction[2][16:9];
     assign end_in = {
-        last_cargo.place, last_cargo.length, last_t, last_steps, last_state, last_surface,
-        last_cargo.direction[2][17] ? 8'd0 : last_cargo.direction[2][16:9]
+        last_cargo.place, last_cargo.length, last_state == march_pkg::MISS ? {15'b0, height} : last_t, last_steps, last_state,
+        last_surface
     };
 
     // There is a place: `end_ready` is always high when a ray ends.

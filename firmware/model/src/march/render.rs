@@ -22,7 +22,8 @@ pub struct FieldStats {
 }
 
 impl FieldStats {
-    fn count(&mut self, outcome: &Outcome) {
+    /// Counts a ray.
+    pub fn count(&mut self, outcome: &Outcome) {
         self.rays += 1;
         self.evaluations += u64::from(outcome.steps);
         *match outcome.state {

@@ -5,16 +5,7 @@ use glint_rtl::{Bits, Module, Sink, Stalls};
 
 use crate::common::Random;
 use crate::ports::{Place, ray, set_generator};
-use crate::scenes::{FIELDS, setup};
-
-/// Lines of a band, by the picture's width.
-fn band_lines(width: u32) -> u32 {
-    match width {
-        320 => 45,
-        640 => 24,
-        _ => 12,
-    }
-}
+use crate::scenes::{FIELDS, band_lines, setup};
 
 /// The rays of the first `lines` lines.
 fn expected(setup: &Setup, lines: u32) -> Vec<Bits> {

@@ -2,6 +2,7 @@
 
 #[path = "../../../../firmware/model/tests/common/mod.rs"]
 mod common;
+mod frames;
 mod generator;
 mod lane;
 mod paint;

@@ -5,7 +5,7 @@ use glint_rtl::{Module, Sink, Source, Stalls};
 
 use crate::common::Random;
 use crate::ports::{Pixel, Place, end, pixel, set_paint};
-use crate::scenes::{FIELDS, setup};
+use crate::scenes::{FIELDS, band_lines, setup};
 
 fn palette(random: &mut Random) -> Palette {
     let mut colour = || [0; 3].map(|_| random.bits() as u8);
@@ -57,11 +57,7 @@ fn ends_of_random_rays() {
         let expected: Vec<_> = (0..COUNT)
             .map(|_| {
                 let column = random.integer(0, i64::from(setup.width) - 1) as u32;
-                let lines = match setup.width {
-                    320 => 45,
-                    640 => 24,
-                    _ => 12,
-                };
+                let lines = i64::from(band_lines(setup.width));
                 let place = Place {
                     odd: random.coin(),
                     line: random.integer(0, lines - 1) as u32,

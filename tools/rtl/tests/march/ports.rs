@@ -44,7 +44,8 @@ pub fn ray(place: Place, ray: &Ray) -> Bits {
         .with(87, PLACE_BITS, place.number())
 }
 
-/// Where a ray has come to, as the end of one says. What does not count is 0: surface and t without a hit.
+/// Where a ray has come to, as the end of one says. What does not count is 0: the surface without a hit, and t of a ray that
+/// was given up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct End {
     pub state: u64,
@@ -52,13 +53,12 @@ pub struct End {
     pub t: u64,
     pub steps: u64,
     pub length: u64,
-    pub height: u64,
 }
 
 impl End {
     pub fn expected(ray: &Ray, outcome: &Outcome) -> Self {
         let (state, surface, t) = match outcome.state {
-            State::Miss => (0, 0, 0),
+            State::Miss => (0, 0, (ray.direction[2].max(0) >> 9) as u64),
             State::Hit(surface) => (1, surface.code().into(), outcome.t.into()),
             State::Undecided => (2, 0, 0),
         };
@@ -68,22 +68,19 @@ impl End {
             t,
             steps: outcome.steps.into(),
             length: ray.length.into(),
-            height: (ray.direction[2].max(0) >> 9) as u64,
         }
     }
 
     pub fn of(item: &Bits) -> (Place, Self) {
-        let state = item.field(11, 2);
-        let if_hit = |value| if state == 1 { value } else { 0 };
+        let state = item.field(3, 2);
         let end = Self {
-            height: item.field(0, 8),
-            surface: if_hit(item.field(8, 3)),
+            surface: if state == 1 { item.field(0, 3) } else { 0 },
             state,
-            steps: item.field(13, 8),
-            t: if_hit(item.field(21, 23)),
-            length: item.field(44, 10),
+            steps: item.field(5, 8),
+            t: if state == 2 { 0 } else { item.field(13, 23) },
+            length: item.field(36, 10),
         };
-        (Place::of(item.field(54, PLACE_BITS)), end)
+        (Place::of(item.field(46, PLACE_BITS)), end)
     }
 }
 
@@ -160,8 +157,8 @@ pub fn set_generator(module: &mut Module, setup: &Setup, band_lines: u32) {
             both(24, eyes.map(|eye| eye.outside.map(i64::from))),
         ),
         (
-            "negative",
-            both(1, eyes.map(|eye| eye.origin.map(|x| i64::from(x < 0)))),
+            "origins",
+            both(25, eyes.map(|eye| eye.origin.map(i64::from))),
         ),
     ] {
         let port = module.port(name);
@@ -177,16 +174,14 @@ pub fn end(place: Place, ray: &Ray, outcome: &Outcome) -> Bits {
         t,
         steps,
         length,
-        height,
     } = End::expected(ray, outcome);
     Bits::default()
-        .with(0, 8, height)
-        .with(8, 3, surface)
-        .with(11, 2, state)
-        .with(13, 8, steps)
-        .with(21, 23, t)
-        .with(44, 10, length)
-        .with(54, PLACE_BITS, place.number())
+        .with(0, 3, surface)
+        .with(3, 2, state)
+        .with(5, 8, steps)
+        .with(13, 23, t)
+        .with(36, 10, length)
+        .with(46, PLACE_BITS, place.number())
 }
 
 fn colour([r, g, b]: [u8; 3]) -> u64 {

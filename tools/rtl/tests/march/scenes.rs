@@ -74,3 +74,12 @@ pub fn setup(random: &mut Random, fields: &[&str]) -> Setup {
     let size = SIZES[random.bits() as usize % SIZES.len()];
     Setup::new(&field, &camera(random), size, &options).unwrap()
 }
+
+/// Lines of a band, by the picture's width.
+pub fn band_lines(width: u32) -> u32 {
+    match width {
+        320 => 45,
+        640 => 24,
+        _ => 12,
+    }
+}

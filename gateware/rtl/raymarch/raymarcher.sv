@@ -1,0 +1,232 @@
+// The raymarcher: pixels of a distance field, band by band, for the band buffer.
+//
+//                    ┌─▶ ring_lane ─┐            ┌──────────────────┐
+//   ray_generator ───┼─▶ ring_lane ─┼─▶ ends ─┬──┴▶ ray_paint ─▶ groups of one pixel
+//                    └─▶ ...       ─┘         └▶ waiting ─┘
+//                                          of the next band
+//
+// `start` (one clock, not while `busy`) begins a frame of (last_band + 1) bands; parameters hold until it has ended. Pixels of a band
+// are given out while `band_open`, in any order, every pixel once, with `stereo` once for each eye. `band_done` is high when all of
+// them have been taken, until `band_next` (one clock, only then) says that the next band may come: the last band is closed by it too.
+//
+// While the last rays of a band are still on their way, rays of the next one go in already: up to EARLY, whose ends wait in block
+// RAM. So the lanes idle only at the end of the frame, and where a band ends with rays of very different lengths.
+//
+// Each lane takes one evaluation of the field a clock. `restart`, and reset, give the frame up. Groups: a stream, valid/ready, payload
+// stays. Counters run freely: clocks busy, evaluations, clocks in which a lane had room for a ray and none came, clocks in which a
+// ray waited as no end was taken, rays, and how they ended.
+
+`default_nettype none
+
+module raymarcher #(
+    parameter int unsigned LANES  = 2,
+    parameter int unsigned LEVELS = 6,
+    parameter bit          BOXES  = 1'b1,
+    parameter bit          STEREO = 1'b1,
+    parameter int unsigned EARLY  = 512
+) (
+    input  wire                       clk,
+    input  wire                       rst,
+    input  wire                       restart,
+    input  wire                       start,
+    output logic                      busy,
+    // Frame. Columns - 1, lines - 1 of a band, bands - 1; columns of eight, and rays of a band.
+    input  wire  [10:0]               last_column,
+    input  wire  [5:0]                last_line,
+    input  wire  [5:0]                last_band,
+    input  wire  [7:0]                stride,
+    input  wire  [14:0]               band_rays,
+    input  wire                       stereo,
+    // Where the eyes are and where they look, the left one first, and the box about the field.
+    input  wire  [1:0][2:0][31:0]     first,
+    input  wire  [2:0][31:0]          across,
+    input  wire  [2:0][31:0]          down,
+    input  wire  [22:0]               near_limit,
+    input  wire  [1:0][2:0][24:0]     origins,
+    input  wire  [1:0][2:0][23:0]     outside,
+    input  wire  [2:0][23:0]          bounds,
+    input  wire march_pkg::solid_t    solid,
+    input  wire march_pkg::tuning_t   tuning,
+    // What surfaces look like: see ray_paint.
+    input  wire  [16:0]               depth_mantissa,
+    input  wire  signed [5:0]         depth_exponent,
+    input  wire  [2:0]                fog_shift,
+    input  wire  [7:0][23:0]          palette,
+    input  wire  [23:0]               horizon,
+    input  wire                       table_write,
+    input  wire  [8:0]                table_entry,
+    input  wire  [7:0]                table_part,
+    // Bands.
+    input  wire                       band_open,
+    output logic                      band_done,
+    input  wire                       band_next,
+    // Groups.
+    output logic                      group_valid,
+    input  wire                       group_ready,
+    output logic                      group_eye,
+    output logic [10:0]               group_row,
+    output logic [5:0]                group_line,
+    output logic [7:0]                group_column,
+    output logic [7:0]                group_mask,
+    output logic [17:0]               group_code,
+    output logic [15:0]               group_colour,
+    // Counters.
+    output logic [31:0]               clocks_busy,
+    output logic [31:0]               clocks_idle,
+    output logic [31:0]               clocks_waiting,
+    output logic [31:0]               evaluations,
+    output logic [31:0]               rays,
+    output logic [31:0]               hits,
+    output logic [31:0]               misses,
+    output logic [31:0]               undecided
+);
+    localparam int unsigned EARLY_BITS = $clog2(EARLY + 1);
+
+    logic reset;
+    assign reset = rst || restart;
+
+    // The band that is drawn, pixels of it that have not been taken, and rays of the next one that are under way.
+    logic                  odd, is_early, may_enter;
+    logic [5:0]            band;
+    logic [14:0]           left;
+    logic [EARLY_BITS-1:0] early;
+    logic                  ray_moves, group_moves;
+
+    logic                  generating, ray_valid, ray_ready;
+    march_pkg::ray_t       ray;
+
+    ray_generator #(.STEREO(STEREO)) generator (
+        .clk, .rst(reset), .start, .busy(generating), .last_column, .last_line, .last_band, .stereo,
+        .first, .across, .down, .near_limit, .origins, .outside,
+        .out_valid(ray_valid), .out_ready(ray_ready), .out_ray(ray)
+    );
+
+    assign is_early    = ray.place.odd != odd;
+    assign may_enter   = !is_early || early != EARLY_BITS'(EARLY);
+    assign ray_moves   = ray_valid && ray_ready;
+    assign group_moves = group_valid && group_ready;
+    assign band_done   = busy && left == '0;
+
+    always_ff @(posedge clk) begin
+        if (ray_moves && is_early) early <= early + 1'b1;
+        if (group_moves) left <= left - 1'b1;
+        if (band_next) begin
+            odd   <= !odd;
+            early <= '0;
+            left  <= band_rays;
+            band  <= band + 1'b1;
+            if (band == last_band) busy <= 1'b0;
+        end
+        if (start) begin
+            busy  <= 1'b1;
+            odd   <= 1'b0;
+            early <= '0;
+            left  <= band_rays;
+            band  <= '0;
+        end
+        if (reset) begin
+            busy  <= 1'b0;
+            early <= '0;
+        end
+    end
+
+    // A ray goes to the first lane that has room.
+    logic [LANES-1:0]   lane_ready, lane_valid, lane_takes, end_valid, end_taken, evaluates, waits;
+    logic [LANES-1:0][march_pkg::END_BITS-1:0] end_of;
+
+    always_comb begin
+        lane_valid = '0;
+        for (int i = LANES - 1; i >= 0; i--)
+            if (lane_ready[i]) lane_valid = LANES'(1) << i;
+        if (!ray_valid || !may_enter) lane_valid = '0;
+    end
+    assign lane_takes = lane_ready & {LANES{may_enter}};
+    assign ray_ready  = lane_takes != '0;
+
+    for (genvar i = 0; i < LANES; i++) begin : lanes
+        ring_lane #(.LEVELS(LEVELS), .BOXES(BOXES), .STEREO(STEREO)) lane (
+            .clk, .rst(reset), .origins, .bounds, .solid, .tuning,
+            .in_valid(lane_valid[i]), .in_ready(lane_ready[i]), .in_ray(ray),
+            .out_valid(end_valid[i]), .out_ready(end_taken[i]), .out_end(end_of[i]),
+            .evaluates(evaluates[i]), .waits(waits[i])
+        );
+    end
+
+    // The lanes give out their ends by turns: there is not more than one ray a clock for all of them.
+    localparam int unsigned TURN_BITS = LANES == 1 ? 1 : $clog2(LANES);
+    logic [TURN_BITS-1:0] turn;
+    logic                 next_valid, next_now, next_taken, waiting_valid, waiting_now, waiting_ready, room, paint_valid, paint_ready;
+    march_pkg::end_t      next_end, waiting_end, paint_end;
+
+    always_ff @(posedge clk) turn <= reset || turn == TURN_BITS'(LANES - 1) ? '0 : turn + 1'b1;
+
+    assign next_end   = end_of[turn];
+    assign next_valid = end_valid[turn];
+
+    // What has waited goes first. An end of the next band waits; there is room, as there are not more of them.
+    assign next_now      = next_valid && next_end.place.odd == odd;
+    assign waiting_now   = waiting_valid && waiting_end.place.odd == odd;
+    assign waiting_ready = waiting_now && band_open && paint_ready;
+    assign next_taken    = next_now ? band_open && paint_ready && !waiting_now : room;
+    assign paint_valid   = band_open && (waiting_now || next_now);
+    assign paint_end     = waiting_now ? waiting_end : next_end;
+
+    always_comb begin
+        end_taken       = '0;
+        end_taken[turn] = next_taken;
+    end
+
+    fifo #(.WIDTH(march_pkg::END_BITS), .DEPTH(EARLY), .BLOCK(1'b1)) waiting (
+        .clk, .rst(reset), .in_valid(next_valid && !next_now), .in_ready(room), .in_data(next_end),
+        .out_valid(waiting_valid), .out_ready(waiting_ready), .out_data(waiting_end)
+    );
+
+    /* verilator lint_off PINCONNECTEMPTY */
+    ray_paint paint (
+        .clk, .rst(reset), .stereo, .stride, .depth_mantissa, .depth_exponent, .fog_shift, .palette, .horizon, .table_write, .table_entry, .table_part,
+        .in_valid(paint_valid), .in_ready(paint_ready), .in_end(paint_end),
+        .out_valid(group_valid), .out_ready(group_ready), .out_eye(group_eye), .out_row(group_row), .out_line(group_line),
+        .out_column(group_column), .out_mask(group_mask), .out_code(group_code), .out_colour(group_colour), .idle()
+    );
+    /* verilator lint_on PINCONNECTEMPTY */
+
+    // The events are registered first: a carry chain of 32 bits is long enough by itself.
+    logic             ray_came, ended, waited;
+    march_pkg::state_t how;
+    logic [LANES-1:0] idles;
+    logic [2:0]       evaluated, idle_lanes;
+
+    function automatic logic [2:0] ones(input logic [LANES-1:0] which);
+        ones = '0;
+        for (int i = 0; i < LANES; i++) ones = ones + 3'(which[i]);
+    endfunction
+
+    assign idles = lane_ready & ~(lane_valid & {LANES{ray_valid}});
+
+    always_ff @(posedge clk) begin
+        ray_came   <= ray_moves;
+        ended      <= paint_valid && paint_ready;
+        how        <= paint_end.state;
+        waited     <= waits != '0;
+        evaluated  <= ones(evaluates);
+        idle_lanes <= busy ? ones(idles) : '0;
+
+        clocks_busy    <= clocks_busy + 32'(busy);
+        clocks_idle    <= clocks_idle + 32'(idle_lanes);
+        clocks_waiting <= clocks_waiting + 32'(waited);
+        evaluations    <= evaluations + 32'(evaluated);
+        rays           <= rays + 32'(ray_came);
+        hits           <= hits + 32'(ended && how == march_pkg::HIT);
+        misses         <= misses + 32'(ended && how == march_pkg::MISS);
+        undecided      <= undecided + 32'(ended && how == march_pkg::UNDECIDED);
+
+        if (rst) begin
+            {ray_came, ended, waited, evaluated, idle_lanes} <= '0;
+            {clocks_busy, clocks_idle, clocks_waiting, evaluations, rays, hits, misses, undecided} <= '0;
+        end
+    end
+
+    wire _unused = generating;
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,221 @@
+//! Whole frames of the raymarcher: every pixel once, as the model has it, in the band that is open.
+
+use glint_model::march::{FieldStats, Palette, Setup};
+use glint_rtl::{Module, Sink, Stalls};
+
+use crate::common::Random;
+use crate::ports::{Pixel, Place, pixel, set_generator, set_lane, set_paint};
+use crate::scenes::{FIELDS, SPONGES, band_lines, setup};
+
+const COUNTERS: [&str; 8] = [
+    "clocks_busy",
+    "clocks_idle",
+    "clocks_waiting",
+    "evaluations",
+    "rays",
+    "hits",
+    "misses",
+    "undecided",
+];
+
+struct Bench {
+    module: Module,
+    lanes: u64,
+    counted: [u64; 8],
+}
+
+/// What a frame took: clocks, and evaluations by the model.
+struct Taken {
+    counters: [u64; 8],
+    stats: FieldStats,
+}
+
+impl Bench {
+    fn new(name: &str, lanes: u64, seed: u32) -> Self {
+        Self {
+            module: Module::new(name, seed),
+            lanes,
+            counted: [0; 8],
+        }
+    }
+
+    fn port(&mut self, name: &str, value: u64) {
+        let port = self.module.port(name);
+        self.module.set(port, value);
+    }
+
+    fn pulse(&mut self, name: &str) {
+        self.port(name, 1);
+        self.module.clock();
+        self.port(name, 0);
+    }
+
+    fn set(&mut self, setup: &Setup, palette: &Palette) {
+        let lines = band_lines(setup.width);
+        let eyes: u32 = if setup.stereo.is_some() { 2 } else { 1 };
+        set_lane(&mut self.module, setup);
+        set_generator(&mut self.module, setup, lines);
+        set_paint(&mut self.module, setup, palette);
+        self.port("band_rays", u64::from(eyes * setup.width * lines));
+    }
+
+    /// Draws a frame. `hurry`: bands are open at once, and nothing stalls.
+    fn draw(
+        &mut self,
+        random: &mut Random,
+        setup: &Setup,
+        palette: &Palette,
+        hurry: bool,
+    ) -> Taken {
+        self.set(setup, palette);
+        let lines = band_lines(setup.width);
+        let eyes: u32 = if setup.stereo.is_some() { 2 } else { 1 };
+        let payload = ["eye", "row", "line", "column", "mask", "code", "colour"];
+        let share = if hurry { 0.0 } else { 0.3 };
+        let mut sink = Sink::new(
+            &self.module,
+            "group",
+            &payload,
+            Stalls::new(random.bits(), share),
+        );
+        let done = self.module.port("band_done");
+        let mut stats = FieldStats::default();
+        self.pulse("start");
+        for band in 0..setup.height / lines {
+            let mut expected = std::collections::HashMap::new();
+            for y in 0..lines {
+                for (x, eye) in (0..setup.width).flat_map(|x| (0..eyes).map(move |eye| (x, eye))) {
+                    let place = Place {
+                        odd: band % 2 == 1,
+                        line: y,
+                        column: x,
+                        eye: eye as usize,
+                    };
+                    let ray = setup.ray(place.eye, x, band * lines + y);
+                    let outcome = setup.march(&ray);
+                    stats.count(&outcome);
+                    expected.insert((eye.into(), y.into(), x.into()), {
+                        pixel(setup, palette, place, &ray, &outcome)
+                    });
+                }
+            }
+            if !hurry {
+                // Somebody else draws here first.
+                for _ in 0..random.integer(0, 3000) {
+                    self.module.clock();
+                }
+            }
+            self.port("band_open", 1);
+            let begun = self.module.cycles();
+            loop {
+                assert!(
+                    self.module.cycles() - begun < 40_000_000,
+                    "the raymarcher stands still in {setup:?}"
+                );
+                sink.drive(&mut self.module);
+                self.module.settle();
+                sink.sample(&self.module);
+                if self.module.is_high(done) {
+                    break;
+                }
+                self.module.clock();
+            }
+            for item in sink.take() {
+                let [eye, row, line, column, mask, code, colour] =
+                    std::array::from_fn(|i| item[i].field(0, 64));
+                let found = Pixel {
+                    eye,
+                    row,
+                    line,
+                    column,
+                    mask,
+                    code,
+                    colour,
+                };
+                let place = (eye, line, 8 * column + u64::from(mask.trailing_zeros()));
+                let wanted = expected
+                    .remove(&place)
+                    .unwrap_or_else(|| panic!("{found:?} came twice, or is of another band"));
+                assert_eq!(found, wanted, "in band {band} of {setup:?}");
+            }
+            assert!(expected.is_empty(), "band {band} ended early");
+            self.port("band_open", 0);
+            self.pulse("band_next");
+        }
+        let busy = self.module.port("busy");
+        assert!(!self.module.is_high(busy), "busy after the last band");
+        // Counters are some clocks late.
+        for _ in 0..4 {
+            self.module.clock();
+        }
+        let counted = COUNTERS.map(|name| self.module.value(self.module.port(name)));
+        let counters = std::array::from_fn(|i| counted[i] - self.counted[i]);
+        self.counted = counted;
+        assert_eq!(
+            counters[3..],
+            [
+                stats.evaluations,
+                stats.rays.into(),
+                stats.hits.into(),
+                stats.misses.into(),
+                stats.undecided.into()
+            ],
+            "{:?} of {setup:?}",
+            &COUNTERS[3..]
+        );
+        Taken { counters, stats }
+    }
+}
+
+#[test]
+fn frames_of_all_fields_with_stalls() {
+    let mut random = Random(9);
+    let mut bench = Bench::new("raymarcher", 2, 1);
+    for _ in 0..6 {
+        let mut setup = setup(&mut random, &FIELDS);
+        // A ray at the limit costs as much as 20.
+        setup.tuning.cap = setup.tuning.cap.min(40);
+        bench.draw(&mut random, &setup, &Palette::default(), false);
+    }
+}
+
+#[test]
+fn sponges_keep_the_lanes_busy() {
+    let mut random = Random(10);
+    let mut bench = Bench::new("raymarcher_menger", 4, 1);
+    for frame in 0..4 {
+        let setup = setup(&mut random, &SPONGES);
+        let taken = bench.draw(&mut random, &setup, &Palette::default(), true);
+        let [busy, idle, ..] = taken.counters;
+        let share = taken.stats.evaluations as f64 / (busy * bench.lanes) as f64;
+        println!(
+            "frame {frame}: {:.2} evaluations a ray, {share:.4} a clock and lane, {idle} clocks idle",
+            taken.stats.evaluations as f64 / f64::from(taken.stats.rays)
+        );
+    }
+}
+
+#[test]
+fn a_frame_given_up_leaves_nothing() {
+    let mut random = Random(11);
+    let mut bench = Bench::new("raymarcher", 2, 3);
+    for clocks in [1, 20, 500, 20_000] {
+        let setup = setup(&mut random, &["cubes:2,0.5"]);
+        bench.set(&setup, &Palette::default());
+        bench.port("band_open", 1);
+        bench.port("group_ready", 1);
+        bench.pulse("start");
+        for _ in 0..clocks {
+            bench.module.clock();
+        }
+        bench.port("band_open", 0);
+        bench.pulse("restart");
+        for _ in 0..4 {
+            bench.module.clock();
+        }
+        bench.counted = COUNTERS.map(|name| bench.module.value(bench.module.port(name)));
+        let mut setup = setup;
+        setup.tuning.cap = 8;
+        bench.draw(&mut random, &setup, &Palette::default(), false);
+    }
+}
