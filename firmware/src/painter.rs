@@ -5,7 +5,7 @@ use core::mem;
 use glint_core::camera::View;
 use glint_core::mesh::Mesh;
 use glint_model::descriptor::{self, Descriptor, TABLE_WORDS, band_rows, list_word};
-use glint_model::{FrameSetup, Options, Shading, Stats, clip_exceptions};
+use glint_model::{FrameSetup, Options, RenderError, Shading, Stats, clip_exceptions};
 use litex_hal::triangle::{
     Counters, Engine, Fault, Geometry, Lists, Outcome, Prepared, Raster, Set,
 };
@@ -278,7 +278,12 @@ impl Painter {
             return Err(Fault::Shading);
         }
         let (width, height) = target.size;
-        FrameSetup::new(target.view, width, height, target.mesh.radius()).map_err(|_| Fault::Size)
+        FrameSetup::new(target.view, width, height, target.mesh.radius()).map_err(|error| {
+            match error {
+                RenderError::Eye(_) => Fault::Eye,
+                _ => Fault::Size,
+            }
+        })
     }
 
     /// Prepares a geometry pass that goes into a room.

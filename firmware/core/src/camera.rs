@@ -15,7 +15,7 @@ pub const DEFAULT_HALF_WIDTH: U4_28 = U4_28::lit("0.9");
 pub const DEFAULT_NEAR: U4_28 = U4_28::lit("0.1");
 
 /// The farthest an eye may be from the origin.
-pub const MAX_EYE: u32 = 8;
+pub const MAX_EYE: u32 = 32;
 /// The half widths that are accepted.
 pub const HALF_WIDTH: [U4_28; 2] = [U4_28::lit("0.05"), U4_28::lit("4")];
 /// The near planes that are accepted.
@@ -41,7 +41,7 @@ impl View {
     /// Makes a camera of its numbers.
     ///
     /// The basis must be orthonormal within 1e-4 (lengths and scalar products) with u × v = n; it is kept as it is. The
-    /// eye must be within 8 of the origin, `half_width` in [0.05, 4] and `near` in [0.01, 2].
+    /// eye must be within 32 of the origin, `half_width` in [0.05, 4] and `near` in [0.01, 2].
     ///
     /// # Errors
     /// The first condition that does not hold.
@@ -107,7 +107,7 @@ impl View {
     /// that makes it Glint's frame, u = P·R', v = −P·U', n = P·F: with all angles 0 the camera looks along +y.
     ///
     /// # Errors
-    /// When the eye is more than 8 from the origin.
+    /// When the eye is more than 32 from the origin.
     pub fn look(
         eye: [Q32_32; 3],
         yaw: Turns,
@@ -143,9 +143,14 @@ impl View {
         }
     }
 
-    /// The eye, at most 8 from the origin.
+    /// The eye, at most 32 from the origin.
     pub const fn eye(&self) -> [Q32_32; 3] {
         self.eye
+    }
+
+    /// Whether the eye is at most so far from the origin.
+    pub fn is_within(&self, distance: u32) -> bool {
+        within(self.eye, distance)
     }
 
     /// The direction to the right of the screen.
@@ -208,14 +213,19 @@ fn scaled(r: Q32_32, x: i64) -> Q32_32 {
     Q32_32::from_bits(((i128::from(r.to_bits()) * i128::from(x) + (1 << 59)) >> 60) as i64)
 }
 
-fn check_eye(eye: [Q32_32; 3]) -> Result<(), ViewError> {
-    let limit = u128::from(MAX_EYE) << 32;
+fn within(place: [Q32_32; 3], distance: u32) -> bool {
+    let limit = u128::from(distance) << 32;
     // Each square is at most 2^126.
-    let squared: u128 = eye
+    let squared: u128 = place
         .map(|x| u128::from(x.to_bits().unsigned_abs()).pow(2))
         .iter()
         .sum();
-    if squared <= limit.pow(2) {
+    // Below 2^64.
+    squared <= limit * limit
+}
+
+fn check_eye(eye: [Q32_32; 3]) -> Result<(), ViewError> {
+    if within(eye, MAX_EYE) {
         Ok(())
     } else {
         Err(ViewError::Eye(eye))

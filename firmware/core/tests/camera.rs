@@ -199,17 +199,17 @@ fn numbers() -> ([Q32_32; 3], [[Q2_23; 3]; 3], U4_28, U4_28) {
 fn what_is_out_of_range_is_refused() {
     let (eye, [u, v, n], half_width, near) = numbers();
     let with_eye = |eye| View::new_checked(eye, u, v, n, half_width, near).map(|view| view.eye());
-    let eight = Q32_32::from_num(8);
+    let farthest = Q32_32::from_num(32);
     for eye in [
-        [eight, Q32_32::ZERO, Q32_32::ZERO],
-        [Q32_32::lit("4.6188"); 3],
-        [-Q32_32::lit("4.6188"); 3],
+        [farthest, Q32_32::ZERO, Q32_32::ZERO],
+        [Q32_32::lit("18.4752"); 3],
+        [-Q32_32::lit("18.4752"); 3],
     ] {
         assert_eq!(with_eye(eye), Ok(eye));
     }
     let too_far = [
-        [eight + Q32_32::DELTA, Q32_32::ZERO, Q32_32::ZERO],
-        [Q32_32::lit("4.6189"); 3],
+        [farthest + Q32_32::DELTA, Q32_32::ZERO, Q32_32::ZERO],
+        [Q32_32::lit("18.4753"); 3],
         [Q32_32::MIN; 3],
         [Q32_32::MAX; 3],
     ];
@@ -311,8 +311,8 @@ fn errors_say_what_was_expected() {
         "near 3: expected 0.01 to 2"
     );
     assert_eq!(
-        ViewError::Eye([0, 0, 9].map(Q32_32::from_num)).to_string(),
-        "eye (0, 0, 9): expected within 8 of the origin"
+        ViewError::Eye([0, 0, 33].map(Q32_32::from_num)).to_string(),
+        "eye (0, 0, 33): expected within 32 of the origin"
     );
     assert_eq!(
         ViewError::Polar(Turns::HALF.wrapping_add(Turns::QUARTER)).to_string(),

@@ -45,6 +45,8 @@ pub enum Fault {
     Stuck,
     /// Smooth shading was wanted of an engine without: what a program finds, too.
     Shading,
+    /// The eye is farther away than the engine's widths allow: what a program finds, too.
+    Eye,
 }
 
 impl Fault {
@@ -78,6 +80,7 @@ impl fmt::Display for Fault {
             Self::Cancelled => "triangle engine: cancelled",
             Self::Stuck => "triangle engine: nothing moves",
             Self::Shading => "triangle engine: this gateware has no smooth shading",
+            Self::Eye => "triangle engine: the eye is too far from the origin",
         })
     }
 }

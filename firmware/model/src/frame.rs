@@ -6,6 +6,9 @@ use glint_core::fixed::{Q2_23, Q32_32};
 use crate::nearest;
 use crate::render::{RenderError, SIZES};
 
+/// The farthest from the origin that the eye may be: what the widths of the translation are for.
+pub const MAX_EYE: u32 = 8;
+
 /// What the vertex stage needs to know of a frame (formats.md, "Frame constants").
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -31,13 +34,16 @@ pub struct FrameSetup {
 }
 
 impl FrameSetup {
-    /// The constants for a camera, one of the [`SIZES`], and a mesh with the given radius (u.14).
+    /// The constants for a camera within 8 of the origin, one of the [`SIZES`], and a mesh with the given radius (u.14).
     ///
     /// # Errors
-    /// [`RenderError::Size`].
+    /// [`RenderError::Size`] or [`RenderError::Eye`].
     pub fn new(view: &View, width: u32, height: u32, radius: u32) -> Result<Self, RenderError> {
         if !SIZES.contains(&(width, height)) {
             return Err(RenderError::Size { width, height });
+        }
+        if !view.is_within(MAX_EYE) {
+            return Err(RenderError::Eye(view.eye()));
         }
         let (scale_shift, scale) = Scale::new(width, view);
         let (u, v) = (scale.row(view.u()), scale.row(view.v()));

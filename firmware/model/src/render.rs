@@ -4,10 +4,11 @@ use core::fmt;
 
 use glint_core::camera::View;
 use glint_core::colour::Shading;
+use glint_core::fixed::Q32_32;
 use glint_core::mesh::{Chunk, Mesh, Rgb565, Triangle};
 
 use crate::clip::{clip, off_picture};
-use crate::frame::FrameSetup;
+use crate::frame::{FrameSetup, MAX_EYE};
 use crate::raster;
 use crate::setup::{Bounds, Facing, Oriented, Setup};
 use crate::shade::{Light, Lit, intensity, lit};
@@ -521,6 +522,8 @@ pub enum RenderError {
         /// Room for vertices.
         found: usize,
     },
+    /// The eye is too far from the origin for a mesh.
+    Eye([Q32_32; 3]),
 }
 
 impl fmt::Display for RenderError {
@@ -553,6 +556,12 @@ impl fmt::Display for RenderError {
                 write!(
                     f,
                     "scratch for {found} vertices: expected at least {expected}, as the largest chunk has"
+                )
+            }
+            Self::Eye([x, y, z]) => {
+                write!(
+                    f,
+                    "eye ({x}, {y}, {z}): expected within {MAX_EYE} of the origin for a mesh"
                 )
             }
         }

@@ -3,6 +3,8 @@
 mod common;
 
 use common::{CLEAR, Camera, Model, Picture, Random};
+use glint_core::camera::View;
+use glint_core::fixed::Q32_32;
 use glint_core::mesh::Mesh;
 use glint_model::setup::{Facing, Oriented};
 use glint_model::{Buffer, FrameSetup, Options, Projected, RenderError, SIZES, Target, render};
@@ -303,6 +305,25 @@ fn what_does_not_fit_is_refused() {
             width: 1,
             height: 1
         })
+    );
+}
+
+#[test]
+fn an_eye_too_far_for_a_mesh_is_refused() {
+    let at = |z: Q32_32| {
+        let view = front().rounded();
+        let eye = [Q32_32::ZERO, Q32_32::ZERO, z];
+        let (half_width, near) = (view.half_width(), view.near());
+        let view = View::new_checked(eye, view.u(), view.v(), view.n(), half_width, near).unwrap();
+        FrameSetup::new(&view, 320, 180, 1 << 14).map(|frame| frame.translation[2])
+    };
+    assert!(at(Q32_32::lit("8")).is_ok());
+    let eye = [Q32_32::ZERO, Q32_32::ZERO, Q32_32::lit("8.5")];
+    let error = at(eye[2]).expect_err("too far");
+    assert_eq!(error, RenderError::Eye(eye));
+    assert_eq!(
+        error.to_string(),
+        "eye (0, 0, 8.5): expected within 8 of the origin for a mesh"
     );
 }
 

@@ -140,8 +140,8 @@ mod tests {
                 "expected 0 within 1e-4",
             ),
             (
-                &GOOD.replace("[0,-3,0]", "[0,-8.1,0]"),
-                "expected within 8 of the origin",
+                &GOOD.replace("[0,-3,0]", "[0,-32.1,0]"),
+                "expected within 32 of the origin",
             ),
             (&GOOD.replace("[0,-3,0]", "[0,-1e40,0]"), "-1e40"),
             (&GOOD.replace("0.9", "4.01"), "half_width 4.01"),

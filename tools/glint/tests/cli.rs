@@ -50,6 +50,9 @@ fn refused(folder: &Path, arguments: &[&str]) -> String {
     error.trim_end().to_owned()
 }
 
+const VIEW: &str =
+    r#"{"eye":[0,-2,0],"u":[1,0,0],"v":[0,0,-1],"n":[0,1,0],"half_width":0.9,"near":0.1}"#;
+
 const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
 
 #[test]
@@ -193,6 +196,8 @@ fn bad_names_and_numbers() {
     let folder = folder("bad_names");
     std::fs::write(folder.join("square.obj"), SQUARE.replace("v 1", "v 9")).unwrap();
     std::fs::write(folder.join("view.json"), "{}").unwrap();
+    let far = VIEW.replace("[0,-2,0]", "[0,-9,0]");
+    std::fs::write(folder.join("far.json"), far).unwrap();
     let cases: &[(&[&str], &str)] = &[
         (
             &["convert", "gone.obj", "out.glm"],
@@ -233,6 +238,10 @@ fn bad_names_and_numbers() {
         (
             &["render", "cube", "--out", "out.png", "--view", "gone.json"],
             "error: gone.json: expected a file to read",
+        ),
+        (
+            &["render", "cube", "--out", "out.png", "--view", "far.json"],
+            "error: far.json: expected a camera, found eye (0, -9, 0): expected within 8 of the origin for a mesh",
         ),
         (
             &["render", "cube", "--out", "out.png", "--size", "320x200"],
@@ -359,9 +368,7 @@ fn renders_and_their_files() {
     let picture = render("a.png", &options);
     assert_eq!(picture.len(), 320 * 180 * 3);
 
-    let view =
-        r#"{"eye":[0,-2,0],"u":[1,0,0],"v":[0,0,-1],"n":[0,1,0],"half_width":0.9,"near":0.1}"#;
-    std::fs::write(folder.join("view.json"), view).unwrap();
+    std::fs::write(folder.join("view.json"), VIEW).unwrap();
     assert_eq!(picture, render("b.png", &["--view", "view.json"]));
     assert_ne!(picture, render("c.png", &["--camera", "2,-80,90"]));
     assert_ne!(

@@ -11,6 +11,8 @@ use glint::picture::Frame;
 use glint::render::{self, Rendered, Renderer, Route, Scene, Stats};
 use glint::view;
 use glint_core::camera::View;
+use glint_model::RenderError;
+use glint_model::frame::MAX_EYE;
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -153,10 +155,16 @@ impl RenderArguments {
     }
 
     fn camera(&self) -> anyhow::Result<View> {
-        Ok(match &self.view {
-            Some(path) => view::read(path)?,
-            None => view::spherical(&self.camera).map_err(|error| error.in_file("--camera"))?,
-        })
+        let Some(path) = &self.view else {
+            return Ok(view::spherical(&self.camera).map_err(|error| error.in_file("--camera"))?);
+        };
+        let view = view::read(path)?;
+        if !view.is_within(MAX_EYE) {
+            let found = RenderError::Eye(view.eye()).to_string();
+            let error = FormatError::whole("a camera", found);
+            return Err(error.in_file(path.display().to_string()).into());
+        }
+        Ok(view)
     }
 
     fn render(&self, scene: &Scene) -> anyhow::Result<Rendered> {
