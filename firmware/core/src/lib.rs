@@ -15,5 +15,6 @@ pub mod console;
 pub mod field;
 pub mod fixed;
 pub mod mesh;
+pub mod stereo;
 pub mod trig;
 pub mod wire;

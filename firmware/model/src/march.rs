@@ -14,7 +14,8 @@ mod render;
 mod setup;
 
 pub use field::{Sample, Solid, Surface};
+pub use glint_core::stereo::{Stereo, Tint};
 pub use paint::{Palette, paint};
 pub use ray::{Outcome, Ray, State};
 pub use render::{FieldStats, compose, render_field, rgb565};
-pub use setup::{DEFAULT_TUNING, Eye, FieldOptions, Setup, Stereo, Tint, Tuning};
+pub use setup::{DEFAULT_TUNING, Eye, FieldOptions, Setup, Tuning};

@@ -1,4 +1,4 @@
-//! Rendering a mesh, by the model on this machine or by a board.
+//! Rendering a mesh or a field, by the model on this machine or by a board.
 
 use crate::board::{Board, BoardError};
 use crate::console::{self, Console, ConsoleError};
@@ -6,24 +6,54 @@ use crate::picture::Frame;
 use crate::transfer::{self, Progress, TransferError};
 use glint_core::camera::View;
 use glint_core::console::Backend;
+use glint_core::field::Field;
 use glint_core::mesh::{Mesh, MeshError};
 use glint_core::wire::crc32;
+use glint_model::march::{FieldOptions, Setup, render_field};
 use glint_model::{DepthScale, FrameSetup, Options, Projected, RenderError, Shading, Target};
 use serde::{Deserialize, Serialize};
 
+/// What is to be seen, and what only such a thing is told.
+#[derive(Clone, Copy, Debug)]
+pub enum Subject<'s> {
+    /// A mesh.
+    Mesh {
+        /// As it lies in memory.
+        bytes: &'s [u8],
+        /// Whether back faces are left out.
+        cull: bool,
+        /// Where colours come from.
+        shading: Shading,
+    },
+    /// A distance field.
+    Field {
+        /// Which.
+        field: Field,
+        /// How it is drawn.
+        options: &'s FieldOptions,
+    },
+}
+
+impl<'s> Subject<'s> {
+    /// A mesh in flat colours, without its back faces.
+    pub const fn mesh(bytes: &'s [u8]) -> Self {
+        Self::Mesh {
+            bytes,
+            cull: true,
+            shading: Shading::Flat,
+        }
+    }
+}
+
 /// What is to be rendered, and how.
 #[derive(Clone, Debug)]
-pub struct Scene<'m> {
-    /// The mesh as it lies in memory.
-    pub mesh: &'m [u8],
+pub struct Scene<'s> {
+    /// What is to be seen.
+    pub subject: Subject<'s>,
     /// The camera.
     pub view: View,
     /// Width and height in pixels, one of [`glint_model::SIZES`].
     pub size: (u32, u32),
-    /// Whether back faces are left out.
-    pub cull: bool,
-    /// Where colours come from.
-    pub shading: Shading,
     /// Who renders on a board; the board's own choice unless told: its engine if it has one.
     pub backend: Option<Backend>,
 }
@@ -33,6 +63,32 @@ pub struct Scene<'m> {
 pub struct Stats {
     /// Cycles of the board's clock; nothing from the model, which has no clock.
     pub cycles: Option<u64>,
+    /// What was counted.
+    #[serde(flatten)]
+    pub counts: Counts,
+    /// The board's clock in Hz.
+    pub clock: Option<u64>,
+    /// Who rendered on a board: `cpu` or `gateware`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub backend: Option<String>,
+    /// What the triangle engine counted, if it rendered.
+    #[serde(flatten)]
+    pub engine: Option<EngineStats>,
+}
+
+/// What was counted, by what there was to be seen.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Counts {
+    /// Of a mesh.
+    Triangles(TriangleCounts),
+    /// Of a field.
+    Rays(RayCounts),
+}
+
+/// What was counted of a mesh's frame.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct TriangleCounts {
     /// Triangles in the mesh.
     pub triangles_in: u32,
     /// Those of them that did not reach the walker.
@@ -47,14 +103,38 @@ pub struct Stats {
     pub pixels_covered: u64,
     /// Pixels written.
     pub pixels_drawn: u64,
-    /// The board's clock in Hz.
-    pub clock: Option<u64>,
-    /// Who rendered on a board: `cpu` or `gateware`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub backend: Option<String>,
-    /// What the triangle engine counted, if it rendered.
-    #[serde(flatten)]
-    pub engine: Option<EngineStats>,
+}
+
+/// What was counted of a field's frame.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RayCounts {
+    /// Rays: one a pixel and eye.
+    pub rays: u32,
+    /// Evaluations of the field.
+    pub evaluations: u64,
+    /// Rays that came to a surface.
+    pub hits: u32,
+    /// Rays that went by.
+    pub misses: u32,
+    /// Rays that were given up.
+    pub undecided: u32,
+}
+
+impl RayCounts {
+    /// Evaluations of the field for a ray.
+    pub fn evaluations_per_ray(&self) -> f64 {
+        self.evaluations as f64 / f64::from(self.rays)
+    }
+}
+
+impl Stats {
+    /// What was counted of a mesh's frame; nothing but zeros of a field's.
+    pub fn triangles(&self) -> TriangleCounts {
+        match &self.counts {
+            Counts::Triangles(counts) => counts.clone(),
+            Counts::Rays(_) => TriangleCounts::default(),
+        }
+    }
 }
 
 /// What the triangle engine counted for a frame: cycles, and words of 16 bytes.
@@ -138,21 +218,26 @@ pub enum Route {
 /// What relates a scene's depth codes to distances.
 ///
 /// # Errors
-/// The mesh is damaged, or the size is none of [`glint_model::SIZES`].
+/// The mesh is damaged or seen from too far, or the size is none of [`glint_model::SIZES`].
 pub fn depth_scale(scene: &Scene) -> Result<DepthScale, Error> {
-    let mesh = Mesh::new_checked(scene.mesh).map_err(Error::Mesh)?;
     let (width, height) = scene.size;
-    Ok(FrameSetup::new(&scene.view, width, height, mesh.radius())
-        .map_err(Error::Render)?
-        .depth)
+    match scene.subject {
+        Subject::Mesh { bytes, .. } => {
+            let mesh = Mesh::new_checked(bytes).map_err(Error::Mesh)?;
+            FrameSetup::new(&scene.view, width, height, mesh.radius()).map(|frame| frame.depth)
+        }
+        Subject::Field { field, options } => {
+            Setup::new(&field, &scene.view, scene.size, options).map(|setup| setup.world_depth)
+        }
+    }
+    .map_err(Error::Render)
 }
 
 /// Renders with the model.
 ///
 /// # Errors
-/// The mesh is damaged, or the size is none of [`glint_model::SIZES`].
+/// The mesh is damaged or seen from too far, or the size is none of [`glint_model::SIZES`].
 pub fn on_model(scene: &Scene) -> Result<Rendered, Error> {
-    let mesh = Mesh::new_checked(scene.mesh).map_err(Error::Mesh)?;
     let (width, height) = scene.size;
     let pixels = width as usize * height as usize;
     let mut frame = Frame {
@@ -161,27 +246,52 @@ pub fn on_model(scene: &Scene) -> Result<Rendered, Error> {
         colour: vec![0; pixels],
         depth: vec![0; pixels],
     };
-    let vertices = mesh
-        .chunks()
-        .map(|chunk| chunk.vertex_count())
-        .max()
-        .unwrap_or(0);
-    let mut scratch = vec![Projected::Behind; vertices];
     let mut target = Target {
         width,
         height,
         colour: &mut frame.colour,
         depth: &mut frame.depth,
     };
-    let options = Options {
-        cull: scene.cull,
-        shading: scene.shading,
-        ..Options::default()
+    let counts = match scene.subject {
+        Subject::Mesh {
+            bytes,
+            cull,
+            shading,
+        } => {
+            let mesh = Mesh::new_checked(bytes).map_err(Error::Mesh)?;
+            let options = Options {
+                cull,
+                shading,
+                ..Options::default()
+            };
+            draw_mesh(&mesh, &scene.view, &mut target, &options)
+        }
+        Subject::Field { field, options } => draw_field(&field, &scene.view, &mut target, options),
     };
-    let stats = glint_model::render(&mesh, &scene.view, &mut target, &mut scratch, &options)
-        .map_err(Error::Render)?;
     let stats = Stats {
         cycles: None,
+        counts: counts.map_err(Error::Render)?,
+        clock: None,
+        backend: None,
+        engine: None,
+    };
+    Ok(Rendered { frame, stats })
+}
+
+fn draw_mesh(
+    mesh: &Mesh,
+    view: &View,
+    target: &mut Target,
+    options: &Options,
+) -> Result<Counts, RenderError> {
+    let vertices = mesh
+        .chunks()
+        .map(|chunk| chunk.vertex_count())
+        .max()
+        .unwrap_or(0);
+    let mut scratch = vec![Projected::Behind; vertices];
+    let stats = glint_model::render(mesh, view, target, &mut scratch, options)?;
+    Ok(Counts::Triangles(TriangleCounts {
         triangles_in: stats.triangles_in,
         triangles_culled: stats.culled,
         triangles_clipped: stats.clipped,
@@ -189,11 +299,25 @@ pub fn on_model(scene: &Scene) -> Result<Rendered, Error> {
         pixels_tested: stats.pixels_tested,
         pixels_covered: stats.pixels_covered,
         pixels_drawn: stats.pixels_drawn,
-        clock: None,
-        backend: None,
-        engine: None,
-    };
-    Ok(Rendered { frame, stats })
+    }))
+}
+
+fn draw_field(
+    field: &Field,
+    view: &View,
+    target: &mut Target,
+    options: &FieldOptions,
+) -> Result<Counts, RenderError> {
+    let setup = Setup::new(field, view, (target.width, target.height), options)?;
+    let palette = options.palette_for(&setup);
+    let stats = render_field(&setup, &palette, target, &mut |_, _, _, _| {})?;
+    Ok(Counts::Rays(RayCounts {
+        rays: stats.rays,
+        evaluations: stats.evaluations,
+        hits: stats.hits,
+        misses: stats.misses,
+        undecided: stats.undecided,
+    }))
 }
 
 /// A board that renders.
@@ -222,7 +346,9 @@ impl<'b, B: Board + ?Sized> Renderer<'b, B> {
         &mut self.console
     }
 
-    /// Makes the scene the one that is shown, uploads its mesh, and waits for its frame.
+    /// Makes the scene the one that is shown, uploads its mesh if it is one, and waits for its frame.
+    ///
+    /// A field has the board's own colours, whatever its options say.
     ///
     /// # Errors
     /// The firmware refuses, or the upload fails.
@@ -239,18 +365,31 @@ impl<'b, B: Board + ?Sized> Renderer<'b, B> {
             };
             self.console.command(&format!("backend {name}"))?;
         }
-        // Every change is drawn at once; what is cheap to draw goes first, so the mesh comes last.
-        self.console
-            .command(&format!("cull {}", if scene.cull { "on" } else { "off" }))?;
-        let shading = match scene.shading {
-            Shading::Flat => "flat",
-            Shading::Smooth => "smooth",
-        };
-        self.console.command(&format!("shading {shading}"))?;
+        // Every change is drawn at once; what is cheap to draw goes first, so the mesh or the field comes last.
         self.console
             .command(&format!("size {} {}", scene.size.0, scene.size.1))?;
         self.console.command(&view_command(&scene.view))?;
-        self.upload(scene.mesh, route, progress)?;
+        match scene.subject {
+            Subject::Mesh {
+                bytes,
+                cull,
+                shading,
+            } => {
+                self.console
+                    .command(if cull { "cull on" } else { "cull off" })?;
+                self.console.command(match shading {
+                    Shading::Flat => "shading flat",
+                    Shading::Smooth => "shading smooth",
+                })?;
+                self.upload(bytes, route, progress)?;
+            }
+            Subject::Field { field, options } => {
+                let stereo = options.stereo.map(|stereo| stereo.to_string());
+                let stereo = stereo.as_deref().unwrap_or("off");
+                self.console.command(&format!("stereo {stereo}"))?;
+                self.console.command(&format!("field {field}"))?;
+            }
+        }
         self.render()
     }
 
@@ -440,15 +579,14 @@ mod tests {
         )
         .unwrap();
         let scene = Scene {
-            mesh: &mesh,
+            subject: Subject::mesh(&mesh),
             view: view::spherical("2.5,0,90").unwrap(),
             size: (320, 180),
-            cull: true,
-            shading: Shading::Flat,
             backend: None,
         };
         let Rendered { frame, stats } = on_model(&scene).unwrap();
-        assert_eq!((stats.triangles_in, stats.triangles_drawn), (12, 2));
+        let triangles = stats.triangles();
+        assert_eq!((triangles.triangles_in, triangles.triangles_drawn), (12, 2));
         // The near side is a square at depth 2 in the middle: 0.5/2 of a half width of 0.9 at 160 pixels.
         let half = (160.0 * 0.25 / 0.9) as usize;
         let depth = |x: usize, y: usize| {
@@ -459,7 +597,7 @@ mod tests {
         assert!((depth(160, 90).unwrap().to_num::<f64>() - 2.0).abs() < 1e-4);
         assert!(depth(160 + half - 1, 90).is_some() && depth(160 + half + 1, 90).is_none());
         assert_eq!(
-            stats.pixels_drawn,
+            triangles.pixels_drawn,
             frame.depth.iter().filter(|&&code| code > 0).count() as u64
         );
     }

@@ -6,7 +6,7 @@ use glint::board::{Board, BoardError, SimulatedBoard, built_firmware};
 use glint::console::{Console, ConsoleError, value};
 use glint::convert::{self, Options};
 use glint::picture::Frame;
-use glint::render::{self, Renderer, Route, Scene, Stats};
+use glint::render::{self, Renderer, Route, Scene, Stats, Subject};
 use glint::transfer::{self, TransferError};
 use glint::{generate, view};
 use glint_core::camera::View;
@@ -31,11 +31,9 @@ fn renderer(board: &mut SimulatedBoard) -> Renderer<'_, SimulatedBoard> {
 /// The cube from a place outside.
 fn cube_scene<'m>(mesh: &'m [u8], camera: &str, size: (u32, u32)) -> Scene<'m> {
     Scene {
-        mesh,
+        subject: Subject::mesh(mesh),
         view: view::spherical(camera).unwrap(),
         size,
-        cull: true,
-        shading: Shading::Flat,
         backend: Some(Backend::Cpu),
     }
 }
@@ -65,7 +63,11 @@ fn smooth_shading_is_the_models_whoever_draws() {
     let mesh = mesh("icosphere:2");
     for backend in [None, Some(Backend::Cpu)] {
         let scene = Scene {
-            shading: Shading::Smooth,
+            subject: Subject::Mesh {
+                bytes: &mesh,
+                cull: true,
+                shading: Shading::Smooth,
+            },
             backend,
             ..cube_scene(&mesh, "2,30,60", (320, 180))
         };
@@ -105,11 +107,13 @@ fn the_monitor_shows_what_the_model_renders(name: &str) {
     let mesh = mesh(name);
     for (number, &(view, cull)) in cameras.iter().enumerate() {
         let scene = Scene {
-            mesh: &mesh,
+            subject: Subject::Mesh {
+                bytes: &mesh,
+                cull,
+                shading: Shading::Flat,
+            },
             view,
             size,
-            cull,
-            shading: Shading::Flat,
             backend: Some(Backend::Cpu),
         };
         let expected = render::on_model(&scene).unwrap();
@@ -118,7 +122,7 @@ fn the_monitor_shows_what_the_model_renders(name: &str) {
             .unwrap();
         assert_eq!(timeless(stats), expected.stats, "camera {number}");
         assert!(
-            number < 2 || expected.stats.triangles_clipped > 0,
+            number < 2 || expected.stats.triangles().triangles_clipped > 0,
             "nothing was clipped"
         );
         assert!(

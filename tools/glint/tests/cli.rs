@@ -53,6 +53,29 @@ fn refused(folder: &Path, arguments: &[&str]) -> String {
 const VIEW: &str =
     r#"{"eye":[0,-2,0],"u":[1,0,0],"v":[0,0,-1],"n":[0,1,0],"half_width":0.9,"near":0.1}"#;
 
+/// The pixels of a picture of 16 to 9, three bytes each.
+fn picture(path: &Path) -> Vec<u8> {
+    let decoder = png::Decoder::new(std::io::BufReader::new(std::fs::File::open(path).unwrap()));
+    let mut reader = decoder.read_info().unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut pixels).unwrap();
+    assert_eq!(
+        (info.width * 9, info.color_type),
+        (info.height * 16, png::ColorType::Rgb)
+    );
+    pixels
+}
+
+fn depths(path: &Path) -> Vec<f32> {
+    let number = |bytes: &[u8]| f32::from_le_bytes(bytes.try_into().unwrap());
+    let bytes = std::fs::read(path).unwrap();
+    bytes.chunks_exact(4).map(number).collect()
+}
+
+fn json(path: &Path) -> serde_json::Value {
+    serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
+}
+
 const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
 
 #[test]
@@ -244,6 +267,24 @@ fn bad_names_and_numbers() {
             "error: far.json: expected a camera, found eye (0, -9, 0): expected within 8 of the origin for a mesh",
         ),
         (
+            &["render", "--field", "ball:1", "--out", "out.png"],
+            "error: --field: expected a distance field, found no field is named ball: expected menger:DEPTH, box:X,Y,Z,",
+        ),
+        (
+            &["render", "--field", "menger:9", "--out", "out.png"],
+            "error: --field: expected a distance field, found depth: expected 1 to 6",
+        ),
+        (
+            &[
+                "render", "--field", "menger:4", "--stereo", "1", "--out", "out.png",
+            ],
+            "error: --stereo: expected two eyes, found 1: expected E,ZERO[,red-blue|red-cyan]",
+        ),
+        (
+            &["render", "cube", "--stereo", "0.05,3", "--out", "out.png"],
+            "error: --stereo: expected a --field to look at with two eyes, found a mesh",
+        ),
+        (
             &["render", "cube", "--out", "out.png", "--size", "320x200"],
             "error: --size: expected 320x180, 640x360 or 1280x720, found '320x200'",
         ),
@@ -350,17 +391,7 @@ fn renders_and_their_files() {
             .copied()
             .collect::<Vec<_>>();
         succeed(&folder, &arguments);
-        let decoder = png::Decoder::new(std::io::BufReader::new(
-            std::fs::File::open(folder.join(out)).unwrap(),
-        ));
-        let mut reader = decoder.read_info().unwrap();
-        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
-        let info = reader.next_frame(&mut pixels).unwrap();
-        assert_eq!(
-            (info.width * 9, info.color_type),
-            (info.height * 16, png::ColorType::Rgb)
-        );
-        pixels
+        picture(&folder.join(out))
     };
     let options = [
         "--camera", "2,-90,90", "--depth", "a.f32", "--stats", "a.json", "--json",
@@ -380,8 +411,7 @@ fn renders_and_their_files() {
         1280 * 720 * 3
     );
 
-    let stats: serde_json::Value =
-        serde_json::from_slice(&std::fs::read(folder.join("a.json")).unwrap()).unwrap();
+    let stats = json(&folder.join("a.json"));
     let number = |key: &str| stats[key].as_u64().unwrap();
     assert_eq!(
         number("triangles_in"),
@@ -390,11 +420,7 @@ fn renders_and_their_files() {
     assert!(number("pixels_tested") >= number("pixels_covered"));
     assert!(stats["cycles"].is_null() && stats["clock"].is_null());
 
-    let depth: Vec<f32> = std::fs::read(folder.join("a.f32"))
-        .unwrap()
-        .chunks_exact(4)
-        .map(|bytes| f32::from_le_bytes(bytes.try_into().unwrap()))
-        .collect();
+    let depth = depths(&folder.join("a.f32"));
     assert_eq!(depth.len(), 320 * 180);
     for (z, pixel) in depth.iter().zip(picture.chunks_exact(3)) {
         // The teapot lies between 1.5 and 2.5 from the eye along n.
@@ -404,4 +430,67 @@ fn renders_and_their_files() {
         );
     }
     assert!(depth.iter().any(|z| z.is_finite()));
+}
+
+#[test]
+fn fields_and_their_files() {
+    let folder = folder("fields");
+    // A box of half a unit, from 20 away: farther than a mesh allows.
+    let view = VIEW.replace("[0,-2,0]", "[0,-20,0]");
+    std::fs::write(
+        folder.join("far.json"),
+        view.replace("0.9", "0.05").replace("0.1}", "0.5}"),
+    )
+    .unwrap();
+    let render = |field: &str, more: &[&str]| {
+        let arguments = ["render", "--field", field, "--out", "a.png"]
+            .iter()
+            .chain(more)
+            .copied()
+            .collect::<Vec<_>>();
+        let said = succeed(&folder, &arguments);
+        (picture(&folder.join("a.png")), said)
+    };
+    let far = ["--view", "far.json"];
+    let files = ["--depth", "a.f32", "--stats", "a.json"];
+    let (one, said) = render("box:0.5,0.5,0.25", &[&far[..], &files[..]].concat());
+    assert!(said.starts_with("rays       57600 cast, "), "{said}");
+    let stats = json(&folder.join("a.json"));
+    let number = |key: &str| stats[key].as_u64().unwrap();
+    assert_eq!(number("rays"), 320 * 180);
+    assert_eq!(
+        number("rays"),
+        number("hits") + number("misses") + number("undecided")
+    );
+    let mean = number("evaluations") as f64 / number("rays") as f64;
+    assert_eq!(stats["evaluations_per_ray"], mean);
+    assert!(stats["cycles"].is_null() && stats.get("triangles_in").is_none());
+
+    // The face towards the camera, in the colour of its normal, in front of white.
+    let depth = depths(&folder.join("a.f32"));
+    for (z, pixel) in depth.iter().zip(one.chunks_exact(3)) {
+        assert!(
+            *z == f32::INFINITY && pixel == [0xff; 3] || (z - 19.5).abs() < 0.05,
+            "{z} {pixel:?}"
+        );
+    }
+    assert!(number("hits") > 0);
+    assert_eq!(
+        depth.iter().filter(|z| z.is_finite()).count() as u64,
+        number("hits")
+    );
+
+    let (two, said) = render(
+        "box:0.5,0.5,0.25",
+        &[&far[..], &["--stereo", "0.05,18", "--json"]].concat(),
+    );
+    assert_ne!(one, two);
+    assert!(
+        said.starts_with("{\"field\":\"box:0.5,0.5,0.25\",") && said.contains("\"rays\":115200,"),
+        "{said}"
+    );
+    // The camera without a name sees the whole sponge.
+    let (sponge, _) = render("menger:3", &[]);
+    assert_eq!(sponge[..3], [0xff; 3]);
+    assert_ne!(sponge, render("menger:3", &["--camera", "3,30,60"]).0);
 }

@@ -1,8 +1,10 @@
 //! A whole frame.
 
+use glint_core::stereo::Tint;
+
 use super::paint::{Palette, paint};
 use super::ray::{Outcome, Ray, State};
-use super::setup::{Setup, Tint};
+use super::setup::Setup;
 use crate::reciprocal::Reciprocal;
 use crate::render::{RenderError, Target};
 

@@ -3,6 +3,7 @@
 use glint_core::camera::View;
 use glint_core::field::Field;
 use glint_core::fixed::{Q2_23, Q32_32};
+use glint_core::stereo::{Stereo, Tint};
 
 use super::field::Solid;
 use super::paint::Palette;
@@ -44,27 +45,6 @@ pub const DEFAULT_TUNING: Tuning = Tuning {
     far: FARTHEST,
 };
 
-/// Which colour an eye sees.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Tint {
-    /// The left one red, the right one blue; green is the darker of both.
-    #[default]
-    RedBlue,
-    /// The left one red, the right one green and blue.
-    RedCyan,
-}
-
-/// Two eyes, beside each other along u.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Stereo {
-    /// From the camera's eye to each of the two, in world units: 0 to 1.
-    pub half_separation: Q32_32,
-    /// The distance along n at which both see the same place of the picture: at least the half separation, and 0.1.
-    pub zero_parallax: Q32_32,
-    /// Their colours.
-    pub tint: Tint,
-}
-
 /// How a field is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FieldOptions {
@@ -74,6 +54,16 @@ pub struct FieldOptions {
     pub tuning: Tuning,
     /// In which colours.
     pub palette: Palette,
+}
+
+impl FieldOptions {
+    /// The colours of a frame: two eyes need them grey.
+    pub fn palette_for(&self, setup: &Setup) -> Palette {
+        match setup.stereo {
+            Some(_) => self.palette.grey(),
+            None => self.palette,
+        }
+    }
 }
 
 impl Default for FieldOptions {

@@ -9,9 +9,8 @@ use glint::console::Console;
 use glint::flash;
 use glint::model::Model;
 use glint::picture::{Frame, save_animation};
-use glint::render::{self, Renderer, Route, Scene, Stats, view_command};
+use glint::render::{self, Renderer, Route, Scene, Stats, Subject, view_command};
 use glint_core::camera::View;
-use glint_core::colour::Shading;
 use glint_core::console::Backend;
 use glint_core::fixed::{Q32_32, Turns, U4_28};
 use indicatif::ProgressBar;
@@ -143,11 +142,9 @@ impl DemoArguments {
     ) -> anyhow::Result<Row> {
         let (start, start_cycles) = (Instant::now(), renderer.board().inner().cycles());
         let scene = Scene {
-            mesh: &model.mesh,
+            subject: Subject::mesh(&model.mesh),
             view: camera(azimuth(number))?,
             size: SIZE,
-            cull: true,
-            shading: Shading::Flat,
             backend: Some(Backend::Gateware),
         };
         let bar = match route {
@@ -304,7 +301,7 @@ fn print_table(rows: &[Row]) -> anyhow::Result<()> {
         say(format_args!(
             "{:<23}{:>9}{:>11}{by_cpu:>12}{speed_up:>12}{:>12.0}{:>9.0}{:>11.0}",
             picture.display(),
-            stats.triangles_in,
+            stats.triangles().triangles_in,
             cycles,
             rate(81.25e6),
             rate(100e6),

@@ -6,31 +6,40 @@ use anyhow::Context;
 use clap::{Args, ValueEnum};
 use glint::board::{Board, SimulatedBoard};
 use glint::console::Console;
-use glint::error::FormatError;
+use glint::error::{FormatError, InputError};
 use glint::picture::Frame;
-use glint::render::{self, Rendered, Renderer, Route, Scene, Stats};
+use glint::render::{self, Counts, Rendered, Renderer, Route, Scene, Stats, Subject};
 use glint::view;
 use glint_core::camera::View;
+use glint_core::field::{Field, KINDS};
+use glint_core::stereo::{self, Stereo};
 use glint_model::RenderError;
 use glint_model::frame::MAX_EYE;
+use glint_model::march::FieldOptions;
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// Render a model to a picture.
+/// Render a model or a distance field to a picture.
 #[derive(Args)]
 pub struct RenderArguments {
     /// A mesh file or a generator's name.
-    model: String,
-    /// A camera on a sphere about the origin: the distance (2 to 5), azimuth and polar angle in degrees. half_width is 0.9
-    /// and near 0.1.
+    #[arg(required_unless_present = "field", conflicts_with = "field")]
+    model: Option<String>,
+    #[arg(long, value_name = "FIELD", help = field_help())]
+    field: Option<String>,
+    /// Look at a field with two eyes, each E (0 to 1) beside the camera's, which see the same at the distance ZERO; the left
+    /// one in red, the right one in blue unless told.
+    #[arg(long, value_name = stereo::FORM, allow_hyphen_values = true)]
+    stereo: Option<String>,
+    /// A camera on a sphere about the origin: the distance (2 to 5), azimuth and polar angle in degrees; half_width is 0.9
+    /// and near 0.1 [default: 2,30,60, for a field 4,30,60].
     #[arg(
         long,
         value_name = "R,THETA,PHI",
-        default_value = "2,30,60",
         conflicts_with = "view",
         allow_hyphen_values = true
     )]
-    camera: String,
+    camera: Option<String>,
     /// A camera from a file: {"eye":[x,y,z],"u":[..],"v":[..],"n":[..],"half_width":h,"near":z}.
     #[arg(long, value_name = "VIEW.json")]
     view: Option<PathBuf>,
@@ -50,17 +59,17 @@ pub struct RenderArguments {
     /// Write the distance along n in world units: one little-endian f32 a pixel, +inf where nothing was drawn.
     #[arg(long, value_name = "DEPTH.f32")]
     depth: Option<PathBuf>,
-    /// Write cycles, triangles, pixels and the clock as JSON.
+    /// Write cycles, what was counted of triangles and pixels or of rays, and the clock as JSON.
     #[arg(long, value_name = "STATS.json")]
     stats: Option<PathBuf>,
     /// Draw back faces too.
-    #[arg(long)]
+    #[arg(long, conflicts_with = "field")]
     no_cull: bool,
     /// Where colours come from: faces, or vertices.
-    #[arg(long, value_enum, default_value_t = Shading::Flat)]
+    #[arg(long, value_enum, default_value_t = Shading::Flat, conflicts_with = "field")]
     shading: Shading,
     /// Leave the model's coordinates as they are, and refuse those outside [-2, 2).
-    #[arg(long)]
+    #[arg(long, conflicts_with = "field")]
     keep_scale: bool,
     /// Where the picture of a board is taken from: its memory, or the virtual board's monitor.
     #[arg(long, value_enum, default_value_t = Capture::Frame)]
@@ -102,27 +111,53 @@ enum Capture {
 /// What is printed with `--json`.
 #[derive(Serialize)]
 struct Outcome<'a> {
-    model: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    model: Option<&'a str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    field: Option<&'a str>,
     board: &'a str,
     size: [u32; 2],
     #[serde(flatten)]
+    stats: &'a Totals<'a>,
+}
+
+/// What a frame took, as files and programs get it.
+#[derive(Serialize)]
+struct Totals<'a> {
+    #[serde(flatten)]
     stats: &'a Stats,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    evaluations_per_ray: Option<f64>,
 }
 
 impl RenderArguments {
     pub fn run(self) -> anyhow::Result<()> {
         let view = self.camera()?;
         let size = parse_size(&self.size)?;
-        let model = load(&self.model, self.keep_scale)?;
+        let options = self.field_options()?;
+        // The command line has a model or a field.
+        let mesh = match &self.model {
+            Some(name) => load(name, self.keep_scale)?.mesh,
+            None => Vec::new(),
+        };
+        let subject = match &self.field {
+            Some(field) => Subject::Field {
+                field: parse_field(field)?,
+                options: &options,
+            },
+            None => Subject::Mesh {
+                bytes: &mesh,
+                cull: !self.no_cull,
+                shading: match self.shading {
+                    Shading::Flat => glint_model::Shading::Flat,
+                    Shading::Smooth => glint_model::Shading::Smooth,
+                },
+            },
+        };
         let scene = Scene {
-            mesh: &model.mesh,
+            subject,
             view,
             size,
-            cull: !self.no_cull,
-            shading: match self.shading {
-                Shading::Flat => glint_model::Shading::Flat,
-                Shading::Smooth => glint_model::Shading::Smooth,
-            },
             backend: self.backend.map(|backend| match backend {
                 Backend::Cpu => glint_core::console::Backend::Cpu,
                 Backend::Gateware => glint_core::console::Backend::Gateware,
@@ -138,16 +173,24 @@ impl RenderArguments {
                 .save_depth(path, &render::depth_scale(&scene)?)
                 .with_context(|| format!("{}: cannot be written", path.display()))?;
         }
+        let totals = Totals {
+            stats: &stats,
+            evaluations_per_ray: match &stats.counts {
+                Counts::Triangles(_) => None,
+                Counts::Rays(rays) => Some(rays.evaluations_per_ray()),
+            },
+        };
         if let Some(path) = &self.stats {
-            let json = serde_json::to_string_pretty(&stats)? + "\n";
+            let json = serde_json::to_string_pretty(&totals)? + "\n";
             write_file(path, json.as_bytes())?;
         }
         if self.json {
             let outcome = Outcome {
-                model: &self.model,
+                model: self.model.as_deref(),
+                field: self.field.as_deref(),
                 board: &self.board,
                 size: [size.0, size.1],
-                stats: &stats,
+                stats: &totals,
             };
             return print_json(&outcome);
         }
@@ -156,15 +199,38 @@ impl RenderArguments {
 
     fn camera(&self) -> anyhow::Result<View> {
         let Some(path) = &self.view else {
-            return Ok(view::spherical(&self.camera).map_err(|error| error.in_file("--camera"))?);
+            let default = if self.field.is_some() {
+                "4,30,60"
+            } else {
+                "2,30,60"
+            };
+            let camera = self.camera.as_deref().unwrap_or(default);
+            return Ok(view::spherical(camera).map_err(|error| error.in_file("--camera"))?);
         };
         let view = view::read(path)?;
-        if !view.is_within(MAX_EYE) {
+        if self.field.is_none() && !view.is_within(MAX_EYE) {
             let found = RenderError::Eye(view.eye()).to_string();
             let error = FormatError::whole("a camera", found);
             return Err(error.in_file(path.display().to_string()).into());
         }
         Ok(view)
+    }
+
+    /// How a field is drawn.
+    fn field_options(&self) -> anyhow::Result<FieldOptions> {
+        let Some(text) = &self.stereo else {
+            return Ok(FieldOptions::default());
+        };
+        if self.field.is_none() {
+            let error = FormatError::whole("a --field to look at with two eyes", "a mesh");
+            return Err(error.in_file("--stereo").into());
+        }
+        let stereo = Stereo::parse(text)
+            .map_err(|error| refusal("--stereo", "two eyes", &error.to_string()))?;
+        Ok(FieldOptions {
+            stereo: Some(stereo),
+            ..FieldOptions::default()
+        })
     }
 
     fn render(&self, scene: &Scene) -> anyhow::Result<Rendered> {
@@ -231,6 +297,20 @@ fn from_monitor(board: &mut SimulatedBoard, (width, _): (u32, u32)) -> anyhow::R
     Ok(picture.scaled_back(scale)?)
 }
 
+fn field_help() -> String {
+    let kinds = KINDS.map(|(form, what)| format!("{form} ({what})"));
+    format!("A distance field instead of a model: {}", kinds.join(", "))
+}
+
+fn parse_field(text: &str) -> Result<Field, InputError> {
+    Field::parse(text).map_err(|error| refusal("--field", "a distance field", &error.to_string()))
+}
+
+/// What an option says is not what was `expected`.
+fn refusal(option: &str, expected: &str, found: &str) -> InputError {
+    FormatError::whole(expected, found.escape_debug().to_string()).in_file(option)
+}
+
 fn parse_size(text: &str) -> anyhow::Result<(u32, u32)> {
     let size = text
         .split_once('x')
@@ -246,14 +326,32 @@ fn parse_size(text: &str) -> anyhow::Result<(u32, u32)> {
 }
 
 fn print_stats(stats: &Stats) -> anyhow::Result<()> {
-    say(format_args!(
-        "triangles  {} in, {} culled, {} clipped, {} drawn",
-        stats.triangles_in, stats.triangles_culled, stats.triangles_clipped, stats.triangles_drawn
-    ))?;
-    say(format_args!(
-        "pixels     {} tested, {} covered, {} drawn",
-        stats.pixels_tested, stats.pixels_covered, stats.pixels_drawn
-    ))?;
+    match &stats.counts {
+        Counts::Triangles(counts) => {
+            say(format_args!(
+                "triangles  {} in, {} culled, {} clipped, {} drawn",
+                counts.triangles_in,
+                counts.triangles_culled,
+                counts.triangles_clipped,
+                counts.triangles_drawn
+            ))?;
+            say(format_args!(
+                "pixels     {} tested, {} covered, {} drawn",
+                counts.pixels_tested, counts.pixels_covered, counts.pixels_drawn
+            ))?;
+        }
+        Counts::Rays(counts) => {
+            say(format_args!(
+                "rays       {} cast, {} hit, {} missed, {} undecided",
+                counts.rays, counts.hits, counts.misses, counts.undecided
+            ))?;
+            say(format_args!(
+                "field      {} evaluations, {:.2} a ray",
+                counts.evaluations,
+                counts.evaluations_per_ray()
+            ))?;
+        }
+    }
     if let (Some(cycles), Some(clock)) = (stats.cycles, stats.clock) {
         let (rate, megahertz) = (clock as f64 / cycles as f64, clock as f64 / 1e6);
         say(format_args!(

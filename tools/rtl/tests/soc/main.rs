@@ -18,7 +18,7 @@ mod scenes;
 
 use glint::board::{Board, BoardError, Memory, SimulatedBoard, built_firmware};
 use glint::console::{Console, value};
-use glint::render::{self, Rendered, Scene};
+use glint::render::{self, Rendered, Scene, Subject};
 use glint::view;
 use glint_core::colour::Shading;
 use glint_core::console::Backend;
@@ -215,11 +215,13 @@ fn draw(size: (u32, u32), scenes: Vec<scenes::Scene>) {
         for (number, (view, with_depth)) in [(view, true)].into_iter().chain(views).enumerate() {
             let name = format!("{name} {number} at {size:?}");
             let scene = Scene {
-                mesh: &mesh,
+                subject: Subject::Mesh {
+                    bytes: &mesh,
+                    cull,
+                    shading: Shading::Flat,
+                },
                 view,
                 size,
-                cull,
-                shading: Shading::Flat,
                 backend: Some(Backend::Gateware),
             };
             let Rendered { frame, stats } = render::on_model(&scene).unwrap();
@@ -255,11 +257,12 @@ fn draw(size: (u32, u32), scenes: Vec<scenes::Scene>) {
             );
             let counts = ["in", "culled", "clipped", "drawn"]
                 .map(|key| told.number(&format!("triangles_{key}")));
+            let triangles = stats.triangles();
             let expected = [
-                stats.triangles_in,
-                stats.triangles_culled,
-                stats.triangles_clipped,
-                stats.triangles_drawn,
+                triangles.triangles_in,
+                triangles.triangles_culled,
+                triangles.triangles_clipped,
+                triangles.triangles_drawn,
             ];
             assert_eq!(
                 counts, expected,

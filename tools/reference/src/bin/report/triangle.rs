@@ -13,10 +13,9 @@ use glint::convert::{self, Options};
 use glint::error::Place;
 use glint::generate;
 use glint::polygons::{Corner, Polygons};
-use glint::render::{self, Renderer, Route, Scene, Stats};
+use glint::render::{self, Renderer, Route, Scene, Stats, Subject};
 use glint::view;
 use glint_core::camera::View;
-use glint_core::colour::Shading;
 use glint_core::console::Backend;
 use serde::Serialize;
 
@@ -258,11 +257,9 @@ fn measure(firmware: &[u8], case: &Case, quick: bool, commit: &str) -> Result<Ro
     let mut renderer = Renderer::new(console);
     let mesh = (case.mesh)()?;
     let mut scene = Scene {
-        mesh: &mesh,
+        subject: Subject::mesh(&mesh),
         view: ahead(case.half_width)?,
         size: case.size,
-        cull: true,
-        shading: Shading::Flat,
         backend: Some(Backend::Gateware),
     };
     let expected = render::on_model(&scene)?;
@@ -326,11 +323,13 @@ fn row(
     together: &Bench,
     cycles_cpu: Option<u64>,
 ) -> Result<Row> {
+    let expected = expected.triangles();
     let pixels = expected.pixels_covered;
     let engine = alone
         .engine
         .as_ref()
         .with_context(|| format!("{}: the engine did not draw", case.name))?;
+    let triangles = alone.triangles();
     let share = |part: u64, whole: u64| part as f64 / whole as f64;
     let raster = engine.cycles_raster;
     let walking = engine.cycles_walking;
@@ -369,9 +368,9 @@ fn row(
         scene: case.name,
         width: case.size.0,
         height: case.size.1,
-        triangles: alone.triangles_in,
-        drawn: alone.triangles_drawn,
-        clipped: alone.triangles_clipped,
+        triangles: triangles.triangles_in,
+        drawn: triangles.triangles_drawn,
+        clipped: triangles.triangles_clipped,
         pixels,
         cycles_alone: alone.cycles.context("no cycles")?,
         cycles_geometry: engine.cycles_geometry,
