@@ -14,6 +14,7 @@ pub mod colour;
 pub mod console;
 pub mod field;
 pub mod fixed;
+pub mod light;
 pub mod mesh;
 pub mod stereo;
 pub mod trig;

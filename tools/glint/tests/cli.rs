@@ -282,7 +282,35 @@ fn bad_names_and_numbers() {
         ),
         (
             &["render", "cube", "--stereo", "0.05,3", "--out", "out.png"],
-            "error: --stereo: expected a --field to look at with two eyes, found a mesh",
+            "error: --stereo: expected a --field, which alone has it, found a mesh",
+        ),
+        (
+            &["render", "cube", "--out", "out.png", "--fog", "1"],
+            "error: --fog: expected a --field, which alone has it, found a mesh",
+        ),
+        (
+            &[
+                "render", "--field", "menger:2", "--fog", "-1", "--out", "out.png",
+            ],
+            "error: --fog: expected a density of at least 0 and below 16, found '-1'",
+        ),
+        (
+            &[
+                "render",
+                "--field",
+                "menger:2",
+                "--ambient",
+                "fff",
+                "--out",
+                "out.png",
+            ],
+            "error: --ambient: expected a colour RRGGBB, found 'fff'",
+        ),
+        (
+            &[
+                "render", "--field", "menger:2", "--light", "0,0,0", "--out", "out.png",
+            ],
+            "error: --light: expected a light, found direction 0,0,0: expected one that is not 0",
         ),
         (
             &["render", "cube", "--out", "out.png", "--size", "320x200"],
@@ -310,6 +338,13 @@ fn failures_that_are_no_bad_input() {
         (
             &["render", "cube", "--out", "a.png", "--capture", "monitor"],
             "error: --capture monitor: only the virtual board",
+        ),
+        (
+            &[
+                "render", "--field", "menger:2", "--fog", "1", "--board", "virtual", "--out",
+                "a.png",
+            ],
+            "error: --material, --light, --ambient, --background, --fog, --occlusion: only the model",
         ),
     ] {
         let output = glint(&folder, arguments);
@@ -489,6 +524,43 @@ fn fields_and_their_files() {
         said.starts_with("{\"field\":\"box:0.5,0.5,0.25\",") && said.contains("\"rays\":115200,"),
         "{said}"
     );
+    // Five lights are one too many.
+    let lights = ["--light", "0,0,1"].repeat(5);
+    let arguments = [
+        &["render", "--field", "menger:1", "--out", "b.png"],
+        &lights[..],
+    ]
+    .concat();
+    assert_eq!(
+        refused(&folder, &arguments),
+        "error: --light: expected at most 4 lights, found 5"
+    );
+    // Blue light from above, and nothing from anywhere else.
+    let blue = [
+        "--material",
+        "ivory",
+        "--light",
+        "0,0,1,0000ff",
+        "--ambient",
+        "000000",
+    ];
+    let (lit, _) = render("box:1,1,1", &blue);
+    let mut colours: Vec<&[u8]> = lit.chunks_exact(3).collect();
+    colours.sort_unstable();
+    colours.dedup();
+    assert_eq!(colours, [&[0, 0, 0], &[0, 0, 231], &[255; 3]]);
+    for more in [
+        &["--material", "clay"][..],
+        &["--background", "sky"],
+        &["--fog", "0.2"],
+        &["--occlusion"],
+    ] {
+        assert_ne!(
+            render("menger:2", more).0,
+            render("menger:2", &[]).0,
+            "{more:?}"
+        );
+    }
     // The camera without a name sees the whole sponge.
     let (sponge, _) = render("menger:3", &[]);
     assert_eq!(sponge[..3], [0xff; 3]);

@@ -2,7 +2,7 @@
 
 use glint_core::camera::View;
 use glint_core::field::Field;
-use glint_core::fixed::{Q2_23, Q32_32};
+use glint_core::fixed::{Q2_23, Q32_32, U4_28};
 use glint_core::stereo::{Stereo, Tint};
 
 use super::field::Solid;
@@ -52,16 +52,23 @@ pub struct FieldOptions {
     pub stereo: Option<Stereo>,
     /// How finely.
     pub tuning: Tuning,
-    /// In which colours.
+    /// In which colours, without fog.
     pub palette: Palette,
+    /// How dense the fog is: e^−z of something is left that is z/density world units away. 0 is none.
+    pub fog: U4_28,
 }
 
 impl FieldOptions {
-    /// The colours of a frame: two eyes need them grey.
+    /// The colours of a frame: with its fog, and grey for two eyes.
     pub fn palette_for(&self, setup: &Setup) -> Palette {
+        let palette = if self.fog == U4_28::ZERO {
+            self.palette
+        } else {
+            self.palette.with_fog(setup, self.fog)
+        };
         match setup.stereo {
-            Some(_) => self.palette.grey(),
-            None => self.palette,
+            Some(_) => palette.grey(),
+            None => palette,
         }
     }
 }
@@ -72,6 +79,7 @@ impl Default for FieldOptions {
             stereo: None,
             tuning: DEFAULT_TUNING,
             palette: Palette::default(),
+            fog: U4_28::ZERO,
         }
     }
 }
@@ -97,6 +105,8 @@ pub struct Setup {
     pub height: u32,
     /// What there is.
     pub solid: Solid,
+    /// Field units in a world unit: 4 to 256.
+    pub scale: Q32_32,
     /// Half the sides of the box about the origin that holds it, u12.12; [`UNBOUNDED`] where it has no end.
     pub bounds: [u32; 3],
     /// The left and the right eye; the second is unused without stereo.
@@ -177,6 +187,7 @@ impl Setup {
             width,
             height,
             solid,
+            scale,
             bounds,
             eyes: [eye(-1, rays.first[0]), eye(1, rays.first[1])],
             steps: [rays.across, rays.down].map(|step| step.map(|x| rays.narrow(x))),

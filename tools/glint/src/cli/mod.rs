@@ -3,6 +3,7 @@
 mod common;
 mod convert;
 mod demo;
+mod field;
 mod flash;
 mod render;
 mod terminal;
@@ -25,7 +26,7 @@ pub struct Arguments {
 enum Command {
     Model(convert::ModelArguments),
     Convert(convert::ConvertArguments),
-    Render(render::RenderArguments),
+    Render(Box<render::RenderArguments>),
     Upload(flash::UploadArguments),
     Flash(flash::FlashArguments),
     Console(terminal::ConsoleArguments),

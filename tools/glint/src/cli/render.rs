@@ -2,17 +2,16 @@
 
 use super::common::{LineArguments, advance, bar, print_json, say, spinner, write_file};
 use super::convert::load;
+use super::field::FieldArguments;
 use anyhow::Context;
 use clap::{Args, ValueEnum};
 use glint::board::{Board, SimulatedBoard};
 use glint::console::Console;
-use glint::error::{FormatError, InputError};
+use glint::error::FormatError;
 use glint::picture::Frame;
 use glint::render::{self, Counts, Rendered, Renderer, Route, Scene, Stats, Subject};
 use glint::view;
 use glint_core::camera::View;
-use glint_core::field::{Field, KINDS};
-use glint_core::stereo::{self, Stereo};
 use glint_model::RenderError;
 use glint_model::frame::MAX_EYE;
 use glint_model::march::FieldOptions;
@@ -25,12 +24,6 @@ pub struct RenderArguments {
     /// A mesh file or a generator's name.
     #[arg(required_unless_present = "field", conflicts_with = "field")]
     model: Option<String>,
-    #[arg(long, value_name = "FIELD", help = field_help())]
-    field: Option<String>,
-    /// Look at a field with two eyes, each E (0 to 1) beside the camera's, which see the same at the distance ZERO; the left
-    /// one in red, the right one in blue unless told.
-    #[arg(long, value_name = stereo::FORM, allow_hyphen_values = true)]
-    stereo: Option<String>,
     /// A camera on a sphere about the origin: the distance (2 to 5), azimuth and polar angle in degrees; half_width is 0.9
     /// and near 0.1 [default: 2,30,60, for a field 4,30,60].
     #[arg(
@@ -77,6 +70,8 @@ pub struct RenderArguments {
     /// How mesh and picture pass between here and a board [default: memory on the virtual board, serial on a port].
     #[arg(long, value_enum)]
     transfer: Option<Route>,
+    #[command(flatten)]
+    field: FieldArguments,
     #[command(flatten)]
     line: LineArguments,
     /// Print what was done as JSON.
@@ -134,15 +129,15 @@ impl RenderArguments {
     pub fn run(self) -> anyhow::Result<()> {
         let view = self.camera()?;
         let size = parse_size(&self.size)?;
-        let options = self.field_options()?;
+        let (field, options) = (self.field.field()?, self.field.options()?);
         // The command line has a model or a field.
         let mesh = match &self.model {
             Some(name) => load(name, self.keep_scale)?.mesh,
             None => Vec::new(),
         };
-        let subject = match &self.field {
+        let subject = match field {
             Some(field) => Subject::Field {
-                field: parse_field(field)?,
+                field,
                 options: &options,
             },
             None => Subject::Mesh {
@@ -187,7 +182,7 @@ impl RenderArguments {
         if self.json {
             let outcome = Outcome {
                 model: self.model.as_deref(),
-                field: self.field.as_deref(),
+                field: self.field.field.as_deref(),
                 board: &self.board,
                 size: [size.0, size.1],
                 stats: &totals,
@@ -199,7 +194,7 @@ impl RenderArguments {
 
     fn camera(&self) -> anyhow::Result<View> {
         let Some(path) = &self.view else {
-            let default = if self.field.is_some() {
+            let default = if self.field.field.is_some() {
                 "4,30,60"
             } else {
                 "2,30,60"
@@ -208,7 +203,7 @@ impl RenderArguments {
             return Ok(view::spherical(camera).map_err(|error| error.in_file("--camera"))?);
         };
         let view = view::read(path)?;
-        if self.field.is_none() && !view.is_within(MAX_EYE) {
+        if self.field.field.is_none() && !view.is_within(MAX_EYE) {
             let found = RenderError::Eye(view.eye()).to_string();
             let error = FormatError::whole("a camera", found);
             return Err(error.in_file(path.display().to_string()).into());
@@ -216,28 +211,21 @@ impl RenderArguments {
         Ok(view)
     }
 
-    /// How a field is drawn.
-    fn field_options(&self) -> anyhow::Result<FieldOptions> {
-        let Some(text) = &self.stereo else {
-            return Ok(FieldOptions::default());
-        };
-        if self.field.is_none() {
-            let error = FormatError::whole("a --field to look at with two eyes", "a mesh");
-            return Err(error.in_file("--stereo").into());
-        }
-        let stereo = Stereo::parse(text)
-            .map_err(|error| refusal("--stereo", "two eyes", &error.to_string()))?;
-        Ok(FieldOptions {
-            stereo: Some(stereo),
-            ..FieldOptions::default()
-        })
-    }
-
     fn render(&self, scene: &Scene) -> anyhow::Result<Rendered> {
         anyhow::ensure!(
             self.board == "virtual" || self.capture == Capture::Frame,
             "--capture monitor: only the virtual board has a monitor to look at"
         );
+        if let Subject::Field { options, .. } = scene.subject {
+            let plain = FieldOptions {
+                stereo: options.stereo,
+                ..FieldOptions::default()
+            };
+            anyhow::ensure!(
+                self.board == "model" || *options == plain,
+                "--material, --light, --ambient, --background, --fog, --occlusion: only the model draws with them"
+            );
+        }
         match self.board.as_str() {
             "model" => {
                 let spinner = spinner("rendering");
@@ -295,20 +283,6 @@ fn from_monitor(board: &mut SimulatedBoard, (width, _): (u32, u32)) -> anyhow::R
     spinner.finish_and_clear();
     let scale = virtual_board::WIDTH / width as usize;
     Ok(picture.scaled_back(scale)?)
-}
-
-fn field_help() -> String {
-    let kinds = KINDS.map(|(form, what)| format!("{form} ({what})"));
-    format!("A distance field instead of a model: {}", kinds.join(", "))
-}
-
-fn parse_field(text: &str) -> Result<Field, InputError> {
-    Field::parse(text).map_err(|error| refusal("--field", "a distance field", &error.to_string()))
-}
-
-/// What an option says is not what was `expected`.
-fn refusal(option: &str, expected: &str, found: &str) -> InputError {
-    FormatError::whole(expected, found.escape_debug().to_string()).in_file(option)
 }
 
 fn parse_size(text: &str) -> anyhow::Result<(u32, u32)> {

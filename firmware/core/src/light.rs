@@ -1,0 +1,279 @@
+//! Light on solids whose faces are perpendicular to the axes.
+//!
+//! There are six such faces, so what lights make of a material are six colours a frame and no work a pixel. They have no
+//! shadows: all that counts is the angle between a face and the direction to a light.
+
+use core::fmt;
+
+use heapless::Vec;
+
+use crate::fixed::Q32_32;
+
+/// Red, green and blue, 8 bits each.
+pub type Rgb = [u8; 3];
+
+/// The most lights of a scene.
+pub const MAX_LIGHTS: usize = 4;
+
+/// How a light is typed.
+pub const FORM: &str = "X,Y,Z[,RRGGBB]";
+
+/// 1 in the numbers of a direction, 2^14.
+const ONE: i32 = 1 << 14;
+
+/// A light that is infinitely far away.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Light {
+    /// The direction to it, of length 1: s1.14, to nearest.
+    direction: [i16; 3],
+    colour: Rgb,
+}
+
+impl Light {
+    /// A light in a direction of any length but 0.
+    ///
+    /// # Errors
+    /// The direction is 0.
+    pub fn new(direction: [Q32_32; 3], colour: Rgb) -> Result<Self, LightError<'static>> {
+        let magnitudes = direction.map(|x| x.to_bits().unsigned_abs());
+        let largest = magnitudes.into_iter().max().unwrap_or(0);
+        let Some(lead) = largest.checked_ilog2() else {
+            return Err(LightError::Nowhere);
+        };
+        // The largest has 31 bits, so the squares together have at most 64.
+        let scaled = magnitudes.map(|x| {
+            if lead < 30 {
+                x << (30 - lead)
+            } else {
+                x >> (lead - 30)
+            }
+        });
+        let length = scaled.map(|x| x * x).iter().sum::<u64>().isqrt();
+        let unit = scaled.map(|x| ((x << 15) / length + 1) >> 1);
+        let signed = |i: usize| unit[i] as i16 * direction[i].signum().to_num::<i16>();
+        Ok(Self {
+            direction: [0, 1, 2].map(signed),
+            colour,
+        })
+    }
+
+    /// Reads a light as it is typed, such as `1,-2,3` or `0,0,1,ffc080`: the direction to it, of any length, and its
+    /// colour, which is white unless told.
+    ///
+    /// # Errors
+    /// The text has not this form, or the direction is 0.
+    pub fn parse(text: &str) -> Result<Self, LightError<'_>> {
+        let form = LightError::Form { text };
+        let mut words = text.split(',');
+        let mut direction = [Q32_32::ZERO; 3];
+        for number in &mut direction {
+            let word = words.next().ok_or(form)?;
+            *number = Q32_32::from_str(word).map_err(|_| form)?;
+        }
+        let colour = match words.next() {
+            Some(word) => parse_rgb(word).ok_or(form)?,
+            None => [0xFF; 3],
+        };
+        match words.next() {
+            Some(_) => Err(form),
+            None => Self::new(direction, colour),
+        }
+    }
+}
+
+/// Reads a colour as it is typed: six hexadecimal digits, two a channel.
+pub fn parse_rgb(text: &str) -> Option<Rgb> {
+    let digits = text.len() == 6 && text.bytes().all(|byte| byte.is_ascii_hexdigit());
+    let number = u32::from_str_radix(text, 16).ok().filter(|_| digits)?;
+    let [_, red, green, blue] = number.to_be_bytes();
+    Some([red, green, blue])
+}
+
+/// Why something is no light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LightError<'a> {
+    /// It has another form.
+    Form {
+        /// What was typed.
+        text: &'a str,
+    },
+    /// Its direction is 0.
+    Nowhere,
+}
+
+impl fmt::Display for LightError<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Form { text } => write!(f, "{text}: expected {FORM}"),
+            Self::Nowhere => f.write_str("direction 0,0,0: expected one that is not 0"),
+        }
+    }
+}
+
+impl core::error::Error for LightError<'_> {}
+
+/// All the light of a scene.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Lighting {
+    /// What comes from everywhere.
+    pub ambient: Rgb,
+    /// What comes from somewhere.
+    pub lights: Vec<Light, MAX_LIGHTS>,
+}
+
+impl Lighting {
+    /// Colours as they are.
+    pub const PLAIN: Self = Self {
+        ambient: [0xFF; 3],
+        lights: Vec::new(),
+    };
+
+    /// What comes from everywhere where lights are set and nothing else is said.
+    pub const AMBIENT: Rgb = [0x40; 3];
+
+    /// The sun, and the sky: every face has another brightness.
+    pub fn day() -> Self {
+        let sun = Light {
+            // (3, −5, 8), which is 9.9 long.
+            direction: [4_965, -8_275, 13_240],
+            colour: [0xFF, 0xF4, 0xE0],
+        };
+        let sky = Light {
+            // (−2, 1, 2), which is 3 long.
+            direction: [-10_923, 5_461, 10_923],
+            colour: [0x30, 0x38, 0x48],
+        };
+        Self {
+            ambient: Self::AMBIENT,
+            lights: Vec::from_array([sun, sky]),
+        }
+    }
+
+    /// What it makes of six faces: each channel is c·min(1, ambient + Σ max(0, n·l)·light), where 1 is 255, to nearest.
+    /// Nothing else is rounded but the directions.
+    pub fn shine_on(&self, faces: &[Rgb; 6]) -> [Rgb; 6] {
+        core::array::from_fn(|face| {
+            core::array::from_fn(|channel| {
+                let sum: i32 = self
+                    .lights
+                    .iter()
+                    .map(|light| {
+                        let along = i32::from(light.direction[face / 2]);
+                        // As in a surface's code, the odd ones look along their axis.
+                        let facing = if face % 2 == 1 { along } else { -along };
+                        facing.max(0) * i32::from(light.colour[channel])
+                    })
+                    .sum();
+                let light = (i32::from(self.ambient[channel]) * ONE + sum).min(255 * ONE);
+                // Below 2^30.
+                let lit = i32::from(faces[face][channel]) * light;
+                ((lit + 255 * ONE / 2) / (255 * ONE)) as u8
+            })
+        })
+    }
+}
+
+/// What a solid is made of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Material {
+    /// Each face in the colour of its normal.
+    #[default]
+    Normal,
+    /// Reddish brown.
+    Clay,
+    /// Green.
+    Jade,
+    /// Light blue.
+    Sky,
+    /// Yellow.
+    Gold,
+    /// Nearly white.
+    Ivory,
+    /// Dark grey.
+    Slate,
+}
+
+impl Material {
+    /// All of them.
+    pub const ALL: [Self; 7] = [
+        Self::Normal,
+        Self::Clay,
+        Self::Jade,
+        Self::Sky,
+        Self::Gold,
+        Self::Ivory,
+        Self::Slate,
+    ];
+
+    /// What it is called.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Normal => "normal",
+            Self::Clay => "clay",
+            Self::Jade => "jade",
+            Self::Sky => "sky",
+            Self::Gold => "gold",
+            Self::Ivory => "ivory",
+            Self::Slate => "slate",
+        }
+    }
+
+    /// The colours of its faces in full light, in the order −x, x, −y, y, −z, z.
+    pub const fn faces(self) -> [Rgb; 6] {
+        match self {
+            Self::Normal => [
+                [40, 130, 130],
+                [230, 130, 130],
+                [130, 40, 130],
+                [130, 230, 130],
+                [130, 130, 40],
+                [130, 130, 230],
+            ],
+            Self::Clay => [[196, 110, 78]; 6],
+            Self::Jade => [[72, 168, 120]; 6],
+            Self::Sky => [[120, 176, 230]; 6],
+            Self::Gold => [[232, 184, 72]; 6],
+            Self::Ivory => [[244, 238, 220]; 6],
+            Self::Slate => [[104, 114, 128]; 6],
+        }
+    }
+
+    /// The light that shows it best: a normal's colour tells the face already.
+    pub fn light(self) -> Lighting {
+        match self {
+            Self::Normal => Lighting::PLAIN,
+            _ => Lighting::day(),
+        }
+    }
+}
+
+/// What is behind everything.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Background {
+    /// White.
+    #[default]
+    White,
+    /// Blue above, pale at the horizon and below.
+    Sky,
+}
+
+impl Background {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::White, Self::Sky];
+
+    /// What it is called.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::White => "white",
+            Self::Sky => "sky",
+        }
+    }
+
+    /// Its colours above, and at the horizon and below.
+    pub const fn colours(self) -> [Rgb; 2] {
+        match self {
+            Self::White => [[0xFF; 3]; 2],
+            Self::Sky => [[64, 120, 216], [214, 228, 242]],
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! Lights as they are typed, and what they make of faces.
+
+use glint_core::fixed::Q32_32;
+use glint_core::light::{
+    Background, Light, LightError, Lighting, MAX_LIGHTS, Material, Rgb, parse_rgb,
+};
+use proptest::prelude::*;
+
+/// The same in f64.
+fn shone(ambient: Rgb, lights: &[([f64; 3], Rgb)], faces: &[Rgb; 6]) -> [[f64; 3]; 6] {
+    core::array::from_fn(|face| {
+        core::array::from_fn(|channel| {
+            let sum: f64 = lights
+                .iter()
+                .map(|(direction, colour)| {
+                    let length = direction.iter().map(|x| x * x).sum::<f64>().sqrt();
+                    let sign = if face % 2 == 1 { 1.0 } else { -1.0 };
+                    let along = sign * direction[face / 2] / length;
+                    along.max(0.0) * f64::from(colour[channel])
+                })
+                .sum();
+            let light = (f64::from(ambient[channel]) + sum) / 255.0;
+            f64::from(faces[face][channel]) * light.min(1.0)
+        })
+    })
+}
+
+fn lights() -> impl Strategy<Value = Vec<([i64; 3], Rgb)>> {
+    // Of all lengths.
+    let number = (any::<i64>(), 0..63_u32).prop_map(|(x, shift)| x >> shift);
+    let direction = [number.clone(), number.clone(), number]
+        .prop_filter("a direction", |direction| *direction != [0; 3]);
+    proptest::collection::vec((direction, any::<Rgb>()), 0..=MAX_LIGHTS)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 500, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn faces_are_lit_as_in_f64(
+        ambient in any::<Rgb>(),
+        lights in lights(),
+        material in proptest::sample::select(&Material::ALL[..]),
+    ) {
+        let lighting = Lighting {
+            ambient,
+            lights: lights
+                .iter()
+                .map(|(direction, colour)| {
+                    Light::new(direction.map(Q32_32::from_bits), *colour).expect("a direction")
+                })
+                .collect(),
+        };
+        let exact: Vec<_> = lights
+            .iter()
+            .map(|(direction, colour)| (direction.map(|x| x as f64), *colour))
+            .collect();
+        let exact = shone(ambient, &exact, &material.faces());
+        for (found, exact) in lighting.shine_on(&material.faces()).iter().zip(exact) {
+            for (found, exact) in found.iter().zip(exact) {
+                // Half a step, and 2^-15 of 255 for each direction.
+                prop_assert!((f64::from(*found) - exact).abs() < 0.54, "{found} {exact}");
+            }
+        }
+    }
+
+    #[test]
+    fn no_text_upsets_the_parser(text in "[-+0-9.,a-f]{0,40}") {
+        let _ = Light::parse(&text).map_err(|error| error.to_string());
+    }
+}
+
+#[test]
+fn plain_light_leaves_colours_as_they_are() {
+    for material in Material::ALL {
+        assert_eq!(
+            Lighting::PLAIN.shine_on(&material.faces()),
+            material.faces()
+        );
+    }
+}
+
+/// Otherwise edges would not be seen.
+#[test]
+fn every_face_of_a_material_looks_different() {
+    for material in Material::ALL {
+        let faces = material.light().shine_on(&material.faces());
+        for (i, face) in faces.iter().enumerate() {
+            let other = faces.iter().skip(i + 1).position(|other| other == face);
+            // Of two sides that are turned away from all lights only the ambient one is seen.
+            assert!(
+                other.is_none_or(|_| *face == faces[4]),
+                "{}",
+                material.name()
+            );
+        }
+    }
+}
+
+#[test]
+fn the_lights_of_the_day_have_length_1() {
+    let Lighting { lights, .. } = Lighting::day();
+    let numbers = |x, y, z| [x, y, z].map(Q32_32::from_num);
+    assert_eq!(
+        lights,
+        [
+            Light::new(numbers(3, -5, 8), [0xFF, 0xF4, 0xE0]).expect("a direction"),
+            Light::new(numbers(-2, 1, 2), [0x30, 0x38, 0x48]).expect("a direction"),
+        ]
+    );
+}
+
+#[test]
+fn lights_and_colours_are_read() {
+    let along_z = |colour| Light::new([0, 0, 1].map(Q32_32::from_num), colour);
+    assert_eq!(Light::parse("0,0,2.5"), along_z([0xFF; 3]));
+    assert_eq!(Light::parse("0,0,1e-5,ffC080"), along_z([255, 192, 128]));
+    for text in [
+        "",
+        "1,2",
+        "1,2,x",
+        "1,2,3,",
+        "1,2,3,fff",
+        "1,2,3,+fffff",
+        "1,2,3,ffffff,",
+    ] {
+        let error = Light::parse(text).expect_err(text);
+        assert_eq!(error, LightError::Form { text });
+        assert_eq!(
+            error.to_string(),
+            format!("{text}: expected X,Y,Z[,RRGGBB]")
+        );
+    }
+    let error = Light::parse("0,-0,0").expect_err("nowhere").to_string();
+    assert_eq!(error, "direction 0,0,0: expected one that is not 0");
+    assert_eq!(parse_rgb("0102ff"), Some([1, 2, 255]));
+    assert_eq!(parse_rgb("\u{e9}\u{e9}\u{e9}"), None);
+}
+
+#[test]
+fn names_are_different() {
+    let materials = Material::ALL.map(Material::name);
+    let backgrounds = Background::ALL.map(Background::name);
+    for names in [&materials[..], &backgrounds] {
+        for (i, name) in names.iter().enumerate() {
+            assert!(!names[..i].contains(name), "{name}");
+        }
+    }
+}

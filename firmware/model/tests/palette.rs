@@ -1,0 +1,78 @@
+//! The colours of a field: fog, shadows, grey.
+
+use glint_core::camera::View;
+use glint_core::field::Field;
+use glint_core::fixed::{Q32_32, Turns, U4_28};
+use glint_core::stereo::Stereo;
+use glint_model::march::{FieldOptions, Palette, Setup};
+
+fn setup(field: &str, half_width: &str, options: &FieldOptions) -> Setup {
+    let field = Field::parse(field).unwrap();
+    let view = View::spherical(Q32_32::lit("3"), Turns(1 << 28), Turns(1 << 30)).unwrap();
+    let view = View::new_checked(
+        view.eye(),
+        view.u(),
+        view.v(),
+        view.n(),
+        half_width.parse().unwrap(),
+        view.near(),
+    );
+    Setup::new(&field, &view.unwrap(), (320, 180), options).unwrap()
+}
+
+#[test]
+fn fog_falls_off_as_e_to_its_depth() {
+    for (field, half_width) in [
+        ("menger:3", "0.9"),
+        ("cubes:16,1", "4"),
+        ("cubes:0.25,0.1", "0.05"),
+    ] {
+        let setup = setup(field, half_width, &FieldOptions::default());
+        for density in ["0.001", "0.05", "0.3", "1", "15.99"] {
+            let density: U4_28 = density.parse().unwrap();
+            let palette = Palette::default().with_fog(&setup, density);
+            let units = setup.scale.to_num::<f64>() * f64::from(1 << setup.exponent);
+            let step = f64::from(1 << palette.fog_shift) / units;
+            let mut most = 0;
+            for (i, &fog) in palette.fog.iter().enumerate() {
+                let z = (i as f64 + 0.5) * step;
+                let hidden = 255.0 * (1.0 - (-density.to_num::<f64>() * z).exp());
+                assert!(
+                    (f64::from(fog) - hidden).abs() < 0.51,
+                    "{field} {density} {i}: {fog} {hidden}"
+                );
+                assert!(fog >= most, "it only grows");
+                most = fog;
+            }
+            assert!(most == 255 || palette.fog_shift == 7, "{field} {density}");
+        }
+    }
+}
+
+#[test]
+fn a_frame_without_fog_has_the_palette_it_was_given() {
+    let options = FieldOptions {
+        palette: Palette::default().with_occlusion(),
+        ..FieldOptions::default()
+    };
+    let setup = setup("box:1,1,1", "0.9", &options);
+    assert_eq!(options.palette_for(&setup), options.palette);
+    let occlusion = options.palette.occlusion;
+    assert_eq!(
+        (occlusion[0], occlusion[40], occlusion[255]),
+        (255, 127, 34)
+    );
+}
+
+#[test]
+fn two_eyes_see_grey() {
+    let options = FieldOptions {
+        stereo: Some(Stereo::parse("0.05,3").unwrap()),
+        fog: U4_28::ONE,
+        ..FieldOptions::default()
+    };
+    let setup = setup("box:1,1,1", "0.9", &options);
+    let palette = options.palette_for(&setup);
+    assert!(palette.faces.iter().all(|[r, g, b]| r == g && g == b));
+    assert_ne!(palette.fog, Palette::default().fog);
+}

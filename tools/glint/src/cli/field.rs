@@ -1,0 +1,146 @@
+//! What the command line says of a distance field.
+
+use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use glint::error::{FormatError, InputError, quote};
+use glint_core::field::{Field, KINDS};
+use glint_core::fixed::U4_28;
+use glint_core::light::{self, Background, Light, Lighting, MAX_LIGHTS, Material, parse_rgb};
+use glint_core::stereo::{self, Stereo};
+use glint_model::march::{FieldOptions, Palette};
+use std::fmt::Display;
+
+/// A field and how it is drawn.
+#[derive(Args)]
+pub struct FieldArguments {
+    #[arg(long, value_name = "FIELD", help = field_help())]
+    pub field: Option<String>,
+    /// Look at a field with two eyes, each E (0 to 1) beside the camera's, which see the same at the distance ZERO; the left
+    /// one in red, the right one in blue unless told.
+    #[arg(long, value_name = stereo::FORM, allow_hyphen_values = true)]
+    stereo: Option<String>,
+    /// What a field is made of; `normal` has each face in the colour of its normal [default: normal].
+    #[arg(long, value_parser = named(Material::ALL, Material::name))]
+    material: Option<Material>,
+    /// A light on a field: the direction to it and its colour, white unless told; up to four [default: none on `normal`,
+    /// sun and sky on others].
+    #[arg(long, value_name = light::FORM, allow_hyphen_values = true)]
+    light: Vec<String>,
+    /// The light on a field that comes from everywhere [default: white without lights, 404040 with some].
+    #[arg(long, value_name = "RRGGBB")]
+    ambient: Option<String>,
+    /// What is behind a field [default: white].
+    #[arg(long, value_parser = named(Background::ALL, Background::name))]
+    background: Option<Background>,
+    /// Fog of the background's colour in front of a field: e^-z of its light is left z/DENSITY world units away. 0 to below 16.
+    #[arg(long, value_name = "DENSITY", allow_hyphen_values = true)]
+    fog: Option<String>,
+    /// Darken the narrow places of a field.
+    #[arg(long)]
+    occlusion: bool,
+}
+
+impl FieldArguments {
+    /// The field, if there is one.
+    pub fn field(&self) -> Result<Option<Field>, InputError> {
+        let parse = |text| {
+            Field::parse(text)
+                .map_err(|error| refusal("--field", "a distance field", escaped(error)))
+        };
+        self.field.as_deref().map(parse).transpose()
+    }
+
+    /// How it is drawn; with a mesh nothing of this may be said.
+    pub fn options(&self) -> Result<FieldOptions, InputError> {
+        let said = [
+            ("--stereo", self.stereo.is_some()),
+            ("--material", self.material.is_some()),
+            ("--light", !self.light.is_empty()),
+            ("--ambient", self.ambient.is_some()),
+            ("--background", self.background.is_some()),
+            ("--fog", self.fog.is_some()),
+            ("--occlusion", self.occlusion),
+        ];
+        if let (None, Some((option, _))) = (&self.field, said.iter().find(|(_, said)| *said)) {
+            return Err(refusal(
+                option,
+                "a --field, which alone has it",
+                "a mesh".to_owned(),
+            ));
+        }
+        let stereo = self.stereo.as_deref().map(|text| {
+            Stereo::parse(text).map_err(|error| refusal("--stereo", "two eyes", escaped(error)))
+        });
+        let fog = self.fog.as_deref().map(|text| {
+            let found = quote(text.as_bytes());
+            text.parse::<U4_28>()
+                .map_err(|_| refusal("--fog", "a density of at least 0 and below 16", found))
+        });
+        let material = self.material.unwrap_or_default();
+        let background = self.background.unwrap_or_default();
+        let palette = Palette::new(material, &self.lighting(material)?, background);
+        Ok(FieldOptions {
+            stereo: stereo.transpose()?,
+            palette: if self.occlusion {
+                palette.with_occlusion()
+            } else {
+                palette
+            },
+            fog: fog.transpose()?.unwrap_or_default(),
+            ..FieldOptions::default()
+        })
+    }
+
+    fn lighting(&self, material: Material) -> Result<Lighting, InputError> {
+        let mut lighting = if self.light.is_empty() {
+            material.light()
+        } else {
+            Lighting {
+                ambient: Lighting::AMBIENT,
+                ..Lighting::PLAIN
+            }
+        };
+        if let Some(text) = &self.ambient {
+            let found = quote(text.as_bytes());
+            lighting.ambient =
+                parse_rgb(text).ok_or_else(|| refusal("--ambient", "a colour RRGGBB", found))?;
+        }
+        for text in &self.light {
+            let light = Light::parse(text)
+                .map_err(|error| refusal("--light", "a light", escaped(error)))?;
+            let found = self.light.len();
+            lighting.lights.push(light).map_err(|_| {
+                let expected = format!("at most {MAX_LIGHTS} lights");
+                refusal("--light", &expected, found.to_string())
+            })?;
+        }
+        Ok(lighting)
+    }
+}
+
+fn field_help() -> String {
+    let kinds = KINDS.map(|(form, what)| format!("{form} ({what})"));
+    format!("A distance field instead of a model: {}", kinds.join(", "))
+}
+
+/// Reads one of `all` by its name.
+fn named<T: Copy + Default + Send + Sync + 'static, const N: usize>(
+    all: [T; N],
+    name: fn(T) -> &'static str,
+) -> impl TypedValueParser<Value = T> {
+    PossibleValuesParser::new(all.map(name)).map(move |found| {
+        // The parser lets no other names through.
+        let value = all.into_iter().find(|value| name(*value) == found);
+        value.unwrap_or_default()
+    })
+}
+
+/// A message about text that may be anything, on one line.
+fn escaped(error: impl Display) -> String {
+    error.to_string().escape_debug().to_string()
+}
+
+/// What an option says is not what was `expected`.
+fn refusal(option: &str, expected: &str, found: String) -> InputError {
+    FormatError::whole(expected, found).in_file(option)
+}
