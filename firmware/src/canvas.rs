@@ -1,15 +1,17 @@
 //! Where frames are drawn: two frames with their display, one depth buffer, room for vertices, and who draws.
 
 use glint_core::console::Backend;
+use glint_core::field::Field;
 use glint_core::mesh::Mesh;
-use glint_model::{Options, RenderError, Target};
+use glint_model::march::{FieldOptions, FieldStats, Setup, render_field};
+use glint_model::{Options, RenderError, Stats, Target};
 use litex_hal::display::Display;
 use litex_hal::triangle::Fault;
 use litex_pac::cpu;
 
 use crate::memory::Scratch;
 use crate::painter::{self, Painted, Painter};
-use crate::scene::{self, Drawn, Scene};
+use crate::scene::{self, Counts, Drawn, Fallback, Scene};
 
 /// The frames and what drawing them needs.
 pub struct Canvas {
@@ -25,9 +27,11 @@ pub struct Canvas {
 
 /// How many triangles are drawn between two looks at what else there is to do.
 const TRIANGLES_A_LOOK: u32 = 32;
+/// How many pixels of a field.
+const PIXELS_A_LOOK: u32 = 16;
 
 impl Canvas {
-    /// Draws `mesh` as `scene` wants it, and shows it from the next vertical blanking on. Returns nothing while the engine
+    /// Draws `mesh`, or the scene's field, as `scene` wants it, and shows it from the next vertical blanking on. Returns nothing while the engine
     /// is at work, and while the frame to draw on is still on the screen; `mesh` and `scene` have to stay the same then.
     /// What takes long calls `look` now and then.
     pub fn draw(
@@ -43,11 +47,11 @@ impl Canvas {
                 counters,
             }) => Ok(Drawn {
                 cycles,
-                stats,
+                stats: Counts::Triangles(stats),
                 by: scene::Painter::Engine(counters),
                 has_depth: scene.wants_depth(),
             }),
-            Err(fault) => self.draw_by_cpu(mesh, scene, fault, look)?,
+            Err(fallback) => self.draw_by_cpu(mesh, scene, fallback, look)?,
         };
         if drawn.is_ok() {
             self.display.show(scene.scale());
@@ -76,8 +80,12 @@ impl Canvas {
     }
 
     /// Draws by the engine. `Err` is the CPU's: because there is no engine, it is not wanted, or it failed.
-    fn paint(&mut self, mesh: &Mesh, scene: &Scene) -> Option<Result<Painted, Option<Fault>>> {
+    fn paint(&mut self, mesh: &Mesh, scene: &Scene) -> Option<Result<Painted, Option<Fallback>>> {
         let colour = self.display.back()?;
+        if scene.field().is_some() {
+            let wanted = scene.backend() == Backend::Gateware;
+            return Some(Err(wanted.then_some(Fallback::Field)));
+        }
         let Some(painter) = &mut self.painter else {
             return Some(Err(None));
         };
@@ -87,15 +95,15 @@ impl Canvas {
         let depth = scene.wants_depth().then_some(&mut *self.depth);
         let mut target = target(mesh, scene, colour, depth);
         let result = painter.advance(&mut target)?;
-        Some(result.map_err(Some))
+        Some(result.map_err(|fault| Some(Fallback::Triangle(fault))))
     }
 
     fn draw_by_cpu(
         &mut self,
         mesh: &Mesh,
         scene: &Scene,
-        fault: Option<Fault>,
-        mut look: impl FnMut(),
+        fallback: Option<Fallback>,
+        look: impl FnMut(),
     ) -> Option<Result<Drawn, RenderError>> {
         let [width, height] = scene.scale().size();
         let pixels = width as usize * height as usize;
@@ -109,35 +117,19 @@ impl Canvas {
             colour: back.get_mut(..pixels).unwrap_or_default(),
             depth: self.depth.get_mut(..pixels).unwrap_or_default(),
         };
-        let vertices = mesh
-            .chunks()
-            .map(|chunk| chunk.vertex_count())
-            .max()
-            .unwrap_or(0);
-        let scratch = self.scratch.vertices(vertices);
-        let options = Options {
-            cull: scene.cull(),
-            shading: scene.shading(),
-            ..Options::default()
-        };
         let start = cpu::cycles();
-        let result = glint_model::trace(
-            mesh,
-            scene.view(),
-            &mut target,
-            scratch,
-            &options,
-            |triangle| {
-                if triangle.index % TRIANGLES_A_LOOK == 0 {
-                    look();
-                }
-            },
-        );
+        let result = match scene.field() {
+            Some(field) => draw_field(&field, scene, &mut target, look).map(Counts::Rays),
+            None => {
+                let scratch = &mut self.scratch;
+                draw_mesh(mesh, scene, &mut target, scratch, look).map(Counts::Triangles)
+            }
+        };
         let cycles = cpu::cycles() - start;
         Some(result.map(|stats| Drawn {
             cycles,
             stats,
-            by: scene::Painter::Cpu(fault),
+            by: scene::Painter::Cpu(fallback),
             has_depth: true,
         }))
     }
@@ -166,6 +158,58 @@ impl Canvas {
     pub fn depths(&self, scene: &Scene) -> &[u32] {
         self.depth.get(..pixels(scene)).unwrap_or_default()
     }
+}
+
+/// Draws a mesh by the CPU.
+fn draw_mesh(
+    mesh: &Mesh,
+    scene: &Scene,
+    target: &mut Target,
+    scratch: &mut Scratch,
+    mut look: impl FnMut(),
+) -> Result<Stats, RenderError> {
+    let vertices = mesh
+        .chunks()
+        .map(|chunk| chunk.vertex_count())
+        .max()
+        .unwrap_or(0);
+    let scratch = scratch.vertices(vertices);
+    let options = Options {
+        cull: scene.cull(),
+        shading: scene.shading(),
+        ..Options::default()
+    };
+    glint_model::trace(mesh, scene.view(), target, scratch, &options, |triangle| {
+        if triangle.index % TRIANGLES_A_LOOK == 0 {
+            look();
+        }
+    })
+}
+
+/// Draws a field by the CPU.
+fn draw_field(
+    field: &Field,
+    scene: &Scene,
+    target: &mut Target,
+    mut look: impl FnMut(),
+) -> Result<FieldStats, RenderError> {
+    let options = FieldOptions {
+        stereo: scene.stereo(),
+        ..FieldOptions::default()
+    };
+    let size = (target.width, target.height);
+    let setup = Setup::new(field, scene.view(), size, &options)?;
+    target.depth.fill(0);
+    render_field(
+        &setup,
+        &options.palette_for(&setup),
+        target,
+        &mut |x, _, _, _| {
+            if x % PIXELS_A_LOOK == 0 {
+                look();
+            }
+        },
+    )
 }
 
 /// What the engine is to draw of a scene.

@@ -18,8 +18,8 @@ use litex_hal::triangle::Counters;
 use litex_pac::{cpu, ctrl};
 
 use crate::machine::{Job, Machine};
-use crate::models::Model;
-use crate::scene::{Painter, Scene, Sphere};
+use crate::models::{FIELDS, Model};
+use crate::scene::{Counts, Painter, Scene, Sphere};
 use crate::{bench, selftest, transfer};
 
 /// What a command leads to.
@@ -43,7 +43,7 @@ pub enum Refusal<'l> {
     View(ViewError),
     /// There is no such line of `info`.
     Key(&'l str),
-    /// There is no model of this name.
+    /// There is no model and no field of this name.
     Scene(&'l str),
     /// Nothing has been uploaded.
     NoUpload,
@@ -89,16 +89,14 @@ impl Display for Refusal<'_> {
             Self::Key(key) => write!(f, "info `{key}`: expected a key that `info` alone lists"),
             Self::Scene(name) => {
                 write!(f, "scene `{name}`: expected")?;
+                let fields = FIELDS.iter().map(|(name, _)| *name);
                 Model::ALL
                     .iter()
+                    .map(|model| model.name())
+                    .chain(fields)
                     .enumerate()
-                    .try_for_each(|(index, model)| {
-                        write!(
-                            f,
-                            "{} {}",
-                            if index == 0 { "" } else { " or" },
-                            model.name()
-                        )
+                    .try_for_each(|(index, name)| {
+                        write!(f, "{} {name}", if index == 0 { "" } else { " or" })
                     })
             }
             Self::NoUpload => {
@@ -158,6 +156,24 @@ pub fn execute<'l>(machine: &mut Machine, line: &'l str) -> Reply<'l> {
         }
         Command::Info(key) => info(machine, key),
         Command::Scene(name) => scene(machine, name),
+        Command::Field(None) => {
+            let field = machine.scene.field();
+            print_choice(machine, "field", field.as_ref().map(|field| field as _));
+            Ok(())
+        }
+        Command::Field(Some(field)) => {
+            machine.scene.set_field(field);
+            Ok(())
+        }
+        Command::Stereo(None) => {
+            let stereo = machine.scene.stereo();
+            print_choice(machine, "stereo", stereo.as_ref().map(|stereo| stereo as _));
+            Ok(())
+        }
+        Command::Stereo(Some(stereo)) => {
+            machine.scene.set_stereo(stereo);
+            Ok(())
+        }
         Command::Camera { r, theta, phi } => machine
             .scene
             .set_sphere(Sphere { r, theta, phi })
@@ -242,6 +258,8 @@ fn info<'l>(machine: &mut Machine, key: Option<&'l str>) -> Result<(), Refusal<'
     let staging = models.staging();
     let (address, room) = (staging.as_ptr().addr(), staging.len());
     let mesh = models.mesh();
+    let (field, model) = (scene.field(), models.shown().name());
+    let shown: &dyn Display = field.as_ref().map_or(&model, |field| field);
     let [width, height] = scene.scale().size();
     let (frame, depth) = (canvas.display.front().as_ptr(), canvas.depth.as_ptr());
     let counters = canvas.display.counters();
@@ -251,7 +269,7 @@ fn info<'l>(machine: &mut Machine, key: Option<&'l str>) -> Result<(), Refusal<'
         ("gateware_id", format_args!("{:#010x}", identity.gateware)),
         ("blocks", format_args!("{:#x}", identity.blocks)),
         ("clock", format_args!("{FREQUENCY}")),
-        ("scene", format_args!("{}", models.shown().name())),
+        ("scene", format_args!("{shown}")),
         ("vertices", format_args!("{}", mesh.vertex_count())),
         ("triangles", format_args!("{}", mesh.triangle_count())),
         ("size", format_args!("{width} {height}")),
@@ -286,28 +304,46 @@ fn scene<'l>(machine: &mut Machine, name: Option<&'l str>) -> Result<(), Refusal
         ..
     } = machine;
     let Some(name) = name else {
+        let field = scene.field();
         for model in Model::ALL {
-            let state = match (model == models.shown(), models.has(model)) {
+            let shown = field.is_none() && model == models.shown();
+            let state = match (shown, models.has(model)) {
                 (true, _) => "shown",
                 (_, true) => "there",
                 (_, false) => "empty",
             };
             terminal.print(format_args!("scene {} {state}\n", model.name()));
         }
+        for (name, named) in FIELDS {
+            let shown = field == Some(named);
+            let state = if shown { "shown" } else { "there" };
+            terminal.print(format_args!("scene {name} {state}\n"));
+        }
         return Ok(());
     };
+    if let Some((_, field)) = FIELDS.iter().find(|(field, _)| *field == name) {
+        scene.set_field(Some(*field));
+        return Ok(());
+    }
     let model = Model::ALL
         .into_iter()
         .find(|model| model.name() == name)
         .ok_or(Refusal::Scene(name))?;
-    if model == models.shown() {
-        return Ok(());
-    }
+    let before = models.shown();
     if !models.show(model) {
         return Err(Refusal::NoUpload);
     }
-    scene.touch();
+    scene.set_field(None);
+    if model != before {
+        scene.touch();
+    }
     Ok(())
+}
+
+/// Prints what may be off.
+fn print_choice(machine: &mut Machine, name: &str, chosen: Option<&dyn Display>) {
+    let chosen = chosen.unwrap_or(&"off");
+    machine.terminal.print(format_args!("{name} {chosen}\n"));
 }
 
 fn print_view(machine: &mut Machine) {
@@ -346,6 +382,7 @@ fn load<'l>(machine: &mut Machine, manifest: Manifest) -> Result<(), Refusal<'l>
         transfer::receive(uart, *clock, staging, manifest).map_err(Refusal::Transfer)?;
     }
     models.accept(length).map_err(Refusal::Mesh)?;
+    scene.set_field(None);
     scene.touch();
     Ok(())
 }
@@ -384,14 +421,15 @@ pub fn stats(machine: &mut Machine, json: bool) -> Result<(), Refusal<'static>> 
         .drawn()
         .ok_or(Refusal::NoFrame)?
         .map_err(Refusal::Render)?;
-    let stats = drawn.stats;
     let mut values: Vec<(&str, u64), 32> = Vec::new();
     let (by, engine) = match drawn.by {
-        Painter::Cpu(fault) => {
-            if let Some(fault) = fault
+        Painter::Cpu(fallback) => {
+            if let Some(fallback) = fallback
                 && !json
             {
-                machine.terminal.print(format_args!("fallback {fault}\n"));
+                machine
+                    .terminal
+                    .print(format_args!("fallback {fallback}\n"));
             }
             (Backend::Cpu, None)
         }
@@ -399,17 +437,26 @@ pub fn stats(machine: &mut Machine, json: bool) -> Result<(), Refusal<'static>> 
     };
     let backend = backend_name(by);
     // There is room for them all.
-    let _ = values.extend_from_slice(&[
-        ("cycles", drawn.cycles),
-        ("triangles_in", stats.triangles_in.into()),
-        ("triangles_culled", stats.culled.into()),
-        ("triangles_clipped", stats.clipped.into()),
-        ("triangles_drawn", stats.drawn.into()),
-        ("pixels_tested", stats.pixels_tested),
-        ("pixels_covered", stats.pixels_covered),
-        ("pixels_drawn", stats.pixels_drawn),
-        ("clock", FREQUENCY.into()),
-    ]);
+    let _ = values.push(("cycles", drawn.cycles));
+    let _ = match drawn.stats {
+        Counts::Triangles(stats) => values.extend_from_slice(&[
+            ("triangles_in", stats.triangles_in.into()),
+            ("triangles_culled", stats.culled.into()),
+            ("triangles_clipped", stats.clipped.into()),
+            ("triangles_drawn", stats.drawn.into()),
+            ("pixels_tested", stats.pixels_tested),
+            ("pixels_covered", stats.pixels_covered),
+            ("pixels_drawn", stats.pixels_drawn),
+        ]),
+        Counts::Rays(stats) => values.extend_from_slice(&[
+            ("rays", stats.rays.into()),
+            ("evaluations", stats.evaluations),
+            ("hits", stats.hits.into()),
+            ("misses", stats.misses.into()),
+            ("undecided", stats.undecided.into()),
+        ]),
+    };
+    let _ = values.push(("clock", FREQUENCY.into()));
     if let Some(counters) = engine {
         let _ = values.extend_from_slice(&engine_values(&counters));
     }

@@ -1,7 +1,9 @@
-//! The mesh that is shown, and room for the next one.
+//! The mesh that is shown and room for the next one, and fields with a name.
 
 use core::slice;
 
+use glint_core::field::Field;
+use glint_core::fixed::Q32_32;
 use glint_core::mesh::{Mesh, MeshError};
 
 use crate::cube;
@@ -39,6 +41,18 @@ impl Model {
         }
     }
 }
+
+/// Fields that are shown by a name as models are.
+pub const FIELDS: [(&str, Field); 2] = [
+    ("sponge-field", Field::Menger { depth: 4 }),
+    (
+        "cubes-field",
+        Field::Cubes {
+            period: Q32_32::lit("2"),
+            half: Q32_32::lit("0.5"),
+        },
+    ),
+];
 
 /// Both meshes, and two buffers of which the one that holds no mesh takes the next upload.
 pub struct Models {

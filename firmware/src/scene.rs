@@ -1,9 +1,14 @@
 //! What is to be seen: the camera and how the picture is drawn, and whether that has changed since it was drawn.
 
+use core::fmt;
+
 use glint_core::camera::{View, ViewError};
 use glint_core::colour::Shading;
 use glint_core::console::Backend;
+use glint_core::field::Field;
 use glint_core::fixed::{Q32_32, Turns};
+use glint_core::stereo::Stereo;
+use glint_model::march::FieldStats;
 use glint_model::{RenderError, Stats};
 use litex_hal::display::Scale;
 use litex_hal::triangle::{Counters, Fault};
@@ -39,24 +44,53 @@ pub struct Drawn {
     /// Clock cycles that it took, waiting for the screen not included.
     pub cycles: u64,
     /// What the renderer counted.
-    pub stats: Stats,
+    pub stats: Counts,
     /// Who drew it.
     pub by: Painter,
     /// Whether its depth codes are in memory.
     pub has_depth: bool,
 }
 
+/// What was counted of a frame.
+#[derive(Clone, Copy)]
+pub enum Counts {
+    /// Of a mesh.
+    Triangles(Stats),
+    /// Of a field.
+    Rays(FieldStats),
+}
+
 /// Who has drawn a frame.
 #[derive(Clone, Copy)]
 pub enum Painter {
-    /// The CPU, because it was to, or because the engine could not.
-    Cpu(Option<Fault>),
+    /// The CPU, because it was to, or because the gateware could not.
+    Cpu(Option<Fallback>),
     /// The triangle engine, with its counters.
     Engine(Counters),
 }
 
+/// Why the gateware could not draw.
+#[derive(Clone, Copy)]
+pub enum Fallback {
+    /// The triangle engine could not.
+    Triangle(Fault),
+    /// It was a field.
+    Field,
+}
+
+impl fmt::Display for Fallback {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Triangle(fault) => fault.fmt(f),
+            Self::Field => f.write_str("distance fields: this gateware has no engine for them"),
+        }
+    }
+}
+
 /// The state that a frame shows.
 pub struct Scene {
+    field: Option<Field>,
+    stereo: Option<Stereo>,
     view: View,
     sphere: Sphere,
     scale: Scale,
@@ -76,6 +110,8 @@ impl Scene {
     pub fn new(backend: Backend) -> Result<Self, ViewError> {
         let sphere = Sphere::START;
         Ok(Self {
+            field: None,
+            stereo: None,
             view: sphere.view()?,
             sphere,
             scale: Scale::Four,
@@ -86,6 +122,28 @@ impl Scene {
             wants_depth: false,
             drawn: None,
         })
+    }
+
+    /// The distance field that is shown instead of the mesh.
+    pub const fn field(&self) -> Option<Field> {
+        self.field
+    }
+
+    /// Shows a field, or the mesh.
+    pub fn set_field(&mut self, field: Option<Field>) {
+        self.changed |= self.field != field;
+        self.field = field;
+    }
+
+    /// The two eyes that look at a field.
+    pub const fn stereo(&self) -> Option<Stereo> {
+        self.stereo
+    }
+
+    /// Sets two eyes, or one.
+    pub fn set_stereo(&mut self, stereo: Option<Stereo>) {
+        self.changed |= self.stereo != stereo;
+        self.stereo = stereo;
     }
 
     /// The camera.

@@ -5,7 +5,9 @@ use glint_core::colour::Shading;
 use glint_core::console::{
     Backend, Command, Event, HISTORY, LINE_MAX, LineEditor, Size, write_help,
 };
+use glint_core::field::{Field, KINDS};
 use glint_core::fixed::{Q2_23, Q32_32, Turns};
+use glint_core::stereo::{Stereo, Tint};
 use proptest::prelude::*;
 
 /// One line of a terminal.
@@ -209,8 +211,8 @@ proptest! {
 
     #[test]
     fn no_arguments_upset_the_parser(
-        name in proptest::sample::select(&["camera", "view", "look", "orbit", "size", "load", "leds", "help"][..]),
-        words in proptest::collection::vec("[-+]?[0-9a-fx_.e]{0,12}", 0..16),
+        name in proptest::sample::select(&["field", "stereo", "camera", "view", "look", "orbit", "size", "load", "leds", "help"][..]),
+        words in proptest::collection::vec("(box:)?[-+]?[0-9a-fx_.,e]{0,12}", 0..16),
     ) {
         let line = format!("{name} {}", words.join(" "));
         let _ = Command::parse(&line).map_err(|error| error.to_string());
@@ -245,6 +247,23 @@ fn every_command_is_understood() {
     assert_parses("info frame", Command::Info(Some("frame")));
     assert_parses("scene", Command::Scene(None));
     assert_parses("  scene   menger ", Command::Scene(Some("menger")));
+    assert_parses("field", Command::Field(None));
+    assert_parses("field off", Command::Field(Some(None)));
+    assert_parses(
+        "field menger:4",
+        Command::Field(Some(Some(Field::Menger { depth: 4 }))),
+    );
+    assert_parses("stereo", Command::Stereo(None));
+    assert_parses("stereo off", Command::Stereo(Some(None)));
+    let stereo = Stereo {
+        half_separation: Q32_32::lit("0.05"),
+        zero_parallax: Q32_32::lit("3"),
+        tint: Tint::RedCyan,
+    };
+    assert_parses(
+        "stereo 0.05,3,red-cyan",
+        Command::Stereo(Some(Some(stereo))),
+    );
     let camera = Command::Camera {
         r: Q32_32::lit("3.5"),
         theta: degrees(-90),
@@ -395,6 +414,23 @@ fn mistakes_are_named_with_their_place() {
         "view 0 0 3 1 0 0 0 1 0 0 0 -1 0.9 0.1",
         "view: u × v = −n: expected u × v = n (u right, v down, n forward)",
     );
+    let error = Command::parse("field ball:1")
+        .expect_err("a mistake")
+        .to_string();
+    assert!(error.starts_with("field: no field is named ball: expected menger:DEPTH, "));
+    assert_refused("field menger:7", "field: depth: expected 1 to 6");
+    assert_refused(
+        "field box:1,1,1 on",
+        "field: \"on\" (column 17): expected the end of the line, as in `field [off|FIELD]`",
+    );
+    assert_refused(
+        "stereo 0.05",
+        "stereo: 0.05: expected E,ZERO[,red-blue|red-cyan]",
+    );
+    assert_refused(
+        "stereo 0.5,0.25",
+        "stereo: ZERO 0.25: expected at least 0.5",
+    );
     assert_refused(
         &"\u{1}é".repeat(50),
         &format!(
@@ -438,7 +474,12 @@ fn the_help_lists_every_command_and_how_it_is_used() {
             assert!(Command::parse(name).is_ok(), "{name}");
         }
     }
-    assert_eq!(list.lines().count(), 21);
+    assert_eq!(list.lines().count(), 23);
+    let field = help(Some("field"));
+    assert!(
+        KINDS.iter().all(|(form, _)| field.contains(form)),
+        "{field}"
+    );
     assert_eq!(
         help(Some("camera")),
         "camera R THETA PHI\n  looks at the origin from a distance of 2 to 5, by azimuth and angle from the z axis\n  \

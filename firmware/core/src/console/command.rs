@@ -10,8 +10,10 @@ use super::grammar::Kind::{
 use super::grammar::{Syntax, Value, Words};
 use crate::camera::View;
 use crate::colour::Shading;
+use crate::field::Field;
 use crate::fixed::{Q32_32, Turns};
 use crate::mesh::MAX_BYTES;
+use crate::stereo::Stereo;
 
 /// A command, parsed and checked as far as it can be without the machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,6 +26,10 @@ pub enum Command<'a> {
     Info(Option<&'a str>),
     /// `scene [NAME]`; without a name it lists the scenes.
     Scene(Option<&'a str>),
+    /// `field [off|FIELD]`; without one it prints the present one, and `off` is none.
+    Field(Option<Option<Field>>),
+    /// `stereo [off|E,ZERO[,TINT]]`; without eyes it prints the present ones, and `off` is the camera's one.
+    Stereo(Option<Option<Stereo>>),
     /// `camera R THETA PHI`
     Camera {
         /// The distance from the origin.
@@ -129,7 +135,7 @@ impl Size {
 pub(super) type Build = for<'a> fn(&[Value<'a>]) -> Option<Result<Command<'a>, Fault<'a>>>;
 
 /// Every command, in the order of the help.
-static COMMANDS: [(Syntax, Build); 20] = [
+static COMMANDS: [(Syntax, Build); 22] = [
     (
         Syntax::new("help", "lists the commands, or explains one").with_optional(&[("COMMAND", Kind::Command)]),
         |values| match *values {
@@ -151,6 +157,30 @@ static COMMANDS: [(Syntax, Build); 20] = [
         |values| match *values {
             [] => accept(Command::Scene(None)),
             [Value::Name(name)] => accept(Command::Scene(Some(name))),
+            _ => None,
+        },
+    ),
+    (
+        Syntax::new("field", "says which distance field is shown, or shows one, or the mesh again")
+            .with_optional(&[("off|FIELD", Kind::Field)]),
+        |values| match *values {
+            [] => accept(Command::Field(None)),
+            [Value::Name("off")] => accept(Command::Field(Some(None))),
+            [Value::Name(text)] => {
+                Some(Field::parse(text).map(|field| Command::Field(Some(Some(field)))).map_err(Fault::Field))
+            }
+            _ => None,
+        },
+    ),
+    (
+        Syntax::new("stereo", "says with which two eyes a field is seen, or chooses them, or one")
+            .with_optional(&[("off|EYES", Kind::Stereo)]),
+        |values| match *values {
+            [] => accept(Command::Stereo(None)),
+            [Value::Name("off")] => accept(Command::Stereo(Some(None))),
+            [Value::Name(text)] => {
+                Some(Stereo::parse(text).map(|eyes| Command::Stereo(Some(Some(eyes)))).map_err(Fault::Stereo))
+            }
             _ => None,
         },
     ),

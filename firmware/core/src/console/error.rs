@@ -4,6 +4,8 @@ use core::fmt;
 
 use super::grammar::{Argument, Syntax, Word};
 use crate::camera::ViewError;
+use crate::field::FieldError;
+use crate::stereo::StereoError;
 
 /// Why a line is not a command; its `Display` says what is wrong, where, and what was expected.
 #[derive(Clone, Copy, Debug)]
@@ -33,6 +35,10 @@ pub(super) enum Fault<'a> {
     Size { width: u32, height: u32 },
     /// The numbers are not a camera.
     View(ViewError),
+    /// The word is no field.
+    Field(FieldError<'a>),
+    /// The word is no pair of eyes.
+    Stereo(StereoError<'a>),
 }
 
 impl fmt::Display for ParseError<'_> {
@@ -70,6 +76,8 @@ impl fmt::Display for ParseError<'_> {
                 )
             }
             Fault::View(error) => write!(f, "view: {error}"),
+            Fault::Field(error) => write!(f, "field: {error}"),
+            Fault::Stereo(error) => write!(f, "stereo: {error}"),
         }
     }
 }

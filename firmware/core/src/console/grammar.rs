@@ -7,7 +7,9 @@ use heapless::Vec;
 use super::ParseError;
 use super::command::find;
 use super::error::Fault;
+use crate::field::KINDS;
 use crate::fixed::{Q2_23, Q32_32, Turns, U4_28};
+use crate::stereo;
 
 /// The most arguments a command has.
 pub const MAX_ARGUMENTS: usize = 14;
@@ -51,6 +53,10 @@ pub enum Kind {
     Command,
     /// Any word.
     Name,
+    /// A distance field, or `off`: any word.
+    Field,
+    /// Two eyes, or `off`: any word.
+    Stereo,
 }
 
 /// The value of an argument.
@@ -68,7 +74,7 @@ pub enum Value<'a> {
     Number(u32),
     /// Of [`Kind::Choice`]: which one.
     Choice(usize),
-    /// Of [`Kind::Command`] and [`Kind::Name`].
+    /// Of [`Kind::Command`], [`Kind::Name`], [`Kind::Field`] and [`Kind::Stereo`].
     Name(&'a str),
 }
 
@@ -165,7 +171,7 @@ impl Kind {
                 Value::Choice(choices.iter().position(|&choice| choice == word)?)
             }
             Self::Command => Value::Name(find(word).map(|_| word)?),
-            Self::Name => Value::Name(word),
+            Self::Name | Self::Field | Self::Stereo => Value::Name(word),
         })
     }
 }
@@ -189,6 +195,13 @@ impl fmt::Display for Kind {
             }
             Self::Command => f.write_str("a command, `help` lists them"),
             Self::Name => f.write_str("a name"),
+            Self::Field => {
+                f.write_str("off")?;
+                KINDS
+                    .iter()
+                    .try_for_each(|(form, _)| write!(f, " or {form}"))
+            }
+            Self::Stereo => write!(f, "off or {}", stereo::FORM),
         }
     }
 }
