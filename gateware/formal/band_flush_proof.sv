@@ -39,7 +39,7 @@ module band_flush_proof (
     logic [1:0]       span_first, span_last;
 
     band_flush #(.ADDRESS_BITS(6), .ROW_BITS(2), .WORDS(4)) dut (
-        .clk, .rst, .start, .base, .depth_base, .with_depth, .clear_colour(BACKGROUND), .restart,
+        .clk, .rst, .start, .base, .depth_base, .with_depth, .compose('0), .clear_colour(BACKGROUND), .restart,
         .idle, .sweeping, .reads_depth(), .waits(),
         .span_valid, .span_ready, .span_first, .span_last, .spans_busy,
         .row, .colours, .codes, .written, .clears, .clear_row,

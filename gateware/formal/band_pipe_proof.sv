@@ -31,8 +31,8 @@ module band_pipe_proof (
 
     band_pipe #(.ROW_BITS(1)) dut (
         .clk, .rst, .open,
-        .group_valid, .group_ready, .group_row, .group_mask, .group_codes, .group_colours({8{14'b0, group_tag}}),
-        .read_row, .stored, .stored_written, .write_row, .write_lanes, .write_codes, .write_colours, .empty, .held()
+        .group_valid, .group_ready, .group_row, .group_mask, .group_halves('1), .group_codes, .group_colours({8{14'b0, group_tag}}),
+        .read_row, .stored, .stored_written, .write_row, .write_lanes, .write_halves(), .write_codes, .write_colours, .empty, .held()
     );
 
     // The followed pixel in the memory; the other ones may hold anything, and their groups do not matter.

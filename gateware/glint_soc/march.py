@@ -12,4 +12,4 @@ RAY_GENERATOR = [_MARCH / "march_pkg.sv", _COMMON / "delay.sv", _COMMON / "skid_
 RAY_PAINT = [_MARCH / "march_pkg.sv", _COMMON / "delay.sv", _COMMON / "skid_buffer.sv", _TRIANGLE / "multiply_add.sv",
              _TRIANGLE / "normalise.sv",
              *(_MARCH / f"{name}.sv" for name in ("inverse_table", "depth_code", "paint_table", "ray_paint"))]
-RAYMARCHER = [*dict.fromkeys([*RING_LANE, *RAY_GENERATOR, *RAY_PAINT, _MARCH / "raymarcher.sv"])]
+RAYMARCHER = [*dict.fromkeys([RTL / "band" / "band_pkg.sv", *RING_LANE, *RAY_GENERATOR, *RAY_PAINT, _MARCH / "raymarcher.sv"])]

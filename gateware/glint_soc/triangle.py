@@ -24,7 +24,7 @@ SETUP = [_TRIANGLE / f"{name}.sv" for name in (
     "triangle_pkg", "setup_pkg", "multiply_add", "reciprocal", "normalise", "cull", "flat_shade", "setup_edges", "setup_normal",
     "setup_gradient", "setup_start", "setup_plane", "setup_light", "setup")]
 TRIANGLE_ENGINE = [*dict.fromkeys([
-    _TRIANGLE / "list_pkg.sv", *SETUP, *TRIANGLE_RASTER, *VERTEX_STAGE, *BAND_BUFFER, _COMMON / "read_port.sv", _COMMON / "write_port.sv",
+    _TRIANGLE / "list_pkg.sv", _BAND / "band_pkg.sv", *SETUP, *TRIANGLE_RASTER, *VERTEX_STAGE, *BAND_BUFFER, _COMMON / "read_port.sv", _COMMON / "write_port.sv",
     *(_TRIANGLE / f"{name}.sv" for name in ("vertex_light", "vertex_cache", "mesh_walk", "classify", "binner", "geometry_unit",
                                             "descriptor_cache", "list_reader", "raster_unit", "triangle_engine")),
 ])]

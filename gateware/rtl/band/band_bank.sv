@@ -1,4 +1,5 @@
-// One memory of the band buffer: 2^ROW_BITS rows of eight lanes, one block RAM a lane, so that each lane has a write enable.
+// One memory of the band buffer: 2^ROW_BITS rows of eight lanes, one block RAM a lane, so that each lane has a write enable. With
+// HALVES = 2 both halves of all lanes have one too: block RAM has them for nine bits each.
 //
 //   read_row ─▶ register ─▶ RAM ─▶ register ─▶ read_data     3 clocks from `read_row` to its data
 //   write_*  ─▶ register ─▶ RAM                              a `read_row` one clock after `write_row` reads what was written
@@ -10,23 +11,29 @@
 
 module band_bank #(
     parameter int unsigned WIDTH    = 18,
-    parameter int unsigned ROW_BITS = 11
+    parameter int unsigned ROW_BITS = 11,
+    parameter int unsigned HALVES   = 1
 ) (
     input  wire                 clk,
     input  wire  [ROW_BITS-1:0] read_row,
     output logic [8*WIDTH-1:0]  read_data,
     input  wire  [ROW_BITS-1:0] write_row,
     input  wire  [7:0]          write_lanes,
+    input  wire  [HALVES-1:0]   write_halves,
     input  wire  [8*WIDTH-1:0]  write_data
 );
     logic [ROW_BITS-1:0] from_row, to_row;
     logic [7:0]          to_lanes;
     logic [8*WIDTH-1:0]  to_store;
+    logic [HALVES-1:0]   to_halves;
+
+    localparam int unsigned HALF = WIDTH / HALVES;
 
     always_ff @(posedge clk) begin
         from_row <= read_row;
         to_row   <= write_row;
         to_lanes <= write_lanes;
+        to_halves <= write_halves;
         to_store <= write_data;
     end
 
@@ -38,7 +45,9 @@ module band_bank #(
         always_ff @(posedge clk) begin
             latched <= rows[from_row];
             read_data[WIDTH*lane +: WIDTH] <= latched;
-            if (to_lanes[lane]) rows[to_row] <= to_store[WIDTH*lane +: WIDTH];
+            for (int half = 0; half < HALVES; half++)
+                if (to_lanes[lane] && to_halves[half])
+                    rows[to_row][HALF*half +: HALF] <= to_store[WIDTH*lane+HALF*half +: HALF];
         end
     end
 endmodule

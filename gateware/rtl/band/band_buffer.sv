@@ -16,7 +16,9 @@
 // colour may change from band to band. The flush resets the bits behind itself: there is no clear pass. 25 RAMB36.
 //
 // Groups: {row, line, column, mask, eight depth codes u18, eight colours RGB565}, lane 0 (the leftmost) in the lowest bits. Lane
-// i is written where mask[i] is set and code[i] is at least the stored one. One group a clock; see band_pipe for hazards.
+// i is written where mask[i] is set and code[i] is at least the stored one. With STEREO a group may be one eye's: `halves` 1
+// the left one's, 2 the right one's, of which that half of the colours is the luminance; nothing is compared then, and depth is
+// the left eye's. What both see is composed in the flush, see band_flush; all pixels are to be drawn for both then. One group a clock; see band_pipe for hazards.
 //
 // Bands: an item of `band_*` says that the band is drawn and how it is to be flushed: address of its first 128-bit word, its
 // `lines` (at least 1) and `stride`, the rows of a line; clear colour. Groups taken up to and including the first clock of
@@ -44,7 +46,8 @@
 `default_nettype none
 
 module band_buffer #(
-    parameter int unsigned ADDRESS_BITS = 23
+    parameter int unsigned ADDRESS_BITS = 23,
+    parameter bit          STEREO       = 1'b0
 ) (
     input  wire                     clk,
     input  wire                     rst,
@@ -58,6 +61,7 @@ module band_buffer #(
     input  wire  [5:0]              group_line,
     input  wire  [7:0]              group_column,
     input  wire  [7:0]              group_mask,
+    input  wire  [1:0]              group_halves,
     input  wire  [8*18-1:0]         group_codes,
     input  wire  [8*16-1:0]         group_colours,
     // Bands.
@@ -72,6 +76,7 @@ module band_buffer #(
     input  wire                     band_whole,
     input  wire                     band_with_depth,
     input  wire  [15:0]             band_clear,
+    input  wire  [1:0]              band_compose,
     // Words for memory.
     output logic                    word_valid,
     input  wire                     word_ready,
@@ -94,6 +99,7 @@ module band_buffer #(
     logic                open, empty, held;
     logic [ROW_BITS-1:0] draw_read_row, draw_write_row;
     logic [7:0]          draw_lanes, drawn_written;
+    logic [1:0]          draw_halves;
     logic [8*18-1:0]     draw_codes, stored_codes;
     logic [8*16-1:0]     draw_colours;
     // The flush side.
@@ -117,9 +123,9 @@ module band_buffer #(
 
     band_pipe #(.ROW_BITS(ROW_BITS)) pipe (
         .clk, .rst, .open,
-        .group_valid, .group_ready, .group_row, .group_mask, .group_codes, .group_colours,
+        .group_valid, .group_ready, .group_row, .group_mask, .group_halves(STEREO ? group_halves : 2'b11), .group_codes, .group_colours,
         .read_row(draw_read_row), .stored(stored_codes), .stored_written(drawn_written),
-        .write_row(draw_write_row), .write_lanes(draw_lanes), .write_codes(draw_codes), .write_colours(draw_colours),
+        .write_row(draw_write_row), .write_lanes(draw_lanes), .write_halves(draw_halves), .write_codes(draw_codes), .write_colours(draw_colours),
         .empty, .held
     );
 
@@ -133,10 +139,10 @@ module band_buffer #(
         .whole(band_whole || band_with_depth), .busy(spans_busy), .span_valid, .span_ready, .span_first, .span_last
     );
 
-    band_flush #(.ADDRESS_BITS(ADDRESS_BITS), .ROW_BITS(ROW_BITS)) flush (
+    band_flush #(.ADDRESS_BITS(ADDRESS_BITS), .ROW_BITS(ROW_BITS), .STEREO(STEREO)) flush (
         .clk, .rst,
         .start(swap), .base(band_base), .depth_base(band_depth_base), .with_depth(band_with_depth),
-        .clear_colour(band_clear), .restart, .idle(flush_idle), .sweeping(clearing),
+        .clear_colour(band_clear), .compose(band_compose), .restart, .idle(flush_idle), .sweeping(clearing),
         .reads_depth(flush_reads_depth), .waits(flush_waits),
         .span_valid, .span_ready, .span_first, .span_last, .spans_busy,
         .row(flush_row), .colours(flushed_colours), .codes(stored_codes), .written(flushed_written),
@@ -144,28 +150,42 @@ module band_buffer #(
         .out_valid(word_valid), .out_ready(word_ready), .out_addr(word_addr), .out_data(word_data)
     );
 
-    // A pixel in a colour bank is {written, colour}.
-    logic [8*17-1:0] bank_pixels [0:1];
+    // A pixel in a colour bank is {written, colour}; with STEREO each half has the bit.
+    localparam int unsigned PIXEL_BITS = STEREO ? 18 : 17;
+    localparam int unsigned HALVES     = STEREO ? 2 : 1;
+    logic [8*PIXEL_BITS-1:0] bank_pixels [0:1];
     logic [8*16-1:0] bank_colours [0:1];
     logic [7:0]      bank_written [0:1];
 
     for (genvar bank = 0; bank < 2; bank++) begin : banks
-        logic            flushes;
-        logic [8*17-1:0] store;
+        logic                    flushes;
+        logic [8*PIXEL_BITS-1:0] store;
         // While the banks are cleared, groups that were still on their way are not written.
         assign flushes = clearing || drawn != 1'(bank);
 
         for (genvar lane = 0; lane < 8; lane++) begin : lanes
-            assign store[17*lane +: 17] = {!flushes, draw_colours[16*lane +: 16]};
-            assign {bank_written[bank][lane], bank_colours[bank][16*lane +: 16]} = bank_pixels[bank][17*lane +: 17];
+            if (STEREO) begin : halves
+                logic [17:0] pixel;
+                assign pixel = bank_pixels[bank][18*lane +: 18];
+                assign store[18*lane +: 18] = {
+                    !flushes, draw_colours[16*lane+8 +: 8], !flushes, draw_colours[16*lane +: 8]
+                };
+                assign bank_written[bank][lane] = pixel[8];
+                assign bank_colours[bank][16*lane +: 16] = {pixel[16:9], pixel[7:0]};
+                wire _unused = pixel[17];
+            end else begin : whole
+                assign store[17*lane +: 17] = {!flushes, draw_colours[16*lane +: 16]};
+                assign {bank_written[bank][lane], bank_colours[bank][16*lane +: 16]} = bank_pixels[bank][17*lane +: 17];
+            end
         end
 
-        band_bank #(.WIDTH(17), .ROW_BITS(ROW_BITS)) pixels (
+        band_bank #(.WIDTH(PIXEL_BITS), .ROW_BITS(ROW_BITS), .HALVES(HALVES)) pixels (
             .clk,
             .read_row(flushes ? flush_row : draw_read_row),
             .read_data(bank_pixels[bank]),
             .write_row(flushes ? flush_clear_row : draw_write_row),
             .write_lanes(flushes ? {8{flush_clears}} : draw_lanes),
+            .write_halves(draw_halves[HALVES-1:0] | {HALVES{flushes}}),
             .write_data(store)
         );
     end
@@ -179,9 +199,13 @@ module band_buffer #(
         .read_row(flush_reads_depth ? flush_row : draw_read_row),
         .read_data(stored_codes),
         .write_row(draw_write_row),
-        .write_lanes(draw_lanes),
+        .write_lanes(draw_lanes & {8{draw_halves[0]}}),
+        .write_halves(1'b1),
         .write_data(draw_codes)
     );
+
+    // Without STEREO both halves are written.
+    wire _unused_half = draw_halves[1];
 
     // The events are registered first: a carry chain of 32 bits is long enough by itself.
     logic       group_came, was_held, memory_waited, flush_waited;

@@ -4,7 +4,8 @@
 //            └──▶ clear_row, a clock later, ─▶ address ──┘
 //
 // One row is one 128-bit word: eight RGB565 pixels, the leftmost in the lowest bits; a pixel that nobody has drawn takes
-// the clear colour. The colour word of row r goes to `base` + r. With `with_depth`, when the colours of a span are out its rows
+// the clear colour. With `compose` (STEREO only) a pixel is the luminances of two eyes, {right, left}: 1 makes the left one red,
+// the right one blue and the smaller of both green, 2 the left one red and the right one green and blue. The colour word of row r goes to `base` + r. With `with_depth`, when the colours of a span are out its rows
 // are read again: two words a row follow, four depths of 32 bits each, 0 where nobody has drawn, for `depth_base` + 2r and the
 // word after it. So neighbours in memory follow each other, and memory seldom turns to another bank.
 //
@@ -25,7 +26,8 @@ module band_flush #(
     parameter int unsigned ADDRESS_BITS = 23,
     parameter int unsigned ROW_BITS     = 11,
     // Words on their way, a power of two. A place is free again 7 clocks after its row was asked for.
-    parameter int unsigned WORDS        = 16
+    parameter int unsigned WORDS        = 16,
+    parameter bit          STEREO       = 1'b0
 ) (
     input  wire                     clk,
     input  wire                     rst,
@@ -35,6 +37,7 @@ module band_flush #(
     input  wire  [ADDRESS_BITS-1:0] depth_base,
     input  wire                     with_depth,
     input  wire  [15:0]             clear_colour,
+    input  wire  [1:0]              compose,
     input  wire                     restart,
     output logic                    idle,
     output logic                    sweeping,
@@ -70,6 +73,7 @@ module band_flush #(
     logic                  depth_too, in_span, issue, part_ends, span_ends;
     logic [ROW_BITS-1:0]   first_row, last_row;
     logic [15:0]           background;
+    logic [1:0]            composing;
     logic [ADDRESS_BITS-1:0] colour_base, depth_words_base;
     // Words that may still be asked for.
     logic [COUNT_BITS-1:0] places;
@@ -122,6 +126,7 @@ module band_flush #(
                 depth_words_base <= depth_base;
                 depth_too        <= with_depth;
                 background       <= clear_colour;
+                composing        <= compose;
             end
         endcase
 
@@ -165,7 +170,23 @@ module band_flush #(
     logic [127:0] word, colour_word, depth_left_word, depth_right_word;
 
     for (genvar lane = 0; lane < 8; lane++) begin : lanes
-        assign colour_word[16*lane +: 16] = written[lane] ? colours[16*lane +: 16] : background;
+        logic [15:0] seen;
+
+        if (STEREO) begin : composed
+            logic [7:0] left, right;
+            assign {right, left} = colours[16*lane +: 16];
+            always_comb begin
+                case (composing)
+                    2'd0:    seen = {right, left};
+                    2'd1:    seen = {left[7:3], left < right ? left[7:2] : right[7:2], right[7:3]};
+                    default: seen = {left[7:3], right[7:2], right[7:3]};
+                endcase
+            end
+        end else begin : plain
+            assign seen = colours[16*lane +: 16];
+        end
+
+        assign colour_word[16*lane +: 16] = written[lane] ? seen : background;
     end
     for (genvar lane = 0; lane < 4; lane++) begin : depth_lanes
         assign depth_left_word[32*lane +: 32]  = {14'b0, codes[18*lane +: 18] & {18{written[lane]}}};
@@ -197,7 +218,7 @@ module band_flush #(
         if (rst) places <= COUNT_BITS'(WORDS);
     end
 
-    wire _unused = &{1'b0, word_ready};
+    wire _unused = &{1'b0, word_ready, composing};
 endmodule
 
 `default_nettype wire

@@ -4,7 +4,7 @@
 //             read_row    reading[0]      reading[1]         write_*
 //
 // A lane is written where its mask is set and its code is at least the stored one, which counts as 0 where the pixel has
-// not been written in this band. Latency 3 clocks from `read_row` to `write_*`; throughput one group a clock.
+// not been written in this band. A group that is for one half of the colour only, as one of two eyes sees it, is not compared. Latency 3 clocks from `read_row` to `write_*`; throughput one group a clock.
 //
 // Hazard: a group may not read a lane that a group before it has still to write. One that shares a row and a lane with one
 // of the three groups before it is held until at least four clocks lie between them. Groups that share a row and no lane,
@@ -26,6 +26,7 @@ module band_pipe #(
     output logic                group_ready,
     input  wire  [ROW_BITS-1:0] group_row,
     input  wire  [7:0]          group_mask,
+    input  wire  [1:0]          group_halves,
     input  wire  [8*18-1:0]     group_codes,
     input  wire  [8*16-1:0]     group_colours,
     // Memories. `stored` and `stored_written` belong to the `read_row` of 3 clocks before.
@@ -34,6 +35,7 @@ module band_pipe #(
     input  wire  [7:0]          stored_written,
     output logic [ROW_BITS-1:0] write_row,
     output logic [7:0]          write_lanes,
+    output logic [1:0]          write_halves,
     output logic [8*18-1:0]     write_codes,
     output logic [8*16-1:0]     write_colours,
     // State.
@@ -43,6 +45,7 @@ module band_pipe #(
     typedef struct packed {
         logic [ROW_BITS-1:0] row;
         logic [7:0]          mask;
+        logic [1:0]          halves;
         logic [8*18-1:0]     codes;
         logic [8*16-1:0]     colours;
     } group_t;
@@ -69,7 +72,7 @@ module band_pipe #(
         if (hold != '0) hold <= hold - 1'b1;
         if (!held) issued_valid <= group_valid && open;
         if (group_valid && group_ready) begin
-            issued <= {group_row, group_mask, group_codes, group_colours};
+            issued <= {group_row, group_mask, group_halves, group_codes, group_colours};
             if (conflict_issued) hold <= 2'd3;
             else if (conflict_0) hold <= 2'd2;
             else if (conflict_1) hold <= 2'd1;
@@ -93,9 +96,10 @@ module band_pipe #(
 
     for (genvar lane = 0; lane < 8; lane++) begin : lanes
         assign write_lanes[lane] = comparing.mask[lane]
-            && (!stored_written[lane] || comparing.codes[18*lane +: 18] >= stored[18*lane +: 18]);
+            && (comparing.halves != '1 || !stored_written[lane] || comparing.codes[18*lane +: 18] >= stored[18*lane +: 18]);
     end
     assign write_row     = comparing.row;
+    assign write_halves  = comparing.halves;
     assign write_codes   = comparing.codes;
     assign write_colours = comparing.colours;
 endmodule

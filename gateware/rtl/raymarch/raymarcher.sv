@@ -5,7 +5,7 @@
 //                    └─▶ ...       ─┘         └▶ waiting ─┘
 //                                          of the next band
 //
-// `start` (one clock, not while `busy`) begins a frame of (last_band + 1) bands; parameters hold until it has ended. Pixels of a band
+// `start` (one clock, not while `busy`) begins a frame; parameters hold until it has ended. Pixels of a band
 // are given out while `band_open`, in any order, every pixel once, with `stereo` once for each eye. `band_done` is high when all of
 // them have been taken, until `band_next` (one clock, only then) says that the next band may come: the last band is closed by it too.
 //
@@ -30,12 +30,8 @@ module raymarcher #(
     input  wire                       restart,
     input  wire                       start,
     output logic                      busy,
-    // Frame. Columns - 1, lines - 1 of a band, bands - 1; columns of eight, and rays of a band.
-    input  wire  [10:0]               last_column,
-    input  wire  [5:0]                last_line,
-    input  wire  [5:0]                last_band,
-    input  wire  [7:0]                stride,
-    input  wire  [14:0]               band_rays,
+    // Frame. 320x180, 640x360, 1280x720: 0, 1, 2.
+    input  wire  [1:0]                size,
     input  wire                       stereo,
     // Where the eyes are and where they look, the left one first, and the box about the field.
     input  wire  [1:0][2:0][31:0]     first,
@@ -82,6 +78,15 @@ module raymarcher #(
 );
     localparam int unsigned EARLY_BITS = $clog2(EARLY + 1);
 
+    // Bands, less one; lines of a band, columns of eight, rows of eight pixels, rays.
+    logic [5:0]  last_band, lines;
+    logic [7:0]  stride;
+    logic [10:0] rows;
+    logic [14:0] band_rays;
+
+    assign {last_band, lines, stride, rows} = band_pkg::cut(size);
+    assign band_rays = STEREO && stereo ? {rows, 4'd0} : {1'b0, rows, 3'd0};
+
     logic reset;
     assign reset = rst || restart;
 
@@ -96,7 +101,7 @@ module raymarcher #(
     march_pkg::ray_t       ray;
 
     ray_generator #(.STEREO(STEREO)) generator (
-        .clk, .rst(reset), .start, .busy(generating), .last_column, .last_line, .last_band, .stereo,
+        .clk, .rst(reset), .start, .busy(generating), .last_column({stride, 3'd0} - 11'd1), .last_line(lines - 6'd1), .last_band, .stereo,
         .first, .across, .down, .near_limit, .origins, .outside,
         .out_valid(ray_valid), .out_ready(ray_ready), .out_ray(ray)
     );

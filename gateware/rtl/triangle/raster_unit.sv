@@ -1,12 +1,17 @@
 // Draws a frame, band by band, from the lists that the geometry unit and the firmware have left in memory.
 //
 //                                                                             ┌─▶ write_port 0 ─┐
-//   lists, descriptors ──▶ list_reader ──▶ triangle_raster ──▶ band_buffer ───┴─▶ write_port 1 ─┴─▶ frame, depth
+//   lists, descriptors ──▶ list_reader ──▶ triangle_raster ──┬▶ band_buffer ──┴─▶ write_port 1 ─┴─▶ frame, depth
+//   pixels of a field, from a raymarcher ────────────────────┘
 //
 // `start` (one clock, not while `busy`) takes the parameters, which hold until `done` (one clock): everything is in memory
 // then. A band takes as long as its groups, and about 16 clocks to be handed over; descriptors are read ahead meanwhile, and the
 // first triangles of the next band prepared. `restart` may come at any time, and gives the frame up; the unit is to be started
 // again when it is `ready` and read_port has thrown away what was on its way.
+//
+// With FIELDS, a frame that has a `field` takes it from a raymarcher beside the unit: `field_start` tells it to begin; when the triangles
+// of a band are drawn, `field_open` lets its pixels in until it says `field_done`, and `field_next` that the band is handed over.
+// `compose` says how the luminances of two eyes become colours, see band_flush.
 //
 // `frame_slot` says which of two frame buffers the frame is for. Only words that can differ from what the frame before in the
 // same slot has left there are written, unless `whole` says that all are to be: nothing is known of the frame buffer (it is
@@ -24,7 +29,8 @@
 module raster_unit #(
     parameter int unsigned ADDRESS_BITS = 23,
     parameter int unsigned COUNT_BITS   = 20,
-    parameter bit          SMOOTH       = 1'b0
+    parameter bit          SMOOTH       = 1'b0,
+    parameter bit          FIELDS       = 1'b0
 ) (
     input  wire                       clk,
     input  wire                       rst,
@@ -46,8 +52,24 @@ module raster_unit #(
     input  wire  [2*ADDRESS_BITS-1:0] descriptor_base,
     input  wire  [2*COUNT_BITS-1:0]   counts,
     input  wire  [4:0]                list_shift,
+    input  wire                       field,
+    input  wire  [1:0]                compose,
     // With `done`: a list was damaged (list_reader), or what it named was no descriptor and was left out.
     output logic                      list_error,
+    // The raymarcher, groups of one pixel.
+    output logic                      field_start,
+    output logic                      field_open,
+    input  wire                       field_done,
+    output logic                      field_next,
+    input  wire                       field_valid,
+    output logic                      field_ready,
+    input  wire  [1:0]                field_halves,
+    input  wire  [10:0]               field_row,
+    input  wire  [5:0]                field_line,
+    input  wire  [7:0]                field_column,
+    input  wire  [7:0]                field_mask,
+    input  wire  [17:0]               field_code,
+    input  wire  [15:0]               field_colour,
     // Memory.
     output logic [2:0]                ask_valid,
     input  wire  [2:0]                ask_ready,
@@ -77,21 +99,15 @@ module raster_unit #(
     logic [7:0]  stride;
     logic [10:0] words;
 
-    always_comb begin
-        case (size)
-            2'd0:    {last_band, rows, stride, words} = {6'd3,  6'd45, 8'd40,  11'd1800};
-            2'd1:    {last_band, rows, stride, words} = {6'd14, 6'd24, 8'd80,  11'd1920};
-            default: {last_band, rows, stride, words} = {6'd59, 6'd12, 8'd160, 11'd1920};
-        endcase
-    end
+    assign {last_band, rows, stride, words} = band_pkg::cut(size);
 
-    typedef enum logic [1:0] {IDLE, DRAW, HAND_OVER, FLUSH} state_t;
+    typedef enum logic [2:0] {IDLE, DRAW, FIELD, HAND_OVER, FLUSH} state_t;
     state_t state;
 
     logic [5:0]              band;
     logic [9:0]              first_row;
     logic [ADDRESS_BITS-1:0] base, band_depth_base;
-    logic                    clearing, flushed, in_memory, band_ready, begins, drawn;
+    logic                    clearing, flushed, in_memory, band_ready, begins, drawn, has_field;
     // The band whose triangles are read: that which is drawn, or the next one.
     logic [9:0]              read_row;
     logic                    read_odd;
@@ -113,6 +129,11 @@ module raster_unit #(
     assign ready = !clearing && in_memory;
     assign begins = state == IDLE && start;
 
+    assign has_field   = FIELDS && field;
+    assign field_start = begins && has_field;
+    assign field_open  = state == FIELD;
+    assign field_next  = state == HAND_OVER && band_ready && has_field;
+
     always_ff @(posedge clk) begin
         done <= 1'b0;
         case (state)
@@ -123,7 +144,8 @@ module raster_unit #(
                 band_depth_base <= depth_base;
                 if (start) state <= DRAW;
             end
-            DRAW: if (drawn) state <= HAND_OVER;
+            DRAW: if (drawn) state <= has_field ? FIELD : HAND_OVER;
+            FIELD: if (field_done) state <= HAND_OVER;
             HAND_OVER: if (band_ready) begin
                 band            <= band + 1'b1;
                 first_row       <= first_row + 10'(rows);
@@ -178,7 +200,16 @@ module raster_unit #(
         .out_planes(planes)
     );
 
+    // In each band first the triangles, then the field.
     logic            group_valid, group_ready, walking, candidate;
+    logic            drawn_valid, drawn_ready;
+    logic [10:0]     drawn_row;
+    logic [5:0]      drawn_line;
+    logic [7:0]      drawn_column;
+    logic [7:0]      drawn_mask;
+    logic [8*18-1:0] drawn_codes;
+    logic [8*16-1:0] drawn_colours;
+    logic [1:0]      group_halves;
     logic [10:0]     group_row;
     logic [5:0]      group_line;
     logic [7:0]      group_column;
@@ -191,21 +222,52 @@ module raster_unit #(
         .clk, .rst(rst || restart), .odd(band[0]), .rows, .stride, .idle(raster_idle), .walking, .candidate, .stalled(),
         .triangle_valid, .triangle_ready, .triangle_y0(read_row), .triangle_odd(read_odd), .triangle_descriptor(descriptor),
         .triangle_planes(planes),
-        .group_valid, .group_ready, .group_row, .group_line, .group_column, .group_mask, .group_codes, .group_colours
+        .group_valid(drawn_valid), .group_ready(drawn_ready), .group_row(drawn_row), .group_line(drawn_line),
+        .group_column(drawn_column), .group_mask(drawn_mask), .group_codes(drawn_codes), .group_colours(drawn_colours)
     );
     /* verilator lint_on PINCONNECTEMPTY */
+
+    if (FIELDS) begin : meeting
+        always_comb begin
+            drawn_ready   = group_ready && !field_open;
+            field_ready   = group_ready && field_open;
+            group_valid   = field_open ? field_valid : drawn_valid;
+            group_halves  = field_open ? field_halves : 2'b11;
+            group_row     = field_open ? field_row : drawn_row;
+            group_line    = field_open ? field_line : drawn_line;
+            group_column  = field_open ? field_column : drawn_column;
+            group_mask    = field_open ? field_mask : drawn_mask;
+            group_codes   = field_open ? {8{field_code}} : drawn_codes;
+            group_colours = field_open ? {8{field_colour}} : drawn_colours;
+        end
+    end else begin : triangles_alone
+        always_comb begin
+            drawn_ready  = group_ready;
+            field_ready  = 1'b0;
+            group_valid  = drawn_valid;
+            group_halves = 2'b11;
+            group_row    = drawn_row;
+            group_line   = drawn_line;
+            group_column = drawn_column;
+            group_mask   = drawn_mask;
+            group_codes  = drawn_codes;
+            group_colours = drawn_colours;
+        end
+        wire _unused = &{1'b0, field_valid, field_halves, field_row, field_line, field_column, field_mask, field_code, field_colour,
+                         field_done, field, compose};
+    end
 
     logic                    word_valid, word_ready, odd_bank;
     logic [ADDRESS_BITS-1:0] word_addr;
     logic [127:0]            word_data;
     logic [1:0]              port_ready, port_idle;
 
-    band_buffer #(.ADDRESS_BITS(ADDRESS_BITS)) band_buffer (
+    band_buffer #(.ADDRESS_BITS(ADDRESS_BITS), .STEREO(FIELDS)) band_buffer (
         .clk, .rst, .restart, .clearing, .flushed,
-        .group_valid, .group_ready, .group_row, .group_line, .group_column, .group_mask, .group_codes, .group_colours,
+        .group_valid, .group_ready, .group_row, .group_line, .group_column, .group_mask, .group_halves, .group_codes, .group_colours,
         .band_valid(state == HAND_OVER), .band_ready, .band_base(base), .band_depth_base, .band_lines(rows), .band_stride(stride),
         .band_first_line(first_row), .band_slot(frame_slot), .band_whole(all_words),
-        .band_with_depth(with_depth), .band_clear(clear),
+        .band_with_depth(with_depth), .band_clear(clear), .band_compose(has_field ? compose : 2'd0),
         .word_valid, .word_ready, .word_addr, .word_data,
         .groups_in, .pixels_covered, .pixels_drawn, .clocks_held, .clocks_memory, .clocks_flush
     );

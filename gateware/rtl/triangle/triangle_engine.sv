@@ -19,7 +19,8 @@
 module triangle_engine #(
     parameter int unsigned ADDRESS_BITS = 23,
     parameter int unsigned COUNT_BITS   = 20,
-    parameter bit          SMOOTH       = 1'b0
+    parameter bit          SMOOTH       = 1'b0,
+    parameter bit          FIELDS       = 1'b0
 ) (
     input  wire                       clk,
     input  wire                       rst,
@@ -85,6 +86,22 @@ module triangle_engine #(
     output logic [31:0]               clocks_held,
     output logic [31:0]               clocks_memory,
     output logic [31:0]               clocks_flush,
+    // A field of a raymarcher beside the engine: see raster_unit.
+    input  wire                       field,
+    input  wire  [1:0]                compose,
+    output logic                      field_start,
+    output logic                      field_open,
+    input  wire                       field_done,
+    output logic                      field_next,
+    input  wire                       field_valid,
+    output logic                      field_ready,
+    input  wire  [1:0]                field_halves,
+    input  wire  [10:0]               field_row,
+    input  wire  [5:0]                field_line,
+    input  wire  [7:0]                field_column,
+    input  wire  [7:0]                field_mask,
+    input  wire  [17:0]               field_code,
+    input  wire  [15:0]               field_colour,
     // Memory.
     output logic                       mesh_read_cmd_valid,
     input  wire                        mesh_read_cmd_ready,
@@ -189,10 +206,12 @@ module triangle_engine #(
         .triangles, .unseen_count, .culled_count, .descriptors, .exceptions, .clocks_busy(geometry_clocks), .vertices
     );
 
-    raster_unit #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS), .SMOOTH(SMOOTH)) raster (
+    raster_unit #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS), .SMOOTH(SMOOTH), .FIELDS(FIELDS)) raster (
         .clk, .rst, .restart(cancel), .ready(raster_ready), .start(raster_start), .busy(raster_busy), .done(raster_done),
         .size(raster_size), .frame_base, .depth_base, .with_depth, .clear, .frame_slot, .whole, .present,
         .list_base(raster_lists), .descriptor_base(raster_descriptors), .counts(raster_counts), .list_shift, .list_error,
+        .field, .compose, .field_start, .field_open, .field_done, .field_next, .field_valid, .field_ready, .field_halves,
+        .field_row, .field_line, .field_column, .field_mask, .field_code, .field_colour,
         .ask_valid(ask_valid[4:2]), .ask_ready(ask_ready[4:2]), .ask_addr(ask_addr[5*ADDRESS_BITS-1:2*ADDRESS_BITS]),
         .data_valid(data_valid[4:2]), .data_ready(data_ready[4:2]), .data(data[5*128-1:2*128]),
         .cmd_valid({frame_odd_cmd_valid, frame_even_cmd_valid}), .cmd_ready({frame_odd_cmd_ready, frame_even_cmd_ready}),

@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 use std::ops::Range;
 
+use glint_model::march::{Tint, compose};
 use glint_rtl::{Bits, Module, Port, Sink, Source, Stalls};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
@@ -17,6 +18,8 @@ const PICTURE_LINES: usize = 720;
 struct Group {
     row: usize,
     mask: u8,
+    /// Of the colours: 3 both, 1 and 2 what the left and the right eye see.
+    halves: u8,
     codes: [u32; LANES],
     colours: [u16; LANES],
 }
@@ -32,6 +35,8 @@ struct Band {
     whole: bool,
     with_depth: bool,
     clear: u16,
+    /// How what two eyes see becomes colours: 0 not at all, 1 red and blue, 2 red and cyan.
+    compose: u8,
 }
 
 impl Band {
@@ -57,7 +62,14 @@ impl Pixels {
     fn draw(&mut self, group: &Group) {
         for lane in (0..LANES).filter(|lane| group.mask >> lane & 1 == 1) {
             let pixel = &mut self.0[group.row][lane];
-            if group.codes[lane] >= pixel.map_or(0, |(code, _)| code) {
+            let (code, colour) = (group.codes[lane], group.colours[lane]);
+            if group.halves != 3 {
+                let (before, seen) = pixel.unwrap_or_default();
+                *pixel = Some(match group.halves {
+                    1 => (code, seen & 0xff00 | colour & 0x00ff),
+                    _ => (before, seen & 0x00ff | colour & 0xff00),
+                });
+            } else if group.codes[lane] >= pixel.map_or(0, |(code, _)| code) {
                 *pixel = Some((group.codes[lane], group.colours[lane]));
             }
         }
@@ -93,7 +105,15 @@ impl Pixels {
     }
 
     fn colours(&self, row: usize, band: &Band) -> Word {
-        let colour = self.0[row].map(|pixel| u32::from(pixel.map_or(band.clear, |(_, c)| c)));
+        let seen = |(_, colour): (u32, u16)| {
+            let [left, right] = colour.to_le_bytes();
+            match band.compose {
+                0 => colour,
+                1 => compose(Tint::RedBlue, left, right),
+                _ => compose(Tint::RedCyan, left, right),
+            }
+        };
+        let colour = self.0[row].map(|pixel| u32::from(pixel.map_or(band.clear, seen)));
         let pairs = [0, 1, 2, 3].map(|i| colour[2 * i] | colour[2 * i + 1] << 16);
         (band.base + row as u32, pairs)
     }
@@ -131,15 +151,17 @@ struct Bench {
 
 impl Bench {
     /// A band buffer after reset, still clearing itself.
-    fn new(seed: u64, group_stalls: f64, memory_stalls: f64) -> Self {
-        let mut module = Module::new("band_buffer", seed as u32);
+    fn new(name: &str, seed: u64, group_stalls: f64, memory_stalls: f64) -> Self {
+        let mut module = Module::new(name, seed as u32);
         let restart = module.port("restart");
         module.set(restart, 0_u64);
         Self {
             group_source: Source::new(
                 &module,
                 "group",
-                &["row", "line", "column", "mask", "codes", "colours"],
+                &[
+                    "row", "line", "column", "mask", "halves", "codes", "colours",
+                ],
                 Stalls::new(seed, group_stalls),
             ),
             band_source: Source::new(
@@ -155,6 +177,7 @@ impl Bench {
                     "whole",
                     "with_depth",
                     "clear",
+                    "compose",
                 ],
                 Stalls::new(seed + 100, group_stalls),
             ),
@@ -183,7 +206,12 @@ impl Bench {
 
     /// As `new`, ready to draw.
     fn ready(seed: u64, group_stalls: f64, memory_stalls: f64) -> Self {
-        let mut bench = Self::new(seed, group_stalls, memory_stalls);
+        Self::of("band_buffer", seed, group_stalls, memory_stalls)
+    }
+
+    /// As `ready`, one of the builds.
+    fn of(name: &str, seed: u64, group_stalls: f64, memory_stalls: f64) -> Self {
+        let mut bench = Self::new(name, seed, group_stalls, memory_stalls);
         bench.run_until(ROWS_OF_A_BANK + 10, |bench| !bench.is(bench.clearing));
         bench
     }
@@ -207,6 +235,7 @@ impl Bench {
             Bits::from((group.row / self.stride) as u64),
             Bits::from((group.row % self.stride) as u64),
             Bits::from(u64::from(group.mask)),
+            Bits::from(u64::from(group.halves)),
             codes,
             colours,
         ]);
@@ -230,6 +259,7 @@ impl Bench {
             Bits::from(u64::from(band.whole)),
             Bits::from(u64::from(band.with_depth)),
             Bits::from(u64::from(band.clear)),
+            Bits::from(u64::from(band.compose)),
         ]);
         self.bands.push_back(band);
     }
@@ -318,6 +348,7 @@ fn random_group(random: &mut Pcg64Mcg, rows: usize) -> Group {
         } else {
             random.random()
         },
+        halves: 3,
         codes: std::array::from_fn(|_| match random.random_range(0..4) {
             0 => 1,
             1 => (1 << 18) - 1,
@@ -340,6 +371,7 @@ fn random_band(random: &mut Pcg64Mcg, [lines, stride]: [usize; 2]) -> Band {
         whole: random.random_ratio(1, 8),
         with_depth: random.random_ratio(1, 4),
         clear: random.random(),
+        compose: 0,
     }
 }
 
@@ -348,6 +380,7 @@ fn full_group(row: usize, code: u32) -> Group {
     Group {
         row,
         mask: 0xff,
+        halves: 3,
         codes: [code; LANES],
         colours: std::array::from_fn(|lane| (row * LANES + lane) as u16),
     }
@@ -365,6 +398,7 @@ fn plain_band([lines, stride]: [usize; 2]) -> Band {
         whole: true,
         with_depth: false,
         clear: 0xa55a,
+        compose: 0,
     }
 }
 
@@ -386,6 +420,42 @@ fn random_groups_in_many_bands_with_stalls() {
                 .collect();
             let band = random_band(&mut random, shape);
             bench.draw(groups, band);
+        }
+        bench.finish();
+    }
+}
+
+/// What two eyes see, pixel by pixel in any order, in turns with bands of groups for both.
+#[test]
+fn what_two_eyes_see_is_composed() {
+    for (seed, stalls) in [(1, 0.0), (2, 0.4)] {
+        let mut random = Pcg64Mcg::new(u128::from(seed));
+        let mut bench = Bench::of("band_buffer_stereo", seed, stalls, stalls);
+        let shape @ [lines, stride] = [7, 3];
+        bench.stride = stride;
+        for _ in 0..40 {
+            let mut band = random_band(&mut random, shape);
+            band.compose = random.random_range(0..3);
+            let mut groups: Vec<_> = (0..random.random_range(0..100))
+                .map(|_| random_group(&mut random, lines * stride))
+                .collect();
+            if band.compose != 0 {
+                // Each pixel that is drawn is drawn for both.
+                groups = groups
+                    .into_iter()
+                    .flat_map(|group| {
+                        [1, 2].map(|halves| Group {
+                            halves,
+                            ..group.clone()
+                        })
+                    })
+                    .collect();
+                let order = |random: &mut Pcg64Mcg| random.random::<u32>();
+                groups.sort_by_cached_key(|_| order(&mut random));
+            }
+            bench.draw(groups, band);
+            // Those of the next band are of another kind.
+            bench.run_until(100_000, |bench| bench.bands.is_empty());
         }
         bench.finish();
     }
@@ -463,7 +533,7 @@ fn only_what_was_drawn_now_or_last_is_flushed() {
 
 #[test]
 fn a_bank_after_reset_is_clear() {
-    let mut bench = Bench::new(6, 0.0, 0.0);
+    let mut bench = Bench::new("band_buffer", 6, 0.0, 0.0);
     assert!(bench.is(bench.clearing));
     for _ in 0..2 {
         bench.push_band(plain_band([48, 40]));
@@ -498,6 +568,7 @@ fn a_group_waits_for_the_lanes_it_shares() {
         let mut bench = Bench::ready(8, 0.0, 0.0);
         let others = (0..between).map(|i| full_group(100 + i, 5));
         let groups = [full_group(7, 3)].into_iter().chain(others).chain([Group {
+            halves: 3,
             mask: 0x81,
             codes: [3, 9, 9, 9, 9, 9, 9, 2],
             colours: [0xffff; LANES],

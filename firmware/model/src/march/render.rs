@@ -108,10 +108,12 @@ pub fn rgb565([r, g, b]: [u8; 3]) -> u16 {
     narrow(r, 5) << 11 | narrow(g, 6) << 5 | narrow(b, 5)
 }
 
-/// What two eyes see, of their luminances.
+/// What two eyes see, of their luminances: cut, not rounded, as all eight pixels of a word are composed at once.
 pub fn compose(tint: Tint, left: u8, right: u8) -> u16 {
-    rgb565(match tint {
+    let [red, green, blue] = match tint {
         Tint::RedBlue => [left, left.min(right), right],
         Tint::RedCyan => [left, right, right],
-    })
+    }
+    .map(u16::from);
+    red >> 3 << 11 | green >> 2 << 5 | blue >> 3
 }

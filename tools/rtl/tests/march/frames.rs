@@ -4,7 +4,7 @@ use glint_model::march::{FieldStats, Palette, Setup};
 use glint_rtl::{Module, Sink, Stalls};
 
 use crate::common::Random;
-use crate::ports::{Pixel, Place, pixel, set_generator, set_lane, set_paint};
+use crate::ports::{Pixel, Place, pixel, set_lane, set_paint, set_rays};
 use crate::scenes::{FIELDS, SPONGES, band_lines, setup};
 
 const COUNTERS: [&str; 8] = [
@@ -51,12 +51,10 @@ impl Bench {
     }
 
     fn set(&mut self, setup: &Setup, palette: &Palette) {
-        let lines = band_lines(setup.width);
-        let eyes: u32 = if setup.stereo.is_some() { 2 } else { 1 };
         set_lane(&mut self.module, setup);
-        set_generator(&mut self.module, setup, lines);
+        set_rays(&mut self.module, setup);
         set_paint(&mut self.module, setup, palette);
-        self.port("band_rays", u64::from(eyes * setup.width * lines));
+        self.port("size", u64::from(setup.width / 640));
     }
 
     /// Draws a frame. `hurry`: bands are open at once, and nothing stalls.

@@ -50,6 +50,8 @@ fn ends_of_random_rays() {
         let setup = setup(&mut random, &FIELDS);
         let palette = palette(&mut random);
         set_paint(&mut module, &setup, &palette);
+        let stride = module.port("stride");
+        module.set(stride, u64::from(setup.width / 8));
         let share = [0.0, 0.5][frame as usize % 2];
         let mut source = Source::new(&module, "in", &["end"], Stalls::new(frame, share));
         let payload = ["eye", "row", "line", "column", "mask", "code", "colour"];

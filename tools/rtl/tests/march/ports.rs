@@ -135,18 +135,27 @@ pub fn set_lane(module: &mut Module, setup: &Setup) {
 
 /// Sets what holds during a frame, as far as the generator wants it, in bands of so many lines.
 pub fn set_generator(module: &mut Module, setup: &Setup, band_lines: u32) {
-    let [left, right] = setup.eyes;
+    for (name, value) in [
+        ("last_column", setup.width - 1),
+        ("last_line", band_lines - 1),
+        ("last_band", setup.height / band_lines - 1),
+    ] {
+        let port = module.port(name);
+        module.set(port, u64::from(value));
+    }
+    set_rays(module, setup);
+}
+
+/// Sets where the rays begin.
+pub fn set_rays(module: &mut Module, setup: &Setup) {
+    let eyes = setup.eyes;
     let both = |bits: usize, [left, right]: [[i64; 3]; 2]| {
         (0..3).fold(three(bits, left), |all, i| {
             all.with(bits * (3 + i), bits, right[i])
         })
     };
-    let eyes = [left, right];
     let number = |value: u32| Bits::from(u64::from(value));
     for (name, value) in [
-        ("last_column", number(setup.width - 1)),
-        ("last_line", number(band_lines - 1)),
-        ("last_band", number(setup.height / band_lines - 1)),
         ("stereo", number(setup.stereo.is_some().into())),
         ("first", both(32, eyes.map(|eye| eye.first.map(i64::from)))),
         ("across", three(32, setup.steps[0].map(i64::from))),
@@ -200,7 +209,6 @@ pub fn set_paint(module: &mut Module, setup: &Setup, palette: &Palette) {
     let number = |bits: usize, value: i64| Bits::default().with(0, bits, value);
     for (name, value) in [
         ("stereo", number(2, setup.stereo.is_some().into())),
-        ("stride", number(8, (setup.width / 8).into())),
         ("depth_mantissa", number(17, setup.depth.mantissa.into())),
         ("depth_exponent", number(6, setup.depth.exponent.into())),
         ("fog_shift", number(3, palette.fog_shift.into())),
