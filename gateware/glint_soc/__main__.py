@@ -10,16 +10,17 @@ from litex.soc.integration import export
 from litex.soc.integration.builder import Builder
 
 from . import register_map
+from .march import Fields
 from .register_map import OPTIONAL_BLOCKS
 
 
-def make_soc(board, build_id, blocks, smooth=False):
+def make_soc(board, build_id, blocks, smooth=False, fields=None):
     """The SoC of `board`, not yet finalized."""
     if board == "virtual":
         from .virtual import VirtualSoC
-        return VirtualSoC(build_id, blocks, smooth)
+        return VirtualSoC(build_id, blocks, smooth, fields)
     from .urbana import UrbanaSoC
-    return UrbanaSoC(build_id, blocks, smooth)
+    return UrbanaSoC(build_id, blocks, smooth, fields)
 
 
 def main():
@@ -30,6 +31,8 @@ def main():
     parser.add_argument("--blocks", nargs="*", default=sorted(OPTIONAL_BLOCKS), choices=sorted(OPTIONAL_BLOCKS),
                         help="optional blocks of this build (default: all)")
     parser.add_argument("--smooth", action="store_true", help="build smooth shading into the triangle engine")
+    parser.add_argument("--sponge", action="store_true",
+                        help="build a raymarcher of four lanes for the sponge up to depth 4, instead of two for every field")
     arguments = parser.parse_args()
     logging.getLogger().setLevel(logging.WARNING)
     # The BIOS build calls meson and ninja of the virtual environment that runs this.
@@ -42,7 +45,8 @@ def main():
     full.finalize()
     build_id = register_map.build_id(full)
 
-    soc = make_soc(arguments.board, build_id, arguments.blocks, arguments.smooth)
+    fields = Fields(lanes=4, levels=4, boxes=False) if arguments.sponge else None
+    soc = make_soc(arguments.board, build_id, arguments.blocks, arguments.smooth, fields)
     soc.finalize()
     register_map.check_subset(soc, full)
     output = arguments.output.resolve()

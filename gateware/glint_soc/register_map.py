@@ -33,6 +33,7 @@ PINNED = {
     "leds": Location(8),
     "scanout": Location(9, irq=3),
     "triangle": Location(10, irq=4),
+    "raymarch": Location(11, irq=5),
     # Physical layers differ between boards. They are outside the map that the build id covers.
     "ddrphy": Location(30),
     "uart_phy": Location(31),
@@ -41,7 +42,7 @@ PINNED = {
 BOARD_SPECIFIC = ("ddrphy", "uart_phy")
 
 # Blocks that a build may leave out, with their bit in the register `identity_blocks`.
-OPTIONAL_BLOCKS = {"scanout": 0, "triangle": 1}
+OPTIONAL_BLOCKS = {"scanout": 0, "triangle": 1, "raymarch": 2}
 
 CSR_MAP = {name: location.window for name, location in PINNED.items()}
 

@@ -13,6 +13,7 @@ from litex.soc.interconnect import wishbone
 
 from .i2c import OpenDrainI2C
 from .identity import Identity
+from .march import Fields, Raymarcher
 from .memory_bridge import MemoryBridge
 from .register_map import CSR_MAP, CSR_PAGING, OPTIONAL_BLOCKS, PINNED
 from .scanout import Scanout
@@ -32,17 +33,21 @@ class GlintSoC(SoCCore):
     """VexRiscv `full` with BIOS in ROM, 128 MB of DDR3 without a second cache level, and Glint's peripherals.
 
     `blocks` names the optional accelerators of this build, a subset of `OPTIONAL_BLOCKS`; `build_id` is what the
-    full build's register map gives (see `register_map.build_id`). `smooth` builds smooth shading into the triangle engine.
+    full build's register map gives (see `register_map.build_id`). `smooth` builds smooth shading into the triangle engine,
+    `fields` says what the raymarcher is built with.
     """
 
     csr_map = CSR_MAP
 
-    def __init__(self, platform, crg, build_id, blocks, uart_name, smooth=False, sys_clk_freq=SYS_CLK_FREQ):
+    def __init__(self, platform, crg, build_id, blocks, uart_name, smooth=False, fields=None, sys_clk_freq=SYS_CLK_FREQ):
         unknown = set(blocks) - set(OPTIONAL_BLOCKS)
         if unknown:
             raise ValueError(f"unknown blocks {sorted(unknown)}, expected some of {sorted(OPTIONAL_BLOCKS)}")
         self.blocks = frozenset(blocks)
+        if "raymarch" in self.blocks and "triangle" not in self.blocks:
+            raise ValueError("the raymarcher draws into the triangle engine's band buffer: expected the block triangle too")
         self.smooth = smooth
+        self.fields = fields or Fields()
         # Before SoCCore, which adds uart and timer0: both use the location that exists.
         self.interrupt_map = {
             name: location.irq for name, location in PINNED.items()
@@ -85,4 +90,6 @@ class GlintSoC(SoCCore):
         if "triangle" in self.blocks:
             readers = [self.sdram.crossbar.get_port(mode="read") for _ in range(3)]
             writers = [self.sdram.crossbar.get_port(mode="write") for _ in range(4)]
-            self.triangle = TriangleEngine(self.platform, readers, writers, main_ram, self.smooth)
+            self.triangle = TriangleEngine(self.platform, readers, writers, main_ram, self.smooth, "raymarch" in self.blocks)
+        if "raymarch" in self.blocks:
+            self.raymarch = Raymarcher(self.platform, self.fields, self.triangle)

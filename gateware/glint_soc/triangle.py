@@ -3,7 +3,7 @@
 from litex.gen import LiteXModule
 from litex.soc.interconnect.csr import CSRField, CSRStatus, CSRStorage
 from litex.soc.interconnect.csr_eventmanager import EventManager, EventSourcePulse
-from migen import Cat, ClockSignal, If, Instance, ResetSignal, Signal
+from migen import Cat, ClockSignal, If, Instance, Record, ResetSignal, Signal
 
 from .scanout import RTL
 
@@ -32,6 +32,9 @@ TRIANGLE_CONTROL = [_TRIANGLE / "list_pkg.sv", _TRIANGLE / "triangle_control.sv"
 
 IDENT = int.from_bytes(b"TRIA", "big")
 
+# A group of one pixel, or of one eye's half of it.
+_FIELD_GROUP = [("halves", 2), ("row", 11), ("line", 6), ("column", 8), ("mask", 8), ("code", 18), ("colour", 16)]
+
 _ADDRESS_BITS = 23
 _COUNT_BITS = 20
 
@@ -54,10 +57,11 @@ class TriangleEngine(LiteXModule):
 
     `readers` are three native 128-bit LiteDRAM read ports (triangles, vertices, raster), `writers` four write ports
     (descriptors, lists, frame in even and in odd banks), all in the domain `sys`. `clk`, to be driven, is its clock, or that
-    gated by `clock_enable`. `main_ram` is the region they reach. `smooth` builds smooth shading.
+    gated by `clock_enable`. `main_ram` is the region they reach. `smooth` builds smooth shading, `fields` the way in for a
+    raymarcher: `field`.
     """
 
-    def __init__(self, platform, readers, writers, main_ram, smooth=False):
+    def __init__(self, platform, readers, writers, main_ram, smooth=False, fields=False):
         for port in (*readers, *writers):
             if port.data_width != 128 or port.address_width != _ADDRESS_BITS:
                 raise ValueError(f"the triangle engine needs memory ports of 128 bits and {_ADDRESS_BITS} address bits, "
@@ -207,6 +211,11 @@ class TriangleEngine(LiteXModule):
         self.sync += If(working, linger.eq(31)).Elif(linger != 0, linger.eq(linger - 1))
 
         geometry_kept, raster_kept = Signal(4), Signal(7)
+        # What a raymarcher beside the engine says and hears: see rtl/triangle/raster_unit.sv.
+        self.field = field = Record([
+            ("enable", 1), ("compose", 2), ("start", 1), ("restart", 1), ("size", 2), ("open", 1), ("done", 1), ("next", 1),
+            ("valid", 1), ("ready", 1), *_FIELD_GROUP])
+        self.comb += [field.restart.eq(self._control.fields.cancel), field.size.eq(raster_kept[:2])]
         link = {name: Signal() for name in (
             "ready", "geometry_start", "geometry_busy", "geometry_done", "mesh_error", "full",
             "raster_start", "raster_busy", "raster_done", "list_error")}
@@ -260,6 +269,7 @@ class TriangleEngine(LiteXModule):
             p_ADDRESS_BITS         = _ADDRESS_BITS,
             p_COUNT_BITS           = _COUNT_BITS,
             p_SMOOTH               = int(smooth),
+            p_FIELDS               = int(fields),
             i_clk                  = self.clk,
             i_rst                  = ResetSignal("sys"),
             i_cancel               = cancel,
@@ -309,6 +319,15 @@ class TriangleEngine(LiteXModule):
             o_clocks_held          = status["cycles_held"].status,
             o_clocks_memory        = status["cycles_memory"].status,
             o_clocks_flush         = status["cycles_flush"].status,
+            i_field                = field.enable,
+            i_compose              = field.compose,
+            o_field_start          = field.start,
+            o_field_open           = field.open,
+            i_field_done           = field.done,
+            o_field_next           = field.next,
+            i_field_valid          = field.valid,
+            o_field_ready          = field.ready,
+            **{f"i_field_{name}": getattr(field, name) for name, _ in _FIELD_GROUP},
             **_read_port("mesh_read", mesh_reader),
             **_read_port("vertex_read", vertex_reader),
             **_read_port("raster_read", raster_reader),

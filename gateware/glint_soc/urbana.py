@@ -79,17 +79,18 @@ class CRG(LiteXModule):
 class UrbanaSoC(GlintSoC):
     """The SoC on the board."""
 
-    def __init__(self, build_id, blocks, smooth=False):
+    def __init__(self, build_id, blocks, smooth=False, fields=None):
         platform = Platform()
-        GlintSoC.__init__(self, platform, CRG(platform, SYS_CLK_FREQ), build_id, blocks, uart_name="serial", smooth=smooth)
+        GlintSoC.__init__(self, platform, CRG(platform, SYS_CLK_FREQ), build_id, blocks, uart_name="serial", smooth=smooth,
+                          fields=fields)
         self.ddrphy = A7DDRPHY(
             platform.request("ddram"), memtype="DDR3", nphases=4,
             sys_clk_freq=SYS_CLK_FREQ, iodelay_clk_freq=_IDELAY_CLK_FREQ)
         # Set here because `add_electrical_settings` keeps it under a name that the initialisation does not read.
         self.ddrphy.settings.rtt_nom = "40ohm"
         self.add_dram(self.ddrphy)
-        if "triangle" in self.blocks:
-            self.comb += self.triangle.clk.eq(self.crg.cd_sys.clk)
+        for name in {"triangle", "raymarch"} & self.blocks:
+            self.comb += getattr(self, name).clk.eq(self.crg.cd_sys.clk)
         if "scanout" in self.blocks:
             self.hdmi = VideoS7HDMIPHY(platform.request("hdmi_out"), clock_domain="pix")
             self.comb += self.hdmi.sink.valid.eq(1)

@@ -85,9 +85,9 @@ class CRG(LiteXModule):
 class VirtualSoC(GlintSoC):
     """The SoC as the virtual board runs it."""
 
-    def __init__(self, build_id, blocks, smooth=False):
+    def __init__(self, build_id, blocks, smooth=False, fields=None):
         platform = Platform()
-        GlintSoC.__init__(self, platform, CRG(platform), build_id, blocks, uart_name="sim", smooth=smooth)
+        GlintSoC.__init__(self, platform, CRG(platform), build_id, blocks, uart_name="sim", smooth=smooth, fields=fields)
         self.ddrphy = SDRAMPHYModel(
             module=MT41K64M16(SYS_CLK_FREQ, "1:4"), data_width=16, clk_freq=SYS_CLK_FREQ)
         self._name_banks()
@@ -95,11 +95,12 @@ class VirtualSoC(GlintSoC):
         self.rom.mem.init = None
         self.sram.mem.init = None
         self.add_dram(self.ddrphy)
-        if "triangle" in self.blocks:
-            # What has no clock takes no time to simulate: half of the whole.
-            platform.add_source(str(RTL / "common" / "clock_gate.sv"))
-            self.specials += Instance("clock_gate", name="triangle_clock",
-                i_clk=self.crg.cd_sys.clk, i_enable=self.triangle.clock_enable, o_gated=self.triangle.clk)
+        # What has no clock takes no time to simulate: half of the whole.
+        platform.add_source(str(RTL / "common" / "clock_gate.sv"))
+        for name in sorted({"triangle", "raymarch"} & self.blocks):
+            block = getattr(self, name)
+            self.specials += Instance("clock_gate", name=f"{name}_clock",
+                i_clk=self.crg.cd_sys.clk, i_enable=block.clock_enable, o_gated=block.clk)
         # The BIOS tests 2 MiB unless told otherwise: minutes here.
         self.add_constant("MEMTEST_DATA_SIZE", 8 * 1024)
         self.add_constant("MEMTEST_ADDR_SIZE", 8 * 1024)

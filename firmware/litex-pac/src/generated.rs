@@ -2,7 +2,7 @@
 // fails when this file is not what the generator makes of the SoC.
 
 /// CRC-32 of the SoC's pinned register map. A SoC whose `identity.build_id` differs has other registers.
-pub const BUILD_ID: u32 = 0x0edd_75ae;
+pub const BUILD_ID: u32 = 0xe3ef_4a7c;
 
 /// The interrupt lines, numbered by their bit in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,11 +18,13 @@ pub enum Interrupt {
     Scanout = 3,
     /// An enabled event of `triangle` is pending.
     Triangle = 4,
+    /// An enabled event of `raymarch` is pending.
+    Raymarch = 5,
 }
 
 impl Interrupt {
     /// Every interrupt, by number.
-    pub const ALL: [Self; 5] = [Self::Uart, Self::Timer0, Self::Buttons, Self::Scanout, Self::Triangle];
+    pub const ALL: [Self; 6] = [Self::Uart, Self::Timer0, Self::Buttons, Self::Scanout, Self::Triangle, Self::Raymarch];
 }
 
 /// Constants of the SoC.
@@ -36,7 +38,7 @@ pub mod constants {
     /// `config_clock_frequency`.
     pub const CONFIG_CLOCK_FREQUENCY: u32 = 81_250_000;
     /// `config_cpu_interrupts`.
-    pub const CONFIG_CPU_INTERRUPTS: u32 = 5;
+    pub const CONFIG_CPU_INTERRUPTS: u32 = 6;
     /// `config_cpu_reset_addr`.
     pub const CONFIG_CPU_RESET_ADDR: u32 = 0;
     /// `config_csr_alignment`.
@@ -81,6 +83,8 @@ pub struct Peripherals {
     pub scanout: scanout::Scanout,
     /// `triangle`.
     pub triangle: triangle::Triangle,
+    /// `raymarch`.
+    pub raymarch: raymarch::Raymarch,
 }
 
 impl Peripherals {
@@ -104,6 +108,7 @@ impl Peripherals {
                 leds: leds::Leds::steal(),
                 scanout: scanout::Scanout::steal(),
                 triangle: triangle::Triangle::steal(),
+                raymarch: raymarch::Raymarch::steal(),
             }
         }
     }
@@ -3263,6 +3268,967 @@ pub mod triangle {
         #[must_use]
         pub const fn with_whole(self, value: bool) -> Self {
             Self(self.0 & !(0x1 << 7) | (value as u32 & 0x1) << 7)
+        }
+    }
+}
+
+/// The registers of `raymarch`.
+pub mod raymarch {
+    use crate::register::{ReadOnly, ReadWrite, Register, Value};
+
+    /// Access to `raymarch`.
+    pub struct Raymarch {
+        _private: (),
+    }
+
+    impl Raymarch {
+        /// Address of the first register.
+        pub const BASE: usize = 0xf000_5800;
+
+        /// A handle, whether or not somebody holds one already.
+        ///
+        /// # Safety
+        /// Whoever holds the other handle must be prepared for its registers to change.
+        #[must_use]
+        pub const unsafe fn steal() -> Self {
+            Self { _private: () }
+        }
+
+        /// `ident`, 32 bits: `MARC` in ASCII; 0 where the block is absent.
+        #[inline]
+        #[must_use]
+        pub const fn ident(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5800) }
+        }
+
+        /// `caps`, 10 bits: What this block can do.
+        #[inline]
+        #[must_use]
+        pub const fn caps(&self) -> Register<Caps, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5804) }
+        }
+
+        /// `control`, 3 bits: Operation. This and all other registers have to hold while a raster pass runs.
+        #[inline]
+        #[must_use]
+        pub const fn control(&self) -> Register<Control, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5808) }
+        }
+
+        /// `status`, 6 bits: State.
+        #[inline]
+        #[must_use]
+        pub const fn status(&self) -> Register<Status, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_580c) }
+        }
+
+        /// `ev_status`, 1 bit: Level of each event's trigger.
+        #[inline]
+        #[must_use]
+        pub const fn ev_status(&self) -> Register<EvStatus, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5810) }
+        }
+
+        /// `ev_pending`, 1 bit: Events that have occurred; writing a 1 clears an event.
+        #[inline]
+        #[must_use]
+        pub const fn ev_pending(&self) -> Register<EvPending, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5814) }
+        }
+
+        /// `ev_enable`, 1 bit: Events that raise the interrupt.
+        #[inline]
+        #[must_use]
+        pub const fn ev_enable(&self) -> Register<EvEnable, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5818) }
+        }
+
+        /// `solid`, 13 bits: What there is.
+        #[inline]
+        #[must_use]
+        pub const fn solid(&self) -> Register<Solid, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_581c) }
+        }
+
+        /// `cube_half`, 22 bits: Half the side of the cubes that a sponge leaves, u10.12.
+        #[inline]
+        #[must_use]
+        pub const fn cube_half(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5820) }
+        }
+
+        /// `half_x`, 22 bits: Half the side of the box along x, u10.12.
+        #[inline]
+        #[must_use]
+        pub const fn half_x(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5824) }
+        }
+
+        /// `half_y`, 22 bits: Half the side of the box along y, u10.12.
+        #[inline]
+        #[must_use]
+        pub const fn half_y(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5828) }
+        }
+
+        /// `half_z`, 22 bits: Half the side of the box along z, u10.12.
+        #[inline]
+        #[must_use]
+        pub const fn half_z(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_582c) }
+        }
+
+        /// `tuning`, 28 bits: How finely.
+        #[inline]
+        #[must_use]
+        pub const fn tuning(&self) -> Register<Tuning, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5830) }
+        }
+
+        /// `far`, 23 bits: t beyond which there is nothing, u11.12.
+        #[inline]
+        #[must_use]
+        pub const fn far(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5834) }
+        }
+
+        /// `near`, 23 bits: Distance of the near plane times 2^e, u11.12.
+        #[inline]
+        #[must_use]
+        pub const fn near(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5838) }
+        }
+
+        /// `origin_left_x`, 25 bits: Where the left eye is, x, s13.12.
+        #[inline]
+        #[must_use]
+        pub const fn origin_left_x(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_583c) }
+        }
+
+        /// `outside_left_x`, 24 bits: How far the left eye is outside of the box along x, u12.12.
+        #[inline]
+        #[must_use]
+        pub const fn outside_left_x(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5840) }
+        }
+
+        /// `first_left_x`, 32 bits: D of the left eye's first ray, x, s2.30.
+        #[inline]
+        #[must_use]
+        pub const fn first_left_x(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5844) }
+        }
+
+        /// `origin_left_y`, 25 bits: Where the left eye is, y, s13.12.
+        #[inline]
+        #[must_use]
+        pub const fn origin_left_y(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5848) }
+        }
+
+        /// `outside_left_y`, 24 bits: How far the left eye is outside of the box along y, u12.12.
+        #[inline]
+        #[must_use]
+        pub const fn outside_left_y(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_584c) }
+        }
+
+        /// `first_left_y`, 32 bits: D of the left eye's first ray, y, s2.30.
+        #[inline]
+        #[must_use]
+        pub const fn first_left_y(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5850) }
+        }
+
+        /// `origin_left_z`, 25 bits: Where the left eye is, z, s13.12.
+        #[inline]
+        #[must_use]
+        pub const fn origin_left_z(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5854) }
+        }
+
+        /// `outside_left_z`, 24 bits: How far the left eye is outside of the box along z, u12.12.
+        #[inline]
+        #[must_use]
+        pub const fn outside_left_z(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5858) }
+        }
+
+        /// `first_left_z`, 32 bits: D of the left eye's first ray, z, s2.30.
+        #[inline]
+        #[must_use]
+        pub const fn first_left_z(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_585c) }
+        }
+
+        /// `origin_right_x`, 25 bits: Where the right eye is, x, s13.12.
+        #[inline]
+        #[must_use]
+        pub const fn origin_right_x(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5860) }
+        }
+
+        /// `outside_right_x`, 24 bits: How far the right eye is outside of the box along x, u12.12.
+        #[inline]
+        #[must_use]
+        pub const fn outside_right_x(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5864) }
+        }
+
+        /// `first_right_x`, 32 bits: D of the right eye's first ray, x, s2.30.
+        #[inline]
+        #[must_use]
+        pub const fn first_right_x(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5868) }
+        }
+
+        /// `origin_right_y`, 25 bits: Where the right eye is, y, s13.12.
+        #[inline]
+        #[must_use]
+        pub const fn origin_right_y(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_586c) }
+        }
+
+        /// `outside_right_y`, 24 bits: How far the right eye is outside of the box along y, u12.12.
+        #[inline]
+        #[must_use]
+        pub const fn outside_right_y(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5870) }
+        }
+
+        /// `first_right_y`, 32 bits: D of the right eye's first ray, y, s2.30.
+        #[inline]
+        #[must_use]
+        pub const fn first_right_y(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5874) }
+        }
+
+        /// `origin_right_z`, 25 bits: Where the right eye is, z, s13.12.
+        #[inline]
+        #[must_use]
+        pub const fn origin_right_z(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5878) }
+        }
+
+        /// `outside_right_z`, 24 bits: How far the right eye is outside of the box along z, u12.12.
+        #[inline]
+        #[must_use]
+        pub const fn outside_right_z(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_587c) }
+        }
+
+        /// `first_right_z`, 32 bits: D of the right eye's first ray, z, s2.30.
+        #[inline]
+        #[must_use]
+        pub const fn first_right_z(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5880) }
+        }
+
+        /// `bounds_x`, 24 bits: Half the side of the box about the field along x, u12.12.
+        #[inline]
+        #[must_use]
+        pub const fn bounds_x(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5884) }
+        }
+
+        /// `bounds_y`, 24 bits: Half the side of the box about the field along y, u12.12.
+        #[inline]
+        #[must_use]
+        pub const fn bounds_y(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5888) }
+        }
+
+        /// `bounds_z`, 24 bits: Half the side of the box about the field along z, u12.12.
+        #[inline]
+        #[must_use]
+        pub const fn bounds_z(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_588c) }
+        }
+
+        /// `across_x`, 32 bits: What D grows by with a column, x, s2.30.
+        #[inline]
+        #[must_use]
+        pub const fn across_x(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5890) }
+        }
+
+        /// `across_y`, 32 bits: What D grows by with a column, y, s2.30.
+        #[inline]
+        #[must_use]
+        pub const fn across_y(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5894) }
+        }
+
+        /// `across_z`, 32 bits: What D grows by with a column, z, s2.30.
+        #[inline]
+        #[must_use]
+        pub const fn across_z(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5898) }
+        }
+
+        /// `down_x`, 32 bits: What D grows by with a line, x, s2.30.
+        #[inline]
+        #[must_use]
+        pub const fn down_x(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_589c) }
+        }
+
+        /// `down_y`, 32 bits: What D grows by with a line, y, s2.30.
+        #[inline]
+        #[must_use]
+        pub const fn down_y(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58a0) }
+        }
+
+        /// `down_z`, 32 bits: What D grows by with a line, z, s2.30.
+        #[inline]
+        #[must_use]
+        pub const fn down_z(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58a4) }
+        }
+
+        /// `depth_scale`, 23 bits: K for depths in field units times 2^e: mantissa * 2^exponent.
+        #[inline]
+        #[must_use]
+        pub const fn depth_scale(&self) -> Register<DepthScale, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58a8) }
+        }
+
+        /// `colour_0`, 24 bits: Colour of faces whose normal points against x: red in bits 0 to 7, green, blue.
+        #[inline]
+        #[must_use]
+        pub const fn colour_0(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58ac) }
+        }
+
+        /// `colour_1`, 24 bits: Colour of faces whose normal points along x: red in bits 0 to 7, green, blue.
+        #[inline]
+        #[must_use]
+        pub const fn colour_1(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58b0) }
+        }
+
+        /// `colour_2`, 24 bits: Colour of faces whose normal points against y: red in bits 0 to 7, green, blue.
+        #[inline]
+        #[must_use]
+        pub const fn colour_2(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58b4) }
+        }
+
+        /// `colour_3`, 24 bits: Colour of faces whose normal points along y: red in bits 0 to 7, green, blue.
+        #[inline]
+        #[must_use]
+        pub const fn colour_3(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58b8) }
+        }
+
+        /// `colour_4`, 24 bits: Colour of faces whose normal points against z: red in bits 0 to 7, green, blue.
+        #[inline]
+        #[must_use]
+        pub const fn colour_4(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58bc) }
+        }
+
+        /// `colour_5`, 24 bits: Colour of faces whose normal points along z: red in bits 0 to 7, green, blue.
+        #[inline]
+        #[must_use]
+        pub const fn colour_5(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58c0) }
+        }
+
+        /// `colour_6`, 24 bits: Colour of rays that were given up: red in bits 0 to 7, green, blue.
+        #[inline]
+        #[must_use]
+        pub const fn colour_6(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58c4) }
+        }
+
+        /// `colour_7`, 24 bits: Colour of the zenith: red in bits 0 to 7, green, blue.
+        #[inline]
+        #[must_use]
+        pub const fn colour_7(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58c8) }
+        }
+
+        /// `horizon`, 24 bits: Colour of the horizon, and of the fog.
+        #[inline]
+        #[must_use]
+        pub const fn horizon(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58cc) }
+        }
+
+        /// `fog_shift`, 3 bits: An entry of the fog is for 2^this field units times 2^e.
+        #[inline]
+        #[must_use]
+        pub const fn fog_shift(&self) -> Register<u8, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58d0) }
+        }
+
+        /// `table`, 17 bits: Writing sets an entry of fog or light.
+        #[inline]
+        #[must_use]
+        pub const fn table(&self) -> Register<Table, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58d4) }
+        }
+
+        /// `cycles_busy`, 32 bits: Clock cycles in which a field was drawn, modulo 2^32.
+        #[inline]
+        #[must_use]
+        pub const fn cycles_busy(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58d8) }
+        }
+
+        /// `cycles_stalled`, 32 bits: Clock cycles in which a ray waited as no end of one was taken, modulo 2^32.
+        #[inline]
+        #[must_use]
+        pub const fn cycles_stalled(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58dc) }
+        }
+
+        /// `items_in`, 32 bits: Rays, modulo 2^32.
+        #[inline]
+        #[must_use]
+        pub const fn items_in(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58e0) }
+        }
+
+        /// `items_out`, 32 bits: Pixels given to the band buffer, each eye's, modulo 2^32.
+        #[inline]
+        #[must_use]
+        pub const fn items_out(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58e4) }
+        }
+
+        /// `cycles_idle`, 32 bits: Clock cycles, of each lane, in which it had room for a ray and none came, modulo 2^32.
+        #[inline]
+        #[must_use]
+        pub const fn cycles_idle(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58e8) }
+        }
+
+        /// `evaluations`, 32 bits: Evaluations of the field: slots of the lanes that were occupied, modulo 2^32.
+        #[inline]
+        #[must_use]
+        pub const fn evaluations(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58ec) }
+        }
+
+        /// `hits`, 32 bits: Rays that came to a surface, modulo 2^32.
+        #[inline]
+        #[must_use]
+        pub const fn hits(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58f0) }
+        }
+
+        /// `misses`, 32 bits: Rays that went by, modulo 2^32.
+        #[inline]
+        #[must_use]
+        pub const fn misses(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58f4) }
+        }
+
+        /// `undecided`, 32 bits: Rays that were given up, modulo 2^32.
+        #[inline]
+        #[must_use]
+        pub const fn undecided(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58f8) }
+        }
+    }
+
+    /// A value of `caps`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct Caps(u32);
+
+    impl Value for Caps {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl Caps {
+        /// `lanes`, bits 2 to 0: Evaluations of the field a clock.
+        #[inline]
+        #[must_use]
+        pub const fn lanes(self) -> u8 {
+            (self.0 & 0x7) as u8
+        }
+
+        /// `levels`, bits 6 to 4: The deepest sponge; 0: none.
+        #[inline]
+        #[must_use]
+        pub const fn levels(self) -> u8 {
+            ((self.0 >> 4) & 0x7) as u8
+        }
+
+        /// `boxes`, bit 8: Boxes, cubes and planes.
+        #[inline]
+        #[must_use]
+        pub const fn boxes(self) -> bool {
+            (self.0 >> 8) & 1 != 0
+        }
+
+        /// `stereo`, bit 9: Two eyes.
+        #[inline]
+        #[must_use]
+        pub const fn stereo(self) -> bool {
+            (self.0 >> 9) & 1 != 0
+        }
+    }
+
+    /// A value of `control`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct Control(u32);
+
+    impl Value for Control {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl Control {
+        /// `enable`, bit 0: Frames of the raster pass have the field, after their triangles.
+        #[inline]
+        #[must_use]
+        pub const fn enable(self) -> bool {
+            self.0 & 1 != 0
+        }
+
+        /// This value with another `enable`.
+        #[inline]
+        #[must_use]
+        pub const fn with_enable(self, value: bool) -> Self {
+            Self(self.0 & !0x1 | value as u32 & 0x1)
+        }
+
+        /// `stereo`, bits 2 to 1: How many eyes look, and in which colours.
+        #[inline]
+        #[must_use]
+        pub const fn stereo(self) -> u8 {
+            ((self.0 >> 1) & 0x3) as u8
+        }
+
+        /// This value with another `stereo`: the low 2 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_stereo(self, value: u8) -> Self {
+            Self(self.0 & !(0x3 << 1) | (value as u32 & 0x3) << 1)
+        }
+    }
+
+    /// A value of `status`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct Status(u32);
+
+    impl Value for Status {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl Status {
+        /// `busy`, bit 0: A field is being drawn.
+        #[inline]
+        #[must_use]
+        pub const fn busy(self) -> bool {
+            self.0 & 1 != 0
+        }
+
+        /// `error`, bits 5 to 4: What the registers ask for and is not built: frames are drawn without the field then.
+        #[inline]
+        #[must_use]
+        pub const fn error(self) -> u8 {
+            ((self.0 >> 4) & 0x3) as u8
+        }
+    }
+
+    /// A value of `ev_status`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct EvStatus(u32);
+
+    impl Value for EvStatus {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl EvStatus {
+        /// `field`, bit 0: Level of the `field` event
+        #[inline]
+        #[must_use]
+        pub const fn field(self) -> bool {
+            self.0 & 1 != 0
+        }
+    }
+
+    /// A value of `ev_pending`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct EvPending(u32);
+
+    impl Value for EvPending {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl EvPending {
+        /// `field`, bit 0: The field of a frame has been drawn.
+        #[inline]
+        #[must_use]
+        pub const fn field(self) -> bool {
+            self.0 & 1 != 0
+        }
+
+        /// This value with another `field`.
+        #[inline]
+        #[must_use]
+        pub const fn with_field(self, value: bool) -> Self {
+            Self(self.0 & !0x1 | value as u32 & 0x1)
+        }
+    }
+
+    /// A value of `ev_enable`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct EvEnable(u32);
+
+    impl Value for EvEnable {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl EvEnable {
+        /// `field`, bit 0: Write a `1` to enable the `field` Event
+        #[inline]
+        #[must_use]
+        pub const fn field(self) -> bool {
+            self.0 & 1 != 0
+        }
+
+        /// This value with another `field`.
+        #[inline]
+        #[must_use]
+        pub const fn with_field(self, value: bool) -> Self {
+            Self(self.0 & !0x1 | value as u32 & 0x1)
+        }
+    }
+
+    /// A value of `solid`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct Solid(u32);
+
+    impl Value for Solid {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl Solid {
+        /// `box`, bit 0: A box; or else the sponge.
+        #[inline]
+        #[must_use]
+        pub const fn box(self) -> bool {
+            self.0 & 1 != 0
+        }
+
+        /// This value with another `box`.
+        #[inline]
+        #[must_use]
+        pub const fn with_box(self, value: bool) -> Self {
+            Self(self.0 & !0x1 | value as u32 & 0x1)
+        }
+
+        /// `levels`, bits 6 to 1: Levels of the sponge that count, the first one in bit 0.
+        #[inline]
+        #[must_use]
+        pub const fn levels(self) -> u8 {
+            ((self.0 >> 1) & 0x3f) as u8
+        }
+
+        /// This value with another `levels`: the low 6 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_levels(self, value: u8) -> Self {
+            Self(self.0 & !(0x3f << 1) | (value as u32 & 0x3f) << 1)
+        }
+
+        /// `has`, bits 10 to 8: Axes along which the box has an end, x in bit 0.
+        #[inline]
+        #[must_use]
+        pub const fn has(self) -> u8 {
+            ((self.0 >> 8) & 0x7) as u8
+        }
+
+        /// This value with another `has`: the low 3 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_has(self, value: u8) -> Self {
+            Self(self.0 & !(0x7 << 8) | (value as u32 & 0x7) << 8)
+        }
+
+        /// `room`, bit 11: The solid is what is outside of the box.
+        #[inline]
+        #[must_use]
+        pub const fn room(self) -> bool {
+            (self.0 >> 11) & 1 != 0
+        }
+
+        /// This value with another `room`.
+        #[inline]
+        #[must_use]
+        pub const fn with_room(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 11) | (value as u32 & 0x1) << 11)
+        }
+
+        /// `repeated`, bit 12: The box repeats itself every 64 units along each axis.
+        #[inline]
+        #[must_use]
+        pub const fn repeated(self) -> bool {
+            (self.0 >> 12) & 1 != 0
+        }
+
+        /// This value with another `repeated`.
+        #[inline]
+        #[must_use]
+        pub const fn with_repeated(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 12) | (value as u32 & 0x1) << 12)
+        }
+    }
+
+    /// A value of `tuning`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct Tuning(u32);
+
+    impl Value for Tuning {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl Tuning {
+        /// `threshold`, bits 15 to 0: A ray has arrived where the distance is below this, u4.12 ...
+        #[inline]
+        #[must_use]
+        pub const fn threshold(self) -> u16 {
+            (self.0 & 0xffff) as u16
+        }
+
+        /// This value with another `threshold`.
+        #[inline]
+        #[must_use]
+        pub const fn with_threshold(self, value: u16) -> Self {
+            Self(self.0 & !0xffff | value as u32 & 0xffff)
+        }
+
+        /// `footprint`, bits 19 to 16: ... and t * 2^-footprint, 7 to 15.
+        #[inline]
+        #[must_use]
+        pub const fn footprint(self) -> u8 {
+            ((self.0 >> 16) & 0xf) as u8
+        }
+
+        /// This value with another `footprint`: the low 4 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_footprint(self, value: u8) -> Self {
+            Self(self.0 & !(0xf << 16) | (value as u32 & 0xf) << 16)
+        }
+
+        /// `cap`, bits 27 to 20: Evaluations after which a ray is given up, from 1.
+        #[inline]
+        #[must_use]
+        pub const fn cap(self) -> u8 {
+            ((self.0 >> 20) & 0xff) as u8
+        }
+
+        /// This value with another `cap`.
+        #[inline]
+        #[must_use]
+        pub const fn with_cap(self, value: u8) -> Self {
+            Self(self.0 & !(0xff << 20) | (value as u32 & 0xff) << 20)
+        }
+    }
+
+    /// A value of `depth_scale`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct DepthScale(u32);
+
+    impl Value for DepthScale {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl DepthScale {
+        /// `mantissa`, bits 16 to 0: In 2^16 to 2^17 - 1.
+        #[inline]
+        #[must_use]
+        pub const fn mantissa(self) -> u32 {
+            self.0 & 0x0001_ffff
+        }
+
+        /// This value with another `mantissa`: the low 17 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_mantissa(self, value: u32) -> Self {
+            Self(self.0 & !0x0001_ffff | value & 0x0001_ffff)
+        }
+
+        /// `exponent`, bits 22 to 17: Two's complement.
+        #[inline]
+        #[must_use]
+        pub const fn exponent(self) -> u8 {
+            ((self.0 >> 17) & 0x3f) as u8
+        }
+
+        /// This value with another `exponent`: the low 6 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_exponent(self, value: u8) -> Self {
+            Self(self.0 & !(0x3f << 17) | (value as u32 & 0x3f) << 17)
+        }
+    }
+
+    /// A value of `table`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct Table(u32);
+
+    impl Value for Table {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl Table {
+        /// `part`, bits 7 to 0: Of 255.
+        #[inline]
+        #[must_use]
+        pub const fn part(self) -> u8 {
+            (self.0 & 0xff) as u8
+        }
+
+        /// This value with another `part`.
+        #[inline]
+        #[must_use]
+        pub const fn with_part(self, value: u8) -> Self {
+            Self(self.0 & !0xff | value as u32 & 0xff)
+        }
+
+        /// `entry`, bits 16 to 8: 0 to 255: what the fog hides, by depth. 256 to 511: what light is left, by evaluations.
+        #[inline]
+        #[must_use]
+        pub const fn entry(self) -> u16 {
+            ((self.0 >> 8) & 0x1ff) as u16
+        }
+
+        /// This value with another `entry`: the low 9 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_entry(self, value: u16) -> Self {
+            Self(self.0 & !(0x1ff << 8) | (value as u32 & 0x1ff) << 8)
         }
     }
 }
