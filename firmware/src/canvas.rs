@@ -27,13 +27,11 @@ pub struct Canvas {
 
 /// How many triangles are drawn between two looks at what else there is to do.
 const TRIANGLES_A_LOOK: u32 = 32;
-/// How many pixels of a field.
-const PIXELS_A_LOOK: u32 = 16;
 
 impl Canvas {
-    /// Draws `mesh`, or the scene's field, as `scene` wants it, and shows it from the next vertical blanking on. Returns nothing while the engine
-    /// is at work, and while the frame to draw on is still on the screen; `mesh` and `scene` have to stay the same then.
-    /// What takes long calls `look` now and then.
+    /// Draws `mesh`, or the scene's field, as `scene` wants it, and shows it from the next vertical blanking on. Returns
+    /// nothing while the engine is at work, and while the frame to draw on is still on the screen; `mesh` and `scene` have
+    /// to stay the same then. What takes long calls `look` now and then.
     pub fn draw(
         &mut self,
         mesh: &Mesh,
@@ -204,8 +202,9 @@ fn draw_field(
         &setup,
         &options.palette_for(&setup),
         target,
+        // Once a row.
         &mut |x, _, _, _| {
-            if x % PIXELS_A_LOOK == 0 {
+            if x == 0 {
                 look();
             }
         },

@@ -142,7 +142,8 @@ impl Scene {
 
     /// Sets two eyes, or one.
     pub fn set_stereo(&mut self, stereo: Option<Stereo>) {
-        self.changed |= self.stereo != stereo;
+        // A mesh is seen with one eye.
+        self.changed |= self.field.is_some() && self.stereo != stereo;
         self.stereo = stereo;
     }
 

@@ -66,8 +66,8 @@ pub fn render_field(
         (paint(setup, palette, &ray, &outcome), code)
     };
     let pixels = core::iter::zip(target.colour.iter_mut(), target.depth.iter_mut());
-    for (at, (colour, depth)) in pixels.enumerate() {
-        let (x, y) = (at as u32 % width, at as u32 / width);
+    let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+    for ((x, y), (colour, depth)) in core::iter::zip(places, pixels) {
         let (left, code) = look(0, x, y);
         match setup.stereo {
             None => {
