@@ -20,6 +20,7 @@ use litex_pac::{cpu, ctrl};
 use crate::machine::{Job, Machine};
 use crate::models::{FIELDS, Model};
 use crate::scene::{Counts, Painter, Scene, Sphere};
+use crate::terminal::Terminal;
 use crate::{bench, selftest, transfer};
 
 /// What a command leads to.
@@ -158,7 +159,7 @@ pub fn execute<'l>(machine: &mut Machine, line: &'l str) -> Reply<'l> {
         Command::Scene(name) => scene(machine, name),
         Command::Field(None) => {
             let field = machine.scene.field();
-            print_choice(machine, "field", field.as_ref().map(|field| field as _));
+            print_choice(&mut machine.terminal, "field", field);
             Ok(())
         }
         Command::Field(Some(field)) => {
@@ -167,7 +168,7 @@ pub fn execute<'l>(machine: &mut Machine, line: &'l str) -> Reply<'l> {
         }
         Command::Stereo(None) => {
             let stereo = machine.scene.stereo();
-            print_choice(machine, "stereo", stereo.as_ref().map(|stereo| stereo as _));
+            print_choice(&mut machine.terminal, "stereo", stereo);
             Ok(())
         }
         Command::Stereo(Some(stereo)) => {
@@ -341,9 +342,11 @@ fn scene<'l>(machine: &mut Machine, name: Option<&'l str>) -> Result<(), Refusal
 }
 
 /// Prints what may be off.
-fn print_choice(machine: &mut Machine, name: &str, chosen: Option<&dyn Display>) {
-    let chosen = chosen.unwrap_or(&"off");
-    machine.terminal.print(format_args!("{name} {chosen}\n"));
+fn print_choice(terminal: &mut Terminal, name: &str, chosen: Option<impl Display>) {
+    match chosen {
+        Some(chosen) => terminal.print(format_args!("{name} {chosen}\n")),
+        None => terminal.print(format_args!("{name} off\n")),
+    }
 }
 
 fn print_view(machine: &mut Machine) {

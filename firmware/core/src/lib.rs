@@ -1,4 +1,4 @@
-//! Cameras, sines, mesh and wire formats and the console's grammar: what the firmware and the host share.
+//! Cameras, sines, fields and lights, mesh and wire formats and the console's grammar: what the firmware and the host share.
 //!
 //! Everything here is integer arithmetic without allocation, and no input makes it panic.
 #![no_std]

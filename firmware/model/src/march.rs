@@ -5,7 +5,7 @@
 //! √3 times what a Euclidean distance and a unit vector would allow.
 //!
 //! [`Setup`] makes the constants of a frame, [`Ray`] is where a pixel's ray begins, [`Setup::march`] how it ends,
-//! [`paint`] what it shows.
+//! [`paint()`] what it shows.
 
 mod field;
 mod paint;

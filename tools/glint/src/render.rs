@@ -455,8 +455,11 @@ impl<'b, B: Board + ?Sized> Renderer<'b, B> {
         progress: &mut Progress,
     ) -> Result<Vec<u32>, Error> {
         // An engine leaves them out unless told; over the line it is told by the command.
-        if route == Route::Memory && self.info::<String>("backend")? == "gateware" {
-            self.console.command("render depth")?;
+        if route == Route::Memory {
+            let lines = self.console.command("stats")?;
+            if console::value::<String>("stats", &lines, "backend")? == "gateware" {
+                self.console.command("render depth")?;
+            }
         }
         let bytes = self.frame("depth", 4, size, route, progress)?;
         let word = |pixel: &[u8]| u32::from_le_bytes([pixel[0], pixel[1], pixel[2], pixel[3]]);

@@ -12,7 +12,9 @@ use glint::{generate, view};
 use glint_core::camera::View;
 use glint_core::colour::Shading;
 use glint_core::console::Backend;
+use glint_core::field::Field;
 use glint_core::wire::{Failure, Manifest, Reason};
+use glint_model::march::FieldOptions;
 
 /// The board's time after which a silent firmware has failed.
 const PATIENCE_MS: u64 = 2000;
@@ -90,6 +92,54 @@ fn smooth_shading_is_the_models_whoever_draws() {
             "{info:#?}"
         );
     }
+}
+
+/// A field, which the CPU draws, and says so. It is small and far away, as the soft core takes a thousand clocks for a ray.
+#[test]
+fn a_field_is_the_models() {
+    let mut board = running_board();
+    let mut renderer = renderer(&mut board);
+    let eye =
+        r#"{"eye":[0,-20,0],"u":[1,0,0],"v":[0,0,-1],"n":[0,1,0],"half_width":0.3,"near":0.1}"#;
+    let scene = Scene {
+        subject: Subject::Field {
+            field: Field::parse("box:0.5,0.5,0.25").unwrap(),
+            options: &FieldOptions::default(),
+        },
+        view: view::parse(eye.as_bytes()).unwrap(),
+        size: (320, 180),
+        backend: None,
+    };
+    let expected = render::on_model(&scene).unwrap();
+    let stats = renderer
+        .show(&scene, Route::Memory, &mut |_, _| {})
+        .unwrap();
+    println!("{:?} cycles", stats.cycles);
+    assert_eq!(stats.backend.as_deref(), Some("cpu"));
+    assert_eq!(timeless(stats), expected.stats);
+    let colour = renderer
+        .colour(scene.size, Route::Memory, &mut |_, _| {})
+        .unwrap();
+    assert!(colour == expected.frame.colour);
+    let depth = renderer
+        .depth(scene.size, Route::Memory, &mut |_, _| {})
+        .unwrap();
+    assert!(depth == expected.frame.depth);
+
+    let told = renderer.console().command("stats").unwrap();
+    let fallback = "fallback distance fields: this gateware has no engine for them";
+    assert_eq!(told[0], fallback, "{told:#?}");
+    let shown = renderer.console().command("info scene").unwrap();
+    assert_eq!(shown, ["scene box:0.5,0.5,0.25"]);
+    // The mesh comes back, and refuses to be seen from so far.
+    renderer.console().command("field off").unwrap();
+    let error = renderer.render().unwrap_err().to_string();
+    assert!(
+        error.contains("expected within 8 of the origin for a mesh"),
+        "{error}"
+    );
+    renderer.console().command("camera 2 30 60").unwrap();
+    assert_eq!(renderer.render().unwrap().triangles().triangles_in, 12);
 }
 
 /// Renders a model from three places, one of them inside it, on the board and compares with the model: the monitor's
