@@ -15,13 +15,14 @@ use litex_pac::cpu;
 
 use crate::commands::{self, Refusal};
 use crate::machine::Machine;
+use crate::scene::Counts;
 use crate::terminal::Terminal;
 
 #[cfg(feature = "peers")]
 mod peers;
 
 /// What can be measured.
-pub const KERNELS: [&str; 2] = ["sine", "triangle"];
+pub const KERNELS: [&str; 3] = ["sine", "triangle", "field"];
 
 /// Inputs of each kernel.
 const INPUTS: usize = 256;
@@ -41,12 +42,20 @@ pub fn run<'l>(machine: &mut Machine, kernel: Option<&'l str>) -> Result<(), Ref
         None => {
             sine(&mut machine.terminal);
             if machine.canvas.painter.is_some() {
-                triangle(machine)?;
+                frames(machine)?;
             }
         }
         Some("sine") => sine(&mut machine.terminal),
-        Some("triangle") if machine.canvas.painter.is_none() => return Err(Refusal::NoEngine),
-        Some("triangle") => triangle(machine)?,
+        Some("triangle" | "field") if machine.canvas.painter.is_none() => {
+            return Err(Refusal::NoEngine);
+        }
+        // What is shown is measured.
+        Some(name @ ("triangle" | "field")) => {
+            if (name == "field") != machine.scene.field().is_some() {
+                return Err(Refusal::NotShown(name));
+            }
+            frames(machine)?;
+        }
         Some(name) => return Err(Refusal::Kernel(name)),
     }
     Ok(())
@@ -54,7 +63,7 @@ pub fn run<'l>(machine: &mut Machine, kernel: Option<&'l str>) -> Result<(), Ref
 
 /// Frames of the scene as it is, back to back: the geometry of one is made while the one before it is rastered. Nothing
 /// waits for the screen, and nothing is shown.
-fn triangle<'l>(machine: &mut Machine) -> Result<(), Refusal<'l>> {
+fn frames<'l>(machine: &mut Machine) -> Result<(), Refusal<'l>> {
     let Machine {
         terminal,
         scene,
@@ -68,10 +77,19 @@ fn triangle<'l>(machine: &mut Machine) -> Result<(), Refusal<'l>> {
             break painted.map_err(Refusal::Engine)?;
         }
     };
+    let kernel = match painted.stats {
+        Counts::Triangles(_) => "triangle",
+        Counts::Rays(_) => "field",
+    };
     terminal.print(format_args!(
-        "bench triangle frames {FRAMES} cycles {}",
+        "bench {kernel} frames {FRAMES} cycles {}",
         painted.cycles
     ));
+    if let Counts::Rays(stats) = painted.stats {
+        for (name, value) in commands::ray_values(&stats) {
+            terminal.print(format_args!(" {name} {value}"));
+        }
+    }
     for (name, value) in commands::engine_values(&painted.counters) {
         terminal.print(format_args!(" {name} {value}"));
     }

@@ -6,11 +6,10 @@ use glint_core::mesh::Mesh;
 use glint_model::march::{FieldOptions, FieldStats, Setup, render_field};
 use glint_model::{Options, RenderError, Stats, Target};
 use litex_hal::display::Display;
-use litex_hal::triangle::Fault;
 use litex_pac::cpu;
 
 use crate::memory::Scratch;
-use crate::painter::{self, Painted, Painter};
+use crate::painter::{self, Marched, Painted, Painter, Triangles, What};
 use crate::scene::{self, Counts, Drawn, Fallback, Scene};
 
 /// The frames and what drawing them needs.
@@ -45,7 +44,7 @@ impl Canvas {
                 counters,
             }) => Ok(Drawn {
                 cycles,
-                stats: Counts::Triangles(stats),
+                stats,
                 by: scene::Painter::Engine(counters),
                 has_depth: scene.wants_depth(),
             }),
@@ -80,10 +79,6 @@ impl Canvas {
     /// Draws by the engine. `Err` is the CPU's: because there is no engine, it is not wanted, or it failed.
     fn paint(&mut self, mesh: &Mesh, scene: &Scene) -> Option<Result<Painted, Option<Fallback>>> {
         let colour = self.display.back()?;
-        if scene.field().is_some() {
-            let wanted = scene.backend() == Backend::Gateware;
-            return Some(Err(wanted.then_some(Fallback::Field)));
-        }
         let Some(painter) = &mut self.painter else {
             return Some(Err(None));
         };
@@ -92,8 +87,7 @@ impl Canvas {
         }
         let depth = scene.wants_depth().then_some(&mut *self.depth);
         let mut target = target(mesh, scene, colour, depth);
-        let result = painter.advance(&mut target)?;
-        Some(result.map_err(|fault| Some(Fallback::Triangle(fault))))
+        Some(painter.advance(&mut target)?.map_err(Some))
     }
 
     fn draw_by_cpu(
@@ -138,7 +132,7 @@ impl Canvas {
         mesh: &Mesh,
         scene: &Scene,
         count: u32,
-    ) -> Option<Result<Painted, Fault>> {
+    ) -> Option<Result<Painted, Fallback>> {
         let colour = self.display.back()?;
         let painter = self.painter.as_mut()?;
         Some(painter.repeat(&mut target(mesh, scene, colour, None), count))
@@ -191,10 +185,7 @@ fn draw_field(
     target: &mut Target,
     mut look: impl FnMut(),
 ) -> Result<FieldStats, RenderError> {
-    let options = FieldOptions {
-        stereo: scene.stereo(),
-        ..FieldOptions::default()
-    };
+    let options = field_options(scene);
     let size = (target.width, target.height);
     let setup = Setup::new(field, scene.view(), size, &options)?;
     target.depth.fill(0);
@@ -211,6 +202,14 @@ fn draw_field(
     )
 }
 
+/// How the scene's field is drawn.
+fn field_options(scene: &Scene) -> FieldOptions {
+    FieldOptions {
+        stereo: scene.stereo(),
+        ..FieldOptions::default()
+    }
+}
+
 /// What the engine is to draw of a scene.
 fn target<'a>(
     mesh: &'a Mesh<'a>,
@@ -219,12 +218,23 @@ fn target<'a>(
     depth: Option<&'a mut [u32]>,
 ) -> painter::Target<'a> {
     let [width, height] = scene.scale().size();
+    let view = scene.view();
+    let what = match scene.field() {
+        Some(field) => What::Field(Marched {
+            field,
+            view,
+            options: field_options(scene),
+        }),
+        None => What::Triangles(Triangles {
+            mesh,
+            view,
+            cull: scene.cull(),
+            shading: scene.shading(),
+        }),
+    };
     painter::Target {
-        mesh,
-        view: scene.view(),
+        what,
         size: (width, height),
-        cull: scene.cull(),
-        shading: scene.shading(),
         colour,
         depth,
     }

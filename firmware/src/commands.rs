@@ -11,6 +11,7 @@ use glint_core::fixed::Turns;
 use glint_core::mesh::MeshError;
 use glint_core::wire::{Failure, Manifest, crc32};
 use glint_model::RenderError;
+use glint_model::march::FieldStats;
 use heapless::Vec;
 use litex_hal::display::Scale;
 use litex_hal::timer::FREQUENCY;
@@ -19,7 +20,7 @@ use litex_pac::{cpu, ctrl};
 
 use crate::machine::{Job, Machine};
 use crate::models::{FIELDS, Model};
-use crate::scene::{Counts, Painter, Scene, Sphere};
+use crate::scene::{Counts, Fallback, Painter, Scene, Sphere};
 use crate::terminal::Terminal;
 use crate::{bench, selftest, transfer};
 
@@ -50,8 +51,10 @@ pub enum Refusal<'l> {
     NoUpload,
     /// There is no such renderer here.
     NoEngine,
+    /// What is to be measured is not shown.
+    NotShown(&'l str),
     /// The engine could not draw.
-    Engine(litex_hal::triangle::Fault),
+    Engine(Fallback),
     /// An upload is longer than there is room for.
     TooLong {
         /// Its bytes.
@@ -102,6 +105,12 @@ impl Display for Refusal<'_> {
             }
             Self::NoUpload => {
                 f.write_str("scene model: nothing has been uploaded, expected a `load` before")
+            }
+            Self::NotShown(kernel) => {
+                write!(
+                    f,
+                    "bench {kernel}: something else is shown, see `help field`"
+                )
             }
             Self::NoEngine => {
                 f.write_str("gateware: this SoC has no triangle engine, expected cpu")
@@ -451,13 +460,7 @@ pub fn stats(machine: &mut Machine, json: bool) -> Result<(), Refusal<'static>> 
             ("pixels_covered", stats.pixels_covered),
             ("pixels_drawn", stats.pixels_drawn),
         ]),
-        Counts::Rays(stats) => values.extend_from_slice(&[
-            ("rays", stats.rays.into()),
-            ("evaluations", stats.evaluations),
-            ("hits", stats.hits.into()),
-            ("misses", stats.misses.into()),
-            ("undecided", stats.undecided.into()),
-        ]),
+        Counts::Rays(stats) => values.extend_from_slice(&ray_values(&stats)),
     };
     let _ = values.push(("clock", FREQUENCY.into()));
     if let Some(counters) = engine {
@@ -477,6 +480,17 @@ pub fn stats(machine: &mut Machine, json: bool) -> Result<(), Refusal<'static>> 
     }
     terminal.print(format_args!("}}\n"));
     Ok(())
+}
+
+/// What was counted of a field by name.
+pub fn ray_values(stats: &FieldStats) -> [(&'static str, u64); 5] {
+    [
+        ("rays", stats.rays.into()),
+        ("evaluations", stats.evaluations),
+        ("hits", stats.hits.into()),
+        ("misses", stats.misses.into()),
+        ("undecided", stats.undecided.into()),
+    ]
 }
 
 /// The engine's counters by name.

@@ -1,6 +1,6 @@
 //! What comes in by itself.
 
-use litex_hal::{display, interrupt, triangle};
+use litex_hal::{display, interrupt, march, triangle};
 use litex_pac::{Interrupt, cpu};
 
 use crate::terminal::ConsoleUart;
@@ -41,6 +41,7 @@ fn handle() {
         Interrupt::Uart => UART.on_interrupt(),
         Interrupt::Scanout => display::acknowledge_vblank(),
         Interrupt::Triangle => triangle::acknowledge(),
+        Interrupt::Raymarch => march::acknowledge(),
         // Nobody enables these.
         Interrupt::Timer0 | Interrupt::Buttons => interrupt::disable(interrupt.bit()),
     });

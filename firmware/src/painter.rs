@@ -1,15 +1,21 @@
-//! Draws with the triangle engine: geometry, clipping of what the engine leaves to the program, raster.
+//! Draws with the triangle engine: geometry, clipping of what the engine leaves to the program, raster; and with the raymarcher, whose
+//! fields are drawn in the raster pass.
 
 use core::mem;
 
 use glint_core::camera::View;
+use glint_core::field::Field;
 use glint_core::mesh::Mesh;
 use glint_model::descriptor::{self, Descriptor, TABLE_WORDS, band_rows, list_word};
+use glint_model::march::{FieldOptions, Setup};
 use glint_model::{FrameSetup, Options, RenderError, Shading, Stats, clip_exceptions};
+use litex_hal::march::{self, Marcher};
 use litex_hal::triangle::{
     Counters, Engine, Fault, Geometry, Lists, Outcome, Prepared, Raster, Set,
 };
 use litex_pac::cpu;
+
+use crate::scene::{Counts, Fallback};
 
 /// The most descriptors of a set, where they are small, and the most exceptions. A frame with more is the CPU's.
 const DESCRIPTORS: usize = 1 << 16;
@@ -36,20 +42,53 @@ const fn list_shift(width: u32) -> u32 {
 
 /// What is to be drawn, and where.
 pub struct Target<'a> {
-    /// The mesh.
-    pub mesh: &'a Mesh<'a>,
-    /// The camera.
-    pub view: &'a View,
+    /// What is shown.
+    pub what: What<'a>,
     /// The picture's size.
     pub size: (u32, u32),
-    /// Whether back faces are left out.
-    pub cull: bool,
-    /// Where colours come from.
-    pub shading: Shading,
     /// RGB565, row by row.
     pub colour: &'a mut [u16],
     /// Depth codes, if they are wanted.
     pub depth: Option<&'a mut [u32]>,
+}
+
+/// What a frame shows.
+#[derive(Clone, Copy)]
+pub enum What<'a> {
+    /// A mesh.
+    Triangles(Triangles<'a>),
+    /// A field.
+    Field(Marched<'a>),
+}
+
+/// A mesh, and how it is drawn.
+#[derive(Clone, Copy)]
+pub struct Triangles<'a> {
+    /// The mesh.
+    pub mesh: &'a Mesh<'a>,
+    /// The camera.
+    pub view: &'a View,
+    /// Whether back faces are left out.
+    pub cull: bool,
+    /// Where colours come from.
+    pub shading: Shading,
+}
+
+/// A field, and how it is drawn.
+#[derive(Clone, Copy)]
+pub struct Marched<'a> {
+    /// The field.
+    pub field: Field,
+    /// The camera.
+    pub view: &'a View,
+    /// Eyes and colours.
+    pub options: FieldOptions,
+}
+
+impl Marched<'_> {
+    fn setup(&self, size: (u32, u32)) -> Result<Setup, Fault> {
+        Setup::new(&self.field, self.view, size, &self.options).map_err(fault_of)
+    }
 }
 
 /// Memory of a frame between its passes.
@@ -100,6 +139,8 @@ enum Stage {
 /// The engine and its memory.
 pub struct Painter {
     engine: Engine,
+    /// The raymarcher, where there is one.
+    marcher: Option<Marcher>,
     /// How far the engine can shade.
     ability: Shading,
     rooms: [Room; 2],
@@ -111,31 +152,39 @@ pub struct Painter {
     frame: Option<FrameSetup>,
     watch: Watch,
     start: (u64, Counters),
+    field_start: march::Counters,
 }
 
 /// A frame by the engine.
 pub struct Painted {
     /// Clock cycles from the first register written to the end seen.
     pub cycles: u64,
-    /// What was counted; of many frames, triangles of the last and no pixels.
-    pub stats: Stats,
+    /// What was counted; of many frames of a mesh, triangles of the last and no pixels.
+    pub stats: Counts,
     /// The engine's counters for this frame.
     pub counters: Counters,
 }
 
 impl Painter {
     /// A painter of two frame buffers, of which the first lies at `first_buffer`; nothing if `memory` is too small.
-    pub fn new(engine: Engine, mut memory: &'static mut [u32], first_buffer: u32) -> Option<Self> {
+    pub fn new(
+        engine: Engine,
+        marcher: Option<Marcher>,
+        mut memory: &'static mut [u32],
+        first_buffer: u32,
+    ) -> Option<Self> {
         Some(Self {
             start: (0, engine.counters()),
             ability: engine.ability(),
             engine,
+            marcher,
             rooms: [Room::cut(&mut memory)?, Room::cut(&mut memory)?],
             first_buffer,
             known: [None; 2],
             stage: Stage::Idle,
             frame: None,
             watch: Watch::default(),
+            field_start: march::Counters::default(),
         })
     }
 
@@ -165,55 +214,104 @@ impl Painter {
     ///
     /// # Errors
     /// The frame cannot be drawn by the engine, which is free again.
-    pub fn advance(&mut self, target: &mut Target) -> Option<Result<Painted, Fault>> {
-        let step = match self.stage {
-            Stage::Idle => {
-                self.start = (cpu::cycles(), self.engine.counters());
-                self.watch = Watch::default();
-                match self.constants(target) {
-                    Ok(frame) => {
-                        let prepared = self.prepare_geometry(target, frame, 0);
-                        self.start_geometry(prepared);
-                    }
-                    Err(fault) => return Some(Err(fault)),
-                }
-                self.stage = Stage::Geometry;
-                return None;
+    pub fn advance(&mut self, target: &mut Target) -> Option<Result<Painted, Fallback>> {
+        let step = match (self.stage, target.what) {
+            (Stage::Idle, what) => {
+                self.mark_start();
+                let begun = match what {
+                    What::Triangles(triangles) => self.begin_geometry(&triangles, target.size),
+                    What::Field(marched) => self.begin_field(&marched, target),
+                };
+                return begun.err().map(Err);
             }
-            Stage::Geometry => match self.engine.geometry() {
+            (Stage::Geometry, What::Triangles(triangles)) => match self.engine.geometry() {
                 None => return self.watch(target),
-                Some(Ok(())) => self.clip(target),
+                Some(Ok(())) => self.clip(&triangles),
                 Some(fault) => fault,
             },
-            Stage::Raster => match self.engine.raster() {
+            (_, what) => match self.engine.raster() {
                 None => return self.watch(target),
                 Some(Ok(())) => {
                     self.stage = Stage::Idle;
-                    let (start, counters) = self.start;
-                    let counters = self.engine.counters() - counters;
-                    return Some(Ok(Painted {
-                        cycles: cpu::cycles() - start,
-                        stats: Stats {
-                            // The walker comes to a group of eight a clock.
-                            pixels_tested: 8 * u64::from(counters.walking),
-                            pixels_covered: counters.pixels_covered.into(),
-                            pixels_drawn: counters.pixels_drawn.into(),
-                            ..self.rooms[0].stats
-                        },
-                        counters,
-                    }));
+                    return Some(Ok(self.painted(&what, 0)));
                 }
                 Some(fault) => fault,
             },
         };
         match step {
             Ok(()) => {
-                self.start_raster(target);
+                self.start_raster(target, self.rooms[0].sets);
                 self.stage = Stage::Raster;
                 None
             }
             Err(fault) => Some(self.give_up(target, fault)),
         }
+    }
+
+    /// From now on it counts.
+    fn mark_start(&mut self) {
+        self.field_start = self
+            .marcher
+            .as_ref()
+            .map(Marcher::counters)
+            .unwrap_or_default();
+        self.start = (cpu::cycles(), self.engine.counters());
+        self.watch = Watch::default();
+    }
+
+    /// What was drawn since; triangles are counted in a room.
+    fn painted(&self, what: &What, room: usize) -> Painted {
+        let (start, counters) = self.start;
+        let cycles = cpu::cycles() - start;
+        let counters = self.engine.counters() - counters;
+        let stats = match (what, &self.marcher) {
+            (What::Field(_), Some(marcher)) => {
+                Counts::Rays((marcher.counters() - self.field_start).into())
+            }
+            _ => Counts::Triangles(Stats {
+                // The walker comes to a group of eight a clock.
+                pixels_tested: 8 * u64::from(counters.walking),
+                pixels_covered: counters.pixels_covered.into(),
+                pixels_drawn: counters.pixels_drawn.into(),
+                ..self.rooms[room].stats
+            }),
+        };
+        Painted {
+            cycles,
+            stats,
+            counters,
+        }
+    }
+
+    fn begin_geometry(&mut self, triangles: &Triangles, size: (u32, u32)) -> Result<(), Fallback> {
+        let frame = self.constants(triangles, size)?;
+        self.clear_field();
+        let prepared = self.prepare_geometry(triangles, frame, 0);
+        self.start_geometry(prepared);
+        self.stage = Stage::Geometry;
+        Ok(())
+    }
+
+    /// Frames are of meshes alone.
+    fn clear_field(&mut self) {
+        if let Some(marcher) = &mut self.marcher {
+            marcher.clear_field();
+        }
+    }
+
+    fn begin_field(&mut self, marched: &Marched, target: &mut Target) -> Result<(), Fallback> {
+        let setup = marched.setup(target.size)?;
+        self.set_field(marched, &setup)?;
+        self.start_raster(target, [None; 2]);
+        self.stage = Stage::Raster;
+        Ok(())
+    }
+
+    fn set_field(&mut self, marched: &Marched, setup: &Setup) -> Result<(), Fallback> {
+        let marcher = self.marcher.as_mut().ok_or(Fallback::Field(None))?;
+        marcher
+            .set_field(setup, &marched.options.palette_for(setup))
+            .map_err(|missing| Fallback::Field(Some(missing)))
     }
 
     /// Draws a frame again and again, back to back: while one is rastered the next one's geometry is made. What is returned
@@ -222,42 +320,73 @@ impl Painter {
     ///
     /// # Errors
     /// As [`advance`](Self::advance).
-    pub fn repeat(&mut self, target: &mut Target, count: u32) -> Result<Painted, Fault> {
+    pub fn repeat(&mut self, target: &mut Target, count: u32) -> Result<Painted, Fallback> {
+        match target.what {
+            What::Triangles(triangles) => self.repeat_mesh(&triangles, target, count),
+            What::Field(marched) => self.repeat_field(&marched, target, count),
+        }
+    }
+
+    fn repeat_mesh(
+        &mut self,
+        triangles: &Triangles,
+        target: &mut Target,
+        count: u32,
+    ) -> Result<Painted, Fallback> {
         self.watch = Watch::default();
-        let mut prepared = self.prepare_geometry(target, self.constants(target)?, 0);
+        let frame = self.constants(triangles, target.size)?;
+        self.clear_field();
+        let mut prepared = self.prepare_geometry(triangles, frame, 0);
         for frame in 0..=count {
             self.start_geometry(prepared);
             // The next frame's, while the engine works.
-            let constants = self.constants(target)?;
+            let constants = self.constants(triangles, target.size)?;
             self.wait(Engine::geometry, target)?;
-            if let Err(fault) = self.clip(target) {
+            if let Err(fault) = self.clip(triangles) {
                 return self.give_up(target, fault);
             }
             // It goes where the raster pass still reads.
-            prepared = self.prepare_geometry(target, constants, 1);
+            prepared = self.prepare_geometry(triangles, constants, 1);
             if frame > 0 {
                 self.wait(Engine::raster, target)?;
             }
             if frame == 0 {
-                self.start = (cpu::cycles(), self.engine.counters());
+                self.mark_start();
             }
             if frame == count {
                 break;
             }
-            self.start_raster(target);
+            self.start_raster(target, self.rooms[0].sets);
             // What is being drawn stays where it is.
             self.rooms.swap(0, 1);
         }
-        let (start, counters) = self.start;
-        Ok(Painted {
-            cycles: cpu::cycles() - start,
-            stats: self.rooms[1].stats,
-            counters: self.engine.counters() - counters,
-        })
+        Ok(self.painted(&target.what, 1))
+    }
+
+    /// Registers hold while a field is drawn, so the constants of the next one wait in the program.
+    fn repeat_field(
+        &mut self,
+        marched: &Marched,
+        target: &mut Target,
+        count: u32,
+    ) -> Result<Painted, Fallback> {
+        let mut setup = marched.setup(target.size)?;
+        self.mark_start();
+        for _ in 0..count {
+            self.set_field(marched, &setup)?;
+            self.start_raster(target, [None; 2]);
+            setup = marched.setup(target.size)?;
+            self.wait(Engine::raster, target)?;
+        }
+        Ok(self.painted(&target.what, 0))
     }
 
     /// Waits for the end of a pass.
-    fn wait(&mut self, outcome: fn(&Engine) -> Outcome, target: &mut Target) -> Result<(), Fault> {
+    fn wait(
+        &mut self,
+        outcome: fn(&Engine) -> Outcome,
+        target: &mut Target,
+    ) -> Result<(), Fallback> {
         loop {
             for _ in 0..POLLS {
                 match outcome(&self.engine) {
@@ -273,28 +402,33 @@ impl Painter {
     }
 
     /// The constants of a frame that the engine can draw.
-    fn constants(&self, target: &Target) -> Result<FrameSetup, Fault> {
-        if target.shading == Shading::Smooth && self.ability == Shading::Flat {
+    fn constants(
+        &self,
+        triangles: &Triangles,
+        (width, height): (u32, u32),
+    ) -> Result<FrameSetup, Fault> {
+        if triangles.shading == Shading::Smooth && self.ability == Shading::Flat {
             return Err(Fault::Shading);
         }
-        let (width, height) = target.size;
-        FrameSetup::new(target.view, width, height, target.mesh.radius()).map_err(|error| {
-            match error {
-                RenderError::Eye(_) => Fault::Eye,
-                _ => Fault::Size,
-            }
-        })
+        let radius = triangles.mesh.radius();
+        FrameSetup::new(triangles.view, width, height, radius).map_err(fault_of)
     }
 
     /// Prepares a geometry pass that goes into a room.
-    fn prepare_geometry(&mut self, target: &Target, frame: FrameSetup, room: usize) -> Prepared {
+    fn prepare_geometry(
+        &mut self,
+        triangles: &Triangles,
+        frame: FrameSetup,
+        room: usize,
+    ) -> Prepared {
+        let width = frame.width;
         let frame = self.frame.insert(frame);
         let room = &self.rooms[room];
         let pass = Geometry {
-            mesh: target.mesh,
+            mesh: triangles.mesh,
             frame,
-            cull: target.cull,
-            shading: target.shading,
+            cull: triangles.cull,
+            shading: triangles.shading,
             lists: Lists {
                 descriptors: address(room.descriptors),
                 descriptor_limit: (DESCRIPTOR_NUMBERS / descriptor::words(self.ability)) as u32,
@@ -303,8 +437,7 @@ impl Painter {
             exceptions: address(room.exceptions),
             exception_limit: DESCRIPTORS as u32,
         };
-        self.engine
-            .prepare_geometry(&pass, list_shift(target.size.0) as u8)
+        self.engine.prepare_geometry(&pass, list_shift(width) as u8)
     }
 
     fn start_geometry(&mut self, pass: Prepared) {
@@ -313,7 +446,7 @@ impl Painter {
         unsafe { self.engine.start_geometry(pass) };
     }
 
-    fn start_raster(&mut self, target: &mut Target) {
+    fn start_raster(&mut self, target: &mut Target, sets: [Option<Set>; 2]) {
         let slot = self.slot(target.colour);
         let size = target.size;
         let known = &mut self.known[usize::from(slot)];
@@ -324,7 +457,7 @@ impl Painter {
             whole: *known != Some(size),
             depth: target.depth.as_deref().map(address),
             clear: 0,
-            sets: self.rooms[0].sets,
+            sets,
         };
         *known = Some(size);
         // SAFETY: the lists are this painter's own and stay as they are until the pass has ended; frame and depth codes
@@ -333,7 +466,7 @@ impl Painter {
     }
 
     /// Makes descriptors of what the engine has left to be clipped.
-    fn clip(&mut self, target: &Target) -> Result<(), Fault> {
+    fn clip(&mut self, triangles: &Triangles) -> Result<(), Fault> {
         let frame = self.frame.as_ref().ok_or(Fault::Size)?;
         let room = &mut self.rooms[0];
         let counts = self.engine.counts();
@@ -362,12 +495,12 @@ impl Painter {
                 full: false,
             };
             let options = Options {
-                cull: target.cull,
-                shading: target.shading,
+                cull: triangles.cull,
+                shading: triangles.shading,
                 ..Options::default()
             };
             clipped_drawn = clip_exceptions(
-                target.mesh,
+                triangles.mesh,
                 frame,
                 &options,
                 &mut numbers.iter().copied(),
@@ -398,17 +531,17 @@ impl Painter {
     }
 
     /// Gives the frame up if nothing has moved for long.
-    fn watch(&mut self, target: &mut Target) -> Option<Result<Painted, Fault>> {
+    fn watch(&mut self, target: &mut Target) -> Option<Result<Painted, Fallback>> {
         self.watch
             .is_stuck(&self.engine.counters())
             .then(|| self.give_up(target, Fault::Stuck))
     }
 
-    fn give_up(&mut self, target: &mut Target, fault: Fault) -> Result<Painted, Fault> {
+    fn give_up(&mut self, target: &mut Target, fault: Fault) -> Result<Painted, Fallback> {
         self.engine.cancel();
         self.stage = Stage::Idle;
         self.forget(target.colour);
-        Err(fault)
+        Err(fault.into())
     }
 
     fn slot(&self, colour: &[u16]) -> bool {
@@ -484,6 +617,13 @@ impl Watch {
                 false
             }
         }
+    }
+}
+
+fn fault_of(error: RenderError) -> Fault {
+    match error {
+        RenderError::Eye(_) => Fault::Eye,
+        _ => Fault::Size,
     }
 }
 

@@ -11,6 +11,7 @@ use glint_core::stereo::Stereo;
 use glint_model::march::FieldStats;
 use glint_model::{RenderError, Stats};
 use litex_hal::display::Scale;
+use litex_hal::march::Missing;
 use litex_hal::triangle::{Counters, Fault};
 
 /// A camera on a sphere about the origin.
@@ -70,19 +71,28 @@ pub enum Painter {
 }
 
 /// Why the gateware could not draw.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub enum Fallback {
     /// The triangle engine could not.
     Triangle(Fault),
-    /// It was a field.
-    Field,
+    /// The raymarcher lacks something, or is not there at all.
+    Field(Option<Missing>),
+}
+
+impl From<Fault> for Fallback {
+    fn from(fault: Fault) -> Self {
+        Self::Triangle(fault)
+    }
 }
 
 impl fmt::Display for Fallback {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Self::Triangle(fault) => fault.fmt(f),
-            Self::Field => f.write_str("distance fields: this gateware has no engine for them"),
+            Self::Field(Some(missing)) => missing.fmt(f),
+            Self::Field(None) => {
+                f.write_str("distance fields: this gateware has no engine for them")
+            }
         }
     }
 }

@@ -8,6 +8,7 @@ use glint_core::mesh::MeshError;
 use litex_hal::display::{Display, Scanout};
 use litex_hal::gpio::{InputPort, OutputPort};
 use litex_hal::i2c::{Config, I2c};
+use litex_hal::march::Marcher;
 use litex_hal::timer::{Clock, FREQUENCY, Stopped};
 use litex_hal::triangle::Engine;
 use litex_hal::uart::Direct;
@@ -86,7 +87,7 @@ pub fn machine() -> Result<Machine, Fault> {
 
     let clock = Clock::new(peripherals.timer0).map_err(Fault::Clock)?;
     UART.start(peripherals.uart);
-    let (scanout, engine, devices) = if identity.matches() {
+    let (scanout, engine, marcher, devices) = if identity.matches() {
         let devices = Devices {
             buttons: InputPort::new(peripherals.buttons.in_()),
             switches: InputPort::new(peripherals.switches.in_()),
@@ -96,15 +97,16 @@ pub fn machine() -> Result<Machine, Fault> {
         (
             Scanout::probe(peripherals.scanout).ok(),
             Engine::probe(peripherals.triangle).ok(),
+            Marcher::probe(peripherals.raymarch).ok(),
             Some(devices),
         )
     } else {
-        (None, None, None)
+        (None, None, None, None)
     };
     interrupts::start(scanout.is_some(), engine.is_some());
     let painter = engine.and_then(|engine| {
         let first_buffer = memory.frames[0].as_ptr().addr() as u32;
-        Painter::new(engine, memory.lists, first_buffer)
+        Painter::new(engine, marcher, memory.lists, first_buffer)
     });
     let backend = if painter.is_some() {
         Backend::Gateware

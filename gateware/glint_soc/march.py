@@ -71,7 +71,7 @@ class Raymarcher(LiteXModule):
         self.ev.finalize()
 
         self._solid = CSRStorage(name="solid", fields=[
-            CSRField("box", offset=0, description="A box; or else the sponge."),
+            CSRField("is_box", offset=0, description="A box; or else the sponge."),
             CSRField("levels", size=6, offset=1, description="Levels of the sponge that count, the first one in bit 0."),
             CSRField("has", size=3, offset=8, description="Axes along which the box has an end, x in bit 0."),
             CSRField("room", offset=11, description="The solid is what is outside of the box."),
@@ -135,8 +135,8 @@ class Raymarcher(LiteXModule):
         enable, stereo = self._control.fields.enable, self._control.fields.stereo
         busy, was_busy = self._status.fields.busy, Signal()
         error = self._status.fields.error
-        not_built = self._solid.fields.box if not fields.boxes else Signal()
-        too_deep = ~self._solid.fields.box & (self._solid.fields.levels >> fields.levels != 0)
+        not_built = self._solid.fields.is_box if not fields.boxes else Signal()
+        too_deep = ~self._solid.fields.is_box & (self._solid.fields.levels >> fields.levels != 0)
         # The engine's clock runs while a pass does; the tables are written while it stands.
         lingers, working = Signal(5), Signal()
         self.comb += [
@@ -175,7 +175,7 @@ class Raymarcher(LiteXModule):
             i_outside        = Cat(*outside),
             i_bounds         = Cat(*bounds),
             i_solid          = Cat(solid.repeated, solid.room, solid.has, *box_half, self._cube_half.storage, solid.levels,
-                                   solid.box),
+                                   solid.is_box),
             i_tuning         = Cat(self._far.storage, tuning.cap, tuning.footprint, tuning.threshold),
             i_depth_mantissa = self._depth_scale.fields.mantissa,
             i_depth_exponent = self._depth_scale.fields.exponent,

@@ -2,7 +2,7 @@
 // fails when this file is not what the generator makes of the SoC.
 
 /// CRC-32 of the SoC's pinned register map. A SoC whose `identity.build_id` differs has other registers.
-pub const BUILD_ID: u32 = 0xe3ef_4a7c;
+pub const BUILD_ID: u32 = 0x0e3e_5420;
 
 /// The interrupt lines, numbered by their bit in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -4015,17 +4015,17 @@ pub mod raymarch {
     }
 
     impl Solid {
-        /// `box`, bit 0: A box; or else the sponge.
+        /// `is_box`, bit 0: A box; or else the sponge.
         #[inline]
         #[must_use]
-        pub const fn box(self) -> bool {
+        pub const fn is_box(self) -> bool {
             self.0 & 1 != 0
         }
 
-        /// This value with another `box`.
+        /// This value with another `is_box`.
         #[inline]
         #[must_use]
-        pub const fn with_box(self, value: bool) -> Self {
+        pub const fn with_is_box(self, value: bool) -> Self {
             Self(self.0 & !0x1 | value as u32 & 0x1)
         }
 
