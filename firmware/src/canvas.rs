@@ -3,7 +3,7 @@
 use glint_core::console::Backend;
 use glint_core::field::Field;
 use glint_core::mesh::Mesh;
-use glint_model::march::{FieldOptions, FieldStats, Setup, render_field};
+use glint_model::march::{FieldStats, render_field};
 use glint_model::{Options, RenderError, Stats, Target};
 use litex_hal::display::Display;
 use litex_pac::cpu;
@@ -111,7 +111,7 @@ impl Canvas {
         };
         let start = cpu::cycles();
         let result = match scene.field() {
-            Some(field) => draw_field(&field, scene, &mut target, look).map(Counts::Rays),
+            Some(field) => draw_field(&marched(field, scene), &mut target, look).map(Counts::Rays),
             None => {
                 let scratch = &mut self.scratch;
                 draw_mesh(mesh, scene, &mut target, scratch, look).map(Counts::Triangles)
@@ -180,33 +180,26 @@ fn draw_mesh(
 
 /// Draws a field by the CPU.
 fn draw_field(
-    field: &Field,
-    scene: &Scene,
+    marched: &Marched,
     target: &mut Target,
     mut look: impl FnMut(),
 ) -> Result<FieldStats, RenderError> {
-    let options = field_options(scene);
-    let size = (target.width, target.height);
-    let setup = Setup::new(field, scene.view(), size, &options)?;
+    let setup = marched.setup((target.width, target.height))?;
     target.depth.fill(0);
-    render_field(
-        &setup,
-        &options.palette_for(&setup),
-        target,
-        // Once a row.
-        &mut |x, _, _, _| {
-            if x == 0 {
-                look();
-            }
-        },
-    )
+    let palette = marched.palette(&setup);
+    render_field(&setup, &palette, target, &mut |x, _, _, _| {
+        if x % PIXELS_A_LOOK == 0 {
+            look();
+        }
+    })
 }
 
-/// How the scene's field is drawn.
-fn field_options(scene: &Scene) -> FieldOptions {
-    FieldOptions {
+/// The scene's field, and how it is drawn.
+fn marched<'a>(field: Field, scene: &'a Scene) -> Marched<'a> {
+    Marched {
+        field,
+        view: scene.view(),
         stereo: scene.stereo(),
-        ..FieldOptions::default()
     }
 }
 
@@ -218,16 +211,11 @@ fn target<'a>(
     depth: Option<&'a mut [u32]>,
 ) -> painter::Target<'a> {
     let [width, height] = scene.scale().size();
-    let view = scene.view();
     let what = match scene.field() {
-        Some(field) => What::Field(Marched {
-            field,
-            view,
-            options: field_options(scene),
-        }),
+        Some(field) => What::Field(marched(field, scene)),
         None => What::Triangles(Triangles {
             mesh,
-            view,
+            view: scene.view(),
             cull: scene.cull(),
             shading: scene.shading(),
         }),

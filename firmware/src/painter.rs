@@ -6,8 +6,9 @@ use core::mem;
 use glint_core::camera::View;
 use glint_core::field::Field;
 use glint_core::mesh::Mesh;
+use glint_core::stereo::Stereo;
 use glint_model::descriptor::{self, Descriptor, TABLE_WORDS, band_rows, list_word};
-use glint_model::march::{FieldOptions, Setup};
+use glint_model::march::{FieldOptions, Palette, Setup};
 use glint_model::{FrameSetup, Options, RenderError, Shading, Stats, clip_exceptions};
 use litex_hal::march::{self, Marcher};
 use litex_hal::triangle::{
@@ -81,13 +82,29 @@ pub struct Marched<'a> {
     pub field: Field,
     /// The camera.
     pub view: &'a View,
-    /// Eyes and colours.
-    pub options: FieldOptions,
+    /// Two eyes, or one.
+    pub stereo: Option<Stereo>,
 }
 
 impl Marched<'_> {
-    fn setup(&self, size: (u32, u32)) -> Result<Setup, Fault> {
-        Setup::new(&self.field, self.view, size, &self.options).map_err(fault_of)
+    /// Its constants.
+    ///
+    /// # Errors
+    /// The size is none.
+    pub fn setup(&self, size: (u32, u32)) -> Result<Setup, RenderError> {
+        Setup::new(&self.field, self.view, size, &self.options())
+    }
+
+    /// Its colours.
+    pub fn palette(&self, setup: &Setup) -> Palette {
+        self.options().palette_for(setup)
+    }
+
+    fn options(&self) -> FieldOptions {
+        FieldOptions {
+            stereo: self.stereo,
+            ..FieldOptions::default()
+        }
     }
 }
 
@@ -300,7 +317,7 @@ impl Painter {
     }
 
     fn begin_field(&mut self, marched: &Marched, target: &mut Target) -> Result<(), Fallback> {
-        let setup = marched.setup(target.size)?;
+        let setup = marched.setup(target.size).map_err(fault_of)?;
         self.set_field(marched, &setup)?;
         self.start_raster(target, [None; 2]);
         self.stage = Stage::Raster;
@@ -310,7 +327,7 @@ impl Painter {
     fn set_field(&mut self, marched: &Marched, setup: &Setup) -> Result<(), Fallback> {
         let marcher = self.marcher.as_mut().ok_or(Fallback::Field(None))?;
         marcher
-            .set_field(setup, &marched.options.palette_for(setup))
+            .set_field(setup, &marched.palette(setup))
             .map_err(|missing| Fallback::Field(Some(missing)))
     }
 
@@ -370,12 +387,12 @@ impl Painter {
         target: &mut Target,
         count: u32,
     ) -> Result<Painted, Fallback> {
-        let mut setup = marched.setup(target.size)?;
+        let mut setup = marched.setup(target.size).map_err(fault_of)?;
         self.mark_start();
         for _ in 0..count {
             self.set_field(marched, &setup)?;
             self.start_raster(target, [None; 2]);
-            setup = marched.setup(target.size)?;
+            setup = marched.setup(target.size).map_err(fault_of)?;
             self.wait(Engine::raster, target)?;
         }
         Ok(self.painted(&target.what, 0))
