@@ -26,6 +26,8 @@ pub struct Canvas {
 
 /// How many triangles are drawn between two looks at what else there is to do.
 const TRIANGLES_A_LOOK: u32 = 32;
+/// How many pixels of a field.
+const PIXELS_A_LOOK: u32 = 16;
 
 impl Canvas {
     /// Draws `mesh`, or the scene's field, as `scene` wants it, and shows it from the next vertical blanking on. Returns
