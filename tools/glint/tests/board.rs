@@ -94,7 +94,7 @@ fn smooth_shading_is_the_models_whoever_draws() {
     }
 }
 
-/// A field, which the CPU draws, and says so. It is small and far away, as the soft core takes a thousand clocks for a ray.
+/// A field, which the CPU draws, and says so. It is small and far away, as the soft core takes nearly a thousand clocks for a ray.
 #[test]
 fn a_field_is_the_models() {
     let mut board = running_board();

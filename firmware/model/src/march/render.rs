@@ -38,10 +38,12 @@ impl FieldStats {
 
 /// Draws a field over what is in the target: where a depth code is larger, and nothing of it where two eyes look.
 ///
-/// With two eyes `palette` is grey, and depths are the left eye's.
+/// With two eyes `palette` is grey, and depths are the left eye's. Not inlined, so that its loop lies beside what it calls
+/// and they do not fight for an instruction cache.
 ///
 /// # Errors
 /// [`RenderError`] if the target has not the size of the setup; then nothing has been touched.
+#[inline(never)]
 pub fn render_field(
     setup: &Setup,
     palette: &Palette,
