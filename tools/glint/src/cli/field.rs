@@ -14,7 +14,7 @@ use std::fmt::Display;
 #[derive(Args)]
 pub struct FieldArguments {
     #[arg(long, value_name = "FIELD", help = field_help())]
-    pub field: Option<String>,
+    field: Option<String>,
     /// Look at a field with two eyes, each E (0 to 1) beside the camera's, which see the same at the distance ZERO; the left
     /// one in red, the right one in blue unless told.
     #[arg(long, value_name = stereo::FORM, allow_hyphen_values = true)]
@@ -41,13 +41,18 @@ pub struct FieldArguments {
 }
 
 impl FieldArguments {
+    /// The field as it was typed, if there is one.
+    pub fn name(&self) -> Option<&str> {
+        self.field.as_deref()
+    }
+
     /// The field, if there is one.
     pub fn field(&self) -> Result<Option<Field>, InputError> {
         let parse = |text| {
             Field::parse(text)
                 .map_err(|error| refusal("--field", "a distance field", escaped(error)))
         };
-        self.field.as_deref().map(parse).transpose()
+        self.name().map(parse).transpose()
     }
 
     /// How it is drawn; with a mesh nothing of this may be said.

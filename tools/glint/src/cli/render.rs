@@ -24,6 +24,8 @@ pub struct RenderArguments {
     /// A mesh file or a generator's name.
     #[arg(required_unless_present = "field", conflicts_with = "field")]
     model: Option<String>,
+    #[command(flatten)]
+    field: FieldArguments,
     /// A camera on a sphere about the origin: the distance (2 to 5), azimuth and polar angle in degrees; half_width is 0.9
     /// and near 0.1 [default: 2,30,60, for a field 4,30,60].
     #[arg(
@@ -70,8 +72,6 @@ pub struct RenderArguments {
     /// How mesh and picture pass between here and a board [default: memory on the virtual board, serial on a port].
     #[arg(long, value_enum)]
     transfer: Option<Route>,
-    #[command(flatten)]
-    field: FieldArguments,
     #[command(flatten)]
     line: LineArguments,
     /// Print what was done as JSON.
@@ -182,7 +182,7 @@ impl RenderArguments {
         if self.json {
             let outcome = Outcome {
                 model: self.model.as_deref(),
-                field: self.field.field.as_deref(),
+                field: self.field.name(),
                 board: &self.board,
                 size: [size.0, size.1],
                 stats: &totals,
@@ -194,7 +194,7 @@ impl RenderArguments {
 
     fn camera(&self) -> anyhow::Result<View> {
         let Some(path) = &self.view else {
-            let default = if self.field.field.is_some() {
+            let default = if self.field.name().is_some() {
                 "4,30,60"
             } else {
                 "2,30,60"
@@ -203,7 +203,7 @@ impl RenderArguments {
             return Ok(view::spherical(camera).map_err(|error| error.in_file("--camera"))?);
         };
         let view = view::read(path)?;
-        if self.field.field.is_none() && !view.is_within(MAX_EYE) {
+        if self.field.name().is_none() && !view.is_within(MAX_EYE) {
             let found = RenderError::Eye(view.eye()).to_string();
             let error = FormatError::whole("a camera", found);
             return Err(error.in_file(path.display().to_string()).into());
