@@ -57,6 +57,10 @@ def _lanes(old, new, fails):
     return Mutation("lanes.sv", old, new, fails)
 
 
+def _ring(old, new, fails):
+    return Mutation("ring_lane.sv", old, new, fails)
+
+
 _FIFO = [
     _fifo("out_valid <= stored;", "out_valid <= stored && in_valid;", "order.shown_in_time"),
     _fifo("load     = !out_valid || out_ready", "load     = !out_valid || out_ready || stored", "shown.payload_stable"),
@@ -64,7 +68,7 @@ _FIFO = [
     _fifo("out_valid <= stored;", "out_valid <= stored || in_valid;", "order.nothing_made_up"),
     _fifo("head != {~tail[PLACE_BITS], tail[PLACE_BITS-1:0]}", "1'b1", "order.nothing_too_many"),
     _fifo("if (stored) tail", "if (stored && !in_valid) tail", "order.in_order"),
-    _fifo("if (in_valid && in_ready)", "if (in_valid)", "order.in_order"),
+    _fifo("if (in_valid && in_ready) head", "if (in_valid) head", "order.in_order"),
     _fifo("head != {~tail[PLACE_BITS], tail[PLACE_BITS-1:0]}", "head == '0", "order.taken_in_time"),
 ]
 
@@ -111,6 +115,20 @@ MUTATIONS = {
         _flush("state  <= SWEEP;\n            row    <= '0;", "state  <= SWEEP;", "all_swept"),
         _flush("clears <= part == last_part;", "clears <= part == last_part && row != last_row;", "cleared_behind"),
         _flush("clear_row <= row;", "clear_row <= row + 1'b1;", "cleared_behind"),
+    ],
+    "ring_lane": [
+        _ring("again || enter}", "again || in_valid}", "none_made_up"),
+        _ring("again ? last_cargo", "again && !in_valid ? last_cargo", "none_twice"),
+        _ring("assign in_ready = !again && places", "assign in_ready = places", "none_lost"),
+        _ring("!again && places != '0;", "!again;", "no_more_than_fit"),
+        _ring("occupied[DISTANCE+2] && finished;", "occupied[DISTANCE+2] && finished && !in_valid;", "none_lost"),
+        _ring("finished     <= beyond || near_2 || late_2;", "finished     <= beyond || near_2;", "ends_in_time"),
+        _ring("enter ? places - 1'b1 : places + 1'b1", "enter ? places - 1'b1 : places", "takes_again"),
+        _ring("places   <= COUNT_BITS'(PLACES);", "places   <= '0;", "empty_takes"),
+        _ring("{in_ray.place, in_ray.length,", "{in_ray.place, ~in_ray.length,", "as_it_came"),
+        _ring("steps_1 + 8'd1 >= tuning.cap", "steps_1 >= tuning.cap", "counts_steps"),
+        Mutation("fifo.sv", "load     = !out_valid || out_ready", "load     = 1'b1", "ends.valid_stays"),
+        Mutation("fifo.sv", "load     = !out_valid || out_ready", "load     = !out_valid || out_ready || stored", "ends.payload_stable"),
     ],
     "write_port": [
         _write("cmd_valid <= sent;", "cmd_valid <= sent && hurry;", "commands_in_order"),

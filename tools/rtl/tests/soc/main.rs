@@ -11,6 +11,9 @@
 //! board     load 0, draw 0      load 1, d 1   load 2, d 2   load 3, d 3
 //! ```
 
+#[path = "../../../../firmware/model/tests/common/mod.rs"]
+mod common;
+mod fields;
 #[path = "../engine/meshes.rs"]
 mod meshes;
 #[path = "../engine/scenes.rs"]
@@ -154,7 +157,7 @@ impl Told {
 }
 
 /// Sends lines at once, so that nothing is drawn between them, and collects all replies.
-fn send(console: &mut Console<Watched>, lines: &[String]) -> Told {
+fn send<B: Board>(console: &mut Console<B>, lines: &[String]) -> Told {
     let text: String = lines.iter().map(|line| format!("{line}\r")).collect();
     console.board().write(text.as_bytes()).unwrap();
     let replies = lines.iter().map(|line| console.reply(line).unwrap());
@@ -163,7 +166,7 @@ fn send(console: &mut Console<Watched>, lines: &[String]) -> Told {
     }
 }
 
-fn read(console: &mut Console<Watched>, address: u32, length: usize) -> Vec<u8> {
+fn read<B: Board>(console: &mut Console<B>, address: u32, length: usize) -> Vec<u8> {
     let mut bytes = vec![0; length];
     let memory = console.board().memory().unwrap();
     memory.read_memory(address, &mut bytes).unwrap();

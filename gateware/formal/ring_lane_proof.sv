@@ -1,0 +1,75 @@
+// A lane of the raymarcher with two places for ends, any rays, any field, and anybody who takes ends or not.
+//
+// One ray, any of them, is followed by its column; what a lane does with a ray does not depend on its place. The field may say
+// anything, so rays take as many rounds as they may: `cap`, here two.
+
+`default_nettype none
+
+module ring_lane_proof (
+    input wire       clk,
+    input wire       in_valid,
+    input wire [9:0] in_length,
+    input wire       out_ready
+);
+    // Clocks that may pass until an end comes out while ends are taken: two rounds of 9 slots, through the fifo, after another one.
+    localparam int unsigned PLACES = 2, WITHIN = 22;
+
+    logic rst = 1'b1;
+    always_ff @(posedge clk) rst <= 1'b0;
+
+    logic             in_ready, out_valid, evaluates, waits;
+    march_pkg::ray_t  ray;
+    march_pkg::end_t  out_end;
+    logic [10:0]      came, inside;
+    (* anyconst *) logic [10:0] followed;
+    (* anyconst *) logic [9:0]  length;
+
+    // Rays are numbered by their column.
+    always_comb begin
+        ray = '0;
+        ray.place.column = came;
+        ray.length       = in_length;
+    end
+
+    ring_lane #(.LEVELS(0), .BOXES(1'b1), .STEREO(1'b0), .PLACES(PLACES)) dut (
+        .clk, .rst, .origins('0), .bounds('0), .solid('0), .tuning({16'd1, 4'd7, 8'd2, 23'd1000}),
+        .in_valid, .in_ready, .in_ray(ray), .out_valid, .out_ready, .out_end, .evaluates, .waits
+    );
+
+    stream_checker #(.WIDTH(1), .GIVEN(1)) given (.clk, .rst, .valid(in_valid), .ready(in_ready), .data(1'b0));
+    stream_checker #(.WIDTH(march_pkg::END_BITS)) ends (.clk, .rst, .valid(out_valid), .ready(out_ready), .data(out_end));
+
+    logic       entered, left, here;
+    logic [4:0] unmoved, refused;
+
+    assign here = out_valid && out_end.place.column == followed;
+
+    always_ff @(posedge clk) begin
+        if (in_valid && in_ready) begin
+            came <= came + 1'b1;
+            if (came == followed) entered <= 1'b1;
+        end
+        if (here && out_ready) left <= 1'b1;
+        inside  <= inside + 11'(in_valid && in_ready) - 11'(out_valid && out_ready);
+        unmoved <= inside == '0 || !out_ready || out_valid ? '0 : unmoved + 1'b1;
+        refused <= in_ready || !out_ready || out_valid ? '0 : refused + 1'b1;
+        if (rst) {came, entered, left, inside, unmoved, refused} <= '0;
+    end
+
+    always_ff @(posedge clk) if (!rst) begin
+        if (in_valid && came == followed) assume (in_length == length);
+
+        none_made_up:     assert (!out_valid || out_end.place.column < came);
+        none_twice:       assert (!here || entered && !left);
+        as_it_came:       assert (!here || out_end.length == length);
+        none_lost:        assert (inside != '0 || entered == left);
+        no_more_than_fit: assert (inside <= 11'(PLACES));
+        ends_in_time:     assert (unmoved < 5'(WITHIN));
+        takes_again:      assert (refused < 5'(WITHIN));
+        empty_takes:      assert (inside != '0 || in_ready);
+        counts_steps:     assert (!out_valid || out_end.steps == 8'd1 || out_end.steps == 8'd2);
+        two_rounds:       cover (left && out_end.steps == 8'd2);
+    end
+endmodule
+
+`default_nettype wire
