@@ -5,11 +5,13 @@
 //! - [`Field::hit`]: each solid from its own geometry, exact but for the rounding of f64.
 //! - [`views`]: cameras that look at the sponge.
 //! - [`metrics`]: how far a picture is from the reference.
+//! - [`marched`]: pictures of Glint's raymarcher, to be compared.
 //!
 //! A ray that only touches a solid, or lies in the plane of one of its faces, may hit or miss it.
 
 mod distance;
 mod grid;
+pub mod marched;
 mod menger;
 pub mod metrics;
 mod solids;
