@@ -2,8 +2,9 @@
 
 use glint_model::march::{self, Setup, State};
 
-use super::metrics::Outcome;
+use super::metrics::{self, Expected, Outcome};
 use super::{Face, Field};
+use crate::camera::{Camera, Size};
 
 /// What a ray of the model comes to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,8 +31,7 @@ impl Marched {
 ///
 /// `scale` is how many field units a world unit has: [`units_per_world`].
 pub fn picture(setup: &Setup, eye: usize, scale: f64) -> Vec<Marched> {
-    let rows = 0..setup.height;
-    rows.flat_map(|y| (0..setup.width).map(move |x| (x, y)))
+    pixels(setup)
         .map(|(x, y)| {
             let ray = setup.ray(eye, x, y);
             marched(setup, &ray, &setup.march(&ray), scale)
@@ -49,10 +49,8 @@ pub fn marched(setup: &Setup, ray: &march::Ray, end: &march::Outcome, scale: f64
             let positive = surface.positive;
             let mut normal = [0.0; 3];
             normal[axis] = if positive { 1.0 } else { -1.0 };
-            let depth =
-                setup.depth_of(ray, end.t) as f64 * (-21.0 - f64::from(setup.exponent)).exp2();
             let hit = Outcome::Hit {
-                t: depth / scale,
+                t: depth(setup, ray, end.t) / scale,
                 face: Face::Axis { axis, positive },
                 normal,
             };
@@ -64,6 +62,66 @@ pub fn marched(setup: &Setup, ray: &march::Ray, end: &march::Outcome, scale: f64
         outcome,
         coded,
         steps: end.steps,
+    }
+}
+
+/// The depth in world units at which a ray ends for its length, surface or not.
+pub fn reach(setup: &Setup, ray: &march::Ray, scale: f64) -> f64 {
+    depth(setup, ray, setup.tuning.far) / scale
+}
+
+/// The depth at t, in field units.
+fn depth(setup: &Setup, ray: &march::Ray, t: u32) -> f64 {
+    setup.depth_of(ray, t) as f64 * (-21.0 - f64::from(setup.exponent)).exp2()
+}
+
+/// What the reference shows of the picture of a camera that has no more digits than a view, as far as the model's rays reach.
+pub fn expected(setup: &Setup, field: &Field, camera: &Camera) -> Vec<Expected> {
+    let size = Size {
+        width: setup.width,
+        height: setup.height,
+    };
+    let scale = units_per_world(field);
+    let rays = pixels(setup).map(|(x, y)| setup.ray(0, x, y));
+    let reaches: Vec<f64> = rays.map(|ray| reach(setup, &ray, scale)).collect();
+    let farthest = reaches.iter().copied().fold(0.0, f64::max);
+    let limits = (camera.near, farthest);
+    let mut picture = metrics::expected(field, size, limits, |pixel| camera.ray(pixel, size));
+    for (pixel, reach) in picture.iter_mut().zip(reaches) {
+        pixel.hit = pixel.hit.filter(|hit| hit.t <= reach);
+    }
+    picture
+}
+
+/// All pixels, row by row.
+fn pixels(setup: &Setup) -> impl Iterator<Item = (u32, u32)> {
+    let width = setup.width;
+    (0..setup.height).flat_map(move |y| (0..width).map(move |x| (x, y)))
+}
+
+impl From<&glint_core::field::Field> for Field {
+    /// The solid with the numbers as they are.
+    ///
+    /// # Panics
+    /// For a field that there is no reference of.
+    fn from(scene: &glint_core::field::Field) -> Self {
+        use glint_core::field::Field as Scene;
+        match *scene {
+            Scene::Menger { depth } => Self::Menger {
+                depth: depth.into(),
+            },
+            Scene::Box { half } => Self::Box {
+                half: half.map(|x| x.to_num()),
+            },
+            Scene::Cubes { period, half } => Self::Cubes {
+                period: period.to_num(),
+                half: half.to_num(),
+            },
+            Scene::Planes { half } => Self::Planes {
+                half: half.to_num(),
+            },
+            _ => unimplemented!("a reference of {scene}"),
+        }
     }
 }
 
