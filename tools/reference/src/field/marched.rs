@@ -28,19 +28,17 @@ impl Marched {
 }
 
 /// The picture of one eye, row by row; eye 0 is the left or the only one.
-///
-/// `scale` is how many field units a world unit has: [`units_per_world`].
-pub fn picture(setup: &Setup, eye: usize, scale: f64) -> Vec<Marched> {
+pub fn picture(setup: &Setup, eye: usize) -> Vec<Marched> {
     pixels(setup)
         .map(|(x, y)| {
             let ray = setup.ray(eye, x, y);
-            marched(setup, &ray, &setup.march(&ray), scale)
+            marched(setup, &ray, &setup.march(&ray))
         })
         .collect()
 }
 
 /// The end of one ray.
-pub fn marched(setup: &Setup, ray: &march::Ray, end: &march::Outcome, scale: f64) -> Marched {
+pub fn marched(setup: &Setup, ray: &march::Ray, end: &march::Outcome) -> Marched {
     let (outcome, coded) = match end.state {
         State::Miss => (Outcome::Miss, None),
         State::Undecided => (Outcome::Undecided, None),
@@ -50,7 +48,7 @@ pub fn marched(setup: &Setup, ray: &march::Ray, end: &march::Outcome, scale: f64
             let mut normal = [0.0; 3];
             normal[axis] = if positive { 1.0 } else { -1.0 };
             let hit = Outcome::Hit {
-                t: depth(setup, ray, end.t) / scale,
+                t: depth(setup, ray, end.t),
                 face: Face::Axis { axis, positive },
                 normal,
             };
@@ -66,13 +64,14 @@ pub fn marched(setup: &Setup, ray: &march::Ray, end: &march::Outcome, scale: f64
 }
 
 /// The depth in world units at which a ray ends for its length, surface or not.
-pub fn reach(setup: &Setup, ray: &march::Ray, scale: f64) -> f64 {
-    depth(setup, ray, setup.tuning.far) / scale
+pub fn reach(setup: &Setup, ray: &march::Ray) -> f64 {
+    depth(setup, ray, setup.tuning.far)
 }
 
-/// The depth at t, in field units.
+/// The depth at t in world units.
 fn depth(setup: &Setup, ray: &march::Ray, t: u32) -> f64 {
-    setup.depth_of(ray, t) as f64 * (-21.0 - f64::from(setup.exponent)).exp2()
+    let units = setup.depth_of(ray, t) as f64 * (-21.0 - f64::from(setup.exponent)).exp2();
+    units / setup.scale.to_num::<f64>()
 }
 
 /// What the reference shows of the picture of a camera that has no more digits than a view, as far as the model's rays reach.
@@ -81,9 +80,8 @@ pub fn expected(setup: &Setup, field: &Field, camera: &Camera) -> Vec<Expected> 
         width: setup.width,
         height: setup.height,
     };
-    let scale = units_per_world(field);
     let rays = pixels(setup).map(|(x, y)| setup.ray(0, x, y));
-    let reaches: Vec<f64> = rays.map(|ray| reach(setup, &ray, scale)).collect();
+    let reaches: Vec<f64> = rays.map(|ray| reach(setup, &ray)).collect();
     let farthest = reaches.iter().copied().fold(0.0, f64::max);
     let limits = (camera.near, farthest);
     let mut picture = metrics::expected(field, size, limits, |pixel| camera.ray(pixel, size));
@@ -122,13 +120,5 @@ impl From<&glint_core::field::Field> for Field {
             },
             _ => unimplemented!("a reference of {scene}"),
         }
-    }
-}
-
-/// How many field units a world unit has.
-pub fn units_per_world(field: &Field) -> f64 {
-    match field {
-        Field::Cubes { period, .. } => 64.0 / period,
-        _ => 40.5,
     }
 }
