@@ -4,8 +4,9 @@ use glint_core::field::Field as Scene;
 use glint_core::fixed::Q32_32;
 use glint_model::march::{FieldOptions, Ray, Setup, State, Stereo, Tint};
 use glint_reference::camera::{Camera, Vector};
-use glint_reference::field::metrics::{Accuracy, Outcome, Quantiles, accuracy};
-use glint_reference::field::{Field, marched, views};
+use glint_reference::field::marched::{self, Measured, Subject};
+use glint_reference::field::metrics::{Accuracy, Outcome};
+use glint_reference::field::{Field, views};
 
 const SIZE: (u32, u32) = (320, 180);
 
@@ -13,7 +14,6 @@ const SIZE: (u32, u32) = (320, 180);
 struct Seen {
     name: String,
     found: Accuracy,
-    depth: Quantiles,
     /// Evaluations a ray.
     cost: f64,
 }
@@ -25,27 +25,14 @@ fn setup(scene: &str, camera: &Camera, options: &FieldOptions) -> Setup {
 }
 
 fn see(name: &str, scene: &str, camera: &Camera) -> Seen {
-    let field = Field::from(&Scene::parse(scene).expect("a field"));
-    let rounded = Camera::from(&camera.view().expect("a camera"));
-    let setup = setup(scene, camera, &FieldOptions::default());
-    let expected = marched::expected(&setup, &field, &rounded);
-    let picture = marched::picture(&setup, 0);
-    let ends: Vec<_> = picture.iter().map(|ray| ray.outcome).collect();
-    let found = accuracy(&expected, &ends);
-    let steps: u64 = picture.iter().map(|ray| u64::from(ray.steps)).sum();
-    let cost = steps as f64 / found.rays as f64;
-    let name = format!("{name}, {scene}");
-    println!("{name}: {found:?}, {cost:.2} evaluations a ray");
-    let depth = found.depth.unwrap_or(Quantiles {
-        median: 0.0,
-        p99: 0.0,
-        max: 0.0,
-    });
+    let subject = Subject::new(name, scene, camera, SIZE);
+    let picture = subject.picture(&FieldOptions::default());
+    let measured = Measured::new(&subject.expected, &picture);
+    println!("{name}, {scene}: {measured:?}");
     Seen {
-        name,
-        found,
-        depth,
-        cost,
+        name: format!("{name}, {scene}"),
+        found: measured.accuracy,
+        cost: measured.cost(),
     }
 }
 
@@ -66,10 +53,12 @@ impl Seen {
 
     /// Depths within that of the right ones, one half of them and 99 in 100.
     fn near(self, median: f64, p99: f64) -> Self {
-        let Quantiles {
-            median: m, p99: p, ..
-        } = self.depth;
-        assert!(m <= median && p <= p99, "{}: {m:e}, {p:e}", self.name);
+        let depth = self.found.depth.expect("something to see");
+        assert!(
+            depth.median <= median && depth.p99 <= p99,
+            "{}: {depth:?}",
+            self.name
+        );
         self
     }
 

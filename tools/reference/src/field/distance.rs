@@ -66,26 +66,27 @@ fn fold(depth: u32, p: Vector) -> (Vector, f64) {
     (p, 2.0 / side)
 }
 
+/// The Euclidean distance of a point outside of the sponge.
+pub(super) fn euclidean(depth: u32, p: Vector) -> f64 {
+    let (folded, unit) = fold(depth, p);
+    length(folded.map(|c| (c.abs() - 0.5).max(0.0))) * unit
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::field::Sphere;
 
-    /// The sponge of depth 4 in the Euclidean norm, in units of which its half side has 162.
-    fn euclidean(p: Vector) -> f64 {
-        let (folded, unit) = fold(4, p.map(|c| c / 162.0));
-        length(folded.map(|c| (c.abs() - 0.5).max(0.0))) * unit * 162.0
-    }
-
     #[test]
     fn the_fold_gives_the_known_euclidean_distances() {
+        // In units of which the half side has 162.
         let cases = [
             ([0.0; 3], 76.37),
             ([0.0, 0.0, 80.0], 54.0),
             ([200.0; 3], 65.82),
         ];
         for (p, expected) in cases {
-            let found = euclidean(p);
+            let found = 162.0 * euclidean(4, p.map(|c| c / 162.0));
             assert!((found - expected).abs() < 0.005, "{p:?}: {found}");
         }
     }

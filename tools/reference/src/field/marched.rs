@@ -1,8 +1,9 @@
 //! Pictures of the model's raymarcher as [`metrics`](super::metrics) takes them, and what each ray cost.
 
-use glint_model::march::{self, Setup, State};
+use glint_core::camera::View;
+use glint_model::march::{self, FieldOptions, Setup, State};
 
-use super::metrics::{self, Expected, Outcome};
+use super::metrics::{self, Accuracy, Expected, Outcome, Quantiles, accuracy};
 use super::{Face, Field};
 use crate::camera::{Camera, Size};
 
@@ -64,7 +65,7 @@ pub fn marched(setup: &Setup, ray: &march::Ray, end: &march::Outcome) -> Marched
 }
 
 /// The depth in world units at which a ray ends for its length, surface or not.
-pub fn reach(setup: &Setup, ray: &march::Ray) -> f64 {
+fn reach(setup: &Setup, ray: &march::Ray) -> f64 {
     depth(setup, ray, setup.tuning.far)
 }
 
@@ -75,7 +76,7 @@ fn depth(setup: &Setup, ray: &march::Ray, t: u32) -> f64 {
 }
 
 /// What the reference shows of the picture of a camera that has no more digits than a view, as far as the model's rays reach.
-pub fn expected(setup: &Setup, field: &Field, camera: &Camera) -> Vec<Expected> {
+fn expected(setup: &Setup, field: &Field, camera: &Camera) -> Vec<Expected> {
     let size = Size {
         width: setup.width,
         height: setup.height,
@@ -120,5 +121,88 @@ impl From<&glint_core::field::Field> for Field {
             },
             _ => unimplemented!("a reference of {scene}"),
         }
+    }
+}
+
+/// A field and a camera, with what is to be seen.
+pub struct Subject {
+    /// What it is called.
+    pub name: String,
+    /// As it is typed.
+    pub scene: String,
+    /// The size of its picture.
+    pub size: (u32, u32),
+    /// The camera, with a view's digits.
+    pub camera: Camera,
+    /// The field that is looked at.
+    pub field: Field,
+    /// What the reference shows, as far as rays reach by default.
+    pub expected: Vec<Expected>,
+    parsed: glint_core::field::Field,
+    view: View,
+}
+
+impl Subject {
+    /// `scene` is a field as it is typed, `size` one of [`glint_model::SIZES`].
+    ///
+    /// # Panics
+    /// When something of that is not so, or the camera is not one.
+    pub fn new(name: &str, scene: &str, camera: &Camera, size: (u32, u32)) -> Self {
+        let parsed = glint_core::field::Field::parse(scene).expect("a field");
+        let view = camera.view().expect("a camera");
+        let mut subject = Self {
+            name: name.to_owned(),
+            scene: scene.to_owned(),
+            size,
+            camera: Camera::from(&view),
+            field: Field::from(&parsed),
+            expected: vec![],
+            parsed,
+            view,
+        };
+        let setup = subject.setup(&FieldOptions::default());
+        subject.expected = expected(&setup, &subject.field, &subject.camera);
+        subject
+    }
+
+    /// The constants of its frame.
+    pub fn setup(&self, options: &FieldOptions) -> Setup {
+        Setup::new(&self.parsed, &self.view, self.size, options).expect("a size that there is")
+    }
+
+    /// The model's picture.
+    pub fn picture(&self, options: &FieldOptions) -> Vec<Marched> {
+        picture(&self.setup(options), 0)
+    }
+}
+
+/// What a picture is worth and what it has cost.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measured {
+    /// By depths as they follow from t.
+    pub accuracy: Accuracy,
+    /// The depths' errors by their codes, where both hit.
+    pub coded: Option<Quantiles>,
+    /// Evaluations of the field, of all rays.
+    pub evaluations: u64,
+    /// Of the one that took the most.
+    pub most: u32,
+}
+
+impl Measured {
+    /// Of a picture, or of several after each other.
+    pub fn new(expected: &[Expected], found: &[Marched]) -> Self {
+        let outcomes = |of: fn(&Marched) -> Outcome| found.iter().map(of).collect::<Vec<_>>();
+        Self {
+            accuracy: accuracy(expected, &outcomes(|ray| ray.outcome)),
+            coded: accuracy(expected, &outcomes(Marched::by_code)).depth,
+            evaluations: found.iter().map(|ray| u64::from(ray.steps)).sum(),
+            most: found.iter().map(|ray| ray.steps).max().unwrap_or(0),
+        }
+    }
+
+    /// Evaluations a ray.
+    pub fn cost(&self) -> f64 {
+        self.evaluations as f64 / self.accuracy.rays.max(1) as f64
     }
 }

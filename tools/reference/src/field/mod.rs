@@ -6,6 +6,7 @@
 //! - [`views`]: cameras that look at the sponge.
 //! - [`metrics`]: how far a picture is from the reference.
 //! - [`marched`]: pictures of Glint's raymarcher, to be compared.
+//! - [`variant`]: other ways to march.
 //!
 //! A ray that only touches a solid, or lies in the plane of one of its faces, may hit or miss it.
 
@@ -16,6 +17,7 @@ mod menger;
 pub mod metrics;
 mod solids;
 mod trace;
+pub mod variant;
 pub mod views;
 
 pub use trace::Unconverged;

@@ -70,7 +70,7 @@ impl Field {
     }
 
     /// The face, the normal and the member at a point of the surface.
-    fn surface(&self, p: Vector) -> (Face, Vector, usize) {
+    pub(super) fn surface(&self, p: Vector) -> (Face, Vector, usize) {
         match self {
             Self::Menger { .. } | Self::Box { .. } | Self::Cubes { .. } | Self::Planes { .. } => {
                 let slope = self.slope(p);
