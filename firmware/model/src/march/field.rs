@@ -50,8 +50,8 @@ pub enum Solid {
 }
 
 impl Solid {
-    /// The distance of a point, each coordinate s10.12.
-    pub fn sample(&self, point: [i32; 3]) -> Sample {
+    /// The distance of a point, each coordinate s10.12, or with another number of fraction bits.
+    pub fn sample(&self, point: [i32; 3], fraction: u32) -> Sample {
         match self {
             Self::Menger {
                 levels,
@@ -62,7 +62,7 @@ impl Solid {
                 half,
                 room,
                 repeated,
-            } => cuboid(point, half, *room, *repeated),
+            } => cuboid(point, fraction, half, *room, *repeated),
         }
     }
 }
@@ -99,6 +99,12 @@ impl Folded {
             ..self
         }
     }
+}
+
+/// The lowest bits of a number, the highest of them its sign.
+pub(super) const fn cropped(x: i32, bits: u32) -> i32 {
+    let beyond = 32 - bits;
+    x << beyond >> beyond
 }
 
 /// The coordinates of a point in the world.
@@ -146,13 +152,25 @@ fn menger<'a>(point: [i32; 3], levels: impl Iterator<Item = &'a i32>, half: i32)
 }
 
 /// A box: the largest of |x| − half.
-fn cuboid(point: [i32; 3], half: &[Option<i32>; 3], room: bool, repeated: bool) -> Sample {
+fn cuboid(
+    point: [i32; 3],
+    fraction: u32,
+    half: &[Option<i32>; 3],
+    room: bool,
+    repeated: bool,
+) -> Sample {
     // 64 units are 2^18: the middle of the cell in which the point lies is where the lowest 18 bits are 0.
-    let wrap = |x: i32| if repeated { x << 14 >> 14 } else { x };
+    let wrap = |x: i32| {
+        if repeated {
+            cropped(x, 6 + fraction)
+        } else {
+            x
+        }
+    };
     let p = unfolded(point.map(wrap)).map(|x| x.negated_if(x.value < 0));
     // Beyond all that there is: below −2^21 and no larger in magnitude than 23 bits hold.
-    const NOWHERE: i32 = -1 << 22;
-    let outside = [0, 1, 2].map(|i: usize| half[i].map_or(NOWHERE, |half| p[i].value - half));
+    let nowhere = -1 << (10 + fraction);
+    let outside = [0, 1, 2].map(|i: usize| half[i].map_or(nowhere, |half| p[i].value - half));
     let big = largest(outside);
     let nearest = Folded {
         value: outside[big],

@@ -1,7 +1,7 @@
 //! A pixel's ray: where it begins, and where it ends.
 
-use super::field::Surface;
-use super::setup::{Eye, Setup};
+use super::field::{Surface, cropped};
+use super::setup::{Eye, FRACTION, Setup, farthest};
 
 /// Below 1/m for every m that begins with these ten bits behind its point: 2^10/(i + 1), cut so that no product
 /// with m rounds to 1. u8.9, 17 bits.
@@ -62,9 +62,6 @@ pub struct Outcome {
     pub steps: u32,
 }
 
-/// The largest t.
-const MAX_T: u64 = (1 << 23) - 1;
-
 impl Setup {
     /// The ray of a pixel.
     pub fn ray(&self, eye: usize, x: u32, y: u32) -> Ray {
@@ -89,7 +86,7 @@ impl Setup {
             eye,
             direction,
             length,
-            start: near.max(entry).min(MAX_T) as u32,
+            start: near.max(entry).min(farthest(self.fraction).into()) as u32,
         }
     }
 
@@ -115,7 +112,9 @@ impl Setup {
         let mut steps = 0;
         loop {
             let point = self.point(ray, t);
-            let sample = self.solid.sample(point.map(|x| x << 10 >> 10));
+            let sample = self
+                .solid
+                .sample(point.map(|x| cropped(x, 10 + self.fraction)), self.fraction);
             steps += 1;
             // A ray that has left the box, or never came to it, and goes away from it.
             let gone = (0..3).any(|i| {
@@ -149,6 +148,6 @@ impl Setup {
 
     /// The depth of a point of a ray along n in field units times 2^e, 21 fraction bits.
     pub fn depth_of(&self, ray: &Ray, t: u32) -> u64 {
-        u64::from(t) * u64::from(INVERSE[ray.length as usize])
+        (u64::from(t) * u64::from(INVERSE[ray.length as usize])) << FRACTION >> self.fraction
     }
 }

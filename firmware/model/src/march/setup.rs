@@ -5,7 +5,7 @@ use glint_core::field::Field;
 use glint_core::fixed::{Q2_23, Q32_32, U4_28};
 use glint_core::stereo::{Stereo, Tint};
 
-use super::field::Solid;
+use super::field::{Solid, cropped};
 use super::paint::Palette;
 use crate::frame::DepthScale;
 use crate::render::{RenderError, SIZES};
@@ -19,10 +19,14 @@ const HALF_SIDE: Q32_32 = Q32_32::lit("40.5");
 const PERIOD: Q32_32 = Q32_32::lit("64");
 
 /// More than any coordinate: those of points are s13.12.
-const UNBOUNDED: u32 = (1 << 24) - 1;
+const fn unbounded(fraction: u32) -> u32 {
+    (1 << (12 + fraction)) - 1
+}
 
 /// The farthest that a ray goes: t is u11.12.
-const FARTHEST: u32 = (1 << 23) - 1;
+pub(super) const fn farthest(fraction: u32) -> u32 {
+    (1 << (11 + fraction)) - 1
+}
 
 /// How finely a field is marched: what its error and its time depend on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,8 +52,20 @@ pub const DEFAULT_TUNING: Tuning = Tuning {
     threshold: 24,
     footprint: 14,
     cap: 255,
-    far: FARTHEST,
+    far: farthest(FRACTION),
 };
+
+impl Tuning {
+    /// The same lengths with another number of fraction bits, the threshold nearest.
+    fn with_fraction(self, fraction: u32) -> Self {
+        let narrowed = |x: u32| ((u64::from(x) << fraction) + (1 << (FRACTION - 1))) >> FRACTION;
+        Self {
+            threshold: narrowed(self.threshold) as u32,
+            far: (narrowed(self.far + 1) - 1) as u32,
+            ..self
+        }
+    }
+}
 
 /// How a field is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,6 +78,8 @@ pub struct FieldOptions {
     pub palette: Palette,
     /// How dense the fog is: e^−z of something is left that is z/density world units away. 0 is none.
     pub fog: U4_28,
+    /// Fraction bits of field units, 8 to 16. The gateware has 12; the others are there to show what they are worth.
+    pub fraction: u32,
 }
 
 impl FieldOptions {
@@ -86,6 +104,7 @@ impl Default for FieldOptions {
             tuning: DEFAULT_TUNING,
             palette: Palette::default(),
             fog: U4_28::ZERO,
+            fraction: FRACTION,
         }
     }
 }
@@ -109,11 +128,13 @@ pub struct Setup {
     pub width: u32,
     /// Height of the picture in pixels.
     pub height: u32,
+    /// Fraction bits of field units: 12 wherever a format says so, unless the options say otherwise.
+    pub fraction: u32,
     /// What there is.
     pub solid: Solid,
     /// Field units in a world unit: 4 to 256.
     pub scale: Q32_32,
-    /// Half the sides of the box about the origin that holds it, u12.12; [`UNBOUNDED`] where it has no end.
+    /// Half the sides of the box about the origin that holds it, u12.12; as large as can be where it has no end.
     pub bounds: [u32; 3],
     /// The left and the right eye; the second is unused without stereo.
     pub eyes: [Eye; 2],
@@ -147,9 +168,10 @@ impl Setup {
         if !SIZES.contains(&(width, height)) {
             return Err(RenderError::Size { width, height });
         }
-        let (solid, scale, extent) = in_units(field);
-        let bounds = extent.map_or([UNBOUNDED; 3], |extent| {
-            extent.map(|half| units(half, scale) as u32)
+        let fraction = options.fraction;
+        let (solid, scale, extent) = in_units(field, fraction);
+        let bounds = extent.map_or([unbounded(fraction); 3], |extent| {
+            extent.map(|half| units(half, scale, fraction) as u32)
         });
 
         let (shift, parallax) = match options.stereo {
@@ -170,10 +192,10 @@ impl Setup {
                 // |C| ≤ 32 and e ≤ 1.
                 let aside = (shift.to_bits() >> 8) * i64::from(view.u()[i].to_bits());
                 let place = Q32_32::from_bits(view.eye()[i].to_bits() + sign * (aside >> 15));
-                let place = units(place, scale) as i32;
+                let place = units(place, scale, fraction) as i32;
                 match solid {
                     // The same place in the cell about the origin.
-                    Solid::Box { repeated: true, .. } => place << 14 >> 14,
+                    Solid::Box { repeated: true, .. } => cropped(place, 6 + fraction),
                     _ => place,
                 }
             });
@@ -187,34 +209,36 @@ impl Setup {
 
         let near = i64::from(view.near().to_bits()) << 4;
         // At most 2 world units.
-        let near_units = units(Q32_32::from_bits(near), scale) << rays.exponent;
+        let near_units = units(Q32_32::from_bits(near), scale, fraction) << rays.exponent;
         let world_depth = depth_scale(view, near, extent);
         Ok(Self {
             width,
             height,
+            fraction,
             solid,
             scale,
             bounds,
             eyes: [eye(-1, rays.first[0]), eye(1, rays.first[1])],
             steps: [rays.across, rays.down].map(|step| step.map(|x| rays.narrow(x))),
             exponent: rays.exponent,
-            near: near_units.clamp(0, i64::from(FARTHEST)) as u32,
+            near: near_units.clamp(0, farthest(fraction).into()) as u32,
             depth: world_depth.times(scale, rays.exponent),
             world_depth,
-            tuning: options.tuning,
+            tuning: options.tuning.with_fraction(fraction),
             stereo: options.stereo.map(|stereo| stereo.tint),
         })
     }
 }
 
 /// The solid, its units in one world unit, and half the sides of its box in world units.
-fn in_units(field: &Field) -> (Solid, Q32_32, Option<[Q32_32; 3]>) {
-    let solid_units = |x: Q32_32, scale| units(x, scale) as i32;
+fn in_units(field: &Field, fraction: u32) -> (Solid, Q32_32, Option<[Q32_32; 3]>) {
+    let solid_units = |x: Q32_32, scale| units(x, scale, fraction) as i32;
     match *field {
         Field::Menger { depth } => {
             // 81/3^i, each an even number of 2^−12.
-            let levels = [27, 9, 3, 1].map(|s| s << FRACTION);
-            let levels = [levels[0], levels[1], levels[2], levels[3], 1366, 456];
+            let one = 1 << fraction;
+            let [third, ninth] = [3, 9].map(|parts| (one / 2 + parts / 2) / parts * 2);
+            let levels = [27 * one, 9 * one, 3 * one, one, third, ninth];
             let last = levels[usize::from(depth.clamp(1, 6)) - 1];
             let solid = Solid::Menger {
                 levels,
@@ -262,11 +286,11 @@ fn in_units(field: &Field) -> (Solid, Q32_32, Option<[Q32_32; 3]>) {
     }
 }
 
-/// A length in world units in field units, 12 fraction bits, nearest. |x| is at most 64 and the scale 256.
-fn units(x: Q32_32, scale: Q32_32) -> i64 {
+/// A length in world units in field units, nearest. |x| is at most 64 and the scale 256.
+fn units(x: Q32_32, scale: Q32_32, fraction: u32) -> i64 {
     // 24 and 20 fraction bits.
     let product = (x.to_bits() >> 8) * (scale.to_bits() >> 12);
-    (product + (1 << 31)) >> 32
+    (product + (1 << (43 - fraction))) >> (44 - fraction)
 }
 
 /// K from the nearest depth: at least the near plane's, or else that of the box.
