@@ -1,10 +1,12 @@
 //! `report sine --quick`: the files are written, the shipped kernels keep their promises, and the committed table is
-//! what the code gives.
+//! what the code gives. So is that of `report raymarch`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use glint_model::march::FieldOptions;
+use glint_reference::field::marched::{Measured, others, sponges};
 use glint_reference::sine::subjects::subjects;
 use glint_reference::sine::sweep::sweep;
 use serde_json::Value;
@@ -118,4 +120,49 @@ fn the_committed_table_is_not_stale() {
         recomputed += 1;
     }
     assert!(recomputed >= 2);
+}
+
+/// Draws the small pictures of docs/report/raymarch.csv again.
+#[test]
+fn the_committed_pictures_of_fields_are_not_stale() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/report/raymarch.csv");
+    let mut table = csv::Reader::from_path(&path).expect("docs/report/raymarch.csv is committed");
+    let header = table.headers().expect("a header").clone();
+    let rows: Vec<csv::StringRecord> = table.records().collect::<Result<_, _>>().expect("CSV");
+    let cell = |row: &csv::StringRecord, name: &str| {
+        let column = header.iter().position(|column| column == name);
+        row[column.expect("a column")].to_owned()
+    };
+    let size = (320, 180);
+    for subject in sponges(size).into_iter().chain(others(size)) {
+        let row = rows.iter().find(|row| {
+            (cell(row, "scene"), cell(row, "view")) == (subject.scene.clone(), subject.name.clone())
+                && cell(row, "width") == "320"
+        });
+        let row = row.expect("run `cargo xtask report raymarch`: pictures have come or gone");
+        let picture = subject.picture(&FieldOptions::default());
+        let measured = Measured::new(&subject.expected, &picture);
+        let accuracy = measured.accuracy;
+        let depth = accuracy.depth.expect("something to see");
+        let coded = measured.coded.expect("something to see");
+        for (name, now) in [
+            ("iou", accuracy.iou),
+            ("undecided", accuracy.undecided as f64),
+            ("depth_median", depth.median),
+            ("depth_p99", depth.p99),
+            ("depth_max", depth.max),
+            ("code_median", coded.median),
+            ("code_p99", coded.p99),
+            ("wrong_faces", accuracy.wrong_faces),
+            ("evaluations", measured.cost()),
+        ] {
+            let committed: f64 = cell(row, name).parse().expect("a number");
+            assert!(
+                (committed - now).abs() <= 1e-6 * now,
+                "{} {}: {name} is {committed:e} in the table and {now:e} now: run `cargo xtask report raymarch`",
+                subject.scene,
+                subject.name,
+            );
+        }
+    }
 }

@@ -4,7 +4,7 @@ use glint_core::camera::View;
 use glint_model::march::{self, FieldOptions, Setup, State};
 
 use super::metrics::{self, Accuracy, Expected, Outcome, Quantiles, accuracy};
-use super::{Face, Field};
+use super::{Face, Field, views};
 use crate::camera::{Camera, Size};
 
 /// What a ray of the model comes to.
@@ -69,8 +69,8 @@ fn reach(setup: &Setup, ray: &march::Ray) -> f64 {
     depth(setup, ray, setup.tuning.far)
 }
 
-/// The depth at t in world units.
-fn depth(setup: &Setup, ray: &march::Ray, t: u32) -> f64 {
+/// The depth at a ray's t, in world units.
+pub fn depth(setup: &Setup, ray: &march::Ray, t: u32) -> f64 {
     let units = setup.depth_of(ray, t) as f64 * (-21.0 - f64::from(setup.exponent)).exp2();
     units / setup.scale.to_num::<f64>()
 }
@@ -174,6 +174,30 @@ impl Subject {
     pub fn picture(&self, options: &FieldOptions) -> Vec<Marched> {
         picture(&self.setup(options), 0)
     }
+}
+
+/// The sponge of depth 4 in all [`views`].
+pub fn sponges(size: (u32, u32)) -> Vec<Subject> {
+    views::views()
+        .into_iter()
+        .map(|(name, eye, target)| {
+            Subject::new(name, "menger:4", &views::camera(eye, target), size)
+        })
+        .collect()
+}
+
+/// The other kinds of fields, from aside; all but the box go on to the horizon.
+pub fn others(size: (u32, u32)) -> Vec<Subject> {
+    let camera = views::camera([1.25, -1.875, 0.40625], [0.0; 3]);
+    [
+        "box:1,0.5,0.25",
+        "cubes:0.25,0.1",
+        "cubes:2,0.5",
+        "planes:12",
+        "planes:0.5",
+    ]
+    .map(|scene| Subject::new("aside", scene, &camera, size))
+    .into()
 }
 
 /// What a picture is worth and what it has cost.

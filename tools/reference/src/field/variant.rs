@@ -45,11 +45,10 @@ pub struct Method {
 }
 
 impl Method {
-    /// Marches to the sponge of a depth, from the near plane or where the ray comes to the cube around it.
+    /// Marches to the sponge of a depth from a parameter of the ray on, its depth.
     ///
-    /// `ray` is one whose parameter is the depth, and so is `near`. Its normal at the end is by the largest slope of the
-    /// distance in the maximum norm.
-    pub fn march(&self, depth: u32, ray: &Ray, near: f64) -> Marched {
+    /// The normal at the end is by the largest slope of the distance in the maximum norm.
+    pub fn march(&self, depth: u32, ray: &Ray, start: f64) -> Marched {
         let sponge = Field::Menger { depth };
         let speed = self.rays.of(ray.direction);
         let distance = |p| match self.distance {
@@ -57,17 +56,13 @@ impl Method {
             // What is not above 0 has no size in the other norm.
             Norm::Euclidean => euclidean(depth, p).max(sponge.distance(p).min(0.0)),
         };
-        let outward = |axis: usize, p: Vector| (p[axis] < 0.0) == (ray.direction[axis] < 0.0);
-        let entry = (0..3)
-            .filter(|&axis| !outward(axis, ray.origin))
-            .map(|axis| (ray.origin[axis].abs() - 1.0) / ray.direction[axis].abs());
-        let mut t = entry.fold(near, f64::max);
+        let mut t = start;
         let mut steps = 0;
         let outcome = loop {
             let point = ray.at(t);
             let left = distance(point);
             steps += 1;
-            if (0..3).any(|axis| point[axis].abs() > 1.0 && outward(axis, point)) {
+            if (0..3).any(|axis| point[axis].abs() > 1.0 && outward(ray, axis, point)) {
                 break Outcome::Miss;
             }
             let doubled = self.relax.map_or(0, |every| steps / every);
@@ -90,6 +85,19 @@ impl Method {
             steps,
         }
     }
+}
+
+/// Whether a ray that is at a point goes away from the origin along an axis.
+fn outward(ray: &Ray, axis: usize, p: Vector) -> bool {
+    (p[axis] < 0.0) == (ray.direction[axis] < 0.0)
+}
+
+/// Where a ray comes to the cube around the sponge if it does; 0 for one that starts inside.
+pub fn entry(ray: &Ray) -> f64 {
+    (0..3)
+        .filter(|&axis| !outward(ray, axis, ray.origin))
+        .map(|axis| (ray.origin[axis].abs() - 1.0) / ray.direction[axis].abs())
+        .fold(0.0, f64::max)
 }
 
 /// What is left of the way to a face after the last step.

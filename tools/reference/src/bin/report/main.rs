@@ -6,6 +6,7 @@ mod cycles;
 mod gouraud;
 mod page;
 mod plot;
+mod raymarch;
 mod table;
 mod triangle;
 
@@ -35,6 +36,8 @@ enum Page {
     Sine(SineArguments),
     /// The triangle engine on the whole SoC, beside its targets
     Triangle(triangle::Arguments),
+    /// Distance fields: the raymarcher's pictures against exact hits, and what they take
+    Raymarch(raymarch::Arguments),
     /// Smooth shading beside light that is linear on the screen
     Gouraud(gouraud::Arguments),
 }
@@ -65,6 +68,7 @@ fn main() -> Result<()> {
     match Arguments::parse().page {
         Page::Sine(arguments) => sine(&arguments),
         Page::Triangle(arguments) => triangle::report(&arguments),
+        Page::Raymarch(arguments) => raymarch::report(&arguments),
         Page::Gouraud(arguments) => gouraud::report(&arguments),
     }
 }
@@ -138,7 +142,11 @@ fn sine(arguments: &SineArguments) -> Result<()> {
     std::fs::create_dir_all(&out)
         .with_context(|| format!("cannot make the folder {}", out.display()))?;
     table::write_csv(&rows, &out.join("sine.csv"))?;
-    plot::write(&rows, &out.join("sine.svg"))?;
+    plot::write(
+        &table::DIAGRAM,
+        &table::points(&rows),
+        &out.join("sine.svg"),
+    )?;
     page::write(
         &rows,
         reference_error,

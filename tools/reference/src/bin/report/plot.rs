@@ -1,15 +1,14 @@
-//! The work-precision diagram `sine.svg`.
+//! Work-precision diagrams: error across, cost up, each logarithmic unless it stays within a decade.
 
 use std::path::Path;
 
 use anyhow::{Result, anyhow};
+use plotters::coord::ranged1d::ValueFormatter;
 use plotters::prelude::*;
 
-use crate::table::Row;
-
 const SIZE: (u32, u32) = (960, 600);
-/// The range of cycles where nothing was measured.
-const EMPTY: (f64, f64) = (10.0, 100_000.0);
+/// The range of the cost where nothing was measured.
+const EMPTY: Span = Span(10.0, 100_000.0);
 
 /// Colours of the families, dark enough for thin text.
 const COLOURS: [RGBColor; 6] = [
@@ -21,63 +20,99 @@ const COLOURS: [RGBColor; 6] = [
     RGBColor(72, 72, 72),
 ];
 
-/// Writes the diagram: largest error across, median cycles up, one line a family, what Glint uses ringed. A kernel without
-/// cycles is a dashed line at its error.
-pub fn write(rows: &[Row], path: &Path) -> Result<()> {
-    draw(rows, path).map_err(|error| anyhow!("cannot draw {}: {error}", path.display()))
+/// What a diagram says about itself.
+pub struct Diagram {
+    pub title: &'static str,
+    /// What is across: an error.
+    pub across: &'static str,
+    /// What is up: a cost.
+    pub up: &'static str,
 }
 
 /// A point of the diagram.
-struct Point<'a> {
-    row: &'a Row,
-    error: f64,
-    cycles: Option<f64>,
+pub struct Point {
+    /// Points of a family are joined.
+    pub family: String,
+    pub label: String,
+    pub error: f64,
+    /// A point without it is a dashed line at its error.
+    pub cost: Option<f64>,
+    /// Whether Glint uses it.
+    pub shipped: bool,
 }
 
-fn draw(rows: &[Row], path: &Path) -> Result<(), Box<dyn std::error::Error>> {
-    // One point a kernel: over the more inputs, where there are two rows.
-    let mut points: Vec<Point> = Vec::new();
-    for row in rows {
-        points.retain(|point| point.row.kernel != row.kernel);
-        points.push(Point {
-            row,
-            error: row.max_err,
-            cycles: row.cycles_median.map(|cycles| cycles as f64),
-        });
-    }
-    let errors = span(points.iter().map(|point| point.error)).unwrap_or((1e-10, 1.0));
-    let cycles = span(points.iter().filter_map(|point| point.cycles)).unwrap_or(EMPTY);
+/// Writes the diagram: one line a family, what Glint uses ringed.
+pub fn write(diagram: &Diagram, points: &[Point], path: &Path) -> Result<()> {
+    draw(diagram, points, path).map_err(|error| anyhow!("cannot draw {}: {error}", path.display()))
+}
+
+fn draw(
+    diagram: &Diagram,
+    points: &[Point],
+    path: &Path,
+) -> Result<(), Box<dyn std::error::Error>> {
+    let errors = Span::new(points.iter().map(|point| point.error)).unwrap_or(Span(1e-10, 1.0));
+    let costs = Span::new(points.iter().filter_map(|point| point.cost)).unwrap_or(EMPTY);
+    let (Span(left, right), Span(bottom, top)) = (errors, costs);
 
     let root = SVGBackend::new(path, SIZE).into_drawing_area();
     root.fill(&WHITE)?;
-    let mut chart = ChartBuilder::on(&root)
-        .caption(
-            "Sine and cosine: cycles against largest error",
-            ("sans-serif", 22),
-        )
+    let mut chart = ChartBuilder::on(&root);
+    chart
+        .caption(diagram.title, ("sans-serif", 22))
         .margin(16)
         .x_label_area_size(44)
-        .y_label_area_size(70)
-        .build_cartesian_2d(
-            (errors.0..errors.1).log_scale(),
-            (cycles.0..cycles.1).log_scale(),
-        )?;
+        .y_label_area_size(70);
+    let (across, up) = (left..right, bottom..top);
+    match (errors.is_narrow(), costs.is_narrow()) {
+        (false, false) => {
+            let chart = chart.build_cartesian_2d(across.log_scale(), up.log_scale())?;
+            fill(chart, diagram, points, costs)?;
+        }
+        (false, true) => {
+            let chart = chart.build_cartesian_2d(across.log_scale(), up)?;
+            fill(chart, diagram, points, costs)?;
+        }
+        (true, false) => {
+            let chart = chart.build_cartesian_2d(across, up.log_scale())?;
+            fill(chart, diagram, points, costs)?;
+        }
+        (true, true) => {
+            let chart = chart.build_cartesian_2d(across, up)?;
+            fill(chart, diagram, points, costs)?;
+        }
+    }
+    root.present()?;
+    Ok(())
+}
+
+/// Draws what is inside of the axes, and their numbers.
+fn fill<'a, X, Y>(
+    mut chart: ChartContext<'a, SVGBackend<'a>, Cartesian2d<X, Y>>,
+    diagram: &Diagram,
+    points: &[Point],
+    costs: Span,
+) -> Result<(), Box<dyn std::error::Error>>
+where
+    X: Ranged<ValueType = f64> + ValueFormatter<f64>,
+    Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
+{
     chart
         .configure_mesh()
-        .x_desc("largest absolute error, over all inputs")
-        .y_desc("median cycles of a call on the SoC")
-        .x_label_formatter(&|error| format!("{error:.0e}"))
-        .y_label_formatter(&|cycles| format!("{cycles}"))
+        .x_desc(diagram.across)
+        .y_desc(diagram.up)
+        .x_label_formatter(&number)
+        .y_label_formatter(&|cost| format!("{}", (cost * 1e6).round() / 1e6))
         .light_line_style(BLACK.mix(0.04))
         .draw()?;
 
-    for (family, colour) in families(&points).into_iter().zip(COLOURS.iter().cycle()) {
+    for (family, colour) in families(points).into_iter().zip(COLOURS.iter().cycle()) {
         let mut measured: Vec<&Point> = points
             .iter()
-            .filter(|point| point.row.family == family && point.cycles.is_some())
+            .filter(|point| point.family == family && point.cost.is_some())
             .collect();
         measured.sort_by(|a, b| a.error.total_cmp(&b.error));
-        let at = |point: &Point| point.cycles.map(|cycles| (point.error, cycles));
+        let at = |point: &Point| point.cost.map(|cost| (point.error, cost));
         chart
             .draw_series(LineSeries::new(
                 measured.iter().filter_map(|point| at(point)),
@@ -85,14 +120,13 @@ fn draw(rows: &[Row], path: &Path) -> Result<(), Box<dyn std::error::Error>> {
             ))?
             .label(family)
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
-        for point in points.iter().filter(|point| point.row.family == family) {
-            let label = format!("{} {}", point.row.kernel, point.row.word_length);
+        for point in points.iter().filter(|point| point.family == family) {
             let Some(place) = at(point) else {
-                let dashes = [(point.error, cycles.0), (point.error, cycles.1)];
+                let dashes = [(point.error, costs.0), (point.error, costs.1)];
                 chart.draw_series(DashedLineSeries::new(dashes, 3, 5, colour.stroke_width(1)))?;
                 let text = Text::new(
-                    format!("{} (not measured)", point.row.kernel),
-                    (point.error, cycles.1),
+                    format!("{} (not measured)", point.label),
+                    (point.error, costs.1),
                     ("sans-serif", 11)
                         .into_font()
                         .transform(FontTransform::Rotate90)
@@ -102,10 +136,11 @@ fn draw(rows: &[Row], path: &Path) -> Result<(), Box<dyn std::error::Error>> {
                 continue;
             };
             chart.draw_series([Circle::new(place, 4, colour.filled())])?;
-            if point.row.shipped {
+            if point.shipped {
                 chart.draw_series([Circle::new(place, 9, BLACK.stroke_width(2))])?;
             }
-            let name = EmptyElement::at(place) + Text::new(label, (12, -6), ("sans-serif", 13));
+            let name = EmptyElement::at(place)
+                + Text::new(point.label.clone(), (12, -6), ("sans-serif", 13));
             chart.draw_series([name])?;
         }
     }
@@ -115,28 +150,55 @@ fn draw(rows: &[Row], path: &Path) -> Result<(), Box<dyn std::error::Error>> {
         .background_style(WHITE.mix(0.8))
         .border_style(BLACK.mix(0.3))
         .draw()?;
-    root.present()?;
     Ok(())
 }
 
-fn families<'a>(points: &[Point<'a>]) -> Vec<&'a str> {
+/// A power of ten without the digits that it does not need.
+fn number(error: &f64) -> String {
+    let short = format!("{error:.0e}");
+    if short
+        .parse()
+        .is_ok_and(|near: f64| (near - error).abs() < 1e-6 * error)
+    {
+        short
+    } else {
+        format!("{error:.2e}")
+    }
+}
+
+fn families(points: &[Point]) -> Vec<&str> {
     let mut found = Vec::new();
     for point in points {
-        if !found.contains(&point.row.family) {
-            found.push(point.row.family);
+        if !found.contains(&point.family.as_str()) {
+            found.push(point.family.as_str());
         }
     }
     found
 }
 
-/// Whole decades around some positive values, with room to write beside them.
-fn span(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
-    let range = values.fold(None, |range: Option<(f64, f64)>, value| match range {
-        None => Some((value, value)),
-        Some((low, high)) => Some((low.min(value), high.max(value))),
-    })?;
-    Some((
-        10f64.powf((range.0 / 1.5).log10().floor()),
-        10f64.powf((range.1 * 1.5).log10().ceil()),
-    ))
+/// From where to where an axis goes.
+#[derive(Clone, Copy)]
+struct Span(f64, f64);
+
+impl Span {
+    /// Whole decades around some positive values, with room to write beside them; within one decade just the room.
+    fn new(values: impl Iterator<Item = f64>) -> Option<Self> {
+        let range = values.fold(None, |range: Option<(f64, f64)>, value| match range {
+            None => Some((value, value)),
+            Some((low, high)) => Some((low.min(value), high.max(value))),
+        })?;
+        if range.1 < 10.0 * range.0 {
+            let room = 0.1 * (range.1 - range.0).max(0.1 * range.1);
+            return Some(Self(range.0 - room, range.1 + room));
+        }
+        Some(Self(
+            10f64.powf((range.0 / 1.5).log10().floor()),
+            10f64.powf((range.1 * 1.5).log10().ceil()),
+        ))
+    }
+
+    /// Whether it is less than a decade, in which a logarithmic axis would have no numbers.
+    fn is_narrow(self) -> bool {
+        self.1 < 10.0 * self.0
+    }
 }

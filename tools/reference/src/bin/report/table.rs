@@ -11,6 +11,7 @@ use serde::Serialize;
 
 use crate::cycles::Figures;
 use crate::in_workspace;
+use crate::plot::{Diagram, Point};
 
 /// One kernel in one configuration: a line of the CSV. Errors are absolute.
 #[derive(Clone, Debug, Serialize)]
@@ -163,8 +164,36 @@ fn output(program: &str, arguments: &[&str]) -> String {
     }
 }
 
+/// What `sine.svg` shows.
+pub const DIAGRAM: Diagram = Diagram {
+    title: "Sine and cosine: cycles against largest error",
+    across: "largest absolute error, over all inputs",
+    up: "median cycles of a call on the SoC",
+};
+
+/// The points of the diagram, one a kernel: over the more inputs, where there are two rows.
+pub fn points(rows: &[Row]) -> Vec<Point> {
+    let mut last: Vec<&Row> = Vec::new();
+    for row in rows {
+        last.retain(|other| other.kernel != row.kernel);
+        last.push(row);
+    }
+    last.into_iter()
+        .map(|row| Point {
+            family: row.family.to_owned(),
+            label: match row.cycles_median {
+                Some(_) => format!("{} {}", row.kernel, row.word_length),
+                None => row.kernel.to_owned(),
+            },
+            error: row.max_err,
+            cost: row.cycles_median.map(|cycles| cycles as f64),
+            shipped: row.shipped,
+        })
+        .collect()
+}
+
 /// Writes the rows as CSV.
-pub fn write_csv(rows: &[Row], path: &Path) -> Result<()> {
+pub fn write_csv<T: Serialize>(rows: &[T], path: &Path) -> Result<()> {
     let mut writer =
         csv::Writer::from_path(path).with_context(|| format!("cannot write {}", path.display()))?;
     for row in rows {

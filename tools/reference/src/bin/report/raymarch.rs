@@ -1,0 +1,681 @@
+//! The page `raymarch.md`: how far the raymarcher's pictures are from exact hits, for how many evaluations of the field.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use glint_model::march::{DEFAULT_TUNING, FieldOptions, Tuning};
+use glint_reference::camera::{Ray, Size};
+use glint_reference::field::Field;
+use glint_reference::field::marched::{self, Marched, Measured, Subject};
+use glint_reference::field::metrics::{Accuracy, Expected, Outcome};
+use glint_reference::field::variant::{Method, Norm, Taps, entry};
+use serde::Serialize;
+
+use crate::in_workspace;
+use crate::plot::{self, Diagram, Point};
+use crate::table::{Provenance, write_csv};
+
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// Print the rows as JSON instead of a table
+    #[arg(long)]
+    json: bool,
+    /// Only pictures of 320x180, without the diagrams (seconds instead of a minute)
+    #[arg(long)]
+    quick: bool,
+    /// Folder for raymarch.md and its tables and diagrams [default: docs/report, or target/report with --quick]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+const SMALL: (u32, u32) = (320, 180);
+const LARGE: (u32, u32) = (1280, 720);
+
+/// Least part of the masks in common, and what is aimed at.
+const IOU: [f64; 2] = [0.999, 0.9999];
+/// Most error of the depth in world units, half of the pixels.
+const MEDIAN: [f64; 2] = [3e-4, 2e-4];
+/// Likewise, 99 of 100.
+const P99: [f64; 2] = [3e-3, 5e-4];
+/// Most wrong faces, of all that both show.
+const FACES: [f64; 2] = [0.01, 0.003];
+/// Most evaluations a ray at 320 × 180: 60 frames a second for two eyes, from two lanes at 81.25 MHz.
+const SMALL_COST: [f64; 2] = [23.5, 11.7];
+/// Likewise at 1280 × 720.
+const LARGE_COST: [f64; 2] = [14.4, 11.5];
+
+/// What a picture misses of what is asked or aimed at, cost apart.
+fn missed(accuracy: &Accuracy, level: usize) -> Vec<&'static str> {
+    let depth = accuracy.depth;
+    let checks = [
+        (accuracy.iou >= IOU[level], "IoU"),
+        (depth.is_none_or(|d| d.median <= MEDIAN[level]), "median"),
+        (depth.is_none_or(|d| d.p99 <= P99[level]), "p99"),
+        (accuracy.wrong_faces <= FACES[level], "faces"),
+        (accuracy.undecided == 0, "undecided"),
+    ];
+    let failed = checks.into_iter().filter(|(met, _)| !met);
+    failed.map(|(_, name)| name).collect()
+}
+
+/// A picture: a line of `raymarch.csv`. Depths are in world units along n.
+#[derive(Serialize)]
+struct Row {
+    scene: String,
+    view: String,
+    width: u32,
+    height: u32,
+    iou: f64,
+    false_hits: usize,
+    false_misses: usize,
+    undecided: usize,
+    depth_median: Option<f64>,
+    depth_p99: Option<f64>,
+    depth_max: Option<f64>,
+    code_median: Option<f64>,
+    code_p99: Option<f64>,
+    code_max: Option<f64>,
+    wrong_faces: f64,
+    /// The part of the pixels beside an edge, where little decides.
+    unstable: f64,
+    evaluations: f64,
+    evaluations_max: u32,
+    /// What is asked of the sponge and not met.
+    missed: String,
+    /// What is aimed at and not met.
+    not_reached: String,
+    commit: String,
+}
+
+impl Row {
+    fn new(subject: &Subject, measured: &Measured, commit: &str) -> Self {
+        let &Measured {
+            accuracy, coded, ..
+        } = measured;
+        let (width, height) = subject.size;
+        let cost = if width == SMALL.0 {
+            SMALL_COST
+        } else {
+            LARGE_COST
+        };
+        // Only of the sponge something is asked.
+        let list = |level: usize| match subject.field {
+            Field::Menger { .. } => {
+                let mut missed = missed(&accuracy, level);
+                if measured.cost() > cost[level] {
+                    missed.push("evaluations");
+                }
+                missed.join(" ")
+            }
+            _ => String::new(),
+        };
+        Self {
+            scene: subject.scene.clone(),
+            view: subject.name.clone(),
+            width,
+            height,
+            iou: accuracy.iou,
+            false_hits: accuracy.false_hit,
+            false_misses: accuracy.false_miss,
+            undecided: accuracy.undecided,
+            depth_median: accuracy.depth.map(|depth| depth.median),
+            depth_p99: accuracy.depth.map(|depth| depth.p99),
+            depth_max: accuracy.depth.map(|depth| depth.max),
+            code_median: coded.map(|depth| depth.median),
+            code_p99: coded.map(|depth| depth.p99),
+            code_max: coded.map(|depth| depth.max),
+            wrong_faces: accuracy.wrong_faces,
+            unstable: accuracy.unstable,
+            evaluations: measured.cost(),
+            evaluations_max: measured.most,
+            missed: list(0),
+            not_reached: list(1),
+            commit: commit.to_owned(),
+        }
+    }
+}
+
+/// A configuration, over the sponge's four views at 320 × 180: a line of a diagram's CSV.
+#[derive(Serialize)]
+struct Trial {
+    family: String,
+    config: String,
+    /// Whether Glint uses it.
+    shipped: bool,
+    iou: f64,
+    undecided: usize,
+    depth_median: Option<f64>,
+    depth_p99: Option<f64>,
+    depth_max: Option<f64>,
+    wrong_faces: f64,
+    evaluations: f64,
+    /// What is asked and not met.
+    failed: String,
+    commit: String,
+}
+
+/// A diagram with its table.
+struct Study {
+    name: &'static str,
+    diagram: Diagram,
+    /// What is varied, and what it shows.
+    text: &'static str,
+    error: fn(&Trial) -> f64,
+    trials: Vec<Trial>,
+}
+
+/// The pictures that every trial draws.
+struct Bench<'a> {
+    subjects: &'a [Subject],
+    expected: Vec<Expected>,
+    commit: &'a str,
+}
+
+impl<'a> Bench<'a> {
+    fn new(subjects: &'a [Subject], commit: &'a str) -> Self {
+        let expected = subjects.iter().flat_map(|subject| &subject.expected);
+        Self {
+            subjects,
+            expected: expected.copied().collect(),
+            commit,
+        }
+    }
+
+    /// Draws all views in one way. `added` are evaluations of a hit that the pictures do not count.
+    fn trial(
+        &self,
+        family: &str,
+        config: String,
+        added: u32,
+        draw: impl Fn(&Subject) -> Vec<Marched>,
+    ) -> Trial {
+        let found: Vec<Marched> = self.subjects.iter().flat_map(draw).collect();
+        let measured = Measured::new(&self.expected, &found);
+        let accuracy = measured.accuracy;
+        let hit = |ray: &&Marched| matches!(ray.outcome, Outcome::Hit { .. });
+        let hits = found.iter().filter(hit).count();
+        Trial {
+            family: family.to_owned(),
+            config,
+            shipped: false,
+            iou: accuracy.iou,
+            undecided: accuracy.undecided,
+            depth_median: accuracy.depth.map(|depth| depth.median),
+            depth_p99: accuracy.depth.map(|depth| depth.p99),
+            depth_max: accuracy.depth.map(|depth| depth.max),
+            wrong_faces: accuracy.wrong_faces,
+            evaluations: measured.cost() + (hits as f64 * f64::from(added)) / found.len() as f64,
+            failed: missed(&accuracy, 0).join(" "),
+            commit: self.commit.to_owned(),
+        }
+    }
+
+    /// Draws them by the model.
+    fn model(&self, family: &str, config: String, options: &FieldOptions) -> Trial {
+        let mut trial = self.trial(family, config, 0, |subject| subject.picture(options));
+        trial.shipped = *options == FieldOptions::default();
+        trial
+    }
+
+    /// Draws them in f64, from where the model's rays begin or exactly where they come to the cube around the sponge.
+    fn variant(&self, family: &str, config: String, method: &Method, exact_entry: bool) -> Trial {
+        self.trial(family, config, 0, |subject| {
+            let Field::Menger { depth } = subject.field else {
+                unreachable!("trials draw the sponge");
+            };
+            let setup = subject.setup(&FieldOptions::default());
+            pixels(subject)
+                .map(|(x, y, ray)| {
+                    let begin = if exact_entry {
+                        entry(&ray).max(subject.camera.near)
+                    } else {
+                        let ray = setup.ray(0, x, y);
+                        marched::depth(&setup, &ray, ray.start)
+                    };
+                    method.march(depth, &ray, begin)
+                })
+                .collect()
+        })
+    }
+}
+
+/// A subject's pixels with their rays, row by row.
+fn pixels(subject: &Subject) -> impl Iterator<Item = (u32, u32, Ray)> {
+    let (width, height) = subject.size;
+    let size = Size { width, height };
+    let camera = subject.camera;
+    (0..width * height).map(move |i| {
+        let (x, y) = (i % width, i / width);
+        (x, y, camera.ray([x, y].map(f64::from), size))
+    })
+}
+
+fn tuned(tuning: Tuning) -> FieldOptions {
+    FieldOptions {
+        tuning,
+        ..FieldOptions::default()
+    }
+}
+
+/// The sponge's field units in a world unit.
+const UNITS: f64 = 40.5;
+
+/// Glint's march in f64, with another threshold.
+fn in_f64(threshold: u32) -> Method {
+    Method {
+        distance: Norm::Maximum,
+        rays: Norm::Maximum,
+        threshold: f64::from(threshold) / 4096.0 / UNITS,
+        footprint: (-f64::from(DEFAULT_TUNING.footprint)).exp2(),
+        cap: DEFAULT_TUNING.cap,
+        relax: None,
+        correct: false,
+    }
+}
+
+const DEPTH_P99: &str = "error of the depth that 1 of 100 exceeds, in world units";
+const DEPTH_MEDIAN: &str = "error of the depth that 1 of 2 exceeds, in world units";
+const EVALUATIONS: &str = "evaluations a ray";
+
+fn p99(trial: &Trial) -> f64 {
+    trial.depth_p99.unwrap_or(0.0)
+}
+
+fn fractions(bench: &Bench) -> Study {
+    let with = |fraction, threshold| FieldOptions {
+        fraction,
+        ..tuned(Tuning {
+            threshold,
+            ..DEFAULT_TUNING
+        })
+    };
+    let same = (8..=16).map(|fraction| {
+        let options = with(fraction, DEFAULT_TUNING.threshold);
+        bench.model("the same threshold", format!("{fraction} bits"), &options)
+    });
+    let fitting = (8..=15).map(|fraction| {
+        let threshold = (DEFAULT_TUNING.threshold << 12) >> fraction;
+        let options = with(fraction, threshold);
+        bench.model(
+            "a threshold of 24 steps",
+            format!("{fraction} bits"),
+            &options,
+        )
+    });
+    Study {
+        name: "fraction",
+        diagram: Diagram {
+            title: "Fraction bits of field units",
+            across: DEPTH_MEDIAN,
+            up: EVALUATIONS,
+        },
+        text: "Fraction bits of coordinates and distances, with the threshold as long as it is and with one of as many steps. \
+               Directions keep their 17 bits.",
+        error: |trial| trial.depth_median.unwrap_or(0.0),
+        trials: same.chain(fitting).collect(),
+    }
+}
+
+fn caps(bench: &Bench) -> Study {
+    let trials = [8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 255].map(|cap| {
+        let options = tuned(Tuning {
+            cap,
+            ..DEFAULT_TUNING
+        });
+        bench.model("cap", format!("{cap}"), &options)
+    });
+    Study {
+        name: "cap",
+        diagram: Diagram {
+            title: "Evaluations after which a ray is given up",
+            across: "part of the masks not in common",
+            up: EVALUATIONS,
+        },
+        text: "What is given up counts as no hit.",
+        error: |trial| 1.0 - trial.iou,
+        trials: trials.into(),
+    }
+}
+
+fn thresholds(bench: &Bench) -> Study {
+    let footprints = [10, 12, 13, 14, 15];
+    let trials = footprints.into_iter().flat_map(|footprint| {
+        [4, 8, 16, 24, 40, 80, 160, 320].map(|threshold| {
+            let options = tuned(Tuning {
+                threshold,
+                footprint,
+                ..DEFAULT_TUNING
+            });
+            bench.model(
+                &format!("t/2^{footprint}"),
+                format!("{threshold}"),
+                &options,
+            )
+        })
+    });
+    Study {
+        name: "threshold",
+        diagram: Diagram {
+            title: "Thresholds at which a ray ends",
+            across: DEPTH_P99,
+            up: EVALUATIONS,
+        },
+        text: "The threshold in steps of 2^−12 field units, and the part of the distance gone that is added to it.",
+        error: p99,
+        trials: trials.collect(),
+    }
+}
+
+fn norms(bench: &Bench) -> Study {
+    let families = [
+        ("maximum norm, its rays", Norm::Maximum, Norm::Maximum),
+        ("maximum norm, unit rays", Norm::Maximum, Norm::Euclidean),
+        (
+            "Euclidean norm, unit rays",
+            Norm::Euclidean,
+            Norm::Euclidean,
+        ),
+    ];
+    let mut trials: Vec<_> = families
+        .into_iter()
+        .flat_map(|(family, distance, rays)| {
+            [6, 12, 24, 48, 96].map(|threshold| {
+                let method = Method {
+                    distance,
+                    rays,
+                    ..in_f64(threshold)
+                };
+                bench.variant(family, format!("{threshold}"), &method, false)
+            })
+        })
+        .collect();
+    let config = format!("Glint, {}", DEFAULT_TUNING.threshold);
+    trials.push(bench.model("the model", config, &FieldOptions::default()));
+    Study {
+        name: "norm",
+        diagram: Diagram {
+            title: "Norms of distances and of rays",
+            across: DEPTH_P99,
+            up: EVALUATIONS,
+        },
+        text: "In f64 but for the model, by threshold, from where the model's rays begin: distances in the maximum norm with rays of \
+               length 1 in the same norm, which is what Glint does, the same with rays of Euclidean length 1, and Euclidean \
+               distances.",
+        error: p99,
+        trials,
+    }
+}
+
+fn ends(bench: &Bench) -> Study {
+    let families = [
+        ("as it is", None, false, false),
+        ("corrected", None, true, false),
+        ("relaxed", Some(64), false, false),
+        ("relaxed and corrected", Some(64), true, false),
+        ("exact entry", None, false, true),
+    ];
+    let trials = families
+        .into_iter()
+        .flat_map(|(family, relax, correct, exact_entry)| {
+            [6, 12, 24, 48, 96].map(|threshold| {
+                let method = Method {
+                    relax,
+                    correct,
+                    ..in_f64(threshold)
+                };
+                bench.variant(family, format!("{threshold}"), &method, exact_entry)
+            })
+        });
+    Study {
+        name: "end",
+        diagram: Diagram {
+            title: "Beginnings and ends of rays that Glint has not",
+            across: DEPTH_P99,
+            up: EVALUATIONS,
+        },
+        text: "In f64, by threshold, from where the model's rays begin. *Corrected*: the distance after the last step over the direction's \
+               part along the normal is added where the ray goes to the face, so that depths are right where faces are; the \
+               evaluation for it is not counted. *Relaxed*: the threshold is twice as large after each 64 evaluations. *Exact entry*: rays begin where \
+               they come to the cube around the sponge, and not before it by what ten bits of a reciprocal leave. Errors below 1e-6, which field units do not \
+               resolve, are drawn as 1e-6.",
+        error: |trial| p99(trial).max(1e-6),
+        trials: trials.collect(),
+    }
+}
+
+fn normals(bench: &Bench) -> Study {
+    let options = FieldOptions::default();
+    let mut trials = vec![bench.model("the nearest face's", "active term".into(), &options)];
+    for (family, taps) in [
+        ("forward differences", Taps::Forward),
+        ("tetrahedron", Taps::Tetrahedron),
+    ] {
+        for bits in 8..=12 {
+            let step = (-f64::from(bits)).exp2() / UNITS;
+            trials.push(
+                bench.trial(family, format!("2^-{bits}"), Taps::COUNT, |subject| {
+                    let picture = subject.picture(&options);
+                    picture
+                        .into_iter()
+                        .zip(pixels(subject))
+                        .map(|(mut marched, (_, _, ray))| {
+                            if let Outcome::Hit { t, face, .. } = &mut marched.outcome {
+                                *face = taps.face(&subject.field, ray.at(*t), step);
+                            }
+                            marched
+                        })
+                        .collect()
+                }),
+            );
+        }
+    }
+    Study {
+        name: "normal",
+        diagram: Diagram {
+            title: "Ways to the normal",
+            across: "part of the faces that is wrong",
+            up: EVALUATIONS,
+        },
+        text: "At the model's hits: the face that the last distance was to, which Glint takes and which costs nothing, or the largest slope \
+               by distances in f64 a step beside the hit, in field units. The distance at the hit counts as one of the four of \
+               forward differences.",
+        error: |trial| trial.wrong_faces,
+        trials,
+    }
+}
+
+pub fn report(arguments: &Arguments) -> Result<()> {
+    let provenance = Provenance::find();
+    let small = marched::sponges(SMALL);
+    let mut rows: Vec<Row> = Vec::new();
+    let mut add = |subjects: &[Subject]| {
+        rows.extend(subjects.iter().map(|subject| {
+            let picture = subject.picture(&FieldOptions::default());
+            let measured = Measured::new(&subject.expected, &picture);
+            Row::new(subject, &measured, &provenance.commit)
+        }));
+    };
+    add(&small);
+    add(&marched::others(SMALL));
+    if !arguments.quick {
+        add(&marched::sponges(LARGE));
+    }
+    if arguments.json {
+        println!("{}", serde_json::to_string_pretty(&rows)?);
+    } else {
+        print!("{}", table(&rows)?);
+    }
+    let studies = if arguments.quick {
+        vec![]
+    } else {
+        let bench = Bench::new(&small, &provenance.commit);
+        [fractions, caps, thresholds, norms, ends, normals]
+            .map(|study| study(&bench))
+            .into()
+    };
+    let out = match &arguments.out {
+        Some(out) => out.clone(),
+        None => in_workspace(if arguments.quick {
+            "target/report"
+        } else {
+            "docs/report"
+        }),
+    };
+    std::fs::create_dir_all(&out)
+        .with_context(|| format!("cannot make the folder {}", out.display()))?;
+    write_csv(&rows, &out.join("raymarch.csv"))?;
+    studies.iter().try_for_each(|study| write(study, &out))?;
+    std::fs::write(out.join("raymarch.md"), page(&rows, &studies, &provenance)?)
+        .with_context(|| format!("cannot write raymarch.md to {}", out.display()))?;
+    eprintln!("wrote raymarch.md and its tables to {}", out.display());
+    Ok(())
+}
+
+/// Writes the table and the diagram of a study.
+fn write(study: &Study, out: &Path) -> Result<()> {
+    let points: Vec<Point> = study
+        .trials
+        .iter()
+        .map(|trial| Point {
+            family: trial.family.clone(),
+            label: trial.config.clone(),
+            error: (study.error)(trial),
+            cost: Some(trial.evaluations),
+            shipped: trial.shipped,
+        })
+        .collect();
+    let file = |extension: &str| out.join(format!("raymarch-{}.{extension}", study.name));
+    write_csv(&study.trials, &file("csv"))?;
+    plot::write(&study.diagram, &points, &file("svg"))
+}
+
+/// An error as tables show it.
+fn shown(error: Option<f64>) -> String {
+    error.map_or("none".to_owned(), |error| format!("{error:.1e}"))
+}
+
+fn table(rows: &[Row]) -> Result<String> {
+    let mut text = String::from(
+        "| field | view | size | IoU | false hits, misses | undecided | depth: median, p99, max | by code | wrong faces | evaluations a ray: mean, max | asked and missed | aimed at and not reached |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|---|\n",
+    );
+    for row in rows {
+        writeln!(
+            text,
+            "| {} | {} | {}×{} | {:.6} | {}, {} | {} | {}, {}, {} | {}, {}, {} | {:.2} % | {:.2}, {} | {} | {} |",
+            row.scene,
+            row.view,
+            row.width,
+            row.height,
+            row.iou,
+            row.false_hits,
+            row.false_misses,
+            row.undecided,
+            shown(row.depth_median),
+            shown(row.depth_p99),
+            shown(row.depth_max),
+            shown(row.code_median),
+            shown(row.code_p99),
+            shown(row.code_max),
+            100.0 * row.wrong_faces,
+            row.evaluations,
+            row.evaluations_max,
+            row.missed,
+            row.not_reached,
+        )?;
+    }
+    Ok(text)
+}
+
+fn page(rows: &[Row], studies: &[Study], provenance: &Provenance) -> Result<String> {
+    let Tuning {
+        threshold,
+        footprint,
+        cap,
+        ..
+    } = DEFAULT_TUNING;
+    let mut text = format!(
+        "# Distance fields: error against evaluations\n\n\
+         Generated by `cargo xtask report raymarch`; the same numbers are in [raymarch.csv](raymarch.csv).\n\n\
+         Pictures of the model, which the gateware equals bit for bit, against exact hits of the same pixels' rays in f64. A ray \
+         ends where the distance is below {threshold}·2^−12 field units and 2^−{footprint} of the way gone, or after {cap} evaluations of the field. \
+         IoU is the part of the pixels where both hit among those where either does, and what is undecided is no hit; depths are \
+         in world units along the direction of view, from t and from the 18-bit code; a face is wrong where both hit and the \
+         normals differ. All pixels count, those along edges too. The views of the sponge are outside of it, close to a face, in the \
+         largest tunnel, and grazing a face.\n\n\
+         Of the sponge it is asked (aimed at): IoU {} ({}), depth median {:.0e} ({:.0e}), p99 {:.0e} ({:.0e}), wrong faces {} % ({} %), \
+         nothing undecided, evaluations a ray {} ({}) at 320×180 and {} ({}) at 1280×720.\n\n",
+        IOU[0],
+        IOU[1],
+        MEDIAN[0],
+        MEDIAN[1],
+        P99[0],
+        P99[1],
+        100.0 * FACES[0],
+        100.0 * FACES[1],
+        SMALL_COST[0],
+        SMALL_COST[1],
+        LARGE_COST[0],
+        LARGE_COST[1],
+    );
+    text.push_str(&table(rows)?);
+    if !studies.is_empty() {
+        text.push_str(
+            "\n## What it depends on\n\n\
+             Each configuration draws the sponge in the four views at 320×180, of which the figures are taken together. What Glint uses \
+             is ringed.\n",
+        );
+    }
+    for study in studies {
+        writeln!(
+            text,
+            "\n### {}\n\n![{}](raymarch-{}.svg)\n\n{} All of it is in [raymarch-{}.csv](raymarch-{}.csv).\n",
+            study.diagram.title,
+            study.diagram.title,
+            study.name,
+            study.text,
+            study.name,
+            study.name,
+        )?;
+        text.push_str(&failures(study)?);
+    }
+    writeln!(
+        text,
+        "\nMade at commit {} with {}.",
+        provenance.commit, provenance.tools
+    )?;
+    Ok(text)
+}
+
+/// The configurations that do not give what is asked, with the reasons.
+fn failures(study: &Study) -> Result<String> {
+    let failed: Vec<&Trial> = study
+        .trials
+        .iter()
+        .filter(|trial| !trial.failed.is_empty())
+        .collect();
+    if failed.is_empty() {
+        return Ok("No configuration misses what is asked.\n".to_owned());
+    }
+    let mut text = String::from(
+        "Those that miss something that is asked:\n\n\
+         | | | IoU | undecided | depth: median, p99 | wrong faces | evaluations a ray | missed |\n|---|---|---|---|---|---|---|---|\n",
+    );
+    for trial in failed {
+        writeln!(
+            text,
+            "| {} | {} | {:.6} | {} | {}, {} | {:.2} % | {:.2} | {} |",
+            trial.family,
+            trial.config,
+            trial.iou,
+            trial.undecided,
+            shown(trial.depth_median),
+            shown(trial.depth_p99),
+            100.0 * trial.wrong_faces,
+            trial.evaluations,
+            trial.failed,
+        )?;
+    }
+    Ok(text)
+}
