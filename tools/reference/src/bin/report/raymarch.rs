@@ -311,7 +311,8 @@ fn fractions(bench: &Bench) -> Study {
             up: EVALUATIONS,
         },
         text: "Fraction bits of coordinates and distances, with the threshold as long as it is and with one of as many steps. \
-               Directions keep their 17 bits.",
+               Directions keep their 17 bits. With the same threshold more than 12 bits change the median of the depth, by a few millionths, \
+               and nothing else: what is wrong at edges is the threshold's doing, and a finer one costs evaluations whatever the bits.",
         error: |trial| trial.depth_median.unwrap_or(0.0),
         trials: same.chain(fitting).collect(),
     }
@@ -332,7 +333,8 @@ fn caps(bench: &Bench) -> Study {
             across: "part of the masks not in common",
             up: EVALUATIONS,
         },
-        text: "What is given up counts as no hit.",
+        text: "What is given up counts as no hit. The last rays to end run along faces: a smaller cap gives up more of them and saves \
+               hardly any evaluations.",
         error: |trial| 1.0 - trial.iou,
         trials: trials.into(),
     }
@@ -401,7 +403,8 @@ fn norms(bench: &Bench) -> Study {
         },
         text: "In f64 but for the model, by threshold, from where the model's rays begin: distances in the maximum norm with rays of \
                length 1 in the same norm, which is what Glint does, the same with rays of Euclidean length 1, and Euclidean \
-               distances.",
+               distances. Rays of Euclidean length 1 take a fifth more evaluations and are no better for it, and the model is \
+               where its f64 twin is.",
         error: p99,
         trials,
     }
@@ -477,9 +480,10 @@ fn normals(bench: &Bench) -> Study {
             across: "part of the faces that is wrong",
             up: EVALUATIONS,
         },
-        text: "At the model's hits: the face that the last distance was to, which Glint takes and which costs nothing, or the largest slope \
-               by distances in f64 a step beside the hit, in field units. The distance at the hit counts as one of the four of \
-               forward differences.",
+        text: "At the model's hits: the face that the last distance was to, which Glint takes and which costs nothing, or the \
+               largest slope by distances in f64 a step beside the hit, in field units. The distance at the hit counts as one of the \
+               four of forward differences. They put right less than a tenth of the wrong faces: the others are where the ray has ended in \
+               the wrong place.",
         error: |trial| trial.wrong_faces,
         trials,
     }
@@ -620,6 +624,11 @@ fn page(rows: &[Row], studies: &[Study], provenance: &Provenance) -> Result<Stri
         LARGE_COST[1],
     );
     text.push_str(&table(rows)?);
+    text.push_str(
+        "\nLarge errors of the depth are at edges, where a ray ends although it would pass: all false hits and most wrong faces are of \
+         this kind. Smaller ones are on faces that a ray meets flat, where it ends the threshold before them. Undecided are rays that run along a face, whose steps are as short as the face is near: few where the sponge is \
+         looked at, many towards the horizon of fields without end.\n",
+    );
     if !studies.is_empty() {
         text.push_str(
             "\n## What it depends on\n\n\
