@@ -40,7 +40,7 @@ pub struct Method {
     pub cap: u32,
     /// Evaluations after each of which the threshold is twice as large, if ever.
     pub relax: Option<u32>,
-    /// Whether the rest of the way is added at the end: the distance over the direction's part along the normal.
+    /// Whether the last step goes to the face, if the ray does: the distance over the direction's part along the normal.
     pub correct: bool,
 }
 
@@ -67,14 +67,20 @@ impl Method {
             }
             let doubled = self.relax.map_or(0, |every| steps / every);
             let threshold = (self.threshold + self.footprint * t * speed) * f64::from(1 << doubled);
-            t += left.max(0.0) / speed;
+            let step = left.max(0.0);
             if left < threshold {
                 let (face, normal, _) = sponge.surface(point);
-                if self.correct {
-                    t += rest(&sponge, ray, t, face);
-                }
+                t += match face {
+                    Face::Axis { axis, positive }
+                        if self.correct && (ray.direction[axis] < 0.0) == positive =>
+                    {
+                        step / ray.direction[axis].abs()
+                    }
+                    _ => step / speed,
+                };
                 break Outcome::Hit { t, face, normal };
             }
+            t += step / speed;
             if steps >= self.cap {
                 break Outcome::Undecided;
             }
@@ -98,16 +104,6 @@ pub fn entry(ray: &Ray) -> f64 {
         .filter(|&axis| !outward(ray, axis, ray.origin))
         .map(|axis| (ray.origin[axis].abs() - 1.0) / ray.direction[axis].abs())
         .fold(0.0, f64::max)
-}
-
-/// What is left of the way to a face after the last step.
-fn rest(sponge: &Field, ray: &Ray, t: f64, face: Face) -> f64 {
-    match face {
-        Face::Axis { axis, positive } if (ray.direction[axis] < 0.0) == positive => {
-            sponge.distance(ray.at(t)) / ray.direction[axis].abs()
-        }
-        _ => 0.0,
-    }
 }
 
 /// How a normal is found from distances beside a point.

@@ -437,11 +437,11 @@ fn ends(bench: &Bench) -> Study {
             across: DEPTH_P99,
             up: EVALUATIONS,
         },
-        text: "In f64, by threshold, from where the model's rays begin. *Corrected*: the distance after the last step over the direction's \
-               part along the normal is added where the ray goes to the face, so that depths are right where faces are; the \
-               evaluation for it is not counted. *Relaxed*: the threshold is twice as large after each 64 evaluations. *Exact entry*: rays begin where \
-               they come to the cube around the sponge, and not before it by what ten bits of a reciprocal leave. Errors below 1e-6, which field units do not \
-               resolve, are drawn as 1e-6.",
+        text: "In f64, by threshold, from where the model's rays begin. *Corrected*: the last step is the distance over the \
+               direction's part along the normal where the ray goes to the face, so that depths are right where faces are. \
+               *Relaxed*: the threshold is twice as large after each 64 evaluations. *Exact entry*: rays begin where they come to the \
+               cube around the sponge, and not before it by what ten bits of a reciprocal leave. Errors below 1e-6, which field units \
+               do not resolve, are drawn as 1e-6.",
         error: |trial| p99(trial).max(1e-6),
         trials: trials.collect(),
     }
