@@ -31,7 +31,8 @@ package march_pkg;
 
     typedef enum logic [1:0] {MISS = 2'd0, HIT = 2'd1, UNDECIDED = 2'd2} state_t;
 
-    // Its end. `surface` is {axis, positive}. Of a miss, `t` is the sine above the horizon in 8 bits, 0 below it.
+    // Its end. `surface` is {axis, positive}; `gap` and `slope` say how far it is from `t` and how steeply the ray goes there. Of a miss,
+    // `t` is the sine above the horizon in 8 bits, 0 below it.
     typedef struct packed {
         place_t            place;
         logic [9:0]        length;
@@ -39,8 +40,10 @@ package march_pkg;
         logic [7:0]        steps;
         state_t            state;
         logic [2:0]        surface;
+        logic [11:0]       gap;
+        logic [9:0]        slope;
     } end_t;
-    localparam int unsigned END_BITS = PLACE_BITS + 10 + T_BITS + 8 + 2 + 3;
+    localparam int unsigned END_BITS = PLACE_BITS + 10 + T_BITS + 8 + 2 + 3 + 12 + 10;
 
     // What there is; all of it holds while a frame is drawn.
     typedef struct packed {

@@ -3,12 +3,13 @@
 //   columns, lines ─▶ D = first + x·across + y·down ─▶ largest part ─▶ its inverse ─▶ direction = D·inverse
 //                                                          │                             │
 //                                 near·largest part ◀──────┘     inverses of its parts ◀─┘
-//                                        └─▶ start: the largest of it and of outside·inverses: where the ray comes to the box
+//                                        └─▶ start: the largest of it and of outside·inverses: where the ray comes to the box,
+//                                            and what is left there, times the inverses once more
 //
 // D grows by additions of 32 bits, so it is exactly what the formula says. Rays of the bands follow each other, in a band its lines
 // from the top, in a line the columns from the left; with `stereo` each line comes for the left eye and then for the right one.
 //
-// `start` (one clock, not while `busy`) begins the frame; parameters hold until it has ended. Latency 16 clocks, throughput a ray a
+// `start` (one clock, not while `busy`) begins the frame; parameters hold until it has ended. Latency 24 clocks, throughput a ray a
 // clock. Out: a stream, valid/ready, a ray stays until it has moved. `rst` ends the frame.
 
 `default_nettype none
@@ -38,7 +39,7 @@ module ray_generator #(
     output march_pkg::ray_t           out_ray
 );
     // Rays that leave together with the clocks since their D was there.
-    localparam int unsigned LAST = 15;
+    localparam int unsigned LAST = 23;
 
     logic          enable, running, ends_line, ends_eye, ends_band, ends;
     logic [LAST:0] valid;
@@ -89,7 +90,7 @@ module ray_generator #(
     end
 
     // 1: the first bits of each part; 2: the largest; 4: its inverse.
-    logic [9:0]  part_x, part_y, part_z, length_2, length_10;
+    logic [9:0]  part_x, part_y, part_z, length_2, length_18;
     logic [16:0] inverse_4;
     logic [2:0][24:0] d_0, d_4;
 
@@ -123,19 +124,17 @@ module ray_generator #(
     );
 
     march_pkg::place_t place_9;
-    logic [22:0]      near_13;
+    logic [22:0]      near_21;
     logic [33:0]      near_product;
-    logic [2:0][22:0] entry_13;
+    logic [2:0][22:0] entry_21;
 
     delay #(.WIDTH(march_pkg::PLACE_BITS), .CLOCKS(9)) place_waits (.clk, .enable, .in(place), .out(place_9));
-    delay #(.WIDTH(10), .CLOCKS(8)) length_waits (.clk, .enable, .in(length_2), .out(length_10));
+    delay #(.WIDTH(10), .CLOCKS(16)) length_waits (.clk, .enable, .in(length_2), .out(length_18));
 
-    // 10 to 12: where the ray comes to the box, along each axis.
+    // 10 to 21: where the ray comes to the box, along each axis.
     for (genvar i = 0; i < 3; i++) begin : axes
         logic signed [42:0] scaled;
-        logic signed [41:0] product;
-        logic [23:0]        outside_9;
-        logic               backwards_9, negative_9, comes_12;
+        logic               backwards_9, negative_9;
 
         multiply_add #(.BITS(43)) scale (
             .clk, .enable, .a(d_4[i]), .b({1'b0, inverse_4}), .c(43'd1 << 15), .p(scaled)
@@ -144,50 +143,76 @@ module ray_generator #(
         assign index_7[i]     = direction_7[i][16:7] ^ {10{direction_7[i][17]}};
 
         delay #(.WIDTH(1), .CLOCKS(2)) sign (.clk, .enable, .in(direction_7[i][17]), .out(backwards_9));
-        assign outside_9  = STEREO && place_9.eye ? outside[1][i] : outside[0][i];
         assign negative_9 = STEREO && place_9.eye ? origins[1][i][24] : origins[0][i][24];
-        delay #(.WIDTH(1), .CLOCKS(3)) coming (.clk, .enable, .in(negative_9 != backwards_9), .out(comes_12));
+
+        // 12: outside·inverse, 13: saturated. 16: t·(|d| + 1). 17: what is left. 20: left·inverse. 21: where.
+        logic [16:0]        part_7, part_13, inverse_17;
+        logic [23:0]        outside_9, outside_16, left_17;
+        logic signed [41:0] product_12, gone_16, product_20;
+        logic [22:0]        t_13, t_15, t_20;
+        logic [33:0]        sum;
+        logic               comes_20;
+
+        assign outside_9 = STEREO && place_9.eye ? outside[1][i] : outside[0][i];
+        assign part_7    = direction_7[i][16:0] ^ {17{direction_7[i][17]}};
+
+        delay #(.WIDTH(1), .CLOCKS(11)) coming (.clk, .enable, .in(negative_9 != backwards_9), .out(comes_20));
+        delay #(.WIDTH(17), .CLOCKS(6)) part_waits (.clk, .enable, .in(part_7), .out(part_13));
+        delay #(.WIDTH(24), .CLOCKS(7)) outside_waits (.clk, .enable, .in(outside_9), .out(outside_16));
+        delay #(.WIDTH(17), .CLOCKS(8)) inverse_waits (.clk, .enable, .in(inverse_9[i]), .out(inverse_17));
+        delay #(.WIDTH(23), .CLOCKS(2)) t_waits (.clk, .enable, .in(t_13), .out(t_15));
+        delay #(.WIDTH(23), .CLOCKS(5)) t_goes (.clk, .enable, .in(t_15), .out(t_20));
 
         multiply_add #(.BITS(42)) entry (
-            .clk, .enable, .a({1'b0, outside_9}), .b({1'b0, inverse_9[i]}), .c('0), .p(product)
+            .clk, .enable, .a({1'b0, outside_9}), .b({1'b0, inverse_9[i]}), .c('0), .p(product_12)
         );
+        multiply_add #(.BITS(42)) covered (
+            .clk, .enable, .a({2'b0, t_13}), .b({1'b0, part_13}), .c({19'b0, t_15}), .p(gone_16)
+        );
+        multiply_add #(.BITS(42)) rest (
+            .clk, .enable, .a({1'b0, left_17}), .b({1'b0, inverse_17}), .c('0), .p(product_20)
+        );
+        // Below 2^32: no more is left than there was, and its inverse is below 2^17.
+        assign sum = 34'(t_20) + 34'(product_20[41:9]);
 
-        // Saturates.
         always_ff @(posedge clk) begin
-            if (enable) entry_13[i] <= product[31:9] | {23{product[41:32] != '0}};
-            if (enable && !comes_12) entry_13[i] <= '0;
+            if (enable) begin
+                t_13    <= product_12[31:9] | {23{product_12[41:32] != '0}};
+                left_17 <= 24'(gone_16[41:17]) >= outside_16 ? '0 : outside_16 - 24'(gone_16[41:17]) - 24'd1;
+                entry_21[i] <= !comes_20 ? '0 : sum[22:0] | {23{sum[33:23] != '0}};
+            end
         end
 
-        wire _unused = &{1'b0, scaled[42:34], scaled[15:0], product[8:0]};
+        wire _unused = &{1'b0, scaled[42:34], scaled[15:0], product_12[8:0], gone_16[16:0], product_20[8:0]};
     end
 
-    // 13: the near plane. Its product comes with those of the box.
+    // 21: the near plane. Its product comes with those of the box.
     multiply_add #(.BITS(34)) at_near (
-        .clk, .enable, .a({2'b0, near_limit}), .b({7'b0, {1'b0, length_10}} + 18'd1), .c('0), .p(near_product)
+        .clk, .enable, .a({2'b0, near_limit}), .b({7'b0, {1'b0, length_18}} + 18'd1), .c('0), .p(near_product)
     );
-    assign near_13 = near_product[32:10];
+    assign near_21 = near_product[32:10];
 
-    // 14, 15: the largest of the four.
-    logic [22:0] farther_14, later_14, start_15;
+    // 22, 23: the largest of the four.
+    logic [22:0] farther_22, later_22, start_23;
 
     always_ff @(posedge clk) begin
         if (enable) begin
-            farther_14 <= entry_13[0] > entry_13[1] ? entry_13[0] : entry_13[1];
-            later_14   <= entry_13[2] > near_13 ? entry_13[2] : near_13;
-            start_15   <= farther_14 > later_14 ? farther_14 : later_14;
+            farther_22 <= entry_21[0] > entry_21[1] ? entry_21[0] : entry_21[1];
+            later_22   <= entry_21[2] > near_21 ? entry_21[2] : near_21;
+            start_23   <= farther_22 > later_22 ? farther_22 : later_22;
         end
     end
 
-    march_pkg::place_t place_15;
-    logic [9:0]        length_15;
-    logic [2:0][17:0]  direction_15;
+    march_pkg::place_t place_23;
+    logic [9:0]        length_23;
+    logic [2:0][17:0]  direction_23;
 
-    delay #(.WIDTH(march_pkg::PLACE_BITS), .CLOCKS(6)) place_goes (.clk, .enable, .in(place_9), .out(place_15));
-    delay #(.WIDTH(10), .CLOCKS(5)) length_goes (.clk, .enable, .in(length_10), .out(length_15));
-    delay #(.WIDTH(54), .CLOCKS(8)) direction_goes (.clk, .enable, .in(direction_7), .out(direction_15));
+    delay #(.WIDTH(march_pkg::PLACE_BITS), .CLOCKS(14)) place_goes (.clk, .enable, .in(place_9), .out(place_23));
+    delay #(.WIDTH(10), .CLOCKS(5)) length_goes (.clk, .enable, .in(length_18), .out(length_23));
+    delay #(.WIDTH(54), .CLOCKS(16)) direction_goes (.clk, .enable, .in(direction_7), .out(direction_23));
 
     skid_buffer #(.WIDTH(march_pkg::PLACE_BITS + 10 + 23 + 54)) leaving (
-        .clk, .rst, .in_valid(valid[LAST]), .in_ready(enable), .in_data({place_15, length_15, start_15, direction_15}),
+        .clk, .rst, .in_valid(valid[LAST]), .in_ready(enable), .in_data({place_23, length_23, start_23, direction_23}),
         .out_valid, .out_ready, .out_data(out_ray)
     );
 

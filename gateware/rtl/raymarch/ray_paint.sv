@@ -5,10 +5,12 @@
 //             ├─▶ steps ─▶ light ─────┐        ▼                                    │
 //             └─▶ surface ─▶ colour ─▶ × ─▶ mixed with the horizon ─▶ RGB565, L8 ───┘
 //
+// First a hit goes on from its last t to the plane of its surface: by `gap` over the direction's part along the normal.
+//
 // A pixel comes out as a group of the band buffer: its row, line and column of eight pixels, a mask of one lane, and one
 // code and colour for all lanes. With `stereo` the colour is the luminance, twice, and `out_eye` says which half counts.
 //
-// Streams are valid/ready. Latency 30 clocks, throughput a pixel a clock. Parameters hold while anything is inside.
+// Streams are valid/ready. Latency 36 clocks, throughput a pixel a clock. Parameters hold while anything is inside.
 
 `default_nettype none
 
@@ -44,29 +46,51 @@ module ray_paint (
     output logic [15:0]             out_colour,
     output logic                    idle
 );
-    localparam int unsigned LAST = 29;
+    localparam int unsigned LAST = 29, FIRST = 6;
 
-    logic          enable;
-    logic [LAST:1] valid;
+    logic                enable;
+    logic [FIRST+LAST:1] valid;
 
     assign in_ready = enable;
     assign idle     = valid == '0 && !out_valid;
 
     always_ff @(posedge clk) begin
-        if (enable) valid <= {valid[LAST-1:1], in_valid};
+        if (enable) valid <= {valid[FIRST+LAST-1:1], in_valid};
         if (rst) valid <= '0;
     end
 
+    // The way to the surface takes FIRST clocks: 2 to its slope's inverse, 3 to the product, 1 to t. Clocks count from `ending_0`.
+    march_pkg::end_t    ending_0, waited;
+    logic [16:0]        slope_inverse;
+    logic [11:0]        gap_waits;
+    logic signed [29:0] way;
+    logic [23:0]        reached;
+    logic [22:0]        t_waits_0;
+
+    delay #(.WIDTH(12), .CLOCKS(2)) gap_delay (.clk, .enable, .in(in_end.gap), .out(gap_waits));
+    multiply_add #(.BITS(30)) to_surface (
+        .clk, .enable, .a({13'b0, gap_waits}), .b({1'b0, slope_inverse}), .c('0), .p(way)
+    );
+    delay #(.WIDTH(23), .CLOCKS(5)) t_delay (.clk, .enable, .in(in_end.t), .out(t_waits_0));
+    delay #(.WIDTH(march_pkg::END_BITS), .CLOCKS(FIRST)) others (.clk, .enable, .in(in_end), .out(waited));
+    always_ff @(posedge clk) if (enable) reached <= {1'b0, t_waits_0} + {4'b0, way[28:9]};
+
+    always_comb begin
+        ending_0   = waited;
+        // Saturates.
+        ending_0.t = reached[22:0] | {23{reached[23]}};
+    end
+
     // 2: inverse. 5: depth.
-    logic [16:0]        inverse_2, unused_inverse;
+    logic [16:0]        inverse_2;
     logic [22:0]        t_2;
     logic signed [42:0] product_5;
     logic [17:0]        code_28;
 
     inverse_table length_inverse (
-        .clk, .enable, .index_a(in_end.length), .inverse_a(inverse_2), .index_b('0), .inverse_b(unused_inverse)
+        .clk, .enable, .index_a(ending_0.length), .inverse_a(inverse_2), .index_b(in_end.slope), .inverse_b(slope_inverse)
     );
-    delay #(.WIDTH(23), .CLOCKS(2)) t_waits (.clk, .enable, .in(in_end.t), .out(t_2));
+    delay #(.WIDTH(23), .CLOCKS(2)) t_waits (.clk, .enable, .in(ending_0.t), .out(t_2));
     multiply_add #(.BITS(43)) along (.clk, .enable, .a({2'b0, t_2}), .b({1'b0, inverse_2}), .c('0), .p(product_5));
 
     depth_code coded (
@@ -84,7 +108,7 @@ module ray_paint (
         end
     end
 
-    delay #(.WIDTH(8), .CLOCKS(7)) steps_wait (.clk, .enable, .in(in_end.steps), .out(steps_7));
+    delay #(.WIDTH(8), .CLOCKS(7)) steps_wait (.clk, .enable, .in(ending_0.steps), .out(steps_7));
     delay #(.WIDTH(8), .CLOCKS(7)) height_waits (.clk, .enable, .in(t_2[7:0]), .out(height_9));
     paint_table fog_and_light (
         .clk, .enable, .write(table_write), .write_entry(table_entry), .write_part(table_part),
@@ -99,7 +123,7 @@ module ray_paint (
     logic [8:0]        light_10, fog_10, fog_14;
 
     delay #(.WIDTH(5), .CLOCKS(8)) ending (
-        .clk, .enable, .in({in_end.state, in_end.surface}), .out({state_8, surface_8})
+        .clk, .enable, .in({ending_0.state, ending_0.surface}), .out({state_8, surface_8})
     );
 
     assign fog_part = state_9 == march_pkg::HIT ? fog_9 : ~height_9;
@@ -163,10 +187,10 @@ module ray_paint (
     logic [10:0]       first_row_28, row_29;
     logic [7:0]        column_28;
 
-    delay #(.WIDTH(march_pkg::PLACE_BITS), .CLOCKS(26)) place_waits (.clk, .enable, .in(in_end.place), .out(place_26));
+    delay #(.WIDTH(march_pkg::PLACE_BITS), .CLOCKS(26)) place_waits (.clk, .enable, .in(ending_0.place), .out(place_26));
     delay #(.WIDTH(march_pkg::PLACE_BITS), .CLOCKS(3)) place_goes (.clk, .enable, .in(place_26), .out(place_29));
     delay #(.WIDTH(8), .CLOCKS(2)) column_waits (.clk, .enable, .in(place_26.column[10:3]), .out(column_28));
-    delay #(.WIDTH(1), .CLOCKS(28)) hit_waits (.clk, .enable, .in(in_end.state == march_pkg::HIT), .out(hit_28));
+    delay #(.WIDTH(1), .CLOCKS(28)) hit_waits (.clk, .enable, .in(ending_0.state == march_pkg::HIT), .out(hit_28));
 
     always_ff @(posedge clk) begin
         if (enable) begin
@@ -180,12 +204,12 @@ module ray_paint (
     end
 
     skid_buffer #(.WIDTH(1 + 11 + 6 + 8 + 8 + 18 + 16)) leaving (
-        .clk, .rst, .in_valid(valid[LAST]), .in_ready(enable),
+        .clk, .rst, .in_valid(valid[FIRST+LAST]), .in_ready(enable),
         .in_data({place_29.eye, row_29, place_29.line, place_29.column[10:3], 8'b1 << place_29.column[2:0], code_29, colour_29}),
         .out_valid, .out_ready, .out_data({out_eye, out_row, out_line, out_column, out_mask, out_code, out_colour})
     );
 
-    wire _unused = &{1'b0, unused_inverse, product_5[42:40], place_29.odd, line_times_5[8], stride[5:0]};
+    wire _unused = &{1'b0, way[29], way[8:0], waited, ending_0.gap, ending_0.slope, product_5[42:40], place_29.odd, line_times_5[8], stride[5:0]};
 endmodule
 
 `default_nettype wire

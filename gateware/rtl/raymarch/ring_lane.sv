@@ -153,14 +153,18 @@ module ring_lane #(
     // Is it near? Then: is it too far, or has it taken too long?
     logic            near_2, gone_2, late_2;
     logic [march_pkg::T_BITS:0] next_2;
+    logic [march_pkg::T_BITS-1:0] t_2, taken_t;
+    logic [11:0]     gap_2, gap;
     logic [2:0]      surface_2;
     logic            beyond;
 
     assign beyond = gone_2 || next_2 > {1'b0, tuning.far_limit};
 
     always_ff @(posedge clk) begin
-        near_2    <= distance < $signed({5'b0, threshold});
+        near_2    <= distance < $signed({2'b0, 20'(threshold) << steps_1[7:6]});
         next_2    <= {1'b0, t_1} + 24'(distance[20:0] & {21{!distance[21]}});
+        t_2       <= t_1;
+        gap_2     <= distance[20:12] != '0 && !distance[21] ? '1 : distance[11:0] & {12{!distance[21]}};
         gone_2    <= gone_late;
         steps_2   <= steps_1 + 1'b1;
         surface_2 <= surface;
@@ -168,6 +172,8 @@ module ring_lane #(
         finished     <= beyond || near_2 || late_2;
         last_state   <= beyond ? march_pkg::MISS : near_2 ? march_pkg::HIT : march_pkg::UNDECIDED;
         last_t       <= next_2[march_pkg::T_BITS-1:0];
+        taken_t      <= t_2;
+        gap          <= beyond || !near_2 ? '0 : gap_2;
         last_steps   <= steps_2;
         last_surface <= surface_2;
     end
@@ -178,10 +184,16 @@ module ring_lane #(
     march_pkg::end_t end_in;
     logic [7:0]      height;
 
+    // How steeply the ray goes to the surface; all ones where it does not go there.
+    logic [10:0] part;
+    logic [9:0]  slope;
+
+    assign part   = last_cargo.direction[last_surface[2:1]][17:7];
+    assign slope  = part[10] == last_surface[0] ? part[9:0] ^ {10{part[10]}} : '1;
     assign height = last_cargo.direction[2][17] ? '0 : last_cargo.direction[2][16:9];
     assign end_in = {
-        last_cargo.place, last_cargo.length, last_state == march_pkg::MISS ? {15'b0, height} : last_t, last_steps, last_state,
-        last_surface
+        last_cargo.place, last_cargo.length, last_state == march_pkg::MISS ? {15'b0, height} : taken_t, last_steps, last_state,
+        last_surface, gap, slope
     };
 
     // There is a place: `end_ready` is always high when a ray ends.

@@ -132,7 +132,7 @@ pub fn paint(setup: &Setup, palette: &Palette, ray: &Ray, outcome: &Outcome) -> 
             (palette.zenith, 255, 255 - height.min(255) as u8)
         }
         State::Hit(surface) => {
-            let depth = setup.depth_of(ray, outcome.t) >> (21 + palette.fog_shift);
+            let depth = setup.depth_of(ray, outcome.reached()) >> (21 + palette.fog_shift);
             (
                 palette.faces[usize::from(surface.code()) % 6],
                 palette.occlusion[outcome.steps.min(255) as usize],

@@ -56,10 +56,22 @@ pub enum State {
 pub struct Outcome {
     /// How.
     pub state: State,
-    /// Where, u11.12.
+    /// Where the last evaluation was, u11.12.
     pub t: u32,
+    /// From there to the surface of a hit, at most 1 − 2^−12; 0 of all others. u0.12.
+    pub gap: u32,
+    /// The first ten bits of the direction's part along the surface's normal, where the ray goes towards it; or else all ones.
+    pub slope: u32,
     /// Evaluations of the field.
     pub steps: u32,
+}
+
+impl Outcome {
+    /// Where the ray has come to, u11.12: the surface's plane, if that is where it ends.
+    pub fn reached(&self) -> u32 {
+        let rest = (self.gap * INVERSE[self.slope as usize & 0x3FF]) >> 9;
+        (self.t + rest).min(farthest(FRACTION))
+    }
 }
 
 impl Setup {
@@ -90,7 +102,9 @@ impl Setup {
         }
     }
 
-    /// Where a ray comes to the box if it does: never beyond it.
+    /// Where a ray comes to the box if it does: never beyond it, and before it by some 2^−17 of the way.
+    ///
+    /// The table's reciprocal is too small by up to 1/i, so what is left to the box is divided once more.
     fn entry(&self, eye: usize, direction: &[i32; 3]) -> u64 {
         let Eye {
             origin, outside, ..
@@ -99,7 +113,13 @@ impl Setup {
             .filter(|&i| (origin[i] < 0) != (direction[i] < 0))
             .map(|i| {
                 let inverse = INVERSE[(magnitude(direction[i]) >> 7) as usize & 0x3FF];
-                (u64::from(outside[i]) * u64::from(inverse)) >> 9
+                let divided = |way: u64| (way * u64::from(inverse)) >> 9;
+                let outside = u64::from(outside[i]);
+                let part = u64::from(magnitude(direction[i]));
+                let near = divided(outside).min(farthest(self.fraction).into());
+                // |d| is at most part + 1.
+                let gone = (near * (part + 1)) >> 17;
+                near + divided(outside.saturating_sub(gone + 1))
             })
             .max()
             .unwrap_or(0)
@@ -115,12 +135,13 @@ impl Setup {
             let sample = self
                 .solid
                 .sample(point.map(|x| cropped(x, 10 + self.fraction)), self.fraction);
-            steps += 1;
             // A ray that has left the box, or never came to it, and goes away from it.
             let gone = (0..3).any(|i| {
                 magnitude(point[i]) > self.bounds[i] && (point[i] < 0) == (ray.direction[i] < 0)
             });
-            let threshold = tuning.threshold + (t >> tuning.footprint);
+            // A ray along a face takes short steps; it need not come as near.
+            let threshold = (tuning.threshold + (t >> tuning.footprint)) << (steps >> 6);
+            steps += 1;
             let next = t + sample.distance.max(0) as u32;
             let state = if gone || next > tuning.far {
                 Some(State::Miss)
@@ -131,11 +152,34 @@ impl Setup {
             } else {
                 None
             };
-            t = next;
             if let Some(state) = state {
-                return Outcome { state, t, steps };
+                let (gap, slope) = match state {
+                    State::Hit(surface) => self.approach(ray, sample.distance, surface),
+                    _ => (0, 0),
+                };
+                return Outcome {
+                    state,
+                    t,
+                    gap,
+                    slope,
+                    steps,
+                };
             }
+            t = next;
         }
+    }
+
+    /// How far the surface of a hit is, and how steeply the ray goes there.
+    fn approach(&self, ray: &Ray, distance: i32, surface: Surface) -> (u32, u32) {
+        let part = ray.direction[usize::from(surface.axis) % 3];
+        let comes = (part < 0) == surface.positive;
+        let gap = distance.clamp(0, (1 << self.fraction) - 1);
+        let slope = if comes {
+            magnitude(part) >> 7 & 0x3FF
+        } else {
+            0x3FF
+        };
+        (gap as u32, slope)
     }
 
     /// The point of a ray, s13.12.

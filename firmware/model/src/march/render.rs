@@ -62,7 +62,7 @@ pub fn render_field(
         stats.count(&outcome);
         show(x, y, &ray, &outcome);
         let code = match outcome.state {
-            State::Hit(_) => setup.depth_code(&ray, outcome.t),
+            State::Hit(_) => setup.depth_code(&ray, outcome.reached()),
             _ => 0,
         };
         (paint(setup, palette, &ray, &outcome), code)

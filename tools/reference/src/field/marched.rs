@@ -49,11 +49,13 @@ pub fn marched(setup: &Setup, ray: &march::Ray, end: &march::Outcome) -> Marched
             let mut normal = [0.0; 3];
             normal[axis] = if positive { 1.0 } else { -1.0 };
             let hit = Outcome::Hit {
-                t: depth(setup, ray, end.t),
+                t: depth(setup, ray, end.reached()),
                 face: Face::Axis { axis, positive },
                 normal,
             };
-            let coded = setup.world_depth.distance(setup.depth_code(ray, end.t));
+            let coded = setup
+                .world_depth
+                .distance(setup.depth_code(ray, end.reached()));
             (hit, coded.map(|depth| depth.to_num()))
         }
     };

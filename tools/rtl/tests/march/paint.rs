@@ -27,16 +27,23 @@ fn ending(random: &mut Random, setup: &Setup, start: &Ray) -> Outcome {
     if random.coin() {
         return setup.march(start);
     }
+    let state = match random.bits() % 8 {
+        0 => State::Miss,
+        1 => State::Undecided,
+        number => State::Hit(Surface {
+            axis: (number % 3) as u8,
+            positive: random.coin(),
+        }),
+    };
+    let gap = match state {
+        State::Hit(_) => random.integer(0, 4095) as u32,
+        _ => 0,
+    };
     Outcome {
-        state: match random.bits() % 8 {
-            0 => State::Miss,
-            1 => State::Undecided,
-            number => State::Hit(Surface {
-                axis: (number % 3) as u8,
-                positive: random.coin(),
-            }),
-        },
+        state,
         t: random.logarithmic(1.0, 8_388_608.0) as u32,
+        gap,
+        slope: random.integer(0, 1023) as u32,
         steps: random.integer(1, 255) as u32,
     }
 }

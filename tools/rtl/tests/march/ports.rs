@@ -44,8 +44,8 @@ pub fn ray(place: Place, ray: &Ray) -> Bits {
         .with(87, PLACE_BITS, place.number())
 }
 
-/// Where a ray has come to, as the end of one says. What does not count is 0: the surface without a hit, and t of a ray that
-/// was given up.
+/// Where a ray has come to, as the end of one says. What does not count is 0: surface and slope without a hit, and t of a ray
+/// that was given up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct End {
     pub state: u64,
@@ -53,6 +53,8 @@ pub struct End {
     pub t: u64,
     pub steps: u64,
     pub length: u64,
+    pub gap: u64,
+    pub slope: u64,
 }
 
 impl End {
@@ -68,19 +70,24 @@ impl End {
             t,
             steps: outcome.steps.into(),
             length: ray.length.into(),
+            gap: outcome.gap.into(),
+            slope: outcome.slope.into(),
         }
     }
 
     pub fn of(item: &Bits) -> (Place, Self) {
-        let state = item.field(3, 2);
+        let state = item.field(25, 2);
+        let if_hit = |value| if state == 1 { value } else { 0 };
         let end = Self {
-            surface: if state == 1 { item.field(0, 3) } else { 0 },
+            slope: if_hit(item.field(0, 10)),
+            gap: item.field(10, 12),
+            surface: if_hit(item.field(22, 3)),
             state,
-            steps: item.field(5, 8),
-            t: if state == 2 { 0 } else { item.field(13, 23) },
-            length: item.field(36, 10),
+            steps: item.field(27, 8),
+            t: if state == 2 { 0 } else { item.field(35, 23) },
+            length: item.field(58, 10),
         };
-        (Place::of(item.field(46, PLACE_BITS)), end)
+        (Place::of(item.field(68, PLACE_BITS)), end)
     }
 }
 
@@ -183,14 +190,18 @@ pub fn end(place: Place, ray: &Ray, outcome: &Outcome) -> Bits {
         t,
         steps,
         length,
+        gap,
+        slope,
     } = End::expected(ray, outcome);
     Bits::default()
-        .with(0, 3, surface)
-        .with(3, 2, state)
-        .with(5, 8, steps)
-        .with(13, 23, t)
-        .with(36, 10, length)
-        .with(46, PLACE_BITS, place.number())
+        .with(0, 10, slope)
+        .with(10, 12, gap)
+        .with(22, 3, surface)
+        .with(25, 2, state)
+        .with(27, 8, steps)
+        .with(35, 23, t)
+        .with(58, 10, length)
+        .with(68, PLACE_BITS, place.number())
 }
 
 fn colour([r, g, b]: [u8; 3]) -> u64 {
@@ -252,7 +263,7 @@ pub fn pixel(
 ) -> Pixel {
     let colour = paint(setup, palette, ray, outcome);
     let code = match outcome.state {
-        State::Hit(_) => setup.depth_code(ray, outcome.t),
+        State::Hit(_) => setup.depth_code(ray, outcome.reached()),
         _ => 0,
     };
     let colour = match setup.stereo {

@@ -1,7 +1,7 @@
 //! The whole SoC draws with its raymarcher what glint-model draws: every field from three sides, for one eye and for two,
 //! colours and depths, and what was counted.
 
-use glint::board::{SimulatedBoard, built_firmware};
+use glint::board::{Board, SimulatedBoard, built_firmware};
 use glint::console::Console;
 use glint::picture::Frame;
 use glint::render::{self, Counts, Rendered, Scene, Subject, on_model};
@@ -10,6 +10,7 @@ use glint_core::camera::View;
 use glint_core::field::Field;
 use glint_core::fixed::Q32_32;
 use glint_core::stereo::{Stereo, Tint};
+use glint_core::wire::Manifest;
 use glint_model::march::FieldOptions;
 
 use crate::common::Camera;
@@ -172,7 +173,15 @@ fn the_soc_draws_large_fields_and_goes_back_to_meshes() {
             backend: None,
         };
         let Rendered { frame, .. } = on_model(&scene).unwrap();
-        let lines = ["scene cube", "render", "info"].map(str::to_owned);
+        let Manifest { length, crc32 } = Manifest::of(&cube);
+        let staging = send(&mut console, &["info".to_owned()]).address("staging");
+        let memory = console.board().memory().unwrap();
+        memory.write_memory(staging, &cube).unwrap();
+        let lines = [
+            format!("load {length} {crc32:08x}"),
+            "render".to_owned(),
+            "info".to_owned(),
+        ];
         let told = send(&mut console, &lines);
         assert_eq!(told.text("backend"), "gateware", "{:#?}", told.lines);
         let name = format!("the cube at {size:?}");
