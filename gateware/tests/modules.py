@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 
 from glint_soc import scanout
-from glint_soc.march import RAY_GENERATOR, RAY_PAINT, RAYMARCHER, RING_LANE
+from glint_soc.march import FIELD_UNIT, RAY_GENERATOR, RAY_PAINT, RAYMARCHER, RING_LANE
 from glint_soc.triangle import BAND_BUFFER, SETUP, TRIANGLE_CONTROL, TRIANGLE_ENGINE, TRIANGLE_RASTER, VERTEX_STAGE
 
 
@@ -47,6 +47,8 @@ MODULES = [
     Module(top="setup", sources=SETUP, variants={"setup_smooth": _SMOOTH}),
     Module(top="triangle_raster", sources=TRIANGLE_RASTER, variants={"triangle_raster_smooth": _SMOOTH}),
     Module(top="triangle_engine", sources=TRIANGLE_ENGINE, variants={"triangle_engine_smooth": _SMOOTH, "triangle_engine_fields": {"FIELDS": 1}}),
+    Module(top="field_menger", sources=FIELD_UNIT),
+    Module(top="field_box", sources=FIELD_UNIT),
     Module(top="ray_generator", sources=RAY_GENERATOR),
     Module(top="ray_paint", sources=RAY_PAINT),
     Module(top="raymarcher", sources=RAYMARCHER, variants={"raymarcher_menger": {"LANES": 4, "LEVELS": 4, "BOXES": 0}}),

@@ -21,9 +21,15 @@ use budget::{Budget, Excess};
 use size::Size;
 
 /// The own blocks, the slowest to measure first.
-const OWN: [&str; 7] = [
+const OWN: [&str; 13] = [
     "triangle_engine_smooth",
     "triangle_engine",
+    "raymarcher",
+    "ring_lane",
+    "ray_paint",
+    "ray_generator",
+    "field_menger",
+    "field_box",
     "setup",
     "triangle_raster",
     "band_buffer",
@@ -39,7 +45,7 @@ const FLAT: &str = "flat_build";
 const SOC: &str = "soc";
 
 /// The rows of the tables in their order; other modules come after them.
-const ROWS: [&str; 9] = [
+const ROWS: [&str; 15] = [
     "scanout",
     "vertex_stage",
     "setup",
@@ -48,6 +54,12 @@ const ROWS: [&str; 9] = [
     "band_buffer",
     "triangle_engine",
     "triangle_engine_smooth",
+    "field_menger",
+    "field_box",
+    "ring_lane",
+    "ray_generator",
+    "ray_paint",
+    "raymarcher",
     SOC,
 ];
 
