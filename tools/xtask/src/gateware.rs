@@ -49,16 +49,11 @@ pub fn build(board: Board) -> Result<()> {
     build_with(board, &[])
 }
 
-/// Builds `board` with smooth shading in its triangle engine, in place of the build without.
+/// Builds `board` with options of `glint_soc`, in place of the build without.
 ///
 /// # Errors
 /// As [`build`].
-pub fn build_smooth(board: Board) -> Result<()> {
-    build_with(board, &["--smooth"])
-}
-
-/// Builds what is out of date, with options of `glint_soc`.
-fn build_with(board: Board, options: &[&str]) -> Result<()> {
+pub fn build_with(board: Board, options: &[&str]) -> Result<()> {
     generate(board, options)?;
     if board == Board::Virtual {
         verilate(Waveforms::Without)?;

@@ -35,8 +35,11 @@ enum Task {
         /// Build smooth shading into the triangle engine
         #[arg(long)]
         smooth: bool,
+        /// Build a raymarcher of four lanes for the sponge up to depth 4, instead of two for every field
+        #[arg(long)]
+        sponge: bool,
         /// Also build the virtual board's library that writes waveforms
-        #[arg(long, conflicts_with = "smooth")]
+        #[arg(long, conflicts_with_all = ["smooth", "sponge"])]
         waveforms: bool,
     },
     /// Write the register access crate and the register map from the SoC's description
@@ -86,13 +89,15 @@ fn main() -> Result<()> {
         Task::Gateware {
             board,
             smooth,
+            sponge,
             waveforms,
         } => {
-            if smooth {
-                gateware::build_smooth(board)?;
-            } else {
-                gateware::build(board)?;
-            }
+            let options = [(smooth, "--smooth"), (sponge, "--sponge")];
+            let options: Vec<_> = options
+                .into_iter()
+                .filter_map(|(wanted, option)| wanted.then_some(option))
+                .collect();
+            gateware::build_with(board, &options)?;
             if waveforms {
                 gateware::build_with_waveforms()?;
             }
