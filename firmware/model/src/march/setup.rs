@@ -49,7 +49,7 @@ pub struct Tuning {
 /// less of the distance, takes the slowest of the report's views beyond 14.4 evaluations a ray; a larger part of the distance
 /// beside a smaller threshold shows more wrong faces for as many evaluations.
 pub const DEFAULT_TUNING: Tuning = Tuning {
-    threshold: 24,
+    threshold: 28,
     footprint: 14,
     cap: 255,
     far: farthest(FRACTION),
