@@ -25,7 +25,7 @@ const FIELDS: [&str; 6] = [
     "menger:6",
     "menger:1",
     "box:1,0.5,0.25",
-    "cubes:2,0.4",
+    "cubes:2,0.8",
     "planes:0.9",
 ];
 
@@ -33,12 +33,13 @@ fn looking(eye: [f64; 3], target: [f64; 3], half_width: f64, near: f64) -> View 
     Camera::looking(eye, target, half_width, near).rounded()
 }
 
-/// From outside, from near by and in the hole of the sponge, to where most of them end soon.
+/// From outside, from near by and in the hole of the sponge. Downwards, where rays end soon: towards a horizon they take ten times
+/// the evaluations, of which each is simulated.
 fn views() -> [View; 3] {
     [
         looking([2.2, 1.7, 1.3], [0.0; 3], 0.9, 0.1),
-        looking([0.3, 1.2, 0.4], [0.1, 0.0, 0.2], 0.6, 0.05),
-        looking([0.05, 0.85, 0.03], [-0.1, -0.9, 0.1], 1.2, 0.02),
+        looking([0.3, 1.2, 0.4], [0.1, 0.0, -0.6], 0.6, 0.05),
+        looking([0.05, 0.85, 0.03], [-0.1, 0.3, -0.8], 0.8, 0.02),
     ]
 }
 
@@ -135,8 +136,11 @@ fn compare_picture(
     }
 }
 
+/// The sponge from three sides for one eye and for two, and each of the others once for each: all of them from all sides
+/// with `GLINT_RTL_FIELDS=all`.
 #[test]
 fn the_soc_draws_every_field() {
+    let all = std::env::var("GLINT_RTL_FIELDS").is_ok_and(|which| which == "all");
     let mut board = board();
     let mut console = Console::new(&mut board).patience(PATIENCE_MS);
     console.greet().unwrap();
@@ -145,6 +149,9 @@ fn the_soc_draws_every_field() {
         for (side, view) in views().iter().enumerate() {
             // Both pairs of colours are seen in turns.
             for stereo in [None, eyes()[1 + (number + side) % 2]] {
+                if !all && number > 0 && side != (number + usize::from(stereo.is_some())) % 3 {
+                    continue;
+                }
                 let with_depth = side == number % 3;
                 compare(&mut console, field, stereo, view, (320, 180), with_depth);
             }
