@@ -84,11 +84,9 @@ fn at(eye: Vector, target: Vector) -> Camera {
 #[test]
 fn the_sponge_is_where_it_is() {
     for (name, eye, target) in views::views() {
-        // What grazes a face for long ends before it.
-        let p99 = if name == "grazing" { 8e-3 } else { 3e-3 };
         let seen = see(name, "menger:4", &at(eye, target));
         assert!(seen.found.iou >= 0.999, "{name}");
-        seen.near(2e-4, p99).faced(0.01).decided(2).cheap(14.4);
+        seen.near(2e-4, 5e-4).faced(0.01).decided(0).cheap(14.4);
     }
 }
 
@@ -97,8 +95,8 @@ fn the_deepest_sponge_is_where_it_is_and_its_smallest_faces_are_not_all_right() 
     for (name, eye, target) in views::views() {
         let seen = see(name, "menger:6", &at(eye, target));
         assert!(seen.found.iou >= 0.999, "{name}");
-        // A cell has 456 steps of a coordinate, the threshold 24 and more.
-        seen.near(2e-4, 1.2e-2).faced(0.07).decided(4).cheap(15.0);
+        // A cell has 456 steps of a coordinate, the threshold 28 and more.
+        seen.near(2e-4, 1.6e-2).faced(0.07).decided(0).cheap(15.0);
     }
 }
 
@@ -123,16 +121,16 @@ fn other_fields_are_where_they_are() {
         .near(2e-3, 1.1e-2)
         .faced(0.0)
         .cheap(13.0);
-    // Towards the horizon rays run along faces: some are given up.
+    // Towards the horizon rays run along faces: some are given up, and some end beside a face that they would have passed.
     see("cubes:2,0.5")
-        .masked(4)
-        .decided(550)
-        .near(2e-5, 5e-2)
-        .faced(5e-3)
+        .masked(30)
+        .decided(240)
+        .near(2e-5, 0.5)
+        .faced(1.3e-2)
         .cheap(35.0);
     see("planes:0.5")
         .masked(0)
-        .decided(2300)
+        .decided(1150)
         .near(6e-4, 5e-2)
         .faced(0.0)
         .cheap(55.0);
@@ -180,7 +178,7 @@ fn a_camera_just_beside_a_face_sees_it() {
     see("macro", "menger:1", &at(eye, [0.75, 0.0, 0.765_625]))
         .masked(0)
         .decided(0)
-        .near(5e-6, 5e-6)
+        .near(5e-6, 1.2e-5)
         .faced(0.0)
         .cheap(1.0);
     let over = at([-1.25, -1.125, 1.001_953_125], [1.0, 0.875, 1.0]);
@@ -193,7 +191,7 @@ fn a_camera_just_beside_a_face_sees_it() {
     // Level with the ceiling, to the horizon. A third of the rays are in it at the near plane.
     let under = at([0.0, 0.0, 0.998_046_875], [4.0, 3.0, 0.998_046_875]);
     see("grazing", "planes:1", &under)
-        .masked(4)
+        .masked(30)
         .decided(2600)
         .near(1e-3, 5e-2)
         .cheap(52.0);
@@ -226,19 +224,19 @@ fn a_camera_may_be_far_away() {
     let mut camera = at([0.0, -30.0, 0.0], [0.125, 0.0, 0.0625]);
     camera.half_width = 0.05;
     // It looks along all walls at once: most of what it sees is in the depths of tunnels, as wide there as the threshold is
-    // a few times over.
+    // a few times over; rays that would pass through end at a wall.
     let seen = see("far away", "menger:4", &camera);
-    assert!(seen.found.iou >= 0.99);
-    seen.decided(1).near(1e-4, 0.9).faced(0.12).cheap(16.0);
+    assert!(seen.found.iou >= 0.98);
+    seen.decided(0).near(1e-4, 0.9).faced(0.13).cheap(16.0);
 }
 
-/// Rays that no pixel has, exactly along an axis. Steps beside a wall are as long as it is away: 255 of them do not reach the
-/// end of a wall that is less than a third of a cell away, but nothing else is wrong.
+/// Rays that no pixel has, exactly along an axis. Steps beside a wall are as long as it is away, and the threshold doubles with
+/// every 64 of them: a ray less than an eighth of a cell beside a wall ends there. Nothing else is wrong.
 #[test]
 fn rays_along_the_axes_end_at_the_walls() {
     let sponge = Field::Menger { depth: 4 };
     let places = || (-9..9).map(|i| f64::from(2 * i + 1) / 16.0);
-    let (mut hits, mut passed, mut given_up) = (0, 0, 0);
+    let (mut hits, mut passed, mut given_up, mut beside) = (0, 0, 0, 0);
     let mut most: f64 = 0.0;
     for (axis, side) in (0..3).flat_map(|axis| [(axis, -1), (axis, 1)]) {
         for (a, b) in places().flat_map(|a| places().map(move |b| (a, b))) {
@@ -263,8 +261,12 @@ fn rays_along_the_axes_end_at_the_walls() {
             let exact = sponge.hit(eye, direction, 0.0, 100.0);
             let context = || format!("{eye:?}, {axis}, {side}: {end:?}, {exact:?}");
             match (marched::marched(&setup, &ray, &end).outcome, exact) {
+                (Outcome::Hit { .. }, _) if end.steps > 64 && [0, 1023].contains(&end.slope) => {
+                    beside += 1;
+                }
                 (Outcome::Hit { face, .. }, Some(exact)) => {
-                    let t = f64::from(end.t) / f64::from(1 << 12) / setup.scale.to_num::<f64>();
+                    let t =
+                        f64::from(end.reached()) / f64::from(1 << 12) / setup.scale.to_num::<f64>();
                     hits += 1;
                     most = most.max((t - exact.t).abs());
                     assert_eq!(face, exact.face, "{}", context());
@@ -275,8 +277,10 @@ fn rays_along_the_axes_end_at_the_walls() {
             }
         }
     }
-    println!("{hits} hits, apart by at most {most:e}, {passed} misses, {given_up} undecided");
-    assert!(hits > 700 && given_up <= 264 && most < 2e-6);
+    println!(
+        "{hits} hits, apart by at most {most:e}, {passed} misses, {given_up} undecided, {beside} beside a wall"
+    );
+    assert!(hits > 700 && given_up + beside <= 264 && most < 1e-5);
 }
 
 #[test]
@@ -307,7 +311,7 @@ fn a_surface_at_the_end_of_a_ray_is_seen_and_none_behind_it() {
     let mut ends: Vec<u32> = pixels()
         .map(|(x, y)| free.march(&free.ray(0, x, y)))
         .filter(|end| matches!(end.state, State::Hit(_)))
-        .map(|end| end.t)
+        .map(|end| end.t + end.gap)
         .collect();
     ends.sort_unstable();
     options.tuning.far = ends[ends.len() / 2];
@@ -316,9 +320,11 @@ fn a_surface_at_the_end_of_a_ray_is_seen_and_none_behind_it() {
     for (x, y) in pixels() {
         let ray = free.ray(0, x, y);
         let (end, found) = (free.march(&ray), short.march(&ray));
-        if end.t <= options.tuning.far {
+        // A hit is as far as its last step would be.
+        let reach = end.t + end.gap;
+        if reach <= options.tuning.far {
             assert_eq!(found, end, "{x} {y}");
-            seen += u32::from(end.t == options.tuning.far);
+            seen += u32::from(reach == options.tuning.far);
         } else {
             assert_eq!(found.state, State::Miss, "{x} {y}");
             beyond += 1;
