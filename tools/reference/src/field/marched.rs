@@ -1,4 +1,4 @@
-//! Pictures of the model's raymarcher as [`metrics`](super::metrics) takes them, and what each ray cost.
+//! Pictures of the model's raymarcher as [`metrics`] takes them, and what each ray cost.
 
 use glint_core::camera::View;
 use glint_model::march::{self, FieldOptions, Setup, State};
