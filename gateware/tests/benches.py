@@ -34,7 +34,7 @@ def _build(module):
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
 
-    builds = {module.top: {}, **module.variants}
+    builds = module.builds()
     jobs = [(VERILATOR_ROOT / "include" / f"{name}.cpp", []) for name in ("verilated", "verilated_threads")]
     for name, parameters in builds.items():
         model = folder / name

@@ -22,8 +22,9 @@ _PORT = re.compile(r"VL_(IN|OUT)(?:8|16|64|W)?\(&(\w+),(\d+),0[,)]")
 
 def build(module):
     """Builds the libraries of a module, one for each variant, where they are not up to date."""
-    for name, parameters in {module.top: {}, **module.variants}.items():
-        _build(module, name, parameters)
+    for name, parameters in module.builds().items():
+        if name not in module.measured:
+            _build(module, name, parameters)
 
 
 def _build(module, name, parameters):

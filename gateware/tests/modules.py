@@ -11,7 +11,7 @@ from glint_soc.triangle import BAND_BUFFER, SETUP, TRIANGLE_CONTROL, TRIANGLE_EN
 class Module:
     """A top module. `variants` are builds with other parameters, `defines` what the bench is told about them.
 
-    A module without a bench is tested from Rust, by `tools/rtl`.
+    A module without a bench is tested from Rust, by `tools/rtl`, in the builds that are not `measured` only.
     """
 
     top: str
@@ -19,6 +19,11 @@ class Module:
     bench: list = field(default_factory=list)
     variants: dict = field(default_factory=dict)
     defines: list = field(default_factory=list)
+    measured: tuple = ()
+
+    def builds(self):
+        """The parameters of every build by its name."""
+        return {self.top: {}, **self.variants}
 
 
 # As much time for a memory word as 1280x720 has, in a two-hundredth of its frame.
@@ -46,9 +51,10 @@ MODULES = [
     Module(top="reciprocal", sources=[_TRIANGLE / "multiply_add.sv", _TRIANGLE / "reciprocal.sv"]),
     Module(top="setup", sources=SETUP, variants={"setup_smooth": _SMOOTH}),
     Module(top="triangle_raster", sources=TRIANGLE_RASTER, variants={"triangle_raster_smooth": _SMOOTH}),
-    Module(top="triangle_engine", sources=TRIANGLE_ENGINE, variants={"triangle_engine_smooth": _SMOOTH, "triangle_engine_fields": {"FIELDS": 1}}),
-    Module(top="field_menger", sources=FIELD_UNIT),
-    Module(top="field_box", sources=FIELD_UNIT),
+    Module(top="triangle_engine", sources=TRIANGLE_ENGINE, variants={"triangle_engine_smooth": _SMOOTH, "triangle_engine_fields": {"FIELDS": 1}},
+           measured=("triangle_engine_fields",)),
+    Module(top="field_menger", sources=FIELD_UNIT, measured=("field_menger",)),
+    Module(top="field_box", sources=FIELD_UNIT, measured=("field_box",)),
     Module(top="ray_generator", sources=RAY_GENERATOR),
     Module(top="ray_paint", sources=RAY_PAINT),
     Module(top="raymarcher", sources=RAYMARCHER, variants={"raymarcher_menger": {"LANES": 4, "LEVELS": 4, "BOXES": 0}}),

@@ -57,7 +57,7 @@ def test():
     """Runs everything and returns the number of failures."""
     report = Report()
     for module in MODULES:
-        for name, parameters in {module.top: {}, **module.variants}.items():
+        for name, parameters in module.builds().items():
             report.check(f"{name}: lint", lambda: run_lint(module, parameters))
             report.check(f"{name}: read by Yosys", lambda: size.read(module, parameters))
         if module.bench:

@@ -42,7 +42,7 @@ def measure(name):
     if name == SOC:
         return _measure(Module("glint_urbana", urbana.synthesis_sources(_SOC_FILES)), SOC, _MARKS, _SOC_FILES)
     known = {name: (module, parameters) for module in MODULES
-             for name, parameters in {module.top: {}, **module.variants}.items()}
+             for name, parameters in module.builds().items()}
     if name not in known:
         raise ToolError(f"no block is named {name}; there are: {' '.join(known)} {SOC}")
     module, parameters = known[name]
