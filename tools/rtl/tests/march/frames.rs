@@ -169,7 +169,7 @@ impl Bench {
 fn frames_of_all_fields_with_stalls() {
     let mut random = Random(9);
     let mut bench = Bench::new("raymarcher", 2, 1);
-    for _ in 0..6 {
+    for _ in 0..4 {
         let mut setup = setup(&mut random, &FIELDS);
         // A ray at the limit costs as much as 20.
         setup.tuning.cap = setup.tuning.cap.min(40);
@@ -181,7 +181,7 @@ fn frames_of_all_fields_with_stalls() {
 fn sponges_keep_the_lanes_busy() {
     let mut random = Random(10);
     let mut bench = Bench::new("raymarcher_menger", 4, 1);
-    for frame in 0..4 {
+    for frame in 0..2 {
         let setup = setup(&mut random, &SPONGES);
         let taken = bench.draw(&mut random, &setup, &Palette::default(), true);
         let [busy, idle, ..] = taken.counters;
