@@ -178,7 +178,7 @@ module ring_lane #(
         last_surface <= surface_2;
     end
 
-    // One less, and counted before its round.
+    // The evaluation under way counts.
     always_ff @(posedge clk) late_2 <= steps_1 + 8'd1 >= tuning.cap;
 
     march_pkg::end_t end_in;

@@ -433,11 +433,11 @@ fn ends(bench: &Bench) -> Study {
     Study {
         name: "end",
         diagram: Diagram {
-            title: "Beginnings and ends of rays that Glint has not",
+            title: "Beginnings and ends of rays",
             across: DEPTH_P99,
             up: EVALUATIONS,
         },
-        text: "In f64, by threshold, from where the model's rays begin. *Corrected*: the last step is the distance over the \
+        text: "In f64, by threshold, from where the model's rays begin; Glint ends its rays relaxed and corrected, and *as it is* is a march without either. *Corrected*: the last step is the distance over the \
                direction's part along the normal where the ray goes to the face, so that depths are right where faces are. \
                *Relaxed*: the threshold is twice as large after each 64 evaluations. *Exact entry*: rays begin where they come to the \
                cube around the sponge, and not before it by what ten bits of a reciprocal leave. Errors below 1e-6, which field units \
