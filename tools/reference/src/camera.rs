@@ -1,5 +1,8 @@
 //! The camera in f64: projection, clipping against the near plane, and the scale of depth.
 
+use glint_core::camera::{View, ViewError};
+use glint_core::fixed::{Q2_23, Q32_32, U4_28};
+
 /// A point or direction in world or camera coordinates.
 pub type Vector = [f64; 3];
 
@@ -88,9 +91,9 @@ pub struct Camera {
     pub near: f64,
 }
 
-impl From<&glint_core::camera::View> for Camera {
+impl From<&View> for Camera {
     /// The camera with the view's own numbers, which f64 holds exactly.
-    fn from(view: &glint_core::camera::View) -> Self {
+    fn from(view: &View) -> Self {
         Self {
             eye: view.eye().map(|c| c.to_num()),
             u: view.u().map(|c| c.to_num()),
@@ -127,6 +130,25 @@ impl Camera {
             half_width,
             near,
         }
+    }
+
+    /// The view with the nearest numbers.
+    ///
+    /// # Errors
+    /// As [`View::new_checked`].
+    ///
+    /// # Panics
+    /// When a number is beyond those of its format.
+    pub fn view(&self) -> Result<View, ViewError> {
+        let row = |row: Vector| row.map(Q2_23::from_num);
+        View::new_checked(
+            self.eye.map(Q32_32::from_num),
+            row(self.u),
+            row(self.v),
+            row(self.n),
+            U4_28::from_num(self.half_width),
+            U4_28::from_num(self.near),
+        )
     }
 
     /// The ray through a pixel's centre, `pixel` its column and row counted from 0; fractions lie between the centres.

@@ -1,25 +1,44 @@
 //! Distances to solids in field units (12 fraction bits), and which surface is the nearest.
 
-/// What is nearest to a point: a face that is perpendicular to an axis.
+use super::sphere::Balls;
+
+/// What is nearest to a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Surface {
-    /// 0, 1, 2: x, y, z.
-    pub axis: u8,
-    /// Whether its normal points along the axis, and not against it.
-    pub positive: bool,
+pub enum Surface {
+    /// A face that is perpendicular to an axis.
+    Face {
+        /// 0, 1, 2: x, y, z.
+        axis: u8,
+        /// Whether its normal points along the axis, and not against it.
+        positive: bool,
+    },
+    /// A sphere's.
+    Round {
+        /// Which one, from 0.
+        number: u8,
+    },
 }
 
 impl Surface {
-    /// As the gateware has it: twice the axis, and 1 if it is positive.
+    /// As the gateware has it, which knows too whether it is round: twice a face's axis, and 1 if it is positive; a sphere's number.
     pub const fn code(self) -> u8 {
-        2 * self.axis + self.positive as u8
+        match self {
+            Self::Face { axis, positive } => 2 * axis + positive as u8,
+            Self::Round { number } => number,
+        }
+    }
+
+    /// Whether it is a sphere's.
+    pub const fn is_round(self) -> bool {
+        matches!(self, Self::Round { .. })
     }
 }
 
 /// A distance and what it is to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sample {
-    /// In the maximum norm: the cube of this half side about the point holds nothing of the solid's surface. s10.12.
+    /// In the maximum norm of what has faces: the cube of this half side about the point holds nothing of the solid's surface. In
+    /// the Euclidean one of what is round. s10.12.
     pub distance: i32,
     /// What is there.
     pub surface: Surface,
@@ -47,6 +66,8 @@ pub enum Solid {
         /// Whether it repeats itself every 64 units along each axis.
         repeated: bool,
     },
+    /// Spheres.
+    Balls(Balls),
 }
 
 impl Solid {
@@ -63,7 +84,22 @@ impl Solid {
                 room,
                 repeated,
             } => cuboid(point, half, *room, *repeated),
+            Self::Balls(balls) => balls.sample(point),
         }
+    }
+
+    /// How often the field is asked for one distance: once for each sphere.
+    pub const fn passes(&self) -> u32 {
+        match self {
+            Self::Balls(balls) => balls.count as u32,
+            _ => 1,
+        }
+    }
+
+    /// Whether there is anything round: then rays are scaled by their Euclidean length. It is never less than that in the maximum
+    /// norm, so distances of faces hold for such rays too.
+    pub const fn is_round(&self) -> bool {
+        matches!(self, Self::Balls(_))
     }
 }
 
@@ -73,20 +109,18 @@ impl Solid {
 #[derive(Clone, Copy)]
 struct Folded {
     value: i32,
-    grows: Surface,
+    axis: u8,
+    positive: bool,
 }
 
 impl Folded {
     /// −x, or x.
     fn negated_if(self, negate: bool) -> Self {
-        let Self { value, grows } = self;
         if negate {
             Self {
-                value: !value,
-                grows: Surface {
-                    positive: !grows.positive,
-                    ..grows
-                },
+                value: !self.value,
+                positive: !self.positive,
+                ..self
             }
         } else {
             self
@@ -99,16 +133,22 @@ impl Folded {
             ..self
         }
     }
+
+    /// The face across its axis.
+    const fn face(self) -> Surface {
+        Surface::Face {
+            axis: self.axis,
+            positive: self.positive,
+        }
+    }
 }
 
 /// The coordinates of a point in the world.
 fn unfolded(point: [i32; 3]) -> [Folded; 3] {
     [0, 1, 2].map(|axis: u8| Folded {
         value: point[usize::from(axis)],
-        grows: Surface {
-            axis,
-            positive: true,
-        },
+        axis,
+        positive: true,
     })
 }
 
@@ -141,7 +181,7 @@ fn menger<'a>(point: [i32; 3], levels: impl Iterator<Item = &'a i32>, half: i32)
     let big = p[largest(p.map(|x| x.value))];
     Sample {
         distance: big.value - half,
-        surface: big.grows,
+        surface: big.face(),
     }
 }
 
@@ -156,11 +196,11 @@ fn cuboid(point: [i32; 3], half: &[Option<i32>; 3], room: bool, repeated: bool) 
     let big = largest(outside);
     let nearest = Folded {
         value: outside[big],
-        grows: p[big].grows,
+        ..p[big]
     }
     .negated_if(room);
     Sample {
         distance: nearest.value,
-        surface: nearest.grows,
+        surface: nearest.face(),
     }
 }

@@ -22,8 +22,22 @@ const fn inverses() -> [u32; 1024] {
     table
 }
 
+/// Below 1/√q for every q that begins with these ten bits behind its point: √(2^10/(i + 1)), less by a part of 2^−16 at least for
+/// what is rounded up afterwards. u8.9, 15 bits.
+const ROUND_INVERSE: [u32; 1024] = round_inverses();
+
+const fn round_inverses() -> [u32; 1024] {
+    let mut table = [0; 1024];
+    let mut i = 0;
+    while i < table.len() {
+        table[i] = (((1 << 28) - (1 << 13)) / (i as u32 + 1)).isqrt();
+        i += 1;
+    }
+    table
+}
+
 /// |x|, or one less: |x| − 1 of a negative x.
-const fn magnitude(x: i32) -> u32 {
+pub(super) const fn magnitude(x: i32) -> u32 {
     (x ^ (x >> 31)) as u32
 }
 
@@ -32,9 +46,9 @@ const fn magnitude(x: i32) -> u32 {
 pub struct Ray {
     /// Which eye it starts from: 0 is the left one, or the only one.
     pub eye: usize,
-    /// Its direction, s1.17, of at most length 1 in the maximum norm.
+    /// Its direction, s1.17, of at most length 1: in the maximum norm, or in the Euclidean one if there is anything round.
     pub direction: [i32; 3],
-    /// The first ten bits of the largest component of D: the entry of the table that made the direction.
+    /// The first ten bits of the largest component of D, or of |D|²: the entry of the table that made the direction.
     pub length: u32,
     /// Where it begins, u11.12: at the near plane, or where it comes to the box.
     pub start: u32,
@@ -58,7 +72,7 @@ pub struct Outcome {
     pub state: State,
     /// Where, u11.12.
     pub t: u32,
-    /// Evaluations of the field.
+    /// Points at which the field was asked, at most 1020.
     pub steps: u32,
 }
 
@@ -77,19 +91,45 @@ impl Setup {
                 .wrapping_add(down)
                 >> 6
         });
-        let [a, b, c] = direction.map(magnitude);
-        let length = a.max(b).max(c) >> 14 & 0x3FF;
-        let inverse = INVERSE[length as usize];
+        let length = self.length(direction.map(magnitude));
+        let inverse = self.inverse(length);
         // 24, 9 and 17 fraction bits.
         let direction =
             direction.map(|d| ((i64::from(d) * i64::from(inverse) + (1 << 15)) >> 16) as i32);
-        let near = (u64::from(self.near) * (u64::from(length) + 1)) >> 10;
+        // Its inverse, or less, 10 fraction bits: the near plane is not before it.
+        let part = if self.solid.is_round() {
+            (inverse * (length + 1)) >> 9
+        } else {
+            length + 1
+        };
+        let near = (u64::from(self.near) * u64::from(part)) >> 10;
         let entry = self.entry(eye, &direction);
         Ray {
             eye,
             direction,
             length,
             start: near.max(entry).min(MAX_T) as u32,
+        }
+    }
+
+    /// The first ten bits of D's length, or of its square or a little more, from the magnitudes of its parts, 24 fraction bits.
+    fn length(&self, parts: [u32; 3]) -> u32 {
+        if self.solid.is_round() {
+            // 17 bits of each. What was cut off them is below 2^−15 in all, which is added.
+            let square: u64 = parts.map(|part| u64::from(part >> 7).pow(2)).iter().sum();
+            ((square + (1 << 19)) >> 24) as u32 & 0x3FF
+        } else {
+            let [a, b, c] = parts;
+            a.max(b).max(c) >> 14 & 0x3FF
+        }
+    }
+
+    /// What a direction is D times of, u8.9.
+    fn inverse(&self, length: u32) -> u32 {
+        if self.solid.is_round() {
+            ROUND_INVERSE[length as usize]
+        } else {
+            INVERSE[length as usize]
         }
     }
 
@@ -111,6 +151,8 @@ impl Setup {
     /// Follows a ray to its end.
     pub fn march(&self, ray: &Ray) -> Outcome {
         let tuning = &self.tuning;
+        // Beside what is round a ray creeps for longer.
+        let cap = tuning.cap << if self.solid.is_round() { 2 } else { 0 };
         let mut t = ray.start;
         let mut steps = 0;
         loop {
@@ -127,7 +169,7 @@ impl Setup {
                 Some(State::Miss)
             } else if sample.distance < threshold as i32 {
                 Some(State::Hit(sample.surface))
-            } else if steps >= tuning.cap {
+            } else if steps >= cap {
                 Some(State::Undecided)
             } else {
                 None
@@ -149,6 +191,6 @@ impl Setup {
 
     /// The depth of a point of a ray along n in field units times 2^e, 21 fraction bits.
     pub fn depth_of(&self, ray: &Ray, t: u32) -> u64 {
-        u64::from(t) * u64::from(INVERSE[ray.length as usize])
+        u64::from(t) * u64::from(self.inverse(ray.length))
     }
 }

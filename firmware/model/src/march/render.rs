@@ -1,5 +1,6 @@
 //! A whole frame.
 
+use super::field::Solid;
 use super::paint::{Palette, paint};
 use super::ray::{Outcome, Ray, State};
 use super::setup::{Setup, Tint};
@@ -11,7 +12,7 @@ use crate::render::{RenderError, Target};
 pub struct FieldStats {
     /// Rays: one a pixel and eye.
     pub rays: u32,
-    /// Evaluations of the field.
+    /// Evaluations of the field: as many a step as there are spheres.
     pub evaluations: u64,
     /// Rays that came to a surface.
     pub hits: u32,
@@ -22,10 +23,10 @@ pub struct FieldStats {
 }
 
 impl FieldStats {
-    /// Counts a ray.
-    pub fn count(&mut self, outcome: &Outcome) {
+    /// Counts a ray in a solid.
+    pub fn count(&mut self, solid: &Solid, outcome: &Outcome) {
         self.rays += 1;
-        self.evaluations += u64::from(outcome.steps);
+        self.evaluations += u64::from(outcome.steps * solid.passes());
         *match outcome.state {
             State::Hit(_) => &mut self.hits,
             State::Miss => &mut self.misses,
@@ -55,7 +56,7 @@ pub fn render_field(
     let mut look = |eye, x, y| {
         let ray = setup.ray(eye, x, y);
         let outcome = setup.march(&ray);
-        stats.count(&outcome);
+        stats.count(&setup.solid, &outcome);
         show(x, y, &ray, &outcome);
         let code = match outcome.state {
             State::Hit(_) => setup.depth_code(&ray, outcome.t),

@@ -1,11 +1,13 @@
 //! The constants of a frame of a field, made once from the field, the camera and the picture's size.
 
 use glint_core::camera::View;
-use glint_core::field::Field;
-use glint_core::fixed::{Q2_23, Q32_32};
+use glint_core::field::{Field, MAX_SPHERES, Sphere};
+use glint_core::fixed::{Q2_23, Q2_30, Q32_32, Turns};
+use glint_core::trig::sin_cos_q30;
 
 use super::field::Solid;
 use super::paint::Palette;
+use super::sphere::{Ball, Balls};
 use crate::frame::DepthScale;
 use crate::render::{RenderError, SIZES};
 
@@ -30,7 +32,7 @@ pub struct Tuning {
     pub threshold: u32,
     /// ... and this power of two (7 to 15) of the distance that it has gone: t·2^−shift.
     pub footprint: u32,
-    /// The evaluations after which a ray is given up, undecided: 1 to 255.
+    /// The points after which a ray is given up, undecided: 1 to 255; four times as many where there is anything round.
     pub cap: u32,
     /// t beyond which there is nothing, u11.12.
     pub far: u32,
@@ -40,6 +42,14 @@ pub struct Tuning {
 pub const DEFAULT_TUNING: Tuning = Tuning {
     threshold: 40,
     footprint: 10,
+    cap: 255,
+    far: FARTHEST,
+};
+
+/// What suits round fields: the silhouette of a sphere, and the normal beside it, show where a ray has ended.
+pub const ROUND_TUNING: Tuning = Tuning {
+    threshold: 4,
+    footprint: 15,
     cap: 255,
     far: FARTHEST,
 };
@@ -74,6 +84,8 @@ pub struct FieldOptions {
     pub tuning: Tuning,
     /// In which colours.
     pub palette: Palette,
+    /// How far a moving sphere has come from the x axis.
+    pub phase: Turns,
 }
 
 impl Default for FieldOptions {
@@ -82,6 +94,7 @@ impl Default for FieldOptions {
             stereo: None,
             tuning: DEFAULT_TUNING,
             palette: Palette::default(),
+            phase: Turns::default(),
         }
     }
 }
@@ -141,7 +154,7 @@ impl Setup {
         if !SIZES.contains(&(width, height)) {
             return Err(RenderError::Size { width, height });
         }
-        let (solid, scale, extent) = in_units(field);
+        let (solid, scale, extent) = in_units(field, options.phase);
         let bounds = extent.map_or([UNBOUNDED; 3], |extent| {
             extent.map(|half| units(half, scale) as u32)
         });
@@ -158,7 +171,7 @@ impl Setup {
             ),
             None => (Q32_32::ZERO, 0),
         };
-        let rays = Directions::new(view, width, height, parallax);
+        let rays = Directions::new(view, width, height, parallax, solid.is_round());
         let eye = |sign: i64, first: [i64; 3]| {
             let origin = [0, 1, 2].map(|i: usize| {
                 // |C| ≤ 32 and e ≤ 1.
@@ -167,7 +180,8 @@ impl Setup {
                 let place = units(place, scale) as i32;
                 match solid {
                     // The same place in the cell about the origin.
-                    Solid::Box { repeated: true, .. } => place << 14 >> 14,
+                    Solid::Box { repeated: true, .. }
+                    | Solid::Balls(Balls { repeated: true, .. }) => place << 14 >> 14,
                     _ => place,
                 }
             });
@@ -201,7 +215,7 @@ impl Setup {
 }
 
 /// The solid, its units in one world unit, and half the sides of its box in world units.
-fn in_units(field: &Field) -> (Solid, Q32_32, Option<[Q32_32; 3]>) {
+fn in_units(field: &Field, phase: Turns) -> (Solid, Q32_32, Option<[Q32_32; 3]>) {
     let solid_units = |x: Q32_32, scale| units(x, scale) as i32;
     match *field {
         Field::Menger { depth } => {
@@ -225,8 +239,7 @@ fn in_units(field: &Field) -> (Solid, Q32_32, Option<[Q32_32; 3]>) {
             (solid, HALF_SIDE, Some(half))
         }
         Field::Cubes { period, half } => {
-            let scale =
-                Q32_32::from_bits(((PERIOD.to_bits() << 16) / (period.to_bits() >> 8).max(1)) << 8);
+            let scale = scale_of(period);
             let solid = Solid::Box {
                 half: [Some(solid_units(half, scale)); 3],
                 room: false,
@@ -242,6 +255,36 @@ fn in_units(field: &Field) -> (Solid, Q32_32, Option<[Q32_32; 3]>) {
             };
             (solid, HALF_SIDE, None)
         }
+        Field::Sphere { radius } => balls(&[Sphere {
+            radius,
+            ..Sphere::default()
+        }]),
+        Field::Spheres(ref spheres) => balls(spheres.iter()),
+        Field::Moving { radius, orbit } => {
+            let (sine, cosine) = sin_cos_q30(phase);
+            // At most 12, with 20 and 30 fraction bits.
+            let along = |part: Q2_30| {
+                Q32_32::from_bits(((orbit.to_bits() >> 12) * i64::from(part.to_bits())) >> 18)
+            };
+            let (solid, scale, _) = balls(&[Sphere {
+                centre: [along(cosine), along(sine), Q32_32::ZERO],
+                radius,
+            }]);
+            // The same box in every frame of a turn.
+            let reach = orbit + radius;
+            (solid, scale, Some([reach, reach, radius]))
+        }
+        Field::Lattice { period, radius } => {
+            let scale = scale_of(period);
+            let mut list = [Ball::default(); MAX_SPHERES];
+            list[0].radius = solid_units(radius, scale);
+            let solid = Solid::Balls(Balls {
+                list,
+                count: 1,
+                repeated: true,
+            });
+            (solid, scale, None)
+        }
         // A field that this gateware has not.
         _ => (
             Solid::Box {
@@ -253,6 +296,34 @@ fn in_units(field: &Field) -> (Solid, Q32_32, Option<[Q32_32; 3]>) {
             None,
         ),
     }
+}
+
+/// The units in one world unit of a field that repeats itself.
+fn scale_of(period: Q32_32) -> Q32_32 {
+    Q32_32::from_bits(((PERIOD.to_bits() << 16) / (period.to_bits() >> 8).max(1)) << 8)
+}
+
+/// As [`in_units`], of some spheres.
+fn balls<'a>(
+    spheres: impl IntoIterator<Item = &'a Sphere>,
+) -> (Solid, Q32_32, Option<[Q32_32; 3]>) {
+    let mut list = [Ball::default(); MAX_SPHERES];
+    let mut extent = [Q32_32::ZERO; 3];
+    let mut count = 0;
+    for (ball, sphere) in list.iter_mut().zip(spheres) {
+        *ball = Ball {
+            centre: sphere.centre.map(|x| units(x, HALF_SIDE) as i32),
+            radius: units(sphere.radius, HALF_SIDE) as i32,
+        };
+        extent = [0, 1, 2].map(|i: usize| extent[i].max(sphere.centre[i].abs() + sphere.radius));
+        count += 1;
+    }
+    let solid = Solid::Balls(Balls {
+        list,
+        count,
+        repeated: false,
+    });
+    (solid, HALF_SIDE, Some(extent))
 }
 
 /// A length in world units in field units, 12 fraction bits, nearest. |x| is at most 64 and the scale 256.
@@ -287,8 +358,9 @@ struct Directions {
 }
 
 impl Directions {
-    /// `parallax` is what the left eye's direction takes of u and the right eye's gives, 28 fraction bits, at most 1.
-    fn new(view: &View, width: u32, height: u32, parallax: i64) -> Self {
+    /// `parallax` is what the left eye's direction takes of u and the right eye's gives, 28 fraction bits, at most 1; `round` says
+    /// that D is below 1 in the Euclidean norm, and not only in the maximum norm.
+    fn new(view: &View, width: u32, height: u32, parallax: i64, round: bool) -> Self {
         let half_width = i64::from(view.half_width().to_bits());
         // Twice the half width over the pixels: below 2^54 before the division.
         let step = |row: [Q2_23; 3]| {
@@ -302,25 +374,29 @@ impl Directions {
                     - (i64::from(width - 1) * across[i] + i64::from(height - 1) * down[i]) / 2
             })
         });
-        // D is linear on the picture, so its largest components are in the corners.
-        let largest = first
-            .iter()
-            .flat_map(|&first| {
-                [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(x, y)| {
-                    [0, 1, 2].map(|i: usize| {
-                        (first[i]
-                            + x * i64::from(width - 1) * across[i]
-                            + y * i64::from(height - 1) * down[i])
-                            .abs()
-                    })
+        // D is linear on the picture, so it is longest in a corner.
+        let corners = first.iter().flat_map(|&first| {
+            [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(x, y)| {
+                [0, 1, 2].map(|i: usize| {
+                    (first[i]
+                        + x * i64::from(width - 1) * across[i]
+                        + y * i64::from(height - 1) * down[i])
+                        .abs()
                 })
             })
-            .flatten()
-            .max()
-            .unwrap_or(0);
+        });
         // A little below 1, as steps are rounded.
         const ONE: i64 = (1 << 51) - (1 << 36);
-        let exponent = (0..3).find(|&e| largest >> e < ONE).unwrap_or(3);
+        const SQUARE: i64 = (1 << 50) - (1 << 40);
+        let exponent = if round {
+            // 25 of the fraction bits, and 3 others.
+            let squares = corners.map(|d| d.map(|x| ((x >> 26) + 1).pow(2)).iter().sum());
+            let longest: i64 = squares.max().unwrap_or(0);
+            (0..3).find(|&e| longest >> (2 * e) < SQUARE).unwrap_or(3)
+        } else {
+            let largest = corners.flatten().max().unwrap_or(0);
+            (0..3).find(|&e| largest >> e < ONE).unwrap_or(3)
+        };
         Self {
             first,
             across,

@@ -93,7 +93,7 @@ impl Bench {
                     };
                     let ray = setup.ray(place.eye, x, band * lines + y);
                     let outcome = setup.march(&ray);
-                    stats.count(&outcome);
+                    stats.count(&setup.solid, &outcome);
                     expected.insert((eye.into(), y.into(), x.into()), {
                         pixel(setup, palette, place, &ray, &outcome)
                     });
