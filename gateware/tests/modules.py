@@ -26,7 +26,7 @@ _SMALL_RASTER = {"H_ACTIVE": 160, "H_FRONT": 8, "H_SYNC": 4, "H_BACK": 12,
                  "V_ACTIVE": 24, "V_FRONT": 2, "V_SYNC": 2, "V_BACK": 4}
 _SMOOTH = {"SMOOTH": 1}
 # Every field there is.
-_ALL_FIELDS = {"LEVELS": 6, "BOXES": 1}
+_ALL_FIELDS = {"LEVELS": 6, "BOXES": 1, "ROUND": 1}
 _COMMON, _TRIANGLE = (scanout.RTL / folder for folder in ("common", "triangle"))
 
 MODULES = [
@@ -47,9 +47,13 @@ MODULES = [
     Module(top="setup", sources=SETUP, variants={"setup_smooth": _SMOOTH}),
     Module(top="triangle_raster", sources=TRIANGLE_RASTER, variants={"triangle_raster_smooth": _SMOOTH}),
     Module(top="triangle_engine", sources=TRIANGLE_ENGINE, variants={"triangle_engine_smooth": _SMOOTH}),
-    Module(top="ray_generator", sources=RAY_GENERATOR),
+    Module(top="ray_generator", sources=RAY_GENERATOR, variants={"ray_generator_round": {"ROUND": 1}}),
     Module(top="ray_paint", sources=RAY_PAINT),
     Module(top="raymarcher", sources=RAYMARCHER, variants={"raymarcher_menger": {"LANES": 4, "LEVELS": 4, "BOXES": 0}}),
-    Module(top="ring_lane", sources=RING_LANE, variants={"ring_lane_all": _ALL_FIELDS}),
+    Module(top="ring_lane", sources=RING_LANE, variants={
+        "ring_lane_flat": {"LEVELS": 6, "BOXES": 1},
+        "ring_lane_round": {"LEVELS": 0, "ROUND": 1},
+        "ring_lane_all": _ALL_FIELDS,
+    }),
     Module(top="triangle_control", sources=TRIANGLE_CONTROL, variants={"triangle_control_smooth": _SMOOTH}),
 ]

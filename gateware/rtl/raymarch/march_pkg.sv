@@ -31,8 +31,11 @@ package march_pkg;
 
     typedef enum logic [1:0] {MISS = 2'd0, HIT = 2'd1, UNDECIDED = 2'd2} state_t;
 
-    // Its end. `surface` is {axis, positive}. Of a miss, `t` is the sine above the horizon in 8 bits, 0 below it.
+    // Its end. `surface` is {axis, positive}, or a sphere's number; only a sphere's light wants to know the direction. Of a miss, `t` is
+    // the sine above the horizon in 8 bits, 0 below it.
     typedef struct packed {
+        logic [2:0][DIRECTION_BITS-1:0] direction;
+        logic              round;
         place_t            place;
         logic [9:0]        length;
         logic [T_BITS-1:0] t;
@@ -40,10 +43,15 @@ package march_pkg;
         state_t            state;
         logic [2:0]        surface;
     } end_t;
-    localparam int unsigned END_BITS = PLACE_BITS + 10 + T_BITS + 8 + 2 + 3;
+    localparam int unsigned FLAT_END_BITS = PLACE_BITS + 10 + T_BITS + 8 + 2 + 3;
+    localparam int unsigned END_BITS      = FLAT_END_BITS + 1 + 3 * DIRECTION_BITS;
 
     // What there is; all of it holds while a frame is drawn.
     typedef struct packed {
+        // Spheres: whether they are what there is, whether they repeat themselves, and the last one's number, 0 without them.
+        logic                       is_round;
+        logic                       balls_repeated;
+        logic [2:0]                 last_ball;
         // A box, or else the sponge.
         logic                       is_box;
         // The sponge: which of its levels count, the first in bit 0, and half the side of the cubes that are left.
@@ -56,6 +64,20 @@ package march_pkg;
         logic                       repeated;
     } solid_t;
 
+    // A sphere: its radius, and its centre.
+    typedef struct packed {
+        logic [20:0]                radius;
+        logic [2:0][POINT_BITS-1:0] centre;
+    } ball_t;
+
+    // The nearest sphere of those that have been looked at: its distance and its number.
+    typedef struct packed {
+        logic signed [POINT_BITS-1:0] distance;
+        logic [2:0]                   number;
+    } nearest_t;
+
+    localparam int unsigned NEAREST_BITS = POINT_BITS + 3;
+
     // How finely.
     typedef struct packed {
         logic [15:0]       threshold;
@@ -64,9 +86,14 @@ package march_pkg;
         logic [T_BITS-1:0] far_limit;
     } tuning_t;
 
-    // Clocks from a point to its distance, of fields with so many levels of the sponge, with boxes or without.
-    function automatic int unsigned field_clocks(input int unsigned levels, input bit boxes);
-        field_clocks = levels == 0 ? 3 : 3 * levels + 3 + (boxes ? 1 : 0);
+    // Clocks from a point to its distance, of fields with so many levels of the sponge, with boxes and spheres or without.
+    function automatic int unsigned flat_clocks(input int unsigned levels, input bit boxes);
+        flat_clocks = levels == 0 ? 3 : 3 * levels + 3 + (boxes ? 1 : 0);
+    endfunction
+    function automatic int unsigned field_clocks(input int unsigned levels, input bit boxes, input bit round);
+        field_clocks = flat_clocks(levels, boxes);
+        if (round && field_clocks < 19) field_clocks = 19;
+        if (round && (levels > 0 || boxes)) field_clocks = field_clocks + 1;
     endfunction
     /* verilator lint_on UNUSEDPARAM */
 endpackage

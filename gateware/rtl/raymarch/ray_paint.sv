@@ -185,7 +185,7 @@ module ray_paint (
         .out_valid, .out_ready, .out_data({out_eye, out_row, out_line, out_column, out_mask, out_code, out_colour})
     );
 
-    wire _unused = &{1'b0, unused_inverse, product_5[42:40], place_29.odd, line_times_5[8], stride[5:0]};
+    wire _unused = &{1'b0, in_end.direction, in_end.round, unused_inverse, product_5[42:40], place_29.odd, line_times_5[8], stride[5:0]};
 endmodule
 
 `default_nettype wire

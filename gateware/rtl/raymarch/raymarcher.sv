@@ -22,6 +22,7 @@ module raymarcher #(
     parameter int unsigned LANES  = 2,
     parameter int unsigned LEVELS = 6,
     parameter bit          BOXES  = 1'b1,
+    parameter bit          ROUND  = 1'b0,
     parameter bit          STEREO = 1'b1,
     parameter int unsigned EARLY  = 512
 ) (
@@ -47,6 +48,10 @@ module raymarcher #(
     input  wire  [2:0][23:0]          bounds,
     input  wire march_pkg::solid_t    solid,
     input  wire march_pkg::tuning_t   tuning,
+    // Spheres, with ROUND: written between frames.
+    input  wire                       ball_write,
+    input  wire  [2:0]                ball_number,
+    input  wire march_pkg::ball_t     ball,
     // What surfaces look like: see ray_paint.
     input  wire  [16:0]               depth_mantissa,
     input  wire  signed [5:0]         depth_exponent,
@@ -81,6 +86,7 @@ module raymarcher #(
     output logic [31:0]               undecided
 );
     localparam int unsigned EARLY_BITS = $clog2(EARLY + 1);
+    localparam int unsigned KEPT_BITS  = ROUND ? march_pkg::END_BITS : march_pkg::FLAT_END_BITS;
 
     logic reset;
     assign reset = rst || restart;
@@ -95,9 +101,9 @@ module raymarcher #(
     logic                  generating, ray_valid, ray_ready;
     march_pkg::ray_t       ray;
 
-    ray_generator #(.STEREO(STEREO)) generator (
+    ray_generator #(.ROUND(ROUND), .STEREO(STEREO)) generator (
         .clk, .rst(reset), .start, .busy(generating), .last_column, .last_line, .last_band, .stereo,
-        .first, .across, .down, .near_limit, .origins, .outside,
+        .round(solid.is_round), .first, .across, .down, .near_limit, .origins, .outside,
         .out_valid(ray_valid), .out_ready(ray_ready), .out_ray(ray)
     );
 
@@ -144,8 +150,8 @@ module raymarcher #(
     assign ray_ready  = lane_takes != '0;
 
     for (genvar i = 0; i < LANES; i++) begin : lanes
-        ring_lane #(.LEVELS(LEVELS), .BOXES(BOXES), .STEREO(STEREO)) lane (
-            .clk, .rst(reset), .origins, .bounds, .solid, .tuning,
+        ring_lane #(.LEVELS(LEVELS), .BOXES(BOXES), .ROUND(ROUND), .STEREO(STEREO)) lane (
+            .clk, .rst(reset), .origins, .bounds, .solid, .tuning, .ball_write, .ball_number, .ball,
             .in_valid(lane_valid[i]), .in_ready(lane_ready[i]), .in_ray(ray),
             .out_valid(end_valid[i]), .out_ready(end_taken[i]), .out_end(end_of[i]),
             .evaluates(evaluates[i]), .waits(waits[i])
@@ -157,6 +163,7 @@ module raymarcher #(
     logic [TURN_BITS-1:0] turn;
     logic                 next_valid, next_now, next_taken, waiting_valid, waiting_now, waiting_ready, room, paint_valid, paint_ready;
     march_pkg::end_t      next_end, waiting_end, paint_end;
+    logic [KEPT_BITS-1:0] kept;
 
     always_ff @(posedge clk) turn <= reset || turn == TURN_BITS'(LANES - 1) ? '0 : turn + 1'b1;
 
@@ -176,10 +183,11 @@ module raymarcher #(
         end_taken[turn] = next_taken;
     end
 
-    fifo #(.WIDTH(march_pkg::END_BITS), .DEPTH(EARLY), .BLOCK(1'b1)) waiting (
-        .clk, .rst(reset), .in_valid(next_valid && !next_now), .in_ready(room), .in_data(next_end),
-        .out_valid(waiting_valid), .out_ready(waiting_ready), .out_data(waiting_end)
+    fifo #(.WIDTH(KEPT_BITS), .DEPTH(EARLY), .BLOCK(1'b1)) waiting (
+        .clk, .rst(reset), .in_valid(next_valid && !next_now), .in_ready(room), .in_data(next_end[KEPT_BITS-1:0]),
+        .out_valid(waiting_valid), .out_ready(waiting_ready), .out_data(kept)
     );
+    assign waiting_end = march_pkg::END_BITS'(kept);
 
     /* verilator lint_off PINCONNECTEMPTY */
     ray_paint paint (

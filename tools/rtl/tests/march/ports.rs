@@ -1,6 +1,6 @@
 //! The raymarcher's constants and items as its ports have them.
 
-use glint_model::march::{Outcome, Palette, Ray, Setup, Solid, State, paint, rgb565};
+use glint_model::march::{Outcome, Palette, Ray, Setup, Solid, State, Surface, paint, rgb565};
 use glint_rtl::{Bits, Module};
 
 /// A pixel's place: parity of its band, line in it, column.
@@ -49,6 +49,7 @@ pub fn ray(place: Place, ray: &Ray) -> Bits {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct End {
     pub state: u64,
+    pub round: bool,
     pub surface: u64,
     pub t: u64,
     pub steps: u64,
@@ -58,23 +59,27 @@ pub struct End {
 impl End {
     pub fn expected(ray: &Ray, outcome: &Outcome) -> Self {
         let (state, surface, t) = match outcome.state {
-            State::Miss => (0, 0, (ray.direction[2].max(0) >> 9) as u64),
-            State::Hit(surface) => (1, surface.code().into(), outcome.t.into()),
-            State::Undecided => (2, 0, 0),
+            State::Miss => (0, None, (ray.direction[2].max(0) >> 9) as u64),
+            State::Hit(surface) => (1, Some(surface), outcome.t.into()),
+            State::Undecided => (2, None, 0),
         };
         Self {
             state,
-            surface,
+            round: surface.is_some_and(Surface::is_round),
+            surface: surface.map_or(0, |surface| surface.code().into()),
             t,
-            steps: outcome.steps.into(),
+            steps: outcome.steps.min(255).into(),
             length: ray.length.into(),
         }
     }
 
+    /// Without the direction: see [`direction`].
     pub fn of(item: &Bits) -> (Place, Self) {
         let state = item.field(3, 2);
+        let hit = state == 1;
         let end = Self {
-            surface: if state == 1 { item.field(0, 3) } else { 0 },
+            surface: if hit { item.field(0, 3) } else { 0 },
+            round: hit && item.field(65, 1) == 1,
             state,
             steps: item.field(5, 8),
             t: if state == 2 { 0 } else { item.field(13, 23) },
@@ -82,6 +87,11 @@ impl End {
         };
         (Place::of(item.field(46, PLACE_BITS)), end)
     }
+}
+
+/// The direction that the end of a ray has.
+pub fn direction(item: &Bits) -> [i32; 3] {
+    [0, 1, 2].map(|i| (item.field(66 + 18 * i, 18) as i32) << 14 >> 14)
 }
 
 fn solid(solid: &Solid) -> Bits {
@@ -106,8 +116,26 @@ fn solid(solid: &Solid) -> Bits {
                 .with(1, 1, u8::from(room))
                 .with(99, 1, 1)
         }
+        Solid::Balls(balls) => all
+            .with(100, 3, balls.count as u64 - 1)
+            .with(103, 1, u8::from(balls.repeated))
+            .with(104, 1, 1),
         _ => panic!("{solid:?}: no port for it"),
     }
+}
+
+/// Writes the spheres.
+fn set_balls(module: &mut Module, solid: &Solid) {
+    let Solid::Balls(balls) = solid else { return };
+    let [write, number, ball] = ["ball_write", "ball_number", "ball"].map(|name| module.port(name));
+    module.set(write, 1);
+    for (i, one) in (0_u64..).zip(balls.list.iter().take(balls.count)) {
+        module.set(number, i);
+        let centre = three(22, one.centre.map(i64::from));
+        module.set(ball, centre.with(66, 21, one.radius));
+        module.clock();
+    }
+    module.set(write, 0);
 }
 
 /// Sets what holds during a frame, as far as a lane wants it.
@@ -131,6 +159,7 @@ pub fn set_lane(module: &mut Module, setup: &Setup) {
         let port = module.port(name);
         module.set(port, value);
     }
+    set_balls(module, &setup.solid);
 }
 
 /// Sets what holds during a frame, as far as the generator wants it, in bands of so many lines.
@@ -170,6 +199,7 @@ pub fn set_generator(module: &mut Module, setup: &Setup, band_lines: u32) {
 pub fn end(place: Place, ray: &Ray, outcome: &Outcome) -> Bits {
     let End {
         state,
+        round,
         surface,
         t,
         steps,
@@ -182,6 +212,10 @@ pub fn end(place: Place, ray: &Ray, outcome: &Outcome) -> Bits {
         .with(13, 23, t)
         .with(36, 10, length)
         .with(46, PLACE_BITS, place.number())
+        .with(65, 1, u8::from(round))
+        .with(66, 18, ray.direction[0])
+        .with(84, 18, ray.direction[1])
+        .with(102, 18, ray.direction[2])
 }
 
 fn colour([r, g, b]: [u8; 3]) -> u64 {

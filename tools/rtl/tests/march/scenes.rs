@@ -2,7 +2,7 @@
 
 use glint_core::camera::View;
 use glint_core::field::Field;
-use glint_core::fixed::Q32_32;
+use glint_core::fixed::{Q32_32, Turns};
 use glint_model::SIZES;
 use glint_model::march::{FieldOptions, Setup, Stereo, Tint};
 
@@ -11,7 +11,19 @@ use crate::common::{Camera, Random};
 /// What is built without anything but the sponge.
 pub const SPONGES: [&str; 4] = ["menger:4", "menger:3", "menger:2", "menger:1"];
 
-/// Every field that there is.
+/// What there is only where a lane knows spheres.
+pub const ROUND: [&str; 8] = [
+    "sphere:1",
+    "sphere:12",
+    "sphere:0.01",
+    "lattice:2,0.5",
+    "lattice:0.25,0.124",
+    "moving:0.25,0.75",
+    "spheres:0,0,0,0.75;1,0.25,0.5,0.5;-0.75,-0.5,0.75,0.25",
+    "spheres:0,0,0,0.5;1,0,0,0.5;0,1,0,0.5;0,0,1,0.5;-1,0,0,0.5;0,-1,0,0.5;0,0,-1,0.5;8,-8,8,3.5",
+];
+
+/// Every field without anything round.
 pub const FIELDS: [&str; 12] = [
     "menger:4",
     "menger:6",
@@ -56,7 +68,10 @@ pub fn camera(random: &mut Random) -> View {
 /// The constants of a frame: how finely it is marched is random too, and how many eyes look.
 pub fn setup(random: &mut Random, fields: &[&str]) -> Setup {
     let field = Field::parse(fields[random.bits() as usize % fields.len()]).unwrap();
-    let mut options = FieldOptions::default();
+    let mut options = FieldOptions {
+        phase: Turns(random.bits() as u32),
+        ..FieldOptions::default()
+    };
     if random.coin() {
         options.stereo = Some(Stereo {
             half_separation: Q32_32::from_num(random.real(0.0, 1.0)),
