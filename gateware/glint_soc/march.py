@@ -11,5 +11,7 @@ RAY_GENERATOR = [_MARCH / "march_pkg.sv", _COMMON / "delay.sv", _COMMON / "skid_
                  *(_MARCH / f"{name}.sv" for name in ("inverse_table", "round_inverse", "ray_generator"))]
 RAY_PAINT = [_MARCH / "march_pkg.sv", _COMMON / "delay.sv", _COMMON / "skid_buffer.sv", _TRIANGLE / "multiply_add.sv",
              _TRIANGLE / "normalise.sv",
-             *(_MARCH / f"{name}.sv" for name in ("inverse_table", "depth_code", "paint_table", "ray_paint"))]
-RAYMARCHER = [*dict.fromkeys([*RING_LANE, *RAY_GENERATOR, *RAY_PAINT, _MARCH / "raymarcher.sv"])]
+             *(_MARCH / f"{name}.sv" for name in ("inverse_table", "round_inverse", "depth_code", "paint_table", "ray_paint"))]
+ROUND_LIGHT = [_MARCH / "march_pkg.sv", _COMMON / "delay.sv", _COMMON / "skid_buffer.sv", _TRIANGLE / "multiply_add.sv",
+               _MARCH / "round_light.sv"]
+RAYMARCHER = [*dict.fromkeys([*RING_LANE, *RAY_GENERATOR, *ROUND_LIGHT, *RAY_PAINT, _MARCH / "raymarcher.sv"])]

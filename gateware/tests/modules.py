@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 
 from glint_soc import scanout
-from glint_soc.march import RAY_GENERATOR, RAY_PAINT, RAYMARCHER, RING_LANE
+from glint_soc.march import RAY_GENERATOR, RAY_PAINT, RAYMARCHER, RING_LANE, ROUND_LIGHT
 from glint_soc.triangle import BAND_BUFFER, SETUP, TRIANGLE_CONTROL, TRIANGLE_ENGINE, TRIANGLE_RASTER, VERTEX_STAGE
 
 
@@ -48,8 +48,12 @@ MODULES = [
     Module(top="triangle_raster", sources=TRIANGLE_RASTER, variants={"triangle_raster_smooth": _SMOOTH}),
     Module(top="triangle_engine", sources=TRIANGLE_ENGINE, variants={"triangle_engine_smooth": _SMOOTH}),
     Module(top="ray_generator", sources=RAY_GENERATOR, variants={"ray_generator_round": {"ROUND": 1}}),
-    Module(top="ray_paint", sources=RAY_PAINT),
-    Module(top="raymarcher", sources=RAYMARCHER, variants={"raymarcher_menger": {"LANES": 4, "LEVELS": 4, "BOXES": 0}}),
+    Module(top="ray_paint", sources=RAY_PAINT, variants={"ray_paint_round": {"ROUND": 1}}),
+    Module(top="raymarcher", sources=RAYMARCHER, variants={
+        "raymarcher_menger": {"LANES": 4, "LEVELS": 4, "BOXES": 0},
+        "raymarcher_round": {"LEVELS": 4, "ROUND": 1},
+    }),
+    Module(top="round_light", sources=ROUND_LIGHT),
     Module(top="ring_lane", sources=RING_LANE, variants={
         "ring_lane_flat": {"LEVELS": 6, "BOXES": 1},
         "ring_lane_round": {"LEVELS": 0, "ROUND": 1},

@@ -11,6 +11,7 @@
 //! [`paint`] what it shows.
 
 mod field;
+mod light;
 mod paint;
 mod ray;
 mod render;
@@ -18,6 +19,7 @@ mod setup;
 mod sphere;
 
 pub use field::{Sample, Solid, Surface};
+pub use light::{Light, Lights};
 pub use paint::{Palette, paint};
 pub use ray::{Outcome, Ray, State};
 pub use render::{FieldStats, compose, render_field, rgb565};

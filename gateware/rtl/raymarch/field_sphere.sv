@@ -155,7 +155,7 @@ module field_sphere (
         distance   <= !over[23] && over[22:21] != '0 ? {1'b0, {21{1'b1}}} : over[21:0];
     end
 
-    wire _unused = &{1'b0, any_8[13:0], any_3[0], by_8, square_9[36], square_10[7:0], root_15[36], root_15[16:0]};
+    wire _unused = &{1'b0, ball.material, ball.shift, ball.inverse, any_8[13:0], any_3[0], by_8, square_9[36], square_10[7:0], root_15[36], root_15[16:0]};
 endmodule
 
 `default_nettype wire

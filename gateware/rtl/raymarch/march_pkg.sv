@@ -64,8 +64,12 @@ package march_pkg;
         logic                       repeated;
     } solid_t;
 
-    // A sphere: its radius, and its centre.
+    // A sphere: its material, {blue, green, red}; the inverse of its radius and a shift (docs/formats.md, "Light"); its radius, and
+    // its centre.
     typedef struct packed {
+        logic [23:0]                material;
+        logic [4:0]                 shift;
+        logic [16:0]                inverse;
         logic [20:0]                radius;
         logic [2:0][POINT_BITS-1:0] centre;
     } ball_t;
@@ -77,6 +81,18 @@ package march_pkg;
     } nearest_t;
 
     localparam int unsigned NEAREST_BITS = POINT_BITS + 3;
+
+    // What shines on spheres: lights from some directions, s1.16, in their colours; ambient light; and the last light's number.
+    typedef struct packed {
+        logic [2:0][17:0] direction;
+        logic [23:0]      colour;
+    } light_t;
+
+    typedef struct packed {
+        logic [1:0]   last_light;
+        logic [23:0]  ambient;
+        light_t [3:0] list;
+    } lights_t;
 
     // How finely.
     typedef struct packed {

@@ -52,6 +52,7 @@ module raymarcher #(
     input  wire                       ball_write,
     input  wire  [2:0]                ball_number,
     input  wire march_pkg::ball_t     ball,
+    input  wire march_pkg::lights_t   lights,
     // What surfaces look like: see ray_paint.
     input  wire  [16:0]               depth_mantissa,
     input  wire  signed [5:0]         depth_exponent,
@@ -189,10 +190,30 @@ module raymarcher #(
     );
     assign waiting_end = march_pkg::END_BITS'(kept);
 
+    // What is round gets its light first.
+    logic            lit_valid, lit_ready;
+    march_pkg::end_t lit_end;
+    logic [23:0]     lit_colour;
+
+    if (ROUND) begin : light
+        round_light #(.STEREO(STEREO)) shine (
+            .clk, .rst(reset), .origins, .repeated(solid.balls_repeated), .lights, .ball_write, .ball_number, .ball,
+            .in_valid(paint_valid), .in_ready(paint_ready), .in_end(paint_end),
+            .out_valid(lit_valid), .out_ready(lit_ready), .out_end(lit_end), .out_colour(lit_colour)
+        );
+    end else begin : no_light
+        assign lit_valid   = paint_valid;
+        assign paint_ready = lit_ready;
+        assign lit_end     = paint_end;
+        assign lit_colour  = '0;
+        wire _unused = &{1'b0, lights};
+    end
+
     /* verilator lint_off PINCONNECTEMPTY */
-    ray_paint paint (
-        .clk, .rst(reset), .stereo, .stride, .depth_mantissa, .depth_exponent, .fog_shift, .palette, .horizon, .table_write, .table_entry, .table_part,
-        .in_valid(paint_valid), .in_ready(paint_ready), .in_end(paint_end),
+    ray_paint #(.ROUND(ROUND)) paint (
+        .clk, .rst(reset), .stereo, .round(solid.is_round), .stride, .depth_mantissa, .depth_exponent, .fog_shift, .palette, .horizon,
+        .table_write, .table_entry, .table_part,
+        .in_valid(lit_valid), .in_ready(lit_ready), .in_end(lit_end), .in_colour(lit_colour),
         .out_valid(group_valid), .out_ready(group_ready), .out_eye(group_eye), .out_row(group_row), .out_line(group_line),
         .out_column(group_column), .out_mask(group_mask), .out_code(group_code), .out_colour(group_colour), .idle()
     );

@@ -2,7 +2,9 @@
 
 use glint_core::field::Field as Scene;
 use glint_core::fixed::Turns;
-use glint_model::march::{FieldOptions, ROUND_TUNING, Setup, State, Surface};
+use glint_model::march::{
+    FieldOptions, Light, Lights, Palette, ROUND_TUNING, Setup, State, Surface, paint,
+};
 use glint_reference::camera::{Camera, Size, Vector};
 use glint_reference::field::metrics::{Outcome, accuracy, expected};
 use glint_reference::field::{Face, Field, Sphere};
@@ -81,7 +83,10 @@ fn picture(setup: &Setup, scale: f64) -> (Vec<Outcome>, u32) {
                             let axis = axis.into();
                             (Face::Axis { axis, positive }, [0.0; 3])
                         }
-                        Surface::Round { .. } => (Face::Round, [0.0; 3]),
+                        Surface::Round { .. } => {
+                            let normal = setup.normal(&ray, &end).expect("it is round");
+                            (Face::Round, normal.map(f64::from))
+                        }
                     };
                     // As far as the reference looks.
                     if t > FAR {
@@ -128,6 +133,58 @@ fn round_fields_are_where_they_are() {
             assert!(found.iou >= 0.999 && found.undecided == 0, "{name}");
             assert!(found.wrong_faces <= 0.01, "{name}");
             assert!(depth.median <= 3e-4 && depth.p99 <= 3e-3, "{name}");
+            let normal = found.normal.expect("something round");
+            assert!(normal.p99 <= 0.3, "{name}");
         }
+    }
+}
+
+/// The channels of what is seen, against max(0, n·l) of the exact normals.
+#[test]
+fn spheres_are_lit_as_they_should_be() {
+    let mut lights = Lights::default();
+    lights.count = 2;
+    lights.list[1] = Light {
+        direction: [0, 65535, 0],
+        colour: [90, 40, 10],
+    };
+    let palette = Palette {
+        lights,
+        ..Palette::default()
+    };
+    let camera = Camera::looking_at([2.1875, 1.6875, 1.3125], [0.0; 3], 0.9, 0.01);
+    let view = camera.view().expect("a camera");
+    let camera = Camera::from(&view);
+    for radius in [0.25, 1.0] {
+        let scene = Scene::parse(&format!("sphere:{radius}")).expect("a field");
+        let options = FieldOptions {
+            tuning: ROUND_TUNING,
+            ..FieldOptions::default()
+        };
+        let setup = Setup::new(&scene, &view, (320, 180), &options).expect("a size");
+        let mut most: f64 = 0.0;
+        for (x, y) in (0..180).flat_map(|y| (0..320).map(move |x| (x, y))) {
+            let exact = camera.ray([x, y].map(f64::from), SIZE);
+            let field = ball([0.0; 3], radius);
+            let Some(hit) = field.hit(exact.origin, exact.direction, 0.01, FAR) else {
+                continue;
+            };
+            let ray = setup.ray(0, x, y);
+            let end = setup.march(&ray);
+            let found = paint(&setup, &palette, &ray, &end);
+            for (i, found) in found.into_iter().enumerate() {
+                let mut light = f64::from(lights.ambient[i]);
+                for one in &lights.list[..2] {
+                    let cosine: f64 = core::iter::zip(hit.normal, one.direction)
+                        .map(|(n, l)| n * f64::from(l) / 65536.0)
+                        .sum();
+                    light += cosine.max(0.0) * f64::from(one.colour[i]);
+                }
+                let seen = light.min(255.0) * f64::from(lights.materials[0][i]) / 255.0;
+                most = most.max((seen - f64::from(found)).abs());
+            }
+        }
+        println!("radius {radius}: channels differ by at most {most:.2}");
+        assert!(most <= 4.0, "radius {radius}: {most}");
     }
 }

@@ -32,6 +32,14 @@ impl Surface {
     pub const fn is_round(self) -> bool {
         matches!(self, Self::Round { .. })
     }
+
+    /// The sphere's number.
+    pub const fn number(self) -> Option<u8> {
+        match self {
+            Self::Face { .. } => None,
+            Self::Round { number } => Some(number),
+        }
+    }
 }
 
 /// A distance and what it is to.
@@ -88,18 +96,26 @@ impl Solid {
         }
     }
 
+    /// The spheres of it.
+    pub const fn balls(&self) -> Option<&Balls> {
+        match self {
+            Self::Balls(balls) => Some(balls),
+            _ => None,
+        }
+    }
+
     /// How often the field is asked for one distance: once for each sphere.
     pub const fn passes(&self) -> u32 {
-        match self {
-            Self::Balls(balls) => balls.count as u32,
-            _ => 1,
+        match self.balls() {
+            Some(balls) => balls.count as u32,
+            None => 1,
         }
     }
 
     /// Whether there is anything round: then rays are scaled by their Euclidean length. It is never less than that in the maximum
     /// norm, so distances of faces hold for such rays too.
     pub const fn is_round(&self) -> bool {
-        matches!(self, Self::Balls(_))
+        self.balls().is_some()
     }
 }
 

@@ -277,7 +277,7 @@ fn in_units(field: &Field, phase: Turns) -> (Solid, Q32_32, Option<[Q32_32; 3]>)
         Field::Lattice { period, radius } => {
             let scale = scale_of(period);
             let mut list = [Ball::default(); MAX_SPHERES];
-            list[0].radius = solid_units(radius, scale);
+            list[0] = Ball::new([0; 3], solid_units(radius, scale));
             let solid = Solid::Balls(Balls {
                 list,
                 count: 1,
@@ -311,10 +311,8 @@ fn balls<'a>(
     let mut extent = [Q32_32::ZERO; 3];
     let mut count = 0;
     for (ball, sphere) in list.iter_mut().zip(spheres) {
-        *ball = Ball {
-            centre: sphere.centre.map(|x| units(x, HALF_SIDE) as i32),
-            radius: units(sphere.radius, HALF_SIDE) as i32,
-        };
+        let length = |x: Q32_32| units(x, HALF_SIDE) as i32;
+        *ball = Ball::new(sphere.centre.map(length), length(sphere.radius));
         extent = [0, 1, 2].map(|i: usize| extent[i].max(sphere.centre[i].abs() + sphere.radius));
         count += 1;
     }

@@ -10,8 +10,27 @@ use super::ray::magnitude;
 pub struct Ball {
     /// Its centre, s9.12.
     pub centre: [i32; 3],
-    /// Its radius, u9.12.
+    /// Its radius, u9.12, above 2^6.
     pub radius: i32,
+    /// What it takes to divide by it: 2^37 over the radius shifted to 21 bits, 17 bits, to nearest but for what is more ...
+    pub inverse: u32,
+    /// ... and how far a product with it, 16 fraction bits, is shifted to have 17 bits: 6 to 20.
+    pub shift: u32,
+}
+
+impl Ball {
+    /// A sphere of a radius from 2^6 to 2^21 − 1.
+    pub fn new(centre: [i32; 3], radius: i32) -> Self {
+        let lead = radius.max(1).ilog2().clamp(6, 20);
+        let shifted = (radius.max(1) as u64) << (20 - lead);
+        let inverse = (((1 << 37) + shifted / 2) / shifted).min((1 << 17) - 1) as u32;
+        Self {
+            centre,
+            radius,
+            inverse,
+            shift: lead,
+        }
+    }
 }
 
 /// Some spheres: one evaluation looks at each of them in turn.
@@ -48,13 +67,11 @@ impl Balls {
         nearest
     }
 
-    /// A point as seen from a sphere's centre.
-    fn from(&self, ball: &Ball, point: [i32; 3]) -> [i32; 3] {
-        [0, 1, 2].map(|i: usize| {
-            let q = point[i] - ball.centre[i];
-            // 64 units are 2^18: the middle of the cell in which the point lies is where the lowest 18 bits are 0.
-            if self.repeated { q << 14 >> 14 } else { q }
-        })
+    /// A point as seen from a sphere's centre, s11.12.
+    pub(super) fn from(&self, ball: &Ball, point: [i32; 3]) -> [i32; 3] {
+        // 64 units are 2^18: the middle of the cell in which the point lies is where the lowest 18 bits are 0.
+        let beyond = if self.repeated { 14 } else { 9 };
+        [0, 1, 2].map(|i: usize| (point[i] - ball.centre[i]) << beyond >> beyond)
     }
 }
 

@@ -1,11 +1,11 @@
 //! Whole frames of the raymarcher: every pixel once, as the model has it, in the band that is open.
 
-use glint_model::march::{FieldStats, Palette, Setup};
+use glint_model::march::{FieldStats, Palette, Setup, State};
 use glint_rtl::{Module, Sink, Stalls};
 
 use crate::common::Random;
-use crate::ports::{Pixel, Place, pixel, set_generator, set_lane, set_paint};
-use crate::scenes::{FIELDS, SPONGES, band_lines, setup};
+use crate::ports::{Pixel, Place, pixel, set_generator, set_lane, set_lights, set_paint};
+use crate::scenes::{FIELDS, ROUND, SPONGES, band_lines, lights, setup};
 
 const COUNTERS: [&str; 8] = [
     "clocks_busy",
@@ -56,6 +56,7 @@ impl Bench {
         set_lane(&mut self.module, setup);
         set_generator(&mut self.module, setup, lines);
         set_paint(&mut self.module, setup, palette);
+        set_lights(&mut self.module, setup, &palette.lights);
         self.port("band_rays", u64::from(eyes * setup.width * lines));
     }
 
@@ -176,6 +177,50 @@ fn frames_of_all_fields_with_stalls() {
         // A ray at the limit costs as much as 20.
         setup.tuning.cap = setup.tuning.cap.min(40);
         bench.draw(&mut random, &setup, &Palette::default(), false);
+    }
+}
+
+#[test]
+fn frames_of_round_fields_in_all_lights() {
+    let mut random = Random(12);
+    let mut bench = Bench::new("raymarcher_round", 2, 1);
+    for frame in 0..5 {
+        let fields = if frame % 4 == 3 {
+            &SPONGES[..]
+        } else {
+            &ROUND[..]
+        };
+        let mut setup = setup(&mut random, fields);
+        setup.tuning.cap = setup.tuning.cap.min(20);
+        let palette = Palette {
+            lights: lights(&mut random),
+            ..Palette::default()
+        };
+        bench.draw(&mut random, &setup, &palette, frame % 2 == 0);
+    }
+}
+
+/// What light costs: a sphere that fills much of the picture.
+#[test]
+fn round_pixels_take_a_clock_a_light() {
+    let mut random = Random(13);
+    let mut bench = Bench::new("raymarcher_round", 2, 1);
+    let setup = loop {
+        let setup = setup(&mut random, &["sphere:1"]);
+        let middle = setup.ray(0, setup.width / 2, setup.height / 2);
+        let end = setup.march(&middle);
+        if setup.width == 320 && end.steps > 2 && matches!(end.state, State::Hit(_)) {
+            break setup;
+        }
+    };
+    for count in 1..=4 {
+        let mut palette = Palette::default();
+        palette.lights.count = count;
+        let taken = bench.draw(&mut random, &setup, &palette, true);
+        println!(
+            "{count} lights: {} clocks, {:?}",
+            taken.counters[0], taken.stats
+        );
     }
 }
 

@@ -1,6 +1,8 @@
 //! The raymarcher's constants and items as its ports have them.
 
-use glint_model::march::{Outcome, Palette, Ray, Setup, Solid, State, Surface, paint, rgb565};
+use glint_model::march::{
+    Lights, Outcome, Palette, Ray, Setup, Solid, State, Surface, paint, rgb565,
+};
 use glint_rtl::{Bits, Module};
 
 /// A pixel's place: parity of its band, line in it, column.
@@ -124,18 +126,40 @@ fn solid(solid: &Solid) -> Bits {
     }
 }
 
-/// Writes the spheres.
-fn set_balls(module: &mut Module, solid: &Solid) {
-    let Solid::Balls(balls) = solid else { return };
+/// Writes the spheres, with their materials.
+fn set_balls(module: &mut Module, solid: &Solid, lights: &Lights) {
+    let Some(balls) = solid.balls() else { return };
     let [write, number, ball] = ["ball_write", "ball_number", "ball"].map(|name| module.port(name));
     module.set(write, 1);
-    for (i, one) in (0_u64..).zip(balls.list.iter().take(balls.count)) {
-        module.set(number, i);
-        let centre = three(22, one.centre.map(i64::from));
-        module.set(ball, centre.with(66, 21, one.radius));
+    for (i, one) in (0..).zip(balls.list.iter().take(balls.count)) {
+        module.set(number, i as u64);
+        let bits = three(22, one.centre.map(i64::from))
+            .with(66, 21, one.radius)
+            .with(87, 17, one.inverse)
+            .with(104, 5, one.shift)
+            .with(109, 24, colour(lights.materials[i]));
+        module.set(ball, bits);
         module.clock();
     }
     module.set(write, 0);
+}
+
+/// Sets what shines on spheres.
+pub fn set_lights(module: &mut Module, setup: &Setup, lights: &Lights) {
+    let bits = (0..).zip(lights.list).fold(
+        Bits::default()
+            .with(312, 24, colour(lights.ambient))
+            .with(336, 2, lights.count as u64 - 1),
+        |all, (i, light)| {
+            let all = all.with(78 * i, 24, colour(light.colour));
+            (0..3).fold(all, |all, axis| {
+                all.with(78 * i + 24 + 18 * axis, 18, light.direction[axis])
+            })
+        },
+    );
+    let port = module.port("lights");
+    module.set(port, bits);
+    set_balls(module, &setup.solid, lights);
 }
 
 /// Sets what holds during a frame, as far as a lane wants it.
@@ -159,7 +183,7 @@ pub fn set_lane(module: &mut Module, setup: &Setup) {
         let port = module.port(name);
         module.set(port, value);
     }
-    set_balls(module, &setup.solid);
+    set_balls(module, &setup.solid, &Lights::default());
 }
 
 /// Sets what holds during a frame, as far as the generator wants it, in bands of so many lines.

@@ -4,7 +4,7 @@ use glint_core::camera::View;
 use glint_core::field::Field;
 use glint_core::fixed::{Q32_32, Turns};
 use glint_model::SIZES;
-use glint_model::march::{FieldOptions, Setup, Stereo, Tint};
+use glint_model::march::{FieldOptions, Light, Lights, Setup, Stereo, Tint};
 
 use crate::common::{Camera, Random};
 
@@ -88,6 +88,23 @@ pub fn setup(random: &mut Random, fields: &[&str]) -> Setup {
     }
     let size = SIZES[random.bits() as usize % SIZES.len()];
     Setup::new(&field, &camera(random), size, &options).unwrap()
+}
+
+/// Lights from anywhere, and materials.
+pub fn lights(random: &mut Random) -> Lights {
+    let mut colour = || [0; 3].map(|_| random.bits() as u8);
+    let materials = [0; 8].map(|_| colour());
+    let ambient = colour();
+    let colours = [0; 4].map(|_| colour());
+    Lights {
+        ambient,
+        list: colours.map(|colour| Light {
+            direction: random.direction().map(|x| (x * 65535.0) as i32),
+            colour,
+        }),
+        count: random.integer(1, 4) as usize,
+        materials,
+    }
 }
 
 /// Lines of a band, by the picture's width.
