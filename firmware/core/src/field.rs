@@ -21,10 +21,6 @@ pub const MAX_SPHERES: usize = 8;
 /// A solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "there is nowhere to box the spheres"
-)]
 pub enum Field {
     /// The Menger sponge that fills [−1, 1]³.
     Menger {
@@ -69,6 +65,70 @@ pub enum Field {
         /// From the origin to its centre.
         orbit: Q32_32,
     },
+    /// What is in either.
+    Union {
+        /// What has faces.
+        flat: Flat,
+        /// What is round.
+        round: Round,
+    },
+}
+
+/// A member of a union that has faces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Flat {
+    /// [`Field::Menger`].
+    Menger {
+        /// How often it is hollowed out, 1 to 6.
+        depth: u8,
+    },
+    /// [`Field::Box`].
+    Box {
+        /// Half of each side.
+        half: [Q32_32; 3],
+    },
+}
+
+/// A member of a union that is round.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "there is nowhere to box the spheres"
+)]
+pub enum Round {
+    /// [`Field::Sphere`].
+    Sphere {
+        /// Its radius.
+        radius: Q32_32,
+    },
+    /// [`Field::Spheres`].
+    Spheres(Spheres),
+    /// [`Field::Moving`].
+    Moving {
+        /// Its radius.
+        radius: Q32_32,
+        /// From the origin to its centre.
+        orbit: Q32_32,
+    },
+}
+
+impl From<Flat> for Field {
+    fn from(flat: Flat) -> Self {
+        match flat {
+            Flat::Menger { depth } => Self::Menger { depth },
+            Flat::Box { half } => Self::Box { half },
+        }
+    }
+}
+
+impl From<Round> for Field {
+    fn from(round: Round) -> Self {
+        match round {
+            Round::Sphere { radius } => Self::Sphere { radius },
+            Round::Spheres(spheres) => Self::Spheres(spheres),
+            Round::Moving { radius, orbit } => Self::Moving { radius, orbit },
+        }
+    }
 }
 
 /// A sphere.
@@ -154,6 +214,10 @@ impl Field {
                 check("radius", radius, [SMALLEST, MAX_EXTENT])?;
                 check("orbit", orbit, [Q32_32::ZERO, MAX_EXTENT - radius])?;
             }
+            Self::Union { flat, round } => {
+                Self::from(flat).checked()?;
+                Self::from(round).checked()?;
+            }
         }
         Ok(self)
     }
@@ -164,8 +228,10 @@ impl Field {
     /// The kind is unknown, a number is missing or is none, or one is out of its range.
     pub fn parse(text: &str) -> Result<Self, FieldError<'_>> {
         let (kind, numbers) = text.split_once(':').unwrap_or((text, ""));
-        if kind == "spheres" {
-            return parse_spheres(kind, numbers);
+        match kind {
+            "spheres" => return parse_spheres(kind, numbers),
+            "union" => return parse_union(numbers),
+            _ => {}
         }
         let mut words = Words::new(kind, numbers);
         let mut next = |name| words.next(name);
@@ -252,6 +318,23 @@ fn parse_spheres<'a>(kind: &'a str, text: &'a str) -> Result<Field, FieldError<'
     Field::spheres(list.get(..count).unwrap_or_default())
 }
 
+/// Reads what stands behind `union:`, a field with faces and a round one, a plus between them.
+fn parse_union(text: &str) -> Result<Field, FieldError<'_>> {
+    let (flat, round) = text.split_once('+').ok_or(FieldError::Union)?;
+    let flat = match Field::parse(flat)? {
+        Field::Menger { depth } => Flat::Menger { depth },
+        Field::Box { half } => Flat::Box { half },
+        _ => return Err(FieldError::Union),
+    };
+    let round = match Field::parse(round)? {
+        Field::Sphere { radius } => Round::Sphere { radius },
+        Field::Spheres(spheres) => Round::Spheres(spheres),
+        Field::Moving { radius, orbit } => Round::Moving { radius, orbit },
+        _ => return Err(FieldError::Union),
+    };
+    Ok(Field::Union { flat, round })
+}
+
 fn check(
     name: &'static str,
     value: Q32_32,
@@ -283,12 +366,15 @@ impl fmt::Display for Field {
             }
             Self::Lattice { period, radius } => write!(f, "lattice:{period},{radius}"),
             Self::Moving { radius, orbit } => write!(f, "moving:{radius},{orbit}"),
+            Self::Union { flat, round } => {
+                write!(f, "union:{}+{}", Self::from(*flat), Self::from(*round))
+            }
         }
     }
 }
 
 /// The kinds of fields as they are typed, with what each is.
-pub const KINDS: [(&str, &str); 8] = [
+pub const KINDS: [(&str, &str); 9] = [
     (
         "menger:DEPTH",
         "the Menger sponge in [-1, 1]^3, depth 1 to 6",
@@ -300,6 +386,10 @@ pub const KINDS: [(&str, &str); 8] = [
     ("spheres:X,Y,Z,R;...", "up to 8 spheres"),
     ("lattice:PERIOD,R", "spheres everywhere"),
     ("moving:R,ORBIT", "a sphere that circles about the z axis"),
+    (
+        "union:A+B",
+        "A menger or box, B sphere, spheres or moving, both together",
+    ),
 ];
 
 /// Why something is no field.
@@ -331,6 +421,8 @@ pub enum FieldError<'a> {
         /// What was typed.
         word: &'a str,
     },
+    /// The members of a union are others than it may have.
+    Union,
     /// There is no sphere, or there are more than [`MAX_SPHERES`].
     Spheres,
     /// A number is out of its range.
@@ -358,6 +450,9 @@ impl fmt::Display for FieldError<'_> {
                 write!(f, "{kind} has one number too many: {word}")
             }
             Self::Number { name, word } => write!(f, "{name} {word}: expected a number"),
+            Self::Union => {
+                f.write_str("union: expected menger or box, +, and sphere, spheres or moving")
+            }
             Self::Spheres => write!(f, "spheres: expected 1 to {MAX_SPHERES}"),
             Self::Range { name, least, most } => {
                 write!(f, "{name}: expected {least} to {most}")

@@ -3,12 +3,14 @@
 use glint_core::field::{Field, FieldError, KINDS, MAX_SPHERES, Sphere};
 use glint_core::fixed::Q32_32;
 
-const ROUND: [&str; 5] = [
+const ROUND: [&str; 7] = [
     "sphere:1.5",
     "spheres:0,0.5,-1,0.25",
     "spheres:0,0.5,-1,0.25;11,-11,11,1;0.1,0.2,0.3,11.5",
     "lattice:2,0.5",
     "moving:0.25,0.75",
+    "union:menger:4+sphere:1.25",
+    "union:box:1,2,0.5+spheres:0,0.5,-1,0.25;1,1,1,0.5",
 ];
 
 #[test]
@@ -45,6 +47,11 @@ fn what_is_wrong_is_said() {
         ("spheres:0,0,0,1;0,x,0,1", "y x: expected a number"),
         ("lattice:2,1", "radius: expected 0.01 to 0.9999999998"),
         ("moving:11,1.5", "orbit: expected 0 to 1"),
+        (
+            "union:cubes:1,0.1+sphere:1",
+            "union: expected menger or box, +, and sphere, spheres or moving",
+        ),
+        ("union:menger:7+sphere:1", "depth: expected 1 to 6"),
     ] {
         assert_eq!(Field::parse(text).unwrap_err().to_string(), error);
     }

@@ -4,7 +4,7 @@
 // built costs nothing; one that is the only one costs no choice.
 //
 // Spheres are looked at one after the other: `pass` is the number of one, a clock before the point, `so_far` is the nearest one of
-// those before it, and `nearest` is it or this one. The distance is right in the last pass.
+// those before it, and `nearest` is it or this one. The distance, to it or to what is flat beside it, is right in the last pass.
 
 `default_nettype none
 
@@ -112,10 +112,15 @@ module field_unit #(
                 assign {flat_distance_both, flat_surface_both} = {flat_distance, flat_surface};
             end
 
+            logic is_nearer, takes_round;
+
+            assign is_nearer   = $signed(nearest_both.distance) < flat_distance_both;
+            assign takes_round = solid.is_round && (!solid.flat_too || is_nearer);
+
             always_ff @(posedge clk) begin
-                distance <= solid.is_round ? nearest_both.distance : flat_distance_both;
-                surface  <= solid.is_round ? nearest_both.number : flat_surface_both;
-                round    <= solid.is_round;
+                distance <= takes_round ? nearest_both.distance : flat_distance_both;
+                surface  <= takes_round ? nearest_both.number : flat_surface_both;
+                round    <= takes_round;
                 nearest  <= nearest_both;
             end
         end else begin : only_spheres

@@ -48,7 +48,9 @@ package march_pkg;
 
     // What there is; all of it holds while a frame is drawn.
     typedef struct packed {
-        // Spheres: whether they are what there is, whether they repeat themselves, and the last one's number, 0 without them.
+        // Spheres: whether the flat solid is there beside them, whether there are any, whether they repeat themselves, and the last
+        // one's number, 0 without them.
+        logic                       flat_too;
         logic                       is_round;
         logic                       balls_repeated;
         logic [2:0]                 last_ball;
@@ -82,16 +84,12 @@ package march_pkg;
 
     localparam int unsigned NEAREST_BITS = POINT_BITS + 3;
 
-    // What shines on spheres: lights from some directions, s1.16, in their colours; ambient light; and the last light's number.
+    // What shines on spheres: the last light's number, ambient light, and lights in their colours from their directions, s1.16.
     typedef struct packed {
-        logic [2:0][17:0] direction;
-        logic [23:0]      colour;
-    } light_t;
-
-    typedef struct packed {
-        logic [1:0]   last_light;
-        logic [23:0]  ambient;
-        light_t [3:0] list;
+        logic [1:0]            last_light;
+        logic [23:0]           ambient;
+        logic [3:0][23:0]      colours;
+        logic [3:0][2:0][17:0] directions;
     } lights_t;
 
     // How finely.

@@ -97,7 +97,22 @@ module round_light #(
     logic [1:0]        light_3, light_14;
     logic              first_17;
     logic [2:0][22:0]  apart_4;
+    logic [53:0]       towards_3;
     logic [2:0][17:0]  towards_4;
+    logic [215:0]      directions;
+    logic [95:0]       colours;
+
+    assign directions = lights.directions;
+    assign colours    = lights.colours;
+
+    always_comb begin
+        unique case (light_3)
+            2'd0: towards_3 = directions[53:0];
+            2'd1: towards_3 = directions[107:54];
+            2'd2: towards_3 = directions[161:108];
+            2'd3: towards_3 = directions[215:162];
+        endcase
+    end
 
     delay #(.WIDTH(1), .CLOCKS(2)) eyes (.clk, .enable, .in(STEREO && held.place.eye), .out(eye_2));
     delay #(.WIDTH(2), .CLOCKS(3)) light_to_3 (.clk, .enable, .in(light_0), .out(light_3));
@@ -118,7 +133,7 @@ module round_light #(
         always_ff @(posedge clk) begin
             if (enable) begin
                 apart_4[i]   <= repeated ? {{5{apart[17]}}, apart[17:0]} : apart;
-                towards_4[i] <= lights.list[light_3].direction[i];
+                towards_4[i] <= towards_3[18*i +: 18];
             end
         end
 
@@ -173,7 +188,16 @@ module round_light #(
     );
     assign share_15 = cosine_15[33] ? 9'd256 : {1'b0, cosine_15[32:25]};
 
-    always_ff @(posedge clk) if (enable) colour_15 <= lights.list[light_14].colour;
+    always_ff @(posedge clk) begin
+        if (enable) begin
+            unique case (light_14)
+                2'd0: colour_15 <= colours[23:0];
+                2'd1: colour_15 <= colours[47:24];
+                2'd2: colour_15 <= colours[71:48];
+                2'd3: colour_15 <= colours[95:72];
+            endcase
+        end
+    end
 
     for (genvar i = 0; i < 3; i++) begin : channels
         logic signed [25:0] sum_18, coloured;

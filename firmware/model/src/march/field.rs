@@ -103,20 +103,6 @@ impl Solid {
             _ => None,
         }
     }
-
-    /// How often the field is asked for one distance: once for each sphere.
-    pub const fn passes(&self) -> u32 {
-        match self.balls() {
-            Some(balls) => balls.count as u32,
-            None => 1,
-        }
-    }
-
-    /// Whether there is anything round: then rays are scaled by their Euclidean length. It is never less than that in the maximum
-    /// norm, so distances of faces hold for such rays too.
-    pub const fn is_round(&self) -> bool {
-        self.balls().is_some()
-    }
 }
 
 /// A coordinate on its way through the folds: its value, and the direction in the world in which it grows.

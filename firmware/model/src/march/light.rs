@@ -85,7 +85,7 @@ impl Setup {
         let State::Hit(surface) = outcome.state else {
             return None;
         };
-        let (balls, number) = (self.solid.balls()?, surface.number()?);
+        let (balls, number) = (self.balls()?, surface.number()?);
         let ball = balls.list.get(usize::from(number))?;
         Some(balls.from(ball, self.point(ray, outcome.t)))
     }

@@ -110,6 +110,6 @@ fn lit(setup: &Setup, palette: &Palette, ray: &Ray, outcome: &Outcome) -> Option
         return None;
     };
     let (normal, number) = (setup.normal(ray, outcome)?, surface.number()?);
-    let ball = setup.solid.balls()?.list.get(usize::from(number))?;
+    let ball = setup.balls()?.list.get(usize::from(number))?;
     Some(palette.lights.shine_on(number, ball, normal))
 }

@@ -97,7 +97,7 @@ impl Setup {
         let direction =
             direction.map(|d| ((i64::from(d) * i64::from(inverse) + (1 << 15)) >> 16) as i32);
         // Its inverse, or less, 10 fraction bits: the near plane is not before it.
-        let part = if self.solid.is_round() {
+        let part = if self.is_round() {
             (inverse * (length + 1)) >> 9
         } else {
             length + 1
@@ -114,7 +114,7 @@ impl Setup {
 
     /// The first ten bits of D's length, or of its square or a little more, from the magnitudes of its parts, 24 fraction bits.
     fn length(&self, parts: [u32; 3]) -> u32 {
-        if self.solid.is_round() {
+        if self.is_round() {
             // 17 bits of each. What was cut off them is below 2^−15 in all, which is added.
             let square: u64 = parts.map(|part| u64::from(part >> 7).pow(2)).iter().sum();
             ((square + (1 << 19)) >> 24) as u32 & 0x3FF
@@ -126,7 +126,7 @@ impl Setup {
 
     /// What a direction is D times of, u8.9.
     fn inverse(&self, length: u32) -> u32 {
-        if self.solid.is_round() {
+        if self.is_round() {
             ROUND_INVERSE[length as usize]
         } else {
             INVERSE[length as usize]
@@ -152,12 +152,12 @@ impl Setup {
     pub fn march(&self, ray: &Ray) -> Outcome {
         let tuning = &self.tuning;
         // Beside what is round a ray creeps for longer.
-        let cap = tuning.cap << if self.solid.is_round() { 2 } else { 0 };
+        let cap = tuning.cap << if self.is_round() { 2 } else { 0 };
         let mut t = ray.start;
         let mut steps = 0;
         loop {
             let point = self.point(ray, t);
-            let sample = self.solid.sample(point.map(|x| x << 10 >> 10));
+            let sample = self.sample(point.map(|x| x << 10 >> 10));
             steps += 1;
             // A ray that has left the box, or never came to it, and goes away from it.
             let gone = (0..3).any(|i| {

@@ -1,6 +1,5 @@
 //! A whole frame.
 
-use super::field::Solid;
 use super::paint::{Palette, paint};
 use super::ray::{Outcome, Ray, State};
 use super::setup::{Setup, Tint};
@@ -23,10 +22,10 @@ pub struct FieldStats {
 }
 
 impl FieldStats {
-    /// Counts a ray in a solid.
-    pub fn count(&mut self, solid: &Solid, outcome: &Outcome) {
+    /// Counts a ray of a frame.
+    pub fn count(&mut self, setup: &Setup, outcome: &Outcome) {
         self.rays += 1;
-        self.evaluations += u64::from(outcome.steps * solid.passes());
+        self.evaluations += u64::from(outcome.steps * setup.passes());
         *match outcome.state {
             State::Hit(_) => &mut self.hits,
             State::Miss => &mut self.misses,
@@ -56,7 +55,7 @@ pub fn render_field(
     let mut look = |eye, x, y| {
         let ray = setup.ray(eye, x, y);
         let outcome = setup.march(&ray);
-        stats.count(&setup.solid, &outcome);
+        stats.count(setup, &outcome);
         show(x, y, &ray, &outcome);
         let code = match outcome.state {
             State::Hit(_) => setup.depth_code(&ray, outcome.t),

@@ -5,7 +5,7 @@ use glint_core::field::{Field, MAX_SPHERES, Sphere};
 use glint_core::fixed::{Q2_23, Q2_30, Q32_32, Turns};
 use glint_core::trig::sin_cos_q30;
 
-use super::field::Solid;
+use super::field::{Sample, Solid};
 use super::paint::Palette;
 use super::sphere::{Ball, Balls};
 use crate::frame::DepthScale;
@@ -120,6 +120,8 @@ pub struct Setup {
     pub height: u32,
     /// What there is.
     pub solid: Solid,
+    /// Spheres beside a solid that has faces: then there are both.
+    pub beside: Option<Balls>,
     /// Half the sides of the box about the origin that holds it, u12.12; [`UNBOUNDED`] where it has no end.
     pub bounds: [u32; 3],
     /// The left and the right eye; the second is unused without stereo.
@@ -154,7 +156,21 @@ impl Setup {
         if !SIZES.contains(&(width, height)) {
             return Err(RenderError::Size { width, height });
         }
-        let (solid, scale, extent) = in_units(field, options.phase);
+        let (solid, beside, scale, extent) = match *field {
+            Field::Union { flat, round } => {
+                let (solid, scale, flat) = in_units(&flat.into(), options.phase);
+                let (balls, _, round) = in_units(&round.into(), options.phase);
+                let extent = flat
+                    .zip(round)
+                    .map(|(flat, round)| [0, 1, 2].map(|i: usize| flat[i].max(round[i])));
+                (solid, balls.balls().copied(), scale, extent)
+            }
+            ref field => {
+                let (solid, scale, extent) = in_units(field, options.phase);
+                (solid, None, scale, extent)
+            }
+        };
+        let round = beside.is_some() || solid.balls().is_some();
         let bounds = extent.map_or([UNBOUNDED; 3], |extent| {
             extent.map(|half| units(half, scale) as u32)
         });
@@ -171,7 +187,7 @@ impl Setup {
             ),
             None => (Q32_32::ZERO, 0),
         };
-        let rays = Directions::new(view, width, height, parallax, solid.is_round());
+        let rays = Directions::new(view, width, height, parallax, round);
         let eye = |sign: i64, first: [i64; 3]| {
             let origin = [0, 1, 2].map(|i: usize| {
                 // |C| ≤ 32 and e ≤ 1.
@@ -201,6 +217,7 @@ impl Setup {
             width,
             height,
             solid,
+            beside,
             bounds,
             eyes: [eye(-1, rays.first[0]), eye(1, rays.first[1])],
             steps: [rays.across, rays.down].map(|step| step.map(|x| rays.narrow(x))),
@@ -211,6 +228,33 @@ impl Setup {
             tuning: options.tuning,
             stereo: options.stereo.map(|stereo| stereo.tint),
         })
+    }
+}
+
+impl Setup {
+    /// The spheres that there are.
+    pub fn balls(&self) -> Option<&Balls> {
+        self.solid.balls().or(self.beside.as_ref())
+    }
+
+    /// Whether there is anything round: then rays are scaled by their Euclidean length. It is never less than that in the maximum
+    /// norm, so distances of faces hold for such rays too.
+    pub fn is_round(&self) -> bool {
+        self.balls().is_some()
+    }
+
+    /// How often the field is asked for one distance: once for each sphere.
+    pub fn passes(&self) -> u32 {
+        self.balls().map_or(1, |balls| balls.count as u32)
+    }
+
+    /// What is nearest to a point, each coordinate s10.12; of equals, the face.
+    pub fn sample(&self, point: [i32; 3]) -> Sample {
+        let sample = self.solid.sample(point);
+        match self.beside.map(|balls| balls.sample(point)) {
+            Some(round) if round.distance < sample.distance => round,
+            _ => sample,
+        }
     }
 }
 

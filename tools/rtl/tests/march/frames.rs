@@ -5,7 +5,7 @@ use glint_rtl::{Module, Sink, Stalls};
 
 use crate::common::Random;
 use crate::ports::{Pixel, Place, pixel, set_generator, set_lane, set_lights, set_paint};
-use crate::scenes::{FIELDS, ROUND, SPONGES, band_lines, lights, setup};
+use crate::scenes::{FIELDS, ROUND, SPONGES, UNIONS, band_lines, lights, setup};
 
 const COUNTERS: [&str; 8] = [
     "clocks_busy",
@@ -94,7 +94,7 @@ impl Bench {
                     };
                     let ray = setup.ray(place.eye, x, band * lines + y);
                     let outcome = setup.march(&ray);
-                    stats.count(&setup.solid, &outcome);
+                    stats.count(setup, &outcome);
                     expected.insert((eye.into(), y.into(), x.into()), {
                         pixel(setup, palette, place, &ray, &outcome)
                     });
@@ -185,11 +185,7 @@ fn frames_of_round_fields_in_all_lights() {
     let mut random = Random(12);
     let mut bench = Bench::new("raymarcher_round", 2, 1);
     for frame in 0..5 {
-        let fields = if frame % 4 == 3 {
-            &SPONGES[..]
-        } else {
-            &ROUND[..]
-        };
+        let fields = [&ROUND[..], &UNIONS, &SPONGES][frame % 3];
         let mut setup = setup(&mut random, fields);
         setup.tuning.cap = setup.tuning.cap.min(20);
         let palette = Palette {

@@ -33,7 +33,7 @@ fn expected(setup: &Setup, lines: u32) -> Vec<Bits> {
 fn check(module: &mut Module, setup: &Setup, lines: u32, stalls: Stalls) -> u64 {
     set_generator(module, setup, band_lines(setup.width));
     let round = module.port("round");
-    module.set(round, u64::from(setup.solid.is_round()));
+    module.set(round, u64::from(setup.is_round()));
     let mut sink = Sink::new(module, "out", &["ray"], stalls);
     let [start, rst, busy] = ["start", "rst", "busy"].map(|name| module.port(name));
     let expected = expected(setup, lines);

@@ -7,7 +7,7 @@ use glint_rtl::{Module, Sink, Source, Stalls};
 
 use crate::common::Random;
 use crate::ports::{End, Place, direction, ray, set_lane};
-use crate::scenes::{FIELDS, ROUND, SPONGES, setup};
+use crate::scenes::{FIELDS, ROUND, SPONGES, UNIONS, setup};
 
 /// Rays of a frame.
 const RAYS: usize = 2_000;
@@ -56,7 +56,7 @@ impl Bench {
             }
             let start = setup.ray(place.eye, x, y);
             let outcome = setup.march(&start);
-            evaluations += u64::from(outcome.steps * setup.solid.passes());
+            evaluations += u64::from(outcome.steps * setup.passes());
             self.source.push(vec![ray(place, &start)]);
             expected.insert(place, (start, outcome));
         }
@@ -127,5 +127,14 @@ fn random_rays_in_round_fields() {
 
 #[test]
 fn random_rays_in_all_fields() {
-    random_rays("ring_lane_all", &[&FIELDS[..], &ROUND].concat());
+    random_rays(
+        "ring_lane_all",
+        &[
+            &FIELDS[..],
+            &ROUND,
+            &UNIONS,
+            &["union:box:1,0.5,0.25+moving:0.25,1"],
+        ]
+        .concat(),
+    );
 }

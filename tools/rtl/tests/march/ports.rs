@@ -96,9 +96,14 @@ pub fn direction(item: &Bits) -> [i32; 3] {
     [0, 1, 2].map(|i| (item.field(66 + 18 * i, 18) as i32) << 14 >> 14)
 }
 
-fn solid(solid: &Solid) -> Bits {
-    let all = Bits::default();
-    match *solid {
+fn solid(setup: &Setup) -> Bits {
+    let all = Bits::default().with(105, 1, u8::from(setup.beside.is_some()));
+    let all = setup.balls().map_or(all, |balls| {
+        all.with(100, 3, balls.count as u64 - 1)
+            .with(103, 1, u8::from(balls.repeated))
+            .with(104, 1, 1)
+    });
+    match setup.solid {
         Solid::Menger { depth, half, .. } => {
             all.with(93, 6, (1_i64 << depth) - 1).with(71, 22, half)
         }
@@ -118,17 +123,14 @@ fn solid(solid: &Solid) -> Bits {
                 .with(1, 1, u8::from(room))
                 .with(99, 1, 1)
         }
-        Solid::Balls(balls) => all
-            .with(100, 3, balls.count as u64 - 1)
-            .with(103, 1, u8::from(balls.repeated))
-            .with(104, 1, 1),
-        _ => panic!("{solid:?}: no port for it"),
+        Solid::Balls(_) => all,
+        _ => panic!("{:?}: no port for it", setup.solid),
     }
 }
 
 /// Writes the spheres, with their materials.
-fn set_balls(module: &mut Module, solid: &Solid, lights: &Lights) {
-    let Some(balls) = solid.balls() else { return };
+fn set_balls(module: &mut Module, setup: &Setup, lights: &Lights) {
+    let Some(balls) = setup.balls() else { return };
     let [write, number, ball] = ["ball_write", "ball_number", "ball"].map(|name| module.port(name));
     module.set(write, 1);
     for (i, one) in (0..).zip(balls.list.iter().take(balls.count)) {
@@ -151,15 +153,15 @@ pub fn set_lights(module: &mut Module, setup: &Setup, lights: &Lights) {
             .with(312, 24, colour(lights.ambient))
             .with(336, 2, lights.count as u64 - 1),
         |all, (i, light)| {
-            let all = all.with(78 * i, 24, colour(light.colour));
+            let all = all.with(216 + 24 * i, 24, colour(light.colour));
             (0..3).fold(all, |all, axis| {
-                all.with(78 * i + 24 + 18 * axis, 18, light.direction[axis])
+                all.with(54 * i + 18 * axis, 18, light.direction[axis])
             })
         },
     );
     let port = module.port("lights");
     module.set(port, bits);
-    set_balls(module, &setup.solid, lights);
+    set_balls(module, setup, lights);
 }
 
 /// Sets what holds during a frame, as far as a lane wants it.
@@ -177,13 +179,13 @@ pub fn set_lane(module: &mut Module, setup: &Setup) {
     for (name, value) in [
         ("origins", origins),
         ("bounds", three(24, setup.bounds.map(i64::from))),
-        ("solid", solid(&setup.solid)),
+        ("solid", solid(setup)),
         ("tuning", tuning),
     ] {
         let port = module.port(name);
         module.set(port, value);
     }
-    set_balls(module, &setup.solid, &Lights::default());
+    set_balls(module, setup, &Lights::default());
 }
 
 /// Sets what holds during a frame, as far as the generator wants it, in bands of so many lines.

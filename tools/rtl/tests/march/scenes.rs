@@ -23,6 +23,14 @@ pub const ROUND: [&str; 8] = [
     "spheres:0,0,0,0.5;1,0,0,0.5;0,1,0,0.5;0,0,1,0.5;-1,0,0,0.5;0,-1,0,0.5;0,0,-1,0.5;8,-8,8,3.5",
 ];
 
+/// What has faces and is round too.
+pub const UNIONS: [&str; 4] = [
+    "union:menger:4+sphere:0.75",
+    "union:menger:2+moving:0.25,1",
+    "union:menger:3+spheres:1,1,1,0.5;-1,0,0,0.25;0,0,0,0.125",
+    "union:menger:1+spheres:0,0,1.5,0.5;8,-8,8,3.5",
+];
+
 /// Every field without anything round.
 pub const FIELDS: [&str; 12] = [
     "menger:4",
