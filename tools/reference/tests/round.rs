@@ -161,8 +161,10 @@ fn round_fields_are_where_they_are() {
 /// The channels of what is seen, against max(0, n·l) of the exact normals.
 #[test]
 fn spheres_are_lit_as_they_should_be() {
-    let mut lights = Lights::default();
-    lights.count = 2;
+    let mut lights = Lights {
+        count: 2,
+        ..Lights::default()
+    };
     lights.list[1] = Light {
         direction: [0, 65535, 0],
         colour: [90, 40, 10],
