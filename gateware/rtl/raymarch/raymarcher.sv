@@ -12,6 +12,8 @@
 // While the last rays of a band are still on their way, rays of the next one go in already: up to EARLY, whose ends wait in block
 // RAM. So the lanes idle only at the end of the frame, and where a band ends with rays of very different lengths.
 //
+// With ROUND there may be spheres: then round_light stands before ray_paint, where a round pixel takes a clock for each light.
+//
 // Each lane takes one evaluation of the field a clock. `restart`, and reset, give the frame up. Groups: a stream, valid/ready, payload
 // stays. Counters run freely: clocks busy, evaluations, clocks in which a lane had room for a ray and none came, clocks in which a
 // ray waited as no end was taken, rays, and how they ended.
