@@ -1,12 +1,14 @@
-//! Light on solids whose faces are perpendicular to the axes.
+//! Light on distance fields.
 //!
-//! There are six such faces, so what lights make of a material are six colours a frame and no work a pixel. They have no
-//! shadows: all that counts is the angle between a face and the direction to a light.
+//! Faces that are perpendicular to the axes are six, so what lights make of a material are six colours a frame and no work a
+//! pixel. Spheres are lit pixel by pixel, in `glint-model` and in the gateware. There are no shadows: all that counts is the angle
+//! between a normal and the direction to a light.
 
 use core::fmt;
 
 use heapless::Vec;
 
+use crate::field::MAX_SPHERES;
 use crate::fixed::Q32_32;
 
 /// Red, green and blue, 8 bits each.
@@ -55,6 +57,16 @@ impl Light {
             direction: [0, 1, 2].map(signed),
             colour,
         })
+    }
+
+    /// The direction to it, of length 1: s1.14.
+    pub const fn direction(&self) -> [i16; 3] {
+        self.direction
+    }
+
+    /// Its colour.
+    pub const fn colour(&self) -> Rgb {
+        self.colour
     }
 
     /// Reads a light as it is typed, such as `1,-2,3` or `0,0,1,ffc080`: the direction to it, of any length, and its
@@ -176,7 +188,7 @@ impl Lighting {
 /// What a solid is made of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Material {
-    /// Each face in the colour of its normal.
+    /// Each face in the colour of its normal, and each sphere in that of another material.
     #[default]
     Normal,
     /// Reddish brown.
@@ -236,6 +248,20 @@ impl Material {
             Self::Ivory => [[244, 238, 220]; 6],
             Self::Slate => [[104, 114, 128]; 6],
         }
+    }
+
+    /// The colours of spheres in full light, by their numbers: one for all, or of all materials in turn, so that each is told
+    /// from its neighbours.
+    pub const fn spheres(self) -> [Rgb; MAX_SPHERES] {
+        let mut colours = [self.faces()[0]; MAX_SPHERES];
+        if let Self::Normal = self {
+            let mut number = 0;
+            while number < MAX_SPHERES {
+                colours[number] = Self::ALL[1 + number % (Self::ALL.len() - 1)].faces()[0];
+                number += 1;
+            }
+        }
+        colours
     }
 
     /// The light that shows it best: a normal's colour tells the face already.

@@ -1,23 +1,37 @@
 // The distance field of a lane: the fields that it is built with, side by side, and which of them is asked.
 //
-// Latency march_pkg::field_clocks(LEVELS, BOXES), throughput a point a clock, no handshake; `solid` holds. A field that is not built
-// costs nothing; one that is the only one costs no choice.
+// Latency march_pkg::field_clocks(LEVELS, BOXES, ROUND), throughput a point a clock, no handshake; `solid` holds. A field that is not
+// built costs nothing; one that is the only one costs no choice.
+//
+// Spheres are looked at one after the other: `pass` is the number of one, a clock before the point, `so_far` is the nearest one of
+// those before it, and `nearest` is it or this one. The distance, to it or to what is flat beside it, is right in the last pass.
 
 `default_nettype none
 
 module field_unit #(
     // Levels of the sponge; 0: none.
     parameter int unsigned LEVELS = 4,
-    parameter bit          BOXES  = 1'b0
+    parameter bit          BOXES  = 1'b0,
+    parameter bit          ROUND  = 1'b0
 ) (
     input  wire                     clk,
     input  wire march_pkg::solid_t  solid,
+    input  wire                     ball_write,
+    input  wire  [2:0]              ball_number,
+    input  wire march_pkg::ball_t   ball,
+    input  wire  [2:0]              pass,
     input  wire  [2:0][21:0]        point,
+    input  wire march_pkg::nearest_t so_far,
     output logic signed [21:0]      distance,
-    output logic [2:0]              surface
+    output logic                    round,
+    output logic [2:0]              surface,
+    output march_pkg::nearest_t     nearest
 );
-    logic signed [21:0] menger_distance, box_distance;
-    logic [2:0]         menger_surface, box_surface;
+    localparam int unsigned FLAT_CLOCKS = march_pkg::flat_clocks(LEVELS, BOXES);
+    localparam bit          FLAT        = LEVELS > 0 || BOXES;
+
+    logic signed [21:0] menger_distance, box_distance, flat_distance;
+    logic [2:0]         menger_surface, box_surface, flat_surface;
 
     if (LEVELS > 0) begin : menger
         field_menger #(.LEVELS(LEVELS)) field (
@@ -53,15 +67,76 @@ module field_unit #(
 
     if (LEVELS > 0 && BOXES) begin : choice
         always_ff @(posedge clk) begin
-            distance <= solid.is_box ? box_distance : menger_distance;
-            surface  <= solid.is_box ? box_surface : menger_surface;
+            flat_distance <= solid.is_box ? box_distance : menger_distance;
+            flat_surface  <= solid.is_box ? box_surface : menger_surface;
         end
     end else begin : single
-        assign distance = BOXES ? box_distance : menger_distance;
-        assign surface  = BOXES ? box_surface : menger_surface;
+        assign flat_distance = BOXES ? box_distance : menger_distance;
+        assign flat_surface  = BOXES ? box_surface : menger_surface;
     end
 
-    wire _unused = &{1'b0, solid, menger_distance, menger_surface, box_distance, box_surface};
+    if (ROUND) begin : spheres
+        // When it is known which is the nearest, and when the flat ones are.
+        localparam int unsigned KNOWN = 19;
+        localparam int unsigned BOTH  = FLAT_CLOCKS > KNOWN ? FLAT_CLOCKS : KNOWN;
+
+        logic signed [21:0]  distance_18;
+        logic [2:0]          pass_18;
+        march_pkg::nearest_t so_far_18, known, nearest_both;
+
+        field_sphere field (
+            .clk, .repeated(solid.balls_repeated), .ball_write, .ball_number, .ball, .number(pass), .point, .distance(distance_18)
+        );
+        delay #(.WIDTH(3), .CLOCKS(KNOWN)) number (.clk, .enable(1'b1), .in(pass), .out(pass_18));
+        delay #(.WIDTH(march_pkg::NEAREST_BITS), .CLOCKS(KNOWN - 1)) others (.clk, .enable(1'b1), .in(so_far), .out(so_far_18));
+
+        always_ff @(posedge clk) known <= distance_18 < $signed(so_far_18.distance) ? {distance_18, pass_18} : so_far_18;
+
+        if (BOTH > KNOWN) begin : wait_for_flat
+            delay #(.WIDTH(march_pkg::NEAREST_BITS), .CLOCKS(BOTH - KNOWN)) waiting (
+                .clk, .enable(1'b1), .in(known), .out(nearest_both)
+            );
+        end else begin : at_once
+            assign nearest_both = known;
+        end
+
+        if (FLAT) begin : both
+            logic signed [21:0] flat_distance_both;
+            logic [2:0]         flat_surface_both;
+
+            if (BOTH > FLAT_CLOCKS) begin : wait_for_spheres
+                delay #(.WIDTH(25), .CLOCKS(BOTH - FLAT_CLOCKS)) waiting (
+                    .clk, .enable(1'b1), .in({flat_distance, flat_surface}), .out({flat_distance_both, flat_surface_both})
+                );
+            end else begin : at_once
+                assign {flat_distance_both, flat_surface_both} = {flat_distance, flat_surface};
+            end
+
+            logic is_nearer, takes_round;
+
+            assign is_nearer   = $signed(nearest_both.distance) < flat_distance_both;
+            assign takes_round = solid.is_round && (!solid.flat_too || is_nearer);
+
+            always_ff @(posedge clk) begin
+                distance <= takes_round ? nearest_both.distance : flat_distance_both;
+                surface  <= takes_round ? nearest_both.number : flat_surface_both;
+                round    <= takes_round;
+                nearest  <= nearest_both;
+            end
+        end else begin : only_spheres
+            assign {distance, surface} = nearest_both;
+            assign round               = 1'b1;
+            assign nearest             = nearest_both;
+        end
+    end else begin : only_flat
+        assign distance = flat_distance;
+        assign surface  = flat_surface;
+        assign round    = 1'b0;
+        assign nearest  = '0;
+    end
+
+    wire _unused = &{1'b0, solid, menger_distance, menger_surface, box_distance, box_surface, flat_distance, flat_surface, ball_write,
+                     ball_number, ball, pass, so_far};
 endmodule
 
 `default_nettype wire

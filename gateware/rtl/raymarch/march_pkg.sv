@@ -31,9 +31,12 @@ package march_pkg;
 
     typedef enum logic [1:0] {MISS = 2'd0, HIT = 2'd1, UNDECIDED = 2'd2} state_t;
 
-    // Its end. `surface` is {axis, positive}; `gap` and `slope` say how far it is from `t` and how steeply the ray goes there. Of a miss,
-    // `t` is the sine above the horizon in 8 bits, 0 below it.
+    // Its end. `surface` is {axis, positive}, or a sphere's number; `gap` and `slope` say how far the face is from `t` and how steeply the
+    // ray goes there; only a sphere's light wants to know the direction. Of a miss, `t` is the sine above the horizon in 8 bits, 0 below
+    // it.
     typedef struct packed {
+        logic [2:0][DIRECTION_BITS-1:0] direction;
+        logic              round;
         place_t            place;
         logic [9:0]        length;
         logic [T_BITS-1:0] t;
@@ -43,10 +46,17 @@ package march_pkg;
         logic [11:0]       gap;
         logic [9:0]        slope;
     } end_t;
-    localparam int unsigned END_BITS = PLACE_BITS + 10 + T_BITS + 8 + 2 + 3 + 12 + 10;
+    localparam int unsigned FLAT_END_BITS = PLACE_BITS + 10 + T_BITS + 8 + 2 + 3 + 12 + 10;
+    localparam int unsigned END_BITS      = FLAT_END_BITS + 1 + 3 * DIRECTION_BITS;
 
     // What there is; all of it holds while a frame is drawn.
     typedef struct packed {
+        // Spheres: whether the flat solid is there beside them, whether there are any, whether they repeat themselves, and the last
+        // one's number, 0 without them.
+        logic                       flat_too;
+        logic                       is_round;
+        logic                       balls_repeated;
+        logic [2:0]                 last_ball;
         // A box, or else the sponge.
         logic                       is_box;
         // The sponge: which of its levels count, the first in bit 0, and half the side of the cubes that are left.
@@ -59,6 +69,32 @@ package march_pkg;
         logic                       repeated;
     } solid_t;
 
+    // A sphere: its material, {blue, green, red}; the inverse of its radius and a shift (docs/formats.md, "Light"); its radius, and
+    // its centre.
+    typedef struct packed {
+        logic [23:0]                material;
+        logic [4:0]                 shift;
+        logic [16:0]                inverse;
+        logic [20:0]                radius;
+        logic [2:0][POINT_BITS-1:0] centre;
+    } ball_t;
+
+    // The nearest sphere of those that have been looked at: its distance and its number.
+    typedef struct packed {
+        logic signed [POINT_BITS-1:0] distance;
+        logic [2:0]                   number;
+    } nearest_t;
+
+    localparam int unsigned NEAREST_BITS = POINT_BITS + 3;
+
+    // What shines on spheres: the last light's number, ambient light, and lights in their colours from their directions, s1.16.
+    typedef struct packed {
+        logic [1:0]            last_light;
+        logic [23:0]           ambient;
+        logic [3:0][23:0]      colours;
+        logic [3:0][2:0][17:0] directions;
+    } lights_t;
+
     // How finely.
     typedef struct packed {
         logic [15:0]       threshold;
@@ -67,9 +103,14 @@ package march_pkg;
         logic [T_BITS-1:0] far_limit;
     } tuning_t;
 
-    // Clocks from a point to its distance, of fields with so many levels of the sponge, with boxes or without.
-    function automatic int unsigned field_clocks(input int unsigned levels, input bit boxes);
-        field_clocks = levels == 0 ? 3 : 3 * levels + 3 + (boxes ? 1 : 0);
+    // Clocks from a point to its distance, of fields with so many levels of the sponge, with boxes and spheres or without.
+    function automatic int unsigned flat_clocks(input int unsigned levels, input bit boxes);
+        flat_clocks = levels == 0 ? 3 : 3 * levels + 3 + (boxes ? 1 : 0);
+    endfunction
+    function automatic int unsigned field_clocks(input int unsigned levels, input bit boxes, input bit round);
+        field_clocks = flat_clocks(levels, boxes);
+        if (round && field_clocks < 19) field_clocks = 19;
+        if (round && (levels > 0 || boxes)) field_clocks = field_clocks + 1;
     endfunction
     /* verilator lint_on UNUSEDPARAM */
 endpackage

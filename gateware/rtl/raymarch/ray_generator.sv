@@ -9,12 +9,16 @@
 // D grows by additions of 32 bits, so it is exactly what the formula says. Rays of the bands follow each other, in a band its lines
 // from the top, in a line the columns from the left; with `stereo` each line comes for the left eye and then for the right one.
 //
-// `start` (one clock, not while `busy`) begins the frame; parameters hold until it has ended. Latency 24 clocks, throughput a ray a
-// clock. Out: a stream, valid/ready, a ray stays until it has moved. `rst` ends the frame.
+// With ROUND, and while `round` is high, it is the Euclidean length that counts: the sum of three squares takes the place of the largest
+// part, and a second table that of the first one.
+//
+// `start` (one clock, not while `busy`) begins the frame; parameters hold until it has ended. Latency 24 clocks, 27 with ROUND,
+// throughput a ray a clock. Out: a stream, valid/ready, a ray stays until it has moved. `rst` ends the frame.
 
 `default_nettype none
 
 module ray_generator #(
+    parameter bit ROUND  = 1'b0,
     parameter bit STEREO = 1'b1
 ) (
     input  wire                       clk,
@@ -26,6 +30,7 @@ module ray_generator #(
     input  wire  [5:0]                last_line,
     input  wire  [5:0]                last_band,
     input  wire                       stereo,
+    input  wire                       round,
     input  wire  [1:0][2:0][31:0]     first,
     input  wire  [2:0][31:0]          across,
     input  wire  [2:0][31:0]          down,
@@ -38,8 +43,9 @@ module ray_generator #(
     input  wire                       out_ready,
     output march_pkg::ray_t           out_ray
 );
-    // Rays that leave together with the clocks since their D was there.
-    localparam int unsigned LAST = 23;
+    // Clocks until the sum of the squares is as far as the largest part, and those until a ray leaves.
+    localparam int unsigned SUM  = ROUND ? 3 : 0;
+    localparam int unsigned LAST = SUM + 23;
 
     logic          enable, running, ends_line, ends_eye, ends_band, ends;
     logic [LAST:0] valid;
@@ -89,13 +95,21 @@ module ray_generator #(
         end
     end
 
-    // 1: the first bits of each part; 2: the largest; 4: its inverse.
-    logic [9:0]  part_x, part_y, part_z, length_2, length_18;
-    logic [16:0] inverse_4;
-    logic [2:0][24:0] d_0, d_4;
+    // 0: what is looked at. 1: the first bits of each part; 2: the largest; 4: its inverse.
+    march_pkg::place_t place_0;
+    logic [9:0]  part_x, part_y, part_z, largest_2, length_10, length_18;
+    logic [16:0] largest_inverse_4, inverse_4;
+    logic [2:0][24:0] d_now, d_0, d_4;
 
-    always_comb begin
-        for (int i = 0; i < 3; i++) d_0[i] = d[i][30:6];
+    always_comb
+        for (int i = 0; i < 3; i++) d_now[i] = d[i][30:6];
+
+    if (ROUND) begin : wait_for_sum
+        delay #(.WIDTH(75), .CLOCKS(SUM)) d_waits (.clk, .enable, .in(d_now), .out(d_0));
+        delay #(.WIDTH(march_pkg::PLACE_BITS), .CLOCKS(SUM)) place_waits_too (.clk, .enable, .in(place), .out(place_0));
+    end else begin : at_once
+        assign d_0     = d_now;
+        assign place_0 = place;
     end
 
     always_ff @(posedge clk) begin
@@ -103,13 +117,65 @@ module ray_generator #(
             part_x <= d_0[0][23:14] ^ {10{d_0[0][24]}};
             part_y <= d_0[1][23:14] ^ {10{d_0[1][24]}};
             part_z <= d_0[2][23:14] ^ {10{d_0[2][24]}};
-            if (part_z > part_x && part_z > part_y) length_2 <= part_z;
-            else if (part_x > part_y)               length_2 <= part_x;
-            else                                    length_2 <= part_y;
+            if (part_z > part_x && part_z > part_y) largest_2 <= part_z;
+            else if (part_x > part_y)               largest_2 <= part_x;
+            else                                    largest_2 <= part_y;
         end
     end
 
     delay #(.WIDTH(75), .CLOCKS(4)) wait_for_inverse (.clk, .enable, .in(d_0), .out(d_4));
+
+    // With the squares: the index of either table, its inverse, and the length by it.
+    logic [10:0] part_10, part_18;
+
+    if (ROUND) begin : by_squares
+        logic [16:0]        x_now, y_now, z_now, y_late, z_late, round_inverse_4, inverse_7;
+        logic signed [36:0] x_square, x_y_square, square_2, product_10;
+        logic [9:0]         length_3, length_7, length_9;
+
+        assign x_now = d_now[0][23:7] ^ {17{d_now[0][24]}};
+        assign y_now = d_now[1][23:7] ^ {17{d_now[1][24]}};
+        assign z_now = d_now[2][23:7] ^ {17{d_now[2][24]}};
+
+        delay #(.WIDTH(17), .CLOCKS(1)) y_waits (.clk, .enable, .in(y_now), .out(y_late));
+        delay #(.WIDTH(17), .CLOCKS(2)) z_waits (.clk, .enable, .in(z_now), .out(z_late));
+
+        // More than what is cut off: the sum is not less than |D|^2, 34 fraction bits.
+        multiply_add #(.BITS(37)) x_squared (
+            .clk, .enable, .a({8'b0, x_now}), .b({1'b0, x_now}), .c(37'd1 << 19), .p(x_square)
+        );
+        multiply_add #(.BITS(37)) y_squared (
+            .clk, .enable, .a({8'b0, y_late}), .b({1'b0, y_late}), .c(x_square), .p(x_y_square)
+        );
+        multiply_add #(.BITS(37)) z_squared (
+            .clk, .enable, .a({8'b0, z_late}), .b({1'b0, z_late}), .c(x_y_square), .p(square_2)
+        );
+
+        round_inverse length_by_square (.clk, .enable, .index(square_2[33:24]), .inverse(round_inverse_4));
+
+        always_ff @(posedge clk) if (enable) length_3 <= round ? square_2[33:24] : largest_2;
+
+        assign inverse_4 = round ? round_inverse_4 : largest_inverse_4;
+
+        // The length again, or less: inverse·square.
+        delay #(.WIDTH(10), .CLOCKS(4)) length_waits (.clk, .enable, .in(length_3), .out(length_7));
+        delay #(.WIDTH(10), .CLOCKS(2)) length_goes_on (.clk, .enable, .in(length_7), .out(length_9));
+        delay #(.WIDTH(10), .CLOCKS(1)) length_is_there (.clk, .enable, .in(length_9), .out(length_10));
+        delay #(.WIDTH(17), .CLOCKS(3)) inverse_waits (.clk, .enable, .in(inverse_4), .out(inverse_7));
+        multiply_add #(.BITS(37)) length_again (
+            .clk, .enable, .a({8'b0, inverse_7}), .b({8'b0, length_7} + 18'd1), .c('0), .p(product_10)
+        );
+
+        assign part_10 = round ? product_10[19:9] : {1'b0, length_10} + 11'd1;
+
+        wire _unused = &{1'b0, square_2[36:34], square_2[23:0], product_10[36:20], product_10[8:0]};
+    end else begin : by_largest
+        assign inverse_4 = largest_inverse_4;
+        assign part_10   = {1'b0, length_10} + 11'd1;
+        delay #(.WIDTH(10), .CLOCKS(8)) length_waits (.clk, .enable, .in(largest_2), .out(length_10));
+
+        wire _unused = round;
+    end
 
     // 7: the direction. 9: the inverses of its parts.
     logic [2:0][17:0] direction_7;
@@ -117,7 +183,7 @@ module ray_generator #(
     logic [2:0][16:0] inverse_9;
 
     inverse_table length_and_x (
-        .clk, .enable, .index_a(length_2), .inverse_a(inverse_4), .index_b(index_7[0]), .inverse_b(inverse_9[0])
+        .clk, .enable, .index_a(largest_2), .inverse_a(largest_inverse_4), .index_b(index_7[0]), .inverse_b(inverse_9[0])
     );
     inverse_table y_and_z (
         .clk, .enable, .index_a(index_7[1]), .inverse_a(inverse_9[1]), .index_b(index_7[2]), .inverse_b(inverse_9[2])
@@ -128,8 +194,9 @@ module ray_generator #(
     logic [33:0]      near_product;
     logic [2:0][22:0] entry_21;
 
-    delay #(.WIDTH(march_pkg::PLACE_BITS), .CLOCKS(9)) place_waits (.clk, .enable, .in(place), .out(place_9));
-    delay #(.WIDTH(10), .CLOCKS(16)) length_waits (.clk, .enable, .in(length_2), .out(length_18));
+    delay #(.WIDTH(march_pkg::PLACE_BITS), .CLOCKS(9)) place_waits (.clk, .enable, .in(place_0), .out(place_9));
+    delay #(.WIDTH(10), .CLOCKS(8)) length_stays (.clk, .enable, .in(length_10), .out(length_18));
+    delay #(.WIDTH(11), .CLOCKS(8)) part_stays (.clk, .enable, .in(part_10), .out(part_18));
 
     // 10 to 21: where the ray comes to the box, along each axis.
     for (genvar i = 0; i < 3; i++) begin : axes
@@ -188,7 +255,7 @@ module ray_generator #(
 
     // 21: the near plane. Its product comes with those of the box.
     multiply_add #(.BITS(34)) at_near (
-        .clk, .enable, .a({2'b0, near_limit}), .b({7'b0, {1'b0, length_18}} + 18'd1), .c('0), .p(near_product)
+        .clk, .enable, .a({2'b0, near_limit}), .b({7'b0, part_18}), .c('0), .p(near_product)
     );
     assign near_21 = near_product[32:10];
 

@@ -10,15 +10,19 @@
 // A pixel comes out as a group of the band buffer: its row, line and column of eight pixels, a mask of one lane, and one
 // code and colour for all lanes. With `stereo` the colour is the luminance, twice, and `out_eye` says which half counts.
 //
-// Streams are valid/ready. Latency 36 clocks, throughput a pixel a clock. Parameters hold while anything is inside.
+// With ROUND an end that is round comes with its colour, `in_colour`, and `round` says that its rays were scaled by their Euclidean
+// length. Streams are valid/ready. Latency 36 clocks, throughput a pixel a clock. Parameters hold while anything is inside.
 
 `default_nettype none
 
-module ray_paint (
+module ray_paint #(
+    parameter bit ROUND = 1'b0
+) (
     input  wire                     clk,
     input  wire                     rst,
     // Frame.
     input  wire                     stereo,
+    input  wire                     round,
     // Columns of eight of a line: 40, 80, 160.
     input  wire  [7:0]              stride,
     input  wire  [16:0]             depth_mantissa,
@@ -34,6 +38,7 @@ module ray_paint (
     input  wire                     in_valid,
     output logic                    in_ready,
     input  wire march_pkg::end_t    in_end,
+    input  wire  [23:0]             in_colour,
     // Groups.
     output logic                    out_valid,
     input  wire                     out_ready,
@@ -82,14 +87,22 @@ module ray_paint (
     end
 
     // 2: inverse. 5: depth.
-    logic [16:0]        inverse_2;
+    logic [16:0]        inverse_2, largest_inverse_2;
     logic [22:0]        t_2;
     logic signed [42:0] product_5;
     logic [17:0]        code_28;
 
     inverse_table length_inverse (
-        .clk, .enable, .index_a(ending_0.length), .inverse_a(inverse_2), .index_b(in_end.slope), .inverse_b(slope_inverse)
+        .clk, .enable, .index_a(ending_0.length), .inverse_a(largest_inverse_2), .index_b(in_end.slope), .inverse_b(slope_inverse)
     );
+    if (ROUND) begin : by_squares
+        logic [16:0] round_inverse_2;
+        round_inverse inverse_of_square (.clk, .enable, .index(ending_0.length), .inverse(round_inverse_2));
+        assign inverse_2 = round ? round_inverse_2 : largest_inverse_2;
+    end else begin : by_largest
+        assign inverse_2 = largest_inverse_2;
+    end
+
     delay #(.WIDTH(23), .CLOCKS(2)) t_waits (.clk, .enable, .in(ending_0.t), .out(t_2));
     multiply_add #(.BITS(43)) along (.clk, .enable, .a({2'b0, t_2}), .b({1'b0, inverse_2}), .c('0), .p(product_5));
 
@@ -126,12 +139,27 @@ module ray_paint (
         .clk, .enable, .in({ending_0.state, ending_0.surface}), .out({state_8, surface_8})
     );
 
+    // What is round has its colour already.
+    logic        lit_8;
+    logic [23:0] lit_colour_8;
+
+    if (ROUND) begin : lit
+        delay #(.WIDTH(25), .CLOCKS(FIRST + 8)) light_waits (
+            .clk, .enable, .in({in_end.round && in_end.state == march_pkg::HIT, in_colour}), .out({lit_8, lit_colour_8})
+        );
+    end else begin : unlit
+        assign lit_8        = 1'b0;
+        assign lit_colour_8 = '0;
+        wire _unused = &{1'b0, in_end.round, in_colour, round};
+    end
+
     assign fog_part = state_9 == march_pkg::HIT ? fog_9 : ~height_9;
 
     always_ff @(posedge clk) begin
         if (enable) begin
             state_9  <= state_8;
             colour_9 <= palette[state_8 == march_pkg::HIT ? surface_8 : state_8 == march_pkg::MISS ? 3'd7 : 3'd6];
+            if (lit_8) colour_9 <= lit_colour_8;
 
             colour_10 <= colour_9;
             light_10  <= state_9 == march_pkg::HIT ? {1'b0, light_9} + 9'(light_9[7]) : 9'd256;
@@ -209,7 +237,7 @@ module ray_paint (
         .out_valid, .out_ready, .out_data({out_eye, out_row, out_line, out_column, out_mask, out_code, out_colour})
     );
 
-    wire _unused = &{1'b0, way[29], way[8:0], waited, ending_0.gap, ending_0.slope, product_5[42:40], place_29.odd, line_times_5[8], stride[5:0]};
+    wire _unused = &{1'b0, way[29], way[8:0], waited, ending_0, product_5[42:40], place_29.odd, line_times_5[8], stride[5:0]};
 endmodule
 
 `default_nettype wire

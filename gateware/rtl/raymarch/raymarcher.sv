@@ -12,6 +12,8 @@
 // While the last rays of a band are still on their way, rays of the next one go in already: up to EARLY, whose ends wait in block
 // RAM. So the lanes idle only at the end of the frame, and where a band ends with rays of very different lengths.
 //
+// With ROUND there may be spheres: then round_light stands before ray_paint, where a round pixel takes a clock for each light.
+//
 // Each lane takes one evaluation of the field a clock. `restart`, and reset, give the frame up. Groups: a stream, valid/ready, payload
 // stays. Counters run freely: clocks busy, evaluations, clocks in which a lane had room for a ray and none came, clocks in which a
 // ray waited as no end was taken, rays, and how they ended.
@@ -22,6 +24,7 @@ module raymarcher #(
     parameter int unsigned LANES  = 2,
     parameter int unsigned LEVELS = 6,
     parameter bit          BOXES  = 1'b1,
+    parameter bit          ROUND  = 1'b1,
     parameter bit          STEREO = 1'b1,
     parameter int unsigned EARLY  = 512
 ) (
@@ -43,6 +46,11 @@ module raymarcher #(
     input  wire  [2:0][23:0]          bounds,
     input  wire march_pkg::solid_t    solid,
     input  wire march_pkg::tuning_t   tuning,
+    // Spheres, with ROUND: written between frames.
+    input  wire                       ball_write,
+    input  wire  [2:0]                ball_number,
+    input  wire march_pkg::ball_t     ball,
+    input  wire march_pkg::lights_t   lights,
     // What surfaces look like: see ray_paint.
     input  wire  [16:0]               depth_mantissa,
     input  wire  signed [5:0]         depth_exponent,
@@ -77,6 +85,7 @@ module raymarcher #(
     output logic [31:0]               undecided
 );
     localparam int unsigned EARLY_BITS = $clog2(EARLY + 1);
+    localparam int unsigned KEPT_BITS  = ROUND ? march_pkg::END_BITS : march_pkg::FLAT_END_BITS;
 
     // Bands, less one; lines of a band, columns of eight, rows of eight pixels, rays.
     logic [5:0]  last_band, lines;
@@ -100,9 +109,9 @@ module raymarcher #(
     logic                  generating, ray_valid, ray_ready;
     march_pkg::ray_t       ray;
 
-    ray_generator #(.STEREO(STEREO)) generator (
+    ray_generator #(.ROUND(ROUND), .STEREO(STEREO)) generator (
         .clk, .rst(reset), .start, .busy(generating), .last_column({stride, 3'd0} - 11'd1), .last_line(lines - 6'd1), .last_band, .stereo,
-        .first, .across, .down, .near_limit, .origins, .outside,
+        .round(solid.is_round), .first, .across, .down, .near_limit, .origins, .outside,
         .out_valid(ray_valid), .out_ready(ray_ready), .out_ray(ray)
     );
 
@@ -149,8 +158,8 @@ module raymarcher #(
     assign ray_ready  = lane_takes != '0;
 
     for (genvar i = 0; i < LANES; i++) begin : lanes
-        ring_lane #(.LEVELS(LEVELS), .BOXES(BOXES), .STEREO(STEREO)) lane (
-            .clk, .rst(reset), .origins, .bounds, .solid, .tuning,
+        ring_lane #(.LEVELS(LEVELS), .BOXES(BOXES), .ROUND(ROUND), .STEREO(STEREO)) lane (
+            .clk, .rst(reset), .origins, .bounds, .solid, .tuning, .ball_write, .ball_number, .ball,
             .in_valid(lane_valid[i]), .in_ready(lane_ready[i]), .in_ray(ray),
             .out_valid(end_valid[i]), .out_ready(end_taken[i]), .out_end(end_of[i]),
             .evaluates(evaluates[i]), .waits(waits[i])
@@ -162,6 +171,7 @@ module raymarcher #(
     logic [TURN_BITS-1:0] turn;
     logic                 next_valid, next_now, next_taken, waiting_valid, waiting_now, waiting_ready, room, paint_valid, paint_ready;
     march_pkg::end_t      next_end, waiting_end, paint_end;
+    logic [KEPT_BITS-1:0] kept;
 
     always_ff @(posedge clk) turn <= reset || turn == TURN_BITS'(LANES - 1) ? '0 : turn + 1'b1;
 
@@ -181,15 +191,36 @@ module raymarcher #(
         end_taken[turn] = next_taken;
     end
 
-    fifo #(.WIDTH(march_pkg::END_BITS), .DEPTH(EARLY), .BLOCK(1'b1)) waiting (
-        .clk, .rst(reset), .in_valid(next_valid && !next_now), .in_ready(room), .in_data(next_end),
-        .out_valid(waiting_valid), .out_ready(waiting_ready), .out_data(waiting_end)
+    fifo #(.WIDTH(KEPT_BITS), .DEPTH(EARLY), .BLOCK(1'b1)) waiting (
+        .clk, .rst(reset), .in_valid(next_valid && !next_now), .in_ready(room), .in_data(next_end[KEPT_BITS-1:0]),
+        .out_valid(waiting_valid), .out_ready(waiting_ready), .out_data(kept)
     );
+    assign waiting_end = march_pkg::END_BITS'(kept);
+
+    // What is round gets its light first.
+    logic            lit_valid, lit_ready;
+    march_pkg::end_t lit_end;
+    logic [23:0]     lit_colour;
+
+    if (ROUND) begin : light
+        round_light #(.STEREO(STEREO)) shine (
+            .clk, .rst(reset), .origins, .repeated(solid.balls_repeated), .lights, .ball_write, .ball_number, .ball,
+            .in_valid(paint_valid), .in_ready(paint_ready), .in_end(paint_end),
+            .out_valid(lit_valid), .out_ready(lit_ready), .out_end(lit_end), .out_colour(lit_colour)
+        );
+    end else begin : no_light
+        assign lit_valid   = paint_valid;
+        assign paint_ready = lit_ready;
+        assign lit_end     = paint_end;
+        assign lit_colour  = '0;
+        wire _unused = &{1'b0, lights};
+    end
 
     /* verilator lint_off PINCONNECTEMPTY */
-    ray_paint paint (
-        .clk, .rst(reset), .stereo, .stride, .depth_mantissa, .depth_exponent, .fog_shift, .palette, .horizon, .table_write, .table_entry, .table_part,
-        .in_valid(paint_valid), .in_ready(paint_ready), .in_end(paint_end),
+    ray_paint #(.ROUND(ROUND)) paint (
+        .clk, .rst(reset), .stereo, .round(solid.is_round), .stride, .depth_mantissa, .depth_exponent, .fog_shift, .palette, .horizon,
+        .table_write, .table_entry, .table_part,
+        .in_valid(lit_valid), .in_ready(lit_ready), .in_end(lit_end), .in_colour(lit_colour),
         .out_valid(group_valid), .out_ready(group_ready), .out_eye(group_eye), .out_row(group_row), .out_line(group_line),
         .out_column(group_column), .out_mask(group_mask), .out_code(group_code), .out_colour(group_colour), .idle()
     );

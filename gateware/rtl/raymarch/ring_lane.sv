@@ -9,6 +9,9 @@
 // fifo: PLACES, of which those in the ring count as taken. `evaluates` is high in clocks in which a slot that is occupied
 // passes the field, `waits` where one was empty though a ray was offered.
 //
+// With ROUND there may be spheres. A ray goes round once for each of them and stays where it is until the last one; it takes the
+// nearest one with it. Its end has its direction, and it may take four times as many steps as `tuning` says.
+//
 // Streams are valid/ready, each item moves in a clock in which both are high, payloads stay until then; ready depends on
 // registers alone. Parameters hold while rays are inside. `restart` throws all rays away.
 
@@ -17,6 +20,7 @@
 module ring_lane #(
     parameter int unsigned LEVELS = 4,
     parameter bit          BOXES  = 1'b0,
+    parameter bit          ROUND  = 1'b0,
     parameter bit          STEREO = 1'b1,
     parameter int unsigned PLACES = 32
 ) (
@@ -27,6 +31,10 @@ module ring_lane #(
     input  wire  [2:0][23:0]         bounds,
     input  wire march_pkg::solid_t   solid,
     input  wire march_pkg::tuning_t  tuning,
+    // Spheres, while no rays are inside.
+    input  wire                      ball_write,
+    input  wire  [2:0]               ball_number,
+    input  wire march_pkg::ball_t    ball,
     // Rays.
     input  wire                      in_valid,
     output logic                     in_ready,
@@ -40,8 +48,10 @@ module ring_lane #(
     output logic                     waits
 );
     // The clock in which the distance is there, counted from the slot.
-    localparam int unsigned DISTANCE = 3 + march_pkg::field_clocks(LEVELS, BOXES);
+    localparam int unsigned DISTANCE = 3 + march_pkg::field_clocks(LEVELS, BOXES, ROUND);
     localparam int unsigned COUNT_BITS = $clog2(PLACES + 1);
+    localparam int unsigned STEP_BITS  = ROUND ? 10 : 8;
+    localparam int unsigned KEPT_BITS  = ROUND ? march_pkg::END_BITS : march_pkg::FLAT_END_BITS;
 
     // What a ray takes round with it, beside t.
     typedef struct packed {
@@ -58,13 +68,14 @@ module ring_lane #(
     // The slot.
     cargo_t            cargo;
     logic [march_pkg::T_BITS-1:0] t;
-    logic [7:0]        steps;
+    logic [STEP_BITS-1:0] steps;
 
     // After the last stage.
     cargo_t            last_cargo;
     logic [march_pkg::T_BITS-1:0] last_t;
-    logic [7:0]        last_steps;
+    logic [STEP_BITS-1:0] last_steps;
     march_pkg::state_t            last_state;
+    logic              last_round;
     logic [2:0]        last_surface;
 
     assign again    = occupied[DISTANCE+2] && !finished;
@@ -132,17 +143,53 @@ module ring_lane #(
     logic signed [21:0] distance;
     logic [2:0]         surface;
 
-    field_unit #(.LEVELS(LEVELS), .BOXES(BOXES)) field (
-        .clk, .solid, .point({point[2][21:0], point[1][21:0], point[0][21:0]}), .distance, .surface
+    // The sphere whose turn it is, and the nearest one before it: with the slot, and with the distance.
+    logic                round, is_last, is_last_2;
+    logic [2:0]          pass_2;
+    march_pkg::nearest_t so_far_3, nearest;
+
+    field_unit #(.LEVELS(LEVELS), .BOXES(BOXES), .ROUND(ROUND)) field (
+        .clk, .solid, .ball_write, .ball_number, .ball, .pass(pass_2), .point({point[2][21:0], point[1][21:0], point[0][21:0]}),
+        .so_far(so_far_3), .distance, .round, .surface, .nearest
     );
+
+    if (ROUND) begin : passes
+        logic [2:0]          pass, last_pass, pass_1;
+        march_pkg::nearest_t so_far, last_nearest;
+
+        always_ff @(posedge clk) begin
+            pass   <= again && last_pass != '0 ? last_pass : '0;
+            so_far <= again && last_pass != '0 ? last_nearest : {1'b0, {21{1'b1}}, 3'd0};
+        end
+
+        delay #(.WIDTH(3), .CLOCKS(2)) pass_goes (.clk, .enable(1'b1), .in(pass), .out(pass_2));
+        delay #(.WIDTH(march_pkg::NEAREST_BITS), .CLOCKS(3)) so_far_goes (.clk, .enable(1'b1), .in(so_far), .out(so_far_3));
+        delay #(.WIDTH(3), .CLOCKS(DISTANCE - 2)) pass_waits (.clk, .enable(1'b1), .in(pass_2), .out(pass_1));
+        delay #(.WIDTH(march_pkg::NEAREST_BITS), .CLOCKS(2)) nearest_goes (.clk, .enable(1'b1), .in(nearest), .out(last_nearest));
+
+        assign is_last = pass_1 == solid.last_ball;
+        always_ff @(posedge clk) is_last_2 <= is_last;
+
+        // Of the next pass; 0 after the last one.
+        logic [2:0] next_pass;
+        always_ff @(posedge clk) begin
+            next_pass <= is_last ? '0 : pass_1 + 1'b1;
+            last_pass <= next_pass;
+        end
+    end else begin : one_pass
+        assign pass_2    = '0;
+        assign so_far_3  = '0;
+        assign is_last   = 1'b1;
+        assign is_last_2 = 1'b1;
+    end
 
     // With the distance come the t it was taken at and what is near enough.
     logic [march_pkg::T_BITS-1:0] t_early, t_1;
     logic [16:0]       threshold;
-    logic [7:0]        steps_1, steps_2;
+    logic [STEP_BITS-1:0] steps_1, steps_2;
 
     delay #(.WIDTH(march_pkg::T_BITS), .CLOCKS(DISTANCE - 1)) way (.clk, .enable(1'b1), .in(t), .out(t_early));
-    delay #(.WIDTH(8), .CLOCKS(DISTANCE)) counted (.clk, .enable(1'b1), .in(steps), .out(steps_1));
+    delay #(.WIDTH(STEP_BITS), .CLOCKS(DISTANCE)) counted (.clk, .enable(1'b1), .in(steps), .out(steps_1));
     delay #(.WIDTH(CARGO_BITS), .CLOCKS(DISTANCE + 2)) carried (.clk, .enable(1'b1), .in(cargo), .out(last_cargo));
 
     always_ff @(posedge clk) begin
@@ -155,34 +202,53 @@ module ring_lane #(
     logic [march_pkg::T_BITS:0] next_2;
     logic [march_pkg::T_BITS-1:0] t_2, taken_t;
     logic [11:0]     gap_2, gap;
+    logic            round_2;
     logic [2:0]      surface_2;
     logic            beyond;
 
     assign beyond = gone_2 || next_2 > {1'b0, tuning.far_limit};
 
+    // The evaluation under way counts. Beside what is round a ray creeps for longer, and has to come as near as others.
+    logic [1:0] patience;
+
+    if (ROUND) begin : long_way
+        assign patience = solid.is_round ? '0 : steps_1[7:6];
+        always_ff @(posedge clk) late_2 <= steps_1 + 10'd1 >= (solid.is_round ? {tuning.cap, 2'b0} : {2'b0, tuning.cap});
+    end else begin : short_way
+        assign patience = steps_1[7:6];
+        always_ff @(posedge clk) late_2 <= steps_1 + 8'd1 >= tuning.cap;
+    end
+
     always_ff @(posedge clk) begin
-        near_2    <= distance < $signed({2'b0, 20'(threshold) << steps_1[7:6]});
-        next_2    <= {1'b0, t_1} + 24'(distance[20:0] & {21{!distance[21]}});
+        near_2    <= distance < $signed({2'b0, 20'(threshold) << patience});
+        next_2    <= {1'b0, t_1} + 24'(distance[20:0] & {21{!distance[21] && is_last}});
         t_2       <= t_1;
         gap_2     <= distance[20:12] != '0 && !distance[21] ? '1 : distance[11:0] & {12{!distance[21]}};
         gone_2    <= gone_late;
-        steps_2   <= steps_1 + 1'b1;
+        steps_2   <= steps_1 + STEP_BITS'(is_last);
         surface_2 <= surface;
+        round_2   <= round;
 
-        finished     <= beyond || near_2 || late_2;
+        finished     <= is_last_2 && (beyond || near_2 || late_2);
         last_state   <= beyond ? march_pkg::MISS : near_2 ? march_pkg::HIT : march_pkg::UNDECIDED;
         last_t       <= next_2[march_pkg::T_BITS-1:0];
         taken_t      <= t_2;
         gap          <= beyond || !near_2 ? '0 : gap_2;
         last_steps   <= steps_2;
         last_surface <= surface_2;
+        last_round   <= round_2;
     end
 
-    // The evaluation under way counts.
-    always_ff @(posedge clk) late_2 <= steps_1 + 8'd1 >= tuning.cap;
-
     march_pkg::end_t end_in;
-    logic [7:0]      height;
+    logic [7:0]      height, steps_end;
+    logic [march_pkg::T_BITS-1:0] end_t;
+
+    // Saturates.
+    if (ROUND) begin : many_steps
+        assign steps_end = last_steps[STEP_BITS-1:8] != '0 ? '1 : last_steps[7:0];
+    end else begin : few_steps
+        assign steps_end = last_steps;
+    end
 
     // How steeply the ray goes to the surface; all ones where it does not go there.
     logic [10:0] part;
@@ -191,17 +257,28 @@ module ring_lane #(
     assign part   = last_cargo.direction[last_surface[2:1]][17:7];
     assign slope  = part[10] == last_surface[0] ? part[9:0] ^ {10{part[10]}} : '1;
     assign height = last_cargo.direction[2][17] ? '0 : last_cargo.direction[2][16:9];
+
+    always_comb begin
+        if (last_state == march_pkg::MISS) end_t = {15'b0, height};
+        else if (last_round)               end_t = last_t;
+        else                               end_t = taken_t;
+    end
+
     assign end_in = {
-        last_cargo.place, last_cargo.length, last_state == march_pkg::MISS ? {15'b0, height} : taken_t, last_steps, last_state,
-        last_surface, gap, slope
+        last_cargo.direction, last_round, last_cargo.place, last_cargo.length, end_t, steps_end, last_state, last_surface,
+        last_round ? 12'd0 : gap, last_round ? 10'h3FF : slope
     };
 
     // There is a place: `end_ready` is always high when a ray ends.
-    fifo #(.WIDTH(march_pkg::END_BITS), .DEPTH(PLACES)) ends (
-        .clk, .rst, .in_valid(ended), .in_ready(end_ready), .in_data(end_in), .out_valid, .out_ready, .out_data(out_end)
+    logic [KEPT_BITS-1:0] kept;
+
+    fifo #(.WIDTH(KEPT_BITS), .DEPTH(PLACES)) ends (
+        .clk, .rst, .in_valid(ended), .in_ready(end_ready), .in_data(end_in[KEPT_BITS-1:0]), .out_valid, .out_ready, .out_data(kept)
     );
 
-    wire _unused = &{1'b0, end_ready};
+    assign out_end = march_pkg::END_BITS'(kept);
+
+    wire _unused = &{1'b0, end_ready, end_in, nearest};
 endmodule
 
 `default_nettype wire

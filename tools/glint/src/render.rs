@@ -28,7 +28,7 @@ pub enum Subject<'s> {
     /// A distance field.
     Field {
         /// Which.
-        field: Field,
+        field: &'s Field,
         /// How it is drawn.
         options: &'s FieldOptions,
     },
@@ -227,7 +227,7 @@ pub fn depth_scale(scene: &Scene) -> Result<DepthScale, Error> {
             FrameSetup::new(&scene.view, width, height, mesh.radius()).map(|frame| frame.depth)
         }
         Subject::Field { field, options } => {
-            Setup::new(&field, &scene.view, scene.size, options).map(|setup| setup.world_depth)
+            Setup::new(field, &scene.view, scene.size, options).map(|setup| setup.world_depth)
         }
     }
     .map_err(Error::Render)
@@ -266,7 +266,7 @@ pub fn on_model(scene: &Scene) -> Result<Rendered, Error> {
             };
             draw_mesh(&mesh, &scene.view, &mut target, &options)
         }
-        Subject::Field { field, options } => draw_field(&field, &scene.view, &mut target, options),
+        Subject::Field { field, options } => draw_field(field, &scene.view, &mut target, options),
     };
     let stats = Stats {
         cycles: None,

@@ -113,7 +113,7 @@ fn a_field_by(backend: Backend, name: &str) {
         r#"{"eye":[0,-20,0],"u":[1,0,0],"v":[0,0,-1],"n":[0,1,0],"half_width":0.3,"near":0.1}"#;
     let scene = Scene {
         subject: Subject::Field {
-            field: Field::parse("box:0.5,0.5,0.25").unwrap(),
+            field: &Field::parse("box:0.5,0.5,0.25").unwrap(),
             options: &FieldOptions::default(),
         },
         view: view::parse(eye.as_bytes()).unwrap(),

@@ -17,6 +17,10 @@ use crate::stereo::Stereo;
 
 /// A command, parsed and checked as far as it can be without the machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "there is one command at a time, and nowhere to box it"
+)]
 pub enum Command<'a> {
     /// Nothing was typed.
     Empty,

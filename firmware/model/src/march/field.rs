@@ -1,25 +1,52 @@
 //! Distances to solids in field units (12 fraction bits), and which surface is the nearest.
 
-/// What is nearest to a point: a face that is perpendicular to an axis.
+use super::sphere::Balls;
+
+/// What is nearest to a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Surface {
-    /// 0, 1, 2: x, y, z.
-    pub axis: u8,
-    /// Whether its normal points along the axis, and not against it.
-    pub positive: bool,
+pub enum Surface {
+    /// A face that is perpendicular to an axis.
+    Face {
+        /// 0, 1, 2: x, y, z.
+        axis: u8,
+        /// Whether its normal points along the axis, and not against it.
+        positive: bool,
+    },
+    /// A sphere's.
+    Round {
+        /// Which one, from 0.
+        number: u8,
+    },
 }
 
 impl Surface {
-    /// As the gateware has it: twice the axis, and 1 if it is positive.
+    /// As the gateware has it, which knows too whether it is round: twice a face's axis, and 1 if it is positive; a sphere's number.
     pub const fn code(self) -> u8 {
-        2 * self.axis + self.positive as u8
+        match self {
+            Self::Face { axis, positive } => 2 * axis + positive as u8,
+            Self::Round { number } => number,
+        }
+    }
+
+    /// Whether it is a sphere's.
+    pub const fn is_round(self) -> bool {
+        matches!(self, Self::Round { .. })
+    }
+
+    /// The sphere's number.
+    pub const fn number(self) -> Option<u8> {
+        match self {
+            Self::Face { .. } => None,
+            Self::Round { number } => Some(number),
+        }
     }
 }
 
 /// A distance and what it is to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sample {
-    /// In the maximum norm: the cube of this half side about the point holds nothing of the solid's surface. s10.12.
+    /// In the maximum norm of what has faces: the cube of this half side about the point holds nothing of the solid's surface. In
+    /// the Euclidean one of what is round. s10.12.
     pub distance: i32,
     /// What is there.
     pub surface: Surface,
@@ -47,6 +74,8 @@ pub enum Solid {
         /// Whether it repeats itself every 64 units along each axis.
         repeated: bool,
     },
+    /// Spheres.
+    Balls(Balls),
 }
 
 impl Solid {
@@ -63,6 +92,15 @@ impl Solid {
                 room,
                 repeated,
             } => cuboid(point, fraction, half, *room, *repeated),
+            Self::Balls(balls) => balls.sample(point),
+        }
+    }
+
+    /// The spheres of it.
+    pub const fn balls(&self) -> Option<&Balls> {
+        match self {
+            Self::Balls(balls) => Some(balls),
+            _ => None,
         }
     }
 }
@@ -73,20 +111,18 @@ impl Solid {
 #[derive(Clone, Copy)]
 struct Folded {
     value: i32,
-    grows: Surface,
+    axis: u8,
+    positive: bool,
 }
 
 impl Folded {
     /// −x, or x.
     fn negated_if(self, negate: bool) -> Self {
-        let Self { value, grows } = self;
         if negate {
             Self {
-                value: !value,
-                grows: Surface {
-                    positive: !grows.positive,
-                    ..grows
-                },
+                value: !self.value,
+                positive: !self.positive,
+                ..self
             }
         } else {
             self
@@ -97,6 +133,14 @@ impl Folded {
         Self {
             value: self.value + offset,
             ..self
+        }
+    }
+
+    /// The face across its axis.
+    const fn face(self) -> Surface {
+        Surface::Face {
+            axis: self.axis,
+            positive: self.positive,
         }
     }
 }
@@ -111,10 +155,8 @@ pub(super) const fn cropped(x: i32, bits: u32) -> i32 {
 fn unfolded(point: [i32; 3]) -> [Folded; 3] {
     [0, 1, 2].map(|axis: u8| Folded {
         value: point[usize::from(axis)],
-        grows: Surface {
-            axis,
-            positive: true,
-        },
+        axis,
+        positive: true,
     })
 }
 
@@ -147,7 +189,7 @@ fn menger<'a>(point: [i32; 3], levels: impl Iterator<Item = &'a i32>, half: i32)
     let big = p[largest(p.map(|x| x.value))];
     Sample {
         distance: big.value - half,
-        surface: big.grows,
+        surface: big.face(),
     }
 }
 
@@ -174,11 +216,11 @@ fn cuboid(
     let big = largest(outside);
     let nearest = Folded {
         value: outside[big],
-        grows: p[big].grows,
+        ..p[big]
     }
     .negated_if(room);
     Sample {
         distance: nearest.value,
-        surface: nearest.grows,
+        surface: nearest.face(),
     }
 }

@@ -3,6 +3,7 @@
 use glint_core::fixed::U4_28;
 use glint_core::light::{Background, Lighting, Material};
 
+use super::light::{Light, Lights, whole};
 use super::ray::{Outcome, Ray, State};
 use super::setup::Setup;
 
@@ -12,6 +13,8 @@ use super::setup::Setup;
 pub struct Palette {
     /// Of the faces, by [`Surface::code`](super::Surface::code), after their light.
     pub faces: [[u8; 3]; 6],
+    /// Of what is round.
+    pub lights: Lights,
     /// Of a ray that was given up.
     pub undecided: [u8; 3],
     /// Of the sky above.
@@ -39,6 +42,7 @@ impl Palette {
         let [zenith, horizon] = background.colours();
         Self {
             faces: lighting.shine_on(&material.faces()),
+            lights: Lights::new(material, lighting),
             undecided: [255, 0, 255],
             zenith,
             horizon,
@@ -89,8 +93,18 @@ impl Palette {
             // Rec. 601: the weights are 256 together.
             [((77 * u32::from(r) + 150 * u32::from(g) + 29 * u32::from(b) + 128) >> 8) as u8; 3]
         };
+        let lights = Lights {
+            ambient: grey(self.lights.ambient),
+            list: self.lights.list.map(|light| Light {
+                colour: grey(light.colour),
+                ..light
+            }),
+            materials: self.lights.materials.map(grey),
+            ..self.lights
+        };
         Self {
             faces: self.faces.map(grey),
+            lights,
             undecided: grey(self.undecided),
             zenith: grey(self.zenith),
             horizon: grey(self.horizon),
@@ -134,17 +148,27 @@ pub fn paint(setup: &Setup, palette: &Palette, ray: &Ray, outcome: &Outcome) -> 
         State::Hit(surface) => {
             let depth = setup.depth_of(ray, outcome.reached()) >> (21 + palette.fog_shift);
             (
-                palette.faces[usize::from(surface.code()) % 6],
+                lit(setup, palette, ray, outcome)
+                    .unwrap_or(palette.faces[usize::from(surface.code()) % 6]),
                 palette.occlusion[outcome.steps.min(255) as usize],
                 palette.fog[depth.min(255) as usize],
             )
         }
     };
-    // 255 is the whole.
-    let [light, fog] = [light, fog].map(|part| i32::from(part) + i32::from(part >> 7));
+    let [light, fog] = [light, fog].map(whole);
     core::array::from_fn(|i| {
         let lit = (i32::from(colour[i]) * light) >> 8;
         let faded = lit + (((i32::from(palette.horizon[i]) - lit) * fog + 128) >> 8);
         faded as u8
     })
+}
+
+/// The colour of something round before it is darkened.
+fn lit(setup: &Setup, palette: &Palette, ray: &Ray, outcome: &Outcome) -> Option<[u8; 3]> {
+    let State::Hit(surface) = outcome.state else {
+        return None;
+    };
+    let (normal, number) = (setup.normal(ray, outcome)?, surface.number()?);
+    let ball = setup.balls()?.list.get(usize::from(number))?;
+    Some(palette.lights.shine_on(number, ball, normal))
 }

@@ -22,8 +22,22 @@ const fn inverses() -> [u32; 1024] {
     table
 }
 
+/// Below 1/√q for every q that begins with these ten bits behind its point: √(2^10/(i + 1)), less by a part of 2^−16 at least for
+/// what is rounded up afterwards. u8.9, 15 bits.
+const ROUND_INVERSE: [u32; 1024] = round_inverses();
+
+const fn round_inverses() -> [u32; 1024] {
+    let mut table = [0; 1024];
+    let mut i = 0;
+    while i < table.len() {
+        table[i] = (((1 << 28) - (1 << 13)) / (i as u32 + 1)).isqrt();
+        i += 1;
+    }
+    table
+}
+
 /// |x|, or one less: |x| − 1 of a negative x.
-const fn magnitude(x: i32) -> u32 {
+pub(super) const fn magnitude(x: i32) -> u32 {
     (x ^ (x >> 31)) as u32
 }
 
@@ -32,9 +46,9 @@ const fn magnitude(x: i32) -> u32 {
 pub struct Ray {
     /// Which eye it starts from: 0 is the left one, or the only one.
     pub eye: usize,
-    /// Its direction, s1.17, of at most length 1 in the maximum norm.
+    /// Its direction, s1.17, of at most length 1: in the maximum norm, or in the Euclidean one if there is anything round.
     pub direction: [i32; 3],
-    /// The first ten bits of the largest component of D: the entry of the table that made the direction.
+    /// The first ten bits of the largest component of D, or of |D|²: the entry of the table that made the direction.
     pub length: u32,
     /// Where it begins, u11.12: at the near plane, or where it comes to the box.
     pub start: u32,
@@ -56,13 +70,13 @@ pub enum State {
 pub struct Outcome {
     /// How.
     pub state: State,
-    /// Where the last evaluation was, u11.12.
+    /// Where the last evaluation was, or, of a hit on something round, a step further: u11.12.
     pub t: u32,
-    /// From there to the surface of a hit, at most 1 − 2^−12; 0 of all others. u0.12.
+    /// From there to the plane of a face that was hit, at most 1 − 2^−12; 0 of all others. u0.12.
     pub gap: u32,
-    /// The first ten bits of the direction's part along the surface's normal, where the ray goes towards it; or else all ones.
+    /// The first ten bits of the direction's part along the face's normal, where the ray goes towards it; or else all ones.
     pub slope: u32,
-    /// Evaluations of the field.
+    /// Points at which the field was asked, at most 1020.
     pub steps: u32,
 }
 
@@ -86,19 +100,45 @@ impl Setup {
                 .wrapping_add(down)
                 >> 6
         });
-        let [a, b, c] = direction.map(magnitude);
-        let length = a.max(b).max(c) >> 14 & 0x3FF;
-        let inverse = INVERSE[length as usize];
+        let length = self.length(direction.map(magnitude));
+        let inverse = self.inverse(length);
         // 24, 9 and 17 fraction bits.
         let direction =
             direction.map(|d| ((i64::from(d) * i64::from(inverse) + (1 << 15)) >> 16) as i32);
-        let near = (u64::from(self.near) * (u64::from(length) + 1)) >> 10;
+        // Its inverse, or less, 10 fraction bits: the near plane is not before it.
+        let part = if self.is_round() {
+            (inverse * (length + 1)) >> 9
+        } else {
+            length + 1
+        };
+        let near = (u64::from(self.near) * u64::from(part)) >> 10;
         let entry = self.entry(eye, &direction);
         Ray {
             eye,
             direction,
             length,
             start: near.max(entry).min(farthest(self.fraction).into()) as u32,
+        }
+    }
+
+    /// The first ten bits of D's length, or of its square or a little more, from the magnitudes of its parts, 24 fraction bits.
+    fn length(&self, parts: [u32; 3]) -> u32 {
+        if self.is_round() {
+            // 17 bits of each. What was cut off them is below 2^−15 in all, which is added.
+            let square: u64 = parts.map(|part| u64::from(part >> 7).pow(2)).iter().sum();
+            ((square + (1 << 19)) >> 24) as u32 & 0x3FF
+        } else {
+            let [a, b, c] = parts;
+            a.max(b).max(c) >> 14 & 0x3FF
+        }
+    }
+
+    /// What a direction is D times of, u8.9.
+    fn inverse(&self, length: u32) -> u32 {
+        if self.is_round() {
+            ROUND_INVERSE[length as usize]
+        } else {
+            INVERSE[length as usize]
         }
     }
 
@@ -128,34 +168,39 @@ impl Setup {
     /// Follows a ray to its end.
     pub fn march(&self, ray: &Ray) -> Outcome {
         let tuning = &self.tuning;
+        // Beside what is round a ray creeps for longer.
+        let cap = tuning.cap << if self.is_round() { 2 } else { 0 };
         let mut t = ray.start;
         let mut steps = 0;
         loop {
             let point = self.point(ray, t);
-            let sample = self
-                .solid
-                .sample(point.map(|x| cropped(x, 10 + self.fraction)), self.fraction);
+            let sample = self.sample(point.map(|x| cropped(x, 10 + self.fraction)));
             // A ray that has left the box, or never came to it, and goes away from it.
             let gone = (0..3).any(|i| {
                 magnitude(point[i]) > self.bounds[i] && (point[i] < 0) == (ray.direction[i] < 0)
             });
-            // A ray along a face takes short steps; it need not come as near.
-            let threshold = (tuning.threshold + (t >> tuning.footprint)) << (steps >> 6);
+            // A ray along a face takes short steps; it need not come as near. Beside a sphere it takes many too, and passes.
+            let patience = if self.is_round() { 0 } else { steps >> 6 };
+            let threshold = (tuning.threshold + (t >> tuning.footprint)) << patience;
             steps += 1;
             let next = t + sample.distance.max(0) as u32;
             let state = if gone || next > tuning.far {
                 Some(State::Miss)
             } else if sample.distance < threshold as i32 {
                 Some(State::Hit(sample.surface))
-            } else if steps >= tuning.cap {
+            } else if steps >= cap {
                 Some(State::Undecided)
             } else {
                 None
             };
             if let Some(state) = state {
-                let (gap, slope) = match state {
-                    State::Hit(surface) => self.approach(ray, sample.distance, surface),
-                    _ => (0, 0),
+                let (t, gap, slope) = match state {
+                    State::Hit(Surface::Face { axis, positive }) => {
+                        let (gap, slope) = self.approach(ray, sample.distance, axis, positive);
+                        (t, gap, slope)
+                    }
+                    State::Hit(Surface::Round { .. }) => (next, 0, 0x3FF),
+                    _ => (t, 0, 0),
                 };
                 return Outcome {
                     state,
@@ -169,10 +214,10 @@ impl Setup {
         }
     }
 
-    /// How far the surface of a hit is, and how steeply the ray goes there.
-    fn approach(&self, ray: &Ray, distance: i32, surface: Surface) -> (u32, u32) {
-        let part = ray.direction[usize::from(surface.axis) % 3];
-        let comes = (part < 0) == surface.positive;
+    /// How far the plane of a face is, and how steeply the ray goes there.
+    fn approach(&self, ray: &Ray, distance: i32, axis: u8, positive: bool) -> (u32, u32) {
+        let part = ray.direction[usize::from(axis) % 3];
+        let comes = (part < 0) == positive;
         let gap = distance.clamp(0, (1 << self.fraction) - 1);
         let slope = if comes {
             magnitude(part) >> 7 & 0x3FF
@@ -192,6 +237,6 @@ impl Setup {
 
     /// The depth of a point of a ray along n in field units times 2^e, 21 fraction bits.
     pub fn depth_of(&self, ray: &Ray, t: u32) -> u64 {
-        (u64::from(t) * u64::from(INVERSE[ray.length as usize])) << FRACTION >> self.fraction
+        (u64::from(t) * u64::from(self.inverse(ray.length))) << FRACTION >> self.fraction
     }
 }

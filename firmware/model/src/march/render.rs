@@ -13,7 +13,7 @@ use crate::render::{RenderError, Target};
 pub struct FieldStats {
     /// Rays: one a pixel and eye.
     pub rays: u32,
-    /// Evaluations of the field.
+    /// Evaluations of the field: as many a step as there are spheres.
     pub evaluations: u64,
     /// Rays that came to a surface.
     pub hits: u32,
@@ -24,10 +24,10 @@ pub struct FieldStats {
 }
 
 impl FieldStats {
-    /// Counts a ray.
-    pub fn count(&mut self, outcome: &Outcome) {
+    /// Counts a ray of a frame.
+    pub fn count(&mut self, setup: &Setup, outcome: &Outcome) {
         self.rays += 1;
-        self.evaluations += u64::from(outcome.steps);
+        self.evaluations += u64::from(outcome.steps * setup.passes());
         *match outcome.state {
             State::Hit(_) => &mut self.hits,
             State::Miss => &mut self.misses,
@@ -59,7 +59,7 @@ pub fn render_field(
     let mut look = |eye, x, y| {
         let ray = setup.ray(eye, x, y);
         let outcome = setup.march(&ray);
-        stats.count(&outcome);
+        stats.count(setup, &outcome);
         show(x, y, &ray, &outcome);
         let code = match outcome.state {
             State::Hit(_) => setup.depth_code(&ray, outcome.reached()),

@@ -1,12 +1,14 @@
 //! The constants of a frame of a field, made once from the field, the camera and the picture's size.
 
 use glint_core::camera::View;
-use glint_core::field::Field;
-use glint_core::fixed::{Q2_23, Q32_32, U4_28};
+use glint_core::field::{Field, MAX_SPHERES, Sphere};
+use glint_core::fixed::{Q2_23, Q2_30, Q32_32, U4_28};
 use glint_core::stereo::{Stereo, Tint};
+use glint_core::trig::sin_cos_q30;
 
-use super::field::{Solid, cropped};
+use super::field::{Sample, Solid, cropped};
 use super::paint::Palette;
+use super::sphere::{Ball, Balls};
 use crate::frame::DepthScale;
 use crate::render::{RenderError, SIZES};
 
@@ -35,7 +37,7 @@ pub struct Tuning {
     pub threshold: u32,
     /// ... and this power of two (7 to 15) of the distance that it has gone: t·2^−shift.
     pub footprint: u32,
-    /// The evaluations after which a ray is given up, undecided: 1 to 255.
+    /// The points after which a ray is given up, undecided: 1 to 255; four times as many where there is anything round.
     pub cap: u32,
     /// t beyond which there is nothing, u11.12.
     pub far: u32,
@@ -53,6 +55,13 @@ pub const DEFAULT_TUNING: Tuning = Tuning {
     footprint: 14,
     cap: 255,
     far: farthest(FRACTION),
+};
+
+/// What suits round fields: the silhouette of a sphere, and the normal beside it, show where a ray has ended.
+pub const ROUND_TUNING: Tuning = Tuning {
+    threshold: 4,
+    footprint: 15,
+    ..DEFAULT_TUNING
 };
 
 impl Tuning {
@@ -78,11 +87,25 @@ pub struct FieldOptions {
     pub palette: Palette,
     /// How dense the fog is: e^−z of something is left that is z/density world units away. 0 is none.
     pub fog: U4_28,
-    /// Fraction bits of field units, 8 to 16. The gateware has 12; the others are there to show what they are worth.
+    /// Fraction bits of field units, 8 to 16. The gateware has 12; the others are there to show what they are worth. What is
+    /// round has 12.
     pub fraction: u32,
 }
 
 impl FieldOptions {
+    /// What is used unless told otherwise: as finely as suits the field.
+    pub fn of(field: &Field) -> Self {
+        let tuning = if field.is_round() {
+            ROUND_TUNING
+        } else {
+            DEFAULT_TUNING
+        };
+        Self {
+            tuning,
+            ..Self::default()
+        }
+    }
+
     /// The colours of a frame: with its fog, and grey for two eyes.
     pub fn palette_for(&self, setup: &Setup) -> Palette {
         let palette = if self.fog == U4_28::ZERO {
@@ -132,7 +155,9 @@ pub struct Setup {
     pub fraction: u32,
     /// What there is.
     pub solid: Solid,
-    /// Field units in a world unit: 4 to 256.
+    /// Spheres beside a solid that has faces: then there are both.
+    pub beside: Option<Balls>,
+    /// Field units in a world unit: 2 to 256.
     pub scale: Q32_32,
     /// Half the sides of the box about the origin that holds it, u12.12; as large as can be where it has no end.
     pub bounds: [u32; 3],
@@ -168,8 +193,22 @@ impl Setup {
         if !SIZES.contains(&(width, height)) {
             return Err(RenderError::Size { width, height });
         }
-        let fraction = options.fraction;
-        let (solid, scale, extent) = in_units(field, fraction);
+        let round = field.is_round();
+        let fraction = if round { FRACTION } else { options.fraction };
+        let (solid, beside, scale, extent) = match *field {
+            Field::Union { flat, round } => {
+                let (solid, scale, flat) = in_units(&flat.into(), fraction);
+                let (balls, _, round) = in_units(&round.into(), fraction);
+                let extent = flat
+                    .zip(round)
+                    .map(|(flat, round)| [0, 1, 2].map(|i: usize| flat[i].max(round[i])));
+                (solid, balls.balls().copied(), scale, extent)
+            }
+            ref field => {
+                let (solid, scale, extent) = in_units(field, fraction);
+                (solid, None, scale, extent)
+            }
+        };
         let bounds = extent.map_or([unbounded(fraction); 3], |extent| {
             extent.map(|half| units(half, scale, fraction) as u32)
         });
@@ -186,7 +225,7 @@ impl Setup {
             ),
             None => (Q32_32::ZERO, 0),
         };
-        let rays = Directions::new(view, width, height, parallax);
+        let rays = Directions::new(view, width, height, parallax, round);
         let eye = |sign: i64, first: [i64; 3]| {
             let origin = [0, 1, 2].map(|i: usize| {
                 // |C| ≤ 32 and e ≤ 1.
@@ -195,7 +234,8 @@ impl Setup {
                 let place = units(place, scale, fraction) as i32;
                 match solid {
                     // The same place in the cell about the origin.
-                    Solid::Box { repeated: true, .. } => cropped(place, 6 + fraction),
+                    Solid::Box { repeated: true, .. }
+                    | Solid::Balls(Balls { repeated: true, .. }) => cropped(place, 6 + fraction),
                     _ => place,
                 }
             });
@@ -216,6 +256,7 @@ impl Setup {
             height,
             fraction,
             solid,
+            beside,
             scale,
             bounds,
             eyes: [eye(-1, rays.first[0]), eye(1, rays.first[1])],
@@ -227,6 +268,33 @@ impl Setup {
             tuning: options.tuning.with_fraction(fraction),
             stereo: options.stereo.map(|stereo| stereo.tint),
         })
+    }
+}
+
+impl Setup {
+    /// The spheres that there are.
+    pub fn balls(&self) -> Option<&Balls> {
+        self.solid.balls().or(self.beside.as_ref())
+    }
+
+    /// Whether there is anything round: then rays are scaled by their Euclidean length. It is never less than that in the maximum
+    /// norm, so distances of faces hold for such rays too.
+    pub fn is_round(&self) -> bool {
+        self.balls().is_some()
+    }
+
+    /// How often the field is asked for one distance: once for each sphere.
+    pub fn passes(&self) -> u32 {
+        self.balls().map_or(1, |balls| balls.count as u32)
+    }
+
+    /// What is nearest to a point, each coordinate s10.12; of equals, the face.
+    pub fn sample(&self, point: [i32; 3]) -> Sample {
+        let sample = self.solid.sample(point, self.fraction);
+        match self.beside.map(|balls| balls.sample(point)) {
+            Some(round) if round.distance < sample.distance => round,
+            _ => sample,
+        }
     }
 }
 
@@ -256,8 +324,7 @@ fn in_units(field: &Field, fraction: u32) -> (Solid, Q32_32, Option<[Q32_32; 3]>
             (solid, HALF_SIDE, Some(half))
         }
         Field::Cubes { period, half } => {
-            let scale =
-                Q32_32::from_bits(((PERIOD.to_bits() << 16) / (period.to_bits() >> 8).max(1)) << 8);
+            let scale = scale_of(period);
             let solid = Solid::Box {
                 half: [Some(solid_units(half, scale)); 3],
                 room: false,
@@ -273,17 +340,69 @@ fn in_units(field: &Field, fraction: u32) -> (Solid, Q32_32, Option<[Q32_32; 3]>
             };
             (solid, HALF_SIDE, None)
         }
-        // A field that this gateware has not.
-        _ => (
-            Solid::Box {
-                half: [Some(0); 3],
-                room: false,
-                repeated: false,
-            },
-            HALF_SIDE,
-            None,
-        ),
+        Field::Sphere { radius } => balls(&[Sphere {
+            radius,
+            ..Sphere::default()
+        }]),
+        Field::Spheres(ref spheres) => balls(spheres.iter()),
+        Field::Moving {
+            radius,
+            orbit,
+            angle,
+        } => {
+            let (sine, cosine) = sin_cos_q30(angle);
+            // At most 12, with 20 and 30 fraction bits.
+            let along = |part: Q2_30| {
+                Q32_32::from_bits(((orbit.to_bits() >> 12) * i64::from(part.to_bits())) >> 18)
+            };
+            let (solid, scale, _) = balls(&[Sphere {
+                centre: [along(cosine), along(sine), Q32_32::ZERO],
+                radius,
+            }]);
+            // The same box in every frame of a turn.
+            let reach = orbit + radius;
+            (solid, scale, Some([reach, reach, radius]))
+        }
+        Field::Lattice { period, radius } => {
+            let scale = scale_of(period);
+            let mut list = [Ball::default(); MAX_SPHERES];
+            list[0] = Ball::new([0; 3], solid_units(radius, scale));
+            let solid = Solid::Balls(Balls {
+                list,
+                count: 1,
+                repeated: true,
+            });
+            (solid, scale, None)
+        }
+        // One of both, which is told apart before.
+        Field::Union { flat, .. } => in_units(&flat.into(), fraction),
     }
+}
+
+/// The units in one world unit of a field that repeats itself.
+fn scale_of(period: Q32_32) -> Q32_32 {
+    Q32_32::from_bits(((PERIOD.to_bits() << 16) / (period.to_bits() >> 8).max(1)) << 8)
+}
+
+/// As [`in_units`], of some spheres.
+fn balls<'a>(
+    spheres: impl IntoIterator<Item = &'a Sphere>,
+) -> (Solid, Q32_32, Option<[Q32_32; 3]>) {
+    let mut list = [Ball::default(); MAX_SPHERES];
+    let mut extent = [Q32_32::ZERO; 3];
+    let mut count = 0;
+    for (ball, sphere) in list.iter_mut().zip(spheres) {
+        let length = |x: Q32_32| units(x, HALF_SIDE, FRACTION) as i32;
+        *ball = Ball::new(sphere.centre.map(length), length(sphere.radius));
+        extent = [0, 1, 2].map(|i: usize| extent[i].max(sphere.centre[i].abs() + sphere.radius));
+        count += 1;
+    }
+    let solid = Solid::Balls(Balls {
+        list,
+        count,
+        repeated: false,
+    });
+    (solid, HALF_SIDE, Some(extent))
 }
 
 /// A length in world units in field units, nearest. |x| is at most 64 and the scale 256.
@@ -318,8 +437,9 @@ struct Directions {
 }
 
 impl Directions {
-    /// `parallax` is what the left eye's direction takes of u and the right eye's gives, 28 fraction bits, at most 1.
-    fn new(view: &View, width: u32, height: u32, parallax: i64) -> Self {
+    /// `parallax` is what the left eye's direction takes of u and the right eye's gives, 28 fraction bits, at most 1; `round` says
+    /// that D is below 1 in the Euclidean norm, and not only in the maximum norm.
+    fn new(view: &View, width: u32, height: u32, parallax: i64, round: bool) -> Self {
         let half_width = i64::from(view.half_width().to_bits());
         // Twice the half width over the pixels: below 2^54 before the division.
         let step = |row: [Q2_23; 3]| {
@@ -333,25 +453,29 @@ impl Directions {
                     - (i64::from(width - 1) * across[i] + i64::from(height - 1) * down[i]) / 2
             })
         });
-        // D is linear on the picture, so its largest components are in the corners.
-        let largest = first
-            .iter()
-            .flat_map(|&first| {
-                [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(x, y)| {
-                    [0, 1, 2].map(|i: usize| {
-                        (first[i]
-                            + x * i64::from(width - 1) * across[i]
-                            + y * i64::from(height - 1) * down[i])
-                            .abs()
-                    })
+        // D is linear on the picture, so it is longest in a corner.
+        let corners = first.iter().flat_map(|&first| {
+            [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(x, y)| {
+                [0, 1, 2].map(|i: usize| {
+                    (first[i]
+                        + x * i64::from(width - 1) * across[i]
+                        + y * i64::from(height - 1) * down[i])
+                        .abs()
                 })
             })
-            .flatten()
-            .max()
-            .unwrap_or(0);
+        });
         // A little below 1, as steps are rounded.
         const ONE: i64 = (1 << 51) - (1 << 36);
-        let exponent = (0..3).find(|&e| largest >> e < ONE).unwrap_or(3);
+        const SQUARE: i64 = (1 << 50) - (1 << 40);
+        let exponent = if round {
+            // 25 of the fraction bits, and 3 others.
+            let squares = corners.map(|d| d.map(|x| ((x >> 26) + 1).pow(2)).iter().sum());
+            let longest: i64 = squares.max().unwrap_or(0);
+            (0..3).find(|&e| longest >> (2 * e) < SQUARE).unwrap_or(3)
+        } else {
+            let largest = corners.flatten().max().unwrap_or(0);
+            (0..3).find(|&e| largest >> e < ONE).unwrap_or(3)
+        };
         Self {
             first,
             across,

@@ -55,8 +55,8 @@ impl FieldArguments {
         self.name().map(parse).transpose()
     }
 
-    /// How it is drawn; with a mesh nothing of this may be said.
-    pub fn options(&self) -> Result<FieldOptions, InputError> {
+    /// How a field is drawn; with a mesh nothing of this may be said.
+    pub fn options(&self, field: Option<&Field>) -> Result<FieldOptions, InputError> {
         let said = [
             ("--stereo", self.stereo.is_some()),
             ("--material", self.material.is_some()),
@@ -92,7 +92,7 @@ impl FieldArguments {
                 palette
             },
             fog: fog.transpose()?.unwrap_or_default(),
-            ..FieldOptions::default()
+            ..field.map_or_else(FieldOptions::default, FieldOptions::of)
         })
     }
 

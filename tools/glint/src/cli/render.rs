@@ -129,13 +129,14 @@ impl RenderArguments {
     pub fn run(self) -> anyhow::Result<()> {
         let view = self.camera()?;
         let size = parse_size(&self.size)?;
-        let (field, options) = (self.field.field()?, self.field.options()?);
+        let field = self.field.field()?;
+        let options = self.field.options(field.as_ref())?;
         // The command line has a model or a field.
         let mesh = match &self.model {
             Some(name) => load(name, self.keep_scale)?.mesh,
             None => Vec::new(),
         };
-        let subject = match field {
+        let subject = match &field {
             Some(field) => Subject::Field {
                 field,
                 options: &options,

@@ -1,10 +1,12 @@
 //! Pictures of the model's raymarcher as [`metrics`] takes them, and what each ray cost.
 
 use glint_core::camera::View;
-use glint_model::march::{self, FieldOptions, Setup, State};
+use glint_core::field::Field as Scene;
+use glint_core::fixed::Q32_32;
+use glint_model::march::{self, FieldOptions, Setup, State, Surface};
 
 use super::metrics::{self, Accuracy, Expected, Outcome, Quantiles, accuracy};
-use super::{Face, Field, views};
+use super::{Face, Field, Sphere, views};
 use crate::camera::{Camera, Size};
 
 /// What a ray of the model comes to.
@@ -44,13 +46,21 @@ pub fn marched(setup: &Setup, ray: &march::Ray, end: &march::Outcome) -> Marched
         State::Miss => (Outcome::Miss, None),
         State::Undecided => (Outcome::Undecided, None),
         State::Hit(surface) => {
-            let axis = usize::from(surface.axis);
-            let positive = surface.positive;
-            let mut normal = [0.0; 3];
-            normal[axis] = if positive { 1.0 } else { -1.0 };
+            let (face, normal) = match surface {
+                Surface::Face { axis, positive } => {
+                    let axis = usize::from(axis);
+                    let mut normal = [0.0; 3];
+                    normal[axis] = if positive { 1.0 } else { -1.0 };
+                    (Face::Axis { axis, positive }, normal)
+                }
+                Surface::Round { .. } => {
+                    let normal = setup.normal(ray, end).expect("it is round");
+                    (Face::Round, normal.map(f64::from))
+                }
+            };
             let hit = Outcome::Hit {
                 t: depth(setup, ray, end.reached()),
-                face: Face::Axis { axis, positive },
+                face,
                 normal,
             };
             let coded = setup
@@ -62,7 +72,7 @@ pub fn marched(setup: &Setup, ray: &march::Ray, end: &march::Outcome) -> Marched
     Marched {
         outcome,
         coded,
-        steps: end.steps,
+        steps: end.steps * setup.passes(),
     }
 }
 
@@ -100,28 +110,53 @@ fn pixels(setup: &Setup) -> impl Iterator<Item = (u32, u32)> {
     (0..setup.height).flat_map(move |y| (0..width).map(move |x| (x, y)))
 }
 
-impl From<&glint_core::field::Field> for Field {
+impl Field {
     /// The solid with the numbers as they are.
-    ///
-    /// # Panics
-    /// For a field that there is no reference of.
-    fn from(scene: &glint_core::field::Field) -> Self {
-        use glint_core::field::Field as Scene;
+    pub fn of(scene: &Scene) -> Self {
+        let number = |x: Q32_32| x.to_num::<f64>();
+        let ball = |centre: [Q32_32; 3], radius| Sphere {
+            centre: centre.map(number),
+            radius: number(radius),
+        };
         match *scene {
             Scene::Menger { depth } => Self::Menger {
                 depth: depth.into(),
             },
             Scene::Box { half } => Self::Box {
-                half: half.map(|x| x.to_num()),
+                half: half.map(number),
             },
             Scene::Cubes { period, half } => Self::Cubes {
-                period: period.to_num(),
-                half: half.to_num(),
+                period: number(period),
+                half: number(half),
             },
-            Scene::Planes { half } => Self::Planes {
-                half: half.to_num(),
+            Scene::Planes { half } => Self::Planes { half: number(half) },
+            Scene::Sphere { radius } => Self::Spheres(vec![ball([Q32_32::ZERO; 3], radius)]),
+            Scene::Spheres(ref spheres) => Self::Spheres(
+                spheres
+                    .iter()
+                    .map(|sphere| ball(sphere.centre, sphere.radius))
+                    .collect(),
+            ),
+            Scene::Lattice { period, radius } => Self::Lattice {
+                period: number(period),
+                radius: number(radius),
             },
-            _ => unimplemented!("a reference of {scene}"),
+            Scene::Moving {
+                radius,
+                orbit,
+                angle,
+            } => {
+                let angle = f64::from(angle.0) * (-32f64).exp2() * std::f64::consts::TAU;
+                let orbit = number(orbit);
+                Self::Spheres(vec![Sphere {
+                    centre: [orbit * angle.cos(), orbit * angle.sin(), 0.0],
+                    radius: number(radius),
+                }])
+            }
+            Scene::Union { flat, round } => {
+                let member = |scene: Scene| Box::new(Self::of(&scene));
+                Self::Union(member(flat.into()), member(round.into()))
+            }
         }
     }
 }
@@ -140,7 +175,8 @@ pub struct Subject {
     pub field: Field,
     /// What the reference shows, as far as rays reach by default.
     pub expected: Vec<Expected>,
-    parsed: glint_core::field::Field,
+    /// The field as it was read.
+    pub parsed: Scene,
     view: View,
 }
 
@@ -150,14 +186,14 @@ impl Subject {
     /// # Panics
     /// When something of that is not so, or the camera is not one.
     pub fn new(name: &str, scene: &str, camera: &Camera, size: (u32, u32)) -> Self {
-        let parsed = glint_core::field::Field::parse(scene).expect("a field");
+        let parsed = Scene::parse(scene).expect("a field");
         let view = camera.view().expect("a camera");
         let mut subject = Self {
             name: name.to_owned(),
             scene: scene.to_owned(),
             size,
             camera: Camera::from(&view),
-            field: Field::from(&parsed),
+            field: Field::of(&parsed),
             expected: vec![],
             parsed,
             view,
@@ -200,6 +236,34 @@ pub fn others(size: (u32, u32)) -> Vec<Subject> {
     ]
     .map(|scene| Subject::new("aside", scene, &camera, size))
     .into()
+}
+
+/// What is round, alone and beside faces, from aside and from amid.
+pub fn rounds(size: (u32, u32)) -> Vec<Subject> {
+    let scenes = [
+        "sphere:1",
+        "sphere:0.25",
+        "spheres:0,0,0,0.75;1,0.25,0.5,0.5;-0.75,-0.5,0.75,0.25;0.5,-1,-0.25,0.375;\
+         0.25,1,-0.5,0.5;0,-0.75,0.5,0.125;-1.25,0.5,-0.25,0.625;1.125,-0.5,-0.5,0.0625",
+        "lattice:1,0.3",
+        "moving:0.375,0.75,60",
+        "union:menger:3+moving:0.5,1,60",
+        "union:box:0.5,0.25,1+sphere:0.625",
+    ];
+    let target = [0.015625, 0.0, 0.03125];
+    let views = [
+        ("aside", [2.1875, 1.6875, 1.3125], 0.9),
+        ("amid", [0.375, -1.3125, 0.53125], 1.5),
+    ];
+    scenes
+        .into_iter()
+        .flat_map(|scene| {
+            views.map(|(name, eye, half_width)| {
+                let camera = Camera::looking_at(eye, target, half_width, 0.01);
+                Subject::new(name, scene, &camera, size)
+            })
+        })
+        .collect()
 }
 
 /// What a picture is worth and what it has cost.

@@ -1,11 +1,11 @@
 //! Whole frames of the raymarcher: every pixel once, as the model has it, in the band that is open.
 
-use glint_model::march::{FieldStats, Palette, Setup};
+use glint_model::march::{FieldStats, Palette, Setup, State};
 use glint_rtl::{Module, Sink, Stalls};
 
 use crate::common::Random;
-use crate::ports::{Pixel, Place, pixel, set_lane, set_paint, set_rays};
-use crate::scenes::{FIELDS, SPONGES, band_lines, setup};
+use crate::ports::{Pixel, Place, pixel, set_lane, set_lights, set_paint, set_rays};
+use crate::scenes::{FIELDS, ROUND, SPONGES, UNIONS, band_lines, lights, setup};
 
 const COUNTERS: [&str; 8] = [
     "clocks_busy",
@@ -54,6 +54,7 @@ impl Bench {
         set_lane(&mut self.module, setup);
         set_rays(&mut self.module, setup);
         set_paint(&mut self.module, setup, palette);
+        set_lights(&mut self.module, setup, &palette.lights);
         self.port("size", u64::from(setup.width / 640));
     }
 
@@ -91,7 +92,7 @@ impl Bench {
                     };
                     let ray = setup.ray(place.eye, x, band * lines + y);
                     let outcome = setup.march(&ray);
-                    stats.count(&outcome);
+                    stats.count(setup, &outcome);
                     expected.insert((eye.into(), y.into(), x.into()), {
                         pixel(setup, palette, place, &ray, &outcome)
                     });
@@ -178,6 +179,45 @@ fn frames_of_all_fields_with_stalls() {
 }
 
 #[test]
+fn frames_of_round_fields_in_all_lights() {
+    let mut random = Random(12);
+    let mut bench = Bench::new("raymarcher", 2, 1);
+    for frame in 0..5 {
+        let fields = [&ROUND[..], &UNIONS, &SPONGES][frame % 3];
+        let mut setup = setup(&mut random, fields);
+        setup.tuning.cap = setup.tuning.cap.min(20);
+        let palette = Palette {
+            lights: lights(&mut random),
+            ..Palette::default()
+        };
+        bench.draw(&mut random, &setup, &palette, frame % 2 == 0);
+    }
+}
+
+/// What light costs: a sphere that fills much of the picture.
+#[test]
+fn round_pixels_take_a_clock_a_light() {
+    let mut random = Random(13);
+    let mut bench = Bench::new("raymarcher", 2, 1);
+    let setup = loop {
+        let setup = setup(&mut random, &["sphere:1"]);
+        let middle = setup.ray(0, setup.width / 2, setup.height / 2);
+        let end = setup.march(&middle);
+        if setup.width == 320 && end.steps > 2 && matches!(end.state, State::Hit(_)) {
+            break setup;
+        }
+    };
+    let [one, four] = [1, 4].map(|count| {
+        let mut palette = Palette::default();
+        palette.lights.count = count;
+        let taken = bench.draw(&mut random, &setup, &palette, true);
+        println!("{count} lights: {} clocks", taken.counters[0]);
+        (taken.counters[0], u64::from(taken.stats.hits))
+    });
+    assert!(four.0 <= one.0 + 3 * four.1 + 100, "{one:?}, {four:?}");
+}
+
+#[test]
 fn sponges_keep_the_lanes_busy() {
     let mut random = Random(10);
     let mut bench = Bench::new("raymarcher_menger", 4, 1);
@@ -190,6 +230,8 @@ fn sponges_keep_the_lanes_busy() {
             "frame {frame}: {:.2} evaluations a ray, {share:.4} a clock and lane, {idle} clocks idle",
             taken.stats.evaluations as f64 / f64::from(taken.stats.rays)
         );
+        // With fewer evaluations a ray than there are lanes, it is the rays that are too few.
+        assert!(share >= 0.98 || taken.stats.evaluations < 8 * u64::from(taken.stats.rays));
     }
 }
 

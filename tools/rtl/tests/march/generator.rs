@@ -5,7 +5,10 @@ use glint_rtl::{Bits, Module, Sink, Stalls};
 
 use crate::common::Random;
 use crate::ports::{Place, ray, set_generator};
-use crate::scenes::{FIELDS, band_lines, setup};
+use crate::scenes::{FIELDS, ROUND, band_lines, setup};
+
+/// As it is built for all fields.
+const GENERATOR: &str = "ray_generator_round";
 
 /// The rays of the first `lines` lines.
 fn expected(setup: &Setup, lines: u32) -> Vec<Bits> {
@@ -32,6 +35,8 @@ fn expected(setup: &Setup, lines: u32) -> Vec<Bits> {
 /// Runs a frame, all of it or its beginning, and returns the clocks until its last ray.
 fn check(module: &mut Module, setup: &Setup, lines: u32, stalls: Stalls) -> u64 {
     set_generator(module, setup, band_lines(setup.width));
+    let round = module.port("round");
+    module.set(round, u64::from(setup.is_round()));
     let mut sink = Sink::new(module, "out", &["ray"], stalls);
     let [start, rst, busy] = ["start", "rst", "busy"].map(|name| module.port(name));
     let expected = expected(setup, lines);
@@ -67,10 +72,11 @@ fn check(module: &mut Module, setup: &Setup, lines: u32, stalls: Stalls) -> u64 
 
 #[test]
 fn beginnings_of_random_frames() {
+    let fields = [&FIELDS[..], &ROUND].concat();
     let mut random = Random(5);
-    let mut module = Module::new("ray_generator", 1);
+    let mut module = Module::new(GENERATOR, 1);
     for number in 0..60 {
-        let setup = setup(&mut random, &FIELDS);
+        let setup = setup(&mut random, &fields);
         let share = [0.0, 0.5, 0.9][number as usize % 3];
         check(&mut module, &setup, 3, Stalls::new(number, share));
     }
@@ -79,7 +85,7 @@ fn beginnings_of_random_frames() {
 #[test]
 fn whole_frames_and_one_ray_a_clock() {
     let mut random = Random(6);
-    let mut module = Module::new("ray_generator", 2);
+    let mut module = Module::new(GENERATOR, 2);
     for number in 0..3 {
         let setup = setup(&mut random, &FIELDS);
         let eyes = if setup.stereo.is_some() { 2 } else { 1 };

@@ -6,8 +6,8 @@ use glint_model::march::{Outcome, Ray, Setup};
 use glint_rtl::{Module, Sink, Source, Stalls};
 
 use crate::common::Random;
-use crate::ports::{End, Place, ray, set_lane};
-use crate::scenes::{FIELDS, SPONGES, setup};
+use crate::ports::{End, Place, direction, ray, set_lane};
+use crate::scenes::{FIELDS, ROUND, SPONGES, UNIONS, setup};
 
 /// Rays of a frame.
 const RAYS: usize = 2_000;
@@ -56,7 +56,7 @@ impl Bench {
             }
             let start = setup.ray(place.eye, x, y);
             let outcome = setup.march(&start);
-            evaluations += u64::from(outcome.steps);
+            evaluations += u64::from(outcome.steps * setup.passes());
             self.source.push(vec![ray(place, &start)]);
             expected.insert(place, (start, outcome));
         }
@@ -83,6 +83,9 @@ impl Bench {
                 .unwrap_or_else(|| panic!("{place:?} came twice, or was never sent: {setup:?}"));
             let wanted = End::expected(&ray, &outcome);
             assert_eq!(end, wanted, "{place:?}, {ray:?} in {setup:?}");
+            if wanted.round {
+                assert_eq!(direction(&item[0]), ray.direction, "{place:?} in {setup:?}");
+            }
         }
         (self.module.cycles() - start, evaluations)
     }
@@ -114,5 +117,14 @@ fn random_rays_in_sponges() {
 
 #[test]
 fn random_rays_in_all_fields() {
-    random_rays("ring_lane_all", &FIELDS);
+    random_rays(
+        "ring_lane_all",
+        &[
+            &FIELDS[..],
+            &ROUND,
+            &UNIONS,
+            &["union:box:1,0.5,0.25+moving:0.25,1"],
+        ]
+        .concat(),
+    );
 }

@@ -30,7 +30,7 @@ fn ending(random: &mut Random, setup: &Setup, start: &Ray) -> Outcome {
     let state = match random.bits() % 8 {
         0 => State::Miss,
         1 => State::Undecided,
-        number => State::Hit(Surface {
+        number => State::Hit(Surface::Face {
             axis: (number % 3) as u8,
             positive: random.coin(),
         }),

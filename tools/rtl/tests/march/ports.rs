@@ -1,6 +1,8 @@
 //! The raymarcher's constants and items as its ports have them.
 
-use glint_model::march::{Outcome, Palette, Ray, Setup, Solid, State, paint, rgb565};
+use glint_model::march::{
+    Lights, Outcome, Palette, Ray, Setup, Solid, State, Surface, paint, rgb565,
+};
 use glint_rtl::{Bits, Module};
 
 /// A pixel's place: parity of its band, line in it, column.
@@ -49,6 +51,7 @@ pub fn ray(place: Place, ray: &Ray) -> Bits {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct End {
     pub state: u64,
+    pub round: bool,
     pub surface: u64,
     pub t: u64,
     pub steps: u64,
@@ -60,21 +63,23 @@ pub struct End {
 impl End {
     pub fn expected(ray: &Ray, outcome: &Outcome) -> Self {
         let (state, surface, t) = match outcome.state {
-            State::Miss => (0, 0, (ray.direction[2].max(0) >> 9) as u64),
-            State::Hit(surface) => (1, surface.code().into(), outcome.t.into()),
-            State::Undecided => (2, 0, 0),
+            State::Miss => (0, None, (ray.direction[2].max(0) >> 9) as u64),
+            State::Hit(surface) => (1, Some(surface), outcome.t.into()),
+            State::Undecided => (2, None, 0),
         };
         Self {
             state,
-            surface,
+            round: surface.is_some_and(Surface::is_round),
+            surface: surface.map_or(0, |surface| surface.code().into()),
             t,
-            steps: outcome.steps.into(),
+            steps: outcome.steps.min(255).into(),
             length: ray.length.into(),
             gap: outcome.gap.into(),
             slope: outcome.slope.into(),
         }
     }
 
+    /// Without the direction: see [`direction`].
     pub fn of(item: &Bits) -> (Place, Self) {
         let state = item.field(25, 2);
         let if_hit = |value| if state == 1 { value } else { 0 };
@@ -82,6 +87,7 @@ impl End {
             slope: if_hit(item.field(0, 10)),
             gap: item.field(10, 12),
             surface: if_hit(item.field(22, 3)),
+            round: if_hit(item.field(87, 1)) == 1,
             state,
             steps: item.field(27, 8),
             t: if state == 2 { 0 } else { item.field(35, 23) },
@@ -91,9 +97,19 @@ impl End {
     }
 }
 
-fn solid(solid: &Solid) -> Bits {
-    let all = Bits::default();
-    match *solid {
+/// The direction that the end of a ray has.
+pub fn direction(item: &Bits) -> [i32; 3] {
+    [0, 1, 2].map(|i| (item.field(88 + 18 * i, 18) as i32) << 14 >> 14)
+}
+
+fn solid(setup: &Setup) -> Bits {
+    let all = Bits::default().with(105, 1, u8::from(setup.beside.is_some()));
+    let all = setup.balls().map_or(all, |balls| {
+        all.with(100, 3, balls.count as u64 - 1)
+            .with(103, 1, u8::from(balls.repeated))
+            .with(104, 1, 1)
+    });
+    match setup.solid {
         Solid::Menger { depth, half, .. } => {
             all.with(93, 6, (1_i64 << depth) - 1).with(71, 22, half)
         }
@@ -113,8 +129,45 @@ fn solid(solid: &Solid) -> Bits {
                 .with(1, 1, u8::from(room))
                 .with(99, 1, 1)
         }
-        _ => panic!("{solid:?}: no port for it"),
+        Solid::Balls(_) => all,
+        _ => panic!("{:?}: no port for it", setup.solid),
     }
+}
+
+/// Writes the spheres, with their materials.
+fn set_balls(module: &mut Module, setup: &Setup, lights: &Lights) {
+    let Some(balls) = setup.balls() else { return };
+    let [write, number, ball] = ["ball_write", "ball_number", "ball"].map(|name| module.port(name));
+    module.set(write, 1);
+    for (i, one) in (0..).zip(balls.list.iter().take(balls.count)) {
+        module.set(number, i as u64);
+        let bits = three(22, one.centre.map(i64::from))
+            .with(66, 21, one.radius)
+            .with(87, 17, one.inverse)
+            .with(104, 5, one.shift)
+            .with(109, 24, colour(lights.materials[i]));
+        module.set(ball, bits);
+        module.clock();
+    }
+    module.set(write, 0);
+}
+
+/// Sets what shines on spheres.
+pub fn set_lights(module: &mut Module, setup: &Setup, lights: &Lights) {
+    let bits = (0..).zip(lights.list).fold(
+        Bits::default()
+            .with(312, 24, colour(lights.ambient))
+            .with(336, 2, lights.count as u64 - 1),
+        |all, (i, light)| {
+            let all = all.with(216 + 24 * i, 24, colour(light.colour));
+            (0..3).fold(all, |all, axis| {
+                all.with(54 * i + 18 * axis, 18, light.direction[axis])
+            })
+        },
+    );
+    let port = module.port("lights");
+    module.set(port, bits);
+    set_balls(module, setup, lights);
 }
 
 /// Sets what holds during a frame, as far as a lane wants it.
@@ -132,12 +185,13 @@ pub fn set_lane(module: &mut Module, setup: &Setup) {
     for (name, value) in [
         ("origins", origins),
         ("bounds", three(24, setup.bounds.map(i64::from))),
-        ("solid", solid(&setup.solid)),
+        ("solid", solid(setup)),
         ("tuning", tuning),
     ] {
         let port = module.port(name);
         module.set(port, value);
     }
+    set_balls(module, setup, &Palette::default().lights);
 }
 
 /// Sets what holds during a frame, as far as the generator wants it, in bands of so many lines.
@@ -186,6 +240,7 @@ pub fn set_rays(module: &mut Module, setup: &Setup) {
 pub fn end(place: Place, ray: &Ray, outcome: &Outcome) -> Bits {
     let End {
         state,
+        round,
         surface,
         t,
         steps,
@@ -202,6 +257,10 @@ pub fn end(place: Place, ray: &Ray, outcome: &Outcome) -> Bits {
         .with(35, 23, t)
         .with(58, 10, length)
         .with(68, PLACE_BITS, place.number())
+        .with(87, 1, u8::from(round))
+        .with(88, 18, ray.direction[0])
+        .with(106, 18, ray.direction[1])
+        .with(124, 18, ray.direction[2])
 }
 
 fn colour([r, g, b]: [u8; 3]) -> u64 {

@@ -4,14 +4,34 @@ use glint_core::camera::View;
 use glint_core::field::Field;
 use glint_core::fixed::Q32_32;
 use glint_model::SIZES;
-use glint_model::march::{FieldOptions, Setup, Stereo, Tint};
+use glint_model::march::{FieldOptions, Light, Lights, Setup, Stereo, Tint};
 
 use crate::common::{Camera, Random};
 
 /// What is built without anything but the sponge.
 pub const SPONGES: [&str; 4] = ["menger:4", "menger:3", "menger:2", "menger:1"];
 
-/// Every field that there is.
+/// What there is only where a lane knows spheres.
+pub const ROUND: [&str; 8] = [
+    "sphere:1",
+    "sphere:12",
+    "sphere:0.01",
+    "lattice:2,0.5",
+    "lattice:0.25,0.124",
+    "moving:0.25,0.75,200",
+    "spheres:0,0,0,0.75;1,0.25,0.5,0.5;-0.75,-0.5,0.75,0.25",
+    "spheres:0,0,0,0.5;1,0,0,0.5;0,1,0,0.5;0,0,1,0.5;-1,0,0,0.5;0,-1,0,0.5;0,0,-1,0.5;8,-8,8,3.5",
+];
+
+/// What has faces and is round too.
+pub const UNIONS: [&str; 4] = [
+    "union:menger:4+sphere:0.75",
+    "union:menger:2+moving:0.25,1,-75",
+    "union:menger:3+spheres:1,1,1,0.5;-1,0,0,0.25;0,0,0,0.125",
+    "union:menger:1+spheres:0,0,1.5,0.5;8,-8,8,3.5",
+];
+
+/// Every field without anything round.
 pub const FIELDS: [&str; 12] = [
     "menger:4",
     "menger:6",
@@ -56,7 +76,7 @@ pub fn camera(random: &mut Random) -> View {
 /// The constants of a frame: how finely it is marched is random too, and how many eyes look.
 pub fn setup(random: &mut Random, fields: &[&str]) -> Setup {
     let field = Field::parse(fields[random.bits() as usize % fields.len()]).unwrap();
-    let mut options = FieldOptions::default();
+    let mut options = FieldOptions::of(&field);
     if random.coin() {
         options.stereo = Some(Stereo {
             half_separation: Q32_32::from_num(random.real(0.0, 1.0)),
@@ -73,6 +93,23 @@ pub fn setup(random: &mut Random, fields: &[&str]) -> Setup {
     }
     let size = SIZES[random.bits() as usize % SIZES.len()];
     Setup::new(&field, &camera(random), size, &options).unwrap()
+}
+
+/// Lights from anywhere, and materials.
+pub fn lights(random: &mut Random) -> Lights {
+    let mut colour = || [0; 3].map(|_| random.bits() as u8);
+    let materials = [0; 8].map(|_| colour());
+    let ambient = colour();
+    let colours = [0; 4].map(|_| colour());
+    Lights {
+        ambient,
+        list: colours.map(|colour| Light {
+            direction: random.direction().map(|x| (x * 65535.0) as i32),
+            colour,
+        }),
+        count: random.integer(1, 4) as usize,
+        materials,
+    }
 }
 
 /// Lines of a band, by the picture's width.

@@ -77,7 +77,7 @@ fn compare(
     };
     let scene = Scene {
         subject: Subject::Field {
-            field,
+            field: &field,
             options: &options,
         },
         view: *view,

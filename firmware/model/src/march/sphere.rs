@@ -1,0 +1,137 @@
+//! Distances to spheres: a square root by a table, rounded down so that a step never passes a surface.
+
+use glint_core::field::MAX_SPHERES;
+
+use super::field::{Sample, Surface};
+use super::ray::magnitude;
+
+/// A sphere in field units, 12 fraction bits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Ball {
+    /// Its centre, s9.12.
+    pub centre: [i32; 3],
+    /// Its radius, u9.12, above 2^6.
+    pub radius: i32,
+    /// What it takes to divide by it: 2^37 over the radius shifted to 21 bits, 17 bits, to nearest but for what is more ...
+    pub inverse: u32,
+    /// ... and how far a product with it, 16 fraction bits, is shifted to have 17 bits: 6 to 20.
+    pub shift: u32,
+}
+
+impl Ball {
+    /// A sphere of a radius from 2^6 to 2^21 − 1.
+    pub fn new(centre: [i32; 3], radius: i32) -> Self {
+        let lead = radius.max(1).ilog2().clamp(6, 20);
+        let shifted = (radius.max(1) as u64) << (20 - lead);
+        let inverse = (((1 << 37) + shifted / 2) / shifted).min((1 << 17) - 1) as u32;
+        Self {
+            centre,
+            radius,
+            inverse,
+            shift: lead,
+        }
+    }
+}
+
+/// Some spheres: one evaluation looks at each of them in turn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Balls {
+    /// The first `count` of them are there.
+    pub list: [Ball; MAX_SPHERES],
+    /// 1 to 8.
+    pub count: usize,
+    /// Whether they repeat themselves every 64 units along each axis. Then there is one, about the origin.
+    pub repeated: bool,
+}
+
+/// More than any distance is: s10.12.
+const MOST: i32 = (1 << 21) - 1;
+
+impl Balls {
+    /// The nearest sphere; of equals, the first.
+    pub fn sample(&self, point: [i32; 3]) -> Sample {
+        let mut nearest = Sample {
+            distance: MOST,
+            surface: Surface::Round { number: 0 },
+        };
+        for (number, ball) in (0..).zip(self.list.iter().take(self.count)) {
+            // Below 2^23 before.
+            let distance = length(self.from(ball, point)) - ball.radius;
+            if distance < nearest.distance {
+                nearest = Sample {
+                    distance,
+                    surface: Surface::Round { number },
+                };
+            }
+        }
+        nearest
+    }
+
+    /// A point as seen from a sphere's centre, s11.12.
+    pub(super) fn from(&self, ball: &Ball, point: [i32; 3]) -> [i32; 3] {
+        // 64 units are 2^18: the middle of the cell in which the point lies is where the lowest 18 bits are 0.
+        let beyond = if self.repeated { 14 } else { 9 };
+        [0, 1, 2].map(|i: usize| (point[i] - ball.centre[i]) << beyond >> beyond)
+    }
+}
+
+/// √x of every x from 1 to 4 in steps of 1/128, by the step's number from 128 on, and how far the next one is: 18 fraction bits,
+/// rounded down. The line between two is below the root by a part of 2^−19 at most.
+const ROOTS: [(u32, u32); 512] = roots();
+
+const fn roots() -> [(u32, u32); 512] {
+    let mut table = [(0, 0); 512];
+    let mut i = 0;
+    while i < table.len() {
+        // What is below 1 is nothing at all.
+        let from = if i < 128 { 128 } else { i as u64 };
+        let root = (from << 29).isqrt() as u32;
+        table[i] = (root, ((from + 1) << 29).isqrt() as u32 - root);
+        i += 1;
+    }
+    table
+}
+
+/// The length of a vector whose parts have at most 23 bits: not more than it is, and less by 3 and a part of 2^−15 at most.
+fn length(q: [i32; 3]) -> i32 {
+    let parts = q.map(magnitude);
+    let Some(lead) = (parts[0] | parts[1] | parts[2]).checked_ilog2() else {
+        return 0;
+    };
+    // 17 bits of each, so that the largest fills them.
+    let square: u64 = parts
+        .map(|part| u64::from((part << (21 - lead)) >> 5).pow(2))
+        .iter()
+        .sum();
+    let doubled = (square >> 34 != 0) as u32;
+    let square = square >> (2 * doubled);
+    let (root, slope) = ROOTS[(square >> 25) as usize & 511];
+    let rest = (square >> 8) as u32 & 0x1_FFFF;
+    let root = root + ((u64::from(slope) * u64::from(rest)) >> 17) as u32;
+    ((root << 4) >> (22 - lead - doubled)) as i32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_are_rounded_down() {
+        let mut state = 1_u64;
+        let mut random = |bits: u32| {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (state >> 32) as i32 >> (32 - bits)
+        };
+        for round in 0..1_000_000 {
+            let q = [0; 3].map(|_| random(1 + round % 23));
+            let square: i64 = q.map(|x| i64::from(x).pow(2)).iter().sum();
+            let found = i64::from(length(q));
+            let exact = (square as u64).isqrt() as i64;
+            assert!(found <= exact, "{q:?}: {found}");
+            assert!(exact - found <= 3 + (exact >> 15), "{q:?}: {found}");
+        }
+        assert_eq!(length([0; 3]), 0);
+    }
+}

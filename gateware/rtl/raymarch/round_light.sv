@@ -1,0 +1,235 @@
+// The light on what is round: a colour for each ray that has ended there (docs/formats.md, "Light").
+//
+//   end ─▶ o + t·d ─▶ - centre ─▶ · light ─▶ / radius ─▶ times its colour, summed ─▶ times the material ─▶ end, colour
+//                                   └──────────── once for each light ────────────┘
+//
+// All ends pass in their order; of those that are not round the colour means nothing. A round one takes a clock for each light, any
+// other one clock. Latency 24 clocks and those of its lights but the first. Out: without the direction. Streams are valid/ready.
+// Spheres are written, and parameters change, while nothing is inside.
+
+`default_nettype none
+
+module round_light #(
+    parameter bit STEREO = 1'b1
+) (
+    input  wire                      clk,
+    input  wire                      rst,
+    // Frame.
+    input  wire  [1:0][2:0][24:0]    origins,
+    input  wire                      repeated,
+    input  wire march_pkg::lights_t  lights,
+    input  wire                      ball_write,
+    input  wire  [2:0]               ball_number,
+    input  wire march_pkg::ball_t    ball,
+    // Ends.
+    input  wire                      in_valid,
+    output logic                     in_ready,
+    input  wire march_pkg::end_t     in_end,
+    // Ends with their light.
+    output logic                     out_valid,
+    input  wire                      out_ready,
+    output march_pkg::end_t          out_end,
+    output logic [23:0]              out_colour
+);
+    localparam int unsigned LAST = 22;
+    localparam int unsigned KEPT_BITS = march_pkg::FLAT_END_BITS + 1;
+
+    (* ram_style = "distributed" *) logic [65:0] centres [0:7];
+    (* ram_style = "distributed" *) logic [4:0]  shifts [0:7];
+    (* ram_style = "distributed" *) logic [16:0] inverses [0:7];
+    (* ram_style = "distributed" *) logic [23:0] materials [0:7];
+
+    // 0: an end, as often as there are lights for it.
+    logic            enable, held_valid, last_0;
+    march_pkg::end_t held;
+    logic [1:0]      light_0;
+    logic [LAST:0]   valid;
+
+    assign last_0   = !held.round || held.state != march_pkg::HIT || light_0 == lights.last_light;
+    assign in_ready = enable && (!held_valid || last_0);
+    assign valid[0] = held_valid && last_0;
+
+    always_ff @(posedge clk) begin
+        if (in_ready) begin
+            held_valid <= in_valid;
+            held       <= in_end;
+            light_0    <= '0;
+        end else if (enable) begin
+            light_0 <= light_0 + 1'b1;
+        end
+        if (enable) valid[LAST:1] <= valid[LAST-1:0];
+
+        if (rst) begin
+            held_valid    <= 1'b0;
+            valid[LAST:1] <= '0;
+        end
+    end
+
+    // The sphere's constants, each in its clock.
+    logic [2:0]       number_2, number_8, number_11, number_18;
+    logic [2:0][21:0] centre_3;
+    logic [4:0]       shift_9;
+    logic [16:0]      inverse_12;
+    logic [23:0]      material_19;
+
+    delay #(.WIDTH(3), .CLOCKS(2)) number_to_2 (.clk, .enable, .in(held.surface), .out(number_2));
+    delay #(.WIDTH(3), .CLOCKS(6)) number_to_8 (.clk, .enable, .in(number_2), .out(number_8));
+    delay #(.WIDTH(3), .CLOCKS(3)) number_to_11 (.clk, .enable, .in(number_8), .out(number_11));
+    delay #(.WIDTH(3), .CLOCKS(7)) number_to_18 (.clk, .enable, .in(number_11), .out(number_18));
+
+    always_ff @(posedge clk) begin
+        if (ball_write) begin
+            centres[ball_number]   <= ball.centre;
+            shifts[ball_number]    <= ball.shift;
+            inverses[ball_number]  <= ball.inverse;
+            materials[ball_number] <= ball.material;
+        end
+        if (enable) begin
+            centre_3    <= centres[number_2];
+            shift_9     <= shifts[number_8];
+            inverse_12  <= inverses[number_11];
+            material_19 <= materials[number_18];
+        end
+    end
+
+    // 3: the point. 4: as seen from the centre, and the light's direction.
+    logic              eye_2;
+    logic [1:0]        light_3, light_14;
+    logic              first_17;
+    logic [2:0][22:0]  apart_4;
+    logic [53:0]       towards_3;
+    logic [2:0][17:0]  towards_4;
+    logic [215:0]      directions;
+    logic [95:0]       colours;
+
+    assign directions = lights.directions;
+    assign colours    = lights.colours;
+
+    always_comb begin
+        unique case (light_3)
+            2'd0: towards_3 = directions[53:0];
+            2'd1: towards_3 = directions[107:54];
+            2'd2: towards_3 = directions[161:108];
+            2'd3: towards_3 = directions[215:162];
+        endcase
+    end
+
+    delay #(.WIDTH(1), .CLOCKS(2)) eyes (.clk, .enable, .in(STEREO && held.place.eye), .out(eye_2));
+    delay #(.WIDTH(2), .CLOCKS(3)) light_to_3 (.clk, .enable, .in(light_0), .out(light_3));
+    delay #(.WIDTH(2), .CLOCKS(11)) light_to_14 (.clk, .enable, .in(light_3), .out(light_14));
+    delay #(.WIDTH(1), .CLOCKS(3)) first_to_17 (.clk, .enable, .in(light_14 == '0), .out(first_17));
+
+    for (genvar i = 0; i < 3; i++) begin : axes
+        logic signed [march_pkg::WIDE_BITS+16:0] sum;
+        logic [march_pkg::WIDE_BITS-1:0]         origin;
+        logic [22:0]                             apart;
+
+        assign origin = eye_2 ? origins[1][i] : origins[0][i];
+        multiply_add #(.BITS(march_pkg::WIDE_BITS + 17)) place (
+            .clk, .enable, .a({2'b0, held.t}), .b(held.direction[i]), .c({origin, 17'b0}), .p(sum)
+        );
+        assign apart = sum[39:17] - {centre_3[i][21], centre_3[i]};
+
+        always_ff @(posedge clk) begin
+            if (enable) begin
+                apart_4[i]   <= repeated ? {{5{apart[17]}}, apart[17:0]} : apart;
+                towards_4[i] <= towards_3[18*i +: 18];
+            end
+        end
+
+        wire _unused = &{1'b0, sum[march_pkg::WIDE_BITS+16:40], sum[16:0]};
+    end
+
+    // 9: their product. 11: shifted to 17 bits, or to what is more. 12: no more than 17.
+    logic [22:0]        apart_y_5, apart_z_6;
+    logic [17:0]        towards_y_5, towards_z_6;
+    logic signed [42:0] x_7, x_y_8, product_9;
+    logic [36:0]        by_fours, shifted_11;
+    logic [1:0]         ones_10;
+    logic [16:0]        size_12;
+
+    delay #(.WIDTH(41), .CLOCKS(1)) y_waits (.clk, .enable, .in({apart_4[1], towards_4[1]}), .out({apart_y_5, towards_y_5}));
+    delay #(.WIDTH(41), .CLOCKS(2)) z_waits (.clk, .enable, .in({apart_4[2], towards_4[2]}), .out({apart_z_6, towards_z_6}));
+    multiply_add #(.BITS(43)) along_x (
+        .clk, .enable, .a(25'($signed(apart_4[0]))), .b(towards_4[0]), .c('0), .p(x_7)
+    );
+    multiply_add #(.BITS(43)) along_y (
+        .clk, .enable, .a(25'($signed(apart_y_5))), .b(towards_y_5), .c(x_7), .p(x_y_8)
+    );
+    multiply_add #(.BITS(43)) along_z (
+        .clk, .enable, .a(25'($signed(apart_z_6))), .b(towards_z_6), .c(x_y_8), .p(product_9)
+    );
+
+    always_ff @(posedge clk) begin
+        if (enable) begin
+            // The shift is 6 to 20. A light from behind is none.
+            unique case (shift_9[4:2])
+                3'd1:    by_fours <= product_9[40:4];
+                3'd2:    by_fours <= 37'(product_9[40:8]);
+                3'd3:    by_fours <= 37'(product_9[40:12]);
+                3'd4:    by_fours <= 37'(product_9[40:16]);
+                default: by_fours <= 37'(product_9[40:20]);
+            endcase
+            if (product_9[42]) by_fours <= '0;
+            ones_10    <= shift_9[1:0];
+            shifted_11 <= by_fours >> ones_10;
+            size_12    <= shifted_11[16:0] | {17{shifted_11[36:17] != '0}};
+        end
+    end
+
+    // 15: the cosine in 256ths. 18: the sum. 19: no more than 255.
+    logic signed [36:0] cosine_15;
+    logic [8:0]         share_15;
+    logic [23:0]        colour_15;
+    logic [2:0][7:0]    colour_22;
+
+    multiply_add #(.BITS(37)) over_radius (
+        .clk, .enable, .a({8'b0, size_12}), .b({1'b0, inverse_12}), .c('0), .p(cosine_15)
+    );
+    assign share_15 = cosine_15[33] ? 9'd256 : {1'b0, cosine_15[32:25]};
+
+    always_ff @(posedge clk) begin
+        if (enable) begin
+            unique case (light_14)
+                2'd0: colour_15 <= colours[23:0];
+                2'd1: colour_15 <= colours[47:24];
+                2'd2: colour_15 <= colours[71:48];
+                2'd3: colour_15 <= colours[95:72];
+            endcase
+        end
+    end
+
+    for (genvar i = 0; i < 3; i++) begin : channels
+        logic signed [25:0] sum_18, coloured;
+        logic [7:0]         light;
+        logic [8:0]         light_19;
+
+        multiply_add #(.BITS(26)) shine (
+            .clk, .enable, .a({17'b0, colour_15[8*i +: 8]}), .b({9'b0, share_15}),
+            .c(first_17 ? {10'b0, lights.ambient[8*i +: 8], 8'b0} : sum_18), .p(sum_18)
+        );
+        assign light = sum_18[15:8] | {8{sum_18[25:16] != '0}};
+        always_ff @(posedge clk) if (enable) light_19 <= {1'b0, light} + 9'(light[7]);
+        multiply_add #(.BITS(26)) on_material (
+            .clk, .enable, .a({17'b0, material_19[8*i +: 8]}), .b({9'b0, light_19}), .c('0), .p(coloured)
+        );
+        assign colour_22[i] = coloured[15:8];
+
+        wire _unused = &{1'b0, sum_18[7:0], coloured[25:16], coloured[7:0]};
+    end
+
+    logic [KEPT_BITS-1:0] kept_22, kept;
+
+    delay #(.WIDTH(KEPT_BITS), .CLOCKS(LAST)) end_waits (.clk, .enable, .in(held[KEPT_BITS-1:0]), .out(kept_22));
+
+    skid_buffer #(.WIDTH(KEPT_BITS + 24)) leaving (
+        .clk, .rst, .in_valid(valid[LAST]), .in_ready(enable), .in_data({kept_22, colour_22}),
+        .out_valid, .out_ready, .out_data({kept, out_colour})
+    );
+
+    assign out_end = march_pkg::END_BITS'(kept);
+
+    wire _unused = &{1'b0, ball.radius, product_9[41], product_9[3:0], cosine_15[36:34], cosine_15[24:0]};
+endmodule
+
+`default_nettype wire

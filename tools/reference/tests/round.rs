@@ -1,0 +1,74 @@
+//! The model's round fields against the exact hits of the same rays. `--nocapture` shows the measured figures.
+
+use glint_core::field::Field as Scene;
+use glint_core::fixed::Q32_32;
+use glint_core::light::{Light, Lighting, Material};
+use glint_model::march::{FieldOptions, Lights, Palette, paint};
+use glint_reference::camera::Camera;
+use glint_reference::field::marched::{Measured, Subject, rounds};
+
+/// Those that go on to the horizon have spheres there that are smaller than a pixel; of the others it is asked that normals
+/// be within 0.3° and depths within 3e-3.
+#[test]
+fn round_fields_are_where_they_are() {
+    for subject in rounds((320, 180)) {
+        let picture = subject.picture(&FieldOptions::of(&subject.parsed));
+        let found = Measured::new(&subject.expected, &picture).accuracy;
+        println!("{}, {}: {found:?}", subject.scene, subject.name);
+        let depth = found.depth.expect("it shows something");
+        assert!(found.iou >= 0.999 && found.undecided == 0);
+        assert!(found.wrong_faces <= 0.01);
+        let horizon = subject.scene.starts_with("lattice");
+        let (most, angle) = if horizon { (6e-3, 0.7) } else { (3e-3, 0.3) };
+        assert!(depth.median <= 3e-4 && depth.p99 <= most);
+        // There may be faces only.
+        let normal = found.normal.map_or(0.0, |normal| normal.p99);
+        assert!(normal <= angle, "{normal}");
+    }
+}
+
+/// The channels of what is seen, against max(0, n·l) of the exact normals.
+#[test]
+fn spheres_are_lit_as_they_should_be() {
+    let light = |text| Light::parse(text).expect("a light");
+    let lighting = Lighting {
+        ambient: [55; 3],
+        lights: [light("-28,-28,51,c8c8c8"), light("0,1,0,5a280a")]
+            .into_iter()
+            .collect(),
+    };
+    let lights = Lights::new(Material::Ivory, &lighting);
+    let palette = Palette {
+        lights,
+        ..Palette::default()
+    };
+    let camera = Camera::looking_at([2.1875, 1.6875, 1.3125], [0.0; 3], 0.9, 0.01);
+    for radius in ["0.25", "1"] {
+        let scene = Scene::Sphere {
+            radius: radius.parse::<Q32_32>().expect("a number"),
+        };
+        let subject = Subject::new("above", &scene.to_string(), &camera, (320, 180));
+        let setup = subject.setup(&FieldOptions::of(&scene));
+        let pixels = (0..180).flat_map(|y| (0..320).map(move |x| (x, y)));
+        let mut most: f64 = 0.0;
+        for ((x, y), expected) in pixels.zip(&subject.expected) {
+            let Some(hit) = expected.hit else { continue };
+            let ray = setup.ray(0, x, y);
+            let end = setup.march(&ray);
+            let found = paint(&setup, &palette, &ray, &end);
+            for (i, found) in found.into_iter().enumerate() {
+                let mut light = f64::from(lights.ambient[i]);
+                for one in &lights.list[..2] {
+                    let cosine: f64 = core::iter::zip(hit.normal, one.direction)
+                        .map(|(n, l)| n * f64::from(l) / 65536.0)
+                        .sum();
+                    light += cosine.max(0.0) * f64::from(one.colour[i]);
+                }
+                let seen = light.min(255.0) * f64::from(lights.materials[0][i]) / 255.0;
+                most = most.max((seen - f64::from(found)).abs());
+            }
+        }
+        println!("radius {radius}: channels differ by at most {most:.2}");
+        assert!(most <= 4.0, "radius {radius}: {most}");
+    }
+}
