@@ -197,7 +197,7 @@ fn draw_field(
 }
 
 /// The scene's field, and how it is drawn.
-fn marched<'a>(field: Field, scene: &'a Scene) -> Marched<'a> {
+fn marched<'a>(field: &'a Field, scene: &'a Scene) -> Marched<'a> {
     Marched {
         field,
         view: scene.view(),

@@ -269,7 +269,7 @@ fn info<'l>(machine: &mut Machine, key: Option<&'l str>) -> Result<(), Refusal<'
     let (address, room) = (staging.as_ptr().addr(), staging.len());
     let mesh = models.mesh();
     let (field, model) = (scene.field(), models.shown().name());
-    let shown: &dyn Display = field.as_ref().map_or(&model, |field| field);
+    let shown: &dyn Display = field.map_or(&model, |field| field);
     let [width, height] = scene.scale().size();
     let (frame, depth) = (canvas.display.front().as_ptr(), canvas.depth.as_ptr());
     let counters = canvas.display.counters();
@@ -325,7 +325,7 @@ fn scene<'l>(machine: &mut Machine, name: Option<&'l str>) -> Result<(), Refusal
             terminal.print(format_args!("scene {} {state}\n", model.name()));
         }
         for (name, named) in FIELDS {
-            let shown = field == Some(named);
+            let shown = field == Some(&named);
             let state = if shown { "shown" } else { "there" };
             terminal.print(format_args!("scene {name} {state}\n"));
         }

@@ -79,7 +79,7 @@ pub struct Triangles<'a> {
 #[derive(Clone, Copy)]
 pub struct Marched<'a> {
     /// The field.
-    pub field: Field,
+    pub field: &'a Field,
     /// The camera.
     pub view: &'a View,
     /// Two eyes, or one.
@@ -92,7 +92,7 @@ impl Marched<'_> {
     /// # Errors
     /// The size is none.
     pub fn setup(&self, size: (u32, u32)) -> Result<Setup, RenderError> {
-        Setup::new(&self.field, self.view, size, &self.options())
+        Setup::new(self.field, self.view, size, &self.options())
     }
 
     /// Its colours.
@@ -103,7 +103,7 @@ impl Marched<'_> {
     fn options(&self) -> FieldOptions {
         FieldOptions {
             stereo: self.stereo,
-            ..FieldOptions::default()
+            ..FieldOptions::of(self.field)
         }
     }
 }

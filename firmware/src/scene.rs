@@ -135,8 +135,8 @@ impl Scene {
     }
 
     /// The distance field that is shown instead of the mesh.
-    pub const fn field(&self) -> Option<Field> {
-        self.field
+    pub const fn field(&self) -> Option<&Field> {
+        self.field.as_ref()
     }
 
     /// Shows a field, or the mesh.

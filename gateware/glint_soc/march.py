@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from litex.gen import LiteXModule
 from litex.soc.interconnect.csr import CSRField, CSRStatus, CSRStorage
 from litex.soc.interconnect.csr_eventmanager import EventManager, EventSourcePulse
-from migen import Cat, If, Instance, Mux, ResetSignal, Signal
+from migen import Case, Cat, If, Instance, Mux, ResetSignal, Signal
 
 from .scanout import RTL
 
@@ -27,18 +27,19 @@ IDENT = int.from_bytes(b"MARC", "big")
 
 _ERRORS = [
     ("0", "none", "what is asked for is built"),
-    ("1", "field", "the sponge, so many levels of it, or boxes are not built"),
+    ("1", "field", "the sponge, so many levels of it, boxes, or spheres are not built"),
     ("2", "stereo", "two eyes are not built"),
 ]
 
 
 @dataclass(frozen=True)
 class Fields:
-    """What a raymarcher is built with: lanes (1, 2, 4), levels of the sponge (0 to 6), boxes, two eyes."""
+    """What a raymarcher is built with: lanes (1, 2, 4), levels of the sponge (0 to 6), boxes, spheres, two eyes."""
 
     lanes: int = 2
     levels: int = 6
     boxes: bool = True
+    round: bool = True
     stereo: bool = True
 
 
@@ -55,6 +56,7 @@ class Raymarcher(LiteXModule):
             CSRField("levels", size=3, offset=4, reset=fields.levels, description="The deepest sponge; 0: none."),
             CSRField("boxes", offset=8, reset=int(fields.boxes), description="Boxes, cubes and planes."),
             CSRField("stereo", offset=9, reset=int(fields.stereo), description="Two eyes."),
+            CSRField("round", offset=10, reset=int(fields.round), description="Spheres, alone and beside what has faces."),
         ], description="What this block can do.")
         self._control = CSRStorage(name="control", fields=[
             CSRField("enable", offset=0, description="Frames of the raster pass have the field, after their triangles."),
@@ -73,11 +75,16 @@ class Raymarcher(LiteXModule):
         self.ev.finalize()
 
         self._solid = CSRStorage(name="solid", fields=[
-            CSRField("is_box", offset=0, description="A box; or else the sponge."),
+            CSRField("is_box", offset=0, description="What has faces is a box; or else the sponge."),
             CSRField("levels", size=6, offset=1, description="Levels of the sponge that count, the first one in bit 0."),
             CSRField("has", size=3, offset=8, description="Axes along which the box has an end, x in bit 0."),
             CSRField("room", offset=11, description="The solid is what is outside of the box."),
             CSRField("repeated", offset=12, description="The box repeats itself every 64 units along each axis."),
+            CSRField("is_round", offset=13, description="There are spheres."),
+            CSRField("flat_too", offset=14, description="What has faces is there beside them."),
+            CSRField("balls_repeated", offset=15, description="The spheres repeat themselves every 64 units along each axis."),
+            CSRField("last_ball", size=3, offset=16, description="The last sphere's number; 0 where there is none."),
+            CSRField("last_light", size=2, offset=20, description="The number of the last light on spheres."),
         ], description="What there is.")
         self._cube_half = CSRStorage(22, name="cube_half", description="Half the side of the cubes that a sponge leaves, u10.12.")
         box_half = [self._register(f"half_{axis}", 22, f"Half the side of the box along {axis}, u10.12.") for axis in "xyz"]
@@ -114,6 +121,13 @@ class Raymarcher(LiteXModule):
                      "by evaluations."),
         ], description="Writing sets an entry of fog or light.")
 
+        self._sphere = CSRStorage(name="sphere", fields=[
+            CSRField("value", size=24, offset=0, description="A constant of spheres or their light."),
+            CSRField("entry", size=5, offset=24, description="0 to 2: a sphere's centre, x, y, z, s9.12. 3: its radius, u9.12. 4: the "
+                     "inverse of the radius in bits 0 to 16, and its shift. 8 + n: the colour of sphere n, which takes these constants. "
+                     "16 + 4i + 0, 1, 2: the direction to light i, s1.16. 16 + 4i + 3: its colour. 5: the ambient light's colour."),
+        ], description="Writing sets a constant of what is round.")
+
         counters = {
             "cycles_busy": "Clock cycles in which a field was drawn.",
             "cycles_stalled": "Clock cycles in which a ray waited as no end of one was taken.",
@@ -137,7 +151,8 @@ class Raymarcher(LiteXModule):
         enable, stereo = self._control.fields.enable, self._control.fields.stereo
         busy, was_busy = self._status.fields.busy, Signal()
         error = self._status.fields.error
-        not_built = self._solid.fields.is_box if not fields.boxes else Signal()
+        not_built = Signal()
+        self.comb += not_built.eq((self._solid.fields.is_box & int(not fields.boxes)) | (self._solid.fields.is_round & int(not fields.round)))
         too_deep = ~self._solid.fields.is_box & (self._solid.fields.levels >> fields.levels != 0)
         # The engine's clock runs while a pass does; the tables are written while it stands.
         lingers, working = Signal(5), Signal()
@@ -145,7 +160,7 @@ class Raymarcher(LiteXModule):
             If(not_built | too_deep, error.eq(1)).Elif((stereo != 0) & int(not fields.stereo), error.eq(2)),
             engine.field.enable.eq(enable & (error == 0)),
             engine.field.compose.eq(stereo),
-            working.eq(ResetSignal("sys") | self._table.re | (enable & engine.clock_enable)),
+            working.eq(ResetSignal("sys") | self._table.re | self._sphere.re | (enable & engine.clock_enable)),
             self.clock_enable.eq(working | (lingers != 0)),
             self.ev.field.trigger.eq(was_busy & ~busy),
         ]
@@ -157,10 +172,12 @@ class Raymarcher(LiteXModule):
         eye = Signal()
         self.comb += engine.field.halves.eq(Mux(stereo == 0, 0b11, Mux(eye, 0b10, 0b01)))
         solid, tuning = self._solid.fields, self._tuning.fields
+        write_ball, number, ball, lights = self._spheres() if fields.round else (Signal(), Signal(3), Signal(130), Signal(336))
         self.specials += Instance("raymarcher", name="raymarcher",
             p_LANES          = fields.lanes,
             p_LEVELS         = fields.levels,
             p_BOXES          = int(fields.boxes),
+            p_ROUND          = int(fields.round),
             p_STEREO         = int(fields.stereo),
             i_clk            = self.clk,
             i_rst            = ResetSignal("sys"),
@@ -177,7 +194,11 @@ class Raymarcher(LiteXModule):
             i_outside        = Cat(*outside),
             i_bounds         = Cat(*bounds),
             i_solid          = Cat(solid.repeated, solid.room, solid.has, *box_half, self._cube_half.storage, solid.levels,
-                                   solid.is_box),
+                                   solid.is_box, solid.last_ball, solid.balls_repeated, solid.is_round, solid.flat_too),
+            i_ball_write     = write_ball,
+            i_ball_number    = number,
+            i_ball           = ball,
+            i_lights         = Cat(lights, solid.last_light),
             i_tuning         = Cat(self._far.storage, tuning.cap, tuning.footprint, tuning.threshold),
             i_depth_mantissa = self._depth_scale.fields.mantissa,
             i_depth_exponent = self._depth_scale.fields.exponent,
@@ -205,6 +226,19 @@ class Raymarcher(LiteXModule):
         )
         for source in RAYMARCHER:
             platform.add_source(str(source))
+
+    def _spheres(self):
+        """What is kept of the constants that `sphere` is told: whether a sphere is written, its number, itself, the lights."""
+        value, entry = self._sphere.fields.value, self._sphere.fields.entry
+        centre, radius, inverse = [Signal(22) for _ in range(3)], Signal(21), Signal(22)
+        directions, colours, ambient = [Signal(18) for _ in range(12)], [Signal(24) for _ in range(4)], Signal(24)
+        places = {**dict(enumerate([*centre, radius, inverse, ambient])),
+                  **{16 + 4*light + axis: directions[3*light + axis] for light in range(4) for axis in range(3)},
+                  **{19 + 4*light: colour for light, colour in enumerate(colours)}}
+        self.sync += If(self._sphere.re, Case(entry, {number: place.eq(value) for number, place in places.items()}))
+        write = Signal()
+        self.comb += write.eq(self._sphere.re & (entry[3:] == 0b01))
+        return write, entry[:3], Cat(*centre, radius, inverse, value), Cat(*directions, *colours, ambient)
 
     def _register(self, name, size, description):
         """Adds a register and returns what is in it."""

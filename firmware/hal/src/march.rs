@@ -7,9 +7,9 @@ use core::fmt;
 use core::ops::Sub;
 
 use glint_core::stereo::Tint;
-use glint_model::march::{FieldStats, Palette, Setup, Solid};
+use glint_model::march::{Balls, FieldStats, Lights, Palette, Setup, Solid};
 use litex_pac::raymarch::{
-    self, Control, DepthScale, EvEnable, EvPending, Solid as SolidRegister, Table, Tuning,
+    self, Control, DepthScale, EvEnable, EvPending, Solid as SolidRegister, Sphere, Table, Tuning,
 };
 
 use crate::Absent;
@@ -28,6 +28,8 @@ pub struct Ability {
     pub boxes: bool,
     /// Two eyes.
     pub stereo: bool,
+    /// Spheres.
+    pub round: bool,
 }
 
 /// What a frame asks for and the gateware is built without.
@@ -37,8 +39,8 @@ pub enum Missing {
     Levels(u8),
     /// Boxes, cubes and planes.
     Boxes,
-    /// A kind of field that no gateware has.
-    Kind,
+    /// Spheres.
+    Round,
     /// Two eyes.
     Stereo,
 }
@@ -53,7 +55,7 @@ impl fmt::Display for Missing {
                 )
             }
             Self::Boxes => f.write_str("raymarcher: this gateware has no boxes, cubes and planes"),
-            Self::Kind => f.write_str("raymarcher: no gateware has this field"),
+            Self::Round => f.write_str("raymarcher: this gateware has no spheres"),
             Self::Stereo => f.write_str("raymarcher: this gateware has one eye"),
         }
     }
@@ -138,6 +140,7 @@ impl Marcher {
                     levels: caps.levels(),
                     boxes: caps.boxes(),
                     stereo: caps.stereo(),
+                    round: caps.round(),
                 };
                 Ok(Self {
                     registers,
@@ -162,19 +165,21 @@ impl Marcher {
     ///
     /// # Errors
     /// What is missing.
-    pub const fn check(&self, setup: &Setup) -> Result<(), Missing> {
+    pub fn check(&self, setup: &Setup) -> Result<(), Missing> {
         let Ability {
             levels,
             boxes,
             stereo,
+            round,
             ..
         } = self.ability;
         match setup.solid {
             Solid::Menger { depth, .. } if depth > levels => return Err(Missing::Levels(levels)),
-            Solid::Menger { .. } => {}
             Solid::Box { .. } if !boxes => return Err(Missing::Boxes),
-            Solid::Box { .. } => {}
-            _ => return Err(Missing::Kind),
+            _ => {}
+        }
+        if setup.is_round() && !round {
+            return Err(Missing::Round);
         }
         if setup.stereo.is_some() && !stereo {
             return Err(Missing::Stereo);
@@ -189,12 +194,10 @@ impl Marcher {
     pub fn set_field(&mut self, setup: &Setup, palette: &Palette) -> Result<(), Missing> {
         self.check(setup)?;
         let registers = &self.registers;
-        match setup.solid {
+        let solid = match setup.solid {
             Solid::Menger { depth, half, .. } => {
                 registers.cube_half().write(half as u32);
-                registers
-                    .solid()
-                    .write(SolidRegister::default().with_levels(((1_u32 << depth) - 1) as u8));
+                SolidRegister::default().with_levels(((1_u32 << depth) - 1) as u8)
             }
             Solid::Box {
                 half,
@@ -206,16 +209,26 @@ impl Marcher {
                     register.write(half.unwrap_or(0) as u32);
                 }
                 let [x, y, z] = half.map(|half| u8::from(half.is_some()));
-                registers.solid().write(
-                    SolidRegister::default()
-                        .with_is_box(true)
-                        .with_has(x | y << 1 | z << 2)
-                        .with_room(room)
-                        .with_repeated(repeated),
-                );
+                SolidRegister::default()
+                    .with_is_box(true)
+                    .with_has(x | y << 1 | z << 2)
+                    .with_room(room)
+                    .with_repeated(repeated)
             }
-            _ => return Err(Missing::Kind),
-        }
+            Solid::Balls(_) => SolidRegister::default(),
+        };
+        let solid = solid.with_flat_too(setup.beside.is_some());
+        registers.solid().write(match setup.balls() {
+            Some(balls) => {
+                self.set_spheres(balls, &palette.lights);
+                solid
+                    .with_is_round(true)
+                    .with_balls_repeated(balls.repeated)
+                    .with_last_ball((balls.count - 1) as u8)
+                    .with_last_light((palette.lights.count - 1) as u8)
+            }
+            None => solid,
+        });
         registers.tuning().write(
             Tuning::default()
                 .with_threshold(setup.tuning.threshold as u16)
@@ -227,7 +240,6 @@ impl Marcher {
         let origins =
             [left.origin, right.origin].map(|origin| origin.map(|x| x as u32 & 0x1FF_FFFF));
         let first = [left.first, right.first].map(|first| first.map(|x| x as u32));
-        let colour = |[r, g, b]: [u8; 3]| u32::from_le_bytes([r, g, b, 0]);
         for (register, value) in [
             (registers.far(), setup.tuning.far),
             (registers.near(), setup.near),
@@ -288,6 +300,32 @@ impl Marcher {
         Ok(())
     }
 
+    /// Writes the constants of spheres and of the light on them.
+    fn set_spheres(&self, balls: &Balls, lights: &Lights) {
+        let write = |entry: u8, value: u32| {
+            let constant = Sphere::default().with_entry(entry).with_value(value);
+            self.registers.sphere().write(constant);
+        };
+        let numbers = |x: [i32; 3]| x.map(|x| x as u32 & 0xFF_FFFF);
+        for (number, (ball, material)) in
+            (0..).zip(balls.list.iter().zip(lights.materials).take(balls.count))
+        {
+            for (axis, place) in (0..).zip(numbers(ball.centre)) {
+                write(axis, place);
+            }
+            write(3, ball.radius as u32);
+            write(4, ball.inverse | ball.shift << 17);
+            write(8 + number, colour(material));
+        }
+        write(5, colour(lights.ambient));
+        for (number, light) in (0..).zip(&lights.list) {
+            for (axis, part) in (0..).zip(numbers(light.direction)) {
+                write(16 + 4 * number + axis, part);
+            }
+            write(19 + 4 * number, colour(light.colour));
+        }
+    }
+
     /// Writes the tables, where they hold something else.
     fn set_tables(&mut self, tables: [[u8; 256]; 2]) {
         if self.tables == Some(tables) {
@@ -322,6 +360,11 @@ impl Marcher {
             undecided: registers.undecided().read(),
         }
     }
+}
+
+/// Red in bits 0 to 7, green, blue.
+const fn colour([r, g, b]: [u8; 3]) -> u32 {
+    u32::from_le_bytes([r, g, b, 0])
 }
 
 /// Clears the raymarcher's interrupt; its handler calls this.

@@ -2,7 +2,7 @@
 // fails when this file is not what the generator makes of the SoC.
 
 /// CRC-32 of the SoC's pinned register map. A SoC whose `identity.build_id` differs has other registers.
-pub const BUILD_ID: u32 = 0x0e3e_5420;
+pub const BUILD_ID: u32 = 0xf7a1_836b;
 
 /// The interrupt lines, numbered by their bit in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -3302,7 +3302,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5800) }
         }
 
-        /// `caps`, 10 bits: What this block can do.
+        /// `caps`, 11 bits: What this block can do.
         #[inline]
         #[must_use]
         pub const fn caps(&self) -> Register<Caps, ReadOnly> {
@@ -3350,7 +3350,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5818) }
         }
 
-        /// `solid`, 13 bits: What there is.
+        /// `solid`, 22 bits: What there is.
         #[inline]
         #[must_use]
         pub const fn solid(&self) -> Register<Solid, ReadWrite> {
@@ -3726,12 +3726,20 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_58d4) }
         }
 
+        /// `sphere`, 29 bits: Writing sets a constant of what is round.
+        #[inline]
+        #[must_use]
+        pub const fn sphere(&self) -> Register<Sphere, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58d8) }
+        }
+
         /// `cycles_busy`, 32 bits: Clock cycles in which a field was drawn, modulo 2^32.
         #[inline]
         #[must_use]
         pub const fn cycles_busy(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58d8) }
+            unsafe { Register::at(0xf000_58dc) }
         }
 
         /// `cycles_stalled`, 32 bits: Clock cycles in which a ray waited as no end of one was taken, modulo 2^32.
@@ -3739,7 +3747,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn cycles_stalled(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58dc) }
+            unsafe { Register::at(0xf000_58e0) }
         }
 
         /// `items_in`, 32 bits: Rays, modulo 2^32.
@@ -3747,7 +3755,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn items_in(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58e0) }
+            unsafe { Register::at(0xf000_58e4) }
         }
 
         /// `items_out`, 32 bits: Pixels given to the band buffer, each eye's, modulo 2^32.
@@ -3755,7 +3763,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn items_out(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58e4) }
+            unsafe { Register::at(0xf000_58e8) }
         }
 
         /// `cycles_idle`, 32 bits: Clock cycles, of each lane, in which it had room for a ray and none came, modulo 2^32.
@@ -3763,7 +3771,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn cycles_idle(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58e8) }
+            unsafe { Register::at(0xf000_58ec) }
         }
 
         /// `evaluations`, 32 bits: Evaluations of the field: slots of the lanes that were occupied, modulo 2^32.
@@ -3771,7 +3779,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn evaluations(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58ec) }
+            unsafe { Register::at(0xf000_58f0) }
         }
 
         /// `hits`, 32 bits: Rays that came to a surface, modulo 2^32.
@@ -3779,7 +3787,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn hits(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58f0) }
+            unsafe { Register::at(0xf000_58f4) }
         }
 
         /// `misses`, 32 bits: Rays that went by, modulo 2^32.
@@ -3787,7 +3795,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn misses(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58f4) }
+            unsafe { Register::at(0xf000_58f8) }
         }
 
         /// `undecided`, 32 bits: Rays that were given up, modulo 2^32.
@@ -3795,7 +3803,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn undecided(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58f8) }
+            unsafe { Register::at(0xf000_58fc) }
         }
     }
 
@@ -3840,6 +3848,13 @@ pub mod raymarch {
         #[must_use]
         pub const fn stereo(self) -> bool {
             (self.0 >> 9) & 1 != 0
+        }
+
+        /// `round`, bit 10: Spheres, alone and beside what has faces.
+        #[inline]
+        #[must_use]
+        pub const fn round(self) -> bool {
+            (self.0 >> 10) & 1 != 0
         }
     }
 
@@ -4015,7 +4030,7 @@ pub mod raymarch {
     }
 
     impl Solid {
-        /// `is_box`, bit 0: A box; or else the sponge.
+        /// `is_box`, bit 0: What has faces is a box; or else the sponge.
         #[inline]
         #[must_use]
         pub const fn is_box(self) -> bool {
@@ -4083,6 +4098,76 @@ pub mod raymarch {
         #[must_use]
         pub const fn with_repeated(self, value: bool) -> Self {
             Self(self.0 & !(0x1 << 12) | (value as u32 & 0x1) << 12)
+        }
+
+        /// `is_round`, bit 13: There are spheres.
+        #[inline]
+        #[must_use]
+        pub const fn is_round(self) -> bool {
+            (self.0 >> 13) & 1 != 0
+        }
+
+        /// This value with another `is_round`.
+        #[inline]
+        #[must_use]
+        pub const fn with_is_round(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 13) | (value as u32 & 0x1) << 13)
+        }
+
+        /// `flat_too`, bit 14: What has faces is there beside them.
+        #[inline]
+        #[must_use]
+        pub const fn flat_too(self) -> bool {
+            (self.0 >> 14) & 1 != 0
+        }
+
+        /// This value with another `flat_too`.
+        #[inline]
+        #[must_use]
+        pub const fn with_flat_too(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 14) | (value as u32 & 0x1) << 14)
+        }
+
+        /// `balls_repeated`, bit 15: The spheres repeat themselves every 64 units along each axis.
+        #[inline]
+        #[must_use]
+        pub const fn balls_repeated(self) -> bool {
+            (self.0 >> 15) & 1 != 0
+        }
+
+        /// This value with another `balls_repeated`.
+        #[inline]
+        #[must_use]
+        pub const fn with_balls_repeated(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 15) | (value as u32 & 0x1) << 15)
+        }
+
+        /// `last_ball`, bits 18 to 16: The last sphere's number; 0 where there is none.
+        #[inline]
+        #[must_use]
+        pub const fn last_ball(self) -> u8 {
+            ((self.0 >> 16) & 0x7) as u8
+        }
+
+        /// This value with another `last_ball`: the low 3 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_last_ball(self, value: u8) -> Self {
+            Self(self.0 & !(0x7 << 16) | (value as u32 & 0x7) << 16)
+        }
+
+        /// `last_light`, bits 21 to 20: The number of the last light on spheres.
+        #[inline]
+        #[must_use]
+        pub const fn last_light(self) -> u8 {
+            ((self.0 >> 20) & 0x3) as u8
+        }
+
+        /// This value with another `last_light`: the low 2 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_last_light(self, value: u8) -> Self {
+            Self(self.0 & !(0x3 << 20) | (value as u32 & 0x3) << 20)
         }
     }
 
@@ -4229,6 +4314,50 @@ pub mod raymarch {
         #[must_use]
         pub const fn with_entry(self, value: u16) -> Self {
             Self(self.0 & !(0x1ff << 8) | (value as u32 & 0x1ff) << 8)
+        }
+    }
+
+    /// A value of `sphere`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct Sphere(u32);
+
+    impl Value for Sphere {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl Sphere {
+        /// `value`, bits 23 to 0: A constant of spheres or their light.
+        #[inline]
+        #[must_use]
+        pub const fn value(self) -> u32 {
+            self.0 & 0x00ff_ffff
+        }
+
+        /// This value with another `value`: the low 24 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_value(self, value: u32) -> Self {
+            Self(self.0 & !0x00ff_ffff | value & 0x00ff_ffff)
+        }
+
+        /// `entry`, bits 28 to 24: 0 to 2: a sphere's centre, x, y, z, s9.12. 3: its radius, u9.12. 4: the inverse of the radius in bits 0 to 16, and its shift. 8 + n: the colour of sphere n, which takes these constants. 16 + 4i + 0, 1, 2: the direction to light i, s1.16. 16 + 4i + 3: its colour. 5: the ambient light's colour.
+        #[inline]
+        #[must_use]
+        pub const fn entry(self) -> u8 {
+            ((self.0 >> 24) & 0x1f) as u8
+        }
+
+        /// This value with another `entry`: the low 5 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_entry(self, value: u8) -> Self {
+            Self(self.0 & !(0x1f << 24) | (value as u32 & 0x1f) << 24)
         }
     }
 }

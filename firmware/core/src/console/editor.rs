@@ -7,7 +7,7 @@ use heapless::{Deque, Vec};
 use super::PROMPT;
 
 /// The longest line in bytes.
-pub const LINE_MAX: usize = 320;
+pub const LINE_MAX: usize = 640;
 /// How many lines are remembered.
 pub const HISTORY: usize = 8;
 

@@ -54,7 +54,6 @@ pub struct Sample {
 
 /// A solid as the gateware has it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum Solid {
     /// The Menger sponge of half side 40.5.
     Menger {

@@ -20,13 +20,19 @@ use crate::{Told, read, send};
 const PATIENCE_MS: u64 = 4000;
 
 /// Every kind of field.
-const FIELDS: [&str; 6] = [
+const FIELDS: [&str; 12] = [
     "menger:4",
     "menger:6",
+    "union:menger:2+spheres:0.75,0.75,0.75,0.5;-0.5,1,0,0.25",
     "menger:1",
-    "box:1,0.5,0.25",
     "cubes:2,0.8",
+    "box:1,0.5,0.25",
+    "lattice:2,0.8",
+    "spheres:0,0,0,0.75;1,0.25,0.5,0.5;-0.75,-0.5,0.75,0.25",
     "planes:0.9",
+    "union:box:1,0.5,0.25+moving:0.5,0.75,100",
+    "moving:0.5,0.75,-60",
+    "sphere:1",
 ];
 
 fn looking(eye: [f64; 3], target: [f64; 3], half_width: f64, near: f64) -> View {
@@ -73,7 +79,7 @@ fn compare(
     let name = format!("{field}, {stereo:?}, {view} at {size:?}");
     let options = FieldOptions {
         stereo,
-        ..FieldOptions::default()
+        ..FieldOptions::of(&field)
     };
     let scene = Scene {
         subject: Subject::Field {
@@ -136,7 +142,8 @@ fn compare_picture(
     }
 }
 
-/// Each from one side for one eye or for two, in turns: all of them from all sides for both with `GLINT_RTL_FIELDS=all`.
+/// Every second one from one side for one eye or for two, in turns: all of them from all sides for both with
+/// `GLINT_RTL_FIELDS=all`.
 #[test]
 fn the_soc_draws_every_field() {
     let all = std::env::var("GLINT_RTL_FIELDS").is_ok_and(|which| which == "all");
@@ -148,11 +155,11 @@ fn the_soc_draws_every_field() {
         for (side, view) in views().iter().enumerate() {
             // Both pairs of colours are seen in turns.
             for stereo in [None, eyes()[1 + (number + side) % 2]] {
-                let in_turn = stereo.is_some() == ((number + side) % 2 == 0);
-                if !all && (!in_turn || side != number % 3) {
+                let in_turn = stereo.is_some() == ((number / 2 + side) % 2 == 0);
+                if !all && (!in_turn || side != number / 2 % 3 || number % 2 != 0) {
                     continue;
                 }
-                let with_depth = side == number % 3;
+                let with_depth = side == number / 2 % 3;
                 compare(&mut console, field, stereo, view, (320, 180), with_depth);
             }
         }
