@@ -45,7 +45,7 @@ def main():
     full.finalize()
     build_id = register_map.build_id(full)
 
-    fields = Fields(lanes=4, levels=4, boxes=False, round=False) if arguments.sponge else None
+    fields = Fields(lanes=4, levels=4, boxes=False, round=False, blend=False) if arguments.sponge else None
     soc = make_soc(arguments.board, build_id, arguments.blocks, arguments.smooth, fields)
     soc.finalize()
     register_map.check_subset(soc, full)

@@ -12,7 +12,7 @@ from .scanout import RTL
 _COMMON, _TRIANGLE, _MARCH = (RTL / folder for folder in ("common", "triangle", "raymarch"))
 
 FIELD_UNIT = [_MARCH / "march_pkg.sv", _COMMON / "delay.sv", _TRIANGLE / "multiply_add.sv",
-              *(_MARCH / f"{name}.sv" for name in ("menger_level", "field_menger", "field_box", "root_table", "field_sphere", "field_unit"))]
+              *(_MARCH / f"{name}.sv" for name in ("menger_level", "field_menger", "field_box", "root_table", "field_sphere", "blend_unit", "field_unit"))]
 RING_LANE = [*FIELD_UNIT, _COMMON / "fifo.sv", _MARCH / "ring_lane.sv"]
 RAY_GENERATOR = [_MARCH / "march_pkg.sv", _COMMON / "delay.sv", _COMMON / "skid_buffer.sv", _TRIANGLE / "multiply_add.sv",
                  *(_MARCH / f"{name}.sv" for name in ("inverse_table", "round_inverse", "ray_generator"))]
@@ -27,19 +27,20 @@ IDENT = int.from_bytes(b"MARC", "big")
 
 _ERRORS = [
     ("0", "none", "what is asked for is built"),
-    ("1", "field", "the sponge, so many levels of it, boxes, or spheres are not built"),
+    ("1", "field", "the sponge, so many levels of it, boxes, spheres, or fillets are not built"),
     ("2", "stereo", "two eyes are not built"),
 ]
 
 
 @dataclass(frozen=True)
 class Fields:
-    """What a raymarcher is built with: lanes (1, 2, 4), levels of the sponge (0 to 6), boxes, spheres, two eyes."""
+    """What a raymarcher is built with: lanes (1, 2, 4), levels of the sponge (0 to 6), boxes, spheres, fillets, two eyes."""
 
     lanes: int = 2
     levels: int = 6
     boxes: bool = True
     round: bool = True
+    blend: bool = True
     stereo: bool = True
 
 
@@ -57,6 +58,7 @@ class Raymarcher(LiteXModule):
             CSRField("boxes", offset=8, reset=int(fields.boxes), description="Boxes, cubes and planes."),
             CSRField("stereo", offset=9, reset=int(fields.stereo), description="Two eyes."),
             CSRField("round", offset=10, reset=int(fields.round), description="Spheres, alone and beside what has faces."),
+            CSRField("blend", offset=11, reset=int(fields.blend), description="Fillets between both."),
         ], description="What this block can do.")
         self._control = CSRStorage(name="control", fields=[
             CSRField("enable", offset=0, description="Frames of the raster pass have the field, after their triangles."),
@@ -125,7 +127,8 @@ class Raymarcher(LiteXModule):
             CSRField("value", size=24, offset=0, description="A constant of spheres or their light."),
             CSRField("entry", size=5, offset=24, description="0 to 2: a sphere's centre, x, y, z, s9.12. 3: its radius, u9.12. 4: the "
                      "inverse of the radius in bits 0 to 16, and its shift. 8 + n: the colour of sphere n, which takes these constants. "
-                     "16 + 4i + 0, 1, 2: the direction to light i, s1.16. 16 + 4i + 3: its colour. 5: the ambient light's colour."),
+                     "16 + 4i + 0, 1, 2: the direction to light i, s1.16. 16 + 4i + 3: its colour. 5: the ambient light's colour. 6: the "
+                     "width of the fillet, u5.12, 0 without one. 7: 1 over twice that, u1.16."),
         ], description="Writing sets a constant of what is round.")
 
         counters = {
@@ -151,9 +154,12 @@ class Raymarcher(LiteXModule):
         enable, stereo = self._control.fields.enable, self._control.fields.stereo
         busy, was_busy = self._status.fields.busy, Signal()
         error = self._status.fields.error
+        solid, tuning = self._solid.fields, self._tuning.fields
+        write_ball, number, ball, lights, blend = self._spheres(fields)
         not_built = Signal()
-        self.comb += not_built.eq((self._solid.fields.is_box & int(not fields.boxes)) | (self._solid.fields.is_round & int(not fields.round)))
-        too_deep = ~self._solid.fields.is_box & (self._solid.fields.levels >> fields.levels != 0)
+        self.comb += not_built.eq((solid.is_box & int(not fields.boxes)) | (solid.is_round & int(not fields.round)) |
+                                  (solid.flat_too & (blend != 0) & int(not fields.blend)))
+        too_deep = ~solid.is_box & (solid.levels >> fields.levels != 0)
         # The engine's clock runs while a pass does; the tables are written while it stands.
         lingers, working = Signal(5), Signal()
         self.comb += [
@@ -171,13 +177,12 @@ class Raymarcher(LiteXModule):
         ]
         eye = Signal()
         self.comb += engine.field.halves.eq(Mux(stereo == 0, 0b11, Mux(eye, 0b10, 0b01)))
-        solid, tuning = self._solid.fields, self._tuning.fields
-        write_ball, number, ball, lights = self._spheres() if fields.round else (Signal(), Signal(3), Signal(130), Signal(336))
         self.specials += Instance("raymarcher", name="raymarcher",
             p_LANES          = fields.lanes,
             p_LEVELS         = fields.levels,
             p_BOXES          = int(fields.boxes),
             p_ROUND          = int(fields.round),
+            p_BLEND          = int(fields.blend),
             p_STEREO         = int(fields.stereo),
             i_clk            = self.clk,
             i_rst            = ResetSignal("sys"),
@@ -194,7 +199,7 @@ class Raymarcher(LiteXModule):
             i_outside        = Cat(*outside),
             i_bounds         = Cat(*bounds),
             i_solid          = Cat(solid.repeated, solid.room, solid.has, *box_half, self._cube_half.storage, solid.levels,
-                                   solid.is_box, solid.last_ball, solid.balls_repeated, solid.is_round, solid.flat_too),
+                                   solid.is_box, solid.last_ball, solid.balls_repeated, solid.is_round, solid.flat_too, blend),
             i_ball_write     = write_ball,
             i_ball_number    = number,
             i_ball           = ball,
@@ -227,18 +232,22 @@ class Raymarcher(LiteXModule):
         for source in RAYMARCHER:
             platform.add_source(str(source))
 
-    def _spheres(self):
-        """What is kept of the constants that `sphere` is told: whether a sphere is written, its number, itself, the lights."""
+    def _spheres(self, fields):
+        """What is kept of the constants that `sphere` is told: whether a sphere is written, its number, itself, the lights, the fillet."""
+        blend = [Signal(17), Signal(17)]
+        if not fields.round:
+            return Signal(), Signal(3), Signal(133), Signal(336), Cat(*blend)
         value, entry = self._sphere.fields.value, self._sphere.fields.entry
         centre, radius, inverse = [Signal(22) for _ in range(3)], Signal(21), Signal(22)
         directions, colours, ambient = [Signal(18) for _ in range(12)], [Signal(24) for _ in range(4)], Signal(24)
-        places = {**dict(enumerate([*centre, radius, inverse, ambient])),
+        width, over_width = blend
+        places = {**dict(enumerate([*centre, radius, inverse, ambient, width, over_width])),
                   **{16 + 4*light + axis: directions[3*light + axis] for light in range(4) for axis in range(3)},
                   **{19 + 4*light: colour for light, colour in enumerate(colours)}}
         self.sync += If(self._sphere.re, Case(entry, {number: place.eq(value) for number, place in places.items()}))
         write = Signal()
         self.comb += write.eq(self._sphere.re & (entry[3:] == 0b01))
-        return write, entry[:3], Cat(*centre, radius, inverse, value), Cat(*directions, *colours, ambient)
+        return write, entry[:3], Cat(*centre, radius, inverse, value), Cat(*directions, *colours, ambient), Cat(over_width, width)
 
     def _register(self, name, size, description):
         """Adds a register and returns what is in it."""

@@ -31,7 +31,7 @@ _SMALL_RASTER = {"H_ACTIVE": 160, "H_FRONT": 8, "H_SYNC": 4, "H_BACK": 12,
                  "V_ACTIVE": 24, "V_FRONT": 2, "V_SYNC": 2, "V_BACK": 4}
 _SMOOTH = {"SMOOTH": 1}
 # Every field there is.
-_ALL_FIELDS = {"LEVELS": 6, "BOXES": 1, "ROUND": 1}
+_ALL_FIELDS = {"LEVELS": 6, "BOXES": 1, "ROUND": 1, "BLEND": 1}
 _COMMON, _TRIANGLE = (scanout.RTL / folder for folder in ("common", "triangle"))
 
 MODULES = [
@@ -60,6 +60,6 @@ MODULES = [
     Module(top="ray_paint", sources=RAY_PAINT, variants={"ray_paint_round": {"ROUND": 1}}, measured=("ray_paint_round",)),
     Module(top="round_light", sources=ROUND_LIGHT, measured=("round_light",)),
     Module(top="ring_lane", sources=RING_LANE, variants={"ring_lane_all": _ALL_FIELDS}),
-    Module(top="raymarcher", sources=RAYMARCHER, variants={"raymarcher_menger": {"LANES": 4, "LEVELS": 4, "BOXES": 0, "ROUND": 0}}),
+    Module(top="raymarcher", sources=RAYMARCHER, variants={"raymarcher_menger": {"LANES": 4, "LEVELS": 4, "BOXES": 0, "ROUND": 0, "BLEND": 0}}),
     Module(top="triangle_control", sources=TRIANGLE_CONTROL, variants={"triangle_control_smooth": _SMOOTH}),
 ]

@@ -13,6 +13,8 @@ pub const MAX_EXTENT: Q32_32 = Q32_32::lit("12");
 pub const PERIOD: [Q32_32; 2] = [Q32_32::lit("0.25"), Q32_32::lit("16")];
 /// The smallest thing.
 const SMALLEST: Q32_32 = Q32_32::lit("0.01");
+/// How wide the fillet of a smooth union is.
+const BLEND: [Q32_32; 2] = [Q32_32::lit("0.01"), Q32_32::lit("0.5")];
 /// The deepest sponge.
 pub const MAX_DEPTH: u8 = 6;
 /// The most spheres of one field.
@@ -72,6 +74,8 @@ pub enum Field {
         flat: Flat,
         /// What is round.
         round: Round,
+        /// The difference of the distances to both up to which a fillet between them reaches; 0: there is none.
+        blend: Q32_32,
     },
 }
 
@@ -225,7 +229,10 @@ impl Field {
                 check("radius", radius, [SMALLEST, MAX_EXTENT])?;
                 check("orbit", orbit, [Q32_32::ZERO, MAX_EXTENT - radius])?;
             }
-            Self::Union { flat, round } => {
+            Self::Union { flat, round, blend } => {
+                if blend != Q32_32::ZERO {
+                    check("k", blend, BLEND)?;
+                }
                 Self::from(flat).checked()?;
                 Self::from(round).checked()?;
             }
@@ -255,7 +262,13 @@ impl Field {
         let (kind, numbers) = text.split_once(':').unwrap_or((text, ""));
         match kind {
             "spheres" => return parse_spheres(kind, numbers),
-            "union" => return parse_union(numbers),
+            "union" => return parse_union(numbers, Q32_32::ZERO),
+            "smooth" => {
+                let (blend, members) = numbers.split_once(',').ok_or(FieldError::Union)?;
+                let blend = Words::new(kind, blend).next("k")?;
+                check("k", blend, BLEND)?;
+                return parse_union(members, blend);
+            }
             _ => {}
         }
         let mut words = Words::new(kind, numbers);
@@ -352,7 +365,7 @@ fn parse_spheres<'a>(kind: &'a str, text: &'a str) -> Result<Field, FieldError<'
 }
 
 /// Reads what stands behind `union:`, a field with faces and a round one, a plus between them.
-fn parse_union(text: &str) -> Result<Field, FieldError<'_>> {
+fn parse_union(text: &str, blend: Q32_32) -> Result<Field, FieldError<'_>> {
     let (flat, round) = text.split_once('+').ok_or(FieldError::Union)?;
     let flat = match Field::parse(flat)? {
         Field::Menger { depth } => Flat::Menger { depth },
@@ -373,7 +386,7 @@ fn parse_union(text: &str) -> Result<Field, FieldError<'_>> {
         },
         _ => return Err(FieldError::Union),
     };
-    Ok(Field::Union { flat, round })
+    Ok(Field::Union { flat, round, blend })
 }
 
 fn check(
@@ -417,15 +430,20 @@ impl fmt::Display for Field {
                     angle => write!(f, ",{}", angle.to_degrees()),
                 }
             }
-            Self::Union { flat, round } => {
-                write!(f, "union:{}+{}", Self::from(*flat), Self::from(*round))
+            Self::Union { flat, round, blend } => {
+                if *blend == Q32_32::ZERO {
+                    f.write_str("union:")?;
+                } else {
+                    write!(f, "smooth:{blend},")?;
+                }
+                write!(f, "{}+{}", Self::from(*flat), Self::from(*round))
             }
         }
     }
 }
 
 /// The kinds of fields as they are typed, with what each is.
-pub const KINDS: [(&str, &str); 9] = [
+pub const KINDS: [(&str, &str); 10] = [
     (
         "menger:DEPTH",
         "the Menger sponge in [-1, 1]^3, depth 1 to 6",
@@ -443,6 +461,10 @@ pub const KINDS: [(&str, &str); 9] = [
     (
         "union:A+B",
         "A menger or box, B sphere, spheres or moving, both together",
+    ),
+    (
+        "smooth:K,A+B",
+        "the same with a fillet of the width K between them",
     ),
 ];
 

@@ -55,6 +55,9 @@ fn fields() -> impl Strategy<Value = Field> {
         (flat(), round()).prop_map(|(flat, round)| {
             Field::parse(&format!("union:{flat}+{round}")).expect("one of each")
         }),
+        (number("0.01", "0.5"), flat(), round()).prop_map(|(blend, flat, round)| {
+            Field::parse(&format!("smooth:{blend},{flat}+{round}")).expect("one of each")
+        }),
     ]
 }
 
@@ -71,7 +74,7 @@ proptest! {
 
     #[test]
     fn no_text_upsets_the_parser(
-        text in "(menger|box|cubes|planes|spheres?|lattice|moving|union)?:?[-+0-9.,:;a-z]{0,30}"
+        text in "(menger|box|cubes|planes|spheres?|lattice|moving|union|smooth)?:?[-+0-9.,:;a-z]{0,30}"
     ) {
         let _ = Field::parse(&text).map_err(|error| error.to_string());
     }
@@ -120,6 +123,11 @@ fn mistakes_say_what_was_expected() {
             "union: expected menger or box, +, and sphere, spheres or moving",
         ),
         ("union:menger:7+sphere:1", "depth: expected 1 to 6"),
+        ("smooth:0.6,box:1,1,1+sphere:1", "k: expected 0.01 to 0.5"),
+        (
+            "smooth:0.1",
+            "union: expected menger or box, +, and sphere, spheres or moving",
+        ),
     ] {
         let error = Field::parse(text).expect_err(text);
         assert_eq!(error.to_string(), expected);

@@ -7,7 +7,7 @@ use core::fmt;
 use core::ops::Sub;
 
 use glint_core::stereo::Tint;
-use glint_model::march::{Balls, FieldStats, Lights, Palette, Setup, Solid};
+use glint_model::march::{Balls, Blend, FieldStats, Lights, Palette, Setup, Solid};
 use litex_pac::raymarch::{
     self, Control, DepthScale, EvEnable, EvPending, Solid as SolidRegister, Sphere, Table, Tuning,
 };
@@ -30,6 +30,8 @@ pub struct Ability {
     pub stereo: bool,
     /// Spheres.
     pub round: bool,
+    /// Fillets between spheres and what has faces.
+    pub blend: bool,
 }
 
 /// What a frame asks for and the gateware is built without.
@@ -41,6 +43,8 @@ pub enum Missing {
     Boxes,
     /// Spheres.
     Round,
+    /// Fillets between spheres and what has faces.
+    Blend,
     /// Two eyes.
     Stereo,
 }
@@ -56,6 +60,7 @@ impl fmt::Display for Missing {
             }
             Self::Boxes => f.write_str("raymarcher: this gateware has no boxes, cubes and planes"),
             Self::Round => f.write_str("raymarcher: this gateware has no spheres"),
+            Self::Blend => f.write_str("raymarcher: this gateware has no smooth unions"),
             Self::Stereo => f.write_str("raymarcher: this gateware has one eye"),
         }
     }
@@ -141,6 +146,7 @@ impl Marcher {
                     boxes: caps.boxes(),
                     stereo: caps.stereo(),
                     round: caps.round(),
+                    blend: caps.blend(),
                 };
                 Ok(Self {
                     registers,
@@ -171,6 +177,7 @@ impl Marcher {
             boxes,
             stereo,
             round,
+            blend,
             ..
         } = self.ability;
         match setup.solid {
@@ -180,6 +187,9 @@ impl Marcher {
         }
         if setup.is_round() && !round {
             return Err(Missing::Round);
+        }
+        if setup.blend().width != 0 && !blend {
+            return Err(Missing::Blend);
         }
         if setup.stereo.is_some() && !stereo {
             return Err(Missing::Stereo);
@@ -220,7 +230,7 @@ impl Marcher {
         let solid = solid.with_flat_too(setup.beside.is_some());
         registers.solid().write(match setup.balls() {
             Some(balls) => {
-                self.set_spheres(balls, &palette.lights);
+                self.set_spheres(balls, &setup.blend(), &palette.lights);
                 solid
                     .with_is_round(true)
                     .with_balls_repeated(balls.repeated)
@@ -300,8 +310,8 @@ impl Marcher {
         Ok(())
     }
 
-    /// Writes the constants of spheres and of the light on them.
-    fn set_spheres(&self, balls: &Balls, lights: &Lights) {
+    /// Writes the constants of spheres, of what is between them and faces, and of the light on them.
+    fn set_spheres(&self, balls: &Balls, blend: &Blend, lights: &Lights) {
         let write = |entry: u8, value: u32| {
             let constant = Sphere::default().with_entry(entry).with_value(value);
             self.registers.sphere().write(constant);
@@ -318,6 +328,8 @@ impl Marcher {
             write(8 + number, colour(material));
         }
         write(5, colour(lights.ambient));
+        write(6, blend.width);
+        write(7, blend.inverse);
         for (number, light) in (0..).zip(&lights.list) {
             for (axis, part) in (0..).zip(numbers(light.direction)) {
                 write(16 + 4 * number + axis, part);

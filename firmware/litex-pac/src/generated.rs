@@ -2,7 +2,7 @@
 // fails when this file is not what the generator makes of the SoC.
 
 /// CRC-32 of the SoC's pinned register map. A SoC whose `identity.build_id` differs has other registers.
-pub const BUILD_ID: u32 = 0xf7a1_836b;
+pub const BUILD_ID: u32 = 0x9e94_b554;
 
 /// The interrupt lines, numbered by their bit in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -3302,7 +3302,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5800) }
         }
 
-        /// `caps`, 11 bits: What this block can do.
+        /// `caps`, 12 bits: What this block can do.
         #[inline]
         #[must_use]
         pub const fn caps(&self) -> Register<Caps, ReadOnly> {
@@ -3856,6 +3856,13 @@ pub mod raymarch {
         pub const fn round(self) -> bool {
             (self.0 >> 10) & 1 != 0
         }
+
+        /// `blend`, bit 11: Fillets between both.
+        #[inline]
+        #[must_use]
+        pub const fn blend(self) -> bool {
+            (self.0 >> 11) & 1 != 0
+        }
     }
 
     /// A value of `control`.
@@ -4346,7 +4353,7 @@ pub mod raymarch {
             Self(self.0 & !0x00ff_ffff | value & 0x00ff_ffff)
         }
 
-        /// `entry`, bits 28 to 24: 0 to 2: a sphere's centre, x, y, z, s9.12. 3: its radius, u9.12. 4: the inverse of the radius in bits 0 to 16, and its shift. 8 + n: the colour of sphere n, which takes these constants. 16 + 4i + 0, 1, 2: the direction to light i, s1.16. 16 + 4i + 3: its colour. 5: the ambient light's colour.
+        /// `entry`, bits 28 to 24: 0 to 2: a sphere's centre, x, y, z, s9.12. 3: its radius, u9.12. 4: the inverse of the radius in bits 0 to 16, and its shift. 8 + n: the colour of sphere n, which takes these constants. 16 + 4i + 0, 1, 2: the direction to light i, s1.16. 16 + 4i + 3: its colour. 5: the ambient light's colour. 6: the width of the fillet, u5.12, 0 without one. 7: 1 over twice that, u1.16.
         #[inline]
         #[must_use]
         pub const fn entry(self) -> u8 {

@@ -10,6 +10,7 @@
 //! [`Setup`] makes the constants of a frame, [`Ray`] is where a pixel's ray begins, [`Setup::march`] how it ends,
 //! [`paint()`] what it shows.
 
+mod blend;
 mod field;
 mod light;
 mod paint;
@@ -18,6 +19,7 @@ mod render;
 mod setup;
 mod sphere;
 
+pub use blend::{Beside, Blend};
 pub use field::{Sample, Solid, Surface};
 pub use glint_core::stereo::{Stereo, Tint};
 pub use light::{Light, Lights};

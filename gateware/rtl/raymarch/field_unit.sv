@@ -1,10 +1,12 @@
 // The distance field of a lane: the fields that it is built with, side by side, and which of them is asked.
 //
-// Latency march_pkg::field_clocks(LEVELS, BOXES, ROUND), throughput a point a clock, no handshake; `solid` holds. A field that is not
+// Latency march_pkg::field_clocks(LEVELS, BOXES, ROUND, BLEND), throughput a point a clock, no handshake; `solid` holds. A field that is not
 // built costs nothing; one that is the only one costs no choice.
 //
 // Spheres are looked at one after the other: `pass` is the number of one, a clock before the point, `so_far` is the nearest one of
 // those before it, and `nearest` is it or this one. The distance, to it or to what is flat beside it, is right in the last pass.
+// With BLEND, which needs both, there may be a fillet between them: then all is round, `face` is the flat one's surface and `share`
+// the sphere's part of what is there. Otherwise `share` is all ones.
 
 `default_nettype none
 
@@ -12,7 +14,8 @@ module field_unit #(
     // Levels of the sponge; 0: none.
     parameter int unsigned LEVELS = 4,
     parameter bit          BOXES  = 1'b0,
-    parameter bit          ROUND  = 1'b0
+    parameter bit          ROUND  = 1'b0,
+    parameter bit          BLEND  = 1'b0
 ) (
     input  wire                     clk,
     input  wire march_pkg::solid_t  solid,
@@ -25,6 +28,8 @@ module field_unit #(
     output logic signed [21:0]      distance,
     output logic                    round,
     output logic [2:0]              surface,
+    output logic [2:0]              face,
+    output logic [7:0]              share,
     output march_pkg::nearest_t     nearest
 );
     localparam int unsigned FLAT_CLOCKS = march_pkg::flat_clocks(LEVELS, BOXES);
@@ -117,21 +122,34 @@ module field_unit #(
             assign is_nearer   = $signed(nearest_both.distance) < flat_distance_both;
             assign takes_round = solid.is_round && (!solid.flat_too || is_nearer);
 
-            always_ff @(posedge clk) begin
-                distance <= takes_round ? nearest_both.distance : flat_distance_both;
-                surface  <= takes_round ? nearest_both.number : flat_surface_both;
-                round    <= takes_round;
-                nearest  <= nearest_both;
+            if (BLEND) begin : fillet
+                blend_unit blend (
+                    .clk, .solid, .flat_distance(flat_distance_both), .flat_surface(flat_surface_both), .known(nearest_both),
+                    .takes_round, .distance, .round, .surface, .face, .share, .nearest
+                );
+            end else begin : sharp
+                always_ff @(posedge clk) begin
+                    distance <= takes_round ? nearest_both.distance : flat_distance_both;
+                    surface  <= takes_round ? nearest_both.number : flat_surface_both;
+                    round    <= takes_round;
+                    nearest  <= nearest_both;
+                end
+                assign face  = '0;
+                assign share = '1;
             end
         end else begin : only_spheres
             assign {distance, surface} = nearest_both;
             assign round               = 1'b1;
+            assign face                = '0;
+            assign share               = '1;
             assign nearest             = nearest_both;
         end
     end else begin : only_flat
         assign distance = flat_distance;
         assign surface  = flat_surface;
         assign round    = 1'b0;
+        assign face     = '0;
+        assign share    = '1;
         assign nearest  = '0;
     end
 

@@ -32,9 +32,11 @@ package march_pkg;
     typedef enum logic [1:0] {MISS = 2'd0, HIT = 2'd1, UNDECIDED = 2'd2} state_t;
 
     // Its end. `surface` is {axis, positive}, or a sphere's number; `gap` and `slope` say how far the face is from `t` and how steeply the
-    // ray goes there; only a sphere's light wants to know the direction. Of a miss, `t` is the sine above the horizon in 8 bits, 0 below
-    // it.
+    // ray goes there; only a sphere's light wants to know the direction. Between a face and a sphere, `face` is the former's {axis,
+    // positive} and `share` is the latter's part, u0.8. Of a miss, `t` is the sine above the horizon in 8 bits, 0 below it.
     typedef struct packed {
+        logic [2:0]        face;
+        logic [7:0]        share;
         logic [2:0][DIRECTION_BITS-1:0] direction;
         logic              round;
         place_t            place;
@@ -46,11 +48,15 @@ package march_pkg;
         logic [11:0]       gap;
         logic [9:0]        slope;
     } end_t;
-    localparam int unsigned FLAT_END_BITS = PLACE_BITS + 10 + T_BITS + 8 + 2 + 3 + 12 + 10;
-    localparam int unsigned END_BITS      = FLAT_END_BITS + 1 + 3 * DIRECTION_BITS;
+    localparam int unsigned FLAT_END_BITS  = PLACE_BITS + 10 + T_BITS + 8 + 2 + 3 + 12 + 10;
+    localparam int unsigned ROUND_END_BITS = FLAT_END_BITS + 1 + 3 * DIRECTION_BITS;
+    localparam int unsigned END_BITS       = ROUND_END_BITS + 8 + 3;
 
     // What there is; all of it holds while a frame is drawn.
     typedef struct packed {
+        // What is between what is flat and what is round: its width, u5.12, 0 where there is none, and 1 over twice that, u1.16.
+        logic [16:0]                blend_width;
+        logic [16:0]                blend_inverse;
         // Spheres: whether the flat solid is there beside them, whether there are any, whether they repeat themselves, and the last
         // one's number, 0 without them.
         logic                       flat_too;
@@ -103,14 +109,19 @@ package march_pkg;
         logic [T_BITS-1:0] far_limit;
     } tuning_t;
 
-    // Clocks from a point to its distance, of fields with so many levels of the sponge, with boxes and spheres or without.
+    // The bits of an end that there are in a lane with spheres and fillets or without.
+    function automatic int unsigned end_bits(input bit round, input bit blend);
+        end_bits = blend ? END_BITS : round ? ROUND_END_BITS : FLAT_END_BITS;
+    endfunction
+
+    // Clocks from a point to its distance, of fields with so many levels of the sponge, with boxes, spheres and fillets or without.
     function automatic int unsigned flat_clocks(input int unsigned levels, input bit boxes);
         flat_clocks = levels == 0 ? 3 : 3 * levels + 3 + (boxes ? 1 : 0);
     endfunction
-    function automatic int unsigned field_clocks(input int unsigned levels, input bit boxes, input bit round);
+    function automatic int unsigned field_clocks(input int unsigned levels, input bit boxes, input bit round, input bit blend);
         field_clocks = flat_clocks(levels, boxes);
         if (round && field_clocks < 19) field_clocks = 19;
-        if (round && (levels > 0 || boxes)) field_clocks = field_clocks + 1;
+        if (round && (levels > 0 || boxes)) field_clocks = field_clocks + (blend ? 8 : 1);
     endfunction
     /* verilator lint_on UNUSEDPARAM */
 endpackage

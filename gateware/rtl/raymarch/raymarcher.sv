@@ -12,7 +12,7 @@
 // While the last rays of a band are still on their way, rays of the next one go in already: up to EARLY, whose ends wait in block
 // RAM. So the lanes idle only at the end of the frame, and where a band ends with rays of very different lengths.
 //
-// With ROUND there may be spheres: then round_light stands before ray_paint, where a round pixel takes a clock for each light.
+// With ROUND there may be spheres, with BLEND fillets between them and what has faces: then round_light stands before ray_paint, where a round pixel takes a clock for each light.
 //
 // Each lane takes one evaluation of the field a clock. `restart`, and reset, give the frame up. Groups: a stream, valid/ready, payload
 // stays. Counters run freely: clocks busy, evaluations, clocks in which a lane had room for a ray and none came, clocks in which a
@@ -25,6 +25,7 @@ module raymarcher #(
     parameter int unsigned LEVELS = 6,
     parameter bit          BOXES  = 1'b1,
     parameter bit          ROUND  = 1'b1,
+    parameter bit          BLEND  = 1'b1,
     parameter bit          STEREO = 1'b1,
     parameter int unsigned EARLY  = 512
 ) (
@@ -85,7 +86,7 @@ module raymarcher #(
     output logic [31:0]               undecided
 );
     localparam int unsigned EARLY_BITS = $clog2(EARLY + 1);
-    localparam int unsigned KEPT_BITS  = ROUND ? march_pkg::END_BITS : march_pkg::FLAT_END_BITS;
+    localparam int unsigned KEPT_BITS  = march_pkg::end_bits(ROUND, BLEND);
 
     // Bands, less one; lines of a band, columns of eight, rows of eight pixels, rays.
     logic [5:0]  last_band, lines;
@@ -158,7 +159,7 @@ module raymarcher #(
     assign ray_ready  = lane_takes != '0;
 
     for (genvar i = 0; i < LANES; i++) begin : lanes
-        ring_lane #(.LEVELS(LEVELS), .BOXES(BOXES), .ROUND(ROUND), .STEREO(STEREO)) lane (
+        ring_lane #(.LEVELS(LEVELS), .BOXES(BOXES), .ROUND(ROUND), .BLEND(BLEND), .STEREO(STEREO)) lane (
             .clk, .rst(reset), .origins, .bounds, .solid, .tuning, .ball_write, .ball_number, .ball,
             .in_valid(lane_valid[i]), .in_ready(lane_ready[i]), .in_ray(ray),
             .out_valid(end_valid[i]), .out_ready(end_taken[i]), .out_end(end_of[i]),
@@ -203,8 +204,8 @@ module raymarcher #(
     logic [23:0]     lit_colour;
 
     if (ROUND) begin : light
-        round_light #(.STEREO(STEREO)) shine (
-            .clk, .rst(reset), .origins, .repeated(solid.balls_repeated), .lights, .ball_write, .ball_number, .ball,
+        round_light #(.BLEND(BLEND), .STEREO(STEREO)) shine (
+            .clk, .rst(reset), .origins, .repeated(solid.balls_repeated), .lights, .palette(palette[5:0]), .ball_write, .ball_number, .ball,
             .in_valid(paint_valid), .in_ready(paint_ready), .in_end(paint_end),
             .out_valid(lit_valid), .out_ready(lit_ready), .out_end(lit_end), .out_colour(lit_colour)
         );

@@ -21,6 +21,7 @@ module ring_lane #(
     parameter int unsigned LEVELS = 4,
     parameter bit          BOXES  = 1'b0,
     parameter bit          ROUND  = 1'b0,
+    parameter bit          BLEND  = 1'b0,
     parameter bit          STEREO = 1'b1,
     parameter int unsigned PLACES = 32
 ) (
@@ -48,10 +49,10 @@ module ring_lane #(
     output logic                     waits
 );
     // The clock in which the distance is there, counted from the slot.
-    localparam int unsigned DISTANCE = 3 + march_pkg::field_clocks(LEVELS, BOXES, ROUND);
+    localparam int unsigned DISTANCE = 3 + march_pkg::field_clocks(LEVELS, BOXES, ROUND, BLEND);
     localparam int unsigned COUNT_BITS = $clog2(PLACES + 1);
     localparam int unsigned STEP_BITS  = ROUND ? 10 : 8;
-    localparam int unsigned KEPT_BITS  = ROUND ? march_pkg::END_BITS : march_pkg::FLAT_END_BITS;
+    localparam int unsigned KEPT_BITS  = march_pkg::end_bits(ROUND, BLEND);
 
     // What a ray takes round with it, beside t.
     typedef struct packed {
@@ -141,16 +142,17 @@ module ring_lane #(
     delay #(.WIDTH(1), .CLOCKS(DISTANCE - 5)) going (.clk, .enable(1'b1), .in(gone), .out(gone_late));
 
     logic signed [21:0] distance;
-    logic [2:0]         surface;
+    logic [2:0]         surface, face, face_end;
+    logic [7:0]         share, share_end;
 
     // The sphere whose turn it is, and the nearest one before it: with the slot, and with the distance.
     logic                round, is_last, is_last_2;
     logic [2:0]          pass_2;
     march_pkg::nearest_t so_far_3, nearest;
 
-    field_unit #(.LEVELS(LEVELS), .BOXES(BOXES), .ROUND(ROUND)) field (
+    field_unit #(.LEVELS(LEVELS), .BOXES(BOXES), .ROUND(ROUND), .BLEND(BLEND)) field (
         .clk, .solid, .ball_write, .ball_number, .ball, .pass(pass_2), .point({point[2][21:0], point[1][21:0], point[0][21:0]}),
-        .so_far(so_far_3), .distance, .round, .surface, .nearest
+        .so_far(so_far_3), .distance, .round, .surface, .face, .share, .nearest
     );
 
     if (ROUND) begin : passes
@@ -265,9 +267,11 @@ module ring_lane #(
     end
 
     assign end_in = {
-        last_cargo.direction, last_round, last_cargo.place, last_cargo.length, end_t, steps_end, last_state, last_surface,
+        face_end, share_end, last_cargo.direction, last_round, last_cargo.place, last_cargo.length, end_t, steps_end, last_state, last_surface,
         last_round ? 12'd0 : gap, last_round ? 10'h3FF : slope
     };
+
+    delay #(.WIDTH(11), .CLOCKS(2)) blended (.clk, .enable(1'b1), .in({face, share}), .out({face_end, share_end}));
 
     // There is a place: `end_ready` is always high when a ray ends.
     logic [KEPT_BITS-1:0] kept;

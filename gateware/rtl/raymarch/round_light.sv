@@ -4,12 +4,14 @@
 //                                   └──────────── once for each light ────────────┘
 //
 // All ends pass in their order; of those that are not round the colour means nothing. A round one takes a clock for each light, any
-// other one clock. Latency 24 clocks and those of its lights but the first. Out: without the direction. Streams are valid/ready.
+// other one clock. With BLEND the colour is that between the face's, of `palette`, and this one, by the sphere's share. Latency 24
+// clocks, 28 with BLEND, and those of its lights but the first. Out: without the direction. Streams are valid/ready.
 // Spheres are written, and parameters change, while nothing is inside.
 
 `default_nettype none
 
 module round_light #(
+    parameter bit BLEND  = 1'b0,
     parameter bit STEREO = 1'b1
 ) (
     input  wire                      clk,
@@ -18,6 +20,7 @@ module round_light #(
     input  wire  [1:0][2:0][24:0]    origins,
     input  wire                      repeated,
     input  wire march_pkg::lights_t  lights,
+    input  wire  [5:0][23:0]         palette,
     input  wire                      ball_write,
     input  wire  [2:0]               ball_number,
     input  wire march_pkg::ball_t    ball,
@@ -31,7 +34,7 @@ module round_light #(
     output march_pkg::end_t          out_end,
     output logic [23:0]              out_colour
 );
-    localparam int unsigned LAST = 22;
+    localparam int unsigned LAST = BLEND ? 26 : 22;
     localparam int unsigned KEPT_BITS = march_pkg::FLAT_END_BITS + 1;
 
     (* ram_style = "distributed" *) logic [65:0] centres [0:7];
@@ -181,7 +184,7 @@ module round_light #(
     logic signed [36:0] cosine_15;
     logic [8:0]         share_15;
     logic [23:0]        colour_15;
-    logic [2:0][7:0]    colour_22;
+    logic [2:0][7:0]    colour_22, colour_last;
 
     multiply_add #(.BITS(37)) over_radius (
         .clk, .enable, .a({8'b0, size_12}), .b({1'b0, inverse_12}), .c('0), .p(cosine_15)
@@ -218,12 +221,60 @@ module round_light #(
         wire _unused = &{1'b0, sum_18[7:0], coloured[25:16], coloured[7:0]};
     end
 
-    logic [KEPT_BITS-1:0] kept_22, kept;
+    // 22: the face's colour. 23: the way from there. 26: as much of it as is the sphere's.
+    if (BLEND) begin : between
+        logic [2:0]      face_21;
+        logic [7:0]      share_22;
+        logic [8:0]      part_23;
+        logic [2:0][7:0] face_colour_22;
 
-    delay #(.WIDTH(KEPT_BITS), .CLOCKS(LAST)) end_waits (.clk, .enable, .in(held[KEPT_BITS-1:0]), .out(kept_22));
+        delay #(.WIDTH(3), .CLOCKS(21)) face_waits (.clk, .enable, .in(held.face), .out(face_21));
+        delay #(.WIDTH(8), .CLOCKS(22)) share_waits (.clk, .enable, .in(held.share), .out(share_22));
+
+        always_ff @(posedge clk) begin
+            if (enable) begin
+                unique case (face_21)
+                    3'd0:    face_colour_22 <= palette[0];
+                    3'd1:    face_colour_22 <= palette[1];
+                    3'd2:    face_colour_22 <= palette[2];
+                    3'd3:    face_colour_22 <= palette[3];
+                    3'd4:    face_colour_22 <= palette[4];
+                    default: face_colour_22 <= palette[5];
+                endcase
+                part_23 <= {1'b0, share_22} + 9'(share_22[7]);
+            end
+        end
+
+        for (genvar i = 0; i < 3; i++) begin : mixed
+            logic signed [8:0]  way_23;
+            logic [7:0]         from_23, from_25;
+            logic signed [24:0] sum_26;
+
+            always_ff @(posedge clk) begin
+                if (enable) begin
+                    way_23  <= $signed({1'b0, colour_22[i]}) - $signed({1'b0, face_colour_22[i]});
+                    from_23 <= face_colour_22[i];
+                end
+            end
+            delay #(.WIDTH(8), .CLOCKS(2)) from_waits (.clk, .enable, .in(from_23), .out(from_25));
+            multiply_add #(.BITS(25)) mix (
+                .clk, .enable, .a(25'(way_23)), .b({9'b0, part_23}), .c({9'b0, from_25, 8'h80}), .p(sum_26)
+            );
+            assign colour_last[i] = sum_26[15:8];
+
+            wire _unused = &{1'b0, sum_26[24:16], sum_26[7:0]};
+        end
+    end else begin : one_or_the_other
+        assign colour_last = colour_22;
+        wire _unused = &{1'b0, palette, held};
+    end
+
+    logic [KEPT_BITS-1:0] kept_last, kept;
+
+    delay #(.WIDTH(KEPT_BITS), .CLOCKS(LAST)) end_waits (.clk, .enable, .in(held[KEPT_BITS-1:0]), .out(kept_last));
 
     skid_buffer #(.WIDTH(KEPT_BITS + 24)) leaving (
-        .clk, .rst, .in_valid(valid[LAST]), .in_ready(enable), .in_data({kept_22, colour_22}),
+        .clk, .rst, .in_valid(valid[LAST]), .in_ready(enable), .in_data({kept_last, colour_last}),
         .out_valid, .out_ready, .out_data({kept, out_colour})
     );
 

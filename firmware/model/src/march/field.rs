@@ -17,27 +17,44 @@ pub enum Surface {
         /// Which one, from 0.
         number: u8,
     },
+    /// Of a union with a fillet: a face's, a sphere's, or what is between them.
+    Blended {
+        /// The face's axis.
+        axis: u8,
+        /// Whether its normal points along the axis.
+        positive: bool,
+        /// The sphere.
+        number: u8,
+        /// The part of the sphere in it, u0.8: 0 is the face.
+        share: u8,
+    },
 }
 
 impl Surface {
-    /// As the gateware has it, which knows too whether it is round: twice a face's axis, and 1 if it is positive; a sphere's number.
-    pub const fn code(self) -> u8 {
+    /// The face as the gateware has it: twice its axis, and 1 if it is positive.
+    pub const fn face(self) -> Option<u8> {
         match self {
-            Self::Face { axis, positive } => 2 * axis + positive as u8,
-            Self::Round { number } => number,
+            Self::Face { axis, positive } | Self::Blended { axis, positive, .. } => {
+                Some(2 * axis + positive as u8)
+            }
+            Self::Round { .. } => None,
         }
-    }
-
-    /// Whether it is a sphere's.
-    pub const fn is_round(self) -> bool {
-        matches!(self, Self::Round { .. })
     }
 
     /// The sphere's number.
     pub const fn number(self) -> Option<u8> {
         match self {
             Self::Face { .. } => None,
-            Self::Round { number } => Some(number),
+            Self::Round { number } | Self::Blended { number, .. } => Some(number),
+        }
+    }
+
+    /// The part of the sphere in it, 255 of a sphere alone.
+    pub const fn share(self) -> u8 {
+        match self {
+            Self::Face { .. } => 0,
+            Self::Round { .. } => 255,
+            Self::Blended { share, .. } => share,
         }
     }
 }

@@ -3,6 +3,7 @@
 use glint_core::fixed::U4_28;
 use glint_core::light::{Background, Lighting, Material};
 
+use super::field::Surface;
 use super::light::{Light, Lights, whole};
 use super::ray::{Outcome, Ray, State};
 use super::setup::Setup;
@@ -148,22 +149,34 @@ pub fn paint(setup: &Setup, palette: &Palette, ray: &Ray, outcome: &Outcome) -> 
         State::Hit(surface) => {
             let depth = setup.depth_of(ray, outcome.reached()) >> (21 + palette.fog_shift);
             (
-                lit(setup, palette, ray, outcome)
-                    .unwrap_or(palette.faces[usize::from(surface.code()) % 6]),
+                surface_colour(setup, palette, ray, outcome, surface),
                 palette.occlusion[outcome.steps.min(255) as usize],
                 palette.fog[depth.min(255) as usize],
             )
         }
     };
-    let [light, fog] = [light, fog].map(whole);
-    core::array::from_fn(|i| {
-        let lit = (i32::from(colour[i]) * light) >> 8;
-        let faded = lit + (((i32::from(palette.horizon[i]) - lit) * fog + 128) >> 8);
-        faded as u8
-    })
+    let lit = colour.map(|part| ((i32::from(part) * whole(light)) >> 8) as u8);
+    mixed(lit, palette.horizon, fog)
 }
 
-/// The colour of something round before it is darkened.
+/// The colour of a hit before it is darkened: a face's of the palette, a sphere's in its light, or what is between them.
+fn surface_colour(
+    setup: &Setup,
+    palette: &Palette,
+    ray: &Ray,
+    outcome: &Outcome,
+    surface: Surface,
+) -> [u8; 3] {
+    let face = surface
+        .face()
+        .map_or([0; 3], |face| palette.faces[usize::from(face) % 6]);
+    let Some(round) = lit(setup, palette, ray, outcome) else {
+        return face;
+    };
+    mixed(face, round, surface.share())
+}
+
+/// The colour of something round in its light.
 fn lit(setup: &Setup, palette: &Palette, ray: &Ray, outcome: &Outcome) -> Option<[u8; 3]> {
     let State::Hit(surface) = outcome.state else {
         return None;
@@ -171,4 +184,12 @@ fn lit(setup: &Setup, palette: &Palette, ray: &Ray, outcome: &Outcome) -> Option
     let (normal, number) = (setup.normal(ray, outcome)?, surface.number()?);
     let ball = setup.balls()?.list.get(usize::from(number))?;
     Some(palette.lights.shine_on(number, ball, normal))
+}
+
+/// From one colour a part of the way to another one, to nearest: 255 is all of it.
+fn mixed(from: [u8; 3], to: [u8; 3], part: u8) -> [u8; 3] {
+    core::array::from_fn(|i| {
+        let [from, to] = [from[i], to[i]].map(i32::from);
+        (from + (((to - from) * whole(part) + 128) >> 8)) as u8
+    })
 }

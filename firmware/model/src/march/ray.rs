@@ -199,7 +199,7 @@ impl Setup {
                         let (gap, slope) = self.approach(ray, sample.distance, axis, positive);
                         (t, gap, slope)
                     }
-                    State::Hit(Surface::Round { .. }) => (next, 0, 0x3FF),
+                    State::Hit(Surface::Round { .. } | Surface::Blended { .. }) => (next, 0, 0x3FF),
                     _ => (t, 0, 0),
                 };
                 return Outcome {

@@ -6,6 +6,7 @@ use glint_core::fixed::{Q2_23, Q2_30, Q32_32, U4_28};
 use glint_core::stereo::{Stereo, Tint};
 use glint_core::trig::sin_cos_q30;
 
+use super::blend::{Beside, Blend};
 use super::field::{Sample, Solid, cropped};
 use super::paint::Palette;
 use super::sphere::{Ball, Balls};
@@ -156,7 +157,7 @@ pub struct Setup {
     /// What there is.
     pub solid: Solid,
     /// Spheres beside a solid that has faces: then there are both.
-    pub beside: Option<Balls>,
+    pub beside: Option<Beside>,
     /// Field units in a world unit: 2 to 256.
     pub scale: Q32_32,
     /// Half the sides of the box about the origin that holds it, u12.12; as large as can be where it has no end.
@@ -196,13 +197,18 @@ impl Setup {
         let round = field.is_round();
         let fraction = if round { FRACTION } else { options.fraction };
         let (solid, beside, scale, extent) = match *field {
-            Field::Union { flat, round } => {
+            Field::Union { flat, round, blend } => {
                 let (solid, scale, flat) = in_units(&flat.into(), fraction);
                 let (balls, _, round) = in_units(&round.into(), fraction);
-                let extent = flat
-                    .zip(round)
-                    .map(|(flat, round)| [0, 1, 2].map(|i: usize| flat[i].max(round[i])));
-                (solid, balls.balls().copied(), scale, extent)
+                // A fillet is a quarter of its width high.
+                let extent = flat.zip(round).map(|(flat, round)| {
+                    [0, 1, 2].map(|i: usize| flat[i].max(round[i]) + blend / 4)
+                });
+                let beside = balls.balls().map(|&balls| Beside {
+                    balls,
+                    blend: Blend::new(units(blend, scale, fraction) as u32),
+                });
+                (solid, beside, scale, extent)
             }
             ref field => {
                 let (solid, scale, extent) = in_units(field, fraction);
@@ -274,7 +280,15 @@ impl Setup {
 impl Setup {
     /// The spheres that there are.
     pub fn balls(&self) -> Option<&Balls> {
-        self.solid.balls().or(self.beside.as_ref())
+        self.solid
+            .balls()
+            .or(self.beside.as_ref().map(|beside| &beside.balls))
+    }
+
+    /// The fillet between them and what has faces.
+    pub fn blend(&self) -> Blend {
+        self.beside
+            .map_or_else(Blend::default, |beside| beside.blend)
     }
 
     /// Whether there is anything round: then rays are scaled by their Euclidean length. It is never less than that in the maximum
@@ -290,10 +304,10 @@ impl Setup {
 
     /// What is nearest to a point, each coordinate s10.12; of equals, the face.
     pub fn sample(&self, point: [i32; 3]) -> Sample {
-        let sample = self.solid.sample(point, self.fraction);
-        match self.beside.map(|balls| balls.sample(point)) {
-            Some(round) if round.distance < sample.distance => round,
-            _ => sample,
+        let flat = self.solid.sample(point, self.fraction);
+        match &self.beside {
+            Some(beside) => beside.blend.union(flat, beside.balls.sample(point)),
+            None => flat,
         }
     }
 }

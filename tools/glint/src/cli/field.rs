@@ -3,6 +3,7 @@
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use glint::error::{FormatError, InputError, quote};
+use glint::field;
 use glint_core::field::{Field, KINDS};
 use glint_core::fixed::U4_28;
 use glint_core::light::{self, Background, Light, Lighting, MAX_LIGHTS, Material, parse_rgb};
@@ -49,7 +50,8 @@ impl FieldArguments {
     /// The field, if there is one.
     pub fn field(&self) -> Result<Option<Field>, InputError> {
         let parse = |text| {
-            Field::parse(text)
+            let text = field::with_files(text)?;
+            Field::parse(&text)
                 .map_err(|error| refusal("--field", "a distance field", escaped(error)))
         };
         self.name().map(parse).transpose()
@@ -125,7 +127,10 @@ impl FieldArguments {
 
 fn field_help() -> String {
     let kinds = KINDS.map(|(form, what)| format!("{form} ({what})"));
-    format!("A distance field instead of a model: {}", kinds.join(", "))
+    format!(
+        "A distance field instead of a model: {}. `spheres:FILE.json` reads [[cx,cy,cz,r],...]",
+        kinds.join(", ")
+    )
 }
 
 /// Reads one of `all` by its name.

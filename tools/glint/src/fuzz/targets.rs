@@ -49,8 +49,8 @@ impl Target {
         match self {
             Self::Upload | Self::Glm => &[],
             Self::Console => &[
-                "help", "view", "camera", "field", "box:", "stereo", "load", "size", "on", "off",
-                "depth", "json", "0x", "1e5", "\r", "\x1b[",
+                "help", "view", "camera", "field", "box:", "spheres:", "union:", "stereo", "load",
+                "size", "on", "off", "depth", "json", "0x", "1e5", "\r", "\x1b[",
             ],
             Self::Obj => &[
                 "v", "vn", "vt", "f", "usemtl", "mtllib", "newmtl", "Kd", "#", "\\\n", "1//1",

@@ -7,7 +7,7 @@ use glint_model::march::{self, FieldOptions, Setup, State, Surface};
 
 use super::metrics::{self, Accuracy, Expected, Outcome, Quantiles, accuracy};
 use super::{Face, Field, Sphere, views};
-use crate::camera::{Camera, Size};
+use crate::camera::{Camera, Size, length};
 
 /// What a ray of the model comes to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,6 +56,18 @@ pub fn marched(setup: &Setup, ray: &march::Ray, end: &march::Outcome) -> Marched
                 Surface::Round { .. } => {
                     let normal = setup.normal(ray, end).expect("it is round");
                     (Face::Round, normal.map(f64::from))
+                }
+                Surface::Blended {
+                    axis,
+                    positive,
+                    share,
+                    ..
+                } => {
+                    let round = setup.normal(ray, end).expect("it is round").map(f64::from);
+                    let share = f64::from(share) / 256.0;
+                    let mut normal = round.map(|part| part / length(round) * share);
+                    normal[usize::from(axis)] += (1.0 - share) * if positive { 1.0 } else { -1.0 };
+                    (Face::Round, normal)
                 }
             };
             let hit = Outcome::Hit {
@@ -153,9 +165,12 @@ impl Field {
                     radius: number(radius),
                 }])
             }
-            Scene::Union { flat, round } => {
-                let member = |scene: Scene| Box::new(Self::of(&scene));
-                Self::Union(member(flat.into()), member(round.into()))
+            Scene::Union { flat, round, blend } => {
+                let [a, b] = [flat.into(), round.into()].map(|scene| Box::new(Self::of(&scene)));
+                match number(blend) {
+                    0.0 => Self::Union(a, b),
+                    k => Self::SmoothUnion { k, a, b },
+                }
             }
         }
     }
@@ -249,6 +264,8 @@ pub fn rounds(size: (u32, u32)) -> Vec<Subject> {
         "moving:0.375,0.75,60",
         "union:menger:3+moving:0.5,1,60",
         "union:box:0.5,0.25,1+sphere:0.625",
+        "smooth:0.25,box:1,1,0.25+sphere:0.625",
+        "smooth:0.1,menger:3+moving:0.5,1,60",
     ];
     let target = [0.015625, 0.0, 0.03125];
     let views = [

@@ -123,7 +123,10 @@ fn random_rays_in_all_fields() {
             &FIELDS[..],
             &ROUND,
             &UNIONS,
-            &["union:box:1,0.5,0.25+moving:0.25,1"],
+            &[
+                "union:box:1,0.5,0.25+moving:0.25,1",
+                "smooth:0.2,box:1,0.5,0.25+moving:0.25,1",
+            ],
         ]
         .concat(),
     );

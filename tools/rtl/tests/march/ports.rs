@@ -46,13 +46,15 @@ pub fn ray(place: Place, ray: &Ray) -> Bits {
         .with(87, PLACE_BITS, place.number())
 }
 
-/// Where a ray has come to, as the end of one says. What does not count is 0: surface and slope without a hit, and t of a ray
-/// that was given up.
+/// Where a ray has come to, as the end of one says. What does not count is 0: surface and slope without a hit, t of a ray
+/// that was given up, a face behind a sphere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct End {
     pub state: u64,
     pub round: bool,
     pub surface: u64,
+    pub face: u64,
+    pub share: u64,
     pub t: u64,
     pub steps: u64,
     pub length: u64,
@@ -67,10 +69,18 @@ impl End {
             State::Hit(surface) => (1, Some(surface), outcome.t.into()),
             State::Undecided => (2, None, 0),
         };
+        let number = surface.and_then(Surface::number);
+        let face = surface.and_then(Surface::face);
+        let share = surface.map_or(0, Surface::share);
         Self {
             state,
-            round: surface.is_some_and(Surface::is_round),
-            surface: surface.map_or(0, |surface| surface.code().into()),
+            round: number.is_some(),
+            surface: number.or(face).unwrap_or(0).into(),
+            face: face
+                .filter(|_| number.is_some() && share != 255)
+                .unwrap_or(0)
+                .into(),
+            share: share.into(),
             t,
             steps: outcome.steps.min(255).into(),
             length: ray.length.into(),
@@ -83,11 +93,20 @@ impl End {
     pub fn of(item: &Bits) -> (Place, Self) {
         let state = item.field(25, 2);
         let if_hit = |value| if state == 1 { value } else { 0 };
+        let round = if_hit(item.field(87, 1)) == 1;
+        let share = if round { item.field(142, 8) } else { 0 };
         let end = Self {
             slope: if_hit(item.field(0, 10)),
             gap: item.field(10, 12),
             surface: if_hit(item.field(22, 3)),
-            round: if_hit(item.field(87, 1)) == 1,
+            round,
+            // Nothing of it is to be seen beside a whole sphere.
+            face: if round && share != 255 {
+                item.field(150, 3)
+            } else {
+                0
+            },
+            share,
             state,
             steps: item.field(27, 8),
             t: if state == 2 { 0 } else { item.field(35, 23) },
@@ -103,7 +122,11 @@ pub fn direction(item: &Bits) -> [i32; 3] {
 }
 
 fn solid(setup: &Setup) -> Bits {
-    let all = Bits::default().with(105, 1, u8::from(setup.beside.is_some()));
+    let blend = setup.blend();
+    let all = Bits::default()
+        .with(105, 1, u8::from(setup.beside.is_some()))
+        .with(106, 17, blend.inverse)
+        .with(123, 17, blend.width);
     let all = setup.balls().map_or(all, |balls| {
         all.with(100, 3, balls.count as u64 - 1)
             .with(103, 1, u8::from(balls.repeated))
@@ -241,6 +264,8 @@ pub fn end(place: Place, ray: &Ray, outcome: &Outcome) -> Bits {
         state,
         round,
         surface,
+        face,
+        share,
         t,
         steps,
         length,
@@ -260,6 +285,8 @@ pub fn end(place: Place, ray: &Ray, outcome: &Outcome) -> Bits {
         .with(88, 18, ray.direction[0])
         .with(106, 18, ray.direction[1])
         .with(124, 18, ray.direction[2])
+        .with(142, 8, share)
+        .with(150, 3, face)
 }
 
 fn colour([r, g, b]: [u8; 3]) -> u64 {

@@ -24,11 +24,14 @@ pub const ROUND: [&str; 8] = [
 ];
 
 /// What has faces and is round too.
-pub const UNIONS: [&str; 4] = [
+pub const UNIONS: [&str; 7] = [
     "union:menger:4+sphere:0.75",
     "union:menger:2+moving:0.25,1,-75",
     "union:menger:3+spheres:1,1,1,0.5;-1,0,0,0.25;0,0,0,0.125",
     "union:menger:1+spheres:0,0,1.5,0.5;8,-8,8,3.5",
+    "smooth:0.25,menger:2+sphere:1",
+    "smooth:0.5,menger:3+spheres:1,1,1,0.5;-1,0,0,0.25;0,0,0,0.125",
+    "smooth:0.01,menger:1+moving:1,0.5,30",
 ];
 
 /// Every field without anything round.

@@ -20,7 +20,7 @@ use crate::{Told, read, send};
 const PATIENCE_MS: u64 = 4000;
 
 /// Every kind of field.
-const FIELDS: [&str; 12] = [
+const FIELDS: [&str; 13] = [
     "menger:4",
     "menger:6",
     "union:menger:2+spheres:0.75,0.75,0.75,0.5;-0.5,1,0,0.25",
@@ -31,6 +31,7 @@ const FIELDS: [&str; 12] = [
     "spheres:0,0,0,0.75;1,0.25,0.5,0.5;-0.75,-0.5,0.75,0.25",
     "planes:0.9",
     "union:box:1,0.5,0.25+moving:0.5,0.75,100",
+    "smooth:0.3,menger:1+sphere:1.2",
     "moving:0.5,0.75,-60",
     "sphere:1",
 ];

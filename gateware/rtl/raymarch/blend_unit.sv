@@ -1,0 +1,88 @@
+// The union of what is flat and what is round, with a fillet between them or without (docs/formats.md, "Unions").
+//
+//   a, b ─▶ a − b ─▶ h = max(0, k − |a − b|) ─▶ w = h/2k ─▶ min(a, b) − h·w/2
+//
+// Latency 8 clocks, throughput a point a clock, no handshake; `solid` holds. `takes_round` says which of the two is the nearer one, or
+// the only one. `nearest` goes through.
+
+`default_nettype none
+
+module blend_unit (
+    input  wire                         clk,
+    input  wire march_pkg::solid_t      solid,
+    input  wire signed [21:0]           flat_distance,
+    input  wire [2:0]                   flat_surface,
+    input  wire march_pkg::nearest_t    known,
+    input  wire                         takes_round,
+    output logic signed [21:0]          distance,
+    output logic                        round,
+    output logic [2:0]                  surface,
+    output logic [2:0]                  face,
+    output logic [7:0]                  share,
+    output march_pkg::nearest_t         nearest
+);
+    // 1: how far apart they are. 2: how much of the fillet is left. 5: the farther one's weight. 8: the distance.
+    logic signed [22:0] apart_1;
+    logic [21:0]        away_1;
+    logic [17:0]        left_1;
+    logic signed [21:0] least_1, least_5;
+    logic [16:0]        h_2, h_5, width;
+    logic signed [34:0] product_5;
+    logic [16:0]        weight_5;
+    logic               round_5, blends;
+    logic [16:0]        share_5;
+    logic [7:0]         share_6;
+    logic signed [39:0] sum_8;
+
+    assign width  = solid.flat_too ? solid.blend_width : '0;
+    assign blends = width != '0;
+    // Of a negative difference it is one less than that is large.
+    assign away_1 = apart_1[21:0] ^ {22{apart_1[22]}};
+    assign left_1 = {1'b0, width} + {1'b1, ~away_1[16:0]} + 18'(!apart_1[22]);
+
+    always_ff @(posedge clk) begin
+        apart_1 <= flat_distance - $signed(known.distance);
+        least_1 <= takes_round ? known.distance : flat_distance;
+        h_2     <= left_1[17] || away_1[21:17] != '0 ? '0 : left_1[16:0];
+    end
+
+    multiply_add #(.BITS(35)) weigh (
+        .clk, .enable(1'b1), .a({8'b0, h_2}), .b({1'b0, solid.blend_inverse}), .c('0), .p(product_5)
+    );
+    assign weight_5 = product_5[28:12];
+
+    delay #(.WIDTH(17), .CLOCKS(3)) h_waits (.clk, .enable(1'b1), .in(h_2), .out(h_5));
+    delay #(.WIDTH(22), .CLOCKS(6)) least_waits (.clk, .enable(1'b1), .in(least_1), .out(least_5));
+    delay #(.WIDTH(1), .CLOCKS(5)) which (.clk, .enable(1'b1), .in(takes_round), .out(round_5));
+
+    // Rounded down: −h·w and not h·w is what is shifted.
+    multiply_add #(.BITS(40)) subtract (
+        .clk, .enable(1'b1), .a(-25'({8'b0, h_5})), .b({1'b0, weight_5}), .c({least_5[21], least_5, 17'b0}), .p(sum_8)
+    );
+    assign distance = sum_8[38:17];
+
+    // Of 2^16: more than half of it is the nearer one's.
+    assign share_5 = round_5 ? 17'h1_0000 - weight_5 : weight_5;
+    always_ff @(posedge clk) share_6 <= share_5[15:8] | {8{share_5[16]}} | {8{!blends}};
+    delay #(.WIDTH(8), .CLOCKS(2)) share_waits (.clk, .enable(1'b1), .in(share_6), .out(share));
+
+    // With a fillet everything is round; without one, what has been taken.
+    logic [2:0]          flat_7;
+    logic                round_7;
+    march_pkg::nearest_t known_7;
+
+    delay #(.WIDTH(march_pkg::NEAREST_BITS), .CLOCKS(7)) known_waits (.clk, .enable(1'b1), .in(known), .out(known_7));
+    delay #(.WIDTH(3), .CLOCKS(7)) flat_waits (.clk, .enable(1'b1), .in(flat_surface), .out(flat_7));
+    delay #(.WIDTH(1), .CLOCKS(2)) which_still (.clk, .enable(1'b1), .in(round_5), .out(round_7));
+
+    always_ff @(posedge clk) begin
+        round   <= round_7 || blends;
+        surface <= round_7 || blends ? known_7.number : flat_7;
+        face    <= flat_7;
+        nearest <= known_7;
+    end
+
+    wire _unused = &{1'b0, solid, product_5[34:29], product_5[11:0], share_5[7:0], sum_8[39], sum_8[16:0]};
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,40 @@
+//! Fields from the command line and from files.
+
+use crate::error::{FormatError, InputError};
+use crate::formats::read_file;
+use glint_core::field::MAX_SPHERES;
+use std::borrow::Cow;
+use std::path::Path;
+
+/// Puts the spheres of a file into a field as it is typed: `spheres:FILE.json`, alone or in a union, becomes
+/// `spheres:X,Y,Z,R;...`. Anything else stays as it is.
+///
+/// # Errors
+/// The file cannot be read, or is not what [`spheres`] takes.
+pub fn with_files(text: &str) -> Result<Cow<'_, str>, InputError> {
+    const KIND: &str = "spheres:";
+    let Some(at) = text.find(KIND).filter(|_| text.ends_with(".json")) else {
+        return Ok(text.into());
+    };
+    let (kind, file) = text.split_at(at + KIND.len());
+    let list = spheres(&read_file(Path::new(file))?)
+        .map_err(|error| error.in_file(file.escape_debug().to_string()))?;
+    Ok(format!("{kind}{list}").into())
+}
+
+/// Reads spheres, `[[cx,cy,cz,r],...]` in world units, and writes them as they are typed.
+///
+/// # Errors
+/// It is not such JSON, or has no sphere or more than [`MAX_SPHERES`]. Their numbers are checked with the field.
+pub fn spheres(bytes: &[u8]) -> Result<String, FormatError> {
+    let list: Vec<[f64; 4]> = serde_json::from_slice(bytes).map_err(|error| {
+        let found = error.to_string().escape_debug().to_string();
+        FormatError::whole("[[cx,cy,cz,r],...]", found)
+    })?;
+    if list.is_empty() || list.len() > MAX_SPHERES {
+        let expected = format!("1 to {MAX_SPHERES} spheres");
+        return Err(FormatError::whole(expected, list.len().to_string()));
+    }
+    let typed = |numbers: [f64; 4]| numbers.map(|x| x.to_string()).join(",");
+    Ok(list.into_iter().map(typed).collect::<Vec<_>>().join(";"))
+}
