@@ -1,0 +1,101 @@
+//! The pictures of docs/gallery.md are what the commands beside them make, and every field has one.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use glint_core::field::KINDS;
+
+/// The most bytes of all pictures together.
+const MOST: u64 = 300_000;
+
+fn docs() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs")
+}
+
+/// The arguments of each `glint …` of the page, which may go on behind a `\`.
+fn commands() -> Vec<Vec<String>> {
+    let page = std::fs::read_to_string(docs().join("gallery.md")).expect("the page");
+    let page = page.replace("\\\n", " ");
+    let commands = page.lines().filter_map(|line| line.strip_prefix("glint "));
+    commands
+        .map(|line| line.split_whitespace().map(str::to_owned).collect())
+        .collect()
+}
+
+/// What stands behind an option.
+fn value<'a>(command: &'a [String], option: &str) -> &'a str {
+    let at = command.iter().position(|word| word == option);
+    let value = at.and_then(|at| command.get(at + 1));
+    value.unwrap_or_else(|| panic!("no {option} in {command:?}"))
+}
+
+fn pixels(path: &Path) -> Vec<u8> {
+    let file = std::fs::File::open(path).unwrap_or_else(|error| panic!("{path:?}: {error}"));
+    let mut reader = png::Decoder::new(std::io::BufReader::new(file))
+        .read_info()
+        .expect("a PNG");
+    let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];
+    reader.next_frame(&mut pixels).expect("a picture");
+    pixels
+}
+
+/// Makes every picture, in place of the one that is there with `GLINT_UPDATE` in the environment.
+#[test]
+fn the_pictures_are_what_their_commands_make() {
+    let update = std::env::var_os("GLINT_UPDATE").is_some();
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("gallery");
+    std::fs::create_dir_all(&folder).expect("the build's own folder");
+    let root = docs().join("..");
+    let mut bytes = 0;
+    for command in commands() {
+        let shown = root.join(value(&command, "--out"));
+        let made = if update {
+            shown.clone()
+        } else {
+            folder.join("made.png")
+        };
+        let stats = folder.join("stats.json");
+        let output = Command::new(env!("CARGO_BIN_EXE_glint"))
+            .args(command.iter().map(|word| {
+                if word == value(&command, "--out") {
+                    made.as_os_str()
+                } else {
+                    word.as_ref()
+                }
+            }))
+            .arg("--stats")
+            .arg(&stats)
+            .current_dir(&root)
+            .output()
+            .expect("the program runs");
+        let error = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{command:?}: {error}");
+        let stats = std::fs::read(&stats).expect("the counts");
+        let stats: serde_json::Value = serde_json::from_slice(&stats).expect("JSON");
+        assert_eq!(
+            stats["undecided"], 0,
+            "{command:?}: rays that were given up show"
+        );
+        assert!(
+            pixels(&made) == pixels(&shown),
+            "{}: `GLINT_UPDATE=1 cargo test -p glint --test gallery` makes it anew",
+            shown.display()
+        );
+        bytes += std::fs::metadata(&shown).expect("a file").len();
+    }
+    assert!(bytes < MOST, "{bytes} bytes of pictures");
+}
+
+#[test]
+fn every_field_has_a_picture() {
+    let commands = commands();
+    for (form, _) in KINDS {
+        let kind = form.split(':').next().unwrap_or(form);
+        let shows =
+            |command: &Vec<String>| value(command, "--field").split(':').next() == Some(kind);
+        assert!(
+            commands.iter().any(shows),
+            "docs/gallery.md has no picture of {kind}"
+        );
+    }
+}
