@@ -1,7 +1,8 @@
 """Tests of the gateware that need no SoC: modules on their benches, lint, and the Urbana's generated files.
 
     python gateware/tests/run.py           runs everything, one line a test; ends with 1 if anything failed
-    python gateware/tests/run.py --models  builds what the tests in tools/rtl need instead
+    python gateware/tests/run.py --models [NAME ...]
+                                           builds what the tests in tools/rtl need instead, or only these modules of it
     python gateware/tests/run.py --size NAME
                                            prints what a module, or `soc`, costs on the FPGA instead, as JSON:
                                            `cargo xtask resources` makes tables of it
@@ -90,11 +91,11 @@ def print_size(name):
     return False
 
 
-def build_models():
-    """Builds the modules that are tested from Rust and returns the number of those that do not build."""
+def build_models(names):
+    """Builds the modules that are tested from Rust, or those named, and returns the number of those that do not build."""
     report = Report()
     for module in MODULES:
-        if not module.bench:
+        if not module.bench and (not names or module.top in names):
             report.check(module.top, lambda: models.build(module))
     return report.failures
 
@@ -103,13 +104,14 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     what = parser.add_mutually_exclusive_group()
     what.add_argument("--size", metavar="NAME", help="print a size instead")
-    what.add_argument("--models", action="store_true", help="build what the tests in tools/rtl need instead")
+    what.add_argument("--models", nargs="*", metavar="NAME", choices=[module.top for module in MODULES],
+                      help="build what the tests in tools/rtl need instead, or only these modules of it")
     arguments = parser.parse_args()
     logging.disable(logging.INFO) # LiteX describes all it does
     if arguments.size:
         failed = print_size(arguments.size)
-    elif arguments.models:
-        failed = build_models()
+    elif arguments.models is not None:
+        failed = build_models(arguments.models)
     else:
         failed = test()
     sys.exit(1 if failed else 0)

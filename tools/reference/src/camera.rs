@@ -132,6 +132,27 @@ impl Camera {
         }
     }
 
+    /// This camera turned about its eye by yaw to the right, then pitch downwards, then roll, in degrees, as
+    /// [`View::look`] turns the one that looks along y.
+    #[must_use]
+    pub fn turned(&self, angles: Vector) -> Self {
+        let [(sy, cy), (sp, cp), (sr, cr)] = angles.map(|angle| angle.to_radians().sin_cos());
+        // Right, up and forward by those of this camera.
+        let right = [cy, 0.0, -sy];
+        let up = [sp * sy, cp, sp * cy];
+        let forward = [cp * sy, -sp, cp * cy];
+        let rolled = |a: f64, b: f64| [0, 1, 2].map(|i: usize| a * right[i] + b * up[i]);
+        let world = |[x, y, z]: Vector| {
+            [0, 1, 2].map(|i: usize| x * self.u[i] - y * self.v[i] + z * self.n[i])
+        };
+        Self {
+            u: world(rolled(cr, sr)),
+            v: world(rolled(sr, -cr)),
+            n: world(forward),
+            ..*self
+        }
+    }
+
     /// The view with the nearest numbers.
     ///
     /// # Errors

@@ -18,13 +18,23 @@ pub fn demo(arguments: &[String]) -> Result<()> {
     tool("glint", "glint", "demo", arguments)
 }
 
-/// Builds everything and makes the page `name` of the error-against-run-time report.
+/// Builds everything and makes the page `name` of the error-against-run-time report; for the raymarcher's that is the SoC
+/// with four lanes as well, and the raymarcher alone.
 ///
 /// # Errors
 /// When a build or a measurement fails.
 pub fn report(name: &str, arguments: &[String]) -> Result<()> {
     bootstrap::bootstrap()?;
     gateware::build(Board::Virtual)?;
+    if name == "raymarch" {
+        gateware::build_sponge_beside()?;
+        run::step(
+            "the raymarcher alone",
+            Command::new(paths::venv_program("python"))
+                .args(["gateware/tests/run.py", "--models", "raymarcher"])
+                .current_dir(paths::root()),
+        )?;
+    }
     firmware::build(&["peers"])?;
     tool("glint-reference", "report", name, arguments)
 }

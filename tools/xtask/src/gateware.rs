@@ -54,11 +54,23 @@ pub fn build(board: Board) -> Result<()> {
 /// # Errors
 /// As [`build`].
 pub fn build_with(board: Board, options: &[&str]) -> Result<()> {
-    generate(board, options)?;
+    let folder = board.folder();
+    generate(board, &folder, options)?;
     if board == Board::Virtual {
-        verilate(Waveforms::Without)?;
+        verilate(&folder, Waveforms::Without)?;
     }
     Ok(())
+}
+
+/// Builds the virtual board with the four lanes of `--sponge` in `target/gateware/virtual-sponge`, beside the build that is
+/// there for all.
+///
+/// # Errors
+/// As [`build`].
+pub fn build_sponge_beside() -> Result<()> {
+    let folder = Board::Virtual.folder().with_file_name("virtual-sponge");
+    generate(Board::Virtual, &folder, &["--sponge"])?;
+    verilate(&folder, Waveforms::Without)
 }
 
 /// Builds the virtual board's second library, which can write waveforms and is slower.
@@ -66,14 +78,14 @@ pub fn build_with(board: Board, options: &[&str]) -> Result<()> {
 /// # Errors
 /// As [`build`].
 pub fn build_with_waveforms() -> Result<()> {
-    generate(Board::Virtual, &[])?;
-    verilate(Waveforms::With)
+    let folder = Board::Virtual.folder();
+    generate(Board::Virtual, &folder, &[])?;
+    verilate(&folder, Waveforms::With)
 }
 
 /// Runs LiteX: Verilog, BIOS, `csr.json` and `soc.svd`.
-fn generate(board: Board, options: &[&str]) -> Result<()> {
+fn generate(board: Board, folder: &Path, options: &[&str]) -> Result<()> {
     let root = paths::root();
-    let folder = board.folder();
     let gateware = root.join("gateware");
     let inputs = fingerprint(
         &[
@@ -87,14 +99,17 @@ fn generate(board: Board, options: &[&str]) -> Result<()> {
     if is_current(&stamp, &inputs) {
         return Ok(());
     }
-    fs::create_dir_all(&folder).with_context(|| format!("creating {}", folder.display()))?;
+    fs::create_dir_all(folder).with_context(|| format!("creating {}", folder.display()))?;
     run::step(
-        &format!("SoC and BIOS ({})", board.name()),
+        &format!(
+            "SoC and BIOS ({})",
+            [&[board.name()], options].concat().join(" ")
+        ),
         Command::new(paths::venv_program("python"))
             .args(["-m", "glint_soc", "--board", board.name(), "--output"])
-            .arg(&folder)
+            .arg(folder)
             .args(options)
-            .current_dir(&folder)
+            .current_dir(folder)
             .env("PYTHONPATH", gateware)
             .env("PYTHONDONTWRITEBYTECODE", "1"),
     )
@@ -112,9 +127,8 @@ enum Waveforms {
 /// The top module of the virtual board's Verilog.
 const TOP: &str = "glint_virtual";
 
-/// Runs Verilator and g++ over what [`generate`] left for the virtual board.
-fn verilate(waveforms: Waveforms) -> Result<()> {
-    let folder = Board::Virtual.folder();
+/// Runs Verilator and g++ over what [`generate`] left for a virtual board.
+fn verilate(folder: &Path, waveforms: Waveforms) -> Result<()> {
     let harness = paths::root().join("tools/virtual-board/soc");
     let (objects, library) = match waveforms {
         Waveforms::Without => ("verilated", "libglint_soc.so"),

@@ -7,6 +7,7 @@
 //! - [`metrics`]: how far a picture is from the reference.
 //! - [`marched`]: pictures of Glint's raymarcher, to be compared.
 //! - [`variant`]: other ways to march.
+//! - [`verilated`]: what pictures take of the raymarcher itself.
 //!
 //! A ray that only touches a solid, or lies in the plane of one of its faces, may hit or miss it.
 
@@ -18,6 +19,7 @@ pub mod metrics;
 mod solids;
 mod trace;
 pub mod variant;
+pub mod verilated;
 pub mod views;
 
 pub use trace::Unconverged;

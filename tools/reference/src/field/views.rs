@@ -32,11 +32,30 @@ pub fn camera(eye: Vector, target: Vector) -> Camera {
     Camera::looking_at(eye, target, HALF_WIDTH, NEAR)
 }
 
+/// Where a head turns that looks around for a second: yaw to the right, pitch downwards and roll in degrees, which begin
+/// with none.
+///
+/// # Panics
+/// When `look-around.csv`, which has the milliseconds too, is damaged.
+pub fn path() -> Vec<Vector> {
+    let rows = include_str!("look-around.csv").lines().skip(1);
+    rows.map(|row| {
+        let numbers: Vec<f64> = row.split(',').flat_map(str::parse).collect();
+        let [_, yaw, pitch, roll] = numbers[..] else {
+            panic!("look-around.csv: expected a time and three angles, found {row}");
+        };
+        [yaw, pitch, roll]
+    })
+    .collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::camera::{Size, dot};
     use crate::field::Field;
+    use glint_core::camera::View;
+    use glint_core::fixed::{Q32_32, Turns};
 
     #[test]
     fn every_view_starts_in_the_open_and_shows_the_sponge() {
@@ -64,6 +83,24 @@ mod tests {
                 });
                 let shown = shown.count();
                 assert!(shown > 500, "{name} at depth {depth}");
+            }
+        }
+    }
+    #[test]
+    fn a_turned_camera_is_the_free_camera() {
+        let ahead = Camera::looking_at([0.0; 3], [0.0, 1.0, 0.0], HALF_WIDTH, NEAR);
+        let path = path();
+        assert_eq!((path.len(), path[0]), (8, [0.0; 3]));
+        for angles in path {
+            let [yaw, pitch, roll] =
+                angles.map(|angle| Turns::from_degrees(Q32_32::from_num(angle)));
+            let free =
+                View::look([Q32_32::ZERO; 3], yaw, pitch, roll).expect("an eye at the origin");
+            let (free, turned) = (Camera::from(&free), ahead.turned(angles));
+            for (found, wanted) in [(turned.u, free.u), (turned.v, free.v), (turned.n, free.n)] {
+                for (a, b) in found.into_iter().zip(wanted) {
+                    assert!((a - b).abs() < 1e-6, "{angles:?}: {found:?}, {wanted:?}");
+                }
             }
         }
     }

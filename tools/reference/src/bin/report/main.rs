@@ -6,7 +6,9 @@ mod cycles;
 mod gouraud;
 mod page;
 mod plot;
+mod rates;
 mod raymarch;
+mod soc;
 mod table;
 mod triangle;
 

@@ -1,5 +1,7 @@
-//! The page `raymarch.md`: how far the raymarcher's pictures are from exact hits, for how many evaluations of the field.
+//! The page `raymarch.md`: how far the raymarcher's pictures are from exact hits, how many of them there are a second, and what
+//! both depend on.
 
+use std::cell::RefCell;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -10,18 +12,20 @@ use glint_reference::field::Field;
 use glint_reference::field::marched::{self, Marched, Measured, Subject};
 use glint_reference::field::metrics::{Accuracy, Expected, Outcome};
 use glint_reference::field::variant::{Method, Norm, Taps, entry};
+use glint_reference::field::verilated::Raymarcher;
+use indicatif::ProgressBar;
 use serde::Serialize;
 
-use crate::in_workspace;
 use crate::plot::{self, Diagram, Point};
 use crate::table::{Provenance, write_csv};
+use crate::{in_workspace, progress_bar, rates};
 
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Print the rows as JSON instead of a table
     #[arg(long)]
     json: bool,
-    /// Only pictures of 320x180, without the diagrams (seconds instead of a minute)
+    /// Only the errors of pictures of 320x180: neither frames a second nor diagrams (seconds instead of some minutes)
     #[arg(long)]
     quick: bool,
     /// Folder for raymarch.md and its tables and diagrams [default: docs/report, or target/report with --quick]
@@ -150,9 +154,20 @@ struct Trial {
     depth_max: Option<f64>,
     wrong_faces: f64,
     evaluations: f64,
+    /// Of the raymarcher's clock, a picture; nothing where only software draws so.
+    cycles: Option<f64>,
     /// What is asked and not met.
     failed: String,
     commit: String,
+}
+
+impl Trial {
+    /// Evaluations a clock and lane of the raymarcher, if it drew.
+    fn rate(&self) -> Option<f64> {
+        let rays = f64::from(SMALL.0 * SMALL.1);
+        self.cycles
+            .map(|cycles| self.evaluations * rays / cycles / f64::from(Raymarcher::LANES))
+    }
 }
 
 /// A diagram with its table.
@@ -162,6 +177,7 @@ struct Study {
     /// What is varied, and what it shows.
     text: &'static str,
     error: fn(&Trial) -> f64,
+    cost: fn(&Trial) -> Option<f64>,
     trials: Vec<Trial>,
 }
 
@@ -169,15 +185,19 @@ struct Study {
 struct Bench<'a> {
     subjects: &'a [Subject],
     expected: Vec<Expected>,
+    raymarcher: RefCell<Raymarcher>,
+    bar: ProgressBar,
     commit: &'a str,
 }
 
 impl<'a> Bench<'a> {
-    fn new(subjects: &'a [Subject], commit: &'a str) -> Self {
+    fn new(subjects: &'a [Subject], bar: ProgressBar, commit: &'a str) -> Self {
         let expected = subjects.iter().flat_map(|subject| &subject.expected);
         Self {
             subjects,
             expected: expected.copied().collect(),
+            raymarcher: RefCell::default(),
+            bar,
             commit,
         }
     }
@@ -190,6 +210,7 @@ impl<'a> Bench<'a> {
         added: u32,
         draw: impl Fn(&Subject) -> Vec<Marched>,
     ) -> Trial {
+        self.bar.set_message(format!("{family}, {config}"));
         let found: Vec<Marched> = self.subjects.iter().flat_map(draw).collect();
         let measured = Measured::new(&self.expected, &found);
         let accuracy = measured.accuracy;
@@ -206,15 +227,22 @@ impl<'a> Bench<'a> {
             depth_max: accuracy.depth.map(|depth| depth.max),
             wrong_faces: accuracy.wrong_faces,
             evaluations: measured.cost() + (hits as f64 * f64::from(added)) / found.len() as f64,
+            cycles: None,
             failed: missed(&accuracy, 0).join(" "),
             commit: self.commit.to_owned(),
         }
     }
 
-    /// Draws them by the model.
+    /// Draws them by the model, and by the raymarcher if it can.
     fn model(&self, family: &str, config: String, options: &FieldOptions) -> Trial {
         let mut trial = self.trial(family, config, 0, |subject| subject.picture(options));
         trial.shipped = *options == FieldOptions::default();
+        if options.fraction == FieldOptions::default().fraction {
+            let mut raymarcher = self.raymarcher.borrow_mut();
+            let pictures = self.subjects.iter();
+            let clocks = pictures.map(|subject| raymarcher.draw(&subject.setup(options)).clocks);
+            trial.cycles = Some(clocks.sum::<u64>() as f64 / self.subjects.len() as f64);
+        }
         trial
     }
 
@@ -277,6 +305,11 @@ fn in_f64(threshold: u32) -> Method {
 const DEPTH_P99: &str = "error of the depth that 1 of 100 exceeds, in world units";
 const DEPTH_MEDIAN: &str = "error of the depth that 1 of 2 exceeds, in world units";
 const EVALUATIONS: &str = "evaluations a ray";
+const CYCLES: &str = "cycles a picture, two lanes";
+
+fn evaluations(trial: &Trial) -> Option<f64> {
+    Some(trial.evaluations)
+}
 
 fn p99(trial: &Trial) -> f64 {
     trial.depth_p99.unwrap_or(0.0)
@@ -314,6 +347,7 @@ fn fractions(bench: &Bench) -> Study {
                Directions keep their 17 bits. With the same threshold more than 12 bits change the median of the depth, by a few millionths, \
                and nothing else: what is wrong at edges is the threshold's doing, and a finer one costs evaluations whatever the bits.",
         error: |trial| trial.depth_median.unwrap_or(0.0),
+        cost: evaluations,
         trials: same.chain(fitting).collect(),
     }
 }
@@ -331,11 +365,12 @@ fn caps(bench: &Bench) -> Study {
         diagram: Diagram {
             title: "Evaluations after which a ray is given up",
             across: "part of the masks not in common",
-            up: EVALUATIONS,
+            up: CYCLES,
         },
         text: "What is given up counts as no hit. The last rays to end run along faces: a smaller cap gives up more of them and saves \
                hardly any evaluations.",
         error: |trial| 1.0 - trial.iou,
+        cost: |trial| trial.cycles,
         trials: trials.into(),
     }
 }
@@ -361,10 +396,11 @@ fn thresholds(bench: &Bench) -> Study {
         diagram: Diagram {
             title: "Thresholds at which a ray ends",
             across: DEPTH_P99,
-            up: EVALUATIONS,
+            up: CYCLES,
         },
         text: "The threshold in steps of 2^−12 field units, and the part of the distance gone that is added to it.",
         error: p99,
+        cost: |trial| trial.cycles,
         trials: trials.collect(),
     }
 }
@@ -406,6 +442,7 @@ fn norms(bench: &Bench) -> Study {
                distances. Rays of Euclidean length 1 take a fifth more evaluations and are no better for it, and the model is \
                where its f64 twin is.",
         error: p99,
+        cost: evaluations,
         trials,
     }
 }
@@ -443,6 +480,7 @@ fn ends(bench: &Bench) -> Study {
                cube around the sponge, and not before it by what ten bits of a reciprocal leave. Errors below 1e-6, which field units \
                do not resolve, are drawn as 1e-6.",
         error: |trial| p99(trial).max(1e-6),
+        cost: evaluations,
         trials: trials.collect(),
     }
 }
@@ -485,6 +523,7 @@ fn normals(bench: &Bench) -> Study {
                four of forward differences. They put right less than a tenth of the wrong faces: the others are where the ray has ended in \
                the wrong place.",
         error: |trial| trial.wrong_faces,
+        cost: evaluations,
         trials,
     }
 }
@@ -510,13 +549,27 @@ pub fn report(arguments: &Arguments) -> Result<()> {
     } else {
         print!("{}", table(&rows)?);
     }
+    let rates = if arguments.quick {
+        vec![]
+    } else {
+        rates::measure(&provenance.commit)?
+    };
+    if !arguments.quick && !arguments.json {
+        print!("\n{}", rates::table(&rates)?);
+    }
     let studies = if arguments.quick {
         vec![]
     } else {
-        let bench = Bench::new(&small, &provenance.commit);
-        [fractions, caps, thresholds, norms, ends, normals]
-            .map(|study| study(&bench))
-            .into()
+        let all = [fractions, caps, thresholds, norms, ends, normals];
+        let bar = progress_bar(all.len() as u64)?;
+        let bench = Bench::new(&small, bar.clone(), &provenance.commit);
+        let studies = all.map(|study| {
+            let studied = study(&bench);
+            bar.inc(1);
+            studied
+        });
+        bar.finish_and_clear();
+        studies.into()
     };
     let out = match &arguments.out {
         Some(out) => out.clone(),
@@ -529,8 +582,12 @@ pub fn report(arguments: &Arguments) -> Result<()> {
     std::fs::create_dir_all(&out)
         .with_context(|| format!("cannot make the folder {}", out.display()))?;
     write_csv(&rows, &out.join("raymarch.csv"))?;
+    if !rates.is_empty() {
+        write_csv(&rates, &out.join("raymarch-rates.csv"))?;
+    }
     studies.iter().try_for_each(|study| write(study, &out))?;
-    std::fs::write(out.join("raymarch.md"), page(&rows, &studies, &provenance)?)
+    let page = page(&rows, &rates, &studies, &provenance)?;
+    std::fs::write(out.join("raymarch.md"), page)
         .with_context(|| format!("cannot write raymarch.md to {}", out.display()))?;
     eprintln!("wrote raymarch.md and its tables to {}", out.display());
     Ok(())
@@ -545,7 +602,7 @@ fn write(study: &Study, out: &Path) -> Result<()> {
             family: trial.family.clone(),
             label: trial.config.clone(),
             error: (study.error)(trial),
-            cost: Some(trial.evaluations),
+            cost: (study.cost)(trial),
             shipped: trial.shipped,
         })
         .collect();
@@ -592,7 +649,12 @@ fn table(rows: &[Row]) -> Result<String> {
     Ok(text)
 }
 
-fn page(rows: &[Row], studies: &[Study], provenance: &Provenance) -> Result<String> {
+fn page(
+    rows: &[Row],
+    rates: &[rates::Row],
+    studies: &[Study],
+    provenance: &Provenance,
+) -> Result<String> {
     let Tuning {
         threshold,
         footprint,
@@ -629,12 +691,38 @@ fn page(rows: &[Row], studies: &[Study], provenance: &Provenance) -> Result<Stri
          this kind. Smaller ones are on faces that a ray meets flat, where it ends the threshold before them. Undecided are rays that run along a face, whose steps are as short as the face is near: few where the sponge is \
          looked at, many towards the horizon of fields without end.\n",
     );
+    if !rates.is_empty() {
+        writeln!(
+            text,
+            "\n## Frames a second\n\n\
+             The whole SoC by its counters, with LiteDRAM and the scan-out at work, at the very setting of the errors above and in the same \
+             views; each picture was compared with the model's, bit for bit. A frame *alone* counts everything from the first register that the \
+             firmware writes to the end that it sees, *back to back* means frames that follow each other without a wait for the screen, as which the \
+             slowest pose of each view was drawn: frames a second, and evaluations, are of these. With two eyes (0.03 beside the camera, which see \
+             the same at 1.5) the camera turns about its place as a head that looks around, in the poses of \
+             [look-around.csv](../../tools/reference/src/field/look-around.csv), which were written by hand. Two lanes are the default gateware, four that \
+             of `cargo xtask gateware --sponge`. What was asked and is not met is bold. All poses are in [raymarch-rates.csv](raymarch-rates.csv).\n\n{}\n\
+             Evaluations a clock and lane are over whole frames, with their beginnings and ends and what the program does between them. There is one ray a \
+             clock, so lanes wait where rays take fewer evaluations than there are lanes.",
+            rates::table(rates)?
+        )?;
+    }
     if !studies.is_empty() {
-        text.push_str(
+        let trials = studies.iter().flat_map(|study| &study.trials);
+        let rates: Vec<f64> = trials.filter_map(Trial::rate).collect();
+        writeln!(
+            text,
             "\n## What it depends on\n\n\
              Each configuration draws the sponge in the four views at 320×180, of which the figures are taken together. What Glint uses \
-             is ringed.\n",
-        );
+             is ringed. Cycles are those of a picture, the mean of the four, on the verilated raymarcher alone, with {} lanes; \
+             its pixels were compared with the model's, bit for bit, and the errors are those of the same pictures. What only software \
+             draws so has evaluations and no cycles: in the {} configurations that the raymarcher drew it made {:.2} to {:.2} \
+             evaluations a clock and lane.",
+            Raymarcher::LANES,
+            rates.len(),
+            rates.iter().copied().fold(f64::INFINITY, f64::min),
+            rates.iter().copied().fold(0.0, f64::max),
+        )?;
     }
     for study in studies {
         writeln!(
@@ -669,12 +757,12 @@ fn failures(study: &Study) -> Result<String> {
     }
     let mut text = String::from(
         "Those that miss something that is asked:\n\n\
-         | | | IoU | undecided | depth: median, p99 | wrong faces | evaluations a ray | missed |\n|---|---|---|---|---|---|---|---|\n",
+         | | | IoU | undecided | depth: median, p99 | wrong faces | evaluations a ray | cycles | missed |\n|---|---|---|---|---|---|---|---|---|\n",
     );
     for trial in failed {
         writeln!(
             text,
-            "| {} | {} | {:.6} | {} | {}, {} | {:.2} % | {:.2} | {} |",
+            "| {} | {} | {:.6} | {} | {}, {} | {:.2} % | {:.2} | {} | {} |",
             trial.family,
             trial.config,
             trial.iou,
@@ -683,6 +771,9 @@ fn failures(study: &Study) -> Result<String> {
             shown(trial.depth_p99),
             100.0 * trial.wrong_faces,
             trial.evaluations,
+            trial
+                .cycles
+                .map_or(String::new(), |cycles| format!("{cycles:.0}")),
             trial.failed,
         )?;
     }

@@ -1,10 +1,7 @@
 //! The page `triangle.md`: the triangle engine on the whole SoC, with LiteDRAM and scan-out running.
 
-use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::PathBuf;
-use std::sync::{Mutex, PoisonError};
-use std::thread;
 
 use anyhow::{Context, Result, ensure};
 use glint::board::{SimulatedBoard, built_firmware};
@@ -20,6 +17,7 @@ use glint_core::console::Backend;
 use serde::Serialize;
 
 use crate::in_workspace;
+use crate::soc::{self, Bench, CLOCKS};
 use crate::table::Provenance;
 
 #[derive(clap::Args)]
@@ -37,9 +35,6 @@ pub struct Arguments {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
-
-/// The clock that the targets in frames a second are for, and the faster one.
-const CLOCKS: [f64; 2] = [81.25e6, 100e6];
 
 /// What is asked of a scene.
 #[derive(Clone, Copy)]
@@ -197,32 +192,11 @@ pub fn report(arguments: &Arguments) -> Result<()> {
             .as_ref()
             .is_none_or(|text| case.name.contains(text.as_str()))
     };
-    let cases = Mutex::new(CASES.iter().filter(wanted).enumerate());
-    let work = || -> Result<Vec<(usize, Row)>> {
-        let mut rows = Vec::new();
-        loop {
-            let next = cases.lock().unwrap_or_else(PoisonError::into_inner).next();
-            let Some((number, case)) = next else {
-                return Ok(rows);
-            };
-            eprintln!("{} at {}x{} …", case.name, case.size.0, case.size.1);
-            let row = measure(&firmware, case, arguments.quick, &provenance.commit)?;
-            rows.push((number, row));
-        }
-    };
-    // Two boards at a time: a simulation keeps one core busy.
-    let mut rows = thread::scope(|scope| {
-        let other = scope.spawn(work);
-        let mut rows = work()?;
-        rows.extend(
-            other
-                .join()
-                .map_err(|_| anyhow::anyhow!("a board has failed"))??,
-        );
-        anyhow::Ok(rows)
+    let cases: Vec<_> = CASES.iter().filter(wanted).collect();
+    let rows = soc::two_at_a_time(&cases, |case| {
+        eprintln!("{} at {}x{} …", case.name, case.size.0, case.size.1);
+        measure(&firmware, case, arguments.quick, &provenance.commit)
     })?;
-    rows.sort_by_key(|(number, _)| *number);
-    let rows: Vec<_> = rows.into_iter().map(|(_, row)| row).collect();
     if arguments.json {
         println!("{}", serde_json::to_string_pretty(&rows)?);
     } else {
@@ -273,7 +247,7 @@ fn measure(firmware: &[u8], case: &Case, quick: bool, commit: &str) -> Result<Ro
     // Both frame buffers hold such a frame then, of which only what differs is written.
     renderer.look(&scene.view)?;
     let alone = renderer.look(&scene.view)?;
-    let together = bench(&mut renderer)?;
+    let together = Bench::measure(&mut renderer, "triangle")?;
     let cpu = if quick {
         None
     } else {
@@ -281,38 +255,6 @@ fn measure(firmware: &[u8], case: &Case, quick: bool, commit: &str) -> Result<Ro
         renderer.show(&scene, Route::Memory, &mut |_, _| {})?.cycles
     };
     row(case, commit, &expected.stats, &alone, &together, cpu)
-}
-
-/// What many frames that follow each other took, by the names of the console's line.
-struct Bench(BTreeMap<String, f64>);
-
-impl Bench {
-    /// Of one frame.
-    fn frame(&self, name: &str) -> Result<f64> {
-        let value = |name: &str| {
-            self.0
-                .get(name)
-                .with_context(|| format!("bench triangle: no {name} in {:?}", self.0))
-        };
-        Ok(value(name)? / value("frames")?)
-    }
-}
-
-fn bench(renderer: &mut Renderer<SimulatedBoard>) -> Result<Bench> {
-    let lines = renderer.console().command("bench triangle")?;
-    let line = lines
-        .iter()
-        .find_map(|line| line.strip_prefix("bench triangle "))
-        .with_context(|| format!("bench triangle: no such line in {lines:?}"))?;
-    let words: Vec<&str> = line.split_whitespace().collect();
-    words
-        .chunks(2)
-        .map(|pair| match pair {
-            [name, value] => Ok((name.to_string(), value.parse()?)),
-            _ => anyhow::bail!("bench triangle: expected names and numbers, found {line:?}"),
-        })
-        .collect::<Result<_>>()
-        .map(Bench)
 }
 
 fn row(

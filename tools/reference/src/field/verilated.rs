@@ -1,0 +1,139 @@
+//! The raymarcher itself, verilated: what a picture takes of it.
+
+use glint_model::descriptor::band_rows;
+use glint_model::march::{Palette, Setup};
+use glint_rtl::{Module, Port};
+
+// The raymarcher's tests use the rest.
+#[allow(dead_code)]
+#[path = "../../../rtl/tests/march/ports.rs"]
+mod ports;
+
+use ports::{Pixel, Place, pixel, set_lane, set_paint, set_rays};
+
+/// What a group of pixels consists of, in the order of [`Pixel`].
+const GROUP: [&str; 7] = ["eye", "row", "line", "column", "mask", "code", "colour"];
+
+/// The raymarcher for every field, alone: bands are open at once, and every pixel is taken as it comes.
+pub struct Raymarcher {
+    module: Module,
+    group: [Port; GROUP.len()],
+    /// What was counted before.
+    counted: Taken,
+}
+
+/// What a picture took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Taken {
+    /// Clocks in which it was drawn.
+    pub clocks: u64,
+    /// Evaluations of the field.
+    pub evaluations: u64,
+}
+
+impl Raymarcher {
+    /// Its lanes.
+    pub const LANES: u32 = 2;
+
+    /// A raymarcher out of reset.
+    ///
+    /// # Panics
+    /// When it has not been built.
+    #[must_use]
+    pub fn new() -> Self {
+        let mut module = Module::new("raymarcher", 1);
+        let group = GROUP.map(|name| module.port(&format!("group_{name}")));
+        let ready = module.port("group_ready");
+        module.set(ready, 1);
+        Self {
+            module,
+            group,
+            counted: Taken::default(),
+        }
+    }
+
+    /// Draws a picture.
+    ///
+    /// # Panics
+    /// When a pixel is not the model's.
+    pub fn draw(&mut self, setup: &Setup) -> Taken {
+        let palette = Palette::default();
+        set_lane(&mut self.module, setup);
+        set_rays(&mut self.module, setup);
+        set_paint(&mut self.module, setup, &palette);
+        self.set("size", u64::from(setup.width / 640));
+        let [valid, done] = ["group_valid", "band_done"].map(|name| self.module.port(name));
+        let lines = band_rows(setup.width);
+        let eyes = if setup.stereo.is_some() { 2 } else { 1 };
+        self.pulse("start");
+        for band in 0..setup.height / lines {
+            let mut left = lines * setup.width * eyes;
+            self.set("band_open", 1);
+            while !self.module.is_high(done) {
+                if self.module.is_high(valid) {
+                    let found = self.pixel();
+                    let place = Place {
+                        odd: band % 2 == 1,
+                        line: found.line as u32,
+                        column: (8 * found.column) as u32 + found.mask.trailing_zeros(),
+                        eye: found.eye as usize,
+                    };
+                    let ray = setup.ray(place.eye, place.column, band * lines + place.line);
+                    let wanted = pixel(setup, &palette, place, &ray, &setup.march(&ray));
+                    assert_eq!(found, wanted, "in band {band} of {setup:?}");
+                    left -= 1;
+                }
+                self.module.clock();
+            }
+            assert_eq!(
+                left, 0,
+                "pixels that are missing in band {band} of {setup:?}"
+            );
+            self.set("band_open", 0);
+            self.pulse("band_next");
+        }
+        // Counters are some clocks late.
+        (0..4).for_each(|_| self.module.clock());
+        let count = |name| self.module.value(self.module.port(name));
+        let counted = Taken {
+            clocks: count("clocks_busy"),
+            evaluations: count("evaluations"),
+        };
+        let before = std::mem::replace(&mut self.counted, counted);
+        Taken {
+            clocks: counted.clocks - before.clocks,
+            evaluations: counted.evaluations - before.evaluations,
+        }
+    }
+
+    fn pixel(&self) -> Pixel {
+        let [eye, row, line, column, mask, code, colour] =
+            self.group.map(|port| self.module.value(port));
+        Pixel {
+            eye,
+            row,
+            line,
+            column,
+            mask,
+            code,
+            colour,
+        }
+    }
+
+    fn set(&mut self, name: &str, value: u64) {
+        let port = self.module.port(name);
+        self.module.set(port, value);
+    }
+
+    fn pulse(&mut self, name: &str) {
+        self.set(name, 1);
+        self.module.clock();
+        self.set(name, 0);
+    }
+}
+
+impl Default for Raymarcher {
+    fn default() -> Self {
+        Self::new()
+    }
+}
