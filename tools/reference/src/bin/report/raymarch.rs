@@ -18,7 +18,7 @@ use serde::Serialize;
 
 use crate::plot::{self, Diagram, Point};
 use crate::table::{Provenance, write_csv};
-use crate::{in_workspace, progress_bar, rates};
+use crate::{in_workspace, progress_bar, rates, soc};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -530,6 +530,16 @@ fn normals(bench: &Bench) -> Study {
 
 pub fn report(arguments: &Arguments) -> Result<()> {
     let provenance = Provenance::find();
+    let out = match &arguments.out {
+        Some(out) => out.clone(),
+        None => in_workspace(if arguments.quick {
+            "target/report"
+        } else {
+            "docs/report"
+        }),
+    };
+    std::fs::create_dir_all(&out)
+        .with_context(|| format!("cannot make the folder {}", out.display()))?;
     let small = marched::sponges(SMALL);
     let mut rows: Vec<Row> = Vec::new();
     let mut add = |subjects: &[Subject]| {
@@ -549,43 +559,25 @@ pub fn report(arguments: &Arguments) -> Result<()> {
     } else {
         print!("{}", table(&rows)?);
     }
-    let rates = if arguments.quick {
-        vec![]
-    } else {
-        rates::measure(&provenance.commit)?
-    };
-    if !arguments.quick && !arguments.json {
-        print!("\n{}", rates::table(&rates)?);
-    }
-    let studies = if arguments.quick {
-        vec![]
-    } else {
-        let all = [fractions, caps, thresholds, norms, ends, normals];
-        let bar = progress_bar(all.len() as u64)?;
-        let bench = Bench::new(&small, bar.clone(), &provenance.commit);
-        let studies = all.map(|study| {
-            let studied = study(&bench);
-            bar.inc(1);
-            studied
-        });
-        bar.finish_and_clear();
-        studies.into()
-    };
-    let out = match &arguments.out {
-        Some(out) => out.clone(),
-        None => in_workspace(if arguments.quick {
-            "target/report"
-        } else {
-            "docs/report"
-        }),
-    };
-    std::fs::create_dir_all(&out)
-        .with_context(|| format!("cannot make the folder {}", out.display()))?;
+    // What takes long is written as soon as it is there.
     write_csv(&rows, &out.join("raymarch.csv"))?;
-    if !rates.is_empty() {
+    let (mut rates, mut studies) = (vec![], vec![]);
+    if !arguments.quick {
+        rates = rates::measure(&provenance.commit)?;
         write_csv(&rates, &out.join("raymarch-rates.csv"))?;
+        if !arguments.json {
+            print!("\n{}", rates::table(&rates)?);
+        }
+        let all: [fn(&Bench) -> Study; 6] = [fractions, caps, thresholds, norms, ends, normals];
+        let bar = progress_bar(all.len() as u64)?;
+        studies = soc::two_at_a_time(&all, |study| {
+            let studied = study(&Bench::new(&small, bar.clone(), &provenance.commit));
+            write(&studied, &out)?;
+            bar.inc(1);
+            Ok(studied)
+        })?;
+        bar.finish_and_clear();
     }
-    studies.iter().try_for_each(|study| write(study, &out))?;
     let page = page(&rows, &rates, &studies, &provenance)?;
     std::fs::write(out.join("raymarch.md"), page)
         .with_context(|| format!("cannot write raymarch.md to {}", out.display()))?;

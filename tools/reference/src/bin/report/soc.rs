@@ -68,7 +68,7 @@ pub fn two_at_a_time<T: Sync, R: Send>(
         let other = scope.spawn(worker);
         let mut results = worker()?;
         let others = other.join();
-        results.extend(others.map_err(|_| anyhow::anyhow!("a board has failed"))??);
+        results.extend(others.map_err(|_| anyhow::anyhow!("the other half has failed"))??);
         anyhow::Ok(results)
     })?;
     results.sort_by_key(|(number, _)| *number);
