@@ -20,13 +20,14 @@ pub mod reciprocal;
 mod render;
 pub mod setup;
 pub mod shade;
+pub mod together;
 pub mod vertex;
 
 pub use frame::{DepthScale, FrameSetup};
 pub use glint_core::colour::Shading;
 pub use render::{
     Buffer, DrawnTriangle, Options, RenderError, SIZES, Stats, Target, clip_exceptions, render,
-    trace,
+    trace, trace_frame,
 };
 pub use vertex::{Projected, ScreenVertex};
 

@@ -51,6 +51,15 @@ impl Target<'_> {
         }
         Ok(())
     }
+
+    /// Whether it has the size that a frame's constants are made for.
+    pub(crate) fn check_size(&self, (width, height): (u32, u32)) -> Result<(), RenderError> {
+        if (self.width, self.height) == (width, height) {
+            Ok(())
+        } else {
+            Err(RenderError::Size { width, height })
+        }
+    }
 }
 
 /// How a frame is drawn.
@@ -140,22 +149,39 @@ pub fn trace(
     target: &mut Target,
     scratch: &mut [Projected],
     options: &Options,
-    mut show: impl FnMut(&DrawnTriangle),
+    show: impl FnMut(&DrawnTriangle),
 ) -> Result<Stats, RenderError> {
-    draw_frame(mesh, view, target, scratch, options, &mut show)
+    target.check()?;
+    let frame = FrameSetup::new(view, target.width, target.height, mesh.radius())?;
+    trace_frame(mesh, frame, target, scratch, options, show)
 }
 
-/// [`trace`], not generic: compiled here, once, and as this crate is optimised.
+/// Draws a mesh as [`trace`] does, by constants that were made for it.
+///
+/// # Errors
+/// [`RenderError`], also if the target has not the size of the constants; then nothing has been touched.
+pub fn trace_frame(
+    mesh: &Mesh,
+    frame: FrameSetup,
+    target: &mut Target,
+    scratch: &mut [Projected],
+    options: &Options,
+    mut show: impl FnMut(&DrawnTriangle),
+) -> Result<Stats, RenderError> {
+    draw_frame(mesh, frame, target, scratch, options, &mut show)
+}
+
+/// [`trace_frame`], not generic: compiled here, once, and as this crate is optimised.
 fn draw_frame(
     mesh: &Mesh,
-    view: &View,
+    frame: FrameSetup,
     target: &mut Target,
     scratch: &mut [Projected],
     options: &Options,
     show: &mut dyn FnMut(&DrawnTriangle),
 ) -> Result<Stats, RenderError> {
     target.check()?;
-    let frame = FrameSetup::new(view, target.width, target.height, mesh.radius())?;
+    target.check_size((frame.width, frame.height))?;
     let expected = mesh
         .chunks()
         .map(|chunk| chunk.vertex_count())
@@ -524,6 +550,8 @@ pub enum RenderError {
     },
     /// The eye is too far from the origin for a mesh.
     Eye([Q32_32; 3]),
+    /// Two eyes, where there is a mesh in the field.
+    Stereo,
 }
 
 impl fmt::Display for RenderError {
@@ -563,6 +591,9 @@ impl fmt::Display for RenderError {
                     f,
                     "eye ({x}, {y}, {z}): expected within {MAX_EYE} of the origin for a mesh"
                 )
+            }
+            Self::Stereo => {
+                f.write_str("two eyes: expected a field alone, or one eye for a mesh in a field")
             }
         }
     }

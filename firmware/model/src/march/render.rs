@@ -52,9 +52,7 @@ pub fn render_field(
 ) -> Result<FieldStats, RenderError> {
     target.check()?;
     let &Setup { width, height, .. } = setup;
-    if (target.width, target.height) != (width, height) {
-        return Err(RenderError::Size { width, height });
-    }
+    target.check_size((width, height))?;
     let mut stats = FieldStats::default();
     let mut look = |eye, x, y| {
         let ray = setup.ray(eye, x, y);
