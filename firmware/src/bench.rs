@@ -15,7 +15,6 @@ use litex_pac::cpu;
 
 use crate::commands::{self, Refusal};
 use crate::machine::Machine;
-use crate::scene::Counts;
 use crate::terminal::Terminal;
 
 #[cfg(feature = "peers")]
@@ -77,15 +76,13 @@ fn frames<'l>(machine: &mut Machine) -> Result<(), Refusal<'l>> {
             break painted.map_err(Refusal::Engine)?;
         }
     };
-    let kernel = match painted.stats {
-        Counts::Triangles(_) => "triangle",
-        Counts::Rays(_) => "field",
-    };
+    let rays = painted.stats.rays;
+    let kernel = if rays.is_some() { "field" } else { "triangle" };
     terminal.print(format_args!(
         "bench {kernel} frames {FRAMES} cycles {}",
         painted.cycles
     ));
-    if let Counts::Rays(stats) = painted.stats {
+    if let Some(stats) = rays {
         for (name, value) in commands::ray_values(&stats) {
             terminal.print(format_args!(" {name} {value}"));
         }

@@ -1,15 +1,14 @@
 //! Where frames are drawn: two frames with their display, one depth buffer, room for vertices, and who draws.
 
 use glint_core::console::Backend;
-use glint_core::field::Field;
 use glint_core::mesh::Mesh;
-use glint_model::march::{FieldStats, render_field};
-use glint_model::{Options, RenderError, Stats, Target};
+use glint_model::march::{Outcome, Ray, render_field};
+use glint_model::{FrameSetup, Options, RenderError, Stats, Target, trace_frame};
 use litex_hal::display::Display;
 use litex_pac::cpu;
 
 use crate::memory::Scratch;
-use crate::painter::{self, Marched, Painted, Painter, Triangles, What};
+use crate::painter::{self, Constants, Marched, Painted, Painter, Triangles, What};
 use crate::scene::{self, Counts, Drawn, Fallback, Scene};
 
 /// The frames and what drawing them needs.
@@ -30,7 +29,7 @@ const TRIANGLES_A_LOOK: u32 = 32;
 const PIXELS_A_LOOK: u32 = 16;
 
 impl Canvas {
-    /// Draws `mesh`, or the scene's field, as `scene` wants it, and shows it from the next vertical blanking on. Returns
+    /// Draws `mesh`, the scene's field, or both, as `scene` wants it, and shows it from the next vertical blanking on. Returns
     /// nothing while the engine is at work, and while the frame to draw on is still on the screen; `mesh` and `scene` have
     /// to stay the same then. What takes long calls `look` now and then.
     pub fn draw(
@@ -112,13 +111,7 @@ impl Canvas {
             depth: self.depth.get_mut(..pixels).unwrap_or_default(),
         };
         let start = cpu::cycles();
-        let result = match scene.field() {
-            Some(field) => draw_field(&marched(field, scene), &mut target, look).map(Counts::Rays),
-            None => {
-                let scratch = &mut self.scratch;
-                draw_mesh(mesh, scene, &mut target, scratch, look).map(Counts::Triangles)
-            }
-        };
+        let result = draw_all(&what(mesh, scene), &mut target, &mut self.scratch, look);
         let cycles = cpu::cycles() - start;
         Some(result.map(|stats| Drawn {
             cycles,
@@ -154,14 +147,43 @@ impl Canvas {
     }
 }
 
-/// Draws a mesh by the CPU.
-fn draw_mesh(
-    mesh: &Mesh,
-    scene: &Scene,
+/// Draws a frame by the CPU.
+fn draw_all(
+    what: &What,
     target: &mut Target,
     scratch: &mut Scratch,
     mut look: impl FnMut(),
+) -> Result<Counts, RenderError> {
+    let Constants { frame, field } = what.constants((target.width, target.height))?;
+    let triangles = match (what.triangles(), frame) {
+        (Some(triangles), Some(frame)) => {
+            Some(draw_mesh(triangles, frame, target, scratch, &mut look)?)
+        }
+        _ => {
+            target.depth.fill(0);
+            None
+        }
+    };
+    let mut rays = None;
+    if let Some((setup, palette)) = field {
+        let mut show = |x, _, _: &Ray, _: &Outcome| {
+            if x % PIXELS_A_LOOK == 0 {
+                look();
+            }
+        };
+        rays = Some(render_field(&setup, &palette, target, &mut show)?);
+    }
+    Ok(Counts { triangles, rays })
+}
+
+fn draw_mesh(
+    triangles: &Triangles,
+    frame: FrameSetup,
+    target: &mut Target,
+    scratch: &mut Scratch,
+    look: &mut impl FnMut(),
 ) -> Result<Stats, RenderError> {
+    let mesh = triangles.mesh;
     let vertices = mesh
         .chunks()
         .map(|chunk| chunk.vertex_count())
@@ -169,43 +191,42 @@ fn draw_mesh(
         .unwrap_or(0);
     let scratch = scratch.vertices(vertices);
     let options = Options {
-        cull: scene.cull(),
-        shading: scene.shading(),
+        cull: triangles.cull,
+        shading: triangles.shading,
         ..Options::default()
     };
-    glint_model::trace(mesh, scene.view(), target, scratch, &options, |triangle| {
+    trace_frame(mesh, frame, target, scratch, &options, |triangle| {
         if triangle.index % TRIANGLES_A_LOOK == 0 {
             look();
         }
     })
 }
 
-/// Draws a field by the CPU.
-fn draw_field(
-    marched: &Marched,
-    target: &mut Target,
-    mut look: impl FnMut(),
-) -> Result<FieldStats, RenderError> {
-    let setup = marched.setup((target.width, target.height))?;
-    target.depth.fill(0);
-    let palette = marched.palette(&setup);
-    render_field(&setup, &palette, target, &mut |x, _, _, _| {
-        if x % PIXELS_A_LOOK == 0 {
-            look();
-        }
-    })
-}
-
-/// The scene's field, and how it is drawn.
-fn marched<'a>(field: &'a Field, scene: &'a Scene) -> Marched<'a> {
-    Marched {
+/// What is to be drawn of a scene.
+fn what<'a>(mesh: &'a Mesh<'a>, scene: &'a Scene) -> What<'a> {
+    let triangles = Triangles {
+        mesh,
+        view: scene.view(),
+        cull: scene.cull(),
+        shading: scene.shading(),
+    };
+    let Some(field) = scene.field() else {
+        return What::Triangles(triangles);
+    };
+    let marched = Marched {
         field,
         view: scene.view(),
         stereo: scene.stereo(),
+        appearance: scene.appearance(),
+    };
+    if scene.with_mesh() {
+        What::Both(triangles, marched)
+    } else {
+        What::Field(marched)
     }
 }
 
-/// What the engine is to draw of a scene.
+/// Where the engine is to draw a scene.
 fn target<'a>(
     mesh: &'a Mesh<'a>,
     scene: &'a Scene,
@@ -213,17 +234,8 @@ fn target<'a>(
     depth: Option<&'a mut [u32]>,
 ) -> painter::Target<'a> {
     let [width, height] = scene.scale().size();
-    let what = match scene.field() {
-        Some(field) => What::Field(marched(field, scene)),
-        None => What::Triangles(Triangles {
-            mesh,
-            view: scene.view(),
-            cull: scene.cull(),
-            shading: scene.shading(),
-        }),
-    };
     painter::Target {
-        what,
+        what: what(mesh, scene),
         size: (width, height),
         colour,
         depth,

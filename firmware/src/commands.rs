@@ -8,6 +8,7 @@ use glint_core::camera::{View, ViewError};
 use glint_core::colour::Shading;
 use glint_core::console::{Backend, Command, ParseError, Size, write_help};
 use glint_core::fixed::Turns;
+use glint_core::light::MAX_LIGHTS;
 use glint_core::mesh::MeshError;
 use glint_core::wire::{Failure, Manifest, crc32};
 use glint_model::RenderError;
@@ -22,7 +23,7 @@ use crate::machine::{Job, Machine};
 use crate::models::{FIELDS, Model};
 use crate::scene::{Counts, Fallback, Painter, Scene, Sphere};
 use crate::terminal::Terminal;
-use crate::{bench, selftest, transfer};
+use crate::{appearance, bench, selftest, transfer};
 
 /// What a command leads to.
 pub enum Reply<'l> {
@@ -51,6 +52,12 @@ pub enum Refusal<'l> {
     NoUpload,
     /// There is no such renderer here.
     NoEngine,
+    /// Two eyes were asked for while a field is shown with the mesh in it.
+    StereoOfMesh,
+    /// The mesh in a field was asked for while two eyes look.
+    MeshInStereo,
+    /// There are as many lights as there may be.
+    Lights,
     /// What is to be measured is not shown.
     NotShown(&'l str),
     /// The engine could not draw.
@@ -106,6 +113,16 @@ impl Display for Refusal<'_> {
             Self::NoUpload => {
                 f.write_str("scene model: nothing has been uploaded, expected a `load` before")
             }
+            Self::StereoOfMesh => f.write_str(
+                "stereo: two eyes see a field without a mesh, expected `mesh off` before",
+            ),
+            Self::MeshInStereo => f.write_str(
+                "mesh: two eyes see a field without a mesh, expected `stereo off` before",
+            ),
+            Self::Lights => write!(
+                f,
+                "light: expected at most {MAX_LIGHTS}, `light default` takes them away"
+            ),
             Self::NotShown(kernel) => {
                 write!(
                     f,
@@ -181,9 +198,28 @@ pub fn execute<'l>(machine: &mut Machine, line: &'l str) -> Reply<'l> {
             Ok(())
         }
         Command::Stereo(Some(stereo)) => {
+            if stereo.is_some() && machine.scene.with_mesh() {
+                return Reply::Now(Err(Refusal::StereoOfMesh));
+            }
             machine.scene.set_stereo(stereo);
             Ok(())
         }
+        Command::Mesh(None) => {
+            let with_mesh = switch_name(machine.scene.with_mesh());
+            machine.terminal.print(format_args!("mesh {with_mesh}\n"));
+            Ok(())
+        }
+        Command::Mesh(Some(true)) if machine.scene.stereo().is_some() => Err(Refusal::MeshInStereo),
+        Command::Mesh(Some(with_mesh)) => {
+            machine.scene.set_with_mesh(with_mesh);
+            Ok(())
+        }
+        Command::Material(_)
+        | Command::Light(_)
+        | Command::Ambient(_)
+        | Command::Background(_)
+        | Command::Fog(_)
+        | Command::Occlusion(_) => appearance::execute(machine, &command),
         Command::Camera { r, theta, phi } => machine
             .scene
             .set_sphere(Sphere { r, theta, phi })
@@ -269,6 +305,10 @@ fn info<'l>(machine: &mut Machine, key: Option<&'l str>) -> Result<(), Refusal<'
     let (address, room) = (staging.as_ptr().addr(), staging.len());
     let mesh = models.mesh();
     let (field, model) = (scene.field(), models.shown().name());
+    let with_mesh = match field {
+        Some(_) if scene.with_mesh() => format_args!(" with {model}"),
+        _ => format_args!(""),
+    };
     let shown: &dyn Display = field.map_or(&model, |field| field);
     let [width, height] = scene.scale().size();
     let (frame, depth) = (canvas.display.front().as_ptr(), canvas.depth.as_ptr());
@@ -279,7 +319,7 @@ fn info<'l>(machine: &mut Machine, key: Option<&'l str>) -> Result<(), Refusal<'
         ("gateware_id", format_args!("{:#010x}", identity.gateware)),
         ("blocks", format_args!("{:#x}", identity.blocks)),
         ("clock", format_args!("{FREQUENCY}")),
-        ("scene", format_args!("{shown}")),
+        ("scene", format_args!("{shown}{with_mesh}")),
         ("vertices", format_args!("{}", mesh.vertex_count())),
         ("triangles", format_args!("{}", mesh.triangle_count())),
         ("size", format_args!("{width} {height}")),
@@ -316,7 +356,7 @@ fn scene<'l>(machine: &mut Machine, name: Option<&'l str>) -> Result<(), Refusal
     let Some(name) = name else {
         let field = scene.field();
         for model in Model::ALL {
-            let shown = field.is_none() && model == models.shown();
+            let shown = (field.is_none() || scene.with_mesh()) && model == models.shown();
             let state = match (shown, models.has(model)) {
                 (true, _) => "shown",
                 (_, true) => "there",
@@ -351,7 +391,7 @@ fn scene<'l>(machine: &mut Machine, name: Option<&'l str>) -> Result<(), Refusal
 }
 
 /// Prints what may be off.
-fn print_choice(terminal: &mut Terminal, name: &str, chosen: Option<impl Display>) {
+pub fn print_choice(terminal: &mut Terminal, name: &str, chosen: Option<impl Display>) {
     match chosen {
         Some(chosen) => terminal.print(format_args!("{name} {chosen}\n")),
         None => terminal.print(format_args!("{name} off\n")),
@@ -450,18 +490,24 @@ pub fn stats(machine: &mut Machine, json: bool) -> Result<(), Refusal<'static>> 
     let backend = backend_name(by);
     // There is room for them all.
     let _ = values.push(("cycles", drawn.cycles));
-    let _ = match drawn.stats {
-        Counts::Triangles(stats) => values.extend_from_slice(&[
+    let Counts { triangles, rays } = drawn.stats;
+    if let Some(stats) = triangles {
+        let _ = values.extend_from_slice(&[
             ("triangles_in", stats.triangles_in.into()),
             ("triangles_culled", stats.culled.into()),
             ("triangles_clipped", stats.clipped.into()),
             ("triangles_drawn", stats.drawn.into()),
             ("pixels_tested", stats.pixels_tested),
             ("pixels_covered", stats.pixels_covered),
-            ("pixels_drawn", stats.pixels_drawn),
-        ]),
-        Counts::Rays(stats) => values.extend_from_slice(&ray_values(&stats)),
-    };
+        ]);
+        // An engine counts the field's with them.
+        if rays.is_none() {
+            let _ = values.push(("pixels_drawn", stats.pixels_drawn));
+        }
+    }
+    if let Some(stats) = rays {
+        let _ = values.extend_from_slice(&ray_values(&stats));
+    }
     let _ = values.push(("clock", FREQUENCY.into()));
     if let Some(counters) = engine {
         let _ = values.extend_from_slice(&engine_values(&counters));
@@ -514,6 +560,11 @@ pub fn engine_values(counters: &Counters) -> [(&'static str, u64); 16] {
         ("cycles_flush", counters.flush),
     ]
     .map(|(name, value)| (name, value.into()))
+}
+
+/// A switch on the console.
+pub const fn switch_name(on: bool) -> &'static str {
+    if on { "on" } else { "off" }
 }
 
 /// A way of shading on the console.

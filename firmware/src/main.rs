@@ -13,6 +13,7 @@
 #![no_main]
 #![deny(unsafe_code)]
 
+mod appearance;
 mod bench;
 mod canvas;
 mod commands;

@@ -1,15 +1,16 @@
 //! Draws with the triangle engine: geometry, clipping of what the engine leaves to the program, raster; and with the raymarcher, whose
-//! fields are drawn in the raster pass.
+//! fields are drawn in the raster pass, after the triangles.
 
 use core::mem;
 
+use glint_core::appearance::Appearance;
 use glint_core::camera::View;
 use glint_core::field::Field;
 use glint_core::mesh::Mesh;
 use glint_core::stereo::Stereo;
 use glint_model::descriptor::{self, Descriptor, TABLE_WORDS, band_rows, list_word};
-use glint_model::march::{FieldOptions, Palette, Setup};
-use glint_model::{FrameSetup, Options, RenderError, Shading, Stats, clip_exceptions};
+use glint_model::march::{FieldOptions, FieldStats, Palette, Setup};
+use glint_model::{FrameSetup, Options, RenderError, Shading, Stats, clip_exceptions, together};
 use litex_hal::march::{self, Marcher};
 use litex_hal::triangle::{
     Counters, Engine, Fault, Geometry, Lists, Outcome, Prepared, Raster, Set,
@@ -60,6 +61,59 @@ pub enum What<'a> {
     Triangles(Triangles<'a>),
     /// A field.
     Field(Marched<'a>),
+    /// A mesh in a field.
+    Both(Triangles<'a>, Marched<'a>),
+}
+
+impl<'a> What<'a> {
+    /// The mesh, if there is one.
+    pub const fn triangles(&self) -> Option<&Triangles<'a>> {
+        match self {
+            Self::Triangles(triangles) | Self::Both(triangles, _) => Some(triangles),
+            Self::Field(_) => None,
+        }
+    }
+
+    /// The field, if there is one.
+    pub const fn marched(&self) -> Option<&Marched<'a>> {
+        match self {
+            Self::Field(marched) | Self::Both(_, marched) => Some(marched),
+            Self::Triangles(_) => None,
+        }
+    }
+
+    /// The constants of the frame.
+    ///
+    /// # Errors
+    /// It cannot be drawn.
+    pub fn constants(&self, size: (u32, u32)) -> Result<Constants, RenderError> {
+        let (frame, field) = match self {
+            Self::Triangles(Triangles { mesh, view, .. }) => {
+                let frame = FrameSetup::new(view, size.0, size.1, mesh.radius())?;
+                (Some(frame), None)
+            }
+            Self::Field(marched) => {
+                let options = marched.options();
+                let setup = Setup::new(marched.field, marched.view, size, &options)?;
+                (None, Some((setup, options.palette_for(&setup))))
+            }
+            Self::Both(Triangles { mesh, view, .. }, marched) => {
+                let (radius, options) = (mesh.radius(), marched.options());
+                let (frame, setup) =
+                    together::constants(view, size, radius, marched.field, &options)?;
+                (Some(frame), Some((setup, options.palette_for(&setup))))
+            }
+        };
+        Ok(Constants { frame, field })
+    }
+}
+
+/// The constants of a frame.
+pub struct Constants {
+    /// Of its mesh.
+    pub frame: Option<FrameSetup>,
+    /// Of its field, and its colours.
+    pub field: Option<(Setup, Palette)>,
 }
 
 /// A mesh, and how it is drawn.
@@ -84,27 +138,13 @@ pub struct Marched<'a> {
     pub view: &'a View,
     /// Two eyes, or one.
     pub stereo: Option<Stereo>,
+    /// How it looks.
+    pub appearance: &'a Appearance,
 }
 
 impl Marched<'_> {
-    /// Its constants.
-    ///
-    /// # Errors
-    /// The size is none.
-    pub fn setup(&self, size: (u32, u32)) -> Result<Setup, RenderError> {
-        Setup::new(self.field, self.view, size, &self.options())
-    }
-
-    /// Its colours.
-    pub fn palette(&self, setup: &Setup) -> Palette {
-        self.options().palette_for(setup)
-    }
-
     fn options(&self) -> FieldOptions {
-        FieldOptions {
-            stereo: self.stereo,
-            ..FieldOptions::of(self.field)
-        }
+        FieldOptions::new(self.field, self.appearance, self.stereo)
     }
 }
 
@@ -235,17 +275,15 @@ impl Painter {
         let step = match (self.stage, target.what) {
             (Stage::Idle, what) => {
                 self.mark_start();
-                let begun = match what {
-                    What::Triangles(triangles) => self.begin_geometry(&triangles, target.size),
-                    What::Field(marched) => self.begin_field(&marched, target),
-                };
-                return begun.err().map(Err);
+                return self.begin(&what, target).err().map(Err);
             }
-            (Stage::Geometry, What::Triangles(triangles)) => match self.engine.geometry() {
-                None => return self.watch(target),
-                Some(Ok(())) => self.clip(&triangles),
-                Some(fault) => fault,
-            },
+            (Stage::Geometry, What::Triangles(triangles) | What::Both(triangles, _)) => {
+                match self.engine.geometry() {
+                    None => return self.watch(target),
+                    Some(Ok(())) => self.clip(&triangles),
+                    Some(fault) => fault,
+                }
+            }
             (_, what) => match self.engine.raster() {
                 None => return self.watch(target),
                 Some(Ok(())) => {
@@ -281,17 +319,19 @@ impl Painter {
         let (start, counters) = self.start;
         let cycles = cpu::cycles() - start;
         let counters = self.engine.counters() - counters;
-        let stats = match (what, &self.marcher) {
-            (What::Field(_), Some(marcher)) => {
-                Counts::Rays((marcher.counters() - self.field_start).into())
-            }
-            _ => Counts::Triangles(Stats {
-                // The walker comes to a group of eight a clock.
-                pixels_tested: 8 * u64::from(counters.walking),
-                pixels_covered: counters.pixels_covered.into(),
-                pixels_drawn: counters.pixels_drawn.into(),
-                ..self.rooms[room].stats
-            }),
+        let field = self.marcher.as_ref().filter(|_| what.marched().is_some());
+        let field = field.map(|marcher| marcher.counters() - self.field_start);
+        let field_pixels = field.map_or(0, |field| field.pixels);
+        let triangles = what.triangles().map(|_| Stats {
+            // The walker comes to a group of eight a clock.
+            pixels_tested: 8 * u64::from(counters.walking),
+            pixels_covered: counters.pixels_covered.wrapping_sub(field_pixels).into(),
+            pixels_drawn: counters.pixels_drawn.into(),
+            ..self.rooms[room].stats
+        });
+        let stats = Counts {
+            triangles,
+            rays: field.map(FieldStats::from),
         };
         Painted {
             cycles,
@@ -300,35 +340,33 @@ impl Painter {
         }
     }
 
-    fn begin_geometry(&mut self, triangles: &Triangles, size: (u32, u32)) -> Result<(), Fallback> {
-        let frame = self.constants(triangles, size)?;
-        self.clear_field();
-        let prepared = self.prepare_geometry(triangles, frame, 0);
-        self.start_geometry(prepared);
-        self.stage = Stage::Geometry;
-        Ok(())
-    }
-
-    /// Frames are of meshes alone.
-    fn clear_field(&mut self) {
-        if let Some(marcher) = &mut self.marcher {
-            marcher.clear_field();
+    fn begin(&mut self, what: &What, target: &mut Target) -> Result<(), Fallback> {
+        let constants = self.constants(what, target.size)?;
+        self.set_field(constants.field.as_ref())?;
+        if let Some(triangles) = what.triangles() {
+            let prepared = self.prepare_geometry(triangles, &constants, 0)?;
+            self.start_geometry(prepared);
+            self.stage = Stage::Geometry;
+        } else {
+            self.start_raster(target, [None; 2]);
+            self.stage = Stage::Raster;
         }
-    }
-
-    fn begin_field(&mut self, marched: &Marched, target: &mut Target) -> Result<(), Fallback> {
-        let setup = marched.setup(target.size).map_err(fault_of)?;
-        self.set_field(marched, &setup)?;
-        self.start_raster(target, [None; 2]);
-        self.stage = Stage::Raster;
         Ok(())
     }
 
-    fn set_field(&mut self, marched: &Marched, setup: &Setup) -> Result<(), Fallback> {
-        let marcher = self.marcher.as_mut().ok_or(Fallback::Field(None))?;
-        marcher
-            .set_field(setup, &marched.palette(setup))
-            .map_err(|missing| Fallback::Field(Some(missing)))
+    /// Has a field drawn in the frames from now on, or none.
+    fn set_field(&mut self, field: Option<&(Setup, Palette)>) -> Result<(), Fallback> {
+        match (&mut self.marcher, field) {
+            (Some(marcher), Some((setup, palette))) => marcher
+                .set_field(setup, palette)
+                .map_err(|missing| Fallback::Field(Some(missing))),
+            (Some(marcher), None) => {
+                marcher.clear_field();
+                Ok(())
+            }
+            (None, Some(_)) => Err(Fallback::Field(None)),
+            (None, None) => Ok(()),
+        }
     }
 
     /// Draws a frame again and again, back to back: while one is rastered the next one's geometry is made. What is returned
@@ -339,8 +377,10 @@ impl Painter {
     /// As [`advance`](Self::advance).
     pub fn repeat(&mut self, target: &mut Target, count: u32) -> Result<Painted, Fallback> {
         match target.what {
-            What::Triangles(triangles) => self.repeat_mesh(&triangles, target, count),
-            What::Field(marched) => self.repeat_field(&marched, target, count),
+            What::Triangles(triangles) | What::Both(triangles, _) => {
+                self.repeat_mesh(&triangles, target, count)
+            }
+            What::Field(_) => self.repeat_field(target, count),
         }
     }
 
@@ -351,19 +391,20 @@ impl Painter {
         count: u32,
     ) -> Result<Painted, Fallback> {
         self.watch = Watch::default();
-        let frame = self.constants(triangles, target.size)?;
-        self.clear_field();
-        let mut prepared = self.prepare_geometry(triangles, frame, 0);
+        let what = target.what;
+        let mut now = self.constants(&what, target.size)?;
+        self.set_field(now.field.as_ref())?;
+        let mut prepared = self.prepare_geometry(triangles, &now, 0)?;
         for frame in 0..=count {
             self.start_geometry(prepared);
             // The next frame's, while the engine works.
-            let constants = self.constants(triangles, target.size)?;
+            let next = self.constants(&what, target.size)?;
             self.wait(Engine::geometry, target)?;
             if let Err(fault) = self.clip(triangles) {
                 return self.give_up(target, fault);
             }
             // It goes where the raster pass still reads.
-            prepared = self.prepare_geometry(triangles, constants, 1);
+            prepared = self.prepare_geometry(triangles, &next, 1)?;
             if frame > 0 {
                 self.wait(Engine::raster, target)?;
             }
@@ -373,29 +414,30 @@ impl Painter {
             if frame == count {
                 break;
             }
+            // Its registers hold while a raster pass runs.
+            if now.field.is_some() {
+                self.set_field(now.field.as_ref())?;
+            }
             self.start_raster(target, self.rooms[0].sets);
             // What is being drawn stays where it is.
             self.rooms.swap(0, 1);
+            now = next;
         }
-        Ok(self.painted(&target.what, 1))
+        Ok(self.painted(&what, 1))
     }
 
-    /// Registers hold while a field is drawn, so the constants of the next one wait in the program.
-    fn repeat_field(
-        &mut self,
-        marched: &Marched,
-        target: &mut Target,
-        count: u32,
-    ) -> Result<Painted, Fallback> {
-        let mut setup = marched.setup(target.size).map_err(fault_of)?;
+    /// The constants of the next frame wait in the program, as registers hold while a field is drawn.
+    fn repeat_field(&mut self, target: &mut Target, count: u32) -> Result<Painted, Fallback> {
+        let what = target.what;
+        let mut now = self.constants(&what, target.size)?;
         self.mark_start();
         for _ in 0..count {
-            self.set_field(marched, &setup)?;
+            self.set_field(now.field.as_ref())?;
             self.start_raster(target, [None; 2]);
-            setup = marched.setup(target.size).map_err(fault_of)?;
+            now = self.constants(&what, target.size)?;
             self.wait(Engine::raster, target)?;
         }
-        Ok(self.painted(&target.what, 0))
+        Ok(self.painted(&what, 0))
     }
 
     /// Waits for the end of a pass.
@@ -419,27 +461,23 @@ impl Painter {
     }
 
     /// The constants of a frame that the engine can draw.
-    fn constants(
-        &self,
-        triangles: &Triangles,
-        (width, height): (u32, u32),
-    ) -> Result<FrameSetup, Fault> {
-        if triangles.shading == Shading::Smooth && self.ability == Shading::Flat {
+    fn constants(&self, what: &What, size: (u32, u32)) -> Result<Constants, Fault> {
+        let shading = what.triangles().map(|triangles| triangles.shading);
+        if shading == Some(Shading::Smooth) && self.ability == Shading::Flat {
             return Err(Fault::Shading);
         }
-        let radius = triangles.mesh.radius();
-        FrameSetup::new(triangles.view, width, height, radius).map_err(fault_of)
+        what.constants(size).map_err(fault_of)
     }
 
     /// Prepares a geometry pass that goes into a room.
     fn prepare_geometry(
         &mut self,
         triangles: &Triangles,
-        frame: FrameSetup,
+        constants: &Constants,
         room: usize,
-    ) -> Prepared {
+    ) -> Result<Prepared, Fault> {
+        let frame = self.frame.insert(constants.frame.ok_or(Fault::Size)?);
         let width = frame.width;
-        let frame = self.frame.insert(frame);
         let room = &self.rooms[room];
         let pass = Geometry {
             mesh: triangles.mesh,
@@ -454,7 +492,7 @@ impl Painter {
             exceptions: address(room.exceptions),
             exception_limit: DESCRIPTORS as u32,
         };
-        self.engine.prepare_geometry(&pass, list_shift(width) as u8)
+        Ok(self.engine.prepare_geometry(&pass, list_shift(width) as u8))
     }
 
     fn start_geometry(&mut self, pass: Prepared) {

@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use glint_core::appearance::Appearance;
 use glint_core::camera::{View, ViewError};
 use glint_core::colour::Shading;
 use glint_core::console::Backend;
@@ -54,11 +55,11 @@ pub struct Drawn {
 
 /// What was counted of a frame.
 #[derive(Clone, Copy)]
-pub enum Counts {
-    /// Of a mesh.
-    Triangles(Stats),
-    /// Of a field.
-    Rays(FieldStats),
+pub struct Counts {
+    /// Of its mesh, if it has one.
+    pub triangles: Option<Stats>,
+    /// Of its field.
+    pub rays: Option<FieldStats>,
 }
 
 /// Who has drawn a frame.
@@ -100,7 +101,9 @@ impl fmt::Display for Fallback {
 /// The state that a frame shows.
 pub struct Scene {
     field: Option<Field>,
+    with_mesh: bool,
     stereo: Option<Stereo>,
+    appearance: Appearance,
     view: View,
     sphere: Sphere,
     scale: Scale,
@@ -121,7 +124,9 @@ impl Scene {
         let sphere = Sphere::START;
         Ok(Self {
             field: None,
+            with_mesh: false,
             stereo: None,
+            appearance: Appearance::default(),
             view: sphere.view()?,
             sphere,
             scale: Scale::Four,
@@ -134,7 +139,7 @@ impl Scene {
         })
     }
 
-    /// The distance field that is shown instead of the mesh.
+    /// The distance field that is shown, instead of the mesh or with it.
     pub const fn field(&self) -> Option<&Field> {
         self.field.as_ref()
     }
@@ -143,6 +148,28 @@ impl Scene {
     pub fn set_field(&mut self, field: Option<Field>) {
         self.changed |= self.field != field;
         self.field = field;
+    }
+
+    /// Whether a field is shown with the mesh in it.
+    pub const fn with_mesh(&self) -> bool {
+        self.with_mesh
+    }
+
+    /// Sets whether a field is shown with the mesh in it.
+    pub fn set_with_mesh(&mut self, with_mesh: bool) {
+        self.changed |= self.field.is_some() && self.with_mesh != with_mesh;
+        self.with_mesh = with_mesh;
+    }
+
+    /// How a field looks.
+    pub const fn appearance(&self) -> &Appearance {
+        &self.appearance
+    }
+
+    /// Changes how a field looks.
+    pub fn set_appearance(&mut self, appearance: Appearance) {
+        self.changed |= self.field.is_some() && self.appearance != appearance;
+        self.appearance = appearance;
     }
 
     /// The two eyes that look at a field.

@@ -9,6 +9,7 @@ extern crate alloc;
 #[cfg(test)]
 extern crate std;
 
+pub mod appearance;
 pub mod camera;
 pub mod colour;
 pub mod console;

@@ -26,7 +26,9 @@ const ONE: i32 = 1 << 14;
 /// A light that is infinitely far away.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Light {
-    /// The direction to it, of length 1: s1.14, to nearest.
+    /// The direction to it as it was given, of any length.
+    towards: [Q32_32; 3],
+    /// That of length 1: s1.14, to nearest.
     direction: [i16; 3],
     colour: Rgb,
 }
@@ -36,8 +38,8 @@ impl Light {
     ///
     /// # Errors
     /// The direction is 0.
-    pub fn new(direction: [Q32_32; 3], colour: Rgb) -> Result<Self, LightError<'static>> {
-        let magnitudes = direction.map(|x| x.to_bits().unsigned_abs());
+    pub fn new(towards: [Q32_32; 3], colour: Rgb) -> Result<Self, LightError<'static>> {
+        let magnitudes = towards.map(|x| x.to_bits().unsigned_abs());
         let largest = magnitudes.into_iter().max().unwrap_or(0);
         let Some(lead) = largest.checked_ilog2() else {
             return Err(LightError::Nowhere);
@@ -52,8 +54,9 @@ impl Light {
         });
         let length = scaled.map(|x| x * x).iter().sum::<u64>().isqrt();
         let unit = scaled.map(|x| ((x << 15) / length + 1) >> 1);
-        let signed = |i: usize| unit[i] as i16 * direction[i].signum().to_num::<i16>();
+        let signed = |i: usize| unit[i] as i16 * towards[i].signum().to_num::<i16>();
         Ok(Self {
+            towards,
             direction: [0, 1, 2].map(signed),
             colour,
         })
@@ -90,6 +93,26 @@ impl Light {
             Some(_) => Err(form),
             None => Self::new(direction, colour),
         }
+    }
+}
+
+/// As it is typed.
+impl fmt::Display for Light {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let [x, y, z] = self.towards;
+        write!(f, "{x},{y},{z},{}", Hexadecimal(self.colour))
+    }
+}
+
+/// A colour as [`parse_rgb`] reads it.
+#[derive(Clone, Copy, Debug)]
+pub struct Hexadecimal(pub Rgb);
+
+impl fmt::Display for Hexadecimal {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        self.0
+            .iter()
+            .try_for_each(|channel| write!(f, "{channel:02x}"))
     }
 }
 
@@ -146,12 +169,12 @@ impl Lighting {
     /// The sun, and the sky: every face has another brightness.
     pub fn day() -> Self {
         let sun = Light {
-            // (3, −5, 8), which is 9.9 long.
+            towards: [3, -5, 8].map(Q32_32::from_num),
             direction: [4_965, -8_275, 13_240],
             colour: [0xFF, 0xF4, 0xE0],
         };
         let sky = Light {
-            // (−2, 1, 2), which is 3 long.
+            towards: [-2, 1, 2].map(Q32_32::from_num),
             direction: [-10_923, 5_461, 10_923],
             colour: [0x30, 0x38, 0x48],
         };
@@ -216,6 +239,17 @@ impl Material {
         Self::Ivory,
         Self::Slate,
     ];
+
+    /// What they are called, in the same order.
+    pub const NAMES: [&'static str; Self::ALL.len()] = {
+        let mut names = [""; Self::ALL.len()];
+        let mut i = 0;
+        while i < names.len() {
+            names[i] = Self::ALL[i].name();
+            i += 1;
+        }
+        names
+    };
 
     /// What it is called.
     pub const fn name(self) -> &'static str {
@@ -286,6 +320,17 @@ pub enum Background {
 impl Background {
     /// All of them.
     pub const ALL: [Self; 2] = [Self::White, Self::Sky];
+
+    /// What they are called, in the same order.
+    pub const NAMES: [&'static str; Self::ALL.len()] = {
+        let mut names = [""; Self::ALL.len()];
+        let mut i = 0;
+        while i < names.len() {
+            names[i] = Self::ALL[i].name();
+            i += 1;
+        }
+        names
+    };
 
     /// What it is called.
     pub const fn name(self) -> &'static str {

@@ -6,7 +6,8 @@ use glint_core::console::{
     Backend, Command, Event, HISTORY, LINE_MAX, LineEditor, Size, write_help,
 };
 use glint_core::field::{Field, KINDS};
-use glint_core::fixed::{Q2_23, Q32_32, Turns};
+use glint_core::fixed::{Q2_23, Q32_32, Turns, U4_28};
+use glint_core::light::{Background, Light, Material};
 use glint_core::stereo::{Stereo, Tint};
 use proptest::prelude::*;
 
@@ -211,7 +212,7 @@ proptest! {
 
     #[test]
     fn no_arguments_upset_the_parser(
-        name in proptest::sample::select(&["field", "stereo", "camera", "view", "look", "orbit", "size", "load", "leds", "help"][..]),
+        name in proptest::sample::select(&["field", "stereo", "material", "light", "ambient", "fog", "camera", "view", "look", "orbit", "size", "load", "leds", "help"][..]),
         words in proptest::collection::vec("(box:)?[-+]?[0-9a-fx_.,e]{0,12}", 0..16),
     ) {
         let line = format!("{name} {}", words.join(" "));
@@ -264,6 +265,37 @@ fn every_command_is_understood() {
         "stereo 0.05,3,red-cyan",
         Command::Stereo(Some(Some(stereo))),
     );
+    assert_parses("mesh", Command::Mesh(None));
+    assert_parses("mesh on", Command::Mesh(Some(true)));
+    assert_parses("material", Command::Material(None));
+    for (name, material) in Material::NAMES.into_iter().zip(Material::ALL) {
+        assert_parses(
+            &format!("material {name}"),
+            Command::Material(Some(material)),
+        );
+    }
+    assert_parses("light", Command::Light(None));
+    assert_parses("light default", Command::Light(Some(None)));
+    let light = Light::new([1, -2, 3].map(Into::into), [0xFF, 0x80, 0x0A]).expect("a direction");
+    assert_parses("light 1,-2,3,ff800a", Command::Light(Some(Some(light))));
+    assert_parses("ambient", Command::Ambient(None));
+    assert_parses("ambient default", Command::Ambient(Some(None)));
+    assert_parses(
+        "ambient 00ff7f",
+        Command::Ambient(Some(Some([0, 0xFF, 0x7F]))),
+    );
+    assert_parses("background", Command::Background(None));
+    for (name, background) in Background::NAMES.into_iter().zip(Background::ALL) {
+        assert_parses(
+            &format!("background {name}"),
+            Command::Background(Some(background)),
+        );
+    }
+    assert_parses("fog", Command::Fog(None));
+    assert_parses("fog off", Command::Fog(Some(U4_28::ZERO)));
+    assert_parses("fog 0.25", Command::Fog(Some(U4_28::lit("0.25"))));
+    assert_parses("occlusion", Command::Occlusion(None));
+    assert_parses("occlusion off", Command::Occlusion(Some(false)));
     let camera = Command::Camera {
         r: Q32_32::lit("3.5"),
         theta: degrees(-90),
@@ -432,6 +464,23 @@ fn mistakes_are_named_with_their_place() {
         "stereo: ZERO 0.25: expected at least 0.5",
     );
     assert_refused(
+        "material wood",
+        "material: MATERIAL is \"wood\" (column 10): expected normal or clay or jade or sky or gold or ivory or slate",
+    );
+    assert_refused("light 1,2", "light: 1,2: expected X,Y,Z[,RRGGBB]");
+    assert_refused(
+        "light 0,0,0",
+        "light: direction 0,0,0: expected one that is not 0",
+    );
+    assert_refused(
+        "ambient fff",
+        "ambient: default|RRGGBB is \"fff\" (column 9): expected default or a colour RRGGBB",
+    );
+    assert_refused(
+        "fog 16",
+        "fog: off|DENSITY is \"16\" (column 5): expected off or a number from 0 to below 16",
+    );
+    assert_refused(
         &"\u{1}é".repeat(50),
         &format!(
             "\"{}...\" (column 1): expected a command, `help` lists them",
@@ -474,7 +523,7 @@ fn the_help_lists_every_command_and_how_it_is_used() {
             assert!(Command::parse(name).is_ok(), "{name}");
         }
     }
-    assert_eq!(list.lines().count(), 23);
+    assert_eq!(list.lines().count(), 30);
     let field = help(Some("field"));
     assert!(
         KINDS.iter().all(|(form, _)| field.contains(form)),

@@ -1,5 +1,6 @@
 //! Lights as they are typed, and what they make of faces.
 
+use glint_core::appearance::Appearance;
 use glint_core::fixed::Q32_32;
 use glint_core::light::{
     Background, Light, LightError, Lighting, MAX_LIGHTS, Material, Rgb, parse_rgb,
@@ -64,6 +65,19 @@ proptest! {
         }
     }
 
+    /// What is printed of a light is the same light.
+    #[test]
+    fn lights_come_back_bit_for_bit(
+        direction in [any::<i64>(), any::<i64>(), any::<i64>()],
+        shift in 0..63_u32,
+        colour in any::<Rgb>(),
+    ) {
+        if let Ok(light) = Light::new(direction.map(|x| Q32_32::from_bits(x >> shift)), colour) {
+            let text = light.to_string();
+            prop_assert_eq!(Light::parse(&text), Ok(light));
+        }
+    }
+
     #[test]
     fn no_text_upsets_the_parser(text in "[-+0-9.,a-f]{0,40}") {
         let _ = Light::parse(&text).map_err(|error| error.to_string());
@@ -112,9 +126,11 @@ fn the_lights_of_the_day_have_length_1() {
 
 #[test]
 fn lights_and_colours_are_read() {
-    let along_z = |colour| Light::new([0, 0, 1].map(Q32_32::from_num), colour);
-    assert_eq!(Light::parse("0,0,2.5"), along_z([0xFF; 3]));
-    assert_eq!(Light::parse("0,0,1e-5,ffC080"), along_z([255, 192, 128]));
+    let along_z = |z| [Q32_32::ZERO, Q32_32::ZERO, z];
+    let white = Light::new(along_z(Q32_32::lit("2.5")), [0xFF; 3]);
+    assert_eq!(Light::parse("0,0,2.5"), white);
+    let little = Light::new(along_z(Q32_32::lit("1e-5")), [255, 192, 128]);
+    assert_eq!(Light::parse("0,0,1e-5,ffC080"), little);
     for text in [
         "",
         "1,2",
@@ -138,10 +154,31 @@ fn lights_and_colours_are_read() {
 }
 
 #[test]
+fn what_is_not_said_of_light_follows_from_what_is() {
+    let gold = Appearance {
+        material: Material::Gold,
+        ..Appearance::default()
+    };
+    assert_eq!(Appearance::default().lighting(), Lighting::PLAIN);
+    assert_eq!(gold.lighting(), Lighting::day());
+    let dim = Appearance {
+        ambient: Some([1, 2, 3]),
+        ..gold.clone()
+    };
+    let Lighting { ambient, lights } = dim.lighting();
+    assert_eq!((ambient, lights), ([1, 2, 3], Lighting::day().lights));
+    let light = Light::parse("0,0,1").expect("a light");
+    let lit = Appearance {
+        lights: [light].into_iter().collect(),
+        ..gold
+    };
+    let Lighting { ambient, lights } = lit.lighting();
+    assert_eq!((ambient, &lights[..]), (Lighting::AMBIENT, &[light][..]));
+}
+
+#[test]
 fn names_are_different() {
-    let materials = Material::ALL.map(Material::name);
-    let backgrounds = Background::ALL.map(Background::name);
-    for names in [&materials[..], &backgrounds] {
+    for names in [&Material::NAMES[..], &Background::NAMES] {
         for (i, name) in names.iter().enumerate() {
             assert!(!names[..i].contains(name), "{name}");
         }

@@ -10,6 +10,7 @@
 //! [`Setup`] makes the constants of a frame, [`Ray`] is where a pixel's ray begins, [`Setup::march`] how it ends,
 //! [`paint()`] what it shows.
 
+mod appearance;
 mod blend;
 mod field;
 mod light;

@@ -1,47 +1,70 @@
-//! Rendering a mesh or a field, by the model on this machine or by a board.
+//! Rendering a mesh, a field, or a mesh in a field, by the model on this machine or by a board.
 
 use crate::board::{Board, BoardError};
 use crate::console::{self, Console, ConsoleError};
 use crate::picture::Frame;
 use crate::transfer::{self, Progress, TransferError};
+use glint_core::appearance::Appearance;
 use glint_core::camera::View;
 use glint_core::console::Backend;
 use glint_core::field::Field;
+use glint_core::light::Hexadecimal;
 use glint_core::mesh::{Mesh, MeshError};
+use glint_core::stereo::Stereo;
 use glint_core::wire::crc32;
 use glint_model::march::{FieldOptions, Setup, render_field};
-use glint_model::{DepthScale, FrameSetup, Options, Projected, RenderError, Shading, Target};
+use glint_model::{
+    DepthScale, FrameSetup, Options, Projected, RenderError, Shading, Target, together, trace_frame,
+};
 use serde::{Deserialize, Serialize};
 
-/// What is to be seen, and what only such a thing is told.
+/// A mesh, and what only a mesh is told.
+#[derive(Clone, Copy, Debug)]
+pub struct MeshSubject<'s> {
+    /// As it lies in memory.
+    pub bytes: &'s [u8],
+    /// Whether back faces are left out.
+    pub cull: bool,
+    /// Where colours come from.
+    pub shading: Shading,
+}
+
+/// A distance field, and what only a field is told.
+#[derive(Clone, Copy, Debug)]
+pub struct FieldSubject<'s> {
+    /// Which.
+    pub field: &'s Field,
+    /// How it looks.
+    pub appearance: &'s Appearance,
+    /// Two eyes, or one. There is one where a mesh is in the field.
+    pub stereo: Option<Stereo>,
+}
+
+impl FieldSubject<'_> {
+    fn options(&self) -> FieldOptions {
+        FieldOptions::new(self.field, self.appearance, self.stereo)
+    }
+}
+
+/// What is to be seen.
 #[derive(Clone, Copy, Debug)]
 pub enum Subject<'s> {
     /// A mesh.
-    Mesh {
-        /// As it lies in memory.
-        bytes: &'s [u8],
-        /// Whether back faces are left out.
-        cull: bool,
-        /// Where colours come from.
-        shading: Shading,
-    },
+    Mesh(MeshSubject<'s>),
     /// A distance field.
-    Field {
-        /// Which.
-        field: &'s Field,
-        /// How it is drawn.
-        options: &'s FieldOptions,
-    },
+    Field(FieldSubject<'s>),
+    /// A mesh in a distance field.
+    Both(MeshSubject<'s>, FieldSubject<'s>),
 }
 
 impl<'s> Subject<'s> {
     /// A mesh in flat colours, without its back faces.
     pub const fn mesh(bytes: &'s [u8]) -> Self {
-        Self::Mesh {
+        Self::Mesh(MeshSubject {
             bytes,
             cull: true,
             shading: Shading::Flat,
-        }
+        })
     }
 }
 
@@ -63,9 +86,12 @@ pub struct Scene<'s> {
 pub struct Stats {
     /// Cycles of the board's clock; nothing from the model, which has no clock.
     pub cycles: Option<u64>,
-    /// What was counted.
+    /// What was counted of a mesh.
     #[serde(flatten)]
-    pub counts: Counts,
+    pub mesh: Option<TriangleCounts>,
+    /// What was counted of a field.
+    #[serde(flatten)]
+    pub rays: Option<RayCounts>,
     /// The board's clock in Hz.
     pub clock: Option<u64>,
     /// Who rendered on a board: `cpu` or `gateware`.
@@ -74,16 +100,6 @@ pub struct Stats {
     /// What the triangle engine counted, if it rendered.
     #[serde(flatten)]
     pub engine: Option<EngineStats>,
-}
-
-/// What was counted, by what there was to be seen.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(untagged)]
-pub enum Counts {
-    /// Of a mesh.
-    Triangles(TriangleCounts),
-    /// Of a field.
-    Rays(RayCounts),
 }
 
 /// What was counted of a mesh's frame.
@@ -101,8 +117,9 @@ pub struct TriangleCounts {
     pub pixels_tested: u64,
     /// Pixels covered by a triangle, each as often as it is.
     pub pixels_covered: u64,
-    /// Pixels written.
-    pub pixels_drawn: u64,
+    /// Pixels written; not told of a mesh in a field, whose pixels an engine counts with them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pixels_drawn: Option<u64>,
 }
 
 /// What was counted of a field's frame.
@@ -128,12 +145,9 @@ impl RayCounts {
 }
 
 impl Stats {
-    /// What was counted of a mesh's frame; nothing but zeros of a field's.
+    /// What was counted of a mesh; nothing but zeros where there is none.
     pub fn triangles(&self) -> TriangleCounts {
-        match &self.counts {
-            Counts::Triangles(counts) => counts.clone(),
-            Counts::Rays(_) => TriangleCounts::default(),
-        }
+        self.mesh.clone().unwrap_or_default()
     }
 }
 
@@ -220,23 +234,46 @@ pub enum Route {
 /// # Errors
 /// The mesh is damaged or seen from too far, or the size is none of [`glint_model::SIZES`].
 pub fn depth_scale(scene: &Scene) -> Result<DepthScale, Error> {
-    let (width, height) = scene.size;
-    match scene.subject {
-        Subject::Mesh { bytes, .. } => {
-            let mesh = Mesh::new_checked(bytes).map_err(Error::Mesh)?;
-            FrameSetup::new(&scene.view, width, height, mesh.radius()).map(|frame| frame.depth)
-        }
-        Subject::Field { field, options } => {
-            Setup::new(field, &scene.view, scene.size, options).map(|setup| setup.world_depth)
-        }
+    match Constants::new(scene)? {
+        Constants::Mesh(_, frame) | Constants::Both(_, frame, _) => Ok(frame.depth),
+        Constants::Field(setup) => Ok(setup.world_depth),
     }
-    .map_err(Error::Render)
+}
+
+/// What a scene is drawn by.
+enum Constants<'s> {
+    Mesh(Mesh<'s>, FrameSetup),
+    Field(Setup),
+    Both(Mesh<'s>, FrameSetup, Setup),
+}
+
+impl<'s> Constants<'s> {
+    fn new(scene: &Scene<'s>) -> Result<Self, Error> {
+        let (view, size) = (&scene.view, scene.size);
+        let checked = |mesh: MeshSubject<'s>| Mesh::new_checked(mesh.bytes).map_err(Error::Mesh);
+        match scene.subject {
+            Subject::Mesh(mesh) => {
+                let mesh = checked(mesh)?;
+                let frame = FrameSetup::new(view, size.0, size.1, mesh.radius());
+                frame.map(|frame| Self::Mesh(mesh, frame))
+            }
+            Subject::Field(subject) => {
+                Setup::new(subject.field, view, size, &subject.options()).map(Self::Field)
+            }
+            Subject::Both(mesh, subject) => {
+                let (mesh, options) = (checked(mesh)?, subject.options());
+                together::constants(view, size, mesh.radius(), subject.field, &options)
+                    .map(|(frame, setup)| Self::Both(mesh, frame, setup))
+            }
+        }
+        .map_err(Error::Render)
+    }
 }
 
 /// Renders with the model.
 ///
 /// # Errors
-/// The mesh is damaged or seen from too far, or the size is none of [`glint_model::SIZES`].
+/// The mesh is damaged or seen from too far or with two eyes, or the size is none of [`glint_model::SIZES`].
 pub fn on_model(scene: &Scene) -> Result<Rendered, Error> {
     let (width, height) = scene.size;
     let pixels = width as usize * height as usize;
@@ -252,25 +289,26 @@ pub fn on_model(scene: &Scene) -> Result<Rendered, Error> {
         colour: &mut frame.colour,
         depth: &mut frame.depth,
     };
-    let counts = match scene.subject {
-        Subject::Mesh {
-            bytes,
-            cull,
-            shading,
-        } => {
-            let mesh = Mesh::new_checked(bytes).map_err(Error::Mesh)?;
-            let options = Options {
-                cull,
-                shading,
-                ..Options::default()
-            };
-            draw_mesh(&mesh, &scene.view, &mut target, &options)
-        }
-        Subject::Field { field, options } => draw_field(field, &scene.view, &mut target, options),
-    };
+    let (mut mesh, mut rays) = (None, None);
+    let constants = Constants::new(scene)?;
+    if let Subject::Mesh(subject) | Subject::Both(subject, _) = scene.subject
+        && let Constants::Mesh(checked, frame) | Constants::Both(checked, frame, _) = &constants
+    {
+        mesh = Some(draw_mesh(&subject, checked, *frame, &mut target)?);
+    }
+    if let Subject::Field(subject) | Subject::Both(_, subject) = scene.subject
+        && let Constants::Field(setup) | Constants::Both(_, _, setup) = &constants
+    {
+        rays = Some(draw_field(&subject, setup, &mut target)?);
+    }
+    // As boards tell it.
+    if let (Some(counts), Some(_)) = (&mut mesh, &rays) {
+        counts.pixels_drawn = None;
+    }
     let stats = Stats {
         cycles: None,
-        counts: counts.map_err(Error::Render)?,
+        mesh,
+        rays,
         clock: None,
         backend: None,
         engine: None,
@@ -279,45 +317,50 @@ pub fn on_model(scene: &Scene) -> Result<Rendered, Error> {
 }
 
 fn draw_mesh(
+    subject: &MeshSubject,
     mesh: &Mesh,
-    view: &View,
+    frame: FrameSetup,
     target: &mut Target,
-    options: &Options,
-) -> Result<Counts, RenderError> {
+) -> Result<TriangleCounts, Error> {
     let vertices = mesh
         .chunks()
         .map(|chunk| chunk.vertex_count())
         .max()
         .unwrap_or(0);
     let mut scratch = vec![Projected::Behind; vertices];
-    let stats = glint_model::render(mesh, view, target, &mut scratch, options)?;
-    Ok(Counts::Triangles(TriangleCounts {
+    let options = Options {
+        cull: subject.cull,
+        shading: subject.shading,
+        ..Options::default()
+    };
+    let stats = trace_frame(mesh, frame, target, &mut scratch, &options, |_| {});
+    let stats = stats.map_err(Error::Render)?;
+    Ok(TriangleCounts {
         triangles_in: stats.triangles_in,
         triangles_culled: stats.culled,
         triangles_clipped: stats.clipped,
         triangles_drawn: stats.drawn,
         pixels_tested: stats.pixels_tested,
         pixels_covered: stats.pixels_covered,
-        pixels_drawn: stats.pixels_drawn,
-    }))
+        pixels_drawn: Some(stats.pixels_drawn),
+    })
 }
 
 fn draw_field(
-    field: &Field,
-    view: &View,
+    subject: &FieldSubject,
+    setup: &Setup,
     target: &mut Target,
-    options: &FieldOptions,
-) -> Result<Counts, RenderError> {
-    let setup = Setup::new(field, view, (target.width, target.height), options)?;
-    let palette = options.palette_for(&setup);
-    let stats = render_field(&setup, &palette, target, &mut |_, _, _, _| {})?;
-    Ok(Counts::Rays(RayCounts {
+) -> Result<RayCounts, Error> {
+    let palette = subject.options().palette_for(setup);
+    let stats = render_field(setup, &palette, target, &mut |_, _, _, _| {});
+    let stats = stats.map_err(Error::Render)?;
+    Ok(RayCounts {
         rays: stats.rays,
         evaluations: stats.evaluations,
         hits: stats.hits,
         misses: stats.misses,
         undecided: stats.undecided,
-    }))
+    })
 }
 
 /// A board that renders.
@@ -346,9 +389,7 @@ impl<'b, B: Board + ?Sized> Renderer<'b, B> {
         &mut self.console
     }
 
-    /// Makes the scene the one that is shown, uploads its mesh if it is one, and waits for its frame.
-    ///
-    /// A field has the board's own colours, whatever its options say.
+    /// Makes the scene the one that is shown, uploads its mesh if it has one, and waits for its frame.
     ///
     /// # Errors
     /// The firmware refuses, or the upload fails.
@@ -369,25 +410,19 @@ impl<'b, B: Board + ?Sized> Renderer<'b, B> {
         self.console
             .command(&format!("size {} {}", scene.size.0, scene.size.1))?;
         self.console.command(&view_command(&scene.view))?;
-        match scene.subject {
-            Subject::Mesh {
-                bytes,
-                cull,
-                shading,
-            } => {
-                self.console
-                    .command(if cull { "cull on" } else { "cull off" })?;
-                self.console.command(match shading {
-                    Shading::Flat => "shading flat",
-                    Shading::Smooth => "shading smooth",
-                })?;
-                self.upload(bytes, route, progress)?;
-            }
-            Subject::Field { field, options } => {
-                let stereo = options.stereo.map(|stereo| stereo.to_string());
-                let stereo = stereo.as_deref().unwrap_or("off");
-                self.console.command(&format!("stereo {stereo}"))?;
-                self.console.command(&format!("field {field}"))?;
+        if let Subject::Mesh(mesh) | Subject::Both(mesh, _) = scene.subject {
+            self.console
+                .command(if mesh.cull { "cull on" } else { "cull off" })?;
+            self.console.command(match mesh.shading {
+                Shading::Flat => "shading flat",
+                Shading::Smooth => "shading smooth",
+            })?;
+            self.upload(mesh.bytes, route, progress)?;
+        }
+        if let Subject::Field(field) | Subject::Both(_, field) = scene.subject {
+            let with_mesh = matches!(scene.subject, Subject::Both(..));
+            for command in field_commands(&field, with_mesh) {
+                self.console.command(&command)?;
             }
         }
         self.render()
@@ -562,6 +597,37 @@ pub fn view_command(view: &View) -> String {
     command
 }
 
+/// The console's commands that show a field, alone or with the mesh that is shown before. The last one has it drawn.
+pub fn field_commands(subject: &FieldSubject, with_mesh: bool) -> Vec<String> {
+    let Appearance {
+        material,
+        lights,
+        ambient,
+        background,
+        fog,
+        occlusion,
+    } = subject.appearance;
+    let switch = |on| if on { "on" } else { "off" };
+    let ambient = ambient.map(|ambient| Hexadecimal(ambient).to_string());
+    let mut commands = vec![
+        format!("material {}", material.name()),
+        "light default".to_owned(),
+    ];
+    commands.extend(lights.iter().map(|light| format!("light {light}")));
+    commands.extend([
+        format!("ambient {}", ambient.as_deref().unwrap_or("default")),
+        format!("background {}", background.name()),
+        format!("fog {fog}"),
+        format!("occlusion {}", switch(*occlusion)),
+        // Two eyes and a mesh exclude each other.
+        "stereo off".to_owned(),
+        format!("mesh {}", switch(with_mesh)),
+    ]);
+    commands.extend(subject.stereo.map(|stereo| format!("stereo {stereo}")));
+    commands.push(format!("field {}", subject.field));
+    commands
+}
+
 /// A mesh's CRC-32 as the firmware and the wire have it.
 pub fn checksum(mesh: &[u8]) -> u32 {
     crc32(mesh)
@@ -600,7 +666,7 @@ mod tests {
         assert!((depth(160, 90).unwrap().to_num::<f64>() - 2.0).abs() < 1e-4);
         assert!(depth(160 + half - 1, 90).is_some() && depth(160 + half + 1, 90).is_none());
         assert_eq!(
-            triangles.pixels_drawn,
+            triangles.pixels_drawn.unwrap(),
             frame.depth.iter().filter(|&&code| code > 0).count() as u64
         );
     }

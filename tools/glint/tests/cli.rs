@@ -282,7 +282,13 @@ fn bad_names_and_numbers() {
         ),
         (
             &["render", "cube", "--stereo", "0.05,3", "--out", "out.png"],
-            "error: --stereo: expected a --field, which alone has it, found a mesh",
+            "error: --stereo: expected a --field alone, as a mesh is seen with one eye, found a mesh",
+        ),
+        (
+            &[
+                "render", "cube", "--field", "menger:2", "--stereo", "0.05,3", "--out", "out.png",
+            ],
+            "error: --stereo: expected a --field alone, as a mesh is seen with one eye, found a mesh",
         ),
         (
             &["render", "cube", "--out", "out.png", "--fog", "1"],
@@ -338,13 +344,6 @@ fn failures_that_are_no_bad_input() {
         (
             &["render", "cube", "--out", "a.png", "--capture", "monitor"],
             "error: --capture monitor: only the virtual board",
-        ),
-        (
-            &[
-                "render", "--field", "menger:2", "--fog", "1", "--board", "virtual", "--out",
-                "a.png",
-            ],
-            "error: --material, --light, --ambient, --background, --fog, --occlusion: only the model",
         ),
     ] {
         let output = glint(&folder, arguments);
@@ -565,4 +564,62 @@ fn fields_and_their_files() {
     let (sponge, _) = render("menger:3", &[]);
     assert_eq!(sponge[..3], [0xff; 3]);
     assert_ne!(sponge, render("menger:3", &["--camera", "3,30,60"]).0);
+}
+
+/// A sphere of radius 1 looks out of the faces of a box, and the box's corners look out of the sphere.
+#[test]
+fn a_mesh_in_a_field() {
+    let folder = folder("mesh-in-field");
+    let render = |what: &[&str]| {
+        let files = ["--out", "a.png", "--depth", "a.f32", "--stats", "a.json"];
+        let camera = ["--camera", "4,30,60"];
+        let arguments = [&["render"], what, &camera, &files].concat();
+        let said = succeed(&folder, &arguments);
+        let pixels = picture(&folder.join("a.png"));
+        (
+            pixels,
+            depths(&folder.join("a.f32")),
+            json(&folder.join("a.json")),
+            said,
+        )
+    };
+    let box_ = ["--field", "box:0.75,0.75,0.75", "--background", "sky"];
+    let (mesh, mesh_depth, mesh_stats, _) = render(&["icosphere:6"]);
+    let (field, field_depth, field_stats, _) = render(&box_);
+    let (both, depth, stats, said) = render(&[&["icosphere:6"], &box_[..]].concat());
+    let mut seen = [0, 0];
+    for (i, pixel) in both.chunks_exact(3).enumerate() {
+        let (a, b) = (mesh_depth[i], field_depth[i]);
+        // Each has codes of its own alone.
+        if (a - b).abs() < 1e-3 {
+            continue;
+        }
+        let nearer = if a < b { &mesh } else { &field };
+        assert_eq!(pixel, &nearer[3 * i..3 * i + 3], "pixel {i}");
+        assert!(
+            (depth[i] - a.min(b)).abs() < 1e-3 || depth[i] == a.min(b),
+            "pixel {i}"
+        );
+        seen[usize::from(b < a)] += 1;
+    }
+    assert!(seen.iter().all(|&pixels| pixels > 1000), "{seen:?}");
+    for key in [
+        "triangles_in",
+        "triangles_drawn",
+        "pixels_tested",
+        "pixels_covered",
+    ] {
+        assert_eq!(stats[key], mesh_stats[key], "{key}");
+    }
+    for key in ["rays", "hits", "evaluations", "evaluations_per_ray"] {
+        assert_eq!(stats[key], field_stats[key], "{key}");
+    }
+    assert!(stats.get("pixels_drawn").is_none());
+    let starts = ["triangles  ", "pixels     ", "rays       ", "field      "];
+    assert!(
+        said.lines()
+            .zip(starts)
+            .all(|(line, start)| line.starts_with(start)),
+        "{said}"
+    );
 }

@@ -7,11 +7,12 @@ use super::error::Fault;
 use super::grammar::Kind::{
     self, Basis, Choice, Degrees, HalfTurn, Hexadecimal, Length, Name, Number, Scale,
 };
-use super::grammar::{Syntax, Value, Words};
+use super::grammar::{Argument, DEFAULT, OFF, Syntax, Value, Words};
 use crate::camera::View;
 use crate::colour::Shading;
 use crate::field::Field;
-use crate::fixed::{Q32_32, Turns};
+use crate::fixed::{Q32_32, Turns, U4_28};
+use crate::light::{Background, Light, Material, Rgb};
 use crate::mesh::MAX_BYTES;
 use crate::stereo::Stereo;
 
@@ -34,6 +35,20 @@ pub enum Command<'a> {
     Field(Option<Option<Field>>),
     /// `stereo [off|E,ZERO[,TINT]]`; without eyes it prints the present ones, and `off` is the camera's one.
     Stereo(Option<Option<Stereo>>),
+    /// `mesh [on|off]`; without a choice it prints the present one.
+    Mesh(Option<bool>),
+    /// `material [NAME]`; without a name it prints the present one.
+    Material(Option<Material>),
+    /// `light [default|LIGHT]`; without one it prints them all, and `default` is none of one's own.
+    Light(Option<Option<Light>>),
+    /// `ambient [default|RRGGBB]`; without a colour it prints the present one, and `default` is none of one's own.
+    Ambient(Option<Option<Rgb>>),
+    /// `background [NAME]`; without a name it prints the present one.
+    Background(Option<Background>),
+    /// `fog [off|DENSITY]`; without one it prints the present one, and 0 is off.
+    Fog(Option<U4_28>),
+    /// `occlusion [on|off]`; without a choice it prints the present one.
+    Occlusion(Option<bool>),
     /// `camera R THETA PHI`
     Camera {
         /// The distance from the origin.
@@ -138,8 +153,11 @@ impl Size {
 /// Makes a command of the values of its arguments; `None` when they are not those of its syntax, which a test excludes.
 pub(super) type Build = for<'a> fn(&[Value<'a>]) -> Option<Result<Command<'a>, Fault<'a>>>;
 
+/// On or off.
+const SWITCH: Argument = ("on|off", Choice(&["on", "off"]));
+
 /// Every command, in the order of the help.
-static COMMANDS: [(Syntax, Build); 22] = [
+static COMMANDS: [(Syntax, Build); 29] = [
     (
         Syntax::new("help", "lists the commands, or explains one").with_optional(&[("COMMAND", Kind::Command)]),
         |values| match *values {
@@ -169,7 +187,7 @@ static COMMANDS: [(Syntax, Build); 22] = [
             .with_optional(&[("off|FIELD", Kind::Field)]),
         |values| match *values {
             [] => accept(Command::Field(None)),
-            [Value::Name("off")] => accept(Command::Field(Some(None))),
+            [Value::Name(OFF)] => accept(Command::Field(Some(None))),
             [Value::Name(text)] => {
                 Some(Field::parse(text).map(|field| Command::Field(Some(Some(field)))).map_err(Fault::Field))
             }
@@ -181,10 +199,76 @@ static COMMANDS: [(Syntax, Build); 22] = [
             .with_optional(&[("off|EYES", Kind::Stereo)]),
         |values| match *values {
             [] => accept(Command::Stereo(None)),
-            [Value::Name("off")] => accept(Command::Stereo(Some(None))),
+            [Value::Name(OFF)] => accept(Command::Stereo(Some(None))),
             [Value::Name(text)] => {
                 Some(Stereo::parse(text).map(|eyes| Command::Stereo(Some(Some(eyes)))).map_err(Fault::Stereo))
             }
+            _ => None,
+        },
+    ),
+    (
+        Syntax::new("mesh", "says whether a field is drawn with the mesh in it, or chooses")
+            .with_optional(&[SWITCH]),
+        |values| match *values {
+            [] => accept(Command::Mesh(None)),
+            [Value::Choice(off)] => accept(Command::Mesh(Some(off == 0))),
+            _ => None,
+        },
+    ),
+    (
+        Syntax::new("material", "says what a field is made of, or chooses; normal: each face in the colour of its normal")
+            .with_optional(&[("MATERIAL", Choice(&Material::NAMES))]),
+        |values| match *values {
+            [] => accept(Command::Material(None)),
+            [Value::Choice(choice)] => accept(Command::Material(Material::ALL.get(choice).copied())),
+            _ => None,
+        },
+    ),
+    (
+        Syntax::new("light", "says which lights shine on a field, adds one by the direction to it, or goes back to the material's own")
+            .with_optional(&[("default|LIGHT", Kind::Light)]),
+        |values| match *values {
+            [] => accept(Command::Light(None)),
+            [Value::Name(DEFAULT)] => accept(Command::Light(Some(None))),
+            [Value::Name(text)] => {
+                Some(Light::parse(text).map(|light| Command::Light(Some(Some(light)))).map_err(Fault::Light))
+            }
+            _ => None,
+        },
+    ),
+    (
+        Syntax::new("ambient", "says which light comes from everywhere on a field, or chooses")
+            .with_optional(&[("default|RRGGBB", Kind::Colour)]),
+        |values| match *values {
+            [] => accept(Command::Ambient(None)),
+            [Value::Colour(colour)] => accept(Command::Ambient(Some(colour))),
+            _ => None,
+        },
+    ),
+    (
+        Syntax::new("background", "says what is behind a field, or chooses")
+            .with_optional(&[("BACKGROUND", Choice(&Background::NAMES))]),
+        |values| match *values {
+            [] => accept(Command::Background(None)),
+            [Value::Choice(choice)] => accept(Command::Background(Background::ALL.get(choice).copied())),
+            _ => None,
+        },
+    ),
+    (
+        Syntax::new("fog", "says how dense the fog in front of a field is, or chooses: e^-z of it is left z/DENSITY away")
+            .with_optional(&[("off|DENSITY", Kind::Fog)]),
+        |values| match *values {
+            [] => accept(Command::Fog(None)),
+            [Value::Scale(density)] => accept(Command::Fog(Some(density))),
+            _ => None,
+        },
+    ),
+    (
+        Syntax::new("occlusion", "says whether narrow places of a field are darkened, or chooses")
+            .with_optional(&[SWITCH]),
+        |values| match *values {
+            [] => accept(Command::Occlusion(None)),
+            [Value::Choice(off)] => accept(Command::Occlusion(Some(off == 0))),
             _ => None,
         },
     ),
@@ -262,7 +346,7 @@ static COMMANDS: [(Syntax, Build); 22] = [
         |values| accept(Command::Render { depth: !values.is_empty() }),
     ),
     (
-        Syntax::new("cull", "leaves back faces out, or draws them").with(&[("on|off", Choice(&["on", "off"]))]),
+        Syntax::new("cull", "leaves back faces out, or draws them").with(&[SWITCH]),
         |values| match *values {
             [Value::Choice(off)] => accept(Command::Cull(off == 0)),
             _ => None,
@@ -370,7 +454,7 @@ pub fn write_help(out: &mut dyn fmt::Write, command: Option<&str>) -> fmt::Resul
         }
         None => {
             COMMANDS.iter().try_for_each(|(syntax, _)| {
-                writeln!(out, "{:10}{}", syntax.name, syntax.summary)
+                writeln!(out, "{:12}{}", syntax.name, syntax.summary)
             })?;
             writeln!(out, "`help COMMAND` says how one is used")
         }

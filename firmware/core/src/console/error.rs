@@ -5,6 +5,7 @@ use core::fmt;
 use super::grammar::{Argument, Syntax, Word};
 use crate::camera::ViewError;
 use crate::field::FieldError;
+use crate::light::LightError;
 use crate::stereo::StereoError;
 
 /// Why a line is not a command; its `Display` says what is wrong, where, and what was expected.
@@ -39,6 +40,8 @@ pub(super) enum Fault<'a> {
     Field(FieldError<'a>),
     /// The word is no pair of eyes.
     Stereo(StereoError<'a>),
+    /// The word is no light.
+    Light(LightError<'a>),
 }
 
 impl fmt::Display for ParseError<'_> {
@@ -78,6 +81,7 @@ impl fmt::Display for ParseError<'_> {
             Fault::View(error) => write!(f, "view: {error}"),
             Fault::Field(error) => write!(f, "field: {error}"),
             Fault::Stereo(error) => write!(f, "stereo: {error}"),
+            Fault::Light(error) => write!(f, "light: {error}"),
         }
     }
 }

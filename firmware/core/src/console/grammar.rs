@@ -9,7 +9,13 @@ use super::command::find;
 use super::error::Fault;
 use crate::field::KINDS;
 use crate::fixed::{Q2_23, Q32_32, Turns, U4_28};
+use crate::light::{self, Rgb, parse_rgb};
 use crate::stereo;
+
+/// What takes something away.
+pub const OFF: &str = "off";
+/// What goes back to how it was.
+pub const DEFAULT: &str = "default";
 
 /// The most arguments a command has.
 pub const MAX_ARGUMENTS: usize = 14;
@@ -57,6 +63,12 @@ pub enum Kind {
     Field,
     /// Two eyes, or `off`: any word.
     Stereo,
+    /// A light, or `default`: any word.
+    Light,
+    /// A colour, or `default`.
+    Colour,
+    /// The density of fog, a decimal in U4.28, or `off`.
+    Fog,
 }
 
 /// The value of an argument.
@@ -66,7 +78,7 @@ pub enum Value<'a> {
     Length(Q32_32),
     /// Of [`Kind::Basis`].
     Basis(Q2_23),
-    /// Of [`Kind::Scale`].
+    /// Of [`Kind::Scale`], and [`Kind::Fog`]: 0 is off.
     Scale(U4_28),
     /// Of [`Kind::Degrees`] and [`Kind::HalfTurn`].
     Angle(Turns),
@@ -74,7 +86,9 @@ pub enum Value<'a> {
     Number(u32),
     /// Of [`Kind::Choice`]: which one.
     Choice(usize),
-    /// Of [`Kind::Command`], [`Kind::Name`], [`Kind::Field`] and [`Kind::Stereo`].
+    /// Of [`Kind::Colour`]: nothing is the default.
+    Colour(Option<Rgb>),
+    /// Of [`Kind::Command`], [`Kind::Name`], [`Kind::Field`], [`Kind::Stereo`] and [`Kind::Light`].
     Name(&'a str),
 }
 
@@ -171,7 +185,11 @@ impl Kind {
                 Value::Choice(choices.iter().position(|&choice| choice == word)?)
             }
             Self::Command => Value::Name(find(word).map(|_| word)?),
-            Self::Name | Self::Field | Self::Stereo => Value::Name(word),
+            Self::Colour if word == DEFAULT => Value::Colour(None),
+            Self::Colour => Value::Colour(Some(parse_rgb(word)?)),
+            Self::Fog if word == OFF => Value::Scale(U4_28::ZERO),
+            Self::Fog => Value::Scale(word.parse().ok()?),
+            Self::Name | Self::Field | Self::Stereo | Self::Light => Value::Name(word),
         })
     }
 }
@@ -196,12 +214,15 @@ impl fmt::Display for Kind {
             Self::Command => f.write_str("a command, `help` lists them"),
             Self::Name => f.write_str("a name"),
             Self::Field => {
-                f.write_str("off")?;
+                f.write_str(OFF)?;
                 KINDS
                     .iter()
                     .try_for_each(|(form, _)| write!(f, " or {form}"))
             }
-            Self::Stereo => write!(f, "off or {}", stereo::FORM),
+            Self::Stereo => write!(f, "{OFF} or {}", stereo::FORM),
+            Self::Light => write!(f, "{DEFAULT} or {}", light::FORM),
+            Self::Colour => write!(f, "{DEFAULT} or a colour RRGGBB"),
+            Self::Fog => write!(f, "{OFF} or a number from 0 to below 16"),
         }
     }
 }

@@ -4,11 +4,11 @@ use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use glint::error::{FormatError, InputError, quote};
 use glint::field;
+use glint_core::appearance::Appearance;
 use glint_core::field::{Field, KINDS};
 use glint_core::fixed::U4_28;
-use glint_core::light::{self, Background, Light, Lighting, MAX_LIGHTS, Material, parse_rgb};
+use glint_core::light::{self, Background, Light, MAX_LIGHTS, Material, parse_rgb};
 use glint_core::stereo::{self, Stereo};
-use glint_model::march::{FieldOptions, Palette};
 use std::fmt::Display;
 
 /// A field and how it is drawn.
@@ -16,7 +16,7 @@ use std::fmt::Display;
 pub struct FieldArguments {
     #[arg(long, value_name = "FIELD", help = field_help())]
     field: Option<String>,
-    /// Look at a field with two eyes, each E (0 to 1) beside the camera's, which see the same at the distance ZERO; the left
+    /// Look at a field without a mesh with two eyes, each E (0 to 1) beside the camera's, which see the same at the distance ZERO; the left
     /// one in red, the right one in blue unless told.
     #[arg(long, value_name = stereo::FORM, allow_hyphen_values = true)]
     stereo: Option<String>,
@@ -57,10 +57,26 @@ impl FieldArguments {
         self.name().map(parse).transpose()
     }
 
-    /// How a field is drawn; with a mesh nothing of this may be said.
-    pub fn options(&self, field: Option<&Field>) -> Result<FieldOptions, InputError> {
+    /// Two eyes that look at it, if there are two.
+    pub fn stereo(&self, with_mesh: bool) -> Result<Option<Stereo>, InputError> {
+        let Some(text) = &self.stereo else {
+            return Ok(None);
+        };
+        if with_mesh {
+            return Err(refusal(
+                "--stereo",
+                "a --field alone, as a mesh is seen with one eye",
+                "a mesh".to_owned(),
+            ));
+        }
+        Stereo::parse(text)
+            .map(Some)
+            .map_err(|error| refusal("--stereo", "two eyes", escaped(error)))
+    }
+
+    /// How it looks; of a mesh nothing of this may be said.
+    pub fn appearance(&self) -> Result<Appearance, InputError> {
         let said = [
-            ("--stereo", self.stereo.is_some()),
             ("--material", self.material.is_some()),
             ("--light", !self.light.is_empty()),
             ("--ambient", self.ambient.is_some()),
@@ -75,60 +91,40 @@ impl FieldArguments {
                 "a mesh".to_owned(),
             ));
         }
-        let stereo = self.stereo.as_deref().map(|text| {
-            Stereo::parse(text).map_err(|error| refusal("--stereo", "two eyes", escaped(error)))
-        });
         let fog = self.fog.as_deref().map(|text| {
             let found = quote(text.as_bytes());
             text.parse::<U4_28>()
                 .map_err(|_| refusal("--fog", "a density of at least 0 and below 16", found))
         });
-        let material = self.material.unwrap_or_default();
-        let background = self.background.unwrap_or_default();
-        let palette = Palette::new(material, &self.lighting(material)?, background);
-        Ok(FieldOptions {
-            stereo: stereo.transpose()?,
-            palette: if self.occlusion {
-                palette.with_occlusion()
-            } else {
-                palette
-            },
-            fog: fog.transpose()?.unwrap_or_default(),
-            ..field.map_or_else(FieldOptions::default, FieldOptions::of)
-        })
-    }
-
-    fn lighting(&self, material: Material) -> Result<Lighting, InputError> {
-        let mut lighting = if self.light.is_empty() {
-            material.light()
-        } else {
-            Lighting {
-                ambient: Lighting::AMBIENT,
-                ..Lighting::PLAIN
-            }
-        };
-        if let Some(text) = &self.ambient {
+        let ambient = self.ambient.as_deref().map(|text| {
             let found = quote(text.as_bytes());
-            lighting.ambient =
-                parse_rgb(text).ok_or_else(|| refusal("--ambient", "a colour RRGGBB", found))?;
-        }
+            parse_rgb(text).ok_or_else(|| refusal("--ambient", "a colour RRGGBB", found))
+        });
+        let mut appearance = Appearance {
+            material: self.material.unwrap_or_default(),
+            ambient: ambient.transpose()?,
+            background: self.background.unwrap_or_default(),
+            fog: fog.transpose()?.unwrap_or_default(),
+            occlusion: self.occlusion,
+            ..Appearance::default()
+        };
         for text in &self.light {
             let light = Light::parse(text)
                 .map_err(|error| refusal("--light", "a light", escaped(error)))?;
             let found = self.light.len();
-            lighting.lights.push(light).map_err(|_| {
+            appearance.lights.push(light).map_err(|_| {
                 let expected = format!("at most {MAX_LIGHTS} lights");
                 refusal("--light", &expected, found.to_string())
             })?;
         }
-        Ok(lighting)
+        Ok(appearance)
     }
 }
 
 fn field_help() -> String {
     let kinds = KINDS.map(|(form, what)| format!("{form} ({what})"));
     format!(
-        "A distance field instead of a model: {}. `spheres:FILE.json` reads [[cx,cy,cz,r],...]",
+        "A distance field instead of a model, or around it: {}. `spheres:FILE.json` reads [[cx,cy,cz,r],...]",
         kinds.join(", ")
     )
 }

@@ -9,25 +9,26 @@ use glint::board::{Board, SimulatedBoard};
 use glint::console::Console;
 use glint::error::FormatError;
 use glint::picture::Frame;
-use glint::render::{self, Counts, Rendered, Renderer, Route, Scene, Stats, Subject};
+use glint::render::{
+    self, FieldSubject, MeshSubject, RayCounts, Rendered, Renderer, Route, Scene, Stats, Subject,
+};
 use glint::view;
 use glint_core::camera::View;
 use glint_model::RenderError;
 use glint_model::frame::MAX_EYE;
-use glint_model::march::FieldOptions;
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// Render a model or a distance field to a picture.
+/// Render a model, a distance field, or a model in a distance field to a picture.
 #[derive(Args)]
 pub struct RenderArguments {
-    /// A mesh file or a generator's name.
-    #[arg(required_unless_present = "field", conflicts_with = "field")]
+    /// A mesh file or a generator's name. With --field both are drawn, and what is nearer is seen.
+    #[arg(required_unless_present = "field")]
     model: Option<String>,
     #[command(flatten)]
     field: FieldArguments,
     /// A camera on a sphere about the origin: the distance (2 to 5), azimuth and polar angle in degrees; half_width is 0.9
-    /// and near 0.1 [default: 2,30,60, for a field 4,30,60].
+    /// and near 0.1 [default: 2,30,60, with a field 4,30,60].
     #[arg(
         long,
         value_name = "R,THETA,PHI",
@@ -58,13 +59,13 @@ pub struct RenderArguments {
     #[arg(long, value_name = "STATS.json")]
     stats: Option<PathBuf>,
     /// Draw back faces too.
-    #[arg(long, conflicts_with = "field")]
+    #[arg(long, requires = "model")]
     no_cull: bool,
     /// Where colours come from: faces, or vertices.
-    #[arg(long, value_enum, default_value_t = Shading::Flat, conflicts_with = "field")]
+    #[arg(long, value_enum, default_value_t = Shading::Flat, requires = "model")]
     shading: Shading,
     /// Leave the model's coordinates as they are, and refuse those outside [-2, 2).
-    #[arg(long, conflicts_with = "field")]
+    #[arg(long, requires = "model")]
     keep_scale: bool,
     /// Where the picture of a board is taken from: its memory, or the virtual board's monitor.
     #[arg(long, value_enum, default_value_t = Capture::Frame)]
@@ -130,25 +131,28 @@ impl RenderArguments {
         let view = self.camera()?;
         let size = parse_size(&self.size)?;
         let field = self.field.field()?;
-        let options = self.field.options(field.as_ref())?;
-        // The command line has a model or a field.
-        let mesh = match &self.model {
-            Some(name) => load(name, self.keep_scale)?.mesh,
-            None => Vec::new(),
-        };
-        let subject = match &field {
-            Some(field) => Subject::Field {
-                field,
-                options: &options,
+        let appearance = self.field.appearance()?;
+        let stereo = self.field.stereo(self.model.is_some())?;
+        let mesh = self.model.as_deref();
+        let mesh = mesh.map(|name| load(name, self.keep_scale)).transpose()?;
+        let mesh = mesh.as_ref().map(|model| MeshSubject {
+            bytes: &model.mesh,
+            cull: !self.no_cull,
+            shading: match self.shading {
+                Shading::Flat => glint_model::Shading::Flat,
+                Shading::Smooth => glint_model::Shading::Smooth,
             },
-            None => Subject::Mesh {
-                bytes: &mesh,
-                cull: !self.no_cull,
-                shading: match self.shading {
-                    Shading::Flat => glint_model::Shading::Flat,
-                    Shading::Smooth => glint_model::Shading::Smooth,
-                },
-            },
+        });
+        let field = field.as_ref().map(|field| FieldSubject {
+            field,
+            appearance: &appearance,
+            stereo,
+        });
+        let subject = match (mesh, field) {
+            (Some(mesh), Some(field)) => Subject::Both(mesh, field),
+            (Some(mesh), None) => Subject::Mesh(mesh),
+            (None, Some(field)) => Subject::Field(field),
+            (None, None) => anyhow::bail!("expected a model, a --field or both, found neither"),
         };
         let scene = Scene {
             subject,
@@ -171,10 +175,7 @@ impl RenderArguments {
         }
         let totals = Totals {
             stats: &stats,
-            evaluations_per_ray: match &stats.counts {
-                Counts::Triangles(_) => None,
-                Counts::Rays(rays) => Some(rays.evaluations_per_ray()),
-            },
+            evaluations_per_ray: stats.rays.as_ref().map(RayCounts::evaluations_per_ray),
         };
         if let Some(path) = &self.stats {
             let json = serde_json::to_string_pretty(&totals)? + "\n";
@@ -204,7 +205,7 @@ impl RenderArguments {
             return Ok(view::spherical(camera).map_err(|error| error.in_file("--camera"))?);
         };
         let view = view::read(path)?;
-        if self.field.name().is_none() && !view.is_within(MAX_EYE) {
+        if self.model.is_some() && !view.is_within(MAX_EYE) {
             let found = RenderError::Eye(view.eye()).to_string();
             let error = FormatError::whole("a camera", found);
             return Err(error.in_file(path.display().to_string()).into());
@@ -217,16 +218,6 @@ impl RenderArguments {
             self.board == "virtual" || self.capture == Capture::Frame,
             "--capture monitor: only the virtual board has a monitor to look at"
         );
-        if let Subject::Field { options, .. } = scene.subject {
-            let plain = FieldOptions {
-                stereo: options.stereo,
-                ..FieldOptions::default()
-            };
-            anyhow::ensure!(
-                self.board == "model" || *options == plain,
-                "--material, --light, --ambient, --background, --fog, --occlusion: only the model draws with them"
-            );
-        }
         match self.board.as_str() {
             "model" => {
                 let spinner = spinner("rendering");
@@ -301,31 +292,32 @@ fn parse_size(text: &str) -> anyhow::Result<(u32, u32)> {
 }
 
 fn print_stats(stats: &Stats) -> anyhow::Result<()> {
-    match &stats.counts {
-        Counts::Triangles(counts) => {
-            say(format_args!(
-                "triangles  {} in, {} culled, {} clipped, {} drawn",
-                counts.triangles_in,
-                counts.triangles_culled,
-                counts.triangles_clipped,
-                counts.triangles_drawn
-            ))?;
-            say(format_args!(
-                "pixels     {} tested, {} covered, {} drawn",
-                counts.pixels_tested, counts.pixels_covered, counts.pixels_drawn
-            ))?;
-        }
-        Counts::Rays(counts) => {
-            say(format_args!(
-                "rays       {} cast, {} hit, {} missed, {} undecided",
-                counts.rays, counts.hits, counts.misses, counts.undecided
-            ))?;
-            say(format_args!(
-                "field      {} evaluations, {:.2} a ray",
-                counts.evaluations,
-                counts.evaluations_per_ray()
-            ))?;
-        }
+    if let Some(counts) = &stats.mesh {
+        say(format_args!(
+            "triangles  {} in, {} culled, {} clipped, {} drawn",
+            counts.triangles_in,
+            counts.triangles_culled,
+            counts.triangles_clipped,
+            counts.triangles_drawn
+        ))?;
+        let drawn = counts.pixels_drawn.map(|drawn| format!(", {drawn} drawn"));
+        say(format_args!(
+            "pixels     {} tested, {} covered{}",
+            counts.pixels_tested,
+            counts.pixels_covered,
+            drawn.unwrap_or_default()
+        ))?;
+    }
+    if let Some(counts) = &stats.rays {
+        say(format_args!(
+            "rays       {} cast, {} hit, {} missed, {} undecided",
+            counts.rays, counts.hits, counts.misses, counts.undecided
+        ))?;
+        say(format_args!(
+            "field      {} evaluations, {:.2} a ray",
+            counts.evaluations,
+            counts.evaluations_per_ray()
+        ))?;
     }
     if let (Some(cycles), Some(clock)) = (stats.cycles, stats.clock) {
         let (rate, megahertz) = (clock as f64 / cycles as f64, clock as f64 / 1e6);

@@ -4,14 +4,16 @@
 use glint::board::{Board, SimulatedBoard, built_firmware};
 use glint::console::Console;
 use glint::picture::Frame;
-use glint::render::{self, Counts, Rendered, Scene, Subject, on_model};
+use glint::render::{self, FieldSubject, MeshSubject, Rendered, Scene, Stats, Subject, on_model};
 use glint::{convert, generate};
+use glint_core::appearance::Appearance;
 use glint_core::camera::View;
+use glint_core::colour::Shading;
 use glint_core::field::Field;
-use glint_core::fixed::Q32_32;
+use glint_core::fixed::{Q32_32, U4_28};
+use glint_core::light::{Background, Light, Material};
 use glint_core::stereo::{Stereo, Tint};
 use glint_core::wire::Manifest;
-use glint_model::march::FieldOptions;
 
 use crate::common::Camera;
 use crate::{Told, read, send};
@@ -78,47 +80,52 @@ fn compare(
     with_depth: bool,
 ) {
     let name = format!("{field}, {stereo:?}, {view} at {size:?}");
-    let options = FieldOptions {
+    let subject = FieldSubject {
+        field: &field,
+        appearance: &Appearance::default(),
         stereo,
-        ..FieldOptions::of(&field)
     };
     let scene = Scene {
-        subject: Subject::Field {
-            field: &field,
-            options: &options,
-        },
+        subject: Subject::Field(subject),
         view: *view,
         size,
         backend: None,
     };
     let Rendered { frame, stats } = on_model(&scene).unwrap();
-    // At once, so that nothing is drawn between them.
-    let told = send(
-        console,
-        &[
-            format!("size {} {}", size.0, size.1),
-            render::view_command(view),
-            stereo.map_or("stereo off".to_owned(), |stereo| format!("stereo {stereo}")),
-            format!("field {field}"),
-            format!("render{}", if with_depth { " depth" } else { "" }),
-            "info".to_owned(),
-        ],
-    );
+    let told = send(console, &lines(&scene, with_depth));
+    compare_rays(&told, &name, &stats);
+    compare_picture(console, &told, &name, &frame, with_depth);
+}
+
+/// What shows a scene whose mesh is there, to be sent at once, so that nothing is drawn between them.
+fn lines(scene: &Scene, with_depth: bool) -> Vec<String> {
+    let (width, height) = scene.size;
+    let mut lines = vec![
+        format!("size {width} {height}"),
+        render::view_command(&scene.view),
+    ];
+    if let Subject::Field(field) | Subject::Both(_, field) = scene.subject {
+        let with_mesh = matches!(scene.subject, Subject::Both(..));
+        lines.extend(render::field_commands(&field, with_mesh));
+    }
+    lines.push(format!("render{}", if with_depth { " depth" } else { "" }));
+    lines.push("info".to_owned());
+    lines
+}
+
+fn compare_rays(told: &Told, name: &str, stats: &Stats) {
     assert_eq!(
         told.text("backend"),
         "gateware",
         "{name}: {:#?}",
         told.lines
     );
-    let Counts::Rays(rays) = stats.counts else {
-        panic!("{name}: rays were to be counted")
-    };
+    let rays = stats.rays.as_ref().unwrap();
     let counted = ["rays", "hits", "misses", "undecided"].map(|key| told.number(key));
     let expected = [rays.rays, rays.hits, rays.misses, rays.undecided];
     assert_eq!(counted, expected, "{name}: rays, hits, misses, undecided");
     let evaluations = u64::from(told.number("evaluations"));
     assert_eq!(evaluations, rays.evaluations, "{name}: evaluations");
-    compare_picture(console, &told, &name, &frame, with_depth);
 }
 
 fn compare_picture(
@@ -143,11 +150,15 @@ fn compare_picture(
     }
 }
 
+/// Whether everything is to be drawn that there is time for.
+fn all() -> bool {
+    std::env::var("GLINT_RTL_FIELDS").is_ok_and(|which| which == "all")
+}
+
 /// Every second one from one side for one eye or for two, in turns: all of them from all sides for both with
 /// `GLINT_RTL_FIELDS=all`.
 #[test]
 fn the_soc_draws_every_field() {
-    let all = std::env::var("GLINT_RTL_FIELDS").is_ok_and(|which| which == "all");
     let mut board = board();
     let mut console = Console::new(&mut board).patience(PATIENCE_MS);
     console.greet().unwrap();
@@ -157,7 +168,7 @@ fn the_soc_draws_every_field() {
             // Both pairs of colours are seen in turns.
             for stereo in [None, eyes()[1 + (number + side) % 2]] {
                 let in_turn = stereo.is_some() == ((number / 2 + side) % 2 == 0);
-                if !all && (!in_turn || side != number / 2 % 3 || number % 2 != 0) {
+                if !all() && (!in_turn || side != number / 2 % 3 || number % 2 != 0) {
                     continue;
                 }
                 let with_depth = side == number / 2 % 3;
@@ -188,18 +199,115 @@ fn the_soc_draws_large_fields_and_goes_back_to_meshes() {
             backend: None,
         };
         let Rendered { frame, .. } = on_model(&scene).unwrap();
-        let Manifest { length, crc32 } = Manifest::of(&cube);
-        let staging = send(&mut console, &["info".to_owned()]).address("staging");
-        let memory = console.board().memory().unwrap();
-        memory.write_memory(staging, &cube).unwrap();
-        let lines = [
-            format!("load {length} {crc32:08x}"),
-            "render".to_owned(),
-            "info".to_owned(),
-        ];
-        let told = send(&mut console, &lines);
+        let load = load(&mut console, &cube);
+        let told = send(
+            &mut console,
+            &[load, "render".to_owned(), "info".to_owned()],
+        );
         assert_eq!(told.text("backend"), "gateware", "{:#?}", told.lines);
         let name = format!("the cube at {size:?}");
         compare_picture(&mut console, &told, &name, &frame, false);
     }
+}
+
+/// Puts a mesh where an upload goes. The command that takes it from there is to be sent.
+fn load(console: &mut Console<SimulatedBoard>, mesh: &[u8]) -> String {
+    let Manifest { length, crc32 } = Manifest::of(mesh);
+    let staging = send(console, &["info".to_owned()]).address("staging");
+    let memory = console.board().memory().unwrap();
+    memory.write_memory(staging, mesh).unwrap();
+    format!("load {length} {crc32:08x}")
+}
+
+/// A mesh that looks out of a field and into which the field looks, with triangles that need clipping, and light, fog and sky on
+/// the field. From more sides, in another size and back to back with `GLINT_RTL_FIELDS=all`.
+#[test]
+fn the_soc_draws_a_mesh_in_a_field() {
+    let mut board = board();
+    let mut console = Console::new(&mut board).patience(PATIENCE_MS);
+    console.greet().unwrap();
+    let (mesh, _) = convert::convert(
+        &generate::named("icosphere:3").unwrap(),
+        convert::Options::default(),
+    )
+    .unwrap();
+    let appearance = Appearance {
+        material: Material::Gold,
+        lights: ["1,-2,3", "-1,0.5,0.25,4080ff"]
+            .map(|light| Light::parse(light).unwrap())
+            .into_iter()
+            .collect(),
+        ambient: Some([0x30, 0x20, 0x28]),
+        background: Background::Sky,
+        fog: U4_28::lit("0.2"),
+        occlusion: true,
+    };
+    let field = FieldSubject {
+        field: Field::parse("box:0.75,0.75,0.75").unwrap(),
+        appearance: &appearance,
+        stereo: None,
+    };
+    let both = |view, size, cull| Scene {
+        subject: Subject::Both(
+            MeshSubject {
+                bytes: &mesh,
+                cull,
+                shading: Shading::Flat,
+            },
+            field,
+        ),
+        view,
+        size,
+        backend: None,
+    };
+    let [outside, near_by, inside] = views();
+    let load = load(&mut console, &mesh);
+    send(&mut console, &[load]);
+    let mut scenes = vec![both(inside, (320, 180), false)];
+    if all() {
+        scenes.push(both(outside, (320, 180), true));
+        scenes.push(both(near_by, (640, 360), true));
+    }
+    for (number, scene) in scenes.iter().enumerate() {
+        let name = format!("scene {number}");
+        let Rendered { frame, stats } = on_model(scene).unwrap();
+        let cull = matches!(scene.subject, Subject::Both(mesh, _) if mesh.cull);
+        let cull = format!("cull {}", if cull { "on" } else { "off" });
+        let lines = [vec![cull], lines(scene, true)].concat();
+        let told = send(&mut console, &lines);
+        compare_rays(&told, &name, &stats);
+        let counts = ["in", "culled", "clipped", "drawn"]
+            .map(|key| told.number(&format!("triangles_{key}")));
+        let triangles = stats.triangles();
+        assert!(
+            number > 0 || triangles.triangles_clipped > 0,
+            "nothing was clipped"
+        );
+        let expected = [
+            triangles.triangles_in,
+            triangles.triangles_culled,
+            triangles.triangles_clipped,
+            triangles.triangles_drawn,
+        ];
+        assert_eq!(
+            counts, expected,
+            "{name}: triangles in, culled, clipped, drawn"
+        );
+        assert_eq!(
+            u64::from(told.number("pixels_covered")),
+            triangles.pixels_covered,
+            "{name}"
+        );
+        compare_picture(&mut console, &told, &name, &frame, true);
+    }
+    if !all() {
+        return;
+    }
+    // One after the other, without waiting for the screen.
+    let told = send(
+        &mut console,
+        &["bench field".to_owned(), "info scene".to_owned()],
+    );
+    assert!(told.text("bench").starts_with("field frames 8 cycles "));
+    assert_eq!(told.text("scene"), "box:0.75,0.75,0.75 with model");
 }

@@ -21,7 +21,7 @@ mod scenes;
 
 use glint::board::{Board, BoardError, Memory, SimulatedBoard, built_firmware};
 use glint::console::{Console, value};
-use glint::render::{self, Rendered, Scene, Subject};
+use glint::render::{self, MeshSubject, Rendered, Scene, Subject};
 use glint::view;
 use glint_core::colour::Shading;
 use glint_core::console::Backend;
@@ -218,11 +218,11 @@ fn draw(size: (u32, u32), scenes: Vec<scenes::Scene>) {
         for (number, (view, with_depth)) in [(view, true)].into_iter().chain(views).enumerate() {
             let name = format!("{name} {number} at {size:?}");
             let scene = Scene {
-                subject: Subject::Mesh {
+                subject: Subject::Mesh(MeshSubject {
                     bytes: &mesh,
                     cull,
                     shading: Shading::Flat,
-                },
+                }),
                 view,
                 size,
                 backend: Some(Backend::Gateware),
