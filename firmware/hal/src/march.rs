@@ -387,3 +387,6 @@ pub fn acknowledge() {
         .ev_pending()
         .write(EvPending::default().with_field(true));
 }
+
+#[cfg(test)]
+mod tests;
