@@ -538,23 +538,21 @@ impl<'b, B: Board + ?Sized> Renderer<'b, B> {
     /// # Errors
     /// The firmware refuses.
     pub fn render(&mut self) -> Result<Stats, Error> {
-        let command = "render";
-        let lines = self.console.command(command)?;
-        let values = lines
-            .iter()
-            .filter_map(|line| line.split_once(' '))
-            .map(|(key, value)| {
-                let number = value.parse::<u64>().map(serde_json::Value::from);
-                (key.to_owned(), number.unwrap_or_else(|_| value.into()))
-            })
-            .collect();
-        serde_json::from_value(serde_json::Value::Object(values)).map_err(|error| {
-            Error::Console(ConsoleError::Reply {
-                command: command.to_owned(),
-                expected: format!("what the frame took ({error})"),
-                found: lines.join(", "),
-            })
-        })
+        let lines = self.console.command("render")?;
+        stats_of(&lines)
+    }
+
+    /// Sends a command that changes the scene, has the frame drawn once, and reads what it took.
+    ///
+    /// # Errors
+    /// The firmware refuses.
+    pub fn render_after(&mut self, command: &str) -> Result<Stats, Error> {
+        // At once, so that the change is not drawn before it is asked for.
+        let text = format!("{command}\rrender\r");
+        self.console.board().write(text.as_bytes())?;
+        self.console.reply(command)?;
+        let lines = self.console.reply("render")?;
+        stats_of(&lines)
     }
 
     fn info<T: std::str::FromStr>(&mut self, key: &str) -> Result<T, Error> {
@@ -570,6 +568,25 @@ impl<'b, B: Board + ?Sized> Renderer<'b, B> {
     fn memory(&mut self) -> Result<&mut dyn crate::board::Memory, Error> {
         self.console.board().memory().ok_or(Error::NoMemory)
     }
+}
+
+/// What a frame took, of lines of a key and its value.
+fn stats_of(lines: &[String]) -> Result<Stats, Error> {
+    let values = lines
+        .iter()
+        .filter_map(|line| line.split_once(' '))
+        .map(|(key, value)| {
+            let number = value.parse::<u64>().map(serde_json::Value::from);
+            (key.to_owned(), number.unwrap_or_else(|_| value.into()))
+        })
+        .collect();
+    serde_json::from_value(serde_json::Value::Object(values)).map_err(|error| {
+        Error::Console(ConsoleError::Reply {
+            command: "render".to_owned(),
+            expected: format!("what the frame took ({error})"),
+            found: lines.join(", "),
+        })
+    })
 }
 
 fn parse_address(word: &str) -> Result<u32, Error> {
@@ -610,6 +627,8 @@ pub fn field_commands(subject: &FieldSubject, with_mesh: bool) -> Vec<String> {
     let switch = |on| if on { "on" } else { "off" };
     let ambient = ambient.map(|ambient| Hexadecimal(ambient).to_string());
     let mut commands = vec![
+        // Nothing of what follows is drawn before the last.
+        "field off".to_owned(),
         format!("material {}", material.name()),
         "light default".to_owned(),
     ];
