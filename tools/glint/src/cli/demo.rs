@@ -9,10 +9,14 @@ use glint::console::Console;
 use glint::flash;
 use glint::model::Model;
 use glint::picture::{Frame, save_animation};
-use glint::render::{self, Renderer, Route, Scene, Stats, Subject, view_command};
+use glint::render::{self, FieldSubject, Renderer, Route, Scene, Stats, Subject, view_command};
+use glint::view;
+use glint_core::appearance::Appearance;
 use glint_core::camera::View;
 use glint_core::console::Backend;
+use glint_core::field::Field;
 use glint_core::fixed::{Q32_32, Turns, U4_28};
+use glint_core::stereo::{Stereo, Tint};
 use indicatif::ProgressBar;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -32,6 +36,9 @@ pub struct DemoArguments {
     /// Frames of the orbit.
     #[arg(long, default_value_t = 24)]
     orbit: u16,
+    /// Frames of the sponge for two eyes.
+    #[arg(long, default_value_t = 4)]
+    sponge: u16,
 }
 
 const MODELS: [&str; 3] = ["icosphere:6", "gear", "teapot"];
@@ -40,6 +47,13 @@ const MAIN_RAM: u32 = 0x4000_0000;
 const SIZE: (u32, u32) = (320, 180);
 const ORBIT_SIZE: (u32, u32) = (640, 360);
 const ORBIT_FRAMES_PER_SECOND: u16 = 12;
+const SPONGE: Field = Field::Menger { depth: 4 };
+const EYES: Stereo = Stereo {
+    half_separation: Q32_32::lit("0.05"),
+    zero_parallax: Q32_32::lit("2.2"),
+    tint: Tint::RedBlue,
+};
+const SPONGE_FRAMES_PER_SECOND: u16 = 3;
 /// The board's time that its BIOS may take.
 const BOOT_MS: u64 = 10_000;
 
@@ -73,20 +87,20 @@ impl DemoArguments {
 
         // Two boards, as a machine has two cores and a simulation uses one.
         let (first, others) = models.split_first().context("a model to show")?;
-        let (mut rows, orbit) = std::thread::scope(|scope| {
+        let (mut rows, lines) = std::thread::scope(|scope| {
             let second = scope.spawn(|| self.second_board(first, others, &firmware));
             let mut rows = vec![self.first_board(first, &firmware)?];
             let waiting = spinner("the second board is at work");
-            let (others, orbit) = second
+            let (others, lines) = second
                 .join()
                 .map_err(|_| anyhow::anyhow!("the second board has failed"))??;
             waiting.finish_and_clear();
             rows.extend(others);
-            anyhow::Ok((rows, orbit))
+            anyhow::Ok((rows, lines))
         })?;
         rows.sort_by_key(|row| row.number);
         print_table(&rows)?;
-        say(orbit)
+        lines.into_iter().try_for_each(say)
     }
 
     /// The long way: BIOS, serial boot, upload over the line; and the same picture by the soft core.
@@ -101,13 +115,13 @@ impl DemoArguments {
         Ok(row)
     }
 
-    /// The short way for all other models, and the orbit about the last one.
+    /// The short way for all other models, the orbit about the last one, and the sponge.
     fn second_board(
         &self,
         first: &Named,
         models: &[Named],
         firmware: &[u8],
-    ) -> anyhow::Result<(Vec<Row>, String)> {
+    ) -> anyhow::Result<(Vec<Row>, [String; 2])> {
         let mut board = SimulatedBoard::fast(firmware)?;
         let mut console = Console::new(&mut board);
         console.greet()?;
@@ -122,14 +136,13 @@ impl DemoArguments {
         }
         let path = self.out.join("orbit.png");
         let cycles = self.orbit(&mut renderer, &path)?;
-        let (width, height) = ORBIT_SIZE;
-        let orbit = format!(
-            "{}: {} frames around {name}, {width}x{height}, by the gateware in {cycles} cycles each: {:.0} frames a second at 81.25 MHz",
-            path.display(),
-            self.orbit,
-            81.25e6 / cycles as f64
-        );
-        Ok((rows, orbit))
+        let around = format!("{} frames around {name}", self.orbit);
+        let orbit = line(&path, &around, ORBIT_SIZE, cycles);
+        let path = self.out.join("sponge.png");
+        let cycles = self.sponge(&mut renderer, &path)?;
+        let towards = format!("{} frames towards {SPONGE}, for two eyes", self.sponge);
+        let sponge = line(&path, &towards, SIZE, cycles);
+        Ok((rows, [orbit, sponge]))
     }
 
     /// Gets a model onto the board, renders it, and looks at the monitor.
@@ -206,6 +219,62 @@ impl DemoArguments {
             .with_context(|| format!("{}: cannot be written", path.display()))?;
         Ok(cycles / u64::from(self.orbit.max(1)))
     }
+
+    /// Moves towards the sponge and around it; returns the cycles of a frame, the mean of all.
+    fn sponge(&self, renderer: &mut Renderer<SimulatedBoard>, path: &Path) -> anyhow::Result<u64> {
+        let lens = camera(Turns(0))?;
+        let subject = FieldSubject {
+            field: SPONGE,
+            appearance: &Appearance::default(),
+            stereo: Some(EYES),
+        };
+        let (width, height) = SIZE;
+        let console = renderer.console();
+        console.command(&format!("size {width} {height}"))?;
+        // The board is a new one: it looks as unless told.
+        console.command(&format!("stereo {EYES}"))?;
+        console.command(&format!("field {SPONGE}"))?;
+        let mut cycles = 0;
+        let mut frames = Vec::new();
+        for number in 0..self.sponge {
+            let part = f64::from(number) / f64::from(self.sponge.max(2) - 1);
+            let between = |from: f64, to: f64| format!("{:.3}", from + (to - from) * part);
+            // Distance, azimuth and polar angle.
+            let place = [between(3.2, 2.2), between(15.0, 60.0), between(80.0, 55.0)];
+            let stats = renderer.render_after(&format!("camera {}", place.join(" ")))?;
+            let scene = Scene {
+                subject: Subject::Field(subject),
+                view: view::spherical(&place.join(","))?.with_lens_of(&lens),
+                size: SIZE,
+                backend: None,
+            };
+            let frame = Frame {
+                width,
+                height,
+                colour: renderer.colour(SIZE, Route::Memory, &mut |_, _| {})?,
+                depth: Vec::new(),
+            };
+            anyhow::ensure!(
+                stats.backend.as_deref() == Some("gateware")
+                    && frame.colour == render::on_model(&scene)?.frame.colour,
+                "frame {number} of the sponge is not the model's, or was drawn by the soft core"
+            );
+            cycles += stats.cycles.unwrap_or_default();
+            frames.push(frame);
+        }
+        save_animation(path, &frames, SPONGE_FRAMES_PER_SECOND)
+            .with_context(|| format!("{}: cannot be written", path.display()))?;
+        Ok(cycles / u64::from(self.sponge.max(1)))
+    }
+}
+
+/// What is printed of an animation whose frames took so many cycles each.
+fn line(path: &Path, what: &str, (width, height): (u32, u32), cycles: u64) -> String {
+    format!(
+        "{}: {what}, {width}x{height}, by the gateware in {cycles} cycles each: {:.0} frames a second at 81.25 MHz",
+        path.display(),
+        81.25e6 / cycles as f64
+    )
 }
 
 /// Another side of each model.
