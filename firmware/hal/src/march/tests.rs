@@ -84,6 +84,8 @@ fn something_else_is_not_taken_for_the_raymarcher() {
         levels: 6,
         boxes: true,
         stereo: true,
+        round: true,
+        blend: true,
     };
     assert_eq!(marcher.unwrap().ability(), ability);
     let silent = (registers().ev_enable().address(), 0);

@@ -6,11 +6,11 @@ use std::fmt::Write as _;
 use anyhow::{Context, Result, ensure};
 use glint::board::{SimulatedBoard, built_firmware};
 use glint::console::Console;
-use glint::render::{self, Counts, Renderer, Route, Scene, Subject};
+use glint::render::{self, FieldSubject, Renderer, Route, Scene, Subject};
+use glint_core::appearance::Appearance;
 use glint_core::console::Backend;
 use glint_core::field::Field;
 use glint_core::stereo::Stereo;
-use glint_model::march::FieldOptions;
 use glint_reference::camera::{Camera, Vector};
 use glint_reference::field::views;
 use indicatif::ProgressBar;
@@ -162,18 +162,16 @@ fn draw(
     let mut renderer = Renderer::new(console);
     let field = Field::parse(case.field).map_err(|error| anyhow::anyhow!("{error}"))?;
     let stereo = case.stereo.map(Stereo::parse).transpose();
-    let options = FieldOptions {
-        stereo: stereo.map_err(|error| anyhow::anyhow!("{error}"))?,
-        ..FieldOptions::default()
-    };
+    let stereo = stereo.map_err(|error| anyhow::anyhow!("{error}"))?;
     let mut rows: Vec<Row> = Vec::new();
     let mut last = None;
     for angles in (case.path)() {
         let scene = Scene {
-            subject: Subject::Field {
-                field,
-                options: &options,
-            },
+            subject: Subject::Field(FieldSubject {
+                field: &field,
+                appearance: &Appearance::default(),
+                stereo,
+            }),
             view: camera.turned(angles).view().map_err(anyhow::Error::msg)?,
             size: case.size,
             backend: Some(Backend::Gateware),
@@ -190,12 +188,10 @@ fn draw(
         );
         let found = renderer.colour(case.size, Route::Memory, &mut |_, _| {})?;
         ensure!(
-            found == expected.frame.colour && stats.counts == expected.stats.counts,
+            found == expected.frame.colour && stats.rays == expected.stats.rays,
             "turned by {angles:?} degrees, the raymarcher's frame is not the model's"
         );
-        let Counts::Rays(rays) = stats.counts else {
-            anyhow::bail!("no rays were counted");
-        };
+        let rays = stats.rays.context("no rays were counted")?;
         let [yaw, pitch, roll] = angles;
         rows.push(Row {
             field: case.field,
