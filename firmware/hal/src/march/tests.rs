@@ -50,7 +50,7 @@ fn probe(ident: u32, caps: u32) -> (Result<Marcher, Absent>, Rc<RefCell<Block>>)
 }
 
 /// Two lanes, six levels, boxes and two eyes.
-const EVERYTHING: u32 = 2 | 6 << 4 | 1 << 8 | 1 << 9;
+const EVERYTHING: u32 = 2 | 6 << 4 | 0b1111 << 8;
 /// Four lanes for sponges of depth 4.
 const SPONGES: u32 = 4 | 4 << 4;
 
