@@ -44,6 +44,11 @@ impl Turns {
         Q32_32::from_bits(self.0 as i64 * 360)
     }
 
+    /// The angle in degrees, in [−180, 180), exactly.
+    pub const fn to_signed_degrees(self) -> Q32_32 {
+        Q32_32::from_bits(self.0 as i32 as i64 * 360)
+    }
+
     /// The sum of two angles, whole turns dropped.
     #[must_use]
     pub const fn wrapping_add(self, other: Self) -> Self {

@@ -1,4 +1,4 @@
-//! Cameras, sines, fields and lights, mesh and wire formats and the console's grammar: what the firmware and the host share.
+//! Cameras, sines, attitudes, fields and lights, mesh and wire formats and the console's grammar: what the firmware and the host share.
 //!
 //! Everything here is integer arithmetic without allocation, and no input makes it panic.
 #![no_std]
@@ -10,13 +10,17 @@ extern crate alloc;
 extern crate std;
 
 pub mod appearance;
+pub mod calibration;
 pub mod camera;
 pub mod colour;
 pub mod console;
 pub mod field;
 pub mod fixed;
+pub mod follow;
 pub mod light;
 pub mod mesh;
+pub mod orientation;
+pub mod polar;
 pub mod stereo;
 pub mod trig;
 pub mod wire;

@@ -117,7 +117,7 @@ fn mul_high(a: i32, b: u32) -> i32 {
 /// 2π with 28 fraction bits, nearest.
 const TAU_Q28: i64 = (((PI_Q60 >> 30) + 1) >> 1) as i64;
 /// π with 60 fraction bits.
-const PI_Q60: u128 = 0x3243_F6A8_885A_308D;
+pub(crate) const PI_Q60: u128 = 0x3243_F6A8_885A_308D;
 
 /// The table, by the Taylor series of sin x and 1 − cos x with 60 fraction bits.
 const fn nodes() -> [[u32; 2]; STEPS as usize] {

@@ -1,0 +1,310 @@
+//! What a gyroscope reads at rest: its bias, measured while nothing moves, and followed while nothing moves later on.
+//!
+//! [`Calibration`] takes the mean of many samples, and refuses when they say that something moved; [`RestBias`] learns slowly from then on,
+//! and only at rest.
+
+mod rest;
+
+use core::fmt;
+
+use crate::fixed::Q32_32;
+use crate::orientation::Sample;
+
+pub use rest::RestBias;
+
+/// Samples of a calibration unless told otherwise.
+pub const SAMPLES: u32 = 8_192;
+/// The numbers of samples that are accepted.
+pub const MOST_SAMPLES: [u32; 2] = [64, 65_536];
+
+/// The most a sample may differ from the first one, in °/s: ten times the noise, and what a still hand exceeds.
+const MOST_RATE: u32 = 2;
+/// The most the means of both halves may differ, in 1/8 °/s.
+const MOST_CHANGE: u32 = 1;
+/// The largest bias, in °/s: the data sheet's ±20 °/s at 25 °C and as much again over temperature.
+const MOST_BIAS: u32 = 40;
+/// The most a sample's force may differ from the first one's along an axis, in 1/8 g.
+const MOST_FORCE: u32 = 1;
+
+/// LSB per °/s and per g.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Units {
+    /// Of the gyroscope.
+    pub per_dps: Q32_32,
+    /// Of the accelerometer.
+    pub per_g: u32,
+}
+
+impl Units {
+    /// An MPU-6050 at ±2000 °/s and ±8 g.
+    pub const MPU_6050: Self = Self {
+        per_dps: Q32_32::lit("16.4"),
+        per_g: 4_096,
+    };
+
+    /// So many °/s in LSB, rounded up, at least 1.
+    fn rate(self, dps: u32) -> u32 {
+        // At most 2^12 LSB per °/s make sense of 16 bits.
+        let lsb = self.per_dps.to_bits().clamp(1 << 28, 1 << 44);
+        ((i128::from(lsb) * i128::from(dps) + (1 << 32) - 1) >> 32) as u32
+    }
+
+    /// A rate in 2^−16 LSB as °/h, rounded down.
+    fn per_hour(self, rate: u32) -> Q32_32 {
+        let lsb = i128::from(self.per_dps.to_bits().max(1 << 28));
+        Q32_32::saturating_from_num(fixed_i128(((i128::from(rate) * 3_600) << 48) / lsb))
+    }
+}
+
+/// A number in 2^−32.
+fn fixed_i128(bits: i128) -> fixed::FixedI128<fixed::types::extra::U32> {
+    fixed::FixedI128::from_bits(bits)
+}
+
+/// What a calibration has found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Report {
+    /// How many samples it is the mean of.
+    pub samples: u32,
+    /// The mean of each axis in 1/256 LSB, to nearest.
+    pub bias: [i32; 3],
+    /// The standard deviation of a sample in 1/256 LSB, rounded down.
+    pub deviation: [u32; 3],
+    /// The standard error of the mean in 2^−16 LSB, rounded down: what noise that has no memory leaves.
+    pub error: [u32; 3],
+}
+
+impl Report {
+    /// By how much each axis is expected to drift because of [`Report::error`], in °/h. The bias itself wanders by some 5 to 10 °/h more.
+    pub fn drift(&self, units: Units) -> [Q32_32; 3] {
+        self.error.map(|error| units.per_hour(error))
+    }
+}
+
+/// Why there is no calibration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Refusal {
+    /// A rate that is not that of the first sample.
+    Turned {
+        /// The sample, from 0.
+        sample: u32,
+        /// The axis, 0 for x.
+        axis: usize,
+        /// The difference in LSB.
+        by: u32,
+        /// The most that is accepted, in LSB.
+        most: u32,
+    },
+    /// A force that is not that of the first sample.
+    Pushed {
+        /// The sample, from 0.
+        sample: u32,
+        /// The axis, 0 for x.
+        axis: usize,
+        /// The difference in LSB.
+        by: u32,
+        /// The most that is accepted, in LSB.
+        most: u32,
+    },
+    /// The mean of the second half is not that of the first.
+    Changed {
+        /// The axis, 0 for x.
+        axis: usize,
+        /// The difference in 1/256 LSB.
+        by: u32,
+        /// The most that is accepted, in 1/256 LSB.
+        most: u32,
+    },
+    /// It turns steadily, or its bias is beyond the data sheet's.
+    TooLarge {
+        /// The axis, 0 for x.
+        axis: usize,
+        /// The mean in LSB.
+        mean: i32,
+        /// The most that is accepted, in LSB.
+        most: u32,
+    },
+    /// All samples of all axes are the same, which noise would not leave so: the sensor does not measure.
+    Frozen,
+}
+
+/// The name of an axis.
+const fn axis_name(axis: usize) -> &'static str {
+    match axis {
+        0 => "x",
+        1 => "y",
+        _ => "z",
+    }
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match *self {
+            Self::Turned { sample, axis, by, most } => write!(
+                f,
+                "gyroscope {} of sample {sample} is {by} LSB from the first: expected at most {most}, keep it still",
+                axis_name(axis)
+            ),
+            Self::Pushed { sample, axis, by, most } => write!(
+                f,
+                "accelerometer {} of sample {sample} is {by} LSB from the first: expected at most {most}, keep it still",
+                axis_name(axis)
+            ),
+            Self::Changed { axis, by, most } => write!(
+                f,
+                "gyroscope {}: the mean changed by {by}/256 LSB from the first half to the second: expected at most {most}/256, keep it still",
+                axis_name(axis)
+            ),
+            Self::TooLarge { axis, mean, most } => write!(
+                f,
+                "gyroscope {}: the mean is {mean} LSB: expected within ±{most}, it turns or is broken",
+                axis_name(axis)
+            ),
+            Self::Frozen => f.write_str("the gyroscope gives the same numbers all the time: expected some noise, it does not measure"),
+        }
+    }
+}
+
+impl core::error::Error for Refusal {}
+
+/// A calibration that is going on.
+#[derive(Clone, Copy, Debug)]
+pub struct Calibration {
+    units: Units,
+    wanted: u32,
+    count: u32,
+    first: Sample,
+    last_us: u32,
+    /// Of all samples; at most 2^31 in magnitude, and 2^46.
+    sum: [i64; 3],
+    squares: [u64; 3],
+    /// Of the first half.
+    half: [i64; 3],
+}
+
+/// How far a calibration is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Progress {
+    /// So many samples were taken.
+    Going(u32),
+    /// It is done.
+    Done(Report),
+}
+
+impl Calibration {
+    /// Begins. A number of samples beyond [`MOST_SAMPLES`] counts as the nearest that is accepted.
+    pub fn new(units: Units, samples: u32) -> Self {
+        Self {
+            units,
+            wanted: samples.clamp(MOST_SAMPLES[0], MOST_SAMPLES[1]),
+            count: 0,
+            first: Sample::default(),
+            last_us: 0,
+            sum: [0; 3],
+            squares: [0; 3],
+            half: [0; 3],
+        }
+    }
+
+    /// Takes a sample; one with the time of the one before is not fresh and does not count.
+    ///
+    /// # Errors
+    /// It moves. Begin again.
+    pub fn on_sample(&mut self, sample: &Sample) -> Result<Progress, Refusal> {
+        if self.count == 0 {
+            self.first = *sample;
+        } else if sample.t_us == self.last_us {
+            return Ok(Progress::Going(self.count));
+        }
+        self.last_us = sample.t_us;
+        self.check(sample)?;
+        for axis in 0..3 {
+            let rate = i64::from(sample.gyro[axis]);
+            self.sum[axis] += rate;
+            self.squares[axis] += (rate * rate) as u64;
+        }
+        self.count += 1;
+        if self.count == self.wanted / 2 {
+            self.half = self.sum;
+        }
+        if self.count < self.wanted {
+            return Ok(Progress::Going(self.count));
+        }
+        let report = self.report();
+        *self = Self::new(self.units, self.wanted);
+        report.map(Progress::Done)
+    }
+
+    fn check(&self, sample: &Sample) -> Result<(), Refusal> {
+        let most = self.units.rate(MOST_RATE);
+        let apart = |a: i16, b: i16| u32::from(a.abs_diff(b));
+        for axis in 0..3 {
+            let by = apart(sample.gyro[axis], self.first.gyro[axis]);
+            if by > most {
+                let sample = self.count;
+                return Err(Refusal::Turned {
+                    sample,
+                    axis,
+                    by,
+                    most,
+                });
+            }
+        }
+        let most = (self.units.per_g * MOST_FORCE).div_ceil(8);
+        for axis in 0..3 {
+            let by = apart(sample.accel[axis], self.first.accel[axis]);
+            if by > most {
+                let sample = self.count;
+                return Err(Refusal::Pushed {
+                    sample,
+                    axis,
+                    by,
+                    most,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    fn report(&self) -> Result<Report, Refusal> {
+        let count = i64::from(self.count);
+        let mean = |sum: i64, count: i64| ((sum * 256 + count / 2).div_euclid(count)) as i32;
+        let bias = self.sum.map(|sum| mean(sum, count));
+        let early = count / 2;
+        let changed = (self.units.rate(MOST_CHANGE) * 256).div_ceil(8);
+        let largest = self.units.rate(MOST_BIAS);
+        for (axis, &bias) in bias.iter().enumerate() {
+            let first = mean(self.half[axis], early);
+            let second = mean(self.sum[axis] - self.half[axis], count - early);
+            let by = first.abs_diff(second);
+            if by > changed {
+                return Err(Refusal::Changed {
+                    axis,
+                    by,
+                    most: changed,
+                });
+            }
+            if bias.unsigned_abs() > largest * 256 {
+                return Err(Refusal::TooLarge {
+                    axis,
+                    mean: bias >> 8,
+                    most: largest,
+                });
+            }
+        }
+        // n²·variance: at most 2^62, and never negative by Cauchy and Schwarz.
+        let spread = [0, 1, 2].map(|axis| {
+            u64::from(self.count) * self.squares[axis] - self.sum[axis].unsigned_abs().pow(2)
+        });
+        if spread == [0; 3] {
+            return Err(Refusal::Frozen);
+        }
+        let n = u64::from(self.count);
+        Ok(Report {
+            samples: self.count,
+            bias,
+            deviation: spread.map(|x| (x.isqrt() * 256 / n) as u32),
+            error: spread.map(|x| ((((x / n) << 16).isqrt() << 8) / n) as u32),
+        })
+    }
+}

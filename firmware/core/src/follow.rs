@@ -1,0 +1,209 @@
+//! Cameras that an attitude drives: free look, and round the model.
+//!
+//! The camera's basis comes from the quaternion itself, by way of no angles, so it is nowhere singular: a small turn of the sensor is as
+//! small a turn of the picture, straight up and straight down too.
+
+use crate::camera::{DEFAULT_HALF_WIDTH, DEFAULT_NEAR, RADIUS, View, ViewError};
+use crate::fixed::{Q2_23, Q2_30, Q32_32, Turns};
+use crate::orientation::Quaternion;
+use crate::polar::polar;
+use crate::trig::sin_cos_q30;
+
+/// A direction of the sensor along one of its axes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Direction {
+    /// 0, 1, 2 for x, y, z.
+    axis: u8,
+    negative: bool,
+}
+
+impl Direction {
+    /// Reads `x`, `-x`, `y`, …; `+x` is `x`.
+    pub fn parse(text: &str) -> Option<Self> {
+        let (negative, name) = match text.strip_prefix('-') {
+            Some(name) => (true, name),
+            None => (false, text.strip_prefix('+').unwrap_or(text)),
+        };
+        let axis = match name {
+            "x" => 0,
+            "y" => 1,
+            "z" => 2,
+            _ => return None,
+        };
+        Some(Self { axis, negative })
+    }
+
+    /// The direction in the world, 30 fraction bits.
+    fn of(self, axes: &[[i32; 3]; 3]) -> [i32; 3] {
+        let axis = axes[usize::from(self.axis)];
+        if self.negative {
+            // At most 2^30 and a bit.
+            axis.map(|x| -x)
+        } else {
+            axis
+        }
+    }
+}
+
+/// How the sensor is mounted: which of its directions are the camera's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Mounting {
+    forward: Direction,
+    up: Direction,
+}
+
+impl Default for Mounting {
+    /// Forward is y and up is z, so that at the identity the camera looks along +y, as [`View::look`] does with all angles 0.
+    fn default() -> Self {
+        Self {
+            forward: Direction {
+                axis: 1,
+                negative: false,
+            },
+            up: Direction {
+                axis: 2,
+                negative: false,
+            },
+        }
+    }
+}
+
+impl Mounting {
+    /// By the direction that looks into the scene and the one that points up on the screen, if they are perpendicular.
+    pub fn new(forward: Direction, up: Direction) -> Option<Self> {
+        (forward.axis != up.axis).then_some(Self { forward, up })
+    }
+}
+
+/// The camera at `eye` that looks where the sensor does.
+///
+/// The basis is orthonormal within 2^−21.
+///
+/// # Errors
+/// When the eye is more than 32 from the origin.
+pub fn free_look(
+    eye: [Q32_32; 3],
+    attitude: Quaternion,
+    mounting: Mounting,
+) -> Result<View, ViewError> {
+    let [u, v, n] = basis(attitude, mounting);
+    View::new_checked(eye, u, v, n, DEFAULT_HALF_WIDTH, DEFAULT_NEAR)
+}
+
+/// The camera at distance `r` from the origin that looks at it in the direction in which the sensor looks: yaw and pitch carry the eye
+/// round the model, roll turns the picture.
+///
+/// # Errors
+/// When `r` is outside [2, 5].
+pub fn orbit(r: Q32_32, attitude: Quaternion, mounting: Mounting) -> Result<View, ViewError> {
+    if !(RADIUS[0]..=RADIUS[1]).contains(&r) {
+        return Err(ViewError::Radius(r));
+    }
+    let n = mounting.forward.of(&attitude.axes());
+    // r ≤ 5 and |n| ≤ 1, so the result is below 6.
+    let eye =
+        n.map(|x| Q32_32::from_bits(((i128::from(r.to_bits()) * -i128::from(x)) >> 30) as i64));
+    free_look(eye, attitude, mounting)
+}
+
+/// u, v, n.
+fn basis(attitude: Quaternion, mounting: Mounting) -> [[Q2_23; 3]; 3] {
+    let axes = attitude.axes();
+    let n = mounting.forward.of(&axes);
+    let up = mounting.up.of(&axes);
+    let v = up.map(|x| -x);
+    // Forward × up is to the right.
+    let u = [0, 1, 2].map(|i| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        let wide = |a: i32, b: i32| i64::from(a) * i64::from(b);
+        ((wide(n[j], up[k]) - wide(n[k], up[j]) + (1 << 29)) >> 30) as i32
+    });
+    [u, v, n].map(|row| row.map(|x| Q2_23::from_bits((x + (1 << 6)) >> 7)))
+}
+
+/// A sensitivity of 1.
+pub const NATURAL: u16 = 256;
+/// The sensitivities that are accepted, in 1/256.
+pub const SENSITIVITY: [u16; 2] = [32, 2_048];
+
+/// Between the sensor's attitude and the camera's: where its middle is, and how far it goes.
+///
+/// With a sensitivity of 1 the camera's attitude is the sensor's but for what recentring has turned, so it stays as true as that. With
+/// another one each turn is made longer or shorter, about the axis that it has; the horizon is then the user's to hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Steering {
+    sensitivity: u16,
+    /// The sensor's, when it was last seen.
+    seen: Option<Quaternion>,
+    camera: Quaternion,
+    /// What stands before the sensor's attitude to make it the camera's.
+    offset: Quaternion,
+}
+
+impl Default for Steering {
+    fn default() -> Self {
+        Self::new(NATURAL)
+    }
+}
+
+impl Steering {
+    /// Begins with a sensitivity in 1/256, of which those beyond [`SENSITIVITY`] count as the nearest.
+    pub fn new(sensitivity: u16) -> Self {
+        Self {
+            sensitivity: sensitivity.clamp(SENSITIVITY[0], SENSITIVITY[1]),
+            seen: None,
+            camera: Quaternion::IDENTITY,
+            offset: Quaternion::IDENTITY,
+        }
+    }
+
+    /// Changes the sensitivity; the camera stays where it is.
+    pub fn set_sensitivity(&mut self, sensitivity: u16) {
+        self.sensitivity = sensitivity.clamp(SENSITIVITY[0], SENSITIVITY[1]);
+    }
+
+    /// The camera's attitude for the sensor's.
+    pub fn follow(&mut self, attitude: Quaternion) -> Quaternion {
+        match self.seen.replace(attitude) {
+            Some(seen) if self.sensitivity != NATURAL => {
+                let turn = seen.inverse().times(attitude);
+                self.camera = self.camera.times(scaled(turn, self.sensitivity));
+                self.offset = self.camera.times(attitude.inverse());
+            }
+            _ => self.camera = self.offset.times(attitude),
+        }
+        self.camera
+    }
+
+    /// Makes the direction in which the sensor is turned now the middle one; the horizon stays where it is.
+    pub fn recentre(&mut self) {
+        let back = Quaternion::about_axis(2, -self.camera.heading());
+        self.camera = back.times(self.camera);
+        self.offset = back.times(self.offset);
+    }
+
+    /// Makes the sensor's whole attitude the middle, the horizon too.
+    pub fn level(&mut self) {
+        self.offset = self.seen.unwrap_or(Quaternion::IDENTITY).inverse();
+        self.camera = Quaternion::IDENTITY;
+    }
+}
+
+/// A rotation about the same axis by another angle; the shorter way round is taken for the rotation.
+fn scaled(turn: Quaternion, sensitivity: u16) -> Quaternion {
+    let [w, x, y, z] = turn
+        .canonical()
+        .parts()
+        .map(|part| i64::from(part.to_bits()));
+    // At most 2^60.
+    let sine = (x * x + y * y + z * z).isqrt();
+    if sine == 0 {
+        return Quaternion::IDENTITY;
+    }
+    let (_, half) = polar(w << 30, sine << 30);
+    // At most a quarter of a turn times 8.
+    let half = Turns(((u64::from(half.0) * u64::from(sensitivity)) >> 8) as u32);
+    let (sin, cos) = sin_cos_q30(half);
+    let along = |x: i64| Q2_30::from_bits((i64::from(sin.to_bits()) * x / sine) as i32);
+    Quaternion::new([cos, along(x), along(y), along(z)]).unwrap_or(Quaternion::IDENTITY)
+}

@@ -1,0 +1,21 @@
+//! The attitude of a body from its gyroscope and accelerometer, by integer arithmetic alone.
+//!
+//! Conventions: the quaternion carries body to world, the world's z is up, a flat sensor at rest reads +1 g on its z. The
+//! first sample is where the attitude begins: at the identity, or where the accelerometer says down is, with yaw 0. Times are in µs. Formats and
+//! roundings are those of `docs/formats.md`, the errors those of `docs/report/imu.md`.
+
+mod gain;
+mod integrator;
+mod quaternion;
+mod rate;
+mod scale;
+mod tilt;
+mod tracker;
+
+pub use gain::{Gain, SHORTEST};
+pub use integrator::{Integrator, LONGEST_STEP};
+pub use quaternion::{Angles, Quaternion};
+pub use rate::{History, LONGEST_CURVE, MOST_STRETCH};
+pub use scale::{LSB_PER_DPS, Scale};
+pub use tilt::{DOUBTFUL, FRESH, LSB_PER_G, TIME_CONSTANT, Tilt};
+pub use tracker::{Counts, Outcome, Sample, Tracker};

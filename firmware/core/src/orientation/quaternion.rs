@@ -1,0 +1,195 @@
+//! Quaternions of length 1, and what is read from them.
+
+use crate::fixed::{Q2_30, Turns};
+use crate::polar::polar;
+use crate::trig::sin_cos_q30;
+
+/// An attitude: a Hamilton quaternion that carries what the body sees to the world, of length 1 within 2^−29.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Quaternion {
+    /// w, x, y, z in 2^−30.
+    pub(super) parts: [i32; 4],
+}
+
+/// 1 in the numbers of a quaternion.
+const ONE: i32 = 1 << 30;
+/// The cosine of the pitch below which there is a yaw and no roll: 2^−16, within 0.00088° of the pole. 60 fraction bits.
+const POLE: i64 = 1 << 44;
+
+impl Quaternion {
+    /// Body and world have the same axes.
+    pub const IDENTITY: Self = Self {
+        parts: [ONE, 0, 0, 0],
+    };
+
+    /// The quaternion in the direction of four numbers (w, x, y, z), which say an attitude if they have any length.
+    pub fn new(parts: [Q2_30; 4]) -> Option<Self> {
+        let largest = parts.iter().map(|part| part.to_bits().unsigned_abs()).max();
+        let up = largest?.checked_ilog2().map(|lead| 30 - lead.min(30))?;
+        // The largest has 30 bits, so the squares together have at most 62.
+        let wide = parts.map(|part| (i64::from(part.to_bits()) << up) >> 1);
+        let length = wide.iter().map(|x| (x * x) as u64).sum::<u64>().isqrt() as i64;
+        let parts = wide.map(|x| ((x << 30) / length) as i32);
+        Some(Self { parts }.renormalised())
+    }
+
+    /// The rotation by an angle about one of the axes: 0, 1, 2 for x, y, z (and what is beyond them is z).
+    pub fn about_axis(axis: usize, angle: Turns) -> Self {
+        // Half of an angle in (−½, ½] turns, so that small ones of either sign stay near the identity.
+        let half = Turns((angle.0 as i32 >> 1) as u32);
+        let (sin, cos) = sin_cos_q30(half);
+        let mut parts = [cos.to_bits(), 0, 0, 0];
+        parts[1 + axis.min(2)] = sin.to_bits();
+        Self { parts }.renormalised()
+    }
+
+    /// The attitude of three angles, as [`Quaternion::angles`] gives them.
+    pub fn from_angles(angles: Angles) -> Self {
+        let pitched = Self::about_axis(2, angles.yaw).times(Self::about_axis(1, angles.pitch));
+        pitched.times(Self::about_axis(0, angles.roll))
+    }
+
+    /// The numbers w, x, y, z.
+    pub const fn parts(self) -> [Q2_30; 4] {
+        let [w, x, y, z] = self.parts;
+        [
+            Q2_30::from_bits(w),
+            Q2_30::from_bits(x),
+            Q2_30::from_bits(y),
+            Q2_30::from_bits(z),
+        ]
+    }
+
+    /// The other way round: from the world to the body.
+    #[must_use]
+    pub const fn inverse(self) -> Self {
+        let [w, x, y, z] = self.parts;
+        Self {
+            parts: [w, -x, -y, -z],
+        }
+    }
+
+    /// First `other`, then this one. To nearest, and length 1 again.
+    #[must_use]
+    pub fn times(self, other: Self) -> Self {
+        let products = product(self.parts, other.parts);
+        let parts = products.map(|x| ((x + (1 << 29)) >> 30) as i32);
+        Self { parts }.renormalised()
+    }
+
+    /// The same attitude with w at least 0; of w = 0 there are two.
+    #[must_use]
+    pub fn canonical(self) -> Self {
+        if self.parts[0] < 0 {
+            Self {
+                parts: self.parts.map(|x| -x),
+            }
+        } else {
+            self
+        }
+    }
+
+    /// The world's directions of the body's axes x, y, z, which are the columns of the rotation's matrix. 30 fraction bits,
+    /// to nearest, of length 1 within 2^−28.
+    pub fn axes(self) -> [[i32; 3]; 3] {
+        self.columns()
+            .map(|column| column.map(|x| ((x + (1 << 29)) >> 30) as i32))
+    }
+
+    /// The same with 60 fraction bits, exactly what the quaternion says.
+    fn columns(self) -> [[i64; 3]; 3] {
+        let [w, x, y, z] = self.parts.map(i64::from);
+        // Each is at most 1 in magnitude, and twice the sum of two products at most 2.
+        let twice = |a: i64, b: i64| 2 * (a + b);
+        [
+            [
+                w * w + x * x - y * y - z * z,
+                twice(x * y, w * z),
+                twice(x * z, -w * y),
+            ],
+            [
+                twice(x * y, -w * z),
+                w * w - x * x + y * y - z * z,
+                twice(y * z, w * x),
+            ],
+            [
+                twice(x * z, w * y),
+                twice(y * z, -w * x),
+                w * w - x * x - y * y + z * z,
+            ],
+        ]
+    }
+
+    /// The body's direction of the world's z axis, which is up: 30 fraction bits, rounded down.
+    pub(super) fn up(self) -> [i64; 3] {
+        let [w, x, y, z] = self.parts.map(i64::from);
+        [
+            (x * z - w * y) >> 29,
+            (y * z + w * x) >> 29,
+            (w * w - x * x - y * y + z * z) >> 30,
+        ]
+    }
+
+    /// Yaw, pitch and roll, intrinsic about z, then y, then x. An output only: nothing is computed from them.
+    ///
+    /// Yaw and roll are in [−½, ½) turns and pitch in [−¼, ¼]. With a quaternion that is off by ε, yaw and roll are
+    /// off by ε/cos(pitch), as angles are that turn about the same axis; their sum is off by ε. Where cos(pitch) < 2^−16 roll
+    /// is 0 and yaw is the whole of the rotation that is left: at the pole itself, yaw − roll of pitch +¼, yaw + roll of −¼.
+    pub fn angles(self) -> Angles {
+        let [[xx, xy, xz], [yx, yy, yz], [_, _, zz]] = self.columns();
+        let (level, yaw) = polar(xx, xy);
+        let (_, pitch) = polar(level, -xz);
+        if level < POLE {
+            let (_, yaw) = polar(yy, -yx);
+            return Angles {
+                yaw,
+                pitch,
+                roll: Turns(0),
+            };
+        }
+        let (_, roll) = polar(zz, yz);
+        Angles { yaw, pitch, roll }
+    }
+
+    /// The angle of the turn about the world's z axis that is nearest to this attitude (its twist). It is continuous
+    /// everywhere but where the body is upside down, at both poles of the pitch too.
+    pub fn heading(self) -> Turns {
+        let [w, _, _, z] = self.parts.map(i64::from);
+        let (_, half) = polar(w << 30, z << 30);
+        Turns(half.0 << 1)
+    }
+
+    /// One step of Newton towards length 1: it squares a relative error, so one within 2^−15 goes below the last place.
+    #[must_use]
+    fn renormalised(self) -> Self {
+        let parts = self.parts.map(i64::from);
+        let excess = (1 << 60) - parts.iter().map(|x| x * x).sum::<i64>();
+        // |excess| < 2^46 for such an error, so the products stay below 2^62.
+        let parts = parts.map(|x| (x + ((x * (excess >> 29) + (1 << 31)) >> 32)) as i32);
+        Self { parts }
+    }
+}
+
+/// The product of two quaternions in the product of their units. Both are at most 1 long but for their errors, so by
+/// Cauchy and Schwarz no partial sum exceeds the product of the units.
+pub(super) fn product(a: [i32; 4], b: [i32; 4]) -> [i64; 4] {
+    let [aw, ax, ay, az] = a.map(i64::from);
+    let [bw, bx, by, bz] = b.map(i64::from);
+    [
+        aw * bw - ax * bx - ay * by - az * bz,
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+    ]
+}
+
+/// Yaw, pitch and roll; half a turn and more is negative.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Angles {
+    /// About the world's z axis.
+    pub yaw: Turns,
+    /// About the y axis that yaw has turned; positive is nose down for a nose along x.
+    pub pitch: Turns,
+    /// About the x axis that yaw and pitch have turned.
+    pub roll: Turns,
+}

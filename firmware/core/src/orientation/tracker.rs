@@ -1,0 +1,158 @@
+//! Samples in, attitude out.
+
+use super::integrator::{Integrator, LONGEST_STEP};
+use super::quaternion::Quaternion;
+use super::scale::Scale;
+use super::tilt::{Tilt, is_saturated};
+use crate::calibration::RestBias;
+
+/// What the sensor has measured at a time, in counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Sample {
+    /// When, in µs; it may wrap.
+    pub t_us: u32,
+    /// The force along each axis.
+    pub accel: [i16; 3],
+    /// The rate about each axis.
+    pub gyro: [i16; 3],
+}
+
+/// What became of a sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// It is the first: the attitude begins here.
+    First,
+    /// The attitude has gone on to it.
+    Step,
+    /// It is not later than the one before, and was ignored.
+    Stale,
+    /// It came more than [`LONGEST_STEP`] after the one before: the attitude was held, and goes on from here.
+    Gap,
+}
+
+/// What happened to the attitude so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Samples that moved it.
+    pub steps: u64,
+    /// Samples that were ignored because of their time.
+    pub stale: u64,
+    /// Times that it was held because no sample came.
+    pub gaps: u64,
+    /// Samples at an end of the gyroscope's range: the body turned faster than it can say.
+    pub saturated: u64,
+    /// Samples whose accelerometer was left out.
+    pub rejected: u64,
+}
+
+/// The attitude of a body. `ORDER` is that of [`super::History::advance`].
+#[derive(Clone, Copy, Debug)]
+pub struct Tracker<const ORDER: u32 = 4> {
+    integrator: Integrator<ORDER>,
+    tilt: Option<Tilt>,
+    bias: [i32; 3],
+    resting: Option<RestBias>,
+    /// When the last sample was taken; nothing before the first.
+    last: Option<u32>,
+    counts: Counts,
+}
+
+impl<const ORDER: u32> Tracker<ORDER> {
+    /// Waits for its first sample. Without `tilt` the accelerometer is left out.
+    pub fn new(scale: Scale, tilt: Option<Tilt>) -> Self {
+        Self {
+            integrator: Integrator::new(scale, Quaternion::IDENTITY, [0; 3]),
+            tilt,
+            bias: [0; 3],
+            resting: None,
+            last: None,
+            counts: Counts::default(),
+        }
+    }
+
+    /// Sets what the gyroscope reads at rest, in 1/256 LSB; it stays so.
+    pub fn set_bias(&mut self, bias: [i32; 3]) {
+        self.bias = bias;
+        self.resting = None;
+    }
+
+    /// Follows what the gyroscope reads at rest from now on.
+    pub fn follow_bias(&mut self, resting: RestBias) {
+        self.bias = resting.bias();
+        self.resting = Some(resting);
+    }
+
+    /// What the gyroscope is taken to read at rest, in 1/256 LSB.
+    pub const fn bias(&self) -> [i32; 3] {
+        self.bias
+    }
+
+    /// The attitude at the last sample; the identity before the first.
+    pub fn attitude(&self) -> Quaternion {
+        self.integrator.attitude()
+    }
+
+    /// What happened so far.
+    pub const fn counts(&self) -> Counts {
+        self.counts
+    }
+
+    /// Whether the tilt is as well known as it ever is; without an accelerometer it never is.
+    pub fn is_settled(&self) -> bool {
+        self.tilt.is_some_and(|tilt| tilt.is_settled())
+    }
+
+    /// Takes a sample.
+    pub fn on_sample(&mut self, sample: &Sample) -> Outcome {
+        let rate = [0, 1, 2].map(|i| (i32::from(sample.gyro[i]) << 8).saturating_sub(self.bias[i]));
+        let Some(last) = self.last else {
+            self.last = Some(sample.t_us);
+            self.integrator.restart(rate);
+            if self.tilt.is_some() {
+                self.integrator.set_attitude(Tilt::align(sample.accel));
+            }
+            return Outcome::First;
+        };
+        let step = sample.t_us.wrapping_sub(last);
+        // More than half of the range of stamps is a time before the last one.
+        if step == 0 || step > u32::MAX / 2 {
+            self.counts.stale += 1;
+            return Outcome::Stale;
+        }
+        self.last = Some(sample.t_us);
+        if step > LONGEST_STEP {
+            self.counts.gaps += 1;
+            self.doubt(rate);
+            return Outcome::Gap;
+        }
+        let attitude = self.integrator.attitude();
+        let correction = match &mut self.tilt {
+            None => [0; 3],
+            Some(tilt) => tilt
+                .correct(attitude, sample.accel, step)
+                .unwrap_or_else(|| {
+                    self.counts.rejected += 1;
+                    [0; 3]
+                }),
+        };
+        self.integrator.advance(rate, step, correction);
+        self.counts.steps += 1;
+        if let Some(resting) = &mut self.resting {
+            resting.on_sample(sample, step);
+            self.bias = resting.bias();
+        }
+        if sample.gyro.into_iter().any(is_saturated) {
+            self.counts.saturated += 1;
+            self.doubt(rate);
+        }
+        Outcome::Step
+    }
+
+    /// After something has happened that no sample tells: the last rate says nothing of those before, and the tilt may have changed.
+    fn doubt(&mut self, rate: [i32; 3]) {
+        self.integrator.restart(rate);
+        if let Some(tilt) = &mut self.tilt {
+            tilt.doubt();
+        }
+    }
+}

@@ -1,0 +1,457 @@
+//! Attitudes against closed forms: exact where they should be, of length 1 always, and without a panic.
+
+use glint_core::fixed::{Q2_30, Q32_32, Turns};
+use glint_core::orientation::{
+    Angles, Gain, Integrator, LONGEST_STEP, Outcome, Quaternion, Sample, Scale, TIME_CONSTANT,
+    Tilt, Tracker,
+};
+
+type Parts = [f64; 4];
+
+fn parts(quaternion: Quaternion) -> Parts {
+    quaternion.parts().map(Q2_30::to_num)
+}
+
+fn times(a: Parts, b: Parts) -> Parts {
+    let ([aw, ax, ay, az], [bw, bx, by, bz]) = (a, b);
+    [
+        aw * bw - ax * bx - ay * by - az * bz,
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+    ]
+}
+
+/// The angle between two attitudes in degrees.
+fn apart(a: Parts, b: Parts) -> f64 {
+    let [w, x, y, z] = times([a[0], -a[1], -a[2], -a[3]], b);
+    2.0 * (x * x + y * y + z * z).sqrt().atan2(w.abs()).to_degrees()
+}
+
+fn excess(quaternion: Quaternion) -> f64 {
+    let norm = parts(quaternion).iter().map(|x| x * x).sum::<f64>().sqrt();
+    (norm - 1.0).abs()
+}
+
+/// The attitude after a constant rate in LSB at 16.4 LSB per °/s.
+fn spun(rate: [f64; 3], seconds: f64) -> Parts {
+    let [x, y, z] = rate.map(|lsb| (lsb / 16.4).to_radians() * seconds / 2.0);
+    let half = (x * x + y * y + z * z).sqrt();
+    // The sine of many turns keeps 1e-16 of each.
+    let scale = half.sin() / half;
+    [half.cos(), x * scale, y * scale, z * scale]
+}
+
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z ^ (z >> 31)
+    }
+}
+
+#[test]
+fn a_constant_rate_is_exact() {
+    // A tenth of the time is enough to show what a whole one would; the soak of a day is run by the report.
+    for (rate, step, seconds, most) in [
+        ([1, 0, 0], 1_000, 3_600_u32, 1e-5),
+        ([0, -1, 1], 1_000, 3_600, 1e-5),
+        ([1, 0, 0], 20_000, 86_400, 1e-5),
+        ([32_636, 0, 0], 1_000, 360, 2e-4),
+        ([18_900, -18_900, 18_900], 1_000, 360, 4e-4),
+        ([32_767, 32_767, -32_767], 20_000, 3_600, 5e-3),
+        ([32_767, -32_768, 32_767], LONGEST_STEP, 3_600, 5e-3),
+    ] {
+        let counts = rate.map(|lsb: i32| lsb << 8);
+        let mut integrator: Integrator =
+            Integrator::new(Scale::MPU_6050, Quaternion::IDENTITY, counts);
+        let mut norm = 0.0_f64;
+        for i in 0..u64::from(seconds) * 1_000_000 / u64::from(step) {
+            integrator.advance(counts, step, [0; 3]);
+            if i % 7 == 0 {
+                norm = norm.max(excess(integrator.attitude()));
+            }
+        }
+        let truth = spun(rate.map(f64::from), f64::from(seconds));
+        let error = apart(parts(integrator.attitude()), truth);
+        println!("{rate:?} every {step} µs for {seconds} s: {error:.2e}°, norm {norm:.1e}");
+        assert!(error <= most, "{rate:?} {error:e}");
+        assert!(norm <= 2e-9, "{rate:?} {norm:e}");
+    }
+}
+
+#[test]
+fn a_late_sample_counts_for_its_time() {
+    let counts = [1_000 << 8, -500 << 8, 20_000 << 8];
+    let mut even: Integrator = Integrator::new(Scale::MPU_6050, Quaternion::IDENTITY, counts);
+    let mut uneven = even;
+    let mut random = Random(1);
+    let mut time = 0;
+    while time < 10_000_000 {
+        let step = (1 + random.next() % 9_000) as u32;
+        let step = step.min(10_000_000 - time);
+        uneven.advance(counts, step, [0; 3]);
+        time += step;
+    }
+    for _ in 0..10_000 {
+        even.advance(counts, 1_000, [0; 3]);
+    }
+    assert!(apart(parts(even.attitude()), parts(uneven.attitude())) < 1e-6);
+}
+
+#[test]
+fn no_input_leaves_the_sphere() {
+    let mut random = Random(7);
+    let lsb = [8, 16, 131, 4_096].map(|lsb: i32| Scale::new(Q32_32::from_num(lsb)));
+    for round in 0..200 {
+        let scale = lsb[round % 4].expect("a scale");
+        let mut integrator: Integrator = Integrator::new(scale, Quaternion::IDENTITY, [0; 3]);
+        for _ in 0..200 {
+            let extreme = random.next();
+            let rate = [0, 1, 2].map(|axis| match extreme >> (2 * axis) & 3 {
+                0 => i32::MAX,
+                1 => i32::MIN,
+                2 => (random.next() as i32) >> 8,
+                _ => (random.next() as i16).into(),
+            });
+            let step = match extreme >> 8 & 7 {
+                0 => 0,
+                1 => u32::MAX,
+                2 => LONGEST_STEP,
+                3 => (random.next() % u64::from(LONGEST_STEP)) as u32,
+                4 => 1,
+                _ => (random.next() % 30_000) as u32,
+            };
+            let correction = [0; 3].map(|_: i32| (random.next() as i64) >> 12);
+            integrator.advance(rate, step, correction);
+            let norm = excess(integrator.attitude());
+            assert!(norm <= 3e-9, "{norm:e}");
+        }
+    }
+}
+
+#[test]
+fn gains_are_exact_for_steps_of_any_length() {
+    for time_constant in [1_000, 20_000, 500_000, 3_000_000, 1_000_000_000_u32] {
+        let mut gain = Gain::new(time_constant);
+        for step in [
+            1,
+            10,
+            100,
+            999,
+            1_000,
+            1_001,
+            5_000,
+            62_500,
+            200_000,
+            500_000_u32,
+        ] {
+            let exact = -(-f64::from(step) / f64::from(time_constant)).exp_m1() * 2f64.powi(32);
+            let error = (f64::from(gain.of(step)) - exact).abs();
+            assert!(
+                error <= 4.0 + exact * 2f64.powi(-16),
+                "{step}/{time_constant}: {error} of {exact}"
+            );
+        }
+    }
+    // With more bits, where the step is not short.
+    for ratio in [0.1, 0.3, 1.0, 3.0, 10.0] {
+        let time_constant = 50_000;
+        let step = (f64::from(time_constant) * ratio) as u32;
+        let got = f64::from(Gain::new(time_constant).of(step)) / 2f64.powi(32);
+        let error = (got + (-ratio).exp_m1()).abs();
+        assert!(error < 1e-8, "{ratio}: {error:e}");
+    }
+    assert_eq!(Gain::new(1_000).of(500_000), u32::MAX);
+}
+
+fn degrees(angle: Turns) -> f64 {
+    angle.to_signed_degrees().to_num()
+}
+
+#[test]
+fn angles_are_those_of_f64_and_the_way_back() {
+    let mut random = Random(3);
+    let mut largest = 0.0_f64;
+    for _ in 0..20_000 {
+        let angles = Angles {
+            yaw: Turns(random.next() as u32),
+            pitch: Turns(((random.next() as i32) >> 1) as u32),
+            roll: Turns(random.next() as u32),
+        };
+        let quaternion = Quaternion::from_angles(angles);
+        let about = |axis: usize, angle: Turns| {
+            let (sin, cos) = (degrees(angle).to_radians() / 2.0).sin_cos();
+            let mut parts = [cos, 0.0, 0.0, 0.0];
+            parts[axis] = sin;
+            parts
+        };
+        let truth = times(
+            times(about(3, angles.yaw), about(2, angles.pitch)),
+            about(1, angles.roll),
+        );
+        assert!(apart(parts(quaternion), truth) < 6e-7);
+        assert!(excess(quaternion) <= 2e-9);
+        let got = quaternion.angles();
+        let level = degrees(angles.pitch).to_radians().cos();
+        // Yaw and roll turn about one axis at the pole, so each has the error of the quaternion over that.
+        let most = 6e-7 / level + 1e-7;
+        for (got, want, most) in [
+            (got.yaw, angles.yaw, most),
+            (got.roll, angles.roll, most),
+            (got.pitch, angles.pitch, 6e-7),
+        ] {
+            let error = degrees(got.wrapping_add(-want)).abs();
+            largest = largest.max(error * level);
+            assert!(error <= most, "{angles:?}: {error} > {most}");
+        }
+    }
+    println!("yaw and roll within {largest:.1e}°/cos(pitch)");
+}
+
+/// Pitch through ±90°: the quaternion goes on evenly, and what is said of it is what the documents say.
+#[test]
+fn the_pole_is_defined() {
+    for sign in [1, -1_i64] {
+        let mut before: Option<Quaternion> = None;
+        for thousandth in 80_000..100_000_i64 {
+            let pitch = Turns::from_degrees(Q32_32::from_num(sign * thousandth) / 1_000);
+            let yaw = Turns::from_degrees(Q32_32::from_num(20));
+            let roll = Turns::from_degrees(Q32_32::from_num(30));
+            let quaternion = Quaternion::from_angles(Angles { yaw, pitch, roll });
+            if let Some(before) = before {
+                let turned = apart(parts(before), parts(quaternion));
+                assert!((turned - 1e-3).abs() < 5e-7, "{thousandth}: {turned}");
+            }
+            before = Some(quaternion);
+            let got = quaternion.angles();
+            let from_pole = (90_000 - thousandth).abs() as f64 / 1_000.0;
+            let most = 3e-7 / from_pole.to_radians().sin().max(1e-9);
+            // Beyond the pole the same attitude has a pitch before it, and yaw and roll half a turn away.
+            let beyond = thousandth > 90_000;
+            let [yaw, roll] = [20.0, 30.0].map(|angle| if beyond { angle - 180.0 } else { angle });
+            let said = [degrees(got.yaw), degrees(got.roll)];
+            assert!((degrees(got.pitch).abs() - 90.0 + from_pole).abs() < 5e-7);
+            if from_pole == 0.0 {
+                // What is left of both: yaw − roll above, yaw + roll below.
+                let whole = 20.0 - 30.0 * sign as f64;
+                assert!((said[0] - whole).abs() < 1e-6 && said[1] == 0.0, "{said:?}");
+            } else {
+                assert!((said[0] - yaw).abs() <= most, "{thousandth}: {said:?}");
+                assert!((said[1] - roll).abs() <= most, "{thousandth}: {said:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn quaternions_of_any_numbers() {
+    let bits = [
+        0,
+        1,
+        -1,
+        2,
+        1 << 29,
+        1 << 30,
+        i32::MAX,
+        i32::MIN,
+        i32::MIN + 1,
+    ];
+    for w in bits {
+        for x in bits {
+            for y in bits {
+                for z in bits {
+                    let numbers = [w, x, y, z].map(Q2_30::from_bits);
+                    let Some(made) = Quaternion::new(numbers) else {
+                        assert_eq!([w, x, y, z], [0; 4]);
+                        continue;
+                    };
+                    let length = numbers
+                        .map(|x| x.to_num::<f64>())
+                        .map(|x| x * x)
+                        .iter()
+                        .sum::<f64>()
+                        .sqrt();
+                    assert!(excess(made) <= 2e-9, "{numbers:?}");
+                    for (got, want) in parts(made).iter().zip(numbers) {
+                        assert!((got - want.to_num::<f64>() / length).abs() < 3e-9);
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn upright(accel: [i16; 3]) -> f64 {
+    let attitude = Tilt::align(accel);
+    let up = attitude.inverse();
+    let [_, _, z] = up.axes();
+    // The world's z in the body's axes is the third column of the inverse.
+    let a = accel.map(f64::from);
+    let length = a.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let cosine = a
+        .iter()
+        .zip(z)
+        .map(|(a, z)| a * f64::from(z) / 2f64.powi(30))
+        .sum::<f64>()
+        / length;
+    // Near the pole a yaw says little.
+    let yaw = degrees(attitude.angles().yaw).abs();
+    assert!(yaw * a[1].hypot(a[2]) <= 6e-7 * length, "{accel:?} {yaw}");
+    1.0 - cosine
+}
+
+#[test]
+fn gravity_says_where_up_is_from_everywhere() {
+    let steps = [i16::MIN, -5_000, -3, 0, 1, 4_096, i16::MAX];
+    for x in steps {
+        for y in steps {
+            for z in steps {
+                if [x, y, z] != [0; 3] {
+                    let error = upright([x, y, z]);
+                    assert!(error < 1e-8, "{x} {y} {z}: {error:e}");
+                }
+            }
+        }
+    }
+    assert_eq!(Tilt::align([0; 3]), Quaternion::IDENTITY);
+    assert_eq!(Tilt::align([0, 0, 4_096]), Quaternion::IDENTITY);
+}
+
+fn rest(t_us: u32) -> Sample {
+    Sample {
+        t_us,
+        accel: [0, 0, 4_096],
+        gyro: [0; 3],
+    }
+}
+
+fn tracker() -> Tracker {
+    Tracker::new(Scale::MPU_6050, Some(Tilt::new(4_096, TIME_CONSTANT)))
+}
+
+#[test]
+fn what_becomes_of_samples() {
+    let mut tracker = tracker();
+    // The stamps wrap between the first and the second.
+    assert_eq!(tracker.on_sample(&rest(u32::MAX - 400)), Outcome::First);
+    assert_eq!(tracker.on_sample(&rest(600)), Outcome::Step);
+    assert_eq!(tracker.on_sample(&rest(600)), Outcome::Stale);
+    assert_eq!(tracker.on_sample(&rest(599)), Outcome::Stale);
+    let turning = |t_us| Sample {
+        gyro: [0, 0, 16_400],
+        ..rest(t_us)
+    };
+    let before = tracker.attitude();
+    assert_eq!(
+        tracker.on_sample(&turning(601 + LONGEST_STEP)),
+        Outcome::Gap
+    );
+    assert_eq!(tracker.attitude(), before, "held");
+    assert_eq!(
+        tracker.on_sample(&turning(601 + LONGEST_STEP + 90_000)),
+        Outcome::Step
+    );
+    let yaw = degrees(tracker.attitude().angles().yaw);
+    assert!((yaw - 90.0).abs() < 1e-5, "{yaw}");
+    let counts = tracker.counts();
+    assert_eq!(
+        (counts.steps, counts.stale, counts.gaps, counts.saturated),
+        (2, 2, 1, 0)
+    );
+}
+
+/// Upside down in the estimate, level in truth: however far off, the tilt comes back, and it does so in a bounded time.
+#[test]
+fn tilt_comes_back_after_saturation() {
+    for axis in [0, 1] {
+        let mut tracker = tracker();
+        tracker.on_sample(&rest(0));
+        let mut t_us = 0;
+        for _ in 0..5_000 {
+            t_us += 1_000;
+            tracker.on_sample(&rest(t_us));
+        }
+        assert!(tracker.is_settled());
+        // The sensor says the end of its range and turns further than that: back to where it was.
+        for _ in 0..90 {
+            t_us += 1_000;
+            let mut gyro = [0; 3];
+            gyro[axis] = i16::MAX;
+            // Free fall meanwhile: the accelerometer says nothing.
+            tracker.on_sample(&Sample {
+                t_us,
+                accel: [0; 3],
+                gyro,
+            });
+        }
+        let error = |tracker: &Tracker| {
+            let [_, _, [x, y, z]] = tracker
+                .attitude()
+                .inverse()
+                .axes()
+                .map(|c| c.map(f64::from));
+            x.hypot(y).atan2(z).to_degrees()
+        };
+        assert!(error(&tracker) > 170.0);
+        assert_eq!(tracker.counts().saturated, 90);
+        assert!(!tracker.is_settled());
+        let mut errors = Vec::new();
+        for _ in 0..30 {
+            for _ in 0..100 {
+                t_us += 1_000;
+                tracker.on_sample(&rest(t_us));
+            }
+            errors.push(error(&tracker));
+        }
+        println!("{:.1}° after 1 s, {:.1}° after 3 s", errors[9], errors[29]);
+        assert!(errors.is_sorted_by(|a, b| a >= b), "{errors:?}");
+        assert!(errors[9] < 25.0 && errors[29] < 10.0, "{errors:?}");
+    }
+}
+
+#[test]
+fn knocks_are_left_out() {
+    let mut tracker = tracker();
+    tracker.on_sample(&rest(0));
+    for i in 1..1_000 {
+        let accel = if i % 2 == 0 {
+            [15_000, 0, 4_096]
+        } else {
+            [i16::MAX, 0, 0]
+        };
+        tracker.on_sample(&Sample {
+            accel,
+            ..rest(i * 1_000)
+        });
+    }
+    assert_eq!(tracker.counts().rejected, 999);
+    assert_eq!(tracker.attitude(), Quaternion::IDENTITY);
+}
+
+/// A soak of a day at rest without noise: nothing moves at all.
+#[test]
+fn at_rest_nothing_cycles() {
+    let mut tracker = tracker();
+    let tilted = |t_us| Sample {
+        accel: [713, -391, 4_011],
+        ..rest(t_us)
+    };
+    tracker.on_sample(&tilted(0));
+    let mut seen = Vec::new();
+    for i in 1..200_000_u32 {
+        tracker.on_sample(&tilted(i * 5_000));
+        if i > 100_000 {
+            seen.push(tracker.attitude());
+        }
+    }
+    seen.dedup();
+    let moved = seen
+        .iter()
+        .map(|&at| apart(parts(seen[0]), parts(at)))
+        .fold(0.0, f64::max);
+    println!("{moved:.1e}° in the second half");
+    assert!(moved < 1e-6, "{moved:e}");
+}

@@ -1,0 +1,59 @@
+//! Length and angle of vectors against f64.
+
+use std::f64::consts::TAU;
+
+use glint_core::fixed::Turns;
+use glint_core::polar::polar;
+
+/// The difference of an angle and a number of turns, in units of 2^−32 turns.
+fn apart(angle: Turns, turns: f64) -> f64 {
+    let difference = f64::from(angle.0) - turns * 2f64.powi(32);
+    let turn = 2f64.powi(32);
+    (difference + turn / 2.0).rem_euclid(turn) - turn / 2.0
+}
+
+fn numbers() -> impl Iterator<Item = i64> + Clone {
+    (0..1_500_i64).map(|k: i64| {
+        let wild = k.wrapping_mul(0x9E37_79B9_7F4A_7C15_u64 as i64);
+        wild >> (3 + k % 28)
+    })
+}
+
+#[test]
+fn angles_and_lengths_are_within_a_unit() {
+    let (mut angle_error, mut length_error) = (0.0_f64, 0.0_f64);
+    for x in numbers().step_by(3) {
+        for y in numbers() {
+            let (length, angle) = polar(x, y);
+            // The parts of f64 that are lost are 2^-53 of a vector of 2^32 and more.
+            let (fx, fy) = (x as f64, y as f64);
+            if fx.hypot(fy) < 2f64.powi(32) {
+                continue;
+            }
+            angle_error = angle_error.max(apart(angle, fy.atan2(fx) / TAU).abs());
+            let expected = fx.hypot(fy);
+            length_error = length_error.max((length as f64 - expected).abs() / expected);
+        }
+    }
+    println!("angle {angle_error:.3} units, length {length_error:.2e}");
+    assert!(angle_error <= 0.53, "{angle_error}");
+    assert!(length_error <= 2f64.powi(-31), "{length_error:e}");
+}
+
+#[test]
+fn axes_are_exact() {
+    for size in [1_i64, 2, 1 << 30, 1 << 60, 1 << 61] {
+        for (x, y, quarter) in [(size, 0, 0), (0, size, 1), (-size, 0, 2), (0, -size, 3_u32)] {
+            let (length, angle) = polar(x, y);
+            assert_eq!(angle, Turns(quarter << 30), "{x} {y}");
+            assert!(
+                length.abs_diff(size) <= 1 + (size >> 31) as u64,
+                "{x} {y}: {length}"
+            );
+        }
+    }
+    assert_eq!(polar(0, 0), (0, Turns(0)));
+    // Beyond the range they count as its ends.
+    assert_eq!(polar(i64::MIN, i64::MIN).1, Turns(5 << 29));
+    assert_eq!(polar(i64::MAX, i64::MAX).1, Turns(1 << 29));
+}
