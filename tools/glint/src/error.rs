@@ -23,6 +23,8 @@ pub enum Place {
     Whole,
     /// A line of a text file, counted from 1.
     Line(usize),
+    /// A cell of a table: its line, counted from 1, and the name of its column.
+    Cell(usize, &'static str),
     /// An offset in bytes from the file's start.
     Byte(usize),
 }
@@ -32,6 +34,7 @@ impl fmt::Display for Place {
         match self {
             Place::Whole => Ok(()),
             Place::Line(number) => write!(f, "line {number}: "),
+            Place::Cell(line, column) => write!(f, "line {line}, column {column}: "),
             Place::Byte(offset) => write!(f, "byte {offset}: "),
         }
     }

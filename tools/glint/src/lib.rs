@@ -9,6 +9,7 @@
 //! | [`render`] | a scene into a frame, by the model or by a board |
 //! | [`board`] | a board behind its serial line, simulated or real |
 //! | [`mod@flash`], [`console`], [`transfer`] | what is said on that line: serial boot, commands, uploads |
+//! | [`imu`] | logs of a gyroscope and an accelerometer, and the attitudes that follow from them |
 //! | [`fuzz`] | inputs for everything above that takes bytes from outside |
 #![forbid(unsafe_code)]
 
@@ -21,6 +22,7 @@ pub mod flash;
 pub mod formats;
 pub mod fuzz;
 pub mod generate;
+pub mod imu;
 pub mod model;
 pub mod normals;
 pub mod picture;

@@ -46,3 +46,8 @@ fn ply() {
 fn glm() {
     run(Target::Glm);
 }
+
+#[test]
+fn imu() {
+    run(Target::Imu);
+}

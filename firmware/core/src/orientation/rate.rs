@@ -65,8 +65,9 @@ impl History {
 
     /// Takes a sample, `step` µs (at least 1) after the last one, and gives half of φ as a rotation vector, 48 fraction bits.
     ///
-    /// `rate` is within ±2^24. `ORDER` is how fast the error falls with shorter steps: 1 takes the newest sample
-    /// alone, 2 the mean of two, 3 the parabola through three with e₁ for E, 4 (and more) the cubic.
+    /// `rate` is within ±2^24. `ORDER` is that of the method: 1 takes the newest sample alone, 2 the mean of two, 3 the parabola
+    /// through three with e₁ for E, 4 (and more) the cubic. The first steps have less to look back on and leave an error in
+    /// h³ once.
     pub fn advance<const ORDER: u32>(
         &mut self,
         rate: [i32; 3],

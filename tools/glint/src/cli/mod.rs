@@ -5,6 +5,7 @@ mod convert;
 mod demo;
 mod field;
 mod flash;
+mod imu;
 mod render;
 mod terminal;
 
@@ -31,6 +32,8 @@ enum Command {
     Flash(flash::FlashArguments),
     Console(terminal::ConsoleArguments),
     Demo(demo::DemoArguments),
+    #[command(subcommand)]
+    Imu(imu::ImuCommand),
 }
 
 impl Arguments {
@@ -44,6 +47,7 @@ impl Arguments {
             Command::Flash(arguments) => arguments.run(),
             Command::Console(arguments) => arguments.run(),
             Command::Demo(arguments) => arguments.run(),
+            Command::Imu(command) => command.run(),
         }
     }
 }

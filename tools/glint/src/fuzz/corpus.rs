@@ -17,6 +17,7 @@ pub fn of(target: Target) -> Vec<Vec<u8>> {
         Target::Stl => texts(STL).into_iter().chain(written(write::stl)).collect(),
         Target::Ply => texts(PLY).into_iter().chain(written(write::ply)).collect(),
         Target::Glm => meshes(),
+        Target::Imu => texts(IMU).into_iter().chain([still_log()]).collect(),
     };
     seeds
         .into_iter()
@@ -99,6 +100,28 @@ fn transfers() -> Vec<Vec<u8>> {
     }
     seeds
 }
+
+/// A log of a sensor at rest, long enough for a calibration.
+fn still_log() -> Vec<u8> {
+    let mut log = String::from("t_us,ax,ay,az,gx,gy,gz\n");
+    for i in 0..80 {
+        let noise = i * 7 % 5 - 2;
+        log += &format!(
+            "{},{},-30,{},{},{noise},18\n",
+            1_000 * i,
+            90 + noise,
+            4_100 - noise,
+            74 - noise
+        );
+    }
+    log.into_bytes()
+}
+
+const IMU: &[&str] = &[
+    "t_us,ax,ay,az,temp,gx,gy,gz\n9323,-139,-453,4420,-4880,2077,1116,-320\n15163,-115,-512,4304,-4848,2219,1379,-500\n",
+    "gz,gy,gx,az,ay,ax,t_us\r\n32767,-32768,32767,0,0,4096,4294967290\r\n-32768,32767,1,0,0,-4096,4294968290\r\n\r\n0,0,0,0,0,0,9294968290\r\n",
+    "t_us,ax,ay,az,gx,gy,gz\n5,0,0,0,1,1,1\n5,0,0,0,1,1,1\n4,0,0,0,1,1,1\n18446744073709551615,-32768,-32768,-32768,1,1,1\n",
+];
 
 const CONSOLE: &[&str] = &[
     "help\rhelp camera\rinfo\rscene\rscene cube\rscene model\r",

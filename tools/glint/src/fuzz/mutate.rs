@@ -132,7 +132,7 @@ fn replace_word(input: &mut Vec<u8>, random: &mut Random, words: &[&str]) {
     let Some(word) = random.pick(words) else {
         return;
     };
-    let is_break = |byte: &u8| byte.is_ascii_whitespace() || *byte == b'/';
+    let is_break = |byte: &u8| byte.is_ascii_whitespace() || matches!(*byte, b'/' | b',');
     let at = random.below(input.len());
     let start = input[..at]
         .iter()

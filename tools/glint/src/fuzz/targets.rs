@@ -2,9 +2,12 @@
 
 use crate::convert::{self, Options};
 use crate::formats::{glm, obj, ply, stl};
+use crate::imu::{log, replay};
 use crate::polygons::Polygons;
 use clap::ValueEnum;
+use glint_core::calibration::Units;
 use glint_core::console::{Command, Event, LineEditor, write_help};
+use glint_core::orientation::Scale;
 use glint_core::wire::{MAX_FRAME, Manifest, Receiver, Sender, State, Timing, crc32};
 
 /// Something that takes bytes from outside.
@@ -22,6 +25,8 @@ pub enum Target {
     Ply,
     /// Meshes as they lie in memory.
     Glm,
+    /// Logs of a gyroscope and an accelerometer.
+    Imu,
 }
 
 /// What a target made of an input.
@@ -35,13 +40,14 @@ pub enum Outcome {
 
 impl Target {
     /// All of them.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Upload,
         Self::Console,
         Self::Obj,
         Self::Stl,
         Self::Ply,
         Self::Glm,
+        Self::Imu,
     ];
 
     /// Words that mean something to it.
@@ -51,6 +57,9 @@ impl Target {
             Self::Console => &[
                 "help", "view", "camera", "field", "box:", "spheres:", "union:", "stereo", "load",
                 "size", "on", "off", "depth", "json", "0x", "1e5", "\r", "\x1b[",
+            ],
+            Self::Imu => &[
+                "t_us", "ax", "ay", "az", "gx", "gy", "gz", "temp", ",", "32767", "-32768", "32768",
             ],
             Self::Obj => &[
                 "v", "vn", "vt", "f", "usemtl", "mtllib", "newmtl", "Kd", "#", "\\\n", "1//1",
@@ -103,7 +112,7 @@ impl Target {
                     field.copy_from_slice(&length.to_le_bytes());
                 }
             }
-            Self::Console | Self::Obj | Self::Ply => {}
+            Self::Console | Self::Obj | Self::Ply | Self::Imu => {}
         }
     }
 
@@ -128,6 +137,10 @@ impl Target {
                 run_model(input);
                 Outcome::Accepted
             }),
+            Self::Imu => log::parse(input).map_or(Outcome::Refused, |entries| {
+                run_replay(&entries);
+                Outcome::Accepted
+            }),
         }
     }
 }
@@ -147,6 +160,33 @@ fn run_conversion(polygons: &Polygons) -> Outcome {
             Outcome::Accepted
         }
         Err(_) => Outcome::Refused,
+    }
+}
+
+/// Replays a log that was read, by its stamps and by a period, with everything on.
+fn run_replay(entries: &[log::Entry]) {
+    for period in [None, Some(1_000), Some(600_000)] {
+        let options = replay::Options {
+            scale: Scale::MPU_6050,
+            units: Units::MPU_6050,
+            period,
+            still: None,
+            tilt: true,
+            follow_bias: true,
+        };
+        let replayed = replay::replay(entries, &options);
+        assert!(
+            replayed.is_ok_and(|replayed| replayed.attitudes.len() == entries.len()),
+            "without a calibration every log is replayed"
+        );
+        // Whether it is still is the log's affair.
+        let _ = replay::replay(
+            entries,
+            &replay::Options {
+                still: Some(u64::MAX),
+                ..options
+            },
+        );
     }
 }
 

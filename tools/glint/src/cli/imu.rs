@@ -1,0 +1,285 @@
+//! `glint imu`.
+
+use super::common::{print_json, say, spinner};
+use anyhow::Context;
+use clap::{Args, Subcommand, ValueEnum};
+use glint::error::FormatError;
+use glint::formats::read_file;
+use glint::imu::log::{self, Entry};
+use glint::imu::replay::{self, Options, Replayed};
+use glint_core::calibration::{Report, Units};
+use glint_core::fixed::{Q2_30, Q32_32};
+use glint_core::orientation::{LONGEST_STEP, LSB_PER_DPS, LSB_PER_G, Quaternion, Scale};
+use serde::Serialize;
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// A gyroscope and an accelerometer.
+#[derive(Subcommand)]
+pub enum ImuCommand {
+    Replay(ReplayArguments),
+}
+
+impl ImuCommand {
+    pub fn run(self) -> anyhow::Result<()> {
+        match self {
+            Self::Replay(arguments) => arguments.run(),
+        }
+    }
+}
+
+/// Make attitudes of a log, by the firmware's integer arithmetic.
+///
+/// LOG.csv has a header that names t_us,ax,ay,az,gx,gy,gz, and temp or not, in any order, and a sample a line in raw counts. For each of
+/// them ORIENTATION.csv gets t_us,w,x,y,z,yaw,pitch,roll: the quaternion from the body to the world, whose z is up, and intrinsic z-y-x
+/// angles in degrees. It begins at the identity, or with yaw 0 and gravity where the accelerometer says. Samples that are not later
+/// than those before are ignored; over a gap of more than half a second the attitude is held.
+#[derive(Args)]
+pub struct ReplayArguments {
+    /// The log.
+    #[arg(value_name = "LOG.csv")]
+    log: PathBuf,
+    /// Who computes: `model` is the firmware's own arithmetic on this machine.
+    #[arg(long, value_enum, default_value_t = Computer::Model)]
+    board: Computer,
+    /// The file to write.
+    #[arg(long, value_name = "ORIENTATION.csv")]
+    out: PathBuf,
+    /// Take so many microseconds between two samples, and not their stamps, which are passed through.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(LONGEST_STEP)))]
+    dt_us: Option<u32>,
+    /// LSB of the gyroscope for 1 °/s: 131, 65.5, 32.8, 16.4 for an MPU-6050 at ±250, 500, 1000, 2000 °/s.
+    #[arg(long, value_name = "LSB", default_value = "16.4")]
+    gyro_lsb: String,
+    /// LSB of the accelerometer for 1 g: 16384, 8192, 4096, 2048 for an MPU-6050 at ±2, 4, 8, 16 g.
+    #[arg(long, value_name = "LSB", default_value = "4096")]
+    accel_lsb: String,
+    /// The sensor is still for so long at the start: the mean of the gyroscope meanwhile is its bias. Refused where it moves.
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
+    still: Option<String>,
+    /// Leave the accelerometer out.
+    #[arg(long)]
+    no_tilt: bool,
+    /// Follow the bias whenever the sensor is at rest for a while.
+    #[arg(long)]
+    follow_bias: bool,
+    /// Print what was done as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Computer {
+    /// This machine, with the firmware's arithmetic.
+    Model,
+}
+
+/// What is printed.
+#[derive(Serialize)]
+struct Summary<'a> {
+    log: &'a Path,
+    out: &'a Path,
+    samples: usize,
+    seconds: f64,
+    steps: u64,
+    stale: u64,
+    gaps: u64,
+    saturated: u64,
+    rejected: u64,
+    calibration: Option<Calibrated>,
+    end: Attitude,
+}
+
+/// A calibration, in LSB and °/h.
+#[derive(Serialize)]
+struct Calibrated {
+    samples: u32,
+    bias: [f64; 3],
+    deviation: [f64; 3],
+    drift: [f64; 3],
+}
+
+impl Calibrated {
+    fn new(report: &Report, units: Units) -> Self {
+        Self {
+            samples: report.samples,
+            bias: report.bias.map(|x| f64::from(x) / 256.0),
+            deviation: report.deviation.map(|x| f64::from(x) / 256.0),
+            drift: report.drift(units).map(Q32_32::to_num),
+        }
+    }
+}
+
+/// An attitude as it is written.
+#[derive(Serialize)]
+struct Attitude {
+    w: f64,
+    x: f64,
+    y: f64,
+    z: f64,
+    yaw: f64,
+    pitch: f64,
+    roll: f64,
+}
+
+impl From<Quaternion> for Attitude {
+    fn from(quaternion: Quaternion) -> Self {
+        let [w, x, y, z] = quaternion.parts().map(Q2_30::to_num);
+        let angles = quaternion.angles();
+        let [yaw, pitch, roll] =
+            [angles.yaw, angles.pitch, angles.roll].map(|angle| angle.to_signed_degrees().to_num());
+        Self {
+            w,
+            x,
+            y,
+            z,
+            yaw,
+            pitch,
+            roll,
+        }
+    }
+}
+
+impl ReplayArguments {
+    pub fn run(self) -> anyhow::Result<()> {
+        let Computer::Model = self.board;
+        let options = self.options()?;
+        let spinner = spinner("replaying");
+        let name = self.log.display().to_string().escape_debug().to_string();
+        let text = read_file(&self.log)?;
+        let entries = log::parse(&text).map_err(|error| error.in_file(name.as_str()))?;
+        let replayed = replay::replay(&entries, &options).map_err(|error| error.in_file(name))?;
+        write(&self.out, &entries, &replayed.attitudes)
+            .with_context(|| format!("{}: cannot be written", self.out.display()))?;
+        spinner.finish_and_clear();
+        self.report(&entries, &replayed, options.units)
+    }
+
+    fn options(&self) -> anyhow::Result<Options> {
+        let wrong = |option: &str, expected: String, found: &str| {
+            FormatError::whole(expected, glint::error::quote(found.as_bytes())).in_file(option)
+        };
+        let gyro = Q32_32::from_str(&self.gyro_lsb).ok();
+        let scale = gyro.and_then(|lsb| Some((lsb, Scale::new(lsb)?)));
+        let (per_dps, scale) = scale.ok_or_else(|| {
+            let [low, high] = LSB_PER_DPS;
+            let expected = format!("a number of LSB per °/s from {low} to {high}");
+            wrong("--gyro-lsb", expected, &self.gyro_lsb)
+        })?;
+        let accel = self.accel_lsb.parse::<u32>().ok();
+        let [low, high] = LSB_PER_G;
+        let per_g = accel
+            .filter(|lsb| (low..=high).contains(lsb))
+            .ok_or_else(|| {
+                let expected = format!("a whole number of LSB per g from {low} to {high}");
+                wrong("--accel-lsb", expected, &self.accel_lsb)
+            })?;
+        let still = match &self.still {
+            None => None,
+            Some(text) => {
+                let seconds = text.parse::<f64>().ok();
+                let seconds = seconds.filter(|seconds| *seconds > 0.0 && *seconds <= 86_400.0);
+                let seconds = seconds.ok_or_else(|| {
+                    wrong("--still", "a number of seconds up to 86400".into(), text)
+                })?;
+                Some((seconds * 1e6) as u64)
+            }
+        };
+        Ok(Options {
+            scale,
+            units: Units { per_dps, per_g },
+            period: self.dt_us,
+            still,
+            tilt: !self.no_tilt,
+            follow_bias: self.follow_bias,
+        })
+    }
+
+    fn report(&self, entries: &[Entry], replayed: &Replayed, units: Units) -> anyhow::Result<()> {
+        let Replayed {
+            attitudes,
+            counts,
+            calibration,
+        } = replayed;
+        let seconds = match self.dt_us {
+            Some(period) => f64::from(period) * (entries.len() - 1) as f64,
+            None => {
+                let stamps = || entries.iter().map(|entry| entry.t_us);
+                let first = stamps().next().unwrap_or(0);
+                stamps().max().unwrap_or(first).saturating_sub(first) as f64
+            }
+        } / 1e6;
+        let summary = Summary {
+            log: &self.log,
+            out: &self.out,
+            samples: entries.len(),
+            seconds,
+            steps: counts.steps,
+            stale: counts.stale,
+            gaps: counts.gaps,
+            saturated: counts.saturated,
+            rejected: counts.rejected,
+            calibration: calibration
+                .as_ref()
+                .map(|report| Calibrated::new(report, units)),
+            end: attitudes
+                .last()
+                .copied()
+                .unwrap_or(Quaternion::IDENTITY)
+                .into(),
+        };
+        if self.json {
+            return print_json(&summary);
+        }
+        say(format_args!(
+            "samples     {} in {:.3} s: {} steps, {} stale, {} gaps, {} saturated, {} with the accelerometer left out",
+            summary.samples,
+            summary.seconds,
+            summary.steps,
+            summary.stale,
+            summary.gaps,
+            summary.saturated,
+            summary.rejected
+        ))?;
+        if let Some(Calibrated {
+            samples,
+            bias,
+            deviation,
+            drift,
+        }) = &summary.calibration
+        {
+            say(format_args!(
+                "calibration {samples} samples: bias {bias:.2?} LSB, deviation {deviation:.2?} LSB, expected drift {drift:.1?} °/h",
+            ))?;
+        }
+        let Attitude {
+            yaw, pitch, roll, ..
+        } = summary.end;
+        say(format_args!(
+            "end         yaw {yaw:.3}°, pitch {pitch:.3}°, roll {roll:.3}°"
+        ))
+    }
+}
+
+fn write(path: &Path, entries: &[Entry], attitudes: &[Quaternion]) -> std::io::Result<()> {
+    let mut out = BufWriter::new(File::create(path)?);
+    writeln!(out, "t_us,w,x,y,z,yaw,pitch,roll")?;
+    for (entry, &attitude) in entries.iter().zip(attitudes) {
+        let Attitude {
+            w,
+            x,
+            y,
+            z,
+            yaw,
+            pitch,
+            roll,
+        } = attitude.into();
+        writeln!(
+            out,
+            "{},{w:.10},{x:.10},{y:.10},{z:.10},{yaw:.7},{pitch:.7},{roll:.7}",
+            entry.t_us
+        )?;
+    }
+    out.flush()
+}

@@ -1,0 +1,226 @@
+//! Logs as CSV: a header that names `t_us,ax,ay,az,gx,gy,gz`, and `temp` or not, in any order; then a sample a line, in raw counts.
+
+use crate::error::{FormatError, Place, quote};
+use crate::formats::text::{Line, Lines};
+
+/// One line of a log.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Entry {
+    /// The line, counted from 1.
+    pub line: usize,
+    /// When the sample was taken, in µs.
+    pub t_us: u64,
+    /// What the accelerometer said, x, y, z.
+    pub accel: [i16; 3],
+    /// What the gyroscope said, x, y, z.
+    pub gyro: [i16; 3],
+    /// What the thermometer said, if the log has it.
+    pub temp: Option<i16>,
+}
+
+const TIME: &str = "t_us";
+const TEMPERATURE: &str = "temp";
+const COLUMNS: [&str; 8] = [TIME, "ax", "ay", "az", "gx", "gy", "gz", TEMPERATURE];
+/// The most columns a line is looked through for; no log has as many.
+const MOST_COLUMNS: usize = 64;
+
+/// Where the columns are: one for each of [`COLUMNS`], and how many there are.
+struct Header {
+    places: [Option<usize>; COLUMNS.len()],
+    count: usize,
+}
+
+/// Reads a log.
+///
+/// # Errors
+/// The first thing that is not as it should be, with its line and column.
+pub fn parse(text: &[u8]) -> Result<Vec<Entry>, FormatError> {
+    // Spreadsheets put it in front of a CSV.
+    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
+    let mut lines = Lines::new(text);
+    let Some(first) = next_filled(&mut lines)? else {
+        return Err(FormatError::whole(
+            "a header t_us,ax,ay,az,gx,gy,gz",
+            "an empty file",
+        ));
+    };
+    let header = Header::parse(first)?;
+    let mut entries = Vec::new();
+    while let Some(line) = next_filled(&mut lines)? {
+        entries.push(header.entry(line)?);
+    }
+    if entries.is_empty() {
+        return Err(FormatError::whole("at least one sample", "none"));
+    }
+    Ok(entries)
+}
+
+/// The next line that is not blank.
+fn next_filled<'a>(lines: &mut Lines<'a>) -> Result<Option<Line<'a>>, FormatError> {
+    while let Some(line) = lines.next_line()? {
+        if !line.text.trim_ascii().is_empty() {
+            return Ok(Some(line));
+        }
+    }
+    Ok(None)
+}
+
+fn cells(line: Line<'_>) -> impl Iterator<Item = &[u8]> {
+    line.text
+        .split(|&byte| byte == b',')
+        .map(<[u8]>::trim_ascii)
+}
+
+impl Header {
+    fn parse(line: Line<'_>) -> Result<Self, FormatError> {
+        let mut places = [None; COLUMNS.len()];
+        let mut count = 0;
+        for cell in cells(line) {
+            let column = COLUMNS.iter().position(|name| name.as_bytes() == cell);
+            let Some(column) = column.filter(|_| count < MOST_COLUMNS) else {
+                let expected = format!("columns of {}", COLUMNS.join(","));
+                return Err(FormatError::new(line.place(), expected, quote(cell)));
+            };
+            if places[column].replace(count).is_some() {
+                let expected = format!("one column {}", COLUMNS[column]);
+                return Err(FormatError::new(line.place(), expected, "two"));
+            }
+            count += 1;
+        }
+        for (name, place) in COLUMNS.iter().zip(&places) {
+            if place.is_none() && *name != TEMPERATURE {
+                let expected = format!("a column {name}");
+                return Err(FormatError::new(line.place(), expected, quote(line.text)));
+            }
+        }
+        Ok(Self { places, count })
+    }
+
+    fn entry(&self, line: Line<'_>) -> Result<Entry, FormatError> {
+        let mut row = [&[][..]; COLUMNS.len()];
+        let mut found = 0;
+        for cell in cells(line) {
+            if let Some(place) = row.get_mut(found) {
+                *place = cell;
+            }
+            found += 1;
+        }
+        if found != self.count {
+            let expected = format!("{} columns as in the header", self.count);
+            return Err(FormatError::new(line.place(), expected, found.to_string()));
+        }
+        let cell = |column: usize| {
+            self.places[column]
+                .and_then(|place| row.get(place))
+                .copied()
+        };
+        let wrong = |column: usize, expected: &str| {
+            let place = Place::Cell(line.number, COLUMNS[column]);
+            FormatError::new(place, expected, quote(cell(column).unwrap_or_default()))
+        };
+        let number = |column: usize| std::str::from_utf8(cell(column).unwrap_or_default());
+        let count = |column: usize| {
+            let parsed = number(column).ok().and_then(|text| text.parse().ok());
+            parsed.ok_or_else(|| wrong(column, "a whole number from -32768 to 32767"))
+        };
+        let t_us = number(0).ok().and_then(|text| text.parse().ok());
+        Ok(Entry {
+            line: line.number,
+            t_us: t_us.ok_or_else(|| wrong(0, "a whole number of microseconds"))?,
+            accel: [count(1)?, count(2)?, count(3)?],
+            gyro: [count(4)?, count(5)?, count(6)?],
+            temp: match cell(7) {
+                Some(_) => Some(count(7)?),
+                None => None,
+            },
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_in_any_order() {
+        let text = b"\xef\xbb\xbfgz, t_us ,ax,ay,az,temp,gx,gy\r\n-3,9323,4,5,6,-4880,1,+2\r\n\r\n  \n7,18446744073709551615,1,1,1,1,1,-32768";
+        let entries = parse(text).unwrap();
+        let first = Entry {
+            line: 2,
+            t_us: 9323,
+            accel: [4, 5, 6],
+            gyro: [1, 2, -3],
+            temp: Some(-4880),
+        };
+        assert_eq!(entries[0], first);
+        assert_eq!(
+            (entries[1].line, entries[1].t_us, entries[1].gyro),
+            (5, u64::MAX, [1, i16::MIN, 7])
+        );
+        let bare = parse(b"t_us,ax,ay,az,gx,gy,gz\n1,2,3,4,5,6,7\n").unwrap();
+        assert_eq!((bare[0].temp, bare[0].gyro), (None, [5, 6, 7]));
+    }
+
+    #[test]
+    fn what_is_wrong_is_said_with_its_place() {
+        let header = "t_us,ax,ay,az,gx,gy,gz\n";
+        for (text, message) in [
+            (
+                "",
+                "expected a header t_us,ax,ay,az,gx,gy,gz, found an empty file",
+            ),
+            (
+                "\n \n",
+                "expected a header t_us,ax,ay,az,gx,gy,gz, found an empty file",
+            ),
+            (header, "expected at least one sample, found none"),
+            (
+                "t_us,ax,ay,az,gx,gy\n",
+                "line 1: expected a column gz, found 't_us,ax,ay,az,gx,gy'",
+            ),
+            (
+                "t_us,ax,ay,az,gx,gy,gz,mx\n",
+                "line 1: expected columns of t_us,ax,ay,az,gx,gy,gz,temp, found 'mx'",
+            ),
+            (
+                "t_us,ax,ay,az,gx,gy,gz,ax\n",
+                "line 1: expected one column ax, found two",
+            ),
+            (
+                "1,2,3,4,5,6,7\n",
+                "line 1: expected columns of t_us,ax,ay,az,gx,gy,gz,temp, found '1'",
+            ),
+        ] {
+            assert_eq!(parse(text.as_bytes()).unwrap_err().to_string(), message);
+        }
+        for (row, message) in [
+            (
+                "1,2,3,4,5,6",
+                "line 3: expected 7 columns as in the header, found 6",
+            ),
+            (
+                "1,2,3,4,5,6,7,8",
+                "line 3: expected 7 columns as in the header, found 8",
+            ),
+            (
+                "1,2,3,4,5,6,32768",
+                "line 3, column gz: expected a whole number from -32768 to 32767, found '32768'",
+            ),
+            (
+                "1,2,,4,5,6,7",
+                "line 3, column ay: expected a whole number from -32768 to 32767, found ''",
+            ),
+            (
+                "1,2,3,4,5.5,6,7",
+                "line 3, column gx: expected a whole number from -32768 to 32767, found '5.5'",
+            ),
+            (
+                "-1,2,3,4,5,6,7",
+                "line 3, column t_us: expected a whole number of microseconds, found '-1'",
+            ),
+        ] {
+            let text = format!("{header}0,0,0,0,0,0,0\n{row}\n");
+            assert_eq!(parse(text.as_bytes()).unwrap_err().to_string(), message);
+        }
+    }
+}
