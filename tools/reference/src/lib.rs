@@ -4,6 +4,7 @@
 //! - [`camera`]: the camera in f64.
 //! - [`surface`]: what each pixel of the unsnapped scene shows, and where that depends on snapping.
 //! - [`field`]: what a ray hits of a solid that is given by its distance field, and the errors of pictures of it.
+//! - [`imu`]: attitudes from a gyroscope and an accelerometer, of motions whose truth is known.
 //! - [`sine`]: exhaustive error tables of sine and cosine, beside other libraries.
 //! - [`smooth`]: what interpolation of light between vertices makes of named scenes, and the errors of it.
 
@@ -12,6 +13,7 @@
 pub mod camera;
 pub mod exact;
 pub mod field;
+pub mod imu;
 pub mod sine;
 pub mod smooth;
 pub mod surface;

@@ -75,7 +75,7 @@ enum Task {
     },
     /// Measure error against run time and write docs/report
     Report {
-        /// The page: `sine`, `triangle`, `gouraud`, `raymarch`
+        /// The page: `sine`, `triangle`, `gouraud`, `raymarch`, `imu`
         page: String,
         /// What the page's program takes
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]

@@ -4,6 +4,7 @@
 
 mod cycles;
 mod gouraud;
+mod imu;
 mod page;
 mod plot;
 mod rates;
@@ -42,6 +43,8 @@ enum Page {
     Raymarch(raymarch::Arguments),
     /// Smooth shading beside light that is linear on the screen
     Gouraud(gouraud::Arguments),
+    /// Attitudes from a gyroscope and an accelerometer against f64 and the truth
+    Imu(imu::Arguments),
 }
 
 #[derive(Args)]
@@ -72,6 +75,7 @@ fn main() -> Result<()> {
         Page::Triangle(arguments) => triangle::report(&arguments),
         Page::Raymarch(arguments) => raymarch::report(&arguments),
         Page::Gouraud(arguments) => gouraud::report(&arguments),
+        Page::Imu(arguments) => imu::report(&arguments),
     }
 }
 

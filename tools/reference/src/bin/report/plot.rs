@@ -11,13 +11,15 @@ const SIZE: (u32, u32) = (960, 600);
 const EMPTY: Span = Span(10.0, 100_000.0);
 
 /// Colours of the families, dark enough for thin text.
-const COLOURS: [RGBColor; 6] = [
+const COLOURS: [RGBColor; 8] = [
     RGBColor(176, 24, 48),
     RGBColor(24, 120, 48),
     RGBColor(24, 88, 168),
     RGBColor(160, 88, 0),
     RGBColor(112, 32, 144),
     RGBColor(72, 72, 72),
+    RGBColor(0, 128, 136),
+    RGBColor(136, 104, 56),
 ];
 
 /// What a diagram says about itself.
@@ -82,6 +84,78 @@ fn draw(
             fill(chart, diagram, points, costs)?;
         }
     }
+    root.present()?;
+    Ok(())
+}
+
+/// What lies between two lines.
+pub struct Band {
+    pub name: &'static str,
+    pub low: Vec<(f64, f64)>,
+    pub high: Vec<(f64, f64)>,
+}
+
+/// A line and its name.
+pub type Line = (&'static str, Vec<(f64, f64)>);
+
+/// Writes a diagram of lines in front of a band, both axes logarithmic.
+pub fn write_lines(diagram: &Diagram, lines: &[Line], band: &Band, path: &Path) -> Result<()> {
+    draw_lines(diagram, lines, band, path)
+        .map_err(|error| anyhow!("cannot draw {}: {error}", path.display()))
+}
+
+fn draw_lines(
+    diagram: &Diagram,
+    lines: &[Line],
+    band: &Band,
+    path: &Path,
+) -> Result<(), Box<dyn std::error::Error>> {
+    let points = || lines.iter().flat_map(|(_, line)| line).chain(&band.high);
+    let Some(Span(left, right)) = Span::new(points().map(|point| point.0)) else {
+        return Err("there is nothing to draw".into());
+    };
+    let Some(Span(bottom, top)) = Span::new(points().map(|point| point.1)) else {
+        return Err("there is nothing to draw".into());
+    };
+    let root = SVGBackend::new(path, SIZE).into_drawing_area();
+    root.fill(&WHITE)?;
+    let mut chart = ChartBuilder::on(&root)
+        .caption(diagram.title, ("sans-serif", 22))
+        .margin(16)
+        .x_label_area_size(44)
+        .y_label_area_size(70)
+        .build_cartesian_2d((left..right).log_scale(), (bottom..top).log_scale())?;
+    chart
+        .configure_mesh()
+        .x_desc(diagram.across)
+        .y_desc(diagram.up)
+        .y_label_formatter(&number)
+        .light_line_style(BLACK.mix(0.04))
+        .draw()?;
+    let grey = BLACK.mix(0.15);
+    let outline = band.low.iter().chain(band.high.iter().rev());
+    chart
+        .draw_series([Polygon::new(
+            outline.copied().collect::<Vec<_>>(),
+            grey.filled(),
+        )])?
+        .label(band.name)
+        .legend(move |(x, y)| Rectangle::new([(x, y - 5), (x + 18, y + 5)], grey.filled()));
+    for ((name, line), colour) in lines.iter().zip(COLOURS) {
+        chart
+            .draw_series(LineSeries::new(
+                line.iter().copied(),
+                colour.stroke_width(2),
+            ))?
+            .label(*name)
+            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
+    }
+    chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::UpperLeft)
+        .background_style(WHITE.mix(0.8))
+        .border_style(BLACK.mix(0.3))
+        .draw()?;
     root.present()?;
     Ok(())
 }

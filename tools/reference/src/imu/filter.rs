@@ -1,0 +1,254 @@
+//! Ways to hold the tilt by the accelerometer, each in f64.
+
+use std::f64::consts::{SQRT_2, TAU};
+
+use glint_core::orientation::{DOUBTFUL, FRESH, LONGEST_STEP, Sample};
+
+use super::method::{Integrator, Method};
+use super::quaternion::Quaternion;
+use crate::camera::{Vector, cross, dot};
+
+/// A way to use the accelerometer. Times are in seconds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Filter {
+    /// It is left out.
+    None,
+    /// Pitch and roll of the attitude and of the reading, mixed by an exact gain with this time constant.
+    Complementary(f64),
+    /// Mahony's: the reading at length 1 against the attitude's up, as a rate and in a bias.
+    Mahony {
+        /// Proportional gain in 1/s.
+        proportional: f64,
+        /// Integral gain in 1/s².
+        integral: f64,
+    },
+    /// Readings in the world's axes as the gyroscope alone gives them, through a low pass of second order, then the attitude
+    /// that makes their mean point up: that of Laidig and Seel's VQF without its estimate of the bias.
+    LowPass(f64),
+    /// The firmware's, with this time constant.
+    Tilt(f64),
+    /// The firmware's, where only readings within a range in g count.
+    Gated {
+        /// Time constant.
+        tau: f64,
+        /// From where to where.
+        range: [f64; 2],
+    },
+    /// The firmware's with the gain dt/τ.
+    Explicit(f64),
+}
+
+impl Filter {
+    /// A name for tables.
+    pub fn name(self) -> String {
+        match self {
+            Self::None => "none".into(),
+            Self::Complementary(tau) => format!("complementary, {tau} s"),
+            Self::Mahony {
+                proportional,
+                integral,
+            } => format!("Mahony, {proportional}, {integral}"),
+            Self::LowPass(tau) => format!("low pass of second order, {tau} s"),
+            Self::Tilt(tau) => format!("tilt, {tau} s"),
+            Self::Gated {
+                tau,
+                range: [low, high],
+            } => format!("tilt, {tau} s, {low} to {high} g"),
+            Self::Explicit(tau) => format!("tilt, explicit, {tau} s"),
+        }
+    }
+}
+
+/// Estimates an attitude from samples.
+#[derive(Clone, Debug)]
+pub struct Estimator {
+    filter: Filter,
+    gyro_lsb: f64,
+    accel_lsb: f64,
+    /// In rad/s.
+    bias: Vector,
+    integrator: Integrator,
+    last: Option<u32>,
+    /// Where to begin without an accelerometer.
+    start: Quaternion,
+    age: f64,
+    /// Of [`Filter::LowPass`].
+    low_pass: [Butterworth; 3],
+    /// Of [`Filter::LowPass`]: from the axes of the gyroscope alone to the world's.
+    upright: Quaternion,
+}
+
+impl Estimator {
+    /// Waits for its first sample; units are LSB per °/s and per g.
+    pub fn new(method: Method, filter: Filter, gyro_lsb: f64, accel_lsb: f64) -> Self {
+        Self {
+            filter,
+            gyro_lsb,
+            accel_lsb,
+            bias: [0.0; 3],
+            integrator: Integrator::new(method, Quaternion::IDENTITY, [0.0; 3]),
+            last: None,
+            start: Quaternion::IDENTITY,
+            age: f64::from(FRESH) * 1e-6,
+            low_pass: [Butterworth::default(); 3],
+            upright: Quaternion::IDENTITY,
+        }
+    }
+
+    /// Sets what the gyroscope reads at rest, in LSB.
+    pub fn set_bias(&mut self, lsb: Vector) {
+        self.bias = lsb.map(|x| (x / self.gyro_lsb).to_radians());
+    }
+
+    /// Says where a filter begins that leaves the accelerometer out; at the identity unless told.
+    pub fn begin_at(&mut self, attitude: Quaternion) {
+        self.start = attitude;
+    }
+
+    /// The attitude at the last sample.
+    pub fn attitude(&self) -> Quaternion {
+        self.upright.times(self.integrator.attitude())
+    }
+
+    /// Takes a sample. One that is not later than the last is ignored.
+    pub fn on_sample(&mut self, sample: &Sample) {
+        let rate = [0, 1, 2]
+            .map(|i| (f64::from(sample.gyro[i]) / self.gyro_lsb).to_radians() - self.bias[i]);
+        let force = sample.accel.map(|x| f64::from(x) / self.accel_lsb);
+        let Some(last) = self.last else {
+            self.last = Some(sample.t_us);
+            let attitude = match self.filter {
+                Filter::None => self.start,
+                _ => {
+                    let [x, y, z] = force;
+                    Quaternion::of_angles([0.0, (-x).atan2(y.hypot(z)), y.atan2(z)])
+                }
+            };
+            self.integrator = Integrator::new(self.integrator.method(), attitude, rate);
+            return;
+        };
+        let step = sample.t_us.wrapping_sub(last);
+        if step == 0 || step > u32::MAX / 2 {
+            return;
+        }
+        self.last = Some(sample.t_us);
+        if step > LONGEST_STEP {
+            self.integrator.restart(rate);
+            self.age = self.age.min(f64::from(DOUBTFUL) * 1e-6);
+            return;
+        }
+        self.advance(rate, force, f64::from(step) * 1e-6);
+    }
+
+    fn advance(&mut self, rate: Vector, force: Vector, step: f64) {
+        let up = self.integrator.attitude().up();
+        let strength = dot(force, force).sqrt();
+        let turn = |gain: f64| cross(force, up).map(|x| x * gain / 2.0);
+        match self.filter {
+            Filter::None => self.integrator.advance(rate, step),
+            Filter::Tilt(tau) => {
+                let gain = if strength <= 3.0 {
+                    self.aged_gain(tau, step)
+                } else {
+                    0.0
+                };
+                self.integrator.advance_corrected(rate, step, turn(gain));
+            }
+            Filter::Gated {
+                tau,
+                range: [low, high],
+            } => {
+                let counts = (low..=high).contains(&strength);
+                let gain = if counts {
+                    self.aged_gain(tau, step)
+                } else {
+                    0.0
+                };
+                self.integrator.advance_corrected(rate, step, turn(gain));
+            }
+            Filter::Explicit(tau) => {
+                self.integrator
+                    .advance_corrected(rate, step, turn(step / tau));
+            }
+            Filter::Mahony {
+                proportional,
+                integral,
+            } => {
+                let error = cross(force, up).map(|x| x / strength.max(1e-9));
+                for (bias, error) in self.bias.iter_mut().zip(error) {
+                    *bias -= integral * error * step;
+                }
+                let correction = error.map(|x| x * proportional * step / 2.0);
+                self.integrator.advance_corrected(rate, step, correction);
+            }
+            Filter::Complementary(tau) => {
+                self.integrator.advance(rate, step);
+                let gain = 1.0 - (-step / tau).exp();
+                let [x, y, z] = force;
+                let [yaw, pitch, roll] = self.integrator.attitude().angles();
+                let mixed = |angle: f64, read: f64| {
+                    // The shorter way round.
+                    let difference = (read - angle + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0;
+                    angle + gain * difference
+                };
+                let pitch = mixed(pitch, (-x).atan2(y.hypot(z)));
+                let roll = mixed(roll, y.atan2(z));
+                self.integrator
+                    .set_attitude(Quaternion::of_angles([yaw, pitch, roll]));
+            }
+            Filter::LowPass(tau) => {
+                self.integrator.advance(rate, step);
+                let world = self.integrator.attitude().rotate(force);
+                let mean = [0, 1, 2].map(|i| self.low_pass[i].next(world[i], step, tau));
+                let [x, y, z] = self.upright.rotate(mean);
+                // The shortest rotation that takes the mean to z.
+                let length = (x * x + y * y + z * z).sqrt();
+                if length > 1e-6 {
+                    let half = Quaternion([length + z, y, -x, 0.0]);
+                    if half.norm() > 1e-9 {
+                        self.upright = half.normalised().times(self.upright).normalised();
+                    }
+                }
+            }
+        }
+    }
+
+    /// The exact gain, as large as that of a running mean at first.
+    fn aged_gain(&mut self, tau: f64, step: f64) -> f64 {
+        if self.age < tau {
+            self.age = (self.age + step).min(tau);
+        }
+        1.0 - (-step / self.age).exp()
+    }
+}
+
+/// A low pass of second order after Butterworth by the bilinear transform, a mean over its first τ.
+#[derive(Clone, Copy, Debug, Default)]
+struct Butterworth {
+    age: f64,
+    sum: f64,
+    count: f64,
+    state: [f64; 2],
+}
+
+impl Butterworth {
+    fn next(&mut self, x: f64, step: f64, tau: f64) -> f64 {
+        // The frequency that VQF takes for a time constant.
+        let c = (TAU / 2.0 * SQRT_2 / (TAU * tau) * step).tan();
+        let d = c * c + SQRT_2 * c + 1.0;
+        let b0 = c * c / d;
+        let a = [2.0 * (c * c - 1.0) / d, (1.0 - SQRT_2 * c + c * c) / d];
+        if self.age < tau {
+            self.age += step;
+            self.sum += x;
+            self.count += 1.0;
+            let mean = self.sum / self.count;
+            // The state in which the mean would go on for ever.
+            self.state = [(1.0 - b0) * mean, (b0 - a[1]) * mean];
+            return mean;
+        }
+        let y = b0 * x + self.state[0];
+        self.state = [2.0 * b0 * x - a[0] * y + self.state[1], b0 * x - a[1] * y];
+        y
+    }
+}

@@ -1,0 +1,177 @@
+//! What tests and the report measure.
+
+use glint_core::calibration::{Calibration, Progress, Refusal, Report, RestBias, SAMPLES, Units};
+use glint_core::fixed::Q32_32;
+use glint_core::orientation::{Scale, TIME_CONSTANT, Tilt, Tracker};
+
+use super::filter::{Estimator, Filter};
+use super::method::{Integrator, Method};
+use super::motion::Motion;
+use super::quaternion::Quaternion;
+use super::sensor::Sensor;
+
+/// The firmware's time constant of the tilt, in seconds.
+pub const TAU: f64 = TIME_CONSTANT as f64 * 1e-6;
+
+/// A firmware's tracker for a sensor, its bias known to 1/256 LSB.
+///
+/// # Panics
+/// When the sensor's units are not the firmware's.
+pub fn tracker(sensor: &Sensor, tilt: bool) -> Tracker {
+    let scale = Scale::new(Q32_32::from_num(sensor.gyro_lsb)).expect("units of the firmware");
+    let tilt = tilt.then(|| Tilt::new(sensor.accel_lsb as u32, TIME_CONSTANT));
+    let mut tracker = Tracker::new(scale, tilt);
+    tracker.set_bias(bias(sensor).map(|bias| bias as i32));
+    tracker
+}
+
+/// In 1/256 LSB.
+fn bias(sensor: &Sensor) -> [f64; 3] {
+    sensor
+        .bias
+        .map(|bias| (bias * sensor.gyro_lsb * 256.0).round())
+}
+
+/// Largest errors of the firmware.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Largest {
+    /// Against the same method in f64 on the same counts, in degrees.
+    pub angle: f64,
+    /// Of the length.
+    pub norm: f64,
+}
+
+/// Runs the firmware beside the same method in f64, with and without the accelerometer.
+pub fn against_f64(sensor: Sensor, motion: Motion, seconds: f64, tilt: bool) -> Largest {
+    let mut tracker = tracker(&sensor, tilt);
+    let filter = if tilt {
+        Filter::Tilt(TAU)
+    } else {
+        Filter::None
+    };
+    let mut twin = Estimator::new(Method::Cubic, filter, sensor.gyro_lsb, sensor.accel_lsb);
+    twin.set_bias(bias(&sensor).map(|bias| bias / 256.0));
+    let count = (seconds * sensor.rate) as u64 + 1;
+    let mut largest = Largest::default();
+    for sample in sensor.samples(motion, count, 1) {
+        tracker.on_sample(&sample);
+        twin.on_sample(&sample);
+        let attitude = Quaternion::from(tracker.attitude());
+        largest.angle = largest.angle.max(attitude.angle_to(twin.attitude()));
+        largest.norm = largest.norm.max((attitude.norm() - 1.0).abs());
+    }
+    largest
+}
+
+/// The error of a method at the end, in degrees, on rates that are not rounded.
+pub fn method_error(method: Method, motion: Motion, seconds: f64, rate: f64) -> f64 {
+    let start = motion.attitude(0.0).unwrap_or(Quaternion::IDENTITY);
+    let mut integrator = Integrator::new(method, start, motion.rate(0.0));
+    let step = 1.0 / rate;
+    let count = (seconds * rate).round() as u64;
+    for i in 1..=count {
+        integrator.advance(motion.rate(i as f64 * step), step);
+    }
+    let truth = motion.attitude_after(seconds, rate);
+    integrator.attitude().angle_to(truth)
+}
+
+/// What a calibration and some weather leave of a bias, in °/s, along x, y and z.
+pub const LEFT_BIAS: [f64; 3] = [0.02, -0.02, 0.02];
+/// When errors of the tilt begin to count, in seconds.
+const SETTLED: f64 = 10.0;
+
+/// Root of the mean square of some errors, and the largest.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Errors {
+    squares: f64,
+    count: f64,
+    /// The largest.
+    pub max: f64,
+}
+
+impl Errors {
+    fn add(&mut self, error: f64) {
+        self.squares += error * error;
+        self.count += 1.0;
+        self.max = self.max.max(error);
+    }
+
+    /// Root of the mean square.
+    pub fn rms(&self) -> f64 {
+        (self.squares / self.count).sqrt()
+    }
+}
+
+/// The firmware's inclination against the truth, in degrees, with [`LEFT_BIAS`].
+///
+/// # Panics
+/// When the motion has no attitude in closed form.
+pub fn inclination(sensor: Sensor, motion: Motion, seconds: f64) -> Errors {
+    let mut tracker = tracker(&sensor, true);
+    let left = LEFT_BIAS.map(|bias| (bias * sensor.gyro_lsb * 256.0).round() as i32);
+    let known = tracker.bias();
+    tracker.set_bias([0, 1, 2].map(|i| known[i] - left[i]));
+    let mut errors = Errors::default();
+    for sample in sensor.samples(motion, (seconds * sensor.rate) as u64, 2) {
+        tracker.on_sample(&sample);
+        let t = f64::from(sample.t_us) * 1e-6;
+        if t >= SETTLED {
+            let truth = motion.attitude(t).expect("in closed form");
+            errors.add(truth.inclination_to(tracker.attitude().into()));
+        }
+    }
+    errors
+}
+
+/// The same of a filter in f64.
+///
+/// # Panics
+/// As [`inclination`].
+pub fn filter_inclination(filter: Filter, sensor: Sensor, motion: Motion, seconds: f64) -> Errors {
+    let mut estimator = Estimator::new(Method::Cubic, filter, sensor.gyro_lsb, sensor.accel_lsb);
+    if let Some(start) = motion.attitude(0.0) {
+        estimator.begin_at(start);
+    }
+    estimator.set_bias([0, 1, 2].map(|i| (sensor.bias[i] - LEFT_BIAS[i]) * sensor.gyro_lsb));
+    let mut errors = Errors::default();
+    for sample in sensor.samples(motion, (seconds * sensor.rate) as u64, 2) {
+        estimator.on_sample(&sample);
+        let t = f64::from(sample.t_us) * 1e-6;
+        if t >= SETTLED {
+            let truth = motion.attitude(t).expect("in closed form");
+            errors.add(truth.inclination_to(estimator.attitude()));
+        }
+    }
+    errors
+}
+
+/// Calibrates by so many samples of a motion.
+///
+/// # Errors
+/// As the firmware's calibration.
+///
+/// # Panics
+/// When the samples end before the calibration does.
+pub fn calibrated(sensor: Sensor, motion: Motion) -> Result<Report, Refusal> {
+    let mut calibration = Calibration::new(Units::MPU_6050, SAMPLES);
+    for sample in sensor.samples(motion, u64::from(SAMPLES) + 1, 3) {
+        if let Progress::Done(report) = calibration.on_sample(&sample)? {
+            return Ok(report);
+        }
+    }
+    unreachable!("a calibration takes as many samples as it was told");
+}
+
+/// By how much yaw drifts at rest after a calibration, in °/h, with the bias kept or followed.
+pub fn yaw_drift(sensor: Sensor, report: &Report, hours: f64, follow: bool) -> f64 {
+    let mut tracker = tracker(&sensor, true);
+    tracker.set_bias(report.bias);
+    if follow {
+        tracker.follow_bias(RestBias::new(Units::MPU_6050, report.bias));
+    }
+    for sample in sensor.samples(Motion::Rest, (hours * 3600.0 * sensor.rate) as u64, 4) {
+        tracker.on_sample(&sample);
+    }
+    Quaternion::from(tracker.attitude()).angles()[0].to_degrees() / hours
+}

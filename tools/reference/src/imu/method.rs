@@ -1,0 +1,184 @@
+//! Ways from samples of the angular rate to an attitude, each in f64.
+
+use super::quaternion::Quaternion;
+use crate::camera::{Vector, cross};
+use glint_core::orientation::{LONGEST_CURVE, MOST_STRETCH};
+
+/// A way to integrate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// Rates about the body's axes added to yaw, pitch and roll, as the first design did.
+    Angles,
+    /// q + q·ω·dt/2, normalised, with the newest sample.
+    FirstOrder,
+    /// The exponential, with the newest sample.
+    Newest,
+    /// The exponential, with the mean of two samples.
+    Trapezoid,
+    /// That, with the coning of a rate that is linear between two samples.
+    Coning,
+    /// The parabola through three samples, with its coning.
+    Parabola,
+    /// The cubic through four samples, as the firmware integrates it.
+    Cubic,
+    /// The same with the coning of the cubic alone, which leaves out what the cubic leaves out.
+    PlainCubic,
+}
+
+impl Method {
+    /// All of them, the cheapest first.
+    pub const ALL: [Self; 8] = [
+        Self::Angles,
+        Self::FirstOrder,
+        Self::Newest,
+        Self::Trapezoid,
+        Self::Coning,
+        Self::Parabola,
+        Self::PlainCubic,
+        Self::Cubic,
+    ];
+
+    /// A name for tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Angles => "rates added to angles",
+            Self::FirstOrder => "first order",
+            Self::Newest => "newest sample",
+            Self::Trapezoid => "trapezoid",
+            Self::Coning => "trapezoid and coning",
+            Self::Parabola => "parabola",
+            Self::PlainCubic => "cubic, plain coning",
+            Self::Cubic => "cubic",
+        }
+    }
+}
+
+/// An attitude that is integrated.
+#[derive(Clone, Debug)]
+pub struct Integrator {
+    method: Method,
+    attitude: Quaternion,
+    /// Of [`Method::Angles`].
+    angles: Vector,
+    last: Vector,
+    difference: Vector,
+    second: Vector,
+    ages: [f64; 2],
+    steps: u32,
+}
+
+fn combine(a: Vector, b: Vector, factor: f64) -> Vector {
+    [0, 1, 2].map(|i| a[i] + factor * b[i])
+}
+
+impl Integrator {
+    /// Begins at an attitude and a rate.
+    pub fn new(method: Method, attitude: Quaternion, rate: Vector) -> Self {
+        Self {
+            method,
+            attitude,
+            angles: attitude.angles(),
+            last: rate,
+            difference: [0.0; 3],
+            second: [0.0; 3],
+            ages: [0.0; 2],
+            steps: 0,
+        }
+    }
+
+    /// Begins again at a rate, with the attitude as it is.
+    pub fn restart(&mut self, rate: Vector) {
+        self.last = rate;
+        self.steps = 0;
+    }
+
+    /// The way it integrates.
+    pub fn method(&self) -> Method {
+        self.method
+    }
+
+    /// Goes on from another attitude.
+    pub fn set_attitude(&mut self, attitude: Quaternion) {
+        self.attitude = attitude;
+        self.angles = attitude.angles();
+    }
+
+    /// The attitude now.
+    pub fn attitude(&self) -> Quaternion {
+        self.attitude
+    }
+
+    /// Takes the rate `step` seconds after the last one.
+    pub fn advance(&mut self, rate: Vector, step: f64) {
+        self.advance_corrected(rate, step, [0.0; 3]);
+    }
+
+    /// The same, and turns further by `correction`, half an angle about each of the body's axes.
+    pub fn advance_corrected(&mut self, rate: Vector, step: f64, correction: Vector) {
+        match self.method {
+            Method::Angles => {
+                let [roll, pitch, yaw] = rate.map(|x| x * step);
+                self.angles = combine(self.angles, [yaw, pitch, roll], 1.0);
+                self.attitude = Quaternion::of_angles(self.angles);
+            }
+            Method::FirstOrder => {
+                let [x, y, z] = rate.map(|x| x * step / 2.0);
+                self.attitude = self.attitude.times(Quaternion([1.0, x, y, z])).normalised();
+            }
+            _ => {
+                let turn = self.turn(rate, step);
+                let half = combine(correction, turn, 0.5);
+                self.attitude = self.attitude.times(Quaternion::exp(half)).normalised();
+            }
+        }
+        self.last = rate;
+    }
+
+    /// The rotation vector of a step.
+    fn turn(&mut self, rate: Vector, step: f64) -> Vector {
+        let curved = step <= f64::from(LONGEST_CURVE) * 1e-6
+            && (self.steps == 0 || step <= f64::from(MOST_STRETCH) * self.ages[0]);
+        if !curved {
+            self.steps = 0;
+        }
+        let e1 = combine(rate, self.last, -1.0);
+        let [h1, h2] = self.ages;
+        let (mut s, mut d) = ([0.0; 3], [0.0; 3]);
+        let (mut near, mut far) = (0.0, 0.0);
+        let degree = match self.method {
+            Method::Parabola => 2,
+            Method::Cubic | Method::PlainCubic => 3,
+            _ => 1,
+        };
+        if degree >= 2 && self.steps >= 1 {
+            let g = step / h1;
+            let change = combine(e1, self.difference, -g);
+            s = change.map(|x| x * step / (step + h1));
+            if degree >= 3 && self.steps >= 2 {
+                d = combine(s, self.second, -g * g);
+                near = step / (step + h1 + h2);
+                far = (step + 2.0 * h1) / (step + h1 + h2);
+            }
+        }
+        let straight = combine(rate, self.last, 1.0).map(|x| x / 2.0);
+        let curve = [0, 1, 2].map(|i| (2.0 * s[i] + d[i] * far) / 12.0);
+        let mean = match self.method {
+            Method::Newest => rate,
+            _ => combine(straight, curve, -1.0),
+        };
+        let third = match self.method {
+            Method::PlainCubic => -0.1,
+            _ => 1.8,
+        };
+        let end = combine(e1, d, third * near);
+        let mut turn = mean.map(|x| x * step);
+        if curved && !matches!(self.method, Method::Newest | Method::Trapezoid) {
+            turn = combine(turn, cross(mean, end), step * step / 12.0);
+        }
+        self.steps = if curved { (self.steps + 1).min(2) } else { 0 };
+        self.difference = e1;
+        self.second = s;
+        self.ages = [step, h1];
+        turn
+    }
+}

@@ -1,0 +1,192 @@
+//! Motions with a known truth.
+
+use std::f64::consts::TAU;
+
+use super::method::{Integrator, Method};
+use super::quaternion::Quaternion;
+use crate::camera::Vector;
+
+/// The standard acceleration of gravity, in m/s².
+pub const GRAVITY: f64 = 9.806_65;
+
+/// a·sin(τ·f·t + p): amplitude, frequency in Hz, phase in radians.
+type Wave = [f64; 3];
+
+fn value(waves: &[Wave], t: f64) -> f64 {
+    waves
+        .iter()
+        .map(|[a, f, p]| a * (TAU * f * t + p).sin())
+        .sum()
+}
+
+fn slope(waves: &[Wave], t: f64) -> f64 {
+    waves
+        .iter()
+        .map(|[a, f, p]| a * TAU * f * (TAU * f * t + p).cos())
+        .sum()
+}
+
+/// A motion, at times in seconds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Motion {
+    /// Nothing moves.
+    Rest,
+    /// A constant rate in °/s about each axis.
+    Spin(Vector),
+    /// Turning over about all axes, up to so many °/s. Without an attitude in closed form.
+    Tumble(f64),
+    /// The body's z axis goes round a cone of so many degrees half its angle, so many times a second.
+    Coning {
+        /// Between the axis and the middle of the cone, in degrees.
+        angle: f64,
+        /// In Hz.
+        frequency: f64,
+    },
+    /// A rate in °/s about z that changes its sign this many times a second, at once.
+    Square {
+        /// In °/s.
+        rate: f64,
+        /// Of the whole period, in Hz.
+        frequency: f64,
+    },
+    /// Held in a hand and turned about a wrist 10 cm away, mostly to the sides, 0.5 to 2 Hz, up to 300 °/s.
+    Hand,
+    /// The same, mostly up and down.
+    Nod,
+    /// Carried at a walk: ±3 m/s² up and down at 2 Hz, ±1.5 fore and aft, and with every step 10 m/s² upwards for 50 ms.
+    Walk,
+}
+
+const HAND: [&[Wave]; 3] = [
+    &[[1.2, 0.5, 0.0]],
+    &[[0.2, 1.3, 1.0], [0.25, 0.6, 0.0]],
+    &[[0.15, 2.0, 0.5]],
+];
+const NOD: [&[Wave]; 3] = [&[[0.2, 0.7, 0.0]], &[[1.3, 0.5, 0.0]], &[[0.15, 2.0, 0.0]]];
+const WALK: [&[Wave]; 3] = [&[[0.3, 0.1, 0.0]], &[[0.05, 2.0, 0.4]], &[[0.07, 1.0, 0.0]]];
+/// From the wrist to the sensor, in m.
+const ARM: Vector = [0.1, 0.0, 0.0];
+
+impl Motion {
+    /// The rate about the body's axes in rad/s.
+    pub fn rate(self, t: f64) -> Vector {
+        match self {
+            Self::Rest => [0.0; 3],
+            Self::Spin(rate) => rate.map(f64::to_radians),
+            Self::Tumble(peak) => {
+                let peak = peak.to_radians();
+                [
+                    0.6 * peak * (TAU * 0.7 * t).sin(),
+                    0.55 * peak * (TAU * 1.1 * t + 1.0).sin(),
+                    0.58 * peak * (TAU * 0.5 * t + 0.3).cos(),
+                ]
+            }
+            Self::Coning { angle, frequency } => {
+                let (sin, cos) = angle.to_radians().sin_cos();
+                let turn = TAU * frequency;
+                let (side, front) = (turn * t).sin_cos();
+                [-turn * sin * side, turn * sin * front, turn * (cos - 1.0)]
+            }
+            Self::Square { rate, frequency } => {
+                let sign = if (t * frequency).fract() < 0.5 {
+                    1.0
+                } else {
+                    -1.0
+                };
+                [0.0, 0.0, sign * rate.to_radians()]
+            }
+            Self::Hand | Self::Nod | Self::Walk => {
+                let waves = self.waves();
+                let [_, pitch, roll] = waves.map(|waves| value(waves, t));
+                let [yawing, pitching, rolling] = waves.map(|waves| slope(waves, t));
+                let ((sp, cp), (sr, cr)) = (pitch.sin_cos(), roll.sin_cos());
+                [
+                    rolling - yawing * sp,
+                    pitching * cr + yawing * cp * sr,
+                    yawing * cp * cr - pitching * sr,
+                ]
+            }
+        }
+    }
+
+    /// Yaw, pitch and roll of the motions that are given by them.
+    fn waves(self) -> [&'static [Wave]; 3] {
+        match self {
+            Self::Hand => HAND,
+            Self::Nod => NOD,
+            Self::Walk => WALK,
+            _ => [&[]; 3],
+        }
+    }
+
+    /// The attitude where it is known in closed form.
+    pub fn attitude(self, t: f64) -> Option<Quaternion> {
+        match self {
+            Self::Rest => Some(Quaternion::IDENTITY),
+            Self::Spin(rate) => Some(Quaternion::exp(rate.map(|x| x.to_radians() * t / 2.0))),
+            Self::Coning { angle, frequency } => {
+                let (sin, cos) = (angle.to_radians() / 2.0).sin_cos();
+                let (side, front) = (TAU * frequency * t).sin_cos();
+                Some(Quaternion([cos, sin * front, sin * side, 0.0]))
+            }
+            Self::Tumble(_) => None,
+            Self::Square { rate, frequency } => {
+                let part = (t * frequency).fract();
+                let way = part.min(1.0 - part) / frequency;
+                Some(Quaternion::of_angles([rate.to_radians() * way, 0.0, 0.0]))
+            }
+            Self::Hand | Self::Nod | Self::Walk => Some(Quaternion::of_angles(
+                self.waves().map(|waves| value(waves, t)),
+            )),
+        }
+    }
+
+    /// The attitude after `seconds` from [`Self::attitude`] at 0, or from the identity: in closed form, or by 16 times as many
+    /// steps as `rate` samples a second give.
+    pub fn attitude_after(self, seconds: f64, rate: f64) -> Quaternion {
+        self.attitude(seconds).unwrap_or_else(|| {
+            let step = 1.0 / (16.0 * rate);
+            let count = (seconds / step).round() as u64;
+            let mut integrator =
+                Integrator::new(Method::Cubic, Quaternion::IDENTITY, self.rate(0.0));
+            for i in 1..=count {
+                integrator.advance(self.rate(i as f64 * step), step);
+            }
+            integrator.attitude()
+        })
+    }
+
+    /// What an accelerometer measures, along the body's axes in g; nothing but gravity where the motion says no place, and where
+    /// it says no attitude either, gravity along z.
+    pub fn force(self, t: f64) -> Vector {
+        let attitude = self.attitude(t).unwrap_or(Quaternion::IDENTITY);
+        let [x, y, z] = self.acceleration(t);
+        attitude
+            .inverse()
+            .rotate([x, y, z + GRAVITY])
+            .map(|x| x / GRAVITY)
+    }
+
+    /// The acceleration of the sensor in the world, in m/s².
+    fn acceleration(self, t: f64) -> Vector {
+        match self {
+            Self::Hand | Self::Nod => {
+                // Its own error, about 1e-6 m/s², is nothing here.
+                let step = 1e-3;
+                let [a, b, c] = [t - step, t, t + step].map(|t| {
+                    let attitude = self.attitude(t).unwrap_or(Quaternion::IDENTITY);
+                    attitude.rotate(ARM)
+                });
+                [0, 1, 2].map(|i| (a[i] - 2.0 * b[i] + c[i]) / (step * step))
+            }
+            Self::Walk => {
+                let heading = value(WALK[0], t);
+                let fore = 1.5 * (TAU * 2.0 * t + 0.8).sin();
+                let strike = if (2.0 * t).fract() < 0.1 { 10.0 } else { 0.0 };
+                let up = 3.0 * (TAU * 2.0 * t).sin() + strike;
+                [fore * heading.cos(), fore * heading.sin(), up]
+            }
+            _ => [0.0; 3],
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! A sensor: what it makes of a motion.
+
+use glint_core::orientation::Sample;
+use rand::{Rng, RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+
+use super::motion::Motion;
+use crate::camera::Vector;
+
+/// A gyroscope and an accelerometer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sensor {
+    /// LSB per °/s.
+    pub gyro_lsb: f64,
+    /// LSB per g.
+    pub accel_lsb: f64,
+    /// Of the gyroscope, in °/s.
+    pub bias: Vector,
+    /// Standard deviation of a sample of the gyroscope, in °/s.
+    pub noise: f64,
+    /// The same of the accelerometer, in g.
+    pub accel_noise: f64,
+    /// How much the gyroscope reads too much, as a part of the rate.
+    pub scale_error: f64,
+    /// Samples a second.
+    pub rate: f64,
+    /// How far a sample may be from its even place, as a part of the time between two.
+    pub jitter: f64,
+    /// The part of the samples that are lost.
+    pub lost: f64,
+}
+
+impl Sensor {
+    /// Without any error but that of counts; ±2000 °/s and ±8 g.
+    pub fn ideal(rate: f64) -> Self {
+        Self {
+            gyro_lsb: 16.4,
+            accel_lsb: 4096.0,
+            bias: [0.0; 3],
+            noise: 0.0,
+            accel_noise: 0.0,
+            scale_error: 0.0,
+            rate,
+            jitter: 0.0,
+            lost: 0.0,
+        }
+    }
+
+    /// The noise and the bias of a real one, as logged.
+    pub fn real(rate: f64) -> Self {
+        Self {
+            bias: [4.5, 0.05, 1.1],
+            noise: 0.1,
+            accel_noise: 0.004,
+            ..Self::ideal(rate)
+        }
+    }
+
+    /// Samples of a motion, `count` of them but for those that are lost; the first and the last never are, and are in their place.
+    pub fn samples(self, motion: Motion, count: u64, seed: u64) -> impl Iterator<Item = Sample> {
+        let mut random = Pcg64Mcg::seed_from_u64(seed);
+        let period = 1e6 / self.rate;
+        (0..count).filter_map(move |i| {
+            let inner = i > 0 && i + 1 < count;
+            let jitter = if inner {
+                self.jitter * (2.0 * uniform(&mut random) - 1.0)
+            } else {
+                0.0
+            };
+            let lost = uniform(&mut random) < self.lost && inner;
+            // The clock that stamps a sample has whole microseconds; the sample is taken at the stamp.
+            let t_us = ((i as f64 + jitter) * period).round();
+            let t = t_us * 1e-6;
+            let (rate, force) = (motion.rate(t), motion.force(t));
+            let sample = Sample {
+                // The stamps wrap as they do on the board.
+                t_us: t_us as u64 as u32,
+                gyro: [0, 1, 2].map(|k| {
+                    let true_rate = rate[k].to_degrees() * (1.0 + self.scale_error);
+                    let noise = self.noise * normal(&mut random);
+                    counts((true_rate + self.bias[k] + noise) * self.gyro_lsb)
+                }),
+                accel: force
+                    .map(|x| counts((x + self.accel_noise * normal(&mut random)) * self.accel_lsb)),
+            };
+            (!lost).then_some(sample)
+        })
+    }
+}
+
+/// To nearest; saturates as the sensor does.
+fn counts(x: f64) -> i16 {
+    x.round() as i16
+}
+
+fn uniform(random: &mut impl Rng) -> f64 {
+    random.random()
+}
+
+/// By Box and Muller; one of the two is thrown away.
+fn normal(random: &mut impl Rng) -> f64 {
+    let radius = (-2.0 * (1.0 - uniform(random)).ln()).sqrt();
+    radius * (std::f64::consts::TAU * uniform(random)).cos()
+}

@@ -1,0 +1,170 @@
+//! The firmware's orientation against the same method in f64, and both against the truth.
+//!
+//! `GLINT_IMU=long` runs the long motions whole: an hour each, and the soak of a day.
+
+use glint_core::calibration::Units;
+use glint_reference::imu::measure::{
+    Largest, against_f64, calibrated, inclination, method_error, tracker, yaw_drift,
+};
+use glint_reference::imu::method::Method;
+use glint_reference::imu::motion::Motion;
+use glint_reference::imu::sensor::Sensor;
+
+/// Seconds of a motion: all of them, or by default a part of them.
+fn seconds(whole: f64, part: f64) -> f64 {
+    if std::env::var("GLINT_IMU").is_ok_and(|value| value == "long") {
+        whole
+    } else {
+        part
+    }
+}
+
+#[test]
+fn the_firmware_is_its_method_in_f64() {
+    let uneven = Sensor {
+        jitter: 0.3,
+        lost: 0.01,
+        ..Sensor::real(200.0)
+    };
+    let spin = Motion::Spin([0.0, 0.0, 1990.0]);
+    for (sensor, motion, seconds, most) in [
+        (Sensor::real(1000.0), Motion::Hand, 190.0, 1e-3),
+        (Sensor::real(50.0), Motion::Nod, 190.0, 1e-3),
+        (uneven, Motion::Walk, 190.0, 1e-3),
+        (Sensor::ideal(1000.0), spin, seconds(3600.0, 60.0), 0.04),
+    ] {
+        for tilt in [false, true] {
+            let Largest { angle: error, norm } = against_f64(sensor, motion, seconds, tilt);
+            println!(
+                "{motion:?} at {} Hz, {seconds} s, tilt {tilt}: {error:.1e}°, norm {norm:.1e}",
+                sensor.rate
+            );
+            assert!(error <= most, "{motion:?}: {error:e}");
+            assert!(norm <= 2e-9, "{motion:?}: {norm:e}");
+        }
+    }
+    let tumble = Motion::Tumble(500.0);
+    let Largest { angle: error, norm } =
+        against_f64(Sensor::ideal(1000.0), tumble, seconds(3600.0, 60.0), false);
+    println!("{tumble:?}: {error:.1e}°, norm {norm:.1e}");
+    assert!(error <= 0.002 && norm <= 2e-9, "{error:e} {norm:e}");
+}
+
+const CONING: Motion = Motion::Coning {
+    angle: 5.0,
+    frequency: 10.0,
+};
+
+#[test]
+fn the_method_is_as_near_to_the_truth_as_it_should_be() {
+    let tumble = method_error(Method::Cubic, Motion::Tumble(700.0), 20.0, 200.0);
+    let coning = method_error(Method::Cubic, CONING, 20.0, 200.0);
+    println!("tumble {tumble:.1e}°, coning {coning:.1e}°");
+    assert!(tumble <= 0.01 && coning <= 0.05, "{tumble:e} {coning:e}");
+    // What the coefficient of the coning buys.
+    let plain = method_error(Method::PlainCubic, CONING, 20.0, 200.0);
+    assert!(plain > 5.0 * coning, "{plain:e} {coning:e}");
+}
+
+/// The cubic is of order 4 once it has three steps to look back on; what its first two leave is of order 3, and here it is all that is
+/// left.
+#[test]
+fn orders_are_those_of_the_methods() {
+    let tumble = Motion::Tumble(700.0);
+    for (method, order) in [
+        (Method::FirstOrder, 1.0),
+        (Method::Newest, 1.0),
+        (Method::Trapezoid, 2.0),
+        (Method::Coning, 2.0),
+        (Method::Parabola, 3.0),
+        (Method::PlainCubic, 3.0),
+        (Method::Cubic, 3.0),
+    ] {
+        let [slow, fast] = [400.0, 800.0].map(|rate| method_error(method, tumble, 5.0, rate));
+        let observed = (slow / fast).log2();
+        println!(
+            "{}: {slow:.1e}°, {fast:.1e}°, order {observed:.2}",
+            method.name()
+        );
+        assert!((observed - order).abs() < 0.4, "{method:?}: {observed}");
+    }
+    let [slow, fast] =
+        [100.0, 200.0].map(|rate| method_error(Method::PlainCubic, CONING, 20.0, rate));
+    let observed = (slow / fast).log2();
+    println!("plain cubic, coning: order {observed:.2}");
+    assert!((observed - 4.0).abs() < 0.4, "{observed}");
+    // Rates are not the rates of angles.
+    assert!(method_error(Method::Angles, Motion::Tumble(700.0), 20.0, 1000.0) > 10.0);
+}
+
+#[test]
+fn the_tilt_holds_in_a_hand_and_at_a_walk() {
+    for rate in [200.0, 1000.0] {
+        for motion in [Motion::Rest, Motion::Hand, Motion::Nod, Motion::Walk] {
+            let rms = inclination(Sensor::real(rate), motion, 60.0).rms();
+            println!("{motion:?} at {rate} Hz: {rms:.2}° RMS");
+            assert!(rms <= 1.0, "{motion:?}: {rms}");
+        }
+    }
+}
+
+#[test]
+fn yaw_stays_after_calibration() {
+    let sensor = Sensor::real(1000.0);
+    let report = calibrated(sensor, Motion::Rest).expect("at rest");
+    let hours = seconds(3600.0, 360.0) / 3600.0;
+    let [held, followed] = [false, true].map(|follow| yaw_drift(sensor, &report, hours, follow));
+    let expected: f64 = report.drift(Units::MPU_6050)[2].to_num();
+    println!("expected ±{expected:.1}°/h, held {held:.1}°/h, followed {followed:.1}°/h");
+    assert!(
+        held.abs() <= 10.0 && followed.abs() <= 10.0,
+        "{held} {followed}"
+    );
+    assert!(calibrated(sensor, Motion::Hand).is_err());
+}
+
+/// The gyroscope turns further than its range for a while: the tilt comes back, and nothing else is lost.
+#[test]
+fn saturation_costs_what_it_hides_and_no_more() {
+    let sensor = Sensor::real(1000.0);
+    let mut tracker = tracker(&sensor, true);
+    tracker.set_bias(
+        sensor
+            .bias
+            .map(|bias| (bias * sensor.gyro_lsb * 256.0).round() as i32),
+    );
+    let mut at = [0.0; 2];
+    for (i, mut sample) in sensor.samples(Motion::Hand, 60_000, 6).enumerate() {
+        if (20_000..20_030).contains(&i) {
+            sample.gyro[0] = i16::MAX;
+        }
+        tracker.on_sample(&sample);
+        let t = f64::from(sample.t_us) * 1e-6;
+        let truth = Motion::Hand.attitude(t).expect("in closed form");
+        let error = truth.inclination_to(tracker.attitude().into());
+        match i {
+            20_029 => at[0] = error,
+            30_000.. => at[1] = at[1].max(error),
+            _ => {}
+        }
+    }
+    println!("{:.0}° at its end, {:.2}° at most after 10 s", at[0], at[1]);
+    assert_eq!(tracker.counts().saturated, 30);
+    assert!(at[0] > 30.0 && at[1] < 5.0, "{at:?}");
+}
+
+/// A day of the smallest rate, of a tumble, and of a fast spin.
+#[test]
+#[ignore = "minutes: 86.4 million steps each"]
+fn a_day_does_not_wear_it_out() {
+    let day = 86_400.0;
+    let count = Motion::Spin([1.0 / 16.4, 0.0, 0.0]);
+    for (motion, most) in [(count, 1e-3), (Motion::Spin([0.0, 0.0, 1990.0]), 0.9)] {
+        let Largest { angle: error, norm } = against_f64(Sensor::ideal(1000.0), motion, day, false);
+        println!("{motion:?}: {error:.1e}°, norm {norm:.1e}");
+        assert!(
+            error <= most && norm <= 2e-9,
+            "{motion:?}: {error:e} {norm:e}"
+        );
+    }
+}
