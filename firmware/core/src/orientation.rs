@@ -15,7 +15,7 @@ mod tracker;
 pub use gain::{Gain, SHORTEST};
 pub use integrator::{Integrator, LONGEST_STEP};
 pub use quaternion::{Angles, Quaternion};
-pub use rate::{History, LONGEST_CURVE, MOST_STRETCH};
+pub use rate::{LONGEST_CURVE, MOST_STRETCH};
 pub use scale::{LSB_PER_DPS, Scale};
 pub use tilt::{DOUBTFUL, FRESH, LSB_PER_G, TIME_CONSTANT, Tilt};
 pub use tracker::{Counts, Outcome, Sample, Tracker};

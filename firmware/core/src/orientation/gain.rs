@@ -30,11 +30,12 @@ impl Gain {
         self.time_constant
     }
 
-    /// The gain of a step in µs, at most 2^19: 32 fraction bits, within 4 units and 2^−16 of it where τ is at most 1000 s. A gain
+    /// The gain of a step in µs, of which those beyond 2^19 count as that: 32 fraction bits, within 4 units and 2^−16 of it where τ is at most 1000 s. A gain
     /// that would round to 1 is 1 − 2^−32.
     pub fn of(&mut self, step: u32) -> u32 {
+        let step = step.min(1 << 19);
         if step != self.last.0 {
-            // At most 2^19 steps of 2^39.
+            // The inverse is below 2^39.
             let part = (u64::from(step) * self.inverse + (1 << 15)) >> 16;
             self.last = (step, approach(part));
         }

@@ -7,27 +7,27 @@
 //! into the next step; and the length is corrected along with each step, by half of what its square lacks.
 
 use super::quaternion::{Quaternion, product};
-use super::rate::History;
+use super::rate::{History, LARGEST_RATE};
 use super::scale::Scale;
 
 /// The longest step that is integrated, in µs.
 pub const LONGEST_STEP: u32 = 500_000;
 
-/// Integrates rates. `ORDER` is that of [`History::advance`].
+/// Integrates rates.
 #[derive(Clone, Copy, Debug)]
-pub struct Integrator<const ORDER: u32 = 4> {
+pub struct Integrator {
     scale: Scale,
     history: History,
     /// 62 fraction bits.
     attitude: [i64; 4],
     /// What rounding has left of the last step's vector, 48 fraction bits.
-    rest: [i64; 3],
+    rest: [i32; 3],
 }
 
-/// The largest part of a half angle that is one rotation, 0.25 rad with 48 fraction bits: then |h|² < 3/16.
-const LARGEST: u64 = 1 << 46;
+/// What a half angle is below that is one rotation, 0.25 rad with 48 fraction bits: then |h|² < 3/16.
+const LARGEST: i64 = 1 << 46;
 
-impl<const ORDER: u32> Integrator<ORDER> {
+impl Integrator {
     /// Begins at an attitude and a rate in 1/256 LSB.
     pub fn new(scale: Scale, attitude: Quaternion, rate: [i32; 3]) -> Self {
         let mut integrator = Self {
@@ -54,15 +54,25 @@ impl<const ORDER: u32> Integrator<ORDER> {
     /// Takes the rate in 1/256 LSB that was measured `step` µs after the last one, and turns further by `correction`, half an
     /// angle about each of the body's axes in radians with 48 fraction bits, within ±8.
     ///
-    /// A rate beyond ±2^24 counts as that. No step takes no time, and one beyond [`LONGEST_STEP`] none that is known: they only
+    /// A rate beyond ±1.5·2^23 counts as that. No step takes no time, and one beyond [`LONGEST_STEP`] none that is known: they only
     /// replace the last rate.
     pub fn advance(&mut self, rate: [i32; 3], step: u32, correction: [i64; 3]) {
+        self.advance_order::<4>(rate, step, correction);
+    }
+
+    /// The same by a method of order 1 to 4 (a higher one is taken as 4): the newest sample alone, the mean of two, a parabola through
+    /// three, the cubic of [`super::rate`].
+    pub fn advance_order<const ORDER: u32>(
+        &mut self,
+        rate: [i32; 3],
+        step: u32,
+        correction: [i64; 3],
+    ) {
         if step == 0 || step > LONGEST_STEP {
             return self.restart(rate);
         }
-        let half = self
-            .history
-            .advance::<ORDER>(rate.map(within), step, self.scale);
+        let rate = rate.map(within);
+        let half = self.history.advance::<ORDER>(rate, step, self.scale);
         self.turn([0, 1, 2].map(|i| half[i] + correction[i]));
     }
 
@@ -79,11 +89,11 @@ impl<const ORDER: u32> Integrator<ORDER> {
 
     /// Turns by a half angle vector of any length, in as many equal parts as it takes. 48 fraction bits, within ±2^57.
     fn turn(&mut self, half: [i64; 3]) {
-        let largest = half.map(i64::unsigned_abs).into_iter().fold(0, u64::max);
-        let halvings = match (largest / LARGEST).checked_ilog2() {
-            None => 0,
-            Some(lead) => lead + 1,
-        };
+        if half.iter().all(|x| (-LARGEST..LARGEST).contains(x)) {
+            return self.turn_part(half);
+        }
+        let all = half.iter().fold(0, |all, x| all | x.unsigned_abs());
+        let halvings = all.ilog2().saturating_sub(LARGEST.ilog2()) + 1;
         let part = half.map(|x| x >> halvings);
         for _ in 0..1_u32 << halvings {
             self.turn_part(part);
@@ -91,7 +101,7 @@ impl<const ORDER: u32> Integrator<ORDER> {
     }
 
     fn turn_part(&mut self, half: [i64; 3]) {
-        let half = [0, 1, 2].map(|i| half[i] + self.rest[i]);
+        let half = [0, 1, 2].map(|i| half[i] + i64::from(self.rest[i]));
         // 32 fraction bits, rounded down; each square is below 2^28 and a bit.
         let short = half.map(|x| (x >> 16) as i32);
         let square = short
@@ -104,11 +114,10 @@ impl<const ORDER: u32> Integrator<ORDER> {
         let excess = (1 << 60) - q.iter().map(|&x| i64::from(x) * i64::from(x)).sum::<i64>();
         let mut change = [(excess >> 29) as i32 - versine as i32, 0, 0, 0];
         for i in 0..3 {
-            // h·sin|h|/|h| with 48 fraction bits.
-            let exact = half[i] - ((i64::from(short[i]) * i64::from(lack)) >> 16);
-            let rounded = (exact + (1 << 15)) >> 16;
-            self.rest[i] = exact - (rounded << 16);
-            change[i + 1] = rounded as i32;
+            // h·sin|h|/|h| with 48 fraction bits, and half a unit of 32.
+            let exact = half[i] - ((i64::from(short[i]) * i64::from(lack)) >> 16) + (1 << 15);
+            self.rest[i] = i32::from(exact as u16) - (1 << 15);
+            change[i + 1] = (exact >> 16) as i32;
         }
         // |change| < 0.47, so no sum exceeds 1.47·2^62.
         let turned = product(q, change);
@@ -116,9 +125,9 @@ impl<const ORDER: u32> Integrator<ORDER> {
     }
 }
 
-/// A rate that the formats hold: within ±2^24, in 1/256 LSB.
+/// A rate that the formats hold.
 fn within(rate: i32) -> i32 {
-    rate.clamp(-(1 << 24), 1 << 24)
+    rate.clamp(-LARGEST_RATE, LARGEST_RATE)
 }
 
 /// 1 − cos x and 1 − sin(x)/x of x², each with 32 fraction bits: within 2 units for x² up to 3/16. The remainders of the series,

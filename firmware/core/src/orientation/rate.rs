@@ -27,7 +27,9 @@ use super::scale::Scale;
 /// The longest step between samples through which a cubic is laid, in µs; longer ones are straight lines.
 pub const LONGEST_CURVE: u32 = 1 << 15;
 /// The most a step may be longer than the one before it for a cubic; what is older would weigh more than what is new.
-pub const MOST_STRETCH: u32 = 4;
+pub const MOST_STRETCH: u32 = 3;
+/// The largest rate, in 1/256 LSB: all counts, and a bias of half of them. Then all numbers below have 32 bits.
+pub const LARGEST_RATE: i32 = 3 << 22;
 
 /// The samples before the last, as far as a step needs them. Rates are in 1/256 LSB.
 #[derive(Clone, Copy, Debug, Default)]
@@ -44,14 +46,60 @@ pub struct History {
     ages: [u32; 2],
 }
 
-/// a/b with 15 fraction bits, to nearest. The products stay in 32 bits: a < 2^17.
-fn ratio(a: u32, b: u32) -> i64 {
-    (((a << 15) + b / 2) / b).into()
+/// What the times of samples make of a cubic, with 15 fraction bits.
+struct Weights {
+    /// g, and its square.
+    stretch: [i32; 2],
+    /// h/(h + h₁).
+    half: i32,
+    /// 9/5·h/(h + h₁ + h₂).
+    near: i32,
+    /// 4/3·(h + 2·h₁)/(h + h₁ + h₂).
+    far: i32,
 }
 
-/// x·2^−`bits`, to nearest.
-const fn round(x: i64, bits: u32) -> i64 {
-    (x + (1 << (bits - 1))) >> bits
+const EIGHT_THIRDS: i32 = (8 << 15) / 3;
+const FOUR_THIRDS: i32 = (4 << 15) / 3 + 1;
+const NINE_FIFTHS: i32 = (9 << 15) / 5;
+
+impl Weights {
+    /// Of equal steps.
+    const EVEN: Self = Self {
+        stretch: [1 << 15; 2],
+        half: 1 << 14,
+        near: NINE_FIFTHS / 3 + 1,
+        far: FOUR_THIRDS,
+    };
+
+    /// Of any steps h, h₁, h₂.
+    fn of(step: u32, [h1, h2]: [u32; 2]) -> Self {
+        if step == h1 && step == h2 {
+            return Self::EVEN;
+        }
+        let g = ratio(step, h1);
+        let all = step + h1 + h2;
+        Self {
+            stretch: [g, narrow(wide(g, g))],
+            half: ratio(step, step + h1),
+            near: narrow(wide(ratio(step, all), NINE_FIFTHS)),
+            far: narrow(wide(ratio(step + 2 * h1, all), FOUR_THIRDS)),
+        }
+    }
+}
+
+/// The product of two numbers.
+const fn wide(a: i32, b: i32) -> i64 {
+    a as i64 * b as i64
+}
+
+/// x·2^−15, to nearest, of what has 32 bits then.
+const fn narrow(x: i64) -> i32 {
+    ((x + (1 << 14)) >> 15) as i32
+}
+
+/// a/b with 15 fraction bits, to nearest. The products stay in 32 bits: a < 2^17.
+const fn ratio(a: u32, b: u32) -> i32 {
+    (((a << 15) + b / 2) / b) as i32
 }
 
 impl History {
@@ -65,9 +113,9 @@ impl History {
 
     /// Takes a sample, `step` µs (at least 1) after the last one, and gives half of φ as a rotation vector, 48 fraction bits.
     ///
-    /// `rate` is within ±2^24. `ORDER` is that of the method: 1 takes the newest sample alone, 2 the mean of two, 3 the parabola
-    /// through three with e₁ for E, 4 (and more) the cubic. The first steps have less to look back on and leave an error in
-    /// h³ once.
+    /// `rate` is within ±[`LARGEST_RATE`]. `ORDER` is that of the method: 1 takes the newest sample alone, 2 the mean of two,
+    /// 3 the parabola through three with e₁ for E, 4 (and more) the cubic. The first steps have less to look back on and
+    /// leave an error in h³ once.
     pub fn advance<const ORDER: u32>(
         &mut self,
         rate: [i32; 3],
@@ -79,66 +127,60 @@ impl History {
         if !curved {
             self.steps = 0;
         }
-        let [h1, h2] = self.ages;
         let axes = [0, 1, 2];
-        // Within 2^25: the bias is in both.
-        let e1 = axes.map(|i| i64::from(rate[i] - self.last[i]));
-        let mut s = [0; 3];
-        let mut d = [0; 3];
-        let (mut far, mut near) = (0, 0);
-        if ORDER >= 3 && self.steps >= 1 {
-            let g = ratio(step, h1);
-            let p = ratio(step, step + h1);
-            // g ≤ 4, so |S| ≤ 4·2^25 and |D| ≤ 17 times that.
-            s = axes.map(|i| {
-                round(
-                    (e1[i] - round(g * i64::from(self.difference[i]), 15)) * p,
-                    15,
-                )
-            });
-            if ORDER >= 4 && self.steps >= 2 {
-                let g2 = round(g * g, 15);
-                d = axes.map(|i| s[i] - round(g2 * i64::from(self.second[i]), 15));
-                near = ratio(step, step + h1 + h2);
-                far = ratio(step + 2 * h1, step + h1 + h2);
-            }
-        }
-        let mean = axes.map(|i| {
-            if ORDER == 1 {
-                return rate[i] << 4;
-            }
-            // Thirds of 16 for a twelfth in 12 fraction bits.
-            const FOUR_THIRDS: i64 = (4 << 30) / 3;
-            let curve = round((2 * s[i] + round(d[i] * far, 15)) * FOUR_THIRDS, 30);
-            let straight = (i64::from(rate[i]) + i64::from(self.last[i])) << 3;
-            (straight - curve).clamp(-MOST_MEAN, MOST_MEAN) as i32
-        });
-        let mut half = mean.map(|x| scale.half_angle(x, step));
+        let factor = scale.factor(step);
+        // Twelve fraction bits.
+        let mut mean = match ORDER {
+            1 => rate.map(|x| x << 4),
+            _ => axes.map(|i| (rate[i] + self.last[i]) << 3),
+        };
+        let e1 = axes.map(|i| rate[i] - self.last[i]);
+        let mut second = [0; 3];
         if ORDER >= 3 && curved {
-            let end = axes.map(|i| {
-                const NINE_FIFTHS: i64 = (9 << 30) / 5;
-                let third = round(d[i] * near, 15);
-                (e1[i] + round(third * NINE_FIFTHS, 30)).clamp(-MOST_CHANGE, MOST_CHANGE)
-            });
-            let coning = axes.map(|i| {
+            let mut end = e1;
+            if self.steps >= 1 {
+                // g ≤ 3, so |S| ≤ 3·1.5·2^24 and |D| ≤ 10 times that.
+                let weights = Weights::of(step, self.ages);
+                let [g, g2] = weights.stretch;
+                second = axes.map(|i| {
+                    let before = narrow(wide(g, self.difference[i]));
+                    narrow(wide(e1[i] - before, weights.half))
+                });
+                let mut third = [0; 3];
+                if ORDER >= 4 && self.steps >= 2 {
+                    third = axes.map(|i| second[i] - narrow(wide(g2, self.second[i])));
+                }
+                // A twelfth of 16 makes twelve fraction bits of eight.
+                mean = axes.map(|i| {
+                    let curve = wide(second[i], EIGHT_THIRDS) + wide(third[i], weights.far);
+                    mean[i] - narrow(curve)
+                });
+                end = axes.map(|i| e1[i] + narrow(wide(third[i], weights.near)));
+            }
+            // No motion within the range is cut by this.
+            let straight = mean.map(|x| x.clamp(-MOST_MEAN, MOST_MEAN));
+            let end = end.map(|x| x.clamp(-MOST_CHANGE, MOST_CHANGE));
+            let turn = i64::from(factor.coning());
+            mean = axes.map(|i| {
                 let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-                i64::from(mean[j]) * end[k] - i64::from(mean[k]) * end[j]
+                // LSB² with 20 fraction bits, at most 2^55.
+                let cross = wide(straight[j], end[k]) - wide(straight[k], end[j]);
+                let cross = i64::from((cross >> 25) as i32);
+                straight[i] + ((cross * turn + (1 << 31)) >> 32) as i32
             });
-            let extra = coning.map(|x| scale.coning(x, step));
-            half = axes.map(|i| half[i] + scale.half_angle(extra[i], step));
         }
         *self = Self {
             steps: if curved { (self.steps + 1).min(2) } else { 0 },
             last: rate,
-            difference: e1.map(|x| x as i32),
-            second: s.map(|x| x as i32),
-            ages: [step, h1],
+            difference: e1,
+            second,
+            ages: [step, self.ages[0]],
         };
-        half
+        mean.map(|x| factor.half_angle(x))
     }
 }
 
-/// The largest mean rate, 2^17 LSB with 12 fraction bits; saturates there, which no motion within the range reaches.
-const MOST_MEAN: i64 = 1 << 29;
-/// The largest change of the rate in a step, 2^17 LSB with 8 fraction bits; saturates.
-const MOST_CHANGE: i64 = 1 << 25;
+/// The largest mean rate, 2^17 LSB with 12 fraction bits.
+const MOST_MEAN: i32 = 1 << 29;
+/// The largest change of the rate in a step, 2^17 LSB with 8 fraction bits.
+const MOST_CHANGE: i32 = 1 << 25;

@@ -31,21 +31,29 @@ impl Scale {
         }
     }
 
-    /// Half the angle of a rate with 12 fraction bits over a time in µs, 48 fraction bits, to nearest. The time is at most 2^20 µs.
-    pub(super) fn half_angle(self, rate: i32, time: u32) -> i64 {
-        // At most 1.3·2^38 a microsecond, so the product has 59 bits.
-        let factor = self.per_microsecond * u64::from(time);
-        let (high, low) = ((factor >> 32) as i64, factor as u32);
+    /// What rates over a step in µs, at most 2^20, are multiplied by.
+    pub(super) fn factor(self, step: u32) -> Factor {
+        Factor(self.per_microsecond * u64::from(step))
+    }
+}
+
+/// Half an angle in radians with 80 fraction bits, for a rate of 2^−12 LSB over a step; at most 2^59.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Factor(u64);
+
+impl Factor {
+    /// Half the angle of a rate with 12 fraction bits, 48 fraction bits, to nearest.
+    pub fn half_angle(self, rate: i32) -> i64 {
+        let (high, low) = ((self.0 >> 32) as i32, self.0 as u32);
         let rate = i64::from(rate);
-        rate * high + ((rate * i64::from(low) + (1 << 31)) >> 32)
+        rate * i64::from(high) + ((rate * i64::from(low) + (1 << 31)) >> 32)
     }
 
-    /// h/12·(A × E) as a rate with 12 fraction bits, to nearest, from the cross product in LSB² with 20 fraction bits and a
-    /// step in µs, at most [`super::rate::LONGEST_CURVE`].
-    pub(super) fn coning(self, cross: i64, step: u32) -> i32 {
-        // Twice the half angle over 12, for 2^5 LSB², with 32 fraction bits: at most 2^32 at the longest step.
-        let factor = ((self.per_microsecond * u64::from(step)) >> 18) / 12;
-        let cross = (cross >> 25).clamp(-(1 << 30), 1 << 30);
-        ((cross * factor as i64 + (1 << 31)) >> 32) as i32
+    /// h/12 in 2^−12 LSB for 2^5 LSB² of a cross product of rates, with 32 fraction bits, for a step of at most
+    /// [`super::rate::LONGEST_CURVE`]: twice the half angle over 12.
+    pub fn coning(self) -> u32 {
+        const TWELFTH: u64 = (1 << 32) / 12;
+        // The first factor is below 2^36 for such a step.
+        (((self.0 >> 18) * TWELFTH) >> 32) as u32
     }
 }

@@ -45,10 +45,10 @@ pub struct Counts {
     pub rejected: u64,
 }
 
-/// The attitude of a body. `ORDER` is that of [`super::History::advance`].
+/// The attitude of a body.
 #[derive(Clone, Copy, Debug)]
-pub struct Tracker<const ORDER: u32 = 4> {
-    integrator: Integrator<ORDER>,
+pub struct Tracker {
+    integrator: Integrator,
     tilt: Option<Tilt>,
     bias: [i32; 3],
     resting: Option<RestBias>,
@@ -57,7 +57,7 @@ pub struct Tracker<const ORDER: u32 = 4> {
     counts: Counts,
 }
 
-impl<const ORDER: u32> Tracker<ORDER> {
+impl Tracker {
     /// Waits for its first sample. Without `tilt` the accelerometer is left out.
     pub fn new(scale: Scale, tilt: Option<Tilt>) -> Self {
         Self {
@@ -125,11 +125,10 @@ impl<const ORDER: u32> Tracker<ORDER> {
             self.doubt(rate);
             return Outcome::Gap;
         }
-        let attitude = self.integrator.attitude();
         let correction = match &mut self.tilt {
             None => [0; 3],
             Some(tilt) => tilt
-                .correct(attitude, sample.accel, step)
+                .correct(self.integrator.attitude(), sample.accel, step)
                 .unwrap_or_else(|| {
                     self.counts.rejected += 1;
                     [0; 3]

@@ -136,8 +136,10 @@ impl Integrator {
 
     /// The rotation vector of a step.
     fn turn(&mut self, rate: Vector, step: f64) -> Vector {
-        let curved = step <= f64::from(LONGEST_CURVE) * 1e-6
-            && (self.steps == 0 || step <= f64::from(MOST_STRETCH) * self.ages[0]);
+        // The firmware's times are whole microseconds, so a little more is as much.
+        let within = |longest: f64| step <= longest + 1e-9;
+        let curved = within(f64::from(LONGEST_CURVE) * 1e-6)
+            && (self.steps == 0 || within(f64::from(MOST_STRETCH) * self.ages[0]));
         if !curved {
             self.steps = 0;
         }

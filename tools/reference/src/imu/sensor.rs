@@ -77,11 +77,12 @@ impl Sensor {
                 t_us: t_us as u64 as u32,
                 gyro: [0, 1, 2].map(|k| {
                     let true_rate = rate[k].to_degrees() * (1.0 + self.scale_error);
-                    let noise = self.noise * normal(&mut random);
+                    let noise = scaled_noise(self.noise, &mut random);
                     counts((true_rate + self.bias[k] + noise) * self.gyro_lsb)
                 }),
-                accel: force
-                    .map(|x| counts((x + self.accel_noise * normal(&mut random)) * self.accel_lsb)),
+                accel: force.map(|x| {
+                    counts((x + scaled_noise(self.accel_noise, &mut random)) * self.accel_lsb)
+                }),
             };
             (!lost).then_some(sample)
         })
@@ -95,6 +96,15 @@ fn counts(x: f64) -> i16 {
 
 fn uniform(random: &mut impl Rng) -> f64 {
     random.random()
+}
+
+/// Noise of a standard deviation, if there is any.
+fn scaled_noise(deviation: f64, random: &mut impl Rng) -> f64 {
+    if deviation == 0.0 {
+        0.0
+    } else {
+        deviation * normal(random)
+    }
 }
 
 /// By Box and Muller; one of the two is thrown away.
