@@ -622,6 +622,8 @@ fn a_mesh_in_a_field() {
             .all(|(line, start)| line.starts_with(start)),
         "{said}"
     );
+}
+
 #[test]
 fn logs_of_a_gyroscope() {
     let folder = folder("imu");
