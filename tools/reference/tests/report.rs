@@ -1,12 +1,17 @@
 //! `report sine --quick`: the files are written, the shipped kernels keep their promises, and the committed table is
-//! what the code gives. So is that of `report raymarch`.
+//! what the code gives. So are those of `report raymarch`, as far as that is cheap.
 
+use std::collections::HashMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use glint_model::march::FieldOptions;
-use glint_reference::field::marched::{Measured, others, sponges};
+use glint_core::field::Field;
+use glint_core::stereo::Stereo;
+use glint_model::march::{FieldOptions, Setup};
+use glint_reference::field::marched::{Measured, others, picture, sponges};
+use glint_reference::field::verilated::Raymarcher;
+use glint_reference::field::views;
 use glint_reference::sine::subjects::subjects;
 use glint_reference::sine::sweep::sweep;
 use serde_json::Value;
@@ -120,6 +125,76 @@ fn the_committed_table_is_not_stale() {
         recomputed += 1;
     }
     assert!(recomputed >= 2);
+}
+
+/// The rows of a table of docs/report, by the names of their columns.
+fn committed(name: &str) -> Vec<HashMap<String, String>> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../docs/report")
+        .join(name);
+    let mut table = csv::Reader::from_path(&path).unwrap_or_else(|error| panic!("{name}: {error}"));
+    table.deserialize().collect::<Result<_, _>>().expect("CSV")
+}
+
+/// Counts the evaluations of the sponge's small frames again, whose cycles are those of the whole SoC.
+#[test]
+fn the_committed_frames_a_second_are_of_these_frames() {
+    let rows = committed("raymarch-rates.csv");
+    let mut counted = 0;
+    let cheap = |row: &&HashMap<_, _>| row["field"] == "menger:4" && row["width"] == "320";
+    for row in rows.iter().filter(cheap) {
+        let views = views::views().into_iter();
+        let mut views = views.filter(|(name, ..)| *name == row["view"]);
+        let (_, eye, target) = views.next().expect("a view");
+        let angles = ["yaw", "pitch", "roll"].map(|name| row[name].parse().expect("an angle"));
+        let view = views::camera(eye, target)
+            .turned(angles)
+            .view()
+            .expect("a camera");
+        let field = Field::parse(&row["field"]).expect("a field");
+        let stereo = Some(row["stereo"].as_str()).filter(|eyes| !eyes.is_empty());
+        let options = FieldOptions {
+            stereo: stereo.map(|eyes| Stereo::parse(eyes).expect("two eyes")),
+            ..FieldOptions::default()
+        };
+        let setup = Setup::new(&field, &view, (320, 180), &options).expect("a size");
+        let eyes = if stereo.is_some() { 2 } else { 1 };
+        let rays = (0..eyes).flat_map(|eye| picture(&setup, eye));
+        let evaluations: u64 = rays.map(|ray| u64::from(ray.steps)).sum();
+        let committed: u64 = row["evaluations"].parse().expect("a number");
+        assert_eq!(
+            evaluations, committed,
+            "{row:?}: evaluations now and in the table: run `cargo xtask report raymarch`"
+        );
+        counted += 1;
+    }
+    assert_eq!(counted, 4 * views::path().len());
+}
+
+/// Has the raymarcher draw what Glint uses again.
+#[test]
+fn the_committed_cycles_of_pictures_are_not_stale() {
+    let size = (320, 180);
+    let mut raymarcher = Raymarcher::new();
+    let options = FieldOptions::default();
+    let subjects = sponges(size);
+    let clocks: u64 = subjects
+        .iter()
+        .map(|subject| raymarcher.draw(&subject.setup(&options)).clocks)
+        .sum();
+    for name in ["raymarch-cap.csv", "raymarch-threshold.csv"] {
+        let rows = committed(name);
+        let shipped = rows.iter().find(|row| row["shipped"] == "true");
+        let cycles: f64 = shipped.expect("what Glint uses")["cycles"]
+            .parse()
+            .expect("cycles");
+        let now = clocks as f64 / subjects.len() as f64;
+        // Which lane has the first turn depends on what was drawn before, and moves a picture by a clock.
+        assert!(
+            (cycles - now).abs() <= 1.0,
+            "{name}: {cycles} cycles in the table and {now} now: run `cargo xtask report raymarch`"
+        );
+    }
 }
 
 /// Draws the small pictures of docs/report/raymarch.csv again.
