@@ -331,7 +331,7 @@ fn fractions(bench: &Bench) -> Study {
         let threshold = (DEFAULT_TUNING.threshold << 12) >> fraction;
         let options = with(fraction, threshold);
         bench.model(
-            "a threshold of 24 steps",
+            &format!("a threshold of {} steps", DEFAULT_TUNING.threshold),
             format!("{fraction} bits"),
             &options,
         )
@@ -378,7 +378,7 @@ fn caps(bench: &Bench) -> Study {
 fn thresholds(bench: &Bench) -> Study {
     let footprints = [10, 12, 13, 14, 15];
     let trials = footprints.into_iter().flat_map(|footprint| {
-        [4, 8, 16, 24, 40, 80, 160, 320].map(|threshold| {
+        [4, 8, 16, DEFAULT_TUNING.threshold, 40, 80, 160, 320].map(|threshold| {
             let options = tuned(Tuning {
                 threshold,
                 footprint,
