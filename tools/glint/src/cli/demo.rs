@@ -224,7 +224,7 @@ impl DemoArguments {
     fn sponge(&self, renderer: &mut Renderer<SimulatedBoard>, path: &Path) -> anyhow::Result<u64> {
         let lens = camera(Turns(0))?;
         let subject = FieldSubject {
-            field: SPONGE,
+            field: &SPONGE,
             appearance: &Appearance::default(),
             stereo: Some(EYES),
         };

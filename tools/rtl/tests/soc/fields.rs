@@ -243,7 +243,7 @@ fn the_soc_draws_a_mesh_in_a_field() {
         occlusion: true,
     };
     let field = FieldSubject {
-        field: Field::parse("box:0.75,0.75,0.75").unwrap(),
+        field: &Field::parse("box:0.75,0.75,0.75").unwrap(),
         appearance: &appearance,
         stereo: None,
     };
