@@ -6,7 +6,7 @@ use std::process::Command;
 use glint_core::field::KINDS;
 
 /// The most bytes of all pictures together.
-const MOST: u64 = 300_000;
+const MOST: u64 = 400_000;
 
 fn docs() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs")
