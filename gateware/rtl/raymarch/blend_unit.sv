@@ -29,6 +29,7 @@ module blend_unit (
     logic [16:0]        h_2, h_5, width;
     logic signed [34:0] product_5;
     logic [16:0]        weight_5;
+    logic signed [24:0] minus_h_5;
     logic               round_5, blends;
     logic [16:0]        share_5;
     logic [7:0]         share_6;
@@ -56,8 +57,9 @@ module blend_unit (
     delay #(.WIDTH(1), .CLOCKS(5)) which (.clk, .enable(1'b1), .in(takes_round), .out(round_5));
 
     // Rounded down: −h·w and not h·w is what is shifted.
+    assign minus_h_5 = -$signed({8'b0, h_5});
     multiply_add #(.BITS(40)) subtract (
-        .clk, .enable(1'b1), .a(-25'({8'b0, h_5})), .b({1'b0, weight_5}), .c({least_5[21], least_5, 17'b0}), .p(sum_8)
+        .clk, .enable(1'b1), .a(minus_h_5), .b({1'b0, weight_5}), .c({least_5[21], least_5, 17'b0}), .p(sum_8)
     );
     assign distance = sum_8[38:17];
 

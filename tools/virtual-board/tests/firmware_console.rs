@@ -91,10 +91,10 @@ fn noise_and_overlong_lines_are_refused_and_nothing_is_lost() {
         .read_until("leds 7\r\nok\r\nglint> ", firmware::LIMIT)
         .expect("an answer");
     assert_eq!(board.leds(), 7);
-    board.uart_write(&[b'x'; 400]);
+    board.uart_write(&[b'x'; 720]);
     let answer = command(&mut board, "");
     assert!(
-        answer.ends_with("\r\nerror: line: expected at most 320 bytes, came more\r\nglint> "),
+        answer.ends_with("\r\nerror: line: expected at most 640 bytes, came more\r\nglint> "),
         "{answer:?}"
     );
     // Twenty commands typed ahead of the machine are all answered.
