@@ -3,11 +3,13 @@
 //! `GLINT_IMU=long` runs the long motions whole: an hour each, and the soak of a day.
 
 use glint_core::calibration::Units;
+use glint_core::orientation;
 use glint_reference::imu::measure::{
     Largest, against_f64, calibrated, inclination, method_error, tracker, yaw_drift,
 };
-use glint_reference::imu::method::Method;
+use glint_reference::imu::method::{Integrator, Method};
 use glint_reference::imu::motion::Motion;
+use glint_reference::imu::quaternion::Quaternion;
 use glint_reference::imu::sensor::Sensor;
 
 /// Seconds of a motion: all of them, or by default a part of them.
@@ -48,6 +50,41 @@ fn the_firmware_is_its_method_in_f64() {
         against_f64(Sensor::ideal(1000.0), tumble, seconds(3600.0, 60.0), false);
     println!("{tumble:?}: {error:.1e}°, norm {norm:.1e}");
     assert!(error <= 0.002 && norm <= 2e-9, "{error:e} {norm:e}");
+}
+
+/// The error of a method of an order against its twin in f64, in degrees.
+fn order_against_f64<const ORDER: u32>(method: Method) -> f64 {
+    let sensor = Sensor::ideal(200.0);
+    let rate = |gyro: [i16; 3]| gyro.map(|x| (f64::from(x) / sensor.gyro_lsb).to_radians());
+    let mut samples = sensor.samples(Motion::Tumble(700.0), 4_000, 1);
+    let first = samples.next().expect("a sample").gyro;
+    let mut firmware = orientation::Integrator::new(
+        orientation::Scale::MPU_6050,
+        orientation::Quaternion::IDENTITY,
+        first.map(|x| i32::from(x) << 8),
+    );
+    let mut twin = Integrator::new(method, Quaternion::IDENTITY, rate(first));
+    let mut largest = 0.0_f64;
+    for sample in samples {
+        firmware.advance_order::<ORDER>(sample.gyro.map(|x| i32::from(x) << 8), 5_000, [0; 3]);
+        twin.advance(rate(sample.gyro), 5e-3);
+        let attitude = Quaternion::from(firmware.attitude());
+        largest = largest.max(attitude.angle_to(twin.attitude()));
+    }
+    largest
+}
+
+#[test]
+fn each_order_is_its_method_in_f64() {
+    for (order, error) in [
+        (1, order_against_f64::<1>(Method::Newest)),
+        (2, order_against_f64::<2>(Method::Trapezoid)),
+        (3, order_against_f64::<3>(Method::Parabola)),
+        (4, order_against_f64::<4>(Method::Cubic)),
+    ] {
+        println!("order {order}: {error:.1e}°");
+        assert!(error <= 1e-3, "order {order}: {error:e}");
+    }
 }
 
 const CONING: Motion = Motion::Coning {

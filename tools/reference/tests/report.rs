@@ -1,5 +1,5 @@
 //! `report sine --quick`: the files are written, the shipped kernels keep their promises, and the committed table is
-//! what the code gives. So are those of `report raymarch`, as far as that is cheap.
+//! what the code gives. So are those of `report raymarch`, as far as that is cheap, and of `report imu`.
 
 use std::collections::HashMap;
 use std::fs;
@@ -12,6 +12,9 @@ use glint_model::march::{FieldOptions, Setup};
 use glint_reference::field::marched::{Measured, others, picture, sponges};
 use glint_reference::field::verilated::Raymarcher;
 use glint_reference::field::views;
+use glint_reference::imu::measure::method_error;
+use glint_reference::imu::method::Method;
+use glint_reference::imu::motion::Motion;
 use glint_reference::sine::subjects::subjects;
 use glint_reference::sine::sweep::sweep;
 use serde_json::Value;
@@ -235,6 +238,37 @@ fn the_committed_pictures_of_fields_are_not_stale() {
                 subject.scene,
                 subject.name,
             );
+        }
+    }
+}
+
+/// Integrates the tumble and the coning of docs/report/imu-methods.csv again, where samples are few.
+#[test]
+fn the_committed_errors_of_attitudes_are_not_stale() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/report/imu-methods.csv");
+    let mut table =
+        csv::Reader::from_path(&path).expect("docs/report/imu-methods.csv is committed");
+    let rows: Vec<csv::StringRecord> = table.records().collect::<Result<_, _>>().expect("CSV");
+    let coning = Motion::Coning {
+        angle: 5.0,
+        frequency: 10.0,
+    };
+    for (name, motion) in [("tumble", Motion::Tumble(700.0)), ("coning", coning)] {
+        for method in Method::ALL {
+            for rate in ["50", "200"] {
+                let row = rows.iter().find(|row| {
+                    (&row[0], &row[1]) == (name, method.name())
+                        && row[3].parse::<f64>() == rate.parse::<f64>()
+                });
+                let row = row.expect("run `cargo xtask report imu`: methods have come or gone");
+                let committed: f64 = row[4].parse().expect("a number");
+                let now = method_error(method, motion, 20.0, rate.parse().expect("a rate"));
+                assert!(
+                    (committed - now).abs() <= 1e-3 * now,
+                    "{name}, {} at {rate}: {committed:e} in the table and {now:e} now: run `cargo xtask report imu`",
+                    method.name(),
+                );
+            }
         }
     }
 }

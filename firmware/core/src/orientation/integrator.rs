@@ -61,7 +61,7 @@ impl Integrator {
     }
 
     /// The same by a method of order 1 to 4 (a higher one is taken as 4): the newest sample alone, the mean of two, a parabola through
-    /// three, the cubic of [`super::rate`].
+    /// three, the cubic through four.
     pub fn advance_order<const ORDER: u32>(
         &mut self,
         rate: [i32; 3],
