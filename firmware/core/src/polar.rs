@@ -53,8 +53,9 @@ pub fn polar(x: i64, y: i64) -> (i64, Turns) {
             angle = angle.wrapping_add(step);
         }
     }
-    // x < 2^62, so the product of its upper half and 32 bits fits.
-    let length = ((x as u64 >> 31) * SHORTENING) >> 1;
+    // In two products, of which none leaves 64 bits.
+    let (upper, lower) = (x as u64 >> 32, x as u64 & u64::from(u32::MAX));
+    let length = upper * SHORTENING + ((lower * SHORTENING) >> 32);
     (
         ((length >> up) << down) as i64,
         Turns((angle.wrapping_add(1 << 15) >> 16) as u32),
