@@ -23,7 +23,8 @@ module ring_lane #(
     parameter bit          ROUND  = 1'b0,
     parameter bit          BLEND  = 1'b0,
     parameter bit          STEREO = 1'b1,
-    parameter int unsigned PLACES = 32
+    // More than there are slots, or some would stay empty.
+    parameter int unsigned PLACES = march_pkg::field_clocks(LEVELS, BOXES, ROUND, BLEND) > 24 ? 64 : 32
 ) (
     input  wire                      clk,
     input  wire                      rst,

@@ -184,7 +184,7 @@ module round_light #(
     logic signed [36:0] cosine_15;
     logic [8:0]         share_15;
     logic [23:0]        colour_15;
-    logic [2:0][7:0]    colour_22, colour_last;
+    logic [2:0][7:0]    colour_22, colour_last, face_colour_22;
 
     multiply_add #(.BITS(37)) over_radius (
         .clk, .enable, .a({8'b0, size_12}), .b({1'b0, inverse_12}), .c('0), .p(cosine_15)
@@ -226,7 +226,6 @@ module round_light #(
         logic [2:0]      face_21;
         logic [7:0]      share_22;
         logic [8:0]      part_23;
-        logic [2:0][7:0] face_colour_22;
 
         delay #(.WIDTH(3), .CLOCKS(21)) face_waits (.clk, .enable, .in(held.face), .out(face_21));
         delay #(.WIDTH(8), .CLOCKS(22)) share_waits (.clk, .enable, .in(held.share), .out(share_22));
@@ -265,8 +264,9 @@ module round_light #(
             wire _unused = &{1'b0, sum_26[24:16], sum_26[7:0]};
         end
     end else begin : one_or_the_other
-        assign colour_last = colour_22;
-        wire _unused = &{1'b0, palette, held};
+        assign colour_last    = colour_22;
+        assign face_colour_22 = '0;
+        wire _unused = &{1'b0, palette, held, face_colour_22};
     end
 
     logic [KEPT_BITS-1:0] kept_last, kept;
