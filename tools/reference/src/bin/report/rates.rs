@@ -56,7 +56,7 @@ impl Case {
     }
 }
 
-const CASES: [Case; 2] = [
+const CASES: [Case; 3] = [
     Case {
         field: "menger:4",
         stereo: Some("0.03,1.5"),
@@ -79,6 +79,17 @@ const CASES: [Case; 2] = [
         at_least: 30.0,
         aim: None,
     },
+    Case {
+        field: "lattice:1,0.3",
+        stereo: Some("0.03,1.5"),
+        size: (320, 180),
+        build: FIELDS,
+        cameras: of_the_lattice,
+        path: still,
+        clock: 0,
+        at_least: 57.0,
+        aim: None,
+    },
 ];
 
 fn of_the_sponge() -> Vec<(&'static str, Camera)> {
@@ -86,6 +97,16 @@ fn of_the_sponge() -> Vec<(&'static str, Camera)> {
     views
         .map(|(name, eye, target)| (name, views::camera(eye, target)))
         .collect()
+}
+
+fn of_the_lattice() -> Vec<(&'static str, Camera)> {
+    vec![
+        (
+            "aside",
+            views::camera([2.1875, 1.6875, 1.3125], [0.015625, 0.0, 0.03125]),
+        ),
+        ("down", views::camera([0.5, 0.5, 0.5], [0.625, 0.75, -1.0])),
+    ]
 }
 
 fn still() -> Vec<Vector> {
