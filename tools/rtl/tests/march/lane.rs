@@ -91,9 +91,9 @@ impl Bench {
     }
 }
 
-/// Rays of each test: a million, or `GLINT_RTL_RAYS`.
+/// Rays of each test: 300,000, or `GLINT_RTL_RAYS`.
 fn rays() -> usize {
-    std::env::var("GLINT_RTL_RAYS").map_or(1_000_000, |text| text.parse().unwrap())
+    std::env::var("GLINT_RTL_RAYS").map_or(300_000, |text| text.parse().unwrap())
 }
 
 fn random_rays(name: &str, fields: &[&str]) {
