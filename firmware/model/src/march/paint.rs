@@ -12,7 +12,7 @@ use super::setup::Setup;
 /// luminance counts, so all channels of a colour are the same then.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Palette {
-    /// Of the faces, by [`Surface::code`](super::Surface::code), after their light.
+    /// Of the faces, by [`Surface::face`](super::Surface::face), after their light.
     pub faces: [[u8; 3]; 6],
     /// Of what is round.
     pub lights: Lights,
