@@ -15,22 +15,14 @@ module root_table (
     logic [27:0] entries [0:511];
     logic [27:0] latched;
 
-    // Of what is below 2^39.
-    function automatic logic [19:0] root_of(input logic [39:0] square);
-        root_of = '0;
-        for (int bit_of = 19; bit_of >= 0; bit_of--)
-            if ((40'(root_of) + (40'd1 << bit_of)) * (40'(root_of) + (40'd1 << bit_of)) <= square) root_of = root_of + (20'd1 << bit_of);
-    endfunction
-
-    function automatic logic [27:0] entry(input int number);
-        logic [19:0] here, next;
-        here  = root_of(40'(number) << 29);
-        next  = root_of(40'(number + 1) << 29);
-        entry = {here[17:0], 10'(next - here)};
-    endfunction
-
+    // The 18 bits behind the point, and to the next one; what is below 1 is nothing at all. As in round_inverse, reals are exact enough.
     initial begin
-        for (int i = 0; i < 512; i++) entries[i] = entry(i < 128 ? 128 : i);
+        for (int i = 0; i < 512; i++)
+            entries[i] = {
+                18'($rtoi($sqrt($itor(i < 128 ? 128 : i) * 536870912.0) - 262144.0)),
+                10'(20'($rtoi($sqrt($itor(i < 128 ? 129 : i + 1) * 536870912.0) - 262144.0))
+                    - 20'($rtoi($sqrt($itor(i < 128 ? 128 : i) * 536870912.0) - 262144.0)))
+            };
     end
 
     always_ff @(posedge clk) begin

@@ -15,14 +15,9 @@ module round_inverse (
     logic [14:0] inverses [0:1023];
     logic [14:0] latched, given;
 
-    function automatic logic [14:0] root(input int square);
-        root = '0;
-        for (int bit_of = 13; bit_of >= 0; bit_of--)
-            if ((32'(root) + (32'd1 << bit_of)) * (32'(root) + (32'd1 << bit_of)) <= square) root = root + 15'(1 << bit_of);
-    endfunction
-
+    // Reals have digits enough to cut the root of a whole number rightly, and tools take a second for them and a minute for loops.
     initial begin
-        for (int i = 0; i < 1024; i++) inverses[i] = root(((1 << 28) - (1 << 13)) / (i + 1));
+        for (int i = 0; i < 1024; i++) inverses[i] = 15'($rtoi($sqrt($itor(((1 << 28) - (1 << 13)) / (i + 1)))));
     end
 
     assign inverse = {2'b0, given};
