@@ -218,6 +218,7 @@ fn what<'a>(mesh: &'a Mesh<'a>, scene: &'a Scene) -> What<'a> {
         view: scene.view(),
         stereo: scene.stereo(),
         appearance: scene.appearance(),
+        prepass: scene.prepass(),
     };
     if scene.with_mesh() {
         What::Both(triangles, marched)

@@ -23,7 +23,7 @@ use crate::machine::{Job, Machine};
 use crate::models::{FIELDS, Model};
 use crate::scene::{Counts, Fallback, Painter, Scene, Sphere};
 use crate::terminal::Terminal;
-use crate::{appearance, bench, selftest, transfer};
+use crate::{appearance, bench, imu, selftest, transfer};
 
 /// What a command leads to.
 pub enum Reply<'l> {
@@ -81,6 +81,10 @@ pub enum Refusal<'l> {
     Kernel(&'l str),
     /// Some of the machine's own tests failed.
     SelfTest(u32),
+    /// The sensor was not calibrated.
+    Calibration(imu::Refusal),
+    /// There are no samples.
+    Sensor(imu::Failure),
     /// Devices are left alone on gateware of another build.
     Mismatch,
 }
@@ -148,6 +152,8 @@ impl Display for Refusal<'_> {
                     .iter()
                     .try_for_each(|kernel| write!(f, " {kernel}"))
             }
+            Self::Calibration(refusal) => write!(f, "imu calibrate: {refusal}"),
+            Self::Sensor(error) => write!(f, "imu: {error}"),
             Self::SelfTest(failed) => write!(f, "selftest: {failed} failed, expected none"),
             Self::Mismatch => f.write_str(
                 "devices are not touched on gateware of another build, expected a matching one",
@@ -256,6 +262,10 @@ pub fn execute<'l>(machine: &mut Machine, line: &'l str) -> Reply<'l> {
             machine.scene.set_cull(cull);
             Ok(())
         }
+        Command::Prepass(prepass) => {
+            machine.scene.set_prepass(prepass);
+            Ok(())
+        }
         Command::Stats { json } => stats(machine, json),
         Command::Backend(None) => {
             let backend = backend_name(machine.scene.backend());
@@ -278,6 +288,7 @@ pub fn execute<'l>(machine: &mut Machine, line: &'l str) -> Reply<'l> {
             machine.scene.set_shading(shading);
             Ok(())
         }
+        Command::Imu(action) => return imu::execute(machine, action),
         Command::Bench(kernel) => bench::run(machine, kernel),
         Command::SelfTest => match selftest::run(machine) {
             0 => Ok(()),

@@ -1,18 +1,23 @@
 //! What comes in by itself.
 
-use litex_hal::{display, interrupt, march, triangle};
+use litex_hal::{display, i2c, interrupt, march, timer, triangle};
 use litex_pac::{Interrupt, cpu};
 
+use crate::sensor;
 use crate::terminal::ConsoleUart;
 
 /// The UART, which its interrupt and the program share.
 pub static UART: ConsoleUart = ConsoleUart::new();
 
 /// Lets interrupts in. To be called once, when everything that its handler touches has been started.
-pub fn start(with_scanout: bool, with_triangle: bool) {
+pub fn start(with_devices: bool, with_scanout: bool, with_triangle: bool) {
     // SAFETY: `handle` is ready, and no critical section is open.
     unsafe {
         interrupt::enable(Interrupt::Uart);
+        if with_devices {
+            interrupt::enable(Interrupt::I2c);
+            interrupt::enable(Interrupt::Timer0);
+        }
         if with_scanout {
             interrupt::enable(Interrupt::Scanout);
         }
@@ -37,13 +42,22 @@ pub fn sleep_unless(awake: impl FnOnce() -> bool) {
 
 #[riscv_rt::core_interrupt(riscv::interrupt::Interrupt::MachineExternal)]
 fn handle() {
+    let start = cpu::cycles_low();
     let unexpected = interrupt::dispatch(cpu::interrupts_pending(), |interrupt| match interrupt {
         Interrupt::Uart => UART.on_interrupt(),
         Interrupt::Scanout => display::acknowledge_vblank(),
         Interrupt::Triangle => triangle::acknowledge(),
         Interrupt::Raymarch => march::acknowledge(),
+        Interrupt::I2c => {
+            i2c::acknowledge();
+            sensor::advance(start);
+        }
+        Interrupt::Timer0 => {
+            timer::acknowledge();
+            sensor::advance(start);
+        }
         // Nobody enables these.
-        Interrupt::Timer0 | Interrupt::Buttons => interrupt::disable(interrupt.bit()),
+        Interrupt::Buttons => interrupt::disable(interrupt.bit()),
     });
     interrupt::disable(unexpected);
 }

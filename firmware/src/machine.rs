@@ -3,19 +3,26 @@
 //! Nothing in the loop waits: interrupts fill queues, and each turn takes what is there. A command whose answer has to
 //! wait for a frame leaves a [`Job`]; what is typed meanwhile is kept.
 
+use core::future::pending;
+use core::pin::pin;
 use core::time::Duration;
 
 use embedded_hal::digital::StatefulOutputPin;
+use glint_core::calibration::SAMPLES;
+use glint_core::mpu6050::Stream;
 use litex_hal::gpio::{InputPort, OutputPort};
 use litex_hal::i2c::I2c;
 use litex_hal::timer::{Clock, Deadline};
+use litex_pac::cpu;
 use litex_pac::ctrl::Ctrl;
 
 use crate::canvas::Canvas;
 use crate::commands::{self, Orbit, Refusal, Reply};
+use crate::imu::{self, SensorJob};
 use crate::interrupts::{self, UART};
 use crate::models::Models;
 use crate::scene::Scene;
+use crate::sensor::{self, Imu, Inbox};
 use crate::terminal::{ConsoleUart, Input, Terminal};
 
 /// Who this program and the gateware under it are.
@@ -44,8 +51,8 @@ pub struct Devices {
     pub switches: InputPort<u16>,
     /// The sixteen LEDs.
     pub leds: OutputPort<u16>,
-    /// The bus of the sensors.
-    pub i2c: I2c,
+    /// The bus of the sensor, until its stream has it.
+    pub i2c: Option<I2c>,
 }
 
 /// What the reply to a command waits for.
@@ -60,11 +67,18 @@ pub enum Job {
     },
     /// A turn around the model.
     Orbit(Orbit),
+    /// What the sensor gives.
+    Sensor(SensorJob),
 }
 
 /// How long nothing is asked before a change is drawn. Who sends commands one by one gets one picture of them all, and
 /// nobody sees the delay.
 const QUIET: Duration = Duration::from_millis(2);
+
+/// The button that calibrates the sensor: number 2.
+const CALIBRATE: u8 = 1 << 2;
+/// The button that makes where it points the middle: number 3.
+const RECENTRE: u8 = 1 << 3;
 
 /// Half a period of the light that shows life.
 const HEARTBEAT: Duration = Duration::from_millis(500);
@@ -85,6 +99,8 @@ pub struct Machine {
     pub models: Models,
     /// Where it is drawn.
     pub canvas: Canvas,
+    /// The sensor, and what follows it.
+    pub imu: Imu,
     /// Devices, where they may be touched.
     pub devices: Option<Devices>,
     /// The SoC's reset.
@@ -94,6 +110,7 @@ pub struct Machine {
     /// How often a frame was sent.
     pub downloads: u8,
     beat: Deadline,
+    pressed: u8,
     quiet: Deadline,
     job: Option<Job>,
 }
@@ -117,11 +134,13 @@ impl Machine {
             scene,
             models,
             canvas,
+            imu: Imu::default(),
             devices,
             ctrl,
             heartbeat: true,
             downloads: 0,
             beat: clock.after(Duration::ZERO),
+            pressed: 0,
             quiet: clock.after(QUIET),
             job: None,
         }
@@ -132,10 +151,23 @@ impl Machine {
         self.terminal
             .print(format_args!("Type help for the commands.\n"));
         self.terminal.prompt();
+        let bus = self.devices.as_mut().and_then(|devices| devices.i2c.take());
+        let clock = self.clock;
+        let stream = pin!(async move {
+            if let Some(bus) = bus {
+                Stream::new(bus, clock, Inbox).run().await;
+            }
+            pending().await
+        });
+        // SAFETY: this function does not return.
+        unsafe { sensor::start(stream) };
         loop {
             self.beat();
+            self.heed_buttons();
             self.terminal.listen();
+            sensor::deliver(&mut self.imu);
             self.answer();
+            self.steer();
             self.draw();
             self.pursue();
             interrupts::sleep_unless(|| self.is_busy());
@@ -147,6 +179,7 @@ impl Machine {
         // Without video nothing would wake the machine for its heartbeat.
         self.answers_next()
             || self.canvas.is_ready(&self.scene)
+            || sensor::has_news()
             || !self.canvas.display.is_visible()
     }
 
@@ -160,9 +193,9 @@ impl Machine {
     }
 
     /// Whether a line is answered now; while an answer is owed it waits, and while the engine draws what a command may
-    /// change. An orbit ends when something else is wanted.
+    /// change. An orbit, and what the sensor is asked for, end when something else is wanted.
     fn takes_input(&self) -> bool {
-        matches!(self.job, None | Some(Job::Orbit(_))) && !self.canvas.is_busy()
+        matches!(self.job, None | Some(Job::Orbit(_) | Job::Sensor(_))) && !self.canvas.is_busy()
     }
 
     /// Answers what was typed.
@@ -187,6 +220,17 @@ impl Machine {
         }
     }
 
+    /// Turns the camera as the sensor says, when there is a frame to draw on.
+    fn steer(&mut self) {
+        if self.canvas.is_busy() || self.canvas.display.back().is_none() {
+            return;
+        }
+        let (eye, radius) = (self.scene.view().eye(), self.scene.sphere().r);
+        if let Some(Ok(view)) = self.imu.view(eye, radius) {
+            self.scene.move_view(view);
+        }
+    }
+
     /// Draws what has changed, if there is a frame to draw on.
     fn draw(&mut self) {
         if matches!(self.job, Some(Job::Render | Job::Frame { .. })) && self.scene.changed() {
@@ -197,10 +241,15 @@ impl Machine {
             scene,
             models,
             canvas,
+            imu,
             ..
         } = self;
+        let look = || {
+            terminal.listen();
+            sensor::deliver(imu);
+        };
         if (canvas.is_busy() || scene.changed() && (self.job.is_some() || self.quiet.passed()))
-            && let Some(drawn) = canvas.draw(models.mesh(), scene, || terminal.listen())
+            && let Some(drawn) = canvas.draw(models.mesh(), scene, look)
         {
             scene.set_drawn(drawn);
         }
@@ -208,11 +257,18 @@ impl Machine {
 
     /// Goes on with the job once its frame is drawn.
     fn pursue(&mut self) {
+        if let Some(Job::Sensor(job)) = self.job {
+            match imu::pursue(self, job) {
+                Ok(job) => self.job = Some(Job::Sensor(job)),
+                Err(result) => self.finish(result),
+            }
+            return;
+        }
         if self.scene.changed() {
             return;
         }
         match self.job {
-            None => {}
+            None | Some(Job::Sensor(_)) => {}
             Some(Job::Render) => {
                 let result = commands::stats(self, false);
                 self.finish(result);
@@ -240,13 +296,31 @@ impl Machine {
         self.terminal.prompt();
     }
 
+    /// Does what the buttons are for, when one goes down.
+    fn heed_buttons(&mut self) {
+        let Some(devices) = &self.devices else {
+            return;
+        };
+        let pressed = devices.buttons.read();
+        let new = pressed & !self.pressed;
+        self.pressed = pressed;
+        if new & CALIBRATE != 0 {
+            self.imu.calibrate(SAMPLES);
+        }
+        if new & RECENTRE != 0 {
+            self.imu.recentre();
+        }
+    }
+
     /// Shows that the machine is alive.
     fn beat(&mut self) {
-        if !self.heartbeat || !self.beat.passed() {
+        if !self.beat.passed() {
             return;
         }
         self.beat = self.clock.after(HEARTBEAT);
-        if let Some(devices) = &self.devices {
+        // A transfer whose end nobody tells is given up.
+        sensor::advance(cpu::cycles_low());
+        if let Some(devices) = self.devices.as_ref().filter(|_| self.heartbeat) {
             let Ok(()) = devices.leds.pin(0).toggle();
         }
     }

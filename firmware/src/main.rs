@@ -4,9 +4,10 @@
 //! ```text
 //! main ── start ── machine ──┬── terminal ── commands ──┬── scene, models
 //!                            │                          ├── transfer (uploads, downloads)
-//!                            ├── draw ── display        └── bench, selftest
+//!                            ├── draw ── display        ├── bench, selftest
+//!                            ├── imu (what the sensor's samples are for)
 //!                            └── job (what a reply waits for)
-//! interrupts: UART queues, vertical blanking        last_words: traps, panics
+//! interrupts: UART queues, vertical blanking, sensor        last_words: traps, panics
 //! ```
 
 #![no_std]
@@ -18,10 +19,12 @@ mod bench;
 mod canvas;
 mod commands;
 mod cube;
+mod imu;
 #[allow(unsafe_code)] // Interrupts are let in.
 mod interrupts;
 #[allow(unsafe_code)] // The trap handler's name, and the UART taken from a program that has ended.
 mod last_words;
+#[allow(unsafe_code)] // It never returns, and says so.
 mod machine;
 #[allow(unsafe_code)] // Linker symbols as slices.
 mod memory;
@@ -31,6 +34,8 @@ mod models;
 mod painter;
 mod scene;
 mod selftest;
+#[allow(unsafe_code)] // A future that the main loop keeps, for interrupts.
+mod sensor;
 #[allow(unsafe_code)] // The UART before it has an owner.
 mod start;
 mod terminal;

@@ -9,7 +9,7 @@ use glint_core::field::Field;
 use glint_core::mesh::Mesh;
 use glint_core::stereo::Stereo;
 use glint_model::descriptor::{self, Descriptor, TABLE_WORDS, band_rows, list_word};
-use glint_model::march::{FieldOptions, FieldStats, Palette, Setup};
+use glint_model::march::{FieldOptions, FieldStats, Palette, Prepass, Setup};
 use glint_model::{FrameSetup, Options, RenderError, Shading, Stats, clip_exceptions, together};
 use litex_hal::march::{self, Marcher};
 use litex_hal::triangle::{
@@ -140,11 +140,16 @@ pub struct Marched<'a> {
     pub stereo: Option<Stereo>,
     /// How it looks.
     pub appearance: &'a Appearance,
+    /// Whether cones go before the rays.
+    pub prepass: bool,
 }
 
 impl Marched<'_> {
     fn options(&self) -> FieldOptions {
-        FieldOptions::new(self.field, self.appearance, self.stereo)
+        FieldOptions {
+            prepass: self.prepass.then_some(Prepass::Fitting),
+            ..FieldOptions::new(self.field, self.appearance, self.stereo)
+        }
     }
 }
 
@@ -342,7 +347,7 @@ impl Painter {
 
     fn begin(&mut self, what: &What, target: &mut Target) -> Result<(), Fallback> {
         let constants = self.constants(what, target.size)?;
-        self.set_field(constants.field.as_ref())?;
+        self.set_field(constants.field.as_ref(), false)?;
         if let Some(triangles) = what.triangles() {
             let prepared = self.prepare_geometry(triangles, &constants, 0)?;
             self.start_geometry(prepared);
@@ -354,12 +359,21 @@ impl Painter {
         Ok(())
     }
 
-    /// Has a field drawn in the frames from now on, or none.
-    fn set_field(&mut self, field: Option<&(Setup, Palette)>) -> Result<(), Fallback> {
+    /// Has a field drawn in the frames from now on, or none. Its tables are not looked at where the raymarcher is known to have them.
+    fn set_field(
+        &mut self,
+        field: Option<&(Setup, Palette)>,
+        has_tables: bool,
+    ) -> Result<(), Fallback> {
         match (&mut self.marcher, field) {
-            (Some(marcher), Some((setup, palette))) => marcher
-                .set_field(setup, palette)
-                .map_err(|missing| Fallback::Field(Some(missing))),
+            (Some(marcher), Some((setup, palette))) => {
+                let outcome = if has_tables {
+                    marcher.set_field_with_tables_held(setup, palette)
+                } else {
+                    marcher.set_field(setup, palette)
+                };
+                outcome.map_err(|missing| Fallback::Field(Some(missing)))
+            }
             (Some(marcher), None) => {
                 marcher.clear_field();
                 Ok(())
@@ -367,6 +381,12 @@ impl Painter {
             (None, Some(_)) => Err(Fallback::Field(None)),
             (None, None) => Ok(()),
         }
+    }
+
+    /// Whether the raymarcher has a field's tables.
+    fn has_tables(&self, field: Option<&(Setup, Palette)>) -> bool {
+        let both = self.marcher.as_ref().zip(field);
+        both.is_some_and(|(marcher, (_, palette))| marcher.has_tables(palette))
     }
 
     /// Draws a frame again and again, back to back: while one is rastered the next one's geometry is made. What is returned
@@ -393,7 +413,7 @@ impl Painter {
         self.watch = Watch::default();
         let what = target.what;
         let mut now = self.constants(&what, target.size)?;
-        self.set_field(now.field.as_ref())?;
+        self.set_field(now.field.as_ref(), false)?;
         let mut prepared = self.prepare_geometry(triangles, &now, 0)?;
         for frame in 0..=count {
             self.start_geometry(prepared);
@@ -416,7 +436,7 @@ impl Painter {
             }
             // Its registers hold while a raster pass runs.
             if now.field.is_some() {
-                self.set_field(now.field.as_ref())?;
+                self.set_field(now.field.as_ref(), false)?;
             }
             self.start_raster(target, self.rooms[0].sets);
             // What is being drawn stays where it is.
@@ -430,11 +450,13 @@ impl Painter {
     fn repeat_field(&mut self, target: &mut Target, count: u32) -> Result<Painted, Fallback> {
         let what = target.what;
         let mut now = self.constants(&what, target.size)?;
+        let mut has_tables = false;
         self.mark_start();
         for _ in 0..count {
-            self.set_field(now.field.as_ref())?;
+            self.set_field(now.field.as_ref(), has_tables)?;
             self.start_raster(target, [None; 2]);
             now = self.constants(&what, target.size)?;
+            has_tables = self.has_tables(now.field.as_ref());
             self.wait(Engine::raster, target)?;
         }
         Ok(self.painted(&what, 0))

@@ -104,6 +104,7 @@ pub struct Scene {
     with_mesh: bool,
     stereo: Option<Stereo>,
     appearance: Appearance,
+    prepass: bool,
     view: View,
     sphere: Sphere,
     scale: Scale,
@@ -127,6 +128,7 @@ impl Scene {
             with_mesh: false,
             stereo: None,
             appearance: Appearance::default(),
+            prepass: false,
             view: sphere.view()?,
             sphere,
             scale: Scale::Four,
@@ -182,6 +184,17 @@ impl Scene {
         // A mesh is seen with one eye.
         self.changed |= self.field.is_some() && self.stereo != stereo;
         self.stereo = stereo;
+    }
+
+    /// Whether cones go before the rays of a field.
+    pub const fn prepass(&self) -> bool {
+        self.prepass
+    }
+
+    /// Sets whether they do.
+    pub fn set_prepass(&mut self, prepass: bool) {
+        self.changed |= self.field.is_some() && self.prepass != prepass;
+        self.prepass = prepass;
     }
 
     /// The camera.

@@ -7,7 +7,7 @@ use glint_core::console::Backend;
 use glint_core::mesh::MeshError;
 use litex_hal::display::{Display, Scanout};
 use litex_hal::gpio::{InputPort, OutputPort};
-use litex_hal::i2c::{Config, I2c};
+use litex_hal::i2c::I2c;
 use litex_hal::march::Marcher;
 use litex_hal::timer::{Clock, FREQUENCY, Stopped};
 use litex_hal::triangle::Engine;
@@ -92,7 +92,7 @@ pub fn machine() -> Result<Machine, Fault> {
             buttons: InputPort::new(peripherals.buttons.in_()),
             switches: InputPort::new(peripherals.switches.in_()),
             leds: OutputPort::new(peripherals.leds.out()),
-            i2c: I2c::new(peripherals.i2c, clock, Config::FAST),
+            i2c: Some(I2c::new(peripherals.i2c, clock)),
         };
         (
             Scanout::probe(peripherals.scanout).ok(),
@@ -103,7 +103,7 @@ pub fn machine() -> Result<Machine, Fault> {
     } else {
         (None, None, None, None)
     };
-    interrupts::start(scanout.is_some(), engine.is_some());
+    interrupts::start(devices.is_some(), scanout.is_some(), engine.is_some());
     let painter = engine.and_then(|engine| {
         let first_buffer = memory.frames[0].as_ptr().addr() as u32;
         Painter::new(engine, marcher, memory.lists, first_buffer)

@@ -11,7 +11,7 @@ module ring_lane_proof (
     input wire [9:0] in_length,
     input wire       out_ready
 );
-    // Clocks that may pass until an end comes out while ends are taken: two rounds of 9 slots, through the fifo, after another one.
+    // Clocks in which ends are taken that may pass until a ray's end is: two rounds of 9 slots, through the fifo, after another one.
     localparam int unsigned PLACES = 2, WITHIN = 22;
 
     logic rst = 1'b1;
@@ -32,7 +32,7 @@ module ring_lane_proof (
     end
 
     ring_lane #(.LEVELS(0), .BOXES(1'b1), .STEREO(1'b0), .PLACES(PLACES)) dut (
-        .clk, .rst, .origins('0), .bounds('0), .solid('0), .tuning({16'd1, 4'd7, 8'd2, 23'd1000}),
+        .clk, .rst, .origins('0), .bounds('0), .solid('0), .tuning({16'd1, 4'd7, 8'd2, 23'd1000}), .cones(1'b0),
         .ball_write(1'b0), .ball_number('0), .ball('0), .in_valid, .in_ready, .in_ray(ray), .out_valid, .out_ready, .out_end, .evaluates, .waits
     );
 
@@ -40,7 +40,7 @@ module ring_lane_proof (
     stream_checker #(.WIDTH(march_pkg::END_BITS)) ends (.clk, .rst, .valid(out_valid), .ready(out_ready), .data(out_end));
 
     logic       entered, left, here;
-    logic [4:0] unmoved, refused;
+    logic [4:0] on_its_way, refused;
 
     assign here = out_valid && out_end.place.column == followed;
 
@@ -51,9 +51,9 @@ module ring_lane_proof (
         end
         if (here && out_ready) left <= 1'b1;
         inside  <= inside + 11'(in_valid && in_ready) - 11'(out_valid && out_ready);
-        unmoved <= inside == '0 || !out_ready || out_valid ? '0 : unmoved + 1'b1;
+        if (entered && !left && out_ready) on_its_way <= on_its_way + 1'b1;
         refused <= in_ready || !out_ready || out_valid ? '0 : refused + 1'b1;
-        if (rst) {came, entered, left, inside, unmoved, refused} <= '0;
+        if (rst) {came, entered, left, inside, on_its_way, refused} <= '0;
     end
 
     always_ff @(posedge clk) if (!rst) begin
@@ -62,9 +62,8 @@ module ring_lane_proof (
         none_made_up:     assert (!out_valid || out_end.place.column < came);
         none_twice:       assert (!here || entered && !left);
         as_it_came:       assert (!here || out_end.length == length);
-        none_lost:        assert (inside != '0 || entered == left);
+        none_lost:        assert (left || on_its_way < 5'(WITHIN));
         no_more_than_fit: assert (inside <= 11'(PLACES));
-        ends_in_time:     assert (unmoved < 5'(WITHIN));
         takes_again:      assert (refused < 5'(WITHIN));
         empty_takes:      assert (inside != '0 || in_ready);
         counts_steps:     assert (!out_valid || out_end.steps == 8'd1 || out_end.steps == 8'd2);

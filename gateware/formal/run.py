@@ -58,6 +58,9 @@ def _formal(*names):
 
 # The longest first.
 PROOFS = [
+    Proof("ring_lane", "ring_lane_proof",
+          [_RTL / "raymarch" / "march_pkg.sv", _RTL / "common" / "delay.sv", _RTL / "common" / "fifo.sv",
+           _RTL / "raymarch" / "ring_lane.sv", *_formal("any_product", "any_field", "ring_lane_proof")], 36),
     Proof("band_flush", "band_flush_proof",
           [FORMAL / "stream_checker.sv", FORMAL / "band_flush_proof.sv", _RTL / "common" / "fifo.sv",
            _RTL / "band" / "band_flush.sv"], 23),
@@ -73,9 +76,6 @@ PROOFS = [
     Proof("write_port", "write_port_proof",
           [FORMAL / "stream_checker.sv", FORMAL / "write_port_proof.sv", _RTL / "common" / "fifo.sv",
            _RTL / "common" / "write_port.sv"], 16),
-    Proof("ring_lane", "ring_lane_proof",
-          [_RTL / "raymarch" / "march_pkg.sv", _RTL / "common" / "delay.sv", _RTL / "common" / "fifo.sv",
-           _RTL / "raymarch" / "ring_lane.sv", *_formal("any_product", "any_field", "ring_lane_proof")], 26),
     Proof("skid_buffer", "buffer_proof", _BUFFER, 24),
     Proof("fifo of 2", "buffer_proof", _BUFFER, 24, {"DEPTH": 2}),
     Proof("fifo of 4", "buffer_proof", _BUFFER, 24, {"DEPTH": 4}),

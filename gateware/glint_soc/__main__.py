@@ -10,7 +10,7 @@ from litex.soc.integration import export
 from litex.soc.integration.builder import Builder
 
 from . import register_map
-from .march import Fields
+from .march import BUILDS
 from .register_map import OPTIONAL_BLOCKS
 
 
@@ -31,8 +31,8 @@ def main():
     parser.add_argument("--blocks", nargs="*", default=sorted(OPTIONAL_BLOCKS), choices=sorted(OPTIONAL_BLOCKS),
                         help="optional blocks of this build (default: all)")
     parser.add_argument("--smooth", action="store_true", help="build smooth shading into the triangle engine")
-    parser.add_argument("--sponge", action="store_true",
-                        help="build a raymarcher of four lanes for the sponge up to depth 4, instead of two for every field")
+    parser.add_argument("--fields", choices=list(BUILDS),
+                        help="what the raymarcher is built for (default: all; of the urbana, which has no room for that: faces)")
     arguments = parser.parse_args()
     logging.getLogger().setLevel(logging.WARNING)
     # The BIOS build calls meson and ninja of the virtual environment that runs this.
@@ -45,7 +45,7 @@ def main():
     full.finalize()
     build_id = register_map.build_id(full)
 
-    fields = Fields(lanes=4, levels=4, boxes=False, round=False, blend=False) if arguments.sponge else None
+    fields = BUILDS[arguments.fields or {"virtual": "all", "urbana": "faces"}[arguments.board]]
     soc = make_soc(arguments.board, build_id, arguments.blocks, arguments.smooth, fields)
     soc.finalize()
     register_map.check_subset(soc, full)

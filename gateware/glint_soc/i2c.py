@@ -1,36 +1,100 @@
-"""Bit-banged I2C master that sees both wires."""
+"""The I2C master. The work is done by rtl/i2c; this is its register block."""
 
-from litex.soc.cores.bitbang import I2CMaster
-from litex.soc.interconnect.csr import CSRField, CSRStatus
+from litex.gen import LiteXModule
+from litex.soc.interconnect.csr import CSRField, CSRStatus, CSRStorage
+from litex.soc.interconnect.csr_eventmanager import EventManager, EventSourcePulse
+from migen import ClockSignal, Instance, ResetSignal, Signal
 from migen.fhdl.specials import Tristate
 
+from .scanout import RTL
 
-class OpenDrainI2C(I2CMaster):
-    """LiteX's I2C master, with SCL readable as well, so that firmware notices clock stretching and a stuck bus.
+I2C = [*(RTL / "common" / f"{name}.sv" for name in ("cdc_level", "fifo", "spike_filter")), RTL / "i2c" / "i2c_engine.sv"]
 
-    Register `w` drives, register `r` reads the wires. A wire is pulled low or released, never driven high.
-    """
+BIT_RATE = 400_000
+"""Fast mode, in bits a second at most."""
 
-    def __init__(self, pads):
-        I2CMaster.__init__(self, pads, connect_pads=False)
-        self._r = CSRStatus(fields=[
-            CSRField("sda", size=1, offset=0, description="State of the SDA wire."),
-            CSRField("scl", size=1, offset=1, description="State of the SCL wire.")],
-            name="r")
-        self.connect(pads)
+_OPERATIONS = [
+    ("0", "start", "a start, or within a transaction a repeated one"),
+    ("1", "write", "sends the byte `argument`"),
+    ("2", "read", "receives `argument` + 1 bytes"),
+    ("3", "stop", "a stop"),
+]
 
-    def connect(self, pads):
-        pull_scl = ~self._w.fields.scl
-        pull_sda = self._w.fields.oe & ~self._w.fields.sda
+_ERRORS = [
+    ("0", "none", "no error"),
+    ("1", "address", "the byte after a start was not acknowledged"),
+    ("2", "byte", "another byte was not acknowledged"),
+    ("3", "clock", "SCL was held low longer than a device may stretch it"),
+    ("4", "data", "SDA was low where it should have been free, and nine clocks did not free it"),
+]
+
+
+class I2CMaster(LiteXModule):
+    """Works off a queue of starts, bytes and stops on `pads`, and keeps the bytes that it has received."""
+
+    def __init__(self, platform, pads, sys_clk_freq):
+        self._command = CSRStorage(name="command", fields=[
+            CSRField("argument", size=8, offset=0, description="Of `write` and `read`."),
+            CSRField("operation", size=2, offset=8, values=_OPERATIONS, description="What to do."),
+            CSRField("more", offset=10, description="A `read` acknowledges its last byte too: another one follows."),
+        ], description="A write puts a command into the queue of 33; one that has no room, see `status`, is lost.")
+        self._answer = CSRStatus(name="answer", fields=[
+            CSRField("byte", size=8, offset=0, description="The byte."),
+            CSRField("valid", offset=8, description="There is one."),
+        ], description="A read takes the next received byte out of the queue of 33; the master waits while that is full.")
+        self._control = CSRStorage(name="control", fields=[
+            CSRField("clear", offset=0, pulse=True, description="Write 1 to let go of the wires, empty both queues and forget the error."),
+        ], description="Operation.")
+        self._status = CSRStatus(name="status", fields=[
+            CSRField("scl", offset=0, description="State of the SCL wire."),
+            CSRField("sda", offset=1, description="State of the SDA wire."),
+            CSRField("room", offset=2, description="There is room for a command."),
+            CSRField("busy", offset=3, description="Between a start and the end of the stop, or commands wait."),
+            CSRField("failed", offset=4, description="An error has ended the transaction; nothing more is done until `clear`."),
+            CSRField("error", size=3, offset=8, values=_ERRORS, description="The error."),
+        ], description="State.")
+        self.ev = EventManager()
+        self.ev.ended = EventSourcePulse(name="ended", description="A stop has been made, or an error has ended the transaction.")
+        self.ev.finalize()
+
+        # # #
+
+        reset = Signal()
+        wires = {name: Signal() for name in ("scl_in", "scl_out", "sda_in", "sda_out")}
+        self.comb += reset.eq(ResetSignal("sys") | self._control.fields.clear)
+        self.specials += Instance("i2c_engine", name="i2c_core",
+            # Three phases are a bit: rounded up, so that it is not too fast.
+            p_PHASE         = -int(-sys_clk_freq // (3 * BIT_RATE)),
+            i_clk           = ClockSignal("sys"),
+            i_rst           = reset,
+            i_command_valid = self._command.re,
+            o_command_ready = self._status.fields.room,
+            i_command_data  = self._command.storage,
+            o_answer_valid  = self._answer.fields.valid,
+            i_answer_ready  = self._answer.we,
+            o_answer_data   = self._answer.fields.byte,
+            o_busy          = self._status.fields.busy,
+            o_failed        = self._status.fields.failed,
+            o_error         = self._status.fields.error,
+            o_ended         = self.ev.ended.trigger,
+            o_scl           = self._status.fields.scl,
+            o_sda           = self._status.fields.sda,
+            i_scl_in        = wires["scl_in"],
+            o_scl_out       = wires["scl_out"],
+            i_sda_in        = wires["sda_in"],
+            o_sda_out       = wires["sda_out"],
+        )
+        for source in I2C:
+            platform.add_source(str(source))
         if hasattr(pads, "scl_in"):
             self.comb += [
-                pads.scl_out.eq(~pull_scl),
-                pads.sda_out.eq(~pull_sda),
-                self._r.fields.scl.eq(pads.scl_in),
-                self._r.fields.sda.eq(pads.sda_in),
+                pads.scl_out.eq(wires["scl_out"]),
+                pads.sda_out.eq(wires["sda_out"]),
+                wires["scl_in"].eq(pads.scl_in),
+                wires["sda_in"].eq(pads.sda_in),
             ]
         else:
             self.specials += [
-                Tristate(pads.scl, o=0, oe=pull_scl, i=self._r.fields.scl),
-                Tristate(pads.sda, o=0, oe=pull_sda, i=self._r.fields.sda),
+                Tristate(pads.scl, o=0, oe=~wires["scl_out"], i=wires["scl_in"]),
+                Tristate(pads.sda, o=0, oe=~wires["sda_out"], i=wires["sda_in"]),
             ]

@@ -1,6 +1,6 @@
 """The raymarcher: distance fields, beside the triangles in the band buffer. The work is done by rtl/raymarch."""
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
 from litex.gen import LiteXModule
 from litex.soc.interconnect.csr import CSRField, CSRStatus, CSRStorage
@@ -21,7 +21,8 @@ RAY_PAINT = [_MARCH / "march_pkg.sv", _COMMON / "delay.sv", _COMMON / "skid_buff
              *(_MARCH / f"{name}.sv" for name in ("inverse_table", "round_inverse", "depth_code", "paint_table", "ray_paint"))]
 ROUND_LIGHT = [_MARCH / "march_pkg.sv", _COMMON / "delay.sv", _COMMON / "skid_buffer.sv", _TRIANGLE / "multiply_add.sv",
                _MARCH / "round_light.sv"]
-RAYMARCHER = [*dict.fromkeys([RTL / "band" / "band_pkg.sv", *RING_LANE, *RAY_GENERATOR, *ROUND_LIGHT, *RAY_PAINT, _MARCH / "raymarcher.sv"])]
+RAYMARCHER = [*dict.fromkeys([RTL / "band" / "band_pkg.sv", *RING_LANE, *RAY_GENERATOR, *ROUND_LIGHT, *RAY_PAINT, _MARCH / "cone_table.sv",
+                              _MARCH / "raymarcher.sv"])]
 
 IDENT = int.from_bytes(b"MARC", "big")
 
@@ -29,12 +30,14 @@ _ERRORS = [
     ("0", "none", "what is asked for is built"),
     ("1", "field", "the sponge, so many levels of it, boxes, spheres, or fillets are not built"),
     ("2", "stereo", "two eyes are not built"),
+    ("3", "prepass", "cones are not built"),
 ]
 
 
 @dataclass(frozen=True)
 class Fields:
-    """What a raymarcher is built with: lanes (1, 2, 4), levels of the sponge (0 to 6), boxes, spheres, fillets, two eyes."""
+    """What a raymarcher is built with: lanes (1, 2, 4), levels of the sponge (0 to 6), boxes, spheres, fillets, two eyes, cones before
+    the rays."""
 
     lanes: int = 2
     levels: int = 6
@@ -42,6 +45,20 @@ class Fields:
     round: bool = True
     blend: bool = True
     stereo: bool = True
+    prepass: bool = True
+
+    def parameters(self):
+        """Returns those of the module by their names."""
+        return {name.upper(): int(value) for name, value in asdict(self).items()}
+
+
+BUILDS = {
+    "all": Fields(),
+    "round": Fields(levels=4, blend=False, prepass=False),
+    "faces": Fields(levels=4, round=False, blend=False, prepass=False),
+    "sponge": Fields(lanes=4, levels=4, boxes=False, round=False, blend=False),
+}
+"""What there is to choose from: everything; less and less of it; and the sponge alone, by twice as many lanes."""
 
 
 class Raymarcher(LiteXModule):
@@ -59,6 +76,7 @@ class Raymarcher(LiteXModule):
             CSRField("stereo", offset=9, reset=int(fields.stereo), description="Two eyes."),
             CSRField("round", offset=10, reset=int(fields.round), description="Spheres, alone and beside what has faces."),
             CSRField("blend", offset=11, reset=int(fields.blend), description="Fillets between both."),
+            CSRField("prepass", offset=12, reset=int(fields.prepass), description="Cones before the rays."),
         ], description="What this block can do.")
         self._control = CSRStorage(name="control", fields=[
             CSRField("enable", offset=0, description="Frames of the raster pass have the field, after their triangles."),
@@ -66,6 +84,7 @@ class Raymarcher(LiteXModule):
                 ("0", "mono", "one eye"), ("1", "red_blue", "the left eye red, the right one blue, green the smaller of both"),
                 ("2", "red_cyan", "the left eye red, the right one green and blue")],
                 description="How many eyes look, and in which colours."),
+            CSRField("prepass", offset=3, description="A cone for each block of pixels says where its rays begin."),
         ], description="Operation. This and all other registers have to hold while a raster pass runs.")
         self._status = CSRStatus(name="status", fields=[
             CSRField("busy", offset=0, description="A field is being drawn."),
@@ -96,7 +115,8 @@ class Raymarcher(LiteXModule):
             CSRField("cap", size=8, offset=20, description="Evaluations after which a ray is given up, from 1."),
         ], description="How finely.")
         self._far = CSRStorage(23, name="far", description="t beyond which there is nothing, u11.12.")
-        self._near = CSRStorage(23, name="near", description="Distance of the near plane times 2^e, u11.12.")
+        self._near = CSRStorage(23, name="near", description="Distance of the near plane times 2^e, or of the nearest corner of the "
+                                "box, u11.12.")
         origins, outside, first = [], [], []
         for eye in ("left", "right"):
             for axis in "xyz":
@@ -108,6 +128,10 @@ class Raymarcher(LiteXModule):
                   for axis in "xyz"]
         across = [self._register(f"across_{axis}", 32, f"What D grows by with a column, {axis}, s2.30.") for axis in "xyz"]
         down = [self._register(f"down_{axis}", 32, f"What D grows by with a line, {axis}, s2.30.") for axis in "xyz"]
+        offset = [self._register(f"cone_offset_{axis}", 32, f"What D grows by from a block's first pixel to its middle, {axis}, s2.30.")
+                  for axis in "xyz"]
+        self._cone_spread = CSRStorage(14, name="cone_spread", description="The most by which D differs from that in the middle of a "
+                                       "block, u0.18.")
         self._depth_scale = CSRStorage(name="depth_scale", fields=[
             CSRField("mantissa", size=17, offset=0, description="In 2^16 to 2^17 - 1."),
             CSRField("exponent", size=6, offset=17, description="Two's complement."),
@@ -151,7 +175,7 @@ class Raymarcher(LiteXModule):
 
         self.clk = Signal()
         self.clock_enable = Signal()
-        enable, stereo = self._control.fields.enable, self._control.fields.stereo
+        enable, stereo, prepass = (getattr(self._control.fields, name) for name in ("enable", "stereo", "prepass"))
         busy, was_busy = self._status.fields.busy, Signal()
         error = self._status.fields.error
         solid, tuning = self._solid.fields, self._tuning.fields
@@ -163,7 +187,8 @@ class Raymarcher(LiteXModule):
         # The engine's clock runs while a pass does; the tables are written while it stands.
         lingers, working = Signal(5), Signal()
         self.comb += [
-            If(not_built | too_deep, error.eq(1)).Elif((stereo != 0) & int(not fields.stereo), error.eq(2)),
+            If(not_built | too_deep, error.eq(1)).Elif((stereo != 0) & int(not fields.stereo), error.eq(2)).Elif(
+                prepass & int(not fields.prepass), error.eq(3)),
             engine.field.enable.eq(enable & (error == 0)),
             engine.field.compose.eq(stereo),
             working.eq(ResetSignal("sys") | self._table.re | self._sphere.re | (enable & engine.clock_enable)),
@@ -178,12 +203,7 @@ class Raymarcher(LiteXModule):
         eye = Signal()
         self.comb += engine.field.halves.eq(Mux(stereo == 0, 0b11, Mux(eye, 0b10, 0b01)))
         self.specials += Instance("raymarcher", name="raymarcher",
-            p_LANES          = fields.lanes,
-            p_LEVELS         = fields.levels,
-            p_BOXES          = int(fields.boxes),
-            p_ROUND          = int(fields.round),
-            p_BLEND          = int(fields.blend),
-            p_STEREO         = int(fields.stereo),
+            **{f"p_{name}": value for name, value in fields.parameters().items()},
             i_clk            = self.clk,
             i_rst            = ResetSignal("sys"),
             i_restart        = engine.field.restart,
@@ -205,6 +225,9 @@ class Raymarcher(LiteXModule):
             i_ball           = ball,
             i_lights         = Cat(lights, solid.last_light),
             i_tuning         = Cat(self._far.storage, tuning.cap, tuning.footprint, tuning.threshold),
+            i_prepass        = prepass,
+            i_cone_offset    = Cat(*offset),
+            i_cone_spread    = self._cone_spread.storage,
             i_depth_mantissa = self._depth_scale.fields.mantissa,
             i_depth_exponent = self._depth_scale.fields.exponent,
             i_fog_shift      = self._fog_shift.storage,

@@ -27,7 +27,7 @@ PINNED = {
     "uart": Location(2, irq=0),
     "timer0": Location(3, irq=1),
     "sdram": Location(4),
-    "i2c": Location(5),
+    "i2c": Location(5, irq=6),
     "buttons": Location(6, irq=2),
     "switches": Location(7),
     "leds": Location(8),

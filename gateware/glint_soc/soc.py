@@ -11,7 +11,7 @@ from litex.soc.integration.soc import SoCRegion
 from litex.soc.integration.soc_core import SoCCore
 from litex.soc.interconnect import wishbone
 
-from .i2c import OpenDrainI2C
+from .i2c import I2CMaster
 from .identity import Identity
 from .march import Fields, Raymarcher
 from .memory_bridge import MemoryBridge
@@ -69,7 +69,7 @@ class GlintSoC(SoCCore):
         self.add_constant("BUILD_ID", build_id)
 
         self.identity = Identity(build_id, sum(1 << OPTIONAL_BLOCKS[name] for name in self.blocks))
-        self.i2c = OpenDrainI2C(platform.request("i2c"))
+        self.i2c = I2CMaster(platform, platform.request("i2c"), sys_clk_freq)
         self.buttons = GPIOIn(platform.request("buttons"), with_irq=True)
         self.switches = GPIOIn(platform.request("switches"))
         self.leds = GPIOOut(platform.request("leds"))

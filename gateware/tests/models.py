@@ -20,14 +20,8 @@ _VERILATE = ["--cc", "-O3", "-Wall", "--x-initial", "unique", "--x-assign", "uni
 _PORT = re.compile(r"VL_(IN|OUT)(?:8|16|64|W)?\(&(\w+),(\d+),0[,)]")
 
 
-def build(module):
-    """Builds the libraries of a module, one for each variant, where they are not up to date."""
-    for name, parameters in module.builds().items():
-        if name not in module.measured:
-            _build(module, name, parameters)
-
-
-def _build(module, name, parameters):
+def build(module, name, parameters):
+    """Builds the library of a variant of a module, where it is not up to date."""
     library, folder = MODELS / f"{name}.so", MODELS / name
     stamp = folder / "inputs"
     inputs = digest([*module.sources, _HARNESS, VERILATOR_ROOT / "bin" / "verilator_bin"],

@@ -3,7 +3,8 @@
 from dataclasses import dataclass, field
 
 from glint_soc import scanout
-from glint_soc.march import FIELD_UNIT, RAY_GENERATOR, RAY_PAINT, RAYMARCHER, RING_LANE, ROUND_LIGHT
+from glint_soc.i2c import I2C
+from glint_soc.march import BUILDS, FIELD_UNIT, RAY_GENERATOR, RAY_PAINT, RAYMARCHER, RING_LANE, ROUND_LIGHT
 from glint_soc.triangle import BAND_BUFFER, SETUP, TRIANGLE_CONTROL, TRIANGLE_ENGINE, TRIANGLE_RASTER, VERTEX_STAGE
 
 
@@ -32,6 +33,7 @@ _SMALL_RASTER = {"H_ACTIVE": 160, "H_FRONT": 8, "H_SYNC": 4, "H_BACK": 12,
 _SMOOTH = {"SMOOTH": 1}
 # Every field there is.
 _ALL_FIELDS = {"LEVELS": 6, "BOXES": 1, "ROUND": 1, "BLEND": 1}
+_PREPASS = {"PREPASS": 1}
 _COMMON, _TRIANGLE = (scanout.RTL / folder for folder in ("common", "triangle"))
 
 MODULES = [
@@ -44,6 +46,8 @@ MODULES = [
     ),
     Module(top="skid_buffer", sources=[_COMMON / "skid_buffer.sv"]),
     Module(top="fifo", sources=[_COMMON / "fifo.sv"], variants={"fifo_2": {"DEPTH": 2}}),
+    # A device that holds SCL for ever is given up in half a millisecond.
+    Module(top="i2c_engine", sources=I2C, variants={"i2c_engine_hasty": {"STRETCH_BITS": 15}}, measured=("i2c_engine",)),
     Module(top="band_buffer", sources=BAND_BUFFER, variants={"band_buffer_stereo": {"STEREO": 1}}),
     Module(top="binner", sources=[_TRIANGLE / "triangle_pkg.sv", _TRIANGLE / "list_pkg.sv", _TRIANGLE / "binner.sv"]),
     Module(top="vertex_stage", sources=VERTEX_STAGE),
@@ -56,10 +60,12 @@ MODULES = [
     Module(top="field_menger", sources=FIELD_UNIT, measured=("field_menger",)),
     Module(top="field_box", sources=FIELD_UNIT, measured=("field_box",)),
     Module(top="field_sphere", sources=FIELD_UNIT, measured=("field_sphere",)),
-    Module(top="ray_generator", sources=RAY_GENERATOR, variants={"ray_generator_round": {"ROUND": 1}}, measured=("ray_generator",)),
+    Module(top="ray_generator", sources=RAY_GENERATOR, variants={"ray_generator_all": {"ROUND": 1, **_PREPASS}}, measured=("ray_generator",)),
     Module(top="ray_paint", sources=RAY_PAINT, variants={"ray_paint_round": {"ROUND": 1}}, measured=("ray_paint_round",)),
     Module(top="round_light", sources=ROUND_LIGHT, measured=("round_light",)),
-    Module(top="ring_lane", sources=RING_LANE, variants={"ring_lane_all": _ALL_FIELDS}),
-    Module(top="raymarcher", sources=RAYMARCHER, variants={"raymarcher_menger": {"LANES": 4, "LEVELS": 4, "BOXES": 0, "ROUND": 0, "BLEND": 0}}),
+    Module(top="ring_lane", sources=RING_LANE, variants={"ring_lane_all": {**_ALL_FIELDS, **_PREPASS}}),
+    Module(top="raymarcher", sources=RAYMARCHER,
+           variants={f"raymarcher_{name}": fields.parameters() for name, fields in BUILDS.items() if name != "all"},
+           measured=("raymarcher_round", "raymarcher_faces")),
     Module(top="triangle_control", sources=TRIANGLE_CONTROL, variants={"triangle_control_smooth": _SMOOTH}),
 ]

@@ -12,6 +12,8 @@ import argparse
 import json
 import logging
 import sys
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
@@ -20,59 +22,74 @@ import benches  # noqa: E402
 import memory_bridge  # noqa: E402
 import models  # noqa: E402
 import size  # noqa: E402
+import tables  # noqa: E402
 import urbana  # noqa: E402
 from modules import MODULES  # noqa: E402
-from tools import ToolError, run_verilator  # noqa: E402
+from tools import ToolError, prepare_yosys, run_verilator  # noqa: E402
 
 
-class Report:
-    """Prints outcomes and counts the failures."""
+# Checks at a time: each keeps one core busy.
+_AT_A_TIME = 2
 
-    def __init__(self):
-        self.failures = 0
 
-    def check(self, name, action):
-        """Runs `action`; it fails by an exception or by returning a list of problems that is not empty."""
-        try:
-            problems = action() or []
-        except ToolError as error:
-            problems = [str(error)]
-        if problems:
-            self.failures += 1
-            print(f"FAIL  {name}:", *problems, sep="\n      ", flush=True)
-        else:
-            print(f"ok    {name}", flush=True)
+def check(name, action):
+    """Runs `action` and prints one line if it passes. It fails by an exception or by returning a list of problems that is not
+    empty. Returns whether it failed."""
+    try:
+        problems = action() or []
+    except ToolError as error:
+        problems = [str(error)]
+    print("\n      ".join([f"FAIL  {name}:", *problems] if problems else [f"ok    {name}"]), flush=True)
+    return bool(problems)
 
-    def bench(self, module):
-        """Runs a bench, which reports in the same form."""
-        try:
-            lines = benches.run_bench(module).splitlines()
-        except ToolError as error:
-            lines = [f"FAIL  {module.top}: {error}"]
-        print(*lines, sep="\n", flush=True)
-        if not any(line.startswith("ok ") for line in lines) or any(line.startswith("FAIL") for line in lines):
-            self.failures += 1
+
+def run_bench(module):
+    """Runs a bench, which reports in the same form. Returns whether it failed."""
+    try:
+        lines = benches.run_bench(module).splitlines()
+    except ToolError as error:
+        lines = [f"FAIL  {module.top}: {error}"]
+    print("\n".join(lines), flush=True)
+    return not any(line.startswith("ok ") for line in lines) or any(line.startswith("FAIL") for line in lines)
+
+
+def module_checks():
+    """Yields what is checked of the modules, as functions that return whether they failed."""
+    for module in MODULES:
+        if module.bench:
+            yield partial(run_bench, module)
+        for name, parameters in module.builds().items():
+            yield partial(check, f"{name}: lint", partial(run_lint, module, parameters))
+            yield partial(check, f"{name}: read by Yosys", partial(size.read, module, parameters))
+        yield from model_builds(module)
+
+
+def model_builds(module):
+    """Yields the builds of a module that is tested from Rust."""
+    if not module.bench:
+        for name, parameters in module.builds().items():
+            if name not in module.measured:
+                yield partial(check, f"{name}: built for tools/rtl", partial(models.build, module, name, parameters))
+
+
+def run_all(checks):
+    """Runs checks, some at a time, and returns the number of those that failed."""
+    with ThreadPoolExecutor(_AT_A_TIME) as pool:
+        return sum(pool.map(lambda one: one(), checks))
 
 
 def test():
     """Runs everything and returns the number of failures."""
-    report = Report()
-    for module in MODULES:
-        for name, parameters in module.builds().items():
-            report.check(f"{name}: lint", lambda: run_lint(module, parameters))
-            report.check(f"{name}: read by Yosys", lambda: size.read(module, parameters))
-        if module.bench:
-            report.bench(module)
-        else:
-            report.check(f"{module.top}: built for tools/rtl", lambda: models.build(module))
-    for name, check in memory_bridge.CHECKS.items():
-        report.check(f"memory bridge: {name}", check)
-    for name, check in size.CHECKS.items():
-        report.check(f"sizes: {name}", check)
+    prepare_yosys()
+    failures = run_all(module_checks())
     files = urbana.generate()
-    for name, check in urbana.CHECKS.items():
-        report.check(f"urbana: {name}", lambda: check(*files))
-    return report.failures
+    others = {
+        **{f"memory bridge: {name}": action for name, action in memory_bridge.CHECKS.items()},
+        **{f"Yosys' table of {name}": action for name, action in tables.CHECKS.items()},
+        **{f"sizes: {name}": action for name, action in size.CHECKS.items()},
+        **{f"urbana: {name}": partial(action, *files) for name, action in urbana.CHECKS.items()},
+    }
+    return failures + sum(check(name, action) for name, action in others.items())
 
 
 def run_lint(module, parameters):
@@ -92,12 +109,9 @@ def print_size(name):
 
 
 def build_models(names):
-    """Builds the modules that are tested from Rust, or those named, and returns the number of those that do not build."""
-    report = Report()
-    for module in MODULES:
-        if not module.bench and (not names or module.top in names):
-            report.check(module.top, lambda: models.build(module))
-    return report.failures
+    """Builds the modules that are tested from Rust, or those named, and returns the number of builds that failed."""
+    chosen = [module for module in MODULES if not names or module.top in names]
+    return run_all(build for module in chosen for build in model_builds(module))
 
 
 if __name__ == "__main__":

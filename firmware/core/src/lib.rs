@@ -1,4 +1,4 @@
-//! Cameras, sines, attitudes, fields and lights, mesh and wire formats and the console's grammar: what the firmware and the host share.
+//! Cameras, sines, attitudes and their sensor, fields and lights, mesh and wire formats and the console's grammar: what the firmware and the host share.
 //!
 //! Everything here is integer arithmetic without allocation, and no input makes it panic.
 #![no_std]
@@ -17,8 +17,10 @@ pub mod console;
 pub mod field;
 pub mod fixed;
 pub mod follow;
+pub mod imu;
 pub mod light;
 pub mod mesh;
+pub mod mpu6050;
 pub mod orientation;
 pub mod polar;
 pub mod stereo;

@@ -3,10 +3,11 @@
 use glint_core::camera::View;
 use glint_core::colour::Shading;
 use glint_core::console::{
-    Backend, Command, Event, HISTORY, LINE_MAX, LineEditor, Size, write_help,
+    Backend, Command, Event, HISTORY, ImuAction, LINE_MAX, LineEditor, Size, write_help,
 };
 use glint_core::field::{Field, KINDS};
 use glint_core::fixed::{Q2_23, Q32_32, Turns, U4_28};
+use glint_core::imu::Follow;
 use glint_core::light::{Background, Light, Material};
 use glint_core::stereo::{Stereo, Tint};
 use proptest::prelude::*;
@@ -323,6 +324,16 @@ fn every_command_is_understood() {
         roll: degrees(30),
     };
     assert_parses("look 10 -20 30", look);
+    assert_parses("imu", Command::Imu(None));
+    let imu = |line, action| assert_parses(line, Command::Imu(Some(action)));
+    imu("imu calibrate", ImuAction::Calibrate(8_192));
+    imu("imu calibrate 100", ImuAction::Calibrate(100));
+    imu("imu stream", ImuAction::Stream(None));
+    imu("imu stream 5", ImuAction::Stream(Some(5)));
+    imu("imu look", ImuAction::Follow(Some(Follow::Look)));
+    imu("imu orbit", ImuAction::Follow(Some(Follow::Orbit)));
+    imu("imu off", ImuAction::Follow(None));
+    imu("imu recentre", ImuAction::Recentre);
     assert_parses("orbit", Command::Orbit { frames: None });
     assert_parses("orbit 48", Command::Orbit { frames: Some(48) });
     assert_parses("size 320 180", Command::Size(Size::W320));
@@ -347,6 +358,8 @@ fn every_command_is_understood() {
     assert_parses("render", Command::Render { depth: false });
     assert_parses("render depth", Command::Render { depth: true });
     assert_parses("cull on", Command::Cull(true));
+    assert_parses("prepass on", Command::Prepass(true));
+    assert_parses("prepass off", Command::Prepass(false));
     assert_parses("cull off", Command::Cull(false));
     assert_parses("stats", Command::Stats { json: false });
     assert_parses("stats json", Command::Stats { json: true });
@@ -523,7 +536,7 @@ fn the_help_lists_every_command_and_how_it_is_used() {
             assert!(Command::parse(name).is_ok(), "{name}");
         }
     }
-    assert_eq!(list.lines().count(), 30);
+    assert_eq!(list.lines().count(), 32);
     let field = help(Some("field"));
     assert!(
         KINDS.iter().all(|(form, _)| field.contains(form)),

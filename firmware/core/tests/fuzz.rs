@@ -134,7 +134,7 @@ fn console() {
         "load 33554432 deadbeef\rsize 1280 720\rleds 0xffff\r",
         "orbit 36\x1B[A\x1B[D\x1B[3~\x7F\r\x1B[A\x1B[A\x1B[B\x1B[H\x0B\x15\x17\x0C\x03",
         "field menger:4\rfield box:1,0.5,.25\rfield off\rstereo 0.05,3,red-cyan\rstereo off\r",
-        "cull on\rstats json\rbackend cpu\rshading smooth\rbench sine\rscene a-very-long-name-of-a-scene\r",
+        "cull on\rprepass off\rstats json\rbackend cpu\rshading smooth\rbench sine\rscene a-very-long-name-of-a-scene\r",
     ];
     let mut corpus = lines.map(|line| line.as_bytes().to_vec()).to_vec();
     corpus.push([b'x'; 700].to_vec());

@@ -1,47 +1,41 @@
-//! An I2C master that moves the two wires itself, bit by bit.
+//! The I2C master `i2c`, which works off a queue of commands by itself.
 //!
-//! Single master, 7-bit addresses, clock stretching up to a time-out. Both wires are open drain: the master pulls them
-//! low or lets go. A device that was interrupted in the middle of a byte may hold SDA low for ever;
-//! [`I2c::clear_bus`] clocks it free, and each transaction begins with that where it is needed.
+//! Single master, 7-bit addresses, 400 kHz, clock stretching. A transaction is put into the queue, and the master says when it has ended:
+//! [`embedded_hal_async::i2c::I2c`] leaves the CPU to others meanwhile, [`embedded_hal::i2c::I2c`] waits. A device that was
+//! interrupted in the middle of a byte may hold SDA low for ever; each start clocks it free where it is needed.
+//!
+//! A future that is dropped before its transaction has ended leaves the bus within a byte; the next transaction begins with a
+//! start all the same.
 //!
 //! # Limits
-//! No second master: a wire that should be high and is low is an error, not somebody else's turn. The times are at
-//! least those asked for; the CPU's own instructions come on top.
+//! No second master: a wire that should be high and is low is an error, not somebody else's turn.
 
 use core::fmt;
+use core::future::{Future, poll_fn};
+use core::pin::pin;
+use core::task::{Context, Poll, Waker};
 use core::time::Duration;
 
-use embedded_hal::delay::DelayNs;
 use embedded_hal::i2c::{ErrorKind, ErrorType, NoAcknowledgeSource, Operation, SevenBitAddress};
-use litex_pac::i2c::{self, W};
+use litex_pac::i2c::{self, Command, Control, EvEnable, EvPending, Status};
 
-use crate::timer::Clock;
+use crate::timer::{Clock, Deadline, cycles};
 
-/// How long a device may stretch the clock: as long as SMBus lets it.
-const STRETCH: Duration = Duration::from_millis(25);
+/// The longest wait for the master to go on. It gives a device up that stretches the clock for more than 25.8 ms, and of 33 bytes between
+/// two looks each takes 0.03 ms.
+const WAIT: Duration = Duration::from_millis(100);
+const WAIT_CYCLES: u64 = cycles(WAIT);
 
-/// How the wires are moved.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Config {
-    half_period_ns: u32,
-}
+/// Places in the queue of commands.
+const PLACES: u32 = 33;
 
-impl Config {
-    /// Standard mode, at most 100 kHz.
-    pub const STANDARD: Self = Self {
-        half_period_ns: 5_000,
-    };
-    /// Fast mode, at most 400 kHz: SCL is low for 1.3 µs and high for as long.
-    pub const FAST: Self = Self {
-        half_period_ns: 1_300,
-    };
-}
+/// The most bytes that one command receives.
+const MOST_RECEIVED: usize = 256;
 
 /// The master.
 pub struct I2c {
     registers: i2c::I2c,
     clock: Clock,
-    config: Config,
 }
 
 /// What went wrong on the bus.
@@ -55,6 +49,8 @@ pub enum Error {
     ClockStuck,
     /// SDA was low where it should have been free, and nine clocks did not free it.
     DataStuck,
+    /// The master did not go on.
+    Timeout,
 }
 
 impl fmt::Display for Error {
@@ -65,8 +61,15 @@ impl fmt::Display for Error {
                 f.write_str("i2c: no device acknowledged the address")
             }
             Self::NoAcknowledge(_) => f.write_str("i2c: the device did not acknowledge a byte"),
-            Self::ClockStuck => write!(f, "i2c: SCL was held low for {} ms", STRETCH.as_millis()),
+            Self::ClockStuck => {
+                f.write_str("i2c: SCL is held low longer than a device may stretch it")
+            }
             Self::DataStuck => f.write_str("i2c: SDA is held low and nine clocks did not free it"),
+            Self::Timeout => write!(
+                f,
+                "i2c: the master did not go on for {} ms",
+                WAIT.as_millis()
+            ),
         }
     }
 }
@@ -76,7 +79,7 @@ impl core::error::Error for Error {}
 impl embedded_hal::i2c::Error for Error {
     fn kind(&self) -> ErrorKind {
         match *self {
-            Self::Address(_) => ErrorKind::Other,
+            Self::Address(_) | Self::Timeout => ErrorKind::Other,
             Self::NoAcknowledge(source) => ErrorKind::NoAcknowledge(source),
             Self::ClockStuck | Self::DataStuck => ErrorKind::Bus,
         }
@@ -84,160 +87,276 @@ impl embedded_hal::i2c::Error for Error {
 }
 
 impl I2c {
-    /// A master on `registers`; both wires are let go.
+    /// A master on `registers`; both wires are let go. The end of each transaction is an interrupt.
     #[must_use]
-    pub fn new(registers: i2c::I2c, clock: Clock, config: Config) -> Self {
-        let mut master = Self {
-            registers,
-            clock,
-            config,
-        };
-        master.wires(true, true);
+    pub fn new(registers: i2c::I2c, clock: Clock) -> Self {
+        let master = Self { registers, clock };
+        master.clear();
+        master
+            .registers
+            .ev_enable()
+            .write(EvEnable::default().with_ended(true));
         master
     }
 
-    /// Clocks SCL until whoever holds SDA lets go of it, at most nine times, and ends with a stop.
-    ///
-    /// # Errors
-    /// When a wire stays low.
-    pub fn clear_bus(&mut self) -> Result<(), Error> {
-        self.wires(true, true);
-        for _ in 0..9 {
-            if self.registers.r().read().sda() {
+    fn clear(&self) {
+        self.registers
+            .control()
+            .write(Control::default().with_clear(true));
+    }
+
+    /// How it stands.
+    fn status(&self) -> Result<Status, Error> {
+        let status = self.registers.status().read();
+        if !status.failed() {
+            return Ok(status);
+        }
+        Err(match status.error() {
+            1 => Error::NoAcknowledge(NoAcknowledgeSource::Address),
+            2 => Error::NoAcknowledge(NoAcknowledgeSource::Data),
+            3 => Error::ClockStuck,
+            _ => Error::DataStuck,
+        })
+    }
+
+    /// All of a transaction.
+    async fn transact(&mut self, mut transfer: Transfer<'_, '_>) -> Result<(), Error> {
+        // What is left of one that was dropped.
+        if !matches!(self.status(), Ok(status) if !status.busy()) {
+            self.clear();
+        }
+        let mut deadline = None;
+        let result = poll_fn(|_| self.serve(&mut transfer, &mut deadline)).await;
+        if result.is_err() {
+            self.clear();
+        }
+        result
+    }
+
+    /// Puts commands into the queue, as there is room, and takes what has been received. One function for both: it runs in interrupts,
+    /// and the less code it has the less has to come from memory.
+    fn serve(
+        &self,
+        transfer: &mut Transfer,
+        deadline: &mut Option<Deadline>,
+    ) -> Poll<Result<(), Error>> {
+        let status = match self.status() {
+            Ok(status) => status,
+            Err(error) => return Poll::Ready(Err(error)),
+        };
+        let is_over = transfer.stage == Stage::Over && !status.busy();
+        let room = if status.busy() {
+            u32::from(status.room())
+        } else {
+            PLACES
+        };
+        let mut has_moved = false;
+        for command in (0..room).map_while(|_| transfer.next_command()) {
+            self.registers.command().write(command);
+            has_moved = true;
+        }
+        while let Some(slots) = transfer.slots() {
+            let mut received = 0;
+            for slot in slots.iter_mut() {
+                let answer = self.registers.answer().read();
+                if !answer.valid() {
+                    break;
+                }
+                *slot = answer.byte();
+                received += 1;
+            }
+            let is_full = received == slots.len();
+            has_moved |= received > 0;
+            transfer.received += received;
+            if !is_full {
                 break;
             }
-            self.wires(false, true);
-            self.release_clock(true)?;
         }
-        self.stop()?;
-        if self.registers.r().read().sda() {
-            Ok(())
-        } else {
-            Err(Error::DataStuck)
+        if is_over {
+            return Poll::Ready(Ok(()));
         }
-    }
-
-    /// Pulls each wire low or, where it is to be high, lets go of it, and waits half a period.
-    fn wires(&mut self, scl: bool, sda: bool) {
-        self.registers
-            .w()
-            .write(W::default().with_oe(true).with_scl(scl).with_sda(sda));
-        self.clock.delay_ns(self.config.half_period_ns);
-    }
-
-    /// Lets go of SCL and waits until it is high, which a device may delay, and half a period more.
-    fn release_clock(&mut self, sda: bool) -> Result<(), Error> {
-        let deadline = self.clock.after(STRETCH);
-        self.wires(true, sda);
-        if self.registers.r().read().scl() {
-            return Ok(());
-        }
-        while !self.registers.r().read().scl() {
-            if deadline.passed() {
-                return Err(Error::ClockStuck);
-            }
-        }
-        self.clock.delay_ns(self.config.half_period_ns);
-        Ok(())
-    }
-
-    /// A start, or in the middle of a transaction a repeated start. Leaves SCL low.
-    fn start(&mut self) -> Result<(), Error> {
-        self.release_clock(true)?;
-        self.wires(true, false);
-        self.wires(false, false);
-        Ok(())
-    }
-
-    fn stop(&mut self) -> Result<(), Error> {
-        self.wires(false, false);
-        self.release_clock(false)?;
-        self.wires(true, true);
-        Ok(())
-    }
-
-    /// One clock with SDA as given; what SDA was while SCL was high.
-    fn bit(&mut self, sda: bool) -> Result<bool, Error> {
-        self.wires(false, sda);
-        self.release_clock(sda)?;
-        let sampled = self.registers.r().read().sda();
-        self.wires(false, sda);
-        Ok(sampled)
-    }
-
-    /// Sends a byte; whether it was acknowledged.
-    fn send(&mut self, byte: u8) -> Result<bool, Error> {
-        for place in (0..8).rev() {
-            self.bit(byte >> place & 1 != 0)?;
-        }
-        self.bit(true).map(|high| !high)
-    }
-
-    /// Receives a byte and acknowledges it unless it is the `last`.
-    fn receive(&mut self, last: bool) -> Result<u8, Error> {
-        let mut byte = 0;
-        for _ in 0..8 {
-            byte = byte << 1 | u8::from(self.bit(true)?);
-        }
-        self.bit(last)?;
-        Ok(byte)
-    }
-
-    fn address(&mut self, address: u8, read: bool) -> Result<(), Error> {
-        self.start()?;
-        if self.send(address << 1 | u8::from(read))? {
-            Ok(())
-        } else {
-            Err(Error::NoAcknowledge(NoAcknowledgeSource::Address))
-        }
-    }
-
-    /// All of a transaction between the free bus and the stop.
-    fn operate(&mut self, address: u8, operations: &mut [Operation]) -> Result<(), Error> {
-        let mut direction = None;
-        let mut rest = operations.iter_mut().peekable();
-        while let Some(operation) = rest.next() {
-            let read = matches!(operation, Operation::Read(_));
-            if direction != Some(read) {
-                self.address(address, read)?;
-                direction = Some(read);
-            }
-            match operation {
-                Operation::Write(bytes) => {
-                    for byte in bytes.iter() {
-                        if !self.send(*byte)? {
-                            return Err(Error::NoAcknowledge(NoAcknowledgeSource::Data));
-                        }
-                    }
-                }
-                Operation::Read(buffer) => {
-                    let turns = !matches!(rest.peek(), Some(Operation::Read(_)));
-                    let count = buffer.len();
-                    for (index, slot) in buffer.iter_mut().enumerate() {
-                        *slot = self.receive(turns && index + 1 == count)?;
-                    }
+        match deadline {
+            Some(deadline) if !has_moved => {
+                if deadline.passed() {
+                    return Poll::Ready(Err(Error::Timeout));
                 }
             }
+            _ => *deadline = Some(self.clock.after_cycles(WAIT_CYCLES)),
         }
-        Ok(())
+        Poll::Pending
     }
+}
+
+/// What comes next of a transaction.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Stage {
+    /// Operations, or a start before them.
+    Operations,
+    /// The address after a start.
+    Address,
+    /// Nothing: the stop is in the queue.
+    Over,
+}
+
+/// A transaction on its way: commands that go into the queue, and bytes that come out of the other.
+struct Transfer<'o, 'b> {
+    address: u8,
+    operations: &'o mut [Operation<'b>],
+    stage: Stage,
+    /// Whether what was started last reads.
+    reads: Option<bool>,
+    /// The operation whose commands come next, and how many of its bytes have theirs.
+    operation: usize,
+    sent: usize,
+    /// The operation whose bytes come next, and how many it has.
+    receiver: usize,
+    received: usize,
+}
+
+impl<'o, 'b> Transfer<'o, 'b> {
+    fn new(address: u8, operations: &'o mut [Operation<'b>]) -> Self {
+        Self {
+            address,
+            operations,
+            stage: Stage::Operations,
+            reads: None,
+            operation: 0,
+            sent: 0,
+            receiver: 0,
+            received: 0,
+        }
+    }
+
+    /// The next command; none after the stop.
+    fn next_command(&mut self) -> Option<Command> {
+        match self.stage {
+            Stage::Over => return None,
+            Stage::Address => {
+                self.stage = Stage::Operations;
+                let reads = self.reads == Some(true);
+                return Some(write(self.address << 1 | u8::from(reads)));
+            }
+            Stage::Operations => {}
+        }
+        loop {
+            let Some(operation) = self.operations.get(self.operation) else {
+                self.stage = Stage::Over;
+                return Some(Command::default().with_operation(STOP));
+            };
+            let (reads, length) = match operation {
+                Operation::Read(buffer) => (true, buffer.len()),
+                Operation::Write(bytes) => (false, bytes.len()),
+            };
+            // A device cannot be asked for nothing: after its address it sends.
+            let is_nothing = reads && length == 0;
+            if self.reads != Some(reads) && !is_nothing {
+                self.reads = Some(reads);
+                self.stage = Stage::Address;
+                return Some(Command::default().with_operation(START));
+            }
+            if self.sent == length {
+                self.operation += 1;
+                self.sent = 0;
+                continue;
+            }
+            if let Operation::Write(bytes) = operation {
+                let byte = bytes.get(self.sent).copied().unwrap_or_default();
+                self.sent += 1;
+                return Some(write(byte));
+            }
+            let count = (length - self.sent).min(MOST_RECEIVED);
+            self.sent += count;
+            let command = Command::default()
+                .with_operation(READ)
+                // 1 to 256 bytes.
+                .with_argument((count - 1) as u8)
+                .with_more(self.sent < length || self.reads_on());
+            return Some(command);
+        }
+    }
+
+    /// Whether the next operation that does anything reads as this one.
+    fn reads_on(&self) -> bool {
+        let rest = self.operations.iter().skip(self.operation + 1);
+        rest.map_while(|operation| match operation {
+            Operation::Read(buffer) => Some(!buffer.is_empty()),
+            Operation::Write(_) => None,
+        })
+        .any(|has_bytes| has_bytes)
+    }
+
+    /// Where the next bytes go; none when all are there.
+    fn slots(&mut self) -> Option<&mut [u8]> {
+        loop {
+            let length = match self.operations.get(self.receiver)? {
+                Operation::Read(buffer) => buffer.len(),
+                Operation::Write(_) => 0,
+            };
+            if self.received < length {
+                break;
+            }
+            self.receiver += 1;
+            self.received = 0;
+        }
+        match self.operations.get_mut(self.receiver)? {
+            Operation::Read(buffer) => buffer.get_mut(self.received..),
+            Operation::Write(_) => None,
+        }
+    }
+}
+
+/// What a command does: its field `operation`.
+const START: u8 = 0;
+const WRITE: u8 = 1;
+const READ: u8 = 2;
+const STOP: u8 = 3;
+
+fn write(byte: u8) -> Command {
+    Command::default().with_operation(WRITE).with_argument(byte)
+}
+
+/// Clears the master's interrupt; its handler calls this.
+pub fn acknowledge() {
+    // SAFETY: nobody else writes the pending register.
+    let registers = unsafe { i2c::I2c::steal() };
+    registers
+        .ev_pending()
+        .write(EvPending::default().with_ended(true));
 }
 
 impl ErrorType for I2c {
     type Error = Error;
 }
 
-impl embedded_hal::i2c::I2c<SevenBitAddress> for I2c {
-    fn transaction(&mut self, address: u8, operations: &mut [Operation]) -> Result<(), Error> {
+impl embedded_hal_async::i2c::I2c<SevenBitAddress> for I2c {
+    async fn transaction(
+        &mut self,
+        address: u8,
+        operations: &mut [Operation<'_>],
+    ) -> Result<(), Error> {
         if address > 0x7f {
             return Err(Error::Address(address));
         }
-        if !self.registers.r().read().sda() {
-            self.clear_bus()?;
+        self.transact(Transfer::new(address, operations)).await
+    }
+}
+
+impl embedded_hal::i2c::I2c<SevenBitAddress> for I2c {
+    fn transaction(&mut self, address: u8, operations: &mut [Operation]) -> Result<(), Error> {
+        block_on(embedded_hal_async::i2c::I2c::transaction(
+            self, address, operations,
+        ))
+    }
+}
+
+/// Waits for what nobody else has to do anything for.
+fn block_on<T>(future: impl Future<Output = T>) -> T {
+    let mut future = pin!(future);
+    let mut context = Context::from_waker(Waker::noop());
+    loop {
+        if let Poll::Ready(output) = future.as_mut().poll(&mut context) {
+            return output;
         }
-        let result = self.operate(address, operations);
-        // The first error is the one that tells; the bus is freed in any case.
-        result.and(self.stop())
     }
 }
 

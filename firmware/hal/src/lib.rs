@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | [`timer`] | the uptime counter of `timer0` | [`DelayNs`](embedded_hal::delay::DelayNs) |
 //! | [`uart`] | `uart`, by interrupts and queues | [`Read`](embedded_io::Read), [`Write`](embedded_io::Write), both with time-outs |
-//! | [`i2c`] | `i2c`, bit by bit | [`I2c`](embedded_hal::i2c::I2c) |
+//! | [`i2c`] | `i2c`, by a queue of commands | [`I2c`](embedded_hal::i2c::I2c), which waits, and [`I2c`](embedded_hal_async::i2c::I2c), which does not |
 //! | [`gpio`] | `buttons`, `switches`, `leds` | [`InputPin`](embedded_hal::digital::InputPin), [`StatefulOutputPin`](embedded_hal::digital::StatefulOutputPin) |
 //! | [`interrupt`] | the CPU's interrupt lines | |
 //! | [`display`] | `scanout` and its two frames | |

@@ -32,6 +32,8 @@ pub struct Ability {
     pub round: bool,
     /// Fillets between spheres and what has faces.
     pub blend: bool,
+    /// Cones before the rays.
+    pub prepass: bool,
 }
 
 /// What a frame asks for and the gateware is built without.
@@ -47,6 +49,8 @@ pub enum Missing {
     Blend,
     /// Two eyes.
     Stereo,
+    /// Cones before the rays, or so fine ones.
+    Prepass,
 }
 
 impl fmt::Display for Missing {
@@ -62,6 +66,7 @@ impl fmt::Display for Missing {
             Self::Round => f.write_str("raymarcher: this gateware has no spheres"),
             Self::Blend => f.write_str("raymarcher: this gateware has no smooth unions"),
             Self::Stereo => f.write_str("raymarcher: this gateware has one eye"),
+            Self::Prepass => f.write_str("raymarcher: this gateware has no prepass"),
         }
     }
 }
@@ -147,6 +152,7 @@ impl Marcher {
                     stereo: caps.stereo(),
                     round: caps.round(),
                     blend: caps.blend(),
+                    prepass: caps.prepass(),
                 };
                 Ok(Self {
                     registers,
@@ -178,6 +184,7 @@ impl Marcher {
             stereo,
             round,
             blend,
+            prepass,
             ..
         } = self.ability;
         match setup.solid {
@@ -194,6 +201,11 @@ impl Marcher {
         if setup.stereo.is_some() && !stereo {
             return Err(Missing::Stereo);
         }
+        if let Some(cones) = &setup.cones
+            && !(prepass && cones.is_fitting(setup))
+        {
+            return Err(Missing::Prepass);
+        }
         Ok(())
     }
 
@@ -202,6 +214,22 @@ impl Marcher {
     /// # Errors
     /// What is missing; then nothing has changed.
     pub fn set_field(&mut self, setup: &Setup, palette: &Palette) -> Result<(), Missing> {
+        self.check(setup)?;
+        if !self.has_tables(palette) {
+            self.set_tables(palette);
+        }
+        self.set_field_with_tables_held(setup, palette)
+    }
+
+    /// The same where the raymarcher [has the palette's tables](Self::has_tables), which are not looked at.
+    ///
+    /// # Errors
+    /// As [`set_field`](Self::set_field).
+    pub fn set_field_with_tables_held(
+        &mut self,
+        setup: &Setup,
+        palette: &Palette,
+    ) -> Result<(), Missing> {
         self.check(setup)?;
         let registers = &self.registers;
         let solid = match setup.solid {
@@ -250,6 +278,10 @@ impl Marcher {
         let origins =
             [left.origin, right.origin].map(|origin| origin.map(|x| x as u32 & 0x1FF_FFFF));
         let first = [left.first, right.first].map(|first| first.map(|x| x as u32));
+        let (offset, spread) = setup
+            .cones
+            .map(|cones| (cones.offset, cones.spread))
+            .unwrap_or_default();
         for (register, value) in [
             (registers.far(), setup.tuning.far),
             (registers.near(), setup.near),
@@ -280,6 +312,9 @@ impl Marcher {
             (registers.down_x(), down[0] as u32),
             (registers.down_y(), down[1] as u32),
             (registers.down_z(), down[2] as u32),
+            (registers.cone_offset_x(), offset[0] as u32),
+            (registers.cone_offset_y(), offset[1] as u32),
+            (registers.cone_offset_z(), offset[2] as u32),
             (registers.colour_0(), colour(palette.faces[0])),
             (registers.colour_1(), colour(palette.faces[1])),
             (registers.colour_2(), colour(palette.faces[2])),
@@ -292,21 +327,24 @@ impl Marcher {
         ] {
             register.write(value);
         }
+        registers.cone_spread().write(spread as u16);
         registers.fog_shift().write(palette.fog_shift as u8);
         registers.depth_scale().write(
             DepthScale::default()
                 .with_mantissa(setup.depth.mantissa)
                 .with_exponent(setup.depth.exponent as u8 & 0x3F),
         );
-        self.set_tables([palette.fog, palette.occlusion]);
         let stereo = match setup.stereo {
             None => 0,
             Some(Tint::RedBlue) => 1,
             Some(Tint::RedCyan) => 2,
         };
-        self.registers
-            .control()
-            .write(Control::default().with_enable(true).with_stereo(stereo));
+        self.registers.control().write(
+            Control::default()
+                .with_enable(true)
+                .with_stereo(stereo)
+                .with_prepass(setup.cones.is_some()),
+        );
         Ok(())
     }
 
@@ -338,11 +376,15 @@ impl Marcher {
         }
     }
 
-    /// Writes the tables, where they hold something else.
-    fn set_tables(&mut self, tables: [[u8; 256]; 2]) {
-        if self.tables == Some(tables) {
-            return;
-        }
+    /// Whether the tables are a palette's. To find out takes longer than to write a frame's registers.
+    #[must_use]
+    pub fn has_tables(&self, palette: &Palette) -> bool {
+        let held = self.tables.as_ref();
+        held.is_some_and(|[fog, occlusion]| *fog == palette.fog && *occlusion == palette.occlusion)
+    }
+
+    fn set_tables(&mut self, palette: &Palette) {
+        let tables = [palette.fog, palette.occlusion];
         for (entry, &part) in (0..).zip(tables.as_flattened()) {
             self.registers
                 .table()

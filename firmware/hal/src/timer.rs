@@ -4,14 +4,20 @@
 //! handle that anybody may hold, also an interrupt handler: a reading that another one disturbs is still a time
 //! between the two.
 
+use core::future::poll_fn;
+use core::task::Poll;
 use core::time::Duration;
 
 use embedded_hal::delay::DelayNs;
 use litex_pac::constants::CONFIG_CLOCK_FREQUENCY;
-use litex_pac::timer0::Timer0;
+use litex_pac::timer0::{EvEnable, EvPending, Timer0};
 
 /// Clock cycles of the SoC a second.
 pub const FREQUENCY: u32 = CONFIG_CLOCK_FREQUENCY;
+
+/// Clock cycles in 4 µs: a whole number.
+const QUARTERS: u64 = FREQUENCY as u64 / 250_000;
+const _: () = assert!(FREQUENCY.is_multiple_of(250_000));
 
 /// The SoC's uptime.
 #[derive(Clone, Copy)]
@@ -63,9 +69,15 @@ impl Clock {
     /// The point in time `span` from now.
     #[must_use]
     pub fn after(self, span: Duration) -> Deadline {
+        self.after_cycles(cycles(span))
+    }
+
+    /// The point in time so many cycles from now.
+    #[must_use]
+    pub fn after_cycles(self, cycles: u64) -> Deadline {
         Deadline {
             clock: self,
-            cycles: self.cycles().saturating_add(cycles(span)),
+            cycles: self.cycles().saturating_add(cycles),
         }
     }
 }
@@ -93,12 +105,71 @@ impl DelayNs for Clock {
     }
 }
 
+/// Delays are over at the first look after them, which an interrupt of `timer0` asks for. There is one such interrupt: of several
+/// delays at once the last one has it, and the others wait for another look.
+impl embedded_hal_async::delay::DelayNs for Clock {
+    async fn delay_ns(&mut self, ns: u32) {
+        self.wait(cycles(Duration::from_nanos(ns.into()))).await;
+    }
+
+    async fn delay_us(&mut self, us: u32) {
+        self.wait((u64::from(us) * QUARTERS).div_ceil(4)).await;
+    }
+
+    async fn delay_ms(&mut self, ms: u32) {
+        self.wait(u64::from(ms) * 250 * QUARTERS).await;
+    }
+}
+
+impl Clock {
+    async fn wait(self, cycles: u64) {
+        let deadline = self.after_cycles(cycles);
+        // One that is too early makes somebody look in vain.
+        alarm(u32::try_from(cycles).unwrap_or(u32::MAX));
+        poll_fn(|_| {
+            if deadline.passed() {
+                Poll::Ready(())
+            } else {
+                Poll::Pending
+            }
+        })
+        .await;
+    }
+}
+
+/// Asks for the interrupt of `timer0` in so many cycles, and a few more.
+fn alarm(cycles: u32) {
+    // SAFETY: nobody reads these registers, and whoever writes them last has the interrupt.
+    let timer = unsafe { Timer0::steal() };
+    timer.en().write(false);
+    timer.load().write(cycles.saturating_add(1));
+    timer.en().write(true);
+    timer.ev_enable().write(EvEnable::default().with_zero(true));
+}
+
+/// Clears the interrupt of `timer0`; its handler calls this.
+pub fn acknowledge() {
+    // SAFETY: nobody else writes the pending register.
+    let timer = unsafe { Timer0::steal() };
+    timer
+        .ev_pending()
+        .write(EvPending::default().with_zero(true));
+}
+
+impl glint_core::mpu6050::Time for Clock {
+    fn now_us(&self) -> u64 {
+        // 4/QUARTERS with 64 fraction bits, rounded up: exact below 2^55 cycles, 14 years. A division would take a thousand cycles.
+        const INVERSE: u128 = (4_u128 << 64).div_ceil(QUARTERS as u128);
+        ((u128::from(self.cycles()) * INVERSE) >> 64) as u64
+    }
+}
+
 /// A span in clock cycles, rounded up to the next cycle; it saturates.
 #[must_use]
-pub fn cycles(span: Duration) -> u64 {
-    let frequency = u64::from(FREQUENCY);
+pub const fn cycles(span: Duration) -> u64 {
+    let frequency = FREQUENCY as u64;
     // Below a second in nanoseconds times 2^27: no overflow.
-    let part = (u64::from(span.subsec_nanos()) * frequency).div_ceil(1_000_000_000);
+    let part = (span.subsec_nanos() as u64 * frequency).div_ceil(1_000_000_000);
     span.as_secs()
         .saturating_mul(frequency)
         .saturating_add(part)
@@ -179,6 +250,54 @@ pub(crate) mod tests {
             step: 1,
         });
         assert_eq!(clock.cycles(), 5 << 32);
+    }
+
+    /// The uptime, and what was written to `load` last.
+    struct Alarm(Uptime, std::rc::Rc<core::cell::Cell<u32>>);
+
+    impl Bus for Alarm {
+        fn read(&mut self, address: usize) -> u32 {
+            self.0.read(address).unwrap()
+        }
+
+        fn write(&mut self, address: usize, value: u32) {
+            self.0.write(address);
+            if address == Timer0::BASE {
+                self.1.set(value);
+            }
+        }
+    }
+
+    #[test]
+    fn a_delay_is_over_in_time_and_asks_to_be_woken() {
+        use core::future::Future;
+        use core::task::{Context, Waker};
+
+        let asked = std::rc::Rc::new(core::cell::Cell::new(0));
+        bus::connect(Alarm(Uptime::new(1_000), asked.clone()));
+        let mut clock = clock();
+        let mut delay = core::pin::pin!(embedded_hal_async::delay::DelayNs::delay_us(
+            &mut clock, 100
+        ));
+        let mut context = Context::from_waker(Waker::noop());
+        let mut looks = 1;
+        while delay.as_mut().poll(&mut context).is_pending() {
+            looks += 1;
+        }
+        // 8125 cycles, of which each look takes 1000.
+        assert_eq!((looks, asked.get()), (9, 8_126));
+    }
+
+    #[test]
+    fn the_time_is_in_microseconds() {
+        bus::connect(Uptime {
+            now: u64::from(FREQUENCY) * 3_600 - 2,
+            latched: 0,
+            step: 1,
+        });
+        use glint_core::mpu6050::Time;
+        let clock = clock();
+        assert_eq!(clock.now_us(), 3_600_000_000);
     }
 
     #[test]

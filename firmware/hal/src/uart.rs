@@ -104,6 +104,11 @@ impl<const RX: usize, const TX: usize> Uart<RX, TX> {
         self.with(|state| !state.received.is_empty())
     }
 
+    /// Whether all that was queued has been sent.
+    pub fn has_sent(&self) -> bool {
+        self.with(|state| state.to_send.is_empty())
+    }
+
     /// Bytes dropped since the start because the receive queue was full; it saturates.
     pub fn lost(&self) -> u32 {
         self.with(|state| state.lost)

@@ -2,7 +2,7 @@
 // fails when this file is not what the generator makes of the SoC.
 
 /// CRC-32 of the SoC's pinned register map. A SoC whose `identity.build_id` differs has other registers.
-pub const BUILD_ID: u32 = 0x9e94_b554;
+pub const BUILD_ID: u32 = 0x8b0d_01ba;
 
 /// The interrupt lines, numbered by their bit in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,11 +20,13 @@ pub enum Interrupt {
     Triangle = 4,
     /// An enabled event of `raymarch` is pending.
     Raymarch = 5,
+    /// An enabled event of `i2c` is pending.
+    I2c = 6,
 }
 
 impl Interrupt {
     /// Every interrupt, by number.
-    pub const ALL: [Self; 6] = [Self::Uart, Self::Timer0, Self::Buttons, Self::Scanout, Self::Triangle, Self::Raymarch];
+    pub const ALL: [Self; 7] = [Self::Uart, Self::Timer0, Self::Buttons, Self::Scanout, Self::Triangle, Self::Raymarch, Self::I2c];
 }
 
 /// Constants of the SoC.
@@ -38,7 +40,7 @@ pub mod constants {
     /// `config_clock_frequency`.
     pub const CONFIG_CLOCK_FREQUENCY: u32 = 81_250_000;
     /// `config_cpu_interrupts`.
-    pub const CONFIG_CPU_INTERRUPTS: u32 = 6;
+    pub const CONFIG_CPU_INTERRUPTS: u32 = 7;
     /// `config_cpu_reset_addr`.
     pub const CONFIG_CPU_RESET_ADDR: u32 = 0;
     /// `config_csr_alignment`.
@@ -1469,28 +1471,68 @@ pub mod i2c {
             Self { _private: () }
         }
 
-        /// `w`, 3 bits.
+        /// `command`, 11 bits: A write puts a command into the queue of 33; one that has no room, see `status`, is lost.
         #[inline]
         #[must_use]
-        pub const fn w(&self) -> Register<W, ReadWrite> {
+        pub const fn command(&self) -> Register<Command, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
             unsafe { Register::at(0xf000_2800) }
         }
 
-        /// `r`, 2 bits.
+        /// `answer`, 9 bits: A read takes the next received byte out of the queue of 33; the master waits while that is full.
         #[inline]
         #[must_use]
-        pub const fn r(&self) -> Register<R, ReadOnly> {
+        pub const fn answer(&self) -> Register<Answer, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
             unsafe { Register::at(0xf000_2804) }
         }
+
+        /// `control`, 1 bit: Operation.
+        #[inline]
+        #[must_use]
+        pub const fn control(&self) -> Register<Control, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_2808) }
+        }
+
+        /// `status`, 11 bits: State.
+        #[inline]
+        #[must_use]
+        pub const fn status(&self) -> Register<Status, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_280c) }
+        }
+
+        /// `ev_status`, 1 bit: Level of each event's trigger.
+        #[inline]
+        #[must_use]
+        pub const fn ev_status(&self) -> Register<EvStatus, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_2810) }
+        }
+
+        /// `ev_pending`, 1 bit: Events that have occurred; writing a 1 clears an event.
+        #[inline]
+        #[must_use]
+        pub const fn ev_pending(&self) -> Register<EvPending, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_2814) }
+        }
+
+        /// `ev_enable`, 1 bit: Events that raise the interrupt.
+        #[inline]
+        #[must_use]
+        pub const fn ev_enable(&self) -> Register<EvEnable, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_2818) }
+        }
     }
 
-    /// A value of `w`.
+    /// A value of `command`.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-    pub struct W(u32);
+    pub struct Command(u32);
 
-    impl Value for W {
+    impl Value for Command {
         fn from_bits(bits: u32) -> Self {
             Self(bits)
         }
@@ -1500,55 +1542,173 @@ pub mod i2c {
         }
     }
 
-    impl W {
-        /// `scl`, bit 0: Drives the state of the SCL pad.
+    impl Command {
+        /// `argument`, bits 7 to 0: Of `write` and `read`.
+        #[inline]
+        #[must_use]
+        pub const fn argument(self) -> u8 {
+            (self.0 & 0xff) as u8
+        }
+
+        /// This value with another `argument`.
+        #[inline]
+        #[must_use]
+        pub const fn with_argument(self, value: u8) -> Self {
+            Self(self.0 & !0xff | value as u32 & 0xff)
+        }
+
+        /// `operation`, bits 9 to 8: What to do.
+        #[inline]
+        #[must_use]
+        pub const fn operation(self) -> u8 {
+            ((self.0 >> 8) & 0x3) as u8
+        }
+
+        /// This value with another `operation`: the low 2 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_operation(self, value: u8) -> Self {
+            Self(self.0 & !(0x3 << 8) | (value as u32 & 0x3) << 8)
+        }
+
+        /// `more`, bit 10: A `read` acknowledges its last byte too: another one follows.
+        #[inline]
+        #[must_use]
+        pub const fn more(self) -> bool {
+            (self.0 >> 10) & 1 != 0
+        }
+
+        /// This value with another `more`.
+        #[inline]
+        #[must_use]
+        pub const fn with_more(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 10) | (value as u32 & 0x1) << 10)
+        }
+    }
+
+    /// A value of `answer`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct Answer(u32);
+
+    impl Value for Answer {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl Answer {
+        /// `byte`, bits 7 to 0: The byte.
+        #[inline]
+        #[must_use]
+        pub const fn byte(self) -> u8 {
+            (self.0 & 0xff) as u8
+        }
+
+        /// `valid`, bit 8: There is one.
+        #[inline]
+        #[must_use]
+        pub const fn valid(self) -> bool {
+            (self.0 >> 8) & 1 != 0
+        }
+    }
+
+    /// A value of `control`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct Control(u32);
+
+    impl Value for Control {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl Control {
+        /// `clear`, bit 0: Write 1 to let go of the wires, empty both queues and forget the error.
+        #[inline]
+        #[must_use]
+        pub const fn clear(self) -> bool {
+            self.0 & 1 != 0
+        }
+
+        /// This value with another `clear`.
+        #[inline]
+        #[must_use]
+        pub const fn with_clear(self, value: bool) -> Self {
+            Self(self.0 & !0x1 | value as u32 & 0x1)
+        }
+    }
+
+    /// A value of `status`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct Status(u32);
+
+    impl Value for Status {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl Status {
+        /// `scl`, bit 0: State of the SCL wire.
         #[inline]
         #[must_use]
         pub const fn scl(self) -> bool {
             self.0 & 1 != 0
         }
 
-        /// This value with another `scl`.
-        #[inline]
-        #[must_use]
-        pub const fn with_scl(self, value: bool) -> Self {
-            Self(self.0 & !0x1 | value as u32 & 0x1)
-        }
-
-        /// `oe`, bit 1: Output Enable - if 0, both the SCL and SDA output drivers are disconnected.
-        #[inline]
-        #[must_use]
-        pub const fn oe(self) -> bool {
-            (self.0 >> 1) & 1 != 0
-        }
-
-        /// This value with another `oe`.
-        #[inline]
-        #[must_use]
-        pub const fn with_oe(self, value: bool) -> Self {
-            Self(self.0 & !(0x1 << 1) | (value as u32 & 0x1) << 1)
-        }
-
-        /// `sda`, bit 2: Drives the state of the SDA pad.
+        /// `sda`, bit 1: State of the SDA wire.
         #[inline]
         #[must_use]
         pub const fn sda(self) -> bool {
+            (self.0 >> 1) & 1 != 0
+        }
+
+        /// `room`, bit 2: There is room for a command.
+        #[inline]
+        #[must_use]
+        pub const fn room(self) -> bool {
             (self.0 >> 2) & 1 != 0
         }
 
-        /// This value with another `sda`.
+        /// `busy`, bit 3: Between a start and the end of the stop, or commands wait.
         #[inline]
         #[must_use]
-        pub const fn with_sda(self, value: bool) -> Self {
-            Self(self.0 & !(0x1 << 2) | (value as u32 & 0x1) << 2)
+        pub const fn busy(self) -> bool {
+            (self.0 >> 3) & 1 != 0
+        }
+
+        /// `failed`, bit 4: An error has ended the transaction; nothing more is done until `clear`.
+        #[inline]
+        #[must_use]
+        pub const fn failed(self) -> bool {
+            (self.0 >> 4) & 1 != 0
+        }
+
+        /// `error`, bits 10 to 8: The error.
+        #[inline]
+        #[must_use]
+        pub const fn error(self) -> u8 {
+            ((self.0 >> 8) & 0x7) as u8
         }
     }
 
-    /// A value of `r`.
+    /// A value of `ev_status`.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-    pub struct R(u32);
+    pub struct EvStatus(u32);
 
-    impl Value for R {
+    impl Value for EvStatus {
         fn from_bits(bits: u32) -> Self {
             Self(bits)
         }
@@ -1558,19 +1718,72 @@ pub mod i2c {
         }
     }
 
-    impl R {
-        /// `sda`, bit 0: State of the SDA wire.
+    impl EvStatus {
+        /// `ended`, bit 0: Level of the `ended` event
         #[inline]
         #[must_use]
-        pub const fn sda(self) -> bool {
+        pub const fn ended(self) -> bool {
+            self.0 & 1 != 0
+        }
+    }
+
+    /// A value of `ev_pending`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct EvPending(u32);
+
+    impl Value for EvPending {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl EvPending {
+        /// `ended`, bit 0: A stop has been made, or an error has ended the transaction.
+        #[inline]
+        #[must_use]
+        pub const fn ended(self) -> bool {
             self.0 & 1 != 0
         }
 
-        /// `scl`, bit 1: State of the SCL wire.
+        /// This value with another `ended`.
         #[inline]
         #[must_use]
-        pub const fn scl(self) -> bool {
-            (self.0 >> 1) & 1 != 0
+        pub const fn with_ended(self, value: bool) -> Self {
+            Self(self.0 & !0x1 | value as u32 & 0x1)
+        }
+    }
+
+    /// A value of `ev_enable`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct EvEnable(u32);
+
+    impl Value for EvEnable {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl EvEnable {
+        /// `ended`, bit 0: Write a `1` to enable the `ended` Event
+        #[inline]
+        #[must_use]
+        pub const fn ended(self) -> bool {
+            self.0 & 1 != 0
+        }
+
+        /// This value with another `ended`.
+        #[inline]
+        #[must_use]
+        pub const fn with_ended(self, value: bool) -> Self {
+            Self(self.0 & !0x1 | value as u32 & 0x1)
         }
     }
 }
@@ -3302,7 +3515,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5800) }
         }
 
-        /// `caps`, 12 bits: What this block can do.
+        /// `caps`, 13 bits: What this block can do.
         #[inline]
         #[must_use]
         pub const fn caps(&self) -> Register<Caps, ReadOnly> {
@@ -3310,7 +3523,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5804) }
         }
 
-        /// `control`, 3 bits: Operation. This and all other registers have to hold while a raster pass runs.
+        /// `control`, 4 bits: Operation. This and all other registers have to hold while a raster pass runs.
         #[inline]
         #[must_use]
         pub const fn control(&self) -> Register<Control, ReadWrite> {
@@ -3406,7 +3619,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5834) }
         }
 
-        /// `near`, 23 bits: Distance of the near plane times 2^e, u11.12.
+        /// `near`, 23 bits: Distance of the near plane times 2^e, or of the nearest corner of the box, u11.12.
         #[inline]
         #[must_use]
         pub const fn near(&self) -> Register<u32, ReadWrite> {
@@ -3630,12 +3843,44 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_58a4) }
         }
 
+        /// `cone_offset_x`, 32 bits: What D grows by from a block's first pixel to its middle, x, s2.30.
+        #[inline]
+        #[must_use]
+        pub const fn cone_offset_x(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58a8) }
+        }
+
+        /// `cone_offset_y`, 32 bits: What D grows by from a block's first pixel to its middle, y, s2.30.
+        #[inline]
+        #[must_use]
+        pub const fn cone_offset_y(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58ac) }
+        }
+
+        /// `cone_offset_z`, 32 bits: What D grows by from a block's first pixel to its middle, z, s2.30.
+        #[inline]
+        #[must_use]
+        pub const fn cone_offset_z(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58b0) }
+        }
+
+        /// `cone_spread`, 14 bits: The most by which D differs from that in the middle of a block, u0.18.
+        #[inline]
+        #[must_use]
+        pub const fn cone_spread(&self) -> Register<u16, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58b4) }
+        }
+
         /// `depth_scale`, 23 bits: K for depths in field units times 2^e: mantissa * 2^exponent.
         #[inline]
         #[must_use]
         pub const fn depth_scale(&self) -> Register<DepthScale, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58a8) }
+            unsafe { Register::at(0xf000_58b8) }
         }
 
         /// `colour_0`, 24 bits: Colour of faces whose normal points against x: red in bits 0 to 7, green, blue.
@@ -3643,7 +3888,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_0(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58ac) }
+            unsafe { Register::at(0xf000_58bc) }
         }
 
         /// `colour_1`, 24 bits: Colour of faces whose normal points along x: red in bits 0 to 7, green, blue.
@@ -3651,7 +3896,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_1(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58b0) }
+            unsafe { Register::at(0xf000_58c0) }
         }
 
         /// `colour_2`, 24 bits: Colour of faces whose normal points against y: red in bits 0 to 7, green, blue.
@@ -3659,7 +3904,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_2(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58b4) }
+            unsafe { Register::at(0xf000_58c4) }
         }
 
         /// `colour_3`, 24 bits: Colour of faces whose normal points along y: red in bits 0 to 7, green, blue.
@@ -3667,7 +3912,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_3(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58b8) }
+            unsafe { Register::at(0xf000_58c8) }
         }
 
         /// `colour_4`, 24 bits: Colour of faces whose normal points against z: red in bits 0 to 7, green, blue.
@@ -3675,7 +3920,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_4(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58bc) }
+            unsafe { Register::at(0xf000_58cc) }
         }
 
         /// `colour_5`, 24 bits: Colour of faces whose normal points along z: red in bits 0 to 7, green, blue.
@@ -3683,7 +3928,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_5(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58c0) }
+            unsafe { Register::at(0xf000_58d0) }
         }
 
         /// `colour_6`, 24 bits: Colour of rays that were given up: red in bits 0 to 7, green, blue.
@@ -3691,7 +3936,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_6(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58c4) }
+            unsafe { Register::at(0xf000_58d4) }
         }
 
         /// `colour_7`, 24 bits: Colour of the zenith: red in bits 0 to 7, green, blue.
@@ -3699,7 +3944,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_7(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58c8) }
+            unsafe { Register::at(0xf000_58d8) }
         }
 
         /// `horizon`, 24 bits: Colour of the horizon, and of the fog.
@@ -3707,7 +3952,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn horizon(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58cc) }
+            unsafe { Register::at(0xf000_58dc) }
         }
 
         /// `fog_shift`, 3 bits: An entry of the fog is for 2^this field units times 2^e.
@@ -3715,7 +3960,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn fog_shift(&self) -> Register<u8, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58d0) }
+            unsafe { Register::at(0xf000_58e0) }
         }
 
         /// `table`, 17 bits: Writing sets an entry of fog or light.
@@ -3723,7 +3968,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn table(&self) -> Register<Table, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58d4) }
+            unsafe { Register::at(0xf000_58e4) }
         }
 
         /// `sphere`, 29 bits: Writing sets a constant of what is round.
@@ -3731,7 +3976,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn sphere(&self) -> Register<Sphere, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58d8) }
+            unsafe { Register::at(0xf000_58e8) }
         }
 
         /// `cycles_busy`, 32 bits: Clock cycles in which a field was drawn, modulo 2^32.
@@ -3739,7 +3984,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn cycles_busy(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58dc) }
+            unsafe { Register::at(0xf000_58ec) }
         }
 
         /// `cycles_stalled`, 32 bits: Clock cycles in which a ray waited as no end of one was taken, modulo 2^32.
@@ -3747,7 +3992,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn cycles_stalled(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58e0) }
+            unsafe { Register::at(0xf000_58f0) }
         }
 
         /// `items_in`, 32 bits: Rays, modulo 2^32.
@@ -3755,7 +4000,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn items_in(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58e4) }
+            unsafe { Register::at(0xf000_58f4) }
         }
 
         /// `items_out`, 32 bits: Pixels given to the band buffer, each eye's, modulo 2^32.
@@ -3763,7 +4008,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn items_out(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58e8) }
+            unsafe { Register::at(0xf000_58f8) }
         }
 
         /// `cycles_idle`, 32 bits: Clock cycles, of each lane, in which it had room for a ray and none came, modulo 2^32.
@@ -3771,7 +4016,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn cycles_idle(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58ec) }
+            unsafe { Register::at(0xf000_58fc) }
         }
 
         /// `evaluations`, 32 bits: Evaluations of the field: slots of the lanes that were occupied, modulo 2^32.
@@ -3779,7 +4024,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn evaluations(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58f0) }
+            unsafe { Register::at(0xf000_5900) }
         }
 
         /// `hits`, 32 bits: Rays that came to a surface, modulo 2^32.
@@ -3787,7 +4032,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn hits(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58f4) }
+            unsafe { Register::at(0xf000_5904) }
         }
 
         /// `misses`, 32 bits: Rays that went by, modulo 2^32.
@@ -3795,7 +4040,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn misses(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58f8) }
+            unsafe { Register::at(0xf000_5908) }
         }
 
         /// `undecided`, 32 bits: Rays that were given up, modulo 2^32.
@@ -3803,7 +4048,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn undecided(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58fc) }
+            unsafe { Register::at(0xf000_590c) }
         }
     }
 
@@ -3863,6 +4108,13 @@ pub mod raymarch {
         pub const fn blend(self) -> bool {
             (self.0 >> 11) & 1 != 0
         }
+
+        /// `prepass`, bit 12: Cones before the rays.
+        #[inline]
+        #[must_use]
+        pub const fn prepass(self) -> bool {
+            (self.0 >> 12) & 1 != 0
+        }
     }
 
     /// A value of `control`.
@@ -3906,6 +4158,20 @@ pub mod raymarch {
         #[must_use]
         pub const fn with_stereo(self, value: u8) -> Self {
             Self(self.0 & !(0x3 << 1) | (value as u32 & 0x3) << 1)
+        }
+
+        /// `prepass`, bit 3: A cone for each block of pixels says where its rays begin.
+        #[inline]
+        #[must_use]
+        pub const fn prepass(self) -> bool {
+            (self.0 >> 3) & 1 != 0
+        }
+
+        /// This value with another `prepass`.
+        #[inline]
+        #[must_use]
+        pub const fn with_prepass(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 3) | (value as u32 & 0x1) << 3)
         }
     }
 

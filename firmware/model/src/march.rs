@@ -8,10 +8,11 @@
 //! below 1.
 //!
 //! [`Setup`] makes the constants of a frame, [`Ray`] is where a pixel's ray begins, [`Setup::march`] how it ends,
-//! [`paint()`] what it shows.
+//! [`paint()`] what it shows. [`Rays`] begin farther on after a [`Cone`] for each block of pixels.
 
 mod appearance;
 mod blend;
+mod cone;
 mod field;
 mod light;
 mod paint;
@@ -21,6 +22,7 @@ mod setup;
 mod sphere;
 
 pub use blend::{Beside, Blend};
+pub use cone::{Cone, Cones, Prepass, Rays};
 pub use field::{Sample, Solid, Surface};
 pub use glint_core::stereo::{Stereo, Tint};
 pub use light::{Light, Lights};

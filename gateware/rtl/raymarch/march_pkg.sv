@@ -10,6 +10,10 @@ package march_pkg;
     localparam int unsigned POINT_BITS     = 22;
     localparam int unsigned WIDE_BITS      = 25;
     localparam int unsigned DIRECTION_BITS = 18;
+    // How much wider a cone gets with each step of t, u0.16.
+    localparam int unsigned SPREAD_BITS    = 16;
+    // The evaluations after which a cone ends at the latest.
+    localparam int unsigned CONE_STEPS     = 192;
 
     // A pixel: its band's parity, its line in the band, its column, and the eye: 0 the left one, or the only one.
     typedef struct packed {
@@ -21,8 +25,9 @@ package march_pkg;
 
     localparam int unsigned PLACE_BITS = 19;
 
-    // A ray at its beginning.
+    // A ray at its beginning, or a cone: then its number is in the low bits of its place, and `spread` is not 0.
     typedef struct packed {
+        logic [SPREAD_BITS-1:0]    spread;
         place_t                    place;
         logic [9:0]                length;
         logic [T_BITS-1:0]         start;

@@ -12,14 +12,20 @@
 // With ROUND, and while `round` is high, it is the Euclidean length that counts: the sum of three squares takes the place of the largest
 // part, and a second table that of the first one.
 //
-// `start` (one clock, not while `busy`) begins the frame; parameters hold until it has ended. Latency 24 clocks, 27 with ROUND,
+// While `cones` is high there are cones instead, in the middle of blocks of 2^`block` pixels each way, in the same order, numbered:
+// columns and lines are those of blocks then, `offset` and `spread` say what a block is in D, and rays begin at the near plane. With
+// `prepass`, and without `cones`, the near plane of a block is what its cone has cleared: it is asked for by number, and comes 2 clocks
+// later. `fine`: there are 160 blocks in a line and not 80.
+//
+// `start` (one clock, not while `busy`) begins the frame; parameters hold until it has ended. Latency 25 clocks, 28 with ROUND,
 // throughput a ray a clock. Out: a stream, valid/ready, a ray stays until it has moved. `rst` ends the frame.
 
 `default_nettype none
 
 module ray_generator #(
-    parameter bit ROUND  = 1'b0,
-    parameter bit STEREO = 1'b1
+    parameter bit ROUND   = 1'b0,
+    parameter bit STEREO  = 1'b1,
+    parameter bit PREPASS = 1'b0
 ) (
     input  wire                       clk,
     input  wire                       rst,
@@ -38,6 +44,16 @@ module ray_generator #(
     // Of both eyes: where they are, and how far outside of the box along each axis.
     input  wire  [1:0][2:0][24:0]     origins,
     input  wire  [1:0][2:0][23:0]     outside,
+    // Cones.
+    input  wire                       prepass,
+    input  wire                       cones,
+    input  wire                       fine,
+    input  wire  [2:0]                block,
+    input  wire  [2:0][31:0]          offset,
+    input  wire  [13:0]               spread,
+    output logic                      enable,
+    output logic [13:0]               number,
+    input  wire  [22:0]               cleared,
     // Rays.
     output logic                      out_valid,
     input  wire                       out_ready,
@@ -47,40 +63,54 @@ module ray_generator #(
     localparam int unsigned SUM  = ROUND ? 3 : 0;
     localparam int unsigned LAST = SUM + 23;
 
-    logic          enable, running, ends_line, ends_eye, ends_band, ends;
+    logic          begins, running, ends_line, ends_eye, ends_band, ends;
     logic [LAST:0] valid;
-    march_pkg::place_t place;
+    march_pkg::place_t place, place_0;
     logic [5:0]    band;
-    logic [2:0][31:0] d, row, next_row;
+    logic [2:0][31:0] d, row, next_row, step_across, step_down;
+
+    // They hold from the clock after `start`.
+    if (PREPASS) begin : steps_of_blocks
+        always_ff @(posedge clk)
+            for (int i = 0; i < 3; i++) begin
+                step_across[i] <= cones ? across[i] << block : across[i];
+                step_down[i]   <= cones ? down[i] << block : down[i];
+            end
+    end else begin : steps_of_pixels
+        assign step_across = across;
+        assign step_down   = down;
+    end
 
     assign ends_line = place.column == last_column;
     assign ends_eye  = ends_line && (!STEREO || !stereo || place.eye);
     assign ends_band = ends_eye && place.line == last_line;
     assign ends      = ends_band && band == last_band;
     assign valid[0]  = running;
-    assign busy      = valid != '0 || out_valid;
+    assign busy      = begins || valid != '0 || out_valid;
 
     always_ff @(posedge clk) begin
+        begins <= start;
         if (start) begin
-            running <= 1'b1;
-            place   <= '0;
-            band    <= '0;
-            d       <= first[0];
-            row     <= '0;
-            next_row <= down;
-        end else if (running && enable) begin
+            place    <= '0;
+            band     <= '0;
+            next_row <= PREPASS && cones ? offset : '0;
+        end
+        if (begins || running && enable && ends_eye) begin
+            row <= next_row;
+            for (int i = 0; i < 3; i++) begin
+                d[i]        <= first[0][i] + next_row[i];
+                next_row[i] <= next_row[i] + step_down[i];
+            end
+        end
+        if (begins) running <= 1'b1;
+        if (running && enable) begin
             place.column <= ends_line ? '0 : place.column + 1'b1;
             for (int i = 0; i < 3; i++) begin
-                if (!ends_line)    d[i] <= d[i] + across[i];
-                else if (ends_eye) d[i] <= first[0][i] + next_row[i];
-                else               d[i] <= first[1][i] + row[i];
+                if (!ends_line)     d[i] <= d[i] + step_across[i];
+                else if (!ends_eye) d[i] <= first[1][i] + row[i];
             end
             if (ends_line) place.eye <= !ends_eye;
-            if (ends_eye) begin
-                place.line <= ends_band ? '0 : place.line + 1'b1;
-                row        <= next_row;
-                for (int i = 0; i < 3; i++) next_row[i] <= next_row[i] + down[i];
-            end
+            if (ends_eye) place.line <= ends_band ? '0 : place.line + 1'b1;
             if (ends_band) begin
                 place.odd <= !place.odd;
                 band      <= band + 1'b1;
@@ -90,14 +120,15 @@ module ray_generator #(
         if (enable) valid[LAST:1] <= valid[LAST-1:0];
 
         if (rst) begin
+            begins        <= 1'b0;
             running       <= 1'b0;
             valid[LAST:1] <= '0;
         end
     end
 
-    // 0: what is looked at. 1: the first bits of each part; 2: the largest; 4: its inverse.
-    march_pkg::place_t place_0;
-    logic [9:0]  part_x, part_y, part_z, largest_2, length_10, length_18;
+    // 0: what is looked at. 1: the first bits of each part; 2: the largest, or more; 4: its inverse.
+    march_pkg::place_t place_now;
+    logic [9:0]  part_x, part_y, part_z, largest_2, longest_2, length_10, length_18;
     logic [16:0] largest_inverse_4, inverse_4;
     logic [2:0][24:0] d_now, d_0, d_4;
 
@@ -106,10 +137,10 @@ module ray_generator #(
 
     if (ROUND) begin : wait_for_sum
         delay #(.WIDTH(75), .CLOCKS(SUM)) d_waits (.clk, .enable, .in(d_now), .out(d_0));
-        delay #(.WIDTH(march_pkg::PLACE_BITS), .CLOCKS(SUM)) place_waits_too (.clk, .enable, .in(place), .out(place_0));
+        delay #(.WIDTH(march_pkg::PLACE_BITS), .CLOCKS(SUM)) place_waits_too (.clk, .enable, .in(place_now), .out(place_0));
     end else begin : at_once
         assign d_0     = d_now;
-        assign place_0 = place;
+        assign place_0 = place_now;
     end
 
     always_ff @(posedge clk) begin
@@ -123,6 +154,17 @@ module ray_generator #(
         end
     end
 
+    // A cone's length is that of its middle, and by `margin` more.
+    logic [7:0] margin;
+
+    function automatic logic [9:0] longer(input logic [9:0] length, input logic [7:0] more);
+        logic [10:0] sum;
+        sum    = {1'b0, length} + {3'b0, more};
+        longer = sum[10] ? '1 : sum[9:0];
+    endfunction
+
+    assign longest_2 = longer(largest_2, margin);
+
     delay #(.WIDTH(75), .CLOCKS(4)) wait_for_inverse (.clk, .enable, .in(d_0), .out(d_4));
 
     // With the squares: the index of either table, its inverse, and the length by it.
@@ -131,7 +173,7 @@ module ray_generator #(
     if (ROUND) begin : by_squares
         logic [16:0]        x_now, y_now, z_now, y_late, z_late, round_inverse_4, inverse_7;
         logic signed [36:0] x_square, x_y_square, square_2, product_10;
-        logic [9:0]         length_3, length_7, length_9;
+        logic [9:0]         squared_2, length_3, length_7, length_9;
 
         assign x_now = d_now[0][23:7] ^ {17{d_now[0][24]}};
         assign y_now = d_now[1][23:7] ^ {17{d_now[1][24]}};
@@ -151,9 +193,10 @@ module ray_generator #(
             .clk, .enable, .a({8'b0, z_late}), .b({1'b0, z_late}), .c(x_y_square), .p(square_2)
         );
 
-        round_inverse length_by_square (.clk, .enable, .index(square_2[33:24]), .inverse(round_inverse_4));
+        round_inverse length_by_square (.clk, .enable, .index(squared_2), .inverse(round_inverse_4));
 
-        always_ff @(posedge clk) if (enable) length_3 <= round ? square_2[33:24] : largest_2;
+        assign squared_2 = longer(square_2[33:24], margin);
+        always_ff @(posedge clk) if (enable) length_3 <= round ? squared_2 : longest_2;
 
         assign inverse_4 = round ? round_inverse_4 : largest_inverse_4;
 
@@ -172,7 +215,7 @@ module ray_generator #(
     end else begin : by_largest
         assign inverse_4 = largest_inverse_4;
         assign part_10   = {1'b0, length_10} + 11'd1;
-        delay #(.WIDTH(10), .CLOCKS(8)) length_waits (.clk, .enable, .in(largest_2), .out(length_10));
+        delay #(.WIDTH(10), .CLOCKS(8)) length_waits (.clk, .enable, .in(longest_2), .out(length_10));
 
         wire _unused = round;
     end
@@ -183,7 +226,7 @@ module ray_generator #(
     logic [2:0][16:0] inverse_9;
 
     inverse_table length_and_x (
-        .clk, .enable, .index_a(largest_2), .inverse_a(largest_inverse_4), .index_b(index_7[0]), .inverse_b(inverse_9[0])
+        .clk, .enable, .index_a(longest_2), .inverse_a(largest_inverse_4), .index_b(index_7[0]), .inverse_b(inverse_9[0])
     );
     inverse_table y_and_z (
         .clk, .enable, .index_a(index_7[1]), .inverse_a(inverse_9[1]), .index_b(index_7[2]), .inverse_b(inverse_9[2])
@@ -246,7 +289,7 @@ module ray_generator #(
             if (enable) begin
                 t_13    <= product_12[31:9] | {23{product_12[41:32] != '0}};
                 left_17 <= 24'(gone_16[41:17]) >= outside_16 ? '0 : outside_16 - 24'(gone_16[41:17]) - 24'd1;
-                entry_21[i] <= !comes_20 ? '0 : sum[22:0] | {23{sum[33:23] != '0}};
+                entry_21[i] <= !comes_20 || PREPASS && cones ? '0 : sum[22:0] | {23{sum[33:23] != '0}};
             end
         end
 
@@ -255,7 +298,7 @@ module ray_generator #(
 
     // 21: the near plane. Its product comes with those of the box.
     multiply_add #(.BITS(34)) at_near (
-        .clk, .enable, .a({2'b0, near_limit}), .b({7'b0, part_18}), .c('0), .p(near_product)
+        .clk, .enable, .a({2'b0, near_18}), .b({7'b0, part_18}), .c('0), .p(near_product)
     );
     assign near_21 = near_product[32:10];
 
@@ -270,6 +313,62 @@ module ray_generator #(
         end
     end
 
+    // What is cleared before a ray, and how wide a cone gets.
+    logic [22:0] near_18;
+    logic [march_pkg::SPREAD_BITS-1:0] spread_23;
+
+    if (PREPASS) begin : with_prepass
+        // The lines of a block that have come, and the number of its first one in a row of blocks.
+        logic [3:0]         line;
+        logic [13:0]        row_number, number_1, counted;
+        logic signed [42:0] spread_7;
+
+        always_ff @(posedge clk) begin
+            if (start) {line, row_number, counted} <= '0;
+            else if (running && enable) begin
+                counted <= counted + 1'b1;
+                if (ends_eye) begin
+                    line <= line + 1'b1;
+                    if ((line | ~4'b0 << block) == '1) begin
+                        line       <= '0;
+                        row_number <= row_number + (fine || STEREO && stereo ? 14'd160 : 14'd80);
+                    end
+                end
+            end
+            if (enable) begin
+                number_1 <= row_number + (STEREO && place.eye ? 14'd80 : 14'd0) + 14'(place.column >> block);
+                near_18  <= prepass && !cones && cleared > near_limit ? cleared : near_limit;
+            end
+        end
+        delay #(.WIDTH(14), .CLOCKS(SUM + 14)) number_waits (.clk, .enable, .in(number_1), .out(number));
+
+        always_comb begin
+            place_now = place;
+            if (cones) {place_now.odd, place_now.line, place_now.column} = {1'b0, 3'b0, counted};
+        end
+        // Of squares, (|D| + s)^2 - |D|^2 is at most 2 s + s^2, of which s is at most 2^-4.
+        always_ff @(posedge clk) begin
+            if (!cones)     margin <= '0;
+            else if (round) margin <= {1'b0, spread[13:7]} + {6'b0, spread[13:12]} + 8'd2;
+            else            margin <= {2'b0, spread[13:8]} + 8'd1;
+        end
+
+        multiply_add #(.BITS(43)) widening (
+            .clk, .enable, .a({11'b0, spread}), .b({1'b0, inverse_4}), .c(43'd2 << 11), .p(spread_7)
+        );
+        delay #(.WIDTH(march_pkg::SPREAD_BITS), .CLOCKS(16)) spread_goes (
+            .clk, .enable, .in(spread_7[26:11] & {16{cones}}), .out(spread_23)
+        );
+        wire _unused = &{1'b0, spread_7[42:27], spread_7[10:0]};
+    end else begin : rays_alone
+        assign place_now = place;
+        assign margin    = '0;
+        assign near_18   = near_limit;
+        assign spread_23 = '0;
+        assign number    = '0;
+        wire _unused = &{1'b0, prepass, cones, fine, block, offset, spread, cleared};
+    end
+
     march_pkg::place_t place_23;
     logic [9:0]        length_23;
     logic [2:0][17:0]  direction_23;
@@ -278,8 +377,8 @@ module ray_generator #(
     delay #(.WIDTH(10), .CLOCKS(5)) length_goes (.clk, .enable, .in(length_18), .out(length_23));
     delay #(.WIDTH(54), .CLOCKS(16)) direction_goes (.clk, .enable, .in(direction_7), .out(direction_23));
 
-    skid_buffer #(.WIDTH(march_pkg::PLACE_BITS + 10 + 23 + 54)) leaving (
-        .clk, .rst, .in_valid(valid[LAST]), .in_ready(enable), .in_data({place_23, length_23, start_23, direction_23}),
+    skid_buffer #(.WIDTH(march_pkg::SPREAD_BITS + march_pkg::PLACE_BITS + 10 + 23 + 54)) leaving (
+        .clk, .rst, .in_valid(valid[LAST]), .in_ready(enable), .in_data({spread_23, place_23, length_23, start_23, direction_23}),
         .out_valid, .out_ready, .out_data(out_ray)
     );
 

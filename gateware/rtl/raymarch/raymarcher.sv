@@ -12,7 +12,11 @@
 // While the last rays of a band are still on their way, rays of the next one go in already: up to EARLY, whose ends wait in block
 // RAM. So the lanes idle only at the end of the frame, and where a band ends with rays of very different lengths.
 //
-// With ROUND there may be spheres, with BLEND fillets between them and what has faces: then round_light stands before ray_paint, where a round pixel takes a clock for each light.
+// With ROUND there may be spheres, with BLEND fillets between them and what has faces: then round_light stands before ray_paint, where a
+// round pixel takes a clock for each light.
+//
+// With `prepass` the cones of the whole picture go first, and cone_table keeps what they have cleared for the rays: 160×90 of them where
+// one eye looks and the picture is wider than 320, or else 80×45 for each eye.
 //
 // Each lane takes one evaluation of the field a clock. `restart`, and reset, give the frame up. Groups: a stream, valid/ready, payload
 // stays. Counters run freely: clocks busy, evaluations, clocks in which a lane had room for a ray and none came, clocks in which a
@@ -21,13 +25,14 @@
 `default_nettype none
 
 module raymarcher #(
-    parameter int unsigned LANES  = 2,
-    parameter int unsigned LEVELS = 6,
-    parameter bit          BOXES  = 1'b1,
-    parameter bit          ROUND  = 1'b1,
-    parameter bit          BLEND  = 1'b1,
-    parameter bit          STEREO = 1'b1,
-    parameter int unsigned EARLY  = 512
+    parameter int unsigned LANES   = 2,
+    parameter int unsigned LEVELS  = 6,
+    parameter bit          BOXES   = 1'b1,
+    parameter bit          ROUND   = 1'b1,
+    parameter bit          BLEND   = 1'b1,
+    parameter bit          STEREO  = 1'b1,
+    parameter bit          PREPASS = 1'b1,
+    parameter int unsigned EARLY   = ROUND ? 1024 : 512
 ) (
     input  wire                       clk,
     input  wire                       rst,
@@ -52,6 +57,10 @@ module raymarcher #(
     input  wire  [2:0]                ball_number,
     input  wire march_pkg::ball_t     ball,
     input  wire march_pkg::lights_t   lights,
+    // Cones: whether there are any, and what their blocks are in D.
+    input  wire                       prepass,
+    input  wire  [2:0][31:0]          cone_offset,
+    input  wire  [13:0]               cone_spread,
     // What surfaces look like: see ray_paint.
     input  wire  [16:0]               depth_mantissa,
     input  wire  signed [5:0]         depth_exponent,
@@ -110,13 +119,30 @@ module raymarcher #(
     logic                  generating, ray_valid, ray_ready;
     march_pkg::ray_t       ray;
 
-    ray_generator #(.ROUND(ROUND), .STEREO(STEREO)) generator (
-        .clk, .rst(reset), .start, .busy(generating), .last_column({stride, 3'd0} - 11'd1), .last_line(lines - 6'd1), .last_band, .stereo,
-        .round(solid.is_round), .first, .across, .down, .near_limit, .origins, .outside,
+    // The cones go first, and when all of them have ended the rays.
+    logic        cones, fine, generate_rays, looks;
+    logic [2:0]  block;
+    logic [13:0] cones_left, number;
+    logic [22:0] cleared;
+
+    // Columns, lines and bands of blocks, or of pixels.
+    logic [10:0] column_ends;
+    logic [5:0]  line_ends, band_ends;
+
+    always_ff @(posedge clk) begin
+        column_ends <= cones ? fine ? 11'd159 : 11'd79 : {stride, 3'd0} - 11'd1;
+        line_ends   <= cones ? 6'd44 : lines - 6'd1;
+        band_ends   <= cones ? {5'd0, fine} : last_band;
+    end
+
+    ray_generator #(.ROUND(ROUND), .STEREO(STEREO), .PREPASS(PREPASS)) generator (
+        .clk, .rst(reset), .start(generate_rays), .busy(generating),
+        .last_column(column_ends), .last_line(line_ends), .last_band(band_ends), .stereo, .round(solid.is_round), .first, .across, .down, .near_limit, .origins, .outside,
+        .prepass, .cones, .fine, .block, .offset(cone_offset), .spread(cone_spread), .enable(looks), .number, .cleared,
         .out_valid(ray_valid), .out_ready(ray_ready), .out_ray(ray)
     );
 
-    assign is_early    = ray.place.odd != odd;
+    assign is_early    = ray.place.odd != odd && !cones;
     assign may_enter   = !is_early || early != EARLY_BITS'(EARLY);
     assign ray_moves   = ray_valid && ray_ready;
     assign group_moves = group_valid && group_ready;
@@ -159,8 +185,8 @@ module raymarcher #(
     assign ray_ready  = lane_takes != '0;
 
     for (genvar i = 0; i < LANES; i++) begin : lanes
-        ring_lane #(.LEVELS(LEVELS), .BOXES(BOXES), .ROUND(ROUND), .BLEND(BLEND), .STEREO(STEREO)) lane (
-            .clk, .rst(reset), .origins, .bounds, .solid, .tuning, .ball_write, .ball_number, .ball,
+        ring_lane #(.LEVELS(LEVELS), .BOXES(BOXES), .ROUND(ROUND), .BLEND(BLEND), .STEREO(STEREO), .PREPASS(PREPASS)) lane (
+            .clk, .rst(reset), .origins, .bounds, .solid, .tuning, .cones, .ball_write, .ball_number, .ball,
             .in_valid(lane_valid[i]), .in_ready(lane_ready[i]), .in_ray(ray),
             .out_valid(end_valid[i]), .out_ready(end_taken[i]), .out_end(end_of[i]),
             .evaluates(evaluates[i]), .waits(waits[i])
@@ -180,10 +206,10 @@ module raymarcher #(
     assign next_valid = end_valid[turn];
 
     // What has waited goes first. An end of the next band waits; there is room, as there are not more of them.
-    assign next_now      = next_valid && next_end.place.odd == odd;
+    assign next_now      = next_valid && next_end.place.odd == odd && !cones;
     assign waiting_now   = waiting_valid && waiting_end.place.odd == odd;
     assign waiting_ready = waiting_now && band_open && paint_ready;
-    assign next_taken    = next_now ? band_open && paint_ready && !waiting_now : room;
+    assign next_taken    = next_now ? band_open && paint_ready && !waiting_now : room || cones;
     assign paint_valid   = band_open && (waiting_now || next_now);
     assign paint_end     = waiting_now ? waiting_end : next_end;
 
@@ -193,7 +219,7 @@ module raymarcher #(
     end
 
     fifo #(.WIDTH(KEPT_BITS), .DEPTH(EARLY), .BLOCK(1'b1)) waiting (
-        .clk, .rst(reset), .in_valid(next_valid && !next_now), .in_ready(room), .in_data(next_end[KEPT_BITS-1:0]),
+        .clk, .rst(reset), .in_valid(next_valid && !next_now && !cones), .in_ready(room), .in_data(next_end[KEPT_BITS-1:0]),
         .out_valid(waiting_valid), .out_ready(waiting_ready), .out_data(kept)
     );
     assign waiting_end = march_pkg::END_BITS'(kept);
@@ -227,6 +253,36 @@ module raymarcher #(
     );
     /* verilator lint_on PINCONNECTEMPTY */
 
+    if (PREPASS) begin : with_prepass
+        logic cone_ends;
+
+        assign fine      = size != 2'd0 && !(STEREO && stereo);
+        assign block     = {1'b0, size} + 3'd2 - {2'b0, fine};
+        assign cone_ends = cones && next_valid;
+
+        always_ff @(posedge clk) begin
+            generate_rays <= start || cone_ends && cones_left == '0;
+            if (cone_ends) begin
+                cones_left <= cones_left - 1'b1;
+                if (cones_left == '0) cones <= 1'b0;
+            end
+            if (start) begin
+                cones      <= prepass;
+                cones_left <= fine ? 14'd14399 : STEREO && stereo ? 14'd7199 : 14'd3599;
+            end
+            if (reset) {cones, generate_rays} <= '0;
+        end
+
+        cone_table #(.ROUND(ROUND)) table_of_cones (
+            .clk, .round(solid.is_round), .in_valid(cone_ends), .in_number({next_end.place.line[2:0], next_end.place.column}),
+            .in_length(next_end.length), .in_t(next_end.t), .enable(looks), .number, .cleared
+        );
+    end else begin : rays_alone
+        assign {cones, fine, block, cones_left, cleared} = '0;
+        assign generate_rays = start;
+        wire _unused = &{1'b0, prepass, looks, number, cones_left};
+    end
+
     // The events are registered first: a carry chain of 32 bits is long enough by itself.
     logic             ray_came, ended, waited;
     march_pkg::state_t how;
@@ -241,7 +297,7 @@ module raymarcher #(
     assign idles = lane_ready & ~(lane_valid & {LANES{ray_valid}});
 
     always_ff @(posedge clk) begin
-        ray_came   <= ray_moves;
+        ray_came   <= ray_moves && !cones;
         ended      <= paint_valid && paint_ready;
         how        <= paint_end.state;
         waited     <= waits != '0;

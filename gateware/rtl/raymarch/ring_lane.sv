@@ -12,6 +12,9 @@
 // With ROUND there may be spheres. A ray goes round once for each of them and stays where it is until the last one; it takes the
 // nearest one with it. Its end has its direction, and it may take four times as many steps as `tuning` says.
 //
+// While `cones` is high, which holds while rays are inside, the rays are cones: they go on by the distance less their width, which is t
+// times their spread, and end where it is near to that.
+//
 // Streams are valid/ready, each item moves in a clock in which both are high, payloads stay until then; ready depends on
 // registers alone. Parameters hold while rays are inside. `restart` throws all rays away.
 
@@ -23,6 +26,7 @@ module ring_lane #(
     parameter bit          ROUND  = 1'b0,
     parameter bit          BLEND  = 1'b0,
     parameter bit          STEREO = 1'b1,
+    parameter bit          PREPASS = 1'b0,
     // More than there are slots, or some would stay empty.
     parameter int unsigned PLACES = march_pkg::field_clocks(LEVELS, BOXES, ROUND, BLEND) > 24 ? 64 : 32
 ) (
@@ -37,6 +41,7 @@ module ring_lane #(
     input  wire                      ball_write,
     input  wire  [2:0]               ball_number,
     input  wire march_pkg::ball_t    ball,
+    input  wire                      cones,
     // Rays.
     input  wire                      in_valid,
     output logic                     in_ready,
@@ -147,7 +152,7 @@ module ring_lane #(
     logic [7:0]         share, share_end;
 
     // The sphere whose turn it is, and the nearest one before it: with the slot, and with the distance.
-    logic                round, is_last, is_last_2;
+    logic                round, is_last_early, is_last, is_last_2;
     logic [2:0]          pass_2;
     march_pkg::nearest_t so_far_3, nearest;
 
@@ -157,7 +162,7 @@ module ring_lane #(
     );
 
     if (ROUND) begin : passes
-        logic [2:0]          pass, last_pass, pass_1;
+        logic [2:0]          pass, last_pass, pass_early, pass_1;
         march_pkg::nearest_t so_far, last_nearest;
 
         always_ff @(posedge clk) begin
@@ -167,11 +172,15 @@ module ring_lane #(
 
         delay #(.WIDTH(3), .CLOCKS(2)) pass_goes (.clk, .enable(1'b1), .in(pass), .out(pass_2));
         delay #(.WIDTH(march_pkg::NEAREST_BITS), .CLOCKS(3)) so_far_goes (.clk, .enable(1'b1), .in(so_far), .out(so_far_3));
-        delay #(.WIDTH(3), .CLOCKS(DISTANCE - 2)) pass_waits (.clk, .enable(1'b1), .in(pass_2), .out(pass_1));
+        delay #(.WIDTH(3), .CLOCKS(DISTANCE - 4)) pass_waits (.clk, .enable(1'b1), .in(pass_2), .out(pass_early));
+        delay #(.WIDTH(3), .CLOCKS(2)) pass_comes (.clk, .enable(1'b1), .in(pass_early), .out(pass_1));
         delay #(.WIDTH(march_pkg::NEAREST_BITS), .CLOCKS(2)) nearest_goes (.clk, .enable(1'b1), .in(nearest), .out(last_nearest));
 
-        assign is_last = pass_1 == solid.last_ball;
-        always_ff @(posedge clk) is_last_2 <= is_last;
+        always_ff @(posedge clk) begin
+            is_last_early <= pass_early == solid.last_ball;
+            is_last       <= is_last_early;
+            is_last_2     <= is_last;
+        end
 
         // Of the next pass; 0 after the last one.
         logic [2:0] next_pass;
@@ -180,14 +189,16 @@ module ring_lane #(
             last_pass <= next_pass;
         end
     end else begin : one_pass
-        assign pass_2    = '0;
-        assign so_far_3  = '0;
-        assign is_last   = 1'b1;
-        assign is_last_2 = 1'b1;
+        assign pass_2   = '0;
+        assign so_far_3 = '0;
+        assign {is_last_early, is_last, is_last_2} = '1;
     end
 
-    // With the distance come the t it was taken at and what is near enough.
+    // With the distance come the t it was taken at, less the width of a cone, and what is near enough.
     logic [march_pkg::T_BITS-1:0] t_early, t_1;
+    logic [march_pkg::T_BITS:0]   from_early, from_1;
+    logic [15:0]       footprint;
+    logic              wide, wide_1;
     logic [16:0]       threshold;
     logic [STEP_BITS-1:0] steps_1, steps_2;
 
@@ -195,9 +206,36 @@ module ring_lane #(
     delay #(.WIDTH(STEP_BITS), .CLOCKS(DISTANCE)) counted (.clk, .enable(1'b1), .in(steps), .out(steps_1));
     delay #(.WIDTH(CARGO_BITS), .CLOCKS(DISTANCE + 2)) carried (.clk, .enable(1'b1), .in(cargo), .out(last_cargo));
 
+    if (PREPASS) begin : prepass
+        logic [march_pkg::SPREAD_BITS-1:0] spread, last_spread, widens;
+        logic signed [42:0]                product;
+
+        always_ff @(posedge clk) spread <= again ? last_spread : in_ray.spread;
+        delay #(.WIDTH(march_pkg::SPREAD_BITS), .CLOCKS(DISTANCE + 2)) spreading (.clk, .enable(1'b1), .in(spread), .out(last_spread));
+
+        assign widens = cones ? spread : 16'd1 << (5'd16 - {1'b0, tuning.footprint});
+
+        // Points are cut by less than a step along each axis: in all by less than two.
+        multiply_add #(.BITS(43)) widening (
+            .clk, .enable(1'b1), .a({2'b0, t}), .b({2'b0, widens}), .c({26'b0, ROUND && cones && solid.is_round, 16'b0}), .p(product)
+        );
+        delay #(.WIDTH(17), .CLOCKS(DISTANCE - 4)) width (
+            .clk, .enable(1'b1), .in({product[42:32] != '0, product[31:16]}), .out({wide, footprint})
+        );
+        assign from_early = {1'b0, t_early} + ({24{cones && is_last_early}} & ~{8'b0, footprint});
+        wire _unused = &{1'b0, product[15:0]};
+    end else begin : rays_alone
+        assign footprint  = 16'(t_early >> tuning.footprint);
+        assign wide       = 1'b0;
+        assign from_early = {1'b0, t_early};
+        wire _unused = &{1'b0, cones, in_ray.spread, is_last_early};
+    end
+
     always_ff @(posedge clk) begin
         t_1       <= t_early;
-        threshold <= {1'b0, tuning.threshold} + 17'(t_early >> tuning.footprint);
+        from_1    <= from_early;
+        wide_1    <= wide;
+        threshold <= {1'b0, tuning.threshold} + {1'b0, footprint};
     end
 
     // Is it near? Then: is it too far, or has it taken too long?
@@ -213,18 +251,20 @@ module ring_lane #(
 
     // The evaluation under way counts. Beside what is round a ray creeps for longer, and has to come as near as others.
     logic [1:0] patience;
+    logic       late_1;
 
     if (ROUND) begin : long_way
         assign patience = solid.is_round ? '0 : steps_1[7:6];
-        always_ff @(posedge clk) late_2 <= steps_1 + 10'd1 >= (solid.is_round ? {tuning.cap, 2'b0} : {2'b0, tuning.cap});
+        assign late_1   = steps_1 + 10'd1 >= (solid.is_round ? {tuning.cap, 2'b0} : {2'b0, tuning.cap});
     end else begin : short_way
         assign patience = steps_1[7:6];
-        always_ff @(posedge clk) late_2 <= steps_1 + 8'd1 >= tuning.cap;
+        assign late_1   = steps_1 + 8'd1 >= tuning.cap;
     end
 
     always_ff @(posedge clk) begin
-        near_2    <= distance < $signed({2'b0, 20'(threshold) << patience});
-        next_2    <= {1'b0, t_1} + 24'(distance[20:0] & {21{!distance[21] && is_last}});
+        near_2    <= wide_1 || distance < $signed({2'b0, 20'(threshold) << (PREPASS && cones ? 2'd0 : patience)});
+        late_2    <= late_1 || PREPASS && cones && steps_1 >= STEP_BITS'(march_pkg::CONE_STEPS - 1);
+        next_2    <= from_1 + 24'(distance[20:0] & {21{!distance[21] && is_last}});
         t_2       <= t_1;
         gap_2     <= distance[20:12] != '0 && !distance[21] ? '1 : distance[11:0] & {12{!distance[21]}};
         gone_2    <= gone_late;
@@ -262,9 +302,10 @@ module ring_lane #(
     assign height = last_cargo.direction[2][17] ? '0 : last_cargo.direction[2][16:9];
 
     always_comb begin
-        if (last_state == march_pkg::MISS) end_t = {15'b0, height};
-        else if (last_round)               end_t = last_t;
-        else                               end_t = taken_t;
+        if (PREPASS && cones)                    end_t = taken_t;
+        else if (last_state == march_pkg::MISS)  end_t = {15'b0, height};
+        else if (last_round)                     end_t = last_t;
+        else                                     end_t = taken_t;
     end
 
     assign end_in = {

@@ -12,7 +12,7 @@ use glint_core::light::Hexadecimal;
 use glint_core::mesh::{Mesh, MeshError};
 use glint_core::stereo::Stereo;
 use glint_core::wire::crc32;
-use glint_model::march::{FieldOptions, Setup, render_field};
+use glint_model::march::{FieldOptions, Prepass, Setup, render_field};
 use glint_model::{
     DepthScale, FrameSetup, Options, Projected, RenderError, Shading, Target, together, trace_frame,
 };
@@ -38,11 +38,16 @@ pub struct FieldSubject<'s> {
     pub appearance: &'s Appearance,
     /// Two eyes, or one. There is one where a mesh is in the field.
     pub stereo: Option<Stereo>,
+    /// Whether cones go before the rays, as far as faces are all there is.
+    pub prepass: bool,
 }
 
 impl FieldSubject<'_> {
     fn options(&self) -> FieldOptions {
-        FieldOptions::new(self.field, self.appearance, self.stereo)
+        FieldOptions {
+            prepass: self.prepass.then_some(Prepass::Fitting),
+            ..FieldOptions::new(self.field, self.appearance, self.stereo)
+        }
     }
 }
 
@@ -641,6 +646,7 @@ pub fn field_commands(subject: &FieldSubject, with_mesh: bool) -> Vec<String> {
         // Two eyes and a mesh exclude each other.
         "stereo off".to_owned(),
         format!("mesh {}", switch(with_mesh)),
+        format!("prepass {}", switch(subject.prepass)),
     ]);
     commands.extend(subject.stereo.map(|stereo| format!("stereo {stereo}")));
     commands.push(format!("field {}", subject.field));

@@ -122,6 +122,7 @@ fn the_cpu_draws_a_mesh_in_a_field() {
             ..Appearance::default()
         },
         stereo: None,
+        prepass: false,
     };
     let triangles = MeshSubject {
         bytes: &mesh,
@@ -202,6 +203,7 @@ fn a_field_by(backend: Backend, name: &str) {
             field: &Field::parse("box:0.5,0.5,0.25").unwrap(),
             appearance: &Appearance::default(),
             stereo: None,
+            prepass: false,
         }),
         view: view::parse(eye.as_bytes()).unwrap(),
         size: (320, 180),

@@ -8,8 +8,8 @@ use std::process::Command;
 
 use glint_core::field::Field;
 use glint_core::stereo::Stereo;
-use glint_model::march::{FieldOptions, Setup};
-use glint_reference::field::marched::{Measured, others, picture, sponges};
+use glint_model::march::{FieldOptions, Prepass, Setup};
+use glint_reference::field::marched::{Measured, others, picture, rounds, sponges};
 use glint_reference::field::verilated::Raymarcher;
 use glint_reference::field::views;
 use glint_reference::imu::measure::method_error;
@@ -209,13 +209,24 @@ fn the_committed_pictures_of_fields_are_not_stale() {
         row[column.expect("a column")].to_owned()
     };
     let size = (320, 180);
-    for subject in sponges(size).into_iter().chain(others(size)) {
+    let subjects: Vec<_> = [sponges(size), others(size), rounds(size)]
+        .into_iter()
+        .flatten()
+        .collect();
+    for (prepass, subject) in [None, Some(Prepass::Fitting)]
+        .into_iter()
+        .flat_map(|prepass| subjects.iter().map(move |subject| (prepass, subject)))
+    {
         let row = rows.iter().find(|row| {
             (cell(row, "scene"), cell(row, "view")) == (subject.scene.clone(), subject.name.clone())
                 && cell(row, "width") == "320"
+                && (cell(row, "prepass") != "0") == prepass.is_some()
         });
         let row = row.expect("run `cargo xtask report raymarch`: pictures have come or gone");
-        let picture = subject.picture(&FieldOptions::default());
+        let picture = subject.picture(&FieldOptions {
+            prepass,
+            ..FieldOptions::of(&subject.parsed)
+        });
         let measured = Measured::new(&subject.expected, &picture);
         let accuracy = measured.accuracy;
         let depth = accuracy.depth.expect("something to see");

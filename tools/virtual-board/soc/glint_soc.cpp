@@ -123,8 +123,23 @@ struct glint_soc {
                         uint32_t(top.vga_r) << 16 | uint32_t(top.vga_g) << 8 | uint32_t(top.vga_b));
     }
 
+    uint8_t i2c_released_by_soc() const {
+        return top.i2c_scl_out | top.i2c_sda_out << 1;
+    }
+
     uint8_t i2c_wires() const {
-        return i2c_released & (top.i2c_scl_out | top.i2c_sda_out << 1);
+        return i2c_released & i2c_released_by_soc();
+    }
+
+    uint64_t run_to_i2c(uint64_t count) {
+        Verilated::threadContextp(&context);
+        const uint8_t before = i2c_released_by_soc();
+        uint64_t done = 0;
+        while (done < count && i2c_released_by_soc() == before) {
+            cycle();
+            ++done;
+        }
+        return done;
     }
 
     void run(uint64_t count) {
@@ -248,6 +263,8 @@ uint16_t glint_soc_leds(const glint_soc *soc) { return soc->top.leds; }
 
 void glint_soc_i2c_drive(glint_soc *soc, uint8_t released) { soc->i2c_released = released & 3; }
 uint8_t glint_soc_i2c_wires(const glint_soc *soc) { return soc->i2c_wires(); }
+uint8_t glint_soc_i2c_released(const glint_soc *soc) { return soc->i2c_released_by_soc(); }
+uint64_t glint_soc_run_to_i2c(glint_soc *soc, uint64_t cycles) { return soc->run_to_i2c(cycles); }
 
 void glint_soc_video_record(glint_soc *soc, int on) { soc->video_on = on != 0; }
 const uint32_t *glint_soc_video_samples(const glint_soc *soc, size_t *count) {

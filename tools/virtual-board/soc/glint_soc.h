@@ -17,7 +17,7 @@ extern "C" {
 #pragma GCC visibility push(default)
 
 /* Changes with every change of this interface. */
-#define GLINT_SOC_ABI 2
+#define GLINT_SOC_ABI 3
 
 typedef struct glint_soc glint_soc;
 
@@ -58,6 +58,10 @@ uint16_t glint_soc_leds(const glint_soc *soc);
 void glint_soc_i2c_drive(glint_soc *soc, uint8_t released);
 /* State of the wires, in the same bits. */
 uint8_t glint_soc_i2c_wires(const glint_soc *soc);
+/* What the SoC does to the wires, in the same bits. */
+uint8_t glint_soc_i2c_released(const glint_soc *soc);
+/* As glint_soc_run, but returns after the first cycle in which that has changed. Returns how many cycles have been run. */
+uint64_t glint_soc_run_to_i2c(glint_soc *soc, uint64_t cycles);
 
 /* Whether the pins of the monitor are recorded; off at first. */
 void glint_soc_video_record(glint_soc *soc, int on);

@@ -6,6 +6,8 @@ use std::time::{Duration, Instant};
 
 use litex_pac::memories::MAIN_RAM;
 
+use virtual_mpu6050::Wires;
+
 use crate::library::Soc;
 use crate::{Error, Monitor, Picture, TimingError, boot};
 
@@ -81,6 +83,7 @@ impl<'a> Builder<'a> {
         let mut board = VirtualBoard {
             soc,
             monitor: Monitor::default(),
+            sensor: None,
             uart: Vec::new(),
             running: Duration::ZERO,
         };
@@ -108,6 +111,7 @@ fn built_libraries() -> PathBuf {
 pub struct VirtualBoard {
     soc: Soc,
     monitor: Monitor,
+    sensor: Option<Wires>,
     /// What the SoC has sent and nobody has read.
     uart: Vec<u8>,
     running: Duration,
@@ -127,9 +131,15 @@ impl VirtualBoard {
         let mut left = cycles;
         while left > 0 {
             let slice = left.min(SLICE);
-            self.soc.run(slice);
+            left -= match self.sensor {
+                None => {
+                    self.soc.run(slice);
+                    slice
+                }
+                Some(_) => self.soc.run_to_i2c(slice),
+            };
+            self.move_wires();
             self.collect();
-            left -= slice;
         }
         self.running += start.elapsed();
     }
@@ -155,6 +165,16 @@ impl VirtualBoard {
                 return false;
             }
             self.run(left.min(SLICE));
+        }
+    }
+
+    /// Lets the sensor see the wires, and move them.
+    fn move_wires(&mut self) {
+        let now = u128::from(self.cycles()) * 1_000_000_000 / u128::from(self.clock_hz());
+        let soc = self.soc.i2c_released();
+        if let Some(sensor) = &mut self.sensor {
+            let (scl, sda) = sensor.update(now as u64, soc & 1 != 0, soc & 2 != 0);
+            self.soc.i2c_drive(u8::from(scl) | u8::from(sda) << 1);
         }
     }
 
@@ -253,6 +273,22 @@ impl VirtualBoard {
     #[must_use]
     pub fn leds(&self) -> u16 {
         self.soc.leds()
+    }
+
+    /// Plugs a sensor into the I2C bus, in place of the one that is there, or of what [`i2c_drive`](Self::i2c_drive) does.
+    pub fn plug(&mut self, sensor: Wires) {
+        self.sensor = Some(sensor);
+    }
+
+    /// The sensor on the I2C bus.
+    pub fn sensor(&mut self) -> Option<&mut Wires> {
+        self.sensor.as_mut()
+    }
+
+    /// Takes the sensor off the I2C bus.
+    pub fn unplug(&mut self) -> Option<Wires> {
+        self.soc.i2c_drive(0b11);
+        self.sensor.take()
     }
 
     /// What devices on the I2C bus do to the wires: SCL in bit 0, SDA in bit 1; 0 pulls low, 1 releases.

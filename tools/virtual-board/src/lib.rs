@@ -2,7 +2,7 @@
 //!
 //! `cargo xtask gateware` compiles the SoC to a shared library; this crate loads it, owns its clocks and pins, and
 //! models what is plugged in: a UART as a byte stream ([`VirtualBoard::uart_write`], or on a pseudo-terminal with
-//! [`pty::Pty`]), buttons, switches, LEDs, and a [`Monitor`] that checks the video timing and captures pictures.
+//! [`pty::Pty`]), buttons, switches, LEDs, an MPU-6050 ([`VirtualBoard::plug`]), and a [`Monitor`] that checks the video timing and captures pictures.
 //! A back door reads and writes DDR3 at run time, coherent with the CPU's caches.
 //!
 //! ```no_run
@@ -35,3 +35,4 @@ pub use board::{Builder, Start, VirtualBoard};
 pub use error::Error;
 pub use monitor::{HEIGHT, Monitor, TimingError, WIDTH};
 pub use picture::{Picture, PictureError};
+pub use virtual_mpu6050;

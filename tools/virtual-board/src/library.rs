@@ -10,7 +10,7 @@ use libloading::Library;
 use crate::Error;
 
 /// The version of the C interface that this file is written for (`GLINT_SOC_ABI`).
-const ABI: u32 = 2;
+const ABI: u32 = 3;
 
 /// `glint_soc`, which only the library can look into.
 #[repr(C)]
@@ -60,6 +60,8 @@ functions! {
     leds: fn(Handle) -> u16;
     i2c_drive: fn(Handle, u8);
     i2c_wires: fn(Handle) -> u8;
+    i2c_released: fn(Handle) -> u8;
+    run_to_i2c: fn(Handle, u64) -> u64;
     video_record: fn(Handle, c_int);
     video_samples: fn(Handle, *mut usize) -> *const u32;
     video_clear: fn(Handle);
@@ -196,6 +198,18 @@ impl Soc {
     pub fn i2c_wires(&self) -> u8 {
         // SAFETY: the handle is alive.
         unsafe { (self.functions.i2c_wires)(self.raw()) }
+    }
+
+    /// What the SoC does to the wires.
+    pub fn i2c_released(&self) -> u8 {
+        // SAFETY: the handle is alive.
+        unsafe { (self.functions.i2c_released)(self.raw()) }
+    }
+
+    /// Runs until the SoC does something else to the wires, but no longer than `cycles`; returns how long.
+    pub fn run_to_i2c(&mut self, cycles: u64) -> u64 {
+        // SAFETY: the handle is alive and ours alone.
+        unsafe { (self.functions.run_to_i2c)(self.raw(), cycles) }
     }
 
     pub fn video_record(&mut self, on: bool) {

@@ -41,6 +41,31 @@ impl Board {
     }
 }
 
+/// What a raymarcher is built for: `BUILDS` of `glint_soc/march.py`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Fields {
+    /// Two lanes for every field, with cones before the rays.
+    All,
+    /// Two lanes for all but fillets and the two finest levels of the sponge, without cones.
+    Round,
+    /// The same without spheres.
+    Faces,
+    /// Four lanes for the sponge up to depth 4 alone, with cones.
+    Sponge,
+}
+
+impl Fields {
+    /// The name on the command line of `glint_soc`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::All => "all",
+            Self::Round => "round",
+            Self::Faces => "faces",
+            Self::Sponge => "sponge",
+        }
+    }
+}
+
 /// Builds what is out of date for `board`.
 ///
 /// # Errors
@@ -62,14 +87,18 @@ pub fn build_with(board: Board, options: &[&str]) -> Result<()> {
     Ok(())
 }
 
-/// Builds the virtual board with the four lanes of `--sponge` in `target/gateware/virtual-sponge`, beside the build that is
-/// there for all.
+/// Builds the virtual board with the four lanes of [`Fields::Sponge`] in `target/gateware/virtual-sponge`, beside the build that
+/// is there for all.
 ///
 /// # Errors
 /// As [`build`].
 pub fn build_sponge_beside() -> Result<()> {
     let folder = Board::Virtual.folder().with_file_name("virtual-sponge");
-    generate(Board::Virtual, &folder, &["--sponge"])?;
+    generate(
+        Board::Virtual,
+        &folder,
+        &["--fields", Fields::Sponge.name()],
+    )?;
     verilate(&folder, Waveforms::Without)
 }
 

@@ -35,11 +35,11 @@ enum Task {
         /// Build smooth shading into the triangle engine
         #[arg(long)]
         smooth: bool,
-        /// Build a raymarcher of four lanes for the sponge up to depth 4, instead of two for every field
-        #[arg(long)]
-        sponge: bool,
+        /// What the raymarcher is built for [default: all; of the urbana, which has no room for that: faces]
+        #[arg(long, value_enum)]
+        fields: Option<gateware::Fields>,
         /// Also build the virtual board's library that writes waveforms
-        #[arg(long, conflicts_with_all = ["smooth", "sponge"])]
+        #[arg(long, conflicts_with_all = ["smooth", "fields"])]
         waveforms: bool,
     },
     /// Write the register access crate and the register map from the SoC's description
@@ -89,14 +89,16 @@ fn main() -> Result<()> {
         Task::Gateware {
             board,
             smooth,
-            sponge,
+            fields,
             waveforms,
         } => {
-            let options = [(smooth, "--smooth"), (sponge, "--sponge")];
-            let options: Vec<_> = options
-                .into_iter()
-                .filter_map(|(wanted, option)| wanted.then_some(option))
-                .collect();
+            let mut options = vec![];
+            if smooth {
+                options.push("--smooth");
+            }
+            if let Some(fields) = fields {
+                options.extend(["--fields", fields.name()]);
+            }
             gateware::build_with(board, &options)?;
             if waveforms {
                 gateware::build_with_waveforms()?;

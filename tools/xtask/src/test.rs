@@ -1,6 +1,9 @@
 //! `cargo xtask test`: every test there is, on a machine that it sets up itself.
 
 use std::process::Command;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Mutex, MutexGuard, mpsc};
+use std::thread;
 use std::time::Instant;
 
 use anyhow::{Result, bail};
@@ -10,6 +13,9 @@ use crate::{bootstrap, firmware, pac, paths, resources, run};
 
 /// Sets up, builds and tests everything. Checks go on after one that failed; builds do not.
 ///
+/// What tests the gateware alone runs beside what cargo does: most of either keeps one core busy. Only the Rust tests wait for
+/// the gateware's, which build the modules that they clock.
+///
 /// # Errors
 /// When a build or a check fails; names the checks.
 pub fn test() -> Result<()> {
@@ -17,47 +23,84 @@ pub fn test() -> Result<()> {
     bootstrap::bootstrap()?;
     gateware::build(Board::Virtual)?;
     gateware::build(Board::Urbana)?;
-    firmware::build(&[])?;
-    firmware::build(&["peers"])?;
 
-    let mut failures = Vec::new();
-    let mut passed = 0;
-    let mut check = |outcome: Result<u32>| match outcome {
-        Ok(count) => passed += count,
-        Err(error) => failures.push(error.to_string()),
-    };
-    check(pac::generate(true).map(|()| 1));
-    check(cargo("formatting", &["fmt", "--all", "--check"]));
-    check(cargo(
-        "clippy",
-        &["clippy", "--all-targets", "--", "-D", "warnings"],
-    ));
-    check(cargo(
-        "clippy of the firmware",
-        &[
+    let outcomes = Outcomes::default();
+    let (models_are_built, models) = mpsc::channel();
+    thread::scope(|scope| -> Result<()> {
+        scope.spawn(|| {
+            outcomes.add(gateware_check("gateware tests", "gateware/tests/run.py"));
+            // Nobody listens when a build has failed.
+            let _ = models_are_built.send(());
+            outcomes.add(gateware_check("proofs", "gateware/formal/run.py"));
+            outcomes.add(resources::check_own_blocks().map(|()| 1));
+        });
+        firmware::build(&[])?;
+        firmware::build(&["peers"])?;
+        outcomes.add(pac::generate(true).map(|()| 1));
+        outcomes.add(cargo("formatting", &["fmt", "--all", "--check"]));
+        outcomes.add(cargo(
             "clippy",
-            "--package",
-            "glint-firmware",
-            "--target",
-            firmware::TARGET,
-            "--",
-            "-D",
-            "warnings",
-        ],
-    ));
-    check(documentation());
-    check(gateware_check("gateware tests", "gateware/tests/run.py"));
-    check(gateware_check("proofs", "gateware/formal/run.py"));
-    check(resources::check_own_blocks().map(|()| 1));
-    check(cargo_tests());
+            &["clippy", "--all-targets", "--", "-D", "warnings"],
+        ));
+        outcomes.add(cargo(
+            "clippy of the firmware",
+            &[
+                "clippy",
+                "--package",
+                "glint-firmware",
+                "--target",
+                firmware::TARGET,
+                "--",
+                "-D",
+                "warnings",
+            ],
+        ));
+        outcomes.add(documentation());
+        outcomes.add(cargo("build of the tests", &["test", "--no-run"]));
+        models.recv().expect("the gateware's checks do not panic");
+        outcomes.add(cargo_tests());
+        Ok(())
+    })?;
 
     let minutes = start.elapsed().as_secs_f64() / 60.0;
     println!("{minutes:.1} minutes");
-    println!("{passed} passed, {} failed", failures.len());
-    if !failures.is_empty() {
-        bail!("{}", failures.join("\n"));
+    outcomes.finish()
+}
+
+/// What has passed and what has failed.
+#[derive(Default)]
+struct Outcomes {
+    passed: AtomicU32,
+    failures: Mutex<Vec<String>>,
+}
+
+impl Outcomes {
+    fn add(&self, outcome: Result<u32>) {
+        match outcome {
+            Ok(count) => {
+                self.passed.fetch_add(count, Ordering::Relaxed);
+            }
+            Err(error) => self.lock().push(error.to_string()),
+        }
     }
-    Ok(())
+
+    fn lock(&self) -> MutexGuard<'_, Vec<String>> {
+        self.failures.lock().expect("no check panics")
+    }
+
+    /// Prints the counts, and fails with what has failed.
+    fn finish(&self) -> Result<()> {
+        let failures = self.lock();
+        println!(
+            "{} passed, {} failed",
+            self.passed.load(Ordering::Relaxed),
+            failures.len()
+        );
+        if !failures.is_empty() {
+            bail!("{}", failures.join("\n"));
+        }
+        Ok(())
+    }
 }
 
 /// One cargo command as a check.

@@ -8,10 +8,12 @@ use super::grammar::Kind::{
     self, Basis, Choice, Degrees, HalfTurn, Hexadecimal, Length, Name, Number, Scale,
 };
 use super::grammar::{Argument, DEFAULT, OFF, Syntax, Value, Words};
+use crate::calibration::{MOST_SAMPLES, SAMPLES};
 use crate::camera::View;
 use crate::colour::Shading;
 use crate::field::Field;
 use crate::fixed::{Q32_32, Turns, U4_28};
+use crate::imu::Follow;
 use crate::light::{Background, Light, Material, Rgb};
 use crate::mesh::MAX_BYTES;
 use crate::stereo::Stereo;
@@ -69,6 +71,8 @@ pub enum Command<'a> {
         /// About the direction of view.
         roll: Turns,
     },
+    /// `imu [ACTION [SAMPLES]]`; without an action it prints how the sensor is.
+    Imu(Option<ImuAction>),
     /// `orbit [FRAMES]`
     Orbit {
         /// How many frames a turn has.
@@ -95,6 +99,8 @@ pub enum Command<'a> {
     },
     /// `cull on|off`
     Cull(bool),
+    /// `prepass on|off`
+    Prepass(bool),
     /// `stats [json]`
     Stats {
         /// As JSON.
@@ -114,6 +120,19 @@ pub enum Command<'a> {
     Buttons,
     /// `reboot`
     Reboot,
+}
+
+/// What the sensor is to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ImuAction {
+    /// Find its bias in so many samples.
+    Calibrate(u32),
+    /// Print so many samples; for ever where there is no number.
+    Stream(Option<u32>),
+    /// Turn the camera as told, or no longer.
+    Follow(Option<Follow>),
+    /// Make where it points the middle.
+    Recentre,
 }
 
 /// Who renders.
@@ -157,7 +176,7 @@ pub(super) type Build = for<'a> fn(&[Value<'a>]) -> Option<Result<Command<'a>, F
 const SWITCH: Argument = ("on|off", Choice(&["on", "off"]));
 
 /// Every command, in the order of the help.
-static COMMANDS: [(Syntax, Build); 29] = [
+static COMMANDS: [(Syntax, Build); 31] = [
     (
         Syntax::new("help", "lists the commands, or explains one").with_optional(&[("COMMAND", Kind::Command)]),
         |values| match *values {
@@ -309,6 +328,30 @@ static COMMANDS: [(Syntax, Build); 29] = [
         },
     ),
     (
+        Syntax::new("imu", "says how the sensor is, calibrates it while it is still, prints its samples, or lets the camera follow it")
+            .with_optional(&[
+                ("ACTION", Choice(&["calibrate", "stream", "look", "orbit", "off", "recentre"])),
+                ("SAMPLES", Number(MOST_SAMPLES[1])),
+            ])
+            .with_spare(1),
+        |values| {
+            let action = match *values {
+                [] => return accept(Command::Imu(None)),
+                [Value::Choice(0)] => ImuAction::Calibrate(SAMPLES),
+                [Value::Choice(0), Value::Number(samples)] => ImuAction::Calibrate(samples),
+                [Value::Choice(1)] => ImuAction::Stream(None),
+                [Value::Choice(1), Value::Number(samples)] => ImuAction::Stream(Some(samples)),
+                [Value::Choice(2)] => ImuAction::Follow(Some(Follow::Look)),
+                [Value::Choice(3)] => ImuAction::Follow(Some(Follow::Orbit)),
+                [Value::Choice(4)] => ImuAction::Follow(None),
+                [Value::Choice(5)] => ImuAction::Recentre,
+                [Value::Choice(_), Value::Number(count)] => return Some(Err(Fault::Samples { count })),
+                _ => return None,
+            };
+            accept(Command::Imu(Some(action)))
+        },
+    ),
+    (
         Syntax::new("orbit", "goes once round the z axis, in so many frames").with_optional(&[("FRAMES", Number(MAX_ORBIT))]),
         |values| match *values {
             [] => accept(Command::Orbit { frames: None }),
@@ -344,6 +387,13 @@ static COMMANDS: [(Syntax, Build); 29] = [
         Syntax::new("render", "draws the picture again and says what it took; with its depth in memory, or without")
             .with_optional(&[("depth", Choice(&["depth"]))]),
         |values| accept(Command::Render { depth: !values.is_empty() }),
+    ),
+    (
+        Syntax::new("prepass", "marches cones before the rays of a field, or only rays").with(&[SWITCH]),
+        |values| match *values {
+            [Value::Choice(off)] => accept(Command::Prepass(off == 0)),
+            _ => None,
+        },
     ),
     (
         Syntax::new("cull", "leaves back faces out, or draws them").with(&[SWITCH]),

@@ -34,6 +34,8 @@ pub(super) enum Fault<'a> {
     },
     /// The picture cannot have this size.
     Size { width: u32, height: u32 },
+    /// A number of samples follows what takes none.
+    Samples { count: u32 },
     /// The numbers are not a camera.
     View(ViewError),
     /// The word is no field.
@@ -78,6 +80,10 @@ impl fmt::Display for ParseError<'_> {
                     "size: {width} x {height}: expected 320 180, 640 360 or 1280 720"
                 )
             }
+            Fault::Samples { count } => write!(
+                f,
+                "imu: SAMPLES is {count}: expected it after calibrate or stream"
+            ),
             Fault::View(error) => write!(f, "view: {error}"),
             Fault::Field(error) => write!(f, "field: {error}"),
             Fault::Stereo(error) => write!(f, "stereo: {error}"),

@@ -29,6 +29,8 @@ pub struct Syntax {
     pub arguments: &'static [Argument],
     /// Whether the arguments may be left out, all together.
     pub optional: bool,
+    /// How many of them may be left out at the end where the others are there.
+    pub spare: usize,
     /// What it does.
     pub summary: &'static str,
 }
@@ -102,6 +104,7 @@ impl Syntax {
             name,
             arguments: &[],
             optional: false,
+            spare: 0,
             summary,
         }
     }
@@ -120,12 +123,18 @@ impl Syntax {
         }
     }
 
-    /// Reads the arguments, all of them or, where that is allowed, none.
+    /// Of which so many may be left out at the end.
+    pub const fn with_spare(self, spare: usize) -> Self {
+        Self { spare, ..self }
+    }
+
+    /// Reads the arguments, all of them or as many as there have to be; or, where that is allowed, none.
     pub fn parse<'a>(&'static self, mut words: Words<'a>) -> Result<Values<'a>, ParseError<'a>> {
         let mut values = Values::new();
         for argument in self.arguments {
             let Some(word) = words.next() else {
-                if self.optional && values.is_empty() {
+                let is_enough = values.len() + self.spare >= self.arguments.len();
+                if is_enough || self.optional && values.is_empty() {
                     break;
                 }
                 return Err(ParseError(Fault::Missing {
@@ -152,15 +161,15 @@ impl Syntax {
 impl fmt::Display for Syntax {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.write_str(self.name)?;
+        let spare_from = self.arguments.len() - self.spare;
+        let mut open = 0;
         for (i, (name, _)) in self.arguments.iter().enumerate() {
-            f.write_str(if i == 0 && self.optional { " [" } else { " " })?;
+            let opens = i == 0 && self.optional || i >= spare_from;
+            open += usize::from(opens);
+            f.write_str(if opens { " [" } else { " " })?;
             f.write_str(name)?;
         }
-        f.write_str(if self.optional && !self.arguments.is_empty() {
-            "]"
-        } else {
-            ""
-        })
+        (0..open).try_for_each(|_| f.write_str("]"))
     }
 }
 

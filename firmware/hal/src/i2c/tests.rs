@@ -1,5 +1,7 @@
 use std::cell::RefCell;
+use std::collections::VecDeque;
 use std::rc::Rc;
+use std::string::String;
 use std::vec::Vec;
 
 use embedded_hal::i2c::I2c as _;
@@ -9,273 +11,243 @@ use litex_pac::bus::{self, Bus};
 use super::*;
 use crate::timer::tests::{Uptime, clock};
 
-/// A device with 256 registers behind a pointer, as a sensor has, watching the wires.
-struct Device {
+/// Places in each queue.
+const PLACES: usize = 33;
+
+/// The master's registers, with a device that gives what it is asked for. Each look at the status lets it do a command.
+struct Master {
+    /// What the device answers to.
     address: u8,
-    registers: [u8; 256],
-    pointer: u8,
-    state: State,
-    /// What the master does to the wires: true is let go.
-    scl: bool,
-    sda: bool,
-    /// Whether the device pulls SDA.
-    pulls: bool,
-    /// Readings of the wires for which the device still holds SCL, and for how many it does at each byte.
-    stretching: u32,
-    stretch: u32,
-    /// Clocks that a stuck device needs before it lets go of SDA.
-    stuck: u32,
-    /// S, P and the bytes on the wire, acknowledged (+) or not (-).
-    log: Vec<std::string::String>,
+    /// Bytes that it acknowledges after its address.
+    acknowledged: usize,
+    next: u8,
+    commands: VecDeque<Command>,
+    answers: VecDeque<u8>,
+    /// S, P and the bytes, sent or received (<), acknowledged (+) or not (-).
+    log: Vec<String>,
+    /// The next byte is an address.
+    addressing: bool,
+    transaction: bool,
+    error: u32,
+    /// The error that comes with the next start.
+    breaks: u32,
+    /// Nothing is done.
+    hangs: bool,
+    overfull: bool,
     uptime: Uptime,
 }
 
-#[derive(Clone, Copy, PartialEq)]
-enum State {
-    Idle,
-    /// Shifting a byte in: bits so far, their number, whether it is the address, whether it sets the pointer.
-    In {
-        bits: u8,
-        count: u8,
-        address: bool,
-        pointer: bool,
-    },
-    /// Shifting a byte out.
-    Out {
-        count: u8,
-    },
-}
-
-impl Device {
+impl Master {
     fn new() -> Self {
         Self {
             address: 0x68,
-            registers: core::array::from_fn(|index| index as u8 ^ 0xa5),
-            pointer: 0,
-            state: State::Idle,
-            scl: true,
-            sda: true,
-            pulls: false,
-            stretching: 0,
-            stretch: 0,
-            stuck: 0,
+            acknowledged: usize::MAX,
+            next: 0xa0,
+            commands: VecDeque::new(),
+            answers: VecDeque::new(),
             log: Vec::new(),
-            uptime: Uptime::new(50),
+            addressing: false,
+            transaction: false,
+            error: 0,
+            breaks: 0,
+            hangs: false,
+            overfull: false,
+            uptime: Uptime::new(5_000),
         }
     }
 
-    fn wire_sda(&self) -> bool {
-        self.sda && !self.pulls && self.stuck == 0
-    }
-
-    /// The master moves the wires.
-    fn drive(&mut self, scl: bool, sda: bool) {
-        let (before, was_high) = (self.wire_sda(), self.scl);
-        (self.scl, self.sda) = (scl, sda);
-        let after = self.wire_sda();
-        match (was_high, scl) {
-            (true, true) if before && !after => {
+    fn step(&mut self) {
+        if self.error != 0 || self.hangs {
+            return;
+        }
+        let Some(command) = self.commands.pop_front() else {
+            return;
+        };
+        let argument = command.argument();
+        match command.operation() {
+            0 => {
                 self.log.push("S".into());
-                self.state = State::In {
-                    bits: 0,
-                    count: 0,
-                    address: true,
-                    pointer: true,
+                (self.addressing, self.transaction, self.error) = (true, true, self.breaks);
+            }
+            1 => {
+                let taken = if self.addressing {
+                    argument >> 1 == self.address
+                } else {
+                    let left = self.acknowledged;
+                    self.acknowledged = left.saturating_sub(1);
+                    left > 0
                 };
+                let mark = if taken { '+' } else { '-' };
+                self.log.push(std::format!("{argument:02x}{mark}"));
+                if !taken {
+                    self.error = if self.addressing { 1 } else { 2 };
+                    self.stop();
+                }
+                self.addressing = false;
             }
-            (true, true) if !before && after => {
-                self.log.push("P".into());
-                self.state = State::Idle;
+            2 => {
+                for left in (0..=argument).rev() {
+                    let mark = if left > 0 || command.more() { '+' } else { '-' };
+                    self.log.push(std::format!("<{:02x}{mark}", self.next));
+                    self.answers.push_back(self.next);
+                    self.next = self.next.wrapping_add(1);
+                }
             }
-            (false, true) => self.rises(),
-            (true, false) => {
-                self.stuck = self.stuck.saturating_sub(1);
-                self.falls();
-            }
-            _ => {}
+            _ => self.stop(),
         }
     }
 
-    fn rises(&mut self) {
-        let sda = self.wire_sda();
-        match &mut self.state {
-            State::In { bits, count, .. } => {
-                if *count < 8 {
-                    *bits = *bits << 1 | u8::from(sda);
-                }
-                *count += 1;
-            }
-            State::Out { count } => {
-                *count += 1;
-                if *count == 9 {
-                    let byte = self.registers[self.pointer as usize];
-                    self.log
-                        .push(std::format!("{byte:02x}{}", if sda { '-' } else { '+' }));
-                    self.pointer = self.pointer.wrapping_add(1);
-                    self.state = if sda {
-                        State::Idle
-                    } else {
-                        State::Out { count: 0 }
-                    };
-                }
-            }
-            State::Idle => {}
-        }
-    }
-
-    fn falls(&mut self) {
-        self.pulls = false;
-        match self.state {
-            State::In {
-                bits,
-                count: 8,
-                address,
-                ..
-            } => {
-                let mine = !address || bits >> 1 == self.address;
-                self.log
-                    .push(std::format!("{bits:02x}{}", if mine { '+' } else { '-' }));
-                self.pulls = mine;
-                self.stretching = self.stretch;
-                if !mine {
-                    self.state = State::Idle;
-                }
-            }
-            State::In {
-                bits,
-                count: 9,
-                address,
-                pointer,
-            } => {
-                if address && bits & 1 != 0 {
-                    self.state = State::Out { count: 0 };
-                    self.falls();
-                    return;
-                }
-                if !address && pointer {
-                    self.pointer = bits;
-                } else if !address {
-                    self.registers[self.pointer as usize] = bits;
-                    self.pointer = self.pointer.wrapping_add(1);
-                }
-                self.state = State::In {
-                    bits: 0,
-                    count: 0,
-                    address: false,
-                    pointer: address,
-                };
-            }
-            State::Out { count } if count < 8 => {
-                self.pulls = self.registers[self.pointer as usize] << count & 0x80 == 0;
-            }
-            _ => {}
-        }
+    fn stop(&mut self) {
+        self.log.push("P".into());
+        self.transaction = false;
     }
 }
 
-struct Wires(Rc<RefCell<Device>>);
+struct Registers(Rc<RefCell<Master>>);
 
-impl Bus for Wires {
+impl Bus for Registers {
     fn read(&mut self, address: usize) -> u32 {
-        let mut device = self.0.borrow_mut();
-        if address != i2c::I2c::BASE + 4 {
-            return device.uptime.read(address).unwrap();
+        let mut master = self.0.borrow_mut();
+        match address.wrapping_sub(i2c::I2c::BASE) {
+            0x04 => master
+                .answers
+                .pop_front()
+                .map_or(0, |byte| 1 << 8 | u32::from(byte)),
+            0x0c => {
+                master.step();
+                let room = master.commands.len() < PLACES;
+                let failed = master.error != 0;
+                let busy = !failed && (master.transaction || !master.commands.is_empty());
+                0b11 | u32::from(room) << 2
+                    | u32::from(busy) << 3
+                    | u32::from(failed) << 4
+                    | master.error << 8
+            }
+            _ => master.uptime.read(address).unwrap(),
         }
-        let stretched = device.stretching > 0;
-        device.stretching = device.stretching.saturating_sub(1);
-        u32::from(device.wire_sda()) | u32::from(device.scl && !stretched) << 1
     }
 
     fn write(&mut self, address: usize, value: u32) {
-        let mut device = self.0.borrow_mut();
-        if address == i2c::I2c::BASE {
-            assert!(value & 2 != 0, "the master must have its outputs enabled");
-            device.drive(value & 1 != 0, value & 4 != 0);
-        } else {
-            device.uptime.write(address);
+        let mut master = self.0.borrow_mut();
+        match address.wrapping_sub(i2c::I2c::BASE) {
+            0x00 => {
+                master.overfull |= master.commands.len() >= PLACES;
+                master
+                    .commands
+                    .push_back(litex_pac::register::Value::from_bits(value));
+            }
+            0x08 => {
+                assert_eq!(value, 1);
+                master.commands.clear();
+                master.answers.clear();
+                (master.error, master.transaction) = (0, false);
+            }
+            0x18 => assert_eq!(value, 1, "the end of a transaction is an interrupt"),
+            _ => master.uptime.write(address),
         }
     }
 }
 
-fn bus_with(device: Device) -> (I2c, Rc<RefCell<Device>>) {
-    let device = Rc::new(RefCell::new(device));
-    bus::connect(Wires(device.clone()));
+fn bus_with(master: Master) -> (I2c, Rc<RefCell<Master>>) {
+    let master = Rc::new(RefCell::new(master));
+    bus::connect(Registers(master.clone()));
     // SAFETY: the registers are a model's.
     let registers = unsafe { Peripherals::steal() }.i2c;
-    (I2c::new(registers, clock(), Config::FAST), device)
+    (I2c::new(registers, clock()), master)
 }
 
-fn log(device: &RefCell<Device>) -> std::string::String {
-    device.borrow().log.join(" ")
+fn log(master: &RefCell<Master>) -> String {
+    let master = master.borrow();
+    assert!(!master.overfull, "a command was lost");
+    master.log.join(" ")
 }
 
 #[test]
 fn writes_and_reads_with_a_repeated_start() {
-    let (mut master, device) = bus_with(Device::new());
+    let (mut i2c, master) = bus_with(Master::new());
     let mut buffer = [0; 3];
-    master.write(0x68, &[0x10, 0xde, 0xad]).unwrap();
-    master.write_read(0x68, &[0x0f], &mut buffer).unwrap();
-    assert_eq!(buffer, [0x0f ^ 0xa5, 0xde, 0xad]);
+    i2c.write(0x68, &[0x10, 0xde, 0xad]).unwrap();
+    i2c.write_read(0x68, &[0x0f], &mut buffer).unwrap();
+    assert_eq!(buffer, [0xa0, 0xa1, 0xa2]);
     assert_eq!(
-        log(&device),
-        "S d0+ 10+ de+ ad+ P S d0+ 0f+ S d1+ aa+ de+ ad- P"
+        log(&master),
+        "S d0+ 10+ de+ ad+ P S d0+ 0f+ S d1+ <a0+ <a1+ <a2- P"
     );
 }
 
 #[test]
 fn operations_of_one_direction_are_one_run() {
-    let (mut master, device) = bus_with(Device::new());
+    let (mut i2c, master) = bus_with(Master::new());
     let (mut one, mut none, mut two) = ([0; 1], [0; 0], [0; 2]);
     let mut operations = [
         Operation::Write(&[0]),
         Operation::Write(&[1]),
         Operation::Read(&mut one),
         Operation::Read(&mut two),
+        Operation::Read(&mut none),
     ];
-    master.transaction(0x68, &mut operations).unwrap();
-    assert_eq!(log(&device), "S d0+ 00+ 01+ S d1+ a4+ a7+ a6- P");
-    master
-        .transaction(0x68, &mut [Operation::Read(&mut none)])
-        .unwrap_or_else(|error| panic!("{error}"));
+    i2c.transaction(0x68, &mut operations).unwrap();
+    assert_eq!((one, two), ([0xa0], [0xa1, 0xa2]));
+    assert_eq!(log(&master), "S d0+ 00+ 01+ S d1+ <a0+ <a1+ <a2- P");
 }
 
 #[test]
-fn nobody_at_the_address() {
-    let (mut master, device) = bus_with(Device::new());
-    let error = master.write(0x69, &[1]).unwrap_err();
-    assert_eq!(error, Error::NoAcknowledge(NoAcknowledgeSource::Address));
-    assert_eq!(log(&device), "S d2- P");
-    assert_eq!(master.write(0x80, &[]), Err(Error::Address(0x80)));
+fn a_run_may_be_longer_than_the_queue_and_a_command() {
+    let (mut i2c, master) = bus_with(Master::new());
+    let mut buffer = [0; 600];
+    i2c.write(0x68, &[7; 100]).unwrap();
+    i2c.read(0x68, &mut buffer).unwrap();
+    assert!(
+        buffer
+            .iter()
+            .zip(0xa0..)
+            .all(|(&byte, at)| byte == at as u8)
+    );
+    let log = log(&master);
+    assert_eq!(log.matches(" 07+").count(), 100);
+    assert_eq!(log.matches('-').count(), 1, "{log}");
 }
 
 #[test]
-fn a_device_may_stretch_the_clock_for_a_while() {
-    let (mut master, _) = bus_with(Device {
-        stretch: 5,
-        ..Device::new()
-    });
-    let mut buffer = [0; 1];
-    master.write_read(0x68, &[7], &mut buffer).unwrap();
-    assert_eq!(buffer, [7 ^ 0xa5]);
-    let (mut master, _) = bus_with(Device {
-        stretch: u32::MAX,
-        ..Device::new()
-    });
-    assert_eq!(master.write(0x68, &[7]), Err(Error::ClockStuck));
+fn errors_are_told_and_the_next_transaction_is_as_the_first() {
+    let (mut i2c, master) = bus_with(Master::new());
+    assert_eq!(i2c.write(0x80, &[]), Err(Error::Address(0x80)));
+    assert_eq!(
+        i2c.write(0x69, &[1; 50]),
+        Err(Error::NoAcknowledge(NoAcknowledgeSource::Address))
+    );
+    master.borrow_mut().acknowledged = 2;
+    assert_eq!(
+        i2c.write(0x68, &[1, 2, 3, 4]),
+        Err(Error::NoAcknowledge(NoAcknowledgeSource::Data))
+    );
+    assert_eq!(log(&master), "S d2- P S d0+ 01+ 02+ 03- P");
+    let stuck = [(3, Error::ClockStuck), (4, Error::DataStuck)];
+    for (code, error) in stuck {
+        master.borrow_mut().breaks = code;
+        assert_eq!(i2c.read(0x68, &mut [0; 2]), Err(error));
+    }
+    master.borrow_mut().breaks = 0;
+    master.borrow_mut().hangs = true;
+    assert_eq!(i2c.read(0x68, &mut [0; 2]), Err(Error::Timeout));
+    master.borrow_mut().hangs = false;
+    master.borrow_mut().log.clear();
+    i2c.read(0x68, &mut [0; 2]).unwrap();
+    assert_eq!(log(&master), "S d1+ <a0+ <a1- P");
 }
 
 #[test]
-fn a_stuck_device_is_clocked_free() {
-    let (mut master, _) = bus_with(Device {
-        stuck: 9,
-        ..Device::new()
-    });
-    let mut buffer = [0; 1];
-    master.write_read(0x68, &[7], &mut buffer).unwrap();
-    assert_eq!(buffer, [7 ^ 0xa5]);
-    let (mut master, _) = bus_with(Device {
-        stuck: 1000,
-        ..Device::new()
-    });
-    assert_eq!(master.write(0x68, &[7]), Err(Error::DataStuck));
+fn what_is_left_of_a_dropped_transaction_is_cleared_away() {
+    let (mut i2c, master) = bus_with(Master::new());
+    let mut buffer = [0; 4];
+    master.borrow_mut().hangs = true;
+    {
+        let future = embedded_hal_async::i2c::I2c::write(&mut i2c, 0x68, &[1, 2]);
+        let mut context = Context::from_waker(Waker::noop());
+        assert!(pin!(future).poll(&mut context).is_pending());
+    }
+    master.borrow_mut().hangs = false;
+    i2c.read(0x68, &mut buffer).unwrap();
+    // The start was under way already.
+    assert_eq!(log(&master), "S S d1+ <a0+ <a1+ <a2+ <a3- P");
 }

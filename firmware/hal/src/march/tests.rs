@@ -7,7 +7,7 @@ use glint_core::camera::View;
 use glint_core::field::Field;
 use glint_core::fixed::{Q32_32, Turns, U4_28};
 use glint_core::stereo::Stereo;
-use glint_model::march::FieldOptions;
+use glint_model::march::{FieldOptions, Prepass};
 use litex_pac::Peripherals;
 use litex_pac::bus::{self, Bus};
 
@@ -50,7 +50,7 @@ fn probe(ident: u32, caps: u32) -> (Result<Marcher, Absent>, Rc<RefCell<Block>>)
 }
 
 /// Two lanes, six levels, boxes and two eyes.
-const EVERYTHING: u32 = 2 | 6 << 4 | 0b1111 << 8;
+const EVERYTHING: u32 = 2 | 6 << 4 | 0b1_1111 << 8;
 /// Four lanes for sponges of depth 4.
 const SPONGES: u32 = 4 | 4 << 4;
 
@@ -60,6 +60,13 @@ fn setup(field: &str, options: &FieldOptions) -> (Setup, Palette) {
     let setup = Setup::new(&field, &view, (640, 360), options).unwrap();
     let palette = options.palette_for(&setup);
     (setup, palette)
+}
+
+fn cones() -> FieldOptions {
+    FieldOptions {
+        prepass: Some(Prepass::Fitting),
+        ..FieldOptions::default()
+    }
 }
 
 fn stereo(text: &str) -> FieldOptions {
@@ -86,6 +93,7 @@ fn something_else_is_not_taken_for_the_raymarcher() {
         stereo: true,
         round: true,
         blend: true,
+        prepass: true,
     };
     assert_eq!(marcher.unwrap().ability(), ability);
     let silent = (registers().ev_enable().address(), 0);
@@ -103,6 +111,7 @@ fn what_is_not_built_is_refused_and_nothing_is_written() {
         ("cubes:2,0.5", FieldOptions::default(), Missing::Boxes),
         ("planes:1", FieldOptions::default(), Missing::Boxes),
         ("menger:4", stereo("0.05,3"), Missing::Stereo),
+        ("menger:4", cones(), Missing::Prepass),
     ] {
         let (setup, palette) = setup(field, &options);
         assert_eq!(marcher.set_field(&setup, &palette), Err(missing), "{field}");
@@ -110,6 +119,32 @@ fn what_is_not_built_is_refused_and_nothing_is_written() {
     }
     let (setup, palette) = setup("menger:4", &FieldOptions::default());
     assert_eq!(marcher.set_field(&setup, &palette), Ok(()));
+}
+
+/// Cones of a field are of the size that the gateware has, and of no other.
+#[test]
+fn cones_come_before_the_rays() {
+    let (marcher, _block) = probe(IDENT, EVERYTHING);
+    let mut marcher = marcher.unwrap();
+    let (others, palette) = setup(
+        "menger:4",
+        &FieldOptions {
+            prepass: Some(Prepass::Blocks(4)),
+            ..FieldOptions::default()
+        },
+    );
+    assert_eq!(
+        marcher.set_field(&others, &palette),
+        Err(Missing::Prepass),
+        "of 16 pixels"
+    );
+    let (setup, palette) = setup("menger:4", &cones());
+    marcher.set_field(&setup, &palette).unwrap();
+    let (cones, r) = (setup.cones.unwrap(), registers());
+    assert_eq!(u32::from(r.cone_spread().read()), cones.spread);
+    let offset = [r.cone_offset_x(), r.cone_offset_y(), r.cone_offset_z()];
+    assert_eq!(offset.map(|x| x.read().cast_signed()), cones.offset);
+    assert!(r.control().read().prepass());
 }
 
 #[test]

@@ -5,7 +5,7 @@ use super::setup::{Eye, FRACTION, Setup, farthest};
 
 /// Below 1/m for every m that begins with these ten bits behind its point: 2^10/(i + 1), cut so that no product
 /// with m rounds to 1. u8.9, 17 bits.
-pub(super) const INVERSE: [u32; 1024] = inverses();
+const INVERSE: [u32; 1024] = inverses();
 
 const fn inverses() -> [u32; 1024] {
     let mut table = [0; 1024];
@@ -91,6 +91,11 @@ impl Outcome {
 impl Setup {
     /// The ray of a pixel.
     pub fn ray(&self, eye: usize, x: u32, y: u32) -> Ray {
+        self.ray_from(eye, x, y, self.near)
+    }
+
+    /// The same from another near plane on.
+    pub(super) fn ray_from(&self, eye: usize, x: u32, y: u32, near: u32) -> Ray {
         // s1.24.
         let direction = [0, 1, 2].map(|i: usize| {
             let across = self.steps[0][i].wrapping_mul(x as i32);
@@ -101,28 +106,19 @@ impl Setup {
                 >> 6
         });
         let length = self.length(direction.map(magnitude));
-        let inverse = self.inverse(length);
-        // 24, 9 and 17 fraction bits.
-        let direction =
-            direction.map(|d| ((i64::from(d) * i64::from(inverse) + (1 << 15)) >> 16) as i32);
-        // Its inverse, or less, 10 fraction bits: the near plane is not before it.
-        let part = if self.is_round() {
-            (inverse * (length + 1)) >> 9
-        } else {
-            length + 1
-        };
-        let near = (u64::from(self.near) * u64::from(part)) >> 10;
-        let entry = self.entry(eye, &direction);
+        let direction = self.scaled(direction, length);
+        let near = self.at_depth(near, length);
+        let entry = self.entry(eye, &direction).min(u64::from(u32::MAX)) as u32;
         Ray {
             eye,
             direction,
             length,
-            start: near.max(entry).min(farthest(self.fraction).into()) as u32,
+            start: near.max(entry).min(farthest(self.fraction)),
         }
     }
 
     /// The first ten bits of D's length, or of its square or a little more, from the magnitudes of its parts, 24 fraction bits.
-    fn length(&self, parts: [u32; 3]) -> u32 {
+    pub(super) fn length(&self, parts: [u32; 3]) -> u32 {
         if self.is_round() {
             // 17 bits of each. What was cut off them is below 2^−15 in all, which is added.
             let square: u64 = parts.map(|part| u64::from(part >> 7).pow(2)).iter().sum();
@@ -134,12 +130,30 @@ impl Setup {
     }
 
     /// What a direction is D times of, u8.9.
-    fn inverse(&self, length: u32) -> u32 {
+    pub(super) fn inverse(&self, length: u32) -> u32 {
         if self.is_round() {
             ROUND_INVERSE[length as usize]
         } else {
             INVERSE[length as usize]
         }
+    }
+
+    /// A direction of length at most 1, of D and the first bits of its length.
+    pub(super) fn scaled(&self, direction: [i32; 3], length: u32) -> [i32; 3] {
+        let inverse = i64::from(self.inverse(length));
+        // 24, 9 and 17 fraction bits.
+        direction.map(|d| ((i64::from(d) * inverse + (1 << 15)) >> 16) as i32)
+    }
+
+    /// The t at a depth along n, or a little before it.
+    pub(super) fn at_depth(&self, depth: u32, length: u32) -> u32 {
+        // The inverse of the inverse, or less, 10 fraction bits.
+        let part = if self.is_round() {
+            (self.inverse(length) * (length + 1)) >> 9
+        } else {
+            length + 1
+        };
+        ((u64::from(depth) * u64::from(part)) >> 10) as u32
     }
 
     /// Where a ray comes to the box if it does: never beyond it, and before it by some 2^−17 of the way.
@@ -168,27 +182,20 @@ impl Setup {
     /// Follows a ray to its end.
     pub fn march(&self, ray: &Ray) -> Outcome {
         let tuning = &self.tuning;
-        // Beside what is round a ray creeps for longer.
-        let cap = tuning.cap << if self.is_round() { 2 } else { 0 };
         let mut t = ray.start;
         let mut steps = 0;
         loop {
             let point = self.point(ray, t);
             let sample = self.sample(point.map(|x| cropped(x, 10 + self.fraction)));
-            // A ray that has left the box, or never came to it, and goes away from it.
-            let gone = (0..3).any(|i| {
-                magnitude(point[i]) > self.bounds[i] && (point[i] < 0) == (ray.direction[i] < 0)
-            });
-            // A ray along a face takes short steps; it need not come as near. Beside a sphere it takes many too, and passes.
-            let patience = if self.is_round() { 0 } else { steps >> 6 };
-            let threshold = (tuning.threshold + (t >> tuning.footprint)) << patience;
+            let gone = self.is_gone(ray, &point);
+            let threshold = (tuning.threshold + (t >> tuning.footprint)) << self.patience(steps);
             steps += 1;
             let next = t + sample.distance.max(0) as u32;
             let state = if gone || next > tuning.far {
                 Some(State::Miss)
             } else if sample.distance < threshold as i32 {
                 Some(State::Hit(sample.surface))
-            } else if steps >= cap {
+            } else if steps >= self.cap() {
                 Some(State::Undecided)
             } else {
                 None
@@ -212,6 +219,24 @@ impl Setup {
             }
             t = next;
         }
+    }
+
+    /// By which power of two the threshold has grown. A ray along a face takes short steps; it need not come as near. Beside a sphere
+    /// it takes many too, and passes.
+    pub(super) fn patience(&self, steps: u32) -> u32 {
+        if self.is_round() { 0 } else { steps >> 6 }
+    }
+
+    /// The points after which a ray is given up: beside what is round it creeps for longer.
+    pub(super) fn cap(&self) -> u32 {
+        self.tuning.cap << if self.is_round() { 2 } else { 0 }
+    }
+
+    /// Whether a ray has left the box, or never came to it, and goes away from it.
+    pub(super) fn is_gone(&self, ray: &Ray, point: &[i32; 3]) -> bool {
+        (0..3).any(|i| {
+            magnitude(point[i]) > self.bounds[i] && (point[i] < 0) == (ray.direction[i] < 0)
+        })
     }
 
     /// How far the plane of a face is, and how steeply the ray goes there.

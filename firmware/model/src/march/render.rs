@@ -2,6 +2,7 @@
 
 use glint_core::stereo::Tint;
 
+use super::cone::Rays;
 use super::paint::{Palette, paint};
 use super::ray::{Outcome, Ray, State};
 use super::setup::Setup;
@@ -13,7 +14,7 @@ use crate::render::{RenderError, Target};
 pub struct FieldStats {
     /// Rays: one a pixel and eye.
     pub rays: u32,
-    /// Evaluations of the field: as many a step as there are spheres.
+    /// Evaluations of the field, by rays and by the cones before them: as many a step as there are spheres.
     pub evaluations: u64,
     /// Rays that came to a surface.
     pub hits: u32,
@@ -54,8 +55,9 @@ pub fn render_field(
     let &Setup { width, height, .. } = setup;
     target.check_size((width, height))?;
     let mut stats = FieldStats::default();
+    let mut rays = Rays::new(setup);
     let mut look = |eye, x, y| {
-        let ray = setup.ray(eye, x, y);
+        let ray = rays.ray(eye, x, y);
         let outcome = setup.march(&ray);
         stats.count(setup, &outcome);
         show(x, y, &ray, &outcome);
@@ -81,6 +83,7 @@ pub fn render_field(
             }
         }
     }
+    stats.evaluations += rays.evaluations();
     Ok(stats)
 }
 

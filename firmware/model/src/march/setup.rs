@@ -7,6 +7,7 @@ use glint_core::stereo::{Stereo, Tint};
 use glint_core::trig::sin_cos_q30;
 
 use super::blend::{Beside, Blend};
+use super::cone::{Cones, Prepass};
 use super::field::{Sample, Solid, cropped};
 use super::paint::Palette;
 use super::sphere::{Ball, Balls};
@@ -91,6 +92,8 @@ pub struct FieldOptions {
     /// Fraction bits of field units, 8 to 16. The gateware has 12; the others are there to show what they are worth. What is
     /// round has 12.
     pub fraction: u32,
+    /// Cones before the rays, if any.
+    pub prepass: Option<Prepass>,
 }
 
 impl FieldOptions {
@@ -129,6 +132,7 @@ impl Default for FieldOptions {
             palette: Palette::default(),
             fog: U4_28::ZERO,
             fraction: FRACTION,
+            prepass: None,
         }
     }
 }
@@ -168,8 +172,10 @@ pub struct Setup {
     pub steps: [[i32; 3]; 2],
     /// D is 2^−e of the direction whose part along n is 1; e is 0 to 3.
     pub exponent: u32,
-    /// The near plane's distance in field units times 2^e, 12 fraction bits, u11.12.
+    /// The near plane's distance in field units times 2^e, or that of the nearest corner of the box, 12 fraction bits, u11.12.
     pub near: u32,
+    /// The cones before the rays, if any.
+    pub cones: Option<Cones>,
     /// K for depths in field units times 2^e.
     pub depth: DepthScale,
     /// K for depths in world units: the host's.
@@ -254,9 +260,17 @@ impl Setup {
         };
 
         let near = i64::from(view.near().to_bits()) << 4;
-        // At most 2 world units.
-        let near_units = units(Q32_32::from_bits(near), scale, fraction) << rays.exponent;
-        let world_depth = depth_scale(view, near, extent);
+        let nearest = nearest(view, extent);
+        // At most 2 world units for the plane, 64 for the box, of which a step of rounding is left out.
+        let [plane, corner] =
+            [near, nearest >> 5].map(|x| units(Q32_32::from_bits(x), scale, fraction));
+        let near_units = plane.max(corner - 1) << rays.exponent;
+        let world_depth = DepthScale::from_nearest(nearest.max(near << 5));
+        let steps = [rays.across, rays.down].map(|step| step.map(|x| rays.narrow(x)));
+        let eyes = if options.stereo.is_some() { 2 } else { 1 };
+        let cones = options
+            .prepass
+            .map(|prepass| Cones::new(prepass, (width, height), eyes, round, &steps));
         Ok(Self {
             width,
             height,
@@ -266,9 +280,10 @@ impl Setup {
             scale,
             bounds,
             eyes: [eye(-1, rays.first[0]), eye(1, rays.first[1])],
-            steps: [rays.across, rays.down].map(|step| step.map(|x| rays.narrow(x))),
+            steps,
             exponent: rays.exponent,
             near: near_units.clamp(0, farthest(fraction).into()) as u32,
+            cones,
             depth: world_depth.times(scale, rays.exponent),
             world_depth,
             tuning: options.tuning.with_fraction(fraction),
@@ -426,9 +441,10 @@ fn units(x: Q32_32, scale: Q32_32, fraction: u32) -> i64 {
     (product + (1 << (43 - fraction))) >> (44 - fraction)
 }
 
-/// K from the nearest depth: at least the near plane's, or else that of the box.
-fn depth_scale(view: &View, near: i64, extent: Option<[Q32_32; 3]>) -> DepthScale {
-    let nearest = extent.map_or(0, |half| -> i64 {
+/// The depth along n of the corner of the box that is nearest, 37 fraction bits, rounded down: below 0 beside it; 0 where there is
+/// no box.
+fn nearest(view: &View, extent: Option<[Q32_32; 3]>) -> i64 {
+    extent.map_or(0, |half| -> i64 {
         (0..3)
             .map(|i| {
                 let n = i64::from(view.n()[i].to_bits());
@@ -438,8 +454,7 @@ fn depth_scale(view: &View, near: i64, extent: Option<[Q32_32; 3]>) -> DepthScal
                 -place - reach - (reach >> 13)
             })
             .sum()
-    });
-    DepthScale::from_nearest(nearest.max(near << 5))
+    })
 }
 
 /// The directions of the rays, D with 51 fraction bits before they are narrowed.

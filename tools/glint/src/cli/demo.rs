@@ -227,6 +227,7 @@ impl DemoArguments {
             field: &SPONGE,
             appearance: &Appearance::default(),
             stereo: Some(EYES),
+            prepass: false,
         };
         let (width, height) = SIZE;
         let console = renderer.console();

@@ -39,6 +39,9 @@ pub struct FieldArguments {
     /// Darken the narrow places of a field.
     #[arg(long)]
     occlusion: bool,
+    /// March a cone for each block of a field's pixels before their rays, which begin where it has come to: fewer evaluations.
+    #[arg(long)]
+    prepass: bool,
 }
 
 impl FieldArguments {
@@ -74,6 +77,11 @@ impl FieldArguments {
             .map_err(|error| refusal("--stereo", "two eyes", escaped(error)))
     }
 
+    /// Whether cones go before its rays.
+    pub const fn prepass(&self) -> bool {
+        self.prepass
+    }
+
     /// How it looks; of a mesh nothing of this may be said.
     pub fn appearance(&self) -> Result<Appearance, InputError> {
         let said = [
@@ -83,6 +91,7 @@ impl FieldArguments {
             ("--background", self.background.is_some()),
             ("--fog", self.fog.is_some()),
             ("--occlusion", self.occlusion),
+            ("--prepass", self.prepass),
         ];
         if let (None, Some((option, _))) = (&self.field, said.iter().find(|(_, said)| *said)) {
             return Err(refusal(

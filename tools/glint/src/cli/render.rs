@@ -147,6 +147,7 @@ impl RenderArguments {
             field,
             appearance: &appearance,
             stereo,
+            prepass: self.field.prepass(),
         });
         let subject = match (mesh, field) {
             (Some(mesh), Some(field)) => Subject::Both(mesh, field),

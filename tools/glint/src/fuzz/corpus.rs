@@ -127,7 +127,7 @@ const CONSOLE: &[&str] = &[
     "help\rhelp camera\rinfo\rscene\rscene cube\rscene model\r",
     "camera 2.5 30 60\rcamera 5 -720.125 179.99999\rorbit 12\rorbit\r",
     "view\rview 0 -3 0 1 0 0 0 0 -1 0 1 0 0.9 0.1\r",
-    "field\rfield menger:4\rfield cubes:2,0.5\rfield off\rstereo\rstereo 0.05,3\rstereo 0.05,3,red-cyan\rstereo off\r",
+    "field\rfield menger:4\rfield cubes:2,0.5\rfield off\rstereo\rstereo 0.05,3\rstereo 0.05,3,red-cyan\rstereo off\rprepass on\r",
     "look 10 20 -30.5\rsize 320 180\rsize 1280 720\rframe\rframe depth\r",
     "load 4096 deadbeef\rrender\rcull on\rcull off\rstats\rstats json\r",
     "backend\rbackend cpu\rbackend gateware\rshading\rshading smooth\rbench\rbench sine\rselftest\r",

@@ -18,6 +18,8 @@ pub struct Marched {
     pub coded: Option<f64>,
     /// Evaluations of the field.
     pub steps: u32,
+    /// Those of the cones that were marched before it.
+    pub cones: u64,
 }
 
 impl Marched {
@@ -31,11 +33,18 @@ impl Marched {
 }
 
 /// The picture of one eye, row by row; eye 0 is the left or the only one.
+///
+/// With a prepass what its cones take counts as of the rays before which they are marched: the first one of a row of blocks.
 pub fn picture(setup: &Setup, eye: usize) -> Vec<Marched> {
+    let mut rays = march::Rays::new(setup);
+    let mut cones = 0;
     pixels(setup)
         .map(|(x, y)| {
-            let ray = setup.ray(eye, x, y);
-            marched(setup, &ray, &setup.march(&ray))
+            let ray = rays.ray(eye, x, y);
+            let mut end = marched(setup, &ray, &setup.march(&ray));
+            end.cones = rays.evaluations() - cones;
+            cones = rays.evaluations();
+            end
         })
         .collect()
 }
@@ -85,6 +94,7 @@ pub fn marched(setup: &Setup, ray: &march::Ray, end: &march::Outcome) -> Marched
         outcome,
         coded,
         steps: end.steps * setup.passes(),
+        cones: 0,
     }
 }
 
@@ -290,9 +300,11 @@ pub struct Measured {
     pub accuracy: Accuracy,
     /// The depths' errors by their codes, where both hit.
     pub coded: Option<Quantiles>,
-    /// Evaluations of the field, of all rays.
+    /// Evaluations of the field, of all rays and cones.
     pub evaluations: u64,
-    /// Of the one that took the most.
+    /// Of the cones alone.
+    pub cones: u64,
+    /// Of the ray that took the most.
     pub most: u32,
 }
 
@@ -303,7 +315,11 @@ impl Measured {
         Self {
             accuracy: accuracy(expected, &outcomes(|ray| ray.outcome)),
             coded: accuracy(expected, &outcomes(Marched::by_code)).depth,
-            evaluations: found.iter().map(|ray| u64::from(ray.steps)).sum(),
+            evaluations: found
+                .iter()
+                .map(|ray| u64::from(ray.steps) + ray.cones)
+                .sum(),
+            cones: found.iter().map(|ray| ray.cones).sum(),
             most: found.iter().map(|ray| ray.steps).max().unwrap_or(0),
         }
     }

@@ -89,6 +89,7 @@ impl Method {
             outcome,
             coded: None,
             steps,
+            cones: 0,
         }
     }
 }

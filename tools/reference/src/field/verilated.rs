@@ -1,7 +1,7 @@
 //! The raymarcher itself, verilated: what a picture takes of it.
 
 use glint_model::descriptor::band_rows;
-use glint_model::march::{Palette, Setup};
+use glint_model::march::{Palette, Rays, Setup};
 use glint_rtl::{Module, Port};
 
 // The raymarcher's tests use the rest.
@@ -9,7 +9,7 @@ use glint_rtl::{Module, Port};
 #[path = "../../../rtl/tests/march/ports.rs"]
 mod ports;
 
-use ports::{Pixel, Place, pixel, set_lane, set_paint, set_rays};
+use ports::{Pixel, Place, pixel, set_blocks, set_lane, set_paint, set_rays};
 
 /// What a group of pixels consists of, in the order of [`Pixel`].
 const GROUP: [&str; 7] = ["eye", "row", "line", "column", "mask", "code", "colour"];
@@ -61,10 +61,19 @@ impl Raymarcher {
         set_lane(&mut self.module, setup);
         set_rays(&mut self.module, setup);
         set_paint(&mut self.module, setup, &palette);
+        set_blocks(&mut self.module, setup, "cone_offset", "cone_spread");
+        self.set("prepass", setup.cones.is_some().into());
         self.set("size", u64::from(setup.width / 640));
         let [valid, done] = ["group_valid", "band_done"].map(|name| self.module.port(name));
         let lines = band_rows(setup.width);
         let eyes = if setup.stereo.is_some() { 2 } else { 1 };
+        let mut rays = Rays::new(setup);
+        let rays: Vec<_> = (0..setup.height * eyes * setup.width)
+            .map(|i| {
+                let (line, x) = (i / setup.width, i % setup.width);
+                rays.ray((line % eyes) as usize, x, line / eyes)
+            })
+            .collect();
         self.pulse("start");
         for band in 0..setup.height / lines {
             let mut left = lines * setup.width * eyes;
@@ -78,8 +87,9 @@ impl Raymarcher {
                         column: (8 * found.column) as u32 + found.mask.trailing_zeros(),
                         eye: found.eye as usize,
                     };
-                    let ray = setup.ray(place.eye, place.column, band * lines + place.line);
-                    let wanted = pixel(setup, &palette, place, &ray, &setup.march(&ray));
+                    let line = (band * lines + place.line) * eyes + place.eye as u32;
+                    let ray = &rays[(line * setup.width + place.column) as usize];
+                    let wanted = pixel(setup, &palette, place, ray, &setup.march(ray));
                     assert_eq!(found, wanted, "in band {band} of {setup:?}");
                     left -= 1;
                 }

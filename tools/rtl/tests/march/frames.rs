@@ -1,11 +1,14 @@
 //! Whole frames of the raymarcher: every pixel once, as the model has it, in the band that is open.
 
-use glint_model::march::{FieldStats, Palette, Setup, State};
+use glint_model::SIZES;
+use glint_model::march::{FieldStats, Palette, Prepass, Rays, Setup, State};
 use glint_rtl::{Module, Sink, Stalls};
 
 use crate::common::Random;
-use crate::ports::{Pixel, Place, pixel, set_lane, set_lights, set_paint, set_rays};
-use crate::scenes::{FIELDS, ROUND, SPONGES, UNIONS, band_lines, lights, setup};
+use crate::ports::{Pixel, Place, pixel, set_blocks, set_lane, set_lights, set_paint, set_rays};
+use crate::scenes::{
+    FIELDS, ROUND, SPONGES, UNIONS, band_lines, lights, setup, setup_with, tunnel,
+};
 
 const COUNTERS: [&str; 8] = [
     "clocks_busy",
@@ -28,6 +31,18 @@ struct Bench {
 struct Taken {
     counters: [u64; 8],
     stats: FieldStats,
+}
+
+impl Taken {
+    fn busy(&self, bench: &Bench) -> String {
+        let [busy, idle, ..] = self.counters;
+        let evaluations = self.stats.evaluations as f64;
+        format!(
+            "{:.2} evaluations a ray, {:.4} a clock and lane, {busy} clocks, {idle} of lanes idle",
+            evaluations / f64::from(self.stats.rays),
+            evaluations / (busy * bench.lanes) as f64
+        )
+    }
 }
 
 impl Bench {
@@ -55,6 +70,8 @@ impl Bench {
         set_rays(&mut self.module, setup);
         set_paint(&mut self.module, setup, palette);
         set_lights(&mut self.module, setup, &palette.lights);
+        set_blocks(&mut self.module, setup, "cone_offset", "cone_spread");
+        self.port("prepass", setup.cones.is_some().into());
         self.port("size", u64::from(setup.width / 640));
     }
 
@@ -79,6 +96,7 @@ impl Bench {
         );
         let done = self.module.port("band_done");
         let mut stats = FieldStats::default();
+        let mut rays = Rays::new(setup);
         self.pulse("start");
         for band in 0..setup.height / lines {
             let mut expected = std::collections::HashMap::new();
@@ -90,7 +108,7 @@ impl Bench {
                         column: x,
                         eye: eye as usize,
                     };
-                    let ray = setup.ray(place.eye, x, band * lines + y);
+                    let ray = rays.ray(place.eye, x, band * lines + y);
                     let outcome = setup.march(&ray);
                     stats.count(setup, &outcome);
                     expected.insert((eye.into(), y.into(), x.into()), {
@@ -141,6 +159,7 @@ impl Bench {
             self.port("band_open", 0);
             self.pulse("band_next");
         }
+        stats.evaluations += rays.evaluations();
         let busy = self.module.port("busy");
         assert!(!self.module.is_high(busy), "busy after the last band");
         // Counters are some clocks late.
@@ -179,12 +198,24 @@ fn frames_of_all_fields_with_stalls() {
 }
 
 #[test]
+fn frames_of_sponges_with_cones_and_stalls() {
+    let mut random = Random(12);
+    let mut bench = Bench::new("raymarcher_sponge", 4, 2);
+    for _ in 0..3 {
+        let mut setup = setup_with(&mut random, &SPONGES, Some(Prepass::Fitting));
+        setup.tuning.cap = setup.tuning.cap.min(20);
+        bench.draw(&mut random, &setup, &Palette::default(), false);
+    }
+}
+
+#[test]
 fn frames_of_round_fields_in_all_lights() {
     let mut random = Random(12);
     let mut bench = Bench::new("raymarcher", 2, 1);
     for frame in 0..5 {
         let fields = [&ROUND[..], &UNIONS, &SPONGES][frame % 3];
-        let mut setup = setup(&mut random, fields);
+        let prepass = (frame % 2 == 1).then_some(Prepass::Fitting);
+        let mut setup = setup_with(&mut random, fields, prepass);
         setup.tuning.cap = setup.tuning.cap.min(20);
         let palette = Palette {
             lights: lights(&mut random),
@@ -220,19 +251,32 @@ fn round_pixels_take_a_clock_a_light() {
 #[test]
 fn sponges_keep_the_lanes_busy() {
     let mut random = Random(10);
-    let mut bench = Bench::new("raymarcher_menger", 4, 1);
+    let mut bench = Bench::new("raymarcher_sponge", 4, 1);
     for frame in 0..2 {
         let setup = setup(&mut random, &SPONGES);
         let taken = bench.draw(&mut random, &setup, &Palette::default(), true);
-        let [busy, idle, ..] = taken.counters;
-        let share = taken.stats.evaluations as f64 / (busy * bench.lanes) as f64;
-        println!(
-            "frame {frame}: {:.2} evaluations a ray, {share:.4} a clock and lane, {idle} clocks idle",
-            taken.stats.evaluations as f64 / f64::from(taken.stats.rays)
-        );
+        println!("frame {frame}: {}", taken.busy(&bench));
         // With fewer evaluations a ray than there are lanes, it is the rays that are too few.
+        let share = taken.stats.evaluations as f64 / (taken.counters[0] * bench.lanes) as f64;
         assert!(share >= 0.98 || taken.stats.evaluations < 8 * u64::from(taken.stats.rays));
     }
+}
+
+/// In the sponge's largest tunnel, where rays take the most evaluations, without a prepass and with one: at 320 × 180, or with
+/// `GLINT_RTL_FIELDS=all` at 1280 × 720.
+#[test]
+fn cones_take_evaluations_off_the_rays_of_a_tunnel() {
+    let all = std::env::var("GLINT_RTL_FIELDS").is_ok_and(|fields| fields == "all");
+    let size = SIZES[if all { 2 } else { 0 }];
+    let mut random = Random(13);
+    let mut bench = Bench::new("raymarcher_sponge", 4, 1);
+    let clocks = [None, Some(Prepass::Fitting)].map(|prepass| {
+        let setup = tunnel(size, prepass);
+        let taken = bench.draw(&mut random, &setup, &Palette::default(), true);
+        println!("{size:?}, {prepass:?}: {}", taken.busy(&bench));
+        taken.counters[0]
+    });
+    assert!(clocks[1] * 3 < clocks[0] * 2, "{clocks:?} clocks");
 }
 
 #[test]

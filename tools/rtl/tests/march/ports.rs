@@ -1,7 +1,7 @@
 //! The raymarcher's constants and items as its ports have them.
 
 use glint_model::march::{
-    Lights, Outcome, Palette, Ray, Setup, Solid, State, Surface, paint, rgb565,
+    Cone, Lights, Outcome, Palette, Ray, Setup, Solid, State, Surface, paint, rgb565,
 };
 use glint_rtl::{Bits, Module};
 
@@ -46,9 +46,25 @@ pub fn ray(place: Place, ray: &Ray) -> Bits {
         .with(87, PLACE_BITS, place.number())
 }
 
+/// Of a number of a cone and its eye.
+impl Place {
+    pub fn of_cone(eye: usize, number: u32) -> Self {
+        Self {
+            odd: false,
+            line: number >> 11,
+            column: number & 0x7FF,
+            eye,
+        }
+    }
+}
+
+pub fn cone(place: Place, cone: &Cone) -> Bits {
+    ray(place, &cone.ray).with(87 + PLACE_BITS, 16, cone.spread)
+}
+
 /// Where a ray has come to, as the end of one says. What does not count is 0: surface and slope without a hit, t of a ray
-/// that was given up, a face behind a sphere.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// that was given up, a face behind a sphere, the direction of a ray that has not come to a sphere.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct End {
     pub state: u64,
     pub round: bool,
@@ -60,6 +76,7 @@ pub struct End {
     pub length: u64,
     pub gap: u64,
     pub slope: u64,
+    pub direction: [i32; 3],
 }
 
 impl End {
@@ -86,10 +103,30 @@ impl End {
             length: ray.length.into(),
             gap: outcome.gap.into(),
             slope: outcome.slope.into(),
+            direction: number.map_or([0; 3], |_| ray.direction),
         }
     }
 
-    /// Without the direction: see [`direction`].
+    /// The end of a cone: only how far it has come counts, and what that took.
+    pub fn expected_of_cone(cone: &Cone, (t, steps): (u32, u32)) -> Self {
+        Self {
+            t: t.into(),
+            steps: steps.min(255).into(),
+            length: cone.ray.length.into(),
+            ..Self::default()
+        }
+    }
+
+    pub fn of_cone(item: &Bits) -> (Place, Self) {
+        let end = Self {
+            t: item.field(35, 23),
+            steps: item.field(27, 8),
+            length: item.field(58, 10),
+            ..Self::default()
+        };
+        (Place::of(item.field(68, PLACE_BITS)), end)
+    }
+
     pub fn of(item: &Bits) -> (Place, Self) {
         let state = item.field(25, 2);
         let if_hit = |value| if state == 1 { value } else { 0 };
@@ -111,14 +148,14 @@ impl End {
             steps: item.field(27, 8),
             t: if state == 2 { 0 } else { item.field(35, 23) },
             length: item.field(58, 10),
+            direction: if round {
+                [0, 1, 2].map(|i| (item.field(88 + 18 * i, 18) as i32) << 14 >> 14)
+            } else {
+                [0; 3]
+            },
         };
         (Place::of(item.field(68, PLACE_BITS)), end)
     }
-}
-
-/// The direction that the end of a ray has.
-pub fn direction(item: &Bits) -> [i32; 3] {
-    [0, 1, 2].map(|i| (item.field(88 + 18 * i, 18) as i32) << 14 >> 14)
 }
 
 fn solid(setup: &Setup) -> Bits {
@@ -258,6 +295,19 @@ pub fn set_rays(module: &mut Module, setup: &Setup) {
     }
 }
 
+/// Sets what a block of pixels is in D.
+pub fn set_blocks(module: &mut Module, setup: &Setup, offset: &str, spread: &str) {
+    let cones = setup.cones.map(|cones| (cones.offset, cones.spread));
+    let (middle, widest) = cones.unwrap_or_default();
+    for (name, value) in [
+        (offset, three(32, middle.map(i64::from))),
+        (spread, Bits::from(u64::from(widest))),
+    ] {
+        let port = module.port(name);
+        module.set(port, value);
+    }
+}
+
 /// The end of a ray.
 pub fn end(place: Place, ray: &Ray, outcome: &Outcome) -> Bits {
     let End {
@@ -271,6 +321,7 @@ pub fn end(place: Place, ray: &Ray, outcome: &Outcome) -> Bits {
         length,
         gap,
         slope,
+        direction: _,
     } = End::expected(ray, outcome);
     Bits::default()
         .with(0, 10, slope)

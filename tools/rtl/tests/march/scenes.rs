@@ -4,7 +4,7 @@ use glint_core::camera::View;
 use glint_core::field::Field;
 use glint_core::fixed::Q32_32;
 use glint_model::SIZES;
-use glint_model::march::{FieldOptions, Light, Lights, Setup, Stereo, Tint};
+use glint_model::march::{FieldOptions, Light, Lights, Prepass, Setup, Stereo, Tint};
 
 use crate::common::{Camera, Random};
 
@@ -50,6 +50,15 @@ pub const FIELDS: [&str; 12] = [
     "planes:0.01",
 ];
 
+/// What there is where a lane knows all fields.
+pub fn every_field() -> Vec<&'static str> {
+    let boxes = [
+        "union:box:1,0.5,0.25+moving:0.25,1",
+        "smooth:0.2,box:1,0.5,0.25+moving:0.25,1",
+    ];
+    [&FIELDS[..], &ROUND, &UNIONS, &boxes].concat()
+}
+
 /// A camera somewhere in a field or beside it, that looks anywhere.
 pub fn camera(random: &mut Random) -> View {
     let distance = match random.bits() % 4 {
@@ -78,8 +87,16 @@ pub fn camera(random: &mut Random) -> View {
 
 /// The constants of a frame: how finely it is marched is random too, and how many eyes look.
 pub fn setup(random: &mut Random, fields: &[&str]) -> Setup {
+    setup_with(random, fields, None)
+}
+
+/// The same with cones before the rays, or without.
+pub fn setup_with(random: &mut Random, fields: &[&str], prepass: Option<Prepass>) -> Setup {
     let field = Field::parse(fields[random.bits() as usize % fields.len()]).unwrap();
-    let mut options = FieldOptions::of(&field);
+    let mut options = FieldOptions {
+        prepass,
+        ..FieldOptions::of(&field)
+    };
     if random.coin() {
         options.stereo = Some(Stereo {
             half_separation: Q32_32::from_num(random.real(0.0, 1.0)),
@@ -113,6 +130,18 @@ pub fn lights(random: &mut Random) -> Lights {
         count: random.integer(1, 4) as usize,
         materials,
     }
+}
+
+/// In the largest tunnel of the sponge: the report's view.
+pub fn tunnel(size: (u32, u32), prepass: Option<Prepass>) -> Setup {
+    let (eye, target) = ([0.0625, -0.8125, 0.09375], [-0.125, 0.9375, 0.03125]);
+    let view = Camera::looking(eye, target, 0.9, 0.01).rounded();
+    let options = FieldOptions {
+        prepass,
+        ..FieldOptions::default()
+    };
+    let sponge = Field::parse("menger:4").unwrap();
+    Setup::new(&sponge, &view, size, &options).unwrap()
 }
 
 /// Lines of a band, by the picture's width.

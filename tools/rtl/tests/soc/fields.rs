@@ -73,18 +73,19 @@ fn board() -> SimulatedBoard {
 /// Draws a field on the board, with or without its depths in memory, and compares it with the model's.
 fn compare(
     console: &mut Console<SimulatedBoard>,
-    field: Field,
-    stereo: Option<Stereo>,
+    subject: FieldSubject,
     view: &View,
     size: (u32, u32),
     with_depth: bool,
 ) {
-    let name = format!("{field}, {stereo:?}, {view} at {size:?}");
-    let subject = FieldSubject {
-        field: &field,
-        appearance: &Appearance::default(),
+    let FieldSubject {
+        field,
         stereo,
-    };
+        prepass,
+        ..
+    } = subject;
+    let cones = if prepass { ", after cones" } else { "" };
+    let name = format!("{field}, {stereo:?}, {view} at {size:?}{cones}");
     let scene = Scene {
         subject: Subject::Field(subject),
         view: *view,
@@ -155,8 +156,8 @@ fn all() -> bool {
     std::env::var("GLINT_RTL_FIELDS").is_ok_and(|which| which == "all")
 }
 
-/// Every fourth one from one side for one eye or for two, in turns: all of them from all sides for both with
-/// `GLINT_RTL_FIELDS=all`.
+/// Every fourth one from one side for one eye or for two, without cones or with them, in turns: with `GLINT_RTL_FIELDS=all` all of
+/// them from all sides for both, and once more with cones from one side.
 #[test]
 fn the_soc_draws_every_field() {
     let mut board = board();
@@ -167,12 +168,24 @@ fn the_soc_draws_every_field() {
         for (side, view) in views().iter().enumerate() {
             // Both pairs of colours are seen in turns.
             for stereo in [None, eyes()[1 + (number + side) % 2]] {
-                let in_turn = stereo.is_some() == ((number / 4 + side) % 2 == 0);
-                if !all() && (!in_turn || side != number % 3 || number % 4 != 0) {
-                    continue;
+                let once = side == number % 3;
+                let in_turn = once && stereo.is_some() == ((number / 4 + side) % 2 == 0);
+                for prepass in [false, true] {
+                    let drawn = if all() {
+                        !prepass || once
+                    } else {
+                        in_turn && number % 4 == 0 && prepass == (number / 4 % 2 == 1)
+                    };
+                    if drawn {
+                        let subject = FieldSubject {
+                            field: &field,
+                            appearance: &Appearance::default(),
+                            stereo,
+                            prepass,
+                        };
+                        compare(&mut console, subject, view, (320, 180), once);
+                    }
                 }
-                let with_depth = side == number % 3;
-                compare(&mut console, field, stereo, view, (320, 180), with_depth);
             }
         }
     }
@@ -188,11 +201,16 @@ fn the_soc_draws_large_fields_and_goes_back_to_meshes() {
         convert::Options::default(),
     )
     .unwrap();
-    let sponge = Field::Menger { depth: 4 };
+    let sponge = FieldSubject {
+        field: &Field::Menger { depth: 4 },
+        appearance: &Appearance::default(),
+        stereo: None,
+        prepass: true,
+    };
     let [view, ..] = views();
     let sizes = [(640, 360), (1280, 720)];
     for &size in if all() { &sizes[..] } else { &sizes[..1] } {
-        compare(&mut console, sponge, None, &view, size, size.0 == 640);
+        compare(&mut console, sponge, &view, size, size.0 == 640);
         let scene = Scene {
             subject: Subject::mesh(&cube),
             view,
@@ -220,8 +238,8 @@ fn load(console: &mut Console<SimulatedBoard>, mesh: &[u8]) -> String {
     format!("load {length} {crc32:08x}")
 }
 
-/// A mesh that looks out of a field and into which the field looks, with triangles that need clipping, and light, fog and sky on
-/// the field. From more sides, in another size and back to back with `GLINT_RTL_FIELDS=all`.
+/// A mesh that looks out of a field and into which the field looks, with triangles that need clipping, and light, fog, sky and cones
+/// of the field. From more sides, in another size and back to back with `GLINT_RTL_FIELDS=all`.
 #[test]
 fn the_soc_draws_a_mesh_in_a_field() {
     let mut board = board();
@@ -247,6 +265,7 @@ fn the_soc_draws_a_mesh_in_a_field() {
         field: &Field::parse("box:0.75,0.75,0.75").unwrap(),
         appearance: &appearance,
         stereo: None,
+        prepass: true,
     };
     let both = |view, size, cull| Scene {
         subject: Subject::Both(

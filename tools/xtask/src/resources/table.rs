@@ -19,9 +19,9 @@ const NOTES: [&str; 7] = [
      of four bits, wide multiplexers, reads of LUT memories. A multiplier or block RAM ends a path even where its registers \
      are not used. Clock domains and false paths are not known. It stands for timing, and is no more than a stand-in.",
     "A block alone keeps what the SoC may find to be constant, so blocks do not add up to the SoC.",
-    "`ring_lane` is a lane of the raymarcher for the sponge up to depth 4, `ring_lane_all` one for every field, `raymarcher` two lanes for \
-     every field, `raymarcher_menger` four for the sponge. The budget leaves a lane for the sponge three multipliers, which are those of \
-     p = o + t·d: no other field is in it.",
+    "`ring_lane` is a lane of the raymarcher for the sponge up to depth 4 and no cones, `ring_lane_all` one for every field and for cones. \
+     `raymarcher` is the build for all fields, the others are what `cargo xtask gateware --fields` calls `round`, `faces` and `sponge`. The \
+     budget leaves a lane for the sponge three multipliers, which are those of p = o + t·d: no other field is in it.",
     "The SoC is the Urbana's: VexRiscv with its caches, LiteDRAM with its PHY, ROM, SRAM, scan-out, triangle engine, raymarcher. The ROM \
      holds the BIOS of this build.",
     "The SoC's path is shown and not limited: the soft core has longer ones than the own blocks.",

@@ -39,6 +39,7 @@ const SPONGE: Build = Build {
 struct Case {
     field: &'static str,
     stereo: Option<&'static str>,
+    prepass: bool,
     size: (u32, u32),
     build: Build,
     cameras: fn() -> Vec<(&'static str, Camera)>,
@@ -54,12 +55,17 @@ impl Case {
     fn eyes(&self) -> u32 {
         if self.stereo.is_some() { 2 } else { 1 }
     }
+
+    fn shown_prepass(&self) -> &str {
+        if self.prepass { "yes" } else { "" }
+    }
 }
 
-const CASES: [Case; 3] = [
+const CASES: [Case; 5] = [
     Case {
         field: "menger:4",
         stereo: Some("0.03,1.5"),
+        prepass: false,
         size: (320, 180),
         build: FIELDS,
         cameras: of_the_sponge,
@@ -71,6 +77,7 @@ const CASES: [Case; 3] = [
     Case {
         field: "menger:4",
         stereo: None,
+        prepass: false,
         size: (1280, 720),
         build: SPONGE,
         cameras: of_the_sponge,
@@ -80,14 +87,39 @@ const CASES: [Case; 3] = [
         aim: None,
     },
     Case {
+        field: "menger:4",
+        stereo: None,
+        prepass: true,
+        size: (1280, 720),
+        build: SPONGE,
+        cameras: of_the_sponge,
+        path: still,
+        clock: 0,
+        at_least: 30.0,
+        aim: Some(60.0),
+    },
+    Case {
         field: "lattice:1,0.3",
         stereo: Some("0.03,1.5"),
+        prepass: false,
         size: (320, 180),
         build: FIELDS,
         cameras: of_the_lattice,
         path: still,
         clock: 0,
         at_least: 57.0,
+        aim: None,
+    },
+    Case {
+        field: "lattice:1,0.3",
+        stereo: Some("0.03,1.5"),
+        prepass: true,
+        size: (320, 180),
+        build: FIELDS,
+        cameras: of_the_lattice,
+        path: still,
+        clock: 0,
+        at_least: 60.0,
         aim: None,
     },
 ];
@@ -119,6 +151,7 @@ pub struct Row {
     field: &'static str,
     /// As it is typed; nothing for one eye.
     stereo: Option<&'static str>,
+    prepass: bool,
     width: u32,
     height: u32,
     lanes: u32,
@@ -192,6 +225,7 @@ fn draw(
                 field: &field,
                 appearance: &Appearance::default(),
                 stereo,
+                prepass: case.prepass,
             }),
             view: camera.turned(angles).view().map_err(anyhow::Error::msg)?,
             size: case.size,
@@ -217,6 +251,7 @@ fn draw(
         rows.push(Row {
             field: case.field,
             stereo: case.stereo,
+            prepass: case.prepass,
             width: case.size.0,
             height: case.size.1,
             lanes: case.build.lanes,
@@ -284,7 +319,7 @@ impl<'a> View<'a> {
 /// The rows as they stand in the page: what is asked of each case, and what each of its views takes.
 pub fn table(rows: &[Row]) -> Result<String> {
     let mut text = String::from(
-        "| field | eyes | size | lanes | slowest measured | asked | aim |\n|---|---|---|---|---|---|---|\n",
+        "| field | eyes | size | lanes | prepass | slowest measured | asked | aim |\n|---|---|---|---|---|---|---|---|\n",
     );
     for (number, case) in CASES.iter().enumerate() {
         let views = View::of(number, rows);
@@ -293,31 +328,33 @@ pub fn table(rows: &[Row]) -> Result<String> {
         let mark = if rate >= case.at_least { "" } else { "**" };
         writeln!(
             text,
-            "| {} | {} | {}×{} | {} | {mark}{rate:.2} frames a second at {} MHz{mark} | {} | {} |",
+            "| {} | {} | {}×{} | {} | {} | {mark}{rate:.2} frames a second at {} MHz{mark} | {} | {} |",
             case.field,
             case.eyes(),
             case.size.0,
             case.size.1,
             case.build.lanes,
+            case.shown_prepass(),
             clock / 1e6,
             case.at_least,
             case.aim.map_or(String::new(), |aim| aim.to_string()),
         )?;
     }
     text.push_str(
-        "\n| field | eyes | size | view | poses | cycles a frame alone: mean, slowest | slowest, back to back | fps at 81.25 MHz | at 100 MHz | evaluations a ray | a clock and lane |\n\
-         |---|---|---|---|---|---|---|---|---|---|---|\n",
+        "\n| field | eyes | size | prepass | view | poses | cycles a frame alone: mean, slowest | slowest, back to back | fps at 81.25 MHz | at 100 MHz | evaluations a ray | a clock and lane |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|---|\n",
     );
     for (number, case) in CASES.iter().enumerate() {
         for view in View::of(number, rows) {
             let evaluations = view.slowest.evaluations as f64;
             writeln!(
                 text,
-                "| {} | {} | {}×{} | {} | {} | {:.0}, {} | {:.0} | {:.1} | {:.1} | {:.2} | {:.3} |",
+                "| {} | {} | {}×{} | {} | {} | {} | {:.0}, {} | {:.0} | {:.1} | {:.1} | {:.2} | {:.3} |",
                 case.field,
                 case.eyes(),
                 case.size.0,
                 case.size.1,
+                case.shown_prepass(),
                 view.name,
                 view.poses.len(),
                 view.mean_alone(),

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
-use glint_model::march::{DEFAULT_TUNING, FieldOptions, Tuning};
+use glint_model::march::{DEFAULT_TUNING, FieldOptions, Prepass, ROUND_TUNING, Setup, Tuning};
 use glint_reference::camera::{Ray, Size};
 use glint_reference::field::Field;
 use glint_reference::field::marched::{self, Marched, Measured, Subject};
@@ -44,6 +44,8 @@ const MEDIAN: [f64; 2] = [3e-4, 2e-4];
 const P99: [f64; 2] = [3e-3, 5e-4];
 /// Most wrong faces, of all that both show.
 const FACES: [f64; 2] = [0.01, 0.003];
+/// Most angle between normals in degrees, of 99 of 100 pixels, of what is round.
+const NORMALS: f64 = 0.3;
 /// Most evaluations a ray at 320 × 180: 60 frames a second for two eyes, from two lanes at 81.25 MHz.
 const SMALL_COST: [f64; 2] = [23.5, 11.7];
 /// Likewise at 1280 × 720.
@@ -58,6 +60,7 @@ fn missed(accuracy: &Accuracy, level: usize) -> Vec<&'static str> {
         (depth.is_none_or(|d| d.p99 <= P99[level]), "p99"),
         (accuracy.wrong_faces <= FACES[level], "faces"),
         (accuracy.undecided == 0, "undecided"),
+        (accuracy.normal.is_none_or(|d| d.p99 <= NORMALS), "normals"),
     ];
     let failed = checks.into_iter().filter(|(met, _)| !met);
     failed.map(|(_, name)| name).collect()
@@ -70,6 +73,8 @@ struct Row {
     view: String,
     width: u32,
     height: u32,
+    /// The side of the blocks of pixels that have a cone; 0: none.
+    prepass: u32,
     iou: f64,
     false_hits: usize,
     false_misses: usize,
@@ -81,9 +86,14 @@ struct Row {
     code_p99: Option<f64>,
     code_max: Option<f64>,
     wrong_faces: f64,
+    /// In degrees, of what is round.
+    normal_p99: Option<f64>,
     /// The part of the pixels beside an edge, where little decides.
     unstable: f64,
+    /// By rays and cones.
     evaluations: f64,
+    /// By the cones alone.
+    evaluations_cones: f64,
     evaluations_max: u32,
     /// What is asked of the sponge and not met.
     missed: String,
@@ -93,7 +103,7 @@ struct Row {
 }
 
 impl Row {
-    fn new(subject: &Subject, measured: &Measured, commit: &str) -> Self {
+    fn new(subject: &Subject, setup: &Setup, measured: &Measured, commit: &str) -> Self {
         let &Measured {
             accuracy, coded, ..
         } = measured;
@@ -103,22 +113,25 @@ impl Row {
         } else {
             LARGE_COST
         };
-        // Only of the sponge something is asked.
-        let list = |level: usize| match subject.field {
-            Field::Menger { .. } => {
-                let mut missed = missed(&accuracy, level);
-                if measured.cost() > cost[level] {
-                    missed.push("evaluations");
-                }
-                missed.join(" ")
+        // Of the sponge and of what is round something is asked, of the sponge more is aimed at.
+        let list = |level: usize| {
+            let sponge = matches!(subject.field, Field::Menger { .. });
+            let mut missed = if sponge || subject.parsed.is_round() && level == 0 {
+                missed(&accuracy, level)
+            } else {
+                vec![]
+            };
+            if sponge && measured.cost() > cost[level] {
+                missed.push("evaluations");
             }
-            _ => String::new(),
+            missed.join(" ")
         };
         Self {
             scene: subject.scene.clone(),
             view: subject.name.clone(),
             width,
             height,
+            prepass: setup.cones.map_or(0, |cones| 1 << cones.block),
             iou: accuracy.iou,
             false_hits: accuracy.false_hit,
             false_misses: accuracy.false_miss,
@@ -130,8 +143,10 @@ impl Row {
             code_p99: coded.map(|depth| depth.p99),
             code_max: coded.map(|depth| depth.max),
             wrong_faces: accuracy.wrong_faces,
+            normal_p99: accuracy.normal.map(|normal| normal.p99),
             unstable: accuracy.unstable,
             evaluations: measured.cost(),
+            evaluations_cones: measured.cones as f64 / accuracy.rays.max(1) as f64,
             evaluations_max: measured.most,
             missed: list(0),
             not_reached: list(1),
@@ -240,8 +255,14 @@ impl<'a> Bench<'a> {
         if options.fraction == FieldOptions::default().fraction {
             let mut raymarcher = self.raymarcher.borrow_mut();
             let pictures = self.subjects.iter();
-            let clocks = pictures.map(|subject| raymarcher.draw(&subject.setup(options)).clocks);
-            trial.cycles = Some(clocks.sum::<u64>() as f64 / self.subjects.len() as f64);
+            let clocks: Option<u64> = pictures
+                .map(|subject| {
+                    let setup = subject.setup(options);
+                    let built = setup.cones.is_none_or(|cones| cones.is_fitting(&setup));
+                    built.then(|| raymarcher.draw(&setup).clocks)
+                })
+                .sum();
+            trial.cycles = clocks.map(|clocks| clocks as f64 / self.subjects.len() as f64);
         }
         trial
     }
@@ -485,6 +506,41 @@ fn ends(bench: &Bench) -> Study {
     }
 }
 
+fn prepasses(bench: &Bench) -> Study {
+    let families = [
+        ("no prepass", None),
+        ("blocks of 4", Some(Prepass::Blocks(2))),
+        ("blocks of 8", Some(Prepass::Blocks(3))),
+        ("blocks of 16", Some(Prepass::Blocks(4))),
+    ];
+    let trials = families.into_iter().flat_map(|(family, prepass)| {
+        [7, 14, 28, 56, 112].map(|threshold| {
+            let options = FieldOptions {
+                prepass,
+                ..tuned(Tuning {
+                    threshold,
+                    ..DEFAULT_TUNING
+                })
+            };
+            bench.model(family, format!("{threshold}"), &options)
+        })
+    });
+    Study {
+        name: "prepass",
+        diagram: Diagram {
+            title: "Cones before the rays",
+            across: "part of the faces that is wrong",
+            up: CYCLES,
+        },
+        text: "By threshold, of rays and of the cones before them: without a prepass, and with a cone for each block of 4 pixels each way, \
+               which is what the gateware has for pictures of this size. Cones of 8 and of 16 pixels, which only software has here, are \
+               in the table: the smaller the blocks, the farther their cones come, and the fewer evaluations there are in all, though there are more cones.",
+        error: |trial| trial.wrong_faces,
+        cost: |trial| trial.cycles,
+        trials: trials.collect(),
+    }
+}
+
 fn normals(bench: &Bench) -> Study {
     let options = FieldOptions::default();
     let mut trials = vec![bench.model("the nearest face's", "active term".into(), &options)];
@@ -542,17 +598,28 @@ pub fn report(arguments: &Arguments) -> Result<()> {
         .with_context(|| format!("cannot make the folder {}", out.display()))?;
     let small = marched::sponges(SMALL);
     let mut rows: Vec<Row> = Vec::new();
-    let mut add = |subjects: &[Subject]| {
+    let mut add = |subjects: &[Subject], prepass| {
         rows.extend(subjects.iter().map(|subject| {
-            let picture = subject.picture(&FieldOptions::default());
-            let measured = Measured::new(&subject.expected, &picture);
-            Row::new(subject, &measured, &provenance.commit)
+            let options = FieldOptions {
+                prepass,
+                ..FieldOptions::of(&subject.parsed)
+            };
+            let setup = subject.setup(&options);
+            let measured = Measured::new(&subject.expected, &marched::picture(&setup, 0));
+            Row::new(subject, &setup, &measured, &provenance.commit)
         }));
     };
-    add(&small);
-    add(&marched::others(SMALL));
+    let others = marched::others(SMALL);
+    let rounds = marched::rounds(SMALL);
+    for prepass in [None, Some(Prepass::Fitting)] {
+        add(&small, prepass);
+        add(&others, prepass);
+        add(&rounds, prepass);
+    }
     if !arguments.quick {
-        add(&marched::sponges(LARGE));
+        let large = marched::sponges(LARGE);
+        add(&large, None);
+        add(&large, Some(Prepass::Fitting));
     }
     if arguments.json {
         println!("{}", serde_json::to_string_pretty(&rows)?);
@@ -568,7 +635,8 @@ pub fn report(arguments: &Arguments) -> Result<()> {
         if !arguments.json {
             print!("\n{}", rates::table(&rates)?);
         }
-        let all: [fn(&Bench) -> Study; 6] = [fractions, caps, thresholds, norms, ends, normals];
+        let all: [fn(&Bench) -> Study; 7] =
+            [fractions, caps, thresholds, norms, ends, prepasses, normals];
         let bar = progress_bar(all.len() as u64)?;
         studies = soc::two_at_a_time(&all, |study| {
             let studied = study(&Bench::new(&small, bar.clone(), &provenance.commit));
@@ -610,17 +678,21 @@ fn shown(error: Option<f64>) -> String {
 
 fn table(rows: &[Row]) -> Result<String> {
     let mut text = String::from(
-        "| field | view | size | IoU | false hits, misses | undecided | depth: median, p99, max | by code | wrong faces | evaluations a ray: mean, max | asked and missed | aimed at and not reached |\n\
-         |---|---|---|---|---|---|---|---|---|---|---|---|\n",
+        "| field | view | size | prepass | IoU | false hits, misses | undecided | depth: median, p99, max | by code | wrong faces | normals, p99 | evaluations a ray: mean, of that cones, max of a ray | asked and missed | aimed at and not reached |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
     );
     for row in rows {
         writeln!(
             text,
-            "| {} | {} | {}×{} | {:.6} | {}, {} | {} | {}, {}, {} | {}, {}, {} | {:.2} % | {:.2}, {} | {} | {} |",
+            "| {} | {} | {}×{} | {} | {:.6} | {}, {} | {} | {}, {}, {} | {}, {}, {} | {:.2} % | {} | {:.2}, {:.2}, {} | {} | {} |",
             row.scene,
             row.view,
             row.width,
             row.height,
+            match row.prepass {
+                0 => String::new(),
+                side => format!("{side}×{side}"),
+            },
             row.iou,
             row.false_hits,
             row.false_misses,
@@ -632,7 +704,10 @@ fn table(rows: &[Row]) -> Result<String> {
             shown(row.code_p99),
             shown(row.code_max),
             100.0 * row.wrong_faces,
+            row.normal_p99
+                .map_or(String::new(), |angle| format!("{angle:.2}°")),
             row.evaluations,
+            row.evaluations_cones,
             row.evaluations_max,
             row.missed,
             row.not_reached,
@@ -657,13 +732,18 @@ fn page(
         "# Distance fields: error against evaluations\n\n\
          Generated by `cargo xtask report raymarch`; the same numbers are in [raymarch.csv](raymarch.csv).\n\n\
          Pictures of the model, which the gateware equals bit for bit, against exact hits of the same pixels' rays in f64. A ray \
-         ends where the distance is below {threshold}·2^−12 field units and 2^−{footprint} of the way gone, or after {cap} evaluations of the field. \
+         ends where the distance is below {threshold}·2^−12 field units and 2^−{footprint} of the way gone, or after {cap} evaluations of the field; \
+         where anything is round, below {}·2^−12 and 2^−{} of the way, or after {} evaluations. \
          IoU is the part of the pixels where both hit among those where either does, and what is undecided is no hit; depths are \
          in world units along the direction of view, from t and from the 18-bit code; a face is wrong where both hit and the \
          normals differ. All pixels count, those along edges too. The views of the sponge are outside of it, close to a face, in the \
-         largest tunnel, and grazing a face.\n\n\
+         largest tunnel, and grazing a face. With a prepass a cone of a block of so many pixels comes before its rays.\n\n\
          Of the sponge it is asked (aimed at): IoU {} ({}), depth median {:.0e} ({:.0e}), p99 {:.0e} ({:.0e}), wrong faces {} % ({} %), \
-         nothing undecided, evaluations a ray {} ({}) at 320×180 and {} ({}) at 1280×720.\n\n",
+         nothing undecided, evaluations a ray {} ({}) at 320×180 and {} ({}) at 1280×720. Of what is round the same is asked but for evaluations, and \
+         normals within {NORMALS}°, p99; a lattice goes on to the horizon, where its spheres are smaller than a pixel.\n\n",
+        ROUND_TUNING.threshold,
+        ROUND_TUNING.footprint,
+        4 * ROUND_TUNING.cap,
         IOU[0],
         IOU[1],
         MEDIAN[0],
@@ -693,7 +773,7 @@ fn page(
              slowest pose of each view was drawn: frames a second, and evaluations, are of these. With two eyes (0.03 beside the camera, which see \
              the same at 1.5) the camera turns about its place as a head that looks around, in the poses of \
              [look-around.csv](../../tools/reference/src/field/look-around.csv), which were written by hand. Two lanes are the default gateware, four that \
-             of `cargo xtask gateware --sponge`. What was asked and is not met is bold. All poses are in [raymarch-rates.csv](raymarch-rates.csv).\n\n{}\n\
+             of `cargo xtask gateware --fields sponge`. What was asked and is not met is bold. All poses are in [raymarch-rates.csv](raymarch-rates.csv).\n\n{}\n\
              Evaluations a clock and lane are over whole frames, with their beginnings and ends and what the program does between them. There is one ray a \
              clock, so lanes wait where rays take fewer evaluations than there are lanes.",
             rates::table(rates)?

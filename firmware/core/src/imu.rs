@@ -1,0 +1,245 @@
+//! A sensor that turns the camera: its samples, its calibration, its attitude and what follows it, in one place.
+//!
+//! [`Imu`] is the [`Sink`] of an MPU-6050's [`Stream`](crate::mpu6050::Stream). While the sensor fails the attitude is held.
+
+use core::fmt;
+
+use crate::calibration::{self, Calibration, Progress, Report, RestBias, Units};
+use crate::camera::{View, ViewError};
+use crate::fixed::Q32_32;
+use crate::follow::{self, Mounting, Steering};
+use crate::mpu6050::{Error, Identity, Measurement, Sink};
+use crate::orientation::{Counts, Quaternion, Sample, Scale, TIME_CONSTANT, Tilt, Tracker};
+
+/// How the camera follows the sensor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Follow {
+    /// It stays where it is and looks where the sensor looks.
+    Look,
+    /// It goes round the origin, which it looks at.
+    Orbit,
+}
+
+/// Why there is no calibration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Refusal<E> {
+    /// It moved, or does not measure.
+    Sensor(calibration::Refusal),
+    /// No samples came.
+    Failed(Error<E>),
+    /// There is no sensor, and none was ever found.
+    Absent,
+}
+
+impl<E: fmt::Display> fmt::Display for Refusal<E> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Sensor(refusal) => refusal.fmt(f),
+            Self::Failed(error) => error.fmt(f),
+            Self::Absent => f.write_str("no sensor was found: expected an MPU-6050 on the I2C bus"),
+        }
+    }
+}
+
+/// A calibration, from its beginning on.
+#[derive(Clone, Copy, Debug)]
+enum Calibrating<E> {
+    Never,
+    Going(Calibration, u32),
+    Ended(Result<Report, Refusal<E>>),
+}
+
+/// A sensor and what follows it. `E` is what its bus fails with.
+#[derive(Clone, Copy, Debug)]
+pub struct Imu<E> {
+    identity: Option<Identity>,
+    /// What is wrong now, and how often something was.
+    error: Option<Error<E>>,
+    errors: u32,
+    samples: u32,
+    latest: Option<Sample>,
+    temperature: i16,
+    tracker: Tracker,
+    calibrating: Calibrating<E>,
+    steering: Steering,
+    follow: Option<Follow>,
+    /// Whether the attitude has changed since the camera was asked for.
+    moved: bool,
+}
+
+impl<E: Copy> Default for Imu<E> {
+    fn default() -> Self {
+        Self {
+            identity: None,
+            error: None,
+            errors: 0,
+            samples: 0,
+            latest: None,
+            temperature: 0,
+            tracker: Tracker::new(
+                Scale::MPU_6050,
+                Some(Tilt::new(Units::MPU_6050.per_g, TIME_CONSTANT)),
+            ),
+            calibrating: Calibrating::Never,
+            steering: Steering::default(),
+            follow: None,
+            moved: false,
+        }
+    }
+}
+
+impl<E: Copy> Imu<E> {
+    /// The chip that was found last.
+    pub const fn identity(&self) -> Option<Identity> {
+        self.identity
+    }
+
+    /// What is wrong; nothing while samples come.
+    pub const fn error(&self) -> Option<Error<E>> {
+        self.error
+    }
+
+    /// How often something was wrong; it saturates.
+    pub const fn errors(&self) -> u32 {
+        self.errors
+    }
+
+    /// Whether samples come.
+    pub const fn is_running(&self) -> bool {
+        self.identity.is_some() && self.error.is_none()
+    }
+
+    /// Samples so far, modulo 2^32.
+    pub const fn samples(&self) -> u32 {
+        self.samples
+    }
+
+    /// The newest sample.
+    pub const fn latest(&self) -> Option<&Sample> {
+        self.latest.as_ref()
+    }
+
+    /// The chip's temperature in 1/100 °C.
+    pub fn temperature(&self) -> Option<i32> {
+        let identity = self.identity.filter(|_| self.latest.is_some())?;
+        Some(identity.temperature(self.temperature))
+    }
+
+    /// The sensor's attitude.
+    pub fn attitude(&self) -> Quaternion {
+        self.tracker.attitude()
+    }
+
+    /// What happened to the attitude.
+    pub const fn counts(&self) -> Counts {
+        self.tracker.counts()
+    }
+
+    /// What the gyroscope is taken to read at rest, in °/s, rounded down to 2^−32.
+    pub fn bias(&self) -> [Q32_32; 3] {
+        // 16.4 LSB are 1 °/s.
+        self.tracker
+            .bias()
+            .map(|bias| Q32_32::from_bits((i64::from(bias) << 24) * 10 / 164))
+    }
+
+    /// Begins a calibration of so many samples, in place of one that is going on.
+    pub fn calibrate(&mut self, samples: u32) {
+        self.calibrating = match self.error {
+            Some(error) => Calibrating::Ended(Err(Refusal::Failed(error))),
+            None if self.identity.is_none() => Calibrating::Ended(Err(Refusal::Absent)),
+            None => Calibrating::Going(Calibration::new(Units::MPU_6050, samples), 0),
+        };
+    }
+
+    /// How many samples a calibration has that is going on.
+    pub const fn calibrated_samples(&self) -> Option<u32> {
+        match self.calibrating {
+            Calibrating::Going(_, samples) => Some(samples),
+            _ => None,
+        }
+    }
+
+    /// How the last calibration has ended.
+    pub const fn calibration(&self) -> Option<Result<Report, Refusal<E>>> {
+        match self.calibrating {
+            Calibrating::Ended(result) => Some(result),
+            _ => None,
+        }
+    }
+
+    /// How the camera follows.
+    pub const fn follow(&self) -> Option<Follow> {
+        self.follow
+    }
+
+    /// Lets the camera follow, or no longer.
+    pub const fn set_follow(&mut self, follow: Option<Follow>) {
+        self.follow = follow;
+        self.moved = true;
+    }
+
+    /// Makes the direction in which the sensor is turned the middle one.
+    pub fn recentre(&mut self) {
+        self.steering.recentre();
+        self.moved = true;
+    }
+
+    /// The camera that follows, at `eye` or at a distance of `radius`, if it has moved since it was asked for.
+    ///
+    /// # Errors
+    /// When eye or radius are out of range.
+    pub fn view(&mut self, eye: [Q32_32; 3], radius: Q32_32) -> Option<Result<View, ViewError>> {
+        let follow = self
+            .follow
+            .filter(|_| self.moved && self.latest.is_some())?;
+        self.moved = false;
+        let attitude = self.steering.follow(self.tracker.attitude());
+        Some(match follow {
+            Follow::Look => follow::free_look(eye, attitude, Mounting::default()),
+            Follow::Orbit => follow::orbit(radius, attitude, Mounting::default()),
+        })
+    }
+}
+
+impl<E: Copy> Sink<E> for Imu<E> {
+    fn on_start(&mut self, identity: Identity) {
+        self.identity = Some(identity);
+        self.error = None;
+    }
+
+    fn on_sample(&mut self, time: u64, measurement: &Measurement) {
+        let sample = Sample {
+            // Stamps may wrap.
+            t_us: time as u32,
+            accel: measurement.accel,
+            gyro: measurement.gyro,
+        };
+        self.samples = self.samples.wrapping_add(1);
+        self.temperature = measurement.temperature;
+        self.latest = Some(sample);
+        self.tracker.on_sample(&sample);
+        self.moved = true;
+        if let Calibrating::Going(calibration, count) = &mut self.calibrating {
+            match calibration.on_sample(&sample) {
+                Ok(Progress::Going(samples)) => *count = samples,
+                Ok(Progress::Done(report)) => {
+                    let resting = RestBias::new(Units::MPU_6050, report.bias);
+                    self.tracker.follow_bias(resting);
+                    self.calibrating = Calibrating::Ended(Ok(report));
+                }
+                Err(refusal) => {
+                    self.calibrating = Calibrating::Ended(Err(Refusal::Sensor(refusal)))
+                }
+            }
+        }
+    }
+
+    fn on_error(&mut self, error: Error<E>) {
+        self.error = Some(error);
+        self.errors = self.errors.saturating_add(1);
+        if let Calibrating::Going(..) = self.calibrating {
+            self.calibrating = Calibrating::Ended(Err(Refusal::Failed(error)));
+        }
+    }
+}

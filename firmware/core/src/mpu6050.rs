@@ -1,0 +1,297 @@
+//! The MPU-6050, and relatives with the same registers: from power-on to samples with the times that they were measured at.
+//!
+//! [`Mpu6050`] speaks to the chip over any [`I2c`], and waits for nothing by itself. [`Stream`] keeps it
+//! going for ever: it finds the chip, wakes it, reads each sample once, and comes back from whatever happens on the bus.
+//!
+//! Registers are those of RM-MPU-6000A 4.2. The range is ±2000 °/s and ±8 g, the filter 98 Hz (a delay of 2.8 ms), the rate 500 Hz.
+
+mod stream;
+
+use core::fmt;
+
+use embedded_hal_async::delay::DelayNs;
+use embedded_hal_async::i2c::{I2c, Operation};
+
+pub use stream::{Sink, Stream, Time};
+
+/// The chip's address with AD0 low, and high.
+pub const ADDRESSES: [u8; 2] = [0x68, 0x69];
+
+/// The time between two samples, in µs.
+pub const PERIOD: u32 = 2_000;
+
+/// How long a reset takes, in ms.
+const RESET: u32 = 100;
+/// How long the gyroscope's oscillator takes until what it drives is in order, in ms.
+const START: u32 = 30;
+
+const SMPLRT_DIV: u8 = 0x19;
+const INT_ENABLE: u8 = 0x38;
+const INT_STATUS: u8 = 0x3a;
+const PWR_MGMT_1: u8 = 0x6b;
+const WHO_AM_I: u8 = 0x75;
+
+/// DEVICE_RESET.
+const DEVICE_RESET: u8 = 0x80;
+/// Awake, by the clock of the gyroscope about x.
+const CLOCK_OF_X: u8 = 0x01;
+/// DATA_RDY, of INT_ENABLE and INT_STATUS.
+const DATA_RDY: u8 = 0x01;
+
+/// From SMPLRT_DIV on: every second sample of 1 kHz, DLPF_CFG 2, ±2000 °/s, ±8 g.
+const CONFIGURATION: [u8; 4] = [0x01, 0x02, 0x18, 0x10];
+
+/// What WHO_AM_I says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Identity {
+    /// An MPU-6050 or MPU-6000.
+    Mpu6050,
+    /// An MPU-6500.
+    Mpu6500,
+    /// An MPU-9250.
+    Mpu9250,
+    /// An MPU-9255.
+    Mpu9255,
+    /// An ICM-20689, which is sold as MPU-6050.
+    Icm20689,
+}
+
+impl Identity {
+    /// All that are known, with what they say and how they are called.
+    const ALL: [(u8, Self, &str); 5] = [
+        (0x68, Self::Mpu6050, "MPU-6050"),
+        (0x70, Self::Mpu6500, "MPU-6500"),
+        (0x71, Self::Mpu9250, "MPU-9250"),
+        (0x73, Self::Mpu9255, "MPU-9255"),
+        (0x98, Self::Icm20689, "ICM-20689"),
+    ];
+
+    fn of(found: u8) -> Option<Self> {
+        let known = Self::ALL.iter().find(|(code, ..)| *code == found);
+        known.map(|(_, identity, _)| *identity)
+    }
+
+    /// The temperature in 1/100 °C of what its register says, the register's part rounded towards 0.
+    pub const fn temperature(self, raw: i16) -> i32 {
+        let raw = raw as i32;
+        match self {
+            // 36.53 °C + 1/340 °C a LSB.
+            Self::Mpu6050 => 3_653 + raw * 5 / 17,
+            // 21 °C + 1/333.87 °C a LSB.
+            Self::Mpu6500 | Self::Mpu9250 | Self::Mpu9255 => 2_100 + raw * 10_000 / 33_387,
+            // 25 °C + 1/326.8 °C a LSB.
+            Self::Icm20689 => 2_500 + raw * 1_000 / 3_268,
+        }
+    }
+}
+
+impl fmt::Display for Identity {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let known = Self::ALL.iter().find(|(_, identity, _)| identity == self);
+        f.write_str(known.map_or("", |(.., name)| name))
+    }
+}
+
+/// One sample, in counts: all of it measured at the same time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Measurement {
+    /// The force along each axis, 1/4096 g.
+    pub accel: [i16; 3],
+    /// See [`Identity::temperature`].
+    pub temperature: i16,
+    /// The rate about each axis, 1/16.4 °/s.
+    pub gyro: [i16; 3],
+}
+
+impl Measurement {
+    const BYTES: usize = 14;
+
+    fn from_bytes(bytes: &[u8; Self::BYTES]) -> Self {
+        let (words, _) = bytes.as_chunks::<2>();
+        let mut all = [0; 7];
+        for (count, word) in all.iter_mut().zip(words) {
+            *count = i16::from_be_bytes(*word);
+        }
+        let [ax, ay, az, temperature, gx, gy, gz] = all;
+        Self {
+            accel: [ax, ay, az],
+            temperature,
+            gyro: [gx, gy, gz],
+        }
+    }
+}
+
+/// What goes wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Error<E> {
+    /// The bus.
+    Bus(E),
+    /// WHO_AM_I of an unknown chip.
+    Identity(u8),
+    /// A register does not keep what is written to it.
+    Register {
+        /// Which one.
+        register: u8,
+        /// What was written.
+        expected: u8,
+        /// What it reads as.
+        found: u8,
+    },
+    /// No sample comes.
+    Silent,
+    /// All samples are the same, which noise would not leave so.
+    Frozen,
+}
+
+impl<E> From<E> for Error<E> {
+    fn from(error: E) -> Self {
+        Self::Bus(error)
+    }
+}
+
+impl<E: fmt::Display> fmt::Display for Error<E> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Bus(error) => error.fmt(f),
+            Self::Identity(found) => {
+                write!(f, "WHO_AM_I is {found:#04x}: expected")?;
+                let mut between = " ";
+                for (code, _, name) in Identity::ALL {
+                    write!(f, "{between}{code:#04x} ({name})")?;
+                    between = ", ";
+                }
+                Ok(())
+            }
+            Self::Register {
+                register,
+                expected,
+                found,
+            } => write!(
+                f,
+                "register {register:#04x} is {found:#04x}: expected {expected:#04x} as written"
+            ),
+            Self::Silent => write!(
+                f,
+                "no sample comes: expected {} a second",
+                1_000_000 / PERIOD
+            ),
+            Self::Frozen => f.write_str("all samples are the same: expected some noise"),
+        }
+    }
+}
+
+/// A chip on a bus.
+pub struct Mpu6050<B> {
+    bus: B,
+    address: u8,
+}
+
+impl<B: I2c> Mpu6050<B> {
+    /// A chip that may be there; [`start`](Self::start) finds it.
+    pub const fn new(bus: B) -> Self {
+        Self {
+            bus,
+            address: ADDRESSES[0],
+        }
+    }
+
+    /// Finds the chip at one of its addresses and, unless it is configured already and no `reset` is wanted, resets and configures it,
+    /// which takes 0.13 s.
+    ///
+    /// # Errors
+    /// It is not there, not known, or does not do what it is told.
+    pub async fn start(
+        &mut self,
+        reset: bool,
+        delay: &mut impl DelayNs,
+    ) -> Result<Identity, Error<B::Error>> {
+        let identity = self.find().await?;
+        if reset || self.check().await.is_err() {
+            self.write(PWR_MGMT_1, &[DEVICE_RESET]).await?;
+            delay.delay_ms(RESET).await;
+            self.write(PWR_MGMT_1, &[CLOCK_OF_X]).await?;
+            delay.delay_ms(START).await;
+            self.write(SMPLRT_DIV, &CONFIGURATION).await?;
+            self.write(INT_ENABLE, &[DATA_RDY]).await?;
+            self.check().await?;
+        }
+        Ok(identity)
+    }
+
+    /// Checks that it is awake and configured, as it is no longer after its supply has failed.
+    ///
+    /// # Errors
+    /// It is not, or not there.
+    pub async fn check(&mut self) -> Result<(), Error<B::Error>> {
+        self.expect(PWR_MGMT_1, [CLOCK_OF_X]).await?;
+        self.expect(SMPLRT_DIV, CONFIGURATION).await?;
+        self.expect(INT_ENABLE, [DATA_RDY]).await
+    }
+
+    /// The newest sample, unless it was read before. One burst, 0.43 ms at 400 kHz: within one the chip leaves its data as they are.
+    ///
+    /// # Errors
+    /// Those of the bus.
+    pub async fn read(&mut self) -> Result<Option<Measurement>, Error<B::Error>> {
+        let mut bytes = [0; 1 + Measurement::BYTES];
+        self.bus
+            .write_read(self.address, &[INT_STATUS], &mut bytes)
+            .await?;
+        let [status, data @ ..] = bytes;
+        Ok((status & DATA_RDY != 0).then(|| Measurement::from_bytes(&data)))
+    }
+
+    /// Whether there is a sample that nobody has been told of. A short transfer, which takes 0.12 ms.
+    ///
+    /// # Errors
+    /// Those of the bus.
+    pub async fn is_ready(&mut self) -> Result<bool, Error<B::Error>> {
+        let mut status = [0];
+        self.bus
+            .write_read(self.address, &[INT_STATUS], &mut status)
+            .await?;
+        Ok(status[0] & DATA_RDY != 0)
+    }
+
+    async fn find(&mut self) -> Result<Identity, Error<B::Error>> {
+        let mut found = [0];
+        for address in ADDRESSES {
+            self.address = address;
+            let answer = self.bus.write_read(address, &[WHO_AM_I], &mut found).await;
+            match answer {
+                Ok(()) => return Identity::of(found[0]).ok_or(Error::Identity(found[0])),
+                Err(error) if address == ADDRESSES[1] => return Err(error.into()),
+                Err(_) => {}
+            }
+        }
+        Err(Error::Identity(found[0]))
+    }
+
+    /// Writes registers, the first of which is given.
+    async fn write(&mut self, register: u8, values: &[u8]) -> Result<(), Error<B::Error>> {
+        let mut operations = [Operation::Write(&[register]), Operation::Write(values)];
+        Ok(self.bus.transaction(self.address, &mut operations).await?)
+    }
+
+    /// Compares registers, the first of which is given, with what they should be.
+    async fn expect<const N: usize>(
+        &mut self,
+        register: u8,
+        expected: [u8; N],
+    ) -> Result<(), Error<B::Error>> {
+        let mut found = [0; N];
+        self.bus
+            .write_read(self.address, &[register], &mut found)
+            .await?;
+        for ((expected, found), register) in expected.into_iter().zip(found).zip(register..) {
+            if found != expected {
+                return Err(Error::Register {
+                    register,
+                    expected,
+                    found,
+                });
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,305 @@
+//! The driver against a virtual MPU-6050 on a bus of its own: what it makes of samples, of relatives and of faults.
+
+use std::cell::RefCell;
+use std::future::poll_fn;
+use std::pin::pin;
+use std::rc::Rc;
+use std::task::{Context, Poll, Waker};
+
+use embedded_hal_async::delay::DelayNs;
+use glint_core::mpu6050::{Error, Identity, Measurement, Sink, Stream, Time};
+use virtual_mpu6050::{Bus, Chip, Fault, Imperfections, Source, State};
+
+const MILLISECOND: u64 = 1_000_000;
+const SECOND: u64 = 1_000 * MILLISECOND;
+
+/// The bus's clock; a delay lets time pass, and the test look in.
+struct Clock(Bus);
+
+impl DelayNs for Clock {
+    async fn delay_ns(&mut self, ns: u32) {
+        self.0.pass(ns.into());
+        let mut over = false;
+        poll_fn(|_| {
+            if over {
+                return Poll::Ready(());
+            }
+            over = true;
+            Poll::Pending
+        })
+        .await;
+    }
+}
+
+impl Time for Clock {
+    fn now_us(&self) -> u64 {
+        self.0.now() / 1_000
+    }
+}
+
+/// What came, each with the time on the bus.
+#[derive(Default)]
+struct Record {
+    starts: Vec<(u64, Identity)>,
+    samples: Vec<(u64, u64, Measurement)>,
+    errors: Vec<(u64, Error<virtual_mpu6050::Error>)>,
+}
+
+struct Recorder(Bus, Rc<RefCell<Record>>);
+
+impl Sink<virtual_mpu6050::Error> for Recorder {
+    fn on_start(&mut self, identity: Identity) {
+        self.1.borrow_mut().starts.push((self.0.now(), identity));
+    }
+
+    fn on_sample(&mut self, time: u64, measurement: &Measurement) {
+        let sample = (self.0.now(), time, *measurement);
+        self.1.borrow_mut().samples.push(sample);
+    }
+
+    fn on_error(&mut self, error: Error<virtual_mpu6050::Error>) {
+        self.1.borrow_mut().errors.push((self.0.now(), error));
+    }
+}
+
+/// Turns faster and faster: a count of x is 61 µs.
+fn ramp(time: f64) -> State {
+    State {
+        rate: [1_000.0 * time - 1_900.0, 0.0, 0.0],
+        ..State::default()
+    }
+}
+
+fn chip(motion: fn(f64) -> State, imperfections: Imperfections) -> Chip {
+    Chip::new(Source::Motion(Box::new(motion)), imperfections, 7)
+}
+
+/// What is done with the chip at a time in ns.
+type Action<'a> = (u64, &'a dyn Fn(&mut Chip));
+
+/// Runs a stream for so long; at each time in the plan something is done with the chip.
+fn run(chip: Chip, end: u64, plan: &[Action]) -> (Record, Bus) {
+    let bus = Bus::new(chip);
+    let record = Rc::new(RefCell::new(Record::default()));
+    let recorder = Recorder(bus.clone(), record.clone());
+    let mut stream = Stream::new(bus.clone(), Clock(bus.clone()), recorder);
+    let mut plan = plan.iter().peekable();
+    {
+        let mut future = pin!(stream.run());
+        let mut context = Context::from_waker(Waker::noop());
+        while bus.now() < end {
+            if let Some((_, action)) = plan.next_if(|(time, _)| bus.now() >= *time) {
+                bus.with_chip(action);
+            }
+            assert!(future.as_mut().poll(&mut context).is_pending());
+        }
+    }
+    drop(stream);
+    let record = Rc::into_inner(record).expect("nobody else has it");
+    (record.into_inner(), bus)
+}
+
+#[test]
+fn every_sample_comes_once_with_its_time() {
+    for clock in [0.0, 0.01, -0.01, 0.0037] {
+        let imperfections = Imperfections {
+            clock,
+            ..Imperfections::NONE
+        };
+        let (record, bus) = run(chip(ramp, imperfections), 3 * SECOND, &[]);
+        assert!(record.errors.is_empty(), "{:?}", record.errors);
+        let (started, identity) = record.starts[0];
+        assert_eq!((record.starts.len(), identity), (1, Identity::Mpu6050));
+        assert!((130..140).contains(&(started / MILLISECOND)), "{started}");
+        let missed = bus.with_chip(|chip| chip.missed);
+        assert!(missed <= 40, "{missed} are missed, before the first read");
+        let expected = (3 * SECOND - started) as f64 * 1e-6 * (1.0 + clock) / 2.0;
+        let found = record.samples.len() as f64;
+        assert!((found - expected).abs() <= 2.0, "{found} of {expected}");
+        let mut transactions = 0.0;
+        for (index, (_, time, measurement)) in record.samples.iter().enumerate() {
+            // The filter at 98 Hz delays by 2.8 ms.
+            let measured = (f64::from(measurement.gyro[0]) / 16.4 + 1_900.0) * 1e3 + 2_800.0;
+            let late = *time as f64 - measured;
+            let most = if index < 12 { 200.0 } else { 150.0 };
+            assert!(late.abs() < most, "sample {index} is {late} us late");
+            transactions += 1.0;
+        }
+        let per_sample = bus.transactions() as f64 / transactions;
+        assert!(per_sample < 1.6, "{per_sample} transactions a sample");
+    }
+}
+
+#[test]
+fn counts_are_those_of_the_registers() {
+    let motion = |_: f64| State {
+        rate: [10.0, -20.0, 1_000.0],
+        force: [0.5, -1.0, 2.0],
+        temperature: 36.53,
+    };
+    let (record, _) = run(chip(motion, Imperfections::TYPICAL), SECOND, &[]);
+    let mean = |pick: fn(&Measurement) -> i16| {
+        let all = record
+            .samples
+            .iter()
+            .map(|(.., sample)| f64::from(pick(sample)));
+        all.sum::<f64>() / record.samples.len() as f64
+    };
+    // Bias, drift by 11.53 °C, and scale of the specimen.
+    let rate = [
+        -4.5 + 1.8448 + 10.1,
+        1.25 - 1.153 - 19.8,
+        2.0 + 0.5765 + 1_005.0,
+    ];
+    let force = [0.02 + 0.505, -0.03 - 0.995, 0.05 + 1.98];
+    let near =
+        |found: f64, expected: f64| assert!((found - expected).abs() < 3.0, "{found} {expected}");
+    near(mean(|m| m.gyro[0]), rate[0] * 16.4);
+    near(mean(|m| m.gyro[1]), rate[1] * 16.4);
+    near(mean(|m| m.gyro[2]), rate[2] * 16.4);
+    near(mean(|m| m.accel[0]), force[0] * 4_096.0);
+    near(mean(|m| m.accel[1]), force[1] * 4_096.0);
+    near(mean(|m| m.accel[2]), force[2] * 4_096.0);
+    near(mean(|m| m.temperature), 0.0);
+    assert_eq!(Identity::Mpu6050.temperature(0), 3_653);
+    assert_eq!(Identity::Mpu6050.temperature(-521), 3_500);
+    assert_eq!(Identity::Mpu6500.temperature(0), 2_100);
+}
+
+#[test]
+fn relatives_are_known_and_strangers_are_not() {
+    let relatives = [
+        (0x68, Identity::Mpu6050),
+        (0x70, Identity::Mpu6500),
+        (0x71, Identity::Mpu9250),
+        (0x73, Identity::Mpu9255),
+        (0x98, Identity::Icm20689),
+    ];
+    for (code, identity) in relatives {
+        let mut chip = chip(ramp, Imperfections::NONE);
+        chip.fault = Some(Fault::Identity(code));
+        let (record, _) = run(chip, SECOND / 4, &[]);
+        assert_eq!(record.starts[0].1, identity);
+        assert!(!record.samples.is_empty());
+    }
+    let mut chip = chip(ramp, Imperfections::NONE);
+    chip.fault = Some(Fault::Identity(0x12));
+    let (record, _) = run(chip, SECOND / 4, &[]);
+    assert_eq!(record.errors[0].1, Error::Identity(0x12));
+    assert!(record.samples.is_empty());
+}
+
+/// At rest, with noise.
+fn still(_: f64) -> State {
+    State::default()
+}
+
+/// Recovers from a fault between 1 s and 1.3 s within a time in ms, having told of it.
+fn recovers(begin: impl Fn(&mut Chip), within: u64) -> Record {
+    let (from, to) = (SECOND, 1_300 * MILLISECOND);
+    let end = |chip: &mut Chip| chip.fault = None;
+    let plan: [Action; 2] = [(from, &begin), (to, &end)];
+    let (record, _) = run(chip(still, Imperfections::TYPICAL), 2 * SECOND, &plan);
+    assert!(!record.errors.is_empty());
+    assert!(
+        record
+            .errors
+            .iter()
+            .all(|(at, _)| (from..to + 200 * MILLISECOND).contains(at))
+    );
+    let after = record.samples.iter().filter(|(at, ..)| *at >= to);
+    let (at, time, _) = *after.clone().next().expect("samples again");
+    let took = (at - to) / MILLISECOND;
+    assert!(took <= within, "{took} ms");
+    assert!(at / 1_000 - time < 2_000, "a time of its own");
+    let rate = after.count() as u64 * 1_000 / (2_000 - 1_300 - took);
+    assert!((490..510).contains(&rate), "{rate} samples a second again");
+    record
+}
+
+#[test]
+fn it_comes_back_from_faults_of_the_bus() {
+    let faults = [
+        Fault::Absent,
+        Fault::NoAcknowledge,
+        Fault::StuckData(0),
+        Fault::Stretched(u64::MAX),
+    ];
+    for fault in faults {
+        let record = recovers(|chip| chip.fault = Some(fault), 100);
+        assert!(matches!(record.errors[0].1, Error::Bus(_)), "{fault:?}");
+    }
+}
+
+#[test]
+fn a_chip_that_lost_its_configuration_is_set_up_again() {
+    // Unplugged, and plugged in again.
+    let unplug = |chip: &mut Chip| {
+        chip.reset();
+        chip.fault = Some(Fault::Absent);
+    };
+    let record = recovers(unplug, 250);
+    assert_eq!(record.starts.len(), 2);
+    // Its supply fails for a moment, and it answers again before anybody has noticed.
+    let (record, _) = run(
+        chip(still, Imperfections::TYPICAL),
+        2 * SECOND,
+        &[(SECOND, &|chip: &mut Chip| chip.reset())],
+    );
+    let gap = record
+        .samples
+        .windows(2)
+        .map(|pair| pair[1].0 - pair[0].0)
+        .max();
+    assert!(gap.expect("samples") < 300 * MILLISECOND, "{gap:?}");
+    assert_eq!(record.starts.len(), 2);
+}
+
+#[test]
+fn a_chip_that_measures_no_more_is_reset() {
+    let record = recovers(|chip| chip.fault = Some(Fault::Stalled), 250);
+    assert_eq!(record.errors[0].1, Error::Silent);
+    let record = recovers(|chip| chip.fault = Some(Fault::Frozen), 250);
+    assert_eq!(record.errors[0].1, Error::Frozen);
+    let record = recovers(
+        |chip| {
+            chip.reset();
+            chip.fault = Some(Fault::Identity(0x00));
+        },
+        250,
+    );
+    assert!(
+        record
+            .errors
+            .iter()
+            .any(|(_, error)| *error == Error::Identity(0))
+    );
+}
+
+#[test]
+fn a_slow_chip_is_read_all_the_same() {
+    let fault = |chip: &mut Chip| chip.fault = Some(Fault::Stretched(10_000));
+    let plan: [Action; 1] = [(SECOND, &fault)];
+    let (record, _) = run(chip(still, Imperfections::TYPICAL), 2 * SECOND, &plan);
+    assert!(record.errors.is_empty());
+    assert!(record.samples.len() > 920);
+}
+
+#[test]
+fn errors_say_what_was_expected() {
+    let text = |error: Error<&str>| error.to_string();
+    assert_eq!(
+        text(Error::Identity(0x12)),
+        "WHO_AM_I is 0x12: expected 0x68 (MPU-6050), 0x70 (MPU-6500), 0x71 (MPU-9250), 0x73 (MPU-9255), 0x98 (ICM-20689)"
+    );
+    let register = Error::Register {
+        register: 0x1b,
+        expected: 0x18,
+        found: 0,
+    };
+    assert_eq!(
+        text(register),
+        "register 0x1b is 0x00: expected 0x18 as written"
+    );
+    assert_eq!(text(Error::Bus("SCL")), "SCL");
+}

@@ -1,0 +1,224 @@
+//! The prepass: one cone before the rays of each block of pixels says where they may begin.
+//!
+//! A cone is the ray through the middle of a block. Points of the block's rays at the same depth along n differ from its point by at
+//! most t·spread in the norm of its rays, so it goes on by the distance less t·spread, and all of them are free up to there. What it
+//! comes to is a depth, which takes the place of the near plane for its block.
+
+use super::field::cropped;
+use super::ray::{Ray, magnitude};
+use super::setup::{FRACTION, Setup, farthest};
+
+/// Entries of the table of depths.
+pub(super) const CONES: u32 = 1 << 14;
+
+/// Fraction bits of a depth in the table.
+const DEPTH_FRACTION: u32 = 7;
+
+/// The points after which a cone ends at the latest: all rays wait for the last cone.
+const MOST_STEPS: u32 = 192;
+
+/// The most blocks in a row of a picture: of 4 pixels, 1280 wide.
+const ROW: usize = 320;
+
+/// Which blocks of pixels have a cone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Prepass {
+    /// The smallest of 4, 8 and 16 pixels each way of which the table holds those of all eyes.
+    Fitting,
+    /// Of 2^this pixels each way, 2 to 4. The gateware has only what fits; the others are there to show what they are worth.
+    Blocks(u32),
+}
+
+/// The constants of a frame's cones.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cones {
+    /// Blocks are of 2^this pixels each way: 2, 3, 4.
+    pub block: u32,
+    /// What D grows by from a block's first pixel to its middle, 30 fraction bits.
+    pub offset: [i32; 3],
+    /// The most by which D differs from the middle's anywhere in a block, in the norm of the rays, u0.18, 14 bits, rounded up.
+    pub spread: u32,
+}
+
+impl Cones {
+    /// For a picture whose D grows by `steps` with a pixel to the right and one down.
+    pub(super) fn new(
+        prepass: Prepass,
+        (width, height): (u32, u32),
+        eyes: u32,
+        round: bool,
+        steps: &[[i32; 3]; 2],
+    ) -> Self {
+        let block = match prepass {
+            Prepass::Fitting => fitting((width, height), eyes),
+            Prepass::Blocks(block) => block.clamp(2, 4),
+        };
+        let [across, down] = steps.map(|step| step.map(i64::from));
+        let half = |sum: i64| (sum * ((1 << block) - 1)) >> 1;
+        let diagonals = [1, -1]
+            .map(|sign| [0, 1, 2].map(|i: usize| half((across[i] + sign * down[i]).abs()) as u64));
+        let widest = diagonals.map(|diagonal| {
+            if round {
+                diagonal.map(|part| part * part).iter().sum::<u64>().isqrt()
+            } else {
+                diagonal.into_iter().fold(0, u64::max)
+            }
+        });
+        Self {
+            block,
+            offset: [0, 1, 2].map(|i: usize| half(across[i] + down[i]) as i32),
+            // D is cut to 24 bits, both that of the middle and that of a pixel; halves are cut too.
+            spread: (widest[0].max(widest[1]) >> 12) as u32 + 2,
+        }
+    }
+
+    /// Whether blocks are those that the gateware has for such a frame.
+    pub const fn is_fitting(&self, setup: &Setup) -> bool {
+        let eyes = if setup.stereo.is_some() { 2 } else { 1 };
+        self.block == fitting((setup.width, setup.height), eyes)
+    }
+
+    /// What the entry of a cone's length is larger by than that of its middle: no direction in its block gets longer than 1.
+    const fn margin(&self, round: bool) -> u32 {
+        if round {
+            // (|D| + s)² − |D|² is at most 2·s + s², of which s is at most 2^−4.
+            (self.spread >> 7) + (self.spread >> 12) + 2
+        } else {
+            (self.spread >> 8) + 1
+        }
+    }
+}
+
+/// The smallest blocks of which the table holds those of all eyes.
+const fn fitting((width, height): (u32, u32), eyes: u32) -> u32 {
+    let mut block = 2;
+    while block < 4 && eyes * (width >> block) * (height >> block) > CONES {
+        block += 1;
+    }
+    block
+}
+
+/// A cone at its beginning.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cone {
+    /// The ray in its middle.
+    pub ray: Ray,
+    /// What it is wider by with each step of t, u0.16, rounded up.
+    pub spread: u32,
+}
+
+impl Setup {
+    /// The cone of a block, by its place among blocks.
+    pub fn cone(&self, cones: &Cones, eye: usize, column: u32, row: u32) -> Cone {
+        let direction = [0, 1, 2].map(|i: usize| {
+            let across = self.steps[0][i].wrapping_mul((column << cones.block) as i32);
+            let down = self.steps[1][i].wrapping_mul((row << cones.block) as i32);
+            self.eyes[eye].first[i]
+                .wrapping_add(cones.offset[i])
+                .wrapping_add(across)
+                .wrapping_add(down)
+                >> 6
+        });
+        let middle = self.length(direction.map(magnitude));
+        let length = (middle + cones.margin(self.is_round())).min(0x3FF);
+        let inverse = self.inverse(length);
+        let ray = Ray {
+            eye,
+            direction: self.scaled(direction, length),
+            length,
+            start: self
+                .at_depth(self.near, length)
+                .min(farthest(self.fraction)),
+        };
+        Cone {
+            ray,
+            // 18 and 9 fraction bits; one for what was cut, and one for directions, which are rounded to 17 bits.
+            spread: ((cones.spread * inverse) >> 11) + 2,
+        }
+    }
+
+    /// Follows a cone as far as all rays of its block are free: the t to which it has come, and the points at which it has asked.
+    pub fn march_cone(&self, cone: &Cone) -> (u32, u32) {
+        let Cone { ray, spread } = cone;
+        let tuning = &self.tuning;
+        // A point is cut by less than a step along each axis: by less than two in all.
+        let cut = u32::from(self.is_round());
+        let mut t = ray.start;
+        let mut steps = 0;
+        loop {
+            let point = self.point(ray, t);
+            let sample = self.sample(point.map(|x| cropped(x, 10 + self.fraction)));
+            let gone = self.is_gone(ray, &point);
+            let width = ((u64::from(t) * u64::from(*spread)) >> 16) as u32 + cut;
+            let wide = width >> (4 + self.fraction) != 0;
+            let threshold = i64::from(tuning.threshold + width);
+            steps += 1;
+            let next = t + (sample.distance - width as i32 - 1).max(0) as u32;
+            let ends = gone
+                || wide
+                || next > tuning.far
+                || i64::from(sample.distance) < threshold
+                || steps >= self.cap().min(MOST_STEPS);
+            if ends {
+                return (t, steps);
+            }
+            t = next;
+        }
+    }
+
+    /// The depth along n at a cone's t as the table has it: times 2^e, u11.7, rounded down.
+    pub fn cleared(&self, cone: &Cone, t: u32) -> u32 {
+        let depth = (u64::from(t) * u64::from(self.inverse(cone.ray.length))) >> 9;
+        depth.min(farthest(self.fraction).into()) as u32 >> (self.fraction - DEPTH_FRACTION)
+    }
+}
+
+/// The rays of a picture, which it is to be asked for row by row: without a prepass as [`Setup::ray`] has them, or else each
+/// begins where the cone of its block has come to.
+pub struct Rays<'a> {
+    setup: &'a Setup,
+    /// What the cones of the row of blocks have cleared for each eye, and the row.
+    cleared: [[u32; ROW]; 2],
+    row: [Option<u32>; 2],
+    evaluations: u64,
+}
+
+impl<'a> Rays<'a> {
+    /// Those of a frame.
+    pub const fn new(setup: &'a Setup) -> Self {
+        Self {
+            setup,
+            cleared: [[0; ROW]; 2],
+            row: [None; 2],
+            evaluations: 0,
+        }
+    }
+
+    /// The ray of a pixel.
+    pub fn ray(&mut self, eye: usize, x: u32, y: u32) -> Ray {
+        let setup = self.setup;
+        let Some(cones) = &setup.cones else {
+            return setup.ray(eye, x, y);
+        };
+        let row = y >> cones.block;
+        let cleared = &mut self.cleared[eye];
+        if self.row[eye].replace(row) != Some(row) {
+            let columns = 0..setup.width >> cones.block;
+            for (column, cleared) in core::iter::zip(columns, cleared.iter_mut()) {
+                let cone = setup.cone(cones, eye, column, row);
+                let (t, steps) = setup.march_cone(&cone);
+                *cleared = setup.cleared(&cone, t);
+                self.evaluations += u64::from(steps * setup.passes());
+            }
+        }
+        let cleared = cleared[(x >> cones.block) as usize] << (setup.fraction - DEPTH_FRACTION);
+        setup.ray_from(eye, x, y, setup.near.max(cleared))
+    }
+
+    /// Evaluations of the field that its cones have taken until now.
+    pub const fn evaluations(&self) -> u64 {
+        self.evaluations
+    }
+}
+
+const _: () = assert!(DEPTH_FRACTION < FRACTION);

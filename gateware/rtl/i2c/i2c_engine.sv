@@ -1,0 +1,221 @@
+// An I2C master that works off a queue of commands: single master, fast mode, wires of open drain.
+//
+// A command is {more, operation, argument}:
+//
+//   START             (0)  a start, or between bytes a repeated one
+//   WRITE  byte       (1)  sends a byte and looks for its acknowledge
+//   READ   count - 1  (2)  receives 1 to 256 bytes and acknowledges all but the last; the last too with `more`
+//   STOP              (3)  a stop, after which the bus stays free for as long as two phases
+//
+//             ┌──────┐   ┌────────────┐   ┌──────┐
+//   command ─▶│ fifo │──▶│ steps of a │──▶│ fifo │─▶ answer: bytes received
+//             └──────┘   │ phase each │   └──────┘
+//                        └────┬───────┘
+//                         SCL, SDA
+//
+// A bit has three phases of PHASE clocks, two with SCL low and one with SCL high:
+//
+//   SCL  ────╲____________________╱──────────╲____
+//   SDA  ═══════════════╳═════════════════════════
+//        HIGH ││ LOW     │ SET    │ HIGH     ││
+//
+// The phase of a high SCL begins when SCL is seen high, so a device may stretch the clock. Between two commands of a transaction,
+// and while there is no room for a byte to receive, SCL is kept low. A bit takes 3 phases, and 7 clocks until SCL is
+// seen high; a start 3 phases and 1 more within a transaction, a stop 4.
+//
+// A start finds out whether SDA is free. Where it is not, a device hangs in the middle of a byte, and gets up to nine clocks; the start
+// comes in the first of them in which it has let go, and makes the device begin anew.
+//
+// What goes wrong ends everything: the wires are free, `failed` stays and commands wait until `rst`; `error` says what it was. After a byte
+// that was not acknowledged comes a stop first.
+
+`default_nettype none
+
+module i2c_engine #(
+    // Clocks of a phase: a third of an SCL period.
+    parameter int unsigned PHASE        = 68,
+    // For how long SCL may be held low: 2^STRETCH_BITS clocks.
+    parameter int unsigned STRETCH_BITS = 21,
+    parameter int unsigned DEPTH        = 32
+) (
+    input  wire         clk,
+    input  wire         rst,
+    input  wire         command_valid,
+    output logic        command_ready,
+    input  wire  [10:0] command_data,
+    output logic        answer_valid,
+    input  wire         answer_ready,
+    output logic [7:0]  answer_data,
+    output logic        busy,
+    output logic        failed,
+    output logic [2:0]  error,
+    // One clock: a stop has been made, or it has failed.
+    output logic        ended,
+    // The wires as they are, and what is done to them: 0 pulls low, 1 lets go.
+    output logic        scl,
+    output logic        sda,
+    input  wire         scl_in,
+    output logic        scl_out,
+    input  wire         sda_in,
+    output logic        sda_out
+);
+    localparam logic [1:0] START = 2'd0, WRITE = 2'd1, READ = 2'd2, STOP = 2'd3;
+    localparam logic [2:0] NONE = 3'd0, ADDRESS = 3'd1, BYTE = 3'd2, CLOCK = 3'd3, DATA = 3'd4;
+    localparam int unsigned PHASE_BITS = $clog2(PHASE);
+    localparam logic [3:0]  LAST_CLOCK = 4'd8;
+
+    // IDLE: the bus is free. HELD: within a transaction. FALL: the start itself. RISE: the stop itself. FREE: after it.
+    typedef enum logic [3:0] {IDLE, HELD, SET, HIGH, LOW, FALL, RISE, FREE, FAILED} state_t;
+    state_t state;
+
+    logic                  pending, taken, more, room, received;
+    logic [1:0]            kind, operation;
+    logic [7:0]            argument, bytes;
+    // Sent from the top, received at the bottom: a byte and its acknowledge.
+    logic [8:0]            shift;
+    logic [3:0]            clocks;
+    // The next byte is an address.
+    logic                  addressing;
+    logic [PHASE_BITS-1:0] phase;
+    logic                  held, expired, waiting;
+    logic [STRETCH_BITS:0] stretched;
+    logic                  last_byte, ninth;
+
+    fifo #(.WIDTH(11), .DEPTH(DEPTH)) commands (
+        .clk, .rst, .in_valid(command_valid), .in_ready(command_ready), .in_data(command_data),
+        .out_valid(pending), .out_ready(taken), .out_data({more, kind, argument})
+    );
+    fifo #(.WIDTH(8), .DEPTH(DEPTH)) answers (
+        .clk, .rst, .in_valid(received), .in_ready(room), .in_data(shift[8:1]),
+        .out_valid(answer_valid), .out_ready(answer_ready), .out_data(answer_data)
+    );
+
+    spike_filter scl_filter (.clk, .rst, .level(scl_in), .filtered(scl));
+    spike_filter sda_filter (.clk, .rst, .level(sda_in), .filtered(sda));
+
+    assign operation = error != NONE ? STOP : kind;
+    assign last_byte = kind != READ || bytes == argument;
+    assign ninth     = clocks == LAST_CLOCK;
+    assign held      = scl_out && !scl;
+    assign expired   = phase == '0;
+    assign waiting   = state == IDLE || state == HELD || state == FAILED;
+    assign received  = state == LOW && expired && operation == READ && ninth;
+    assign busy      = pending && !failed || state != IDLE && state != FAILED;
+    assign failed    = state == FAILED;
+
+    always_comb begin
+        taken = 1'b0;
+        if (error == NONE) case (state)
+            LOW:     taken = expired && (kind == START || ninth && last_byte);
+            FREE:    taken = expired;
+            default: taken = 1'b0;
+        endcase
+    end
+
+    always_ff @(posedge clk) begin
+        ended     <= 1'b0;
+        phase     <= waiting || held || expired ? PHASE_BITS'(PHASE - 1) : phase - 1'b1;
+        stretched <= waiting || !held ? '0 : stretched + 1'b1;
+
+        case (state)
+            IDLE, HELD: begin
+                clocks <= '0;
+                shift  <= kind == WRITE ? {argument, 1'b1} : {8'hff, last_byte && !more};
+                if (pending && !(operation == READ && !room) || error != NONE) begin
+                    if (state == IDLE && operation == START) state <= HIGH;
+                    else begin
+                        state   <= SET;
+                        scl_out <= 1'b0;
+                        sda_out <= operation == START || operation != STOP && (kind == READ || argument[7]);
+                    end
+                end
+            end
+            SET: if (expired) begin
+                scl_out <= 1'b1;
+                state   <= HIGH;
+            end
+            HIGH: if (expired) begin
+                case (operation)
+                    START: begin
+                        addressing <= 1'b1;
+                        clocks     <= clocks + 1'b1;
+                        if (sda) begin
+                            sda_out <= 1'b0;
+                            state   <= FALL;
+                        end else begin
+                            scl_out <= 1'b0;
+                            state   <= SET;
+                            if (clocks == LAST_CLOCK + 1'b1) begin
+                                error   <= DATA;
+                                scl_out <= 1'b1;
+                                ended   <= 1'b1;
+                                state   <= FAILED;
+                            end
+                        end
+                    end
+                    STOP: begin
+                        sda_out <= 1'b1;
+                        state   <= RISE;
+                    end
+                    default: begin
+                        scl_out <= 1'b0;
+                        state   <= LOW;
+                        shift   <= {shift[7:0], sda};
+                        // Somebody else pulls SDA.
+                        if (!ninth && kind == WRITE && sda != shift[8]) begin
+                            error   <= DATA;
+                            scl_out <= 1'b1;
+                            sda_out <= 1'b1;
+                            ended   <= 1'b1;
+                            state   <= FAILED;
+                        end
+                    end
+                endcase
+            end
+            LOW: if (expired) begin
+                state  <= SET;
+                clocks <= clocks + 1'b1;
+                if (operation != START && !ninth) sda_out <= shift[8];
+                if (operation == START || ninth) begin
+                    state <= HELD;
+                    bytes <= last_byte ? '0 : bytes + 1'b1;
+                end
+                if (operation == WRITE && ninth) begin
+                    addressing <= 1'b0;
+                    if (shift[0]) error <= addressing ? ADDRESS : BYTE;
+                end
+            end
+            FALL: if (expired) begin
+                scl_out <= 1'b0;
+                state   <= LOW;
+            end
+            RISE: if (expired) state <= FREE;
+            FREE: if (expired) begin
+                ended <= 1'b1;
+                state <= error != NONE || !sda ? FAILED : IDLE;
+                if (error == NONE && !sda) error <= DATA;
+            end
+            default: ;
+        endcase
+
+        if (stretched[STRETCH_BITS]) begin
+            error   <= CLOCK;
+            scl_out <= 1'b1;
+            sda_out <= 1'b1;
+            ended   <= 1'b1;
+            state   <= FAILED;
+        end
+
+        if (rst) begin
+            state     <= IDLE;
+            error     <= NONE;
+            scl_out   <= 1'b1;
+            sda_out   <= 1'b1;
+            ended     <= 1'b0;
+            bytes     <= '0;
+            stretched <= '0;
+        end
+    end
+endmodule
+
+`default_nettype wire

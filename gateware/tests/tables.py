@@ -1,0 +1,44 @@
+"""The tables of roots as Yosys reads them, which has its own way with reals, against whole numbers."""
+
+import json
+from math import isqrt
+
+from glint_soc.scanout import RTL
+from tools import BUILD, run_yosys
+
+
+def _yosys(name, memory):
+    """Returns the entries that Yosys gives a memory."""
+    netlist = BUILD / f"{name}.json"
+    run_yosys(f"hierarchy -top {name}; proc; memory_collect; write_json {netlist.name}", [RTL / "raymarch" / f"{name}.sv"])
+    cell = json.loads(netlist.read_text())["modules"][name]["cells"][memory]["parameters"]
+    width = int(cell["WIDTH"], 2)
+    words = [cell["INIT"][at:at + width] for at in range(0, len(cell["INIT"]), width)]
+    return [int(word, 2) for word in reversed(words)]
+
+
+def _differences(found, expected):
+    if len(found) != len(expected):
+        return [f"expected {len(expected)} entries, got {len(found)}"]
+    return [f"entry {i}: expected {wanted:#x}, got {entry:#x}" for i, (entry, wanted) in enumerate(zip(found, expected))
+            if entry != wanted]
+
+
+def check_roots():
+    """`ROOTS` of docs/formats.md: the 18 bits behind the point, and how far the next one is."""
+    roots = [isqrt(max(i, 128) << 29) for i in range(512)]
+    following = [isqrt((max(i, 128) + 1) << 29) for i in range(512)]
+    expected = [(root - (1 << 18) << 10) + after - root for root, after in zip(roots, following)]
+    return _differences(_yosys("root_table", "entries"), expected)
+
+
+def check_round_inverses():
+    """`ROUND_INVERSE`: the root of 2^10/(i + 1) less a part of 2^-16, u8.9."""
+    expected = [isqrt(((1 << 28) - (1 << 13)) // (i + 1)) for i in range(1024)]
+    return _differences(_yosys("round_inverse", "inverses"), expected)
+
+
+CHECKS = {
+    "roots": check_roots,
+    "inverses of roots": check_round_inverses,
+}

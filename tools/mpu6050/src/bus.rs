@@ -1,0 +1,205 @@
+//! The chip behind `embedded-hal`.
+
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use embedded_hal::i2c::{ErrorKind, ErrorType, NoAcknowledgeSource, Operation};
+
+use crate::chip::{ADDRESS, Chip, Fault};
+
+/// A byte at 400 kHz, in ns.
+const BYTE: u64 = 9 * 2_500;
+/// For how long a master waits for a stretched clock, in ns.
+const PATIENCE: u64 = 25_000_000;
+/// Clocks that a master gives a stuck device.
+const CLEARING: u32 = 9;
+
+/// What goes wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Error {
+    /// Nobody acknowledged.
+    NoAcknowledge(NoAcknowledgeSource),
+    /// SCL or SDA stays low.
+    Stuck,
+}
+
+impl embedded_hal::i2c::Error for Error {
+    fn kind(&self) -> ErrorKind {
+        match *self {
+            Self::NoAcknowledge(source) => ErrorKind::NoAcknowledge(source),
+            Self::Stuck => ErrorKind::Bus,
+        }
+    }
+}
+
+/// A bus with a chip, and a clock: transfers and delays let the same time pass for both. Clones are handles of the same bus.
+#[derive(Clone)]
+pub struct Bus {
+    shared: Rc<RefCell<Shared>>,
+}
+
+struct Shared {
+    chip: Chip,
+    now: u64,
+    register: u8,
+    transactions: u64,
+}
+
+impl Bus {
+    /// A bus at time 0.
+    #[must_use]
+    pub fn new(chip: Chip) -> Self {
+        let shared = Shared {
+            chip,
+            now: 0,
+            register: 0,
+            transactions: 0,
+        };
+        Self {
+            shared: Rc::new(RefCell::new(shared)),
+        }
+    }
+
+    /// Does something with the chip.
+    pub fn with_chip<T>(&self, action: impl FnOnce(&mut Chip) -> T) -> T {
+        action(&mut self.shared.borrow_mut().chip)
+    }
+
+    /// The time, in ns.
+    #[must_use]
+    pub fn now(&self) -> u64 {
+        self.shared.borrow().now
+    }
+
+    /// Transactions so far.
+    #[must_use]
+    pub fn transactions(&self) -> u64 {
+        self.shared.borrow().transactions
+    }
+
+    /// Lets time pass, in ns.
+    pub fn pass(&self, time: u64) {
+        self.shared.borrow_mut().pass(time);
+    }
+}
+
+impl Shared {
+    fn pass(&mut self, time: u64) {
+        self.now += time;
+        self.chip.advance(self.now);
+    }
+
+    fn transaction(&mut self, address: u8, operations: &mut [Operation]) -> Result<(), Error> {
+        self.transactions += 1;
+        self.free()?;
+        self.chip.set_addressed(true);
+        let result = self.operate(address, operations);
+        self.chip.set_addressed(false);
+        self.pass(BYTE / 9);
+        result
+    }
+
+    /// What a master does before a start.
+    fn free(&mut self) -> Result<(), Error> {
+        match self.chip.fault {
+            Some(Fault::StuckData(clocks @ 1..=CLEARING)) => {
+                self.pass(u64::from(clocks) * BYTE / 9);
+                self.chip.fault = None;
+                Ok(())
+            }
+            Some(Fault::StuckData(_)) => {
+                self.pass(BYTE);
+                Err(Error::Stuck)
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn operate(&mut self, address: u8, operations: &mut [Operation]) -> Result<(), Error> {
+        let mut reading = None;
+        // The first byte of a run of writes is a register.
+        let mut has_register = false;
+        for operation in operations {
+            let reads = matches!(operation, Operation::Read(_));
+            if reading != Some(reads) {
+                self.byte()?;
+                if address != ADDRESS || !self.chip.answers() {
+                    return Err(Error::NoAcknowledge(NoAcknowledgeSource::Address));
+                }
+                (reading, has_register) = (Some(reads), false);
+            }
+            match operation {
+                Operation::Write(bytes) => {
+                    for &byte in bytes.iter() {
+                        self.byte()?;
+                        if self.chip.fault == Some(Fault::NoAcknowledge) {
+                            return Err(Error::NoAcknowledge(NoAcknowledgeSource::Data));
+                        }
+                        if has_register {
+                            self.chip.write(self.register, byte);
+                            self.register = self.register.wrapping_add(1);
+                        } else {
+                            (self.register, has_register) = (byte, true);
+                        }
+                    }
+                }
+                Operation::Read(buffer) => {
+                    for slot in buffer.iter_mut() {
+                        self.byte()?;
+                        *slot = self.chip.read(self.register);
+                        self.register = self.register.wrapping_add(1);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// A byte goes over the bus.
+    fn byte(&mut self) -> Result<(), Error> {
+        self.pass(BYTE);
+        match self.chip.fault {
+            Some(Fault::Stretched(time)) if time > PATIENCE => {
+                self.pass(PATIENCE);
+                Err(Error::Stuck)
+            }
+            Some(Fault::Stretched(time)) => {
+                self.pass(time);
+                Ok(())
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+impl ErrorType for Bus {
+    type Error = Error;
+}
+
+impl embedded_hal::i2c::I2c for Bus {
+    fn transaction(&mut self, address: u8, operations: &mut [Operation]) -> Result<(), Error> {
+        self.shared.borrow_mut().transaction(address, operations)
+    }
+}
+
+impl embedded_hal_async::i2c::I2c for Bus {
+    async fn transaction(
+        &mut self,
+        address: u8,
+        operations: &mut [Operation<'_>],
+    ) -> Result<(), Error> {
+        self.shared.borrow_mut().transaction(address, operations)
+    }
+}
+
+impl embedded_hal::delay::DelayNs for Bus {
+    fn delay_ns(&mut self, ns: u32) {
+        self.pass(ns.into());
+    }
+}
+
+impl embedded_hal_async::delay::DelayNs for Bus {
+    async fn delay_ns(&mut self, ns: u32) {
+        self.pass(ns.into());
+    }
+}

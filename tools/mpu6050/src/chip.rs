@@ -1,0 +1,371 @@
+//! Registers, sample clock and measurement.
+
+use rand::RngExt;
+use rand_pcg::Pcg64Mcg;
+
+/// Its address with AD0 low.
+pub const ADDRESS: u8 = 0x68;
+
+/// For how long it does not answer after a reset, in ns.
+pub const RESET_TIME: u64 = 50_000_000;
+
+const SMPLRT_DIV: u8 = 0x19;
+const CONFIG: u8 = 0x1a;
+const GYRO_CONFIG: u8 = 0x1b;
+const ACCEL_CONFIG: u8 = 0x1c;
+const INT_ENABLE: u8 = 0x38;
+const INT_STATUS: u8 = 0x3a;
+const DATA: u8 = 0x3b;
+const DATA_END: u8 = 0x48;
+const PWR_MGMT_1: u8 = 0x6b;
+const WHO_AM_I: u8 = 0x75;
+
+const DATA_RDY: u8 = 0x01;
+const DEVICE_RESET: u8 = 0x80;
+const SLEEP: u8 = 0x40;
+
+/// Delay in ms and bandwidth in Hz of the gyroscope by DLPF_CFG; 7 is reserved and taken as 0.
+const FILTERS: [(f64, f64); 8] = [
+    (0.98, 256.0),
+    (1.9, 188.0),
+    (2.8, 98.0),
+    (4.8, 42.0),
+    (8.3, 20.0),
+    (13.4, 10.0),
+    (18.6, 5.0),
+    (0.98, 256.0),
+];
+
+/// LSB per °/s by FS_SEL, and per g by AFS_SEL.
+const PER_DPS: [f64; 4] = [131.0, 65.5, 32.8, 16.4];
+const PER_G: [f64; 4] = [16_384.0, 8_192.0, 4_096.0, 2_048.0];
+
+/// What the body does at a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State {
+    /// The rate about each axis in °/s.
+    pub rate: [f64; 3],
+    /// The force along each axis in g: at rest what holds it against gravity.
+    pub force: [f64; 3],
+    /// The chip's temperature in °C.
+    pub temperature: f64,
+}
+
+impl Default for State {
+    /// At rest, flat, at 25 °C.
+    fn default() -> Self {
+        Self {
+            rate: [0.0; 3],
+            force: [0.0, 0.0, 1.0],
+            temperature: 25.0,
+        }
+    }
+}
+
+/// What the data registers hold.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Of the accelerometer.
+    pub accel: [i16; 3],
+    /// Of the thermometer.
+    pub temperature: i16,
+    /// Of the gyroscope.
+    pub gyro: [i16; 3],
+}
+
+impl Counts {
+    fn bytes(self) -> [u8; 14] {
+        let [ax, ay, az] = self.accel;
+        let [gx, gy, gz] = self.gyro;
+        let mut bytes = [0; 14];
+        for (pair, count) in
+            bytes
+                .chunks_exact_mut(2)
+                .zip([ax, ay, az, self.temperature, gx, gy, gz])
+        {
+            pair.copy_from_slice(&count.to_be_bytes());
+        }
+        bytes
+    }
+}
+
+/// Where its measurements come from.
+pub enum Source {
+    /// The motion at a time in s, measured with all imperfections.
+    Motion(Box<dyn Fn(f64) -> State + Send>),
+    /// Recorded counts, each with the time in ns from which on it is the newest; taken as they are.
+    Log(Vec<(u64, Counts)>),
+}
+
+/// What makes a measurement differ from the truth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Imperfections {
+    /// Rate at rest at 25 °C, in °/s.
+    pub bias: [f64; 3],
+    /// How it changes, in °/s per °C.
+    pub drift: [f64; 3],
+    /// What a rate of 1 is measured as.
+    pub scale: [f64; 3],
+    /// In °/s per √Hz.
+    pub noise: f64,
+    /// Force where there is none, in g.
+    pub accel_bias: [f64; 3],
+    /// What a force of 1 is measured as.
+    pub accel_scale: [f64; 3],
+    /// In g per √Hz.
+    pub accel_noise: f64,
+    /// How much faster its clock runs: 0.01 is one in a hundred.
+    pub clock: f64,
+}
+
+impl Imperfections {
+    /// None at all.
+    pub const NONE: Self = Self {
+        bias: [0.0; 3],
+        drift: [0.0; 3],
+        scale: [1.0; 3],
+        noise: 0.0,
+        accel_bias: [0.0; 3],
+        accel_scale: [1.0; 3],
+        accel_noise: 0.0,
+        clock: 0.0,
+    };
+    /// Within the data sheet's limits: a specimen.
+    pub const TYPICAL: Self = Self {
+        bias: [-4.5, 1.25, 2.0],
+        drift: [0.16, -0.1, 0.05],
+        scale: [1.01, 0.99, 1.005],
+        noise: 0.005,
+        accel_bias: [0.02, -0.03, 0.05],
+        accel_scale: [1.01, 0.995, 0.99],
+        accel_noise: 0.0004,
+        clock: 0.004,
+    };
+}
+
+/// What is wrong with it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// It is not there: it acknowledges nothing.
+    Absent,
+    /// It acknowledges its address, and no byte after that.
+    NoAcknowledge,
+    /// It holds SDA low until it has seen so many clocks; 0 is for ever.
+    StuckData(u32),
+    /// It holds SCL low for so many ns after each byte.
+    Stretched(u64),
+    /// The data registers do not change any more; new data are announced all the same.
+    Frozen,
+    /// Nothing is measured any more.
+    Stalled,
+    /// WHO_AM_I reads as this.
+    Identity(u8),
+}
+
+/// The chip.
+pub struct Chip {
+    registers: [u8; 128],
+    /// What a read gives, and what was measured last.
+    data: [u8; 14],
+    newest: Option<[u8; 14]>,
+    source: Source,
+    imperfections: Imperfections,
+    random: Pcg64Mcg,
+    now: u64,
+    /// When the next sample is measured; none while it sleeps.
+    next: Option<u64>,
+    /// From when on it answers.
+    answers: u64,
+    /// Between a start and a stop its data stay as they are.
+    is_addressed: bool,
+    /// What is wrong with it now.
+    pub fault: Option<Fault>,
+    /// Samples measured so far.
+    pub samples: u64,
+    /// Samples that were overwritten before anybody has read INT_STATUS.
+    pub missed: u64,
+}
+
+impl Chip {
+    /// A chip that has been powered long enough.
+    #[must_use]
+    pub fn new(source: Source, imperfections: Imperfections, seed: u64) -> Self {
+        let mut chip = Self {
+            registers: [0; 128],
+            data: [0; 14],
+            newest: None,
+            source,
+            imperfections,
+            random: Pcg64Mcg::new(u128::from(seed) << 1 | 1),
+            now: 0,
+            next: None,
+            answers: 0,
+            is_addressed: false,
+            fault: None,
+            samples: 0,
+            missed: 0,
+        };
+        chip.reset();
+        chip.answers = 0;
+        chip
+    }
+
+    /// Forgets all that was written to it, as a failing supply makes it; it is asleep then.
+    pub fn reset(&mut self) {
+        self.registers = [0; 128];
+        self.registers[usize::from(PWR_MGMT_1)] = SLEEP;
+        self.registers[usize::from(WHO_AM_I)] = 0x68;
+        self.data = [0; 14];
+        self.newest = None;
+        self.next = None;
+        self.answers = self.now + RESET_TIME;
+    }
+
+    /// Whether it acknowledges its address.
+    #[must_use]
+    pub fn answers(&self) -> bool {
+        self.fault != Some(Fault::Absent) && self.now >= self.answers
+    }
+
+    /// Lets time pass until `now`, in ns; earlier times are ignored.
+    pub fn advance(&mut self, now: u64) {
+        while let Some(time) = self.next
+            && time <= now
+        {
+            self.next = Some(time + self.period());
+            if self.fault != Some(Fault::Stalled) {
+                self.measure(time);
+            }
+        }
+        self.now = self.now.max(now);
+        self.refresh();
+    }
+
+    /// Somebody talks on the bus, or no longer.
+    pub fn set_addressed(&mut self, is_addressed: bool) {
+        self.is_addressed = is_addressed;
+        self.refresh();
+    }
+
+    /// The time between two samples, in ns.
+    #[must_use]
+    pub fn period(&self) -> u64 {
+        let internal = match self.registers[usize::from(CONFIG)] & 7 {
+            0 | 7 => 125_000.0,
+            _ => 1_000_000.0,
+        };
+        let divider = f64::from(self.registers[usize::from(SMPLRT_DIV)]) + 1.0;
+        (internal * divider / (1.0 + self.imperfections.clock)) as u64
+    }
+
+    /// Reads a register; INT_STATUS is clear afterwards.
+    pub fn read(&mut self, register: u8) -> u8 {
+        match register & 0x7f {
+            WHO_AM_I => match self.fault {
+                Some(Fault::Identity(identity)) => identity,
+                _ => self.registers[usize::from(WHO_AM_I)],
+            },
+            INT_STATUS => std::mem::take(&mut self.registers[usize::from(INT_STATUS)]),
+            register @ DATA..=DATA_END => self.data[usize::from(register - DATA)],
+            register => self.registers[usize::from(register)],
+        }
+    }
+
+    /// Writes a register.
+    pub fn write(&mut self, register: u8, value: u8) {
+        match register & 0x7f {
+            WHO_AM_I | INT_STATUS | DATA..=DATA_END => {}
+            PWR_MGMT_1 if value & DEVICE_RESET != 0 => self.reset(),
+            PWR_MGMT_1 => {
+                self.registers[usize::from(PWR_MGMT_1)] = value;
+                self.next = match self.next {
+                    _ if value & SLEEP != 0 => None,
+                    None => Some(self.now + self.period()),
+                    next => next,
+                };
+            }
+            register => self.registers[usize::from(register)] = value,
+        }
+    }
+
+    fn measure(&mut self, time: u64) {
+        let counts = match &self.source {
+            Source::Log(log) => {
+                let after = log.partition_point(|(from, _)| *from <= time);
+                log.get(after.saturating_sub(1))
+                    .map_or(Counts::default(), |(_, counts)| *counts)
+            }
+            Source::Motion(_) => self.counts(time),
+        };
+        self.samples += 1;
+        self.newest = Some(match self.fault {
+            Some(Fault::Frozen) => self.newest.unwrap_or(self.data),
+            _ => counts.bytes(),
+        });
+    }
+
+    fn counts(&mut self, time: u64) -> Counts {
+        let Source::Motion(motion) = &self.source else {
+            return Counts::default();
+        };
+        let (delay, bandwidth) = FILTERS[usize::from(self.registers[usize::from(CONFIG)] & 7)];
+        let state = motion((time as f64 * 1e-9 - delay * 1e-3).max(0.0));
+        let range = |register: u8| usize::from(self.registers[usize::from(register)] >> 3 & 3);
+        let per_dps = PER_DPS[range(GYRO_CONFIG)];
+        let per_g = PER_G[range(ACCEL_CONFIG)];
+        let Imperfections {
+            bias,
+            drift,
+            scale,
+            noise,
+            accel_bias,
+            accel_scale,
+            accel_noise,
+            ..
+        } = self.imperfections;
+        // White noise through one pole.
+        let through = (bandwidth * std::f64::consts::FRAC_PI_2).sqrt();
+        let warmth = state.temperature - 25.0;
+        let gyro = [0, 1, 2].map(|i| {
+            let rate = state.rate[i] * scale[i] + bias[i] + drift[i] * warmth;
+            count((rate + noise * through * self.gauss()) * per_dps)
+        });
+        let accel = [0, 1, 2].map(|i| {
+            let force = state.force[i] * accel_scale[i] + accel_bias[i];
+            count((force + accel_noise * through * self.gauss()) * per_g)
+        });
+        let temperature = count((state.temperature - 36.53) * 340.0);
+        Counts {
+            accel,
+            temperature,
+            gyro,
+        }
+    }
+
+    /// A number of mean 0 and variance 1.
+    fn gauss(&mut self) -> f64 {
+        let sum: f64 = (0..12).map(|_| self.random.random_range(0.0..1.0)).sum();
+        sum - 6.0
+    }
+
+    /// New data arrive in the registers while nobody talks on the bus.
+    fn refresh(&mut self) {
+        if self.is_addressed {
+            return;
+        }
+        if let Some(newest) = self.newest.take() {
+            self.data = newest;
+            if self.registers[usize::from(INT_ENABLE)] & DATA_RDY == 0 {
+                return;
+            }
+            let status = &mut self.registers[usize::from(INT_STATUS)];
+            self.missed += u64::from(*status & DATA_RDY);
+            *status |= DATA_RDY;
+        }
+    }
+}
+
+/// To the nearest number of 16 bits.
+fn count(value: f64) -> i16 {
+    value.round() as i16
+}

@@ -1,0 +1,250 @@
+//! The chip on its two wires.
+
+use crate::chip::{ADDRESS, Chip, Fault};
+
+/// What a master has to keep in fast mode, in ns.
+const LOW: u64 = 1_300;
+const HIGH: u64 = 600;
+const START_SETUP: u64 = 600;
+const START_HOLD: u64 = 600;
+const DATA_SETUP: u64 = 100;
+const STOP_SETUP: u64 = 600;
+const FREE: u64 = 1_300;
+
+/// What goes over the bus between two edges.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Phase {
+    /// Nothing for us, until the next start.
+    Idle,
+    /// Bits come in: so far, how many, and what the byte will be.
+    In { bits: u8, count: u8, what: Byte },
+    /// Bits go out: the byte, and how many of it.
+    Out { byte: u8, count: u8 },
+}
+
+/// What a byte from the master is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Byte {
+    Address,
+    Register,
+    Value,
+}
+
+/// The times of the last edges.
+#[derive(Clone, Copy, Debug, Default)]
+struct Edges {
+    scl_rose: u64,
+    scl_fell: u64,
+    sda: u64,
+    start: u64,
+    stop: u64,
+}
+
+/// A chip on SCL and SDA.
+pub struct Wires {
+    /// The chip.
+    pub chip: Chip,
+    /// S, P and the bytes on the wire, acknowledged (+) or not (-), if they are to be kept.
+    pub log: Option<Vec<String>>,
+    /// Where the master was faster than it may be.
+    pub violations: Vec<String>,
+    phase: Phase,
+    register: u8,
+    /// Both wires as they were last, and whether SDA is pulled.
+    wires: (bool, bool),
+    pulls: bool,
+    /// Until when SCL is held.
+    holds: u64,
+    /// Clocks that a stuck chip has seen.
+    clocks: u32,
+    edges: Edges,
+}
+
+impl Wires {
+    /// A chip on a free bus.
+    #[must_use]
+    pub fn new(chip: Chip) -> Self {
+        Self {
+            chip,
+            log: None,
+            violations: Vec::new(),
+            phase: Phase::Idle,
+            register: 0,
+            wires: (true, true),
+            pulls: false,
+            holds: 0,
+            clocks: 0,
+            edges: Edges::default(),
+        }
+    }
+
+    /// The master lets go of SCL and SDA (`true`) or pulls them; returns both wires as they are then. To be called at each change, and
+    /// every few µs beside that.
+    pub fn update(&mut self, now: u64, scl: bool, sda: bool) -> (bool, bool) {
+        self.chip.advance(now);
+        let mut wires = self.wires(now, scl, sda);
+        // What the chip does to SDA comes after the falling edge of SCL that it follows.
+        while wires != self.wires {
+            let (before, after) = (std::mem::replace(&mut self.wires, wires), wires);
+            self.follow(now, before, after);
+            wires = self.wires(now, scl, sda);
+        }
+        wires
+    }
+
+    fn wires(&self, now: u64, scl: bool, sda: bool) -> (bool, bool) {
+        (
+            scl && now >= self.holds,
+            sda && !self.pulls && !self.is_stuck(),
+        )
+    }
+
+    fn is_stuck(&self) -> bool {
+        match self.chip.fault {
+            Some(Fault::StuckData(clocks)) => clocks == 0 || self.clocks < clocks,
+            _ => false,
+        }
+    }
+
+    fn note(&mut self, what: impl Into<String>) {
+        if let Some(log) = &mut self.log {
+            log.push(what.into());
+        }
+    }
+
+    /// Notes a time that is too short.
+    fn check(&mut self, now: u64, since: u64, least: u64, what: &str) {
+        if since != 0 && now - since < least {
+            let time = now - since;
+            self.violations.push(format!(
+                "{what} of {time} ns at {now} ns: expected {least} ns"
+            ));
+        }
+    }
+
+    fn follow(&mut self, now: u64, before: (bool, bool), after: (bool, bool)) {
+        let edges = self.edges;
+        match (before, after) {
+            ((true, true), (true, false)) => {
+                self.check(now, edges.scl_rose, START_SETUP, "start set-up");
+                self.check(now, edges.stop, FREE, "free bus");
+                self.edges.start = now;
+                self.note("S");
+                self.begin(Byte::Address);
+                self.pulls = false;
+                self.chip.set_addressed(true);
+            }
+            ((true, false), (true, true)) => {
+                self.check(now, edges.scl_rose, STOP_SETUP, "stop set-up");
+                self.edges.stop = now;
+                self.note("P");
+                self.phase = Phase::Idle;
+                self.chip.set_addressed(false);
+            }
+            ((false, _), (true, sda)) => {
+                self.check(now, edges.scl_fell, LOW, "low SCL");
+                self.check(now, edges.sda, DATA_SETUP, "data set-up");
+                self.edges.scl_rose = now;
+                self.rise(sda);
+            }
+            ((true, _), (false, _)) => {
+                self.check(now, edges.scl_rose, HIGH, "high SCL");
+                self.check(now, edges.start, START_HOLD, "start hold");
+                self.edges.scl_fell = now;
+                self.clocks += 1;
+                self.fall(now);
+            }
+            _ => {}
+        }
+        if before.1 != after.1 {
+            self.edges.sda = now;
+        }
+    }
+
+    fn begin(&mut self, what: Byte) {
+        self.phase = Phase::In {
+            bits: 0,
+            count: 0,
+            what,
+        };
+    }
+
+    fn rise(&mut self, sda: bool) {
+        match &mut self.phase {
+            Phase::Idle => {}
+            Phase::In { bits, count, .. } => {
+                if *count < 8 {
+                    *bits = *bits << 1 | u8::from(sda);
+                }
+                *count += 1;
+            }
+            Phase::Out { byte, count } => {
+                *count += 1;
+                if *count == 9 {
+                    let byte = *byte;
+                    self.note(format!("{byte:02x}{}", if sda { '-' } else { '+' }));
+                    self.phase = if sda { Phase::Idle } else { self.next_out() };
+                }
+            }
+        }
+    }
+
+    /// The next byte to send.
+    fn next_out(&mut self) -> Phase {
+        let byte = self.chip.read(self.register);
+        self.register = self.register.wrapping_add(1);
+        Phase::Out { byte, count: 0 }
+    }
+
+    fn fall(&mut self, now: u64) {
+        self.pulls = false;
+        match self.phase {
+            Phase::In {
+                bits,
+                count: 8,
+                what,
+            } => {
+                self.pulls = match what {
+                    Byte::Address => bits >> 1 == ADDRESS && self.chip.answers(),
+                    _ => self.chip.fault != Some(Fault::NoAcknowledge),
+                };
+                let mark = if self.pulls { '+' } else { '-' };
+                self.note(format!("{bits:02x}{mark}"));
+                if !self.pulls {
+                    self.phase = Phase::Idle;
+                } else if let Some(Fault::Stretched(time)) = self.chip.fault {
+                    self.holds = now.saturating_add(time);
+                }
+            }
+            Phase::In {
+                bits,
+                count: 9,
+                what,
+            } => match what {
+                Byte::Address if bits & 1 != 0 => {
+                    self.phase = self.next_out();
+                    self.fall(now);
+                }
+                Byte::Address => self.begin(Byte::Register),
+                Byte::Register => {
+                    self.register = bits;
+                    self.begin(Byte::Value);
+                }
+                Byte::Value => {
+                    self.chip.write(self.register, bits);
+                    self.register = self.register.wrapping_add(1);
+                    self.begin(Byte::Value);
+                }
+            },
+            Phase::Out { byte, count } if count < 8 => self.pulls = byte << count & 0x80 == 0,
+            _ => {}
+        }
+    }
+
+    /// Sets what is wrong with the chip from now on.
+    pub fn set_fault(&mut self, fault: Option<Fault>) {
+        self.chip.fault = fault;
+        self.clocks = 0;
+        self.holds = 0;
+    }
+}

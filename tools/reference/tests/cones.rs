@@ -1,0 +1,160 @@
+//! The prepass against exact hits: no ray begins behind the surface that it should come to.
+
+use glint_core::camera::View;
+use glint_core::field::Field as Scene;
+use glint_core::fixed::Q32_32;
+use glint_model::SIZES;
+use glint_model::march::{FieldOptions, Prepass, Rays, Setup, Stereo, Tint};
+use glint_reference::camera::Camera;
+use glint_reference::field::{Field, views};
+
+/// What is cut from a point, and once more from where a solid's faces are, in field units.
+const STEPS: f64 = 2.0 / 4096.0;
+
+/// The prepass of one picture beside its rays without: what was found.
+#[derive(Debug, Default)]
+struct Seen {
+    hits: usize,
+    /// Rays that begin farther on than without.
+    helped: usize,
+    /// How far a ray begins behind a surface at most, in field units.
+    behind: f64,
+    /// Rays that end otherwise than without.
+    changed: usize,
+    /// Evaluations a ray, without and with.
+    cost: [f64; 2],
+}
+
+/// Looks at a pixel of each `stride` in both directions.
+fn see(scene: &str, view: &View, size: (u32, u32), options: &FieldOptions, stride: u32) -> Seen {
+    let parsed = Scene::parse(scene).expect("a field");
+    let field = Field::of(&parsed);
+    let setup = Setup::new(&parsed, view, size, options).expect("a size");
+    let units = setup.scale.to_num::<f64>() * 4096.0;
+    let mut rays = Rays::new(&setup);
+    let mut seen = Seen::default();
+    let eyes = if setup.stereo.is_some() { 2 } else { 1 };
+    let mut count = 0;
+    for (x, y) in (0..size.1 / stride).flat_map(|y| {
+        (0..size.0 / stride).map(move |x| (x * stride + y % stride, y * stride + x % stride))
+    }) {
+        for eye in 0..eyes {
+            let plain = setup.ray(eye, x, y);
+            let ray = rays.ray(eye, x, y);
+            assert!(ray.start >= plain.start);
+            let [end, found] = [&plain, &ray].map(|ray| setup.march(ray));
+            count += 1;
+            seen.helped += usize::from(ray.start > plain.start);
+            seen.changed += usize::from(
+                std::mem::discriminant(&end.state) != std::mem::discriminant(&found.state),
+            );
+            seen.cost[0] += f64::from(end.steps);
+            seen.cost[1] += f64::from(found.steps);
+            let origin = setup.eyes[eye].origin.map(|x| (f64::from(x) + 0.5) / units);
+            let direction = ray.direction.map(|x| f64::from(x) / f64::from(1 << 17));
+            let begin = f64::from(plain.start) / units;
+            let far = f64::from(setup.tuning.far) / units;
+            if let Some(hit) = field.hit(origin, direction, begin, far) {
+                seen.hits += 1;
+                let behind = f64::from(ray.start) / 4096.0 - hit.t * units / 4096.0;
+                assert!(
+                    behind <= STEPS,
+                    "{scene}, pixel {x}, {y} of eye {eye} begins {behind} behind {hit:?}: {ray:?}, {found:?}"
+                );
+                seen.behind = seen.behind.max(behind);
+            }
+        }
+    }
+    seen.cost[1] += rays.evaluations() as f64;
+    seen.cost = seen.cost.map(|cost| cost / f64::from(count));
+    seen
+}
+
+fn with(scene: &str, prepass: Prepass) -> FieldOptions {
+    FieldOptions {
+        prepass: Some(prepass),
+        ..FieldOptions::of(&Scene::parse(scene).expect("a field"))
+    }
+}
+
+#[test]
+fn no_ray_of_the_views_begins_behind_a_surface() {
+    for (name, eye, target) in views::views() {
+        let view = views::camera(eye, target).view().unwrap();
+        for (block, size) in [(2, SIZES[0]), (3, SIZES[0]), (4, SIZES[0])] {
+            let seen = see(
+                "menger:4",
+                &view,
+                size,
+                &with("menger:4", Prepass::Blocks(block)),
+                1,
+            );
+            println!("{name}, {size:?}, blocks of {}: {seen:?}", 1 << block);
+            assert!(seen.hits > 10_000 && seen.changed < 10, "{seen:?}");
+        }
+    }
+}
+
+/// Cameras anywhere and of any width, with one eye and with two, in every field: 39 frames, or `GLINT_CONES`.
+#[test]
+fn no_ray_of_random_cameras_begins_behind_a_surface() {
+    let mut state = 7_u64;
+    let mut random = |low: f64, high: f64| {
+        state = state
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        low + (high - low) * (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    let fields = [
+        "menger:4",
+        "menger:6",
+        "menger:1",
+        "box:1,0.5,0.25",
+        "cubes:2,0.5",
+        "cubes:0.25,0.1",
+        "planes:0.5",
+        "sphere:0.8",
+        "lattice:1,0.3",
+        "lattice:0.25,0.11",
+        "spheres:0.5,0,0,0.4;-0.5,0.1,0,0.45;0,0,0.6,0.3",
+        "union:box:0.6,0.6,0.2+sphere:0.5",
+        "smooth:0.3,box:0.6,0.6,0.2+sphere:0.5",
+    ];
+    let frames = std::env::var("GLINT_CONES").map_or(39, |text| text.parse().expect("a number"));
+    let (mut hits, mut helped, mut changed) = (0, 0, 0);
+    let mut behind: f64 = 0.0;
+    for frame in 0..frames {
+        let reach = [0.9, 1.5, 3.0, 15.0][frame % 4];
+        let eye = [0, 1, 2].map(|_| random(-reach, reach));
+        let target = eye.map(|x| random(-0.8, 0.8) - 0.3 * x);
+        let camera = Camera::looking_at(
+            eye,
+            target,
+            random(0.0, 1.0).powi(3) * 3.9 + 0.06,
+            random(0.01, 0.3),
+        );
+        let view = camera.view().expect("a camera");
+        let scene = fields[frame % fields.len()];
+        let mut options = with(scene, Prepass::Fitting);
+        if frame % 3 == 0 {
+            options.stereo = Some(Stereo {
+                half_separation: Q32_32::from_num(random(0.0, 0.3)),
+                zero_parallax: Q32_32::from_num(random(1.0, 5.0)),
+                tint: Tint::RedBlue,
+            });
+        }
+        let seen = see(
+            scene,
+            &view,
+            SIZES[frame % 3],
+            &options,
+            [3, 7, 13][frame % 3],
+        );
+        hits += seen.hits;
+        helped += seen.helped;
+        changed += seen.changed;
+        behind = behind.max(seen.behind);
+    }
+    println!("{hits} hits, {helped} helped, {changed} changed, {behind} units behind at most");
+    assert!(hits > 100_000 && helped > 50_000 || frames < 39);
+}
