@@ -26,7 +26,12 @@ _ERRORS = [
     ("2", "byte", "another byte was not acknowledged"),
     ("3", "clock", "SCL was held low longer than a device may stretch it"),
     ("4", "data", "SDA was low where it should have been free, and nine clocks did not free it"),
+    ("5", "late", "a round was not over when the next one was due"),
 ]
+
+COMMANDS = 32
+ANSWERS = 128
+"""Places in the queues, but for the one that is about to leave."""
 
 
 class I2CMaster(LiteXModule):
@@ -37,14 +42,19 @@ class I2CMaster(LiteXModule):
             CSRField("argument", size=8, offset=0, description="Of `write` and `read`."),
             CSRField("operation", size=2, offset=8, values=_OPERATIONS, description="What to do."),
             CSRField("more", offset=10, description="A `read` acknowledges its last byte too: another one follows."),
-        ], description="A write puts a command into the queue of 33; one that has no room, see `status`, is lost.")
+        ], description=f"A write puts a command into the queue of {COMMANDS + 1}; one that has no room, see `status`, is lost.")
         self._answer = CSRStatus(name="answer", fields=[
             CSRField("byte", size=8, offset=0, description="The byte."),
             CSRField("valid", offset=8, description="There is one."),
-        ], description="A read takes the next received byte out of the queue of 33; the master waits while that is full.")
+        ], description=f"A read takes the next received byte out of the queue of {ANSWERS + 1}; the master waits while that is full.")
         self._control = CSRStorage(name="control", fields=[
             CSRField("clear", offset=0, pulse=True, description="Write 1 to let go of the wires, empty both queues and forget the error."),
         ], description="Operation.")
+        self._rounds = CSRStorage(name="rounds", fields=[
+            CSRField("period", size=24, offset=0, description="Clock cycles from the start of a round to that of the next, less one."),
+            CSRField("batch", size=4, offset=24, description="So many rounds, less one, are an interrupt."),
+            CSRField("repeats", offset=31, description="What is in the queue is done again and again, first a period after this is written."),
+        ], description="Rounds: one transaction, its commands in the queue before the first of them, at a steady pace.")
         self._status = CSRStatus(name="status", fields=[
             CSRField("scl", offset=0, description="State of the SCL wire."),
             CSRField("sda", offset=1, description="State of the SDA wire."),
@@ -54,7 +64,7 @@ class I2CMaster(LiteXModule):
             CSRField("error", size=3, offset=8, values=_ERRORS, description="The error."),
         ], description="State.")
         self.ev = EventManager()
-        self.ev.ended = EventSourcePulse(name="ended", description="A stop has been made, or an error has ended the transaction.")
+        self.ev.ended = EventSourcePulse(name="ended", description="A stop has been made, with rounds the last one of a batch, or an error has ended the transaction.")
         self.ev.finalize()
 
         # # #
@@ -65,11 +75,16 @@ class I2CMaster(LiteXModule):
         self.specials += Instance("i2c_engine", name="i2c_core",
             # Three phases are a bit: rounded up, so that it is not too fast.
             p_PHASE         = -int(-sys_clk_freq // (3 * BIT_RATE)),
+            p_COMMANDS      = COMMANDS,
+            p_ANSWERS       = ANSWERS,
             i_clk           = ClockSignal("sys"),
             i_rst           = reset,
             i_command_valid = self._command.re,
             o_command_ready = self._status.fields.room,
             i_command_data  = self._command.storage,
+            i_repeats       = self._rounds.fields.repeats,
+            i_period        = self._rounds.fields.period,
+            i_batch         = self._rounds.fields.batch,
             o_answer_valid  = self._answer.fields.valid,
             i_answer_ready  = self._answer.we,
             o_answer_data   = self._answer.fields.byte,

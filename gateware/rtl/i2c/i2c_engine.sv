@@ -26,6 +26,15 @@
 // A start finds out whether SDA is free. Where it is not, a device hangs in the middle of a byte, and gets up to nine clocks; the start
 // comes in the first of them in which it has let go, and makes the device begin anew.
 //
+// Rounds: with `repeats` a command that is done goes back into its queue, and a transaction begins every `period` + 1 clocks, the first one
+// so long after `repeats` has come. Commands are put into the queue before that, from a start to a stop. `ended` tells of every
+// `batch` + 1 transactions then, and one that is not over when the next is due is late.
+//
+//   command ──▶┌──────┐
+//          ┌──▶│ fifo │──▶ steps ──┐
+//          │   └──────┘            │
+//          └──── repeats ◀─────────┘
+//
 // What goes wrong ends everything: the wires are free, `failed` stays and commands wait until `rst`; `error` says what it was. After a byte
 // that was not acknowledged comes a stop first.
 
@@ -36,20 +45,24 @@ module i2c_engine #(
     parameter int unsigned PHASE        = 68,
     // For how long SCL may be held low: 2^STRETCH_BITS clocks.
     parameter int unsigned STRETCH_BITS = 21,
-    parameter int unsigned DEPTH        = 32
+    parameter int unsigned COMMANDS     = 32,
+    parameter int unsigned ANSWERS      = 128
 ) (
     input  wire         clk,
     input  wire         rst,
     input  wire         command_valid,
     output logic        command_ready,
     input  wire  [10:0] command_data,
+    input  wire         repeats,
+    input  wire  [23:0] period,
+    input  wire  [3:0]  batch,
     output logic        answer_valid,
     input  wire         answer_ready,
     output logic [7:0]  answer_data,
     output logic        busy,
     output logic        failed,
     output logic [2:0]  error,
-    // One clock: a stop has been made, or it has failed.
+    // One clock: a stop has been made, or the last one of a batch, or it has failed.
     output logic        ended,
     // The wires as they are, and what is done to them: 0 pulls low, 1 lets go.
     output logic        scl,
@@ -60,7 +73,7 @@ module i2c_engine #(
     output logic        sda_out
 );
     localparam logic [1:0] START = 2'd0, WRITE = 2'd1, READ = 2'd2, STOP = 2'd3;
-    localparam logic [2:0] NONE = 3'd0, ADDRESS = 3'd1, BYTE = 3'd2, CLOCK = 3'd3, DATA = 3'd4;
+    localparam logic [2:0] NONE = 3'd0, ADDRESS = 3'd1, BYTE = 3'd2, CLOCK = 3'd3, DATA = 3'd4, LATE = 3'd5;
     localparam int unsigned PHASE_BITS = $clog2(PHASE);
     localparam logic [3:0]  LAST_CLOCK = 4'd8;
 
@@ -80,12 +93,18 @@ module i2c_engine #(
     logic                  held, expired, waiting;
     logic [STRETCH_BITS:0] stretched;
     logic                  last_byte, ninth;
+    logic                  again, due, late, begins;
+    logic [23:0]           elapsed;
+    logic [3:0]            rounds;
 
-    fifo #(.WIDTH(11), .DEPTH(DEPTH)) commands (
-        .clk, .rst, .in_valid(command_valid), .in_ready(command_ready), .in_data(command_data),
+    assign again = repeats && taken;
+
+    fifo #(.WIDTH(11), .DEPTH(COMMANDS)) commands (
+        .clk, .rst, .in_valid(command_valid || again), .in_ready(command_ready),
+        .in_data(again ? {more, kind, argument} : command_data),
         .out_valid(pending), .out_ready(taken), .out_data({more, kind, argument})
     );
-    fifo #(.WIDTH(8), .DEPTH(DEPTH)) answers (
+    fifo #(.WIDTH(8), .DEPTH(ANSWERS)) answers (
         .clk, .rst, .in_valid(received), .in_ready(room), .in_data(shift[8:1]),
         .out_valid(answer_valid), .out_ready(answer_ready), .out_data(answer_data)
     );
@@ -102,6 +121,9 @@ module i2c_engine #(
     assign received  = state == LOW && expired && operation == READ && ninth;
     assign busy      = pending && !failed || state != IDLE && state != FAILED;
     assign failed    = state == FAILED;
+    assign due       = repeats && elapsed == period;
+    assign late      = due && state != IDLE && !failed;
+    assign begins    = state == IDLE && pending && operation == START && (due || !repeats);
 
     always_comb begin
         taken = 1'b0;
@@ -116,18 +138,17 @@ module i2c_engine #(
         ended     <= 1'b0;
         phase     <= waiting || held || expired ? PHASE_BITS'(PHASE - 1) : phase - 1'b1;
         stretched <= waiting || !held ? '0 : stretched + 1'b1;
+        elapsed   <= !repeats || due ? '0 : elapsed + 1'b1;
 
         case (state)
             IDLE, HELD: begin
                 clocks <= '0;
                 shift  <= kind == WRITE ? {argument, 1'b1} : {8'hff, last_byte && !more};
-                if (pending && !(operation == READ && !room) || error != NONE) begin
-                    if (state == IDLE && operation == START) state <= HIGH;
-                    else begin
-                        state   <= SET;
-                        scl_out <= 1'b0;
-                        sda_out <= operation == START || operation != STOP && (kind == READ || argument[7]);
-                    end
+                if (begins) state <= HIGH;
+                else if (!(state == IDLE && operation == START) && (pending && !(operation == READ && !room) || error != NONE)) begin
+                    state   <= SET;
+                    scl_out <= 1'b0;
+                    sda_out <= operation == START || operation != STOP && (kind == READ || argument[7]);
                 end
             end
             SET: if (expired) begin
@@ -191,20 +212,22 @@ module i2c_engine #(
             end
             RISE: if (expired) state <= FREE;
             FREE: if (expired) begin
-                ended <= 1'b1;
+                ended  <= error != NONE || !sda || !repeats || rounds == batch;
+                rounds <= rounds == batch ? '0 : rounds + 1'b1;
                 state <= error != NONE || !sda ? FAILED : IDLE;
                 if (error == NONE && !sda) error <= DATA;
             end
             default: ;
         endcase
 
-        if (stretched[STRETCH_BITS]) begin
-            error   <= CLOCK;
+        if (stretched[STRETCH_BITS] || late) begin
+            error   <= late ? LATE : CLOCK;
             scl_out <= 1'b1;
             sda_out <= 1'b1;
             ended   <= 1'b1;
             state   <= FAILED;
         end
+        if (!repeats) rounds <= '0;
 
         if (rst) begin
             state     <= IDLE;

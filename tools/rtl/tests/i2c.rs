@@ -23,6 +23,7 @@ enum Failure {
     Byte,
     Clock,
     Data,
+    Late,
 }
 
 /// A command in the queue's form.
@@ -60,6 +61,7 @@ struct Ports {
     command: [Port; 3],
     answer: [Port; 3],
     wires: [Port; 4],
+    rounds: [Port; 3],
     ended: Port,
     busy: Port,
     failed: Port,
@@ -75,6 +77,7 @@ impl Bench {
             command: ["command_valid", "command_ready", "command_data"].map(port),
             answer: ["answer_valid", "answer_ready", "answer_data"].map(port),
             wires: ["scl_in", "scl_out", "sda_in", "sda_out"].map(port),
+            rounds: ["repeats", "period", "batch"].map(port),
             ended: port("ended"),
             busy: port("busy"),
             failed: port("failed"),
@@ -162,6 +165,7 @@ impl Bench {
             Failure::Byte,
             Failure::Clock,
             Failure::Data,
+            Failure::Late,
         ];
         let error = self.module.value(self.ports.error);
         assert_eq!(self.module.is_high(self.ports.failed), error != 0);
@@ -175,6 +179,32 @@ impl Bench {
         self.finish();
         assert_eq!(self.ended, ended + 1, "an end is told once");
         self.failure()
+    }
+
+    /// Begins rounds of `commands` every `period` clocks, and tells of so many at once.
+    fn repeat(&mut self, commands: &[u32], period: u64, batch: u64) {
+        let [repeats, clocks, rounds] = self.ports.rounds;
+        self.module.set(clocks, period - 1);
+        self.module.set(rounds, batch - 1);
+        self.module.set(repeats, 1);
+        self.push(commands);
+    }
+
+    /// Clocks so often; when SDA was pulled low under a high SCL.
+    fn starts(&mut self, clocks: u64) -> Vec<u64> {
+        let [_, scl_out, _, sda_out] = self.ports.wires;
+        let mut starts = Vec::new();
+        let mut before = false;
+        for _ in 0..clocks {
+            self.clock();
+            let low = self.module.is_high(scl_out) && !self.module.is_high(sda_out);
+            let high = self.module.is_high(scl_out) && self.module.is_high(sda_out);
+            if before && low {
+                starts.push(self.module.cycles());
+            }
+            before = high;
+        }
+        starts
     }
 
     fn log(&self) -> String {
@@ -209,6 +239,69 @@ fn a_burst_takes_the_time_that_is_stated() {
 }
 
 #[test]
+fn rounds_begin_at_their_times() {
+    const PERIOD: u64 = 39_000;
+    let mut bench = Bench::new(None);
+    let begin = bench.module.cycles();
+    bench.repeat(&transfer(&[0x3a], 15), PERIOD, 3);
+    let starts = bench.starts(10 * PERIOD);
+    // The second start of each round is under a low SCL at first.
+    let first: Vec<u64> = starts.iter().map(|at| at - begin).step_by(2).collect();
+    assert_eq!(first.len(), 9, "{starts:?}");
+    assert!(
+        (PERIOD..PERIOD + 2 * PHASE).contains(&first[0]),
+        "{first:?}"
+    );
+    assert!(
+        first.windows(2).all(|pair| pair[1] - pair[0] == PERIOD),
+        "{first:?}"
+    );
+    assert_eq!((bench.failure(), bench.ended), (None, 3));
+    assert_eq!(bench.answers.len(), 9 * 15);
+    let round = "S d0+ 3a+ S d1+";
+    assert_eq!(bench.log().matches(round).count(), 9, "{}", bench.log());
+    let violations = &bench.device.violations;
+    assert!(violations.is_empty(), "{violations:#?}");
+    // Nothing is left of them after a reset.
+    bench.module.set(bench.ports.rounds[0], 0);
+    bench.reset();
+    bench.answers.clear();
+    assert_eq!(bench.run(&transfer(&[0x75], 1)), None);
+    assert_eq!(bench.answers, [0x68]);
+}
+
+#[test]
+fn a_round_that_is_not_over_in_time_is_an_error() {
+    // It takes 34,883 clocks.
+    let mut bench = Bench::new(None);
+    bench.repeat(&transfer(&[0x3a], 15), 34_000, 1);
+    bench.starts(3 * 34_000);
+    assert_eq!((bench.failure(), bench.ended), (Some(Failure::Late), 1));
+    // Nobody takes the answers: of nine rounds of 15 bytes 129 have room.
+    let mut bench = Bench::new(None);
+    bench.listens = false;
+    bench.repeat(&transfer(&[0x3a], 15), 39_000, 1);
+    bench.starts(9 * 39_000);
+    assert_eq!((bench.failure(), bench.ended), (None, 8));
+    bench.starts(2 * 39_000);
+    assert_eq!((bench.failure(), bench.ended), (Some(Failure::Late), 9));
+    bench.listens = true;
+    bench.starts(200);
+    assert_eq!(bench.answers.len(), 129);
+}
+
+#[test]
+fn rounds_end_with_a_device_that_is_gone() {
+    let mut bench = Bench::new(None);
+    bench.repeat(&transfer(&[0x3a], 15), 39_000, 4);
+    bench.starts(3 * 39_000 - PHASE);
+    bench.device.set_fault(Some(Fault::Absent));
+    let starts = bench.starts(4 * 39_000);
+    assert_eq!(starts.len(), 1, "{starts:?}");
+    assert_eq!((bench.failure(), bench.ended), (Some(Failure::Address), 1));
+}
+
+#[test]
 fn reads_in_a_row_are_one_and_wait_for_room() {
     let mut bench = Bench::new(None);
     bench.listens = false;
@@ -222,7 +315,7 @@ fn reads_in_a_row_are_one_and_wait_for_room() {
         stop,
     ]);
     bench.push(&commands);
-    // More than 33 bytes have no room: SCL waits low for as long as it takes.
+    // More than 129 bytes have no room: SCL waits low for as long as it takes.
     for _ in 0..3 * PATIENCE {
         bench.clock();
     }
