@@ -25,7 +25,7 @@ enum Event {
 }
 
 /// As many samples as come while a long frame is drawn.
-const WAITING: usize = 128;
+const WAITING: usize = 256;
 
 /// A stream that never ends.
 struct Stream(Pin<&'static mut dyn Future<Output = ()>>);

@@ -1,10 +1,13 @@
 //! The MPU-6050, and relatives with the same registers: from power-on to samples with the times that they were measured at.
 //!
-//! [`Mpu6050`] speaks to the chip over any [`I2c`], and waits for nothing by itself. [`Stream`] keeps it
-//! going for ever: it finds the chip, wakes it, reads each sample once, and comes back from whatever happens on the bus.
+//! [`Mpu6050`] sets the chip up over any [`I2c`], and waits for nothing by itself. [`Stream`] keeps it
+//! going for ever: it finds the chip, wakes it, reads each sample once, and comes back from whatever happens on the bus. For that the
+//! bus does the same transaction at a steady pace ([`Rounds`]), and [`Pace`] makes times of samples of those of the looks.
 //!
-//! Registers are those of RM-MPU-6000A 4.2. The range is ±2000 °/s and ±8 g, the filter 98 Hz (a delay of 2.8 ms), the rate 500 Hz.
+//! Registers are those of RM-MPU-6000A 4.2. The range is ±2000 °/s and ±8 g, the filter 98 Hz (a delay of 2.8 ms), the rate 1 kHz.
 
+mod pace;
+mod rounds;
 mod stream;
 
 use core::fmt;
@@ -12,13 +15,18 @@ use core::fmt;
 use embedded_hal_async::delay::DelayNs;
 use embedded_hal_async::i2c::{I2c, Operation};
 
-pub use stream::{Sink, Stream, Time};
+pub use pace::Pace;
+pub use rounds::{Round, Rounds};
+pub use stream::{Sink, Stream};
 
 /// The chip's address with AD0 low, and high.
 pub const ADDRESSES: [u8; 2] = [0x68, 0x69];
 
 /// The time between two samples, in µs.
-pub const PERIOD: u32 = 2_000;
+pub const PERIOD: u32 = 1_000;
+
+/// Looks that are told of at once.
+const BATCH: u8 = 5;
 
 /// How long a reset takes, in ms.
 const RESET: u32 = 100;
@@ -38,8 +46,8 @@ const CLOCK_OF_X: u8 = 0x01;
 /// DATA_RDY, of INT_ENABLE and INT_STATUS.
 const DATA_RDY: u8 = 0x01;
 
-/// From SMPLRT_DIV on: every second sample of 1 kHz, DLPF_CFG 2, ±2000 °/s, ±8 g.
-const CONFIGURATION: [u8; 4] = [0x01, 0x02, 0x18, 0x10];
+/// From SMPLRT_DIV on: every sample of 1 kHz, DLPF_CFG 2, ±2000 °/s, ±8 g.
+const CONFIGURATION: [u8; 4] = [0x00, 0x02, 0x18, 0x10];
 
 /// What WHO_AM_I says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -228,31 +236,6 @@ impl<B: I2c> Mpu6050<B> {
         self.expect(INT_ENABLE, [DATA_RDY]).await
     }
 
-    /// The newest sample, unless it was read before. One burst, 0.43 ms at 400 kHz: within one the chip leaves its data as they are.
-    ///
-    /// # Errors
-    /// Those of the bus.
-    pub async fn read(&mut self) -> Result<Option<Measurement>, Error<B::Error>> {
-        let mut bytes = [0; 1 + Measurement::BYTES];
-        self.bus
-            .write_read(self.address, &[INT_STATUS], &mut bytes)
-            .await?;
-        let [status, data @ ..] = bytes;
-        Ok((status & DATA_RDY != 0).then(|| Measurement::from_bytes(&data)))
-    }
-
-    /// Whether there is a sample that nobody has been told of. A short transfer, which takes 0.12 ms.
-    ///
-    /// # Errors
-    /// Those of the bus.
-    pub async fn is_ready(&mut self) -> Result<bool, Error<B::Error>> {
-        let mut status = [0];
-        self.bus
-            .write_read(self.address, &[INT_STATUS], &mut status)
-            .await?;
-        Ok(status[0] & DATA_RDY != 0)
-    }
-
     async fn find(&mut self) -> Result<Identity, Error<B::Error>> {
         let mut found = [0];
         for address in ADDRESSES {
@@ -293,5 +276,37 @@ impl<B: I2c> Mpu6050<B> {
             }
         }
         Ok(())
+    }
+}
+
+/// What a look reads: INT_STATUS, and the sample behind it.
+type Look = [u8; 1 + Measurement::BYTES];
+
+impl<B: Rounds> Mpu6050<B> {
+    /// Begins to look for samples, every `period` µs. A look is one burst, 0.43 ms at 400 kHz, within which the chip leaves its data as
+    /// they are.
+    ///
+    /// # Errors
+    /// Those of the bus.
+    pub fn begin_looks(&mut self, period: u32) -> Result<(), Error<B::Error>> {
+        Ok(self.bus.begin(Round {
+            address: self.address,
+            register: INT_STATUS,
+            length: size_of::<Look>() as u8,
+            period,
+            batch: BATCH,
+        })?)
+    }
+
+    /// The next look: when it began, in µs, and the sample that has been measured since the one before.
+    ///
+    /// # Errors
+    /// Those of the bus.
+    pub async fn look(&mut self) -> Result<(u64, Option<Measurement>), Error<B::Error>> {
+        let mut bytes = Look::default();
+        let time = self.bus.next(&mut bytes).await?;
+        let [status, data @ ..] = bytes;
+        let is_new = status & DATA_RDY != 0;
+        Ok((time, is_new.then(|| Measurement::from_bytes(&data))))
     }
 }

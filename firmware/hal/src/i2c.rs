@@ -4,6 +4,8 @@
 //! [`embedded_hal_async::i2c::I2c`] leaves the CPU to others meanwhile, [`embedded_hal::i2c::I2c`] waits. A device that was
 //! interrupted in the middle of a byte may hold SDA low for ever; each start clocks it free where it is needed.
 //!
+//! Rounds ([`Rounds`]) are the same transaction at a steady pace, which the master keeps by itself; an interrupt tells of several.
+//!
 //! A future that is dropped before its transaction has ended leaves the bus within a byte; the next transaction begins with a
 //! start all the same.
 //!
@@ -17,9 +19,10 @@ use core::task::{Context, Poll, Waker};
 use core::time::Duration;
 
 use embedded_hal::i2c::{ErrorKind, ErrorType, NoAcknowledgeSource, Operation, SevenBitAddress};
-use litex_pac::i2c::{self, Command, Control, EvEnable, EvPending, Status};
+use glint_core::mpu6050::{Round, Rounds};
+use litex_pac::i2c::{self, Command, Control, EvEnable, EvPending, Rounds as Repeat, Status};
 
-use crate::timer::{Clock, Deadline, cycles};
+use crate::timer::{Clock, Deadline, cycles, microseconds};
 
 /// The longest wait for the master to go on. It gives a device up that stretches the clock for more than 25.8 ms, and of 33 bytes between
 /// two looks each takes 0.03 ms.
@@ -32,10 +35,22 @@ const PLACES: u32 = 33;
 /// The most bytes that one command receives.
 const MOST_RECEIVED: usize = 256;
 
+/// The most bytes that a round receives.
+const MOST_IN_ROUND: usize = 32;
+
 /// The master.
 pub struct I2c {
     registers: i2c::I2c,
     clock: Clock,
+    rounds: Option<Going>,
+}
+
+/// Rounds that are going on.
+#[derive(Clone, Copy)]
+struct Going {
+    /// When the next one that is asked for begins, and from one to the next, in clock cycles.
+    next: u64,
+    period: u64,
 }
 
 /// What went wrong on the bus.
@@ -51,6 +66,10 @@ pub enum Error {
     DataStuck,
     /// The master did not go on.
     Timeout,
+    /// A round was not over when the next one was due: the device stretches the clock, or nobody has taken what was received.
+    Late,
+    /// Rounds that the master cannot do: of 0 or more than 32 bytes, too long a period, or none have begun.
+    Rounds,
 }
 
 impl fmt::Display for Error {
@@ -70,6 +89,8 @@ impl fmt::Display for Error {
                 "i2c: the master did not go on for {} ms",
                 WAIT.as_millis()
             ),
+            Self::Late => f.write_str("i2c: a round was not over when the next one was due"),
+            Self::Rounds => f.write_str("i2c: these rounds cannot be done"),
         }
     }
 }
@@ -79,7 +100,8 @@ impl core::error::Error for Error {}
 impl embedded_hal::i2c::Error for Error {
     fn kind(&self) -> ErrorKind {
         match *self {
-            Self::Address(_) | Self::Timeout => ErrorKind::Other,
+            Self::Address(_) | Self::Timeout | Self::Rounds => ErrorKind::Other,
+            Self::Late => ErrorKind::Overrun,
             Self::NoAcknowledge(source) => ErrorKind::NoAcknowledge(source),
             Self::ClockStuck | Self::DataStuck => ErrorKind::Bus,
         }
@@ -90,7 +112,11 @@ impl I2c {
     /// A master on `registers`; both wires are let go. The end of each transaction is an interrupt.
     #[must_use]
     pub fn new(registers: i2c::I2c, clock: Clock) -> Self {
-        let master = Self { registers, clock };
+        let mut master = Self {
+            registers,
+            clock,
+            rounds: None,
+        };
         master.clear();
         master
             .registers
@@ -99,7 +125,9 @@ impl I2c {
         master
     }
 
-    fn clear(&self) {
+    fn clear(&mut self) {
+        self.rounds = None;
+        self.registers.rounds().write(Repeat::default());
         self.registers
             .control()
             .write(Control::default().with_clear(true));
@@ -115,14 +143,15 @@ impl I2c {
             1 => Error::NoAcknowledge(NoAcknowledgeSource::Address),
             2 => Error::NoAcknowledge(NoAcknowledgeSource::Data),
             3 => Error::ClockStuck,
-            _ => Error::DataStuck,
+            4 => Error::DataStuck,
+            _ => Error::Late,
         })
     }
 
     /// All of a transaction.
     async fn transact(&mut self, mut transfer: Transfer<'_, '_>) -> Result<(), Error> {
         // What is left of one that was dropped.
-        if !matches!(self.status(), Ok(status) if !status.busy()) {
+        if self.rounds.is_some() || !matches!(self.status(), Ok(status) if !status.busy()) {
             self.clear();
         }
         let mut deadline = None;
@@ -131,6 +160,32 @@ impl I2c {
             self.clear();
         }
         result
+    }
+
+    /// Takes a round's bytes, behind those that have been received.
+    fn take(
+        &self,
+        bytes: &mut [u8],
+        received: &mut usize,
+        deadline: &mut Option<Deadline>,
+    ) -> Poll<Result<(), Error>> {
+        while let Some(slot) = bytes.get_mut(*received) {
+            let answer = self.registers.answer().read();
+            if !answer.valid() {
+                // What was received before an error has been taken.
+                return match (self.status(), &deadline) {
+                    (Err(error), _) => Poll::Ready(Err(error)),
+                    (_, Some(deadline)) if deadline.passed() => Poll::Ready(Err(Error::Timeout)),
+                    _ => {
+                        deadline.get_or_insert_with(|| self.clock.after_cycles(WAIT_CYCLES));
+                        Poll::Pending
+                    }
+                };
+            }
+            *slot = answer.byte();
+            *received += 1;
+        }
+        Poll::Ready(Ok(()))
     }
 
     /// Puts commands into the queue, as there is room, and takes what has been received. One function for both: it runs in interrupts,
@@ -346,6 +401,62 @@ impl embedded_hal::i2c::I2c<SevenBitAddress> for I2c {
         block_on(embedded_hal_async::i2c::I2c::transaction(
             self, address, operations,
         ))
+    }
+}
+
+impl Rounds for I2c {
+    fn begin(&mut self, round: Round) -> Result<(), Error> {
+        self.clear();
+        let length = usize::from(round.length);
+        let period = cycles(Duration::from_micros(round.period.into()));
+        let last_clock = u32::try_from(period)
+            .ok()
+            .and_then(|period| period.checked_sub(1));
+        let last_clock = last_clock.filter(|clock| *clock < 1 << 24);
+        let (Some(last_clock), 1..=MOST_IN_ROUND, 1..=16) = (last_clock, length, round.batch)
+        else {
+            return Err(Error::Rounds);
+        };
+        if round.address > 0x7f {
+            return Err(Error::Address(round.address));
+        }
+        let repeat = Repeat::default()
+            .with_period(last_clock)
+            .with_batch(round.batch - 1)
+            .with_repeats(true);
+        self.registers.rounds().write(repeat);
+        self.rounds = Some(Going {
+            next: self.clock.cycles() + period,
+            period,
+        });
+        // They are in the queue before the first round is due.
+        let mut room = [0; MOST_IN_ROUND];
+        let mut operations = [
+            Operation::Write(&[round.register]),
+            Operation::Read(room.get_mut(..length).unwrap_or_default()),
+        ];
+        let mut transfer = Transfer::new(round.address, &mut operations);
+        while let Some(command) = transfer.next_command() {
+            self.registers.command().write(command);
+        }
+        Ok(())
+    }
+
+    async fn next(&mut self, bytes: &mut [u8]) -> Result<u64, Error> {
+        let Some(going) = self.rounds else {
+            return Err(Error::Rounds);
+        };
+        let (mut received, mut deadline) = (0, None);
+        let result = poll_fn(|_| self.take(bytes, &mut received, &mut deadline)).await;
+        if let Err(error) = result {
+            self.clear();
+            return Err(error);
+        }
+        self.rounds = Some(Going {
+            next: going.next + going.period,
+            ..going
+        });
+        Ok(microseconds(going.next))
     }
 }
 

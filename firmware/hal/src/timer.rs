@@ -156,12 +156,12 @@ pub fn acknowledge() {
         .write(EvPending::default().with_zero(true));
 }
 
-impl glint_core::mpu6050::Time for Clock {
-    fn now_us(&self) -> u64 {
-        // 4/QUARTERS with 64 fraction bits, rounded up: exact below 2^55 cycles, 14 years. A division would take a thousand cycles.
-        const INVERSE: u128 = (4_u128 << 64).div_ceil(QUARTERS as u128);
-        ((u128::from(self.cycles()) * INVERSE) >> 64) as u64
-    }
+/// Clock cycles in µs, rounded down.
+#[must_use]
+pub const fn microseconds(cycles: u64) -> u64 {
+    // 4/QUARTERS with 64 fraction bits, rounded up: exact below 2^55 cycles, 14 years. A division would take a thousand cycles.
+    const INVERSE: u128 = (4_u128 << 64).div_ceil(QUARTERS as u128);
+    ((cycles as u128 * INVERSE) >> 64) as u64
 }
 
 /// A span in clock cycles, rounded up to the next cycle; it saturates.
@@ -289,15 +289,12 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn the_time_is_in_microseconds() {
-        bus::connect(Uptime {
-            now: u64::from(FREQUENCY) * 3_600 - 2,
-            latched: 0,
-            step: 1,
-        });
-        use glint_core::mpu6050::Time;
-        let clock = clock();
-        assert_eq!(clock.now_us(), 3_600_000_000);
+    fn cycles_become_microseconds() {
+        assert_eq!(microseconds(u64::from(FREQUENCY) * 3_600), 3_600_000_000);
+        assert_eq!(
+            microseconds(u64::from(FREQUENCY) * 3_600 - 1),
+            3_599_999_999
+        );
     }
 
     #[test]

@@ -2,7 +2,7 @@
 // fails when this file is not what the generator makes of the SoC.
 
 /// CRC-32 of the SoC's pinned register map. A SoC whose `identity.build_id` differs has other registers.
-pub const BUILD_ID: u32 = 0x8b0d_01ba;
+pub const BUILD_ID: u32 = 0xdfdd_54bb;
 
 /// The interrupt lines, numbered by their bit in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -1479,7 +1479,7 @@ pub mod i2c {
             unsafe { Register::at(0xf000_2800) }
         }
 
-        /// `answer`, 9 bits: A read takes the next received byte out of the queue of 33; the master waits while that is full.
+        /// `answer`, 9 bits: A read takes the next received byte out of the queue of 129; the master waits while that is full.
         #[inline]
         #[must_use]
         pub const fn answer(&self) -> Register<Answer, ReadOnly> {
@@ -1495,12 +1495,20 @@ pub mod i2c {
             unsafe { Register::at(0xf000_2808) }
         }
 
+        /// `rounds`, 32 bits: Rounds: one transaction, its commands in the queue before the first of them, at a steady pace.
+        #[inline]
+        #[must_use]
+        pub const fn rounds(&self) -> Register<Rounds, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_280c) }
+        }
+
         /// `status`, 11 bits: State.
         #[inline]
         #[must_use]
         pub const fn status(&self) -> Register<Status, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_280c) }
+            unsafe { Register::at(0xf000_2810) }
         }
 
         /// `ev_status`, 1 bit: Level of each event's trigger.
@@ -1508,7 +1516,7 @@ pub mod i2c {
         #[must_use]
         pub const fn ev_status(&self) -> Register<EvStatus, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_2810) }
+            unsafe { Register::at(0xf000_2814) }
         }
 
         /// `ev_pending`, 1 bit: Events that have occurred; writing a 1 clears an event.
@@ -1516,7 +1524,7 @@ pub mod i2c {
         #[must_use]
         pub const fn ev_pending(&self) -> Register<EvPending, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_2814) }
+            unsafe { Register::at(0xf000_2818) }
         }
 
         /// `ev_enable`, 1 bit: Events that raise the interrupt.
@@ -1524,7 +1532,7 @@ pub mod i2c {
         #[must_use]
         pub const fn ev_enable(&self) -> Register<EvEnable, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_2818) }
+            unsafe { Register::at(0xf000_281c) }
         }
     }
 
@@ -1646,6 +1654,64 @@ pub mod i2c {
         }
     }
 
+    /// A value of `rounds`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct Rounds(u32);
+
+    impl Value for Rounds {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl Rounds {
+        /// `period`, bits 23 to 0: Clock cycles from the start of a round to that of the next, less one.
+        #[inline]
+        #[must_use]
+        pub const fn period(self) -> u32 {
+            self.0 & 0x00ff_ffff
+        }
+
+        /// This value with another `period`: the low 24 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_period(self, value: u32) -> Self {
+            Self(self.0 & !0x00ff_ffff | value & 0x00ff_ffff)
+        }
+
+        /// `batch`, bits 27 to 24: So many rounds, less one, are an interrupt.
+        #[inline]
+        #[must_use]
+        pub const fn batch(self) -> u8 {
+            ((self.0 >> 24) & 0xf) as u8
+        }
+
+        /// This value with another `batch`: the low 4 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_batch(self, value: u8) -> Self {
+            Self(self.0 & !(0xf << 24) | (value as u32 & 0xf) << 24)
+        }
+
+        /// `repeats`, bit 31: What is in the queue is done again and again, first a period after this is written.
+        #[inline]
+        #[must_use]
+        pub const fn repeats(self) -> bool {
+            (self.0 >> 31) & 1 != 0
+        }
+
+        /// This value with another `repeats`.
+        #[inline]
+        #[must_use]
+        pub const fn with_repeats(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 31) | (value as u32 & 0x1) << 31)
+        }
+    }
+
     /// A value of `status`.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
     pub struct Status(u32);
@@ -1742,7 +1808,7 @@ pub mod i2c {
     }
 
     impl EvPending {
-        /// `ended`, bit 0: A stop has been made, or an error has ended the transaction.
+        /// `ended`, bit 0: A stop has been made, with rounds the last one of a batch, or an error has ended the transaction.
         #[inline]
         #[must_use]
         pub const fn ended(self) -> bool {

@@ -34,6 +34,9 @@ struct Master {
     /// Nothing is done.
     hangs: bool,
     overfull: bool,
+    /// The register of rounds, and what is repeated.
+    repeats: u32,
+    round: Vec<Command>,
     uptime: Uptime,
 }
 
@@ -52,7 +55,20 @@ impl Master {
             breaks: 0,
             hangs: false,
             overfull: false,
+            repeats: 0,
+            round: Vec::new(),
             uptime: Uptime::new(5_000),
+        }
+    }
+
+    /// Does a round.
+    fn repeat(&mut self) {
+        if self.round.is_empty() {
+            self.round = self.commands.drain(..).collect();
+        }
+        self.commands.extend(&self.round);
+        while !self.commands.is_empty() && self.error == 0 {
+            self.step();
         }
     }
 
@@ -113,8 +129,10 @@ impl Bus for Registers {
                 .answers
                 .pop_front()
                 .map_or(0, |byte| 1 << 8 | u32::from(byte)),
-            0x0c => {
-                master.step();
+            0x10 => {
+                if master.repeats == 0 {
+                    master.step();
+                }
                 let room = master.commands.len() < PLACES;
                 let failed = master.error != 0;
                 let busy = !failed && (master.transaction || !master.commands.is_empty());
@@ -140,9 +158,11 @@ impl Bus for Registers {
                 assert_eq!(value, 1);
                 master.commands.clear();
                 master.answers.clear();
+                master.round.clear();
                 (master.error, master.transaction) = (0, false);
             }
-            0x18 => assert_eq!(value, 1, "the end of a transaction is an interrupt"),
+            0x0c => master.repeats = value,
+            0x1c => assert_eq!(value, 1, "the end of a transaction is an interrupt"),
             _ => master.uptime.write(address),
         }
     }
@@ -250,4 +270,96 @@ fn what_is_left_of_a_dropped_transaction_is_cleared_away() {
     i2c.read(0x68, &mut buffer).unwrap();
     // The start was under way already.
     assert_eq!(log(&master), "S S d1+ <a0+ <a1+ <a2+ <a3- P");
+}
+
+const ROUND: Round = Round {
+    address: 0x68,
+    register: 0x3a,
+    length: 3,
+    period: 480,
+    batch: 5,
+};
+
+/// What a look at the next round finds, if there is one.
+fn look(i2c: &mut I2c) -> Option<(Result<u64, Error>, [u8; 3])> {
+    let mut bytes = [0; 3];
+    let found = {
+        let future = pin!(i2c.next(&mut bytes));
+        let mut context = Context::from_waker(Waker::noop());
+        match future.poll(&mut context) {
+            Poll::Ready(found) => Some(found),
+            Poll::Pending => None,
+        }
+    };
+    found.map(|found| (found, bytes))
+}
+
+#[test]
+fn rounds_are_taken_one_by_one_with_their_times() {
+    let (mut i2c, master) = bus_with(Master::new());
+    i2c.begin(ROUND).unwrap();
+    let begun = master.borrow().uptime.now;
+    // 39,000 clock cycles, five rounds an interrupt.
+    assert_eq!(master.borrow().repeats, 1 << 31 | 4 << 24 | 38_999);
+    assert!(look(&mut i2c).is_none());
+    for _ in 0..2 {
+        master.borrow_mut().repeat();
+    }
+    for (index, first) in [(1, 0xa0), (2, 0xa3)] {
+        let (time, bytes) = look(&mut i2c).unwrap();
+        assert_eq!(time, Ok(microseconds(begun + index * 39_000)));
+        assert_eq!(bytes, [first, first + 1, first + 2]);
+    }
+    assert!(look(&mut i2c).is_none());
+    let round = "S d0+ 3a+ S d1+";
+    assert_eq!(log(&master).matches(round).count(), 2);
+    // Another transaction ends them.
+    i2c.write(0x68, &[1, 2]).unwrap();
+    assert_eq!(master.borrow().repeats, 0);
+    assert_eq!(look(&mut i2c).unwrap().0, Err(Error::Rounds));
+}
+
+#[test]
+fn rounds_end_with_an_error_behind_what_was_received() {
+    let (mut i2c, master) = bus_with(Master::new());
+    i2c.begin(ROUND).unwrap();
+    master.borrow_mut().repeat();
+    master.borrow_mut().error = 5;
+    assert!(look(&mut i2c).unwrap().0.is_ok());
+    assert_eq!(look(&mut i2c).unwrap().0, Err(Error::Late));
+    assert_eq!(master.borrow().repeats, 0);
+    // A master that does nothing.
+    i2c.begin(ROUND).unwrap();
+    let mut bytes = [0; 3];
+    assert_eq!(block_on(i2c.next(&mut bytes)), Err(Error::Timeout));
+    let wrong = [
+        (Round { length: 0, ..ROUND }, Error::Rounds),
+        (
+            Round {
+                length: 33,
+                ..ROUND
+            },
+            Error::Rounds,
+        ),
+        (Round { period: 0, ..ROUND }, Error::Rounds),
+        (
+            Round {
+                period: 300_000,
+                ..ROUND
+            },
+            Error::Rounds,
+        ),
+        (Round { batch: 17, ..ROUND }, Error::Rounds),
+        (Round { batch: 0, ..ROUND }, Error::Rounds),
+        (
+            Round {
+                address: 0x80,
+                ..ROUND
+            },
+            Error::Address(0x80),
+        ),
+    ];
+    for (round, error) in wrong {
+        assert_eq!(i2c.begin(round), Err(error));
+    }
 }
