@@ -10,6 +10,7 @@ use glint_core::console::{Backend, Command, ParseError, Size, write_help};
 use glint_core::fixed::Turns;
 use glint_core::light::MAX_LIGHTS;
 use glint_core::mesh::MeshError;
+use glint_core::orientation::log::LogError;
 use glint_core::wire::{Failure, Manifest, crc32};
 use glint_model::RenderError;
 use glint_model::march::FieldStats;
@@ -23,7 +24,7 @@ use crate::machine::{Job, Machine};
 use crate::models::{FIELDS, Model};
 use crate::scene::{Counts, Fallback, Painter, Scene, Sphere};
 use crate::terminal::Terminal;
-use crate::{appearance, bench, imu, selftest, transfer};
+use crate::{appearance, bench, imu, replay, selftest, transfer};
 
 /// What a command leads to.
 pub enum Reply<'l> {
@@ -64,6 +65,8 @@ pub enum Refusal<'l> {
     Engine(Fallback),
     /// An upload is longer than there is room for.
     TooLong {
+        /// Whose upload it is.
+        command: &'static str,
         /// Its bytes.
         bytes: u32,
         /// Bytes of room.
@@ -85,6 +88,10 @@ pub enum Refusal<'l> {
     Calibration(imu::Refusal),
     /// There are no samples.
     Sensor(imu::Failure),
+    /// What was uploaded is not a log.
+    Log(LogError),
+    /// No log has been replayed to its end since the last upload.
+    NoReplay,
     /// Devices are left alone on gateware of another build.
     Mismatch,
 }
@@ -137,8 +144,12 @@ impl Display for Refusal<'_> {
                 f.write_str("gateware: this SoC has no triangle engine, expected cpu")
             }
             Self::Engine(fault) => fault.fmt(f),
-            Self::TooLong { bytes, room } => {
-                write!(f, "load {bytes}: expected at most {room} bytes")
+            Self::TooLong {
+                command,
+                bytes,
+                room,
+            } => {
+                write!(f, "{command} {bytes}: expected at most {room} bytes")
             }
             Self::Transfer(failure) => failure.fmt(f),
             Self::Mesh(error) => write!(f, "load: not a mesh, the model before stays: {error}"),
@@ -154,6 +165,10 @@ impl Display for Refusal<'_> {
             }
             Self::Calibration(refusal) => write!(f, "imu calibrate: {refusal}"),
             Self::Sensor(error) => write!(f, "imu: {error}"),
+            Self::Log(error) => write!(f, "replay: {error}"),
+            Self::NoReplay => {
+                f.write_str("replay: there are no attitudes, expected an upload of a log before")
+            }
             Self::SelfTest(failed) => write!(f, "selftest: {failed} failed, expected none"),
             Self::Mismatch => f.write_str(
                 "devices are not touched on gateware of another build, expected a matching one",
@@ -251,13 +266,9 @@ pub fn execute<'l>(machine: &mut Machine, line: &'l str) -> Reply<'l> {
             });
             Ok(())
         }
-        Command::Load { bytes, crc32 } => load(
-            machine,
-            Manifest {
-                length: bytes,
-                crc32,
-            },
-        ),
+        Command::Load(manifest) => load(machine, manifest),
+        Command::Replay(None) => replay::send(machine),
+        Command::Replay(Some(manifest)) => return replay::begin(machine, manifest),
         Command::Cull(cull) => {
             machine.scene.set_cull(cull);
             Ok(())
@@ -421,43 +432,53 @@ fn print_view(machine: &mut Machine) {
 }
 
 fn load<'l>(machine: &mut Machine, manifest: Manifest) -> Result<(), Refusal<'l>> {
+    stage(machine, "load", manifest)?;
+    let length = manifest.length as usize;
+    machine.models.accept(length).map_err(Refusal::Mesh)?;
+    machine.scene.set_field(None);
+    machine.scene.touch();
+    Ok(())
+}
+
+/// Takes the upload of a command into the staging memory, over the line unless it is there already.
+pub fn stage<'m>(
+    machine: &'m mut Machine,
+    command: &'static str,
+    manifest: Manifest,
+) -> Result<&'m mut [u8], Refusal<'static>> {
     let Machine {
         terminal,
         models,
-        scene,
+        replay,
         clock,
         uart,
         ..
     } = machine;
-    let length = manifest.length as usize;
     let staging = models.staging();
     let room = staging.len();
-    let Some(staging) = staging.get_mut(..length) else {
+    let Some(staging) = staging.get_mut(..manifest.length as usize) else {
         return Err(Refusal::TooLong {
+            command,
             bytes: manifest.length,
             room,
         });
     };
+    // What a replay has left there is overwritten, or becomes a mesh.
+    *replay = None;
     // Another master may have written there: a tool's back door, or a transfer that was cut off near its end.
     cpu::flush_data_cache();
     if crc32(staging) != manifest.crc32 {
         terminal.print(format_args!("ready\n"));
         transfer::receive(uart, *clock, staging, manifest).map_err(Refusal::Transfer)?;
     }
-    models.accept(length).map_err(Refusal::Mesh)?;
-    scene.set_field(None);
-    scene.touch();
-    Ok(())
+    Ok(staging)
 }
 
 /// Sends the frame drawn last.
 pub fn send_frame(machine: &mut Machine, depth: bool) -> Result<(), Refusal<'static>> {
     let Machine {
-        terminal,
         scene,
         canvas,
-        clock,
-        uart,
         downloads,
         ..
     } = machine;
@@ -472,9 +493,9 @@ pub fn send_frame(machine: &mut Machine, depth: bool) -> Result<(), Refusal<'sta
     } else {
         bytemuck::cast_slice(canvas.colours(scene))
     };
-    terminal.print(format_args!("ready\n"));
-    *downloads = downloads.wrapping_add(1);
-    transfer::send(uart, *clock, bytes, *downloads).map_err(Refusal::Transfer)
+    downloads
+        .send(&mut machine.terminal, bytes)
+        .map_err(Refusal::Transfer)
 }
 
 /// Prints what the last frame took.

@@ -21,9 +21,11 @@ use crate::commands::{self, Orbit, Refusal, Reply};
 use crate::imu::{self, SensorJob};
 use crate::interrupts::{self, UART};
 use crate::models::Models;
+use crate::replay::{self, Replay};
 use crate::scene::Scene;
 use crate::sensor::{self, Imu, Inbox};
 use crate::terminal::{ConsoleUart, Input, Terminal};
+use crate::transfer::Downloads;
 
 /// Who this program and the gateware under it are.
 #[derive(Clone, Copy)]
@@ -69,6 +71,8 @@ pub enum Job {
     Orbit(Orbit),
     /// What the sensor gives.
     Sensor(SensorJob),
+    /// A log on its way to attitudes.
+    Replay,
 }
 
 /// How long nothing is asked before a change is drawn. Who sends commands one by one gets one picture of them all, and
@@ -107,8 +111,10 @@ pub struct Machine {
     pub ctrl: Ctrl,
     /// Whether the LEDs show life; not since a command has set them.
     pub heartbeat: bool,
-    /// How often a frame was sent.
-    pub downloads: u8,
+    /// What is sent.
+    pub downloads: Downloads,
+    /// The log in the staging memory, if there is one.
+    pub replay: Option<Replay>,
     beat: Deadline,
     pressed: u8,
     quiet: Deadline,
@@ -138,7 +144,8 @@ impl Machine {
             devices,
             ctrl,
             heartbeat: true,
-            downloads: 0,
+            downloads: Downloads::new(&UART, clock),
+            replay: None,
             beat: clock.after(Duration::ZERO),
             pressed: 0,
             quiet: clock.after(QUIET),
@@ -180,6 +187,7 @@ impl Machine {
         self.answers_next()
             || self.canvas.is_ready(&self.scene)
             || sensor::has_news()
+            || matches!(self.job, Some(Job::Replay))
             || !self.canvas.display.is_visible()
     }
 
@@ -193,9 +201,12 @@ impl Machine {
     }
 
     /// Whether a line is answered now; while an answer is owed it waits, and while the engine draws what a command may
-    /// change. An orbit, and what the sensor is asked for, end when something else is wanted.
+    /// change. An orbit, what the sensor is asked for, and a replay end when something else is wanted.
     fn takes_input(&self) -> bool {
-        matches!(self.job, None | Some(Job::Orbit(_) | Job::Sensor(_))) && !self.canvas.is_busy()
+        matches!(
+            self.job,
+            None | Some(Job::Orbit(_) | Job::Sensor(_) | Job::Replay)
+        ) && !self.canvas.is_busy()
     }
 
     /// Answers what was typed.
@@ -264,11 +275,17 @@ impl Machine {
             }
             return;
         }
+        if let Some(Job::Replay) = self.job {
+            if let Some(result) = replay::pursue(self) {
+                self.finish(result);
+            }
+            return;
+        }
         if self.scene.changed() {
             return;
         }
         match self.job {
-            None | Some(Job::Sensor(_)) => {}
+            None | Some(Job::Sensor(_) | Job::Replay) => {}
             Some(Job::Render) => {
                 let result = commands::stats(self, false);
                 self.finish(result);

@@ -32,6 +32,7 @@ mod memory;
 mod models;
 #[allow(unsafe_code)] // Memory that the triangle engine reads and writes.
 mod painter;
+mod replay;
 mod scene;
 mod selftest;
 #[allow(unsafe_code)] // A future that the main loop keeps, for interrupts.

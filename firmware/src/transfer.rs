@@ -6,7 +6,7 @@
 use glint_core::wire::{Failure, MAX_FRAME, Manifest, Party, Receiver, Sender, State, Timing};
 use litex_hal::timer::Clock;
 
-use crate::terminal::ConsoleUart;
+use crate::terminal::{ConsoleUart, Terminal};
 
 /// Receives what `manifest` announces into `buffer`.
 ///
@@ -27,16 +27,34 @@ pub fn receive(
     run(uart, clock, receiver)
 }
 
-/// Sends `data`. `session` is another number than the transfer before had.
-///
-/// # Errors
-/// When it does not arrive whole.
-pub fn send(uart: &ConsoleUart, clock: Clock, data: &[u8], session: u8) -> Result<(), Failure> {
-    run(
-        uart,
-        clock,
-        Sender::new(data, session, Timing::CONSOLE, clock.milliseconds()),
-    )
+/// The side that sends, and how often it has: each transfer has another number than the one before.
+pub struct Downloads {
+    uart: &'static ConsoleUart,
+    clock: Clock,
+    session: u8,
+}
+
+impl Downloads {
+    /// Nothing has been sent yet.
+    pub const fn new(uart: &'static ConsoleUart, clock: Clock) -> Self {
+        Self {
+            uart,
+            clock,
+            session: 0,
+        }
+    }
+
+    /// Says that it is ready, and sends `data`.
+    ///
+    /// # Errors
+    /// When it does not arrive whole.
+    pub fn send(&mut self, terminal: &mut Terminal, data: &[u8]) -> Result<(), Failure> {
+        terminal.print(format_args!("ready\n"));
+        self.session = self.session.wrapping_add(1);
+        let now = self.clock.milliseconds();
+        let sender = Sender::new(data, self.session, Timing::CONSOLE, now);
+        run(self.uart, self.clock, sender)
+    }
 }
 
 fn run(uart: &ConsoleUart, clock: Clock, mut party: impl Party) -> Result<(), Failure> {

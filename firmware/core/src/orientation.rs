@@ -6,6 +6,7 @@
 
 mod gain;
 mod integrator;
+pub mod log;
 mod quaternion;
 mod rate;
 mod scale;

@@ -10,6 +10,7 @@ use glint_core::fixed::{Q2_23, Q32_32, Turns, U4_28};
 use glint_core::imu::Follow;
 use glint_core::light::{Background, Light, Material};
 use glint_core::stereo::{Stereo, Tint};
+use glint_core::wire::Manifest;
 use proptest::prelude::*;
 
 /// One line of a terminal.
@@ -343,17 +344,25 @@ fn every_command_is_understood() {
     assert_parses("frame depth", Command::Frame { depth: true });
     assert_parses(
         "load 33554432 DEADbeef",
-        Command::Load {
-            bytes: 32 << 20,
+        Command::Load(Manifest {
+            length: 32 << 20,
             crc32: 0xDEAD_BEEF,
-        },
+        }),
     );
     assert_parses(
         "load 0x10 0",
-        Command::Load {
-            bytes: 16,
+        Command::Load(Manifest {
+            length: 16,
             crc32: 0,
-        },
+        }),
+    );
+    assert_parses("replay", Command::Replay(None));
+    assert_parses(
+        "replay 64 1f",
+        Command::Replay(Some(Manifest {
+            length: 64,
+            crc32: 0x1F,
+        })),
     );
     assert_parses("render", Command::Render { depth: false });
     assert_parses("render depth", Command::Render { depth: true });
@@ -536,7 +545,7 @@ fn the_help_lists_every_command_and_how_it_is_used() {
             assert!(Command::parse(name).is_ok(), "{name}");
         }
     }
-    assert_eq!(list.lines().count(), 32);
+    assert_eq!(list.lines().count(), 33);
     let field = help(Some("field"));
     assert!(
         KINDS.iter().all(|(form, _)| field.contains(form)),

@@ -3,8 +3,11 @@
 //! A fixed seed makes a run repeatable. `GLINT_FUZZ_INPUTS` sets how many inputs each target gets, 20,000 by default; the
 //! dev profile's overflow checks make an overflow a panic.
 
+use glint_core::calibration::Units;
 use glint_core::console::{Command, Event, LineEditor};
 use glint_core::mesh::{IndexedTriangle, Mesh, Rgb565, Vertex, encode};
+use glint_core::orientation::Sample;
+use glint_core::orientation::log::{self, HEADER_BYTES, RECORD_BYTES, Setup, record};
 use glint_core::wire::{MAX_FRAME, Manifest, Receiver, Sender, State, Timing};
 
 /// The longest input in bytes.
@@ -125,13 +128,54 @@ fn meshes() {
 }
 
 #[test]
+fn logs() {
+    let image = |samples: u32, flags: [bool; 2]| {
+        let setup = Setup::new(Units::MPU_6050, flags[0], flags[1], [256, 0, -7]).expect("a setup");
+        let mut log = setup.header(samples).to_vec();
+        for i in 0..samples {
+            log.extend(record(&Sample {
+                t_us: 0xFFFF_F000_u32.wrapping_add(1_000 * i),
+                accel: [i as i16, 100, 4_000],
+                gyro: [-(i as i16), 300, i as i16 * 100],
+            }));
+        }
+        log
+    };
+    let corpus = [
+        image(1, [true, true]),
+        image(40, [true, false]),
+        image(200, [false, true]),
+    ];
+    let mut passed = 0;
+    fuzz(&corpus, |bytes, random| {
+        let mut bytes = bytes.to_vec();
+        // Few mutations leave the length as it should be.
+        if let (Some(rest), true) = (bytes.len().checked_sub(HEADER_BYTES), random.below(2) == 0) {
+            let samples = rest / RECORD_BYTES;
+            bytes[4..8].copy_from_slice(&(samples as u32).to_le_bytes());
+            bytes.truncate(HEADER_BYTES + RECORD_BYTES * samples);
+        }
+        match log::replay(&mut bytes) {
+            Ok(_) => {
+                passed += 1;
+                let mut records = bytes[HEADER_BYTES..].as_chunks().0.iter();
+                assert!(records.all(|record| log::attitude(record).is_some()));
+            }
+            Err(error) => assert!(error.to_string().starts_with("log: expected ")),
+        }
+    });
+    println!("{passed} passed");
+    assert!(passed > 0);
+}
+
+#[test]
 fn console() {
     let lines = [
         "help view\rhelp\r",
         "camera 3.5 -90 60\rlook 1e1 -.5 +7\r",
         "view 0 0 3 1 0 0 0 -1 0 0 0 -1 0.9 0.1\r",
         "view 1.2345678901 -7.9999999999 0.0000000002 0.70710678 0.70710678 0 0 0 -1 -0.7 0.7 0 4 2\r",
-        "load 33554432 deadbeef\rsize 1280 720\rleds 0xffff\r",
+        "replay\rreplay 4096 deadbeef\rload 33554432 deadbeef\rsize 1280 720\rleds 0xffff\r",
         "orbit 36\x1B[A\x1B[D\x1B[3~\x7F\r\x1B[A\x1B[A\x1B[B\x1B[H\x0B\x15\x17\x0C\x03",
         "field menger:4\rfield box:1,0.5,.25\rfield off\rstereo 0.05,3,red-cyan\rstereo off\r",
         "cull on\rprepass off\rstats json\rbackend cpu\rshading smooth\rbench sine\rscene a-very-long-name-of-a-scene\r",

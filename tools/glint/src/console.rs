@@ -113,13 +113,40 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
     /// The firmware refuses it, or does not answer.
     pub fn command_with_transfer(&mut self, command: &str) -> Result<bool, ConsoleError> {
         self.send(command)?;
+        self.lines(command, &mut |_| {})
+    }
+
+    /// Gives the lines of a reply to `on_line`, as they come, up to `ready` or the final `ok`. Returns whether the board is
+    /// ready for a transfer.
+    ///
+    /// # Errors
+    /// The firmware refuses the command, or does not answer.
+    pub fn lines(
+        &mut self,
+        command: &str,
+        on_line: &mut dyn FnMut(&str),
+    ) -> Result<bool, ConsoleError> {
         loop {
             match self.next_line(command)?.as_str() {
                 "ready" => return Ok(true),
                 "ok" => return Ok(false),
-                line => refused(command, line)?,
+                line => {
+                    refused(command, line)?;
+                    on_line(line);
+                }
             }
         }
+    }
+
+    /// The first word of what `info` says of a key.
+    ///
+    /// # Errors
+    /// The firmware knows no such key, or does not answer.
+    pub fn info(&mut self, key: &str) -> Result<String, ConsoleError> {
+        let command = format!("info {key}");
+        let lines = self.command(&command)?;
+        let found: String = value(&command, &lines, key)?;
+        Ok(found.split(' ').next().unwrap_or_default().to_owned())
     }
 
     /// The line during a transfer, and what has come of it already.
@@ -138,18 +165,15 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
     /// The firmware refuses the command, or does not answer.
     pub fn reply(&mut self, command: &str) -> Result<Vec<String>, ConsoleError> {
         let mut lines = Vec::new();
-        loop {
-            let line = self.next_line(command)?;
-            if line == "ok" {
-                return Ok(lines);
-            }
-            refused(command, &line)?;
-            lines.push(line);
-        }
+        self.lines(command, &mut |line| lines.push(line.to_owned()))?;
+        Ok(lines)
     }
 
     /// Sends a command's line and takes in its echo.
-    fn send(&mut self, command: &str) -> Result<(), ConsoleError> {
+    ///
+    /// # Errors
+    /// The board does not answer.
+    pub fn send(&mut self, command: &str) -> Result<(), ConsoleError> {
         // A zero drops whatever is on the line already.
         self.board.write(format!("\0{command}\r").as_bytes())?;
         loop {

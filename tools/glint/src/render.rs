@@ -3,6 +3,7 @@
 use crate::board::{Board, BoardError};
 use crate::console::{self, Console, ConsoleError};
 use crate::picture::Frame;
+pub use crate::transfer::Route;
 use crate::transfer::{self, Progress, TransferError};
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;
@@ -220,18 +221,6 @@ pub enum Error {
     /// An upload or a download failed.
     #[error(transparent)]
     Transfer(#[from] TransferError),
-    /// The way past the line was asked for where there is none.
-    #[error("this board has no way into its memory but its serial line")]
-    NoMemory,
-}
-
-/// How a mesh gets into a board, and a frame out of it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub enum Route {
-    /// Over the serial line.
-    Serial,
-    /// Past it, into the simulated memory: the virtual board only.
-    Memory,
 }
 
 /// What relates a scene's depth codes to distances.
@@ -444,10 +433,7 @@ impl<'b, B: Board + ?Sized> Renderer<'b, B> {
         progress: &mut Progress,
     ) -> Result<(), Error> {
         if route == Route::Memory {
-            // With the bytes in place already, `load` finds their CRC-32 right and skips the transfer.
-            let staging = self.info::<String>("staging")?;
-            let address = parse_address(&staging)?;
-            self.memory()?.write_memory(address, mesh)?;
+            transfer::stage(&mut self.console, mesh)?;
         }
         self.uploads = self.uploads.wrapping_add(1);
         Ok(transfer::upload(
@@ -529,12 +515,7 @@ impl<'b, B: Board + ?Sized> Renderer<'b, B> {
                     progress,
                 )?)
             }
-            Route::Memory => {
-                let address = parse_address(&self.info::<String>(kind)?)?;
-                let mut bytes = vec![0; length];
-                self.memory()?.read_memory(address, &mut bytes)?;
-                Ok(bytes)
-            }
+            Route::Memory => Ok(transfer::read_memory(&mut self.console, kind, 0, length)?),
         }
     }
 
@@ -559,20 +540,6 @@ impl<'b, B: Board + ?Sized> Renderer<'b, B> {
         let lines = self.console.reply("render")?;
         stats_of(&lines)
     }
-
-    fn info<T: std::str::FromStr>(&mut self, key: &str) -> Result<T, Error> {
-        let lines = self.console.command(&format!("info {key}"))?;
-        // The value is one word; more may follow it on the line.
-        let first_words: Vec<String> = lines
-            .iter()
-            .map(|line| line.split(' ').take(2).collect::<Vec<_>>().join(" "))
-            .collect();
-        Ok(console::value("info", &first_words, key)?)
-    }
-
-    fn memory(&mut self) -> Result<&mut dyn crate::board::Memory, Error> {
-        self.console.board().memory().ok_or(Error::NoMemory)
-    }
 }
 
 /// What a frame took, of lines of a key and its value.
@@ -592,18 +559,6 @@ fn stats_of(lines: &[String]) -> Result<Stats, Error> {
             found: lines.join(", "),
         })
     })
-}
-
-fn parse_address(word: &str) -> Result<u32, Error> {
-    word.strip_prefix("0x")
-        .and_then(|digits| u32::from_str_radix(digits, 16).ok())
-        .ok_or_else(|| {
-            Error::Console(ConsoleError::Reply {
-                command: "info".to_owned(),
-                expected: "an address 0x…".to_owned(),
-                found: word.to_owned(),
-            })
-        })
 }
 
 /// The console's command for a view. Its decimals are those of the fixed-point numbers, so none is rounded again.

@@ -16,6 +16,18 @@ pub enum TransferError {
     /// The transfer itself failed.
     #[error("{0}")]
     Failed(Failure),
+    /// The way past the line was asked for where there is none.
+    #[error("this board has no way into its memory but its serial line")]
+    NoMemory,
+}
+
+/// How data gets into a board, and out of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Route {
+    /// Over the serial line.
+    Serial,
+    /// Past it, into the simulated memory: the virtual board only.
+    Memory,
 }
 
 /// Bytes that have arrived, and bytes in all.
@@ -34,17 +46,75 @@ pub fn upload<B: Board + ?Sized>(
     session: u8,
     progress: &mut Progress,
 ) -> Result<(), TransferError> {
-    let Manifest { length, crc32 } = Manifest::of(mesh);
-    let command = format!("load {length} {crc32:08x}");
-    if console.command_with_transfer(&command)? {
+    upload_for(console, "load", mesh, session, progress, &mut |_| {})
+}
+
+/// Uploads what a command takes, and gives the other lines of its reply to `on_line` as they come.
+///
+/// # Errors
+/// The transfer fails, or the firmware refuses.
+pub fn upload_for<B: Board + ?Sized>(
+    console: &mut Console<B>,
+    name: &str,
+    data: &[u8],
+    session: u8,
+    progress: &mut Progress,
+    on_line: &mut dyn FnMut(&str),
+) -> Result<(), TransferError> {
+    let Manifest { length, crc32 } = Manifest::of(data);
+    let command = format!("{name} {length} {crc32:08x}");
+    console.send(&command)?;
+    if console.lines(&command, on_line)? {
         let (board, pending) = console.line();
-        let sent = send(board, pending, mesh, session, progress);
+        let sent = send(board, pending, data, session, progress);
         // The firmware's own words tell more than the failure on this side.
-        let reply = console.reply(&command);
+        let reply = console.lines(&command, on_line);
         sent?;
         reply?;
     }
     Ok(())
+}
+
+/// Writes data past the line to where the next upload goes: the board finds its CRC-32 right then, and skips the transfer.
+///
+/// # Errors
+/// There is no such way, or no such room.
+pub fn stage<B: Board + ?Sized>(
+    console: &mut Console<B>,
+    data: &[u8],
+) -> Result<(), TransferError> {
+    let address = address(console, "staging")?;
+    let memory = console.board().memory().ok_or(TransferError::NoMemory)?;
+    Ok(memory.write_memory(address, data)?)
+}
+
+/// Reads past the line what lies `offset` bytes behind an address that `info` tells.
+///
+/// # Errors
+/// There is no such way, or no such key.
+pub fn read_memory<B: Board + ?Sized>(
+    console: &mut Console<B>,
+    key: &str,
+    offset: u32,
+    length: usize,
+) -> Result<Vec<u8>, TransferError> {
+    let address = address(console, key)?.wrapping_add(offset);
+    let memory = console.board().memory().ok_or(TransferError::NoMemory)?;
+    let mut bytes = vec![0; length];
+    memory.read_memory(address, &mut bytes)?;
+    Ok(bytes)
+}
+
+/// An address that `info` tells.
+fn address<B: Board + ?Sized>(console: &mut Console<B>, key: &str) -> Result<u32, ConsoleError> {
+    let word = console.info(key)?;
+    word.strip_prefix("0x")
+        .and_then(|digits| u32::from_str_radix(digits, 16).ok())
+        .ok_or_else(|| ConsoleError::Reply {
+            command: format!("info {key}"),
+            expected: "an address 0x…".to_owned(),
+            found: word.clone(),
+        })
 }
 
 /// Downloads what a command such as `frame` sends, `length` bytes.

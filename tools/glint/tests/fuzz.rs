@@ -51,3 +51,8 @@ fn glm() {
 fn imu() {
     run(Target::Imu);
 }
+
+#[test]
+fn replay() {
+    run(Target::Replay);
+}

@@ -17,6 +17,7 @@ use crate::imu::Follow;
 use crate::light::{Background, Light, Material, Rgb};
 use crate::mesh::MAX_BYTES;
 use crate::stereo::Stereo;
+use crate::wire::Manifest;
 
 /// A command, parsed and checked as far as it can be without the machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,6 +74,8 @@ pub enum Command<'a> {
     },
     /// `imu [ACTION [SAMPLES]]`; without an action it prints how the sensor is.
     Imu(Option<ImuAction>),
+    /// `replay [BYTES CRC32]`, at most [`MAX_BYTES`] bytes; without arguments it sends the attitudes of the last one.
+    Replay(Option<Manifest>),
     /// `orbit [FRAMES]`
     Orbit {
         /// How many frames a turn has.
@@ -85,13 +88,8 @@ pub enum Command<'a> {
         /// Depth instead of colour.
         depth: bool,
     },
-    /// `load BYTES CRC32`
-    Load {
-        /// Length of the upload, at most [`MAX_BYTES`].
-        bytes: u32,
-        /// Its CRC-32.
-        crc32: u32,
-    },
+    /// `load BYTES CRC32`, at most [`MAX_BYTES`] bytes.
+    Load(Manifest),
     /// `render [depth]`
     Render {
         /// With its depth codes in memory, which an engine leaves out unless told.
@@ -175,8 +173,11 @@ pub(super) type Build = for<'a> fn(&[Value<'a>]) -> Option<Result<Command<'a>, F
 /// On or off.
 const SWITCH: Argument = ("on|off", Choice(&["on", "off"]));
 
+/// The length of an upload and its checksum.
+const UPLOAD: [Argument; 2] = [("BYTES", Number(MAX_BYTES)), ("CRC32", Hexadecimal)];
+
 /// Every command, in the order of the help.
-static COMMANDS: [(Syntax, Build); 31] = [
+static COMMANDS: [(Syntax, Build); 32] = [
     (
         Syntax::new("help", "lists the commands, or explains one").with_optional(&[("COMMAND", Kind::Command)]),
         |values| match *values {
@@ -352,6 +353,15 @@ static COMMANDS: [(Syntax, Build); 31] = [
         },
     ),
     (
+        Syntax::new("replay", "takes an upload of a log (binary) and makes attitudes of its samples, or downloads the last ones (binary)")
+            .with_optional(&UPLOAD),
+        |values| match *values {
+            [] => accept(Command::Replay(None)),
+            [Value::Number(length), Value::Number(crc32)] => accept(Command::Replay(Some(Manifest { length, crc32 }))),
+            _ => None,
+        },
+    ),
+    (
         Syntax::new("orbit", "goes once round the z axis, in so many frames").with_optional(&[("FRAMES", Number(MAX_ORBIT))]),
         |values| match *values {
             [] => accept(Command::Orbit { frames: None }),
@@ -377,9 +387,9 @@ static COMMANDS: [(Syntax, Build); 31] = [
     ),
     (
         Syntax::new("load", "takes an upload of a mesh (binary) and shows it")
-            .with(&[("BYTES", Number(MAX_BYTES)), ("CRC32", Hexadecimal)]),
+            .with(&UPLOAD),
         |values| match *values {
-            [Value::Number(bytes), Value::Number(crc32)] => accept(Command::Load { bytes, crc32 }),
+            [Value::Number(length), Value::Number(crc32)] => accept(Command::Load(Manifest { length, crc32 })),
             _ => None,
         },
     ),

@@ -33,6 +33,20 @@ impl Quaternion {
         Some(Self { parts }.renormalised())
     }
 
+    /// The quaternion of exactly these numbers (w, x, y, z in 2^−30), if their length is 1 within 2^−28.
+    pub(super) fn exact(parts: [i32; 4]) -> Option<Self> {
+        // At most 2^62 each and 2^64 together, and above i64 only where they are far too long.
+        let square = parts
+            .iter()
+            .map(|&x| i64::from(x) * i64::from(x))
+            .try_fold(0_i64, i64::checked_add)?;
+        // The square is off by twice as much.
+        (square - (1 << 60))
+            .unsigned_abs()
+            .le(&(1 << 33))
+            .then_some(Self { parts })
+    }
+
     /// The rotation by an angle about one of the axes: 0, 1, 2 for x, y, z (and what is beyond them is z).
     pub fn about_axis(axis: usize, angle: Turns) -> Self {
         // Half of an angle in (−½, ½] turns, so that small ones of either sign stay near the identity.

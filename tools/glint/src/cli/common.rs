@@ -61,6 +61,14 @@ pub fn bar(what: &str) -> ProgressBar {
     bar
 }
 
+/// A bar over a number of things. It shows only on a terminal.
+pub fn count_bar(what: &str, things: &str) -> ProgressBar {
+    let bar = ProgressBar::new(0).with_message(what.to_owned());
+    let template = format!("{{msg}} {{wide_bar}} {{pos}}/{{len}} {things} {{eta}}");
+    bar.set_style(style(&template));
+    bar
+}
+
 fn style(template: &str) -> ProgressStyle {
     ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
 }

@@ -1,15 +1,19 @@
 //! `glint imu`.
 
-use super::common::{print_json, say, spinner};
+use super::common::{LineArguments, advance, bar, count_bar, print_json, say, spinner};
 use anyhow::Context;
-use clap::{Args, Subcommand, ValueEnum};
+use clap::{Args, Subcommand};
+use glint::board::Board;
+use glint::console::Console;
 use glint::error::FormatError;
 use glint::formats::read_file;
 use glint::imu::log::{self, Entry};
-use glint::imu::replay::{self, Options, Replayed};
+use glint::imu::replay::{self, Options, Prepared, Replayed, Stage};
+use glint::transfer::Route;
 use glint_core::calibration::{Report, Units};
 use glint_core::fixed::{Q2_30, Q32_32};
 use glint_core::orientation::{LONGEST_STEP, LSB_PER_DPS, LSB_PER_G, Quaternion, Scale};
+use indicatif::ProgressBar;
 use serde::Serialize;
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -40,9 +44,10 @@ pub struct ReplayArguments {
     /// The log.
     #[arg(value_name = "LOG.csv")]
     log: PathBuf,
-    /// Who computes: `model` is the firmware's own arithmetic on this machine.
-    #[arg(long, value_enum, default_value_t = Computer::Model)]
-    board: Computer,
+    /// Who computes: `model` (the firmware's own arithmetic, on this machine), `virtual` (the verilated SoC) or a serial port. All write the
+    /// same.
+    #[arg(long, default_value = "model")]
+    board: String,
     /// The file to write.
     #[arg(long, value_name = "ORIENTATION.csv")]
     out: PathBuf,
@@ -64,15 +69,14 @@ pub struct ReplayArguments {
     /// Follow the bias whenever the sensor is at rest for a while.
     #[arg(long)]
     follow_bias: bool,
+    /// How log and attitudes pass between here and a board [default: memory on the virtual board, serial on a port].
+    #[arg(long, value_enum)]
+    transfer: Option<Route>,
+    #[command(flatten)]
+    line: LineArguments,
     /// Print what was done as JSON.
     #[arg(long)]
     json: bool,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Computer {
-    /// This machine, with the firmware's arithmetic.
-    Model,
 }
 
 /// What is printed.
@@ -87,6 +91,9 @@ struct Summary<'a> {
     gaps: u64,
     saturated: u64,
     rejected: u64,
+    /// Of a board, in the mean.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    cycles_per_sample: Option<u64>,
     calibration: Option<Calibrated>,
     end: Attitude,
 }
@@ -143,17 +150,64 @@ impl From<Quaternion> for Attitude {
 
 impl ReplayArguments {
     pub fn run(self) -> anyhow::Result<()> {
-        let Computer::Model = self.board;
         let options = self.options()?;
-        let spinner = spinner("replaying");
         let name = self.log.display().to_string().escape_debug().to_string();
         let text = read_file(&self.log)?;
         let entries = log::parse(&text).map_err(|error| error.in_file(name.as_str()))?;
-        let replayed = replay::replay(&entries, &options).map_err(|error| error.in_file(name))?;
+        let prepared = replay::prepare(&entries, &options).map_err(|error| match error {
+            replay::Error::Still(error) => error.in_file(name).into(),
+            error => anyhow::Error::from(error),
+        })?;
+        let replayed = self.replay(prepared)?;
         write(&self.out, &entries, &replayed.attitudes)
             .with_context(|| format!("{}: cannot be written", self.out.display()))?;
-        spinner.finish_and_clear();
         self.report(&entries, &replayed, options.units)
+    }
+
+    fn replay(&self, prepared: Prepared) -> anyhow::Result<Replayed> {
+        match self.board.as_str() {
+            "model" => {
+                let spinner = spinner("replaying");
+                let replayed = replay::on_model(prepared)?;
+                spinner.finish_and_clear();
+                Ok(replayed)
+            }
+            "virtual" => {
+                let mut board = self.line.virtual_board()?;
+                self.on_board(&prepared, &mut board, Route::Memory)
+            }
+            port => {
+                let mut board = self.line.serial_board(port)?;
+                self.on_board(&prepared, &mut board, Route::Serial)
+            }
+        }
+    }
+
+    fn on_board(
+        &self,
+        prepared: &Prepared,
+        board: &mut dyn Board,
+        route: Route,
+    ) -> anyhow::Result<Replayed> {
+        let bars = [bar("log and attitudes"), count_bar("replaying", "samples")];
+        let mut stage = Stage::Transfer;
+        let mut progress = |now, done, all| {
+            let [transfer, replay] = &bars;
+            let bar = match now {
+                Stage::Transfer => transfer,
+                Stage::Replay => replay,
+            };
+            if now != stage {
+                // One bar at a time.
+                bars.iter().for_each(ProgressBar::reset);
+                stage = now;
+            }
+            advance(bar)(done, all);
+        };
+        let route = self.transfer.unwrap_or(route);
+        let replayed = replay::on_board(prepared, &mut Console::new(board), route, &mut progress)?;
+        bars.iter().for_each(ProgressBar::finish_and_clear);
+        Ok(replayed)
     }
 
     fn options(&self) -> anyhow::Result<Options> {
@@ -161,12 +215,13 @@ impl ReplayArguments {
             FormatError::whole(expected, glint::error::quote(found.as_bytes())).in_file(option)
         };
         let gyro = Q32_32::from_str(&self.gyro_lsb).ok();
-        let scale = gyro.and_then(|lsb| Some((lsb, Scale::new(lsb)?)));
-        let (per_dps, scale) = scale.ok_or_else(|| {
-            let [low, high] = LSB_PER_DPS;
-            let expected = format!("a number of LSB per °/s from {low} to {high}");
-            wrong("--gyro-lsb", expected, &self.gyro_lsb)
-        })?;
+        let per_dps = gyro
+            .filter(|&lsb| Scale::new(lsb).is_some())
+            .ok_or_else(|| {
+                let [low, high] = LSB_PER_DPS;
+                let expected = format!("a number of LSB per °/s from {low} to {high}");
+                wrong("--gyro-lsb", expected, &self.gyro_lsb)
+            })?;
         let accel = self.accel_lsb.parse::<u32>().ok();
         let [low, high] = LSB_PER_G;
         let per_g = accel
@@ -187,7 +242,6 @@ impl ReplayArguments {
             }
         };
         Ok(Options {
-            scale,
             units: Units { per_dps, per_g },
             period: self.dt_us,
             still,
@@ -201,6 +255,7 @@ impl ReplayArguments {
             attitudes,
             counts,
             calibration,
+            cycles,
         } = replayed;
         let seconds = match self.dt_us {
             Some(period) => f64::from(period) * (entries.len() - 1) as f64,
@@ -220,6 +275,7 @@ impl ReplayArguments {
             gaps: counts.gaps,
             saturated: counts.saturated,
             rejected: counts.rejected,
+            cycles_per_sample: *cycles,
             calibration: calibration
                 .as_ref()
                 .map(|report| Calibrated::new(report, units)),
@@ -242,6 +298,9 @@ impl ReplayArguments {
             summary.saturated,
             summary.rejected
         ))?;
+        if let Some(cycles) = summary.cycles_per_sample {
+            say(format_args!("cycles      {cycles} a sample"))?;
+        }
         if let Some(Calibrated {
             samples,
             bias,

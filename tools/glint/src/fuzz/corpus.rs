@@ -6,6 +6,9 @@ use crate::error::Place;
 use crate::formats::write;
 use crate::generate;
 use crate::polygons::{Corner, Polygons, Rgb8};
+use glint_core::calibration::Units;
+use glint_core::orientation::Sample;
+use glint_core::orientation::log::{Setup, record};
 use glint_core::wire::{MAX_FRAME, Manifest, Receiver, Sender, State, Timing};
 
 /// The seeds of a target, all of them shorter than an input may be.
@@ -18,6 +21,7 @@ pub fn of(target: Target) -> Vec<Vec<u8>> {
         Target::Ply => texts(PLY).into_iter().chain(written(write::ply)).collect(),
         Target::Glm => meshes(),
         Target::Imu => texts(IMU).into_iter().chain([still_log()]).collect(),
+        Target::Replay => images(),
     };
     seeds
         .into_iter()
@@ -117,6 +121,32 @@ fn still_log() -> Vec<u8> {
     log.into_bytes()
 }
 
+/// Logs as they go to a board: with everything and with nothing, moving and at rest, with a gap and stamps that stand still.
+fn images() -> Vec<Vec<u8>> {
+    let image = |tilt, follow_bias, samples: u32| {
+        let setup = Setup::new(Units::MPU_6050, tilt, follow_bias, [1_000, -300, 0]).ok()?;
+        let mut image = setup.header(samples).to_vec();
+        for i in 0..samples {
+            let turns = (i as i16).wrapping_mul(1_821);
+            let late = u32::from(i > 20) * 600_000;
+            image.extend(record(&Sample {
+                t_us: (u32::MAX - 10_000).wrapping_add(2_000 * (i - i / 9) + late),
+                accel: [(i % 5) as i16, -40, 4_090],
+                gyro: if i % 40 < 20 {
+                    [4, -1, 0]
+                } else {
+                    [turns, i16::MAX, -turns]
+                },
+            }));
+        }
+        Some(image)
+    };
+    [(true, true, 200), (false, false, 30), (true, false, 1)]
+        .into_iter()
+        .filter_map(|(tilt, follow_bias, samples)| image(tilt, follow_bias, samples))
+        .collect()
+}
+
 const IMU: &[&str] = &[
     "t_us,ax,ay,az,temp,gx,gy,gz\n9323,-139,-453,4420,-4880,2077,1116,-320\n15163,-115,-512,4304,-4848,2219,1379,-500\n",
     "gz,gy,gx,az,ay,ax,t_us\r\n32767,-32768,32767,0,0,4096,4294967290\r\n-32768,32767,1,0,0,-4096,4294968290\r\n\r\n0,0,0,0,0,0,9294968290\r\n",
@@ -129,7 +159,7 @@ const CONSOLE: &[&str] = &[
     "view\rview 0 -3 0 1 0 0 0 0 -1 0 1 0 0.9 0.1\r",
     "field\rfield menger:4\rfield cubes:2,0.5\rfield off\rstereo\rstereo 0.05,3\rstereo 0.05,3,red-cyan\rstereo off\rprepass on\r",
     "look 10 20 -30.5\rsize 320 180\rsize 1280 720\rframe\rframe depth\r",
-    "load 4096 deadbeef\rrender\rcull on\rcull off\rstats\rstats json\r",
+    "load 4096 deadbeef\rreplay 64 0\rreplay\rrender\rcull on\rcull off\rstats\rstats json\r",
     "backend\rbackend cpu\rbackend gateware\rshading\rshading smooth\rbench\rbench sine\rselftest\r",
     "leds 0xffff\rleds 7\rbuttons\rreboot\r",
     "inf\x08\x08\x1b[A\x1b[B\x1b[C\x1b[D\x1b[H\x1b[F\x1b[3~\x01\x05\x0b\x15\x17\x0c\x03help\r\n",

@@ -7,7 +7,7 @@ use crate::polygons::Polygons;
 use clap::ValueEnum;
 use glint_core::calibration::Units;
 use glint_core::console::{Command, Event, LineEditor, write_help};
-use glint_core::orientation::Scale;
+use glint_core::orientation::log as image;
 use glint_core::wire::{MAX_FRAME, Manifest, Receiver, Sender, State, Timing, crc32};
 
 /// Something that takes bytes from outside.
@@ -27,6 +27,8 @@ pub enum Target {
     Glm,
     /// Logs of a gyroscope and an accelerometer.
     Imu,
+    /// The same as they go to a board.
+    Replay,
 }
 
 /// What a target made of an input.
@@ -40,7 +42,7 @@ pub enum Outcome {
 
 impl Target {
     /// All of them.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Upload,
         Self::Console,
         Self::Obj,
@@ -48,12 +50,13 @@ impl Target {
         Self::Ply,
         Self::Glm,
         Self::Imu,
+        Self::Replay,
     ];
 
     /// Words that mean something to it.
     pub fn words(self) -> &'static [&'static str] {
         match self {
-            Self::Upload | Self::Glm => &[],
+            Self::Upload | Self::Glm | Self::Replay => &[],
             Self::Console => &[
                 "help", "view", "camera", "field", "box:", "spheres:", "union:", "stereo", "load",
                 "size", "on", "off", "depth", "json", "0x", "1e5", "\r", "\x1b[",
@@ -112,6 +115,14 @@ impl Target {
                     field.copy_from_slice(&length.to_le_bytes());
                 }
             }
+            Self::Replay => {
+                // The number of samples that the length is for.
+                let samples = input.len().saturating_sub(image::HEADER_BYTES) / image::RECORD_BYTES;
+                if let Some(field) = input.get_mut(4..8) {
+                    field.copy_from_slice(&(samples as u32).to_le_bytes());
+                }
+                input.truncate(image::HEADER_BYTES + image::RECORD_BYTES * samples);
+            }
             Self::Console | Self::Obj | Self::Ply | Self::Imu => {}
         }
     }
@@ -141,6 +152,7 @@ impl Target {
                 run_replay(&entries);
                 Outcome::Accepted
             }),
+            Self::Replay => run_image(input),
         }
     }
 }
@@ -167,26 +179,44 @@ fn run_conversion(polygons: &Polygons) -> Outcome {
 fn run_replay(entries: &[log::Entry]) {
     for period in [None, Some(1_000), Some(600_000)] {
         let options = replay::Options {
-            scale: Scale::MPU_6050,
             units: Units::MPU_6050,
             period,
             still: None,
             tilt: true,
             follow_bias: true,
         };
-        let replayed = replay::replay(entries, &options);
+        let replay = |options| replay::on_model(replay::prepare(entries, options)?);
+        let replayed = replay(&options);
         assert!(
             replayed.is_ok_and(|replayed| replayed.attitudes.len() == entries.len()),
             "without a calibration every log is replayed"
         );
         // Whether it is still is the log's affair.
-        let _ = replay::replay(
-            entries,
-            &replay::Options {
-                still: Some(u64::MAX),
-                ..options
-            },
-        );
+        let _ = replay(&replay::Options {
+            still: Some(u64::MAX),
+            ..options
+        });
+    }
+}
+
+/// Replays a log as a board gets it: what is accepted becomes attitudes.
+fn run_image(input: &[u8]) -> Outcome {
+    let mut image = input.to_vec();
+    match image::replay(&mut image) {
+        Ok(counts) => {
+            let mut records = image[image::HEADER_BYTES..].as_chunks().0.iter();
+            assert!(counts.steps < records.len() as u64);
+            assert!(
+                records.all(|record| image::attitude(record).is_some()),
+                "every attitude has length 1"
+            );
+            Outcome::Accepted
+        }
+        Err(error) => {
+            assert!(!error.to_string().contains('\n'));
+            assert_eq!(image, input, "what is refused is left alone");
+            Outcome::Refused
+        }
     }
 }
 

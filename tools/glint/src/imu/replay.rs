@@ -1,18 +1,20 @@
-//! The firmware's orientation on the samples of a log.
+//! The firmware's orientation on the samples of a log, by this machine or by a board.
 
 use super::log::Entry;
+use crate::board::Board;
+use crate::console::{self, Console, ConsoleError};
 use crate::error::{FormatError, Place};
-use glint_core::calibration::{Calibration, MOST_SAMPLES, Progress, Report, RestBias, Units};
-use glint_core::orientation::{
-    Counts, LONGEST_STEP, Outcome, Quaternion, Sample, Scale, TIME_CONSTANT, Tilt, Tracker,
+use crate::transfer::{self, Route, TransferError};
+use glint_core::calibration::{Calibration, MOST_SAMPLES, Progress as Going, Report, Units};
+use glint_core::orientation::log::{
+    self as image, HEADER_BYTES, LogError, RECORD_BYTES, Setup, attitude, record,
 };
+use glint_core::orientation::{Counts, LONGEST_STEP, Quaternion, Sample};
 
 /// How a log is replayed.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
-    /// What a count of the gyroscope is worth.
-    pub scale: Scale,
-    /// The same for people, and what a count of the accelerometer is worth.
+    /// What counts are worth.
     pub units: Units,
     /// The time between two samples in µs, instead of their stamps.
     pub period: Option<u32>,
@@ -57,6 +59,14 @@ impl Stamps<'_> {
     }
 }
 
+/// A log as it goes to a board.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    image: Vec<u8>,
+    samples: usize,
+    calibration: Option<Report>,
+}
+
 /// What came of a log.
 #[derive(Clone, Debug)]
 pub struct Replayed {
@@ -66,13 +76,35 @@ pub struct Replayed {
     pub counts: Counts,
     /// The calibration, if there was one.
     pub calibration: Option<Report>,
+    /// Cycles of a board for a sample, in the mean.
+    pub cycles: Option<u64>,
 }
 
-/// Replays a log.
+/// Why there are no attitudes.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The log is to be still at the start and is not.
+    #[error(transparent)]
+    Still(#[from] FormatError),
+    /// The log cannot be replayed.
+    #[error("{0}")]
+    Log(LogError),
+    /// The board refuses, or the transfer fails.
+    #[error(transparent)]
+    Transfer(#[from] TransferError),
+    /// The board's console says no, or nothing.
+    #[error(transparent)]
+    Console(#[from] ConsoleError),
+    /// What came back has no length of 1.
+    #[error("the board's attitude {0}: expected a quaternion of length 1, found another")]
+    Attitude(usize),
+}
+
+/// Makes a log what goes to a board, calibrated if it is still at the start.
 ///
 /// # Errors
-/// It is to be still at the start and is not.
-pub fn replay(entries: &[Entry], options: &Options) -> Result<Replayed, FormatError> {
+/// It is to be still at the start and is not, or counts are worth what no sensor's are.
+pub fn prepare(entries: &[Entry], options: &Options) -> Result<Prepared, Error> {
     let stamps = Stamps {
         entries,
         period: options.period,
@@ -82,26 +114,106 @@ pub fn replay(entries: &[Entry], options: &Options) -> Result<Replayed, FormatEr
         None => None,
     };
     let bias = calibration.map_or([0; 3], |report| report.bias);
-    let tilt = options
-        .tilt
-        .then(|| Tilt::new(options.units.per_g, TIME_CONSTANT));
-    let mut tracker: Tracker = Tracker::new(options.scale, tilt);
-    tracker.set_bias(bias);
-    if options.follow_bias {
-        tracker.follow_bias(RestBias::new(options.units, bias));
-    }
-    let attitudes = stamps
+    let setup =
+        Setup::new(options.units, options.tilt, options.follow_bias, bias).map_err(Error::Log)?;
+    // As many as 32 bits do not count are too long for any board, which says so; the model counts by the bytes.
+    let count = u32::try_from(entries.len()).unwrap_or(u32::MAX);
+    let mut image = setup.header(count).to_vec();
+    stamps
         .samples()
-        .map(|sample| {
-            let _: Outcome = tracker.on_sample(&sample);
-            tracker.attitude()
-        })
-        .collect();
-    Ok(Replayed {
-        attitudes,
-        counts: tracker.counts(),
+        .for_each(|sample| image.extend(record(&sample)));
+    Ok(Prepared {
+        image,
+        samples: entries.len(),
         calibration,
     })
+}
+
+/// Replays a log on this machine.
+///
+/// # Errors
+/// It is longer than any log.
+pub fn on_model(mut prepared: Prepared) -> Result<Replayed, Error> {
+    let counts = image::replay(&mut prepared.image).map_err(Error::Log)?;
+    let records = prepared.image.get(HEADER_BYTES..).unwrap_or_default();
+    Ok(Replayed {
+        attitudes: attitudes(records)?,
+        counts,
+        calibration: prepared.calibration,
+        cycles: None,
+    })
+}
+
+/// Replays a log on a board. What `progress` is told of are bytes of the transfers, and meanwhile samples.
+///
+/// # Errors
+/// The firmware refuses, or a transfer fails.
+pub fn on_board<B: Board + ?Sized>(
+    prepared: &Prepared,
+    console: &mut Console<B>,
+    route: Route,
+    progress: &mut dyn FnMut(Stage, u64, u64),
+) -> Result<Replayed, Error> {
+    if route == Route::Memory {
+        transfer::stage(console, &prepared.image)?;
+    }
+    let all = prepared.samples as u64;
+    let mut lines = Vec::new();
+    let progress = std::cell::RefCell::new(progress);
+    let mut bytes = |done, all| (progress.borrow_mut())(Stage::Transfer, done, all);
+    let mut on_line = |line: &str| match line.strip_prefix("replaying ").map(str::parse) {
+        Some(Ok(done)) => (progress.borrow_mut())(Stage::Replay, done, all),
+        _ => lines.push(line.to_owned()),
+    };
+    transfer::upload_for(
+        console,
+        COMMAND,
+        &prepared.image,
+        SESSION,
+        &mut bytes,
+        &mut on_line,
+    )?;
+    let number = |key| console::value::<u64>(COMMAND, &lines, key);
+    let counts = Counts {
+        steps: number("steps")?,
+        stale: number("stale")?,
+        gaps: number("gaps")?,
+        saturated: number("saturated")?,
+        rejected: number("rejected")?,
+    };
+    let cycles = number("cycles_per_sample")?;
+    let length = RECORD_BYTES * prepared.samples;
+    let records = match route {
+        Route::Serial => transfer::download(console, COMMAND, length, &mut bytes)?,
+        Route::Memory => transfer::read_memory(console, "staging", HEADER_BYTES as u32, length)?,
+    };
+    Ok(Replayed {
+        attitudes: attitudes(&records)?,
+        counts,
+        calibration: prepared.calibration,
+        cycles: Some(cycles),
+    })
+}
+
+/// The console's command.
+const COMMAND: &str = "replay";
+/// A board's receiver lives for one transfer, so any number is another than the one before.
+const SESSION: u8 = 1;
+
+/// What is going on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// Bytes pass.
+    Transfer,
+    /// Samples become attitudes.
+    Replay,
+}
+
+fn attitudes(records: &[u8]) -> Result<Vec<Quaternion>, Error> {
+    let records = records.as_chunks().0.iter().enumerate();
+    records
+        .map(|(i, record)| attitude(record).ok_or(Error::Attitude(i)))
+        .collect()
 }
 
 /// The bias at the start of a log. A long start counts as far as a calibration goes.
@@ -128,8 +240,8 @@ fn calibrate(stamps: &Stamps, units: Units, still: u64) -> Result<Report, Format
     let mut calibration = Calibration::new(units, wanted as u32);
     for (sample, entry) in stamps.samples().zip(stamps.entries).take(wanted) {
         match calibration.on_sample(&sample) {
-            Ok(Progress::Done(report)) => return Ok(report),
-            Ok(Progress::Going(_)) => {}
+            Ok(Going::Done(report)) => return Ok(report),
+            Ok(Going::Going(_)) => {}
             Err(refusal) => {
                 return Err(FormatError::new(
                     Place::Line(entry.line),
@@ -161,13 +273,16 @@ mod tests {
     }
 
     const OPTIONS: Options = Options {
-        scale: Scale::MPU_6050,
         units: Units::MPU_6050,
         period: None,
         still: None,
         tilt: true,
         follow_bias: false,
     };
+
+    fn replay(entries: &[Entry], options: &Options) -> Result<Replayed, Error> {
+        on_model(prepare(entries, options)?)
+    }
 
     fn yaw(attitude: Quaternion) -> f64 {
         attitude.angles().yaw.to_signed_degrees().to_num()

@@ -1,0 +1,332 @@
+//! A log of samples as a board replays it: a header, then a record for each sample, which becomes the attitude after it in the same place.
+//!
+//! All numbers are little-endian.
+//!
+//! | bytes | header |
+//! |---|---|
+//! | 0–3 | `GIMU` |
+//! | 4–7 | number of samples, at least 1 |
+//! | 8–15 | LSB of the gyroscope for 1 °/s, s32.32 |
+//! | 16–19 | LSB of the accelerometer for 1 g |
+//! | 20–23 | flags: bit 0 holds the tilt by the accelerometer, bit 1 follows the bias at rest |
+//! | 24–35 | bias of the gyroscope in 1/256 LSB, s32 ×3 |
+//! | 36–47 | 0 |
+//!
+//! | bytes | record | as an attitude |
+//! |---|---|---|
+//! | 0–3 | stamp in µs, u32, which may wrap | w, s2.30 |
+//! | 4–9 | accelerometer x, y, z, s16 ×3 | x (4–7), y (8–11) |
+//! | 10–15 | gyroscope x, y, z, s16 ×3 | z (12–15) |
+
+use core::fmt;
+
+use super::quaternion::Quaternion;
+use super::scale::{LSB_PER_DPS, Scale};
+use super::tilt::{LSB_PER_G, TIME_CONSTANT, Tilt};
+use super::tracker::{Sample, Tracker};
+use crate::calibration::{RestBias, Units};
+use crate::fixed::Q32_32;
+
+/// Bytes of the header.
+pub const HEADER_BYTES: usize = 48;
+/// Bytes of a record.
+pub const RECORD_BYTES: usize = 16;
+/// The largest bias in 1/256 LSB: no mean of counts is beyond it.
+pub const LARGEST_BIAS: u32 = 1 << 23;
+
+const MAGIC: [u8; 4] = *b"GIMU";
+const TILT: u32 = 1 << 0;
+const FOLLOW_BIAS: u32 = 1 << 1;
+
+/// A sample, or the attitude after it.
+pub type Record = [u8; RECORD_BYTES];
+
+/// How a log is replayed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Setup {
+    units: Units,
+    scale: Scale,
+    tilt: bool,
+    follow_bias: bool,
+    bias: [i32; 3],
+}
+
+/// Why bytes are no log.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LogError {
+    /// There are fewer bytes than a header has.
+    Short(usize),
+    /// It does not begin as a log does.
+    Magic([u8; 4]),
+    /// It has no samples.
+    Empty,
+    /// Its length is not that of its number of samples.
+    Length {
+        /// The number of samples.
+        samples: u32,
+        /// The number of bytes.
+        bytes: usize,
+    },
+    /// LSB per °/s that are not accepted.
+    PerDps(Q32_32),
+    /// LSB per g that are not accepted.
+    PerG(u32),
+    /// Flags that mean nothing.
+    Flags(u32),
+    /// A bias that no calibration gives.
+    Bias {
+        /// The axis, 0 for x.
+        axis: usize,
+        /// In 1/256 LSB.
+        bias: i32,
+    },
+    /// Bytes of the header that are to be 0 are not.
+    Reserved,
+}
+
+impl fmt::Display for LogError {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("log: expected ")?;
+        match *self {
+            Self::Short(bytes) => {
+                write!(f, "a header of {HEADER_BYTES} bytes, found {bytes} bytes")
+            }
+            Self::Magic(found) => write!(
+                f,
+                "\"{}\" at the start, found \"{}\"",
+                MAGIC.escape_ascii(),
+                found.escape_ascii()
+            ),
+            Self::Empty => f.write_str("at least one sample, found none"),
+            Self::Length { samples, bytes } => write!(
+                f,
+                "{} bytes for {samples} samples, found {bytes}",
+                length(samples)
+            ),
+            Self::PerDps(lsb) => {
+                let [low, high] = LSB_PER_DPS;
+                write!(f, "from {low} to {high} LSB per °/s, found {lsb}")
+            }
+            Self::PerG(lsb) => {
+                let [low, high] = LSB_PER_G;
+                write!(f, "from {low} to {high} LSB per g, found {lsb}")
+            }
+            Self::Flags(flags) => write!(
+                f,
+                "no flags but {:#x}, found {flags:#x}",
+                TILT | FOLLOW_BIAS
+            ),
+            Self::Bias { axis, bias } => write!(
+                f,
+                "a bias within ±{LARGEST_BIAS}/256 LSB, found {bias}/256 of axis {axis}"
+            ),
+            Self::Reserved => f.write_str("zeros in bytes 36 to 47, found others"),
+        }
+    }
+}
+
+impl core::error::Error for LogError {}
+
+/// Bytes of a log.
+const fn length(samples: u32) -> u64 {
+    HEADER_BYTES as u64 + RECORD_BYTES as u64 * samples as u64
+}
+
+impl Setup {
+    /// With what counts are worth, whether the accelerometer holds the tilt, and the bias in 1/256 LSB, which stays or is followed at rest.
+    ///
+    /// # Errors
+    /// When units or bias are out of range.
+    pub fn new(
+        units: Units,
+        tilt: bool,
+        follow_bias: bool,
+        bias: [i32; 3],
+    ) -> Result<Self, LogError> {
+        let scale = Scale::new(units.per_dps).ok_or(LogError::PerDps(units.per_dps))?;
+        if !(LSB_PER_G[0]..=LSB_PER_G[1]).contains(&units.per_g) {
+            return Err(LogError::PerG(units.per_g));
+        }
+        for (axis, &bias) in bias.iter().enumerate() {
+            if bias.unsigned_abs() > LARGEST_BIAS {
+                return Err(LogError::Bias { axis, bias });
+            }
+        }
+        Ok(Self {
+            units,
+            scale,
+            tilt,
+            follow_bias,
+            bias,
+        })
+    }
+
+    /// A tracker that waits for the first sample.
+    pub fn tracker(&self) -> Tracker {
+        let tilt = self
+            .tilt
+            .then(|| Tilt::new(self.units.per_g, TIME_CONSTANT));
+        let mut tracker = Tracker::new(self.scale, tilt);
+        tracker.set_bias(self.bias);
+        if self.follow_bias {
+            tracker.follow_bias(RestBias::new(self.units, self.bias));
+        }
+        tracker
+    }
+
+    /// The header of a log of so many samples.
+    pub fn header(&self, samples: u32) -> [u8; HEADER_BYTES] {
+        let mut flags = 0;
+        if self.tilt {
+            flags |= TILT;
+        }
+        if self.follow_bias {
+            flags |= FOLLOW_BIAS;
+        }
+        let [x, y, z] = self.bias.map(i32::to_le_bytes);
+        let parts: [&[u8]; 8] = [
+            &MAGIC,
+            &samples.to_le_bytes(),
+            &self.units.per_dps.to_bits().to_le_bytes(),
+            &self.units.per_g.to_le_bytes(),
+            &flags.to_le_bytes(),
+            &x,
+            &y,
+            &z,
+        ];
+        let mut header = [0; HEADER_BYTES];
+        let bytes = parts.into_iter().flatten();
+        header
+            .iter_mut()
+            .zip(bytes)
+            .for_each(|(to, &byte)| *to = byte);
+        header
+    }
+
+    fn parse(header: &[u8; HEADER_BYTES]) -> Result<(Self, u32), LogError> {
+        let &[
+            magic,
+            samples,
+            low,
+            high,
+            per_g,
+            flags,
+            x,
+            y,
+            z,
+            ref rest @ ..,
+        ] = header.as_chunks().0
+        else {
+            return Err(LogError::Short(header.len()));
+        };
+        if magic != MAGIC {
+            return Err(LogError::Magic(magic));
+        }
+        let flags = u32::from_le_bytes(flags);
+        if flags & !(TILT | FOLLOW_BIAS) != 0 {
+            return Err(LogError::Flags(flags));
+        }
+        if *rest != [[0; 4]; 3] {
+            return Err(LogError::Reserved);
+        }
+        let per_dps =
+            i64::from(u32::from_le_bytes(low)) | i64::from(i32::from_le_bytes(high)) << 32;
+        let units = Units {
+            per_dps: Q32_32::from_bits(per_dps),
+            per_g: u32::from_le_bytes(per_g),
+        };
+        let bias = [x, y, z].map(i32::from_le_bytes);
+        let setup = Self::new(units, flags & TILT != 0, flags & FOLLOW_BIAS != 0, bias)?;
+        Ok((setup, u32::from_le_bytes(samples)))
+    }
+}
+
+/// Checks a log, and gives its records.
+///
+/// # Errors
+/// The first thing that is not as it should be.
+pub fn open(bytes: &mut [u8]) -> Result<(Setup, &mut [Record]), LogError> {
+    let all = bytes.len();
+    let (header, records) = bytes
+        .split_first_chunk_mut::<HEADER_BYTES>()
+        .ok_or(LogError::Short(all))?;
+    let (setup, samples) = Setup::parse(header)?;
+    if samples == 0 {
+        return Err(LogError::Empty);
+    }
+    if all as u64 != length(samples) {
+        return Err(LogError::Length {
+            samples,
+            bytes: all,
+        });
+    }
+    Ok((setup, records.as_chunks_mut().0))
+}
+
+/// The record of a sample.
+pub fn record(sample: &Sample) -> Record {
+    let [t0, t1, t2, t3] = sample.t_us.to_le_bytes();
+    let [[a0, a1], [a2, a3], [a4, a5]] = sample.accel.map(i16::to_le_bytes);
+    let [[g0, g1], [g2, g3], [g4, g5]] = sample.gyro.map(i16::to_le_bytes);
+    [
+        t0, t1, t2, t3, a0, a1, a2, a3, a4, a5, g0, g1, g2, g3, g4, g5,
+    ]
+}
+
+/// The sample of a record.
+pub fn sample(record: &Record) -> Sample {
+    let [
+        t0,
+        t1,
+        t2,
+        t3,
+        a0,
+        a1,
+        a2,
+        a3,
+        a4,
+        a5,
+        g0,
+        g1,
+        g2,
+        g3,
+        g4,
+        g5,
+    ] = *record;
+    Sample {
+        t_us: u32::from_le_bytes([t0, t1, t2, t3]),
+        accel: [[a0, a1], [a2, a3], [a4, a5]].map(i16::from_le_bytes),
+        gyro: [[g0, g1], [g2, g3], [g4, g5]].map(i16::from_le_bytes),
+    }
+}
+
+/// The record of an attitude.
+pub fn attitude_record(attitude: Quaternion) -> Record {
+    let mut record = [0; RECORD_BYTES];
+    for (to, part) in record.as_chunks_mut().0.iter_mut().zip(attitude.parts) {
+        *to = part.to_le_bytes();
+    }
+    record
+}
+
+/// The attitude of a record, if it is one: of length 1.
+pub fn attitude(record: &Record) -> Option<Quaternion> {
+    let &[w, x, y, z] = record.as_chunks().0 else {
+        return None;
+    };
+    Quaternion::exact([w, x, y, z].map(i32::from_le_bytes))
+}
+
+/// Replays a log where it lies, and gives what happened to its samples.
+///
+/// # Errors
+/// When it is no log.
+pub fn replay(bytes: &mut [u8]) -> Result<super::Counts, LogError> {
+    let (setup, records) = open(bytes)?;
+    let mut tracker = setup.tracker();
+    for record in records {
+        tracker.on_sample(&sample(record));
+        *record = attitude_record(tracker.attitude());
+    }
+    Ok(tracker.counts())
+}
