@@ -14,7 +14,12 @@ pub struct Pace {
     looked: Option<u64>,
     /// When the next sample is measured, 2^−8 µs.
     expected: Option<u64>,
+    /// Samples until corrections say something of the period, and not only of where the first one was.
+    settling: u8,
 }
+
+/// By then looks have moved across the samples' times.
+const SETTLED: u8 = 32;
 
 /// What the period takes of the clock's error is 2^−5: it settles in some dozens of corrections.
 const SLOWNESS: u32 = 5;
@@ -30,6 +35,7 @@ impl Pace {
             period: period << 8,
             looked: None,
             expected: None,
+            settling: SETTLED,
         }
     }
 
@@ -43,14 +49,18 @@ impl Pace {
         let (from, to) = (before << 8, time << 8);
         let expected = self.expected.unwrap_or(from.midpoint(to));
         let measured = expected.clamp(from, to);
-        // A part of what it is off by, which is less than a period unless samples were lost.
-        let most = i64::from(self.nominal);
-        let off = (measured as i64 - expected as i64).clamp(-most, most) >> SLOWNESS;
-        let tolerance = self.nominal >> TOLERANCE;
-        self.period = self
-            .period
-            .saturating_add_signed(off as i32)
-            .clamp(self.nominal - tolerance, self.nominal + tolerance);
+        if self.settling > 0 {
+            self.settling -= 1;
+        } else {
+            // A part of what it is off by, which is less than a period unless samples were lost.
+            let most = i64::from(self.nominal);
+            let off = (measured as i64 - expected as i64).clamp(-most, most) >> SLOWNESS;
+            let tolerance = self.nominal >> TOLERANCE;
+            self.period = self
+                .period
+                .saturating_add_signed(off as i32)
+                .clamp(self.nominal - tolerance, self.nominal + tolerance);
+        }
         self.expected = Some(measured + u64::from(self.period));
         Some(measured >> 8)
     }

@@ -57,22 +57,24 @@ impl<B: Rounds, D: DelayNs, S: Sink<B::Error>> Stream<B, D, S> {
         let mut reset = false;
         let mut look = LOOK;
         loop {
-            let error = match self.chip.start(reset, &mut self.delay).await {
-                Ok(identity) => {
-                    self.sink.on_start(identity);
-                    let Err(error) = self.read_all(look).await;
-                    if matches!(&error, Error::Bus(error) if error.kind() == ErrorKind::Overrun) {
-                        look = LONG_LOOK;
-                    }
-                    // One that answers and does not measure may be configured all the same.
-                    reset = !matches!(error, Error::Bus(_));
-                    error
-                }
-                Err(error) => error,
-            };
+            let Err(error) = self.start_and_read(reset, look).await;
+            // One that answers and does not measure may be configured all the same.
+            reset = matches!(error, Error::Silent | Error::Frozen);
+            let is_late = matches!(&error, Error::Bus(error) if error.kind() == ErrorKind::Overrun);
+            look = if is_late { LONG_LOOK } else { LOOK };
             self.sink.on_error(error);
             self.delay.delay_ms(AGAIN).await;
         }
+    }
+
+    async fn start_and_read(
+        &mut self,
+        reset: bool,
+        look: u32,
+    ) -> Result<Infallible, Error<B::Error>> {
+        let identity = self.chip.start(reset, &mut self.delay).await?;
+        self.sink.on_start(identity);
+        self.read_all(look).await
     }
 
     /// Looks for samples every `look` µs.
