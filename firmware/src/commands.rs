@@ -7,7 +7,7 @@ use core::fmt::{self, Display};
 use glint_core::camera::{View, ViewError};
 use glint_core::colour::Shading;
 use glint_core::console::{Backend, Command, ParseError, Size, write_help};
-use glint_core::fixed::Turns;
+use glint_core::fixed::{Q32_32, Turns};
 use glint_core::light::MAX_LIGHTS;
 use glint_core::mesh::MeshError;
 use glint_core::orientation::log::LogError;
@@ -300,6 +300,28 @@ pub fn execute<'l>(machine: &mut Machine, line: &'l str) -> Reply<'l> {
             Ok(())
         }
         Command::Imu(action) => return imu::execute(machine, action),
+        Command::Mounting(None) => {
+            let mounting = machine.imu.mounting();
+            machine
+                .terminal
+                .print(format_args!("mounting {mounting}\n"));
+            Ok(())
+        }
+        Command::Mounting(Some(mounting)) => {
+            machine.imu.set_mounting(mounting);
+            Ok(())
+        }
+        Command::Sensitivity(None) => {
+            let times = Q32_32::from_num(machine.imu.sensitivity()) / 256;
+            machine
+                .terminal
+                .print(format_args!("sensitivity {times}\n"));
+            Ok(())
+        }
+        Command::Sensitivity(Some(times)) => {
+            machine.imu.set_sensitivity(times);
+            Ok(())
+        }
         Command::Bench(kernel) => bench::run(machine, kernel),
         Command::SelfTest => match selftest::run(machine) {
             0 => Ok(()),

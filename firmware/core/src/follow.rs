@@ -3,6 +3,8 @@
 //! The camera's basis comes from the quaternion itself, by way of no angles, so it is nowhere singular: a small turn of the sensor is as
 //! small a turn of the picture, straight up and straight down too.
 
+use core::fmt;
+
 use crate::camera::{DEFAULT_HALF_WIDTH, DEFAULT_NEAR, RADIUS, View, ViewError};
 use crate::fixed::{Q2_23, Q2_30, Q32_32, Turns};
 use crate::orientation::Quaternion;
@@ -45,6 +47,18 @@ impl Direction {
     }
 }
 
+impl fmt::Display for Direction {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let sign = if self.negative { "-" } else { "" };
+        let axis = match self.axis {
+            0 => "x",
+            1 => "y",
+            _ => "z",
+        };
+        write!(f, "{sign}{axis}")
+    }
+}
+
 /// How the sensor is mounted: which of its directions are the camera's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Mounting {
@@ -72,6 +86,13 @@ impl Mounting {
     /// By the direction that looks into the scene and the one that points up on the screen, if they are perpendicular.
     pub fn new(forward: Direction, up: Direction) -> Option<Self> {
         (forward.axis != up.axis).then_some(Self { forward, up })
+    }
+}
+
+/// Forward and up, as a user gives them.
+impl fmt::Display for Mounting {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{} {}", self.forward, self.up)
     }
 }
 
@@ -155,6 +176,11 @@ impl Steering {
             camera: Quaternion::IDENTITY,
             offset: Quaternion::IDENTITY,
         }
+    }
+
+    /// The sensitivity, in 1/256.
+    pub const fn sensitivity(&self) -> u16 {
+        self.sensitivity
     }
 
     /// Changes the sensitivity; the camera stays where it is.

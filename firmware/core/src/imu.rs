@@ -61,6 +61,7 @@ pub struct Imu<E> {
     temperature: i16,
     tracker: Tracker,
     calibrating: Calibrating<E>,
+    mounting: Mounting,
     steering: Steering,
     follow: Option<Follow>,
     /// Whether the attitude has changed since the camera was asked for.
@@ -81,6 +82,7 @@ impl<E: Copy> Default for Imu<E> {
                 Some(Tilt::new(Units::MPU_6050.per_g, TIME_CONSTANT)),
             ),
             calibrating: Calibrating::Never,
+            mounting: Mounting::default(),
             steering: Steering::default(),
             follow: None,
             moved: false,
@@ -179,6 +181,27 @@ impl<E: Copy> Imu<E> {
         self.moved = true;
     }
 
+    /// How the sensor is mounted.
+    pub const fn mounting(&self) -> Mounting {
+        self.mounting
+    }
+
+    /// Says how the sensor is mounted.
+    pub const fn set_mounting(&mut self, mounting: Mounting) {
+        self.mounting = mounting;
+        self.moved = true;
+    }
+
+    /// How far the camera turns for the sensor, in 1/256.
+    pub const fn sensitivity(&self) -> u16 {
+        self.steering.sensitivity()
+    }
+
+    /// Says how far the camera turns for the sensor, in 1/256, within [`SENSITIVITY`](follow::SENSITIVITY).
+    pub fn set_sensitivity(&mut self, sensitivity: u16) {
+        self.steering.set_sensitivity(sensitivity);
+    }
+
     /// Makes the direction in which the sensor is turned the middle one.
     pub fn recentre(&mut self) {
         self.steering.recentre();
@@ -196,8 +219,8 @@ impl<E: Copy> Imu<E> {
         self.moved = false;
         let attitude = self.steering.follow(self.tracker.attitude());
         Some(match follow {
-            Follow::Look => follow::free_look(eye, attitude, Mounting::default()),
-            Follow::Orbit => follow::orbit(radius, attitude, Mounting::default()),
+            Follow::Look => follow::free_look(eye, attitude, self.mounting),
+            Follow::Orbit => follow::orbit(radius, attitude, self.mounting),
         })
     }
 }

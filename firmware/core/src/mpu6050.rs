@@ -13,7 +13,7 @@ mod stream;
 use core::fmt;
 
 use embedded_hal_async::delay::DelayNs;
-use embedded_hal_async::i2c::{I2c, Operation};
+use embedded_hal_async::i2c::{Error as _, ErrorKind, I2c, Operation};
 
 pub use pace::Pace;
 pub use rounds::{Round, Rounds};
@@ -243,8 +243,11 @@ impl<B: I2c> Mpu6050<B> {
             let answer = self.bus.write_read(address, &[WHO_AM_I], &mut found).await;
             match answer {
                 Ok(()) => return Identity::of(found[0]).ok_or(Error::Identity(found[0])),
-                Err(error) if address == ADDRESSES[1] => return Err(error.into()),
-                Err(_) => {}
+                // There may be a chip at the other one.
+                Err(error)
+                    if address == ADDRESSES[0]
+                        && matches!(error.kind(), ErrorKind::NoAcknowledge(_)) => {}
+                Err(error) => return Err(error.into()),
             }
         }
         Err(Error::Identity(found[0]))

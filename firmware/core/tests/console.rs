@@ -7,6 +7,7 @@ use glint_core::console::{
 };
 use glint_core::field::{Field, KINDS};
 use glint_core::fixed::{Q2_23, Q32_32, Turns, U4_28};
+use glint_core::follow::{Direction, Mounting};
 use glint_core::imu::Follow;
 use glint_core::light::{Background, Light, Material};
 use glint_core::stereo::{Stereo, Tint};
@@ -335,6 +336,12 @@ fn every_command_is_understood() {
     imu("imu orbit", ImuAction::Follow(Some(Follow::Orbit)));
     imu("imu off", ImuAction::Follow(None));
     imu("imu recentre", ImuAction::Recentre);
+    assert_parses("mounting", Command::Mounting(None));
+    let mounting = |forward, up| Mounting::new(Direction::parse(forward)?, Direction::parse(up)?);
+    assert_parses("mounting -x z", Command::Mounting(mounting("-x", "z")));
+    assert_parses("sensitivity", Command::Sensitivity(None));
+    assert_parses("sensitivity 0.125", Command::Sensitivity(Some(32)));
+    assert_parses("sensitivity 2.5", Command::Sensitivity(Some(640)));
     assert_parses("orbit", Command::Orbit { frames: None });
     assert_parses("orbit 48", Command::Orbit { frames: Some(48) });
     assert_parses("size 320 180", Command::Size(Size::W320));
@@ -499,6 +506,14 @@ fn mistakes_are_named_with_their_place() {
         "ambient: default|RRGGBB is \"fff\" (column 9): expected default or a colour RRGGBB",
     );
     assert_refused(
+        "mounting y -y",
+        "mounting: FORWARD and UP are on the same axis: expected two that are perpendicular",
+    );
+    assert_refused(
+        "sensitivity 8.5",
+        "sensitivity: expected a number from 0.125 to 8",
+    );
+    assert_refused(
         "fog 16",
         "fog: off|DENSITY is \"16\" (column 5): expected off or a number from 0 to below 16",
     );
@@ -545,7 +560,7 @@ fn the_help_lists_every_command_and_how_it_is_used() {
             assert!(Command::parse(name).is_ok(), "{name}");
         }
     }
-    assert_eq!(list.lines().count(), 33);
+    assert_eq!(list.lines().count(), 35);
     let field = help(Some("field"));
     assert!(
         KINDS.iter().all(|(form, _)| field.contains(form)),

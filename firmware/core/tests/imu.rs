@@ -2,6 +2,7 @@
 
 use glint_core::calibration;
 use glint_core::fixed::Q32_32;
+use glint_core::follow::{Direction, Mounting};
 use glint_core::imu::{Follow, Imu, Refusal};
 use glint_core::mpu6050::{Error, Identity, Measurement, Sink};
 
@@ -112,6 +113,17 @@ fn the_camera_follows_and_can_be_recentred() {
     let (n, eye) = forward(&mut imu);
     near(n, [0.0, 1.0, 0.0]);
     near(eye, [0.0, -2.5, 0.0]);
+    // Mounted the other way round, and turned half as far.
+    let [back, up] = ["-y", "z"].map(|text| Direction::parse(text).expect("a direction"));
+    imu.set_mounting(Mounting::new(back, up).expect("perpendicular"));
+    near(forward(&mut imu).0, [0.0, -1.0, 0.0]);
+    imu.set_mounting(Mounting::default());
+    imu.set_sensitivity(128);
+    for index in 1_001..=2_000 {
+        imu.on_sample(index * 1_000, &turning);
+    }
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    near(forward(&mut imu).0, [-half, half, 0.0]);
     // Held while the sensor fails.
     imu.on_error(Error::Bus("gone"));
     assert_eq!(imu.view(EYE, RADIUS), None);

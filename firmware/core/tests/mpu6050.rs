@@ -8,7 +8,7 @@ use std::task::{Context, Poll, Waker};
 
 use embedded_hal_async::delay::DelayNs;
 use embedded_hal_async::i2c::{ErrorKind, ErrorType, I2c, Operation};
-use glint_core::mpu6050::{Error, Identity, Measurement, Round, Rounds, Sink, Stream};
+use glint_core::mpu6050::{ADDRESSES, Error, Identity, Measurement, Round, Rounds, Sink, Stream};
 use virtual_mpu6050::{Bus, Chip, Fault, Imperfections, Source, State};
 
 const MILLISECOND: u64 = 1_000_000;
@@ -234,6 +234,15 @@ fn counts_are_those_of_the_registers() {
     assert_eq!(Identity::Mpu6050.temperature(0), 3_653);
     assert_eq!(Identity::Mpu6050.temperature(-521), 3_500);
     assert_eq!(Identity::Mpu6500.temperature(0), 2_100);
+}
+
+#[test]
+fn a_chip_at_the_other_address_is_found() {
+    let mut chip = chip(ramp, Imperfections::NONE);
+    chip.address = ADDRESSES[1];
+    let (record, _) = run(chip, SECOND / 4, &[]);
+    assert!(record.errors.is_empty(), "{:?}", record.errors);
+    assert!(record.samples.len() > 100);
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use embedded_hal::i2c::{ErrorKind, ErrorType, NoAcknowledgeSource, Operation};
 
-use crate::chip::{ADDRESS, Chip, Fault};
+use crate::chip::{Chip, Fault};
 
 /// A byte at 400 kHz, in ns.
 const BYTE: u64 = 9 * 2_500;
@@ -123,7 +123,7 @@ impl Shared {
             let reads = matches!(operation, Operation::Read(_));
             if reading != Some(reads) {
                 self.byte()?;
-                if address != ADDRESS || !self.chip.answers() {
+                if !self.chip.answers(address) {
                     return Err(Error::NoAcknowledge(NoAcknowledgeSource::Address));
                 }
                 (reading, has_register) = (Some(reads), false);

@@ -178,6 +178,8 @@ pub struct Chip {
     answers: u64,
     /// Between a start and a stop its data stay as they are.
     is_addressed: bool,
+    /// What it answers to: [`ADDRESS`], or one more where AD0 is high.
+    pub address: u8,
     /// What is wrong with it now.
     pub fault: Option<Fault>,
     /// Samples measured so far.
@@ -201,6 +203,7 @@ impl Chip {
             next: None,
             answers: 0,
             is_addressed: false,
+            address: ADDRESS,
             fault: None,
             samples: 0,
             missed: 0,
@@ -221,10 +224,10 @@ impl Chip {
         self.answers = self.now + RESET_TIME;
     }
 
-    /// Whether it acknowledges its address.
+    /// Whether it acknowledges an address.
     #[must_use]
-    pub fn answers(&self) -> bool {
-        self.fault != Some(Fault::Absent) && self.now >= self.answers
+    pub fn answers(&self, address: u8) -> bool {
+        address == self.address && self.fault != Some(Fault::Absent) && self.now >= self.answers
     }
 
     /// Lets time pass until `now`, in ns; earlier times are ignored.

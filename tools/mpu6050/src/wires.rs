@@ -1,6 +1,6 @@
 //! The chip on its two wires.
 
-use crate::chip::{ADDRESS, Chip, Fault};
+use crate::chip::{Chip, Fault};
 
 /// What a master has to keep in fast mode, in ns.
 const LOW: u64 = 1_300;
@@ -205,7 +205,7 @@ impl Wires {
                 what,
             } => {
                 self.pulls = match what {
-                    Byte::Address => bits >> 1 == ADDRESS && self.chip.answers(),
+                    Byte::Address => self.chip.answers(bits >> 1),
                     _ => self.chip.fault != Some(Fault::NoAcknowledge),
                 };
                 let mark = if self.pulls { '+' } else { '-' };

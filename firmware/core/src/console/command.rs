@@ -13,6 +13,7 @@ use crate::camera::View;
 use crate::colour::Shading;
 use crate::field::Field;
 use crate::fixed::{Q32_32, Turns, U4_28};
+use crate::follow::{Direction, Mounting, SENSITIVITY};
 use crate::imu::Follow;
 use crate::light::{Background, Light, Material, Rgb};
 use crate::mesh::MAX_BYTES;
@@ -74,6 +75,10 @@ pub enum Command<'a> {
     },
     /// `imu [ACTION [SAMPLES]]`; without an action it prints how the sensor is.
     Imu(Option<ImuAction>),
+    /// `mounting [FORWARD UP]`; without directions it prints the present ones.
+    Mounting(Option<Mounting>),
+    /// `sensitivity [TIMES]`, in 1/256; without a number it prints the present one.
+    Sensitivity(Option<u16>),
     /// `replay [BYTES CRC32]`, at most [`MAX_BYTES`] bytes; without arguments it sends the attitudes of the last one.
     Replay(Option<Manifest>),
     /// `orbit [FRAMES]`
@@ -170,6 +175,9 @@ impl Size {
 /// Makes a command of the values of its arguments; `None` when they are not those of its syntax, which a test excludes.
 pub(super) type Build = for<'a> fn(&[Value<'a>]) -> Option<Result<Command<'a>, Fault<'a>>>;
 
+/// The sensor's directions.
+const DIRECTIONS: [&str; 6] = ["x", "-x", "y", "-y", "z", "-z"];
+
 /// On or off.
 const SWITCH: Argument = ("on|off", Choice(&["on", "off"]));
 
@@ -177,7 +185,7 @@ const SWITCH: Argument = ("on|off", Choice(&["on", "off"]));
 const UPLOAD: [Argument; 2] = [("BYTES", Number(MAX_BYTES)), ("CRC32", Hexadecimal)];
 
 /// Every command, in the order of the help.
-static COMMANDS: [(Syntax, Build); 32] = [
+static COMMANDS: [(Syntax, Build); 34] = [
     (
         Syntax::new("help", "lists the commands, or explains one").with_optional(&[("COMMAND", Kind::Command)]),
         |values| match *values {
@@ -358,6 +366,33 @@ static COMMANDS: [(Syntax, Build); 32] = [
         |values| match *values {
             [] => accept(Command::Replay(None)),
             [Value::Number(length), Value::Number(crc32)] => accept(Command::Replay(Some(Manifest { length, crc32 }))),
+            _ => None,
+        },
+    ),
+    (
+        Syntax::new("mounting", "says which directions of the sensor look into the scene and up on the screen, or chooses")
+            .with_optional(&[("FORWARD", Choice(&DIRECTIONS)), ("UP", Choice(&DIRECTIONS))]),
+        |values| match *values {
+            [] => accept(Command::Mounting(None)),
+            [Value::Choice(forward), Value::Choice(up)] => {
+                let direction = |choice| DIRECTIONS.get(choice).copied().and_then(Direction::parse);
+                let mounting = Mounting::new(direction(forward)?, direction(up)?);
+                Some(mounting.map(|mounting| Command::Mounting(Some(mounting))).ok_or(Fault::Mounting))
+            }
+            _ => None,
+        },
+    ),
+    (
+        Syntax::new("sensitivity", "says how many times as far as the sensor the camera turns, or chooses: 0.125 to 8")
+            .with_optional(&[("TIMES", Scale)]),
+        |values| match *values {
+            [] => accept(Command::Sensitivity(None)),
+            [Value::Scale(times)] => {
+                // 28 fraction bits; below 16, so 12 bits are left.
+                let part = (times.to_bits() >> 20) as u16;
+                let is_accepted = (SENSITIVITY[0]..=SENSITIVITY[1]).contains(&part);
+                Some(is_accepted.then_some(Command::Sensitivity(Some(part))).ok_or(Fault::Sensitivity))
+            }
             _ => None,
         },
     ),

@@ -5,6 +5,8 @@ use core::fmt;
 use super::grammar::{Argument, Syntax, Word};
 use crate::camera::ViewError;
 use crate::field::FieldError;
+use crate::fixed::Q32_32;
+use crate::follow::SENSITIVITY;
 use crate::light::LightError;
 use crate::stereo::StereoError;
 
@@ -36,6 +38,10 @@ pub(super) enum Fault<'a> {
     Size { width: u32, height: u32 },
     /// A number of samples follows what takes none.
     Samples { count: u32 },
+    /// Both directions of the sensor lie on one axis.
+    Mounting,
+    /// A sensitivity beyond [`SENSITIVITY`].
+    Sensitivity,
     /// The numbers are not a camera.
     View(ViewError),
     /// The word is no field.
@@ -84,6 +90,13 @@ impl fmt::Display for ParseError<'_> {
                 f,
                 "imu: SAMPLES is {count}: expected it after calibrate or stream"
             ),
+            Fault::Mounting => f.write_str(
+                "mounting: FORWARD and UP are on the same axis: expected two that are perpendicular",
+            ),
+            Fault::Sensitivity => {
+                let [least, most] = SENSITIVITY.map(|part| Q32_32::from_num(part) / 256);
+                write!(f, "sensitivity: expected a number from {least} to {most}")
+            }
             Fault::View(error) => write!(f, "view: {error}"),
             Fault::Field(error) => write!(f, "field: {error}"),
             Fault::Stereo(error) => write!(f, "stereo: {error}"),
