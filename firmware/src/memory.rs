@@ -6,6 +6,7 @@ use core::slice;
 use core::sync::atomic::{AtomicBool, Ordering};
 
 use glint_model::Projected;
+use litex_pac::cpu;
 
 use crate::models::Buffer;
 
@@ -36,6 +37,9 @@ unsafe extern "C" {
     static _mesh_size: u8;
     static mut _lists: u8;
     static _lists_size: u8;
+    static mut _fast: u8;
+    static _fast_size: u8;
+    static _fast_loaded: u8;
 }
 
 /// The windows, from symbol to slice: `window!(first byte, bytes, kind of element)`.
@@ -74,6 +78,18 @@ impl Memory {
             lists: window!(_lists, _lists_size, u32),
         })
     }
+}
+
+/// Puts the code that memory.x has in the memory beside the processor there. Nothing of it may run before. Every SoC of this kind has that
+/// memory, as its BIOS runs on it.
+pub fn load_fast_code() {
+    let size = (&raw const _fast_size).addr();
+    // SAFETY: memory.x keeps this memory for this code alone, and the linker has put the code into the program; both are whole words, and
+    // nobody else looks at either.
+    unsafe {
+        ptr::copy_nonoverlapping(&raw const _fast_loaded, &raw mut _fast, size);
+    }
+    cpu::flush_instruction_cache();
 }
 
 /// Room for projected vertices, of which only the first ones hold any: not every bit pattern is one.

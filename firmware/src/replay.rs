@@ -1,7 +1,7 @@
 //! The command `replay`: a log comes in as meshes do, and each of its records becomes the attitude after it, where it lies.
 
 use glint_core::orientation::Tracker;
-use glint_core::orientation::log::{self, HEADER_BYTES, RECORD_BYTES};
+use glint_core::orientation::log::{self, HEADER_BYTES, RECORD_BYTES, Record};
 use glint_core::wire::Manifest;
 use litex_pac::cpu;
 
@@ -56,20 +56,15 @@ pub fn pursue(machine: &mut Machine) -> Option<Result<(), Refusal<'static>>> {
     let Some(replay) = replay else {
         return Some(Err(Refusal::NoReplay));
     };
-    let records = models.staging().get_mut(HEADER_BYTES..).unwrap_or_default();
-    let records = records.as_chunks_mut::<RECORD_BYTES>().0;
+    let records = models
+        .staging()
+        .get_mut(HEADER_BYTES..HEADER_BYTES + RECORD_BYTES * replay.samples)
+        .unwrap_or_default();
+    // The memory is aligned, header and records are whole words, and this core has their byte order.
+    let records = bytemuck::try_cast_slice_mut::<u8, Record>(records).unwrap_or_default();
     let end = replay.samples.min(replay.done + SLICE);
-    // What reading the counter twice takes by itself.
-    let start = cpu::cycles_low();
-    let own = cpu::cycles_low().wrapping_sub(start);
-    for record in records.get_mut(replay.done..end).unwrap_or_default() {
-        let sample = log::sample(record);
-        let start = cpu::cycles_low();
-        replay.tracker.on_sample(&sample);
-        let cycles = cpu::cycles_low().wrapping_sub(start);
-        replay.cycles += u64::from(cycles.saturating_sub(own));
-        *record = log::attitude_record(replay.tracker.attitude());
-    }
+    let records = records.get_mut(replay.done..end).unwrap_or_default();
+    replay.cycles += track(&mut replay.tracker, records);
     replay.done = end;
     if end < replay.samples {
         // A slow line is told less often.
@@ -95,6 +90,25 @@ pub fn pursue(machine: &mut Machine) -> Option<Result<(), Refusal<'static>>> {
         terminal.print(format_args!("{key} {value}\n"));
     }
     Some(Ok(()))
+}
+
+/// Makes attitudes of samples, and gives the cycles of the tracker.
+// It is called with many samples, and lies beside the tracker: memory.x.
+#[inline(never)]
+fn track(tracker: &mut Tracker, records: &mut [Record]) -> u64 {
+    // What reading the counter twice takes by itself.
+    let start = cpu::cycles_low();
+    let own = cpu::cycles_low().wrapping_sub(start);
+    let mut all = 0;
+    for record in records {
+        let sample = log::sample(*record);
+        let start = cpu::cycles_low();
+        tracker.on_sample(&sample);
+        let cycles = cpu::cycles_low().wrapping_sub(start);
+        all += u64::from(cycles.saturating_sub(own));
+        *record = log::attitude_record(tracker.attitude());
+    }
+    all
 }
 
 /// Sends the attitudes of the last log.

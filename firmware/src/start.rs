@@ -17,7 +17,7 @@ use litex_pac::{BUILD_ID, Peripherals};
 use crate::canvas::Canvas;
 use crate::interrupts::{self, UART};
 use crate::machine::{Devices, Identity, Machine};
-use crate::memory::Memory;
+use crate::memory::{self, Memory};
 use crate::models::Models;
 use crate::painter::Painter;
 use crate::scene::Scene;
@@ -62,6 +62,7 @@ pub fn machine() -> Result<Machine, Fault> {
     // A line that takes nothing has nobody listening.
     let _ = write!(banner, "\r\nGlint {}\r\n", env!("CARGO_PKG_VERSION"));
 
+    memory::load_fast_code();
     let peripherals = Peripherals::take().ok_or(Fault::Started)?;
     let memory = Memory::take().ok_or(Fault::Started)?;
     let identity = Identity {

@@ -63,3 +63,8 @@ impl core::ops::Neg for Turns {
         Self(self.0.wrapping_neg())
     }
 }
+
+/// The product of two numbers, exact.
+pub(crate) const fn wide(a: i32, b: i32) -> i64 {
+    a as i64 * b as i64
+}

@@ -7,7 +7,7 @@ use glint_core::calibration::Units;
 use glint_core::console::{Command, Event, LineEditor};
 use glint_core::mesh::{IndexedTriangle, Mesh, Rgb565, Vertex, encode};
 use glint_core::orientation::Sample;
-use glint_core::orientation::log::{self, HEADER_BYTES, RECORD_BYTES, Setup, record};
+use glint_core::orientation::log::{self, HEADER_BYTES, RECORD_BYTES, Setup, record, to_bytes};
 use glint_core::wire::{MAX_FRAME, Manifest, Receiver, Sender, State, Timing};
 
 /// The longest input in bytes.
@@ -133,11 +133,11 @@ fn logs() {
         let setup = Setup::new(Units::MPU_6050, flags[0], flags[1], [256, 0, -7]).expect("a setup");
         let mut log = setup.header(samples).to_vec();
         for i in 0..samples {
-            log.extend(record(&Sample {
+            log.extend(to_bytes(record(&Sample {
                 t_us: 0xFFFF_F000_u32.wrapping_add(1_000 * i),
                 accel: [i as i16, 100, 4_000],
                 gyro: [-(i as i16), 300, i as i16 * 100],
-            }));
+            })));
         }
         log
     };
@@ -159,7 +159,7 @@ fn logs() {
             Ok(_) => {
                 passed += 1;
                 let mut records = bytes[HEADER_BYTES..].as_chunks().0.iter();
-                assert!(records.all(|record| log::attitude(record).is_some()));
+                assert!(records.all(|record| log::attitude(log::from_bytes(record)).is_some()));
             }
             Err(error) => assert!(error.to_string().starts_with("log: expected ")),
         }

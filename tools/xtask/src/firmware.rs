@@ -4,9 +4,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use anyhow::{Context, Result, ensure};
-use litex_pac::memories::MAIN_RAM;
-use object::{Object, ObjectSection, ObjectSegment, ObjectSymbol, SectionKind};
+use anyhow::{Context, Result, bail, ensure};
+use litex_pac::memories::{MAIN_RAM, SRAM};
+use object::elf::PT_LOAD;
+use object::read::elf::{ElfFile32, ProgramHeader};
+use object::{Endianness, Object, ObjectSection, ObjectSymbol, SectionKind};
 
 use crate::{paths, run};
 
@@ -69,7 +71,8 @@ fn write(path: &Path, bytes: &[u8]) -> Result<()> {
 
 /// The bytes to load to the start of main memory, and what they are made of.
 fn image(elf: &[u8]) -> Result<(Vec<u8>, String)> {
-    let file = object::File::parse(elf).context("not an ELF file")?;
+    let file = ElfFile32::<Endianness>::parse(elf).context("not an ELF file")?;
+    let endian = file.endian();
     let (base, end) = (
         u64::from(MAIN_RAM.base),
         u64::from(MAIN_RAM.base) + u64::from(MAIN_RAM.size),
@@ -91,16 +94,28 @@ fn image(elf: &[u8]) -> Result<(Vec<u8>, String)> {
         "memory.x ends at {windows_end:#010x}, the SoC's main memory at {end:#010x}: expected no more"
     );
 
+    let fast = symbol("_fast")?..symbol("_fast")? + symbol("_fast_size")?;
+    let sram = u64::from(SRAM.base)..u64::from(SRAM.base) + u64::from(SRAM.size);
+    ensure!(
+        sram.start <= fast.start && fast.end <= sram.end,
+        "memory.x has code at {fast:#x?}, the SoC its memory beside the processor at {sram:#x?}"
+    );
+
     let mut image = Vec::new();
-    for segment in file.segments() {
-        let (address, data) = (
-            segment.address(),
-            segment.data().context("a segment without data")?,
-        );
+    for segment in file.elf_program_headers() {
+        if segment.p_type(endian) != PT_LOAD {
+            continue;
+        }
+        // Where it is loaded, which is not always where it runs.
+        let address = u64::from(segment.p_paddr(endian));
+        let length = u64::from(segment.p_memsz(endian));
+        let Ok(data) = segment.data(endian, elf) else {
+            bail!("a segment without data");
+        };
         ensure!(
-            base <= address && address + segment.size() <= symbol("_frame_a")?,
+            base <= address && address + length <= symbol("_frame_a")?,
             "a segment lies at {address:#010x} to {:#010x}, expected it in the program's part of main memory",
-            address + segment.size()
+            address + length
         );
         if data.is_empty() {
             continue;

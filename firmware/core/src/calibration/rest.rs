@@ -20,7 +20,8 @@ const MOST_FORCE: u32 = 1;
 /// sees a difference of 2^−15 LSB.
 #[derive(Clone, Copy, Debug)]
 pub struct RestBias {
-    units: Units,
+    /// The most that rates, forces and the bias may differ at rest, in LSB.
+    most: [u32; 3],
     bias: [i64; 3],
     mean: [i64; 3],
     force: [i64; 3],
@@ -34,7 +35,11 @@ impl RestBias {
     /// Begins with a bias in 1/256 LSB.
     pub fn new(units: Units, bias: [i32; 3]) -> Self {
         Self {
-            units,
+            most: [
+                units.rate(MOST_RATE),
+                (units.per_g * MOST_FORCE).div_ceil(16),
+                units.rate(MOST_BIAS),
+            ],
             bias: bias.map(|x| i64::from(x) << 24),
             mean: [0; 3],
             force: [0; 3],
@@ -45,6 +50,7 @@ impl RestBias {
     }
 
     /// The bias in 1/256 LSB, to nearest.
+    #[inline(never)]
     pub fn bias(&self) -> [i32; 3] {
         self.bias.map(|x| ((x + (1 << 23)) >> 24) as i32)
     }
@@ -55,43 +61,54 @@ impl RestBias {
     }
 
     /// Takes a sample that was measured `step` µs (at most 2^19) after the last one.
+    #[inline(never)]
     pub fn on_sample(&mut self, sample: &Sample, step: u32) {
-        let rate = sample.gyro.map(|x| i64::from(x) << 32);
-        let force = sample.accel.map(|x| i64::from(x) << 32);
         let Some(rested) = self.rested else {
-            (self.mean, self.force, self.rested) = (rate, force, Some(0));
+            self.mean = sample.gyro.map(fraction);
+            self.force = sample.accel.map(fraction);
+            self.rested = Some(0);
             return;
         };
-        let near = |a: [i64; 3], b: [i64; 3], most: u32| {
-            core::iter::zip(a, b).all(|(a, b)| (a - b).unsigned_abs() >> 32 < u64::from(most))
-        };
-        let still = near(rate, self.mean, self.units.rate(MOST_RATE))
-            && near(
-                force,
-                self.force,
-                (self.units.per_g * MOST_FORCE).div_ceil(16),
-            )
-            && near(self.mean, self.bias, self.units.rate(MOST_BIAS));
-        self.rested = Some(if still {
+        let [most_rate, most_force, most_bias] = self.most;
+        let still = [0, 1, 2].into_iter().all(|i| {
+            near(fraction(sample.gyro[i]), self.mean[i], most_rate)
+                && near(fraction(sample.accel[i]), self.force[i], most_force)
+                && near(self.mean[i], self.bias[i], most_bias)
+        });
+        let rested = if still {
             rested.saturating_add(step)
         } else {
             0
-        });
-        let gain = self.notice.of(step);
-        approach(&mut self.mean, rate, gain);
-        approach(&mut self.force, force, gain);
-        if self.is_at_rest() {
-            approach(&mut self.bias, rate, self.learn.of(step));
+        };
+        self.rested = Some(rested);
+        let notice = self.notice.of(step);
+        let learn = (rested >= REST).then(|| self.learn.of(step));
+        for i in 0..3 {
+            approach(&mut self.mean[i], sample.gyro[i], notice);
+            approach(&mut self.force[i], sample.accel[i], notice);
+            if let Some(learn) = learn {
+                approach(&mut self.bias[i], sample.gyro[i], learn);
+            }
         }
     }
 }
 
-/// Moves a mean towards a value, both with 32 fraction bits of a LSB: at most 2^48, so the product of 31 bits of the gain fits. To nearest.
-fn approach(mean: &mut [i64; 3], value: [i64; 3], gain: u32) {
-    for (mean, value) in core::iter::zip(mean, value) {
-        let difference = value - *mean;
-        let (high, low) = (difference >> 32, difference & i64::from(u32::MAX));
-        let gain = i64::from(gain);
-        *mean += high * gain + ((low * (gain >> 1) + (1 << 30)) >> 31);
-    }
+/// A count with 32 fraction bits.
+fn fraction(count: i16) -> i64 {
+    i64::from(count) << 32
+}
+
+/// Whether numbers differ by less than so many LSB.
+#[inline(never)]
+fn near(a: i64, b: i64, most: u32) -> bool {
+    (a - b).unsigned_abs() >> 32 < u64::from(most)
+}
+
+/// Moves a mean towards a count: the mean has 32 fraction bits of a LSB and at most 2^48, so the product of 31 bits of the gain fits. To nearest.
+#[inline(never)]
+fn approach(mean: &mut i64, count: i16, gain: u32) {
+    let difference = fraction(count) - *mean;
+    let (high, low) = ((difference >> 32) as i32, difference as u32);
+    let whole = i64::from(high) * i64::from(gain);
+    *mean += whole + ((u64::from(low) * u64::from(gain >> 1) + (1 << 30)) >> 31) as i64;
 }

@@ -17,10 +17,9 @@ impl Gain {
     /// Of a time constant in µs; those below [`SHORTEST`] count as that.
     pub fn new(time_constant: u32) -> Self {
         let time_constant = time_constant.max(SHORTEST);
-        let inverse = (1 << 48) / u64::from(time_constant);
         Self {
             time_constant,
-            inverse,
+            inverse: inverse(time_constant),
             last: (0, 0),
         }
     }
@@ -33,24 +32,53 @@ impl Gain {
     /// The gain of a step in µs, of which those beyond 2^19 count as that: 32 fraction bits, within 4 units and 2^−16 of it where τ is at most 1000 s. A gain
     /// that would round to 1 is 1 − 2^−32.
     pub fn of(&mut self, step: u32) -> u32 {
-        let step = step.min(1 << 19);
         if step != self.last.0 {
-            // The inverse is below 2^39.
-            let part = (u64::from(step) * self.inverse + (1 << 15)) >> 16;
-            self.last = (step, approach(part));
+            self.last = (step, self.fresh(step));
         }
         self.last.1
     }
+
+    /// The gain of a step that is not the last.
+    #[inline(never)]
+    fn fresh(&self, step: u32) -> u32 {
+        // The inverse is below 2^39.
+        let part = (u64::from(step.min(1 << 19)) * self.inverse + (1 << 15)) >> 16;
+        match u32::try_from(part) {
+            Ok(part) if part < SMALL => series(part),
+            _ => approach(part),
+        }
+    }
 }
 
+/// 2^48 over a time constant, rounded down. Where it is below 16 s that takes a few short divisions, and no long one.
+fn inverse(time_constant: u32) -> u64 {
+    if time_constant >= 1 << 24 {
+        return (1 << 48) / u64::from(time_constant);
+    }
+    let mut quotient = u64::from((1 << 31) / time_constant);
+    let mut rest = (1 << 31) % time_constant;
+    // Digit by digit: the rest is below 2^24.
+    for bits in [8, 8, 1] {
+        let number = rest << bits;
+        quotient = quotient << bits | u64::from(number / time_constant);
+        rest = number % time_constant;
+    }
+    quotient
+}
+
+/// What the series is for: 1/16 with 32 fraction bits.
+const SMALL: u32 = 1 << 28;
+
 /// 1 − exp(−x), both with 32 fraction bits.
+#[cold]
+#[inline(never)]
 fn approach(x: u64) -> u32 {
     // Below 1/16 the series has five terms; beyond, as often as x was halved, 1 − (1 − y)² = 2y − y² doubles it.
     let halvings = x.checked_ilog2().map_or(0, |lead| lead.saturating_sub(27));
     if halvings > 9 {
         return u32::MAX;
     }
-    let mut y = series((x >> halvings) as u32);
+    let mut y = u64::from(series((x >> halvings) as u32));
     for _ in 0..halvings {
         y = 2 * y - ((y * y) >> 32);
     }
@@ -58,12 +86,17 @@ fn approach(x: u64) -> u32 {
 }
 
 /// 1 − exp(−x) for x < 1/16: x·(1 − x/2·(1 − x/3·(1 − x/4·(1 − x/5)))), of which the next term is below 2^−33.
-fn series(x: u32) -> u64 {
-    let x = u64::from(x);
-    let part = |n: u64| (x * ((1 << 32) / n)) >> 32;
-    let inner = (1 << 32) - part(5);
-    let inner = (1 << 32) - ((part(4) * inner) >> 32);
-    let inner = (1 << 32) - ((part(3) * inner) >> 32);
-    let inner = (1 << 32) - ((part(2) * inner) >> 32);
-    (x * inner + (1 << 31)) >> 32
+fn series(x: u32) -> u32 {
+    let times = |a: u32, b: u32| ((u64::from(a) * u64::from(b)) >> 32) as u32;
+    let part = |n: u32| times(x, ((1 << 32) / u64::from(n)) as u32);
+    // What the brackets lack of 1, rounded down.
+    let less = |part: u32, lack: u32| {
+        part - ((u64::from(part) * u64::from(lack) + u64::from(u32::MAX)) >> 32) as u32
+    };
+    let lack = less(part(4), part(5));
+    let lack = less(part(3), lack);
+    let lack = less(part(2), lack);
+    // x·(1 − lack), to nearest.
+    let taken = u64::from(x) * u64::from(lack);
+    x - ((taken + (1 << 31) - 1) >> 32) as u32
 }

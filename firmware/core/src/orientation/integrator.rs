@@ -6,8 +6,8 @@
 //! has 62 fraction bits, of which the upper 30 are multiplied; the vector of exp h is rounded to 32 bits and the rest of it goes
 //! into the next step; and the length is corrected along with each step, by half of what its square lacks.
 
-use super::quaternion::{Quaternion, product};
-use super::rate::{History, LARGEST_RATE};
+use super::quaternion::{Quaternion, dot, product};
+use super::rate::History;
 use super::scale::Scale;
 
 /// The longest step that is integrated, in µs.
@@ -20,6 +20,8 @@ pub struct Integrator {
     history: History,
     /// 62 fraction bits.
     attitude: [i64; 4],
+    /// The same, to nearest.
+    rounded: Quaternion,
     /// What rounding has left of the last step's vector, 48 fraction bits.
     rest: [i32; 3],
 }
@@ -34,6 +36,7 @@ impl Integrator {
             scale,
             history: History::default(),
             attitude: [0; 4],
+            rounded: attitude,
             rest: [0; 3],
         };
         integrator.set_attitude(attitude);
@@ -44,11 +47,12 @@ impl Integrator {
     /// Goes on from another attitude.
     pub fn set_attitude(&mut self, attitude: Quaternion) {
         self.attitude = attitude.parts.map(|x| i64::from(x) << 32);
+        self.rounded = attitude;
     }
 
     /// Begins again at a rate, with the attitude as it is.
     pub fn restart(&mut self, rate: [i32; 3]) {
-        self.history.start(rate.map(within));
+        self.history.start(rate);
     }
 
     /// Takes the rate in 1/256 LSB that was measured `step` µs after the last one, and turns further by `correction`, half an
@@ -71,36 +75,49 @@ impl Integrator {
         if step == 0 || step > LONGEST_STEP {
             return self.restart(rate);
         }
-        let rate = rate.map(within);
-        let half = self.history.advance::<ORDER>(rate, step, self.scale);
-        self.turn([0, 1, 2].map(|i| half[i] + correction[i]));
+        let half = self.half_angle::<ORDER>(rate, step);
+        self.turn(&[0, 1, 2].map(|i| half[i] + correction[i]));
+    }
+
+    /// Takes the rate in 1/256 LSB that was measured `step` µs after the last one, at least 1 and at most [`LONGEST_STEP`], and gives half an
+    /// angle about each of the body's axes to turn by, in radians with 48 fraction bits.
+    pub(super) fn half_angle<const ORDER: u32>(&mut self, rate: [i32; 3], step: u32) -> [i64; 3] {
+        self.history.advance::<ORDER>(rate, step, self.scale)
     }
 
     /// The attitude, rounded to nearest.
-    pub fn attitude(&self) -> Quaternion {
-        Quaternion {
-            parts: self.upper(),
-        }
+    pub const fn attitude(&self) -> Quaternion {
+        self.rounded
     }
 
-    fn upper(&self) -> [i32; 4] {
-        self.attitude.map(|x| ((x + (1 << 31)) >> 32) as i32)
+    /// The same where it lies.
+    pub(super) const fn rounded(&self) -> &Quaternion {
+        &self.rounded
     }
 
-    /// Turns by a half angle vector of any length, in as many equal parts as it takes. 48 fraction bits, within ±2^57.
-    fn turn(&mut self, half: [i64; 3]) {
+    /// Turns by a half angle vector of any length. 48 fraction bits, within ±2^57.
+    pub(super) fn turn(&mut self, half: &[i64; 3]) {
         if half.iter().all(|x| (-LARGEST..LARGEST).contains(x)) {
-            return self.turn_part(half);
+            self.turn_part(half);
+        } else {
+            self.turn_far(half);
         }
+    }
+
+    /// The same in as many equal parts as it takes.
+    #[cold]
+    #[inline(never)]
+    fn turn_far(&mut self, half: &[i64; 3]) {
         let all = half.iter().fold(0, |all, x| all | x.unsigned_abs());
         let halvings = all.ilog2().saturating_sub(LARGEST.ilog2()) + 1;
         let part = half.map(|x| x >> halvings);
         for _ in 0..1_u32 << halvings {
-            self.turn_part(part);
+            self.turn_part(&part);
         }
     }
 
-    fn turn_part(&mut self, half: [i64; 3]) {
+    #[inline(never)]
+    fn turn_part(&mut self, half: &[i64; 3]) {
         let half = [0, 1, 2].map(|i| half[i] + i64::from(self.rest[i]));
         // 32 fraction bits, rounded down; each square is below 2^28 and a bit.
         let short = half.map(|x| (x >> 16) as i32);
@@ -109,9 +126,9 @@ impl Integrator {
             .iter()
             .sum();
         let (versine, lack) = series(square);
-        let q = self.upper();
+        let q = &self.rounded.parts;
         // 1 − |q|² with 60 fraction bits; half of it with 32, rounded down.
-        let excess = (1 << 60) - q.iter().map(|&x| i64::from(x) * i64::from(x)).sum::<i64>();
+        let excess = (1 << 60) - dot(q, q[0], q[1], q[2], q[3]);
         let mut change = [(excess >> 29) as i32 - versine as i32, 0, 0, 0];
         for i in 0..3 {
             // h·sin|h|/|h| with 48 fraction bits, and half a unit of 32.
@@ -121,13 +138,11 @@ impl Integrator {
         }
         // |change| < 0.47, so no sum exceeds 1.47·2^62.
         let turned = product(q, change);
-        self.attitude = [0, 1, 2, 3].map(|i| self.attitude[i] + turned[i]);
+        for (part, turned) in core::iter::zip(&mut self.attitude, turned) {
+            *part += turned;
+        }
+        self.rounded.parts = self.attitude.map(|part| ((part + (1 << 31)) >> 32) as i32);
     }
-}
-
-/// A rate that the formats hold.
-fn within(rate: i32) -> i32 {
-    rate.clamp(-LARGEST_RATE, LARGEST_RATE)
 }
 
 /// 1 − cos x and 1 − sin(x)/x of x², each with 32 fraction bits: within 2 units for x² up to 3/16. The remainders of the series,

@@ -23,7 +23,7 @@ use core::fmt;
 use super::quaternion::Quaternion;
 use super::scale::{LSB_PER_DPS, Scale};
 use super::tilt::{LSB_PER_G, TIME_CONSTANT, Tilt};
-use super::tracker::{Sample, Tracker};
+use super::tracker::{Counts, Sample, Tracker};
 use crate::calibration::{RestBias, Units};
 use crate::fixed::Q32_32;
 
@@ -38,8 +38,8 @@ const MAGIC: [u8; 4] = *b"GIMU";
 const TILT: u32 = 1 << 0;
 const FOLLOW_BIAS: u32 = 1 << 1;
 
-/// A sample, or the attitude after it.
-pub type Record = [u8; RECORD_BYTES];
+/// A sample, or the attitude after it, as the words of its bytes.
+pub type Record = [u32; 4];
 
 /// How a log is replayed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -241,11 +241,11 @@ impl Setup {
     }
 }
 
-/// Checks a log, and gives its records.
+/// Checks a log, and gives how it is replayed and the bytes of its records.
 ///
 /// # Errors
 /// The first thing that is not as it should be.
-pub fn open(bytes: &mut [u8]) -> Result<(Setup, &mut [Record]), LogError> {
+pub fn open(bytes: &mut [u8]) -> Result<(Setup, &mut [[u8; RECORD_BYTES]]), LogError> {
     let all = bytes.len();
     let (header, records) = bytes
         .split_first_chunk_mut::<HEADER_BYTES>()
@@ -263,70 +263,61 @@ pub fn open(bytes: &mut [u8]) -> Result<(Setup, &mut [Record]), LogError> {
     Ok((setup, records.as_chunks_mut().0))
 }
 
+/// The record of some bytes.
+pub fn from_bytes(bytes: &[u8; RECORD_BYTES]) -> Record {
+    let mut words = bytes
+        .as_chunks()
+        .0
+        .iter()
+        .map(|&word| u32::from_le_bytes(word));
+    [0; 4].map(|nothing| words.next().unwrap_or(nothing))
+}
+
+/// The bytes of a record.
+pub fn to_bytes(record: Record) -> [u8; RECORD_BYTES] {
+    let mut bytes = [0; RECORD_BYTES];
+    for (to, word) in bytes.as_chunks_mut().0.iter_mut().zip(record) {
+        *to = word.to_le_bytes();
+    }
+    bytes
+}
+
 /// The record of a sample.
 pub fn record(sample: &Sample) -> Record {
-    let [t0, t1, t2, t3] = sample.t_us.to_le_bytes();
-    let [[a0, a1], [a2, a3], [a4, a5]] = sample.accel.map(i16::to_le_bytes);
-    let [[g0, g1], [g2, g3], [g4, g5]] = sample.gyro.map(i16::to_le_bytes);
-    [
-        t0, t1, t2, t3, a0, a1, a2, a3, a4, a5, g0, g1, g2, g3, g4, g5,
-    ]
+    let pair = |low: i16, high: i16| u32::from(low as u16) | u32::from(high as u16) << 16;
+    let ([ax, ay, az], [gx, gy, gz]) = (sample.accel, sample.gyro);
+    [sample.t_us, pair(ax, ay), pair(az, gx), pair(gy, gz)]
 }
 
 /// The sample of a record.
-pub fn sample(record: &Record) -> Sample {
-    let [
-        t0,
-        t1,
-        t2,
-        t3,
-        a0,
-        a1,
-        a2,
-        a3,
-        a4,
-        a5,
-        g0,
-        g1,
-        g2,
-        g3,
-        g4,
-        g5,
-    ] = *record;
+pub const fn sample([t_us, ax_ay, az_gx, gy_gz]: Record) -> Sample {
     Sample {
-        t_us: u32::from_le_bytes([t0, t1, t2, t3]),
-        accel: [[a0, a1], [a2, a3], [a4, a5]].map(i16::from_le_bytes),
-        gyro: [[g0, g1], [g2, g3], [g4, g5]].map(i16::from_le_bytes),
+        t_us,
+        accel: [ax_ay as i16, (ax_ay >> 16) as i16, az_gx as i16],
+        gyro: [(az_gx >> 16) as i16, gy_gz as i16, (gy_gz >> 16) as i16],
     }
 }
 
 /// The record of an attitude.
 pub fn attitude_record(attitude: Quaternion) -> Record {
-    let mut record = [0; RECORD_BYTES];
-    for (to, part) in record.as_chunks_mut().0.iter_mut().zip(attitude.parts) {
-        *to = part.to_le_bytes();
-    }
-    record
+    attitude.parts.map(|part| part as u32)
 }
 
 /// The attitude of a record, if it is one: of length 1.
-pub fn attitude(record: &Record) -> Option<Quaternion> {
-    let &[w, x, y, z] = record.as_chunks().0 else {
-        return None;
-    };
-    Quaternion::exact([w, x, y, z].map(i32::from_le_bytes))
+pub fn attitude(record: Record) -> Option<Quaternion> {
+    Quaternion::exact(record.map(|part| part as i32))
 }
 
 /// Replays a log where it lies, and gives what happened to its samples.
 ///
 /// # Errors
-/// When it is no log.
-pub fn replay(bytes: &mut [u8]) -> Result<super::Counts, LogError> {
+/// When it is no log; then nothing has changed.
+pub fn replay(bytes: &mut [u8]) -> Result<Counts, LogError> {
     let (setup, records) = open(bytes)?;
     let mut tracker = setup.tracker();
     for record in records {
-        tracker.on_sample(&sample(record));
-        *record = attitude_record(tracker.attitude());
+        tracker.on_sample(&sample(from_bytes(record)));
+        *record = to_bytes(attitude_record(tracker.attitude()));
     }
     Ok(tracker.counts())
 }

@@ -1,6 +1,6 @@
 //! Quaternions of length 1, and what is read from them.
 
-use crate::fixed::{Q2_30, Turns};
+use crate::fixed::{Q2_30, Turns, wide};
 use crate::polar::polar;
 use crate::trig::sin_cos_q30;
 
@@ -86,7 +86,7 @@ impl Quaternion {
     /// First `other`, then this one. To nearest, and length 1 again.
     #[must_use]
     pub fn times(self, other: Self) -> Self {
-        let products = product(self.parts, other.parts);
+        let products = product(&self.parts, other.parts);
         let parts = products.map(|x| ((x + (1 << 29)) >> 30) as i32);
         Self { parts }.renormalised()
     }
@@ -135,12 +135,13 @@ impl Quaternion {
     }
 
     /// The body's direction of the world's z axis, which is up: 30 fraction bits, rounded down.
-    pub(super) fn up(self) -> [i64; 3] {
-        let [w, x, y, z] = self.parts.map(i64::from);
+    pub(super) fn up(&self) -> [i32; 3] {
+        let [w, x, y, z] = self.parts;
+        // At most 1 in magnitude but for the error of the length.
         [
-            (x * z - w * y) >> 29,
-            (y * z + w * x) >> 29,
-            (w * w - x * x - y * y + z * z) >> 30,
+            ((wide(x, z) - wide(w, y)) >> 29) as i32,
+            ((wide(y, z) + wide(w, x)) >> 29) as i32,
+            ((wide(w, w) - wide(x, x) - wide(y, y) + wide(z, z)) >> 30) as i32,
         ]
     }
 
@@ -186,15 +187,20 @@ impl Quaternion {
 
 /// The product of two quaternions in the product of their units. Both are at most 1 long but for their errors, so by
 /// Cauchy and Schwarz no partial sum exceeds the product of the units.
-pub(super) fn product(a: [i32; 4], b: [i32; 4]) -> [i64; 4] {
-    let [aw, ax, ay, az] = a.map(i64::from);
-    let [bw, bx, by, bz] = b.map(i64::from);
+pub(super) fn product(a: &[i32; 4], [w, x, y, z]: [i32; 4]) -> [i64; 4] {
     [
-        aw * bw - ax * bx - ay * by - az * bz,
-        aw * bx + ax * bw + ay * bz - az * by,
-        aw * by - ax * bz + ay * bw + az * bx,
-        aw * bz + ax * by - ay * bx + az * bw,
+        dot(a, w, -x, -y, -z),
+        dot(a, x, w, z, -y),
+        dot(a, y, -z, w, x),
+        dot(a, z, y, -x, w),
     ]
+}
+
+/// The sum of four products, none of whose partial sums has more than 64 bits. A call is smaller than four products, and the soft core's
+/// instruction cache is small too.
+#[inline(never)]
+pub(super) fn dot([aw, ax, ay, az]: &[i32; 4], w: i32, x: i32, y: i32, z: i32) -> i64 {
+    wide(*aw, w) + wide(*ax, x) + wide(*ay, y) + wide(*az, z)
 }
 
 /// Yaw, pitch and roll; half a turn and more is negative.

@@ -22,7 +22,8 @@
 //! 19/720·h⁴·ω × d³ω/dt³ that does not, and since h³·d³ω/dt³ is about 6·T, 19/10·T more in E cancels that. With 9/5 coning at
 //! 20 samples a turn drifts by a ninth of what it does with −1/10.
 
-use super::scale::Scale;
+use super::scale::{Factor, Scale};
+use crate::fixed::wide;
 
 /// The longest step between samples through which a cubic is laid, in µs; longer ones are straight lines.
 pub const LONGEST_CURVE: u32 = 1 << 15;
@@ -31,27 +32,36 @@ pub const MOST_STRETCH: u32 = 3;
 /// The largest rate, in 1/256 LSB: all counts, and a bias of half of them. Then all numbers below have 32 bits.
 pub const LARGEST_RATE: i32 = 3 << 22;
 
-/// The samples before the last, as far as a step needs them. Rates are in 1/256 LSB.
+/// The samples before the last, as far as a step needs them.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct History {
     /// How many steps there are to look back on: 0, 1, 2.
     steps: u8,
-    /// ω₂.
-    last: [i32; 3],
-    /// e₂.
-    difference: [i32; 3],
-    /// S of the step before.
-    second: [i32; 3],
+    axes: [Axis; 3],
     /// h₁ and h₂ in µs.
     ages: [u32; 2],
 }
 
-/// What the times of samples make of a cubic, with 15 fraction bits.
+/// The same along an axis, in 1/256 LSB.
+#[derive(Clone, Copy, Debug, Default)]
+struct Axis {
+    /// ω₂.
+    last: i32,
+    /// e₂.
+    difference: i32,
+    /// S of the step before.
+    second: i32,
+}
+
+/// What the times of samples make of a cubic, with 15 fraction bits unless told otherwise.
+#[derive(Clone, Copy)]
 struct Weights {
-    /// g, and its square.
-    stretch: [i32; 2],
-    /// h/(h + h₁).
-    half: i32,
+    /// g with 15 fraction bits, and 15 zeros behind them.
+    stretch: u32,
+    /// g².
+    stretch_squared: i32,
+    /// h/(h + h₁) with 15 fraction bits, and 17 zeros behind them.
+    half: u32,
     /// 9/5·h/(h + h₁ + h₂).
     near: i32,
     /// 4/3·(h + 2·h₁)/(h + h₁ + h₂).
@@ -65,55 +75,142 @@ const NINE_FIFTHS: i32 = (9 << 15) / 5;
 impl Weights {
     /// Of equal steps.
     const EVEN: Self = Self {
-        stretch: [1 << 15; 2],
-        half: 1 << 14,
+        stretch: 1 << 30,
+        stretch_squared: 1 << 15,
+        half: 1 << 31,
         near: NINE_FIFTHS / 3 + 1,
         far: FOUR_THIRDS,
     };
 
-    /// Of any steps h, h₁, h₂.
-    fn of(step: u32, [h1, h2]: [u32; 2]) -> Self {
-        if step == h1 && step == h2 {
+    /// Of nothing to look back on: a straight line.
+    const STRAIGHT: Self = Self {
+        stretch: 0,
+        stretch_squared: 0,
+        half: 0,
+        near: 0,
+        far: 0,
+    };
+
+    /// Of h and so many steps to look back on, h₁ and h₂.
+    #[inline(never)]
+    fn of<const ORDER: u32>(steps: u8, step: u32, [h1, h2]: [u32; 2]) -> Self {
+        if steps == 0 {
+            return Self::STRAIGHT;
+        }
+        if steps == 2 && ORDER >= 4 && step == h1 && step == h2 {
             return Self::EVEN;
         }
-        let g = ratio(step, h1);
-        let all = step + h1 + h2;
+        let g = Divisor::new(h1).ratio(step);
+        // Without S of the step before there is no D.
+        let (mut near, mut far) = (0, 0);
+        if steps == 2 && ORDER >= 4 {
+            let all = Divisor::new(step + h1 + h2);
+            near = narrow(wide(all.ratio(step), NINE_FIFTHS));
+            far = narrow(wide(all.ratio(step + 2 * h1), FOUR_THIRDS));
+        }
         Self {
-            stretch: [g, narrow(wide(g, g))],
-            half: ratio(step, step + h1),
-            near: narrow(wide(ratio(step, all), NINE_FIFTHS)),
-            far: narrow(wide(ratio(step + 2 * h1, all), FOUR_THIRDS)),
+            // At most 3, and at most 3/4.
+            stretch: (g as u32) << 15,
+            stretch_squared: narrow(wide(g, g)),
+            half: (Divisor::new(step + h1).ratio(step) as u32) << 17,
+            near,
+            far,
         }
     }
 }
 
-/// The product of two numbers.
-const fn wide(a: i32, b: i32) -> i64 {
-    a as i64 * b as i64
-}
-
-/// x·2^−15, to nearest, of what has 32 bits then.
+/// x·2^−15, to nearest, of what has 31 bits then.
 const fn narrow(x: i64) -> i32 {
-    ((x + (1 << 14)) >> 15) as i32
+    half_up((x >> 14) as i32)
 }
 
-/// a/b with 15 fraction bits, to nearest. The products stay in 32 bits: a < 2^17.
-const fn ratio(a: u32, b: u32) -> i32 {
-    (((a << 15) + b / 2) / b) as i32
+/// Half of a number, to nearest.
+const fn half_up(x: i32) -> i32 {
+    (x + 1) >> 1
+}
+
+/// The upper word of a product.
+const fn upper(a: i32, b: u32) -> i32 {
+    ((a as i64 * b as i64) >> 32) as i32
+}
+
+/// A number that others are divided by: the division that takes long is made once.
+struct Divisor {
+    number: u32,
+    /// 2^32 − 1 over it, rounded down.
+    inverse: u32,
+}
+
+impl Divisor {
+    const fn new(number: u32) -> Self {
+        Self {
+            number,
+            inverse: u32::MAX / number,
+        }
+    }
+
+    /// a over it with 15 fraction bits, to nearest. The numbers stay in 32 bits: a < 2^17, and the ratio is at most 3.
+    const fn ratio(&self, a: u32) -> i32 {
+        let number = (a << 15) + self.number / 2;
+        // Short of the quotient by less than 1 before it is rounded down.
+        let below = ((number as u64 * self.inverse as u64) >> 32) as u32;
+        let rest = number - below * self.number;
+        (below + (rest >= self.number) as u32) as i32
+    }
+}
+
+/// A rate that the formats hold.
+fn within(rate: i32) -> i32 {
+    rate.clamp(-LARGEST_RATE, LARGEST_RATE)
+}
+
+/// A with twelve fraction bits and E with eight.
+type Ends = (i32, i32);
+
+impl Axis {
+    /// Takes a sample.
+    #[inline(never)]
+    fn advance(&mut self, rate: i32, weights: &Weights) -> Ends {
+        let rate = within(rate);
+        let e1 = rate - self.last;
+        // g ≤ 3, so |S| ≤ 3·1.5·2^24 and |D| ≤ 10 times that.
+        let before = half_up(upper(self.difference << 3, weights.stretch));
+        let second = half_up(upper((e1 - before) << 1, weights.half));
+        let third = second - narrow(wide(weights.stretch_squared, self.second));
+        // A twelfth of 16 makes twelve fraction bits of eight.
+        let curve = wide(second, EIGHT_THIRDS) + wide(third, weights.far);
+        let curve = ((curve + (1 << 14)) >> 15) as i32;
+        let mean = ((rate + self.last) << 3) - curve;
+        let end = e1 + narrow(wide(third, weights.near));
+        *self = Self {
+            last: rate,
+            difference: e1,
+            second,
+        };
+        // No motion within the range is cut by this.
+        (
+            mean.clamp(-MOST_MEAN, MOST_MEAN),
+            end.clamp(-MOST_CHANGE, MOST_CHANGE),
+        )
+    }
 }
 
 impl History {
     /// Begins at a sample.
     pub fn start(&mut self, rate: [i32; 3]) {
+        let axis = |last| Axis {
+            last,
+            ..Axis::default()
+        };
         *self = Self {
-            last: rate,
+            axes: rate.map(within).map(axis),
             ..Self::default()
         };
     }
 
     /// Takes a sample, `step` µs (at least 1) after the last one, and gives half of φ as a rotation vector, 48 fraction bits.
     ///
-    /// `rate` is within ±[`LARGEST_RATE`]. `ORDER` is that of the method: 1 takes the newest sample alone, 2 the mean of two,
+    /// A rate beyond ±[`LARGEST_RATE`] counts as that. `ORDER` is that of the method: 1 takes the newest sample alone, 2 the mean of two,
     /// 3 the parabola through three with e₁ for E, 4 (and more) the cubic. The first steps have less to look back on and
     /// leave an error in h³ once.
     pub fn advance<const ORDER: u32>(
@@ -122,62 +219,38 @@ impl History {
         step: u32,
         scale: Scale,
     ) -> [i64; 3] {
-        let curved =
-            step <= LONGEST_CURVE && (self.steps == 0 || step <= MOST_STRETCH * self.ages[0]);
-        if !curved {
-            self.steps = 0;
-        }
-        let axes = [0, 1, 2];
+        let [h1, _] = self.ages;
+        let curved = step <= LONGEST_CURVE && (self.steps == 0 || step <= MOST_STRETCH * h1);
+        let steps = if ORDER >= 3 && curved { self.steps } else { 0 };
+        let weights = Weights::of::<ORDER>(steps, step, self.ages);
+        let ends = [0, 1, 2].map(|i| self.axes[i].advance(rate[i], &weights));
+        self.steps = if curved { (self.steps + 1).min(2) } else { 0 };
+        self.ages = [step, h1];
         let factor = scale.factor(step);
-        // Twelve fraction bits.
-        let mut mean = match ORDER {
-            1 => rate.map(|x| x << 4),
-            _ => axes.map(|i| (rate[i] + self.last[i]) << 3),
+        let coning = if ORDER >= 3 && curved {
+            factor.coning()
+        } else {
+            0
         };
-        let e1 = axes.map(|i| rate[i] - self.last[i]);
-        let mut second = [0; 3];
-        if ORDER >= 3 && curved {
-            let mut end = e1;
-            if self.steps >= 1 {
-                // g ≤ 3, so |S| ≤ 3·1.5·2^24 and |D| ≤ 10 times that.
-                let weights = Weights::of(step, self.ages);
-                let [g, g2] = weights.stretch;
-                second = axes.map(|i| {
-                    let before = narrow(wide(g, self.difference[i]));
-                    narrow(wide(e1[i] - before, weights.half))
-                });
-                let mut third = [0; 3];
-                if ORDER >= 4 && self.steps >= 2 {
-                    third = axes.map(|i| second[i] - narrow(wide(g2, self.second[i])));
-                }
-                // A twelfth of 16 makes twelve fraction bits of eight.
-                mean = axes.map(|i| {
-                    let curve = wide(second[i], EIGHT_THIRDS) + wide(third[i], weights.far);
-                    mean[i] - narrow(curve)
-                });
-                end = axes.map(|i| e1[i] + narrow(wide(third[i], weights.near)));
-            }
-            // No motion within the range is cut by this.
-            let straight = mean.map(|x| x.clamp(-MOST_MEAN, MOST_MEAN));
-            let end = end.map(|x| x.clamp(-MOST_CHANGE, MOST_CHANGE));
-            let turn = i64::from(factor.coning());
-            mean = axes.map(|i| {
-                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-                // LSB² with 20 fraction bits, at most 2^55.
-                let cross = wide(straight[j], end[k]) - wide(straight[k], end[j]);
-                let cross = i64::from((cross >> 25) as i32);
-                straight[i] + ((cross * turn + (1 << 31)) >> 32) as i32
-            });
+        let [mut x, mut y, mut z] = ends;
+        if ORDER == 1 {
+            [x.0, y.0, z.0] = rate.map(|rate| within(rate) << 4);
         }
-        *self = Self {
-            steps: if curved { (self.steps + 1).min(2) } else { 0 },
-            last: rate,
-            difference: e1,
-            second,
-            ages: [step, self.ages[0]],
-        };
-        mean.map(|x| factor.half_angle(x))
+        [
+            turned(x.0, y, z, coning, factor),
+            turned(y.0, z, x, coning, factor),
+            turned(z.0, x, y, coning, factor),
+        ]
     }
+}
+
+/// Half of φ along an axis, of A there and of A and E along the two next ones.
+#[inline(always)]
+fn turned(mean: i32, (mj, ej): Ends, (mk, ek): Ends, coning: u32, factor: Factor) -> i64 {
+    // LSB² with 20 fraction bits, at most 2^55.
+    let cross = ((wide(mj, ek) - wide(mk, ej)) >> 25) as i32;
+    let coning = (i64::from(cross) * i64::from(coning) + (1 << 31)) >> 32;
+    factor.half_angle(mean + coning as i32)
 }
 
 /// The largest mean rate, 2^17 LSB with 12 fraction bits.

@@ -13,7 +13,7 @@
 
 use super::gain::Gain;
 use super::quaternion::{Angles, Quaternion};
-use crate::fixed::Turns;
+use crate::fixed::{Turns, wide};
 use crate::polar::polar;
 
 /// τ unless told otherwise, in µs.
@@ -60,50 +60,64 @@ impl Tilt {
     }
 
     /// Says that the attitude may be off by anything: the next readings count for more.
+    #[cold]
+    #[inline(never)]
     pub fn doubt(&mut self) {
         self.age = self.age.min(DOUBTFUL);
         self.gain = Gain::new(self.age.min(self.time_constant));
     }
 
-    /// Whether a reading is gravity and motion.
-    fn is_plausible(&self, reading: [i16; 3]) -> bool {
-        let saturated = reading.iter().any(|&x| is_saturated(x));
-        !saturated && square(reading) <= self.largest
-    }
-
-    /// The correction of a step in µs (at most 2^19) by what was read at its end: half an angle about each of the body's axes, in radians with 48 fraction bits,
-    /// at most 3. `None` where the reading is left out.
+    /// Corrects a step in µs (at most 2^19) by what was read at its end: to half an angle about each of the body's axes, in radians with 48 fraction bits,
+    /// at most 3 is added. Says whether the reading was taken.
+    #[inline]
     pub fn correct(
         &mut self,
-        attitude: Quaternion,
+        attitude: &Quaternion,
         reading: [i16; 3],
         step: u32,
-    ) -> Option<[i64; 3]> {
-        if !self.is_plausible(reading) {
-            return None;
-        }
-        let up = attitude.up();
-        let a = reading.map(i64::from);
-        // LSB with 14 fraction bits, rounded down: at most 2^30.
-        let mut error = [0, 1, 2].map(|i| {
-            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-            (a[j] * up[k] - a[k] * up[j]) >> 16
-        });
-        let upright: i64 = core::iter::zip(a, up).map(|(a, up)| a * up).sum();
-        if upright < 0 {
-            error = lengthened(error, up, i64::from(square(reading).isqrt()) << 15);
+        half: &mut [i64; 3],
+    ) -> bool {
+        let a = reading.map(i32::from);
+        let square = square(a);
+        if square > self.largest || a.into_iter().any(is_end) {
+            return false;
         }
         if self.gain.time_constant() < self.time_constant {
-            self.age = self.age.saturating_add(step).min(self.time_constant);
-            self.gain = Gain::new(self.age);
+            self.grow(step);
         }
-        let gain = u64::from(self.gain.of(step));
-        // Half the gain over g, for 2^−14 LSB, with 57 fraction bits: at most 2^32.
-        let factor = ((gain * u64::from(self.inverse)) >> 22) as i64;
-        Some(error.map(|x| (x * factor) >> 9))
+        // Half the gain over g, for 2^−14 LSB, with 57 fraction bits: the inverse is at most 2^22.
+        let factor = ((u64::from(self.gain.of(step)) * u64::from(self.inverse)) >> 22) as u32;
+        let up = attitude.up();
+        // What is wanted of the products are upper words.
+        let a = a.map(|x| x << 16);
+        // LSB with 14 fraction bits, rounded down: at most 2^30.
+        let error = [0, 1, 2].map(|i| {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            ((wide(a[j], up[k]) - wide(a[k], up[j])) >> 32) as i32
+        });
+        // At most √3·2^61.
+        let upright = wide(a[0], up[0]) + wide(a[1], up[1]) + wide(a[2], up[2]);
+        let error = if upright < 0 {
+            lengthened(error, up, square)
+        } else {
+            error
+        };
+        for (half, error) in core::iter::zip(half, error) {
+            *half += (i64::from(error) * i64::from(factor)) >> 9;
+        }
+        true
+    }
+
+    /// Makes the time constant longer by a step, as long as it is not what it is to be.
+    #[inline(never)]
+    fn grow(&mut self, step: u32) {
+        self.age = self.age.saturating_add(step).min(self.time_constant);
+        self.gain = Gain::new(self.age);
     }
 
     /// The attitude with yaw 0 in which a reading points upwards; without a direction the identity.
+    #[cold]
+    #[inline(never)]
     pub fn align(reading: [i16; 3]) -> Quaternion {
         let [x, y, z] = reading.map(|x| i64::from(x) << 40);
         let (level, roll) = polar(z, y);
@@ -118,26 +132,33 @@ impl Tilt {
 }
 
 /// |a × up| falls again where the error is more than a right angle. There it is made twice as long as `a`, about the angle of the
-/// error in radians, so that upside down is no place to stay; where it has no direction, that of an axis across `up` will do.
-fn lengthened(error: [i64; 3], up: [i64; 3], length: i64) -> [i64; 3] {
+/// error in radians, so that upside down is no place to stay; where it has no direction, that of an axis across `up` will do. `square` is
+/// that of `a`, at most (2^16 − 1)².
+#[cold]
+#[inline(never)]
+fn lengthened(error: [i32; 3], up: [i32; 3], square: u32) -> [i32; 3] {
+    // Below 2^31.
+    let length = i64::from(square.isqrt()) << 15;
+    let error = error.map(i64::from);
     // At most 2^62.
     let now = error.iter().map(|x| x * x).sum::<i64>().isqrt();
     if now > 1 << 14 {
-        // At most 2^31 times 2^31.
-        return error.map(|x| x * length / now);
+        // At most 2^30 times 2^31, and the quotient at most the length, as no part is longer than the whole, but for the root's rounding.
+        let most = i64::from(i32::MAX);
+        return error.map(|x| (x * length / now).clamp(-most, most) as i32);
     }
     let smallest = (0..3).min_by_key(|&i| up[i].abs()).unwrap_or(0);
     let mut across = [0; 3];
-    across[smallest] = length;
+    across[smallest] = length as i32;
     across
 }
 
-/// At an end of the range.
-pub(super) const fn is_saturated(count: i16) -> bool {
-    count == i16::MAX || count == i16::MIN
+/// At an end of the range of a count.
+pub(super) const fn is_end(count: i32) -> bool {
+    count ^ (count >> 31) == i16::MAX as i32
 }
 
-/// |v|², at most 3·2^30.
-fn square(v: [i16; 3]) -> u32 {
-    v.iter().map(|&x| u32::from(x.unsigned_abs()).pow(2)).sum()
+/// |v|² of counts, at most 3·2^30.
+fn square(v: [i32; 3]) -> u32 {
+    v.iter().map(|&x| (x * x) as u32).sum()
 }

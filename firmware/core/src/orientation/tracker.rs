@@ -3,7 +3,7 @@
 use super::integrator::{Integrator, LONGEST_STEP};
 use super::quaternion::Quaternion;
 use super::scale::Scale;
-use super::tilt::{Tilt, is_saturated};
+use super::tilt::{Tilt, is_end};
 use crate::calibration::RestBias;
 
 /// What the sensor has measured at a time, in counts.
@@ -45,6 +45,9 @@ pub struct Counts {
     pub rejected: u64,
 }
 
+/// The largest bias, in 1/256 LSB: counts have 24 bits, so the difference has 32.
+const LARGEST_BIAS: i32 = 1 << 30;
+
 /// The attitude of a body.
 #[derive(Clone, Copy, Debug)]
 pub struct Tracker {
@@ -70,15 +73,15 @@ impl Tracker {
         }
     }
 
-    /// Sets what the gyroscope reads at rest, in 1/256 LSB; it stays so.
+    /// Sets what the gyroscope reads at rest, in 1/256 LSB; it stays so. Beyond ±2^30 it counts as that, which leaves no rate anyway.
     pub fn set_bias(&mut self, bias: [i32; 3]) {
-        self.bias = bias;
+        self.bias = bias.map(|bias| bias.clamp(-LARGEST_BIAS, LARGEST_BIAS));
         self.resting = None;
     }
 
     /// Follows what the gyroscope reads at rest from now on.
     pub fn follow_bias(&mut self, resting: RestBias) {
-        self.bias = resting.bias();
+        self.set_bias(resting.bias());
         self.resting = Some(resting);
     }
 
@@ -88,7 +91,7 @@ impl Tracker {
     }
 
     /// The attitude at the last sample; the identity before the first.
-    pub fn attitude(&self) -> Quaternion {
+    pub const fn attitude(&self) -> Quaternion {
         self.integrator.attitude()
     }
 
@@ -103,51 +106,69 @@ impl Tracker {
     }
 
     /// Takes a sample.
+    // What is done for every sample is kept together, and small: on the soft core most of the time goes into what its instruction cache does
+    // not hold. What is rare is elsewhere.
+    #[inline(never)]
     pub fn on_sample(&mut self, sample: &Sample) -> Outcome {
-        let rate = [0, 1, 2].map(|i| (i32::from(sample.gyro[i]) << 8).saturating_sub(self.bias[i]));
+        let rate = [0, 1, 2].map(|i| (i32::from(sample.gyro[i]) << 8) - self.bias[i]);
         let Some(last) = self.last else {
-            self.last = Some(sample.t_us);
-            self.integrator.restart(rate);
-            if self.tilt.is_some() {
-                self.integrator.set_attitude(Tilt::align(sample.accel));
-            }
-            return Outcome::First;
+            return self.begin(sample, rate);
         };
         let step = sample.t_us.wrapping_sub(last);
-        // More than half of the range of stamps is a time before the last one.
-        if step == 0 || step > u32::MAX / 2 {
-            self.counts.stale += 1;
-            return Outcome::Stale;
+        if step == 0 || step > LONGEST_STEP {
+            return self.hold(sample.t_us, step, rate);
         }
         self.last = Some(sample.t_us);
-        if step > LONGEST_STEP {
-            self.counts.gaps += 1;
-            self.doubt(rate);
-            return Outcome::Gap;
+        let mut half = self.integrator.half_angle::<4>(rate, step);
+        if let Some(tilt) = &mut self.tilt
+            && !tilt.correct(self.integrator.rounded(), sample.accel, step, &mut half)
+        {
+            self.counts.rejected += 1;
         }
-        let correction = match &mut self.tilt {
-            None => [0; 3],
-            Some(tilt) => tilt
-                .correct(self.integrator.attitude(), sample.accel, step)
-                .unwrap_or_else(|| {
-                    self.counts.rejected += 1;
-                    [0; 3]
-                }),
-        };
-        self.integrator.advance(rate, step, correction);
+        self.integrator.turn(&half);
         self.counts.steps += 1;
         if let Some(resting) = &mut self.resting {
             resting.on_sample(sample, step);
+            // A mean of counts and of what it began with.
             self.bias = resting.bias();
         }
-        if sample.gyro.into_iter().any(is_saturated) {
+        if sample.gyro.into_iter().any(|count| is_end(count.into())) {
             self.counts.saturated += 1;
             self.doubt(rate);
         }
         Outcome::Step
     }
 
+    /// The first sample.
+    #[cold]
+    #[inline(never)]
+    fn begin(&mut self, sample: &Sample, rate: [i32; 3]) -> Outcome {
+        self.last = Some(sample.t_us);
+        self.integrator.restart(rate);
+        if self.tilt.is_some() {
+            self.integrator.set_attitude(Tilt::align(sample.accel));
+        }
+        Outcome::First
+    }
+
+    /// A sample that makes no step: it is not later than the one before, or much.
+    #[cold]
+    #[inline(never)]
+    fn hold(&mut self, t_us: u32, step: u32, rate: [i32; 3]) -> Outcome {
+        // More than half of the range of stamps is a time before the last one.
+        if step == 0 || step > u32::MAX / 2 {
+            self.counts.stale += 1;
+            return Outcome::Stale;
+        }
+        self.last = Some(t_us);
+        self.counts.gaps += 1;
+        self.doubt(rate);
+        Outcome::Gap
+    }
+
     /// After something has happened that no sample tells: the last rate says nothing of those before, and the tilt may have changed.
+    #[cold]
+    #[inline(never)]
     fn doubt(&mut self, rate: [i32; 3]) {
         self.integrator.restart(rate);
         if let Some(tilt) = &mut self.tilt {

@@ -8,7 +8,7 @@ use crate::generate;
 use crate::polygons::{Corner, Polygons, Rgb8};
 use glint_core::calibration::Units;
 use glint_core::orientation::Sample;
-use glint_core::orientation::log::{Setup, record};
+use glint_core::orientation::log::{Setup, record, to_bytes};
 use glint_core::wire::{MAX_FRAME, Manifest, Receiver, Sender, State, Timing};
 
 /// The seeds of a target, all of them shorter than an input may be.
@@ -129,7 +129,7 @@ fn images() -> Vec<Vec<u8>> {
         for i in 0..samples {
             let turns = (i as i16).wrapping_mul(1_821);
             let late = u32::from(i > 20) * 600_000;
-            image.extend(record(&Sample {
+            image.extend(to_bytes(record(&Sample {
                 t_us: (u32::MAX - 10_000).wrapping_add(2_000 * (i - i / 9) + late),
                 accel: [(i % 5) as i16, -40, 4_090],
                 gyro: if i % 40 < 20 {
@@ -137,7 +137,7 @@ fn images() -> Vec<Vec<u8>> {
                 } else {
                     [turns, i16::MAX, -turns]
                 },
-            }));
+            })));
         }
         Some(image)
     };

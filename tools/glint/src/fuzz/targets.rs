@@ -207,7 +207,7 @@ fn run_image(input: &[u8]) -> Outcome {
             let mut records = image[image::HEADER_BYTES..].as_chunks().0.iter();
             assert!(counts.steps < records.len() as u64);
             assert!(
-                records.all(|record| image::attitude(record).is_some()),
+                records.all(|record| image::attitude(image::from_bytes(record)).is_some()),
                 "every attitude has length 1"
             );
             Outcome::Accepted

@@ -7,7 +7,8 @@ use crate::error::{FormatError, Place};
 use crate::transfer::{self, Route, TransferError};
 use glint_core::calibration::{Calibration, MOST_SAMPLES, Progress as Going, Report, Units};
 use glint_core::orientation::log::{
-    self as image, HEADER_BYTES, LogError, RECORD_BYTES, Setup, attitude, record,
+    self as image, HEADER_BYTES, LogError, RECORD_BYTES, Setup, attitude, from_bytes, record,
+    to_bytes,
 };
 use glint_core::orientation::{Counts, LONGEST_STEP, Quaternion, Sample};
 
@@ -121,7 +122,7 @@ pub fn prepare(entries: &[Entry], options: &Options) -> Result<Prepared, Error> 
     let mut image = setup.header(count).to_vec();
     stamps
         .samples()
-        .for_each(|sample| image.extend(record(&sample)));
+        .for_each(|sample| image.extend(to_bytes(record(&sample))));
     Ok(Prepared {
         image,
         samples: entries.len(),
@@ -212,7 +213,7 @@ pub enum Stage {
 fn attitudes(records: &[u8]) -> Result<Vec<Quaternion>, Error> {
     let records = records.as_chunks().0.iter().enumerate();
     records
-        .map(|(i, record)| attitude(record).ok_or(Error::Attitude(i)))
+        .map(|(i, record)| attitude(from_bytes(record)).ok_or(Error::Attitude(i)))
         .collect()
 }
 
