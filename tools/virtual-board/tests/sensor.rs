@@ -14,7 +14,7 @@ const ROUND: u64 = 20_000;
 /// Cycles of a millisecond.
 const MILLISECOND: u64 = 81_250;
 
-fn sensor(motion: fn(f64) -> State) -> Wires {
+fn sensor(motion: impl Fn(f64) -> State + Send + 'static) -> Wires {
     // Noise as of a specimen, and nothing that would have to be calibrated.
     let imperfections = Imperfections {
         noise: 0.005,
@@ -91,7 +91,7 @@ fn numbers(text: &str) -> Vec<f64> {
 }
 
 /// A board with a sensor that a program before this one has set up: a reset would take a tenth of a second.
-fn board_with_sensor(motion: fn(f64) -> State) -> VirtualBoard {
+fn board_with_sensor(motion: impl Fn(f64) -> State + Send + 'static) -> VirtualBoard {
     let image = image();
     let start = Start::Fast { firmware: &image };
     let mut board = VirtualBoard::builder()
@@ -162,6 +162,162 @@ fn the_camera_follows_the_sensor_and_a_lost_one_is_found_again() {
     assert!(violations.is_empty(), "{violations:#?}");
 }
 
+/// A rotation as a matrix, from the body to the world.
+type Rotation = [[f64; 3]; 3];
+
+/// What is done one after the other, each with a rest behind it: for how many s, at which mean rate about one axis in °/s, or there and
+/// back again so many times at that rate at most, and with how much of a shake along all axes, in g.
+struct Part {
+    name: &'static str,
+    time: f64,
+    rate: [f64; 3],
+    swings: f64,
+    shake: f64,
+}
+
+impl Part {
+    const fn turn(name: &'static str, time: f64, rate: [f64; 3]) -> Self {
+        Self {
+            name,
+            time,
+            rate,
+            swings: 0.0,
+            shake: 0.0,
+        }
+    }
+
+    /// After `time` seconds of `length`: for how many seconds it has turned at its rate, the rate of now, and the shake's part of now. All
+    /// begins and ends softly, as what is measured by samples has to.
+    fn at(&self, time: f64, length: f64) -> (f64, f64, f64) {
+        if self.swings > 0.0 {
+            let turns = std::f64::consts::TAU * self.swings / length;
+            let (sin, cos) = (turns * time).sin_cos();
+            ((1.0 - cos) / turns, sin, sin)
+        } else {
+            let turns = std::f64::consts::TAU / length;
+            let (sin, cos) = (turns * time).sin_cos();
+            (time - sin / turns, 1.0 - cos, 0.0)
+        }
+    }
+}
+
+/// The script's beginning, in seconds, and how long each rest takes.
+const BEGIN: f64 = 0.03;
+const RESTING: f64 = 0.035;
+
+const SCRIPT: [Part; 6] = [
+    Part::turn("yaw", 0.05, [0.0, 0.0, 900.0]),
+    // From the level up through the pole, and 9° down behind it.
+    Part::turn("pitch through 90°", 0.104, [950.0, 0.0, 0.0]),
+    Part::turn("roll", 0.05, [0.0, -900.0, 0.0]),
+    Part::turn("tumble", 0.06, [600.0, -800.0, 500.0]),
+    Part {
+        name: "shake",
+        time: 0.06,
+        rate: [900.0, 600.0, -800.0],
+        swings: 2.0,
+        shake: 1.5,
+    },
+    Part::turn("rest", 0.01, [0.0; 3]),
+];
+
+/// The product of two rotations.
+fn times(a: &Rotation, b: &Rotation) -> Rotation {
+    [0, 1, 2].map(|i| [0, 1, 2].map(|j| (0..3).map(|k| a[i][k] * b[k][j]).sum()))
+}
+
+/// The rotation about the direction of `axis`, by its length times `degrees` (Rodrigues).
+fn rotation(axis: [f64; 3], degrees: f64) -> Rotation {
+    let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
+    if length == 0.0 {
+        return [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    }
+    let [x, y, z] = axis.map(|a| a / length);
+    let (sin, cos) = (length * degrees).to_radians().sin_cos();
+    let versine = 1.0 - cos;
+    [
+        [
+            cos + x * x * versine,
+            x * y * versine - z * sin,
+            x * z * versine + y * sin,
+        ],
+        [
+            x * y * versine + z * sin,
+            cos + y * y * versine,
+            y * z * versine - x * sin,
+        ],
+        [
+            x * z * versine - y * sin,
+            y * z * versine + x * sin,
+            cos + z * z * versine,
+        ],
+    ]
+}
+
+/// What the script has turned until `time`, and what the sensor feels then. Each part takes `stretch` times as long, at a rate by as much
+/// lower.
+fn script(time: f64, stretch: f64) -> (Rotation, State) {
+    let mut turned = rotation([0.0; 3], 0.0);
+    let (mut rate, mut shake) = ([0.0; 3], 0.0);
+    let mut begin = BEGIN;
+    for part in &SCRIPT {
+        let length = part.time * stretch;
+        let inside = (time - begin).clamp(0.0, length);
+        let (turning, speed, shaking) = part.at(inside, length);
+        turned = times(&turned, &rotation(part.rate, turning / stretch));
+        if inside > 0.0 && inside < length {
+            rate = part.rate.map(|x| x * speed / stretch);
+            shake = part.shake * shaking;
+        }
+        begin += length + RESTING;
+    }
+    // Gravity is the world's z in the body's axes.
+    let state = State {
+        rate,
+        force: turned[2].map(|up| up + shake),
+        ..State::default()
+    };
+    (turned, state)
+}
+
+/// The camera goes where f64 says that the sensor has gone, through the pole of the pitch too: 0.6 s of the board's time, and with
+/// `GLINT_IMU_MOTION` seven times as slow in 2.6 s.
+#[test]
+fn the_camera_follows_a_script() {
+    let is_slow = std::env::var_os("GLINT_IMU_MOTION").is_some();
+    let stretch = if is_slow { 7.0 } else { 1.0 };
+    let mut board = board_with_sensor(move |time| script(time, stretch).1);
+    command(&mut board, "imu look");
+    let camera = |board: &mut VirtualBoard| -> [[f64; 3]; 3] {
+        let view = command(board, "view");
+        let view = numbers(line(&view, "view"));
+        [3, 6, 9].map(|at| [0, 1, 2].map(|i| view[at + i]))
+    };
+    let mut end = BEGIN;
+    for part in &SCRIPT {
+        end += part.time * stretch + RESTING;
+        // Shortly before the next part begins: the filter's delay and a frame are over.
+        let until = ((end - 0.005) * 1e3 * MILLISECOND as f64) as u64;
+        board.run(until.saturating_sub(board.cycles()));
+        let (turned, _) = script(end, stretch);
+        // u, v, n of a camera that looks along y.
+        let expected = [[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]
+            .map(|axis| [0, 1, 2].map(|i| (0..3).map(|k| turned[i][k] * axis[k]).sum::<f64>()));
+        let found = camera(&mut board);
+        for (found, expected) in found.as_flattened().iter().zip(expected.as_flattened()) {
+            assert!(
+                (found - expected).abs() < ANGLE.to_radians(),
+                "{}: {found:?}, expected {expected:?}",
+                part.name
+            );
+        }
+    }
+    let status = command(&mut board, "imu");
+    assert_eq!(line(&status, "failures"), "0", "{status}");
+    let answer = command(&mut board, "info video_underflows");
+    assert_eq!(line(&answer, "video_underflows"), "0");
+}
+
 /// Each fault on the board: told on the console, and over within its time. Some 1.5 s of the board's time: with `GLINT_IMU_FAULTS` only.
 #[test]
 fn every_fault_is_told_and_survived() {
@@ -195,7 +351,7 @@ fn every_fault_is_told_and_survived() {
         ),
         (
             Some(Fault::Stretched(u64::MAX)),
-            40,
+            80,
             100,
             "i2c: SCL is held low longer than a device may stretch it",
         ),
@@ -203,7 +359,7 @@ fn every_fault_is_told_and_survived() {
             Some(Fault::Stalled),
             25,
             250,
-            "no sample comes: expected 500 a second",
+            "no sample comes: expected 1000 a second",
         ),
         (
             Some(Fault::Frozen),

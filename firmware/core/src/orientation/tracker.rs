@@ -1,5 +1,7 @@
 //! Samples in, attitude out.
 
+use core::mem;
+
 use super::integrator::{Integrator, LONGEST_STEP};
 use super::quaternion::Quaternion;
 use super::scale::Scale;
@@ -53,6 +55,8 @@ const LARGEST_BIAS: i32 = 1 << 30;
 pub struct Tracker {
     integrator: Integrator,
     tilt: Option<Tilt>,
+    /// Half an angle that the last reading asks for, 48 fraction bits; the next step makes it.
+    correction: [i64; 3],
     bias: [i32; 3],
     resting: Option<RestBias>,
     /// When the last sample was taken; nothing before the first.
@@ -66,6 +70,7 @@ impl Tracker {
         Self {
             integrator: Integrator::new(scale, Quaternion::IDENTITY, [0; 3]),
             tilt,
+            correction: [0; 3],
             bias: [0; 3],
             resting: None,
             last: None,
@@ -120,12 +125,21 @@ impl Tracker {
         }
         self.last = Some(sample.t_us);
         let mut half = self.integrator.half_angle::<4>(rate, step);
+        for (half, correction) in core::iter::zip(&mut half, &mut self.correction) {
+            *half += mem::take(correction);
+        }
+        self.integrator.turn(&half);
+        // A reading is compared with the attitude that it was made in: of the one before a fast turn would make a tilt.
         if let Some(tilt) = &mut self.tilt
-            && !tilt.correct(self.integrator.rounded(), sample.accel, step, &mut half)
+            && !tilt.correct(
+                self.integrator.rounded(),
+                sample.accel,
+                step,
+                &mut self.correction,
+            )
         {
             self.counts.rejected += 1;
         }
-        self.integrator.turn(&half);
         self.counts.steps += 1;
         if let Some(resting) = &mut self.resting {
             resting.on_sample(sample, step);

@@ -72,6 +72,8 @@ pub struct Estimator {
     /// Where to begin without an accelerometer.
     start: Quaternion,
     age: f64,
+    /// Half an angle that the last reading asks for, about the body's axes; the next step makes it.
+    correction: Vector,
     /// Of [`Filter::LowPass`].
     low_pass: [Butterworth; 3],
     /// Of [`Filter::LowPass`]: from the axes of the gyroscope alone to the world's.
@@ -90,6 +92,7 @@ impl Estimator {
             last: None,
             start: Quaternion::IDENTITY,
             age: f64::from(FRESH) * 1e-6,
+            correction: [0.0; 3],
             low_pass: [Butterworth::default(); 3],
             upright: Quaternion::IDENTITY,
         }
@@ -141,18 +144,21 @@ impl Estimator {
     }
 
     fn advance(&mut self, rate: Vector, force: Vector, step: f64) {
+        let correction = std::mem::take(&mut self.correction);
+        self.integrator.advance_corrected(rate, step, correction);
+        // A reading is compared with the attitude that it was made in.
         let up = self.integrator.attitude().up();
         let strength = dot(force, force).sqrt();
         let turn = |gain: f64| cross(force, up).map(|x| x * gain / 2.0);
         match self.filter {
-            Filter::None => self.integrator.advance(rate, step),
+            Filter::None => {}
             Filter::Tilt(tau) => {
                 let gain = if strength <= 3.0 {
                     self.aged_gain(tau, step)
                 } else {
                     0.0
                 };
-                self.integrator.advance_corrected(rate, step, turn(gain));
+                self.correction = turn(gain);
             }
             Filter::Gated {
                 tau,
@@ -164,12 +170,9 @@ impl Estimator {
                 } else {
                     0.0
                 };
-                self.integrator.advance_corrected(rate, step, turn(gain));
+                self.correction = turn(gain);
             }
-            Filter::Explicit(tau) => {
-                self.integrator
-                    .advance_corrected(rate, step, turn(step / tau));
-            }
+            Filter::Explicit(tau) => self.correction = turn(step / tau),
             Filter::Mahony {
                 proportional,
                 integral,
@@ -178,11 +181,9 @@ impl Estimator {
                 for (bias, error) in self.bias.iter_mut().zip(error) {
                     *bias -= integral * error * step;
                 }
-                let correction = error.map(|x| x * proportional * step / 2.0);
-                self.integrator.advance_corrected(rate, step, correction);
+                self.correction = error.map(|x| x * proportional * step / 2.0);
             }
             Filter::Complementary(tau) => {
-                self.integrator.advance(rate, step);
                 let gain = 1.0 - (-step / tau).exp();
                 let [x, y, z] = force;
                 let [yaw, pitch, roll] = self.integrator.attitude().angles();
@@ -197,7 +198,6 @@ impl Estimator {
                     .set_attitude(Quaternion::of_angles([yaw, pitch, roll]));
             }
             Filter::LowPass(tau) => {
-                self.integrator.advance(rate, step);
                 let world = self.integrator.attitude().rotate(force);
                 let mean = [0, 1, 2].map(|i| self.low_pass[i].next(world[i], step, tau));
                 let [x, y, z] = self.upright.rotate(mean);
