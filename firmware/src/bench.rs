@@ -18,10 +18,16 @@ use crate::machine::Machine;
 use crate::terminal::Terminal;
 
 #[cfg(feature = "peers")]
+mod attitude;
+#[cfg(feature = "peers")]
 mod peers;
 
 /// What can be measured.
+#[cfg(not(feature = "peers"))]
 pub const KERNELS: [&str; 3] = ["sine", "triangle", "field"];
+/// What can be measured.
+#[cfg(feature = "peers")]
+pub const KERNELS: [&str; 4] = ["sine", "attitude", "triangle", "field"];
 
 /// Inputs of each kernel.
 const INPUTS: usize = 256;
@@ -45,6 +51,8 @@ pub fn run<'l>(machine: &mut Machine, kernel: Option<&'l str>) -> Result<(), Ref
             }
         }
         Some("sine") => sine(&mut machine.terminal),
+        #[cfg(feature = "peers")]
+        Some("attitude") => attitude::attitude(&mut machine.terminal),
         Some("triangle" | "field") if machine.canvas.painter.is_none() => {
             return Err(Refusal::NoEngine);
         }

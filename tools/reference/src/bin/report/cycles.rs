@@ -1,7 +1,7 @@
-//! Cycles of the kernels on the SoC, from the firmware's `bench sine`.
+//! Cycles of the kernels on the SoC, from the firmware's `bench`.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -71,11 +71,46 @@ const PROMPT: &str = "glint> ";
 /// Cycles for the start and for all kernels, each a multiple of what they take.
 const LIMIT: u64 = 500_000_000;
 
-/// Runs `bench sine` on the virtual board.
+/// Where cycles come from.
+#[derive(clap::Args)]
+pub struct Source {
+    /// The verilated SoC that measures cycles [default: the one that `cargo xtask gateware` makes]
+    #[arg(long, value_name = "FILE")]
+    library: Option<PathBuf>,
+    /// The firmware that it runs [default: the one that `cargo xtask firmware --features peers` makes]
+    #[arg(long, value_name = "FILE")]
+    firmware: Option<PathBuf>,
+    /// Take the cycles from a console transcript of `bench`, from a real board say, instead of the virtual board
+    #[arg(long, value_name = "FILE")]
+    transcript: Option<PathBuf>,
+}
+
+impl Source {
+    /// The figures of `bench KERNELS`.
+    ///
+    /// # Errors
+    /// When there is no transcript where it is said, or as [`measure`].
+    pub fn measure(&self, kernels: &str) -> Result<Cycles> {
+        if let Some(path) = &self.transcript {
+            let text = std::fs::read_to_string(path)
+                .with_context(|| format!("cannot read {}", path.display()))?;
+            return parse(&text);
+        }
+        let built =
+            |given: &Option<PathBuf>, path| given.clone().unwrap_or_else(|| in_workspace(path));
+        measure(
+            &built(&self.library, "target/gateware/virtual/libglint_soc.so"),
+            &built(&self.firmware, "target/firmware/glint-peers.bin"),
+            kernels,
+        )
+    }
+}
+
+/// Runs `bench KERNELS` on the virtual board.
 ///
 /// # Errors
 /// When the board or the firmware is not built, or does not answer.
-pub fn measure(library: &Path, firmware: &Path) -> Result<Cycles> {
+fn measure(library: &Path, firmware: &Path, kernels: &str) -> Result<Cycles> {
     for (path, command) in [
         (library, "cargo xtask gateware"),
         (firmware, "cargo xtask firmware --features peers"),
@@ -93,10 +128,12 @@ pub fn measure(library: &Path, firmware: &Path) -> Result<Cycles> {
         })
         .build()?;
     let spinner = ProgressBar::new_spinner().with_style(ProgressStyle::with_template(
-        "{spinner} `bench sine` on the virtual board, {pos} million cycles",
+        "{spinner} {msg} on the virtual board, {pos} million cycles",
     )?);
+    let command = format!("bench {kernels}");
+    spinner.set_message(command.clone());
     board.read_until(PROMPT, LIMIT)?;
-    board.uart_write(b"bench sine\r");
+    board.uart_write(format!("{command}\r").as_bytes());
     let mut reply = Vec::new();
     let answered = board.run_until(LIMIT, |board| {
         spinner.set_position(board.cycles() / 1_000_000);
@@ -106,9 +143,9 @@ pub fn measure(library: &Path, firmware: &Path) -> Result<Cycles> {
     spinner.finish_and_clear();
     let reply = String::from_utf8_lossy(&reply);
     if !answered {
-        bail!("`bench sine` did not end within {LIMIT} cycles; so far: {reply:?}");
+        bail!("`{command}` did not end within {LIMIT} cycles; so far: {reply:?}");
     }
-    parse(&reply).context("`bench sine` on the virtual board")
+    parse(&reply).with_context(|| format!("`{command}` on the virtual board"))
 }
 
 /// Whether a command's reply is whole: its last line is `ok` or an error.

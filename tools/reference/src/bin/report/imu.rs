@@ -18,6 +18,7 @@ use glint_reference::imu::sensor::Sensor;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
+use crate::cycles::{Cycles, Source};
 use crate::in_workspace;
 use crate::plot::{self, Diagram, Point};
 use crate::table::{Provenance, write_csv};
@@ -33,6 +34,21 @@ pub struct Arguments {
     /// Folder for imu.md and its tables and diagrams [default: docs/report, or target/report with --quick]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    cycles: Source,
+}
+
+/// What a method is called on the soft core; two are not there.
+fn kernel(method: Method) -> Option<&'static str> {
+    match method {
+        Method::Angles => Some("angles"),
+        Method::FirstOrder => Some("first_order"),
+        Method::Newest => Some("newest"),
+        Method::Trapezoid => Some("trapezoid"),
+        Method::Parabola => Some("parabola"),
+        Method::Cubic => Some("cubic"),
+        Method::Coning | Method::PlainCubic => None,
+    }
 }
 
 /// Samples a second at which methods are compared.
@@ -71,7 +87,7 @@ struct Trial {
     error: f64,
     /// By how many powers of the step the error fell from the rate before.
     order: Option<f64>,
-    /// Not measured yet.
+    /// The median of a sample's on the soft core, where the method is there.
     cycles: Option<u64>,
     commit: String,
 }
@@ -112,6 +128,7 @@ pub fn report(arguments: &Arguments) -> Result<()> {
     let provenance = Provenance::find();
     let commit = &provenance.commit;
     let part = if arguments.quick { 0.1 } else { 1.0 };
+    let cycles = arguments.cycles.measure("attitude")?;
     let bar = ProgressBar::new(5);
     bar.set_style(ProgressStyle::with_template(
         "{msg:28} {wide_bar} {pos}/{len}, {elapsed}",
@@ -124,7 +141,7 @@ pub fn report(arguments: &Arguments) -> Result<()> {
     let targets = targets(part, commit);
     bar.inc(1);
     step("methods");
-    let trials = methods(commit);
+    let trials = methods(&cycles, commit);
     bar.inc(1);
     step("filters");
     let filters = filters(part, commit);
@@ -159,28 +176,36 @@ pub fn report(arguments: &Arguments) -> Result<()> {
     for motion in ["tumble", "coning"] {
         let diagram = Diagram {
             title: if motion == "tumble" {
-                "Tumble of 700 °/s: error against samples"
+                "Tumble of 700 °/s: error against cycles"
             } else {
-                "Coning of 5° at 10 Hz: error against samples"
+                "Coning of 5° at 10 Hz: error against cycles"
             },
             across: "error after 20 s, in degrees",
-            up: "samples a second",
+            up: "cycles a second",
         };
         let points: Vec<Point> = trials
             .iter()
             .filter(|trial| trial.motion == motion)
             .map(|trial| Point {
                 family: trial.method.to_owned(),
-                label: String::new(),
+                label: format!("{} Hz", trial.rate),
                 error: trial.error,
-                cost: Some(trial.rate),
+                cost: trial.cycles.map(|cycles| cycles as f64 * trial.rate),
                 shipped: trial.shipped,
             })
             .collect();
         plot::write(&diagram, &points, &out.join(format!("imu-{motion}.svg")))?;
     }
     draw_moments(&moments, &out)?;
-    let page = page(&targets, &trials, &filters, &stiff, part, &provenance)?;
+    let page = page(
+        &targets,
+        &cycles,
+        &trials,
+        &filters,
+        &stiff,
+        part,
+        &provenance,
+    )?;
     std::fs::write(out.join("imu.md"), page)
         .with_context(|| format!("cannot write imu.md to {}", out.display()))?;
     eprintln!("wrote imu.md and its tables to {}", out.display());
@@ -292,7 +317,7 @@ fn targets(part: f64, commit: &str) -> Vec<Target> {
     rows
 }
 
-fn methods(commit: &str) -> Vec<Trial> {
+fn methods(cycles: &Cycles, commit: &str) -> Vec<Trial> {
     let mut trials = Vec::new();
     for (name, motion) in [("tumble", TUMBLE), ("coning", CONING)] {
         for method in Method::ALL {
@@ -308,7 +333,7 @@ fn methods(commit: &str) -> Vec<Trial> {
                     rate,
                     error,
                     order,
-                    cycles: None,
+                    cycles: kernel(method).and_then(|name| Some(cycles.get(name)?.median)),
                     commit: commit.to_owned(),
                 });
             }
@@ -668,8 +693,32 @@ fn target_table(targets: &[Target]) -> Result<String> {
     Ok(text)
 }
 
+/// What a sample takes as it is shipped.
+fn cycles_table(cycles: &Cycles) -> Result<String> {
+    let mut text = String::from(
+        "| cycles a sample, as shipped | at least | aim | median | most |\n|---|---:|---:|---:|---:|\n",
+    );
+    for (name, what, at_least, aim) in [
+        ("cubic", "integration, even steps", 800, 500),
+        ("cubic_jitter", "integration, uneven steps", 800, 500),
+        ("cubic_tilt", "with tilt, even steps", 2_000, 1_200),
+        ("cubic_tilt_jitter", "with tilt, uneven steps", 2_000, 1_200),
+    ] {
+        let figures = cycles
+            .get(name)
+            .with_context(|| format!("`bench attitude` has no {name}"))?;
+        writeln!(
+            text,
+            "| {what} | {at_least} | {aim} | {} | {} |",
+            figures.median, figures.max
+        )?;
+    }
+    Ok(text)
+}
+
 fn page(
     targets: &[Target],
+    cycles: &Cycles,
     trials: &[Trial],
     filters: &[Tilted],
     stiff: &[Stiff],
@@ -695,17 +744,25 @@ fn page(
     text.push_str(
         "\n## Methods\n\n\
          Errors after 20 s, in degrees, by samples a second, with the observed order between the last two. What the firmware \
-         uses is ringed in the diagrams. Cycles on the SoC are not measured yet, so a method's cost is the samples that it needs.\n\n\
-         ![Error against samples a second, a tumble](imu-tumble.svg)\n\n\
-         ![Error against samples a second, coning](imu-coning.svg)\n\n\
-         | motion | method | 50 | 100 | 200 | 500 | 1000 | order |\n|---|---|---:|---:|---:|---:|---:|---:|\n",
+         uses is ringed in the diagrams. Cycles are the median of a sample's on the soft core, without the accelerometer, measured on the \
+         virtual board back to back; errors are those of the method in f64.\n\n\
+         ![Error against cycles a second, a tumble](imu-tumble.svg)\n\n\
+         ![Error against cycles a second, coning](imu-coning.svg)\n\n\
+         | motion | method | cycles | 50 | 100 | 200 | 500 | 1000 | order |\n|---|---|---:|---:|---:|---:|---:|---:|---:|\n",
     );
     for rows in trials.chunks(RATES.len()) {
         let Some(last) = rows.last() else {
             continue;
         };
         let mark = if last.shipped { "**" } else { "" };
-        write!(text, "| {} | {mark}{}{mark} |", last.motion, last.method)?;
+        let cycles = last
+            .cycles
+            .map_or_else(|| "–".into(), |cycles| cycles.to_string());
+        write!(
+            text,
+            "| {} | {mark}{}{mark} | {cycles} |",
+            last.motion, last.method
+        )?;
         for row in rows {
             write!(text, " {:.1e} |", row.error)?;
         }
@@ -715,7 +772,11 @@ fn page(
         "\nErrors near 180° are those of an attitude that is lost; an order says nothing there. Rates added to angles do not come nearer to the truth with more samples: \
          it is another equation. The cubic and the plain cubic differ in one coefficient, which makes the firmware's drift of coning a ninth \
          (see `glint_core::orientation`).\n\n\
-         ## Over time\n\n\
+         They would take the same cycles, and the trapezoid with coning a little more than without; neither is on the soft core.\n\n",
+    );
+    text.push_str(&cycles_table(cycles)?);
+    text.push_str(
+        "\n## Over time\n\n\
          ![Errors over time](imu-time.svg)\n\n\
          A hand's motion by the gyroscope alone, its bias known to 1/256 LSB. The band is what the noise of the rate alone adds up to.\n\n\
          ## The tilt\n\n\
@@ -746,7 +807,7 @@ fn page(
     writeln!(
         text,
         "\n## Omissions\n\n\
-         - Cycles a sample on the SoC: not measured yet.\n\
+         - Cycles of the filters that are not on the soft core.\n\
          - Optical ground truth: all motions here are made by formulas.\n\n\
          Made at commit {} with {}.",
         provenance.commit, provenance.tools

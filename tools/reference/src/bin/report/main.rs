@@ -58,15 +58,8 @@ struct SineArguments {
     /// Folder for sine.csv, sine.svg and sine.md [default: docs/report, or target/report with --quick]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// The verilated SoC that measures cycles [default: the one that `cargo xtask gateware` makes]
-    #[arg(long, value_name = "FILE")]
-    library: Option<PathBuf>,
-    /// The firmware that it runs [default: the one that `cargo xtask firmware --features peers` makes]
-    #[arg(long, value_name = "FILE")]
-    firmware: Option<PathBuf>,
-    /// Take the cycles from a console transcript of `bench sine`, from a real board say, instead of the virtual board
-    #[arg(long, value_name = "FILE")]
-    transcript: Option<PathBuf>,
+    #[command(flatten)]
+    cycles: cycles::Source,
 }
 
 fn main() -> Result<()> {
@@ -164,24 +157,7 @@ fn sine(arguments: &SineArguments) -> Result<()> {
 }
 
 fn sine_cycles(arguments: &SineArguments) -> Result<Cycles> {
-    match &arguments.transcript {
-        Some(path) => {
-            let text = std::fs::read_to_string(path)
-                .with_context(|| format!("cannot read {}", path.display()))?;
-            cycles::parse(&text)
-        }
-        None => {
-            let built =
-                |given: &Option<PathBuf>, path| given.clone().unwrap_or_else(|| in_workspace(path));
-            cycles::measure(
-                &built(
-                    &arguments.library,
-                    "target/gateware/virtual/libglint_soc.so",
-                ),
-                &built(&arguments.firmware, "target/firmware/glint-peers.bin"),
-            )
-        }
-    }
+    arguments.cycles.measure("sine")
 }
 
 fn progress_bar(steps: u64) -> Result<ProgressBar> {

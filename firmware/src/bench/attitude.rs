@@ -1,0 +1,93 @@
+//! Ways to an attitude: what a sample costs.
+
+use core::cell::RefCell;
+
+use glint_core::calibration::Units;
+use glint_core::orientation::{
+    Integrator, Quaternion, Sample, Scale, TIME_CONSTANT, Tilt, Tracker,
+};
+
+use super::measure;
+use crate::terminal::Terminal;
+
+/// The time between two samples, in µs.
+const STEP: u32 = 5_000;
+
+/// Measures each method, as `cargo xtask report imu` calls them.
+pub fn attitude(terminal: &mut Terminal) {
+    let angles = RefCell::new([0_u32; 3]);
+    measure(terminal, "angles", rate, |rate: [i32; 3]| {
+        for (angle, rate) in angles.borrow_mut().iter_mut().zip(rate) {
+            // A count of 2^−8 over 2^20 µs is 2^32/(16.4·360·256)·2^20/10^6 of 2^−32 turns.
+            let turned = (i64::from(rate) * i64::from(STEP) * 2_980) >> 20;
+            *angle = angle.wrapping_add(turned as u32);
+        }
+    });
+    let first = RefCell::new([1 << 30, 0, 0, 0]);
+    measure(terminal, "first_order", rate, |rate| {
+        first_order(&mut first.borrow_mut(), rate);
+    });
+    let integrator = || {
+        RefCell::new(Integrator::new(
+            Scale::MPU_6050,
+            Quaternion::IDENTITY,
+            [0; 3],
+        ))
+    };
+    let newest = integrator();
+    measure(terminal, "newest", rate, |rate| {
+        newest.borrow_mut().advance_order::<1>(rate, STEP, [0; 3]);
+    });
+    let trapezoid = integrator();
+    measure(terminal, "trapezoid", rate, |rate| {
+        trapezoid
+            .borrow_mut()
+            .advance_order::<2>(rate, STEP, [0; 3]);
+    });
+    let parabola = integrator();
+    measure(terminal, "parabola", rate, |rate| {
+        parabola.borrow_mut().advance_order::<3>(rate, STEP, [0; 3]);
+    });
+    // The shipped one is measured as it is shipped.
+    let sample = |t_us: u32, rate: [i32; 3]| Sample {
+        t_us,
+        accel: [0, 0, 4_096],
+        gyro: rate.map(|rate| (rate >> 8) as i16),
+    };
+    let tilt = || Some(Tilt::new(Units::MPU_6050.per_g, TIME_CONSTANT));
+    for (name, jitter, tilt) in [
+        ("cubic", 0, None),
+        ("cubic_jitter", 7, None),
+        ("cubic_tilt", 0, tilt()),
+        ("cubic_tilt_jitter", 7, tilt()),
+    ] {
+        let state = RefCell::new((Tracker::new(Scale::MPU_6050, tilt), 0_u32));
+        let uneven = |phase: u32| (phase & jitter, rate(phase));
+        measure(terminal, name, uneven, |(late, rate)| {
+            let (tracker, now) = &mut *state.borrow_mut();
+            *now = now.wrapping_add(STEP);
+            tracker.on_sample(&sample(now.wrapping_add(late), rate))
+        });
+    }
+}
+
+/// A slow rate in 1/256 LSB, so that what stays upright in the mean stays so.
+fn rate(phase: u32) -> [i32; 3] {
+    [0, 8, 16].map(|turn| phase.rotate_left(turn).cast_signed() >> 14)
+}
+
+/// q + ½·q·ω·dt, made of length 1 by a step of Newton. 30 fraction bits.
+fn first_order(q: &mut [i32; 4], rate: [i32; 3]) {
+    // Half an angle of 2^−8 LSB over 2^20 µs: 2^50·π/360/16.4/256/10^6 of 2^−30 rad.
+    const HALF: i64 = 2_340;
+    let [x, y, z] = rate.map(|rate| (i64::from(rate) * i64::from(STEP) * HALF) >> 20);
+    let [w0, x0, y0, z0] = q.map(i64::from);
+    let turned = [
+        w0 - ((x0 * x + y0 * y + z0 * z) >> 30),
+        x0 + ((w0 * x + y0 * z - z0 * y) >> 30),
+        y0 + ((w0 * y - x0 * z + z0 * x) >> 30),
+        z0 + ((w0 * z + x0 * y - y0 * x) >> 30),
+    ];
+    let excess = (1 << 60) - turned.iter().map(|x| x * x).sum::<i64>();
+    *q = turned.map(|x| (x + ((x * (excess >> 31)) >> 30)) as i32);
+}
