@@ -208,6 +208,24 @@ impl<E: Copy> Imu<E> {
         self.moved = true;
     }
 
+    /// Takes a sample for a calibration that is going on. Apart, because it is rare and long.
+    #[cold]
+    #[inline(never)]
+    fn go_on_calibrating(&mut self, sample: &Sample) {
+        let Calibrating::Going(calibration, count) = &mut self.calibrating else {
+            return;
+        };
+        match calibration.on_sample(sample) {
+            Ok(Progress::Going(samples)) => *count = samples,
+            Ok(Progress::Done(report)) => {
+                let resting = RestBias::new(Units::MPU_6050, report.bias);
+                self.tracker.follow_bias(resting);
+                self.calibrating = Calibrating::Ended(Ok(report));
+            }
+            Err(refusal) => self.calibrating = Calibrating::Ended(Err(Refusal::Sensor(refusal))),
+        }
+    }
+
     /// The camera that follows, at `eye` or at a distance of `radius`, if it has moved since it was asked for.
     ///
     /// # Errors
@@ -243,18 +261,8 @@ impl<E: Copy> Sink<E> for Imu<E> {
         self.latest = Some(sample);
         self.tracker.on_sample(&sample);
         self.moved = true;
-        if let Calibrating::Going(calibration, count) = &mut self.calibrating {
-            match calibration.on_sample(&sample) {
-                Ok(Progress::Going(samples)) => *count = samples,
-                Ok(Progress::Done(report)) => {
-                    let resting = RestBias::new(Units::MPU_6050, report.bias);
-                    self.tracker.follow_bias(resting);
-                    self.calibrating = Calibrating::Ended(Ok(report));
-                }
-                Err(refusal) => {
-                    self.calibrating = Calibrating::Ended(Err(Refusal::Sensor(refusal)))
-                }
-            }
+        if let Calibrating::Going(..) = self.calibrating {
+            self.go_on_calibrating(&sample);
         }
     }
 

@@ -62,6 +62,12 @@ pub fn attitude(terminal: &mut Terminal) {
         ("cubic_tilt_jitter", 7, tilt()),
     ] {
         let state = RefCell::new((Tracker::new(Scale::MPU_6050, tilt), 0_u32));
+        // Until the tilt has its time constant each reading has another gain.
+        for _ in 0..=TIME_CONSTANT / STEP {
+            let (tracker, now) = &mut *state.borrow_mut();
+            *now += STEP;
+            tracker.on_sample(&sample(*now, [0; 3]));
+        }
         let uneven = |phase: u32| (phase & jitter, rate(phase));
         measure(terminal, name, uneven, |(late, rate)| {
             let (tracker, now) = &mut *state.borrow_mut();
