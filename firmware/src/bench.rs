@@ -139,10 +139,17 @@ fn measure<I: Copy, O>(
         .map(|index| timed::<0, _, I, I>(&nothing, input(index)))
         .min()
         .unwrap_or(0);
+    cycles = cycles.map(|cycles| cycles.saturating_sub(overhead));
+    print(terminal, name, &mut cycles);
+}
+
+/// Prints the line of a kernel.
+fn print(terminal: &mut Terminal, name: &str, cycles: &mut [u32]) {
     cycles.sort_unstable();
-    let [min, .., max] = cycles;
-    let [min, median, max] =
-        [min, cycles[INPUTS / 2], max].map(|cycles| cycles.saturating_sub(overhead));
+    let [min, .., max] = *cycles else {
+        return;
+    };
+    let median = cycles.get(cycles.len() / 2).unwrap_or(&max);
     terminal.print(format_args!(
         "bench {name} min {min} median {median} max {max} cycles\n"
     ));

@@ -92,10 +92,10 @@ pub fn pursue(machine: &mut Machine) -> Option<Result<(), Refusal<'static>>> {
     Some(Ok(()))
 }
 
-/// Makes attitudes of samples, and gives the cycles of the tracker.
+/// Makes attitudes of samples where they lie, and gives the cycles that the tracker took.
 // It is called with many samples, and lies beside the tracker: memory.x.
 #[inline(never)]
-fn track(tracker: &mut Tracker, records: &mut [Record]) -> u64 {
+pub fn track(tracker: &mut Tracker, records: &mut [Record]) -> u64 {
     // What reading the counter twice takes by itself.
     let start = cpu::cycles_low();
     let own = cpu::cycles_low().wrapping_sub(start);

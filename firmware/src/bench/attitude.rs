@@ -4,14 +4,19 @@ use core::cell::RefCell;
 
 use glint_core::calibration::Units;
 use glint_core::orientation::{
-    Integrator, Quaternion, Sample, Scale, TIME_CONSTANT, Tilt, Tracker,
+    Integrator, Quaternion, Sample, Scale, TIME_CONSTANT, Tilt, Tracker, log,
 };
 
-use super::measure;
+use super::{measure, print};
+use crate::replay;
 use crate::terminal::Terminal;
 
 /// The time between two samples, in µs.
 const STEP: u32 = 5_000;
+
+/// Samples one after the other of which a mean is taken, and so many means.
+const RUN: u32 = 64;
+const RUNS: usize = 16;
 
 /// Measures each method, as `cargo xtask report imu` calls them.
 pub fn attitude(terminal: &mut Terminal) {
@@ -48,12 +53,7 @@ pub fn attitude(terminal: &mut Terminal) {
     measure(terminal, "parabola", rate, |rate| {
         parabola.borrow_mut().advance_order::<3>(rate, STEP, [0; 3]);
     });
-    // The shipped one is measured as it is shipped.
-    let sample = |t_us: u32, rate: [i32; 3]| Sample {
-        t_us,
-        accel: [0, 0, 4_096],
-        gyro: rate.map(|rate| (rate >> 8) as i16),
-    };
+    // The shipped one as it is shipped: from the memory beside the processor, sample after sample as `replay` takes them.
     let tilt = || Some(Tilt::new(Units::MPU_6050.per_g, TIME_CONSTANT));
     for (name, jitter, tilt) in [
         ("cubic", 0, None),
@@ -61,19 +61,27 @@ pub fn attitude(terminal: &mut Terminal) {
         ("cubic_tilt", 0, tilt()),
         ("cubic_tilt_jitter", 7, tilt()),
     ] {
-        let state = RefCell::new((Tracker::new(Scale::MPU_6050, tilt), 0_u32));
+        let mut tracker = Tracker::new(Scale::MPU_6050, tilt);
+        let mut samples = 0_u32;
+        let mut run = || {
+            let mut records = [0; RUN as usize].map(|_| {
+                samples += 1;
+                let phase = samples.wrapping_mul(0x9e37_79b9);
+                log::record(&Sample {
+                    t_us: samples * STEP + (phase & jitter),
+                    accel: [0, 0, 4_096],
+                    gyro: rate(phase).map(|rate| (rate >> 8) as i16),
+                })
+            });
+            let cycles = riscv::interrupt::free(|| replay::track(&mut tracker, &mut records));
+            (cycles / u64::from(RUN)) as u32
+        };
         // Until the tilt has its time constant each reading has another gain.
-        for _ in 0..=TIME_CONSTANT / STEP {
-            let (tracker, now) = &mut *state.borrow_mut();
-            *now += STEP;
-            tracker.on_sample(&sample(*now, [0; 3]));
+        for _ in 0..=TIME_CONSTANT / STEP / RUN {
+            run();
         }
-        let uneven = |phase: u32| (phase & jitter, rate(phase));
-        measure(terminal, name, uneven, |(late, rate)| {
-            let (tracker, now) = &mut *state.borrow_mut();
-            *now = now.wrapping_add(STEP);
-            tracker.on_sample(&sample(now.wrapping_add(late), rate))
-        });
+        let mut means: [u32; RUNS] = core::array::from_fn(|_| run());
+        print(terminal, name, &mut means);
     }
 }
 
