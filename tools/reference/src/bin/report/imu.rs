@@ -713,6 +713,9 @@ fn cycles_table(cycles: &Cycles) -> Result<String> {
             figures.median, figures.max
         )?;
     }
+    text.push_str(
+        "\nMeans of runs of 64 samples at 200 Hz; the median and the largest of 16 of them.\n",
+    );
     Ok(text)
 }
 
@@ -744,8 +747,9 @@ fn page(
     text.push_str(
         "\n## Methods\n\n\
          Errors after 20 s, in degrees, by samples a second, with the observed order between the last two. What the firmware \
-         uses is ringed in the diagrams. Cycles are the median of a sample's on the soft core, without the accelerometer, measured on the \
-         virtual board back to back; errors are those of the method in f64.\n\n\
+         uses is ringed in the diagrams. Cycles are those of a sample on the soft core, without the accelerometer, one after the other on the \
+         virtual board: the cubic's as it is shipped, from the memory beside the processor, the others' from main memory, where the instruction cache of 4 KiB \
+         may be against them. Errors are those of the method in f64.\n\n\
          ![Error against cycles a second, a tumble](imu-tumble.svg)\n\n\
          ![Error against cycles a second, coning](imu-coning.svg)\n\n\
          | motion | method | cycles | 50 | 100 | 200 | 500 | 1000 | order |\n|---|---|---:|---:|---:|---:|---:|---:|---:|\n",
@@ -771,8 +775,8 @@ fn page(
     text.push_str(
         "\nErrors near 180° are those of an attitude that is lost; an order says nothing there. Rates added to angles do not come nearer to the truth with more samples: \
          it is another equation. The cubic and the plain cubic differ in one coefficient, which makes the firmware's drift of coning a ninth \
-         (see `glint_core::orientation`).\n\n\
-         They would take the same cycles, and the trapezoid with coning a little more than without; neither is on the soft core.\n\n",
+         (see `glint_core::orientation`). \
+         The plain cubic would take the same cycles, the trapezoid with coning some more than without; neither is on the soft core.\n\n",
     );
     text.push_str(&cycles_table(cycles)?);
     text.push_str(
