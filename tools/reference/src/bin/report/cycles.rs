@@ -96,13 +96,19 @@ impl Source {
                 .with_context(|| format!("cannot read {}", path.display()))?;
             return parse(&text);
         }
-        let built =
-            |given: &Option<PathBuf>, path| given.clone().unwrap_or_else(|| in_workspace(path));
-        measure(
-            &built(&self.library, "target/gateware/virtual/libglint_soc.so"),
-            &built(&self.firmware, "target/firmware/glint-peers.bin"),
-            kernels,
-        )
+        measure(&self.library(), &self.firmware(), kernels)
+    }
+
+    /// The verilated SoC.
+    fn library(&self) -> PathBuf {
+        let built = || in_workspace("target/gateware/virtual/libglint_soc.so");
+        self.library.clone().unwrap_or_else(built)
+    }
+
+    /// The firmware that it runs.
+    pub fn firmware(&self) -> PathBuf {
+        let built = || in_workspace("target/firmware/glint-peers.bin");
+        self.firmware.clone().unwrap_or_else(built)
     }
 }
 

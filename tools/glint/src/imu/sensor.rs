@@ -1,0 +1,217 @@
+//! The sensor of a board, by its console.
+
+use super::log::Entry;
+use crate::board::Board;
+use crate::console::{self, Console, ConsoleError};
+use virtual_board::virtual_mpu6050::{Chip, Counts, Imperfections, Source, State, Wires};
+
+/// How long a sensor may take from the board's start to its first sample, in ms of the board's time: it may have to be looked for,
+/// reset and set up.
+const START_MS: u64 = 1_000;
+/// The header of what `imu stream` prints, and of a log.
+pub const HEADER: &str = "t_us,ax,ay,az,gx,gy,gz";
+
+/// Why there are no samples.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The board refuses, or does not answer.
+    #[error(transparent)]
+    Console(#[from] ConsoleError),
+    /// The board has no sensor, or it does not work.
+    #[error("no sample came within {START_MS} ms of the board's time: {0}")]
+    Failure(String),
+    /// What should be a sample is none.
+    #[error("the board's sample: expected {HEADER} in whole numbers, found {0:?}")]
+    Sample(String),
+}
+
+/// Waits for the sensor's first sample; which sensor it is.
+///
+/// # Errors
+/// There is none.
+pub fn wait<B: Board + ?Sized>(console: &mut Console<B>) -> Result<String, Error> {
+    const COMMAND: &str = "imu";
+    let end = console.board().now_ms() + START_MS;
+    loop {
+        let lines = console.command(COMMAND)?;
+        let failure: String = console::value(COMMAND, &lines, "failure")?;
+        let samples: u32 = console::value(COMMAND, &lines, "samples")?;
+        if failure == "none" && samples > 0 {
+            return Ok(console::value(COMMAND, &lines, "sensor")?);
+        }
+        if console.board().now_ms() >= end {
+            return Err(Error::Failure(match failure.as_str() {
+                "none" => "the board looks for a sensor".to_owned(),
+                _ => failure,
+            }));
+        }
+    }
+}
+
+/// Gives `on_sample` so many samples as they come, stamped from 0 on in the board's µs.
+///
+/// # Errors
+/// The sensor fails, or the board.
+pub fn stream<B: Board + ?Sized>(
+    console: &mut Console<B>,
+    samples: u32,
+    on_sample: &mut dyn FnMut(Entry),
+) -> Result<(), Error> {
+    let command = format!("imu stream {samples}");
+    console.send(&command)?;
+    let mut clock = Unwrapped::default();
+    let mut wrong = None;
+    console.lines(&command, &mut |line| {
+        if line == HEADER {
+            return;
+        }
+        match sample(line) {
+            Some((stamp, accel, gyro)) => on_sample(Entry {
+                line: 0,
+                t_us: clock.at(stamp),
+                accel,
+                gyro,
+                temp: None,
+            }),
+            None => wrong = wrong.take().or_else(|| Some(line.to_owned())),
+        }
+    })?;
+    wrong.map_or(Ok(()), |line| Err(Error::Sample(line)))
+}
+
+/// Stamps of 32 bits as ever later times from 0 on.
+#[derive(Default)]
+struct Unwrapped {
+    last: Option<u32>,
+    time: u64,
+}
+
+impl Unwrapped {
+    fn at(&mut self, stamp: u32) -> u64 {
+        let last = self.last.replace(stamp).unwrap_or(stamp);
+        self.time += u64::from(stamp.wrapping_sub(last));
+        self.time
+    }
+}
+
+fn sample(line: &str) -> Option<(u32, [i16; 3], [i16; 3])> {
+    let (stamp, counts) = line.split_once(',')?;
+    let counts: Vec<i16> = counts
+        .split(',')
+        .map(|count| count.parse().ok())
+        .collect::<Option<_>>()?;
+    let &[ax, ay, az, gx, gy, gz] = counts.as_slice() else {
+        return None;
+    };
+    Some((stamp.parse().ok()?, [ax, ay, az], [gx, gy, gz]))
+}
+
+/// What a calibration has found, in °/s and °/h.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct Calibrated {
+    /// How many samples it is the mean of.
+    pub samples: u32,
+    /// What the gyroscope reads at rest.
+    pub bias: [f64; 3],
+    /// By how much samples differ from that.
+    pub deviation: [f64; 3],
+    /// How far an attitude is expected to drift.
+    pub drift_per_hour: [f64; 3],
+}
+
+/// Calibrates with so many samples, of which `progress` is told.
+///
+/// # Errors
+/// The sensor moves, which the firmware says, or fails.
+pub fn calibrate<B: Board + ?Sized>(
+    console: &mut Console<B>,
+    samples: u32,
+    progress: &mut dyn FnMut(u32),
+) -> Result<Calibrated, Error> {
+    let command = format!("imu calibrate {samples}");
+    console.send(&command)?;
+    let mut lines = Vec::new();
+    console.lines(
+        &command,
+        &mut |line| match line.strip_prefix("calibrating ").map(str::parse) {
+            Some(Ok(samples)) => progress(samples),
+            _ => lines.push(line.to_owned()),
+        },
+    )?;
+    let three = |key| -> Result<[f64; 3], ConsoleError> {
+        let Numbers(numbers) = console::value(&command, &lines, key)?;
+        Ok(numbers)
+    };
+    Ok(Calibrated {
+        samples: console::value(&command, &lines, "calibrated")?,
+        bias: three("bias")?,
+        deviation: three("deviation")?,
+        drift_per_hour: three("drift_per_hour")?,
+    })
+}
+
+/// Three numbers.
+struct Numbers([f64; 3]);
+
+impl std::str::FromStr for Numbers {
+    type Err = ();
+
+    fn from_str(text: &str) -> Result<Self, ()> {
+        let numbers: Result<Vec<f64>, _> = text.split(' ').map(str::parse).collect();
+        let numbers = numbers.map_err(drop)?;
+        <[f64; 3]>::try_from(numbers).map(Self).map_err(drop)
+    }
+}
+
+/// A sensor for a virtual board: a specimen at rest, or one that measures what a log says, from the board's start on; its end stays.
+#[must_use]
+pub fn virtual_sensor(log: Option<&[Entry]>) -> Wires {
+    let source = match log {
+        None => Source::Motion(Box::new(|_| State::default())),
+        Some(entries) => {
+            let first = entries.first().map_or(0, |entry| entry.t_us);
+            let counts = |entry: &Entry| Counts {
+                accel: entry.accel,
+                temperature: entry.temp.unwrap_or_default(),
+                gyro: entry.gyro,
+            };
+            let after = |entry: &Entry| entry.t_us.saturating_sub(first).saturating_mul(1_000);
+            Source::Log(
+                entries
+                    .iter()
+                    .map(|entry| (after(entry), counts(entry)))
+                    .collect(),
+            )
+        }
+    };
+    Wires::new(Chip::new(source, Imperfections::TYPICAL, 1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_are_read_and_nothing_else() {
+        assert_eq!(
+            sample("4294967295,1,-2,4096,0,32767,-32768"),
+            Some((u32::MAX, [1, -2, 4096], [0, i16::MAX, i16::MIN]))
+        );
+        for line in [
+            "",
+            "1,2,3",
+            "1,2,3,4,5,6,7,8",
+            "1,2,3,4,5,6,40000",
+            "-1,0,0,0,0,0,0",
+        ] {
+            assert_eq!(sample(line), None, "{line}");
+        }
+    }
+
+    #[test]
+    fn stamps_go_on_behind_their_end() {
+        let mut clock = Unwrapped::default();
+        let times = [u32::MAX - 1, u32::MAX, 1, 1_001].map(|stamp| clock.at(stamp));
+        assert_eq!(times, [0, 1, 3, 1_003]);
+    }
+}
