@@ -1,6 +1,6 @@
 //! The sensor's stream: a future that interrupts drive, and what came of it for the main loop.
 //!
-//! The end of a transfer and the end of a pause are interrupts, and each lets the stream go on. So samples are read when they are due,
+//! The end of a transfer, of some rounds, and of a pause are interrupts, and each lets the stream go on. So samples are read when they are due,
 //! whatever the program does meanwhile; what comes of them waits in a queue until the program has time.
 
 use core::cell::{Cell, RefCell};

@@ -77,7 +77,7 @@ pub enum Command<'a> {
     Imu(Option<ImuAction>),
     /// `mounting [FORWARD UP]`; without directions it prints the present ones.
     Mounting(Option<Mounting>),
-    /// `sensitivity [TIMES]`, in 1/256; without a number it prints the present one.
+    /// `sensitivity [TIMES]`, in 1/256, rounded down; without a number it prints the present one.
     Sensitivity(Option<u16>),
     /// `replay [BYTES CRC32]`, at most [`MAX_BYTES`] bytes; without arguments it sends the attitudes of the last one.
     Replay(Option<Manifest>),

@@ -12,7 +12,7 @@ use super::*;
 use crate::timer::tests::{Uptime, clock};
 
 /// Places in each queue.
-const PLACES: usize = 33;
+const PLACES: usize = super::PLACES as usize;
 
 /// The master's registers, with a device that gives what it is asked for. Each look at the status lets it do a command.
 struct Master {
@@ -270,6 +270,15 @@ fn what_is_left_of_a_dropped_transaction_is_cleared_away() {
     i2c.read(0x68, &mut buffer).unwrap();
     // The start was under way already.
     assert_eq!(log(&master), "S S d1+ <a0+ <a1+ <a2+ <a3- P");
+}
+
+#[test]
+fn the_gateware_has_the_room_that_is_counted_on() {
+    // The map is made of the gateware's own numbers.
+    let map = include_str!("../../../litex-pac/src/generated.rs");
+    assert!(map.contains(&std::format!("puts a command into the queue of {PLACES};")));
+    let most = Repeat::default().with_period(u32::MAX).with_batch(u8::MAX);
+    assert_eq!((most.period(), most.batch()), ((1 << 24) - 1, 15));
 }
 
 const ROUND: Round = Round {
