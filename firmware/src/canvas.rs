@@ -2,9 +2,9 @@
 
 use glint_core::console::Backend;
 use glint_core::mesh::Mesh;
-use glint_model::march::{Outcome, Ray, render_field};
-use glint_model::{FrameSetup, Options, RenderError, Stats, Target, trace_frame};
-use litex_hal::display::Display;
+use glint_hal::display::Display;
+use glint_model::raymarch::{Outcome, Ray, render_field};
+use glint_model::{MeshSetup, Options, RenderError, Stats, Target, trace_frame};
 use litex_pac::cpu;
 
 use crate::memory::Scratch;
@@ -178,7 +178,7 @@ fn draw_all(
 
 fn draw_mesh(
     triangles: &Triangles,
-    frame: FrameSetup,
+    frame: MeshSetup,
     target: &mut Target,
     scratch: &mut Scratch,
     look: &mut impl FnMut(),

@@ -12,12 +12,12 @@ use glint_core::light::MAX_LIGHTS;
 use glint_core::mesh::MeshError;
 use glint_core::orientation::log::LogError;
 use glint_core::wire::{Failure, Manifest, crc32};
+use glint_hal::display::Scale;
+use glint_hal::timer::FREQUENCY;
+use glint_hal::triangle::Counters;
 use glint_model::RenderError;
-use glint_model::march::FieldStats;
+use glint_model::raymarch::FieldStats;
 use heapless::Vec;
-use litex_hal::display::Scale;
-use litex_hal::timer::FREQUENCY;
-use litex_hal::triangle::Counters;
 use litex_pac::{cpu, ctrl};
 
 use crate::machine::{Job, Machine};

@@ -1,6 +1,6 @@
 //! What comes in by itself.
 
-use litex_hal::{display, i2c, interrupt, march, timer, triangle};
+use glint_hal::{display, i2c, interrupt, raymarch, timer, triangle};
 use litex_pac::{Interrupt, cpu};
 
 use crate::sensor;
@@ -47,7 +47,7 @@ fn handle() {
         Interrupt::Uart => UART.on_interrupt(),
         Interrupt::Scanout => display::acknowledge_vblank(),
         Interrupt::Triangle => triangle::acknowledge(),
-        Interrupt::Raymarch => march::acknowledge(),
+        Interrupt::Raymarch => raymarch::acknowledge(),
         Interrupt::I2c => {
             i2c::acknowledge();
             sensor::advance(start);

@@ -3,7 +3,7 @@
 use core::fmt::Write;
 use core::panic::PanicInfo;
 
-use litex_hal::uart::Direct;
+use glint_hal::uart::Direct;
 use litex_pac::Peripherals;
 use riscv::register::{mcause, mepc, mtval};
 use riscv_rt::TrapFrame;

@@ -10,9 +10,9 @@ use core::time::Duration;
 use embedded_hal::digital::StatefulOutputPin;
 use glint_core::calibration::SAMPLES;
 use glint_core::mpu6050::Stream;
-use litex_hal::gpio::{InputPort, OutputPort};
-use litex_hal::i2c::I2c;
-use litex_hal::timer::{Clock, Deadline};
+use glint_hal::gpio::{InputPort, OutputPort};
+use glint_hal::i2c::I2c;
+use glint_hal::timer::{Clock, Deadline};
 use litex_pac::cpu;
 use litex_pac::ctrl::Ctrl;
 

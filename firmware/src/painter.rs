@@ -8,12 +8,14 @@ use glint_core::camera::View;
 use glint_core::field::Field;
 use glint_core::mesh::Mesh;
 use glint_core::stereo::Stereo;
-use glint_model::descriptor::{self, Descriptor, TABLE_WORDS, band_rows, list_word};
-use glint_model::march::{FieldOptions, FieldStats, Palette, Prepass, Setup};
-use glint_model::{FrameSetup, Options, RenderError, Shading, Stats, clip_exceptions, together};
-use litex_hal::march::{self, Marcher};
-use litex_hal::triangle::{
+use glint_hal::raymarch::{self, Raymarcher};
+use glint_hal::triangle::{
     Counters, Engine, Fault, Geometry, Lists, Outcome, Prepared, Raster, Set,
+};
+use glint_model::descriptor::{self, Descriptor, TABLE_WORDS, band_rows, list_word};
+use glint_model::raymarch::{FieldOptions, FieldStats, Palette, Prepass, Setup};
+use glint_model::{
+    MeshSetup, Options, RenderError, Shading, Stats, clip_exceptions, mesh_in_field,
 };
 use litex_pac::cpu;
 
@@ -28,7 +30,7 @@ const LIST_NUMBERS: usize = 1 << 20;
 const LENGTHS: usize = 4 * TABLE_WORDS as usize;
 
 /// Cycles without anything read, written or drawn after which the engine is given up: a tenth of a second.
-const STUCK: u64 = litex_hal::timer::FREQUENCY as u64 / 10;
+const STUCK: u64 = glint_hal::timer::FREQUENCY as u64 / 10;
 
 /// Questions whether a pass has ended between two whether it moves at all.
 const POLLS: u32 = 100;
@@ -89,7 +91,7 @@ impl<'a> What<'a> {
     pub fn constants(&self, size: (u32, u32)) -> Result<Constants, RenderError> {
         let (frame, field) = match self {
             Self::Triangles(Triangles { mesh, view, .. }) => {
-                let frame = FrameSetup::new(view, size.0, size.1, mesh.radius())?;
+                let frame = MeshSetup::new(view, size.0, size.1, mesh.radius())?;
                 (Some(frame), None)
             }
             Self::Field(marched) => {
@@ -100,7 +102,7 @@ impl<'a> What<'a> {
             Self::Both(Triangles { mesh, view, .. }, marched) => {
                 let (radius, options) = (mesh.radius(), marched.options());
                 let (frame, setup) =
-                    together::constants(view, size, radius, marched.field, &options)?;
+                    mesh_in_field::constants(view, size, radius, marched.field, &options)?;
                 (Some(frame), Some((setup, options.palette_for(&setup))))
             }
         };
@@ -111,7 +113,7 @@ impl<'a> What<'a> {
 /// The constants of a frame.
 pub struct Constants {
     /// Of its mesh.
-    pub frame: Option<FrameSetup>,
+    pub frame: Option<MeshSetup>,
     /// Of its field, and its colours.
     pub field: Option<(Setup, Palette)>,
 }
@@ -202,7 +204,7 @@ enum Stage {
 pub struct Painter {
     engine: Engine,
     /// The raymarcher, where there is one.
-    marcher: Option<Marcher>,
+    raymarcher: Option<Raymarcher>,
     /// How far the engine can shade.
     ability: Shading,
     rooms: [Room; 2],
@@ -211,10 +213,10 @@ pub struct Painter {
     known: [Known; 2],
     stage: Stage,
     /// The constants of the frame whose geometry was begun last.
-    frame: Option<FrameSetup>,
+    frame: Option<MeshSetup>,
     watch: Watch,
     start: (u64, Counters),
-    field_start: march::Counters,
+    field_start: raymarch::Counters,
 }
 
 /// A frame by the engine.
@@ -231,7 +233,7 @@ impl Painter {
     /// A painter of two frame buffers, of which the first lies at `first_buffer`; nothing if `memory` is too small.
     pub fn new(
         engine: Engine,
-        marcher: Option<Marcher>,
+        raymarcher: Option<Raymarcher>,
         mut memory: &'static mut [u32],
         first_buffer: u32,
     ) -> Option<Self> {
@@ -239,14 +241,14 @@ impl Painter {
             start: (0, engine.counters()),
             ability: engine.ability(),
             engine,
-            marcher,
+            raymarcher,
             rooms: [Room::cut(&mut memory)?, Room::cut(&mut memory)?],
             first_buffer,
             known: [None; 2],
             stage: Stage::Idle,
             frame: None,
             watch: Watch::default(),
-            field_start: march::Counters::default(),
+            field_start: raymarch::Counters::default(),
         })
     }
 
@@ -311,9 +313,9 @@ impl Painter {
     /// From now on it counts.
     fn mark_start(&mut self) {
         self.field_start = self
-            .marcher
+            .raymarcher
             .as_ref()
-            .map(Marcher::counters)
+            .map(Raymarcher::counters)
             .unwrap_or_default();
         self.start = (cpu::cycles(), self.engine.counters());
         self.watch = Watch::default();
@@ -324,8 +326,11 @@ impl Painter {
         let (start, counters) = self.start;
         let cycles = cpu::cycles() - start;
         let counters = self.engine.counters() - counters;
-        let field = self.marcher.as_ref().filter(|_| what.marched().is_some());
-        let field = field.map(|marcher| marcher.counters() - self.field_start);
+        let field = self
+            .raymarcher
+            .as_ref()
+            .filter(|_| what.marched().is_some());
+        let field = field.map(|raymarcher| raymarcher.counters() - self.field_start);
         let field_pixels = field.map_or(0, |field| field.pixels);
         let triangles = what.triangles().map(|_| Stats {
             // The walker comes to a group of eight a clock.
@@ -365,17 +370,17 @@ impl Painter {
         field: Option<&(Setup, Palette)>,
         has_tables: bool,
     ) -> Result<(), Fallback> {
-        match (&mut self.marcher, field) {
-            (Some(marcher), Some((setup, palette))) => {
+        match (&mut self.raymarcher, field) {
+            (Some(raymarcher), Some((setup, palette))) => {
                 let outcome = if has_tables {
-                    marcher.set_field_with_tables_held(setup, palette)
+                    raymarcher.set_field_with_tables_held(setup, palette)
                 } else {
-                    marcher.set_field(setup, palette)
+                    raymarcher.set_field(setup, palette)
                 };
                 outcome.map_err(|missing| Fallback::Field(Some(missing)))
             }
-            (Some(marcher), None) => {
-                marcher.clear_field();
+            (Some(raymarcher), None) => {
+                raymarcher.clear_field();
                 Ok(())
             }
             (None, Some(_)) => Err(Fallback::Field(None)),
@@ -385,8 +390,8 @@ impl Painter {
 
     /// Whether the raymarcher has a field's tables.
     fn has_tables(&self, field: Option<&(Setup, Palette)>) -> bool {
-        let both = self.marcher.as_ref().zip(field);
-        both.is_some_and(|(marcher, (_, palette))| marcher.has_tables(palette))
+        let both = self.raymarcher.as_ref().zip(field);
+        both.is_some_and(|(raymarcher, (_, palette))| raymarcher.has_tables(palette))
     }
 
     /// Draws a frame again and again, back to back: while one is rastered the next one's geometry is made. What is returned

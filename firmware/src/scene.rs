@@ -9,11 +9,11 @@ use glint_core::console::Backend;
 use glint_core::field::Field;
 use glint_core::fixed::{Q32_32, Turns};
 use glint_core::stereo::Stereo;
-use glint_model::march::FieldStats;
+use glint_hal::display::Scale;
+use glint_hal::raymarch::Missing;
+use glint_hal::triangle::{Counters, Fault};
+use glint_model::raymarch::FieldStats;
 use glint_model::{RenderError, Stats};
-use litex_hal::display::Scale;
-use litex_hal::march::Missing;
-use litex_hal::triangle::{Counters, Fault};
 
 /// A camera on a sphere about the origin.
 #[derive(Clone, Copy)]

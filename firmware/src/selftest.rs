@@ -1,7 +1,7 @@
 //! What the machine can tell about itself.
 
 use glint_core::mpu6050::Error;
-use litex_hal::i2c;
+use glint_hal::i2c;
 use litex_pac::cpu;
 
 use crate::machine::Machine;

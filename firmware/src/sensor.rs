@@ -10,8 +10,8 @@ use core::task::{Context, Waker};
 
 use critical_section::Mutex;
 use glint_core::mpu6050::{Error, Identity, Measurement, Sink};
+use glint_hal::i2c;
 use heapless::Deque;
-use litex_hal::i2c;
 use litex_pac::cpu;
 
 /// The sensor, and what follows it.

@@ -5,13 +5,13 @@ use core::fmt::{self, Write as _};
 use glint_core::camera::ViewError;
 use glint_core::console::Backend;
 use glint_core::mesh::MeshError;
-use litex_hal::display::{Display, Scanout};
-use litex_hal::gpio::{InputPort, OutputPort};
-use litex_hal::i2c::I2c;
-use litex_hal::march::Marcher;
-use litex_hal::timer::{Clock, FREQUENCY, Stopped};
-use litex_hal::triangle::Engine;
-use litex_hal::uart::Direct;
+use glint_hal::display::{Display, Scanout};
+use glint_hal::gpio::{InputPort, OutputPort};
+use glint_hal::i2c::I2c;
+use glint_hal::raymarch::Raymarcher;
+use glint_hal::timer::{Clock, FREQUENCY, Stopped};
+use glint_hal::triangle::Engine;
+use glint_hal::uart::Direct;
 use litex_pac::{BUILD_ID, Peripherals};
 
 use crate::canvas::Canvas;
@@ -88,7 +88,7 @@ pub fn machine() -> Result<Machine, Fault> {
 
     let clock = Clock::new(peripherals.timer0).map_err(Fault::Clock)?;
     UART.start(peripherals.uart);
-    let (scanout, engine, marcher, devices) = if identity.matches() {
+    let (scanout, engine, raymarcher, devices) = if identity.matches() {
         let devices = Devices {
             buttons: InputPort::new(peripherals.buttons.in_()),
             switches: InputPort::new(peripherals.switches.in_()),
@@ -98,7 +98,7 @@ pub fn machine() -> Result<Machine, Fault> {
         (
             Scanout::probe(peripherals.scanout).ok(),
             Engine::probe(peripherals.triangle).ok(),
-            Marcher::probe(peripherals.raymarch).ok(),
+            Raymarcher::probe(peripherals.raymarch).ok(),
             Some(devices),
         )
     } else {
@@ -107,7 +107,7 @@ pub fn machine() -> Result<Machine, Fault> {
     interrupts::start(devices.is_some(), scanout.is_some(), engine.is_some());
     let painter = engine.and_then(|engine| {
         let first_buffer = memory.frames[0].as_ptr().addr() as u32;
-        Painter::new(engine, marcher, memory.lists, first_buffer)
+        Painter::new(engine, raymarcher, memory.lists, first_buffer)
     });
     let backend = if painter.is_some() {
         Backend::Gateware

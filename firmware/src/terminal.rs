@@ -5,9 +5,9 @@ use core::time::Duration;
 
 use embedded_io::Write as _;
 use glint_core::console::{Event, LINE_MAX, LineEditor, PROMPT};
+use glint_hal::timer::Clock;
+use glint_hal::uart::{Uart, Writer};
 use heapless::String;
-use litex_hal::timer::Clock;
-use litex_hal::uart::{Uart, Writer};
 
 /// Bytes that may wait to be read: more than a second of typing at 115,200 baud, and several windows of an upload.
 const RECEIVE_QUEUE: usize = 16 << 10;

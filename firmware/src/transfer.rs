@@ -4,7 +4,7 @@
 //! after a silence.
 
 use glint_core::wire::{Failure, MAX_FRAME, Manifest, Party, Receiver, Sender, State, Timing};
-use litex_hal::timer::Clock;
+use glint_hal::timer::Clock;
 
 use crate::terminal::{ConsoleUart, Terminal};
 

@@ -9,19 +9,19 @@ module field_unit #(
     parameter bit          BLEND  = 1'b0
 ) (
     input  wire                     clk,
-    input  wire march_pkg::solid_t  solid,
+    input  wire raymarch_pkg::solid_t  solid,
     input  wire                     ball_write,
     input  wire  [2:0]              ball_number,
-    input  wire march_pkg::ball_t   ball,
+    input  wire raymarch_pkg::ball_t   ball,
     input  wire  [2:0]              pass,
     input  wire  [2:0][21:0]        point,
-    input  wire march_pkg::nearest_t so_far,
+    input  wire raymarch_pkg::nearest_t so_far,
     output logic signed [21:0]      distance,
     output logic                    round,
     output logic [2:0]              surface,
     output logic [2:0]              face,
     output logic [7:0]              share,
-    output march_pkg::nearest_t     nearest
+    output raymarch_pkg::nearest_t     nearest
 );
     (* anyseq *) logic signed [21:0] any_distance;
     (* anyseq *) logic [2:0]         any_surface;

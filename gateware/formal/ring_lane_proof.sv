@@ -18,8 +18,8 @@ module ring_lane_proof (
     always_ff @(posedge clk) rst <= 1'b0;
 
     logic             in_ready, out_valid, evaluates, waits;
-    march_pkg::ray_t  ray;
-    march_pkg::end_t  out_end;
+    raymarch_pkg::ray_t  ray;
+    raymarch_pkg::end_t  out_end;
     logic [10:0]      came, inside;
     (* anyconst *) logic [10:0] followed;
     (* anyconst *) logic [9:0]  length;
@@ -37,7 +37,7 @@ module ring_lane_proof (
     );
 
     stream_checker #(.WIDTH(1), .GIVEN(1)) given (.clk, .rst, .valid(in_valid), .ready(in_ready), .data(1'b0));
-    stream_checker #(.WIDTH(march_pkg::END_BITS)) ends (.clk, .rst, .valid(out_valid), .ready(out_ready), .data(out_end));
+    stream_checker #(.WIDTH(raymarch_pkg::END_BITS)) ends (.clk, .rst, .valid(out_valid), .ready(out_ready), .data(out_end));
 
     logic       entered, left, here;
     logic [4:0] on_its_way, refused;

@@ -59,7 +59,7 @@ def _formal(*names):
 # The longest first.
 PROOFS = [
     Proof("ring_lane", "ring_lane_proof",
-          [_RTL / "raymarch" / "march_pkg.sv", _RTL / "common" / "delay.sv", _RTL / "common" / "fifo.sv",
+          [_RTL / "raymarch" / "raymarch_pkg.sv", _RTL / "common" / "delay.sv", _RTL / "common" / "fifo.sv",
            _RTL / "raymarch" / "ring_lane.sv", *_formal("any_product", "any_field", "ring_lane_proof")], 36),
     Proof("band_flush", "band_flush_proof",
           [FORMAL / "stream_checker.sv", FORMAL / "band_flush_proof.sv", _RTL / "common" / "fifo.sv",

@@ -10,7 +10,7 @@ from litex.soc.integration import export
 from litex.soc.integration.builder import Builder
 
 from . import register_map
-from .march import BUILDS
+from .raymarch import BUILDS
 from .register_map import OPTIONAL_BLOCKS
 
 

@@ -13,7 +13,7 @@ from litex.soc.interconnect import wishbone
 
 from .i2c import I2CMaster
 from .identity import Identity
-from .march import Fields, Raymarcher
+from .raymarch import Fields, Raymarcher
 from .memory_bridge import MemoryBridge
 from .register_map import CSR_MAP, CSR_PAGING, OPTIONAL_BLOCKS, PINNED
 from .scanout import Scanout

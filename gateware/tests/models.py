@@ -1,6 +1,6 @@
-"""Builds a module as a shared library that the tests in `tools/rtl` clock from Rust.
+"""Builds a module as a shared library that the tests in `tools/testbench` clock from Rust.
 
-`target/gateware/models/NAME.so` is the verilated module and `tools/rtl/harness/module.cpp` around it.
+`target/gateware/models/NAME.so` is the verilated module and `tools/testbench/harness/module.cpp` around it.
 """
 
 import re
@@ -9,7 +9,7 @@ import shutil
 from tools import BUILD, GATEWARE, VERILATOR_ROOT, digest, run, run_verilator
 
 MODELS = BUILD.parent / "models"
-_HARNESS = GATEWARE.parent / "tools" / "rtl" / "harness" / "module.cpp"
+_HARNESS = GATEWARE.parent / "tools" / "testbench" / "harness" / "module.cpp"
 
 _COMPILE = ["g++", "-std=c++20", "-O2", "-fPIC", "-shared", "-w", "-pthread", "-fvisibility=default",
             f"-I{VERILATOR_ROOT}/include", f"-I{VERILATOR_ROOT}/include/vltstd"]

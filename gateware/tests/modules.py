@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 from glint_soc import scanout
 from glint_soc.i2c import I2C
-from glint_soc.march import BUILDS, FIELD_UNIT, RAY_GENERATOR, RAY_PAINT, RAYMARCHER, RING_LANE, ROUND_LIGHT
+from glint_soc.raymarch import BUILDS, FIELD_UNIT, RAY_GENERATOR, RAY_PAINT, RAYMARCHER, RING_LANE, ROUND_LIGHT
 from glint_soc.triangle import BAND_BUFFER, SETUP, TRIANGLE_CONTROL, TRIANGLE_ENGINE, TRIANGLE_RASTER, VERTEX_STAGE
 
 
@@ -12,7 +12,7 @@ from glint_soc.triangle import BAND_BUFFER, SETUP, TRIANGLE_CONTROL, TRIANGLE_EN
 class Module:
     """A top module. `variants` are builds with other parameters, `defines` what the bench is told about them.
 
-    A module without a bench is tested from Rust, by `tools/rtl`, in the builds that are not `measured` only.
+    A module without a bench is tested from Rust, by `tools/testbench`, in the builds that are not `measured` only.
     """
 
     top: str

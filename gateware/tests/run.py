@@ -2,7 +2,7 @@
 
     python gateware/tests/run.py           runs everything, one line a test; ends with 1 if anything failed
     python gateware/tests/run.py --models [NAME ...]
-                                           builds what the tests in tools/rtl need instead, or only these modules of it
+                                           builds what the tests in tools/testbench need instead, or only these modules of it
     python gateware/tests/run.py --size NAME
                                            prints what a module, or `soc`, costs on the FPGA instead, as JSON:
                                            `cargo xtask resources` makes tables of it
@@ -69,7 +69,7 @@ def model_builds(module):
     if not module.bench:
         for name, parameters in module.builds().items():
             if name not in module.measured:
-                yield partial(check, f"{name}: built for tools/rtl", partial(models.build, module, name, parameters))
+                yield partial(check, f"{name}: built for tools/testbench", partial(models.build, module, name, parameters))
 
 
 def run_all(checks):
@@ -119,7 +119,7 @@ if __name__ == "__main__":
     what = parser.add_mutually_exclusive_group()
     what.add_argument("--size", metavar="NAME", help="print a size instead")
     what.add_argument("--models", nargs="*", metavar="NAME", choices=[module.top for module in MODULES],
-                      help="build what the tests in tools/rtl need instead, or only these modules of it")
+                      help="build what the tests in tools/testbench need instead, or only these modules of it")
     arguments = parser.parse_args()
     logging.disable(logging.INFO) # LiteX describes all it does
     if arguments.size:

@@ -9,7 +9,7 @@
 //! | [`interrupt`] | the CPU's interrupt lines | |
 //! | [`display`] | `scanout` and its two frames | |
 //! | [`triangle`] | `triangle`, the engine that draws meshes | |
-//! | [`march`] | `raymarch`, which draws distance fields into its frames | |
+//! | [`raymarch`] | `raymarch`, which draws distance fields into its frames | |
 //!
 //! Registers are reached through `litex-pac` alone, which on a host has a modelled bus: the tests run these drivers
 //! unchanged.
@@ -23,7 +23,7 @@ pub mod display;
 pub mod gpio;
 pub mod i2c;
 pub mod interrupt;
-pub mod march;
+pub mod raymarch;
 pub mod timer;
 pub mod triangle;
 pub mod uart;

@@ -13,7 +13,7 @@ use core::ops::Sub;
 use core::sync::atomic::{Ordering, compiler_fence};
 
 use glint_core::mesh::Mesh;
-use glint_model::{FrameSetup, SIZES, Shading};
+use glint_model::{MeshSetup, SIZES, Shading};
 use litex_pac::triangle::{
     self, Control, DepthScale, EvEnable, EvPending, Geometry as GeometryStart,
     Raster as RasterStart,
@@ -104,7 +104,7 @@ pub struct Geometry<'a> {
     /// The mesh.
     pub mesh: &'a Mesh<'a>,
     /// The constants of the frame.
-    pub frame: &'a FrameSetup,
+    pub frame: &'a MeshSetup,
     /// Whether back faces are left out.
     pub cull: bool,
     /// Where colours come from, as far as the engine can.

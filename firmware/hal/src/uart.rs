@@ -6,7 +6,7 @@
 //!
 //! ```no_run
 //! # use core::time::Duration;
-//! # use litex_hal::{timer::Clock, uart::Uart};
+//! # use glint_hal::{timer::Clock, uart::Uart};
 //! use embedded_io::Write;
 //! static UART: Uart<1024, 1024> = Uart::new();
 //!

@@ -3,7 +3,7 @@
 //! It works on camera coordinates, before the division. An intersection is the exact one, rounded: it does not depend on
 //! the direction of its edge, so both triangles at an edge cut it at the same vertex.
 
-use crate::frame::FrameSetup;
+use crate::frame::MeshSetup;
 use crate::vertex::CameraVertex;
 
 /// Every plane replaces each run of outside vertices by two, and at most every second vertex is one:
@@ -58,7 +58,7 @@ impl Plane {
     pub const ALL: [Self; 5] = [Self::Near, Self::Left, Self::Right, Self::Top, Self::Bottom];
 
     /// How far inside a vertex is, times a positive number that depends on the plane alone; negative is outside. Exact.
-    pub fn distance(self, frame: &FrameSetup, vertex: &CameraVertex) -> i64 {
+    pub fn distance(self, frame: &MeshSetup, vertex: &CameraVertex) -> i64 {
         let [width, height] = [frame.width, frame.height].map(i64::from);
         match self {
             Self::Near => vertex.z - frame.near,
@@ -70,7 +70,7 @@ impl Plane {
     }
 
     /// Puts what the plane leaves of `polygon` into `left`. Returns whether it cuts anything; if not, nothing is put.
-    fn cut(self, frame: &FrameSetup, polygon: &Polygon, left: &mut Polygon) -> bool {
+    fn cut(self, frame: &MeshSetup, polygon: &Polygon, left: &mut Polygon) -> bool {
         let vertices = polygon.vertices();
         let Some(mut from) = vertices.last() else {
             return false;
@@ -104,7 +104,7 @@ impl Plane {
     /// Where the edge from a vertex inside to one outside meets the plane.
     fn intersection(
         self,
-        frame: &FrameSetup,
+        frame: &MeshSetup,
         a: &CameraVertex,
         da: i64,
         b: &CameraVertex,
@@ -128,14 +128,14 @@ impl Plane {
 }
 
 /// X or Y of a vertex in half pixels, in the units of Z: below 2^55.7, and 5375·|Z| is below 2^53.1.
-fn half_pixels(frame: &FrameSetup, x: i64) -> i64 {
+fn half_pixels(frame: &MeshSetup, x: i64) -> i64 {
     x << (24 - frame.scale_shift)
 }
 
 /// Whether a triangle is wholly off one side of the picture, behind the eye or not: the side's plane goes through the eye.
 ///
 /// Clipping would find nothing that covers a pixel, in much more time.
-pub fn off_picture(frame: &FrameSetup, triangle: &[CameraVertex; 3]) -> bool {
+pub fn off_picture(frame: &MeshSetup, triangle: &[CameraVertex; 3]) -> bool {
     let off = |x: fn(&CameraVertex) -> i64, size: u32| {
         let places = triangle
             .each_ref()
@@ -146,7 +146,7 @@ pub fn off_picture(frame: &FrameSetup, triangle: &[CameraVertex; 3]) -> bool {
 }
 
 /// Cuts a triangle to the view volume, starting with its first vertex.
-pub fn clip(frame: &FrameSetup, triangle: [CameraVertex; 3]) -> Polygon {
+pub fn clip(frame: &MeshSetup, triangle: [CameraVertex; 3]) -> Polygon {
     let (mut polygon, mut left) = (Polygon::empty(), Polygon::empty());
     triangle.into_iter().for_each(|vertex| polygon.push(vertex));
     for plane in Plane::ALL {

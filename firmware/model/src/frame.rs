@@ -12,7 +12,7 @@ pub const MAX_EYE: u32 = 8;
 /// What the vertex stage needs to know of a frame (formats.md, "Frame constants").
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub struct FrameSetup {
+pub struct MeshSetup {
     /// Width of the picture in pixels.
     pub width: u32,
     /// Height of the picture in pixels.
@@ -33,7 +33,7 @@ pub struct FrameSetup {
     pub depth: DepthScale,
 }
 
-impl FrameSetup {
+impl MeshSetup {
     /// The constants for a camera within 8 of the origin, one of the [`SIZES`], and a mesh with the given radius (u.14).
     ///
     /// # Errors

@@ -13,17 +13,17 @@
 pub mod clip;
 pub mod descriptor;
 pub mod frame;
-pub mod march;
+pub mod mesh_in_field;
 pub mod quotient;
 pub mod raster;
+pub mod raymarch;
 pub mod reciprocal;
 mod render;
 pub mod setup;
 pub mod shade;
-pub mod together;
 pub mod vertex;
 
-pub use frame::{DepthScale, FrameSetup};
+pub use frame::{DepthScale, MeshSetup};
 pub use glint_core::colour::Shading;
 pub use render::{
     Buffer, DrawnTriangle, Options, RenderError, SIZES, Stats, Target, clip_exceptions, render,

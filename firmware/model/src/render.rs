@@ -8,7 +8,7 @@ use glint_core::fixed::Q32_32;
 use glint_core::mesh::{Chunk, Mesh, Rgb565, Triangle};
 
 use crate::clip::{clip, off_picture};
-use crate::frame::{FrameSetup, MAX_EYE};
+use crate::frame::{MAX_EYE, MeshSetup};
 use crate::raster;
 use crate::setup::{Bounds, Facing, Oriented, Setup};
 use crate::shade::{Light, Lit, intensity, lit};
@@ -152,7 +152,7 @@ pub fn trace(
     show: impl FnMut(&DrawnTriangle),
 ) -> Result<Stats, RenderError> {
     target.check()?;
-    let frame = FrameSetup::new(view, target.width, target.height, mesh.radius())?;
+    let frame = MeshSetup::new(view, target.width, target.height, mesh.radius())?;
     trace_frame(mesh, frame, target, scratch, options, show)
 }
 
@@ -162,7 +162,7 @@ pub fn trace(
 /// [`RenderError`], also if the target has not the size of the constants; then nothing has been touched.
 pub fn trace_frame(
     mesh: &Mesh,
-    frame: FrameSetup,
+    frame: MeshSetup,
     target: &mut Target,
     scratch: &mut [Projected],
     options: &Options,
@@ -174,7 +174,7 @@ pub fn trace_frame(
 /// [`trace_frame`], not generic: compiled here, once, and as this crate is optimised.
 fn draw_frame(
     mesh: &Mesh,
-    frame: FrameSetup,
+    frame: MeshSetup,
     target: &mut Target,
     scratch: &mut [Projected],
     options: &Options,
@@ -220,7 +220,7 @@ enum Path<'a> {
 }
 
 struct Renderer<'a, 'b> {
-    frame: FrameSetup,
+    frame: MeshSetup,
     options: Options,
     target: &'a mut Target<'b>,
     show: &'a mut dyn FnMut(&DrawnTriangle),
@@ -370,7 +370,7 @@ struct Placed {
 impl Placed {
     /// Nothing for a back face that is culled, and where no pixel can be covered.
     fn new(
-        frame: &FrameSetup,
+        frame: &MeshSetup,
         cull: bool,
         triangle: &Triangle,
         vertices: [&ScreenVertex; 3],
@@ -403,7 +403,7 @@ impl Placed {
 ///
 /// Not inlined, so that flat triangles need no room for it in an instruction cache.
 #[inline(never)]
-fn vertex_light(frame: &FrameSetup, indices: [u16; 3], chunk: &Chunk) -> [Light; 3] {
+fn vertex_light(frame: &MeshSetup, indices: [u16; 3], chunk: &Chunk) -> [Light; 3] {
     indices.map(|i| {
         // A checked mesh has all the vertices it names.
         chunk.vertex(usize::from(i)).map_or(Light::default(), |v| {
@@ -425,7 +425,7 @@ fn lit_corners(shading: Shading, corners: [&Corner; 3]) -> Option<[Light; 3]> {
 
 /// Clips a triangle, and gives out what is left as a fan.
 fn clip_fan(
-    frame: &FrameSetup,
+    frame: &MeshSetup,
     shading: Shading,
     triangle: &Triangle,
     chunk: &Chunk,
@@ -474,7 +474,7 @@ fn clip_fan(
 /// passed over.
 pub fn clip_exceptions(
     mesh: &Mesh,
-    frame: &FrameSetup,
+    frame: &MeshSetup,
     options: &Options,
     numbers: &mut dyn Iterator<Item = u32>,
     emit: &mut dyn FnMut(&Setup, Rgb565),

@@ -1,6 +1,6 @@
 //! The vertex stage: from a position of the mesh to a place on the screen.
 
-use crate::frame::FrameSetup;
+use crate::frame::MeshSetup;
 use crate::nearest;
 use crate::reciprocal::Reciprocal;
 use crate::shade::Light;
@@ -62,7 +62,7 @@ impl Projected {
 ///
 /// |P| ≤ 2·√3 is less than 2^15.8 in its units and a row is shorter than 2^24.01 (2^23.01 for n), so each product is below 2^39.9;
 /// a translation is at most 8 rows, 2^41.1. So |X|, |Y| < 2^41.7 and |Z| < 2^40.7.
-pub fn transform(frame: &FrameSetup, position: [i16; 3]) -> CameraVertex {
+pub fn transform(frame: &MeshSetup, position: [i16; 3]) -> CameraVertex {
     let dot = |row: &[i32; 3]| -> i64 {
         core::iter::zip(position, row)
             .map(|(p, &r)| i64::from(p) * i64::from(r))
@@ -78,7 +78,7 @@ pub fn transform(frame: &FrameSetup, position: [i16; 3]) -> CameraVertex {
 }
 
 /// Steps 3 to 8.
-pub fn project(frame: &FrameSetup, vertex: &CameraVertex) -> Projected {
+pub fn project(frame: &MeshSetup, vertex: &CameraVertex) -> Projected {
     if vertex.z < frame.near {
         return Projected::Behind;
     }
@@ -94,7 +94,7 @@ pub fn project(frame: &FrameSetup, vertex: &CameraVertex) -> Projected {
 /// Steps 4 to 8, for a vertex that is not behind.
 ///
 /// A place more than 4096 pixels from the centre saturates at 4096 pixels or more: it stays outside the guard band.
-pub fn snap(frame: &FrameSetup, vertex: &CameraVertex) -> ScreenVertex {
+pub fn snap(frame: &MeshSetup, vertex: &CameraVertex) -> ScreenVertex {
     let Reciprocal { y, lead } = Reciprocal::of(vertex.z as u64);
     // Z is at least near, so lead ≥ 30 (and ≤ 40); with f in 10…18 the shift is in 6…24.
     let shift = frame.scale_shift + lead - 34;
@@ -111,7 +111,7 @@ pub fn snap(frame: &FrameSetup, vertex: &CameraVertex) -> ScreenVertex {
 }
 
 /// Step 8: w = K/Z. A mesh that keeps to its radius never saturates.
-fn depth(frame: &FrameSetup, y: u32, lead: u32) -> u32 {
+fn depth(frame: &MeshSetup, y: u32, lead: u32) -> u32 {
     // 17 by 24 bits; the exponent is in −5…5, so the shift is in 6…26.
     let product = u64::from(frame.depth.mantissa) * u64::from(y);
     let shift = (lead as i32 - 19 - frame.depth.exponent) as u32;

@@ -5,19 +5,19 @@ mod common;
 use common::{Camera, Model, Picture, Random, world};
 use glint_model::clip::clip;
 use glint_model::vertex::{CameraVertex, project, transform};
-use glint_model::{FrameSetup, Projected, SIZES};
+use glint_model::{MeshSetup, Projected, SIZES};
 
 const SIZE: (u32, u32) = SIZES[0];
 
 /// A radius for vertices anywhere.
 const RADIUS: u32 = 56_756;
 
-fn random_frame(random: &mut Random) -> FrameSetup {
+fn random_frame(random: &mut Random) -> MeshSetup {
     let (width, height) = SIZES[random.integer(0, 2) as usize];
-    FrameSetup::new(&Camera::inside(random).rounded(), width, height, RADIUS).unwrap()
+    MeshSetup::new(&Camera::inside(random).rounded(), width, height, RADIUS).unwrap()
 }
 
-fn random_vertex(random: &mut Random, frame: &FrameSetup) -> CameraVertex {
+fn random_vertex(random: &mut Random, frame: &MeshSetup) -> CameraVertex {
     transform(frame, [0; 3].map(|_| random.integer(-32768, 32767) as i16))
 }
 
@@ -174,7 +174,7 @@ fn the_near_plane_cuts_where_it_is() {
             let view = camera.rounded();
             let picture = Picture::of(&floor, &view, size, true);
             assert_eq!(picture.stats.clipped, 2);
-            let frame = FrameSetup::new(&view, size.0, size.1, 56_756).unwrap();
+            let frame = MeshSetup::new(&view, size.0, size.1, 56_756).unwrap();
             let (w, h) = (f64::from(size.0), f64::from(size.1));
             let scale = w / 2.0 / 0.9;
             let mut seen = 0;

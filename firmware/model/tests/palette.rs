@@ -4,7 +4,7 @@ use glint_core::camera::View;
 use glint_core::field::Field;
 use glint_core::fixed::{Q32_32, Turns, U4_28};
 use glint_core::stereo::Stereo;
-use glint_model::march::{FieldOptions, Palette, Setup};
+use glint_model::raymarch::{FieldOptions, Palette, Setup};
 
 fn setup(field: &str, half_width: &str, options: &FieldOptions) -> Setup {
     let field = Field::parse(field).unwrap();

@@ -5,7 +5,7 @@ mod common;
 use common::{Camera, Random, world};
 use glint_model::reciprocal::Reciprocal;
 use glint_model::vertex::{project, transform};
-use glint_model::{FrameSetup, Projected, SIZES, ScreenVertex};
+use glint_model::{MeshSetup, Projected, SIZES, ScreenVertex};
 
 /// The radius of a mesh that fills the 1×1×1 box, and of one with vertices at ±2; u.14.
 const RADII: [u32; 2] = [14_190, 56_756];
@@ -88,7 +88,7 @@ fn places_against_f64() {
             let index = round / 8 % 2;
             let (camera, point, z) = aimed(&mut random, size, half_width, [0.5, 2.0][index]);
             let view = camera.rounded();
-            let frame = FrameSetup::new(&view, width, height, RADII[index]).unwrap();
+            let frame = MeshSetup::new(&view, width, height, RADII[index]).unwrap();
             for _ in 0..4 {
                 // Neighbours of the point on the screen.
                 let spread = (z * half_width * 16384.0).min(20_000.0) as i64 + 1;
@@ -126,7 +126,7 @@ fn depths_against_f64() {
         let index = round % 2;
         let (camera, point, _) = aimed(&mut random, SIZES[0], half_width, [0.5, 2.0][index]);
         let view = camera.rounded();
-        let frame = FrameSetup::new(&view, 320, 180, RADII[index]).unwrap();
+        let frame = MeshSetup::new(&view, 320, 180, RADII[index]).unwrap();
         let k = f64::from(frame.depth.mantissa) * 2f64.powi(frame.depth.exponent);
         let [.., z] = Camera::of(&view).project(world(point), 320, 180);
         if let Projected::Visible(place) | Projected::BeyondGuard(place) =
@@ -187,7 +187,7 @@ fn extremes() {
                             *row = row.map(|x| x * scale);
                         }
                         let view = camera.rounded();
-                        let frame = FrameSetup::new(&view, size.0, size.1, RADII[1]).unwrap();
+                        let frame = MeshSetup::new(&view, size.0, size.1, RADII[1]).unwrap();
                         assert!((10..=18).contains(&frame.scale_shift));
                         assert!(
                             frame
@@ -243,7 +243,7 @@ fn steps_as_written() {
         let half_width = random.logarithmic(0.05, 4.0);
         let (camera, point, _) = aimed(&mut random, (width, height), half_width, 2.0);
         let view = camera.rounded();
-        let frame = FrameSetup::new(&view, width, height, RADII[1]).unwrap();
+        let frame = MeshSetup::new(&view, width, height, RADII[1]).unwrap();
         let f = frame.scale_shift as i32;
 
         let rows = [(view.u(), f), (view.v(), f), (view.n(), 23)].map(|(row, bits)| {
@@ -321,7 +321,7 @@ fn rows_fill_their_width() {
             near: 0.1,
         };
         let view = camera.rounded();
-        let frame = FrameSetup::new(&view, width, height, 0).unwrap();
+        let frame = MeshSetup::new(&view, width, height, 0).unwrap();
         assert!(
             frame.u[0] < 1 << 24 && frame.v[2] > -1 << 24,
             "{half_width}"

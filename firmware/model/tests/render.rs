@@ -7,7 +7,7 @@ use glint_core::camera::View;
 use glint_core::fixed::Q32_32;
 use glint_core::mesh::Mesh;
 use glint_model::setup::{Facing, Oriented};
-use glint_model::{Buffer, FrameSetup, Options, Projected, RenderError, SIZES, Target, render};
+use glint_model::{Buffer, MeshSetup, Options, Projected, RenderError, SIZES, Target, render};
 
 const SIZE: (u32, u32) = SIZES[0];
 
@@ -300,7 +300,7 @@ fn what_does_not_fit_is_refused() {
         );
     }
     assert_eq!(
-        FrameSetup::new(&view, 1, 1, 0),
+        MeshSetup::new(&view, 1, 1, 0),
         Err(RenderError::Size {
             width: 1,
             height: 1
@@ -315,7 +315,7 @@ fn an_eye_too_far_for_a_mesh_is_refused() {
         let eye = [Q32_32::ZERO, Q32_32::ZERO, z];
         let (half_width, near) = (view.half_width(), view.near());
         let view = View::new_checked(eye, view.u(), view.v(), view.n(), half_width, near).unwrap();
-        FrameSetup::new(&view, 320, 180, 1 << 14).map(|frame| frame.translation[2])
+        MeshSetup::new(&view, 320, 180, 1 << 14).map(|frame| frame.translation[2])
     };
     assert!(at(Q32_32::lit("8")).is_ok());
     let eye = [Q32_32::ZERO, Q32_32::ZERO, Q32_32::lit("8.5")];

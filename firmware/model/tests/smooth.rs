@@ -11,7 +11,7 @@ use glint_model::raster::draw;
 use glint_model::setup::{Bounds, Facing, Oriented, Setup};
 use glint_model::shade::{Light, Lit, intensity, lit};
 use glint_model::vertex::{CameraVertex, transform};
-use glint_model::{FrameSetup, SIZES};
+use glint_model::{MeshSetup, SIZES};
 
 fn any_colour(random: &mut Random) -> Rgb565 {
     Rgb565(random.bits() as u16)
@@ -100,9 +100,9 @@ fn light_is_that_of_flat_shading() {
     assert!(front > 3000 && back > 3000, "{front}, {back}");
 }
 
-fn random_frame(random: &mut Random) -> FrameSetup {
+fn random_frame(random: &mut Random) -> MeshSetup {
     let (width, height) = SIZES[random.integer(0, 2) as usize];
-    FrameSetup::new(&Camera::inside(random).rounded(), width, height, 56_756).unwrap()
+    MeshSetup::new(&Camera::inside(random).rounded(), width, height, 56_756).unwrap()
 }
 
 /// The clipper's light is between that of the ends, nearest to the part of the edge at which it cuts, and the same for

@@ -9,17 +9,17 @@
 
 module blend_unit (
     input  wire                         clk,
-    input  wire march_pkg::solid_t      solid,
+    input  wire raymarch_pkg::solid_t      solid,
     input  wire signed [21:0]           flat_distance,
     input  wire [2:0]                   flat_surface,
-    input  wire march_pkg::nearest_t    known,
+    input  wire raymarch_pkg::nearest_t    known,
     input  wire                         takes_round,
     output logic signed [21:0]          distance,
     output logic                        round,
     output logic [2:0]                  surface,
     output logic [2:0]                  face,
     output logic [7:0]                  share,
-    output march_pkg::nearest_t         nearest
+    output raymarch_pkg::nearest_t         nearest
 );
     // 1: how far apart they are. 2: how much of the fillet is left. 5: the farther one's weight. 8: the distance.
     logic signed [22:0] apart_1;
@@ -71,9 +71,9 @@ module blend_unit (
     // With a fillet everything is round; without one, what has been taken.
     logic [2:0]          flat_7;
     logic                round_7;
-    march_pkg::nearest_t known_7;
+    raymarch_pkg::nearest_t known_7;
 
-    delay #(.WIDTH(march_pkg::NEAREST_BITS), .CLOCKS(7)) known_waits (.clk, .enable(1'b1), .in(known), .out(known_7));
+    delay #(.WIDTH(raymarch_pkg::NEAREST_BITS), .CLOCKS(7)) known_waits (.clk, .enable(1'b1), .in(known), .out(known_7));
     delay #(.WIDTH(3), .CLOCKS(7)) flat_waits (.clk, .enable(1'b1), .in(flat_surface), .out(flat_7));
     delay #(.WIDTH(1), .CLOCKS(2)) which_still (.clk, .enable(1'b1), .in(round_5), .out(round_7));
 

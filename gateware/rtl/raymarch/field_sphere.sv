@@ -18,7 +18,7 @@ module field_sphere (
     input  wire                     repeated,
     input  wire                     ball_write,
     input  wire  [2:0]              ball_number,
-    input  wire march_pkg::ball_t   ball,
+    input  wire raymarch_pkg::ball_t   ball,
     input  wire  [2:0]              number,
     input  wire  [2:0][21:0]        point,
     output logic signed [21:0]      distance

@@ -1,6 +1,6 @@
 // The distance field of a lane: the fields that it is built with, side by side, and which of them is asked.
 //
-// Latency march_pkg::field_clocks(LEVELS, BOXES, ROUND, BLEND), throughput a point a clock, no handshake; `solid` holds. A field that is not
+// Latency raymarch_pkg::field_clocks(LEVELS, BOXES, ROUND, BLEND), throughput a point a clock, no handshake; `solid` holds. A field that is not
 // built costs nothing; one that is the only one costs no choice.
 //
 // Spheres are looked at one after the other: `pass` is the number of one, a clock before the point, `so_far` is the nearest one of
@@ -18,21 +18,21 @@ module field_unit #(
     parameter bit          BLEND  = 1'b0
 ) (
     input  wire                     clk,
-    input  wire march_pkg::solid_t  solid,
+    input  wire raymarch_pkg::solid_t  solid,
     input  wire                     ball_write,
     input  wire  [2:0]              ball_number,
-    input  wire march_pkg::ball_t   ball,
+    input  wire raymarch_pkg::ball_t   ball,
     input  wire  [2:0]              pass,
     input  wire  [2:0][21:0]        point,
-    input  wire march_pkg::nearest_t so_far,
+    input  wire raymarch_pkg::nearest_t so_far,
     output logic signed [21:0]      distance,
     output logic                    round,
     output logic [2:0]              surface,
     output logic [2:0]              face,
     output logic [7:0]              share,
-    output march_pkg::nearest_t     nearest
+    output raymarch_pkg::nearest_t     nearest
 );
-    localparam int unsigned FLAT_CLOCKS = march_pkg::flat_clocks(LEVELS, BOXES);
+    localparam int unsigned FLAT_CLOCKS = raymarch_pkg::flat_clocks(LEVELS, BOXES);
     localparam bit          FLAT        = LEVELS > 0 || BOXES;
 
     logic signed [21:0] menger_distance, box_distance, flat_distance;
@@ -87,18 +87,18 @@ module field_unit #(
 
         logic signed [21:0]  distance_18;
         logic [2:0]          pass_18;
-        march_pkg::nearest_t so_far_18, known, nearest_both;
+        raymarch_pkg::nearest_t so_far_18, known, nearest_both;
 
         field_sphere field (
             .clk, .repeated(solid.balls_repeated), .ball_write, .ball_number, .ball, .number(pass), .point, .distance(distance_18)
         );
         delay #(.WIDTH(3), .CLOCKS(KNOWN)) number (.clk, .enable(1'b1), .in(pass), .out(pass_18));
-        delay #(.WIDTH(march_pkg::NEAREST_BITS), .CLOCKS(KNOWN - 1)) others (.clk, .enable(1'b1), .in(so_far), .out(so_far_18));
+        delay #(.WIDTH(raymarch_pkg::NEAREST_BITS), .CLOCKS(KNOWN - 1)) others (.clk, .enable(1'b1), .in(so_far), .out(so_far_18));
 
         always_ff @(posedge clk) known <= distance_18 < $signed(so_far_18.distance) ? {distance_18, pass_18} : so_far_18;
 
         if (BOTH > KNOWN) begin : wait_for_flat
-            delay #(.WIDTH(march_pkg::NEAREST_BITS), .CLOCKS(BOTH - KNOWN)) waiting (
+            delay #(.WIDTH(raymarch_pkg::NEAREST_BITS), .CLOCKS(BOTH - KNOWN)) waiting (
                 .clk, .enable(1'b1), .in(known), .out(nearest_both)
             );
         end else begin : at_once

@@ -57,7 +57,7 @@ module ray_generator #(
     // Rays.
     output logic                      out_valid,
     input  wire                       out_ready,
-    output march_pkg::ray_t           out_ray
+    output raymarch_pkg::ray_t           out_ray
 );
     // Clocks until the sum of the squares is as far as the largest part, and those until a ray leaves.
     localparam int unsigned SUM  = ROUND ? 3 : 0;
@@ -65,7 +65,7 @@ module ray_generator #(
 
     logic          begins, running, ends_line, ends_eye, ends_band, ends;
     logic [LAST:0] valid;
-    march_pkg::place_t place, place_0;
+    raymarch_pkg::place_t place, place_0;
     logic [5:0]    band;
     logic [2:0][31:0] d, row, next_row, step_across, step_down;
 
@@ -127,7 +127,7 @@ module ray_generator #(
     end
 
     // 0: what is looked at. 1: the first bits of each part; 2: the largest, or more; 4: its inverse.
-    march_pkg::place_t place_now;
+    raymarch_pkg::place_t place_now;
     logic [9:0]  part_x, part_y, part_z, largest_2, longest_2, length_10, length_18;
     logic [16:0] largest_inverse_4, inverse_4;
     logic [2:0][24:0] d_now, d_0, d_4;
@@ -137,7 +137,7 @@ module ray_generator #(
 
     if (ROUND) begin : wait_for_sum
         delay #(.WIDTH(75), .CLOCKS(SUM)) d_waits (.clk, .enable, .in(d_now), .out(d_0));
-        delay #(.WIDTH(march_pkg::PLACE_BITS), .CLOCKS(SUM)) place_waits_too (.clk, .enable, .in(place_now), .out(place_0));
+        delay #(.WIDTH(raymarch_pkg::PLACE_BITS), .CLOCKS(SUM)) place_waits_too (.clk, .enable, .in(place_now), .out(place_0));
     end else begin : at_once
         assign d_0     = d_now;
         assign place_0 = place_now;
@@ -232,12 +232,12 @@ module ray_generator #(
         .clk, .enable, .index_a(index_7[1]), .inverse_a(inverse_9[1]), .index_b(index_7[2]), .inverse_b(inverse_9[2])
     );
 
-    march_pkg::place_t place_9;
+    raymarch_pkg::place_t place_9;
     logic [22:0]      near_21;
     logic [33:0]      near_product;
     logic [2:0][22:0] entry_21;
 
-    delay #(.WIDTH(march_pkg::PLACE_BITS), .CLOCKS(9)) place_waits (.clk, .enable, .in(place_0), .out(place_9));
+    delay #(.WIDTH(raymarch_pkg::PLACE_BITS), .CLOCKS(9)) place_waits (.clk, .enable, .in(place_0), .out(place_9));
     delay #(.WIDTH(10), .CLOCKS(8)) length_stays (.clk, .enable, .in(length_10), .out(length_18));
     delay #(.WIDTH(11), .CLOCKS(8)) part_stays (.clk, .enable, .in(part_10), .out(part_18));
 
@@ -315,7 +315,7 @@ module ray_generator #(
 
     // What is cleared before a ray, and how wide a cone gets.
     logic [22:0] near_18;
-    logic [march_pkg::SPREAD_BITS-1:0] spread_23;
+    logic [raymarch_pkg::SPREAD_BITS-1:0] spread_23;
 
     if (PREPASS) begin : with_prepass
         // The lines of a block that have come, and the number of its first one in a row of blocks.
@@ -356,7 +356,7 @@ module ray_generator #(
         multiply_add #(.BITS(43)) widening (
             .clk, .enable, .a({11'b0, spread}), .b({1'b0, inverse_4}), .c(43'd2 << 11), .p(spread_7)
         );
-        delay #(.WIDTH(march_pkg::SPREAD_BITS), .CLOCKS(16)) spread_goes (
+        delay #(.WIDTH(raymarch_pkg::SPREAD_BITS), .CLOCKS(16)) spread_goes (
             .clk, .enable, .in(spread_7[26:11] & {16{cones}}), .out(spread_23)
         );
         wire _unused = &{1'b0, spread_7[42:27], spread_7[10:0]};
@@ -369,15 +369,15 @@ module ray_generator #(
         wire _unused = &{1'b0, prepass, cones, fine, block, offset, spread, cleared};
     end
 
-    march_pkg::place_t place_23;
+    raymarch_pkg::place_t place_23;
     logic [9:0]        length_23;
     logic [2:0][17:0]  direction_23;
 
-    delay #(.WIDTH(march_pkg::PLACE_BITS), .CLOCKS(14)) place_goes (.clk, .enable, .in(place_9), .out(place_23));
+    delay #(.WIDTH(raymarch_pkg::PLACE_BITS), .CLOCKS(14)) place_goes (.clk, .enable, .in(place_9), .out(place_23));
     delay #(.WIDTH(10), .CLOCKS(5)) length_goes (.clk, .enable, .in(length_18), .out(length_23));
     delay #(.WIDTH(54), .CLOCKS(16)) direction_goes (.clk, .enable, .in(direction_7), .out(direction_23));
 
-    skid_buffer #(.WIDTH(march_pkg::SPREAD_BITS + march_pkg::PLACE_BITS + 10 + 23 + 54)) leaving (
+    skid_buffer #(.WIDTH(raymarch_pkg::SPREAD_BITS + raymarch_pkg::PLACE_BITS + 10 + 23 + 54)) leaving (
         .clk, .rst, .in_valid(valid[LAST]), .in_ready(enable), .in_data({spread_23, place_23, length_23, start_23, direction_23}),
         .out_valid, .out_ready, .out_data(out_ray)
     );

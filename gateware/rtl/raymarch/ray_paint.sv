@@ -37,7 +37,7 @@ module ray_paint #(
     // Ends.
     input  wire                     in_valid,
     output logic                    in_ready,
-    input  wire march_pkg::end_t    in_end,
+    input  wire raymarch_pkg::end_t    in_end,
     input  wire  [23:0]             in_colour,
     // Groups.
     output logic                    out_valid,
@@ -65,7 +65,7 @@ module ray_paint #(
     end
 
     // The way to the surface takes FIRST clocks: 2 to its slope's inverse, 3 to the product, 1 to t. Clocks count from `ending_0`.
-    march_pkg::end_t    ending_0, waited;
+    raymarch_pkg::end_t    ending_0, waited;
     logic [16:0]        slope_inverse;
     logic [11:0]        gap_waits;
     logic signed [29:0] way;
@@ -77,7 +77,7 @@ module ray_paint #(
         .clk, .enable, .a({13'b0, gap_waits}), .b({1'b0, slope_inverse}), .c('0), .p(way)
     );
     delay #(.WIDTH(23), .CLOCKS(5)) t_delay (.clk, .enable, .in(in_end.t), .out(t_waits_0));
-    delay #(.WIDTH(march_pkg::END_BITS), .CLOCKS(FIRST)) others (.clk, .enable, .in(in_end), .out(waited));
+    delay #(.WIDTH(raymarch_pkg::END_BITS), .CLOCKS(FIRST)) others (.clk, .enable, .in(in_end), .out(waited));
     always_ff @(posedge clk) if (enable) reached <= {1'b0, t_waits_0} + {4'b0, way[28:9]};
 
     always_comb begin
@@ -129,7 +129,7 @@ module ray_paint #(
     );
 
     // 9: the colour. 10: of what there are how many 256ths.
-    march_pkg::state_t state_8, state_9;
+    raymarch_pkg::state_t state_8, state_9;
     logic [2:0]        surface_8;
     logic [2:0][7:0]   colour_9, colour_10;
     logic [7:0]        fog_part;
@@ -145,7 +145,7 @@ module ray_paint #(
 
     if (ROUND) begin : lit
         delay #(.WIDTH(25), .CLOCKS(FIRST + 8)) light_waits (
-            .clk, .enable, .in({in_end.round && in_end.state == march_pkg::HIT, in_colour}), .out({lit_8, lit_colour_8})
+            .clk, .enable, .in({in_end.round && in_end.state == raymarch_pkg::HIT, in_colour}), .out({lit_8, lit_colour_8})
         );
     end else begin : unlit
         assign lit_8        = 1'b0;
@@ -153,17 +153,17 @@ module ray_paint #(
         wire _unused = &{1'b0, in_end.round, in_colour, round};
     end
 
-    assign fog_part = state_9 == march_pkg::HIT ? fog_9 : ~height_9;
+    assign fog_part = state_9 == raymarch_pkg::HIT ? fog_9 : ~height_9;
 
     always_ff @(posedge clk) begin
         if (enable) begin
             state_9  <= state_8;
-            colour_9 <= palette[state_8 == march_pkg::HIT ? surface_8 : state_8 == march_pkg::MISS ? 3'd7 : 3'd6];
+            colour_9 <= palette[state_8 == raymarch_pkg::HIT ? surface_8 : state_8 == raymarch_pkg::MISS ? 3'd7 : 3'd6];
             if (lit_8) colour_9 <= lit_colour_8;
 
             colour_10 <= colour_9;
-            light_10  <= state_9 == march_pkg::HIT ? {1'b0, light_9} + 9'(light_9[7]) : 9'd256;
-            fog_10    <= state_9 == march_pkg::UNDECIDED ? '0 : {1'b0, fog_part} + 9'(fog_part[7]);
+            light_10  <= state_9 == raymarch_pkg::HIT ? {1'b0, light_9} + 9'(light_9[7]) : 9'd256;
+            fog_10    <= state_9 == raymarch_pkg::UNDECIDED ? '0 : {1'b0, fog_part} + 9'(fog_part[7]);
         end
     end
 
@@ -208,17 +208,17 @@ module ray_paint #(
     delay #(.WIDTH(16), .CLOCKS(11)) colour_waits (.clk, .enable, .in(colour_18), .out(colour_29));
 
     // 29: all of it. A miss has no depth.
-    march_pkg::place_t place_26, place_29;
+    raymarch_pkg::place_t place_26, place_29;
     logic              hit_28;
     logic [17:0]       code_29;
     logic [8:0]        line_times_5;
     logic [10:0]       first_row_28, row_29;
     logic [7:0]        column_28;
 
-    delay #(.WIDTH(march_pkg::PLACE_BITS), .CLOCKS(26)) place_waits (.clk, .enable, .in(ending_0.place), .out(place_26));
-    delay #(.WIDTH(march_pkg::PLACE_BITS), .CLOCKS(3)) place_goes (.clk, .enable, .in(place_26), .out(place_29));
+    delay #(.WIDTH(raymarch_pkg::PLACE_BITS), .CLOCKS(26)) place_waits (.clk, .enable, .in(ending_0.place), .out(place_26));
+    delay #(.WIDTH(raymarch_pkg::PLACE_BITS), .CLOCKS(3)) place_goes (.clk, .enable, .in(place_26), .out(place_29));
     delay #(.WIDTH(8), .CLOCKS(2)) column_waits (.clk, .enable, .in(place_26.column[10:3]), .out(column_28));
-    delay #(.WIDTH(1), .CLOCKS(28)) hit_waits (.clk, .enable, .in(ending_0.state == march_pkg::HIT), .out(hit_28));
+    delay #(.WIDTH(1), .CLOCKS(28)) hit_waits (.clk, .enable, .in(ending_0.state == raymarch_pkg::HIT), .out(hit_28));
 
     always_ff @(posedge clk) begin
         if (enable) begin

@@ -50,13 +50,13 @@ module raymarcher #(
     input  wire  [1:0][2:0][24:0]     origins,
     input  wire  [1:0][2:0][23:0]     outside,
     input  wire  [2:0][23:0]          bounds,
-    input  wire march_pkg::solid_t    solid,
-    input  wire march_pkg::tuning_t   tuning,
+    input  wire raymarch_pkg::solid_t    solid,
+    input  wire raymarch_pkg::tuning_t   tuning,
     // Spheres, with ROUND: written between frames.
     input  wire                       ball_write,
     input  wire  [2:0]                ball_number,
-    input  wire march_pkg::ball_t     ball,
-    input  wire march_pkg::lights_t   lights,
+    input  wire raymarch_pkg::ball_t     ball,
+    input  wire raymarch_pkg::lights_t   lights,
     // Cones: whether there are any, and what their blocks are in D.
     input  wire                       prepass,
     input  wire  [2:0][31:0]          cone_offset,
@@ -95,7 +95,7 @@ module raymarcher #(
     output logic [31:0]               undecided
 );
     localparam int unsigned EARLY_BITS = $clog2(EARLY + 1);
-    localparam int unsigned KEPT_BITS  = march_pkg::end_bits(ROUND, BLEND);
+    localparam int unsigned KEPT_BITS  = raymarch_pkg::end_bits(ROUND, BLEND);
 
     // Bands, less one; lines of a band, columns of eight, rows of eight pixels, rays.
     logic [5:0]  last_band, lines;
@@ -117,7 +117,7 @@ module raymarcher #(
     logic                  ray_moves, group_moves;
 
     logic                  generating, ray_valid, ray_ready;
-    march_pkg::ray_t       ray;
+    raymarch_pkg::ray_t       ray;
 
     // The cones go first, and when all of them have ended the rays.
     logic        cones, fine, generate_rays, looks;
@@ -173,7 +173,7 @@ module raymarcher #(
 
     // A ray goes to the first lane that has room.
     logic [LANES-1:0]   lane_ready, lane_valid, lane_takes, end_valid, end_taken, evaluates, waits;
-    logic [LANES-1:0][march_pkg::END_BITS-1:0] end_of;
+    logic [LANES-1:0][raymarch_pkg::END_BITS-1:0] end_of;
 
     always_comb begin
         lane_valid = '0;
@@ -197,7 +197,7 @@ module raymarcher #(
     localparam int unsigned TURN_BITS = LANES == 1 ? 1 : $clog2(LANES);
     logic [TURN_BITS-1:0] turn;
     logic                 next_valid, next_now, next_taken, waiting_valid, waiting_now, waiting_ready, room, paint_valid, paint_ready;
-    march_pkg::end_t      next_end, waiting_end, paint_end;
+    raymarch_pkg::end_t      next_end, waiting_end, paint_end;
     logic [KEPT_BITS-1:0] kept;
 
     always_ff @(posedge clk) turn <= reset || turn == TURN_BITS'(LANES - 1) ? '0 : turn + 1'b1;
@@ -222,11 +222,11 @@ module raymarcher #(
         .clk, .rst(reset), .in_valid(next_valid && !next_now && !cones), .in_ready(room), .in_data(next_end[KEPT_BITS-1:0]),
         .out_valid(waiting_valid), .out_ready(waiting_ready), .out_data(kept)
     );
-    assign waiting_end = march_pkg::END_BITS'(kept);
+    assign waiting_end = raymarch_pkg::END_BITS'(kept);
 
     // What is round gets its light first.
     logic            lit_valid, lit_ready;
-    march_pkg::end_t lit_end;
+    raymarch_pkg::end_t lit_end;
     logic [23:0]     lit_colour;
 
     if (ROUND) begin : light
@@ -285,7 +285,7 @@ module raymarcher #(
 
     // The events are registered first: a carry chain of 32 bits is long enough by itself.
     logic             ray_came, ended, waited;
-    march_pkg::state_t how;
+    raymarch_pkg::state_t how;
     logic [LANES-1:0] idles;
     logic [2:0]       evaluated, idle_lanes;
 
@@ -309,9 +309,9 @@ module raymarcher #(
         clocks_waiting <= clocks_waiting + 32'(waited);
         evaluations    <= evaluations + 32'(evaluated);
         rays           <= rays + 32'(ray_came);
-        hits           <= hits + 32'(ended && how == march_pkg::HIT);
-        misses         <= misses + 32'(ended && how == march_pkg::MISS);
-        undecided      <= undecided + 32'(ended && how == march_pkg::UNDECIDED);
+        hits           <= hits + 32'(ended && how == raymarch_pkg::HIT);
+        misses         <= misses + 32'(ended && how == raymarch_pkg::MISS);
+        undecided      <= undecided + 32'(ended && how == raymarch_pkg::UNDECIDED);
 
         if (rst) begin
             {ray_came, ended, waited, evaluated, idle_lanes} <= '0;

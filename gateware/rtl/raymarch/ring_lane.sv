@@ -4,7 +4,7 @@
 //             ▲                                                                   ├─▶ fifo ─▶ ends
 //             └───────────────────── t + distance ◀───────────────────────────────┘
 //
-// The ring has march_pkg::field_clocks + 6 slots and never stalls; p = o + t·d is made anew in each round, so nothing drifts. A
+// The ring has raymarch_pkg::field_clocks + 6 slots and never stalls; p = o + t·d is made anew in each round, so nothing drifts. A
 // slot whose ray has ended takes the next one in the same clock. A ray is let in only while there is a place for its end in the
 // fifo: PLACES, of which those in the ring count as taken. `evaluates` is high in clocks in which a slot that is occupied
 // passes the field, `waits` where one was empty though a ray was offered.
@@ -28,45 +28,45 @@ module ring_lane #(
     parameter bit          STEREO = 1'b1,
     parameter bit          PREPASS = 1'b0,
     // More than there are slots, or some would stay empty.
-    parameter int unsigned PLACES = march_pkg::field_clocks(LEVELS, BOXES, ROUND, BLEND) > 24 ? 64 : 32
+    parameter int unsigned PLACES = raymarch_pkg::field_clocks(LEVELS, BOXES, ROUND, BLEND) > 24 ? 64 : 32
 ) (
     input  wire                      clk,
     input  wire                      rst,
     // Frame.
     input  wire  [1:0][2:0][24:0]    origins,
     input  wire  [2:0][23:0]         bounds,
-    input  wire march_pkg::solid_t   solid,
-    input  wire march_pkg::tuning_t  tuning,
+    input  wire raymarch_pkg::solid_t   solid,
+    input  wire raymarch_pkg::tuning_t  tuning,
     // Spheres, while no rays are inside.
     input  wire                      ball_write,
     input  wire  [2:0]               ball_number,
-    input  wire march_pkg::ball_t    ball,
+    input  wire raymarch_pkg::ball_t    ball,
     input  wire                      cones,
     // Rays.
     input  wire                      in_valid,
     output logic                     in_ready,
-    input  wire march_pkg::ray_t     in_ray,
+    input  wire raymarch_pkg::ray_t     in_ray,
     // Ends.
     output logic                     out_valid,
     input  wire                      out_ready,
-    output march_pkg::end_t          out_end,
+    output raymarch_pkg::end_t          out_end,
     // Events.
     output logic                     evaluates,
     output logic                     waits
 );
     // The clock in which the distance is there, counted from the slot.
-    localparam int unsigned DISTANCE = 3 + march_pkg::field_clocks(LEVELS, BOXES, ROUND, BLEND);
+    localparam int unsigned DISTANCE = 3 + raymarch_pkg::field_clocks(LEVELS, BOXES, ROUND, BLEND);
     localparam int unsigned COUNT_BITS = $clog2(PLACES + 1);
     localparam int unsigned STEP_BITS  = ROUND ? 10 : 8;
-    localparam int unsigned KEPT_BITS  = march_pkg::end_bits(ROUND, BLEND);
+    localparam int unsigned KEPT_BITS  = raymarch_pkg::end_bits(ROUND, BLEND);
 
     // What a ray takes round with it, beside t.
     typedef struct packed {
-        march_pkg::place_t                         place;
+        raymarch_pkg::place_t                         place;
         logic [9:0]                     length;
-        logic [2:0][march_pkg::DIRECTION_BITS-1:0] direction;
+        logic [2:0][raymarch_pkg::DIRECTION_BITS-1:0] direction;
     } cargo_t;
-    localparam int unsigned CARGO_BITS = march_pkg::PLACE_BITS + 10 + 3 * march_pkg::DIRECTION_BITS;
+    localparam int unsigned CARGO_BITS = raymarch_pkg::PLACE_BITS + 10 + 3 * raymarch_pkg::DIRECTION_BITS;
 
     logic [DISTANCE+2:0] occupied;
     logic [COUNT_BITS-1:0] places;
@@ -74,14 +74,14 @@ module ring_lane #(
 
     // The slot.
     cargo_t            cargo;
-    logic [march_pkg::T_BITS-1:0] t;
+    logic [raymarch_pkg::T_BITS-1:0] t;
     logic [STEP_BITS-1:0] steps;
 
     // After the last stage.
     cargo_t            last_cargo;
-    logic [march_pkg::T_BITS-1:0] last_t;
+    logic [raymarch_pkg::T_BITS-1:0] last_t;
     logic [STEP_BITS-1:0] last_steps;
-    march_pkg::state_t            last_state;
+    raymarch_pkg::state_t            last_state;
     logic              last_round;
     logic [2:0]        last_surface;
 
@@ -110,7 +110,7 @@ module ring_lane #(
     // The point. Its origin comes when the product is there.
     logic                  eye_2;
     logic [2:0]            backwards;
-    logic [2:0][march_pkg::WIDE_BITS-1:0] point;
+    logic [2:0][raymarch_pkg::WIDE_BITS-1:0] point;
 
     if (STEREO) begin : two_eyes
         delay #(.WIDTH(1), .CLOCKS(2)) eyes (.clk, .enable(1'b1), .in(cargo.place.eye), .out(eye_2));
@@ -119,18 +119,18 @@ module ring_lane #(
     end
 
     for (genvar i = 0; i < 3; i++) begin : axes
-        logic [march_pkg::WIDE_BITS-1:0]           origin;
-        logic signed [march_pkg::WIDE_BITS+16:0]   sum;
+        logic [raymarch_pkg::WIDE_BITS-1:0]           origin;
+        logic signed [raymarch_pkg::WIDE_BITS+16:0]   sum;
 
         assign origin = STEREO && eye_2 ? origins[1][i] : origins[0][i];
 
-        multiply_add #(.BITS(march_pkg::WIDE_BITS + 17)) place (
+        multiply_add #(.BITS(raymarch_pkg::WIDE_BITS + 17)) place (
             .clk, .enable(1'b1), .a({2'b0, t}), .b(cargo.direction[i]), .c({origin, 17'b0}), .p(sum)
         );
-        assign point[i] = sum[march_pkg::WIDE_BITS+16:17];
+        assign point[i] = sum[raymarch_pkg::WIDE_BITS+16:17];
 
         delay #(.WIDTH(1), .CLOCKS(3)) sign (
-            .clk, .enable(1'b1), .in(cargo.direction[i][march_pkg::DIRECTION_BITS-1]), .out(backwards[i])
+            .clk, .enable(1'b1), .in(cargo.direction[i][raymarch_pkg::DIRECTION_BITS-1]), .out(backwards[i])
         );
         wire _unused = &{1'b0, sum[16:0]};
     end
@@ -154,7 +154,7 @@ module ring_lane #(
     // The sphere whose turn it is, and the nearest one before it: with the slot, and with the distance.
     logic                round, is_last_early, is_last, is_last_2;
     logic [2:0]          pass_2;
-    march_pkg::nearest_t so_far_3, nearest;
+    raymarch_pkg::nearest_t so_far_3, nearest;
 
     field_unit #(.LEVELS(LEVELS), .BOXES(BOXES), .ROUND(ROUND), .BLEND(BLEND)) field (
         .clk, .solid, .ball_write, .ball_number, .ball, .pass(pass_2), .point({point[2][21:0], point[1][21:0], point[0][21:0]}),
@@ -163,7 +163,7 @@ module ring_lane #(
 
     if (ROUND) begin : passes
         logic [2:0]          pass, last_pass, pass_early, pass_1;
-        march_pkg::nearest_t so_far, last_nearest;
+        raymarch_pkg::nearest_t so_far, last_nearest;
 
         always_ff @(posedge clk) begin
             pass   <= again && last_pass != '0 ? last_pass : '0;
@@ -171,10 +171,10 @@ module ring_lane #(
         end
 
         delay #(.WIDTH(3), .CLOCKS(2)) pass_goes (.clk, .enable(1'b1), .in(pass), .out(pass_2));
-        delay #(.WIDTH(march_pkg::NEAREST_BITS), .CLOCKS(3)) so_far_goes (.clk, .enable(1'b1), .in(so_far), .out(so_far_3));
+        delay #(.WIDTH(raymarch_pkg::NEAREST_BITS), .CLOCKS(3)) so_far_goes (.clk, .enable(1'b1), .in(so_far), .out(so_far_3));
         delay #(.WIDTH(3), .CLOCKS(DISTANCE - 4)) pass_waits (.clk, .enable(1'b1), .in(pass_2), .out(pass_early));
         delay #(.WIDTH(3), .CLOCKS(2)) pass_comes (.clk, .enable(1'b1), .in(pass_early), .out(pass_1));
-        delay #(.WIDTH(march_pkg::NEAREST_BITS), .CLOCKS(2)) nearest_goes (.clk, .enable(1'b1), .in(nearest), .out(last_nearest));
+        delay #(.WIDTH(raymarch_pkg::NEAREST_BITS), .CLOCKS(2)) nearest_goes (.clk, .enable(1'b1), .in(nearest), .out(last_nearest));
 
         always_ff @(posedge clk) begin
             is_last_early <= pass_early == solid.last_ball;
@@ -195,23 +195,23 @@ module ring_lane #(
     end
 
     // With the distance come the t it was taken at, less the width of a cone, and what is near enough.
-    logic [march_pkg::T_BITS-1:0] t_early, t_1;
-    logic [march_pkg::T_BITS:0]   from_early, from_1;
+    logic [raymarch_pkg::T_BITS-1:0] t_early, t_1;
+    logic [raymarch_pkg::T_BITS:0]   from_early, from_1;
     logic [15:0]       footprint;
     logic              wide, wide_1;
     logic [16:0]       threshold;
     logic [STEP_BITS-1:0] steps_1, steps_2;
 
-    delay #(.WIDTH(march_pkg::T_BITS), .CLOCKS(DISTANCE - 1)) way (.clk, .enable(1'b1), .in(t), .out(t_early));
+    delay #(.WIDTH(raymarch_pkg::T_BITS), .CLOCKS(DISTANCE - 1)) way (.clk, .enable(1'b1), .in(t), .out(t_early));
     delay #(.WIDTH(STEP_BITS), .CLOCKS(DISTANCE)) counted (.clk, .enable(1'b1), .in(steps), .out(steps_1));
     delay #(.WIDTH(CARGO_BITS), .CLOCKS(DISTANCE + 2)) carried (.clk, .enable(1'b1), .in(cargo), .out(last_cargo));
 
     if (PREPASS) begin : prepass
-        logic [march_pkg::SPREAD_BITS-1:0] spread, last_spread, widens;
+        logic [raymarch_pkg::SPREAD_BITS-1:0] spread, last_spread, widens;
         logic signed [42:0]                product;
 
         always_ff @(posedge clk) spread <= again ? last_spread : in_ray.spread;
-        delay #(.WIDTH(march_pkg::SPREAD_BITS), .CLOCKS(DISTANCE + 2)) spreading (.clk, .enable(1'b1), .in(spread), .out(last_spread));
+        delay #(.WIDTH(raymarch_pkg::SPREAD_BITS), .CLOCKS(DISTANCE + 2)) spreading (.clk, .enable(1'b1), .in(spread), .out(last_spread));
 
         assign widens = cones ? spread : 16'd1 << (5'd16 - {1'b0, tuning.footprint});
 
@@ -240,8 +240,8 @@ module ring_lane #(
 
     // Is it near? Then: is it too far, or has it taken too long?
     logic            near_2, gone_2, late_2;
-    logic [march_pkg::T_BITS:0] next_2;
-    logic [march_pkg::T_BITS-1:0] t_2, taken_t;
+    logic [raymarch_pkg::T_BITS:0] next_2;
+    logic [raymarch_pkg::T_BITS-1:0] t_2, taken_t;
     logic [11:0]     gap_2, gap;
     logic            round_2;
     logic [2:0]      surface_2;
@@ -263,7 +263,7 @@ module ring_lane #(
 
     always_ff @(posedge clk) begin
         near_2    <= wide_1 || distance < $signed({2'b0, 20'(threshold) << (PREPASS && cones ? 2'd0 : patience)});
-        late_2    <= late_1 || PREPASS && cones && steps_1 >= STEP_BITS'(march_pkg::CONE_STEPS - 1);
+        late_2    <= late_1 || PREPASS && cones && steps_1 >= STEP_BITS'(raymarch_pkg::CONE_STEPS - 1);
         next_2    <= from_1 + 24'(distance[20:0] & {21{!distance[21] && is_last}});
         t_2       <= t_1;
         gap_2     <= distance[20:12] != '0 && !distance[21] ? '1 : distance[11:0] & {12{!distance[21]}};
@@ -273,8 +273,8 @@ module ring_lane #(
         round_2   <= round;
 
         finished     <= is_last_2 && (beyond || near_2 || late_2);
-        last_state   <= beyond ? march_pkg::MISS : near_2 ? march_pkg::HIT : march_pkg::UNDECIDED;
-        last_t       <= next_2[march_pkg::T_BITS-1:0];
+        last_state   <= beyond ? raymarch_pkg::MISS : near_2 ? raymarch_pkg::HIT : raymarch_pkg::UNDECIDED;
+        last_t       <= next_2[raymarch_pkg::T_BITS-1:0];
         taken_t      <= t_2;
         gap          <= beyond || !near_2 ? '0 : gap_2;
         last_steps   <= steps_2;
@@ -282,9 +282,9 @@ module ring_lane #(
         last_round   <= round_2;
     end
 
-    march_pkg::end_t end_in;
+    raymarch_pkg::end_t end_in;
     logic [7:0]      height, steps_end;
-    logic [march_pkg::T_BITS-1:0] end_t;
+    logic [raymarch_pkg::T_BITS-1:0] end_t;
 
     // Saturates.
     if (ROUND) begin : many_steps
@@ -303,7 +303,7 @@ module ring_lane #(
 
     always_comb begin
         if (PREPASS && cones)                    end_t = taken_t;
-        else if (last_state == march_pkg::MISS)  end_t = {15'b0, height};
+        else if (last_state == raymarch_pkg::MISS)  end_t = {15'b0, height};
         else if (last_round)                     end_t = last_t;
         else                                     end_t = taken_t;
     end
@@ -322,7 +322,7 @@ module ring_lane #(
         .clk, .rst, .in_valid(ended), .in_ready(end_ready), .in_data(end_in[KEPT_BITS-1:0]), .out_valid, .out_ready, .out_data(kept)
     );
 
-    assign out_end = march_pkg::END_BITS'(kept);
+    assign out_end = raymarch_pkg::END_BITS'(kept);
 
     wire _unused = &{1'b0, end_ready, end_in, nearest};
 endmodule

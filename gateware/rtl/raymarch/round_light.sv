@@ -19,23 +19,23 @@ module round_light #(
     // Frame.
     input  wire  [1:0][2:0][24:0]    origins,
     input  wire                      repeated,
-    input  wire march_pkg::lights_t  lights,
+    input  wire raymarch_pkg::lights_t  lights,
     input  wire  [5:0][23:0]         palette,
     input  wire                      ball_write,
     input  wire  [2:0]               ball_number,
-    input  wire march_pkg::ball_t    ball,
+    input  wire raymarch_pkg::ball_t    ball,
     // Ends.
     input  wire                      in_valid,
     output logic                     in_ready,
-    input  wire march_pkg::end_t     in_end,
+    input  wire raymarch_pkg::end_t     in_end,
     // Ends with their light.
     output logic                     out_valid,
     input  wire                      out_ready,
-    output march_pkg::end_t          out_end,
+    output raymarch_pkg::end_t          out_end,
     output logic [23:0]              out_colour
 );
     localparam int unsigned LAST = BLEND ? 26 : 22;
-    localparam int unsigned KEPT_BITS = march_pkg::FLAT_END_BITS + 1;
+    localparam int unsigned KEPT_BITS = raymarch_pkg::FLAT_END_BITS + 1;
 
     (* ram_style = "distributed" *) logic [65:0] centres [0:7];
     (* ram_style = "distributed" *) logic [4:0]  shifts [0:7];
@@ -44,11 +44,11 @@ module round_light #(
 
     // 0: an end, as often as there are lights for it.
     logic            enable, held_valid, last_0;
-    march_pkg::end_t held;
+    raymarch_pkg::end_t held;
     logic [1:0]      light_0;
     logic [LAST:0]   valid;
 
-    assign last_0   = !held.round || held.state != march_pkg::HIT || light_0 == lights.last_light;
+    assign last_0   = !held.round || held.state != raymarch_pkg::HIT || light_0 == lights.last_light;
     assign in_ready = enable && (!held_valid || last_0);
     assign valid[0] = held_valid && last_0;
 
@@ -123,12 +123,12 @@ module round_light #(
     delay #(.WIDTH(1), .CLOCKS(3)) first_to_17 (.clk, .enable, .in(light_14 == '0), .out(first_17));
 
     for (genvar i = 0; i < 3; i++) begin : axes
-        logic signed [march_pkg::WIDE_BITS+16:0] sum;
-        logic [march_pkg::WIDE_BITS-1:0]         origin;
+        logic signed [raymarch_pkg::WIDE_BITS+16:0] sum;
+        logic [raymarch_pkg::WIDE_BITS-1:0]         origin;
         logic [22:0]                             apart;
 
         assign origin = eye_2 ? origins[1][i] : origins[0][i];
-        multiply_add #(.BITS(march_pkg::WIDE_BITS + 17)) place (
+        multiply_add #(.BITS(raymarch_pkg::WIDE_BITS + 17)) place (
             .clk, .enable, .a({2'b0, held.t}), .b(held.direction[i]), .c({origin, 17'b0}), .p(sum)
         );
         assign apart = sum[39:17] - {centre_3[i][21], centre_3[i]};
@@ -140,7 +140,7 @@ module round_light #(
             end
         end
 
-        wire _unused = &{1'b0, sum[march_pkg::WIDE_BITS+16:40], sum[16:0]};
+        wire _unused = &{1'b0, sum[raymarch_pkg::WIDE_BITS+16:40], sum[16:0]};
     end
 
     // 9: their product. 11: shifted to 17 bits, or to what is more. 12: no more than 17.
@@ -278,7 +278,7 @@ module round_light #(
         .out_valid, .out_ready, .out_data({kept, out_colour})
     );
 
-    assign out_end = march_pkg::END_BITS'(kept);
+    assign out_end = raymarch_pkg::END_BITS'(kept);
 
     wire _unused = &{1'b0, ball.radius, product_9[41], product_9[3:0], cosine_15[36:34], cosine_15[24:0]};
 endmodule

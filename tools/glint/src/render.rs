@@ -13,9 +13,10 @@ use glint_core::light::Hexadecimal;
 use glint_core::mesh::{Mesh, MeshError};
 use glint_core::stereo::Stereo;
 use glint_core::wire::crc32;
-use glint_model::march::{FieldOptions, Prepass, Setup, render_field};
+use glint_model::raymarch::{FieldOptions, Prepass, Setup, render_field};
 use glint_model::{
-    DepthScale, FrameSetup, Options, Projected, RenderError, Shading, Target, together, trace_frame,
+    DepthScale, MeshSetup, Options, Projected, RenderError, Shading, Target, mesh_in_field,
+    trace_frame,
 };
 use serde::{Deserialize, Serialize};
 
@@ -236,9 +237,9 @@ pub fn depth_scale(scene: &Scene) -> Result<DepthScale, Error> {
 
 /// What a scene is drawn by.
 enum Constants<'s> {
-    Mesh(Mesh<'s>, FrameSetup),
+    Mesh(Mesh<'s>, MeshSetup),
     Field(Setup),
-    Both(Mesh<'s>, FrameSetup, Setup),
+    Both(Mesh<'s>, MeshSetup, Setup),
 }
 
 impl<'s> Constants<'s> {
@@ -248,7 +249,7 @@ impl<'s> Constants<'s> {
         match scene.subject {
             Subject::Mesh(mesh) => {
                 let mesh = checked(mesh)?;
-                let frame = FrameSetup::new(view, size.0, size.1, mesh.radius());
+                let frame = MeshSetup::new(view, size.0, size.1, mesh.radius());
                 frame.map(|frame| Self::Mesh(mesh, frame))
             }
             Subject::Field(subject) => {
@@ -256,7 +257,7 @@ impl<'s> Constants<'s> {
             }
             Subject::Both(mesh, subject) => {
                 let (mesh, options) = (checked(mesh)?, subject.options());
-                together::constants(view, size, mesh.radius(), subject.field, &options)
+                mesh_in_field::constants(view, size, mesh.radius(), subject.field, &options)
                     .map(|(frame, setup)| Self::Both(mesh, frame, setup))
             }
         }
@@ -313,7 +314,7 @@ pub fn on_model(scene: &Scene) -> Result<Rendered, Error> {
 fn draw_mesh(
     subject: &MeshSubject,
     mesh: &Mesh,
-    frame: FrameSetup,
+    frame: MeshSetup,
     target: &mut Target,
 ) -> Result<TriangleCounts, Error> {
     let vertices = mesh

@@ -4,7 +4,7 @@ use glint_core::camera::View;
 use glint_core::field::Field as Scene;
 use glint_core::fixed::Q32_32;
 use glint_model::SIZES;
-use glint_model::march::{FieldOptions, Prepass, Rays, Setup, Stereo, Tint};
+use glint_model::raymarch::{FieldOptions, Prepass, Rays, Setup, Stereo, Tint};
 use glint_reference::camera::Camera;
 use glint_reference::field::{Field, views};
 

@@ -8,8 +8,8 @@ use std::process::Command;
 
 use glint_core::field::Field;
 use glint_core::stereo::Stereo;
-use glint_model::march::{FieldOptions, Prepass, Setup};
-use glint_reference::field::marched::{Measured, others, picture, rounds, sponges};
+use glint_model::raymarch::{FieldOptions, Prepass, Setup};
+use glint_reference::field::raymarched::{Measured, others, picture, rounds, sponges};
 use glint_reference::field::verilated::Raymarcher;
 use glint_reference::field::views;
 use glint_reference::imu::measure::method_error;

@@ -42,7 +42,7 @@ impl Board {
     }
 }
 
-/// What a raymarcher is built for: `BUILDS` of `glint_soc/march.py`.
+/// What a raymarcher is built for: `BUILDS` of `glint_soc/raymarch.py`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Fields {
     /// Two lanes for every field, with cones before the rays.

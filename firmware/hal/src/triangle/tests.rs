@@ -85,7 +85,7 @@ fn a_geometry_pass_is_described_before_it_is_started() {
     let bytes = mesh();
     let mesh = Mesh::new_checked(&bytes).unwrap();
     let view = View::spherical(Q32_32::from_num(3), Turns(1 << 30), Turns(1 << 29)).unwrap();
-    let frame = FrameSetup::new(&view, 640, 360, mesh.radius()).unwrap();
+    let frame = MeshSetup::new(&view, 640, 360, mesh.radius()).unwrap();
     let pass = Geometry {
         mesh: &mesh,
         frame: &frame,

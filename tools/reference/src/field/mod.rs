@@ -5,7 +5,7 @@
 //! - [`Field::hit`]: each solid from its own geometry, exact but for the rounding of f64.
 //! - [`views`]: cameras that look at the sponge.
 //! - [`metrics`]: how far a picture is from the reference.
-//! - [`marched`]: pictures of Glint's raymarcher, to be compared.
+//! - [`raymarched`]: pictures of Glint's raymarcher, to be compared.
 //! - [`variant`]: other ways to march.
 //! - [`verilated`]: what pictures take of the raymarcher itself.
 //!
@@ -13,9 +13,9 @@
 
 mod distance;
 mod grid;
-pub mod marched;
 mod menger;
 pub mod metrics;
+pub mod raymarched;
 mod solids;
 mod trace;
 pub mod variant;

@@ -1,8 +1,8 @@
 //! Other ways to march to the sponge than Glint's, in f64, to compare what they cost.
 
 use super::distance::euclidean;
-use super::marched::Marched;
 use super::metrics::Outcome;
+use super::raymarched::Marched;
 use super::{Face, Field};
 use crate::camera::{Ray, Vector, length};
 

@@ -1,12 +1,12 @@
 //! The raymarcher itself, verilated: what a picture takes of it.
 
 use glint_model::descriptor::band_rows;
-use glint_model::march::{Palette, Rays, Setup};
-use glint_rtl::{Module, Port};
+use glint_model::raymarch::{Palette, Rays, Setup};
+use glint_testbench::{Module, Port};
 
 // The raymarcher's tests use the rest.
 #[allow(dead_code)]
-#[path = "../../../rtl/tests/march/ports.rs"]
+#[path = "../../../testbench/tests/raymarch/ports.rs"]
 mod ports;
 
 use ports::{Pixel, Place, pixel, set_blocks, set_lane, set_paint, set_rays};

@@ -4,7 +4,7 @@ use std::fmt;
 
 use glint_core::mesh::MAX_RADIUS;
 use glint_model::vertex::{project, transform};
-use glint_model::{FrameSetup, Projected, ScreenVertex};
+use glint_model::{MeshSetup, Projected, ScreenVertex};
 use glint_reference::camera::{Camera, Size, Vector};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -56,7 +56,7 @@ fn compare(size: Size, seeds: std::ops::Range<u64>, limit: f64) -> Worst {
         let view = view(&asked);
         let camera = Camera::from(&view);
         // A mesh of vertices that the picture shows, or nearly.
-        let setup = FrameSetup::new(&view, size.width, size.height, MAX_RADIUS).expect("a size");
+        let setup = MeshSetup::new(&view, size.width, size.height, MAX_RADIUS).expect("a size");
         let depth_scale = camera.depth_scale(f64::from(MAX_RADIUS) / ONE);
         for _ in 0..400 {
             let Some(position) = somewhere_in_view(&mut random, &camera, size) else {

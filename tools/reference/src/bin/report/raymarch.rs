@@ -6,11 +6,11 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
-use glint_model::march::{DEFAULT_TUNING, FieldOptions, Prepass, ROUND_TUNING, Setup, Tuning};
+use glint_model::raymarch::{DEFAULT_TUNING, FieldOptions, Prepass, ROUND_TUNING, Setup, Tuning};
 use glint_reference::camera::{Ray, Size};
 use glint_reference::field::Field;
-use glint_reference::field::marched::{self, Marched, Measured, Subject};
 use glint_reference::field::metrics::{Accuracy, Expected, Outcome};
+use glint_reference::field::raymarched::{self, Marched, Measured, Subject};
 use glint_reference::field::variant::{Method, Norm, Taps, entry};
 use glint_reference::field::verilated::Raymarcher;
 use indicatif::ProgressBar;
@@ -280,7 +280,7 @@ impl<'a> Bench<'a> {
                         entry(&ray).max(subject.camera.near)
                     } else {
                         let ray = setup.ray(0, x, y);
-                        marched::depth(&setup, &ray, ray.start)
+                        raymarched::depth(&setup, &ray, ray.start)
                     };
                     method.march(depth, &ray, begin)
                 })
@@ -596,7 +596,7 @@ pub fn report(arguments: &Arguments) -> Result<()> {
     };
     std::fs::create_dir_all(&out)
         .with_context(|| format!("cannot make the folder {}", out.display()))?;
-    let small = marched::sponges(SMALL);
+    let small = raymarched::sponges(SMALL);
     let mut rows: Vec<Row> = Vec::new();
     let mut add = |subjects: &[Subject], prepass| {
         rows.extend(subjects.iter().map(|subject| {
@@ -605,19 +605,19 @@ pub fn report(arguments: &Arguments) -> Result<()> {
                 ..FieldOptions::of(&subject.parsed)
             };
             let setup = subject.setup(&options);
-            let measured = Measured::new(&subject.expected, &marched::picture(&setup, 0));
+            let measured = Measured::new(&subject.expected, &raymarched::picture(&setup, 0));
             Row::new(subject, &setup, &measured, &provenance.commit)
         }));
     };
-    let others = marched::others(SMALL);
-    let rounds = marched::rounds(SMALL);
+    let others = raymarched::others(SMALL);
+    let rounds = raymarched::rounds(SMALL);
     for prepass in [None, Some(Prepass::Fitting)] {
         add(&small, prepass);
         add(&others, prepass);
         add(&rounds, prepass);
     }
     if !arguments.quick {
-        let large = marched::sponges(LARGE);
+        let large = raymarched::sponges(LARGE);
         add(&large, None);
         add(&large, Some(Prepass::Fitting));
     }

@@ -1,0 +1,434 @@
+//! The raymarcher: distance fields in the frames of the triangle engine's raster pass.
+//!
+//! [`Raymarcher::set_field`] writes down what is to be drawn; every raster pass that is started afterwards draws it, until
+//! [`Raymarcher::clear_field`]. Neither may be called while a raster pass runs. It reaches no memory.
+
+use core::fmt;
+use core::ops::Sub;
+
+use glint_core::stereo::Tint;
+use glint_model::raymarch::{Balls, Blend, FieldStats, Lights, Palette, Setup, Solid};
+use litex_pac::raymarch::{
+    self, Control, DepthScale, EvEnable, EvPending, Solid as SolidRegister, Sphere, Table, Tuning,
+};
+
+use crate::Absent;
+
+/// What `ident` reads where the block is present: `MARC` in ASCII.
+const IDENT: u32 = u32::from_be_bytes(*b"MARC");
+
+/// What a raymarcher has been built with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Ability {
+    /// Evaluations of the field a clock.
+    pub lanes: u8,
+    /// The deepest sponge; 0: none.
+    pub levels: u8,
+    /// Boxes, cubes and planes.
+    pub boxes: bool,
+    /// Two eyes.
+    pub stereo: bool,
+    /// Spheres.
+    pub round: bool,
+    /// Fillets between spheres and what has faces.
+    pub blend: bool,
+    /// Cones before the rays.
+    pub prepass: bool,
+}
+
+/// What a frame asks for and the gateware is built without.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Missing {
+    /// The sponge, or so many levels of it: there are these.
+    Levels(u8),
+    /// Boxes, cubes and planes.
+    Boxes,
+    /// Spheres.
+    Round,
+    /// Fillets between spheres and what has faces.
+    Blend,
+    /// Two eyes.
+    Stereo,
+    /// Cones before the rays, or so fine ones.
+    Prepass,
+}
+
+impl fmt::Display for Missing {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Levels(levels) => {
+                write!(
+                    f,
+                    "raymarcher: this gateware has sponges of depth {levels} at most"
+                )
+            }
+            Self::Boxes => f.write_str("raymarcher: this gateware has no boxes, cubes and planes"),
+            Self::Round => f.write_str("raymarcher: this gateware has no spheres"),
+            Self::Blend => f.write_str("raymarcher: this gateware has no smooth unions"),
+            Self::Stereo => f.write_str("raymarcher: this gateware has one eye"),
+            Self::Prepass => f.write_str("raymarcher: this gateware has no prepass"),
+        }
+    }
+}
+
+impl core::error::Error for Missing {}
+
+/// What is counted; every counter runs freely modulo 2^32, so their differences count.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Cycles in which a field was drawn.
+    pub busy: u32,
+    /// Cycles in which a ray waited as no end of one was taken.
+    pub stalled: u32,
+    /// Cycles, of each lane, in which it had room for a ray and none came.
+    pub idle: u32,
+    /// Pixels given to the band buffer, each eye's.
+    pub pixels: u32,
+    /// Rays.
+    pub rays: u32,
+    /// Evaluations of the field.
+    pub evaluations: u32,
+    /// Rays that came to a surface.
+    pub hits: u32,
+    /// Rays that went by.
+    pub misses: u32,
+    /// Rays that were given up.
+    pub undecided: u32,
+}
+
+impl Sub for Counters {
+    type Output = Self;
+
+    fn sub(self, earlier: Self) -> Self {
+        let d = u32::wrapping_sub;
+        Self {
+            busy: d(self.busy, earlier.busy),
+            stalled: d(self.stalled, earlier.stalled),
+            idle: d(self.idle, earlier.idle),
+            pixels: d(self.pixels, earlier.pixels),
+            rays: d(self.rays, earlier.rays),
+            evaluations: d(self.evaluations, earlier.evaluations),
+            hits: d(self.hits, earlier.hits),
+            misses: d(self.misses, earlier.misses),
+            undecided: d(self.undecided, earlier.undecided),
+        }
+    }
+}
+
+impl From<Counters> for FieldStats {
+    fn from(counters: Counters) -> Self {
+        Self {
+            rays: counters.rays,
+            evaluations: counters.evaluations.into(),
+            hits: counters.hits,
+            misses: counters.misses,
+            undecided: counters.undecided,
+        }
+    }
+}
+
+/// The raymarcher, known to be there.
+pub struct Raymarcher {
+    registers: raymarch::Raymarch,
+    ability: Ability,
+    /// What its tables hold: fog and light.
+    tables: Option<[[u8; 256]; 2]>,
+}
+
+impl Raymarcher {
+    /// Takes the block if it is there. Its interrupt stays silent: the end of the raster pass is the end of its frame.
+    ///
+    /// # Errors
+    /// When something else answers, or nothing.
+    pub fn probe(registers: raymarch::Raymarch) -> Result<Self, Absent> {
+        match registers.ident().read() {
+            IDENT => {
+                registers.ev_enable().write(EvEnable::default());
+                let caps = registers.caps().read();
+                let ability = Ability {
+                    lanes: caps.lanes(),
+                    levels: caps.levels(),
+                    boxes: caps.boxes(),
+                    stereo: caps.stereo(),
+                    round: caps.round(),
+                    blend: caps.blend(),
+                    prepass: caps.prepass(),
+                };
+                Ok(Self {
+                    registers,
+                    ability,
+                    tables: None,
+                })
+            }
+            found => Err(Absent {
+                expected: IDENT,
+                found,
+            }),
+        }
+    }
+
+    /// What it has been built with.
+    #[must_use]
+    pub const fn ability(&self) -> Ability {
+        self.ability
+    }
+
+    /// Whether it can draw a frame.
+    ///
+    /// # Errors
+    /// What is missing.
+    pub fn check(&self, setup: &Setup) -> Result<(), Missing> {
+        let Ability {
+            levels,
+            boxes,
+            stereo,
+            round,
+            blend,
+            prepass,
+            ..
+        } = self.ability;
+        match setup.solid {
+            Solid::Menger { depth, .. } if depth > levels => return Err(Missing::Levels(levels)),
+            Solid::Box { .. } if !boxes => return Err(Missing::Boxes),
+            _ => {}
+        }
+        if setup.is_round() && !round {
+            return Err(Missing::Round);
+        }
+        if setup.blend().width != 0 && !blend {
+            return Err(Missing::Blend);
+        }
+        if setup.stereo.is_some() && !stereo {
+            return Err(Missing::Stereo);
+        }
+        if let Some(cones) = &setup.cones
+            && !(prepass && cones.is_fitting(setup))
+        {
+            return Err(Missing::Prepass);
+        }
+        Ok(())
+    }
+
+    /// Has the field drawn in every raster pass from now on, after its triangles. The pass's size has to be that of the setup.
+    ///
+    /// # Errors
+    /// What is missing; then nothing has changed.
+    pub fn set_field(&mut self, setup: &Setup, palette: &Palette) -> Result<(), Missing> {
+        self.check(setup)?;
+        if !self.has_tables(palette) {
+            self.set_tables(palette);
+        }
+        self.set_field_with_tables_held(setup, palette)
+    }
+
+    /// The same where the raymarcher [has the palette's tables](Self::has_tables), which are not looked at.
+    ///
+    /// # Errors
+    /// As [`set_field`](Self::set_field).
+    pub fn set_field_with_tables_held(
+        &mut self,
+        setup: &Setup,
+        palette: &Palette,
+    ) -> Result<(), Missing> {
+        self.check(setup)?;
+        let registers = &self.registers;
+        let solid = match setup.solid {
+            Solid::Menger { depth, half, .. } => {
+                registers.cube_half().write(half as u32);
+                SolidRegister::default().with_levels(((1_u32 << depth) - 1) as u8)
+            }
+            Solid::Box {
+                half,
+                room,
+                repeated,
+            } => {
+                let sides = [registers.half_x(), registers.half_y(), registers.half_z()];
+                for (register, half) in sides.iter().zip(half) {
+                    register.write(half.unwrap_or(0) as u32);
+                }
+                let [x, y, z] = half.map(|half| u8::from(half.is_some()));
+                SolidRegister::default()
+                    .with_is_box(true)
+                    .with_has(x | y << 1 | z << 2)
+                    .with_room(room)
+                    .with_repeated(repeated)
+            }
+            Solid::Balls(_) => SolidRegister::default(),
+        };
+        let solid = solid.with_flat_too(setup.beside.is_some());
+        registers.solid().write(match setup.balls() {
+            Some(balls) => {
+                self.set_spheres(balls, &setup.blend(), &palette.lights);
+                solid
+                    .with_is_round(true)
+                    .with_balls_repeated(balls.repeated)
+                    .with_last_ball((balls.count - 1) as u8)
+                    .with_last_light((palette.lights.count - 1) as u8)
+            }
+            None => solid,
+        });
+        registers.tuning().write(
+            Tuning::default()
+                .with_threshold(setup.tuning.threshold as u16)
+                .with_footprint(setup.tuning.footprint as u8)
+                .with_cap(setup.tuning.cap as u8),
+        );
+        let [left, right] = setup.eyes;
+        let [across, down] = setup.steps;
+        let origins =
+            [left.origin, right.origin].map(|origin| origin.map(|x| x as u32 & 0x1FF_FFFF));
+        let first = [left.first, right.first].map(|first| first.map(|x| x as u32));
+        let (offset, spread) = setup
+            .cones
+            .map(|cones| (cones.offset, cones.spread))
+            .unwrap_or_default();
+        for (register, value) in [
+            (registers.far(), setup.tuning.far),
+            (registers.near(), setup.near),
+            (registers.origin_left_x(), origins[0][0]),
+            (registers.origin_left_y(), origins[0][1]),
+            (registers.origin_left_z(), origins[0][2]),
+            (registers.origin_right_x(), origins[1][0]),
+            (registers.origin_right_y(), origins[1][1]),
+            (registers.origin_right_z(), origins[1][2]),
+            (registers.outside_left_x(), left.outside[0]),
+            (registers.outside_left_y(), left.outside[1]),
+            (registers.outside_left_z(), left.outside[2]),
+            (registers.outside_right_x(), right.outside[0]),
+            (registers.outside_right_y(), right.outside[1]),
+            (registers.outside_right_z(), right.outside[2]),
+            (registers.first_left_x(), first[0][0]),
+            (registers.first_left_y(), first[0][1]),
+            (registers.first_left_z(), first[0][2]),
+            (registers.first_right_x(), first[1][0]),
+            (registers.first_right_y(), first[1][1]),
+            (registers.first_right_z(), first[1][2]),
+            (registers.bounds_x(), setup.bounds[0]),
+            (registers.bounds_y(), setup.bounds[1]),
+            (registers.bounds_z(), setup.bounds[2]),
+            (registers.across_x(), across[0] as u32),
+            (registers.across_y(), across[1] as u32),
+            (registers.across_z(), across[2] as u32),
+            (registers.down_x(), down[0] as u32),
+            (registers.down_y(), down[1] as u32),
+            (registers.down_z(), down[2] as u32),
+            (registers.cone_offset_x(), offset[0] as u32),
+            (registers.cone_offset_y(), offset[1] as u32),
+            (registers.cone_offset_z(), offset[2] as u32),
+            (registers.colour_0(), colour(palette.faces[0])),
+            (registers.colour_1(), colour(palette.faces[1])),
+            (registers.colour_2(), colour(palette.faces[2])),
+            (registers.colour_3(), colour(palette.faces[3])),
+            (registers.colour_4(), colour(palette.faces[4])),
+            (registers.colour_5(), colour(palette.faces[5])),
+            (registers.colour_6(), colour(palette.undecided)),
+            (registers.colour_7(), colour(palette.zenith)),
+            (registers.horizon(), colour(palette.horizon)),
+        ] {
+            register.write(value);
+        }
+        registers.cone_spread().write(spread as u16);
+        registers.fog_shift().write(palette.fog_shift as u8);
+        registers.depth_scale().write(
+            DepthScale::default()
+                .with_mantissa(setup.depth.mantissa)
+                .with_exponent(setup.depth.exponent as u8 & 0x3F),
+        );
+        let stereo = match setup.stereo {
+            None => 0,
+            Some(Tint::RedBlue) => 1,
+            Some(Tint::RedCyan) => 2,
+        };
+        self.registers.control().write(
+            Control::default()
+                .with_enable(true)
+                .with_stereo(stereo)
+                .with_prepass(setup.cones.is_some()),
+        );
+        Ok(())
+    }
+
+    /// Writes the constants of spheres, of what is between them and faces, and of the light on them.
+    fn set_spheres(&self, balls: &Balls, blend: &Blend, lights: &Lights) {
+        let write = |entry: u8, value: u32| {
+            let constant = Sphere::default().with_entry(entry).with_value(value);
+            self.registers.sphere().write(constant);
+        };
+        let numbers = |x: [i32; 3]| x.map(|x| x as u32 & 0xFF_FFFF);
+        for (number, (ball, material)) in
+            (0..).zip(balls.list.iter().zip(lights.materials).take(balls.count))
+        {
+            for (axis, place) in (0..).zip(numbers(ball.centre)) {
+                write(axis, place);
+            }
+            write(3, ball.radius as u32);
+            write(4, ball.inverse | ball.shift << 17);
+            write(8 + number, colour(material));
+        }
+        write(5, colour(lights.ambient));
+        write(6, blend.width);
+        write(7, blend.inverse);
+        for (number, light) in (0..).zip(&lights.list) {
+            for (axis, part) in (0..).zip(numbers(light.direction)) {
+                write(16 + 4 * number + axis, part);
+            }
+            write(19 + 4 * number, colour(light.colour));
+        }
+    }
+
+    /// Whether the tables are a palette's. To find out takes longer than to write a frame's registers.
+    #[must_use]
+    pub fn has_tables(&self, palette: &Palette) -> bool {
+        let held = self.tables.as_ref();
+        held.is_some_and(|[fog, occlusion]| *fog == palette.fog && *occlusion == palette.occlusion)
+    }
+
+    fn set_tables(&mut self, palette: &Palette) {
+        let tables = [palette.fog, palette.occlusion];
+        for (entry, &part) in (0..).zip(tables.as_flattened()) {
+            self.registers
+                .table()
+                .write(Table::default().with_entry(entry).with_part(part));
+        }
+        self.tables = Some(tables);
+    }
+
+    /// Has no field drawn any more.
+    pub fn clear_field(&mut self) {
+        self.registers.control().write(Control::default());
+    }
+
+    /// The counters.
+    #[must_use]
+    pub fn counters(&self) -> Counters {
+        let registers = &self.registers;
+        Counters {
+            busy: registers.cycles_busy().read(),
+            stalled: registers.cycles_stalled().read(),
+            idle: registers.cycles_idle().read(),
+            pixels: registers.items_out().read(),
+            rays: registers.items_in().read(),
+            evaluations: registers.evaluations().read(),
+            hits: registers.hits().read(),
+            misses: registers.misses().read(),
+            undecided: registers.undecided().read(),
+        }
+    }
+}
+
+/// Red in bits 0 to 7, green, blue.
+const fn colour([r, g, b]: [u8; 3]) -> u32 {
+    u32::from_le_bytes([r, g, b, 0])
+}
+
+/// Clears the raymarcher's interrupt; its handler calls this.
+pub fn acknowledge() {
+    // SAFETY: nobody else writes the pending register.
+    let registers = unsafe { raymarch::Raymarch::steal() };
+    registers
+        .ev_pending()
+        .write(EvPending::default().with_field(true));
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,49 @@
+//! A mesh and a field in one picture, which meet by their depth codes (formats.md, "A mesh in a field").
+
+use glint_core::camera::View;
+use glint_core::field::Field;
+
+use crate::frame::{DepthScale, MeshSetup};
+use crate::raymarch::{FieldOptions, Setup};
+use crate::render::RenderError;
+
+/// Low bits of km that are 0, so that K times the 40.5 field units of a world unit has 17 bits too.
+const EVEN_BITS: u32 = 7;
+
+/// The constants of a mesh with the given radius (u.14) and of a field, whose depth codes mean the same distances.
+///
+/// [`trace_frame`](crate::trace_frame) draws the mesh, and [`render_field`](crate::raymarch::render_field) then the field over it.
+///
+/// # Errors
+/// [`RenderError::Size`], [`RenderError::Eye`], and [`RenderError::Stereo`] for two eyes.
+pub fn constants(
+    view: &View,
+    size: (u32, u32),
+    radius: u32,
+    field: &Field,
+    options: &FieldOptions,
+) -> Result<(MeshSetup, Setup), RenderError> {
+    if options.stereo.is_some() {
+        return Err(RenderError::Stereo);
+    }
+    let mut frame = MeshSetup::new(view, size.0, size.1, radius)?;
+    let mut setup = Setup::new(field, view, size, options)?;
+    let shared = shared(frame.depth, setup.world_depth);
+    frame.depth = shared;
+    setup.world_depth = shared;
+    setup.depth = shared.times(setup.scale, setup.exponent);
+    Ok((frame, setup))
+}
+
+/// The smaller K, of which no depth of either has too large a code, cut to 10 bits.
+fn shared(a: DepthScale, b: DepthScale) -> DepthScale {
+    let smaller = if (a.exponent, a.mantissa) < (b.exponent, b.mantissa) {
+        a
+    } else {
+        b
+    };
+    DepthScale {
+        mantissa: smaller.mantissa >> EVEN_BITS << EVEN_BITS,
+        ..smaller
+    }
+}

@@ -1,0 +1,153 @@
+//! A mesh in a field: depth codes that mean the same, and what is in front of what.
+
+mod common;
+
+use common::{Camera, Model, Picture, Random};
+use glint_core::camera::View;
+use glint_core::field::Field;
+use glint_core::mesh::Mesh;
+use glint_core::stereo::Stereo;
+use glint_model::raymarch::{FieldOptions, render_field};
+use glint_model::{Options, Projected, RenderError, mesh_in_field, trace_frame};
+
+const SIZE: (u32, u32) = (320, 180);
+
+/// The mesh alone, the field alone, and the field over the mesh, all by the same constants.
+fn draw(mesh: &Mesh, field: &str, view: &View) -> [Picture; 3] {
+    let field = Field::parse(field).unwrap();
+    let options = FieldOptions::default();
+    let (frame, setup) =
+        mesh_in_field::constants(view, SIZE, mesh.radius(), &field, &options).unwrap();
+    assert_eq!(frame.depth, setup.world_depth);
+    let mut scratch = vec![Projected::Behind; mesh.vertex_count() as usize];
+    let mut draw = |picture: &mut Picture, with_mesh: bool, with_field: bool| {
+        let mut target = picture.target();
+        if with_mesh {
+            let options = Options::default();
+            trace_frame(mesh, frame, &mut target, &mut scratch, &options, |_| {}).unwrap();
+        }
+        if with_field {
+            let palette = options.palette_for(&setup);
+            render_field(&setup, &palette, &mut target, &mut |_, _, _, _| {}).unwrap();
+        }
+    };
+    let mut pictures = [0; 3].map(|_| Picture::blank(SIZE));
+    let [alone, field_alone, both] = &mut pictures;
+    draw(alone, true, false);
+    draw(field_alone, false, true);
+    draw(both, true, true);
+    pictures
+}
+
+/// A camera outside that looks at the middle, or nearly.
+fn outside(random: &mut Random) -> View {
+    let distance = random.real(1.5, 6.0);
+    let eye = random.direction().map(|x| x * distance);
+    let target = random.direction().map(|x| x * 0.3);
+    Camera::looking(eye, target, random.real(0.2, 0.9), 0.1).rounded()
+}
+
+/// A cube as a mesh and as a field: their faces are in the same planes.
+#[test]
+fn faces_of_both_in_one_plane_have_the_same_depth() {
+    let bytes = Model::cube(8192).encoded();
+    let mesh = Mesh::new_checked(&bytes).unwrap();
+    for field in ["box:0.5,0.5,0.5", "cubes:11.3,0.5"] {
+        let mut random = Random(1);
+        let mut apart = vec![];
+        for _ in 0..4 {
+            let [mesh, field, both] = draw(&mesh, field, &outside(&mut random));
+            for (i, (&a, &b)) in mesh.depth.iter().zip(&field.depth).enumerate() {
+                assert_eq!(both.depth[i], a.max(b), "pixel {i}");
+                if a != 0 && b != 0 {
+                    apart.push(a.abs_diff(b));
+                }
+            }
+        }
+        apart.sort_unstable();
+        let at = |part: f64| apart[((apart.len() - 1) as f64 * part) as usize];
+        println!(
+            "{field}: {} pixels, depth codes apart by {} (median), {} (99 %), {} (99.9 %), {} at most",
+            apart.len(),
+            at(0.5),
+            at(0.99),
+            at(0.999),
+            at(1.0)
+        );
+        assert!(apart.len() > 20_000 && at(0.5) <= 1 && at(0.99) <= 16);
+    }
+}
+
+#[test]
+fn what_is_nearer_is_seen() {
+    let bytes = Model::sphere(1.2, 12).encoded();
+    let mesh = Mesh::new_checked(&bytes).unwrap();
+    // Its corners look out of the sphere, which looks out of its faces.
+    let mut random = Random(2);
+    let mut seen = [0; 3];
+    for view in [0; 3].map(|_| outside(&mut random)) {
+        let [mesh, field, both] = draw(&mesh, "box:1,1,1", &view);
+        for i in 0..both.depth.len() {
+            let (a, b) = (mesh.depth[i], field.depth[i]);
+            // Of equals the field, which is drawn later; and its background where there is nothing.
+            let (which, expected) = if b >= a { (1, &field) } else { (0, &mesh) };
+            assert_eq!(both.colour[i], expected.colour[i], "pixel {i}");
+            seen[if a.max(b) == 0 { 2 } else { which }] += 1;
+        }
+    }
+    assert!(seen.iter().all(|&pixels| pixels > 500), "{seen:?}");
+}
+
+/// Whatever the lens: the constants are in the ranges of both.
+#[test]
+fn shared_constants_keep_their_ranges() {
+    let mut random = Random(3);
+    // 40.5 units, and a power of two, lose nothing of the 17 bits.
+    const EXACT: f64 = 1e-12;
+    let fields = [
+        ("menger:4", EXACT),
+        ("box:12,0.01,12", EXACT),
+        ("planes:0.01", EXACT),
+        ("cubes:0.25,0.1", EXACT),
+        ("cubes:16,7", EXACT),
+        ("cubes:11.3,1", 1.0 / 65536.0),
+    ];
+    for round in 0..2_000 {
+        let (name, most) = fields[round % fields.len()];
+        let field = Field::parse(name).unwrap();
+        let eye = [0; 3].map(|_| random.real(-4.5, 4.5));
+        let (half_width, near) = (random.logarithmic(0.05, 4.0), random.logarithmic(0.01, 2.0));
+        let towards = random.direction();
+        let view = Camera::aimed(&mut random, eye, towards, [0.0; 2], half_width, near).rounded();
+        let radius = random.integer(0, 3 << 14) as u32;
+        let options = FieldOptions::default();
+        let (frame, setup) =
+            mesh_in_field::constants(&view, SIZE, radius, &field, &options).unwrap();
+        let scale = frame.depth;
+        assert_eq!(scale, setup.world_depth);
+        assert!((1 << 16..1 << 17).contains(&scale.mantissa) && (-5..=5).contains(&scale.exponent));
+        let world = f64::from(scale.mantissa) * f64::from(scale.exponent).exp2();
+        let least = f64::from((1 << 18) - 4) * near * (1.0 - 1.0 / 256.0);
+        assert!(world >= least, "{world} {least}");
+        let own = f64::from(setup.depth.mantissa) * f64::from(setup.depth.exponent).exp2();
+        let expected = world * setup.scale.to_num::<f64>() * f64::from(1 << setup.exponent);
+        let lost = 1.0 - own / expected;
+        assert!((-EXACT..=most).contains(&lost), "{field}: {lost}");
+        assert!((-32..32).contains(&setup.depth.exponent));
+    }
+}
+
+#[test]
+fn two_eyes_and_far_ones_are_refused() {
+    let field = Field::Menger { depth: 4 };
+    let view = outside(&mut Random(4));
+    let stereo = FieldOptions {
+        stereo: Some(Stereo::parse("0.05,3").unwrap()),
+        ..FieldOptions::default()
+    };
+    let refused = mesh_in_field::constants(&view, SIZE, 1 << 14, &field, &stereo);
+    assert_eq!(refused, Err(RenderError::Stereo));
+    let far = Camera::looking([0.0, -9.0, 0.0], [0.0; 3], 0.9, 0.1).rounded();
+    let refused = mesh_in_field::constants(&far, SIZE, 1 << 14, &field, &FieldOptions::default());
+    assert_eq!(refused, Err(RenderError::Eye(far.eye())));
+}

@@ -1,0 +1,331 @@
+//! Pictures of the model's raymarcher as [`metrics`] takes them, and what each ray cost.
+
+use glint_core::camera::View;
+use glint_core::field::Field as Scene;
+use glint_core::fixed::Q32_32;
+use glint_model::raymarch::{self, FieldOptions, Setup, State, Surface};
+
+use super::metrics::{self, Accuracy, Expected, Outcome, Quantiles, accuracy};
+use super::{Face, Field, Sphere, views};
+use crate::camera::{Camera, Size, length};
+
+/// What a ray of the model comes to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Marched {
+    /// With the depth along n in world units for its parameter, as it follows from t.
+    pub outcome: Outcome,
+    /// The same depth by its code, for a hit.
+    pub coded: Option<f64>,
+    /// Evaluations of the field.
+    pub steps: u32,
+    /// Those of the cones that were marched before it.
+    pub cones: u64,
+}
+
+impl Marched {
+    /// [`Self::outcome`] with the depth of the code.
+    pub fn by_code(&self) -> Outcome {
+        match (self.outcome, self.coded) {
+            (Outcome::Hit { face, normal, .. }, Some(t)) => Outcome::Hit { t, face, normal },
+            (outcome, _) => outcome,
+        }
+    }
+}
+
+/// The picture of one eye, row by row; eye 0 is the left or the only one.
+///
+/// With a prepass what its cones take counts as of the rays before which they are marched: the first one of a row of blocks.
+pub fn picture(setup: &Setup, eye: usize) -> Vec<Marched> {
+    let mut rays = raymarch::Rays::new(setup);
+    let mut cones = 0;
+    pixels(setup)
+        .map(|(x, y)| {
+            let ray = rays.ray(eye, x, y);
+            let mut end = marched(setup, &ray, &setup.march(&ray));
+            end.cones = rays.evaluations() - cones;
+            cones = rays.evaluations();
+            end
+        })
+        .collect()
+}
+
+/// The end of one ray.
+pub fn marched(setup: &Setup, ray: &raymarch::Ray, end: &raymarch::Outcome) -> Marched {
+    let (outcome, coded) = match end.state {
+        State::Miss => (Outcome::Miss, None),
+        State::Undecided => (Outcome::Undecided, None),
+        State::Hit(surface) => {
+            let (face, normal) = match surface {
+                Surface::Face { axis, positive } => {
+                    let axis = usize::from(axis);
+                    let mut normal = [0.0; 3];
+                    normal[axis] = if positive { 1.0 } else { -1.0 };
+                    (Face::Axis { axis, positive }, normal)
+                }
+                Surface::Round { .. } => {
+                    let normal = setup.normal(ray, end).expect("it is round");
+                    (Face::Round, normal.map(f64::from))
+                }
+                Surface::Blended {
+                    axis,
+                    positive,
+                    share,
+                    ..
+                } => {
+                    let round = setup.normal(ray, end).expect("it is round").map(f64::from);
+                    let share = f64::from(share) / 256.0;
+                    let mut normal = round.map(|part| part / length(round) * share);
+                    normal[usize::from(axis)] += (1.0 - share) * if positive { 1.0 } else { -1.0 };
+                    (Face::Round, normal)
+                }
+            };
+            let hit = Outcome::Hit {
+                t: depth(setup, ray, end.reached()),
+                face,
+                normal,
+            };
+            let coded = setup
+                .world_depth
+                .distance(setup.depth_code(ray, end.reached()));
+            (hit, coded.map(|depth| depth.to_num()))
+        }
+    };
+    Marched {
+        outcome,
+        coded,
+        steps: end.steps * setup.passes(),
+        cones: 0,
+    }
+}
+
+/// The depth in world units at which a ray ends for its length, surface or not.
+fn reach(setup: &Setup, ray: &raymarch::Ray) -> f64 {
+    depth(setup, ray, setup.tuning.far)
+}
+
+/// The depth at a ray's t, in world units.
+pub fn depth(setup: &Setup, ray: &raymarch::Ray, t: u32) -> f64 {
+    let units = setup.depth_of(ray, t) as f64 * (-21.0 - f64::from(setup.exponent)).exp2();
+    units / setup.scale.to_num::<f64>()
+}
+
+/// What the reference shows of the picture of a camera that has no more digits than a view, as far as the model's rays reach.
+fn expected(setup: &Setup, field: &Field, camera: &Camera) -> Vec<Expected> {
+    let size = Size {
+        width: setup.width,
+        height: setup.height,
+    };
+    let rays = pixels(setup).map(|(x, y)| setup.ray(0, x, y));
+    let reaches: Vec<f64> = rays.map(|ray| reach(setup, &ray)).collect();
+    let farthest = reaches.iter().copied().fold(0.0, f64::max);
+    let limits = (camera.near, farthest);
+    let mut picture = metrics::expected(field, size, limits, |pixel| camera.ray(pixel, size));
+    for (pixel, reach) in picture.iter_mut().zip(reaches) {
+        pixel.hit = pixel.hit.filter(|hit| hit.t <= reach);
+    }
+    picture
+}
+
+/// All pixels, row by row.
+fn pixels(setup: &Setup) -> impl Iterator<Item = (u32, u32)> {
+    let width = setup.width;
+    (0..setup.height).flat_map(move |y| (0..width).map(move |x| (x, y)))
+}
+
+impl Field {
+    /// The solid with the numbers as they are.
+    pub fn of(scene: &Scene) -> Self {
+        let number = |x: Q32_32| x.to_num::<f64>();
+        let ball = |centre: [Q32_32; 3], radius| Sphere {
+            centre: centre.map(number),
+            radius: number(radius),
+        };
+        match *scene {
+            Scene::Menger { depth } => Self::Menger {
+                depth: depth.into(),
+            },
+            Scene::Box { half } => Self::Box {
+                half: half.map(number),
+            },
+            Scene::Cubes { period, half } => Self::Cubes {
+                period: number(period),
+                half: number(half),
+            },
+            Scene::Planes { half } => Self::Planes { half: number(half) },
+            Scene::Sphere { radius } => Self::Spheres(vec![ball([Q32_32::ZERO; 3], radius)]),
+            Scene::Spheres(ref spheres) => Self::Spheres(
+                spheres
+                    .iter()
+                    .map(|sphere| ball(sphere.centre, sphere.radius))
+                    .collect(),
+            ),
+            Scene::Lattice { period, radius } => Self::Lattice {
+                period: number(period),
+                radius: number(radius),
+            },
+            Scene::Moving {
+                radius,
+                orbit,
+                angle,
+            } => {
+                let angle = f64::from(angle.0) * (-32f64).exp2() * std::f64::consts::TAU;
+                let orbit = number(orbit);
+                Self::Spheres(vec![Sphere {
+                    centre: [orbit * angle.cos(), orbit * angle.sin(), 0.0],
+                    radius: number(radius),
+                }])
+            }
+            Scene::Union { flat, round, blend } => {
+                let [a, b] = [flat.into(), round.into()].map(|scene| Box::new(Self::of(&scene)));
+                match number(blend) {
+                    0.0 => Self::Union(a, b),
+                    k => Self::SmoothUnion { k, a, b },
+                }
+            }
+        }
+    }
+}
+
+/// A field and a camera, with what is to be seen.
+pub struct Subject {
+    /// What it is called.
+    pub name: String,
+    /// As it is typed.
+    pub scene: String,
+    /// The size of its picture.
+    pub size: (u32, u32),
+    /// The camera, with a view's digits.
+    pub camera: Camera,
+    /// The field that is looked at.
+    pub field: Field,
+    /// What the reference shows, as far as rays reach by default.
+    pub expected: Vec<Expected>,
+    /// The field as it was read.
+    pub parsed: Scene,
+    view: View,
+}
+
+impl Subject {
+    /// `scene` is a field as it is typed, `size` one of [`glint_model::SIZES`].
+    ///
+    /// # Panics
+    /// When something of that is not so, or the camera is not one.
+    pub fn new(name: &str, scene: &str, camera: &Camera, size: (u32, u32)) -> Self {
+        let parsed = Scene::parse(scene).expect("a field");
+        let view = camera.view().expect("a camera");
+        let mut subject = Self {
+            name: name.to_owned(),
+            scene: scene.to_owned(),
+            size,
+            camera: Camera::from(&view),
+            field: Field::of(&parsed),
+            expected: vec![],
+            parsed,
+            view,
+        };
+        let setup = subject.setup(&FieldOptions::default());
+        subject.expected = expected(&setup, &subject.field, &subject.camera);
+        subject
+    }
+
+    /// The constants of its frame.
+    pub fn setup(&self, options: &FieldOptions) -> Setup {
+        Setup::new(&self.parsed, &self.view, self.size, options).expect("a size that there is")
+    }
+
+    /// The model's picture.
+    pub fn picture(&self, options: &FieldOptions) -> Vec<Marched> {
+        picture(&self.setup(options), 0)
+    }
+}
+
+/// The sponge of depth 4 in all [`views`].
+pub fn sponges(size: (u32, u32)) -> Vec<Subject> {
+    views::views()
+        .into_iter()
+        .map(|(name, eye, target)| {
+            Subject::new(name, "menger:4", &views::camera(eye, target), size)
+        })
+        .collect()
+}
+
+/// The other kinds of fields, from aside; all but the box go on to the horizon.
+pub fn others(size: (u32, u32)) -> Vec<Subject> {
+    let camera = views::camera([1.25, -1.875, 0.40625], [0.0; 3]);
+    [
+        "box:1,0.5,0.25",
+        "cubes:0.25,0.1",
+        "cubes:2,0.5",
+        "planes:12",
+        "planes:0.5",
+    ]
+    .map(|scene| Subject::new("aside", scene, &camera, size))
+    .into()
+}
+
+/// What is round, alone and beside faces, from aside and from amid.
+pub fn rounds(size: (u32, u32)) -> Vec<Subject> {
+    let scenes = [
+        "sphere:1",
+        "sphere:0.25",
+        "spheres:0,0,0,0.75;1,0.25,0.5,0.5;-0.75,-0.5,0.75,0.25;0.5,-1,-0.25,0.375;\
+         0.25,1,-0.5,0.5;0,-0.75,0.5,0.125;-1.25,0.5,-0.25,0.625;1.125,-0.5,-0.5,0.0625",
+        "lattice:1,0.3",
+        "moving:0.375,0.75,60",
+        "union:menger:3+moving:0.5,1,60",
+        "union:box:0.5,0.25,1+sphere:0.625",
+        "smooth:0.25,box:1,1,0.25+sphere:0.625",
+        "smooth:0.1,menger:3+moving:0.5,1,60",
+    ];
+    let target = [0.015625, 0.0, 0.03125];
+    let views = [
+        ("aside", [2.1875, 1.6875, 1.3125], 0.9),
+        ("amid", [0.375, -1.3125, 0.53125], 1.5),
+    ];
+    scenes
+        .into_iter()
+        .flat_map(|scene| {
+            views.map(|(name, eye, half_width)| {
+                let camera = Camera::looking_at(eye, target, half_width, 0.01);
+                Subject::new(name, scene, &camera, size)
+            })
+        })
+        .collect()
+}
+
+/// What a picture is worth and what it has cost.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measured {
+    /// By depths as they follow from t.
+    pub accuracy: Accuracy,
+    /// The depths' errors by their codes, where both hit.
+    pub coded: Option<Quantiles>,
+    /// Evaluations of the field, of all rays and cones.
+    pub evaluations: u64,
+    /// Of the cones alone.
+    pub cones: u64,
+    /// Of the ray that took the most.
+    pub most: u32,
+}
+
+impl Measured {
+    /// Of a picture, or of several after each other.
+    pub fn new(expected: &[Expected], found: &[Marched]) -> Self {
+        let outcomes = |of: fn(&Marched) -> Outcome| found.iter().map(of).collect::<Vec<_>>();
+        Self {
+            accuracy: accuracy(expected, &outcomes(|ray| ray.outcome)),
+            coded: accuracy(expected, &outcomes(Marched::by_code)).depth,
+            evaluations: found
+                .iter()
+                .map(|ray| u64::from(ray.steps) + ray.cones)
+                .sum(),
+            cones: found.iter().map(|ray| ray.cones).sum(),
+            most: found.iter().map(|ray| ray.steps).max().unwrap_or(0),
+        }
+    }
+
+    /// Evaluations a ray.
+    pub fn cost(&self) -> f64 {
+        self.evaluations as f64 / self.accuracy.rays.max(1) as f64
+    }
+}

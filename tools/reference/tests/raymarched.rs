@@ -1,0 +1,363 @@
+//! The model's raymarcher against the exact hits of the same rays. `--nocapture` shows the measured figures.
+
+use glint_core::field::Field as Scene;
+use glint_core::fixed::Q32_32;
+use glint_model::raymarch::{FieldOptions, Ray, Setup, State, Stereo, Tint};
+use glint_reference::camera::{Camera, Vector};
+use glint_reference::field::metrics::{Accuracy, Outcome};
+use glint_reference::field::raymarched::{self, Measured, Subject};
+use glint_reference::field::{Field, views};
+
+const SIZE: (u32, u32) = (320, 180);
+
+/// A picture beside what it should be.
+struct Seen {
+    name: String,
+    found: Accuracy,
+    /// Evaluations a ray.
+    cost: f64,
+}
+
+fn setup(scene: &str, camera: &Camera, options: &FieldOptions) -> Setup {
+    let scene = Scene::parse(scene).expect("a field");
+    let view = camera.view().expect("a camera");
+    Setup::new(&scene, &view, SIZE, options).expect("a size")
+}
+
+fn see(name: &str, scene: &str, camera: &Camera) -> Seen {
+    let subject = Subject::new(name, scene, camera, SIZE);
+    let picture = subject.picture(&FieldOptions::default());
+    let measured = Measured::new(&subject.expected, &picture);
+    println!("{name}, {scene}: {measured:?}");
+    Seen {
+        name: format!("{name}, {scene}"),
+        found: measured.accuracy,
+        cost: measured.cost(),
+    }
+}
+
+impl Seen {
+    /// At most that many pixels with a hit where there is none, or the other way round.
+    fn masked(self, most: usize) -> Self {
+        let wrong = self.found.false_hit + self.found.false_miss;
+        assert!(wrong <= most, "{}: {wrong} hits and misses", self.name);
+        self
+    }
+
+    /// At most that many rays given up.
+    fn decided(self, most: usize) -> Self {
+        let given_up = self.found.undecided;
+        assert!(given_up <= most, "{}: {given_up} undecided", self.name);
+        self
+    }
+
+    /// Depths within that of the right ones, one half of them and 99 in 100.
+    fn near(self, median: f64, p99: f64) -> Self {
+        let depth = self.found.depth.expect("something to see");
+        assert!(
+            depth.median <= median && depth.p99 <= p99,
+            "{}: {depth:?}",
+            self.name
+        );
+        self
+    }
+
+    /// At most such a part of the faces wrong.
+    fn faced(self, most: f64) -> Self {
+        let wrong = self.found.wrong_faces;
+        assert!(wrong <= most, "{}: {wrong} wrong faces", self.name);
+        self
+    }
+
+    /// At most so many evaluations a ray.
+    fn cheap(self, most: f64) -> Self {
+        assert!(self.cost <= most, "{}: {}", self.name, self.cost);
+        self
+    }
+}
+
+/// A camera at `eye` that looks at `target`, with the views' lens.
+fn at(eye: Vector, target: Vector) -> Camera {
+    views::camera(eye, target)
+}
+
+#[test]
+fn the_sponge_is_where_it_is() {
+    for (name, eye, target) in views::views() {
+        let seen = see(name, "menger:4", &at(eye, target));
+        assert!(seen.found.iou >= 0.999, "{name}");
+        seen.near(2e-4, 5e-4).faced(0.01).decided(0).cheap(14.4);
+    }
+}
+
+#[test]
+fn the_deepest_sponge_is_where_it_is_and_its_smallest_faces_are_not_all_right() {
+    for (name, eye, target) in views::views() {
+        let seen = see(name, "menger:6", &at(eye, target));
+        assert!(seen.found.iou >= 0.999, "{name}");
+        // A cell has 456 steps of a coordinate, the threshold 28 and more.
+        seen.near(2e-4, 1.6e-2).faced(0.07).decided(0).cheap(15.0);
+    }
+}
+
+#[test]
+fn other_fields_are_where_they_are() {
+    let see = |scene| see("aside", scene, &at([1.25, -1.875, 0.40625], [0.0; 3]));
+    see("box:1,0.5,0.25")
+        .masked(8)
+        .decided(0)
+        .near(1e-5, 5e-3)
+        .faced(0.0)
+        .cheap(1.6);
+    see("cubes:0.25,0.1")
+        .masked(0)
+        .decided(0)
+        .near(1e-5, 3e-4)
+        .faced(2e-3)
+        .cheap(13.0);
+    see("planes:12")
+        .masked(8)
+        .decided(0)
+        .near(2e-3, 1.1e-2)
+        .faced(0.0)
+        .cheap(13.0);
+    // Towards the horizon rays run along faces: some are given up, and some end beside a face that they would have passed.
+    see("cubes:2,0.5")
+        .masked(30)
+        .decided(240)
+        .near(2e-5, 0.5)
+        .faced(1.3e-2)
+        .cheap(35.0);
+    see("planes:0.5")
+        .masked(0)
+        .decided(1150)
+        .near(6e-4, 5e-2)
+        .faced(0.0)
+        .cheap(55.0);
+}
+
+#[test]
+fn a_camera_inside_the_solid_sees_it_at_the_near_plane() {
+    // In the middle of a corner's cube, and deep in a box.
+    let corner = -80.0 / 81.0;
+    let cases = [
+        ("menger:4", [corner; 3], [corner, 1.0, corner]),
+        ("box:1,1,1", [0.0; 3], [0.5, 1.0, 0.25]),
+    ];
+    for (scene, eye, target) in cases {
+        see("inside", scene, &at(eye, target))
+            .masked(0)
+            .decided(0)
+            .near(2e-5, 2e-5)
+            .cheap(1.0);
+    }
+}
+
+#[test]
+fn a_camera_in_the_plane_of_a_face_sees_what_is_before_it() {
+    let above = at([0.0, -3.0, 1.0], [0.0, 0.0, 1.0]);
+    see("level with the top", "menger:4", &above)
+        .masked(0)
+        .decided(0)
+        .near(2e-6, 7e-3)
+        .faced(0.01)
+        .cheap(3.3);
+    // Half of the rays go into the face, the others away from it.
+    let on = at([0.9375, -1.0, 0.9375], [-0.5, -1.5, 0.5]);
+    see("on the front", "menger:4", &on)
+        .masked(20)
+        .decided(0)
+        .near(2e-5, 2e-5)
+        .cheap(1.01);
+}
+
+#[test]
+fn a_camera_just_beside_a_face_sees_it() {
+    // 0.03 of a cell before it; those of deeper sponges are within the nearest near plane.
+    let eye = [0.75, -1.0 - 0.03 * 2.0 / 3.0, 0.75];
+    see("macro", "menger:1", &at(eye, [0.75, 0.0, 0.765_625]))
+        .masked(0)
+        .decided(0)
+        .near(5e-6, 1.2e-5)
+        .faced(0.0)
+        .cheap(1.0);
+    let over = at([-1.25, -1.125, 1.001_953_125], [1.0, 0.875, 1.0]);
+    see("grazing", "box:1,1,1", &over)
+        .masked(0)
+        .decided(0)
+        .near(2e-4, 4e-3)
+        .faced(1e-3)
+        .cheap(2.5);
+    // Level with the ceiling, to the horizon. A third of the rays are in it at the near plane.
+    let under = at([0.0, 0.0, 0.998_046_875], [4.0, 3.0, 0.998_046_875]);
+    see("grazing", "planes:1", &under)
+        .masked(30)
+        .decided(2600)
+        .near(1e-3, 5e-2)
+        .cheap(52.0);
+}
+
+#[test]
+fn lenses_may_be_long_and_wide() {
+    let (_, eye, target) = views::views()[0];
+    let with = |half_width| {
+        let mut camera = at(eye, target);
+        camera.half_width = half_width;
+        see(&format!("half width {half_width}"), "menger:4", &camera)
+    };
+    with(0.05)
+        .masked(0)
+        .decided(0)
+        .near(2e-5, 1e-3)
+        .faced(0.01)
+        .cheap(5.0);
+    with(4.0)
+        .masked(1)
+        .decided(0)
+        .near(1e-4, 3e-3)
+        .faced(0.01)
+        .cheap(1.1);
+}
+
+#[test]
+fn a_camera_may_be_far_away() {
+    let mut camera = at([0.0, -30.0, 0.0], [0.125, 0.0, 0.0625]);
+    camera.half_width = 0.05;
+    // It looks along all walls at once: most of what it sees is in the depths of tunnels, as wide there as the threshold is
+    // a few times over; rays that would pass through end at a wall.
+    let seen = see("far away", "menger:4", &camera);
+    assert!(seen.found.iou >= 0.98);
+    seen.decided(0).near(1e-4, 0.9).faced(0.13).cheap(16.0);
+}
+
+/// Rays that no pixel has, exactly along an axis. Steps beside a wall are as long as it is away, and the threshold doubles with
+/// every 64 of them: a ray less than an eighth of a cell beside a wall ends there. Nothing else is wrong.
+#[test]
+fn rays_along_the_axes_end_at_the_walls() {
+    let sponge = Field::Menger { depth: 4 };
+    let places = || (-9..9).map(|i| f64::from(2 * i + 1) / 16.0);
+    let (mut hits, mut passed, mut given_up, mut beside) = (0, 0, 0, 0);
+    let mut most: f64 = 0.0;
+    for (axis, side) in (0..3).flat_map(|axis| [(axis, -1), (axis, 1)]) {
+        for (a, b) in places().flat_map(|a| places().map(move |b| (a, b))) {
+            let mut eye = [0.0; 3];
+            eye[axis] = f64::from(-2 * side);
+            (eye[(axis + 1) % 3], eye[(axis + 2) % 3]) = (a, b);
+            let setup = setup(
+                "menger:4",
+                &at(eye, [3.0, 4.0, 0.0]),
+                &FieldOptions::default(),
+            );
+            let mut direction = [0; 3];
+            direction[axis] = ((1 << 17) - 1) * side;
+            let ray = Ray {
+                eye: 0,
+                direction,
+                length: 1023,
+                start: 0,
+            };
+            let end = setup.march(&ray);
+            let direction = direction.map(|x| f64::from(x) / f64::from(1 << 17));
+            let exact = sponge.hit(eye, direction, 0.0, 100.0);
+            let context = || format!("{eye:?}, {axis}, {side}: {end:?}, {exact:?}");
+            match (raymarched::marched(&setup, &ray, &end).outcome, exact) {
+                (Outcome::Hit { .. }, _) if end.steps > 64 && [0, 1023].contains(&end.slope) => {
+                    beside += 1;
+                }
+                (Outcome::Hit { face, .. }, Some(exact)) => {
+                    let t =
+                        f64::from(end.reached()) / f64::from(1 << 12) / setup.scale.to_num::<f64>();
+                    hits += 1;
+                    most = most.max((t - exact.t).abs());
+                    assert_eq!(face, exact.face, "{}", context());
+                }
+                (Outcome::Miss, None) => passed += 1,
+                (Outcome::Undecided, _) => given_up += 1,
+                _ => panic!("{}", context()),
+            }
+        }
+    }
+    println!(
+        "{hits} hits, apart by at most {most:e}, {passed} misses, {given_up} undecided, {beside} beside a wall"
+    );
+    assert!(hits > 700 && given_up + beside <= 264 && most < 1e-5);
+}
+
+#[test]
+fn the_first_step_is_the_last_where_there_is_but_one() {
+    for (name, eye, target) in views::views() {
+        let mut options = FieldOptions::default();
+        let free = setup("menger:4", &at(eye, target), &options);
+        options.tuning.cap = 1;
+        let capped = setup("menger:4", &at(eye, target), &options);
+        for (x, y) in pixels() {
+            let ray = free.ray(0, x, y);
+            let (end, first) = (free.march(&ray), capped.march(&ray));
+            if end.steps == 1 {
+                assert_eq!(first, end, "{name} {x} {y}");
+            } else {
+                let given_up = (first.state, first.steps) == (State::Undecided, 1);
+                assert!(given_up, "{name} {x} {y}: {first:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_surface_at_the_end_of_a_ray_is_seen_and_none_behind_it() {
+    let camera = at([0.0, -3.0, 0.0], [0.25, 0.0, 0.125]);
+    let mut options = FieldOptions::default();
+    let free = setup("menger:4", &camera, &options);
+    let mut ends: Vec<u32> = pixels()
+        .map(|(x, y)| free.march(&free.ray(0, x, y)))
+        .filter(|end| matches!(end.state, State::Hit(_)))
+        .map(|end| end.t + end.gap)
+        .collect();
+    ends.sort_unstable();
+    options.tuning.far = ends[ends.len() / 2];
+    let short = setup("menger:4", &camera, &options);
+    let (mut seen, mut beyond) = (0, 0);
+    for (x, y) in pixels() {
+        let ray = free.ray(0, x, y);
+        let (end, found) = (free.march(&ray), short.march(&ray));
+        // A hit is as far as its last step would be.
+        let reach = end.t + end.gap;
+        if reach <= options.tuning.far {
+            assert_eq!(found, end, "{x} {y}");
+            seen += u32::from(reach == options.tuning.far);
+        } else {
+            assert_eq!(found.state, State::Miss, "{x} {y}");
+            beyond += 1;
+        }
+    }
+    assert!(
+        seen > 0 && beyond > 1000,
+        "{seen} at the end, {beyond} beyond"
+    );
+}
+
+#[test]
+fn two_eyes_in_one_place_see_what_one_eye_sees() {
+    let stereo = Stereo {
+        half_separation: Q32_32::ZERO,
+        zero_parallax: Q32_32::ONE,
+        tint: Tint::RedBlue,
+    };
+    let options = FieldOptions {
+        stereo: Some(stereo),
+        ..FieldOptions::default()
+    };
+    for (name, eye, target) in views::views() {
+        let one = setup("menger:4", &at(eye, target), &FieldOptions::default());
+        let two = setup("menger:4", &at(eye, target), &options);
+        let picture = raymarched::picture(&one, 0);
+        for eye in [0, 1] {
+            assert!(raymarched::picture(&two, eye) == picture, "{name} {eye}");
+        }
+    }
+}
+
+fn pixels() -> impl Iterator<Item = (u32, u32)> {
+    let (width, height) = SIZE;
+    (0..height).flat_map(move |y| (0..width).map(move |x| (x, y)))
+}

@@ -1,0 +1,77 @@
+//! The parts that streams are made of.
+
+use glint_testbench::{Bits, Module, Sink, Source, Stalls};
+
+/// Sends numbers through a buffer with stalls on both sides and expects them in order.
+fn passes_all_in_order(name: &str, source_stalls: f64, sink_stalls: f64) -> u64 {
+    const COUNT: u64 = 500;
+    let mut module = Module::new(name, 1);
+    let mut source = Source::new(&module, "in", &["data"], Stalls::new(1, source_stalls));
+    let mut sink = Sink::new(&module, "out", &["data"], Stalls::new(2, sink_stalls));
+    for number in 0..COUNT {
+        source.push(vec![Bits::from(number * 7 % 256)]);
+    }
+    while sink.items().len() < COUNT as usize {
+        assert!(module.cycles() < 100 * COUNT, "{name} stands still");
+        source.drive(&mut module);
+        sink.drive(&mut module);
+        module.settle();
+        source.sample(&module);
+        sink.sample(&module);
+        module.clock();
+    }
+    for (number, item) in (0..).zip(sink.items()) {
+        assert_eq!(
+            item[0],
+            Bits::from(number * 7 % 256),
+            "item {number} of {name}"
+        );
+    }
+    module.cycles() - COUNT
+}
+
+#[test]
+fn the_skid_buffer_keeps_order_and_passes_an_item_a_clock() {
+    for (source_stalls, sink_stalls) in [(0.5, 0.5), (0.1, 0.9), (0.9, 0.1)] {
+        passes_all_in_order("skid_buffer", source_stalls, sink_stalls);
+    }
+    let waited = passes_all_in_order("skid_buffer", 0.0, 0.0);
+    assert!(waited <= 4, "{waited} clocks without an item");
+}
+
+#[test]
+fn the_fifo_keeps_order_and_passes_an_item_a_clock() {
+    for name in ["fifo", "fifo_2"] {
+        for (source_stalls, sink_stalls) in [(0.5, 0.5), (0.1, 0.9), (0.9, 0.1)] {
+            passes_all_in_order(name, source_stalls, sink_stalls);
+        }
+        let waited = passes_all_in_order(name, 0.0, 0.0);
+        assert!(waited <= 4, "{name}: {waited} clocks without an item");
+    }
+}
+
+/// Items that a buffer takes while nobody takes any from it.
+fn capacity(name: &str) -> usize {
+    const MORE_THAN_FITS: usize = 50;
+    let mut module = Module::new(name, 1);
+    let mut source = Source::new(&module, "in", &["data"], Stalls::new(1, 0.0));
+    let mut sink = Sink::new(&module, "out", &["data"], Stalls::new(2, 1.0));
+    for _ in 0..MORE_THAN_FITS {
+        source.push(vec![Bits::from(1)]);
+    }
+    for _ in 0..2 * MORE_THAN_FITS {
+        source.drive(&mut module);
+        sink.drive(&mut module);
+        module.settle();
+        source.sample(&module);
+        sink.sample(&module);
+        module.clock();
+    }
+    MORE_THAN_FITS - source.len()
+}
+
+#[test]
+fn buffers_have_the_places_they_state() {
+    let places = ["skid_buffer", "fifo_2", "fifo"].map(capacity);
+    assert_eq!(places, [2, 3, 17]);
+}

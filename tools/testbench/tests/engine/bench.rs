@@ -1,0 +1,406 @@
+//! The triangle engine with a memory around it, and what it should make of it.
+
+use glint_core::camera::View;
+use glint_core::mesh::Mesh;
+use glint_model::descriptor::{Descriptor, band_rows, list_word, words};
+use glint_model::setup::{Bounds, Oriented, Setup};
+use glint_model::{DrawnTriangle, MeshSetup, Options, Projected, Shading, Stats, Target, trace};
+use glint_testbench::{Bits, Memory, Module, ReadPort, Stalls, WritePort};
+
+pub const SIZES: [(u32, u32); 3] = glint_model::SIZES;
+
+// Where things are in memory, by words of 16 bytes. Set 0 is the engine's, set 1 that of the clipper.
+const FRAMES: [u32; 2] = [0, 0x6_0000];
+const DEPTH: u32 = 0x2_0000;
+const LISTS: [u32; 2] = [0x8_0000, 0xc_0000];
+const DESCRIPTORS: [u32; 2] = [0x10_0000, 0x14_0000];
+const EXCEPTIONS: u32 = 0x18_0000;
+const MESH: u32 = 0x1c_0000;
+const WORDS: usize = 0x20_0000;
+/// Words of a list, as a power of two.
+const LIST_SHIFT: u32 = 11;
+/// Words behind a picture that nobody may touch: more than a bank of the band buffer has.
+const BEHIND: usize = 4096;
+/// The most exceptions, and the most descriptors of three words.
+const LIMIT: u32 = 80_000;
+pub const CLEAR: u16 = 0x1234;
+
+/// What the model draws.
+pub struct Expected {
+    pub size: (u32, u32),
+    options: Options,
+    colour: Vec<u16>,
+    depth: Vec<u32>,
+    frame: MeshSetup,
+    clipped: Vec<DrawnTriangle>,
+    pub stats: Stats,
+}
+
+/// Draws with the model.
+pub fn expected(mesh: &[u8], view: &View, size: (u32, u32), cull: bool) -> Expected {
+    expected_on(CLEAR, mesh, view, size, cull)
+}
+
+/// Draws with the model, on another colour.
+pub fn expected_on(clear: u16, mesh: &[u8], view: &View, size: (u32, u32), cull: bool) -> Expected {
+    let options = Options {
+        cull,
+        clear,
+        ..Options::default()
+    };
+    expected_with(options, mesh, view, size)
+}
+
+/// Draws with the model, smoothly.
+pub fn expected_smooth(mesh: &[u8], view: &View, size: (u32, u32), cull: bool) -> Expected {
+    let options = Options {
+        cull,
+        clear: CLEAR,
+        shading: Shading::Smooth,
+    };
+    expected_with(options, mesh, view, size)
+}
+
+fn expected_with(options: Options, mesh: &[u8], view: &View, size: (u32, u32)) -> Expected {
+    let mesh = &Mesh::new_checked(mesh).unwrap();
+    let pixels = (size.0 * size.1) as usize;
+    let (mut colour, mut depth) = (vec![0; pixels], vec![0; pixels]);
+    let vertices = mesh.chunks().map(|chunk| chunk.vertex_count()).max();
+    let mut scratch = vec![Projected::Behind; vertices.unwrap_or(0)];
+    let mut target = Target {
+        width: size.0,
+        height: size.1,
+        colour: &mut colour,
+        depth: &mut depth,
+    };
+    let mut clipped = Vec::new();
+    let stats = trace(
+        mesh,
+        view,
+        &mut target,
+        &mut scratch,
+        &options,
+        |triangle| {
+            if triangle.clipped {
+                clipped.push(*triangle);
+            }
+        },
+    )
+    .unwrap();
+    Expected {
+        size,
+        options,
+        colour,
+        depth,
+        frame: MeshSetup::new(view, size.0, size.1, mesh.radius()).unwrap(),
+        clipped,
+        stats,
+    }
+}
+
+/// Lists and descriptors of the clipped triangles, as the firmware leaves them.
+fn write_clipped(memory: &mut Memory, expected: &Expected, ability: Shading) {
+    let (width, height) = expected.size;
+    let rows = band_rows(width);
+    let mut lists = vec![Vec::new(); 64];
+    for (number, triangle) in (0_u32..).zip(&expected.clipped) {
+        let oriented = Oriented::new(triangle.vertices).unwrap();
+        let bounds = Bounds::new(&oriented.vertices, width, height).unwrap();
+        let setup = match &triangle.lit {
+            None => Setup::new(&oriented, bounds),
+            Some(lit) => Setup::smooth(&oriented, bounds, lit),
+        };
+        let descriptor = Descriptor::new(&setup, triangle.colour);
+        let words = descriptor.words(ability);
+        let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+        memory.write(DESCRIPTORS[1] + bytes.len() as u32 / 16 * number, &bytes);
+        for band in bounds.top as u32 / rows..=(bounds.bottom as u32 - 1) / rows {
+            lists[band as usize].extend(number.to_le_bytes());
+        }
+    }
+    for (band, list) in (0..).zip(&lists) {
+        assert!(list.len() <= 16 << LIST_SHIFT);
+        memory.write(LISTS[1] + list_word(band, LIST_SHIFT), list);
+    }
+    let lengths: Vec<u8> = lists
+        .iter()
+        .flat_map(|list| (list.len() as u32 / 4).to_le_bytes())
+        .collect();
+    memory.write(LISTS[1], &lengths);
+}
+
+pub struct Bench {
+    pub module: Module,
+    ability: Shading,
+    memory: Memory,
+    pub reads: [ReadPort; 3],
+    writes: [WritePort; 4],
+    /// Whether depths are written and compared as well.
+    pub with_depth: bool,
+    /// The frame buffer that is drawn in.
+    pub slot: usize,
+    /// Size and clear colour of what is in the frame buffers, where it is not the engine that knows that it is nothing whole.
+    left: [Option<((u32, u32), u16)>; 2],
+}
+
+/// Clocks of the two passes, the words that the raster pass read, and those of the frame and its depth that were written.
+pub struct Clocks {
+    pub geometry: u64,
+    pub raster: u64,
+    pub read: u64,
+    pub written: u64,
+}
+
+impl Bench {
+    /// Stalls in a share of the clocks on every side of the memory.
+    pub fn new(seed: u32, stalls: f64) -> Self {
+        Self::of(Shading::Flat, seed, stalls)
+    }
+
+    /// The same with gateware that shades smoothly too.
+    pub fn smooth(seed: u32, stalls: f64) -> Self {
+        Self::of(Shading::Smooth, seed, stalls)
+    }
+
+    fn of(ability: Shading, seed: u32, stalls: f64) -> Self {
+        let name = match ability {
+            Shading::Flat => "triangle_engine",
+            Shading::Smooth => "triangle_engine_smooth",
+        };
+        let module = Module::new(name, seed);
+        let seed = u64::from(seed);
+        Self {
+            memory: Memory::new(WORDS),
+            reads: ["mesh_read_", "vertex_read_", "raster_read_"]
+                .map(|name| ReadPort::new(&module, name, Stalls::new(seed, stalls))),
+            writes: ["descriptors_", "lists_", "frame_even_", "frame_odd_"]
+                .map(|name| WritePort::new(&module, name, Stalls::new(seed + 1, stalls))),
+            module,
+            ability,
+            with_depth: true,
+            slot: 0,
+            left: [None; 2],
+        }
+    }
+
+    pub fn set(&mut self, port: &str, value: impl Into<Bits>) {
+        let port = self.module.port(port);
+        self.module.set(port, value);
+    }
+
+    pub fn count(&self, port: &str) -> u64 {
+        self.module.value(self.module.port(port))
+    }
+
+    pub fn clock(&mut self) {
+        for read in &mut self.reads {
+            read.drive(&mut self.module, &self.memory);
+        }
+        for write in &mut self.writes {
+            write.drive(&mut self.module);
+        }
+        self.module.settle();
+        for read in &mut self.reads {
+            read.sample(&self.module);
+        }
+        for write in &mut self.writes {
+            write.sample(&self.module, &mut self.memory);
+        }
+        self.module.clock();
+    }
+
+    /// Clocks until a port is high.
+    pub fn wait_for(&mut self, port: &str) -> u64 {
+        let (port, start) = (self.module.port(port), self.module.cycles());
+        while !self.module.is_high(port) {
+            let clocks = self.module.cycles() - start;
+            assert!(
+                clocks < 2_000_000,
+                "nothing for {clocks} clocks: given {:?} written {} groups {}",
+                self.reads.each_ref().map(|read| read.given),
+                self.frame_words(),
+                self.count("groups_in")
+            );
+            self.clock();
+        }
+        self.module.cycles() - start
+    }
+
+    /// Words written so far.
+    pub fn written(&self) -> u64 {
+        self.writes.iter().map(|write| write.written).sum()
+    }
+
+    /// Words of frames and depths written so far.
+    fn frame_words(&self) -> u64 {
+        self.writes[2].written + self.writes[3].written
+    }
+
+    pub fn pulse(&mut self, port: &str) {
+        self.set(port, 1);
+        self.clock();
+        self.set(port, 0);
+    }
+
+    /// Gives the engine a mesh, the frame's constants and the places of everything.
+    pub fn configure(&mut self, mesh: &[u8], expected: &Expected) {
+        self.memory.write(MESH, mesh);
+        let frame = &expected.frame;
+        let size = SIZES
+            .iter()
+            .position(|&size| size == expected.size)
+            .unwrap() as u64;
+        let rows = |row: [i32; 3]| {
+            (0..).zip(row).fold(Bits::default(), |bits, (i, value)| {
+                bits.with(25 * i, 25, value)
+            })
+        };
+        let signed = |value: i64, width| Bits::default().with(0, width, value);
+        let whole = self.left[self.slot]
+            .is_some_and(|left| left != (expected.size, expected.options.clear));
+        for (port, value) in [
+            ("mesh_first", u64::from(MESH) + 2),
+            ("mesh_last", u64::from(MESH) + mesh.len() as u64 / 16 - 1),
+            ("geometry_descriptors", DESCRIPTORS[0].into()),
+            (
+                "descriptor_limit",
+                (LIMIT * 12 / words(self.ability) as u32).into(),
+            ),
+            ("geometry_lists", LISTS[0].into()),
+            ("list_shift", LIST_SHIFT.into()),
+            ("exception_base", EXCEPTIONS.into()),
+            ("exception_limit", LIMIT.into()),
+            ("geometry_size", size),
+            ("raster_size", size),
+            ("cull_back", expected.options.cull.into()),
+            (
+                "smooth",
+                (expected.options.shading == Shading::Smooth).into(),
+            ),
+            ("scale_shift", frame.scale_shift.into()),
+            ("near_z", frame.near as u64),
+            ("depth_mantissa", frame.depth.mantissa.into()),
+            ("frame_base", FRAMES[self.slot].into()),
+            ("depth_base", DEPTH.into()),
+            ("with_depth", self.with_depth.into()),
+            ("clear", expected.options.clear.into()),
+            ("frame_slot", self.slot as u64),
+            ("whole", whole.into()),
+        ] {
+            self.set(port, value);
+        }
+        for (port, value) in [
+            ("row_u", rows(frame.u)),
+            ("row_v", rows(frame.v)),
+            ("row_n", rows(frame.n)),
+            ("tx", signed(frame.translation[0], 44)),
+            ("ty", signed(frame.translation[1], 44)),
+            ("tz", signed(frame.translation[2], 44)),
+            ("depth_exponent", signed(frame.depth.exponent.into(), 4)),
+        ] {
+            self.set(port, value);
+        }
+        for (port, [low, high]) in [("raster_lists", LISTS), ("raster_descriptors", DESCRIPTORS)] {
+            self.set(port, Bits::default().with(0, 23, low).with(23, 23, high));
+        }
+    }
+
+    /// Draws a frame and compares it.
+    pub fn draw(&mut self, name: &str, mesh: &[u8], expected: &Expected) -> Clocks {
+        self.configure(mesh, expected);
+        self.wait_for("ready");
+        self.pulse("geometry_start");
+        let geometry = self.wait_for("geometry_done");
+        let counts = ["mesh_error", "full", "triangles", "exceptions"].map(|port| self.count(port));
+        let stats = &expected.stats;
+        let wanted = [0, 0, stats.triangles_in.into(), stats.clipped.into()];
+        assert_eq!(counts, wanted, "{name}: error, full, triangles, exceptions");
+
+        write_clipped(&mut self.memory, expected, self.ability);
+        let counts = [
+            self.count("descriptors") as u32,
+            expected.clipped.len() as u32,
+        ];
+        let counts = Bits::default()
+            .with(0, 20, counts[0])
+            .with(20, 20, counts[1]);
+        self.set("raster_counts", counts);
+        self.set("present", if expected.clipped.is_empty() { 1 } else { 3 });
+        self.pulse("raster_start");
+        let (read, written) = (self.reads[2].given, self.frame_words());
+        let raster = self.wait_for("raster_done");
+        self.left[self.slot] = Some((expected.size, expected.options.clear));
+        assert_eq!(self.count("list_error"), 0, "{name}: the lists");
+        self.compare(name, expected);
+        Clocks {
+            geometry,
+            raster,
+            read: self.reads[2].given - read,
+            written: self.frame_words() - written,
+        }
+    }
+
+    /// Draws whatever these descriptors and lists are: the list of each band has so many entries, of which there are
+    /// `lists`, for all bands the same.
+    ///
+    /// # Panics
+    /// When that does not end, or anything is written behind the picture.
+    pub fn draw_whatever(
+        &mut self,
+        name: &str,
+        expected: &Expected,
+        descriptors: &[u8],
+        lengths: [u32; 64],
+        list: &[u32],
+    ) {
+        self.configure(&[], expected);
+        self.memory.write(DESCRIPTORS[0], descriptors);
+        let table = lengths.map(u32::to_le_bytes);
+        self.memory.write(LISTS[0], table.as_flattened());
+        let list: Vec<_> = list.iter().flat_map(|entry| entry.to_le_bytes()).collect();
+        for band in 0..64 {
+            self.memory
+                .write(LISTS[0] + list_word(band, LIST_SHIFT), &list);
+        }
+        let behind = FRAMES[self.slot] + expected.size.0 * expected.size.1 / 8;
+        self.memory.write(behind, &[0x77; 16 * BEHIND]);
+        self.set("raster_counts", descriptors.len() as u64 / 48);
+        self.set("present", 1);
+        self.wait_for("ready");
+        self.pulse("raster_start");
+        self.wait_for("raster_done");
+        self.left[self.slot] = Some((expected.size, expected.options.clear));
+        for word in 0..BEHIND as u32 {
+            let found = self.memory.word(behind + word);
+            assert_eq!(
+                found,
+                Bits::from_words(&[0x7777_7777; 4]),
+                "{name}: word {word} behind the picture"
+            );
+        }
+    }
+
+    /// Writes a picture's worth of something else into the frame buffer.
+    pub fn scribble(&mut self) {
+        self.memory
+            .write(FRAMES[self.slot], &[0x99; 1280 * 720 * 2]);
+        self.left[self.slot] = Some(((0, 0), 0));
+    }
+
+    /// The frame in memory is the one expected.
+    fn compare(&self, name: &str, expected: &Expected) {
+        for i in 0..expected.colour.len() as u32 {
+            let (x, y) = (i % expected.size.0, i / expected.size.0);
+            let colour = self.memory.entry(FRAMES[self.slot], i / 2) >> (16 * (i % 2)) & 0xffff;
+            let (found, wanted) = (self.memory.entry(DEPTH, i), expected.depth[i as usize]);
+            let depth = if self.with_depth { found } else { wanted };
+            let wanted = (expected.colour[i as usize].into(), wanted);
+            assert_eq!(
+                (colour, depth),
+                wanted,
+                "{name}: colour and depth at {x}, {y} in slot {}",
+                self.slot
+            );
+        }
+    }
+}

@@ -1,0 +1,201 @@
+//! The band lists, as the binner leaves them in memory.
+
+use glint_model::descriptor::{band_rows, list_word};
+use glint_testbench::{Bits, Memory, Module, Port, Sink, Source, Stalls};
+use rand::RngExt;
+use rand_pcg::Pcg64Mcg;
+
+const DESCRIPTORS: u32 = 0x1000;
+const LISTS: u32 = 0x4000;
+const EXCEPTIONS: u32 = 0x8000;
+const LIST_SHIFT: u32 = 4;
+
+struct Bench {
+    module: Module,
+    descriptors: Source,
+    exceptions: Source,
+    writes: Sink,
+    memory: Memory,
+}
+
+impl Bench {
+    fn new(size: usize, limit: u32, stalls: f64) -> Self {
+        let mut module = Module::new("binner", size as u32);
+        for (port, value) in [
+            ("size", size as u32),
+            ("descriptor_base", DESCRIPTORS),
+            ("descriptor_limit", limit),
+            ("list_base", LISTS),
+            ("list_shift", LIST_SHIFT),
+            ("exception_base", EXCEPTIONS),
+            ("exception_limit", limit),
+        ] {
+            let port = module.port(port);
+            module.set(port, u64::from(value));
+        }
+        let stalls = |seed| Stalls::new(seed, stalls);
+        let mut bench = Self {
+            descriptors: Source::new(&module, "in", &["descriptor"], stalls(1)),
+            exceptions: Source::new(&module, "exception", &["number"], stalls(2)),
+            writes: Sink::new(&module, "write", &["addr", "data", "strobe"], stalls(3)),
+            memory: Memory::new(0x1_0000),
+            module,
+        };
+        bench.pulse("restart");
+        bench
+    }
+
+    fn port(&self, name: &str) -> Port {
+        self.module.port(name)
+    }
+
+    fn value(&self, name: &str) -> u64 {
+        self.module.value(self.port(name))
+    }
+
+    fn set(&mut self, name: &str, value: u64) {
+        let port = self.port(name);
+        self.module.set(port, value);
+    }
+
+    fn pulse(&mut self, name: &str) {
+        self.set(name, 1);
+        self.clock();
+        self.set(name, 0);
+    }
+
+    fn clock(&mut self) {
+        self.descriptors.drive(&mut self.module);
+        self.exceptions.drive(&mut self.module);
+        self.writes.drive(&mut self.module);
+        self.module.settle();
+        self.descriptors.sample(&self.module);
+        self.exceptions.sample(&self.module);
+        self.writes.sample(&self.module);
+        for item in self.writes.take() {
+            self.memory.store(
+                item[0].field(0, 32) as u32,
+                item[1],
+                item[2].field(0, 16) as u16,
+            );
+        }
+        self.module.clock();
+    }
+
+    /// Takes all in and writes the lengths.
+    fn finish(&mut self) {
+        let start = self.module.cycles();
+        let all_in = |bench: &Self| bench.descriptors.is_empty() && bench.exceptions.is_empty();
+        while !(all_in(self) && self.value("idle") == 1) {
+            assert!(
+                self.module.cycles() < start + 1_000_000,
+                "it does not take all"
+            );
+            self.clock();
+        }
+        self.set("finish", 1);
+        while self.value("done") == 0 || self.value("write_valid") == 1 {
+            assert!(
+                self.module.cycles() < start + 1_000_000,
+                "the lists do not end"
+            );
+            self.clock();
+        }
+        self.set("finish", 0);
+        self.clock();
+    }
+}
+
+/// Descriptors with random rows, and noise elsewhere: first and past-the-last row, and the bits.
+fn descriptors(random: &mut Pcg64Mcg, count: usize, height: u32) -> Vec<(u32, u32, Bits)> {
+    (0..count)
+        .map(|_| {
+            let top = random.random_range(0..height);
+            let rows = if random.random_bool(0.8) { 20 } else { height };
+            let bottom = random.random_range(top + 1..=height.min(top + rows));
+            let words: [u32; 12] = random.random();
+            let bits = Bits::from_words(&words)
+                .with(324, 10, top)
+                .with(334, 10, bottom);
+            (top, bottom, bits)
+        })
+        .collect()
+}
+
+#[test]
+fn every_band_lists_what_touches_it() {
+    for (size, (width, height)) in glint_model::SIZES.into_iter().enumerate() {
+        for stalls in [0.0, 0.6] {
+            let mut random = Pcg64Mcg::new(size as u128 + 1);
+            let mut bench = Bench::new(size, 1000, stalls);
+            // A second frame finds the first one's lists empty.
+            for count in [90, 50] {
+                let given = descriptors(&mut random, count, height);
+                let exceptions: Vec<u32> = (0..30).map(|_| random.random()).collect();
+                for &(_, _, bits) in &given {
+                    bench.descriptors.push(vec![bits]);
+                }
+                for &number in &exceptions {
+                    bench.exceptions.push(vec![Bits::from(u64::from(number))]);
+                }
+                bench.finish();
+
+                assert_eq!(bench.value("full"), 0);
+                let counts = (bench.value("descriptors"), bench.value("exceptions"));
+                assert_eq!(counts, (count as u64, exceptions.len() as u64));
+                for (number, (_, _, bits)) in (0..).zip(&given) {
+                    for word in 0..3 {
+                        let expected = &bits.words()[4 * word as usize..][..4];
+                        let found = bench.memory.word(DESCRIPTORS + 3 * number + word);
+                        assert_eq!(found, Bits::from_words(expected), "descriptor {number}");
+                    }
+                }
+                for band in 0..64 {
+                    let rows = band * band_rows(width)..(band + 1) * band_rows(width);
+                    let expected: Vec<u32> = (0..)
+                        .zip(&given)
+                        .filter(|(_, (top, bottom, _))| *top < rows.end && *bottom > rows.start)
+                        .map(|(number, _)| number)
+                        .collect();
+                    let length = bench.memory.entry(LISTS, band);
+                    let list = LISTS + list_word(band, LIST_SHIFT);
+                    let found: Vec<u32> =
+                        (0..length).map(|i| bench.memory.entry(list, i)).collect();
+                    assert_eq!(found, expected, "band {band} of {width}x{height}");
+                }
+                let found: Vec<u32> = (0..)
+                    .map(|i| bench.memory.entry(EXCEPTIONS, i))
+                    .take(exceptions.len())
+                    .collect();
+                assert_eq!(found, exceptions);
+                bench.pulse("restart");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_has_no_room_is_told() {
+    let one_row = |random: &mut Pcg64Mcg| {
+        let mut given = descriptors(random, 1, 720);
+        given[0].2 = given[0].2.with(324, 10, 5).with(334, 10, 6);
+        given.remove(0).2
+    };
+    let mut random = Pcg64Mcg::new(1);
+    // As many as a list has room for, and one more.
+    let room = 4 << LIST_SHIFT;
+    for (count, limit, full) in [
+        (room, 1000, 0),
+        (room + 1, 1000, 1),
+        (10, 10, 0),
+        (11, 10, 1),
+    ] {
+        let mut bench = Bench::new(2, limit, 0.3);
+        for _ in 0..count {
+            bench.descriptors.push(vec![one_row(&mut random)]);
+        }
+        bench.finish();
+        assert_eq!(bench.value("full"), full, "{count} of at most {limit}");
+        assert_eq!(bench.memory.entry(LISTS, 0), count.min(limit).min(room));
+    }
+}

@@ -1,0 +1,714 @@
+//! The rasterizer: band by band, its groups make the picture that glint-model draws.
+
+use glint::{convert, generate, view};
+use glint_core::camera::View;
+use glint_core::colour::Rgb565;
+use glint_core::fixed::U4_28;
+use glint_core::mesh::Mesh;
+use glint_model::descriptor::{Descriptor, band_rows};
+use glint_model::raster::draw;
+use glint_model::setup::{Bounds, Oriented, Setup};
+use glint_model::shade::Lit;
+use glint_model::vertex::GUARD;
+use glint_model::{Options, Projected, ScreenVertex, Shading, Target, trace};
+use glint_testbench::{Bits, Module, Port, Sink, Source, Stalls};
+use rand::RngExt;
+use rand_pcg::Pcg64Mcg;
+
+const SMALL: (u32, u32) = (320, 180);
+const MIDDLE: (u32, u32) = (640, 360);
+const LARGE: (u32, u32) = (1280, 720);
+const LANES: usize = 8;
+
+type Corners = [ScreenVertex; 3];
+
+/// A triangle to be drawn. If it is flat its colour is its number.
+struct Triangle {
+    corners: Corners,
+    setup: Setup,
+    colour: Rgb565,
+}
+
+impl Triangle {
+    /// `None` if there is nothing to be drawn.
+    fn new(corners: Corners, (width, height): (u32, u32), number: usize) -> Option<Self> {
+        let oriented = Oriented::new(corners)?;
+        let bounds = Bounds::new(&oriented.vertices, width, height)?;
+        Some(Self {
+            corners,
+            setup: Setup::new(&oriented, bounds),
+            colour: Rgb565(u16::try_from(number).unwrap()),
+        })
+    }
+
+    /// The same with light.
+    fn with_light(mut self, lit: &[Lit; 3]) -> Self {
+        let oriented = Oriented::new(self.corners).unwrap();
+        self.setup = Setup::smooth(&oriented, self.setup.bounds, lit);
+        self
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Pixel {
+    colour: u16,
+    depth: u32,
+}
+
+/// What drawing took.
+#[derive(Clone, Copy, Debug, Default)]
+struct Counts {
+    clocks: u64,
+    /// Clocks in which the walker was at a group.
+    walked: u64,
+    /// Groups that went to the lanes.
+    candidates: u64,
+    /// Groups that came out.
+    groups: u64,
+    pixels: u64,
+    /// Triangles, counted in each band.
+    entries: u64,
+}
+
+struct Bench {
+    module: Module,
+    source: Source,
+    sink: Sink,
+    band: [Port; 3],
+    idle: Port,
+    walking: Port,
+    candidate: Port,
+    counts: Counts,
+}
+
+impl Bench {
+    /// Of flat triangles, which are told by their colours.
+    fn new(seed: u32, source_stalls: f64, sink_stalls: f64) -> Self {
+        Self::of("triangle_raster", seed, source_stalls, sink_stalls)
+    }
+
+    /// Of flat and smooth ones.
+    fn smooth(seed: u32, source_stalls: f64, sink_stalls: f64) -> Self {
+        Self::of("triangle_raster_smooth", seed, source_stalls, sink_stalls)
+    }
+
+    fn of(name: &str, seed: u32, source_stalls: f64, sink_stalls: f64) -> Self {
+        let module = Module::new(name, seed);
+        let stalls = |offset, share| Stalls::new(u64::from(seed) + offset, share);
+        Self {
+            source: Source::new(
+                &module,
+                "triangle",
+                &["descriptor", "planes"],
+                stalls(1, source_stalls),
+            ),
+            sink: Sink::new(
+                &module,
+                "group",
+                &["row", "mask", "codes", "colours", "line", "column"],
+                stalls(2, sink_stalls),
+            ),
+            band: ["triangle_y0", "rows", "stride"].map(|name| module.port(name)),
+            idle: module.port("idle"),
+            walking: module.port("walking"),
+            candidate: module.port("candidate"),
+            module,
+            counts: Counts::default(),
+        }
+    }
+
+    /// The groups of a band, which ends when the rasterizer is idle.
+    fn band<'a>(
+        &mut self,
+        [y0, rows, stride]: [u32; 3],
+        triangles: impl Iterator<Item = &'a Triangle>,
+    ) -> Vec<Vec<Bits>> {
+        assert!(self.module.is_high(self.idle));
+        for (port, value) in self.band.into_iter().zip([y0, rows, stride]) {
+            self.module.set(port, u64::from(value));
+        }
+        for triangle in triangles {
+            let descriptor = Descriptor::new(&triangle.setup, triangle.colour);
+            let (first, planes) = descriptor.words(Shading::Smooth).split_at(12);
+            self.source
+                .push([first, planes].map(Bits::from_words).to_vec());
+            self.counts.entries += 1;
+        }
+        let start = self.module.cycles();
+        while !(self.source.is_empty() && self.module.is_high(self.idle)) {
+            let clocks = self.module.cycles() - start;
+            assert!(clocks < 2_000_000, "nothing after {clocks} clocks");
+            self.source.drive(&mut self.module);
+            self.sink.drive(&mut self.module);
+            self.module.settle();
+            self.source.sample(&self.module);
+            self.sink.sample(&self.module);
+            self.counts.walked += self.module.value(self.walking);
+            self.counts.candidates += self.module.value(self.candidate);
+            self.module.clock();
+        }
+        self.counts.clocks += self.module.cycles() - start;
+        self.sink.take()
+    }
+
+    /// Draws triangles, all bands that they touch, and compares with the model.
+    fn check(&mut self, name: &str, size: (u32, u32), triangles: &[Triangle]) -> Counts {
+        let (width, height) = size;
+        let blank = Pixel {
+            colour: 0,
+            depth: 0,
+        };
+        let mut picture = vec![blank; (width * height) as usize];
+        // The last triangle that came out at a pixel.
+        let mut last = vec![None; picture.len()];
+        let all_flat = triangles.iter().all(|t| t.setup.light.is_none());
+        self.counts = Counts::default();
+        let (stride, band_rows) = (width / LANES as u32, band_rows(width));
+        for y0 in (0..height).step_by(band_rows as usize) {
+            let rows = band_rows.min(height - y0);
+            let here = triangles.iter().filter(|triangle| {
+                let bounds = triangle.setup.bounds;
+                bounds.top < (y0 + rows) as i32 && bounds.bottom > y0 as i32
+            });
+            let mut previous = 0;
+            for group in self.band([y0, rows, stride], here) {
+                let row = group[0].field(0, 11) as usize;
+                let mask = group[1].field(0, 8);
+                let [line, column] = [group[4].field(0, 6), group[5].field(0, 8)];
+                assert!(
+                    line < u64::from(rows) && column < u64::from(stride),
+                    "{name}: line {line}, column {column}"
+                );
+                assert_eq!(row as u64, line * u64::from(stride) + column, "{name}: row");
+                assert_ne!(mask, 0, "{name}: a group without a pixel");
+                self.counts.groups += 1;
+                for lane in (0..LANES).filter(|lane| mask >> lane & 1 == 1) {
+                    let colour = group[3].field(16 * lane, 16) as u16;
+                    let depth = group[2].field(18 * lane, 18) as u32;
+                    let corners = || triangles.get(usize::from(colour)).map(|t| t.corners);
+                    assert_ne!(depth, 0, "{name}: {:?}", corners());
+                    let at = (y0 * width) as usize + LANES * row + lane;
+                    if all_flat {
+                        assert!(colour >= previous, "{name}: out of order: {:?}", corners());
+                        previous = colour;
+                        assert_ne!(
+                            last[at],
+                            Some(colour),
+                            "{name}: {at} twice: {:?}",
+                            corners()
+                        );
+                        last[at] = Some(colour);
+                    }
+                    self.counts.pixels += 1;
+                    if depth >= picture[at].depth {
+                        picture[at] = Pixel { colour, depth };
+                    }
+                }
+            }
+        }
+        self.compare(name, size, triangles, &picture);
+        self.counts
+    }
+
+    fn compare(&self, name: &str, size: (u32, u32), triangles: &[Triangle], picture: &[Pixel]) {
+        let (mut colour, mut depth) = (vec![0; picture.len()], vec![0; picture.len()]);
+        let mut target = Target {
+            width: size.0,
+            height: size.1,
+            colour: &mut colour,
+            depth: &mut depth,
+        };
+        let covered: u64 = triangles
+            .iter()
+            .map(|t| u64::from(draw(&t.setup, t.colour, &mut target).covered))
+            .sum();
+        for (at, &found) in picture.iter().enumerate() {
+            let expected = Pixel {
+                colour: colour[at],
+                depth: depth[at],
+            };
+            let (x, y) = (at as u32 % size.0, at as u32 / size.0);
+            let possible = || {
+                let there = |t: &&Triangle| {
+                    let bounds = t.setup.bounds;
+                    (bounds.left..bounds.right).contains(&(x as i32))
+                        && (bounds.top..bounds.bottom).contains(&(y as i32))
+                };
+                triangles
+                    .iter()
+                    .filter(there)
+                    .map(|t| (t.corners, t.colour, t.setup.light))
+                    .collect::<Vec<_>>()
+            };
+            assert_eq!(
+                found,
+                expected,
+                "{name} at {x}, {y}, one of {:#?}",
+                possible()
+            );
+        }
+        assert_eq!(self.counts.pixels, covered, "{name}: pixels in all");
+    }
+}
+
+/// Numbers the triangles that there is something of.
+fn numbered(size: (u32, u32), all: impl IntoIterator<Item = Corners>) -> Vec<Triangle> {
+    let mut triangles = Vec::new();
+    for corners in all {
+        triangles.extend(Triangle::new(corners, size, triangles.len()));
+    }
+    triangles
+}
+
+/// Places in 1/256 pixel.
+fn corner([x, y]: [i32; 2], w: u32) -> ScreenVertex {
+    ScreenVertex { x, y, w }
+}
+
+/// Places in pixels.
+fn pixels(corners: [[f64; 2]; 3]) -> Corners {
+    let mut w = 0;
+    corners.map(|place| {
+        w += 40_000 * 64;
+        corner(place.map(|x| (256.0 * x).round() as i32), w)
+    })
+}
+
+struct Random(Pcg64Mcg);
+
+impl Random {
+    fn new(seed: u128) -> Self {
+        Self(Pcg64Mcg::new(seed << 1 | 1))
+    }
+
+    fn within(&mut self, low: i32, high: i32) -> i32 {
+        self.0.random_range(low..=high)
+    }
+
+    fn depth(&mut self) -> u32 {
+        match self.within(0, 9) {
+            0 => 0,
+            1 => ((1 << 18) - 4) * 64,
+            _ => self.0.random_range(0..((1 << 18) - 4) * 64),
+        }
+    }
+
+    fn lit(&mut self) -> Lit {
+        let colour = [0, u16::MAX, self.0.random()][self.within(0, 2) as usize];
+        Lit::new(
+            Rgb565(colour),
+            [256, self.within(0, 256) as u32][self.within(0, 1) as usize],
+        )
+    }
+
+    fn anywhere(&mut self) -> ScreenVertex {
+        let reach = GUARD + 128;
+        corner([0; 2].map(|_| self.within(-reach, reach)), self.depth())
+    }
+
+    /// Up to `reach` pixels from a place, in steps of `step`/256.
+    fn near(&mut self, [x, y]: [i32; 2], reach: i32, step: i32) -> ScreenVertex {
+        let reach = 256 * reach / step;
+        let mut around = |c: i32| 256 * c + step * self.within(-reach, reach);
+        let place = [around(x), around(y)];
+        corner(place, self.depth())
+    }
+
+    /// Of all sizes and shapes.
+    fn triangle(&mut self, (width, height): (u32, u32)) -> Corners {
+        let (w, h) = (width as i32, height as i32);
+        let place = [self.within(0, w), self.within(0, h)];
+        match self.within(0, 9) {
+            0 => [0; 3].map(|_| self.anywhere()),
+            1 => [self.near(place, 80, 1), self.anywhere(), self.anywhere()],
+            2 => [0; 3].map(|_| self.near(place, 100, 1)),
+            3 | 4 => [0; 3].map(|_| self.near(place, 20, 1)),
+            5 => [0; 3].map(|_| self.near(place, 2, 1)),
+            6 => [0; 3].map(|_| self.near(place, 1, 16)),
+            // Corners on pixel centres and edges, horizontal and vertical edges.
+            7 => [0; 3].map(|_| self.near(place, 12, 128)),
+            8 => {
+                let wide = [place[0] / 8 * 8, place[1]];
+                [0; 3].map(|_| self.near(wide, 64, 8 * 256))
+            }
+            _ => {
+                let (a, b) = (self.near(place, 200, 1), self.near(place, 200, 1));
+                let middle = [(a.x + b.x) / 2 + self.within(-40, 40), (a.y + b.y) / 2];
+                [a, b, corner(middle, self.depth())]
+            }
+        }
+    }
+}
+
+#[test]
+fn random_triangles() {
+    for (seed, source_stalls, sink_stalls) in [(1, 0.0, 0.0), (2, 0.5, 0.2), (3, 0.1, 0.7)] {
+        let mut random = Random::new(seed.into());
+        let mut bench = Bench::new(seed, source_stalls, sink_stalls);
+        let triangles = (0..250).map(|_| random.triangle(SMALL));
+        let triangles = numbered(SMALL, triangles);
+        let counts = bench.check("random", SMALL, &triangles);
+        println!("{} triangles: {counts:?}", triangles.len());
+        assert!(triangles.len() > 150 && counts.pixels > 200_000);
+    }
+}
+
+/// Smooth triangles and flat ones among each other, at depths that a frame can have.
+#[test]
+fn random_triangles_smooth() {
+    for (seed, source_stalls, sink_stalls) in [(4, 0.0, 0.0), (5, 0.5, 0.2), (6, 0.1, 0.7)] {
+        let mut random = Random::new(seed.into());
+        let mut bench = Bench::smooth(seed, source_stalls, sink_stalls);
+        for (name, size, count) in [("small", SMALL, 120), ("large", LARGE, 12)] {
+            let triangles = (0..count).map(|_| random.triangle(size).map(visible));
+            let triangles: Vec<Triangle> = numbered(size, triangles.collect::<Vec<_>>())
+                .into_iter()
+                .map(|triangle| match random.within(0, 3) {
+                    0 => triangle,
+                    _ => triangle.with_light(&[0; 3].map(|_| random.lit())),
+                })
+                .collect();
+            let counts = bench.check(name, size, &triangles);
+            println!("{} triangles: {counts:?}", triangles.len());
+            assert!(counts.pixels > 50_000);
+        }
+    }
+}
+
+/// Light from none to all over every range of depths, each triangle alone; and light that is the same everywhere.
+#[test]
+fn extreme_light() {
+    let (near, far) = (((1 << 18) - 4) * 64, 228 * 64);
+    let mut bench = Bench::smooth(7, 0.0, 0.3);
+    let white = Lit::new(Rgb565::WHITE, 256);
+    let dark = Lit::default();
+    let any = Lit::new(Rgb565(0x5AA5), 77);
+    for depths in [[near, far, far], [far, near, far], [far; 3], [near; 3]] {
+        for lit in [
+            [white, dark, dark],
+            [dark, white, dark],
+            [white, white, dark],
+            [white; 3],
+            [dark; 3],
+            [any; 3],
+        ] {
+            for shape in [
+                pixels([[-2000.0, -1500.0], [2000.0, 60.0], [-1900.0, 2000.0]]),
+                pixels([[100.2, 50.1], [103.3, 50.4], [101.1, 53.7]]),
+                pixels([[5.0, 5.0], [5.3, 5.0], [300.0, 170.0]]),
+            ] {
+                let mut corners = shape;
+                corners
+                    .iter_mut()
+                    .zip(depths)
+                    .for_each(|(corner, w)| corner.w = w);
+                let triangles = numbered(SMALL, [corners]);
+                let lit: Vec<Triangle> =
+                    triangles.into_iter().map(|t| t.with_light(&lit)).collect();
+                bench.check("light", SMALL, &lit);
+            }
+        }
+    }
+}
+
+/// No farther than a frame can have.
+fn visible(corner: ScreenVertex) -> ScreenVertex {
+    ScreenVertex {
+        w: corner.w.max(228 * 64),
+        ..corner
+    }
+}
+
+/// Each alone, so that no other one hides it.
+#[test]
+fn difficult_triangles() {
+    let far = f64::from(GUARD) / 256.0;
+    let shapes = [
+        (
+            "as wide as the guard band",
+            pixels([[-far, -far], [far, -far], [-far, far]]),
+        ),
+        (
+            "the other half of it",
+            pixels([[far, far], [-far, far], [far, -far]]),
+        ),
+        (
+            "a sliver, 1000 to 1",
+            pixels([[10.0, 20.0], [310.0, 20.3], [160.0, 20.4]]),
+        ),
+        (
+            "an upright sliver",
+            pixels([[33.3, 2.0], [33.6, 2.0], [33.5, 178.0]]),
+        ),
+        (
+            "a steep sliver",
+            pixels([[20.0, 0.0], [21.0, 0.0], [300.0, 180.0]]),
+        ),
+        (
+            "a flat sliver from the guard band",
+            pixels([[-far, 10.0], [far, 95.2], [far, 95.9]]),
+        ),
+        (
+            "one pixel",
+            pixels([[100.5, 50.5], [101.5, 50.5], [100.5, 51.5]]),
+        ),
+        (
+            "around one centre",
+            pixels([[100.4, 50.4], [100.7, 50.5], [100.4, 50.7]]),
+        ),
+        (
+            "between two centres",
+            pixels([[100.6, 10.0], [101.4, 10.0], [101.0, 90.0]]),
+        ),
+        (
+            "between two rows",
+            pixels([[20.0, 40.6], [90.0, 41.4], [20.0, 41.4]]),
+        ),
+        (
+            "one group wide",
+            pixels([[64.0, 8.0], [72.0, 8.0], [64.0, 108.0]]),
+        ),
+        (
+            "up to a group",
+            pixels([[40.0, 8.0], [64.0, 8.0], [40.0, 108.0]]),
+        ),
+        (
+            "centres at a group's ends",
+            pixels([[64.5, 8.0], [71.5, 8.0], [71.5, 100.0]]),
+        ),
+        (
+            "level and upright",
+            pixels([[8.0, 8.0], [300.0, 8.0], [8.0, 170.0]]),
+        ),
+        (
+            "level below",
+            pixels([[150.0, 8.0], [300.0, 170.0], [8.0, 170.0]]),
+        ),
+        (
+            "pointing left",
+            pixels([[300.0, 8.0], [300.0, 170.0], [8.0, 90.0]]),
+        ),
+        (
+            "a band's first rows",
+            pixels([[10.0, 45.0], [90.0, 45.0], [50.0, 46.0]]),
+        ),
+        (
+            "a band's last row",
+            pixels([[10.0, 44.0], [90.0, 44.0], [50.0, 45.0]]),
+        ),
+        (
+            "in the corner",
+            pixels([[319.0, 179.0], [320.0, 179.0], [320.0, 180.0]]),
+        ),
+        (
+            "over the left side",
+            pixels([[-500.0, 20.0], [40.0, 90.0], [-500.0, 160.0]]),
+        ),
+        (
+            "over the right side",
+            pixels([[900.0, 20.0], [280.0, 90.0], [900.0, 160.0]]),
+        ),
+        (
+            "from above",
+            pixels([[160.0, -900.0], [200.0, 100.0], [120.0, 100.0]]),
+        ),
+        (
+            "with a far corner below",
+            pixels([[3.0, 3.0], [9.0, 3.0], [319.0, 2000.0]]),
+        ),
+        (
+            "back and forth",
+            pixels([[310.0, 1.0], [1.0, 4.0], [318.0, 9.0]]),
+        ),
+    ];
+    let mut bench = Bench::new(11, 0.3, 0.3);
+    for (name, corners) in shapes {
+        // All ways round, and upside down.
+        let [a, b, c] = corners;
+        let flipped = [a, b, c].map(|v| ScreenVertex {
+            x: 256 * 320 - v.x,
+            ..v
+        });
+        for corners in [[a, b, c], [b, c, a], [b, a, c], flipped] {
+            bench.check(name, SMALL, &numbered(SMALL, [corners]));
+        }
+    }
+    assert!(numbered(SMALL, shapes.map(|(_, corners)| corners)).len() >= 20);
+}
+
+/// Depths at both ends of their range, with gradients that wrap on the way.
+#[test]
+fn extreme_depths() {
+    let near = ((1 << 18) - 4) * 64;
+    let mut bench = Bench::new(12, 0.0, 0.3);
+    let triangles = [
+        [near, 0, 0],
+        [0, near, 0],
+        [0, 0, near],
+        [near, near, 0],
+        [0; 3],
+        [near; 3],
+    ];
+    for depths in triangles {
+        for shape in [
+            pixels([[-2000.0, -1500.0], [2000.0, 60.0], [-1900.0, 2000.0]]),
+            pixels([[100.2, 50.1], [103.3, 50.4], [101.1, 53.7]]),
+            pixels([[5.0, 5.0], [5.3, 5.0], [300.0, 170.0]]),
+        ] {
+            let mut corners = shape;
+            corners
+                .iter_mut()
+                .zip(depths)
+                .for_each(|(corner, w)| corner.w = w);
+            bench.check("depths", SMALL, &numbered(SMALL, [corners]));
+        }
+    }
+}
+
+/// Triangles around a point cover each pixel within their outline once.
+#[test]
+fn a_fan_covers_once() {
+    let mut random = Random::new(5);
+    let mut bench = Bench::new(13, 0.0, 0.0);
+    for centre in [[160.0, 90.0], [160.5, 90.5], [159.3, 44.9]] {
+        let rim: Vec<ScreenVertex> = (0..24)
+            .map(|i| {
+                let angle = std::f64::consts::TAU * f64::from(i) / 24.0;
+                let place = [
+                    centre[0] + 150.0 * angle.cos(),
+                    centre[1] + 85.0 * angle.sin(),
+                ];
+                corner(place.map(|x| (256.0 * x).round() as i32), random.depth())
+            })
+            .collect();
+        let middle = corner(centre.map(|x| (256.0 * x) as i32), random.depth());
+        let fan = (0..24).map(|i| [middle, rim[(i + 1) % 24], rim[i]]);
+        let triangles = numbered(SMALL, fan);
+        let counts = bench.check("fan", SMALL, &triangles);
+        // As many as pixels covered by any: those of the polygon cut otherwise.
+        let strip = (1..23).map(|i| [rim[0], rim[i + 1], rim[i]]);
+        let other = bench.check("other fan", SMALL, &numbered(SMALL, strip));
+        assert_eq!(counts.pixels, other.pixels);
+    }
+}
+
+#[test]
+fn whole_pictures() {
+    let corners = [
+        [-2047.0, -2047.0],
+        [2047.0, -2047.0],
+        [2047.0, 2047.0],
+        [-2047.0, 2047.0],
+    ];
+    let [a, b, c, d] = corners;
+    let mut bench = Bench::new(14, 0.0, 0.0);
+    for size in [MIDDLE, LARGE] {
+        let triangles = numbered(size, [pixels([a, b, c]), pixels([a, c, d])]);
+        let counts = bench.check("all of it", size, &triangles);
+        assert_eq!(counts.pixels, u64::from(size.0 * size.1));
+        println!("{size:?}: {counts:?}");
+        // Hardly more than the groups that there are.
+        assert!(counts.walked < counts.pixels / 8 * 11 / 10);
+
+        let mut random = Random::new(6);
+        let small = (0..60).map(|_| {
+            let place = [
+                random.within(0, size.0 as i32),
+                random.within(0, size.1 as i32),
+            ];
+            [0; 3].map(|_| random.near(place, 60, 1))
+        });
+        bench.check("some of it", size, &numbered(size, small));
+    }
+}
+
+/// A triangle that is in no row of the band passes without a trace, and the next one is drawn.
+#[test]
+fn triangles_outside_of_the_band() {
+    let mut bench = Bench::new(15, 0.0, 0.0);
+    let at = |[top, bottom]: [f64; 2]| pixels([[10.0, top], [60.0, top + 1.0], [10.0, bottom]]);
+    for y0 in [0, 45, 90, 135] {
+        let (above, below) = (f64::from(y0), f64::from(y0 + 45));
+        let outside = (0..170)
+            .map(f64::from)
+            .map(|top| [top, top + 9.0])
+            .filter(|&[top, bottom]| bottom <= above || top >= below);
+        let all = outside.chain([[0.0, 180.0]]).map(at);
+        let triangles = numbered(SMALL, all);
+        let groups = bench.band([y0, 45, 40], triangles.iter());
+        let last = triangles.len() as u64 - 1;
+        assert!(!groups.is_empty());
+        assert!(groups.iter().all(|group| group[3].field(0, 16) == last));
+    }
+}
+
+fn mesh(name: &str) -> Vec<u8> {
+    let polygons = generate::named(name).unwrap();
+    convert::convert(&polygons, convert::Options::default())
+        .unwrap()
+        .0
+}
+
+/// A camera in which the mesh's sphere has 96 % of the height.
+fn filling(mesh: &Mesh) -> View {
+    let camera = view::spherical("3,30,60").unwrap();
+    let radius = f64::from(mesh.radius()) / 16384.0;
+    let half_width = radius / (9.0 - radius * radius).sqrt() / 0.96 * 16.0 / 9.0;
+    View::new_checked(
+        camera.eye(),
+        camera.u(),
+        camera.v(),
+        camera.n(),
+        U4_28::from_num(half_width),
+        camera.near(),
+    )
+    .unwrap()
+}
+
+/// How many pixels a clock the walker reaches on a body of small triangles.
+#[test]
+fn a_sphere_is_walked_efficiently() {
+    for (frequency, size, least) in [(6, SMALL, 3.3), (12, LARGE, 4.5)] {
+        let bytes = mesh(&format!("icosphere:{frequency}"));
+        let mesh = Mesh::new_checked(&bytes).unwrap();
+        let mut scratch = vec![Projected::Behind; 4096];
+        let mut corners = Vec::new();
+        let pixels = (size.0 * size.1) as usize;
+        let mut target = Target {
+            width: size.0,
+            height: size.1,
+            colour: &mut vec![0; pixels],
+            depth: &mut vec![0; pixels],
+        };
+        let options = Options::default();
+        trace(
+            &mesh,
+            &filling(&mesh),
+            &mut target,
+            &mut scratch,
+            &options,
+            |triangle| {
+                corners.push(triangle.vertices);
+            },
+        )
+        .unwrap();
+        let triangles = numbered(size, corners);
+        let counts = Bench::new(16, 0.0, 0.0).check("sphere", size, &triangles);
+        let rate = |clocks: u64| counts.pixels as f64 / clocks as f64;
+        println!(
+            "icosphere:{frequency} at {size:?}: {} triangles, {} in bands, {} pixels; {} groups walked, {} of them empty; \
+             {} candidates, {} of them empty; {:.2} pixels a group, {:.2} a walked group, {:.2} a clock",
+            triangles.len(),
+            counts.entries,
+            counts.pixels,
+            counts.walked,
+            counts.walked - counts.candidates,
+            counts.candidates,
+            counts.candidates - counts.groups,
+            rate(counts.groups),
+            rate(counts.walked),
+            rate(counts.clocks),
+        );
+        assert!(rate(counts.clocks) > least);
+    }
+}

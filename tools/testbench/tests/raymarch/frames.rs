@@ -1,0 +1,305 @@
+//! Whole frames of the raymarcher: every pixel once, as the model has it, in the band that is open.
+
+use glint_model::SIZES;
+use glint_model::raymarch::{FieldStats, Palette, Prepass, Rays, Setup, State};
+use glint_testbench::{Module, Sink, Stalls};
+
+use crate::common::Random;
+use crate::ports::{Pixel, Place, pixel, set_blocks, set_lane, set_lights, set_paint, set_rays};
+use crate::scenes::{
+    FIELDS, ROUND, SPONGES, UNIONS, band_lines, lights, setup, setup_with, tunnel,
+};
+
+const COUNTERS: [&str; 8] = [
+    "clocks_busy",
+    "clocks_idle",
+    "clocks_waiting",
+    "evaluations",
+    "rays",
+    "hits",
+    "misses",
+    "undecided",
+];
+
+struct Bench {
+    module: Module,
+    lanes: u64,
+    counted: [u64; 8],
+}
+
+/// What a frame took: clocks, and evaluations by the model.
+struct Taken {
+    counters: [u64; 8],
+    stats: FieldStats,
+}
+
+impl Taken {
+    fn busy(&self, bench: &Bench) -> String {
+        let [busy, idle, ..] = self.counters;
+        let evaluations = self.stats.evaluations as f64;
+        format!(
+            "{:.2} evaluations a ray, {:.4} a clock and lane, {busy} clocks, {idle} of lanes idle",
+            evaluations / f64::from(self.stats.rays),
+            evaluations / (busy * bench.lanes) as f64
+        )
+    }
+}
+
+impl Bench {
+    fn new(name: &str, lanes: u64, seed: u32) -> Self {
+        Self {
+            module: Module::new(name, seed),
+            lanes,
+            counted: [0; 8],
+        }
+    }
+
+    fn port(&mut self, name: &str, value: u64) {
+        let port = self.module.port(name);
+        self.module.set(port, value);
+    }
+
+    fn pulse(&mut self, name: &str) {
+        self.port(name, 1);
+        self.module.clock();
+        self.port(name, 0);
+    }
+
+    fn set(&mut self, setup: &Setup, palette: &Palette) {
+        set_lane(&mut self.module, setup);
+        set_rays(&mut self.module, setup);
+        set_paint(&mut self.module, setup, palette);
+        set_lights(&mut self.module, setup, &palette.lights);
+        set_blocks(&mut self.module, setup, "cone_offset", "cone_spread");
+        self.port("prepass", setup.cones.is_some().into());
+        self.port("size", u64::from(setup.width / 640));
+    }
+
+    /// Draws a frame. `hurry`: bands are open at once, and nothing stalls.
+    fn draw(
+        &mut self,
+        random: &mut Random,
+        setup: &Setup,
+        palette: &Palette,
+        hurry: bool,
+    ) -> Taken {
+        self.set(setup, palette);
+        let lines = band_lines(setup.width);
+        let eyes: u32 = if setup.stereo.is_some() { 2 } else { 1 };
+        let payload = ["eye", "row", "line", "column", "mask", "code", "colour"];
+        let share = if hurry { 0.0 } else { 0.3 };
+        let mut sink = Sink::new(
+            &self.module,
+            "group",
+            &payload,
+            Stalls::new(random.bits(), share),
+        );
+        let done = self.module.port("band_done");
+        let mut stats = FieldStats::default();
+        let mut rays = Rays::new(setup);
+        self.pulse("start");
+        for band in 0..setup.height / lines {
+            let mut expected = std::collections::HashMap::new();
+            for y in 0..lines {
+                for (x, eye) in (0..setup.width).flat_map(|x| (0..eyes).map(move |eye| (x, eye))) {
+                    let place = Place {
+                        odd: band % 2 == 1,
+                        line: y,
+                        column: x,
+                        eye: eye as usize,
+                    };
+                    let ray = rays.ray(place.eye, x, band * lines + y);
+                    let outcome = setup.march(&ray);
+                    stats.count(setup, &outcome);
+                    expected.insert((eye.into(), y.into(), x.into()), {
+                        pixel(setup, palette, place, &ray, &outcome)
+                    });
+                }
+            }
+            if !hurry {
+                // Somebody else draws here first.
+                for _ in 0..random.integer(0, 3000) {
+                    self.module.clock();
+                }
+            }
+            self.port("band_open", 1);
+            let begun = self.module.cycles();
+            loop {
+                assert!(
+                    self.module.cycles() - begun < 40_000_000,
+                    "the raymarcher stands still in {setup:?}"
+                );
+                sink.drive(&mut self.module);
+                self.module.settle();
+                sink.sample(&self.module);
+                if self.module.is_high(done) {
+                    break;
+                }
+                self.module.clock();
+            }
+            for item in sink.take() {
+                let [eye, row, line, column, mask, code, colour] =
+                    std::array::from_fn(|i| item[i].field(0, 64));
+                let found = Pixel {
+                    eye,
+                    row,
+                    line,
+                    column,
+                    mask,
+                    code,
+                    colour,
+                };
+                let place = (eye, line, 8 * column + u64::from(mask.trailing_zeros()));
+                let wanted = expected
+                    .remove(&place)
+                    .unwrap_or_else(|| panic!("{found:?} came twice, or is of another band"));
+                assert_eq!(found, wanted, "in band {band} of {setup:?}");
+            }
+            assert!(expected.is_empty(), "band {band} ended early");
+            self.port("band_open", 0);
+            self.pulse("band_next");
+        }
+        stats.evaluations += rays.evaluations();
+        let busy = self.module.port("busy");
+        assert!(!self.module.is_high(busy), "busy after the last band");
+        // Counters are some clocks late.
+        for _ in 0..4 {
+            self.module.clock();
+        }
+        let counted = COUNTERS.map(|name| self.module.value(self.module.port(name)));
+        let counters = std::array::from_fn(|i| counted[i] - self.counted[i]);
+        self.counted = counted;
+        assert_eq!(
+            counters[3..],
+            [
+                stats.evaluations,
+                stats.rays.into(),
+                stats.hits.into(),
+                stats.misses.into(),
+                stats.undecided.into()
+            ],
+            "{:?} of {setup:?}",
+            &COUNTERS[3..]
+        );
+        Taken { counters, stats }
+    }
+}
+
+#[test]
+fn frames_of_all_fields_with_stalls() {
+    let mut random = Random(9);
+    let mut bench = Bench::new("raymarcher", 2, 1);
+    for _ in 0..4 {
+        let mut setup = setup(&mut random, &FIELDS);
+        // A ray at the limit costs as much as 20.
+        setup.tuning.cap = setup.tuning.cap.min(40);
+        bench.draw(&mut random, &setup, &Palette::default(), false);
+    }
+}
+
+#[test]
+fn frames_of_sponges_with_cones_and_stalls() {
+    let mut random = Random(12);
+    let mut bench = Bench::new("raymarcher_sponge", 4, 2);
+    for _ in 0..3 {
+        let mut setup = setup_with(&mut random, &SPONGES, Some(Prepass::Fitting));
+        setup.tuning.cap = setup.tuning.cap.min(20);
+        bench.draw(&mut random, &setup, &Palette::default(), false);
+    }
+}
+
+#[test]
+fn frames_of_round_fields_in_all_lights() {
+    let mut random = Random(12);
+    let mut bench = Bench::new("raymarcher", 2, 1);
+    for frame in 0..5 {
+        let fields = [&ROUND[..], &UNIONS, &SPONGES][frame % 3];
+        let prepass = (frame % 2 == 1).then_some(Prepass::Fitting);
+        let mut setup = setup_with(&mut random, fields, prepass);
+        setup.tuning.cap = setup.tuning.cap.min(20);
+        let palette = Palette {
+            lights: lights(&mut random),
+            ..Palette::default()
+        };
+        bench.draw(&mut random, &setup, &palette, frame % 2 == 0);
+    }
+}
+
+/// What light costs: a sphere that fills much of the picture.
+#[test]
+fn round_pixels_take_a_clock_a_light() {
+    let mut random = Random(13);
+    let mut bench = Bench::new("raymarcher", 2, 1);
+    let setup = loop {
+        let setup = setup(&mut random, &["sphere:1"]);
+        let middle = setup.ray(0, setup.width / 2, setup.height / 2);
+        let end = setup.march(&middle);
+        if setup.width == 320 && end.steps > 2 && matches!(end.state, State::Hit(_)) {
+            break setup;
+        }
+    };
+    let [one, four] = [1, 4].map(|count| {
+        let mut palette = Palette::default();
+        palette.lights.count = count;
+        let taken = bench.draw(&mut random, &setup, &palette, true);
+        println!("{count} lights: {} clocks", taken.counters[0]);
+        (taken.counters[0], u64::from(taken.stats.hits))
+    });
+    assert!(four.0 <= one.0 + 3 * four.1 + 100, "{one:?}, {four:?}");
+}
+
+#[test]
+fn sponges_keep_the_lanes_busy() {
+    let mut random = Random(10);
+    let mut bench = Bench::new("raymarcher_sponge", 4, 1);
+    for frame in 0..2 {
+        let setup = setup(&mut random, &SPONGES);
+        let taken = bench.draw(&mut random, &setup, &Palette::default(), true);
+        println!("frame {frame}: {}", taken.busy(&bench));
+        // With fewer evaluations a ray than there are lanes, it is the rays that are too few.
+        let share = taken.stats.evaluations as f64 / (taken.counters[0] * bench.lanes) as f64;
+        assert!(share >= 0.98 || taken.stats.evaluations < 8 * u64::from(taken.stats.rays));
+    }
+}
+
+/// In the sponge's largest tunnel, where rays take the most evaluations, without a prepass and with one: at 320 × 180, or with
+/// `GLINT_RTL_FIELDS=all` at 1280 × 720.
+#[test]
+fn cones_take_evaluations_off_the_rays_of_a_tunnel() {
+    let all = std::env::var("GLINT_RTL_FIELDS").is_ok_and(|fields| fields == "all");
+    let size = SIZES[if all { 2 } else { 0 }];
+    let mut random = Random(13);
+    let mut bench = Bench::new("raymarcher_sponge", 4, 1);
+    let clocks = [None, Some(Prepass::Fitting)].map(|prepass| {
+        let setup = tunnel(size, prepass);
+        let taken = bench.draw(&mut random, &setup, &Palette::default(), true);
+        println!("{size:?}, {prepass:?}: {}", taken.busy(&bench));
+        taken.counters[0]
+    });
+    assert!(clocks[1] * 3 < clocks[0] * 2, "{clocks:?} clocks");
+}
+
+#[test]
+fn a_frame_given_up_leaves_nothing() {
+    let mut random = Random(11);
+    let mut bench = Bench::new("raymarcher", 2, 3);
+    for clocks in [1, 20, 500, 20_000] {
+        let setup = setup(&mut random, &["cubes:2,0.5"]);
+        bench.set(&setup, &Palette::default());
+        bench.port("band_open", 1);
+        bench.port("group_ready", 1);
+        bench.pulse("start");
+        for _ in 0..clocks {
+            bench.module.clock();
+        }
+        bench.port("band_open", 0);
+        bench.pulse("restart");
+        for _ in 0..4 {
+            bench.module.clock();
+        }
+        bench.counted = COUNTERS.map(|name| bench.module.value(bench.module.port(name)));
+        let mut setup = setup;
+        setup.tuning.cap = 8;
+        bench.draw(&mut random, &setup, &Palette::default(), false);
+    }
+}

@@ -1,0 +1,158 @@
+//! The ray generator: all rays of a frame, as the model has them, in their order.
+
+use glint_model::raymarch::{Prepass, Setup};
+use glint_testbench::{Bits, Module, Sink, Stalls};
+
+use crate::common::Random;
+use crate::ports::{Place, cone, ray, set_blocks, set_generator};
+use crate::scenes::{FIELDS, ROUND, band_lines, every_field, setup, setup_with};
+
+/// As it is built for all fields, and cones.
+const GENERATOR: &str = "ray_generator_all";
+
+/// The rays of the first `lines` lines.
+fn expected(setup: &Setup, lines: u32) -> Vec<Bits> {
+    let eyes = if setup.stereo.is_some() { 2 } else { 1 };
+    let band_lines = band_lines(setup.width);
+    let places = (0..lines).flat_map(move |y| {
+        (0..eyes).flat_map(move |eye| {
+            (0..setup.width).map(move |x| {
+                let place = Place {
+                    odd: y / band_lines % 2 == 1,
+                    line: y % band_lines,
+                    column: x,
+                    eye,
+                };
+                (place, y)
+            })
+        })
+    });
+    places
+        .map(|(place, y)| ray(place, &setup.ray(place.eye, place.column, y)))
+        .collect()
+}
+
+/// All cones, in the order of their numbers.
+fn expected_cones(setup: &Setup) -> Vec<Bits> {
+    let cones = setup.cones.expect("cones");
+    let eyes = if setup.stereo.is_some() { 2 } else { 1 };
+    let [columns, rows] = [setup.width, setup.height].map(|pixels| pixels >> cones.block);
+    let places = (0..rows).flat_map(move |row| {
+        (0..eyes).flat_map(move |eye| (0..columns).map(move |column| (eye, column, row)))
+    });
+    (0..)
+        .zip(places)
+        .map(|(number, (eye, column, row))| {
+            cone(
+                Place::of_cone(eye, number),
+                &setup.cone(&cones, eye, column, row),
+            )
+        })
+        .collect()
+}
+
+/// Runs a frame, all of it or its beginning, and returns the clocks until its last ray.
+fn check(module: &mut Module, setup: &Setup, lines: u32, stalls: Stalls) -> u64 {
+    set_generator(module, setup, band_lines(setup.width));
+    let round = module.port("round");
+    module.set(round, u64::from(setup.is_round()));
+    for name in ["cones", "prepass"] {
+        let port = module.port(name);
+        module.set(port, 0);
+    }
+    let clocks = run(module, setup, &expected(setup, lines), stalls);
+    end(module, lines == setup.height);
+    clocks
+}
+
+/// Starts the generator and takes what it gives out until all of it has come. Returns the clocks.
+fn run(module: &mut Module, setup: &Setup, expected: &[Bits], stalls: Stalls) -> u64 {
+    let mut sink = Sink::new(module, "out", &["ray"], stalls);
+    let start = module.port("start");
+    module.set(start, 1);
+    module.clock();
+    module.set(start, 0);
+    let begun = module.cycles();
+    while sink.items().len() < expected.len() {
+        assert!(
+            module.cycles() - begun < 1000 + 100 * expected.len() as u64,
+            "the generator stands still"
+        );
+        sink.drive(module);
+        module.settle();
+        sink.sample(module);
+        module.clock();
+    }
+    let clocks = module.cycles() - begun;
+    for (number, (item, wanted)) in sink.take().iter().zip(expected).enumerate() {
+        assert_eq!(item[0], *wanted, "ray {number} of {setup:?}");
+    }
+    clocks
+}
+
+/// After the last ray it is idle; before that it has to be stopped.
+fn end(module: &mut Module, whole: bool) {
+    let [rst, busy] = ["rst", "busy"].map(|name| module.port(name));
+    module.settle();
+    if whole {
+        assert!(!module.is_high(busy), "busy after the last ray");
+    } else {
+        module.set(rst, 1);
+        module.clock();
+        module.set(rst, 0);
+        module.clock();
+    }
+}
+
+#[test]
+fn beginnings_of_random_frames() {
+    let fields = [&FIELDS[..], &ROUND].concat();
+    let mut random = Random(5);
+    let mut module = Module::new(GENERATOR, 1);
+    for number in 0..60 {
+        let setup = setup(&mut random, &fields);
+        let share = [0.0, 0.5, 0.9][number as usize % 3];
+        check(&mut module, &setup, 3, Stalls::new(number, share));
+    }
+}
+
+#[test]
+fn whole_frames_and_one_ray_a_clock() {
+    let mut random = Random(6);
+    let mut module = Module::new(GENERATOR, 2);
+    for number in 0..3 {
+        let setup = setup(&mut random, &FIELDS);
+        let eyes = if setup.stereo.is_some() { 2 } else { 1 };
+        let rays = u64::from(eyes * setup.width * setup.height);
+        let clocks = check(&mut module, &setup, setup.height, Stalls::new(number, 0.0));
+        assert!(clocks <= rays + 30, "{clocks} clocks for {rays} rays");
+    }
+}
+
+#[test]
+fn cones_of_whole_frames() {
+    let mut random = Random(7);
+    let mut module = Module::new(GENERATOR, 3);
+    for number in 0..12 {
+        let setup = setup_with(&mut random, &every_field(), Some(Prepass::Fitting));
+        let cones = setup.cones.expect("cones");
+        let [columns, rows] = [setup.width, setup.height].map(|pixels| pixels >> cones.block);
+        set_generator(&mut module, &setup, 45);
+        set_blocks(&mut module, &setup, "offset", "spread");
+        for (name, value) in [
+            ("last_column", columns - 1),
+            ("last_line", 44),
+            ("last_band", rows / 45 - 1),
+            ("round", setup.is_round().into()),
+            ("cones", 1),
+            ("prepass", 1),
+            ("block", cones.block),
+        ] {
+            let port = module.port(name);
+            module.set(port, u64::from(value));
+        }
+        let stalls = Stalls::new(number, [0.0, 0.5][number as usize % 2]);
+        run(&mut module, &setup, &expected_cones(&setup), stalls);
+        end(&mut module, true);
+    }
+}

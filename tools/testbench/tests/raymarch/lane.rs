@@ -1,0 +1,182 @@
+//! A lane on its own: every ray that goes in comes out, as the model says, whatever the other side does.
+
+use std::collections::HashMap;
+
+use glint_model::raymarch::{Prepass, Setup};
+use glint_testbench::{Bits, Module, Sink, Source, Stalls};
+
+use crate::common::Random;
+use crate::ports::{End, Place, cone, ray, set_lane};
+use crate::scenes::{SPONGES, every_field, setup, setup_with};
+
+/// Rays of a frame.
+const RAYS: usize = 2_000;
+
+/// A ray or a cone that is sent, how it ends, and its evaluations.
+struct Sent {
+    item: Bits,
+    end: End,
+    steps: u32,
+}
+
+/// Random rays of a frame.
+fn some_rays(random: &mut Random, setup: &Setup, count: usize) -> HashMap<Place, Sent> {
+    let eyes = if setup.stereo.is_some() { 2 } else { 1 };
+    let mut all = HashMap::new();
+    // Lines of several bands have the same place.
+    while all.len() < count {
+        let x = random.integer(0, i64::from(setup.width) - 1) as u32;
+        let y = random.integer(0, i64::from(setup.height) - 1) as u32;
+        let place = Place {
+            odd: y / 64 % 2 == 1,
+            line: y % 64,
+            column: x,
+            eye: random.bits() as usize % eyes,
+        };
+        let start = setup.ray(place.eye, x, y);
+        let outcome = setup.march(&start);
+        let sent = Sent {
+            item: ray(place, &start),
+            end: End::expected(&start, &outcome),
+            steps: outcome.steps * setup.passes(),
+        };
+        all.insert(place, sent);
+    }
+    all
+}
+
+/// Random cones of a frame.
+fn some_cones(random: &mut Random, setup: &Setup, count: usize) -> HashMap<Place, Sent> {
+    let cones = setup.cones.expect("cones");
+    let eyes = if setup.stereo.is_some() { 2 } else { 1 };
+    let [columns, rows] = [setup.width, setup.height].map(|pixels| pixels >> cones.block);
+    let mut all = HashMap::new();
+    while all.len() < count {
+        let number = random.integer(0, i64::from(columns * rows) - 1) as u32;
+        let eye = random.bits() as usize % eyes;
+        let start = setup.cone(&cones, eye, number % columns, number / columns);
+        let (t, steps) = setup.march_cone(&start);
+        let place = Place::of_cone(eye, number);
+        let sent = Sent {
+            item: cone(place, &start),
+            end: End::expected_of_cone(&start, (t, steps)),
+            steps: steps * setup.passes(),
+        };
+        all.insert(place, sent);
+    }
+    all
+}
+
+struct Bench {
+    module: Module,
+    source: Source,
+    sink: Sink,
+    /// Clocks in which the field was asked, and those in which a ray had to wait for a place.
+    evaluated: u64,
+    waited: u64,
+}
+
+impl Bench {
+    fn new(name: &str, seed: u32, source_stalls: f64, sink_stalls: f64) -> Self {
+        let module = Module::new(name, seed);
+        let stalls = |number, share| Stalls::new(u64::from(seed) + number, share);
+        Self {
+            source: Source::new(&module, "in", &["ray"], stalls(1, source_stalls)),
+            sink: Sink::new(&module, "out", &["end"], stalls(2, sink_stalls)),
+            module,
+            evaluated: 0,
+            waited: 0,
+        }
+    }
+
+    /// Sends rays or cones of a frame through the lane.
+    fn check(&mut self, setup: &Setup, cones: bool, mut expected: HashMap<Place, Sent>) {
+        set_lane(&mut self.module, setup);
+        let port = self.module.port("cones");
+        self.module.set(port, u64::from(cones));
+        let [evaluates, waits] = ["evaluates", "waits"].map(|name| self.module.port(name));
+        let count = expected.len();
+        let evaluations: u64 = expected.values().map(|sent| u64::from(sent.steps)).sum();
+        for sent in expected.values() {
+            self.source.push(vec![sent.item]);
+        }
+        let start = self.module.cycles();
+        while self.sink.items().len() < count {
+            let cycles = self.module.cycles() - start;
+            assert!(
+                cycles < 100_000 + 100 * evaluations,
+                "the lane stands still in {setup:?}"
+            );
+            self.source.drive(&mut self.module);
+            self.sink.drive(&mut self.module);
+            self.module.settle();
+            self.source.sample(&self.module);
+            self.sink.sample(&self.module);
+            self.module.clock();
+            self.evaluated += u64::from(self.module.is_high(evaluates));
+            self.waited += u64::from(self.module.is_high(waits));
+        }
+        for item in self.sink.take() {
+            let (place, end) = if cones {
+                End::of_cone(&item[0])
+            } else {
+                End::of(&item[0])
+            };
+            let sent = expected
+                .remove(&place)
+                .unwrap_or_else(|| panic!("{place:?} came twice, or was never sent: {setup:?}"));
+            assert_eq!(end, sent.end, "{place:?}, {:?} in {setup:?}", sent.item);
+        }
+    }
+}
+
+/// Rays of each test: 150,000, or `GLINT_RTL_RAYS`.
+fn rays() -> usize {
+    std::env::var("GLINT_RTL_RAYS").map_or(150_000, |text| text.parse().unwrap())
+}
+
+/// Lanes that stall now and then.
+fn benches(name: &str) -> Vec<Bench> {
+    let shares = [(0.0, 0.0), (0.5, 0.5), (0.0, 0.95), (0.9, 0.0)];
+    (1..)
+        .zip(shares)
+        .map(|(seed, (source, sink))| Bench::new(name, seed, source, sink))
+        .collect()
+}
+
+fn random_rays(name: &str, fields: &[&str]) {
+    let mut random = Random(3);
+    let mut benches = benches(name);
+    for frame in 0..rays() / RAYS {
+        let setup = setup(&mut random, fields);
+        let bench = frame % benches.len();
+        let rays = some_rays(&mut random, &setup, RAYS);
+        benches[bench].check(&setup, false, rays);
+    }
+}
+
+/// Frames by turns with cones and with rays.
+#[test]
+fn random_cones_and_rays_in_all_fields() {
+    let mut random = Random(4);
+    let mut benches = benches("ring_lane_all");
+    for frame in 0..rays() / RAYS / 5 {
+        let setup = setup_with(&mut random, &every_field(), Some(Prepass::Fitting));
+        let bench = &mut benches[frame % 4];
+        if frame / 4 % 3 == 2 {
+            bench.check(&setup, false, some_rays(&mut random, &setup, RAYS));
+        } else {
+            bench.check(&setup, true, some_cones(&mut random, &setup, RAYS));
+        }
+    }
+}
+
+#[test]
+fn random_rays_in_sponges() {
+    random_rays("ring_lane", &SPONGES);
+}
+
+#[test]
+fn random_rays_in_all_fields() {
+    random_rays("ring_lane_all", &every_field());
+}

@@ -1,0 +1,113 @@
+//! What the ends of rays look like.
+
+use glint_model::raymarch::{Outcome, Palette, Ray, Setup, State, Surface};
+use glint_testbench::{Module, Sink, Source, Stalls};
+
+use crate::common::Random;
+use crate::ports::{Pixel, Place, end, pixel, set_paint};
+use crate::scenes::{FIELDS, band_lines, setup};
+
+fn palette(random: &mut Random) -> Palette {
+    let mut colour = || [0; 3].map(|_| random.bits() as u8);
+    let mut palette = Palette {
+        faces: [0; 6].map(|_| colour()),
+        undecided: colour(),
+        zenith: colour(),
+        horizon: colour(),
+        ..Palette::default()
+    };
+    palette.fog_shift = random.integer(0, 7) as u32;
+    palette.fog = [0; 256].map(|_| random.bits() as u8);
+    palette.occlusion = [0; 256].map(|_| random.bits() as u8);
+    palette
+}
+
+/// An end that a ray can have, or could: t may be anything but 0.
+fn ending(random: &mut Random, setup: &Setup, start: &Ray) -> Outcome {
+    if random.coin() {
+        return setup.march(start);
+    }
+    let state = match random.bits() % 8 {
+        0 => State::Miss,
+        1 => State::Undecided,
+        number => State::Hit(Surface::Face {
+            axis: (number % 3) as u8,
+            positive: random.coin(),
+        }),
+    };
+    let gap = match state {
+        State::Hit(_) => random.integer(0, 4095) as u32,
+        _ => 0,
+    };
+    Outcome {
+        state,
+        t: random.logarithmic(1.0, 8_388_608.0) as u32,
+        gap,
+        slope: random.integer(0, 1023) as u32,
+        steps: random.integer(1, 255) as u32,
+    }
+}
+
+#[test]
+fn ends_of_random_rays() {
+    const COUNT: usize = 4_000;
+    let mut random = Random(8);
+    let mut module = Module::new("ray_paint", 1);
+    for frame in 0..24 {
+        let setup = setup(&mut random, &FIELDS);
+        let palette = palette(&mut random);
+        set_paint(&mut module, &setup, &palette);
+        let stride = module.port("stride");
+        module.set(stride, u64::from(setup.width / 8));
+        let share = [0.0, 0.5][frame as usize % 2];
+        let mut source = Source::new(&module, "in", &["end"], Stalls::new(frame, share));
+        let payload = ["eye", "row", "line", "column", "mask", "code", "colour"];
+        let mut sink = Sink::new(&module, "out", &payload, Stalls::new(frame + 100, share));
+        let expected: Vec<_> = (0..COUNT)
+            .map(|_| {
+                let column = random.integer(0, i64::from(setup.width) - 1) as u32;
+                let lines = i64::from(band_lines(setup.width));
+                let place = Place {
+                    odd: random.coin(),
+                    line: random.integer(0, lines - 1) as u32,
+                    column,
+                    eye: (random.bits() % 2) as usize,
+                };
+                let start = setup.ray(place.eye, column, place.line);
+                let outcome = ending(&mut random, &setup, &start);
+                source.push(vec![end(place, &start, &outcome)]);
+                (
+                    pixel(&setup, &palette, place, &start, &outcome),
+                    start,
+                    outcome,
+                )
+            })
+            .collect();
+        let begun = module.cycles();
+        while sink.items().len() < COUNT {
+            assert!(module.cycles() - begun < 20 * COUNT as u64, "standstill");
+            source.drive(&mut module);
+            sink.drive(&mut module);
+            module.settle();
+            source.sample(&module);
+            sink.sample(&module);
+            module.clock();
+        }
+        let clocks = module.cycles() - begun;
+        assert!(share > 0.0 || clocks < COUNT as u64 + 40, "{clocks} clocks");
+        for (item, (wanted, start, outcome)) in sink.take().iter().zip(&expected) {
+            let [eye, row, line, column, mask, code, colour] =
+                std::array::from_fn(|i| item[i].field(0, 64));
+            let found = Pixel {
+                eye,
+                row,
+                line,
+                column,
+                mask,
+                code,
+                colour,
+            };
+            assert_eq!(found, *wanted, "{outcome:?} of {start:?} in {setup:?}");
+        }
+    }
+}

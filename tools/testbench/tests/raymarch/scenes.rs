@@ -1,0 +1,154 @@
+//! Fields and cameras: those that somebody would look at, and those at the limits.
+
+use glint_core::camera::View;
+use glint_core::field::Field;
+use glint_core::fixed::Q32_32;
+use glint_model::SIZES;
+use glint_model::raymarch::{FieldOptions, Light, Lights, Prepass, Setup, Stereo, Tint};
+
+use crate::common::{Camera, Random};
+
+/// What is built without anything but the sponge.
+pub const SPONGES: [&str; 4] = ["menger:4", "menger:3", "menger:2", "menger:1"];
+
+/// What there is only where a lane knows spheres.
+pub const ROUND: [&str; 8] = [
+    "sphere:1",
+    "sphere:12",
+    "sphere:0.01",
+    "lattice:2,0.5",
+    "lattice:0.25,0.124",
+    "moving:0.25,0.75,200",
+    "spheres:0,0,0,0.75;1,0.25,0.5,0.5;-0.75,-0.5,0.75,0.25",
+    "spheres:0,0,0,0.5;1,0,0,0.5;0,1,0,0.5;0,0,1,0.5;-1,0,0,0.5;0,-1,0,0.5;0,0,-1,0.5;8,-8,8,3.5",
+];
+
+/// What has faces and is round too.
+pub const UNIONS: [&str; 7] = [
+    "union:menger:4+sphere:0.75",
+    "union:menger:2+moving:0.25,1,-75",
+    "union:menger:3+spheres:1,1,1,0.5;-1,0,0,0.25;0,0,0,0.125",
+    "union:menger:1+spheres:0,0,1.5,0.5;8,-8,8,3.5",
+    "smooth:0.25,menger:2+sphere:1",
+    "smooth:0.5,menger:3+spheres:1,1,1,0.5;-1,0,0,0.25;0,0,0,0.125",
+    "smooth:0.01,menger:1+moving:1,0.5,30",
+];
+
+/// Every field without anything round.
+pub const FIELDS: [&str; 12] = [
+    "menger:4",
+    "menger:6",
+    "menger:5",
+    "menger:1",
+    "box:1,0.5,0.25",
+    "box:0.01,12,3",
+    "cubes:2,0.5",
+    "cubes:0.25,0.1",
+    "cubes:16,7.9",
+    "planes:0.5",
+    "planes:12",
+    "planes:0.01",
+];
+
+/// What there is where a lane knows all fields.
+pub fn every_field() -> Vec<&'static str> {
+    let boxes = [
+        "union:box:1,0.5,0.25+moving:0.25,1",
+        "smooth:0.2,box:1,0.5,0.25+moving:0.25,1",
+    ];
+    [&FIELDS[..], &ROUND, &UNIONS, &boxes].concat()
+}
+
+/// A camera somewhere in a field or beside it, that looks anywhere.
+pub fn camera(random: &mut Random) -> View {
+    let distance = match random.bits() % 4 {
+        0 => random.real(0.0, 1.0),
+        1 => random.real(0.5, 2.0),
+        2 => random.real(0.0, 8.0),
+        _ => 1.2,
+    };
+    let eye = random.direction().map(|x| x * distance);
+    let towards = match random.bits() % 4 {
+        0 => random.direction(),
+        // Along an axis, but for a little.
+        1 => {
+            let axis = (random.bits() % 3) as usize;
+            let little = random.logarithmic(1e-7, 1e-1);
+            let mut towards = random.direction().map(|x| x * little);
+            towards[axis] = if random.coin() { 1.0 } else { -1.0 };
+            towards
+        }
+        _ => eye.map(|x| random.real(-0.7, 0.7) - x),
+    };
+    let half_width = random.logarithmic(0.05, 4.0);
+    let near = random.logarithmic(0.01, 2.0);
+    Camera::aimed(random, eye, towards, [0.0; 2], half_width, near).rounded()
+}
+
+/// The constants of a frame: how finely it is marched is random too, and how many eyes look.
+pub fn setup(random: &mut Random, fields: &[&str]) -> Setup {
+    setup_with(random, fields, None)
+}
+
+/// The same with cones before the rays, or without.
+pub fn setup_with(random: &mut Random, fields: &[&str], prepass: Option<Prepass>) -> Setup {
+    let field = Field::parse(fields[random.bits() as usize % fields.len()]).unwrap();
+    let mut options = FieldOptions {
+        prepass,
+        ..FieldOptions::of(&field)
+    };
+    if random.coin() {
+        options.stereo = Some(Stereo {
+            half_separation: Q32_32::from_num(random.real(0.0, 1.0)),
+            zero_parallax: Q32_32::from_num(random.real(1.0, 5.0)),
+            tint: Tint::RedBlue,
+        });
+    }
+    if random.coin() {
+        let tuning = &mut options.tuning;
+        tuning.threshold = random.logarithmic(1.0, 65536.0) as u32;
+        tuning.footprint = random.integer(7, 15) as u32;
+        tuning.cap = random.logarithmic(1.0, 256.0) as u32;
+        tuning.far = random.logarithmic(1.0, 8_388_608.0) as u32;
+    }
+    let size = SIZES[random.bits() as usize % SIZES.len()];
+    Setup::new(&field, &camera(random), size, &options).unwrap()
+}
+
+/// Lights from anywhere, and materials.
+pub fn lights(random: &mut Random) -> Lights {
+    let mut colour = || [0; 3].map(|_| random.bits() as u8);
+    let materials = [0; 8].map(|_| colour());
+    let ambient = colour();
+    let colours = [0; 4].map(|_| colour());
+    Lights {
+        ambient,
+        list: colours.map(|colour| Light {
+            direction: random.direction().map(|x| (x * 65535.0) as i32),
+            colour,
+        }),
+        count: random.integer(1, 4) as usize,
+        materials,
+    }
+}
+
+/// In the largest tunnel of the sponge: the report's view.
+pub fn tunnel(size: (u32, u32), prepass: Option<Prepass>) -> Setup {
+    let (eye, target) = ([0.0625, -0.8125, 0.09375], [-0.125, 0.9375, 0.03125]);
+    let view = Camera::looking(eye, target, 0.9, 0.01).rounded();
+    let options = FieldOptions {
+        prepass,
+        ..FieldOptions::default()
+    };
+    let sponge = Field::parse("menger:4").unwrap();
+    Setup::new(&sponge, &view, size, &options).unwrap()
+}
+
+/// Lines of a band, by the picture's width.
+pub fn band_lines(width: u32) -> u32 {
+    match width {
+        320 => 45,
+        640 => 24,
+        _ => 12,
+    }
+}

@@ -1,0 +1,470 @@
+//! Triangle setup, culling and shading against the model's.
+
+use glint_core::colour::Rgb565;
+use glint_model::descriptor::Descriptor;
+use glint_model::reciprocal::recip;
+use glint_model::setup::{Bounds, Facing, Oriented, Setup};
+use glint_model::shade::{Light, Lit, intensity, lit};
+use glint_model::{SIZES, ScreenVertex, Shading};
+use glint_testbench::{Bits, Module, Port, Sink, Source, Stalls};
+use rand::RngExt;
+use rand_pcg::Pcg64Mcg;
+
+/// The guard band, s12.8.
+const GUARD: i32 = 2047 << 8;
+/// The largest w, u18.6.
+const NEAREST: u32 = ((1 << 18) - 1) << 6;
+
+/// What holds for a frame.
+#[derive(Clone, Copy, Debug)]
+struct Frame {
+    size: (u32, u32),
+    cull: bool,
+    n: [i32; 3],
+    shading: Shading,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Input {
+    vertices: [ScreenVertex; 3],
+    colour: u16,
+    normal: [i16; 3],
+    light: [Light; 3],
+}
+
+/// The light of a vertex as the gateware has it: for the one side that gets any.
+fn light_bits(bits: Bits, low: usize, light: Light) -> Bits {
+    let back = light.back != Lit::default();
+    let Lit([r, g, b]) = if back { light.back } else { light.front };
+    bits.with(low, 13, b / 2)
+        .with(low + 13, 14, g)
+        .with(low + 27, 13, r / 2)
+        .with(low + 40, 1, u8::from(back))
+}
+
+impl Input {
+    fn item(&self, ability: Shading) -> Vec<Bits> {
+        let vertices = (0..)
+            .zip(self.vertices)
+            .fold(Bits::default(), |bits, (i, v)| {
+                bits.with(66 * i, 21, v.x)
+                    .with(66 * i + 21, 21, v.y)
+                    .with(66 * i + 42, 24, v.w)
+            });
+        let normal = (0..)
+            .zip(self.normal)
+            .fold(Bits::default(), |bits, (i, x)| bits.with(16 * i, 16, x));
+        let light = match ability {
+            Shading::Flat => Bits::default(),
+            Shading::Smooth => (0..)
+                .zip(self.light)
+                .fold(Bits::default(), |bits, (i, light)| {
+                    light_bits(bits, 41 * i, light)
+                }),
+        };
+        vec![vertices, Bits::from(u64::from(self.colour)), normal, light]
+    }
+}
+
+/// The descriptor of a triangle, its first part and what follows; `None` when it is culled.
+fn expected(frame: &Frame, input: &Input) -> Option<[Bits; 2]> {
+    let oriented = Oriented::new(input.vertices)?;
+    if frame.cull && oriented.facing == Facing::Back {
+        return None;
+    }
+    let (width, height) = frame.size;
+    let bounds = Bounds::new(&oriented.vertices, width, height)?;
+    let colour = lit(
+        Rgb565(input.colour),
+        intensity(input.normal, &frame.n, oriented.facing),
+    );
+    let facing = oriented.facing;
+    let setup = match frame.shading {
+        Shading::Flat => Setup::new(&oriented, bounds),
+        Shading::Smooth => {
+            let lit = facing.order(input.light.map(|light| light.to(facing)));
+            Setup::smooth(&oriented, bounds, &lit)
+        }
+    };
+    let descriptor = Descriptor::new(&setup, colour);
+    let (first, planes) = descriptor.words(Shading::Smooth).split_at(12);
+    Some([first, planes].map(Bits::from_words))
+}
+
+struct Bench {
+    module: Module,
+    ability: Shading,
+    source: Source,
+    sink: Sink,
+    busy: Port,
+    culled: Port,
+    drawn: Port,
+}
+
+impl Bench {
+    fn new(ability: Shading, seed: u32, source_stalls: f64, sink_stalls: f64) -> Self {
+        let name = match ability {
+            Shading::Flat => "setup",
+            Shading::Smooth => "setup_smooth",
+        };
+        let module = Module::new(name, seed);
+        let stalls = |number, share| Stalls::new(u64::from(seed) + number, share);
+        let payload = ["vertices", "colour", "normal", "light"];
+        Self {
+            source: Source::new(&module, "in", &payload, stalls(1, source_stalls)),
+            sink: Sink::new(
+                &module,
+                "out",
+                &["descriptor", "planes"],
+                stalls(2, sink_stalls),
+            ),
+            ability,
+            busy: module.port("busy"),
+            culled: module.port("culled"),
+            drawn: module.port("drawn"),
+            module,
+        }
+    }
+
+    /// Sends triangles of one frame through the setup and returns the clocks it took.
+    fn check(&mut self, frame: &Frame, inputs: &[Input]) -> u64 {
+        let n = (0..)
+            .zip(frame.n)
+            .fold(Bits::default(), |bits, (i, x)| bits.with(25 * i, 25, x));
+        for (name, value) in [
+            ("width", Bits::from(u64::from(frame.size.0))),
+            ("height", Bits::from(u64::from(frame.size.1))),
+            ("cull_back", Bits::from(u64::from(frame.cull))),
+            ("camera_n", n),
+            (
+                "smooth",
+                Bits::from(u64::from(frame.shading == Shading::Smooth)),
+            ),
+        ] {
+            let port = self.module.port(name);
+            self.module.set(port, value);
+        }
+        inputs
+            .iter()
+            .for_each(|input| self.source.push(input.item(self.ability)));
+        let start = self.module.cycles();
+        let (mut culled, mut drawn) = (0, 0);
+        loop {
+            let cycles = self.module.cycles() - start;
+            let limit = 1000 + 500 * inputs.len() as u64;
+            assert!(cycles < limit, "the setup stands still in {frame:?}");
+            let all_taken = self.source.is_empty();
+            self.source.drive(&mut self.module);
+            self.sink.drive(&mut self.module);
+            self.module.settle();
+            culled += usize::from(self.module.is_high(self.culled));
+            drawn += usize::from(self.module.is_high(self.drawn));
+            self.source.sample(&self.module);
+            self.sink.sample(&self.module);
+            if all_taken && !self.module.is_high(self.busy) {
+                break;
+            }
+            self.module.clock();
+        }
+        let mut found = self.sink.take().into_iter();
+        for input in inputs {
+            if let Some(expected) = expected(frame, input) {
+                let mut descriptor = found.next().map(|item| [item[0], item[1]]);
+                // Planes of a flat triangle mean nothing.
+                if let (Some([_, planes]), Shading::Flat) = (&mut descriptor, frame.shading) {
+                    *planes = Bits::from(planes.field(288, 1));
+                }
+                assert_eq!(descriptor, Some(expected), "{input:?} in {frame:?}");
+            }
+        }
+        assert_eq!(found.next(), None, "a triangle too many in {frame:?}");
+        let visible = inputs
+            .iter()
+            .filter(|i| expected(frame, i).is_some())
+            .count();
+        assert_eq!((culled, drawn), (inputs.len() - visible, visible));
+        self.module.cycles() - start
+    }
+}
+
+/// A triangle of one of the kinds that are hard.
+fn triangle(random: &mut Pcg64Mcg, (width, height): (u32, u32)) -> Input {
+    let [w, h] = [width, height].map(|size| (size << 8) as i32);
+    let mut places = [[0; 2]; 3];
+    let kind = random.random_range(0..10);
+    let centre = [
+        random.random_range(-512..w + 512),
+        random.random_range(-512..h + 512),
+    ];
+    for place in &mut places {
+        *place = match kind {
+            // Anywhere in the guard band, or at its ends.
+            0 | 1 => [0; 2].map(|_| random.random_range(-GUARD..=GUARD)),
+            2 => [0; 2].map(|_| [-GUARD, GUARD, 0, 128][random.random_range(0..4)]),
+            // As large as the picture, about.
+            3 => [w, h]
+                .map(|size| [0, size][random.random_range(0..2)] + random.random_range(-600..600)),
+            // Small, tiny, and on centres or pixel corners.
+            4 | 5 => centre.map(|x| x + random.random_range(-3000..3000)),
+            6 => centre.map(|x| x + random.random_range(-100..100)),
+            7 => centre.map(|x| (x & !255) + 128 * random.random_range(-8..8)),
+            _ => centre.map(|x| x + random.random_range(-60_000..60_000)),
+        };
+    }
+    // Slivers: the last vertex close to the line through the others.
+    if kind == 8 {
+        let (t, [a, b, last]) = (random.random_range(0..=256), &mut places);
+        for i in 0..2 {
+            last[i] = a[i] + (((b[i] - a[i]) * t) >> 8) + random.random_range(-1..=1);
+        }
+    }
+    // Horizontal and vertical edges, and triangles without area.
+    if random.random_ratio(1, 3) {
+        let [i, k] = [0; 2].map(|_| random.random_range(0..3));
+        let axis = random.random_range(0..2);
+        places[i][axis] = places[k][axis];
+    }
+    let vertices = places.map(|[x, y]| ScreenVertex {
+        x: x.clamp(-GUARD, GUARD),
+        y: y.clamp(-GUARD, GUARD),
+        w: match random.random_range(0..5) {
+            0 => 0,
+            1 => NEAREST,
+            _ => random.random_range(0..=NEAREST),
+        },
+    });
+    Input {
+        vertices,
+        colour: random.random_range(0..=u16::MAX),
+        normal: [0; 3].map(|_| match random.random_range(0..6) {
+            0 => i16::MIN,
+            1 => i16::MAX,
+            2 => 0,
+            3 => random.random_range(-1 << 14..=1 << 14),
+            _ => random.random_range(i16::MIN..=i16::MAX),
+        }),
+        light: [0; 3].map(|_| light(random)),
+    }
+}
+
+/// The light of a vertex that is turned to one side, or edge on.
+fn light(random: &mut Pcg64Mcg) -> Light {
+    let colour = [0, u16::MAX, random.random()][random.random_range(0..3)];
+    let intensity = [0, 1, 256, random.random_range(0..=256)][random.random_range(0..4)];
+    let lit = Lit::new(Rgb565(colour), intensity);
+    let dark = Lit::default();
+    let [front, back] = [[lit, dark], [dark, lit]][random.random_range(0..2)];
+    Light { front, back }
+}
+
+fn frame(random: &mut Pcg64Mcg, round: usize) -> Frame {
+    let n = [0; 3].map(|_| match random.random_range(0..8) {
+        0 => -1 << 24,
+        1 => (1 << 24) - 1,
+        2 => 0,
+        _ => random.random_range(-1 << 23..=1 << 23),
+    });
+    Frame {
+        size: SIZES[round % 3],
+        cull: round.is_multiple_of(2),
+        n,
+        shading: Shading::Flat,
+    }
+}
+
+#[test]
+fn random_triangles() {
+    random_triangles_of(Shading::Flat);
+}
+
+/// Flat and smooth frames in turns.
+#[test]
+fn random_triangles_smooth() {
+    random_triangles_of(Shading::Smooth);
+}
+
+fn random_triangles_of(ability: Shading) {
+    let mut random = Pcg64Mcg::new(1);
+    let shares = [(0.0, 0.0), (0.5, 0.5), (0.0, 0.95), (0.95, 0.0)];
+    let mut benches: Vec<Bench> = (0..)
+        .zip(shares)
+        .map(|(seed, (source, sink))| Bench::new(ability, seed, source, sink))
+        .collect();
+    let (mut drawn, mut culled) = (0, 0);
+    for round in 0..48 {
+        let mut frame = frame(&mut random, round);
+        if round % 3 > 0 {
+            frame.shading = ability;
+        }
+        let inputs: Vec<Input> = (0..250)
+            .map(|_| triangle(&mut random, frame.size))
+            .collect();
+        benches[round % 4].check(&frame, &inputs);
+        let visible = inputs
+            .iter()
+            .filter(|i| expected(&frame, i).is_some())
+            .count();
+        drawn += visible;
+        culled += inputs.len() - visible;
+    }
+    assert!(
+        drawn > 3000 && culled > 2000,
+        "{drawn} drawn, {culled} culled"
+    );
+}
+
+fn input(places: [[i32; 2]; 3], w: [u32; 3]) -> Input {
+    Input {
+        vertices: [0, 1, 2].map(|i| {
+            let [x, y] = places[i];
+            ScreenVertex { x, y, w: w[i] }
+        }),
+        colour: 0xFFFF,
+        normal: [0, 0, -1 << 14],
+        light: [[0, 256], [256, 0], [200, 0]].map(|[front, back]| Light {
+            front: Lit::new(Rgb565::WHITE, front),
+            back: Lit::new(Rgb565::WHITE, back),
+        }),
+    }
+}
+
+/// Every order of the vertices of triangles at the ends of what there is, in every size, with every facing.
+#[test]
+fn corners_of_the_guard_band_and_of_the_picture() {
+    corners(Shading::Flat);
+}
+
+#[test]
+fn corners_of_the_guard_band_and_of_the_picture_smooth() {
+    corners(Shading::Smooth);
+}
+
+fn corners(shading: Shading) {
+    let mut bench = Bench::new(shading, 7, 0.2, 0.2);
+    for size in SIZES {
+        let [w, h] = [size.0, size.1].map(|x| (x << 8) as i32);
+        let corners = [
+            [-GUARD, -GUARD],
+            [GUARD, -GUARD],
+            [-GUARD, GUARD],
+            [GUARD, GUARD],
+            [128, 128],
+            [w - 128, 128],
+            [128, h - 128],
+            [w - 128, h - 128],
+            [w, h],
+            [0, 0],
+            [129, 127],
+        ];
+        let mut inputs = Vec::new();
+        for a in corners {
+            for b in corners {
+                for c in corners {
+                    let depths = [[0, NEAREST, 0], [NEAREST, 0, 1], [NEAREST; 3]];
+                    inputs.push(input([a, b, c], depths[inputs.len() % 3]));
+                }
+            }
+        }
+        for cull in [false, true] {
+            let frame = Frame {
+                size,
+                cull,
+                n: [0, 0, 1 << 23],
+                shading,
+            };
+            bench.check(&frame, &inputs);
+        }
+    }
+}
+
+/// All vertices off the same side of the picture: the bounds are empty, so the setup needs no test of its own.
+#[test]
+fn off_the_picture_is_without_a_centre() {
+    let mut random = Pcg64Mcg::new(5);
+    for size in SIZES {
+        let [w, h] = [size.0, size.1].map(|x| (x << 8) as i32);
+        for round in 0..1000 {
+            let (low, high) = [(-GUARD, -1), ([w, h][round % 2], GUARD)][round / 2 % 2];
+            let vertices = [0; 3].map(|_| {
+                let off = random.random_range(low..=high);
+                let any = random.random_range(-GUARD..=GUARD);
+                let [x, y] = if round % 2 == 0 {
+                    [off, any]
+                } else {
+                    [any, off]
+                };
+                ScreenVertex { x, y, w: 0 }
+            });
+            assert_eq!(Bounds::new(&vertices, size.0, size.1), None, "{vertices:?}");
+        }
+    }
+}
+
+#[test]
+fn clocks_a_triangle() {
+    clocks(Shading::Flat);
+}
+
+#[test]
+fn clocks_a_triangle_smooth() {
+    clocks(Shading::Smooth);
+}
+
+fn clocks(shading: Shading) {
+    const COUNT: u64 = 200;
+    let mut bench = Bench::new(shading, 3, 0.0, 0.0);
+    let places = [[1000, 1000], [1000, 9000], [9000, 1000]];
+    let front = input(places, [5000, 6000, 7000]);
+    let back = input([places[0], places[2], places[1]], [5000, 6000, 7000]);
+    let frame = Frame {
+        size: SIZES[0],
+        cull: true,
+        n: [0, 0, 1 << 23],
+        shading,
+    };
+    let latency = bench.check(&frame, &[front]);
+    let drawn = bench.check(&frame, &[front; COUNT as usize]);
+    let culled = bench.check(&frame, &[back; COUNT as usize]);
+    assert!(latency <= 75, "{latency} clocks for one triangle");
+    assert!(
+        drawn <= 11 * COUNT + 75,
+        "{drawn} clocks for {COUNT} triangles drawn"
+    );
+    assert!(
+        culled <= 4 * COUNT + 12,
+        "{culled} clocks for {COUNT} triangles culled"
+    );
+}
+
+#[test]
+fn reciprocals() {
+    let (first, last) = (1u32 << 23, (1 << 24) - 1);
+    let ends = (0..256).flat_map(|i| {
+        let from = first + (i << 15);
+        [from, from + 1, from + (1 << 15) - 1]
+    });
+    let numbers: Vec<u32> = (first..=last).step_by(509).chain(ends).collect();
+    let mut module = Module::new("reciprocal", 1);
+    let [in_valid, in_ready, in_m, out_valid, out_y] =
+        ["in_valid", "in_ready", "in_m", "out_valid", "out_y"].map(|name| module.port(name));
+    let mut left = numbers.iter();
+    let mut next = left.next();
+    let mut found = Vec::new();
+    while found.len() < numbers.len() {
+        let cycles = module.cycles();
+        assert!(cycles < 10 * numbers.len() as u64 + 20, "too slow");
+        module.set(in_valid, u64::from(next.is_some()));
+        module.set(in_m, u64::from(next.copied().unwrap_or(0)));
+        module.settle();
+        if module.is_high(in_ready) {
+            next = left.next();
+        }
+        if module.is_high(out_valid) {
+            found.push(module.value(out_y));
+        }
+        module.clock();
+    }
+    for (&m, y) in numbers.iter().zip(found) {
+        assert_eq!(y, u64::from(recip(m)), "of {m:#x}");
+    }
+}

@@ -1,0 +1,281 @@
+//! The vertex stage against the model's.
+
+#[path = "../../../firmware/model/tests/common/mod.rs"]
+mod common;
+
+use common::{Camera, Random};
+use glint_model::vertex::{project, transform};
+use glint_model::{MeshSetup, Projected, SIZES, ScreenVertex};
+use glint_testbench::{Bits, Module, Sink, Source, Stalls};
+
+/// What comes out of the stage: saturated to s12.8.
+fn expected(frame: &MeshSetup, position: [i16; 3]) -> Bits {
+    let projected = project(frame, &transform(frame, position));
+    let ScreenVertex { x, y, w } = projected.place().copied().unwrap_or_default();
+    let [x, y] = [x, y].map(|x| x.clamp(-1 << 19, (1 << 19) - 1));
+    Bits::default()
+        .with(0, 21, x)
+        .with(21, 21, y)
+        .with(42, 24, w)
+        .with(66, 1, u8::from(projected.is_beyond_guard()))
+        .with(67, 1, u8::from(projected == Projected::Behind))
+}
+
+fn set_frame(module: &mut Module, frame: &MeshSetup) {
+    let row = |row: [i32; 3]| {
+        (0..3).fold(Bits::default(), |bits, i| {
+            bits.with(25 * i, 25, i64::from(row[i]))
+        })
+    };
+    let number = |bits: usize, value: i64| Bits::default().with(0, bits, value);
+    let [tx, ty, tz] = frame.translation.map(|t| number(44, t));
+    for (name, value) in [
+        ("scale_shift", number(5, frame.scale_shift.into())),
+        ("row_u", row(frame.u)),
+        ("row_v", row(frame.v)),
+        ("row_n", row(frame.n)),
+        ("tx", tx),
+        ("ty", ty),
+        ("tz", tz),
+        ("near_z", number(39, frame.near)),
+        ("centre_x", number(10, (frame.width / 2).into())),
+        ("centre_y", number(10, (frame.height / 2).into())),
+        ("depth_mantissa", number(17, frame.depth.mantissa.into())),
+        ("depth_exponent", number(4, frame.depth.exponent.into())),
+    ] {
+        let port = module.port(name);
+        module.set(port, value);
+    }
+}
+
+struct Bench {
+    module: Module,
+    source: Source,
+    sink: Sink,
+}
+
+impl Bench {
+    fn new(seed: u32, source_stalls: f64, sink_stalls: f64) -> Self {
+        let module = Module::new("vertex_stage", seed);
+        let stalls = |number, share| Stalls::new(u64::from(seed) + number, share);
+        Self {
+            source: Source::new(&module, "in", &["position"], stalls(1, source_stalls)),
+            sink: Sink::new(&module, "out", &["vertex"], stalls(2, sink_stalls)),
+            module,
+        }
+    }
+
+    /// Sends vertices of one frame through the stage and returns the clocks it took.
+    fn check(&mut self, frame: &MeshSetup, positions: &[[i16; 3]]) -> u64 {
+        set_frame(&mut self.module, frame);
+        for position in positions {
+            let item = (0..3).fold(Bits::default(), |bits, i| {
+                bits.with(16 * i, 16, i64::from(position[i]))
+            });
+            self.source.push(vec![item]);
+        }
+        let start = self.module.cycles();
+        while self.sink.items().len() < positions.len() {
+            let cycles = self.module.cycles() - start;
+            assert!(
+                cycles < 1000 + 200 * positions.len() as u64,
+                "the stage stands still"
+            );
+            self.source.drive(&mut self.module);
+            self.sink.drive(&mut self.module);
+            self.module.settle();
+            self.source.sample(&self.module);
+            self.sink.sample(&self.module);
+            self.module.clock();
+        }
+        for (&position, item) in positions.iter().zip(self.sink.take()) {
+            assert_eq!(
+                item[0],
+                expected(frame, position),
+                "{position:?} in {frame:?}"
+            );
+        }
+        self.module.cycles() - start
+    }
+}
+
+/// A camera somewhere within 8 that looks at a point of the mesh, or anywhere.
+fn camera(random: &mut Random, round: u32) -> Camera {
+    let half_width = match round % 8 {
+        0 => 0.05,
+        1 => 4.0,
+        _ => random.logarithmic(0.05, 4.0),
+    };
+    let near = match round % 6 {
+        0 => 0.01,
+        1 => 2.0,
+        _ => random.logarithmic(0.01, 2.0),
+    };
+    let distance = if random.coin() {
+        7.999
+    } else {
+        random.real(0.0, 8.0)
+    };
+    let eye = random.direction().map(|x| x * distance);
+    let towards = if round.is_multiple_of(3) {
+        random.direction()
+    } else {
+        eye.map(|x| random.real(-1.0, 1.0) - x)
+    };
+    let place = [0; 2].map(|_| random.real(-half_width, half_width));
+    Camera::aimed(random, eye, towards, place, half_width, near)
+}
+
+fn position(random: &mut Random) -> [i16; 3] {
+    let reach = [1 << 15, 1 << 13, 4][(random.bits() % 8).saturating_sub(5) as usize];
+    [0; 3].map(|_| random.integer(-reach, reach - 1) as i16)
+}
+
+const RADIUS: u32 = 56_756;
+
+#[test]
+fn random_cameras_and_vertices() {
+    let mut random = Random(1);
+    let shares = [(0.0, 0.0), (0.5, 0.5), (0.0, 0.95), (0.95, 0.0)];
+    let mut benches: Vec<Bench> = (0..)
+        .zip(shares)
+        .map(|(seed, (source, sink))| Bench::new(seed, source, sink))
+        .collect();
+    // Behind, beyond the guard band, and visible.
+    let mut seen = [0; 3];
+    for round in 0..600 {
+        let (width, height) = SIZES[round as usize % 3];
+        let view = camera(&mut random, round).rounded();
+        let radius = if random.coin() { RADIUS } else { 14_190 };
+        let frame = MeshSetup::new(&view, width, height, radius).unwrap();
+        let positions: Vec<_> = (0..60).map(|_| position(&mut random)).collect();
+        for &position in &positions {
+            let kind = match project(&frame, &transform(&frame, position)) {
+                Projected::Behind => 0,
+                Projected::BeyondGuard(_) => 1,
+                Projected::Visible(_) => 2,
+            };
+            seen[kind] += 1;
+        }
+        benches[round as usize % 4].check(&frame, &positions);
+    }
+    println!("behind, beyond the guard band, visible: {seen:?}");
+    assert!(seen.iter().all(|&count| count > 2000));
+}
+
+/// A frame whose near plane, depth scale or translation puts a vertex on an edge of what may be.
+#[test]
+fn edges() {
+    let mut random = Random(2);
+    let mut bench = Bench::new(7, 0.1, 0.1);
+    let (mut near_planes, mut guard_edges, mut full_depths) = (0, 0, 0);
+    for round in 0..1200 {
+        let (width, height) = SIZES[round as usize % 3];
+        let view = camera(&mut random, round).rounded();
+        let mut frame = MeshSetup::new(&view, width, height, RADIUS).unwrap();
+        let least = frame.near.min(1 << 36);
+        let at = position(&mut random);
+        let z = transform(&frame, at).z;
+
+        // On the near plane, and one unit of the last place before and behind it.
+        if (least + 1..1 << 38).contains(&z) {
+            near_planes += 1;
+            for off in [-1, 0, 1, -(1 << 20), 1 << 20] {
+                let near = frame.near;
+                frame.near = z + off;
+                bench.check(&frame, &[at]);
+                frame.near = near;
+            }
+        }
+        if z < frame.near {
+            continue;
+        }
+
+        // w at its limit and near it.
+        let depth = frame.depth;
+        for exponent in -5..=5 {
+            frame.depth.exponent = exponent;
+            frame.depth.mantissa = random.integer(1 << 16, (1 << 17) - 1) as u32;
+            full_depths += u32::from(expected(&frame, at).field(42, 24) == 0xFF_FFC0);
+            bench.check(&frame, &[at]);
+        }
+        frame.depth = depth;
+
+        // x or y near the end of the guard band, on either side: the translation moves it there.
+        let axis = random.integer(0, 1) as usize;
+        let side = if random.coin() { 1 } else { -1 };
+        let centre = [width, height][axis] as i64 / 2;
+        let place = side * 2047 * 256 - 256 * centre;
+        // x = X·2^(23 − f)·2^8/Z.
+        let wanted = ((i128::from(place) * i128::from(z)) >> (31 - frame.scale_shift)) as i64;
+        let vertex = transform(&frame, at);
+        let translation = frame.translation;
+        let unit = (z >> (31 - frame.scale_shift)).max(1);
+        for steps in -3..=3 {
+            let offset = steps * unit / 2 + wanted - [vertex.x, vertex.y][axis];
+            frame.translation[axis] = translation[axis] + offset;
+            if frame.translation[axis].unsigned_abs() >= 1 << 42 {
+                continue;
+            }
+            let edge = expected(&frame, at).signed(21 * axis, 21) - side * 2047 * 256;
+            guard_edges += u32::from(edge.abs() <= 2);
+            bench.check(&frame, &[at]);
+        }
+        // As far out as it goes: X' and the place saturate.
+        for far in [(1 << 42) - 1, -(1 << 42), 1 << 41] {
+            frame.translation[axis] = far;
+            bench.check(&frame, &[at]);
+        }
+    }
+    println!(
+        "near planes {near_planes}, edges of the guard band {guard_edges}, full depths {full_depths}"
+    );
+    assert!(near_planes > 100 && guard_edges > 1000 && full_depths > 100);
+}
+
+/// The vertex at the origin is the translation itself: mantissas of Z at both ends of each seed of the reciprocal, and X' on
+/// both sides of every limit of its rounding.
+#[test]
+fn mantissas_and_shifts() {
+    let mut random = Random(4);
+    let mut bench = Bench::new(9, 0.0, 0.0);
+    let view = camera(&mut random, 0).rounded();
+    let mut seen = [false; 19];
+    for round in 0..3072 {
+        let (width, height) = SIZES[round as usize % 3];
+        let mut frame = MeshSetup::new(&view, width, height, RADIUS).unwrap();
+        // 0.01, the nearest that a near plane can be.
+        frame.near = 1_374_389_535;
+        let seed = round / 4 % 256;
+        let mantissa =
+            (1 << 23) + (seed << 15) + [0, 1, (1 << 15) - 1, 1 << 14][round as usize % 4];
+        let lead = random.integer(30, 40);
+        // What the mantissa cuts off is all zeros, all ones, or anything.
+        let below = (1 << (lead - 23)) - 1;
+        let z = mantissa << (lead - 23)
+            | [0, below, random.bits() as i64 & below][round as usize / 1024];
+        frame.scale_shift = random.integer(10, 18) as u32;
+        frame.depth.exponent = random.integer(-5, 5) as i32;
+        let shift = frame.scale_shift as usize + lead as usize - 34;
+        seen[shift - 6] = true;
+        let mut limit = || {
+            let half = 1 << (shift - 1);
+            let whole = [(1 << 24) - 1, 1 << 24, random.integer(0, 1 << 24)];
+            let x = (whole[random.integer(0, 2) as usize] << shift) + half + random.integer(-1, 0);
+            (if random.coin() { x } else { -x }).clamp(-1 << 42, (1 << 42) - 1)
+        };
+        frame.translation = [limit(), limit(), z];
+        bench.check(&frame, &[[0; 3]]);
+    }
+    assert_eq!(seen, [true; 19]);
+}
+
+#[test]
+fn a_vertex_in_six_clocks() {
+    let mut random = Random(3);
+    let view = camera(&mut random, 2).rounded();
+    let frame = MeshSetup::new(&view, 640, 360, RADIUS).unwrap();
+    let positions: Vec<_> = (0..200).map(|_| position(&mut random)).collect();
+    let clocks = Bench::new(5, 0.0, 0.0).check(&frame, &positions);
+    assert!(clocks <= 6 * 200 + 45, "{clocks} clocks");
+}
