@@ -13,76 +13,62 @@ import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 
 FORMAL = Path(__file__).resolve().parent
-sys.path.insert(0, str(FORMAL.parent / "tests"))
-
-from tools import GATEWARE, ToolError, run  # noqa: E402
+sys.path[:0] = [str(FORMAL.parent), str(FORMAL.parent / "tests")]
 
 import mutations  # noqa: E402
+from glint_soc import rtl  # noqa: E402
+from tools import GATEWARE, ToolError, run  # noqa: E402
 
 _BUILD = GATEWARE.parent / "target" / "gateware" / "formal"
 _PROGRAMS = Path(sys.executable).parent
-_RTL = GATEWARE / "rtl"
 
 _AT_A_TIME = 2
 
 
+# Modules that stand in for those of gateware/rtl, in the proofs that name them.
+_STAND_INS = ("any_field", "any_product", "any_stepper", "no_product", "plain_setup")
+_PROPERTIES = [path for path in sorted(FORMAL.glob("*.sv")) if path.stem not in _STAND_INS]
+
+
 @dataclass(frozen=True)
 class Proof:
-    """A top module with properties, and for how many clocks after reset they are shown to hold."""
+    """A top module with properties, the clocks after reset for which they are proven, and the modules that stand in for others."""
 
     name: str
     top: str
-    sources: list
     depth: int
+    stand_ins: tuple = ()
     parameters: dict = field(default_factory=dict)
+
+    @cached_property
+    def sources(self):
+        """The files that the proof reads."""
+        return rtl.sources(self.top, others=(*_PROPERTIES, *(FORMAL / f"{name}.sv" for name in self.stand_ins)))
 
     def properties(self):
         """The labels of the assertions."""
         return [label for source in self.sources for label in re.findall(r"(\w+):\s*assert\b", source.read_text())]
 
 
-_BUFFER = [FORMAL / f"{name}.sv" for name in ("stream_checker", "order_checker", "buffer_proof")] + [
-    _RTL / "common" / "skid_buffer.sv", _RTL / "common" / "fifo.sv"]
-
-
-def _triangle(*names):
-    return [_RTL / "triangle" / f"{name}.sv" for name in ("triangle_pkg", *names)]
-
-
-def _formal(*names):
-    return [FORMAL / f"{name}.sv" for name in ("stream_checker", *names)]
-
-
 # The longest first.
 PROOFS = [
-    Proof("ring_lane", "ring_lane_proof",
-          [_RTL / "raymarch" / "raymarch_pkg.sv", _RTL / "common" / "delay.sv", _RTL / "common" / "fifo.sv",
-           _RTL / "raymarch" / "ring_lane.sv", *_formal("any_product", "any_field", "ring_lane_proof")], 36),
-    Proof("band_flush", "band_flush_proof",
-          [FORMAL / "stream_checker.sv", FORMAL / "band_flush_proof.sv", _RTL / "common" / "fifo.sv",
-           _RTL / "band" / "band_flush.sv"], 23),
-    Proof("band_extents", "band_extents_proof",
-          [FORMAL / "stream_checker.sv", FORMAL / "band_extents_proof.sv", _RTL / "common" / "skid_buffer.sv",
-           _RTL / "band" / "band_extents.sv"], 24),
-    Proof("setup", "setup_proof", [*_triangle("setup_pkg", "setup_plane", "setup"), *_formal("plain_setup", "setup_proof")], 22),
-    Proof("band_entry", "band_entry_proof",
-          [*_triangle("raster_pkg", "band_entry"), *_formal("no_product", "band_entry_proof")], 27),
-    Proof("walker", "walker_proof", [*_triangle("raster_pkg", "walker"), *_formal("any_stepper", "walker_proof")], 15),
-    Proof("lanes", "lanes_proof",
-          [*_triangle("raster_pkg", "lane_values", "lanes"), _RTL / "common" / "skid_buffer.sv", *_formal("lanes_proof")], 14),
-    Proof("write_port", "write_port_proof",
-          [FORMAL / "stream_checker.sv", FORMAL / "write_port_proof.sv", _RTL / "common" / "fifo.sv",
-           _RTL / "common" / "write_port.sv"], 16),
-    Proof("skid_buffer", "buffer_proof", _BUFFER, 24),
-    Proof("fifo of 2", "buffer_proof", _BUFFER, 24, {"DEPTH": 2}),
-    Proof("fifo of 4", "buffer_proof", _BUFFER, 24, {"DEPTH": 4}),
-    Proof("band_pipe", "band_pipe_proof",
-          [FORMAL / "band_pipe_proof.sv", _RTL / "band" / "band_pipe.sv"], 14),
-    Proof("cull", "cull_proof",
-          [*_triangle("setup_pkg", "cull"), *_formal("any_product", "cull_proof")], 20),
+    Proof("ring_lane", "ring_lane_proof", 36, ("any_product", "any_field")),
+    Proof("band_flush", "band_flush_proof", 23),
+    Proof("band_extents", "band_extents_proof", 24),
+    Proof("setup", "setup_proof", 22, ("plain_setup",)),
+    Proof("band_entry", "band_entry_proof", 27, ("no_product",)),
+    Proof("walker", "walker_proof", 15, ("any_stepper",)),
+    Proof("lanes", "lanes_proof", 14),
+    Proof("write_port", "write_port_proof", 16),
+    Proof("skid_buffer", "buffer_proof", 24),
+    Proof("fifo of 2", "buffer_proof", 24, parameters={"DEPTH": 2}),
+    Proof("fifo of 4", "buffer_proof", 24, parameters={"DEPTH": 4}),
+    Proof("band_pipe", "band_pipe_proof", 14),
+    Proof("cull", "cull_proof", 20, ("any_product",)),
 ]
 
 # State as bit vectors, the only form that Bitwuzla takes.

@@ -6,9 +6,7 @@ from litex.soc.interconnect.csr_eventmanager import EventManager, EventSourcePul
 from migen import ClockSignal, Instance, ResetSignal, Signal
 from migen.fhdl.specials import Tristate
 
-from .scanout import RTL
-
-I2C = [*(RTL / "common" / f"{name}.sv" for name in ("cdc_level", "fifo", "spike_filter")), RTL / "i2c" / "i2c_engine.sv"]
+from .rtl import add_sources
 
 BIT_RATE = 400_000
 """Fast mode, in bits a second at most."""
@@ -99,8 +97,7 @@ class I2CMaster(LiteXModule):
             i_sda_in        = wires["sda_in"],
             o_sda_out       = wires["sda_out"],
         )
-        for source in I2C:
-            platform.add_source(str(source))
+        add_sources(platform, "i2c_engine")
         if hasattr(pads, "scl_in"):
             self.comb += [
                 pads.scl_out.eq(wires["scl_out"]),

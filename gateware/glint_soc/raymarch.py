@@ -7,22 +7,7 @@ from litex.soc.interconnect.csr import CSRField, CSRStatus, CSRStorage
 from litex.soc.interconnect.csr_eventmanager import EventManager, EventSourcePulse
 from migen import Case, Cat, If, Instance, Mux, ResetSignal, Signal
 
-from .scanout import RTL
-
-_COMMON, _TRIANGLE, _RAYMARCH = (RTL / folder for folder in ("common", "triangle", "raymarch"))
-
-FIELD_UNIT = [_RAYMARCH / "raymarch_pkg.sv", _COMMON / "delay.sv", _TRIANGLE / "multiply_add.sv",
-              *(_RAYMARCH / f"{name}.sv" for name in ("menger_level", "field_menger", "field_box", "root_table", "field_sphere", "blend_unit", "field_unit"))]
-RING_LANE = [*FIELD_UNIT, _COMMON / "fifo.sv", _RAYMARCH / "ring_lane.sv"]
-RAY_GENERATOR = [_RAYMARCH / "raymarch_pkg.sv", _COMMON / "delay.sv", _COMMON / "skid_buffer.sv", _TRIANGLE / "multiply_add.sv",
-                 *(_RAYMARCH / f"{name}.sv" for name in ("inverse_table", "round_inverse", "ray_generator"))]
-RAY_PAINT = [_RAYMARCH / "raymarch_pkg.sv", _COMMON / "delay.sv", _COMMON / "skid_buffer.sv", _TRIANGLE / "multiply_add.sv",
-             _TRIANGLE / "normalise.sv",
-             *(_RAYMARCH / f"{name}.sv" for name in ("inverse_table", "round_inverse", "depth_code", "paint_table", "ray_paint"))]
-ROUND_LIGHT = [_RAYMARCH / "raymarch_pkg.sv", _COMMON / "delay.sv", _COMMON / "skid_buffer.sv", _TRIANGLE / "multiply_add.sv",
-               _RAYMARCH / "round_light.sv"]
-RAYMARCHER = [*dict.fromkeys([RTL / "band" / "band_pkg.sv", *RING_LANE, *RAY_GENERATOR, *ROUND_LIGHT, *RAY_PAINT, _RAYMARCH / "cone_table.sv",
-                              _RAYMARCH / "raymarcher.sv"])]
+from .rtl import add_sources
 
 IDENT = int.from_bytes(b"MARC", "big")
 
@@ -252,8 +237,7 @@ class Raymarcher(LiteXModule):
             o_misses         = status["misses"].status,
             o_undecided      = status["undecided"].status,
         )
-        for source in RAYMARCHER:
-            platform.add_source(str(source))
+        add_sources(platform, "raymarcher")
 
     def _spheres(self, fields):
         """What is kept of the constants that `sphere` is told: whether a sphere is written, its number, itself, the lights, the fillet."""

@@ -1,22 +1,11 @@
 """Scan-out: shows a frame in DDR3 as 1280x720 video. The work is done by rtl/scanout; this is its register block."""
 
-from pathlib import Path
-
 from litex.gen import LiteXModule
 from litex.soc.interconnect.csr import CSRField, CSRStatus, CSRStorage
 from litex.soc.interconnect.csr_eventmanager import EventManager, EventSourcePulse
 from migen import ClockSignal, Instance, Record, ResetSignal, Signal
 
-RTL = Path(__file__).resolve().parent.parent / "rtl"
-
-SOURCES = [
-    RTL / "common" / "cdc_level.sv",
-    RTL / "common" / "cdc_request.sv",
-    RTL / "scanout" / "scanout_timing.sv",
-    RTL / "scanout" / "scanout_lines.sv",
-    RTL / "scanout" / "scanout_fetch.sv",
-    RTL / "scanout" / "scanout.sv",
-]
+from .rtl import add_sources
 
 IDENT = int.from_bytes(b"SCAN", "big")
 WIDTH, HEIGHT = 1280, 720
@@ -122,5 +111,4 @@ class Scanout(LiteXModule):
             i_rdata           = port.rdata.data,
             **{f"o_video_{name}": getattr(self.video, name) for name, _ in VIDEO_LAYOUT},
         )
-        for source in SOURCES:
-            platform.add_source(str(source))
+        add_sources(platform, "scanout")

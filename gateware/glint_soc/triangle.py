@@ -5,30 +5,7 @@ from litex.soc.interconnect.csr import CSRField, CSRStatus, CSRStorage
 from litex.soc.interconnect.csr_eventmanager import EventManager, EventSourcePulse
 from migen import Cat, ClockSignal, If, Instance, Record, ResetSignal, Signal
 
-from .scanout import RTL
-
-_COMMON, _BAND, _TRIANGLE = (RTL / folder for folder in ("common", "band", "triangle"))
-
-BAND_BUFFER = [_COMMON / "fifo.sv", _COMMON / "skid_buffer.sv",
-               *(_BAND / f"band_{part}.sv" for part in ("bank", "pipe", "extents", "flush", "buffer"))]
-TRIANGLE_RASTER = [
-    _TRIANGLE / "triangle_pkg.sv", _TRIANGLE / "raster_pkg.sv", _COMMON / "skid_buffer.sv", _COMMON / "delay.sv",
-    *(_TRIANGLE / f"{name}.sv" for name in ("stepper", "multiply_add", "plane_entry", "band_entry", "walker", "lane_values", "lanes",
-                                            "lane_colours", "lane_shades", "triangle_raster")),
-]
-VERTEX_STAGE = [
-    _TRIANGLE / "triangle_pkg.sv", _COMMON / "fifo.sv", _TRIANGLE / "multiply_add.sv",
-    *(_TRIANGLE / f"vertex_{part}.sv" for part in ("transform", "normalise", "reciprocal", "snap", "stage")),
-]
-SETUP = [_TRIANGLE / f"{name}.sv" for name in (
-    "triangle_pkg", "setup_pkg", "multiply_add", "reciprocal", "normalise", "cull", "flat_shade", "setup_edges", "setup_normal",
-    "setup_gradient", "setup_start", "setup_plane", "setup_light", "setup")]
-TRIANGLE_ENGINE = [*dict.fromkeys([
-    _TRIANGLE / "list_pkg.sv", _BAND / "band_pkg.sv", *SETUP, *TRIANGLE_RASTER, *VERTEX_STAGE, *BAND_BUFFER, _COMMON / "read_port.sv", _COMMON / "write_port.sv",
-    *(_TRIANGLE / f"{name}.sv" for name in ("vertex_light", "vertex_cache", "mesh_walk", "classify", "binner", "geometry_unit",
-                                            "descriptor_cache", "list_reader", "raster_unit", "triangle_engine")),
-])]
-TRIANGLE_CONTROL = [_TRIANGLE / "list_pkg.sv", _TRIANGLE / "triangle_control.sv"]
+from .rtl import add_sources
 
 IDENT = int.from_bytes(b"TRIA", "big")
 
@@ -350,8 +327,7 @@ class TriangleEngine(LiteXModule):
             status["items_out"].status.eq(status["items_out"].status + _any(
                 port.wdata.valid & port.wdata.ready for port in writers)),
         ]
-        for source in dict.fromkeys(TRIANGLE_CONTROL + TRIANGLE_ENGINE):
-            platform.add_source(str(source))
+        add_sources(platform, "triangle_control", "triangle_engine")
 
 
 def _any(signals):

@@ -12,7 +12,7 @@ from migen import ClockDomain, Instance, Signal
 from migen.fhdl.specials import Memory
 from migen.genlib.resetsync import AsyncResetSynchronizer
 
-from .scanout import RTL
+from .rtl import add_sources
 from .soc import SYS_CLK_FREQ, GlintSoC
 
 _io = [
@@ -96,7 +96,7 @@ class VirtualSoC(GlintSoC):
         self.sram.mem.init = None
         self.add_dram(self.ddrphy)
         # What has no clock takes no time to simulate: half of the whole.
-        platform.add_source(str(RTL / "common" / "clock_gate.sv"))
+        add_sources(platform, "clock_gate")
         for name in sorted({"triangle", "raymarch"} & self.blocks):
             block = getattr(self, name)
             self.specials += Instance("clock_gate", name=f"{name}_clock",

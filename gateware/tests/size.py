@@ -5,7 +5,7 @@ import os
 import re
 
 import urbana
-from modules import MODULES, Module
+from modules import MODULES
 from tools import BUILD, TESTS, ToolError, run_yosys
 
 SOC = "soc"
@@ -40,32 +40,32 @@ def measure(name):
     What Yosys said stays in `target/gateware/size/NAME`; `path.txt` there names the cells of the path.
     """
     if name == SOC:
-        return _measure(Module("glint_urbana", urbana.synthesis_sources(_SOC_FILES)), SOC, _MARKS, _SOC_FILES)
+        return _measure("glint_urbana", urbana.synthesis_sources(_SOC_FILES), SOC, _MARKS, _SOC_FILES)
     known = {name: (module, parameters) for module in MODULES
              for name, parameters in module.builds().items()}
     if name not in known:
         raise ToolError(f"no block is named {name}; there are: {' '.join(known)} {SOC}")
     module, parameters = known[name]
-    return _measure(module, name, parameters=parameters)
+    return _measure(module.top, module.sources, name, parameters=parameters)
 
 
-def _measure(module, name, ignored=_MARKS | _PADS, cwd=BUILD, parameters=None):
+def _measure(top, sources, name, ignored=_MARKS | _PADS, cwd=BUILD, parameters=None):
     folder = _FOLDER / name
     folder.mkdir(parents=True, exist_ok=True)
     cells, path, log = (folder / file for file in ("cells.json", "path.txt", "yosys.log"))
     for result in (cells, path, log):
         result.unlink(missing_ok=True)
-    script = _set(module, parameters or {}) + _SCRIPT.format(top=module.top, folder=os.path.relpath(folder, cwd),
+    script = _set(top, parameters or {}) + _SCRIPT.format(top=top, folder=os.path.relpath(folder, cwd),
                             reads=os.path.relpath(TESTS / "lutram_reads.v", cwd))
-    run_yosys(script, module.sources, cwd, log)
+    run_yosys(script, sources, cwd, log)
     stat = json.loads(cells.read_text())
     return {"yosys": stat["creator"].split(" (")[0], **sort_cells(stat["design"]["num_cells_by_type"], ignored),
             "path": longest_path(path.read_text())}
 
 
-def _set(module, parameters):
+def _set(top, parameters):
     """The commands that give a module its parameters."""
-    return "".join(f"chparam -set {key} {value} {module.top};\n" for key, value in parameters.items())
+    return "".join(f"chparam -set {key} {value} {top};\n" for key, value in parameters.items())
 
 
 def sort_cells(cells, ignored=frozenset()):
@@ -95,13 +95,12 @@ def longest_path(report):
 
 def read(module, parameters):
     """Checks that Yosys understands a module."""
-    run_yosys(f"{_set(module, parameters)}hierarchy -check -top {module.top}; proc; check -assert", module.sources)
+    run_yosys(f"{_set(module.top, parameters)}hierarchy -check -top {module.top}; proc; check -assert", module.sources)
 
 
 def check_sample():
     """A module whose cells are known is measured as that."""
-    sample = Module("size_sample", [TESTS / "size_sample.sv"])
-    return _differences(_SAMPLE, _measure(sample, sample.top))
+    return _differences(_SAMPLE, _measure("size_sample", [TESTS / "size_sample.sv"], "size_sample"))
 
 
 def check_sorting():

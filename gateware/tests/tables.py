@@ -3,14 +3,14 @@
 import json
 from math import isqrt
 
-from glint_soc.scanout import RTL
+from glint_soc import rtl
 from tools import BUILD, run_yosys
 
 
 def _yosys(name, memory):
     """Returns the entries that Yosys gives a memory."""
     netlist = BUILD / f"{name}.json"
-    run_yosys(f"hierarchy -top {name}; proc; memory_collect; write_json {netlist.name}", [RTL / "raymarch" / f"{name}.sv"])
+    run_yosys(f"hierarchy -top {name}; proc; memory_collect; write_json {netlist.name}", rtl.sources(name))
     cell = json.loads(netlist.read_text())["modules"][name]["cells"][memory]["parameters"]
     width = int(cell["WIDTH"], 2)
     words = [cell["INIT"][at:at + width] for at in range(0, len(cell["INIT"]), width)]

@@ -1,0 +1,73 @@
+"""The SystemVerilog files of a module: the folder `gateware/rtl` itself is the list.
+
+Every module or package has a file of its own name. A module's sources are its file and those of all packages that it names
+and modules that it instantiates, recursively. LiteX, Yosys, the Verilator benches and the proofs all ask `sources`.
+"""
+
+import re
+from functools import cache
+from pathlib import Path
+
+RTL = Path(__file__).resolve().parent.parent / "rtl"
+
+_COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.S)
+_DEFINITION = re.compile(r"^\s*(module|package)\s+(\w+)", re.M)
+_PACKAGE_USE = re.compile(r"\b(\w+)::")
+# A module, then its parameters or the instance and its ports; not the label of a block.
+_INSTANCE = re.compile(r"(?<!: )\b(\w+)\s+(?:#\s*\(|\w+\s*\()")
+
+
+@cache
+def _library():
+    """The file of each module and package."""
+    paths = {}
+    for path in sorted(RTL.glob("*/*.sv")):
+        if _definitions(path) != [path.stem]:
+            raise ValueError(f"{path}: expected one module or package, {path.stem}, found {_definitions(path)}")
+        if path.stem in paths:
+            raise ValueError(f"{path.stem} is defined by {paths[path.stem]} and by {path}")
+        paths[path.stem] = path
+    return paths
+
+
+@cache
+def _text(path):
+    return _COMMENT.sub("", path.read_text())
+
+
+def _definitions(path):
+    return [name for _, name in _DEFINITION.findall(_text(path))]
+
+
+def sources(*tops, others=()):
+    """Returns the files that the modules `tops` need, each after those that it depends on.
+
+    `others` are files outside `gateware/rtl`: further modules, and modules that replace those of their names.
+    """
+    library = _library() | {name: path for path in others for name in _definitions(path)}
+    found = {}
+
+    def visit(name):
+        path = library[name]
+        if path in found:
+            return
+        found[path] = None
+        text = _text(path)
+        uses = {*_PACKAGE_USE.findall(text), *_INSTANCE.findall(text)} & library.keys()
+        for use in sorted(uses - {name}):
+            visit(use)
+        # Reinsert behind its dependencies.
+        del found[path]
+        found[path] = None
+
+    for top in tops:
+        if top not in library:
+            raise ValueError(f"no module {top!r} in {RTL}")
+        visit(top)
+    return list(found)
+
+
+def add_sources(platform, *tops):
+    """Adds the files of modules to a LiteX platform."""
+    for path in sources(*tops):
+        platform.add_source(str(path))
