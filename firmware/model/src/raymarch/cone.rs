@@ -4,9 +4,9 @@
 //! most t·spread in the norm of its rays, so it goes on by the distance less t·spread, and all of them are free up to there. What it
 //! comes to is a depth, which takes the place of the near plane for its block.
 
-use super::field::cropped;
+use super::field::{FRACTION, cropped};
 use super::ray::{Ray, magnitude};
-use super::setup::{FRACTION, Setup, farthest};
+use super::setup::{FARTHEST, Setup};
 
 /// Entries of the table of depths.
 pub(super) const CONES: u32 = 1 << 14;
@@ -126,9 +126,7 @@ impl Setup {
             eye,
             direction: self.scaled(direction, length),
             length,
-            start: self
-                .at_depth(self.near, length)
-                .min(farthest(self.fraction)),
+            start: self.at_depth(self.near, length).min(FARTHEST),
         };
         Cone {
             ray,
@@ -147,10 +145,10 @@ impl Setup {
         let mut steps = 0;
         loop {
             let point = self.point(ray, t);
-            let sample = self.sample(point.map(|x| cropped(x, 10 + self.fraction)));
+            let sample = self.sample(point.map(|x| cropped(x, 10 + FRACTION)));
             let gone = self.is_gone(ray, &point);
             let width = ((u64::from(t) * u64::from(*spread)) >> 16) as u32 + cut;
-            let wide = width >> (4 + self.fraction) != 0;
+            let wide = width >> (4 + FRACTION) != 0;
             let threshold = i64::from(tuning.threshold + width);
             steps += 1;
             let next = t + (sample.distance - width as i32 - 1).max(0) as u32;
@@ -169,7 +167,7 @@ impl Setup {
     /// The depth along n at a cone's t as the table has it: times 2^e, u11.7, rounded down.
     pub fn cleared(&self, cone: &Cone, t: u32) -> u32 {
         let depth = (u64::from(t) * u64::from(self.inverse(cone.ray.length))) >> 9;
-        depth.min(farthest(self.fraction).into()) as u32 >> (self.fraction - DEPTH_FRACTION)
+        depth.min(FARTHEST.into()) as u32 >> (FRACTION - DEPTH_FRACTION)
     }
 }
 
@@ -211,7 +209,7 @@ impl<'a> Rays<'a> {
                 self.evaluations += u64::from(steps * setup.passes());
             }
         }
-        let cleared = cleared[(x >> cones.block) as usize] << (setup.fraction - DEPTH_FRACTION);
+        let cleared = cleared[(x >> cones.block) as usize] << (FRACTION - DEPTH_FRACTION);
         setup.ray_from(eye, x, y, setup.near.max(cleared))
     }
 

@@ -2,6 +2,9 @@
 
 use super::sphere::Balls;
 
+/// Fraction bits of field units.
+pub(super) const FRACTION: u32 = 12;
+
 /// What is nearest to a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Surface {
@@ -95,8 +98,8 @@ pub enum Solid {
 }
 
 impl Solid {
-    /// The distance of a point, each coordinate s10.12, or with another number of fraction bits.
-    pub fn sample(&self, point: [i32; 3], fraction: u32) -> Sample {
+    /// The distance of a point, each coordinate s10.12.
+    pub fn sample(&self, point: [i32; 3]) -> Sample {
         match self {
             Self::Menger {
                 levels,
@@ -107,7 +110,7 @@ impl Solid {
                 half,
                 room,
                 repeated,
-            } => cuboid(point, fraction, half, *room, *repeated),
+            } => cuboid(point, half, *room, *repeated),
             Self::Balls(balls) => balls.sample(point),
         }
     }
@@ -210,24 +213,18 @@ fn menger<'a>(point: [i32; 3], levels: impl Iterator<Item = &'a i32>, half: i32)
 }
 
 /// A box: the largest of |x| − half.
-fn cuboid(
-    point: [i32; 3],
-    fraction: u32,
-    half: &[Option<i32>; 3],
-    room: bool,
-    repeated: bool,
-) -> Sample {
+fn cuboid(point: [i32; 3], half: &[Option<i32>; 3], room: bool, repeated: bool) -> Sample {
     // 64 units are 2^18: the middle of the cell in which the point lies is where the lowest 18 bits are 0.
     let wrap = |x: i32| {
         if repeated {
-            cropped(x, 6 + fraction)
+            cropped(x, 6 + FRACTION)
         } else {
             x
         }
     };
     let p = unfolded(point.map(wrap)).map(|x| x.negated_if(x.value < 0));
     // Beyond all that there is: below −2^21 and no larger in magnitude than 23 bits hold.
-    let nowhere = -1 << (10 + fraction);
+    let nowhere = -1 << (10 + FRACTION);
     let outside = [0, 1, 2].map(|i: usize| half[i].map_or(nowhere, |half| p[i].value - half));
     let big = largest(outside);
     let nearest = Folded {

@@ -1,7 +1,7 @@
 //! A pixel's ray: where it begins, and where it ends.
 
-use super::field::{Surface, cropped};
-use super::setup::{Eye, FRACTION, Setup, farthest};
+use super::field::{FRACTION, Surface, cropped};
+use super::setup::{Eye, FARTHEST, Setup};
 
 /// Below 1/m for every m that begins with these ten bits behind its point: 2^10/(i + 1), cut so that no product
 /// with m rounds to 1. u8.9, 17 bits.
@@ -84,7 +84,7 @@ impl Outcome {
     /// Where the ray has come to, u11.12: the surface's plane, if that is where it ends.
     pub fn reached(&self) -> u32 {
         let rest = (self.gap * INVERSE[self.slope as usize & 0x3FF]) >> 9;
-        (self.t + rest).min(farthest(FRACTION))
+        (self.t + rest).min(FARTHEST)
     }
 }
 
@@ -113,7 +113,7 @@ impl Setup {
             eye,
             direction,
             length,
-            start: near.max(entry).min(farthest(self.fraction)),
+            start: near.max(entry).min(FARTHEST),
         }
     }
 
@@ -170,7 +170,7 @@ impl Setup {
                 let divided = |way: u64| (way * u64::from(inverse)) >> 9;
                 let outside = u64::from(outside[i]);
                 let part = u64::from(magnitude(direction[i]));
-                let near = divided(outside).min(farthest(self.fraction).into());
+                let near = divided(outside).min(FARTHEST.into());
                 // |d| is at most part + 1.
                 let gone = (near * (part + 1)) >> 17;
                 near + divided(outside.saturating_sub(gone + 1))
@@ -186,7 +186,7 @@ impl Setup {
         let mut steps = 0;
         loop {
             let point = self.point(ray, t);
-            let sample = self.sample(point.map(|x| cropped(x, 10 + self.fraction)));
+            let sample = self.sample(point.map(|x| cropped(x, 10 + FRACTION)));
             let gone = self.is_gone(ray, &point);
             let threshold = (tuning.threshold + (t >> tuning.footprint)) << self.patience(steps);
             steps += 1;
@@ -243,7 +243,7 @@ impl Setup {
     fn approach(&self, ray: &Ray, distance: i32, axis: u8, positive: bool) -> (u32, u32) {
         let part = ray.direction[usize::from(axis) % 3];
         let comes = (part < 0) == positive;
-        let gap = distance.clamp(0, (1 << self.fraction) - 1);
+        let gap = distance.clamp(0, (1 << FRACTION) - 1);
         let slope = if comes {
             magnitude(part) >> 7 & 0x3FF
         } else {
@@ -262,6 +262,6 @@ impl Setup {
 
     /// The depth of a point of a ray along n in field units times 2^e, 21 fraction bits.
     pub fn depth_of(&self, ray: &Ray, t: u32) -> u64 {
-        (u64::from(t) * u64::from(self.inverse(ray.length))) << FRACTION >> self.fraction
+        u64::from(t) * u64::from(self.inverse(ray.length))
     }
 }

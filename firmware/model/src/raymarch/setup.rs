@@ -8,14 +8,11 @@ use glint_core::trig::sin_cos_q30;
 
 use super::blend::{Beside, Blend};
 use super::cone::{Cones, Prepass};
-use super::field::{Sample, Solid, cropped};
+use super::field::{FRACTION, Sample, Solid, cropped};
 use super::paint::Palette;
 use super::sphere::{Ball, Balls};
 use crate::frame::DepthScale;
 use crate::render::{RenderError, SIZES};
-
-/// Fraction bits of field units.
-pub(super) const FRACTION: u32 = 12;
 
 /// Half the side of what a bounded field spans where the world's is 1: S of the sponge's levels is then 27, 9, 3, 1.
 const HALF_SIDE: Q32_32 = Q32_32::lit("40.5");
@@ -23,14 +20,10 @@ const HALF_SIDE: Q32_32 = Q32_32::lit("40.5");
 const PERIOD: Q32_32 = Q32_32::lit("64");
 
 /// More than any coordinate: those of points are s13.12.
-const fn unbounded(fraction: u32) -> u32 {
-    (1 << (12 + fraction)) - 1
-}
+const UNBOUNDED: u32 = (1 << (12 + FRACTION)) - 1;
 
-/// The farthest that a ray goes: t is u11.12.
-pub(super) const fn farthest(fraction: u32) -> u32 {
-    (1 << (11 + fraction)) - 1
-}
+/// Upper limit of t, u11.12.
+pub(super) const FARTHEST: u32 = (1 << (11 + FRACTION)) - 1;
 
 /// How finely a field is marched: what its error and its time depend on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,7 +49,7 @@ pub const DEFAULT_TUNING: Tuning = Tuning {
     threshold: 28,
     footprint: 14,
     cap: 255,
-    far: farthest(FRACTION),
+    far: FARTHEST,
 };
 
 /// What suits round fields: the silhouette of a sphere, and the normal beside it, show where a ray has ended.
@@ -65,18 +58,6 @@ pub const ROUND_TUNING: Tuning = Tuning {
     footprint: 15,
     ..DEFAULT_TUNING
 };
-
-impl Tuning {
-    /// The same lengths with another number of fraction bits, the threshold nearest.
-    fn with_fraction(self, fraction: u32) -> Self {
-        let narrowed = |x: u32| ((u64::from(x) << fraction) + (1 << (FRACTION - 1))) >> FRACTION;
-        Self {
-            threshold: narrowed(self.threshold) as u32,
-            far: (narrowed(self.far + 1) - 1) as u32,
-            ..self
-        }
-    }
-}
 
 /// How a field is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -89,9 +70,6 @@ pub struct FieldOptions {
     pub palette: Palette,
     /// How dense the fog is: e^−z of something is left that is z/density world units away. 0 is none.
     pub fog: U4_28,
-    /// Fraction bits of field units, 8 to 16. The gateware has 12; the others are there to show what they are worth. What is
-    /// round has 12.
-    pub fraction: u32,
     /// Cones before the rays, if any.
     pub prepass: Option<Prepass>,
 }
@@ -131,7 +109,6 @@ impl Default for FieldOptions {
             tuning: DEFAULT_TUNING,
             palette: Palette::default(),
             fog: U4_28::ZERO,
-            fraction: FRACTION,
             prepass: None,
         }
     }
@@ -156,8 +133,6 @@ pub struct Setup {
     pub width: u32,
     /// Height of the picture in pixels.
     pub height: u32,
-    /// Fraction bits of field units: 12 wherever a format says so, unless the options say otherwise.
-    pub fraction: u32,
     /// What there is.
     pub solid: Solid,
     /// Spheres beside a solid that has faces: then there are both.
@@ -201,28 +176,27 @@ impl Setup {
             return Err(RenderError::Size { width, height });
         }
         let round = field.is_round();
-        let fraction = if round { FRACTION } else { options.fraction };
         let (solid, beside, scale, extent) = match *field {
             Field::Union { flat, round, blend } => {
-                let (solid, scale, flat) = in_units(&flat.into(), fraction);
-                let (balls, _, round) = in_units(&round.into(), fraction);
+                let (solid, scale, flat) = in_units(&flat.into());
+                let (balls, _, round) = in_units(&round.into());
                 // A fillet is a quarter of its width high.
                 let extent = flat.zip(round).map(|(flat, round)| {
                     [0, 1, 2].map(|i: usize| flat[i].max(round[i]) + blend / 4)
                 });
                 let beside = balls.balls().map(|&balls| Beside {
                     balls,
-                    blend: Blend::new(units(blend, scale, fraction) as u32),
+                    blend: Blend::new(units(blend, scale) as u32),
                 });
                 (solid, beside, scale, extent)
             }
             ref field => {
-                let (solid, scale, extent) = in_units(field, fraction);
+                let (solid, scale, extent) = in_units(field);
                 (solid, None, scale, extent)
             }
         };
-        let bounds = extent.map_or([unbounded(fraction); 3], |extent| {
-            extent.map(|half| units(half, scale, fraction) as u32)
+        let bounds = extent.map_or([UNBOUNDED; 3], |extent| {
+            extent.map(|half| units(half, scale) as u32)
         });
 
         let (shift, parallax) = match options.stereo {
@@ -243,11 +217,11 @@ impl Setup {
                 // |C| ≤ 32 and e ≤ 1.
                 let aside = (shift.to_bits() >> 8) * i64::from(view.u()[i].to_bits());
                 let place = Q32_32::from_bits(view.eye()[i].to_bits() + sign * (aside >> 15));
-                let place = units(place, scale, fraction) as i32;
+                let place = units(place, scale) as i32;
                 match solid {
                     // The same place in the cell about the origin.
                     Solid::Box { repeated: true, .. }
-                    | Solid::Balls(Balls { repeated: true, .. }) => cropped(place, 6 + fraction),
+                    | Solid::Balls(Balls { repeated: true, .. }) => cropped(place, 6 + FRACTION),
                     _ => place,
                 }
             });
@@ -262,8 +236,7 @@ impl Setup {
         let near = i64::from(view.near().to_bits()) << 4;
         let nearest = nearest(view, extent);
         // At most 2 world units for the plane, 64 for the box, of which a step of rounding is left out.
-        let [plane, corner] =
-            [near, nearest >> 5].map(|x| units(Q32_32::from_bits(x), scale, fraction));
+        let [plane, corner] = [near, nearest >> 5].map(|x| units(Q32_32::from_bits(x), scale));
         let near_units = plane.max(corner - 1) << rays.exponent;
         let world_depth = DepthScale::from_nearest(nearest.max(near << 5));
         let steps = [rays.across, rays.down].map(|step| step.map(|x| rays.narrow(x)));
@@ -274,7 +247,6 @@ impl Setup {
         Ok(Self {
             width,
             height,
-            fraction,
             solid,
             beside,
             scale,
@@ -282,11 +254,11 @@ impl Setup {
             eyes: [eye(-1, rays.first[0]), eye(1, rays.first[1])],
             steps,
             exponent: rays.exponent,
-            near: near_units.clamp(0, farthest(fraction).into()) as u32,
+            near: near_units.clamp(0, FARTHEST.into()) as u32,
             cones,
             depth: world_depth.times(scale, rays.exponent),
             world_depth,
-            tuning: options.tuning.with_fraction(fraction),
+            tuning: options.tuning,
             stereo: options.stereo.map(|stereo| stereo.tint),
         })
     }
@@ -319,7 +291,7 @@ impl Setup {
 
     /// What is nearest to a point, each coordinate s10.12; of equals, the face.
     pub fn sample(&self, point: [i32; 3]) -> Sample {
-        let flat = self.solid.sample(point, self.fraction);
+        let flat = self.solid.sample(point);
         match &self.beside {
             Some(beside) => beside.blend.union(flat, beside.balls.sample(point)),
             None => flat,
@@ -328,12 +300,12 @@ impl Setup {
 }
 
 /// The solid, its units in one world unit, and half the sides of its box in world units.
-fn in_units(field: &Field, fraction: u32) -> (Solid, Q32_32, Option<[Q32_32; 3]>) {
-    let solid_units = |x: Q32_32, scale| units(x, scale, fraction) as i32;
+fn in_units(field: &Field) -> (Solid, Q32_32, Option<[Q32_32; 3]>) {
+    let solid_units = |x: Q32_32, scale| units(x, scale) as i32;
     match *field {
         Field::Menger { depth } => {
             // 81/3^i, each an even number of 2^−12.
-            let one = 1 << fraction;
+            let one = 1 << FRACTION;
             let [third, ninth] = [3, 9].map(|parts| (one / 2 + parts / 2) / parts * 2);
             let levels = [27 * one, 9 * one, 3 * one, one, third, ninth];
             let last = levels[usize::from(depth.clamp(1, 6)) - 1];
@@ -404,7 +376,7 @@ fn in_units(field: &Field, fraction: u32) -> (Solid, Q32_32, Option<[Q32_32; 3]>
             (solid, scale, None)
         }
         // One of both, which is told apart before.
-        Field::Union { flat, .. } => in_units(&flat.into(), fraction),
+        Field::Union { flat, .. } => in_units(&flat.into()),
     }
 }
 
@@ -421,7 +393,7 @@ fn balls<'a>(
     let mut extent = [Q32_32::ZERO; 3];
     let mut count = 0;
     for (ball, sphere) in list.iter_mut().zip(spheres) {
-        let length = |x: Q32_32| units(x, HALF_SIDE, FRACTION) as i32;
+        let length = |x: Q32_32| units(x, HALF_SIDE) as i32;
         *ball = Ball::new(sphere.centre.map(length), length(sphere.radius));
         extent = [0, 1, 2].map(|i: usize| extent[i].max(sphere.centre[i].abs() + sphere.radius));
         count += 1;
@@ -435,10 +407,10 @@ fn balls<'a>(
 }
 
 /// A length in world units in field units, nearest. |x| is at most 64 and the scale 256.
-fn units(x: Q32_32, scale: Q32_32, fraction: u32) -> i64 {
+fn units(x: Q32_32, scale: Q32_32) -> i64 {
     // 24 and 20 fraction bits.
     let product = (x.to_bits() >> 8) * (scale.to_bits() >> 12);
-    (product + (1 << (43 - fraction))) >> (44 - fraction)
+    (product + (1 << (43 - FRACTION))) >> (44 - FRACTION)
 }
 
 /// The depth along n of the corner of the box that is nearest, 37 fraction bits, rounded down: below 0 beside it; 0 where there is

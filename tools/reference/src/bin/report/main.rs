@@ -3,6 +3,7 @@
 #![forbid(unsafe_code)]
 
 mod cycles;
+mod fixed_point;
 mod gouraud;
 mod imu;
 mod page;

@@ -16,6 +16,7 @@ use glint_reference::field::verilated::Raymarcher;
 use indicatif::ProgressBar;
 use serde::Serialize;
 
+use crate::fixed_point::{FixedPoint, MODEL_FRACTION};
 use crate::plot::{self, Diagram, Point};
 use crate::table::{Provenance, write_csv};
 use crate::{in_workspace, progress_bar, rates, soc};
@@ -252,18 +253,16 @@ impl<'a> Bench<'a> {
     fn model(&self, family: &str, config: String, options: &FieldOptions) -> Trial {
         let mut trial = self.trial(family, config, 0, |subject| subject.picture(options));
         trial.shipped = *options == FieldOptions::default();
-        if options.fraction == FieldOptions::default().fraction {
-            let mut raymarcher = self.raymarcher.borrow_mut();
-            let pictures = self.subjects.iter();
-            let clocks: Option<u64> = pictures
-                .map(|subject| {
-                    let setup = subject.setup(options);
-                    let built = setup.cones.is_none_or(|cones| cones.is_fitting(&setup));
-                    built.then(|| raymarcher.draw(&setup).clocks)
-                })
-                .sum();
-            trial.cycles = clocks.map(|clocks| clocks as f64 / self.subjects.len() as f64);
-        }
+        let mut raymarcher = self.raymarcher.borrow_mut();
+        let pictures = self.subjects.iter();
+        let clocks: Option<u64> = pictures
+            .map(|subject| {
+                let setup = subject.setup(options);
+                let built = setup.cones.is_none_or(|cones| cones.is_fitting(&setup));
+                built.then(|| raymarcher.draw(&setup).clocks)
+            })
+            .sum();
+        trial.cycles = clocks.map(|clocks| clocks as f64 / self.subjects.len() as f64);
         trial
     }
 
@@ -337,25 +336,22 @@ fn p99(trial: &Trial) -> f64 {
 }
 
 fn fractions(bench: &Bench) -> Study {
-    let with = |fraction, threshold| FieldOptions {
-        fraction,
-        ..tuned(Tuning {
-            threshold,
-            ..DEFAULT_TUNING
+    let trial = |family: &str, fraction, threshold| {
+        let shipped = (fraction, threshold) == (MODEL_FRACTION, DEFAULT_TUNING.threshold);
+        if shipped {
+            let options = FieldOptions::default();
+            return bench.model(family, format!("{fraction} bits"), &options);
+        }
+        bench.trial(family, format!("{fraction} bits"), 0, |subject| {
+            FixedPoint::new(subject, fraction, threshold).picture()
         })
     };
-    let same = (8..=16).map(|fraction| {
-        let options = with(fraction, DEFAULT_TUNING.threshold);
-        bench.model("the same threshold", format!("{fraction} bits"), &options)
-    });
+    let same =
+        (8..=16).map(|fraction| trial("the same threshold", fraction, DEFAULT_TUNING.threshold));
     let fitting = (8..=15).map(|fraction| {
-        let threshold = (DEFAULT_TUNING.threshold << 12) >> fraction;
-        let options = with(fraction, threshold);
-        bench.model(
-            &format!("a threshold of {} steps", DEFAULT_TUNING.threshold),
-            format!("{fraction} bits"),
-            &options,
-        )
+        let threshold = (DEFAULT_TUNING.threshold << MODEL_FRACTION) >> fraction;
+        let family = format!("a threshold of {} steps", DEFAULT_TUNING.threshold);
+        trial(&family, fraction, threshold)
     });
     Study {
         name: "fraction",

@@ -1,0 +1,254 @@
+//! The sponge's march in integers with any number of fraction bits, for the study of word lengths.
+//!
+//! The gateware and its model have 12. Directions keep their 17 bits, which are taken from the model.
+
+use glint_model::raymarch::{DEFAULT_TUNING, FieldOptions, Ray, Setup, Tuning};
+use glint_reference::field::metrics::Outcome;
+use glint_reference::field::raymarched::{Marched, Subject};
+use glint_reference::field::{Face, Field};
+
+/// Fraction bits of the model's field units.
+pub const MODEL_FRACTION: u32 = 12;
+
+/// Field units in a world unit, doubled: the sponge's half side is 40.5.
+const TWICE_SCALE: i64 = 81;
+
+/// The constants of a picture of the sponge.
+pub struct FixedPoint {
+    /// The model's constants, for directions.
+    setup: Setup,
+    /// Fraction bits of field units, 8 to 16.
+    fraction: u32,
+    /// S of each level.
+    levels: Vec<i32>,
+    /// Half the sponge's side.
+    bound: u32,
+    /// The eye.
+    origin: [i32; 3],
+    /// Smallest depth, times 2^e.
+    near: u32,
+    /// Threshold and far limit with `fraction` bits.
+    tuning: Tuning,
+}
+
+impl FixedPoint {
+    /// `threshold` has the model's fraction bits and is rounded to the nearest step of `fraction` bits.
+    ///
+    /// # Panics
+    /// When the subject is not a sponge of at most four levels.
+    pub fn new(subject: &Subject, fraction: u32, threshold: u32) -> Self {
+        let Field::Menger { depth } = subject.field else {
+            panic!("{}: expected a sponge", subject.scene);
+        };
+        assert!((1..=4).contains(&depth), "expected at most four levels");
+        let setup = subject.setup(&FieldOptions::default());
+        let view = subject
+            .camera
+            .view()
+            .expect("a subject's camera is a view's");
+        // Lengths in world units have 24 fraction bits here; halves are rounded up.
+        let units =
+            |length: i64| (length * TWICE_SCALE + (1 << (24 - fraction))) >> (25 - fraction);
+        let corner: i64 = (0..3)
+            .map(|i| {
+                let n = i64::from(view.n()[i].to_bits());
+                let reach = n.abs() * ((1 << 14) + 2);
+                -n * (view.eye()[i].to_bits() >> 18) - reach - (reach >> 13)
+            })
+            .sum();
+        let plane = units(i64::from(view.near().to_bits()) >> 4);
+        let near = plane.max(units(corner >> 13) - 1) << setup.exponent;
+        let rescaled = |length: u32| {
+            ((u64::from(length) << fraction) + (1 << (MODEL_FRACTION - 1))) >> MODEL_FRACTION
+        };
+        Self {
+            setup,
+            fraction,
+            levels: (0..depth)
+                .map(|i| (27 / 3_i32.pow(i)) << fraction)
+                .collect(),
+            bound: units(1 << 24) as u32,
+            origin: view.eye().map(|c| units(c.to_bits() >> 8) as i32),
+            near: near.clamp(0, i64::from(farthest(fraction))) as u32,
+            tuning: Tuning {
+                threshold: rescaled(threshold) as u32,
+                far: (rescaled(DEFAULT_TUNING.far + 1) - 1) as u32,
+                ..DEFAULT_TUNING
+            },
+        }
+    }
+
+    /// The picture, row by row.
+    pub fn picture(&self) -> Vec<Marched> {
+        let (width, height) = (self.setup.width, self.setup.height);
+        (0..width * height)
+            .map(|i| self.march(&self.setup.ray(0, i % width, i / width)))
+            .collect()
+    }
+
+    fn march(&self, ray: &Ray) -> Marched {
+        let mut t = self.start(ray);
+        let mut steps = 0;
+        let outcome = loop {
+            let point = self.point(ray, t);
+            let (distance, axis, positive) = self.sample(point);
+            let threshold = (self.tuning.threshold + (t >> self.tuning.footprint)) << (steps >> 6);
+            steps += 1;
+            let next = t + distance.max(0) as u32;
+            let leaves = |i: usize| {
+                magnitude(point[i]) > self.bound && (point[i] < 0) == (ray.direction[i] < 0)
+            };
+            if (0..3).any(leaves) || next > self.tuning.far {
+                break Outcome::Miss;
+            }
+            if distance < threshold as i32 {
+                let reached = t + self.rest(ray, distance, axis, positive);
+                let mut normal = [0.0; 3];
+                normal[axis] = if positive { 1.0 } else { -1.0 };
+                break Outcome::Hit {
+                    t: self.depth(ray, reached.min(farthest(self.fraction))),
+                    face: Face::Axis { axis, positive },
+                    normal,
+                };
+            }
+            if steps >= self.tuning.cap {
+                break Outcome::Undecided;
+            }
+            t = next;
+        };
+        Marched {
+            outcome,
+            coded: None,
+            steps,
+            cones: 0,
+        }
+    }
+
+    /// t at the near plane or at the cube around the sponge.
+    fn start(&self, ray: &Ray) -> u32 {
+        let near = ((u64::from(self.near) * u64::from(ray.length + 1)) >> 10) as u32;
+        let farthest = farthest(self.fraction);
+        let entry = (0..3)
+            .filter(|&i| (self.origin[i] < 0) != (ray.direction[i] < 0))
+            .map(|i| {
+                let outside = u64::from(self.origin[i].unsigned_abs().saturating_sub(self.bound));
+                let part = magnitude(ray.direction[i]);
+                let inverse = u64::from(self.reciprocal(part >> 7));
+                // The reciprocal is too small, so what is left after the first product is divided again.
+                let first = ((outside * inverse) >> 9).min(farthest.into());
+                let gone = (first * (u64::from(part) + 1)) >> 17;
+                first + ((outside.saturating_sub(gone + 1) * inverse) >> 9)
+            })
+            .max()
+            .unwrap_or(0);
+        near.max(entry.min(farthest.into()) as u32).min(farthest)
+    }
+
+    /// The point of a ray, cut to 10 integer bits.
+    fn point(&self, ray: &Ray, t: u32) -> [i32; 3] {
+        [0, 1, 2].map(|i: usize| {
+            let way = i64::from(t) * i64::from(ray.direction[i]);
+            self.origin[i] + (way >> 17) as i32
+        })
+    }
+
+    /// The distance to the sponge in the maximum norm, and the axis and side of the nearest face.
+    fn sample(&self, point: [i32; 3]) -> (i32, usize, bool) {
+        let mut p = [0, 1, 2].map(|axis| (point[axis], axis, true));
+        for &s in &self.levels {
+            // −x is `!x`: a coordinate stands for the middle of its step.
+            p = p.map(|x| if x.0 >= 0 { mirrored(x) } else { x });
+            p = p.map(|(x, axis, positive)| (x + s, axis, positive));
+            let big = largest(p.map(|x| x.0));
+            p.swap(1, big);
+            if p[1].0 < s / 2 {
+                p[1] = mirrored(p[1]);
+            } else {
+                p[1].0 -= s;
+            }
+        }
+        let p = p.map(|x| if x.0 < 0 { mirrored(x) } else { x });
+        let (value, axis, positive) = p[largest(p.map(|x| x.0))];
+        let half = self.levels.last().map_or(0, |s| s / 2);
+        (value - half, axis, positive)
+    }
+
+    /// What is left of a ray to the plane of a face that it goes towards.
+    fn rest(&self, ray: &Ray, distance: i32, axis: usize, positive: bool) -> u32 {
+        let part = ray.direction[axis];
+        let slope = if (part < 0) == positive {
+            magnitude(part) >> 7 & 0x3FF
+        } else {
+            0x3FF
+        };
+        let gap = distance.clamp(0, (1 << self.fraction) - 1) as u32;
+        ((u64::from(gap) * u64::from(self.reciprocal(slope))) >> 9) as u32
+    }
+
+    /// The depth along n at a ray's t, in world units.
+    fn depth(&self, ray: &Ray, t: u32) -> f64 {
+        let scaled = u64::from(t) * u64::from(self.reciprocal(ray.length));
+        // 21 fraction bits, as in the model: 9 of them are the reciprocal's.
+        let scaled = scaled << MODEL_FRACTION >> self.fraction;
+        let bits = 21.0 + f64::from(self.setup.exponent);
+        scaled as f64 * (-bits).exp2() / (TWICE_SCALE as f64 / 2.0)
+    }
+
+    /// The model's reciprocal of a number that begins with these ten bits, u8.9.
+    fn reciprocal(&self, first_bits: u32) -> u32 {
+        let ray = Ray {
+            eye: 0,
+            direction: [0; 3],
+            length: first_bits & 0x3FF,
+            start: 0,
+        };
+        self.setup.depth_of(&ray, 1) as u32
+    }
+}
+
+/// Upper limit of t: 11 integer bits.
+const fn farthest(fraction: u32) -> u32 {
+    (1 << (11 + fraction)) - 1
+}
+
+/// |x|, or |x| − 1 of a negative x.
+const fn magnitude(x: i32) -> u32 {
+    (x ^ (x >> 31)) as u32
+}
+
+fn mirrored((value, axis, positive): (i32, usize, bool)) -> (i32, usize, bool) {
+    (!value, axis, !positive)
+}
+
+/// The index of the largest of three numbers; of equals 1, then 0.
+fn largest([x, y, z]: [i32; 3]) -> usize {
+    if z > x && z > y {
+        2
+    } else if x > y {
+        0
+    } else {
+        1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glint_reference::field::raymarched::sponges;
+
+    #[test]
+    fn with_the_models_fraction_bits_the_picture_is_the_models() {
+        for subject in sponges((320, 180)) {
+            let fixed = FixedPoint::new(&subject, MODEL_FRACTION, DEFAULT_TUNING.threshold);
+            let model = subject.picture(&FieldOptions::default());
+            for (found, expected) in fixed.picture().iter().zip(&model) {
+                assert_eq!(
+                    (found.outcome, found.steps),
+                    (expected.outcome, expected.steps),
+                    "{}",
+                    subject.name
+                );
+            }
+        }
+    }
+}
