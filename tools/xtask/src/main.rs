@@ -6,6 +6,7 @@ mod bootstrap;
 mod demo;
 mod firmware;
 mod gateware;
+mod modules;
 mod pac;
 mod paths;
 mod resources;
@@ -62,6 +63,8 @@ enum Task {
     },
     /// Build everything and run every test
     Test,
+    /// Check the sources: no circle of modules, no `#[path]`, no file of more than 500 lines
+    Modules,
     /// Measure what the gateware takes of the FPGA; fail beyond gateware/budget.toml
     Resources {
         /// What to measure: own blocks, `flat_build`, `soc` (none: all of them)
@@ -112,6 +115,7 @@ fn main() -> Result<()> {
         }
         Task::Demo { arguments } => demo::demo(&arguments),
         Task::Test => test::test(),
+        Task::Modules => modules::check(),
         Task::Resources {
             blocks,
             json,

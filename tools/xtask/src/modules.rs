@@ -1,0 +1,139 @@
+//! `cargo xtask modules`: the structure of the sources.
+//!
+//! Three rules: no circle of modules in a crate, no `#[path]`, no hand-written source file above [`files::MOST_LINES`] lines.
+//!
+//! **Circles.** An arrow from module A to module B counts when A names an item that B defines. The definer counts, not the module
+//! that re-exports the item. These do not count:
+//! - a re-export (`pub use child::X`) of an item from below;
+//! - the name of a module alone (`mod child;`, `use crate::child;`);
+//! - code under `#[cfg(test)]`.
+//!
+//! A module is a file: an inline module belongs to the file around it. Libraries, binaries, tests and examples are checked, each as
+//! a crate of its own. Methods are not names: a call of one makes no arrow, the path to its type does. `use path::*` makes arrows
+//! for the names that are then used.
+//!
+//! `cargo modules dependencies --acyclic` does the same with rust-analyzer, which takes minutes to compile. `syn` is compiled for the
+//! derives in any case, and names are enough here.
+
+mod arrows;
+mod circles;
+mod files;
+mod tree;
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::PathBuf;
+use std::process::Command;
+
+use anyhow::{Context, Result, bail};
+use serde::Deserialize;
+
+use crate::paths;
+use arrows::Arrows;
+use tree::Crate;
+
+/// Checks the three rules.
+///
+/// # Errors
+/// Lists every violation, a line each.
+pub fn check() -> Result<()> {
+    let mut faults = Vec::new();
+    let mut path_attributes = BTreeSet::new();
+    for target in targets()? {
+        let tree = Crate::load(&target.src_path, &|path| fs::read_to_string(path).ok())
+            .with_context(|| format!("reading the modules of {}", target.name))?;
+        for circle in circles(&tree) {
+            faults.push(format!("{} ({}): {circle}", target.name, target.kind[0]));
+        }
+        path_attributes.extend(tree.path_attributes);
+    }
+    let count = faults.len();
+    let root = format!("{}/", paths::root().display());
+    faults.extend(path_attributes.iter().map(|attribute| {
+        let attribute = attribute.strip_prefix(&root).unwrap_or(attribute);
+        format!("{attribute}: `#[path]`")
+    }));
+    let too_long = files::too_long(&paths::root())?;
+    let summary = format!(
+        "{count} circles of modules, {} `#[path]` attributes, {} files of more than {} lines",
+        path_attributes.len(),
+        too_long.len(),
+        files::MOST_LINES
+    );
+    faults.extend(too_long);
+    if !faults.is_empty() {
+        bail!("{summary}:\n{}", faults.join("\n"));
+    }
+    Ok(())
+}
+
+/// The circles of one crate as chains, `a → b (name) → a (name)`: each name in brackets is what the arrow before it takes.
+fn circles(tree: &Crate) -> Vec<String> {
+    let arrows = arrows::arrows(tree);
+    circles::circles(&arrows)
+        .iter()
+        .map(|circle| chain(tree, &arrows, circle))
+        .collect()
+}
+
+fn chain(tree: &Crate, arrows: &Arrows, circle: &[usize]) -> String {
+    let mut text = tree.modules[circle[0]].name.clone();
+    for (place, from) in circle.iter().enumerate() {
+        let to = circle[(place + 1) % circle.len()];
+        let names: Vec<&str> = arrows[&(*from, to)].iter().map(String::as_str).collect();
+        let shown = names[..names.len().min(3)].join(", ");
+        let more = if names.len() > 3 { ", …" } else { "" };
+        text += &format!(" → {} ({shown}{more})", tree.modules[to].name);
+    }
+    text
+}
+
+/// What `cargo metadata` says, as far as it is used.
+#[derive(Deserialize)]
+struct Metadata {
+    packages: Vec<Package>,
+}
+
+#[derive(Deserialize)]
+struct Package {
+    targets: Vec<Target>,
+}
+
+/// A crate of a package.
+#[derive(Deserialize)]
+struct Target {
+    name: String,
+    kind: Vec<String>,
+    src_path: PathBuf,
+}
+
+/// Every crate of the workspace.
+fn targets() -> Result<Vec<Target>> {
+    let output = Command::new("cargo")
+        .args([
+            "metadata",
+            "--no-deps",
+            "--offline",
+            "--format-version",
+            "1",
+        ])
+        .current_dir(paths::root())
+        .output()
+        .context("running cargo metadata")?;
+    if !output.status.success() {
+        bail!(
+            "cargo metadata: {}",
+            String::from_utf8_lossy(&output.stderr)
+        );
+    }
+    let metadata: Metadata =
+        serde_json::from_slice(&output.stdout).context("reading cargo metadata")?;
+    Ok(metadata
+        .packages
+        .into_iter()
+        .flat_map(|package| package.targets)
+        .collect())
+}
+
+#[cfg(test)]
+mod tests;
