@@ -3,7 +3,7 @@
 use glint_core::console::Backend;
 use glint_core::mesh::Mesh;
 use glint_hal::display::Display;
-use glint_model::raymarch::{Outcome, Ray, render_field};
+use glint_model::raymarch::{Ray, RayResult, render_field};
 use glint_model::{MeshSetup, Options, RenderError, Stats, Target, trace_frame};
 use litex_pac::cpu;
 
@@ -166,7 +166,7 @@ fn draw_all(
     };
     let mut rays = None;
     if let Some((setup, palette)) = field {
-        let mut show = |x, _, _: &Ray, _: &Outcome| {
+        let mut show = |x, _, _: &Ray, _: &RayResult| {
             if x % PIXELS_A_LOOK == 0 {
                 look();
             }

@@ -13,7 +13,7 @@ use glint_hal::triangle::{
     Counters, Engine, Fault, Geometry, Lists, Outcome, Prepared, Raster, Set,
 };
 use glint_model::descriptor::{self, Descriptor, TABLE_WORDS, band_rows, list_word};
-use glint_model::raymarch::{FieldOptions, FieldStats, Palette, Prepass, Setup};
+use glint_model::raymarch::{FieldOptions, FieldSetup, FieldStats, Palette, Prepass};
 use glint_model::{
     MeshSetup, Options, RenderError, Shading, Stats, clip_exceptions, mesh_in_field,
 };
@@ -96,7 +96,7 @@ impl<'a> What<'a> {
             }
             Self::Field(marched) => {
                 let options = marched.options();
-                let setup = Setup::new(marched.field, marched.view, size, &options)?;
+                let setup = FieldSetup::new(marched.field, marched.view, size, &options)?;
                 (None, Some((setup, options.palette_for(&setup))))
             }
             Self::Both(Triangles { mesh, view, .. }, marched) => {
@@ -115,7 +115,7 @@ pub struct Constants {
     /// Of its mesh.
     pub frame: Option<MeshSetup>,
     /// Of its field, and its colours.
-    pub field: Option<(Setup, Palette)>,
+    pub field: Option<(FieldSetup, Palette)>,
 }
 
 /// A mesh, and how it is drawn.
@@ -367,7 +367,7 @@ impl Painter {
     /// Has a field drawn in the frames from now on, or none. Its tables are not looked at where the raymarcher is known to have them.
     fn set_field(
         &mut self,
-        field: Option<&(Setup, Palette)>,
+        field: Option<&(FieldSetup, Palette)>,
         has_tables: bool,
     ) -> Result<(), Fallback> {
         match (&mut self.raymarcher, field) {
@@ -389,7 +389,7 @@ impl Painter {
     }
 
     /// Whether the raymarcher has a field's tables.
-    fn has_tables(&self, field: Option<&(Setup, Palette)>) -> bool {
+    fn has_tables(&self, field: Option<&(FieldSetup, Palette)>) -> bool {
         let both = self.raymarcher.as_ref().zip(field);
         both.is_some_and(|(raymarcher, (_, palette))| raymarcher.has_tables(palette))
     }

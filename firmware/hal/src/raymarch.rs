@@ -7,7 +7,7 @@ use core::fmt;
 use core::ops::Sub;
 
 use glint_core::stereo::Tint;
-use glint_model::raymarch::{Balls, Blend, FieldStats, Lights, Palette, Setup, Solid};
+use glint_model::raymarch::{Balls, Blend, FieldSetup, FieldStats, Lights, Palette, Solid};
 use litex_pac::raymarch::{
     self, Control, DepthScale, EvEnable, EvPending, Solid as SolidRegister, Sphere, Table, Tuning,
 };
@@ -19,7 +19,7 @@ const IDENT: u32 = u32::from_be_bytes(*b"MARC");
 
 /// What a raymarcher has been built with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Ability {
+pub struct Capabilities {
     /// Evaluations of the field a clock.
     pub lanes: u8,
     /// The deepest sponge; 0: none.
@@ -130,7 +130,7 @@ impl From<Counters> for FieldStats {
 /// The raymarcher, known to be there.
 pub struct Raymarcher {
     registers: raymarch::Raymarch,
-    ability: Ability,
+    capabilities: Capabilities,
     /// What its tables hold: fog and light.
     tables: Option<[[u8; 256]; 2]>,
 }
@@ -145,7 +145,7 @@ impl Raymarcher {
             IDENT => {
                 registers.ev_enable().write(EvEnable::default());
                 let caps = registers.caps().read();
-                let ability = Ability {
+                let capabilities = Capabilities {
                     lanes: caps.lanes(),
                     levels: caps.levels(),
                     boxes: caps.boxes(),
@@ -156,7 +156,7 @@ impl Raymarcher {
                 };
                 Ok(Self {
                     registers,
-                    ability,
+                    capabilities,
                     tables: None,
                 })
             }
@@ -169,16 +169,16 @@ impl Raymarcher {
 
     /// What it has been built with.
     #[must_use]
-    pub const fn ability(&self) -> Ability {
-        self.ability
+    pub const fn capabilities(&self) -> Capabilities {
+        self.capabilities
     }
 
     /// Whether it can draw a frame.
     ///
     /// # Errors
     /// What is missing.
-    pub fn check(&self, setup: &Setup) -> Result<(), Missing> {
-        let Ability {
+    pub fn check(&self, setup: &FieldSetup) -> Result<(), Missing> {
+        let Capabilities {
             levels,
             boxes,
             stereo,
@@ -186,7 +186,7 @@ impl Raymarcher {
             blend,
             prepass,
             ..
-        } = self.ability;
+        } = self.capabilities;
         match setup.solid {
             Solid::Menger { depth, .. } if depth > levels => return Err(Missing::Levels(levels)),
             Solid::Box { .. } if !boxes => return Err(Missing::Boxes),
@@ -213,7 +213,7 @@ impl Raymarcher {
     ///
     /// # Errors
     /// What is missing; then nothing has changed.
-    pub fn set_field(&mut self, setup: &Setup, palette: &Palette) -> Result<(), Missing> {
+    pub fn set_field(&mut self, setup: &FieldSetup, palette: &Palette) -> Result<(), Missing> {
         self.check(setup)?;
         if !self.has_tables(palette) {
             self.set_tables(palette);
@@ -227,7 +227,7 @@ impl Raymarcher {
     /// As [`set_field`](Self::set_field).
     pub fn set_field_with_tables_held(
         &mut self,
-        setup: &Setup,
+        setup: &FieldSetup,
         palette: &Palette,
     ) -> Result<(), Missing> {
         self.check(setup)?;

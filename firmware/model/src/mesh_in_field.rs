@@ -4,7 +4,7 @@ use glint_core::camera::View;
 use glint_core::field::Field;
 
 use crate::frame::{DepthScale, MeshSetup};
-use crate::raymarch::{FieldOptions, Setup};
+use crate::raymarch::{FieldOptions, FieldSetup};
 use crate::render::RenderError;
 
 /// Low bits of km that are 0, so that K times the 40.5 field units of a world unit has 17 bits too.
@@ -22,12 +22,12 @@ pub fn constants(
     radius: u32,
     field: &Field,
     options: &FieldOptions,
-) -> Result<(MeshSetup, Setup), RenderError> {
+) -> Result<(MeshSetup, FieldSetup), RenderError> {
     if options.stereo.is_some() {
         return Err(RenderError::Stereo);
     }
     let mut frame = MeshSetup::new(view, size.0, size.1, radius)?;
-    let mut setup = Setup::new(field, view, size, options)?;
+    let mut setup = FieldSetup::new(field, view, size, options)?;
     let shared = shared(frame.depth, setup.world_depth);
     frame.depth = shared;
     setup.world_depth = shared;

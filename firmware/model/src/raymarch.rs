@@ -7,7 +7,7 @@
 //! What is round is measured in the Euclidean norm, and then the rays are scaled so too: with spheres their Euclidean length is just
 //! below 1.
 //!
-//! [`Setup`] makes the constants of a frame, [`Ray`] is where a pixel's ray begins, [`Setup::raymarch`] how it ends,
+//! [`FieldSetup`] makes the constants of a frame, [`Ray`] is where a pixel's ray begins, [`FieldSetup::raymarch`] how it ends,
 //! [`paint()`] what it shows. [`Rays`] begin farther on after a [`Cone`] for each block of pixels.
 
 mod appearance;
@@ -27,7 +27,7 @@ pub use field::{Sample, Solid, Surface};
 pub use glint_core::stereo::{Stereo, Tint};
 pub use light::{Light, Lights};
 pub use paint::{Palette, paint};
-pub use ray::{Outcome, Ray, State};
+pub use ray::{Ray, RayResult, State};
 pub use render::{FieldStats, compose, render_field, rgb565};
-pub use setup::{DEFAULT_TUNING, Eye, FieldOptions, ROUND_TUNING, Setup, Tuning};
+pub use setup::{DEFAULT_TUNING, Eye, FieldOptions, FieldSetup, ROUND_TUNING, Tuning};
 pub use sphere::{Ball, Balls};

@@ -4,9 +4,9 @@ use glint_core::camera::View;
 use glint_core::field::Field;
 use glint_core::fixed::{Q32_32, Turns, U4_28};
 use glint_core::stereo::Stereo;
-use glint_model::raymarch::{FieldOptions, Palette, Setup};
+use glint_model::raymarch::{FieldOptions, FieldSetup, Palette};
 
-fn setup(field: &str, half_width: &str, options: &FieldOptions) -> Setup {
+fn setup(field: &str, half_width: &str, options: &FieldOptions) -> FieldSetup {
     let field = Field::parse(field).unwrap();
     let view = View::spherical(Q32_32::lit("3"), Turns(1 << 28), Turns(1 << 30)).unwrap();
     let view = View::new_checked(
@@ -17,7 +17,7 @@ fn setup(field: &str, half_width: &str, options: &FieldOptions) -> Setup {
         half_width.parse().unwrap(),
         view.near(),
     );
-    Setup::new(&field, &view.unwrap(), (320, 180), options).unwrap()
+    FieldSetup::new(&field, &view.unwrap(), (320, 180), options).unwrap()
 }
 
 #[test]

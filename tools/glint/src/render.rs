@@ -13,7 +13,7 @@ use glint_core::light::Hexadecimal;
 use glint_core::mesh::{Mesh, MeshError};
 use glint_core::stereo::Stereo;
 use glint_core::wire::crc32;
-use glint_model::raymarch::{FieldOptions, Prepass, Setup, render_field};
+use glint_model::raymarch::{FieldOptions, FieldSetup, Prepass, render_field};
 use glint_model::{
     DepthScale, MeshSetup, Options, Projected, RenderError, Shading, Target, mesh_in_field,
     trace_frame,
@@ -238,8 +238,8 @@ pub fn depth_scale(scene: &Scene) -> Result<DepthScale, Error> {
 /// What a scene is drawn by.
 enum Constants<'s> {
     Mesh(Mesh<'s>, MeshSetup),
-    Field(Setup),
-    Both(Mesh<'s>, MeshSetup, Setup),
+    Field(FieldSetup),
+    Both(Mesh<'s>, MeshSetup, FieldSetup),
 }
 
 impl<'s> Constants<'s> {
@@ -253,7 +253,7 @@ impl<'s> Constants<'s> {
                 frame.map(|frame| Self::Mesh(mesh, frame))
             }
             Subject::Field(subject) => {
-                Setup::new(subject.field, view, size, &subject.options()).map(Self::Field)
+                FieldSetup::new(subject.field, view, size, &subject.options()).map(Self::Field)
             }
             Subject::Both(mesh, subject) => {
                 let (mesh, options) = (checked(mesh)?, subject.options());
@@ -343,7 +343,7 @@ fn draw_mesh(
 
 fn draw_field(
     subject: &FieldSubject,
-    setup: &Setup,
+    setup: &FieldSetup,
     target: &mut Target,
 ) -> Result<RayCounts, Error> {
     let palette = subject.options().palette_for(setup);

@@ -4,7 +4,7 @@ use glint_core::camera::View;
 use glint_core::field::Field as Scene;
 use glint_core::fixed::Q32_32;
 use glint_model::SIZES;
-use glint_model::raymarch::{FieldOptions, Prepass, Rays, Setup, Stereo, Tint};
+use glint_model::raymarch::{FieldOptions, FieldSetup, Prepass, Rays, Stereo, Tint};
 use glint_reference::camera::Camera;
 use glint_reference::field::{Field, views};
 
@@ -29,7 +29,7 @@ struct Seen {
 fn see(scene: &str, view: &View, size: (u32, u32), options: &FieldOptions, stride: u32) -> Seen {
     let parsed = Scene::parse(scene).expect("a field");
     let field = Field::of(&parsed);
-    let setup = Setup::new(&parsed, view, size, options).expect("a size");
+    let setup = FieldSetup::new(&parsed, view, size, options).expect("a size");
     let units = setup.scale.to_num::<f64>() * 4096.0;
     let mut rays = Rays::new(&setup);
     let mut seen = Seen::default();

@@ -2,7 +2,7 @@
 
 use glint_core::field::Field as Scene;
 use glint_core::fixed::Q32_32;
-use glint_model::raymarch::{FieldOptions, Ray, Setup, State, Stereo, Tint};
+use glint_model::raymarch::{FieldOptions, FieldSetup, Ray, State, Stereo, Tint};
 use glint_reference::camera::{Camera, Vector};
 use glint_reference::field::metrics::{Accuracy, Outcome};
 use glint_reference::field::raymarched::{self, Measured, Subject};
@@ -18,10 +18,10 @@ struct Seen {
     cost: f64,
 }
 
-fn setup(scene: &str, camera: &Camera, options: &FieldOptions) -> Setup {
+fn setup(scene: &str, camera: &Camera, options: &FieldOptions) -> FieldSetup {
     let scene = Scene::parse(scene).expect("a field");
     let view = camera.view().expect("a camera");
-    Setup::new(&scene, &view, SIZE, options).expect("a size")
+    FieldSetup::new(&scene, &view, SIZE, options).expect("a size")
 }
 
 fn see(name: &str, scene: &str, camera: &Camera) -> Seen {

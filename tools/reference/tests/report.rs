@@ -8,7 +8,7 @@ use std::process::Command;
 
 use glint_core::field::Field;
 use glint_core::stereo::Stereo;
-use glint_model::raymarch::{FieldOptions, Prepass, Setup};
+use glint_model::raymarch::{FieldOptions, FieldSetup, Prepass};
 use glint_reference::field::raymarched::{Measured, others, picture, rounds, sponges};
 use glint_reference::field::verilated::Raymarcher;
 use glint_reference::field::views;
@@ -160,7 +160,7 @@ fn the_committed_frames_a_second_are_of_these_frames() {
             stereo: stereo.map(|eyes| Stereo::parse(eyes).expect("two eyes")),
             ..FieldOptions::default()
         };
-        let setup = Setup::new(&field, &view, (320, 180), &options).expect("a size");
+        let setup = FieldSetup::new(&field, &view, (320, 180), &options).expect("a size");
         let eyes = if stereo.is_some() { 2 } else { 1 };
         let rays = (0..eyes).flat_map(|eye| picture(&setup, eye));
         let evaluations: u64 = rays.map(|ray| u64::from(ray.steps)).sum();

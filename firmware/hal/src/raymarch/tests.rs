@@ -54,10 +54,10 @@ const EVERYTHING: u32 = 2 | 6 << 4 | 0b1_1111 << 8;
 /// Four lanes for sponges of depth 4.
 const SPONGES: u32 = 4 | 4 << 4;
 
-fn setup(field: &str, options: &FieldOptions) -> (Setup, Palette) {
+fn setup(field: &str, options: &FieldOptions) -> (FieldSetup, Palette) {
     let field = Field::parse(field).unwrap();
     let view = View::spherical(Q32_32::from_num(4), Turns(1 << 29), Turns(1 << 30)).unwrap();
-    let setup = Setup::new(&field, &view, (640, 360), options).unwrap();
+    let setup = FieldSetup::new(&field, &view, (640, 360), options).unwrap();
     let palette = options.palette_for(&setup);
     (setup, palette)
 }
@@ -86,7 +86,7 @@ fn something_else_is_not_taken_for_the_raymarcher() {
         assert_eq!(probe(ident, EVERYTHING).0.err(), Some(absent));
     }
     let (raymarcher, block) = probe(IDENT, EVERYTHING);
-    let ability = Ability {
+    let capabilities = Capabilities {
         lanes: 2,
         levels: 6,
         boxes: true,
@@ -95,7 +95,7 @@ fn something_else_is_not_taken_for_the_raymarcher() {
         blend: true,
         prepass: true,
     };
-    assert_eq!(raymarcher.unwrap().ability(), ability);
+    assert_eq!(raymarcher.unwrap().capabilities(), capabilities);
     let silent = (registers().ev_enable().address(), 0);
     assert_eq!(block.borrow().writes, [silent], "its interrupt is silent");
 }

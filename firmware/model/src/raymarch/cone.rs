@@ -6,7 +6,7 @@
 
 use super::field::{FRACTION, cropped};
 use super::ray::{Ray, magnitude};
-use super::setup::{FARTHEST, Setup};
+use super::setup::{FARTHEST, FieldSetup};
 
 /// Entries of the table of depths.
 pub(super) const CONES: u32 = 1 << 14;
@@ -73,7 +73,7 @@ impl Cones {
     }
 
     /// Whether blocks are those that the gateware has for such a frame.
-    pub const fn is_fitting(&self, setup: &Setup) -> bool {
+    pub const fn is_fitting(&self, setup: &FieldSetup) -> bool {
         let eyes = if setup.stereo.is_some() { 2 } else { 1 };
         self.block == fitting((setup.width, setup.height), eyes)
     }
@@ -107,7 +107,7 @@ pub struct Cone {
     pub spread: u32,
 }
 
-impl Setup {
+impl FieldSetup {
     /// The cone of a block, by its place among blocks.
     pub fn cone(&self, cones: &Cones, eye: usize, column: u32, row: u32) -> Cone {
         let direction = [0, 1, 2].map(|i: usize| {
@@ -171,10 +171,10 @@ impl Setup {
     }
 }
 
-/// The rays of a picture, which it is to be asked for row by row: without a prepass as [`Setup::ray`] has them, or else each
+/// The rays of a picture, which it is to be asked for row by row: without a prepass as [`FieldSetup::ray`] has them, or else each
 /// begins where the cone of its block has come to.
 pub struct Rays<'a> {
-    setup: &'a Setup,
+    setup: &'a FieldSetup,
     /// What the cones of the row of blocks have cleared for each eye, and the row.
     cleared: [[u32; ROW]; 2],
     row: [Option<u32>; 2],
@@ -183,7 +183,7 @@ pub struct Rays<'a> {
 
 impl<'a> Rays<'a> {
     /// Those of a frame.
-    pub const fn new(setup: &'a Setup) -> Self {
+    pub const fn new(setup: &'a FieldSetup) -> Self {
         Self {
             setup,
             cleared: [[0; ROW]; 2],

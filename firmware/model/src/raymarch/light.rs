@@ -3,8 +3,8 @@
 use glint_core::field::MAX_SPHERES;
 use glint_core::light::{Lighting, MAX_LIGHTS, Material, Rgb};
 
-use super::ray::{Outcome, Ray, State};
-use super::setup::Setup;
+use super::ray::{Ray, RayResult, State};
+use super::setup::FieldSetup;
 use super::sphere::Ball;
 
 /// Light from one direction, and what there is of it.
@@ -91,9 +91,9 @@ impl Ball {
     }
 }
 
-impl Setup {
+impl FieldSetup {
     /// The normal where a ray has come to a sphere, of about the radius' length: field units, 12 fraction bits.
-    pub fn normal(&self, ray: &Ray, outcome: &Outcome) -> Option<[i32; 3]> {
+    pub fn normal(&self, ray: &Ray, outcome: &RayResult) -> Option<[i32; 3]> {
         let State::Hit(surface) = outcome.state else {
             return None;
         };

@@ -5,8 +5,8 @@ use glint_core::light::{Background, Lighting, Material};
 
 use super::field::Surface;
 use super::light::{Light, Lights, whole};
-use super::ray::{Outcome, Ray, State};
-use super::setup::Setup;
+use super::ray::{Ray, RayResult, State};
+use super::setup::FieldSetup;
 
 /// The colours of a frame, made by whoever knows materials and lights; eight bits a channel. With two eyes only the
 /// luminance counts, so all channels of a colour are the same then.
@@ -66,7 +66,7 @@ impl Palette {
     /// With fog that leaves e^(−density·z) of what is z world units away along n. An entry is that of the middle of its
     /// depths, within 0.51; the last one is that of everything behind it too.
     #[must_use]
-    pub fn with_fog(self, setup: &Setup, density: U4_28) -> Self {
+    pub fn with_fog(self, setup: &FieldSetup, density: U4_28) -> Self {
         // The smallest step of 256 that come to e^−8, or the largest that there is.
         const ENOUGH: u64 = 8 << 32;
         let unit = fog_of_unit(setup, density);
@@ -123,7 +123,7 @@ fn product(a: u64, b: u64) -> u64 {
 }
 
 /// What a field unit times 2^e adds to the exponent of the fog, 32 fraction bits, rounded down: below 2^35.
-fn fog_of_unit(setup: &Setup, density: U4_28) -> u64 {
+fn fog_of_unit(setup: &FieldSetup, density: U4_28) -> u64 {
     let units = setup.scale.to_bits().max(1) as u128;
     // 28 and 36 over 32 fraction bits.
     (((u128::from(density.to_bits()) << 36) / units) >> setup.exponent) as u64
@@ -138,7 +138,7 @@ fn faded(x: u64) -> u64 {
 }
 
 /// The colour of a ray's end, eight bits a channel.
-pub fn paint(setup: &Setup, palette: &Palette, ray: &Ray, outcome: &Outcome) -> [u8; 3] {
+pub fn paint(setup: &FieldSetup, palette: &Palette, ray: &Ray, outcome: &RayResult) -> [u8; 3] {
     let (colour, light, fog) = match outcome.state {
         State::Undecided => return palette.undecided,
         State::Miss => {
@@ -161,10 +161,10 @@ pub fn paint(setup: &Setup, palette: &Palette, ray: &Ray, outcome: &Outcome) -> 
 
 /// The colour of a hit before it is darkened: a face's of the palette, a sphere's in its light, or what is between them.
 fn surface_colour(
-    setup: &Setup,
+    setup: &FieldSetup,
     palette: &Palette,
     ray: &Ray,
-    outcome: &Outcome,
+    outcome: &RayResult,
     surface: Surface,
 ) -> [u8; 3] {
     let face = surface
@@ -177,7 +177,7 @@ fn surface_colour(
 }
 
 /// The colour of something round in its light.
-fn lit(setup: &Setup, palette: &Palette, ray: &Ray, outcome: &Outcome) -> Option<[u8; 3]> {
+fn lit(setup: &FieldSetup, palette: &Palette, ray: &Ray, outcome: &RayResult) -> Option<[u8; 3]> {
     let State::Hit(surface) = outcome.state else {
         return None;
     };

@@ -1,7 +1,7 @@
 //! A pixel's ray: where it begins, and where it ends.
 
 use super::field::{FRACTION, Surface, cropped};
-use super::setup::{Eye, FARTHEST, Setup};
+use super::setup::{Eye, FARTHEST, FieldSetup};
 
 /// Below 1/m for every m that begins with these ten bits behind its point: 2^10/(i + 1), cut so that no product
 /// with m rounds to 1. u8.9, 17 bits.
@@ -67,7 +67,7 @@ pub enum State {
 
 /// The end of a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Outcome {
+pub struct RayResult {
     /// How.
     pub state: State,
     /// Where the last evaluation was, or, of a hit on something round, a step further: u11.12.
@@ -80,7 +80,7 @@ pub struct Outcome {
     pub steps: u32,
 }
 
-impl Outcome {
+impl RayResult {
     /// Where the ray has come to, u11.12: the surface's plane, if that is where it ends.
     pub fn reached(&self) -> u32 {
         let rest = (self.gap * INVERSE[self.slope as usize & 0x3FF]) >> 9;
@@ -88,7 +88,7 @@ impl Outcome {
     }
 }
 
-impl Setup {
+impl FieldSetup {
     /// The ray of a pixel.
     pub fn ray(&self, eye: usize, x: u32, y: u32) -> Ray {
         self.ray_from(eye, x, y, self.near)
@@ -180,7 +180,7 @@ impl Setup {
     }
 
     /// Follows a ray to its end.
-    pub fn march(&self, ray: &Ray) -> Outcome {
+    pub fn march(&self, ray: &Ray) -> RayResult {
         let tuning = &self.tuning;
         let mut t = ray.start;
         let mut steps = 0;
@@ -209,7 +209,7 @@ impl Setup {
                     State::Hit(Surface::Round { .. } | Surface::Blended { .. }) => (next, 0, 0x3FF),
                     _ => (t, 0, 0),
                 };
-                return Outcome {
+                return RayResult {
                     state,
                     t,
                     gap,

@@ -4,8 +4,8 @@ use glint_core::stereo::Tint;
 
 use super::cone::Rays;
 use super::paint::{Palette, paint};
-use super::ray::{Outcome, Ray, State};
-use super::setup::Setup;
+use super::ray::{Ray, RayResult, State};
+use super::setup::FieldSetup;
 use crate::reciprocal::Reciprocal;
 use crate::render::{RenderError, Target};
 
@@ -26,7 +26,7 @@ pub struct FieldStats {
 
 impl FieldStats {
     /// Counts a ray of a frame.
-    pub fn count(&mut self, setup: &Setup, outcome: &Outcome) {
+    pub fn count(&mut self, setup: &FieldSetup, outcome: &RayResult) {
         self.rays += 1;
         self.evaluations += u64::from(outcome.steps * setup.passes());
         *match outcome.state {
@@ -46,13 +46,13 @@ impl FieldStats {
 /// [`RenderError`] if the target has not the size of the setup; then nothing has been touched.
 #[inline(never)]
 pub fn render_field(
-    setup: &Setup,
+    setup: &FieldSetup,
     palette: &Palette,
     target: &mut Target,
-    show: &mut dyn FnMut(u32, u32, &Ray, &Outcome),
+    show: &mut dyn FnMut(u32, u32, &Ray, &RayResult),
 ) -> Result<FieldStats, RenderError> {
     target.check()?;
-    let &Setup { width, height, .. } = setup;
+    let &FieldSetup { width, height, .. } = setup;
     target.check_size((width, height))?;
     let mut stats = FieldStats::default();
     let mut rays = Rays::new(setup);
@@ -87,7 +87,7 @@ pub fn render_field(
     Ok(stats)
 }
 
-impl Setup {
+impl FieldSetup {
     /// The depth code of a point of a ray.
     pub fn depth_code(&self, ray: &Ray, t: u32) -> u32 {
         let Reciprocal { y, lead } = Reciprocal::of(self.depth_of(ray, t));

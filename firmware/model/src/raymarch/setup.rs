@@ -89,7 +89,7 @@ impl FieldOptions {
     }
 
     /// The colours of a frame: with its fog, and grey for two eyes.
-    pub fn palette_for(&self, setup: &Setup) -> Palette {
+    pub fn palette_for(&self, setup: &FieldSetup) -> Palette {
         let palette = if self.fog == U4_28::ZERO {
             self.palette
         } else {
@@ -128,7 +128,7 @@ pub struct Eye {
 /// The constants of a frame (formats.md, "Distance fields").
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub struct Setup {
+pub struct FieldSetup {
     /// Width of the picture in pixels.
     pub width: u32,
     /// Height of the picture in pixels.
@@ -161,7 +161,7 @@ pub struct Setup {
     pub stereo: Option<Tint>,
 }
 
-impl Setup {
+impl FieldSetup {
     /// The constants for a field, a camera and one of the [`SIZES`].
     ///
     /// # Errors
@@ -264,7 +264,7 @@ impl Setup {
     }
 }
 
-impl Setup {
+impl FieldSetup {
     /// The spheres that there are.
     pub fn balls(&self) -> Option<&Balls> {
         self.solid

@@ -3,7 +3,7 @@
 use glint_core::camera::View;
 use glint_core::field::Field as Scene;
 use glint_core::fixed::Q32_32;
-use glint_model::raymarch::{self, FieldOptions, Setup, State, Surface};
+use glint_model::raymarch::{self, FieldOptions, FieldSetup, State, Surface};
 
 use super::metrics::{self, Accuracy, Expected, Outcome, Quantiles, accuracy};
 use super::{Face, Field, Sphere, views};
@@ -35,7 +35,7 @@ impl Marched {
 /// The picture of one eye, row by row; eye 0 is the left or the only one.
 ///
 /// With a prepass what its cones take counts as of the rays before which they are marched: the first one of a row of blocks.
-pub fn picture(setup: &Setup, eye: usize) -> Vec<Marched> {
+pub fn picture(setup: &FieldSetup, eye: usize) -> Vec<Marched> {
     let mut rays = raymarch::Rays::new(setup);
     let mut cones = 0;
     pixels(setup)
@@ -50,7 +50,7 @@ pub fn picture(setup: &Setup, eye: usize) -> Vec<Marched> {
 }
 
 /// The end of one ray.
-pub fn marched(setup: &Setup, ray: &raymarch::Ray, end: &raymarch::Outcome) -> Marched {
+pub fn marched(setup: &FieldSetup, ray: &raymarch::Ray, end: &raymarch::RayResult) -> Marched {
     let (outcome, coded) = match end.state {
         State::Miss => (Outcome::Miss, None),
         State::Undecided => (Outcome::Undecided, None),
@@ -99,18 +99,18 @@ pub fn marched(setup: &Setup, ray: &raymarch::Ray, end: &raymarch::Outcome) -> M
 }
 
 /// The depth in world units at which a ray ends for its length, surface or not.
-fn reach(setup: &Setup, ray: &raymarch::Ray) -> f64 {
+fn reach(setup: &FieldSetup, ray: &raymarch::Ray) -> f64 {
     depth(setup, ray, setup.tuning.far)
 }
 
 /// The depth at a ray's t, in world units.
-pub fn depth(setup: &Setup, ray: &raymarch::Ray, t: u32) -> f64 {
+pub fn depth(setup: &FieldSetup, ray: &raymarch::Ray, t: u32) -> f64 {
     let units = setup.depth_of(ray, t) as f64 * (-21.0 - f64::from(setup.exponent)).exp2();
     units / setup.scale.to_num::<f64>()
 }
 
 /// What the reference shows of the picture of a camera that has no more digits than a view, as far as the model's rays reach.
-fn expected(setup: &Setup, field: &Field, camera: &Camera) -> Vec<Expected> {
+fn expected(setup: &FieldSetup, field: &Field, camera: &Camera) -> Vec<Expected> {
     let size = Size {
         width: setup.width,
         height: setup.height,
@@ -127,7 +127,7 @@ fn expected(setup: &Setup, field: &Field, camera: &Camera) -> Vec<Expected> {
 }
 
 /// All pixels, row by row.
-fn pixels(setup: &Setup) -> impl Iterator<Item = (u32, u32)> {
+fn pixels(setup: &FieldSetup) -> impl Iterator<Item = (u32, u32)> {
     let width = setup.width;
     (0..setup.height).flat_map(move |y| (0..width).map(move |x| (x, y)))
 }
@@ -229,8 +229,8 @@ impl Subject {
     }
 
     /// The constants of its frame.
-    pub fn setup(&self, options: &FieldOptions) -> Setup {
-        Setup::new(&self.parsed, &self.view, self.size, options).expect("a size that there is")
+    pub fn setup(&self, options: &FieldOptions) -> FieldSetup {
+        FieldSetup::new(&self.parsed, &self.view, self.size, options).expect("a size that there is")
     }
 
     /// The model's picture.

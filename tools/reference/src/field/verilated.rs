@@ -1,7 +1,7 @@
 //! The raymarcher itself, verilated: what a picture takes of it.
 
 use glint_model::descriptor::band_rows;
-use glint_model::raymarch::{Palette, Rays, Setup};
+use glint_model::raymarch::{FieldSetup, Palette, Rays};
 use glint_testbench::{Module, Port};
 
 // The raymarcher's tests use the rest.
@@ -56,7 +56,7 @@ impl Raymarcher {
     ///
     /// # Panics
     /// When a pixel is not the model's.
-    pub fn draw(&mut self, setup: &Setup) -> Taken {
+    pub fn draw(&mut self, setup: &FieldSetup) -> Taken {
         let palette = Palette::default();
         set_lane(&mut self.module, setup);
         set_rays(&mut self.module, setup);

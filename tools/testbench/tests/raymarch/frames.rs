@@ -1,7 +1,7 @@
 //! Whole frames of the raymarcher: every pixel once, as the model has it, in the band that is open.
 
 use glint_model::SIZES;
-use glint_model::raymarch::{FieldStats, Palette, Prepass, Rays, Setup, State};
+use glint_model::raymarch::{FieldSetup, FieldStats, Palette, Prepass, Rays, State};
 use glint_testbench::{Module, Sink, Stalls};
 
 use crate::common::Random;
@@ -65,7 +65,7 @@ impl Bench {
         self.port(name, 0);
     }
 
-    fn set(&mut self, setup: &Setup, palette: &Palette) {
+    fn set(&mut self, setup: &FieldSetup, palette: &Palette) {
         set_lane(&mut self.module, setup);
         set_rays(&mut self.module, setup);
         set_paint(&mut self.module, setup, palette);
@@ -79,7 +79,7 @@ impl Bench {
     fn draw(
         &mut self,
         random: &mut Random,
-        setup: &Setup,
+        setup: &FieldSetup,
         palette: &Palette,
         hurry: bool,
     ) -> Taken {

@@ -1,6 +1,6 @@
 //! The ray generator: all rays of a frame, as the model has them, in their order.
 
-use glint_model::raymarch::{Prepass, Setup};
+use glint_model::raymarch::{FieldSetup, Prepass};
 use glint_testbench::{Bits, Module, Sink, Stalls};
 
 use crate::common::Random;
@@ -11,7 +11,7 @@ use crate::scenes::{FIELDS, ROUND, band_lines, every_field, setup, setup_with};
 const GENERATOR: &str = "ray_generator_all";
 
 /// The rays of the first `lines` lines.
-fn expected(setup: &Setup, lines: u32) -> Vec<Bits> {
+fn expected(setup: &FieldSetup, lines: u32) -> Vec<Bits> {
     let eyes = if setup.stereo.is_some() { 2 } else { 1 };
     let band_lines = band_lines(setup.width);
     let places = (0..lines).flat_map(move |y| {
@@ -33,7 +33,7 @@ fn expected(setup: &Setup, lines: u32) -> Vec<Bits> {
 }
 
 /// All cones, in the order of their numbers.
-fn expected_cones(setup: &Setup) -> Vec<Bits> {
+fn expected_cones(setup: &FieldSetup) -> Vec<Bits> {
     let cones = setup.cones.expect("cones");
     let eyes = if setup.stereo.is_some() { 2 } else { 1 };
     let [columns, rows] = [setup.width, setup.height].map(|pixels| pixels >> cones.block);
@@ -52,7 +52,7 @@ fn expected_cones(setup: &Setup) -> Vec<Bits> {
 }
 
 /// Runs a frame, all of it or its beginning, and returns the clocks until its last ray.
-fn check(module: &mut Module, setup: &Setup, lines: u32, stalls: Stalls) -> u64 {
+fn check(module: &mut Module, setup: &FieldSetup, lines: u32, stalls: Stalls) -> u64 {
     set_generator(module, setup, band_lines(setup.width));
     let round = module.port("round");
     module.set(round, u64::from(setup.is_round()));
@@ -66,7 +66,7 @@ fn check(module: &mut Module, setup: &Setup, lines: u32, stalls: Stalls) -> u64 
 }
 
 /// Starts the generator and takes what it gives out until all of it has come. Returns the clocks.
-fn run(module: &mut Module, setup: &Setup, expected: &[Bits], stalls: Stalls) -> u64 {
+fn run(module: &mut Module, setup: &FieldSetup, expected: &[Bits], stalls: Stalls) -> u64 {
     let mut sink = Sink::new(module, "out", &["ray"], stalls);
     let start = module.port("start");
     module.set(start, 1);

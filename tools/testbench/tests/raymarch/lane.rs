@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use glint_model::raymarch::{Prepass, Setup};
+use glint_model::raymarch::{FieldSetup, Prepass};
 use glint_testbench::{Bits, Module, Sink, Source, Stalls};
 
 use crate::common::Random;
@@ -20,7 +20,7 @@ struct Sent {
 }
 
 /// Random rays of a frame.
-fn some_rays(random: &mut Random, setup: &Setup, count: usize) -> HashMap<Place, Sent> {
+fn some_rays(random: &mut Random, setup: &FieldSetup, count: usize) -> HashMap<Place, Sent> {
     let eyes = if setup.stereo.is_some() { 2 } else { 1 };
     let mut all = HashMap::new();
     // Lines of several bands have the same place.
@@ -46,7 +46,7 @@ fn some_rays(random: &mut Random, setup: &Setup, count: usize) -> HashMap<Place,
 }
 
 /// Random cones of a frame.
-fn some_cones(random: &mut Random, setup: &Setup, count: usize) -> HashMap<Place, Sent> {
+fn some_cones(random: &mut Random, setup: &FieldSetup, count: usize) -> HashMap<Place, Sent> {
     let cones = setup.cones.expect("cones");
     let eyes = if setup.stereo.is_some() { 2 } else { 1 };
     let [columns, rows] = [setup.width, setup.height].map(|pixels| pixels >> cones.block);
@@ -90,7 +90,7 @@ impl Bench {
     }
 
     /// Sends rays or cones of a frame through the lane.
-    fn check(&mut self, setup: &Setup, cones: bool, mut expected: HashMap<Place, Sent>) {
+    fn check(&mut self, setup: &FieldSetup, cones: bool, mut expected: HashMap<Place, Sent>) {
         set_lane(&mut self.module, setup);
         let port = self.module.port("cones");
         self.module.set(port, u64::from(cones));

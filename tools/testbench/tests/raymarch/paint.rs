@@ -1,6 +1,6 @@
 //! What the ends of rays look like.
 
-use glint_model::raymarch::{Outcome, Palette, Ray, Setup, State, Surface};
+use glint_model::raymarch::{FieldSetup, Palette, Ray, RayResult, State, Surface};
 use glint_testbench::{Module, Sink, Source, Stalls};
 
 use crate::common::Random;
@@ -23,7 +23,7 @@ fn palette(random: &mut Random) -> Palette {
 }
 
 /// An end that a ray can have, or could: t may be anything but 0.
-fn ending(random: &mut Random, setup: &Setup, start: &Ray) -> Outcome {
+fn ending(random: &mut Random, setup: &FieldSetup, start: &Ray) -> RayResult {
     if random.coin() {
         return setup.march(start);
     }
@@ -39,7 +39,7 @@ fn ending(random: &mut Random, setup: &Setup, start: &Ray) -> Outcome {
         State::Hit(_) => random.integer(0, 4095) as u32,
         _ => 0,
     };
-    Outcome {
+    RayResult {
         state,
         t: random.logarithmic(1.0, 8_388_608.0) as u32,
         gap,

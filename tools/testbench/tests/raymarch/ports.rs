@@ -1,7 +1,7 @@
 //! The raymarcher's constants and items as its ports have them.
 
 use glint_model::raymarch::{
-    Cone, Lights, Outcome, Palette, Ray, Setup, Solid, State, Surface, paint, rgb565,
+    Cone, FieldSetup, Lights, Palette, Ray, RayResult, Solid, State, Surface, paint, rgb565,
 };
 use glint_testbench::{Bits, Module};
 
@@ -80,7 +80,7 @@ pub struct End {
 }
 
 impl End {
-    pub fn expected(ray: &Ray, outcome: &Outcome) -> Self {
+    pub fn expected(ray: &Ray, outcome: &RayResult) -> Self {
         let (state, surface, t) = match outcome.state {
             State::Miss => (0, None, (ray.direction[2].max(0) >> 9) as u64),
             State::Hit(surface) => (1, Some(surface), outcome.t.into()),
@@ -158,7 +158,7 @@ impl End {
     }
 }
 
-fn solid(setup: &Setup) -> Bits {
+fn solid(setup: &FieldSetup) -> Bits {
     let blend = setup.blend();
     let all = Bits::default()
         .with(105, 1, u8::from(setup.beside.is_some()))
@@ -194,7 +194,7 @@ fn solid(setup: &Setup) -> Bits {
 }
 
 /// Writes the spheres, with their materials.
-fn set_balls(module: &mut Module, setup: &Setup, lights: &Lights) {
+fn set_balls(module: &mut Module, setup: &FieldSetup, lights: &Lights) {
     let Some(balls) = setup.balls() else { return };
     let [write, number, ball] = ["ball_write", "ball_number", "ball"].map(|name| module.port(name));
     module.set(write, 1);
@@ -212,7 +212,7 @@ fn set_balls(module: &mut Module, setup: &Setup, lights: &Lights) {
 }
 
 /// Sets what shines on spheres.
-pub fn set_lights(module: &mut Module, setup: &Setup, lights: &Lights) {
+pub fn set_lights(module: &mut Module, setup: &FieldSetup, lights: &Lights) {
     let bits = (0..).zip(lights.list).fold(
         Bits::default()
             .with(312, 24, colour(lights.ambient))
@@ -230,7 +230,7 @@ pub fn set_lights(module: &mut Module, setup: &Setup, lights: &Lights) {
 }
 
 /// Sets what holds during a frame, as far as a lane wants it.
-pub fn set_lane(module: &mut Module, setup: &Setup) {
+pub fn set_lane(module: &mut Module, setup: &FieldSetup) {
     let [left, right] = setup.eyes.map(|eye| eye.origin.map(i64::from));
     let origins = (0..3).fold(three(25, left), |all, i| {
         all.with(75 + 25 * i, 25, right[i])
@@ -254,7 +254,7 @@ pub fn set_lane(module: &mut Module, setup: &Setup) {
 }
 
 /// Sets what holds during a frame, as far as the generator wants it, in bands of so many lines.
-pub fn set_generator(module: &mut Module, setup: &Setup, band_lines: u32) {
+pub fn set_generator(module: &mut Module, setup: &FieldSetup, band_lines: u32) {
     for (name, value) in [
         ("last_column", setup.width - 1),
         ("last_line", band_lines - 1),
@@ -267,7 +267,7 @@ pub fn set_generator(module: &mut Module, setup: &Setup, band_lines: u32) {
 }
 
 /// Sets where the rays begin.
-pub fn set_rays(module: &mut Module, setup: &Setup) {
+pub fn set_rays(module: &mut Module, setup: &FieldSetup) {
     let eyes = setup.eyes;
     let both = |bits: usize, [left, right]: [[i64; 3]; 2]| {
         (0..3).fold(three(bits, left), |all, i| {
@@ -296,7 +296,7 @@ pub fn set_rays(module: &mut Module, setup: &Setup) {
 }
 
 /// Sets what a block of pixels is in D.
-pub fn set_blocks(module: &mut Module, setup: &Setup, offset: &str, spread: &str) {
+pub fn set_blocks(module: &mut Module, setup: &FieldSetup, offset: &str, spread: &str) {
     let cones = setup.cones.map(|cones| (cones.offset, cones.spread));
     let (middle, widest) = cones.unwrap_or_default();
     for (name, value) in [
@@ -309,7 +309,7 @@ pub fn set_blocks(module: &mut Module, setup: &Setup, offset: &str, spread: &str
 }
 
 /// The end of a ray.
-pub fn end(place: Place, ray: &Ray, outcome: &Outcome) -> Bits {
+pub fn end(place: Place, ray: &Ray, outcome: &RayResult) -> Bits {
     let End {
         state,
         round,
@@ -345,7 +345,7 @@ fn colour([r, g, b]: [u8; 3]) -> u64 {
 }
 
 /// Sets what holds during a frame, as far as painting wants it, and fills its tables.
-pub fn set_paint(module: &mut Module, setup: &Setup, palette: &Palette) {
+pub fn set_paint(module: &mut Module, setup: &FieldSetup, palette: &Palette) {
     let colours = palette
         .faces
         .into_iter()
@@ -391,11 +391,11 @@ pub struct Pixel {
 
 /// What painting makes of an end.
 pub fn pixel(
-    setup: &Setup,
+    setup: &FieldSetup,
     palette: &Palette,
     place: Place,
     ray: &Ray,
-    outcome: &Outcome,
+    outcome: &RayResult,
 ) -> Pixel {
     let colour = paint(setup, palette, ray, outcome);
     let code = match outcome.state {

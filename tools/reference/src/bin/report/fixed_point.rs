@@ -2,7 +2,7 @@
 //!
 //! The gateware and its model have 12. Directions keep their 17 bits, which are taken from the model.
 
-use glint_model::raymarch::{DEFAULT_TUNING, FieldOptions, Ray, Setup, Tuning};
+use glint_model::raymarch::{DEFAULT_TUNING, FieldOptions, FieldSetup, Ray, Tuning};
 use glint_reference::field::metrics::Outcome;
 use glint_reference::field::raymarched::{Marched, Subject};
 use glint_reference::field::{Face, Field};
@@ -16,7 +16,7 @@ const TWICE_SCALE: i64 = 81;
 /// The constants of a picture of the sponge.
 pub struct FixedPoint {
     /// The model's constants, for directions.
-    setup: Setup,
+    setup: FieldSetup,
     /// Fraction bits of field units, 8 to 16.
     fraction: u32,
     /// S of each level.

@@ -6,7 +6,9 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
-use glint_model::raymarch::{DEFAULT_TUNING, FieldOptions, Prepass, ROUND_TUNING, Setup, Tuning};
+use glint_model::raymarch::{
+    DEFAULT_TUNING, FieldOptions, FieldSetup, Prepass, ROUND_TUNING, Tuning,
+};
 use glint_reference::camera::{Ray, Size};
 use glint_reference::field::Field;
 use glint_reference::field::metrics::{Accuracy, Expected, Outcome};
@@ -104,7 +106,7 @@ struct Row {
 }
 
 impl Row {
-    fn new(subject: &Subject, setup: &Setup, measured: &Measured, commit: &str) -> Self {
+    fn new(subject: &Subject, setup: &FieldSetup, measured: &Measured, commit: &str) -> Self {
         let &Measured {
             accuracy, coded, ..
         } = measured;
