@@ -1,7 +1,7 @@
 //! Where frames are drawn: two frames with their display, one depth buffer, room for vertices, and who draws.
 
-use glint_core::console::Backend;
 use glint_core::mesh::Mesh;
+use glint_core::picture::Backend;
 use glint_hal::display::Display;
 use glint_model::raymarch::{Ray, RayResult, render_field};
 use glint_model::{MeshSetup, Options, RenderError, Stats, Target, trace_frame};

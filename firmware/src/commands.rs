@@ -5,12 +5,12 @@
 use core::fmt::{self, Display};
 
 use glint_core::camera::{View, ViewError};
-use glint_core::colour::Shading;
-use glint_core::console::{Backend, Command, ParseError, Size, write_help};
+use glint_core::console::{Command, ParseError, write_help};
 use glint_core::fixed::{Q32_32, Turns};
 use glint_core::light::MAX_LIGHTS;
 use glint_core::mesh::MeshError;
 use glint_core::orientation::log::LogError;
+use glint_core::picture::{Backend, Size};
 use glint_core::wire::{Failure, Manifest, crc32};
 use glint_hal::display::Scale;
 use glint_hal::timer::FREQUENCY;
@@ -279,7 +279,7 @@ pub fn execute<'l>(machine: &mut Machine, line: &'l str) -> Reply<'l> {
         }
         Command::Stats { json } => stats(machine, json),
         Command::Backend(None) => {
-            let backend = backend_name(machine.scene.backend());
+            let backend = machine.scene.backend();
             machine.terminal.print(format_args!("backend {backend}\n"));
             Ok(())
         }
@@ -291,7 +291,7 @@ pub fn execute<'l>(machine: &mut Machine, line: &'l str) -> Reply<'l> {
             Ok(())
         }
         Command::Shading(None) => {
-            let shading = shading_name(machine.scene.shading());
+            let shading = machine.scene.shading();
             machine.terminal.print(format_args!("shading {shading}\n"));
             Ok(())
         }
@@ -367,8 +367,8 @@ fn info<'l>(machine: &mut Machine, key: Option<&'l str>) -> Result<(), Refusal<'
         ("vertices", format_args!("{}", mesh.vertex_count())),
         ("triangles", format_args!("{}", mesh.triangle_count())),
         ("size", format_args!("{width} {height}")),
-        ("shading", format_args!("{}", shading_name(scene.shading()))),
-        ("backend", format_args!("{}", backend_name(scene.backend()))),
+        ("shading", format_args!("{}", scene.shading())),
+        ("backend", format_args!("{}", scene.backend())),
         ("frame", format_args!("{:#010x}", frame.addr())),
         ("depth", format_args!("{:#010x}", depth.addr())),
         ("staging", format_args!("{address:#010x} {room}")),
@@ -528,7 +528,7 @@ pub fn stats(machine: &mut Machine, json: bool) -> Result<(), Refusal<'static>> 
         .ok_or(Refusal::NoFrame)?
         .map_err(Refusal::Render)?;
     let mut values: Vec<(&str, u64), 32> = Vec::new();
-    let (by, engine) = match drawn.by {
+    let (backend, engine) = match drawn.by {
         Painter::Cpu(fallback) => {
             if let Some(fallback) = fallback
                 && !json
@@ -541,7 +541,6 @@ pub fn stats(machine: &mut Machine, json: bool) -> Result<(), Refusal<'static>> 
         }
         Painter::Engine(counters) => (Backend::Gateware, Some(counters)),
     };
-    let backend = backend_name(by);
     // There is room for them all.
     let _ = values.push(("cycles", drawn.cycles));
     let Counts { triangles, rays } = drawn.stats;
@@ -619,22 +618,6 @@ pub fn engine_values(counters: &Counters) -> [(&'static str, u64); 16] {
 /// A switch on the console.
 pub const fn switch_name(on: bool) -> &'static str {
     if on { "on" } else { "off" }
-}
-
-/// A way of shading on the console.
-const fn shading_name(shading: Shading) -> &'static str {
-    match shading {
-        Shading::Flat => "flat",
-        Shading::Smooth => "smooth",
-    }
-}
-
-/// A backend's name on the console.
-const fn backend_name(backend: Backend) -> &'static str {
-    match backend {
-        Backend::Cpu => "cpu",
-        Backend::Gateware => "gateware",
-    }
 }
 
 fn leds<'l>(machine: &mut Machine, value: u16) -> Result<(), Refusal<'l>> {

@@ -3,8 +3,8 @@
 use core::fmt::{self, Write as _};
 
 use glint_core::camera::ViewError;
-use glint_core::console::Backend;
 use glint_core::mesh::MeshError;
+use glint_core::picture::Backend;
 use glint_hal::display::{Display, Scanout};
 use glint_hal::gpio::{InputPort, OutputPort};
 use glint_hal::i2c::I2c;

@@ -1,4 +1,6 @@
-//! Colours in RGB565, and where they come from.
+//! Colours in RGB565, and the shading of triangles.
+
+use core::fmt;
 
 /// A colour as the frame buffer holds it: red in bits 15–11, green in 10–5, blue in 4–0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -32,7 +34,7 @@ impl Rgb565 {
     }
 }
 
-/// Where a triangle's colours come from.
+/// The source of a triangle's colours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shading {
     /// From its own colour and normal.
@@ -40,6 +42,25 @@ pub enum Shading {
     Flat,
     /// From those of its vertices, interpolated.
     Smooth,
+}
+
+impl Shading {
+    /// All ways of shading, in the order of help texts.
+    pub const ALL: [Self; 2] = [Self::Flat, Self::Smooth];
+
+    /// The name on the console and on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Flat => "flat",
+            Self::Smooth => "smooth",
+        }
+    }
+}
+
+impl fmt::Display for Shading {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(self.name())
+    }
 }
 
 #[cfg(test)]

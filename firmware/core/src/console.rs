@@ -8,7 +8,7 @@ mod editor;
 mod error;
 mod grammar;
 
-pub use command::{Backend, Command, ImuAction, Size, write_help};
+pub use command::{Command, ImuAction, write_help};
 pub use editor::{Event, HISTORY, LINE_MAX, LineEditor};
 pub use error::ParseError;
 

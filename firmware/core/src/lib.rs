@@ -22,6 +22,7 @@ pub mod light;
 pub mod mesh;
 pub mod mpu6050;
 pub mod orientation;
+pub mod picture;
 pub mod polar;
 pub mod stereo;
 pub mod trig;

@@ -28,6 +28,7 @@ const HEADER: usize = 2 * RECORD;
 /// A checked mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Mesh<'a> {
+    bytes: &'a [u8],
     /// Everything after the header.
     records: &'a [[u8; RECORD]],
     vertices: u32,
@@ -122,11 +123,23 @@ impl<'a> Mesh<'a> {
             triangles == seen_triangles,
         )?;
         Ok(Self {
+            bytes,
             records,
             vertices,
             triangles,
             radius,
         })
+    }
+
+    /// The whole mesh as it lies in memory, from its header on.
+    pub const fn bytes(&self) -> &'a [u8] {
+        self.bytes
+    }
+
+    /// Vertices of the largest chunk.
+    pub fn largest_chunk(&self) -> usize {
+        let counts = self.chunks().map(|chunk| chunk.vertex_count());
+        counts.max().unwrap_or(0)
     }
 
     /// Vertices in all chunks.

@@ -2,14 +2,13 @@
 
 use glint_core::camera::View;
 use glint_core::colour::Shading;
-use glint_core::console::{
-    Backend, Command, Event, HISTORY, ImuAction, LINE_MAX, LineEditor, Size, write_help,
-};
+use glint_core::console::{Command, Event, HISTORY, ImuAction, LINE_MAX, LineEditor, write_help};
 use glint_core::field::{Field, KINDS};
 use glint_core::fixed::{Q2_23, Q32_32, Turns, U4_28};
 use glint_core::follow::{Direction, Mounting};
 use glint_core::imu::Follow;
 use glint_core::light::{Background, Light, Material};
+use glint_core::picture::{Backend, Size};
 use glint_core::stereo::{Stereo, Tint};
 use glint_core::wire::Manifest;
 use proptest::prelude::*;

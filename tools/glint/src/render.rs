@@ -7,10 +7,10 @@ pub use crate::transfer::Route;
 use crate::transfer::{self, Progress, TransferError};
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;
-use glint_core::console::Backend;
 use glint_core::field::Field;
 use glint_core::light::Hexadecimal;
 use glint_core::mesh::{Mesh, MeshError};
+use glint_core::picture::Backend;
 use glint_core::stereo::Stereo;
 use glint_core::wire::crc32;
 use glint_model::raymarch::{FieldOptions, FieldSetup, Prepass, render_field};
@@ -395,11 +395,7 @@ impl<'b, B: Board + ?Sized> Renderer<'b, B> {
         progress: &mut Progress,
     ) -> Result<Stats, Error> {
         if let Some(backend) = scene.backend {
-            let name = match backend {
-                Backend::Cpu => "cpu",
-                Backend::Gateware => "gateware",
-            };
-            self.console.command(&format!("backend {name}"))?;
+            self.console.command(&format!("backend {backend}"))?;
         }
         // Every change is drawn at once; what is cheap to draw goes first, so the mesh or the field comes last.
         self.console
@@ -408,10 +404,7 @@ impl<'b, B: Board + ?Sized> Renderer<'b, B> {
         if let Subject::Mesh(mesh) | Subject::Both(mesh, _) = scene.subject {
             self.console
                 .command(if mesh.cull { "cull on" } else { "cull off" })?;
-            self.console.command(match mesh.shading {
-                Shading::Flat => "shading flat",
-                Shading::Smooth => "shading smooth",
-            })?;
+            self.console.command(&format!("shading {}", mesh.shading))?;
             self.upload(mesh.bytes, route, progress)?;
         }
         if let Subject::Field(field) | Subject::Both(_, field) = scene.subject {
@@ -484,7 +477,7 @@ impl<'b, B: Board + ?Sized> Renderer<'b, B> {
         // An engine leaves them out unless told; over the line it is told by the command.
         if route == Route::Memory {
             let lines = self.console.command("stats")?;
-            if console::value::<String>("stats", &lines, "backend")? == "gateware" {
+            if console::value::<String>("stats", &lines, "backend")? == Backend::Gateware.name() {
                 self.console.command("render depth")?;
             }
         }

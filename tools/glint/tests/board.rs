@@ -15,10 +15,10 @@ use glint_core::appearance::Appearance;
 use glint_core::calibration::Units;
 use glint_core::camera::View;
 use glint_core::colour::Shading;
-use glint_core::console::Backend;
 use glint_core::field::Field;
 use glint_core::light::Material;
 use glint_core::orientation::Counts;
+use glint_core::picture::Backend;
 use glint_core::wire::{Failure, Manifest, Reason};
 
 /// The board's time after which a silent firmware has failed.

@@ -17,6 +17,7 @@ use crate::follow::{Direction, Mounting, SENSITIVITY};
 use crate::imu::Follow;
 use crate::light::{Background, Light, Material, Rgb};
 use crate::mesh::MAX_BYTES;
+use crate::picture::{Backend, Size};
 use crate::stereo::Stereo;
 use crate::wire::Manifest;
 
@@ -136,40 +137,6 @@ pub enum ImuAction {
     Follow(Option<Follow>),
     /// Make where it points the middle.
     Recentre,
-}
-
-/// Who renders.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Backend {
-    /// The soft core.
-    Cpu,
-    /// The engines.
-    Gateware,
-}
-
-/// The size of the picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Size {
-    /// 320×180.
-    W320,
-    /// 640×360.
-    W640,
-    /// 1280×720.
-    W1280,
-}
-
-impl Size {
-    /// All sizes.
-    pub const ALL: [Self; 3] = [Self::W320, Self::W640, Self::W1280];
-
-    /// Width and height in pixels.
-    pub const fn pixels(self) -> [u32; 2] {
-        match self {
-            Self::W320 => [320, 180],
-            Self::W640 => [640, 360],
-            Self::W1280 => [1280, 720],
-        }
-    }
 }
 
 /// Makes a command of the values of its arguments; `None` when they are not those of its syntax, which a test excludes.
@@ -409,7 +376,7 @@ static COMMANDS: [(Syntax, Build); 34] = [
             .with(&[("W", Number(1280)), ("H", Number(720))]),
         |values| match *values {
             [Value::Number(width), Value::Number(height)] => {
-                let size = Size::ALL.into_iter().find(|size| size.pixels() == [width, height]);
+                let size = Size::of(width, height);
                 Some(size.map(Command::Size).ok_or(Fault::Size { width, height }))
             }
             _ => None,

@@ -1,6 +1,7 @@
 //! What several commands share: boards, progress, printing.
 
 use anyhow::Context;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use glint::board::{Board, SerialBoard, SimulatedBoard, built_firmware};
 use glint::console::Console;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -44,6 +45,17 @@ impl LineArguments {
             Box::new(self.serial_board(name)?)
         })
     }
+}
+
+/// Parses one of `all` by its name.
+pub fn named<T: Copy + Send + Sync + 'static, const N: usize>(
+    all: [T; N],
+    name: fn(T) -> &'static str,
+) -> impl TypedValueParser<Value = T> {
+    PossibleValuesParser::new(all.map(name)).try_map(move |found| {
+        let value = all.into_iter().find(|value| name(*value) == found);
+        value.ok_or("not one of the names")
+    })
 }
 
 /// Something that turns while something unmeasured goes on. It shows only on a terminal.

@@ -13,9 +13,9 @@ use glint::render::{self, FieldSubject, Renderer, Route, Scene, Stats, Subject, 
 use glint::view;
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;
-use glint_core::console::Backend;
 use glint_core::field::Field;
 use glint_core::fixed::{Q32_32, Turns, U4_28};
+use glint_core::picture::Backend;
 use glint_core::stereo::{Stereo, Tint};
 use indicatif::ProgressBar;
 use std::path::{Path, PathBuf};

@@ -1,7 +1,7 @@
 //! What the command line says of a distance field.
 
+use super::common::named;
 use clap::Args;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
 use glint::error::{FormatError, InputError, quote};
 use glint::field;
 use glint_core::appearance::Appearance;
@@ -136,18 +136,6 @@ fn field_help() -> String {
         "A distance field instead of a model, or around it: {}. `spheres:FILE.json` reads [[cx,cy,cz,r],...]",
         kinds.join(", ")
     )
-}
-
-/// Reads one of `all` by its name.
-fn named<T: Copy + Default + Send + Sync + 'static, const N: usize>(
-    all: [T; N],
-    name: fn(T) -> &'static str,
-) -> impl TypedValueParser<Value = T> {
-    PossibleValuesParser::new(all.map(name)).map(move |found| {
-        // The parser lets no other names through.
-        let value = all.into_iter().find(|value| name(*value) == found);
-        value.unwrap_or_default()
-    })
 }
 
 /// A message about text that may be anything, on one line.

@@ -1,6 +1,6 @@
 //! `glint render`.
 
-use super::common::{LineArguments, advance, bar, print_json, say, spinner, write_file};
+use super::common::{LineArguments, advance, bar, named, print_json, say, spinner, write_file};
 use super::convert::load;
 use super::field::FieldArguments;
 use anyhow::Context;
@@ -14,6 +14,8 @@ use glint::render::{
 };
 use glint::view;
 use glint_core::camera::View;
+use glint_core::colour::Shading;
+use glint_core::picture::Backend;
 use glint_model::RenderError;
 use glint_model::frame::MAX_EYE;
 use serde::Serialize;
@@ -44,7 +46,7 @@ pub struct RenderArguments {
     board: String,
     /// Which renderer of a board [default: gateware where the board has it]. The model stands for both, as they are
     /// bit-exact.
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = named(Backend::ALL, Backend::name))]
     backend: Option<Backend>,
     /// 320x180, 640x360 or 1280x720.
     #[arg(long, value_name = "WxH", default_value = "320x180")]
@@ -61,8 +63,8 @@ pub struct RenderArguments {
     /// Draw back faces too.
     #[arg(long, requires = "model")]
     no_cull: bool,
-    /// Where colours come from: faces, or vertices.
-    #[arg(long, value_enum, default_value_t = Shading::Flat, requires = "model")]
+    /// Source of a mesh's colours: `flat` (triangles), or `smooth` (vertices, interpolated).
+    #[arg(long, value_parser = named(Shading::ALL, Shading::name), default_value_t, requires = "model")]
     shading: Shading,
     /// Leave the model's coordinates as they are, and refuse those outside [-2, 2).
     #[arg(long, requires = "model")]
@@ -78,22 +80,6 @@ pub struct RenderArguments {
     /// Print what was done as JSON.
     #[arg(long)]
     json: bool,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Backend {
-    /// The soft core.
-    Cpu,
-    /// The engines.
-    Gateware,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Shading {
-    /// A triangle's own colour and normal.
-    Flat,
-    /// Those of its vertices, interpolated.
-    Smooth,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -138,10 +124,7 @@ impl RenderArguments {
         let mesh = mesh.as_ref().map(|model| MeshSubject {
             bytes: &model.mesh,
             cull: !self.no_cull,
-            shading: match self.shading {
-                Shading::Flat => glint_model::Shading::Flat,
-                Shading::Smooth => glint_model::Shading::Smooth,
-            },
+            shading: self.shading,
         });
         let field = field.as_ref().map(|field| FieldSubject {
             field,
@@ -159,10 +142,7 @@ impl RenderArguments {
             subject,
             view,
             size,
-            backend: self.backend.map(|backend| match backend {
-                Backend::Cpu => glint_core::console::Backend::Cpu,
-                Backend::Gateware => glint_core::console::Backend::Gateware,
-            }),
+            backend: self.backend,
         };
         let Rendered { frame, stats } = self.render(&scene)?;
         frame

@@ -24,7 +24,7 @@ use glint::console::{Console, value};
 use glint::render::{self, MeshSubject, Rendered, Scene, Subject};
 use glint::view;
 use glint_core::colour::Shading;
-use glint_core::console::Backend;
+use glint_core::picture::Backend;
 use glint_core::wire::Manifest;
 use rand_pcg::Pcg64Mcg;
 

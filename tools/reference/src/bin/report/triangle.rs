@@ -13,7 +13,7 @@ use glint::polygons::{Corner, Polygons};
 use glint::render::{self, Renderer, Route, Scene, Stats, Subject};
 use glint::view;
 use glint_core::camera::View;
-use glint_core::console::Backend;
+use glint_core::picture::Backend;
 use serde::Serialize;
 
 use crate::in_workspace;

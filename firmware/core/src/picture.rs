@@ -1,0 +1,100 @@
+//! Size and renderer of a picture.
+
+use core::fmt;
+
+/// The size of a picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Size {
+    /// 320×180.
+    #[default]
+    W320,
+    /// 640×360.
+    W640,
+    /// 1280×720.
+    W1280,
+}
+
+impl Size {
+    /// All sizes, the smallest first.
+    pub const ALL: [Self; 3] = [Self::W320, Self::W640, Self::W1280];
+
+    /// The size of this width and height, if there is one.
+    pub fn of(width: u32, height: u32) -> Option<Self> {
+        Self::ALL
+            .into_iter()
+            .find(|size| size.pixels() == [width, height])
+    }
+
+    /// Width and height in pixels.
+    pub const fn pixels(self) -> [u32; 2] {
+        match self {
+            Self::W320 => [320, 180],
+            Self::W640 => [640, 360],
+            Self::W1280 => [1280, 720],
+        }
+    }
+
+    /// Width in pixels.
+    pub const fn width(self) -> u32 {
+        self.pixels()[0]
+    }
+
+    /// Height in pixels.
+    pub const fn height(self) -> u32 {
+        self.pixels()[1]
+    }
+
+    /// Width times height.
+    pub const fn pixel_count(self) -> usize {
+        self.width() as usize * self.height() as usize
+    }
+}
+
+/// `320x180`
+impl fmt::Display for Size {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{}x{}", self.width(), self.height())
+    }
+}
+
+/// The renderer of a board.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Backend {
+    /// The bit-exact model on the soft core.
+    Cpu,
+    /// The accelerators.
+    Gateware,
+}
+
+impl Backend {
+    /// All backends, in the order of help texts.
+    pub const ALL: [Self; 2] = [Self::Cpu, Self::Gateware];
+
+    /// The name on the console and on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Cpu => "cpu",
+            Self::Gateware => "gateware",
+        }
+    }
+}
+
+impl fmt::Display for Backend {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Size;
+
+    #[test]
+    fn a_size_is_found_by_its_pixels() {
+        for size in Size::ALL {
+            assert_eq!(Size::of(size.width(), size.height()), Some(size));
+        }
+        assert_eq!(Size::of(320, 360), None);
+        assert_eq!(Size::of(0, 0), None);
+    }
+}
