@@ -4,7 +4,7 @@ use glint_core::mesh::Mesh;
 use glint_core::picture::Backend;
 use glint_hal::display::Display;
 use glint_model::raymarch::{Ray, RayResult, render_field};
-use glint_model::{MeshSetup, Options, RenderError, Stats, Target, trace_frame};
+use glint_model::{FrameBuffer, MeshSetup, Options, RenderError, Stats, trace_frame};
 use litex_pac::cpu;
 
 use crate::memory::Scratch;
@@ -104,7 +104,7 @@ impl Canvas {
         if let Some(painter) = &mut self.painter {
             painter.forget(back);
         }
-        let mut target = Target {
+        let mut target = FrameBuffer {
             width,
             height,
             colour: back.get_mut(..pixels).unwrap_or_default(),
@@ -150,7 +150,7 @@ impl Canvas {
 /// Draws a frame by the CPU.
 fn draw_all(
     what: &What,
-    target: &mut Target,
+    target: &mut FrameBuffer,
     scratch: &mut Scratch,
     mut look: impl FnMut(),
 ) -> Result<Counts, RenderError> {
@@ -179,7 +179,7 @@ fn draw_all(
 fn draw_mesh(
     triangles: &Triangles,
     frame: MeshSetup,
-    target: &mut Target,
+    target: &mut FrameBuffer,
     scratch: &mut Scratch,
     look: &mut impl FnMut(),
 ) -> Result<Stats, RenderError> {

@@ -3,7 +3,7 @@
 //! It works on camera coordinates, before the division. An intersection is the exact one, rounded: it does not depend on
 //! the direction of its edge, so both triangles at an edge cut it at the same vertex.
 
-use crate::frame::MeshSetup;
+use crate::mesh_setup::MeshSetup;
 use crate::vertex::CameraVertex;
 
 /// Every plane replaces each run of outside vertices by two, and at most every second vertex is one:

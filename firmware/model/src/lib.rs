@@ -11,28 +11,31 @@
 #![forbid(unsafe_code)]
 
 pub mod clip;
+mod depth;
 pub mod descriptor;
-pub mod frame;
+mod error;
+mod exceptions;
+mod facing;
+mod frame_buffer;
 pub mod mesh_in_field;
+mod mesh_setup;
 pub mod quotient;
 pub mod raster;
 pub mod raymarch;
 pub mod reciprocal;
 mod render;
+mod rounding;
 pub mod setup;
 pub mod shade;
+mod triangle;
 pub mod vertex;
 
-pub use frame::{DepthScale, MeshSetup};
+pub use depth::DepthScale;
+pub use error::{Buffer, MAX_EYE, RenderError, SIZES};
+pub use exceptions::clip_exceptions;
+pub use frame_buffer::FrameBuffer;
 pub use glint_core::colour::Shading;
-pub use render::{
-    Buffer, DrawnTriangle, Options, RenderError, SIZES, Stats, Target, clip_exceptions, render,
-    trace, trace_frame,
-};
+pub use mesh_setup::MeshSetup;
+pub use render::{DrawnTriangle, Stats, render, trace, trace_frame};
+pub use triangle::Options;
 pub use vertex::{Projected, ScreenVertex};
-
-/// x·2^−shift rounded to nearest, ties up. `shift` is in 1…31, and x has room for half a unit of the result.
-const fn nearest(x: i64, shift: u32) -> i64 {
-    // The mask changes nothing; with it, a 32-bit processor need not care for larger shifts.
-    (x + (1u32 << (shift - 1)) as i64) >> (shift & 31)
-}

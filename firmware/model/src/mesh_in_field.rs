@@ -3,9 +3,10 @@
 use glint_core::camera::View;
 use glint_core::field::Field;
 
-use crate::frame::{DepthScale, MeshSetup};
+use crate::depth::DepthScale;
+use crate::error::RenderError;
+use crate::mesh_setup::MeshSetup;
 use crate::raymarch::{FieldOptions, FieldSetup};
-use crate::render::RenderError;
 
 /// Low bits of km that are 0, so that K times the 40.5 field units of a world unit has 17 bits too.
 const EVEN_BITS: u32 = 7;

@@ -9,8 +9,8 @@ use core::ops::{Add, BitOr, Sub};
 
 use glint_core::colour::Rgb565;
 
+use crate::frame_buffer::FrameBuffer;
 use crate::quotient;
-use crate::render::Target;
 use crate::setup::{Edge, Plane, Setup};
 
 /// What drawing one triangle took.
@@ -25,7 +25,7 @@ pub struct Coverage {
 }
 
 /// Draws a triangle; the colour is that of one that has no light of its own.
-pub fn draw(setup: &Setup, colour: Rgb565, target: &mut Target) -> Coverage {
+pub fn draw(setup: &Setup, colour: Rgb565, target: &mut FrameBuffer) -> Coverage {
     match &setup.light {
         None => draw_with(setup, colour, target),
         Some(light) => draw_smooth(setup, light, target),
@@ -34,11 +34,11 @@ pub fn draw(setup: &Setup, colour: Rgb565, target: &mut Target) -> Coverage {
 
 /// Not inlined, so that flat triangles need no room for it in an instruction cache.
 #[inline(never)]
-fn draw_smooth(setup: &Setup, light: &[Plane; 3], target: &mut Target) -> Coverage {
+fn draw_smooth(setup: &Setup, light: &[Plane; 3], target: &mut FrameBuffer) -> Coverage {
     draw_with(setup, light.map(Accumulation::new), target)
 }
 
-fn draw_with(setup: &Setup, brush: impl Brush, target: &mut Target) -> Coverage {
+fn draw_with(setup: &Setup, brush: impl Brush, target: &mut FrameBuffer) -> Coverage {
     if setup.narrow {
         walk::<i32>(setup, brush, target)
     } else {
@@ -125,7 +125,11 @@ trait Accumulator:
 impl Accumulator for i32 {}
 impl Accumulator for i64 {}
 
-fn walk<A: Accumulator>(setup: &Setup, mut brush: impl Brush, target: &mut Target) -> Coverage {
+fn walk<A: Accumulator>(
+    setup: &Setup,
+    mut brush: impl Brush,
+    target: &mut FrameBuffer,
+) -> Coverage {
     let bounds = setup.bounds;
     let mut left = End::<A>::new(
         setup,
@@ -170,7 +174,7 @@ fn walk<A: Accumulator>(setup: &Setup, mut brush: impl Brush, target: &mut Targe
 /// Fills the columns `from` to `to` of a row where the depth test passes; the depth has half a code added, so that cutting
 /// it rounds to nearest. Returns how many pixels were written.
 fn fill(
-    target: &mut Target,
+    target: &mut FrameBuffer,
     row: i32,
     from: i32,
     to: i32,

@@ -1,28 +1,10 @@
 //! Triangle setup: facing, bounds, edge functions and the planes of depth and light.
 
-use crate::nearest;
+pub use crate::facing::Facing;
 use crate::reciprocal::Reciprocal;
+use crate::rounding::nearest;
 use crate::shade::Lit;
 use crate::vertex::ScreenVertex;
-
-/// Which side of a triangle is seen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Facing {
-    /// Counter-clockwise on the screen: 2A < 0.
-    Front,
-    /// Clockwise: 2A > 0.
-    Back,
-}
-
-impl Facing {
-    /// What belongs to the vertices of a triangle, clockwise on the screen: that of a front face has 1 and 2 swapped.
-    pub fn order<T>(self, [a, b, c]: [T; 3]) -> [T; 3] {
-        match self {
-            Self::Front => [a, c, b],
-            Self::Back => [a, b, c],
-        }
-    }
-}
 
 /// A triangle with a positive area, its vertices clockwise on the screen (y points down).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,7 +13,7 @@ pub struct Oriented {
     pub vertices: [ScreenVertex; 3],
     /// a = |2A| > 0, u40 with 16 fraction bits: a triangle is at most half of a square that holds it.
     pub doubled_area: u64,
-    /// The side that is seen.
+    /// The visible side.
     pub facing: Facing,
 }
 

@@ -1,8 +1,8 @@
 //! The vertex stage: from a position of the mesh to a place on the screen.
 
-use crate::frame::MeshSetup;
-use crate::nearest;
+use crate::mesh_setup::MeshSetup;
 use crate::reciprocal::Reciprocal;
+use crate::rounding::nearest;
 use crate::shade::Light;
 
 /// The guard band: 2047 pixels from the top left corner to every side, s12.8.

@@ -7,7 +7,7 @@ use glint_core::camera::View;
 use glint_core::fixed::Q32_32;
 use glint_core::mesh::Mesh;
 use glint_model::setup::{Facing, Oriented};
-use glint_model::{Buffer, MeshSetup, Options, Projected, RenderError, SIZES, Target, render};
+use glint_model::{Buffer, FrameBuffer, MeshSetup, Options, Projected, RenderError, SIZES, render};
 
 const SIZE: (u32, u32) = SIZES[0];
 
@@ -216,7 +216,7 @@ fn what_does_not_fit_is_refused() {
     let view = front().rounded();
     let refuse = |(width, height): (u32, u32), colours: usize, depths: usize, room: usize| {
         let (mut colour, mut depth) = (vec![7; colours], vec![7; depths]);
-        let mut target = Target {
+        let mut target = FrameBuffer {
             width,
             height,
             colour: &mut colour,

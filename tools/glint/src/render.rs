@@ -15,7 +15,7 @@ use glint_core::stereo::Stereo;
 use glint_core::wire::crc32;
 use glint_model::raymarch::{FieldOptions, FieldSetup, Prepass, render_field};
 use glint_model::{
-    DepthScale, MeshSetup, Options, Projected, RenderError, Shading, Target, mesh_in_field,
+    DepthScale, FrameBuffer, MeshSetup, Options, Projected, RenderError, Shading, mesh_in_field,
     trace_frame,
 };
 use serde::{Deserialize, Serialize};
@@ -278,7 +278,7 @@ pub fn on_model(scene: &Scene) -> Result<Rendered, Error> {
         colour: vec![0; pixels],
         depth: vec![0; pixels],
     };
-    let mut target = Target {
+    let mut target = FrameBuffer {
         width,
         height,
         colour: &mut frame.colour,
@@ -315,7 +315,7 @@ fn draw_mesh(
     subject: &MeshSubject,
     mesh: &Mesh,
     frame: MeshSetup,
-    target: &mut Target,
+    target: &mut FrameBuffer,
 ) -> Result<TriangleCounts, Error> {
     let vertices = mesh
         .chunks()
@@ -344,7 +344,7 @@ fn draw_mesh(
 fn draw_field(
     subject: &FieldSubject,
     setup: &FieldSetup,
-    target: &mut Target,
+    target: &mut FrameBuffer,
 ) -> Result<RayCounts, Error> {
     let palette = subject.options().palette_for(setup);
     let stats = render_field(setup, &palette, target, &mut |_, _, _, _| {});

@@ -7,7 +7,7 @@ use glint_core::mesh::{IndexedTriangle, Mesh, Vertex, encode};
 use glint_model::setup::{Bounds, Facing, Oriented, Setup};
 use glint_model::shade::Lit;
 use glint_model::{
-    DrawnTriangle, Options, Projected, ScreenVertex, Shading, Target, raster, trace,
+    DrawnTriangle, FrameBuffer, Options, Projected, ScreenVertex, Shading, raster, trace,
 };
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
@@ -119,7 +119,7 @@ impl Measured {
         };
         let pixels = width as usize * height as usize;
         let (mut colour, mut depth) = (vec![0; pixels], vec![0; pixels]);
-        let mut target = Target {
+        let mut target = FrameBuffer {
             width,
             height,
             colour: &mut colour,
@@ -220,7 +220,7 @@ fn drawn(bytes: &[u8], view: &View, (width, height): (u32, u32), cull: bool) -> 
     trace(
         &mesh,
         view,
-        &mut Target {
+        &mut FrameBuffer {
             width,
             height,
             colour: &mut vec![0; pixels],

@@ -10,7 +10,7 @@ use glint_model::raster::draw;
 use glint_model::setup::{Bounds, Oriented, Setup};
 use glint_model::shade::Lit;
 use glint_model::vertex::GUARD;
-use glint_model::{Options, Projected, ScreenVertex, Shading, Target, trace};
+use glint_model::{FrameBuffer, Options, Projected, ScreenVertex, Shading, trace};
 use glint_testbench::{Bits, Module, Port, Sink, Source, Stalls};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
@@ -212,7 +212,7 @@ impl Bench {
 
     fn compare(&self, name: &str, size: (u32, u32), triangles: &[Triangle], picture: &[Pixel]) {
         let (mut colour, mut depth) = (vec![0; picture.len()], vec![0; picture.len()]);
-        let mut target = Target {
+        let mut target = FrameBuffer {
             width: size.0,
             height: size.1,
             colour: &mut colour,
@@ -674,7 +674,7 @@ fn a_sphere_is_walked_efficiently() {
         let mut scratch = vec![Projected::Behind; 4096];
         let mut corners = Vec::new();
         let pixels = (size.0 * size.1) as usize;
-        let mut target = Target {
+        let mut target = FrameBuffer {
             width: size.0,
             height: size.1,
             colour: &mut vec![0; pixels],

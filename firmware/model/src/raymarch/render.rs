@@ -6,8 +6,9 @@ use super::cone::Rays;
 use super::paint::{Palette, paint};
 use super::ray::{Ray, RayResult, State};
 use super::setup::FieldSetup;
+use crate::error::RenderError;
+use crate::frame_buffer::FrameBuffer;
 use crate::reciprocal::Reciprocal;
-use crate::render::{RenderError, Target};
 
 /// What drawing a frame of a field took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -48,7 +49,7 @@ impl FieldStats {
 pub fn render_field(
     setup: &FieldSetup,
     palette: &Palette,
-    target: &mut Target,
+    target: &mut FrameBuffer,
     show: &mut dyn FnMut(u32, u32, &Ray, &RayResult),
 ) -> Result<FieldStats, RenderError> {
     target.check()?;

@@ -11,8 +11,8 @@ use super::cone::{Cones, Prepass};
 use super::field::{FRACTION, Sample, Solid, cropped};
 use super::paint::Palette;
 use super::sphere::{Ball, Balls};
-use crate::frame::DepthScale;
-use crate::render::{RenderError, SIZES};
+use crate::depth::DepthScale;
+use crate::error::{RenderError, SIZES};
 
 /// Half the side of what a bounded field spans where the world's is 1: S of the sponge's levels is then 27, 9, 3, 1.
 const HALF_SIDE: Q32_32 = Q32_32::lit("40.5");

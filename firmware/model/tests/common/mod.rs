@@ -7,7 +7,7 @@ use glint_core::camera::View;
 use glint_core::colour::Rgb565;
 use glint_core::fixed::{Q2_23, Q32_32, U4_28};
 use glint_core::mesh::{IndexedTriangle, Mesh, Vertex, encode};
-use glint_model::{DrawnTriangle, Options, Projected, Stats, Target, trace};
+use glint_model::{DrawnTriangle, FrameBuffer, Options, Projected, Stats, trace};
 
 /// SplitMix64.
 pub struct Random(pub u64);
@@ -333,8 +333,8 @@ impl Picture {
         }
     }
 
-    pub fn target(&mut self) -> Target<'_> {
-        Target {
+    pub fn target(&mut self) -> FrameBuffer<'_> {
+        FrameBuffer {
             width: self.width,
             height: self.height,
             colour: &mut self.colour,

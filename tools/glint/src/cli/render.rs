@@ -16,8 +16,8 @@ use glint::view;
 use glint_core::camera::View;
 use glint_core::colour::Shading;
 use glint_core::picture::Backend;
+use glint_model::MAX_EYE;
 use glint_model::RenderError;
-use glint_model::frame::MAX_EYE;
 use serde::Serialize;
 use std::path::PathBuf;
 

@@ -234,7 +234,7 @@ fn run_model(mesh: &[u8]) {
     let (width, height) = glint_model::SIZES[0];
     let pixels = (width * height) as usize;
     let (mut colour, mut depth) = (vec![0; pixels], vec![0; pixels]);
-    let mut target = glint_model::Target {
+    let mut target = glint_model::FrameBuffer {
         width,
         height,
         colour: &mut colour,

@@ -2,7 +2,7 @@
 
 use glint_core::camera::View;
 use glint_core::mesh::Mesh;
-use glint_model::{DrawnTriangle, Options, Projected, ScreenVertex, Stats, Target, trace};
+use glint_model::{DrawnTriangle, FrameBuffer, Options, Projected, ScreenVertex, Stats, trace};
 use glint_reference::camera::Size;
 use glint_reference::exact::{ExactTriangle, SnappedVertex};
 
@@ -34,7 +34,7 @@ impl Renderer {
         );
         self.drawn.clear();
         let drawn = &mut self.drawn;
-        let mut target = Target {
+        let mut target = FrameBuffer {
             width: size.width,
             height: size.height,
             colour: &mut self.colour,

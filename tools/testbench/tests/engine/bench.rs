@@ -4,7 +4,9 @@ use glint_core::camera::View;
 use glint_core::mesh::Mesh;
 use glint_model::descriptor::{Descriptor, band_rows, list_word, words};
 use glint_model::setup::{Bounds, Oriented, Setup};
-use glint_model::{DrawnTriangle, MeshSetup, Options, Projected, Shading, Stats, Target, trace};
+use glint_model::{
+    DrawnTriangle, FrameBuffer, MeshSetup, Options, Projected, Shading, Stats, trace,
+};
 use glint_testbench::{Bits, Memory, Module, ReadPort, Stalls, WritePort};
 
 pub const SIZES: [(u32, u32); 3] = glint_model::SIZES;
@@ -67,7 +69,7 @@ fn expected_with(options: Options, mesh: &[u8], view: &View, size: (u32, u32)) -
     let (mut colour, mut depth) = (vec![0; pixels], vec![0; pixels]);
     let vertices = mesh.chunks().map(|chunk| chunk.vertex_count()).max();
     let mut scratch = vec![Projected::Behind; vertices.unwrap_or(0)];
-    let mut target = Target {
+    let mut target = FrameBuffer {
         width: size.0,
         height: size.1,
         colour: &mut colour,

@@ -1,15 +1,13 @@
-//! The constants of a frame, made once from the camera and the size of the picture.
+//! The frame constants of a mesh, computed once from the camera and the size of the picture.
 
 use glint_core::camera::View;
 use glint_core::fixed::{Q2_23, Q32_32};
 
-use crate::nearest;
-use crate::render::{RenderError, SIZES};
+use crate::depth::DepthScale;
+use crate::error::{MAX_EYE, RenderError, SIZES};
+use crate::rounding::nearest;
 
-/// The farthest from the origin that the eye may be: what the widths of the translation are for.
-pub const MAX_EYE: u32 = 8;
-
-/// What the vertex stage needs to know of a frame (formats.md, "Frame constants").
+/// The frame constants of the vertex stage (formats.md, "Frame constants").
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct MeshSetup {
@@ -105,56 +103,5 @@ impl Scale {
             let dividend = i64::from(r.to_bits()) * (self.numerator >> 23);
             (2 * dividend + self.half_width).div_euclid(2 * self.half_width) as i32
         })
-    }
-}
-
-/// K = `mantissa`·2^`exponent`: a depth code is K/z, and z is K/code.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct DepthScale {
-    /// km, u17 in [2^16, 2^17).
-    pub mantissa: u32,
-    /// ke, −5 to 5.
-    pub exponent: i32,
-}
-
-impl DepthScale {
-    /// (2^18 − 4) times the nearest depth that the mesh can have: at least the near plane's, or else that of the sphere
-    /// about the origin that holds it. `n` may be 10^−4 longer than 1, so the radius takes 2^−13 more.
-    fn new(origin: i64, near: i64, radius: u32) -> Self {
-        let radius = i64::from(radius);
-        let reach = (radius << 23) + (radius << 10);
-        Self::from_nearest(near.max(origin - reach))
-    }
-
-    /// (2^18 − 4) times a depth above 0, 37 fraction bits, at most 64.
-    pub(crate) fn from_nearest(nearest: i64) -> Self {
-        // The product is below 2^61.
-        let scale = nearest as u64 * ((1 << 18) - 4);
-        Self::cut(scale, -37)
-    }
-
-    /// This times a number above 0 and 2^`shift`, to 17 bits.
-    pub(crate) fn times(&self, scale: Q32_32, shift: u32) -> Self {
-        // 17 by 40 bits.
-        let product = u64::from(self.mantissa) * (scale.to_bits() as u64 >> 8);
-        Self::cut(product, self.exponent - 24 + shift as i32)
-    }
-
-    /// value·2^exponent, cut to 17 bits.
-    fn cut(value: u64, exponent: i32) -> Self {
-        let lead = value.ilog2();
-        Self {
-            mantissa: (value >> (lead - 16)) as u32,
-            exponent: lead as i32 - 16 + exponent,
-        }
-    }
-
-    /// The distance along n of a depth code, to nearest; `None` for 0, where nothing was drawn.
-    pub fn distance(&self, code: u32) -> Option<Q32_32> {
-        let code = u64::from(code);
-        // Below 2^(17 + 37).
-        let scale = u64::from(self.mantissa) << (32 + self.exponent);
-        let bits = (scale + code / 2).checked_div(code)?;
-        Some(Q32_32::from_bits(bits as i64))
     }
 }

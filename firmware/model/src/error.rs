@@ -1,0 +1,107 @@
+//! The limits of a frame, and the errors of a frame beyond them.
+
+use core::fmt;
+
+use glint_core::fixed::Q32_32;
+use glint_core::picture::Size;
+
+/// The sizes of a picture: width and height in pixels.
+pub const SIZES: [(u32, u32); 3] = {
+    let [a, b, c] = Size::ALL;
+    [
+        (a.width(), a.height()),
+        (b.width(), b.height()),
+        (c.width(), c.height()),
+    ]
+};
+
+/// The largest distance of the eye from the origin for a mesh, in world units: the widths of the translation follow from it.
+pub const MAX_EYE: u32 = 8;
+
+/// A buffer of a frame buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Buffer {
+    /// The picture.
+    Colour,
+    /// The depth codes.
+    Depth,
+}
+
+/// An error of a frame; nothing was drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RenderError {
+    /// The picture's size is not one of the [`SIZES`].
+    Size {
+        /// Width in pixels.
+        width: u32,
+        /// Height in pixels.
+        height: u32,
+    },
+    /// A buffer without exactly one element for each pixel.
+    Buffer {
+        /// The buffer.
+        buffer: Buffer,
+        /// Pixels of the picture.
+        expected: usize,
+        /// Elements of the buffer.
+        found: usize,
+    },
+    /// Scratch memory smaller than the largest chunk.
+    Scratch {
+        /// Vertices of the largest chunk.
+        expected: usize,
+        /// Vertices that fit the scratch memory.
+        found: usize,
+    },
+    /// Eye beyond [`MAX_EYE`], for a mesh.
+    Eye([Q32_32; 3]),
+    /// Stereo for a mesh in a field.
+    Stereo,
+}
+
+impl fmt::Display for RenderError {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Size { width, height } => {
+                write!(f, "picture size {width}x{height}: expected")?;
+                SIZES
+                    .iter()
+                    .enumerate()
+                    .try_for_each(|(i, (width, height))| {
+                        write!(f, "{} {width}x{height}", if i == 0 { "" } else { "," })
+                    })
+            }
+            Self::Buffer {
+                buffer,
+                expected,
+                found,
+            } => {
+                let name = match buffer {
+                    Buffer::Colour => "colour",
+                    Buffer::Depth => "depth",
+                };
+                write!(
+                    f,
+                    "{name} buffer of {found} pixels: expected {expected}, the picture's width times its height"
+                )
+            }
+            Self::Scratch { expected, found } => {
+                write!(
+                    f,
+                    "scratch for {found} vertices: expected at least {expected}, as the largest chunk has"
+                )
+            }
+            Self::Eye([x, y, z]) => {
+                write!(
+                    f,
+                    "eye ({x}, {y}, {z}): expected within {MAX_EYE} of the origin for a mesh"
+                )
+            }
+            Self::Stereo => {
+                f.write_str("two eyes: expected a field alone, or one eye for a mesh in a field")
+            }
+        }
+    }
+}
+
+impl core::error::Error for RenderError {}

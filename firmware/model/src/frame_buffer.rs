@@ -1,0 +1,48 @@
+//! The memory that a frame is drawn in.
+
+use crate::error::{Buffer, RenderError, SIZES};
+
+/// The memory of one picture. Rows follow each other from the top, without padding.
+#[derive(Debug)]
+pub struct FrameBuffer<'a> {
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels; width and height are one of the [`SIZES`].
+    pub height: u32,
+    /// RGB565, one number a pixel.
+    pub colour: &'a mut [u16],
+    /// Depth codes, one a pixel: u18, larger is nearer, 0 is clear.
+    pub depth: &'a mut [u32],
+}
+
+impl FrameBuffer<'_> {
+    pub(crate) fn check(&self) -> Result<(), RenderError> {
+        let &Self { width, height, .. } = self;
+        if !SIZES.contains(&(width, height)) {
+            return Err(RenderError::Size { width, height });
+        }
+        let expected = width as usize * height as usize;
+        for (buffer, found) in [
+            (Buffer::Colour, self.colour.len()),
+            (Buffer::Depth, self.depth.len()),
+        ] {
+            if found != expected {
+                return Err(RenderError::Buffer {
+                    buffer,
+                    expected,
+                    found,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks the size against that of frame constants.
+    pub(crate) fn check_size(&self, (width, height): (u32, u32)) -> Result<(), RenderError> {
+        if (self.width, self.height) == (width, height) {
+            Ok(())
+        } else {
+            Err(RenderError::Size { width, height })
+        }
+    }
+}
