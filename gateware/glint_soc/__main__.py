@@ -9,7 +9,7 @@ from pathlib import Path
 from litex.soc.integration import export
 from litex.soc.integration.builder import Builder
 
-from . import register_map
+from . import packages, register_map
 from .raymarch import BUILDS
 from .register_map import OPTIONAL_BLOCKS
 
@@ -44,6 +44,8 @@ def main():
     full = make_soc("virtual", 0, OPTIONAL_BLOCKS)
     full.finalize()
     build_id = register_map.build_id(full)
+    for path in packages.stale(full):
+        parser.error(f"{path} differs from the descriptions: `python -m glint_soc.packages` writes it")
 
     fields = BUILDS[arguments.fields or {"virtual": "all", "urbana": "faces"}[arguments.board]]
     soc = make_soc(arguments.board, build_id, arguments.blocks, arguments.smooth, fields)

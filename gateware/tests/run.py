@@ -19,6 +19,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
 import benches  # noqa: E402
+import registers  # noqa: E402
 import memory_bridge  # noqa: E402
 import models  # noqa: E402
 import size  # noqa: E402
@@ -84,6 +85,7 @@ def test():
     failures = run_all(module_checks())
     files = urbana.generate()
     others = {
+        **{f"descriptions: {name}": action for name, action in registers.CHECKS.items()},
         **{f"memory bridge: {name}": action for name, action in memory_bridge.CHECKS.items()},
         **{f"Yosys' table of {name}": action for name, action in tables.CHECKS.items()},
         **{f"sizes: {name}": action for name, action in size.CHECKS.items()},

@@ -1,0 +1,130 @@
+"""Packed structs that a block's description and its RTL share, connected by the names of their members.
+
+A description builds each `Struct` from the signals of its registers. `Package` writes the SystemVerilog type of each struct
+to a package in the block's RTL folder, so that nobody types the place or the width of a member. `python -m glint_soc.packages`
+writes the packages of all blocks.
+"""
+
+from migen import Cat, Signal
+
+
+class Struct:
+    """A packed struct: its type in SystemVerilog, and the values of its members.
+
+    A member is a Migen value, a list of values of one width (a packed array, element 0 in the lowest bits), or a `Struct`.
+    `text` is the comment of the type.
+    """
+
+    def __init__(self, name, text, members):
+        self.name = name
+        self.text = text
+        self._members = dict(members)
+
+    def __getitem__(self, member):
+        return self._members[member]
+
+    def signals(self):
+        """Returns a struct of the same type whose members are new signals."""
+        return Struct(self.name, self.text, {
+            member: [Signal(len(element), name=f"{member}{i}") for i, element in enumerate(value)] if isinstance(value, list)
+            else value.signals() if isinstance(value, Struct) else Signal(len(value), name=member)
+            for member, value in self._members.items()})
+
+    @property
+    def value(self):
+        """All members as one value for a port of this type, an input or an output."""
+        # SystemVerilog's first member is the highest, Migen's the lowest.
+        return Cat(*(_flat(value) for value in reversed(self._members.values())))
+
+    def typedef(self):
+        """The type in SystemVerilog."""
+        lines = [f"        {_type(value)} {member};" for member, value in self._members.items()]
+        return "\n".join([*_comment(self.text), "    typedef struct packed {", *lines, f"    }} {self.name};"])
+
+
+def _flat(value):
+    if isinstance(value, list):
+        return Cat(*value)
+    return value.value if isinstance(value, Struct) else value
+
+
+def _type(value):
+    if isinstance(value, Struct):
+        return value.name
+    if isinstance(value, list):
+        width, = {len(element) for element in value}
+        return f"logic [{len(value) - 1}:0][{width - 1}:0]"
+    return "logic" if len(value) == 1 else f"logic [{len(value) - 1}:0]"
+
+
+class Enumeration:
+    """Enumerated values of a register field: name and text of each, in the order of their numbers from 0."""
+
+    def __init__(self, name, text, values):
+        self.name = name
+        self.text = text
+        self._values = dict(values)
+        self.bits = (len(values) - 1).bit_length()
+
+    @property
+    def values(self):
+        """The values in the form that `CSRField` takes."""
+        return [(str(number), name, text) for number, (name, text) in enumerate(self._values.items())]
+
+    def __getitem__(self, name):
+        """The number of a value."""
+        return list(self._values).index(name)
+
+    def constants(self):
+        """The values as constants in SystemVerilog."""
+        return "\n".join([*_comment(self.text), *(
+            f"    localparam logic [{self.bits - 1}:0] {self.name.upper()}_{name.upper()} = {self.bits}'d{number};"
+            for number, name in enumerate(self._values))])
+
+
+class Package:
+    """The SystemVerilog package that holds the types and constants of one block's description.
+
+    `numbers` are constants by name, `enumerations` and `structs` follow in their order.
+    """
+
+    def __init__(self, block, numbers=None, enumerations=(), structs=()):
+        self.block = block
+        self.name = f"{block}_registers_pkg"
+        self._numbers = numbers or {}
+        self._enumerations = enumerations
+        self._structs = structs
+
+    def text(self):
+        """The file."""
+        parts = [
+            *(["\n".join(f"    localparam int unsigned {name} = {number};" for name, number in self._numbers.items())]
+              if self._numbers else []),
+            *(enumeration.constants() for enumeration in self._enumerations),
+            *(struct.typedef() for struct in self._structs),
+        ]
+        return "\n".join([
+            f"// Generated from gateware/glint_soc/{self.block}.py by `python -m glint_soc.packages`. Do not edit.",
+            f"// Numbers and types of the block's ports. docs/registers.md describes the registers.",
+            "",
+            "`default_nettype none",
+            "",
+            f"package {self.name};",
+            "    // Each module uses some.",
+            "    /* verilator lint_off UNUSEDPARAM */",
+            "\n\n".join(parts),
+            "    /* verilator lint_on UNUSEDPARAM */",
+            "endpackage",
+            "",
+            "`default_nettype wire",
+            "",
+        ])
+
+
+def _comment(text):
+    words, lines = text.split(), [""]
+    for word in words:
+        if len(lines[-1]) + len(word) > 120:
+            lines.append("")
+        lines[-1] += f" {word}"
+    return [f"    //{line}" for line in lines]
