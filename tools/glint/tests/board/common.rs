@@ -1,0 +1,72 @@
+//! A board with a console, and the queries that the tests share.
+
+use glint::board::{SimulatedBoard, built_firmware};
+use glint::console::{Console, value};
+use glint::convert::{self, Options};
+use glint::render::{Renderer, Scene, Stats, Subject};
+use glint::{generate, view};
+use glint_core::picture::Backend;
+
+/// Board time without output after which the firmware counts as failed.
+const PATIENCE_MS: u64 = 2000;
+
+/// A board on which the firmware starts.
+pub fn running_board() -> SimulatedBoard {
+    SimulatedBoard::fast(&built_firmware(None).unwrap()).unwrap()
+}
+
+/// The console of a board that has just started.
+pub fn console(board: &mut SimulatedBoard) -> Console<'_, SimulatedBoard> {
+    let mut console = Console::new(board).patience(PATIENCE_MS);
+    console.greet().unwrap();
+    console
+}
+
+/// A renderer on a board that has just started.
+pub fn renderer(board: &mut SimulatedBoard) -> Renderer<'_, SimulatedBoard> {
+    Renderer::new(console(board))
+}
+
+/// A mesh seen from outside, drawn by the soft core.
+pub fn mesh_scene<'m>(mesh: &'m [u8], camera: &str, size: (u32, u32)) -> Scene<'m> {
+    Scene {
+        subject: Subject::mesh(mesh),
+        view: view::spherical(camera).unwrap(),
+        size,
+        backend: Some(Backend::Cpu),
+    }
+}
+
+/// A generated mesh.
+pub fn mesh(name: &str) -> Vec<u8> {
+    convert::convert(&generate::named(name).unwrap(), Options::default())
+        .unwrap()
+        .0
+}
+
+/// The counts without cycles, clock, backend and engine counters: those that the model has too.
+pub fn timeless(stats: Stats) -> Stats {
+    Stats {
+        cycles: None,
+        clock: None,
+        backend: None,
+        engine: None,
+        ..stats
+    }
+}
+
+/// The first word of a line of `info`.
+pub fn info<T: std::str::FromStr>(console: &mut Console<SimulatedBoard>, key: &str) -> T {
+    let lines = console.command(&format!("info {key}")).unwrap();
+    let short: Vec<String> = lines
+        .iter()
+        .map(|line| line.split(' ').take(2).collect::<Vec<_>>().join(" "))
+        .collect();
+    value("info", &short, key).unwrap()
+}
+
+/// A line of `info` that is an address.
+pub fn address(console: &mut Console<SimulatedBoard>, key: &str) -> u32 {
+    let word: String = info(console, key);
+    u32::from_str_radix(word.trim_start_matches("0x"), 16).unwrap()
+}

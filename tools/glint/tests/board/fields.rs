@@ -1,0 +1,159 @@
+//! Pictures of distance fields, alone and with a mesh, by the raymarcher and by the soft core.
+
+use crate::common::{address, mesh, renderer, running_board, timeless};
+use glint::board::{Board, SimulatedBoard};
+use glint::console::Console;
+use glint::picture::Frame;
+use glint::render::{self, FieldSubject, MeshSubject, Route, Scene, Subject};
+use glint::view;
+use glint_core::appearance::Appearance;
+use glint_core::colour::Shading;
+use glint_core::picture::Backend;
+use glint_core::field::Field;
+use glint_core::light::Material;
+
+#[test]
+fn a_field_is_the_models() {
+    a_field_by(Backend::Gateware, "gateware");
+}
+
+#[test]
+#[ignore = "takes minutes: the soft core takes nearly a thousand clocks for a ray, and no picture has fewer than 57,600"]
+fn a_field_by_the_cpu_is_the_models() {
+    a_field_by(Backend::Cpu, "cpu");
+}
+
+/// The first lines of a frame that the soft core draws, read during drawing: a cube, and a box through it.
+#[test]
+fn the_cpu_draws_a_mesh_in_a_field() {
+    const PIXELS: usize = 2 * 320;
+    // Neither a colour nor a depth of this scene.
+    const UNTOUCHED: [u8; 4] = 0xA5A5_A5A5_u32.to_le_bytes();
+    let mesh = mesh("cube");
+    // The view looks down, so that both are at the top of the picture.
+    let eye = r#"{"eye":[0,-6,0],"u":[1,0,0],"v":[0,-0.6,-0.8],"n":[0,0.8,-0.6],"half_width":1.4,"near":0.1}"#;
+    let field = FieldSubject {
+        field: &Field::parse("box:3,0.2,0.4").unwrap(),
+        appearance: &Appearance {
+            material: Material::Jade,
+            ..Appearance::default()
+        },
+        stereo: None,
+        prepass: false,
+    };
+    let triangles = MeshSubject {
+        bytes: &mesh,
+        cull: true,
+        shading: Shading::Flat,
+    };
+    let scene = Scene {
+        subject: Subject::Both(triangles, field),
+        view: view::parse(eye.as_bytes()).unwrap(),
+        size: (320, 180),
+        backend: Some(Backend::Cpu),
+    };
+    let Frame { colour, depth, .. } = render::on_model(&scene).unwrap().frame;
+    let mut seen = colour[..PIXELS].to_vec();
+    seen.sort_unstable();
+    seen.dedup();
+    assert!(
+        seen.len() > 2,
+        "expected colours of mesh, field and background"
+    );
+    let colours: Vec<u8> = colour.iter().flat_map(|c| c.to_le_bytes()).collect();
+    let depths: Vec<u8> = depth.iter().flat_map(|d| d.to_le_bytes()).collect();
+
+    let mut board = running_board();
+    let mut renderer = renderer(&mut board);
+    renderer
+        .upload(&mesh, Route::Memory, &mut |_, _| {})
+        .unwrap();
+    // Two frame buffers take turns: the next frame goes to the other one.
+    renderer.render().unwrap();
+    let console = renderer.console();
+    let [frame, depth] = ["frame", "depth"].map(|key| address(console, key));
+    console.command("render").unwrap();
+    let mut lines = vec![render::view_command(&scene.view), "backend cpu".to_owned()];
+    lines.extend(render::field_commands(&field, true));
+    let memory = console.board().memory().unwrap();
+    for place in [frame, depth] {
+        memory
+            .write_memory(place, &UNTOUCHED.repeat(PIXELS))
+            .unwrap();
+    }
+    // In one write: no frame starts between two commands.
+    let text: String = lines.iter().map(|line| format!("{line}\r")).collect();
+    console.board().write(text.as_bytes()).unwrap();
+    for line in &lines {
+        console.reply(line).unwrap();
+    }
+    // The frame is cleared to black first, and no visible surface is black.
+    let mut waited = 0;
+    loop {
+        let drawn = read(console, frame, 2 * PIXELS);
+        let last: [u8; 2] = *drawn.last_chunk().unwrap();
+        if last != [0; 2] && last != [UNTOUCHED[0], UNTOUCHED[1]] {
+            break;
+        }
+        waited += 1;
+        assert!(waited < 200, "the frame is not drawn");
+        console.board().read(&mut Vec::new(), 1).unwrap();
+    }
+    // The last pixel's depth may not be written yet.
+    let before = PIXELS - 1;
+    assert!(read(console, frame, 2 * before) == colours[..2 * before]);
+    assert!(read(console, depth, 4 * before) == depths[..4 * before]);
+}
+
+fn read(console: &mut Console<SimulatedBoard>, place: u32, bytes: usize) -> Vec<u8> {
+    let mut found = vec![0; bytes];
+    let memory = console.board().memory().unwrap();
+    memory.read_memory(place, &mut found).unwrap();
+    found
+}
+
+/// A small, distant field drawn by `backend`.
+fn a_field_by(backend: Backend, name: &str) {
+    let mut board = running_board();
+    let mut renderer = renderer(&mut board);
+    let eye =
+        r#"{"eye":[0,-20,0],"u":[1,0,0],"v":[0,0,-1],"n":[0,1,0],"half_width":0.3,"near":0.1}"#;
+    let scene = Scene {
+        subject: Subject::Field(FieldSubject {
+            field: &Field::parse("box:0.5,0.5,0.25").unwrap(),
+            appearance: &Appearance::default(),
+            stereo: None,
+            prepass: false,
+        }),
+        view: view::parse(eye.as_bytes()).unwrap(),
+        size: (320, 180),
+        backend: Some(backend),
+    };
+    let expected = render::on_model(&scene).unwrap();
+    let stats = renderer
+        .show(&scene, Route::Memory, &mut |_, _| {})
+        .unwrap();
+    println!("{:?} cycles", stats.cycles);
+    assert_eq!(stats.backend.as_deref(), Some(name));
+    assert_eq!(timeless(stats), expected.stats);
+    let colour = renderer
+        .colour(scene.size, Route::Memory, &mut |_, _| {})
+        .unwrap();
+    assert!(colour == expected.frame.colour);
+    let depth = renderer
+        .depth(scene.size, Route::Memory, &mut |_, _| {})
+        .unwrap();
+    assert!(depth == expected.frame.depth);
+
+    let shown = renderer.console().command("info scene").unwrap();
+    assert_eq!(shown, ["scene box:0.5,0.5,0.25"]);
+    // The mesh is shown again, and the eye is too far away for it.
+    renderer.console().command("field off").unwrap();
+    let error = renderer.render().unwrap_err().to_string();
+    assert!(
+        error.contains("expected within 8 of the origin for a mesh"),
+        "{error}"
+    );
+    renderer.console().command("camera 2 30 60").unwrap();
+    assert_eq!(renderer.render().unwrap().triangles().triangles_in, 12);
+}

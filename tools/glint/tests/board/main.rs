@@ -1,0 +1,10 @@
+//! The whole machine: the virtual board, its firmware, and this crate's side of the serial line.
+//!
+//! Needs the builds of `cargo xtask gateware` and `cargo xtask firmware`; `cargo xtask test` makes them.
+
+mod attitudes;
+mod common;
+mod fields;
+mod meshes;
+mod sensor;
+mod uploads;

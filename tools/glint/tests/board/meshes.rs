@@ -1,0 +1,192 @@
+//! Pictures and depths of meshes: the model's, bit for bit, on the monitor, in memory and over the line.
+
+use crate::common::{mesh, mesh_scene, renderer, running_board, timeless};
+use glint::board::{Board, SimulatedBoard};
+use glint::picture::Frame;
+use glint::render::{self, MeshSubject, Renderer, Route, Scene, Subject};
+use glint::view;
+use glint_core::camera::View;
+use glint_core::colour::Shading;
+use glint_core::picture::Backend;
+
+/// Smooth shading: by the engine if the gateware has it, otherwise by the CPU with a note in `stats`.
+#[test]
+fn smooth_shading_is_the_models_on_every_backend() {
+    let mut board = running_board();
+    let mut renderer = renderer(&mut board);
+    let mesh = mesh("icosphere:2");
+    for backend in [None, Some(Backend::Cpu)] {
+        let scene = Scene {
+            subject: Subject::Mesh(MeshSubject {
+                bytes: &mesh,
+                cull: true,
+                shading: Shading::Smooth,
+            }),
+            backend,
+            ..mesh_scene(&mesh, "2,30,60", (320, 180))
+        };
+        let expected = render::on_model(&scene).unwrap();
+        let stats = renderer
+            .show(&scene, Route::Memory, &mut |_, _| {})
+            .unwrap();
+        let colour = renderer
+            .colour(scene.size, Route::Memory, &mut |_, _| {})
+            .unwrap();
+        assert!(colour == expected.frame.colour);
+        let notes = renderer.console().command("stats").unwrap();
+        let fallback = "fallback triangle engine: this gateware has no smooth shading";
+        let fell_back = notes.iter().any(|line| line == fallback);
+        let by_cpu = stats.backend.as_deref() == Some("cpu");
+        assert_eq!(fell_back, by_cpu && backend.is_none(), "{notes:#?}");
+        let info = renderer.console().command("info").unwrap();
+        assert!(
+            info.iter().any(|line| line == "shading smooth"),
+            "{info:#?}"
+        );
+    }
+}
+
+/// Renders a mesh from three eyes, one of them inside it, on the board, and compares with the model: picture on the monitor,
+/// depth buffer, counts.
+fn the_monitor_shows_what_the_model_renders(name: &str) {
+    let size = (320, 180);
+    let outside = |camera: &str| (view::spherical(camera).unwrap(), true);
+    let inside = r#"{"eye":[0.21,-0.1,0.05],"u":[0.6,0.8,0],"v":[0,0,-1],"n":[-0.8,0.6,0],"half_width":1.5,"near":0.3}"#;
+    let inside: View = view::parse(inside.as_bytes()).unwrap();
+    // From inside most of a mesh shows its back faces.
+    let cameras = [outside("2,30,60"), outside("2.5,200,130"), (inside, false)];
+
+    let mut board = running_board();
+    let mut renderer = renderer(&mut board);
+    let mesh = mesh(name);
+    for (number, &(view, cull)) in cameras.iter().enumerate() {
+        let scene = Scene {
+            subject: Subject::Mesh(MeshSubject {
+                bytes: &mesh,
+                cull,
+                shading: Shading::Flat,
+            }),
+            view,
+            size,
+            backend: Some(Backend::Cpu),
+        };
+        let expected = render::on_model(&scene).unwrap();
+        let stats = renderer
+            .show(&scene, Route::Memory, &mut |_, _| {})
+            .unwrap();
+        assert_eq!(timeless(stats), expected.stats, "camera {number}");
+        assert!(
+            number < 2 || expected.stats.triangles().triangles_clipped > 0,
+            "nothing was clipped"
+        );
+        assert!(
+            captured(&mut renderer, 4) == expected.frame.colour,
+            "camera {number}: the monitor's picture"
+        );
+        let depth = renderer.depth(size, Route::Memory, &mut |_, _| {}).unwrap();
+        assert!(depth == expected.frame.depth, "camera {number}: the depths");
+    }
+    assert_eq!(renderer.board().inner().monitor().errors(), []);
+}
+
+#[test]
+fn the_monitor_shows_the_cube() {
+    the_monitor_shows_what_the_model_renders("cube");
+}
+
+#[test]
+fn the_monitor_shows_the_icosphere() {
+    the_monitor_shows_what_the_model_renders("icosphere:4");
+}
+
+#[test]
+fn the_monitor_shows_the_sponge() {
+    the_monitor_shows_what_the_model_renders("sponge:1");
+}
+
+#[test]
+fn the_monitor_shows_the_larger_sizes() {
+    let mesh = mesh("cube");
+    let mut board = running_board();
+    let mut renderer = renderer(&mut board);
+    for (size, scale) in [((640, 360), 2), ((1280, 720), 1)] {
+        let scene = mesh_scene(&mesh, "2,30,60", size);
+        renderer
+            .show(&scene, Route::Memory, &mut |_, _| {})
+            .unwrap();
+        let expected = render::on_model(&scene).unwrap().frame;
+        assert!(
+            captured(&mut renderer, scale) == expected.colour,
+            "{size:?}"
+        );
+    }
+}
+
+/// The monitor shows the old frame until the new one is complete: no picture has parts of both.
+#[test]
+fn no_frame_is_torn() {
+    let mesh = mesh("cube");
+    let mut board = running_board();
+    let mut renderer = renderer(&mut board);
+    let [old, new] = ["2,30,60", "2,200,100"].map(|camera| mesh_scene(&mesh, camera, (320, 180)));
+    renderer.show(&old, Route::Memory, &mut |_, _| {}).unwrap();
+    let [old, new] = [old, new].map(|scene| {
+        let frame = render::on_model(&scene).unwrap().frame;
+        frame.colour
+    });
+    renderer.board().inner().monitor().turn_on();
+    assert!(captured(&mut renderer, 4) == old);
+    renderer.board().write(b"camera 2 200 100\r").unwrap();
+    let mut shown = 0;
+    while captured_is(&mut renderer, &old, &new) {
+        shown += 1;
+        assert!(shown < 20, "the new frame does not come");
+    }
+    assert!(shown > 0, "the frame changed before it can have been drawn");
+}
+
+/// Whether the next picture on the monitor is the old frame; otherwise it must be the new one.
+fn captured_is(renderer: &mut Renderer<SimulatedBoard>, old: &[u16], new: &[u16]) -> bool {
+    let shown = captured(renderer, 4);
+    assert!(shown == old || shown == new, "a torn frame");
+    shown == old
+}
+
+/// The picture on the monitor, scaled back to the frame; checks the video timing.
+fn captured(renderer: &mut Renderer<SimulatedBoard>, scale: usize) -> Vec<u16> {
+    let board = renderer.board().inner();
+    let picture = board.capture().unwrap();
+    assert_eq!(board.monitor().errors(), []);
+    picture.scaled_back(scale).unwrap()
+}
+
+/// Shows the cube over the serial line only; returns the model's frame too.
+fn shown_over_the_line(board: &mut SimulatedBoard) -> (Renderer<'_, SimulatedBoard>, Frame) {
+    let mesh = mesh("cube");
+    let scene = mesh_scene(&mesh, "3,10,80", (320, 180));
+    let mut renderer = renderer(board);
+    renderer
+        .show(&scene, Route::Serial, &mut |_, _| {})
+        .unwrap();
+    (renderer, render::on_model(&scene).unwrap().frame)
+}
+
+#[test]
+fn colours_come_over_the_line() {
+    let mut board = running_board();
+    let (mut renderer, expected) = shown_over_the_line(&mut board);
+    let colour = renderer
+        .colour((320, 180), Route::Serial, &mut |_, _| {})
+        .unwrap();
+    assert!(colour == expected.colour);
+}
+
+#[test]
+fn depths_come_over_the_line() {
+    let mut board = running_board();
+    let (mut renderer, expected) = shown_over_the_line(&mut board);
+    let depth = renderer
+        .depth((320, 180), Route::Serial, &mut |_, _| {})
+        .unwrap();
+    assert!(depth == expected.depth);
+}

@@ -1,0 +1,140 @@
+//! Uploads of meshes: over a line with faults, and of bad meshes.
+
+use crate::common::{address, console, info, mesh, running_board};
+use glint::board::{Board, BoardError, SimulatedBoard};
+use glint::console::{Console, ConsoleError};
+use glint::transfer::{self, TransferError};
+use glint_core::wire::{Failure, Manifest, Reason};
+
+/// A line with faults: in both directions it drops, flips or repeats one byte in a hundred.
+struct BadLine<'b> {
+    board: &'b mut dyn Board,
+    random: u64,
+    hit: u32,
+}
+
+impl BadLine<'_> {
+    fn pass(&mut self, bytes: &[u8]) -> Vec<u8> {
+        let mut passed = Vec::with_capacity(bytes.len());
+        for &byte in bytes {
+            self.random = self
+                .random
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            let draw = (self.random >> 33) % 300;
+            self.hit += u32::from(draw < 3);
+            match draw {
+                0 => {}
+                1 => passed.push(byte ^ 1 << (self.random >> 61)),
+                2 => passed.extend([byte, byte]),
+                _ => passed.push(byte),
+            }
+        }
+        passed
+    }
+}
+
+impl Board for BadLine<'_> {
+    fn write(&mut self, bytes: &[u8]) -> Result<(), BoardError> {
+        let bytes = self.pass(bytes);
+        self.board.write(&bytes)
+    }
+
+    fn read(&mut self, bytes: &mut Vec<u8>, wait_ms: u64) -> Result<(), BoardError> {
+        let mut read = Vec::new();
+        self.board.read(&mut read, wait_ms)?;
+        bytes.extend(self.pass(&read));
+        Ok(())
+    }
+
+    fn now_ms(&self) -> u64 {
+        self.board.now_ms()
+    }
+}
+
+#[test]
+fn an_upload_over_a_bad_line_arrives_bit_for_bit() {
+    let mesh = mesh("icosphere:4");
+    let Manifest { length, crc32 } = Manifest::of(&mesh);
+    let mut board = running_board();
+    let mut console = console(&mut board);
+    let staging = address(&mut console, "staging");
+    let command = format!("load {length} {crc32:08x}");
+    assert!(console.command_with_transfer(&command).unwrap());
+    {
+        let (board, pending) = console.line();
+        let mut line = BadLine {
+            board,
+            random: 1,
+            hit: 0,
+        };
+        transfer::send(&mut line, pending, &mesh, 1, &mut |_, _| {}).unwrap();
+        assert!(line.hit > 100, "{} bytes were hit", line.hit);
+    }
+    console.reply(&command).unwrap();
+    assert_eq!(info::<String>(&mut console, "scene"), "model");
+    let mut arrived = vec![0; mesh.len()];
+    console
+        .board()
+        .memory()
+        .unwrap()
+        .read_memory(staging, &mut arrived)
+        .unwrap();
+    assert!(arrived == mesh);
+}
+
+/// The bytes of the scene's frame, 320×180 pixels.
+fn frame(console: &mut Console<SimulatedBoard>) -> Vec<u8> {
+    console.command("render").unwrap();
+    let address = address(console, "frame");
+    let mut bytes = vec![0; 2 * 320 * 180];
+    let memory = console.board().memory().unwrap();
+    memory.read_memory(address, &mut bytes).unwrap();
+    bytes
+}
+
+#[test]
+fn a_bad_upload_leaves_the_old_model() {
+    let (good, other) = (mesh("cube"), mesh("icosphere:1"));
+    let mut board = running_board();
+    let mut console = console(&mut board);
+    let quiet: &mut transfer::Progress = &mut |_, _| {};
+    transfer::upload(&mut console, &good, 1, quiet).unwrap();
+    let shown = frame(&mut console);
+
+    // A mesh that differs from the announced one.
+    let Manifest { length, crc32 } = Manifest::of(&good);
+    let command = format!("load {length} {:08x}", !crc32);
+    assert!(console.command_with_transfer(&command).unwrap());
+    let (line, pending) = console.line();
+    let refused = transfer::send(line, pending, &other, 2, quiet).unwrap_err();
+    assert!(
+        matches!(
+            refused,
+            TransferError::Failed(Failure::AbortedByPeer(Reason::Unannounced))
+        ),
+        "{refused}"
+    );
+    assert!(matches!(
+        console.reply(&command),
+        Err(ConsoleError::Refused { .. })
+    ));
+
+    // Bytes that arrive unchanged but form no mesh: a chunk without end, an index beyond the vertices.
+    let last_triangle = other.len() - 16;
+    for (number, at) in [(3, 40), (4, last_triangle + 1)] {
+        let mut damaged = other.clone();
+        damaged[at] ^= 0x80;
+        let refused = transfer::upload(&mut console, &damaged, number, quiet)
+            .unwrap_err()
+            .to_string();
+        assert!(refused.contains("not a mesh"), "byte {at}: {refused}");
+    }
+    assert_eq!(info::<u32>(&mut console, "triangles"), 12);
+    assert!(frame(&mut console) == shown);
+
+    // A good upload still works.
+    transfer::upload(&mut console, &other, 5, quiet).unwrap();
+    assert_eq!(info::<u32>(&mut console, "triangles"), 20);
+    assert!(frame(&mut console) != shown);
+}
