@@ -1,99 +1,37 @@
-//! LiteX's serial boot (SFL) from the host's side.
+//! LiteX's serial boot (SFL), host side.
 //!
-//! The BIOS asks with a magic word, is answered with another, and then takes frames: a length byte, a CRC-16, a command, a
-//! payload. It answers each whole frame with one letter, in order, and forgets a frame that stays incomplete for a quarter of a
-//! second. A frame carries its own address, so it may be sent again at any time.
+//! The BIOS sends a request and waits for an answer. It then takes frames: a length byte, a CRC-16, a command, a payload. It answers
+//! each complete frame with one letter, in order, and drops a frame that stays incomplete for 250 ms. A frame carries its own
+//! address, so it may be sent again at any time.
 //!
-//! The letters carry no number, so a lost one could be taken for the next one's. Frames therefore go in batches: a batch has
-//! arrived when it has brought just as many `K` as it has frames, and is otherwise sent again as a whole, after the line has
-//! been quiet for long enough that both sides agree on where a frame begins. After a failure batches and frames get
-//! smaller, as a short frame is hit less often. While all goes well they grow: frames to what the BIOS can buffer, and batches
-//! where waiting for answers takes time. A line that answers at once has no need of them, and may be faster than the BIOS.
+//! The letters carry no number, so a lost answer could be taken for the next frame's. Frames therefore go in batches. A batch has
+//! arrived when its answers are exactly one `K` per frame. Otherwise the host waits until the line has been quiet, so that both sides
+//! agree on the start of a frame, and sends the whole batch again. After a failure batches and frames get shorter, because a short
+//! frame is hit less often. After a success they grow: frames up to the size of the BIOS's buffer, batches where answers take time.
+//! A line that answers at once gains nothing from batches, and may be faster than the BIOS.
 
-use crate::board::{Board, BoardError};
+mod frame;
+mod link;
 
-/// What the BIOS sends when it is ready for a boot.
+pub use link::{FlashError, Report};
+
+use crate::board::Board;
+use link::{Delivery, Link};
+
+/// Request of a BIOS that is ready for a serial boot.
 pub const REQUEST: &[u8] = b"sL5DdSMmkekro\n";
-/// What it waits for then.
+/// Answer to [`REQUEST`] that starts the transfer.
 pub const ACCEPT: &[u8] = b"z6IHG7cYDID6o\n";
 
-/// Loads bytes at an address.
-pub const LOAD: u8 = 1;
-/// Jumps to an address.
-pub const JUMP: u8 = 2;
-
-/// The most data bytes of a frame. The protocol has room for 251, but a frame of 104 bytes, together with the answer to
-/// the request before the first, is sure to fit the 127 that the BIOS buffers when it is busy.
-const MAX_DATA: usize = 96;
-const MIN_DATA: usize = 12;
-/// The most frames of a batch: more than an adapter's delay and buffers hold at 1 Mbit/s.
-const MAX_BATCH: usize = 64;
-/// Answers that come sooner than this, for each frame, leave nothing to be gained by sending ahead.
-const PROMPT_MS: u64 = 2;
-/// Longer than the BIOS waits for the rest of a frame (250 ms).
-const QUIET_MS: u64 = 300;
-/// How long an answer may take: the frame's time on a slow line and an adapter's delays.
-const ANSWER_MS: u64 = 500;
-/// Batches that may fail one after the other, without one that arrives.
-const PATIENCE: u32 = 24;
-
-/// After this silence of a board that may be running something else, it is told to reboot.
+/// Wait for a request before the host sends `reboot`: the board may run a program.
 const POKE_MS: u64 = 2000;
 
-/// How a program got onto a board.
-#[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize)]
-pub struct Report {
-    /// The program's length.
-    pub bytes: usize,
-    /// Frames sent, those sent again counted each time.
-    pub frames: u32,
-    /// Batches that had to be sent again.
-    pub retries: u32,
-    /// The board's time from the first frame to the jump, in milliseconds.
-    pub milliseconds: u64,
-    /// What the board has said since it jumped.
-    #[serde(skip)]
-    pub said: Vec<u8>,
-}
-
-/// Why a program did not get onto a board.
-#[derive(Debug, thiserror::Error)]
-pub enum FlashError {
-    /// The board cannot be talked to.
-    #[error(transparent)]
-    Board(#[from] BoardError),
-    /// The BIOS did not ask.
-    #[error(
-        "no serial boot for {waited_ms} ms: expected the BIOS's request sL5DdSMmkekro; press the board's reset (the last it said: {last:?})"
-    )]
-    NoRequest {
-        /// The board's time spent waiting.
-        waited_ms: u64,
-        /// The end of what came instead.
-        last: String,
-    },
-    /// The line is too bad.
-    #[error(
-        "at {address:#010x}: no batch got through {PATIENCE} times, the last with {data} bytes a frame; expected {expected}, found {found}"
-    )]
-    Line {
-        /// Where the data was to go.
-        address: u32,
-        /// Data bytes a frame had in the end.
-        data: usize,
-        /// The answers that should have come.
-        expected: String,
-        /// Those that came.
-        found: String,
-    },
-}
-
-/// Sends a program to `address` and starts it there. `progress` is told the bytes that have arrived and those in all.
+/// Sends a program to `address` and starts it there. `progress` gets the bytes that have arrived and the total.
 ///
-/// A board that does not ask is told to reboot once: its BIOS and Glint's firmware both know that command.
+/// If no request comes, the host sends `reboot` once: a command of the BIOS and of Glint's firmware.
 ///
 /// # Errors
-/// The BIOS does not ask for a boot within `wait_ms` of the board's time, or the line is too bad.
+/// No request within `wait_ms` of board time, or too many transmission errors.
 pub fn flash(
     board: &mut dyn Board,
     program: &[u8],
@@ -103,21 +41,15 @@ pub fn flash(
 ) -> Result<Report, FlashError> {
     wait_for_request(board, wait_ms)?;
     board.write(ACCEPT)?;
-    let mut link = Link {
-        board,
-        data: MAX_DATA,
-        batch: 1,
-        failures: 0,
-        report: Report::default(),
-    };
-    let start = link.board.now_ms();
+    let mut link = Link::new(board);
+    let start = link.now_ms();
     let mut sent = 0;
     while sent < program.len() {
         let frames = link.batch(program, address, sent);
         match link.deliver(&frames)? {
             Delivery::Arrived { milliseconds } => {
-                sent = program.len().min(sent + link.data * frames.len());
-                link.grow(milliseconds >= PROMPT_MS * frames.len() as u64);
+                sent = program.len().min(sent + link.data() * frames.len());
+                link.grow(frames.len(), milliseconds);
                 progress(sent as u64, program.len() as u64);
             }
             Delivery::Failed { found } => {
@@ -127,7 +59,7 @@ pub fn flash(
     }
     link.jump(address)?;
     link.report.bytes = program.len();
-    link.report.milliseconds = link.board.now_ms() - start;
+    link.report.milliseconds = link.now_ms() - start;
     Ok(link.report)
 }
 
@@ -153,155 +85,17 @@ fn wait_for_request(board: &mut dyn Board, wait_ms: u64) -> Result<(), FlashErro
             board.write(b"\rreboot\r")?;
         }
         board.read(&mut heard, 100)?;
-        // Enough for the request and for the message.
+        // Kept: the start of a request, and text for the error.
         let surplus = heard.len().saturating_sub(1024);
         heard.drain(..surplus);
     }
 }
 
-enum Delivery {
-    Arrived { milliseconds: u64 },
-    Failed { found: String },
-}
-
-struct Link<'b> {
-    board: &'b mut dyn Board,
-    /// Data bytes a frame.
-    data: usize,
-    /// Frames a batch.
-    batch: usize,
-    /// Batches that failed since one arrived.
-    failures: u32,
-    report: Report,
-}
-
-impl Link<'_> {
-    /// The next frames from `start` on.
-    fn batch(&self, program: &[u8], address: u32, start: usize) -> Vec<Vec<u8>> {
-        program[start..]
-            .chunks(self.data)
-            .take(self.batch)
-            .enumerate()
-            .map(|(i, data)| {
-                let at = address.wrapping_add((start + i * self.data) as u32);
-                frame(LOAD, &[&at.to_be_bytes(), data].concat())
-            })
-            .collect()
-    }
-
-    /// Sends frames and counts the answers.
-    fn deliver(&mut self, frames: &[Vec<u8>]) -> Result<Delivery, BoardError> {
-        let start = self.board.now_ms();
-        for frame in frames {
-            self.board.write(frame)?;
-            self.report.frames += 1;
-        }
-        // The time of the frames on the line, a millisecond for ten bytes at 115,200 baud, and room.
-        let on_line = frames.iter().map(Vec::len).sum::<usize>() as u64 / 10;
-        let mut answers = Vec::new();
-        let mut last = self.board.now_ms();
-        while answers.len() < frames.len() && answers.iter().all(|&answer| answer == b'K') {
-            let before = answers.len();
-            self.board.read(&mut answers, ANSWER_MS)?;
-            let now = self.board.now_ms();
-            if answers.len() > before {
-                last = now;
-            } else if now.saturating_sub(last) >= ANSWER_MS + on_line {
-                break;
-            }
-        }
-        if answers.len() == frames.len() && answers.iter().all(|&answer| answer == b'K') {
-            return Ok(Delivery::Arrived {
-                milliseconds: self.board.now_ms() - start,
-            });
-        }
-        self.settle()?;
-        let answers = &answers[..answers.len().min(40)];
-        Ok(Delivery::Failed {
-            found: format!("'{}'", answers.escape_ascii()),
-        })
-    }
-
-    /// Waits until nothing has come for so long that the BIOS waits for the start of a frame, and returns what came.
-    fn settle(&mut self) -> Result<Vec<u8>, BoardError> {
-        let mut last = self.board.now_ms();
-        let mut rest = Vec::new();
-        while self.board.now_ms().saturating_sub(last) < QUIET_MS {
-            let before = rest.len();
-            self.board.read(&mut rest, QUIET_MS)?;
-            if rest.len() > before {
-                last = self.board.now_ms();
-            }
-        }
-        Ok(rest)
-    }
-
-    fn grow(&mut self, answers_take_time: bool) {
-        self.failures = 0;
-        if self.data < MAX_DATA {
-            self.data = (self.data * 2).min(MAX_DATA);
-        } else if answers_take_time {
-            self.batch = (self.batch * 2).min(MAX_BATCH);
-        }
-    }
-
-    fn shrink(&mut self, address: u32, frames: usize, found: String) -> Result<(), FlashError> {
-        self.failures += 1;
-        self.report.retries += 1;
-        if self.failures == PATIENCE {
-            let expected = format!("{frames} times 'K'");
-            return Err(FlashError::Line {
-                address,
-                data: self.data,
-                expected,
-                found,
-            });
-        }
-        self.batch = (self.batch / 4).max(1);
-        self.data = (self.data / 2).max(MIN_DATA);
-        Ok(())
-    }
-
-    /// Starts the program. An answer that was hit does not matter once the program speaks.
-    fn jump(&mut self, address: u32) -> Result<(), FlashError> {
-        let frame = frame(JUMP, &address.to_be_bytes());
-        loop {
-            self.board.write(&frame)?;
-            self.report.frames += 1;
-            let mut said = Vec::new();
-            self.board.read(&mut said, ANSWER_MS)?;
-            if said.first() != Some(&b'K') {
-                said.extend(self.settle()?);
-            }
-            match said.as_slice() {
-                [b'K', rest @ ..] => self.report.said = rest.to_vec(),
-                [] | [_] => {
-                    self.shrink(address, 1, format!("'{}'", said.escape_ascii()))?;
-                    continue;
-                }
-                _ => self.report.said = said,
-            }
-            return Ok(());
-        }
-    }
-}
-
-/// A frame: length, CRC-16/XMODEM over command and payload (high byte first), command, payload.
-fn frame(command: u8, payload: &[u8]) -> Vec<u8> {
-    const CRC: crc::Crc<u16> = crc::Crc::<u16>::new(&crc::CRC_16_XMODEM);
-    let mut digest = CRC.digest();
-    digest.update(&[command]);
-    digest.update(payload);
-    let mut frame = vec![payload.len() as u8];
-    frame.extend(digest.finalize().to_be_bytes());
-    frame.push(command);
-    frame.extend(payload);
-    frame
-}
-
 #[cfg(test)]
 mod tests {
+    use super::frame::{JUMP, LOAD, frame};
     use super::*;
+    use crate::board::BoardError;
     use std::collections::BTreeMap;
 
     const ADDRESS: u32 = 0x4000_0000;
@@ -311,13 +105,13 @@ mod tests {
     struct Bios {
         now_ms: u64,
         output: Vec<u8>,
-        /// A frame that is not whole, and when it began.
+        /// An incomplete frame, and the time of its first byte.
         partial: Vec<u8>,
         since_ms: u64,
         memory: BTreeMap<u32, u8>,
         jumped: Option<u32>,
         accepted: bool,
-        /// Of 1000 bytes so many are hit, in both directions.
+        /// Bytes in 1000 that are hit, in both directions.
         faults: u64,
         random: u64,
     }
@@ -332,7 +126,7 @@ mod tests {
             }
         }
 
-        /// What a byte becomes on the line.
+        /// A byte after the line: dropped, flipped, repeated or unchanged.
         fn line(&mut self, byte: u8) -> Vec<u8> {
             self.random = self
                 .random
@@ -469,7 +263,7 @@ mod tests {
         let error = flash(&mut bios, &program(1000), ADDRESS, 1000, &mut |_, _| {}).unwrap_err();
         assert!(
             error.to_string().starts_with(
-                "at 0x40000000: no batch got through 24 times, the last with 12 bytes"
+                "at 0x40000000: 24 batches failed in a row, the last with 12 data bytes a frame: expected"
             ),
             "{error}"
         );

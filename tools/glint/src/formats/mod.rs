@@ -4,7 +4,6 @@ pub mod glm;
 pub mod mtl;
 pub mod obj;
 pub mod ply;
-pub mod ply_header;
 pub mod stl;
 pub mod text;
 pub mod write;

@@ -1,5 +1,6 @@
 //! The seeds: small, valid, and with every feature of their format.
 
+use super::mutate::MAX_INPUT;
 use super::targets::Target;
 use crate::convert::{self, Options};
 use crate::error::Place;
@@ -25,7 +26,7 @@ pub fn of(target: Target) -> Vec<Vec<u8>> {
     };
     seeds
         .into_iter()
-        .filter(|seed| seed.len() <= super::MAX_INPUT)
+        .filter(|seed| seed.len() <= MAX_INPUT)
         .collect()
 }
 

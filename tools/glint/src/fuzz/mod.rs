@@ -6,12 +6,10 @@ mod corpus;
 mod mutate;
 mod targets;
 
+pub use mutate::MAX_INPUT;
 pub use targets::{Outcome, Target};
 
 use mutate::{Random, mutate};
-
-/// The longest input in bytes.
-pub const MAX_INPUT: usize = 4096;
 
 /// The inputs of one target.
 pub struct Inputs {

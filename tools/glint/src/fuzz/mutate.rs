@@ -1,6 +1,7 @@
 //! A mutator for bytes and for text.
 
-use super::MAX_INPUT;
+/// The longest input in bytes.
+pub const MAX_INPUT: usize = 4096;
 
 /// SplitMix64 (Steele, Lea and Flood, 2014): any seed will do, and numbers next to each other give unrelated streams.
 pub struct Random(u64);

@@ -3,10 +3,14 @@
 //! Own code and not `ply-rs` or `ply-rs-bw`: a header of 70 bytes that declares 30 million elements without a property
 //! takes them 2 GB, and their errors in binary files carry no offset.
 
-use super::ply_header::{Element, Encoding, Header, Kind, Property, Scalar};
-use super::text::{Lines, any_number, checked};
-use crate::error::{FormatError, MAX_COORDINATE, MAX_POLYGON, Place, quote};
+mod header;
+mod source;
+
+use super::text::{Lines, checked};
+use crate::error::{FormatError, MAX_COORDINATE, MAX_POLYGON, Place};
 use crate::polygons::{Corner, Polygons, Rgb8};
+use header::{Element, Encoding, Header, Kind, Property, Scalar};
+use source::{AsciiSource, BinarySource, Source};
 
 /// Reads a whole PLY: the elements `vertex` (x y z, perhaps nx ny nz and red green blue) and `face` (vertex_indices or
 /// vertex_index, perhaps red green blue); others are skipped.
@@ -17,134 +21,15 @@ pub fn parse(file: &[u8]) -> Result<Polygons, FormatError> {
     let mut lines = Lines::new(file);
     let header = Header::parse(&mut lines)?;
     let polygons = match header.encoding {
-        Encoding::Ascii => read_body(
-            &header,
-            AsciiSource {
-                lines,
-                words: Vec::new(),
-                next: 0,
-                number: 0,
-            },
-        )?,
+        Encoding::Ascii => read_body(&header, AsciiSource::new(lines))?,
         Encoding::LittleEndian | Encoding::BigEndian => {
             let offset = file.len() - lines.rest().len();
             let big_endian = header.encoding == Encoding::BigEndian;
-            read_body(
-                &header,
-                BinarySource {
-                    file,
-                    offset,
-                    big_endian,
-                },
-            )?
+            read_body(&header, BinarySource::new(file, offset, big_endian))?
         }
     };
     polygons.check_indices()?;
     Ok(polygons)
-}
-
-/// Where the values of elements come from, one after the other.
-trait Source {
-    /// Starts an element's next instance.
-    fn start(&mut self) -> Result<(), FormatError>;
-    /// The next value.
-    fn value(&mut self, scalar: Scalar) -> Result<f64, FormatError>;
-    /// Ends an instance.
-    fn end(&mut self) -> Result<(), FormatError>;
-    /// The place of the next value.
-    fn place(&self) -> Place;
-}
-
-struct AsciiSource<'a> {
-    lines: Lines<'a>,
-    words: Vec<&'a [u8]>,
-    next: usize,
-    number: usize,
-}
-
-impl Source for AsciiSource<'_> {
-    fn start(&mut self) -> Result<(), FormatError> {
-        loop {
-            let line = self.lines.next_line()?.ok_or_else(|| {
-                FormatError::new(
-                    Place::Line(self.number),
-                    "as many elements as the header declares",
-                    "the end of the file",
-                )
-            })?;
-            self.number = line.number;
-            self.words.clear();
-            self.words.extend(line.words());
-            self.next = 0;
-            if !self.words.is_empty() {
-                return Ok(());
-            }
-        }
-    }
-
-    fn value(&mut self, scalar: Scalar) -> Result<f64, FormatError> {
-        let place = self.place();
-        let word = self
-            .words
-            .get(self.next)
-            .ok_or_else(|| FormatError::new(place, scalar.describe(), "the end of the line"))?;
-        self.next += 1;
-        any_number(word)
-            .filter(|value| scalar.holds(*value))
-            .ok_or_else(|| FormatError::new(place, scalar.describe(), quote(word)))
-    }
-
-    fn end(&mut self) -> Result<(), FormatError> {
-        match self.words.get(self.next) {
-            None => Ok(()),
-            Some(word) => Err(FormatError::new(
-                self.place(),
-                "the end of the line",
-                quote(word),
-            )),
-        }
-    }
-
-    fn place(&self) -> Place {
-        Place::Line(self.number)
-    }
-}
-
-struct BinarySource<'a> {
-    file: &'a [u8],
-    offset: usize,
-    big_endian: bool,
-}
-
-impl Source for BinarySource<'_> {
-    fn start(&mut self) -> Result<(), FormatError> {
-        Ok(())
-    }
-
-    fn value(&mut self, scalar: Scalar) -> Result<f64, FormatError> {
-        let size = scalar.size();
-        let bytes = self
-            .file
-            .get(self.offset..self.offset + size)
-            .ok_or_else(|| {
-                FormatError::new(self.place(), scalar.describe(), "the end of the file")
-            })?;
-        self.offset += size;
-        let mut raw = [0; 8];
-        raw[..size].copy_from_slice(bytes);
-        if self.big_endian {
-            raw[..size].reverse();
-        }
-        Ok(scalar.decode(raw))
-    }
-
-    fn end(&mut self) -> Result<(), FormatError> {
-        Ok(())
-    }
-
-    fn place(&self) -> Place {
-        Place::Byte(self.offset)
-    }
 }
 
 fn read_body(header: &Header, mut source: impl Source) -> Result<Polygons, FormatError> {

@@ -1,7 +1,7 @@
 //! The header of a PLY file: which elements there are, and of what their instances consist.
 
-use super::text::{Line, Lines};
 use crate::error::{FormatError, Place, quote};
+use crate::formats::text::{Line, Lines};
 
 /// The most elements a header may declare, and the most properties of an element: more than any real file has.
 const MAX_DECLARED: usize = 64;
@@ -19,7 +19,6 @@ pub enum Encoding {
 
 /// The type of one value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[expect(missing_docs, reason = "the names say all")]
 pub enum Scalar {
     Int8,
     Uint8,

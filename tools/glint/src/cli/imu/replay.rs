@@ -1,17 +1,16 @@
-//! `glint imu`.
+//! `glint imu replay`.
 
-use super::common::{LineArguments, advance, bar, count_bar, print_json, say, spinner};
+use super::source::{file_name, read_log};
+use crate::cli::common::{LineArguments, advance, bar, count_bar, print_json, say, spinner};
 use anyhow::Context;
-use clap::{Args, Subcommand};
+use clap::Args;
 use glint::board::Board;
 use glint::console::Console;
 use glint::error::FormatError;
-use glint::formats::read_file;
-use glint::imu::log::{self, Entry};
+use glint::imu::log::Entry;
 use glint::imu::replay::{self, Options, Prepared, Replayed, Stage};
-use glint::imu::sensor;
 use glint::transfer::Route;
-use glint_core::calibration::{MOST_SAMPLES, Report, SAMPLES, Units};
+use glint_core::calibration::{Report, Units};
 use glint_core::fixed::{Q2_30, Q32_32};
 use glint_core::orientation::{LONGEST_STEP, LSB_PER_DPS, LSB_PER_G, Quaternion, Scale};
 use indicatif::ProgressBar;
@@ -19,200 +18,6 @@ use serde::Serialize;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
-
-/// A gyroscope and an accelerometer.
-#[derive(Subcommand)]
-pub enum ImuCommand {
-    Stream(StreamArguments),
-    Calibrate(CalibrateArguments),
-    Record(RecordArguments),
-    Replay(ReplayArguments),
-}
-
-impl ImuCommand {
-    pub fn run(self) -> anyhow::Result<()> {
-        match self {
-            Self::Stream(arguments) => arguments.run(),
-            Self::Calibrate(arguments) => arguments.run(),
-            Self::Record(arguments) => arguments.run(),
-            Self::Replay(arguments) => arguments.run(),
-        }
-    }
-}
-
-/// A board with a sensor.
-#[derive(Args)]
-struct SensorArguments {
-    /// Whose sensor: `virtual` (the verilated SoC, with a virtual MPU-6050) or a serial port.
-    #[arg(long)]
-    board: String,
-    /// What the virtual sensor measures, in raw counts from the board's start on [default: it lies still, with noise and bias].
-    #[arg(long, value_name = "LOG.csv")]
-    sensor: Option<PathBuf>,
-    #[command(flatten)]
-    line: LineArguments,
-}
-
-impl SensorArguments {
-    /// The board, once its sensor gives samples.
-    fn open(&self) -> anyhow::Result<Box<dyn Board>> {
-        anyhow::ensure!(
-            self.board == "virtual" || self.sensor.is_none(),
-            "--sensor: only the virtual board has a sensor that can be told what it measures"
-        );
-        let mut board: Box<dyn Board> = match self.board.as_str() {
-            "virtual" => {
-                let entries = match &self.sensor {
-                    None => None,
-                    Some(path) => Some(read_log(path)?),
-                };
-                let mut board = self.line.virtual_board()?;
-                board
-                    .inner()
-                    .plug(sensor::virtual_sensor(entries.as_deref()));
-                Box::new(board)
-            }
-            port => Box::new(self.line.serial_board(port)?),
-        };
-        let spinner = spinner("the sensor starts");
-        let found = sensor::wait(&mut Console::new(board.as_mut()));
-        spinner.finish_and_clear();
-        eprintln!("{}", found?);
-        Ok(board)
-    }
-}
-
-/// A log of a file.
-fn read_log(path: &Path) -> anyhow::Result<Vec<Entry>> {
-    let text = read_file(path)?;
-    Ok(log::parse(&text).map_err(|error| error.in_file(file_name(path)))?)
-}
-
-/// What a file is called in messages.
-fn file_name(path: &Path) -> String {
-    path.display().to_string().escape_debug().to_string()
-}
-
-/// Print samples as they come: t_us,ax,ay,az,gx,gy,gz in raw counts.
-///
-/// The sensor gives 1,000 samples a second; a line of 115,200 bits a second takes some 250 of them.
-#[derive(Args)]
-pub struct StreamArguments {
-    /// How many.
-    #[arg(long, value_name = "N", default_value_t = 1_000, value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_SAMPLES[1])))]
-    samples: u32,
-    #[command(flatten)]
-    sensor: SensorArguments,
-}
-
-impl StreamArguments {
-    pub fn run(self) -> anyhow::Result<()> {
-        let mut board = self.sensor.open()?;
-        say(sensor::HEADER)?;
-        let mut said = Ok(());
-        sensor::stream(
-            &mut Console::new(board.as_mut()),
-            self.samples,
-            &mut |entry| {
-                if said.is_ok() {
-                    said = say(line(&entry));
-                }
-            },
-        )?;
-        said
-    }
-}
-
-/// A sample as it stands in a log.
-fn line(entry: &Entry) -> String {
-    let ([ax, ay, az], [gx, gy, gz]) = (entry.accel, entry.gyro);
-    format!("{},{ax},{ay},{az},{gx},{gy},{gz}", entry.t_us)
-}
-
-/// Find the gyroscope's bias while the sensor lies still; the board keeps it, and follows it from then on.
-#[derive(Args)]
-pub struct CalibrateArguments {
-    /// With how many samples.
-    #[arg(long, value_name = "N", default_value_t = SAMPLES, value_parser = clap::value_parser!(u32).range(i64::from(MOST_SAMPLES[0])..=i64::from(MOST_SAMPLES[1])))]
-    samples: u32,
-    #[command(flatten)]
-    sensor: SensorArguments,
-    /// Print what was found as JSON.
-    #[arg(long)]
-    json: bool,
-}
-
-impl CalibrateArguments {
-    pub fn run(self) -> anyhow::Result<()> {
-        let mut board = self.sensor.open()?;
-        let bar = count_bar("calibrating", "samples");
-        let mut progress = advance(&bar);
-        let found = sensor::calibrate(
-            &mut Console::new(board.as_mut()),
-            self.samples,
-            &mut |samples| progress(samples.into(), self.samples.into()),
-        )?;
-        bar.finish_and_clear();
-        if self.json {
-            return print_json(&found);
-        }
-        let sensor::Calibrated {
-            samples,
-            bias,
-            deviation,
-            drift_per_hour,
-        } = found;
-        say(format_args!(
-            "calibrated  {samples} samples\nbias        {bias:.4?} °/s\ndeviation   {deviation:.4?} °/s\ndrift       {drift_per_hour:.1?} °/h expected"
-        ))
-    }
-}
-
-/// Write a board's samples to a log, for `glint imu replay`.
-///
-/// The sensor gives 1,000 samples a second; a line of 115,200 bits a second takes some 250 of them, each with the time at which it was measured.
-#[derive(Args)]
-pub struct RecordArguments {
-    /// The file to write.
-    #[arg(value_name = "LOG.csv")]
-    log: PathBuf,
-    /// How many samples.
-    #[arg(long, value_name = "N", default_value_t = 1_000, value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_SAMPLES[1])))]
-    samples: u32,
-    #[command(flatten)]
-    sensor: SensorArguments,
-}
-
-impl RecordArguments {
-    pub fn run(self) -> anyhow::Result<()> {
-        let unwritable = || format!("{}: cannot be written", self.log.display());
-        let mut out = BufWriter::new(File::create(&self.log).with_context(unwritable)?);
-        let mut board = self.sensor.open()?;
-        let bar = count_bar("recording", "samples");
-        let mut progress = advance(&bar);
-        let (mut count, mut end) = (0, 0);
-        let mut written = writeln!(out, "{}", sensor::HEADER);
-        sensor::stream(
-            &mut Console::new(board.as_mut()),
-            self.samples,
-            &mut |entry| {
-                if written.is_ok() {
-                    written = writeln!(out, "{}", line(&entry));
-                }
-                (count, end) = (count + 1, entry.t_us);
-                progress(count, self.samples.into());
-            },
-        )?;
-        written
-            .and_then(|()| out.flush())
-            .with_context(unwritable)?;
-        bar.finish_and_clear();
-        say(format_args!(
-            "recorded    {count} samples in {:.3} s",
-            end as f64 / 1e6
-        ))
-    }
-}
 
 /// Make attitudes of a log, by the firmware's integer arithmetic.
 ///

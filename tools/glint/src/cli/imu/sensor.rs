@@ -1,0 +1,134 @@
+//! `glint imu stream`, `calibrate` and `record`.
+
+use super::source::SensorArguments;
+use crate::cli::common::{advance, count_bar, print_json, say};
+use anyhow::Context;
+use clap::Args;
+use glint::console::Console;
+use glint::imu::log::Entry;
+use glint::imu::sensor;
+use glint_core::calibration::{MOST_SAMPLES, SAMPLES};
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::PathBuf;
+
+/// Print samples as they come: t_us,ax,ay,az,gx,gy,gz in raw counts.
+///
+/// The sensor gives 1,000 samples a second; a line of 115,200 bits a second takes some 250 of them.
+#[derive(Args)]
+pub struct StreamArguments {
+    /// How many.
+    #[arg(long, value_name = "N", default_value_t = 1_000, value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_SAMPLES[1])))]
+    samples: u32,
+    #[command(flatten)]
+    sensor: SensorArguments,
+}
+
+impl StreamArguments {
+    pub fn run(self) -> anyhow::Result<()> {
+        let mut board = self.sensor.open()?;
+        say(sensor::HEADER)?;
+        let mut said = Ok(());
+        sensor::stream(
+            &mut Console::new(board.as_mut()),
+            self.samples,
+            &mut |entry| {
+                if said.is_ok() {
+                    said = say(line(&entry));
+                }
+            },
+        )?;
+        said
+    }
+}
+
+/// A sample as it stands in a log.
+fn line(entry: &Entry) -> String {
+    let ([ax, ay, az], [gx, gy, gz]) = (entry.accel, entry.gyro);
+    format!("{},{ax},{ay},{az},{gx},{gy},{gz}", entry.t_us)
+}
+
+/// Find the gyroscope's bias while the sensor lies still; the board keeps it, and follows it from then on.
+#[derive(Args)]
+pub struct CalibrateArguments {
+    /// With how many samples.
+    #[arg(long, value_name = "N", default_value_t = SAMPLES, value_parser = clap::value_parser!(u32).range(i64::from(MOST_SAMPLES[0])..=i64::from(MOST_SAMPLES[1])))]
+    samples: u32,
+    #[command(flatten)]
+    sensor: SensorArguments,
+    /// Print what was found as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+impl CalibrateArguments {
+    pub fn run(self) -> anyhow::Result<()> {
+        let mut board = self.sensor.open()?;
+        let bar = count_bar("calibrating", "samples");
+        let mut progress = advance(&bar);
+        let found = sensor::calibrate(
+            &mut Console::new(board.as_mut()),
+            self.samples,
+            &mut |samples| progress(samples.into(), self.samples.into()),
+        )?;
+        bar.finish_and_clear();
+        if self.json {
+            return print_json(&found);
+        }
+        let sensor::Calibrated {
+            samples,
+            bias,
+            deviation,
+            drift_per_hour,
+        } = found;
+        say(format_args!(
+            "calibrated  {samples} samples\nbias        {bias:.4?} °/s\ndeviation   {deviation:.4?} °/s\ndrift       {drift_per_hour:.1?} °/h expected"
+        ))
+    }
+}
+
+/// Write a board's samples to a log, for `glint imu replay`.
+///
+/// The sensor gives 1,000 samples a second; a line of 115,200 bits a second takes some 250 of them, each with the time at which it was measured.
+#[derive(Args)]
+pub struct RecordArguments {
+    /// The file to write.
+    #[arg(value_name = "LOG.csv")]
+    log: PathBuf,
+    /// How many samples.
+    #[arg(long, value_name = "N", default_value_t = 1_000, value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_SAMPLES[1])))]
+    samples: u32,
+    #[command(flatten)]
+    sensor: SensorArguments,
+}
+
+impl RecordArguments {
+    pub fn run(self) -> anyhow::Result<()> {
+        let unwritable = || format!("{}: cannot be written", self.log.display());
+        let mut out = BufWriter::new(File::create(&self.log).with_context(unwritable)?);
+        let mut board = self.sensor.open()?;
+        let bar = count_bar("recording", "samples");
+        let mut progress = advance(&bar);
+        let (mut count, mut end) = (0, 0);
+        let mut written = writeln!(out, "{}", sensor::HEADER);
+        sensor::stream(
+            &mut Console::new(board.as_mut()),
+            self.samples,
+            &mut |entry| {
+                if written.is_ok() {
+                    written = writeln!(out, "{}", line(&entry));
+                }
+                (count, end) = (count + 1, entry.t_us);
+                progress(count, self.samples.into());
+            },
+        )?;
+        written
+            .and_then(|()| out.flush())
+            .with_context(unwritable)?;
+        bar.finish_and_clear();
+        say(format_args!(
+            "recorded    {count} samples in {:.3} s",
+            end as f64 / 1e6
+        ))
+    }
+}

@@ -1,0 +1,149 @@
+//! Scaling of points to the unit box, and their rounding to Q2.14.
+
+use crate::error::FormatError;
+use crate::polygons::{Corner, Polygons, Vector};
+use std::collections::HashMap;
+
+/// One in Q2.14.
+pub const ONE: f64 = 16384.0;
+
+/// The map from the file's coordinates to world units: (P − centre)·scale.
+pub struct Placing {
+    /// The point that becomes the origin.
+    pub centre: Vector,
+    /// World units for one unit of the file.
+    pub scale: f64,
+}
+
+impl Placing {
+    /// The placing in the unit box, or with `keep_scale` the identity.
+    ///
+    /// # Errors
+    /// No finite extent.
+    pub fn of(polygons: &Polygons, keep_scale: bool) -> Result<Self, FormatError> {
+        if keep_scale {
+            return Ok(Self {
+                centre: [0.0; 3],
+                scale: 1.0,
+            });
+        }
+        // Points without a face do not count.
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for &corner in &polygons.corners {
+            for (i, &c) in polygons.point(corner).iter().enumerate() {
+                low[i] = low[i].min(c);
+                high[i] = high[i].max(c);
+            }
+        }
+        let extent = (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max);
+        let scale = 1.0 / extent;
+        if !scale.is_finite() {
+            return Err(FormatError::whole(
+                "a mesh with an extent",
+                format!("one of {extent:e}"),
+            ));
+        }
+        Ok(Self {
+            centre: [0, 1, 2].map(|i| low[i] + (high[i] - low[i]) / 2.0),
+            scale,
+        })
+    }
+
+    /// A point in world units.
+    pub fn apply(&self, point: Vector) -> Vector {
+        [0, 1, 2].map(|i| (point[i] - self.centre[i]) * self.scale)
+    }
+}
+
+/// All points in Q2.14; points that round to the same position share it.
+pub struct Rounded {
+    /// For each point of the file its number in `positions`.
+    of_point: Vec<u32>,
+    /// The positions in Q2.14.
+    pub positions: Vec<[i16; 3]>,
+    /// The largest distance between a point and its position, in world units.
+    pub error_max: f64,
+    /// The root of the mean square of these distances, in world units.
+    pub error_rms: f64,
+}
+
+impl Rounded {
+    const UNUSED: u32 = u32::MAX;
+
+    /// Rounds every point that a face uses.
+    ///
+    /// # Errors
+    /// A point outside [-2, 2).
+    pub fn of(polygons: &Polygons, placing: &Placing) -> Result<Self, FormatError> {
+        let mut of_point = vec![Self::UNUSED; polygons.points.len()];
+        let mut positions = Vec::new();
+        let mut numbers: HashMap<[i16; 3], u32> = HashMap::new();
+        let (mut error_max, mut squares, mut used) = (0.0_f64, 0.0, 0_u32);
+        for &corner in &polygons.corners {
+            let slot = &mut of_point[corner.point as usize];
+            if *slot != Self::UNUSED {
+                continue;
+            }
+            let exact = placing.apply(polygons.point(corner));
+            let position = nearest(exact).ok_or_else(|| {
+                let [x, y, z] = exact;
+                FormatError::whole(
+                    "coordinates in [-2, 2 - 2^-14] (without --keep-scale the mesh is scaled to fit)",
+                    format!("point {} at ({x}, {y}, {z})", corner.point),
+                )
+            })?;
+            *slot = *numbers.entry(position).or_insert_with(|| {
+                positions.push(position);
+                (positions.len() - 1) as u32
+            });
+            let square: f64 = (0..3)
+                .map(|i| (f64::from(position[i]) / ONE - exact[i]).powi(2))
+                .sum();
+            error_max = error_max.max(square.sqrt());
+            squares += square;
+            used += 1;
+        }
+        Ok(Self {
+            of_point,
+            positions,
+            error_max,
+            error_rms: (squares / f64::from(used.max(1))).sqrt(),
+        })
+    }
+
+    /// The number of a corner's position.
+    pub fn number(&self, corner: Corner) -> u32 {
+        self.of_point[corner.point as usize]
+    }
+
+    /// A corner's position in Q2.14.
+    pub fn position(&self, corner: Corner) -> [i16; 3] {
+        self.positions[self.number(corner) as usize]
+    }
+}
+
+/// Q2.14, to nearest, ties up; `None` outside [−2, 2 − 2^−14].
+fn nearest(exact: Vector) -> Option<[i16; 3]> {
+    let mut position = [0; 3];
+    for (q, c) in position.iter_mut().zip(exact) {
+        let rounded = (c * ONE + 0.5).floor();
+        if !(f64::from(i16::MIN)..=f64::from(i16::MAX)).contains(&rounded) {
+            return None;
+        }
+        *q = rounded as i16;
+    }
+    Some(position)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_rounding_is_to_nearest_ties_up() {
+        let half = 0.5 / ONE;
+        assert_eq!(nearest([half, -half, 1.4 / ONE]), Some([1, 0, 1]));
+        assert_eq!(nearest([-2.0 - half, 0.0, 0.0]), Some([i16::MIN, 0, 0]));
+        assert_eq!(nearest([f64::NAN, 0.0, 0.0]), None);
+    }
+}

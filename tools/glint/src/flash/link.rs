@@ -1,0 +1,232 @@
+//! Batches of frames with retries.
+
+use super::frame::{JUMP, LOAD, frame};
+use crate::board::{Board, BoardError};
+
+/// Maximum data bytes of a frame. The protocol allows 251, but a frame of 104 bytes and the answer to the request fit together
+/// into the 127 bytes that the BIOS buffers while it is busy.
+const MAX_DATA: usize = 96;
+/// Minimum data bytes of a frame.
+const MIN_DATA: usize = 12;
+/// Maximum frames of a batch: more than the delay and the buffers of an adapter hold at 1 Mbit/s.
+const MAX_BATCH: usize = 64;
+/// Answer time per frame below which longer batches gain nothing.
+const PROMPT_MS: u64 = 2;
+/// Silence after which the BIOS expects a new frame: more than its time-out of 250 ms.
+const QUIET_MS: u64 = 300;
+/// Time-out of an answer: a frame on a slow line and the delay of an adapter.
+const ANSWER_MS: u64 = 500;
+/// Failed batches in a row after which the transfer fails.
+const MAX_FAILURES: u32 = 24;
+
+/// Counts of a transfer.
+#[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct Report {
+    /// The program's length.
+    pub bytes: usize,
+    /// Frames sent, repeats included.
+    pub frames: u32,
+    /// Batches sent again.
+    pub retries: u32,
+    /// The board's time from the first frame to the jump, in milliseconds.
+    pub milliseconds: u64,
+    /// Output of the program since the jump.
+    #[serde(skip)]
+    pub said: Vec<u8>,
+}
+
+/// A transfer that failed.
+#[derive(Debug, thiserror::Error)]
+pub enum FlashError {
+    /// The board's connection failed.
+    #[error(transparent)]
+    Board(#[from] BoardError),
+    /// No request of the BIOS.
+    #[error(
+        "no serial boot for {waited_ms} ms: expected the BIOS's request sL5DdSMmkekro, found {last:?}; press the board's reset button"
+    )]
+    NoRequest {
+        /// Board time of the wait.
+        waited_ms: u64,
+        /// The end of the board's output.
+        last: String,
+    },
+    /// Too many transmission errors.
+    #[error(
+        "at {address:#010x}: {MAX_FAILURES} batches failed in a row, the last with {data} data bytes a frame: expected {expected}, found {found}"
+    )]
+    Line {
+        /// Address of the batch's data.
+        address: u32,
+        /// Data bytes of a frame in the last batch.
+        data: usize,
+        /// The expected answers.
+        expected: String,
+        /// The received answers.
+        found: String,
+    },
+}
+
+/// The outcome of a batch.
+pub enum Delivery {
+    /// Every frame was acknowledged.
+    Arrived {
+        /// The board's time from the first frame to the last answer.
+        milliseconds: u64,
+    },
+    /// An answer was missing or negative.
+    Failed {
+        /// The received answers.
+        found: String,
+    },
+}
+
+/// Sends frames in batches, and adapts their lengths to the line.
+pub struct Link<'b> {
+    /// Counts of the whole transfer.
+    pub report: Report,
+    board: &'b mut dyn Board,
+    /// Data bytes a frame.
+    data: usize,
+    /// Frames a batch.
+    batch: usize,
+    /// Failed batches since the last success.
+    failures: u32,
+}
+
+impl<'b> Link<'b> {
+    /// A link that starts with long frames and batches of one.
+    pub fn new(board: &'b mut dyn Board) -> Self {
+        Self {
+            board,
+            data: MAX_DATA,
+            batch: 1,
+            failures: 0,
+            report: Report::default(),
+        }
+    }
+
+    /// The board's time.
+    pub fn now_ms(&self) -> u64 {
+        self.board.now_ms()
+    }
+
+    /// Data bytes of a frame.
+    pub fn data(&self) -> usize {
+        self.data
+    }
+
+    /// The next frames from `start` on.
+    pub fn batch(&self, program: &[u8], address: u32, start: usize) -> Vec<Vec<u8>> {
+        program[start..]
+            .chunks(self.data)
+            .take(self.batch)
+            .enumerate()
+            .map(|(i, data)| {
+                let at = address.wrapping_add((start + i * self.data) as u32);
+                frame(LOAD, &[&at.to_be_bytes(), data].concat())
+            })
+            .collect()
+    }
+
+    /// Sends frames and counts the answers.
+    pub fn deliver(&mut self, frames: &[Vec<u8>]) -> Result<Delivery, BoardError> {
+        let start = self.board.now_ms();
+        for frame in frames {
+            self.board.write(frame)?;
+            self.report.frames += 1;
+        }
+        // Transmission time in ms: about ten bytes per ms at 115,200 baud.
+        let on_line = frames.iter().map(Vec::len).sum::<usize>() as u64 / 10;
+        let mut answers = Vec::new();
+        let mut last = self.board.now_ms();
+        while answers.len() < frames.len() && answers.iter().all(|&answer| answer == b'K') {
+            let before = answers.len();
+            self.board.read(&mut answers, ANSWER_MS)?;
+            let now = self.board.now_ms();
+            if answers.len() > before {
+                last = now;
+            } else if now.saturating_sub(last) >= ANSWER_MS + on_line {
+                break;
+            }
+        }
+        if answers.len() == frames.len() && answers.iter().all(|&answer| answer == b'K') {
+            return Ok(Delivery::Arrived {
+                milliseconds: self.board.now_ms() - start,
+            });
+        }
+        self.settle()?;
+        let answers = &answers[..answers.len().min(40)];
+        Ok(Delivery::Failed {
+            found: format!("'{}'", answers.escape_ascii()),
+        })
+    }
+
+    /// Waits until the line is quiet and the BIOS expects a new frame; returns the bytes received meanwhile.
+    fn settle(&mut self) -> Result<Vec<u8>, BoardError> {
+        let mut last = self.board.now_ms();
+        let mut rest = Vec::new();
+        while self.board.now_ms().saturating_sub(last) < QUIET_MS {
+            let before = rest.len();
+            self.board.read(&mut rest, QUIET_MS)?;
+            if rest.len() > before {
+                last = self.board.now_ms();
+            }
+        }
+        Ok(rest)
+    }
+
+    /// Makes frames, then batches, longer after a batch of `frames` frames that took `milliseconds`.
+    pub fn grow(&mut self, frames: usize, milliseconds: u64) {
+        self.failures = 0;
+        if self.data < MAX_DATA {
+            self.data = (self.data * 2).min(MAX_DATA);
+        } else if milliseconds >= PROMPT_MS * frames as u64 {
+            self.batch = (self.batch * 2).min(MAX_BATCH);
+        }
+    }
+
+    /// Makes batches and frames shorter after a failure at `address`.
+    ///
+    /// # Errors
+    /// Too many failures in a row.
+    pub fn shrink(&mut self, address: u32, frames: usize, found: String) -> Result<(), FlashError> {
+        self.failures += 1;
+        self.report.retries += 1;
+        if self.failures == MAX_FAILURES {
+            let expected = format!("{frames} answers 'K'");
+            return Err(FlashError::Line {
+                address,
+                data: self.data,
+                expected,
+                found,
+            });
+        }
+        self.batch = (self.batch / 4).max(1);
+        self.data = (self.data / 2).max(MIN_DATA);
+        Ok(())
+    }
+
+    /// Starts the program. Output of the program counts as success even if the answer was damaged.
+    pub fn jump(&mut self, address: u32) -> Result<(), FlashError> {
+        let frame = frame(JUMP, &address.to_be_bytes());
+        loop {
+            self.board.write(&frame)?;
+            self.report.frames += 1;
+            let mut said = Vec::new();
+            self.board.read(&mut said, ANSWER_MS)?;
+            if said.first() != Some(&b'K') {
+                said.extend(self.settle()?);
+            }
+            match said.as_slice() {
+                [b'K', rest @ ..] => self.report.said = rest.to_vec(),
+                [] | [_] => {
+                    self.shrink(address, 1, format!("'{}'", said.escape_ascii()))?;
+                    continue;
+                }
+                _ => self.report.said = said,
+            }
+            return Ok(());
+        }
+    }
+}

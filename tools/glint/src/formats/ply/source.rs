@@ -1,0 +1,134 @@
+//! Values of a PLY's body, ASCII or binary.
+
+use super::header::Scalar;
+use crate::error::{FormatError, Place, quote};
+use crate::formats::text::{Lines, any_number};
+
+/// The values of a PLY's elements in file order.
+pub trait Source {
+    /// Starts an element's next instance.
+    fn start(&mut self) -> Result<(), FormatError>;
+    /// The next value.
+    fn value(&mut self, scalar: Scalar) -> Result<f64, FormatError>;
+    /// Ends an instance.
+    fn end(&mut self) -> Result<(), FormatError>;
+    /// The place of the next value.
+    fn place(&self) -> Place;
+}
+
+/// Values as decimal words, a line per instance of an element.
+pub struct AsciiSource<'a> {
+    lines: Lines<'a>,
+    words: Vec<&'a [u8]>,
+    next: usize,
+    number: usize,
+}
+
+impl<'a> AsciiSource<'a> {
+    /// The values in the lines after the header.
+    pub fn new(lines: Lines<'a>) -> Self {
+        Self {
+            lines,
+            words: Vec::new(),
+            next: 0,
+            number: 0,
+        }
+    }
+}
+
+impl Source for AsciiSource<'_> {
+    fn start(&mut self) -> Result<(), FormatError> {
+        loop {
+            let line = self.lines.next_line()?.ok_or_else(|| {
+                FormatError::new(
+                    Place::Line(self.number),
+                    "as many elements as the header declares",
+                    "the end of the file",
+                )
+            })?;
+            self.number = line.number;
+            self.words.clear();
+            self.words.extend(line.words());
+            self.next = 0;
+            if !self.words.is_empty() {
+                return Ok(());
+            }
+        }
+    }
+
+    fn value(&mut self, scalar: Scalar) -> Result<f64, FormatError> {
+        let place = self.place();
+        let word = self
+            .words
+            .get(self.next)
+            .ok_or_else(|| FormatError::new(place, scalar.describe(), "the end of the line"))?;
+        self.next += 1;
+        any_number(word)
+            .filter(|value| scalar.holds(*value))
+            .ok_or_else(|| FormatError::new(place, scalar.describe(), quote(word)))
+    }
+
+    fn end(&mut self) -> Result<(), FormatError> {
+        match self.words.get(self.next) {
+            None => Ok(()),
+            Some(word) => Err(FormatError::new(
+                self.place(),
+                "the end of the line",
+                quote(word),
+            )),
+        }
+    }
+
+    fn place(&self) -> Place {
+        Place::Line(self.number)
+    }
+}
+
+/// Values as bytes, without padding.
+pub struct BinarySource<'a> {
+    file: &'a [u8],
+    offset: usize,
+    big_endian: bool,
+}
+
+impl<'a> BinarySource<'a> {
+    /// The values of `file` from `offset` on.
+    pub fn new(file: &'a [u8], offset: usize, big_endian: bool) -> Self {
+        Self {
+            file,
+            offset,
+            big_endian,
+        }
+    }
+}
+
+impl Source for BinarySource<'_> {
+    fn start(&mut self) -> Result<(), FormatError> {
+        Ok(())
+    }
+
+    fn value(&mut self, scalar: Scalar) -> Result<f64, FormatError> {
+        let size = scalar.size();
+        let bytes = self
+            .file
+            .get(self.offset..self.offset + size)
+            .ok_or_else(|| {
+                FormatError::new(self.place(), scalar.describe(), "the end of the file")
+            })?;
+        self.offset += size;
+        let mut raw = [0; 8];
+        raw[..size].copy_from_slice(bytes);
+        if self.big_endian {
+            raw[..size].reverse();
+        }
+        Ok(scalar.decode(raw))
+    }
+
+    fn end(&mut self) -> Result<(), FormatError> {
+        Ok(())
+    }
+
+    fn place(&self) -> Place {
+        Place::Byte(self.offset)
+    }
+}
