@@ -1,8 +1,9 @@
 //! `cargo xtask resources`: what the gateware costs on the FPGA, against `gateware/budget.toml`.
 //!
-//! `gateware/tests/size.py` measures one block at a time, by Yosys; two run at once. [`size::Size`] is what comes of it,
-//! [`budget::Budget`] says what it may be, [`table`] prints both.
+//! `gateware/tests/size.py` measures one block with Yosys; two blocks are measured at a time. [`size::Size`] is the result,
+//! [`budget::Budget`] its limit; [`table`] prints both.
 
+mod blocks;
 mod budget;
 mod size;
 mod table;
@@ -17,70 +18,9 @@ use anyhow::{Context, Result, bail};
 
 use crate::gateware::{self, Board};
 use crate::{bootstrap, paths, run};
+use blocks::{BUILDS, FLAT, FLAT_PARTS, OWN, ROWS, SOC};
 use budget::{Budget, Excess};
 use size::Size;
-
-/// The own blocks, the slowest to measure first.
-const OWN: [&str; 7] = [
-    "ring_lane",
-    "setup",
-    "triangle_raster",
-    "band_buffer",
-    "scanout",
-    "vertex_stage",
-    "i2c_engine",
-];
-
-/// What is made of own blocks, in several builds, and parts of the raymarcher, which the tables show; to measure them in every test
-/// would take too long.
-const BUILDS: [&str; 13] = [
-    "triangle_engine_smooth",
-    "raymarcher",
-    "triangle_engine",
-    "raymarcher_sponge",
-    "raymarcher_round",
-    "raymarcher_faces",
-    "ring_lane_all",
-    "ray_generator",
-    "ray_paint",
-    "round_light",
-    "field_sphere",
-    "field_menger",
-    "field_box",
-];
-
-/// The smallest engine that draws flat triangles: its parts, and the name of their sum.
-const FLAT_PARTS: [&str; 3] = ["vertex_stage", "setup", "triangle_raster"];
-const FLAT: &str = "flat_build";
-
-/// The whole of the Urbana's FPGA.
-const SOC: &str = "soc";
-
-/// The rows of the tables in their order; other modules come after them.
-const ROWS: [&str; 22] = [
-    "scanout",
-    "i2c_engine",
-    "vertex_stage",
-    "setup",
-    "triangle_raster",
-    FLAT,
-    "band_buffer",
-    "triangle_engine",
-    "triangle_engine_smooth",
-    "field_menger",
-    "field_box",
-    "field_sphere",
-    "ring_lane",
-    "ring_lane_all",
-    "ray_generator",
-    "round_light",
-    "ray_paint",
-    "raymarcher",
-    "raymarcher_round",
-    "raymarcher_faces",
-    "raymarcher_sponge",
-    SOC,
-];
 
 /// Yosys at a time: each keeps one core busy and takes about a gigabyte.
 const AT_ONCE: usize = 2;

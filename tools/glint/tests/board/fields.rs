@@ -8,9 +8,9 @@ use glint::render::{self, FieldSubject, MeshSubject, Route, Scene, Subject};
 use glint::view;
 use glint_core::appearance::Appearance;
 use glint_core::colour::Shading;
-use glint_core::picture::Backend;
 use glint_core::field::Field;
 use glint_core::light::Material;
+use glint_core::picture::Backend;
 
 #[test]
 fn a_field_is_the_models() {

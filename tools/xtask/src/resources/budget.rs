@@ -7,8 +7,8 @@ use std::fs;
 use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};
 
-use super::size::{Resource, Size};
-use super::{ROWS, SOC, table};
+use super::blocks::{ROWS, SOC};
+use super::size::{Resource, Size, number};
 use crate::paths;
 
 /// The most of some resources.
@@ -46,8 +46,8 @@ impl fmt::Display for Excess {
             "{}: {}: budget {}, measured {}",
             self.block,
             self.resource.name(),
-            table::number(self.budget.into()),
-            table::number(self.measured)
+            number(self.budget.into()),
+            number(self.measured)
         )
     }
 }

@@ -4,9 +4,9 @@ use std::fmt::Write as _;
 
 use serde_json::{Value, json};
 
+use super::blocks::{FLAT, FLAT_PARTS, OWN, SOC};
 use super::budget::{Budget, Excess};
-use super::size::{Resource, Size};
-use super::{FLAT, FLAT_PARTS, OWN, SOC};
+use super::size::{Resource, Size, number};
 
 /// What the numbers say and what they do not.
 const NOTES: [&str; 7] = [
@@ -26,23 +26,6 @@ const NOTES: [&str; 7] = [
      holds the BIOS of this build.",
     "The SoC's path is shown and not limited: the soft core has longer ones than the own blocks.",
 ];
-
-/// A count with its thousands apart; halves are told.
-pub fn number(count: f64) -> String {
-    let digits = format!("{:.0}", count.trunc());
-    let mut grouped = String::new();
-    for (place, digit) in digits.chars().enumerate() {
-        if place > 0 && (digits.len() - place).is_multiple_of(3) {
-            grouped.push(',');
-        }
-        grouped.push(digit);
-    }
-    if count.fract() == 0.0 {
-        grouped
-    } else {
-        grouped + ".5"
-    }
-}
 
 /// Rows of equal length, the first of which is the head.
 type Rows = Vec<Vec<String>>;
@@ -215,12 +198,6 @@ mod tests {
 
     fn budget() -> Budget {
         toml::from_str(super::super::budget::tests::BUDGET).unwrap()
-    }
-
-    #[test]
-    fn groups_thousands_and_tells_halves() {
-        let shown = [0.0, 60.5, 999.0, 1000.0, 32600.0, 1234567.0].map(number);
-        assert_eq!(shown, ["0", "60.5", "999", "1,000", "32,600", "1,234,567"]);
     }
 
     #[test]

@@ -1,0 +1,116 @@
+//! `glint imu replay` by the model.
+
+use crate::common::{folder, refused, succeed};
+
+#[test]
+fn logs_of_a_gyroscope() {
+    let folder = folder("imu");
+    // At rest for 0.1 s with noise and a bias, then 90 °/s about z for a second; the last 10 ms are lost.
+    let mut log = String::from("gx,gy,gz,t_us,temp,ax,ay,az\n");
+    for i in (0..=1090).chain([1100]) {
+        let noise = i * 7 % 5 - 2;
+        let turning = if i > 100 { 1476 } else { 0 };
+        log += &format!(
+            "{},{},{},{},-500,0,0,4096\n",
+            20 + noise,
+            -10 - noise,
+            5 + turning,
+            3_000_000 + i * 1000
+        );
+    }
+    std::fs::write(folder.join("turn.csv"), &log).unwrap();
+    let replay = |log: &str, more: &[&str]| -> Vec<String> {
+        let arguments = [&["imu", "replay", log, "--out", "o.csv"], more].concat();
+        let mut said = vec![succeed(&folder, &arguments)];
+        let out = std::fs::read_to_string(folder.join("o.csv")).unwrap();
+        said.extend(out.lines().map(str::to_owned));
+        said
+    };
+    let numbers =
+        |line: &str| -> Vec<f64> { line.split(',').map(|word| word.parse().unwrap()).collect() };
+    let said = replay("turn.csv", &["--still", "0.1", "--json"]);
+    assert_eq!(said[1], "t_us,w,x,y,z,yaw,pitch,roll");
+    assert_eq!(said.len(), 2 + 1092);
+    assert_eq!(
+        said[2],
+        "3000000,1.0000000000,0.0000000000,0.0000000000,0.0000000000,0.0000000,0.0000000,0.0000000"
+    );
+    let last = numbers(said.last().unwrap());
+    assert_eq!(last[0], 4_100_000.0);
+    // The first turning sample follows a still one: half of its step is missing, and what a cubic makes of the corner.
+    assert!(
+        (last[5] - 89.96).abs() < 0.02 && last[6].abs() < 0.1 && last[7].abs() < 0.1,
+        "{last:?}"
+    );
+    let summary: serde_json::Value = serde_json::from_str(&said[0]).unwrap();
+    assert_eq!(summary["steps"], 1091);
+    assert_eq!(summary["calibration"]["samples"], 100);
+    assert_eq!(
+        summary["calibration"]["bias"],
+        serde_json::json!([20.0, -10.0, 5.0])
+    );
+    let yaw = summary["end"]["yaw"].as_f64().unwrap();
+    assert!((yaw - last[5]).abs() < 1e-6, "{yaw}");
+
+    // Twice as long between samples, half as much a count: the same. And without the gap, which is a step now.
+    let said = replay(
+        "turn.csv",
+        &["--dt-us", "2000", "--gyro-lsb", "32.8", "--no-tilt"],
+    );
+    assert!(
+        said[0].starts_with("samples     1092 in 2.182 s: 1091 steps, 0 stale, "),
+        "{}",
+        said[0]
+    );
+    let turned = numbers(said.last().unwrap())[5];
+    // The bias of 5 LSB counts here.
+    let expected = (991.0 * 1481.0 + 100.5 * 5.0) * 0.002 / 32.8;
+    assert!((turned - expected).abs() < 0.1, "{turned} {expected}");
+
+    // On its side gravity says so, unless it is left out.
+    let side = "t_us,ax,ay,az,gx,gy,gz\n0,0,4096,0,0,0,0\n1000,0,4096,0,0,0,0\n";
+    std::fs::write(folder.join("side.csv"), side).unwrap();
+    let angles = |more: &[&str]| numbers(replay("side.csv", more).last().unwrap())[5..].to_vec();
+    assert_eq!(angles(&[]), [0.0, 0.0, 90.0]);
+    assert_eq!(angles(&["--no-tilt"]), [0.0, 0.0, 0.0]);
+
+    std::fs::write(
+        folder.join("bad.csv"),
+        side.replace("1000,0,4096", "1000,0,4096.5"),
+    )
+    .unwrap();
+    for (arguments, message) in [
+        (
+            &["bad.csv"][..],
+            "bad.csv: line 3, column ay: expected a whole number from -32768 to 32767, found '4096.5'",
+        ),
+        (
+            &["none.csv"],
+            "none.csv: expected a file to read, found No such file or directory (os error 2)",
+        ),
+        (
+            &["side.csv", "--still", "1"],
+            "side.csv: expected at least 64 samples in the first 1 s, found 2",
+        ),
+        (
+            &["turn.csv", "--still", "0.5"],
+            "turn.csv: line 103: expected a sensor at rest in the first 0.5 s, found gyroscope z of sample 101 is 1476 LSB from the first: expected at most 33, keep it still",
+        ),
+        (
+            &["side.csv", "--gyro-lsb", "0"],
+            "--gyro-lsb: expected a number of LSB per °/s from 8 to 4096, found '0'",
+        ),
+        (
+            &["side.csv", "--accel-lsb", "2g"],
+            "--accel-lsb: expected a whole number of LSB per g from 1024 to 32767, found '2g'",
+        ),
+        (
+            &["side.csv", "--still", "-1"],
+            "--still: expected a number of seconds up to 86400, found '-1'",
+        ),
+    ] {
+        let all = [&["imu", "replay", "--out", "x.csv"], arguments].concat();
+        assert_eq!(refused(&folder, &all), format!("error: {message}"));
+        assert!(!folder.join("x.csv").exists());
+    }
+}

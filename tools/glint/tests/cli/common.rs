@@ -1,0 +1,79 @@
+//! Runs of the program, and its output files.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// A folder of this test's own.
+pub fn folder(name: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR"))
+        .join("cli")
+        .join(name);
+    if path.exists() {
+        std::fs::remove_dir_all(&path).unwrap();
+    }
+    std::fs::create_dir_all(&path).unwrap();
+    path
+}
+
+/// Runs the program with a quarter of a gigabyte of address space: unbounded memory would show.
+pub fn glint(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new("sh")
+        .args([
+            "-c",
+            "ulimit -v 262144; exec \"$0\" \"$@\"",
+            env!("CARGO_BIN_EXE_glint"),
+        ])
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .unwrap()
+}
+
+pub fn succeed(folder: &Path, arguments: &[&str]) -> String {
+    let output = glint(folder, arguments);
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{arguments:?}: {error}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// The one line of a refusal.
+pub fn refused(folder: &Path, arguments: &[&str]) -> String {
+    let output = glint(folder, arguments);
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {error}");
+    assert_eq!(error.lines().count(), 1, "{arguments:?}: {error}");
+    assert!(output.stdout.is_empty(), "{arguments:?}");
+    assert!(
+        error.contains("expected ") && error.contains("found "),
+        "{arguments:?}: {error}"
+    );
+    error.trim_end().to_owned()
+}
+
+pub const VIEW: &str =
+    r#"{"eye":[0,-2,0],"u":[1,0,0],"v":[0,0,-1],"n":[0,1,0],"half_width":0.9,"near":0.1}"#;
+
+/// The pixels of a picture of 16 to 9, three bytes each.
+pub fn picture(path: &Path) -> Vec<u8> {
+    let decoder = png::Decoder::new(std::io::BufReader::new(std::fs::File::open(path).unwrap()));
+    let mut reader = decoder.read_info().unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut pixels).unwrap();
+    assert_eq!(
+        (info.width * 9, info.color_type),
+        (info.height * 16, png::ColorType::Rgb)
+    );
+    pixels
+}
+
+pub fn depths(path: &Path) -> Vec<f32> {
+    let number = |bytes: &[u8]| f32::from_le_bytes(bytes.try_into().unwrap());
+    let bytes = std::fs::read(path).unwrap();
+    bytes.chunks_exact(4).map(number).collect()
+}
+
+pub fn json(path: &Path) -> serde_json::Value {
+    serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
+}
+
+pub const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";

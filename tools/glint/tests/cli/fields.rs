@@ -1,0 +1,161 @@
+//! `glint render` of distance fields, alone and with a mesh, by the model.
+
+use crate::common::{VIEW, depths, folder, json, picture, refused, succeed};
+
+#[test]
+fn fields_and_their_files() {
+    let folder = folder("fields");
+    // A box of half a unit, from 20 away: farther than a mesh allows.
+    let view = VIEW.replace("[0,-2,0]", "[0,-20,0]");
+    std::fs::write(
+        folder.join("far.json"),
+        view.replace("0.9", "0.05").replace("0.1}", "0.5}"),
+    )
+    .unwrap();
+    let render = |field: &str, more: &[&str]| {
+        let arguments = ["render", "--field", field, "--out", "a.png"]
+            .iter()
+            .chain(more)
+            .copied()
+            .collect::<Vec<_>>();
+        let said = succeed(&folder, &arguments);
+        (picture(&folder.join("a.png")), said)
+    };
+    let far = ["--view", "far.json"];
+    let files = ["--depth", "a.f32", "--stats", "a.json"];
+    let (one, said) = render("box:0.5,0.5,0.25", &[&far[..], &files[..]].concat());
+    assert!(said.starts_with("rays       57600 cast, "), "{said}");
+    let stats = json(&folder.join("a.json"));
+    let number = |key: &str| stats[key].as_u64().unwrap();
+    assert_eq!(number("rays"), 320 * 180);
+    assert_eq!(
+        number("rays"),
+        number("hits") + number("misses") + number("undecided")
+    );
+    let mean = number("evaluations") as f64 / number("rays") as f64;
+    assert_eq!(stats["evaluations_per_ray"], mean);
+    assert!(stats["cycles"].is_null() && stats.get("triangles_in").is_none());
+
+    // The face towards the camera, in the colour of its normal, in front of white.
+    let depth = depths(&folder.join("a.f32"));
+    for (z, pixel) in depth.iter().zip(one.chunks_exact(3)) {
+        assert!(
+            *z == f32::INFINITY && pixel == [0xff; 3] || (z - 19.5).abs() < 0.05,
+            "{z} {pixel:?}"
+        );
+    }
+    assert!(number("hits") > 0);
+    assert_eq!(
+        depth.iter().filter(|z| z.is_finite()).count() as u64,
+        number("hits")
+    );
+
+    let (two, said) = render(
+        "box:0.5,0.5,0.25",
+        &[&far[..], &["--stereo", "0.05,18", "--json"]].concat(),
+    );
+    assert_ne!(one, two);
+    assert!(
+        said.starts_with("{\"field\":\"box:0.5,0.5,0.25\",") && said.contains("\"rays\":115200,"),
+        "{said}"
+    );
+    // Five lights are one too many.
+    let lights = ["--light", "0,0,1"].repeat(5);
+    let arguments = [
+        &["render", "--field", "menger:1", "--out", "b.png"],
+        &lights[..],
+    ]
+    .concat();
+    assert_eq!(
+        refused(&folder, &arguments),
+        "error: --light: expected at most 4 lights, found 5"
+    );
+    // Blue light from above, and nothing from anywhere else.
+    let blue = [
+        "--material",
+        "ivory",
+        "--light",
+        "0,0,1,0000ff",
+        "--ambient",
+        "000000",
+    ];
+    let (lit, _) = render("box:1,1,1", &blue);
+    let mut colours: Vec<&[u8]> = lit.chunks_exact(3).collect();
+    colours.sort_unstable();
+    colours.dedup();
+    assert_eq!(colours, [&[0, 0, 0], &[0, 0, 231], &[255; 3]]);
+    for more in [
+        &["--material", "clay"][..],
+        &["--background", "sky"],
+        &["--fog", "0.2"],
+        &["--occlusion"],
+    ] {
+        assert_ne!(
+            render("menger:2", more).0,
+            render("menger:2", &[]).0,
+            "{more:?}"
+        );
+    }
+    // The camera without a name sees the whole sponge.
+    let (sponge, _) = render("menger:3", &[]);
+    assert_eq!(sponge[..3], [0xff; 3]);
+    assert_ne!(sponge, render("menger:3", &["--camera", "3,30,60"]).0);
+}
+
+/// A sphere of radius 1 looks out of the faces of a box, and the box's corners look out of the sphere.
+#[test]
+fn a_mesh_in_a_field() {
+    let folder = folder("mesh-in-field");
+    let render = |what: &[&str]| {
+        let files = ["--out", "a.png", "--depth", "a.f32", "--stats", "a.json"];
+        let camera = ["--camera", "4,30,60"];
+        let arguments = [&["render"], what, &camera, &files].concat();
+        let said = succeed(&folder, &arguments);
+        let pixels = picture(&folder.join("a.png"));
+        (
+            pixels,
+            depths(&folder.join("a.f32")),
+            json(&folder.join("a.json")),
+            said,
+        )
+    };
+    let box_ = ["--field", "box:0.75,0.75,0.75", "--background", "sky"];
+    let (mesh, mesh_depth, mesh_stats, _) = render(&["icosphere:6"]);
+    let (field, field_depth, field_stats, _) = render(&box_);
+    let (both, depth, stats, said) = render(&[&["icosphere:6"], &box_[..]].concat());
+    let mut seen = [0, 0];
+    for (i, pixel) in both.chunks_exact(3).enumerate() {
+        let (a, b) = (mesh_depth[i], field_depth[i]);
+        // Each has codes of its own alone.
+        if (a - b).abs() < 1e-3 {
+            continue;
+        }
+        let nearer = if a < b { &mesh } else { &field };
+        assert_eq!(pixel, &nearer[3 * i..3 * i + 3], "pixel {i}");
+        assert!(
+            (depth[i] - a.min(b)).abs() < 1e-3 || depth[i] == a.min(b),
+            "pixel {i}"
+        );
+        seen[usize::from(b < a)] += 1;
+    }
+    assert!(seen.iter().all(|&pixels| pixels > 1000), "{seen:?}");
+    for key in [
+        "triangles_in",
+        "triangles_drawn",
+        "pixels_tested",
+        "pixels_covered",
+    ] {
+        assert_eq!(stats[key], mesh_stats[key], "{key}");
+    }
+    for key in ["rays", "hits", "evaluations", "evaluations_per_ray"] {
+        assert_eq!(stats[key], field_stats[key], "{key}");
+    }
+    assert!(stats.get("pixels_drawn").is_none());
+    let starts = ["triangles  ", "pixels     ", "rays       ", "field      "];
+    assert!(
+        said.lines()
+            .zip(starts)
+            .all(|(line, start)| line.starts_with(start)),
+        "{said}"
+    );
+}

@@ -1,0 +1,281 @@
+//! Bad input: one line of error, exit code 2, and no output file.
+
+use crate::common::{SQUARE, VIEW, folder, glint, refused};
+
+#[test]
+fn bad_meshes() {
+    let folder = folder("bad_meshes");
+    let stl_of_2_31_faces = [&[0; 80][..], &(1_u32 << 31).to_le_bytes(), &[0; 50]].concat();
+    let ply = |faces: &str, body: &str| {
+        format!(
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face {faces}\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n{body}"
+        )
+        .into_bytes()
+    };
+    let million = "1 ".repeat(500_000);
+    let cases: Vec<(&str, Vec<u8>, &str)> = vec![
+        (
+            "empty.obj",
+            vec![],
+            "expected at least one face, found none",
+        ),
+        ("empty.stl", vec![], "expected an STL"),
+        ("empty.ply", vec![], "line 1: expected ply"),
+        (
+            "empty.glm",
+            vec![],
+            "byte 0: expected at least 32 bytes of header, found 0",
+        ),
+        (
+            "nan.obj",
+            SQUARE.replace("1 0 0", "1 NaN 0").into(),
+            "line 2: expected a number within ±1e15, found 'NaN'",
+        ),
+        (
+            "huge.obj",
+            SQUARE.replace("1 0 0", "1 1e300 0").into(),
+            "line 2: expected a number within ±1e15, found '1e300'",
+        ),
+        (
+            "zero.obj",
+            SQUARE.replace("f 1", "f 0").into(),
+            "line 5: expected a vertex index",
+        ),
+        (
+            "range.obj",
+            SQUARE.replace("f 1", "f 5").into(),
+            "line 5: expected a point of the 4 in the file, found one with index 4",
+        ),
+        (
+            "negative.obj",
+            SQUARE.replace("f 1", "f -5").into(),
+            "line 5: expected a vertex index",
+        ),
+        (
+            "faces.obj",
+            SQUARE.replace("f 1", "f 2147483648").into(),
+            "line 5: expected a point",
+        ),
+        (
+            "line.obj",
+            format!("{SQUARE}f {million}\n").into(),
+            "line 6: expected a line of at most 65536 bytes",
+        ),
+        (
+            "polygon.obj",
+            format!("{SQUARE}f {}\n", &million[..20_000]).into(),
+            "line 6: expected a face of 3 to 8192 corners, found 10000",
+        ),
+        (
+            "binary.obj",
+            (0..=255).collect(),
+            "line 1: expected an OBJ statement",
+        ),
+        (
+            "point.obj",
+            b"v 1 1 1\nf 1 1 1\n".to_vec(),
+            "expected a mesh with an extent, found one of 0e0",
+        ),
+        (
+            "flat.obj",
+            b"v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n".to_vec(),
+            "expected a triangle with an area",
+        ),
+        (
+            "faces.stl",
+            stl_of_2_31_faces,
+            "expected a binary STL of 2147483648 triangles",
+        ),
+        (
+            "cut.stl",
+            b"solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0".to_vec(),
+            "line 4: expected three numbers of a vertex, found 2",
+        ),
+        (
+            "line.stl",
+            format!("solid {million}").into(),
+            "line 1: expected a line of at most 65536 bytes",
+        ),
+        (
+            "faces.ply",
+            ply("2147483648", "3 0 1 2\n"),
+            "line 13: expected as many elements as the header declares, found the end of the file",
+        ),
+        (
+            "count.ply",
+            ply("-1", "3 0 1 2\n"),
+            "line 7: expected a count of elements up to 2^32 - 1",
+        ),
+        (
+            "range.ply",
+            ply("1", "3 0 1 3\n"),
+            "line 13: expected a point of the 3 in the file, found one with index 3",
+        ),
+        (
+            "nothing.ply",
+            b"ply\nformat binary_little_endian 1.0\nelement a 4000000000\nend_header\n".to_vec(),
+            "expected at least one face",
+        ),
+        (
+            "magic.glm",
+            [0; 64].to_vec(),
+            "byte 0: expected \"GLM1\", found '\\x00\\x00\\x00\\x00'",
+        ),
+    ];
+    for (name, contents, message) in cases {
+        std::fs::write(folder.join(name), contents).unwrap();
+        for arguments in [
+            &["convert", name, "out.glm"][..],
+            &["render", name, "--out", "out.png"],
+        ] {
+            let error = refused(&folder, arguments);
+            assert!(
+                error.starts_with(&format!("error: {name}: {message}")),
+                "{error}"
+            );
+        }
+    }
+    assert!(!folder.join("out.glm").exists() && !folder.join("out.png").exists());
+}
+
+#[test]
+fn bad_names_and_numbers() {
+    let folder = folder("bad_names");
+    std::fs::write(folder.join("square.obj"), SQUARE.replace("v 1", "v 9")).unwrap();
+    std::fs::write(folder.join("view.json"), "{}").unwrap();
+    let far = VIEW.replace("[0,-2,0]", "[0,-9,0]");
+    std::fs::write(folder.join("far.json"), far).unwrap();
+    let cases: &[(&[&str], &str)] = &[
+        (
+            &["convert", "gone.obj", "out.glm"],
+            "error: gone.obj: expected a file to read, found ",
+        ),
+        (
+            &["convert", ".", "out.glm"],
+            "error: .: expected a name that ends in .obj, .stl, .ply or .glm, found no extension",
+        ),
+        (
+            &["convert", "square.obj", "out.xyz"],
+            "error: out.xyz: expected a name that ends in .obj, .stl, .ply or .glm, found '.xyz'",
+        ),
+        (
+            &["convert", "square.obj", "out.glm", "--keep-scale"],
+            "error: square.obj: expected coordinates in [-2, 2 - 2^-14]",
+        ),
+        (
+            &["model", "sponge:5", "out.glm"],
+            "error: sponge:5: expected a model cube, icosphere:N (frequency, 1 to 64), torus-knot, gear, teapot or sponge:N (0 to 4), found 'sponge:5'",
+        ),
+        (
+            &["render", "icosphere:x", "--out", "out.png"],
+            "error: icosphere:x: expected a model",
+        ),
+        (
+            &["render", "cube", "--out", "out.png", "--camera", "1,2"],
+            "error: --camera: expected a camera R,THETA,PHI",
+        ),
+        (
+            &["render", "cube", "--out", "out.png", "--camera", "6,0,0"],
+            "error: --camera: expected a camera, found radius 6",
+        ),
+        (
+            &["render", "cube", "--out", "out.png", "--view", "view.json"],
+            "error: view.json: expected {\"eye\":[x,y,z]",
+        ),
+        (
+            &["render", "cube", "--out", "out.png", "--view", "gone.json"],
+            "error: gone.json: expected a file to read",
+        ),
+        (
+            &["render", "cube", "--out", "out.png", "--view", "far.json"],
+            "error: far.json: expected a camera, found eye (0, -9, 0): expected within 8 of the origin for a mesh",
+        ),
+        (
+            &["render", "--field", "ball:1", "--out", "out.png"],
+            "error: --field: expected a distance field, found no field is named ball: expected menger:DEPTH, box:X,Y,Z,",
+        ),
+        (
+            &["render", "--field", "menger:9", "--out", "out.png"],
+            "error: --field: expected a distance field, found depth: expected 1 to 6",
+        ),
+        (
+            &[
+                "render", "--field", "menger:4", "--stereo", "1", "--out", "out.png",
+            ],
+            "error: --stereo: expected two eyes, found 1: expected E,ZERO[,red-blue|red-cyan]",
+        ),
+        (
+            &["render", "cube", "--stereo", "0.05,3", "--out", "out.png"],
+            "error: --stereo: expected a --field alone, as a mesh is seen with one eye, found a mesh",
+        ),
+        (
+            &[
+                "render", "cube", "--field", "menger:2", "--stereo", "0.05,3", "--out", "out.png",
+            ],
+            "error: --stereo: expected a --field alone, as a mesh is seen with one eye, found a mesh",
+        ),
+        (
+            &["render", "cube", "--out", "out.png", "--fog", "1"],
+            "error: --fog: expected a --field, which alone has it, found a mesh",
+        ),
+        (
+            &[
+                "render", "--field", "menger:2", "--fog", "-1", "--out", "out.png",
+            ],
+            "error: --fog: expected a density of at least 0 and below 16, found '-1'",
+        ),
+        (
+            &[
+                "render",
+                "--field",
+                "menger:2",
+                "--ambient",
+                "fff",
+                "--out",
+                "out.png",
+            ],
+            "error: --ambient: expected a colour RRGGBB, found 'fff'",
+        ),
+        (
+            &[
+                "render", "--field", "menger:2", "--light", "0,0,0", "--out", "out.png",
+            ],
+            "error: --light: expected a light, found direction 0,0,0: expected one that is not 0",
+        ),
+        (
+            &["render", "cube", "--out", "out.png", "--size", "320x200"],
+            "error: --size: expected 320x180, 640x360 or 1280x720, found '320x200'",
+        ),
+    ];
+    for (arguments, message) in cases {
+        let error = refused(&folder, arguments);
+        assert!(error.starts_with(message), "{error}");
+    }
+}
+
+#[test]
+fn failures_that_are_no_bad_input() {
+    let folder = folder("failures");
+    for (arguments, message) in [
+        (
+            &["upload", "cube", "--board", "/dev/no-such-port"][..],
+            "error: /dev/no-such-port: expected a serial port, found: ",
+        ),
+        (
+            &["model", "cube", "no-such-folder/cube.glm"],
+            "error: no-such-folder/cube.glm: cannot be written: ",
+        ),
+        (
+            &["render", "cube", "--out", "a.png", "--capture", "monitor"],
+            "error: --capture monitor: only the virtual board",
+        ),
+    ] {
+        let output = glint(&folder, arguments);
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(1), "{error}");
+        assert!(
+            error.starts_with(message) && error.lines().count() == 1,
+            "{error}"
+        );
+    }
+}

@@ -1,0 +1,8 @@
+//! The program from outside: exit codes, messages, files.
+
+mod attitudes;
+mod common;
+mod conversions;
+mod fields;
+mod input;
+mod meshes;

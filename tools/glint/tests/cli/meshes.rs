@@ -1,0 +1,54 @@
+//! `glint render` of meshes by the model.
+
+use crate::common::{VIEW, depths, folder, json, picture, succeed};
+
+#[test]
+fn renders_and_their_files() {
+    let folder = folder("renders");
+    let render = |out: &str, more: &[&str]| -> Vec<u8> {
+        let arguments = ["render", "teapot", "--out", out]
+            .iter()
+            .chain(more)
+            .copied()
+            .collect::<Vec<_>>();
+        succeed(&folder, &arguments);
+        picture(&folder.join(out))
+    };
+    let options = [
+        "--camera", "2,-90,90", "--depth", "a.f32", "--stats", "a.json", "--json",
+    ];
+    let picture = render("a.png", &options);
+    assert_eq!(picture.len(), 320 * 180 * 3);
+
+    std::fs::write(folder.join("view.json"), VIEW).unwrap();
+    assert_eq!(picture, render("b.png", &["--view", "view.json"]));
+    assert_ne!(picture, render("c.png", &["--camera", "2,-80,90"]));
+    assert_ne!(
+        picture,
+        render("s.png", &["--view", "view.json", "--shading", "smooth"])
+    );
+    assert_eq!(
+        render("d.png", &["--size", "1280x720"]).len(),
+        1280 * 720 * 3
+    );
+
+    let stats = json(&folder.join("a.json"));
+    let number = |key: &str| stats[key].as_u64().unwrap();
+    assert_eq!(
+        number("triangles_in"),
+        number("triangles_culled") + number("triangles_drawn")
+    );
+    assert!(number("pixels_tested") >= number("pixels_covered"));
+    assert!(stats["cycles"].is_null() && stats["clock"].is_null());
+
+    let depth = depths(&folder.join("a.f32"));
+    assert_eq!(depth.len(), 320 * 180);
+    for (z, pixel) in depth.iter().zip(picture.chunks_exact(3)) {
+        // The teapot lies between 1.5 and 2.5 from the eye along n.
+        assert!(
+            *z == f32::INFINITY && pixel == [0; 3] || (1.4..2.6).contains(z),
+            "{z} {pixel:?}"
+        );
+    }
+    assert!(depth.iter().any(|z| z.is_finite()));
+}

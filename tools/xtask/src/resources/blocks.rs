@@ -1,0 +1,64 @@
+//! Names of the measured blocks.
+
+/// The own blocks, the slowest to measure first.
+pub const OWN: [&str; 7] = [
+    "ring_lane",
+    "setup",
+    "triangle_raster",
+    "band_buffer",
+    "scanout",
+    "vertex_stage",
+    "i2c_engine",
+];
+
+/// Engines made of own blocks, in several builds, and parts of the raymarcher. The tables show them; measuring them in every test
+/// would take too long.
+pub const BUILDS: [&str; 13] = [
+    "triangle_engine_smooth",
+    "raymarcher",
+    "triangle_engine",
+    "raymarcher_sponge",
+    "raymarcher_round",
+    "raymarcher_faces",
+    "ring_lane_all",
+    "ray_generator",
+    "ray_paint",
+    "round_light",
+    "field_sphere",
+    "field_menger",
+    "field_box",
+];
+
+/// Parts of the smallest engine that draws flat triangles.
+pub const FLAT_PARTS: [&str; 3] = ["vertex_stage", "setup", "triangle_raster"];
+/// Name of the sum of [`FLAT_PARTS`].
+pub const FLAT: &str = "flat_build";
+
+/// The whole of the Urbana's FPGA.
+pub const SOC: &str = "soc";
+
+/// The rows of the tables in their order; other modules come after them.
+pub const ROWS: [&str; 22] = [
+    "scanout",
+    "i2c_engine",
+    "vertex_stage",
+    "setup",
+    "triangle_raster",
+    FLAT,
+    "band_buffer",
+    "triangle_engine",
+    "triangle_engine_smooth",
+    "field_menger",
+    "field_box",
+    "field_sphere",
+    "ring_lane",
+    "ring_lane_all",
+    "ray_generator",
+    "round_light",
+    "ray_paint",
+    "raymarcher",
+    "raymarcher_round",
+    "raymarcher_faces",
+    "raymarcher_sponge",
+    SOC,
+];
