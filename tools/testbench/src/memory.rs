@@ -52,7 +52,7 @@ impl Memory {
     pub fn store(&mut self, address: u32, data: Bits, strobe: u16) {
         for (i, byte) in self.words[address as usize].iter_mut().enumerate() {
             if strobe >> i & 1 == 1 {
-                *byte = data.field(8 * i, 8) as u8;
+                *byte = data.element(8, i) as u8;
             }
         }
     }
@@ -64,7 +64,7 @@ impl Memory {
     #[must_use]
     pub fn entry(&self, address: u32, index: u32) -> u32 {
         self.word(address + index / 4)
-            .field(32 * (index as usize % 4), 32) as u32
+            .element(32, index as usize % 4) as u32
     }
 }
 

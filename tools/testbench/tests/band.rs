@@ -225,19 +225,14 @@ impl Bench {
     }
 
     fn push_group(&mut self, group: Group) {
-        let (mut codes, mut colours) = (Bits::default(), Bits::default());
-        for lane in 0..LANES {
-            codes = codes.with(18 * lane, 18, i64::from(group.codes[lane]));
-            colours = colours.with(16 * lane, 16, i64::from(group.colours[lane]));
-        }
         self.group_source.push(vec![
             Bits::from(group.row as u64),
             Bits::from((group.row / self.stride) as u64),
             Bits::from((group.row % self.stride) as u64),
             Bits::from(u64::from(group.mask)),
             Bits::from(u64::from(group.halves)),
-            codes,
-            colours,
+            Bits::pack(18, group.codes),
+            Bits::pack(16, group.colours),
         ]);
         self.groups.push_back(group);
     }

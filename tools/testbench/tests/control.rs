@@ -599,7 +599,10 @@ fn passes_end_as_the_engine_says() {
             let starts = bench.counts.map(|counts| counts[1]);
             let errors = bench.ask(ask);
             for which in [GEOMETRY, RASTER] {
-                assert_eq!(bench.counts[which][1] - starts[which], ask[which].into());
+                assert_eq!(
+                    bench.counts[which][1] - starts[which],
+                    u64::from(ask[which])
+                );
                 assert!(!ask[which] || errors[which] == bench.ends[which]);
             }
         }

@@ -1,7 +1,7 @@
 //! The band lists, as the binner leaves them in memory.
 
 use glint_model::descriptor::{band_rows, list_word};
-use glint_testbench::{Bits, Memory, Module, Port, Sink, Source, Stalls};
+use glint_testbench::{Bits, Layout, Memory, Module, Sink, Source, Stalls};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
@@ -30,8 +30,7 @@ impl Bench {
             ("exception_base", EXCEPTIONS),
             ("exception_limit", limit),
         ] {
-            let port = module.port(port);
-            module.set(port, u64::from(value));
+            module.drive(port, value);
         }
         let stalls = |seed| Stalls::new(seed, stalls);
         let mut bench = Self {
@@ -45,17 +44,17 @@ impl Bench {
         bench
     }
 
-    fn port(&self, name: &str) -> Port {
-        self.module.port(name)
+    /// The type of a descriptor.
+    fn descriptor(&self) -> Layout {
+        self.module.record("in_descriptor").layout().clone()
     }
 
     fn value(&self, name: &str) -> u64 {
-        self.module.value(self.port(name))
+        self.module.read(name)
     }
 
     fn set(&mut self, name: &str, value: u64) {
-        let port = self.port(name);
-        self.module.set(port, value);
+        self.module.drive(name, value);
     }
 
     fn pulse(&mut self, name: &str) {
@@ -73,11 +72,8 @@ impl Bench {
         self.exceptions.sample(&self.module);
         self.writes.sample(&self.module);
         for item in self.writes.take() {
-            self.memory.store(
-                item[0].field(0, 32) as u32,
-                item[1],
-                item[2].field(0, 16) as u16,
-            );
+            self.memory
+                .store(item[0].number() as u32, item[1], item[2].number() as u16);
         }
         self.module.clock();
     }
@@ -107,17 +103,21 @@ impl Bench {
 }
 
 /// Descriptors with random rows, and noise elsewhere: first and past-the-last row, and the bits.
-fn descriptors(random: &mut Pcg64Mcg, count: usize, height: u32) -> Vec<(u32, u32, Bits)> {
+fn descriptors(
+    random: &mut Pcg64Mcg,
+    layout: &Layout,
+    count: usize,
+    height: u32,
+) -> Vec<(u32, u32, Bits)> {
     (0..count)
         .map(|_| {
             let top = random.random_range(0..height);
             let rows = if random.random_bool(0.8) { 20 } else { height };
             let bottom = random.random_range(top + 1..=height.min(top + rows));
             let words: [u32; 12] = random.random();
-            let bits = Bits::from_words(&words)
-                .with(324, 10, top)
-                .with(334, 10, bottom);
-            (top, bottom, bits)
+            let record = layout.record_of(Bits::from_words(&words));
+            let record = record.with("top", top).with("bottom", bottom);
+            (top, bottom, record.bits())
         })
         .collect()
 }
@@ -130,7 +130,7 @@ fn every_band_lists_what_touches_it() {
             let mut bench = Bench::new(size, 1000, stalls);
             // A second frame finds the first one's lists empty.
             for count in [90, 50] {
-                let given = descriptors(&mut random, count, height);
+                let given = descriptors(&mut random, &bench.descriptor(), count, height);
                 let exceptions: Vec<u32> = (0..30).map(|_| random.random()).collect();
                 for &(_, _, bits) in &given {
                     bench.descriptors.push(vec![bits]);
@@ -176,10 +176,10 @@ fn every_band_lists_what_touches_it() {
 
 #[test]
 fn what_has_no_room_is_told() {
-    let one_row = |random: &mut Pcg64Mcg| {
-        let mut given = descriptors(random, 1, 720);
-        given[0].2 = given[0].2.with(324, 10, 5).with(334, 10, 6);
-        given.remove(0).2
+    let one_row = |random: &mut Pcg64Mcg, layout: &Layout| {
+        let mut given = descriptors(random, layout, 1, 720);
+        let record = layout.record_of(given.remove(0).2);
+        record.with("top", 5).with("bottom", 6).bits()
     };
     let mut random = Pcg64Mcg::new(1);
     // As many as a list has room for, and one more.
@@ -191,8 +191,9 @@ fn what_has_no_room_is_told() {
         (11, 10, 1),
     ] {
         let mut bench = Bench::new(2, limit, 0.3);
+        let layout = bench.descriptor();
         for _ in 0..count {
-            bench.descriptors.push(vec![one_row(&mut random)]);
+            bench.descriptors.push(vec![one_row(&mut random, &layout)]);
         }
         bench.finish();
         assert_eq!(bench.value("full"), full, "{count} of at most {limit}");

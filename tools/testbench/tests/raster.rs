@@ -172,9 +172,9 @@ impl Bench {
             });
             let mut previous = 0;
             for group in self.band([y0, rows, stride], here) {
-                let row = group[0].field(0, 11) as usize;
-                let mask = group[1].field(0, 8);
-                let [line, column] = [group[4].field(0, 6), group[5].field(0, 8)];
+                let row = group[0].number() as usize;
+                let mask = group[1].number();
+                let [line, column] = [group[4].number(), group[5].number()];
                 assert!(
                     line < u64::from(rows) && column < u64::from(stride),
                     "{name}: line {line}, column {column}"
@@ -183,8 +183,8 @@ impl Bench {
                 assert_ne!(mask, 0, "{name}: a group without a pixel");
                 self.counts.groups += 1;
                 for lane in (0..LANES).filter(|lane| mask >> lane & 1 == 1) {
-                    let colour = group[3].field(16 * lane, 16) as u16;
-                    let depth = group[2].field(18 * lane, 18) as u32;
+                    let colour = group[3].element(16, lane) as u16;
+                    let depth = group[2].element(18, lane) as u32;
                     let corners = || triangles.get(usize::from(colour)).map(|t| t.corners);
                     assert_ne!(depth, 0, "{name}: {:?}", corners());
                     let at = (y0 * width) as usize + LANES * row + lane;
@@ -638,7 +638,7 @@ fn triangles_outside_of_the_band() {
         let groups = bench.band([y0, 45, 40], triangles.iter());
         let last = triangles.len() as u64 - 1;
         assert!(!groups.is_empty());
-        assert!(groups.iter().all(|group| group[3].field(0, 16) == last));
+        assert!(groups.iter().all(|group| group[3].element(16, 0) == last));
     }
 }
 

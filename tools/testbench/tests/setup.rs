@@ -6,7 +6,7 @@ use glint_model::reciprocal::recip;
 use glint_model::setup::{Bounds, Facing, Oriented, Setup};
 use glint_model::shade::{Light, Lit, intensity, lit};
 use glint_model::{SIZES, ScreenVertex, Shading};
-use glint_testbench::{Bits, Module, Port, Sink, Source, Stalls};
+use glint_testbench::{Bits, Layout, Module, Port, Record, Sink, Source, Stalls};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
@@ -32,37 +32,58 @@ struct Input {
     light: [Light; 3],
 }
 
-/// The light of a vertex as the gateware has it: for the one side that gets any.
-fn light_bits(bits: Bits, low: usize, light: Light) -> Bits {
-    let back = light.back != Lit::default();
-    let Lit([r, g, b]) = if back { light.back } else { light.front };
-    bits.with(low, 13, b / 2)
-        .with(low + 13, 14, g)
-        .with(low + 27, 13, r / 2)
-        .with(low + 40, 1, u8::from(back))
+/// The types of a triangle's parts.
+struct Types {
+    vertices: Layout,
+    vertex: Layout,
+    lights: Layout,
+    light: Layout,
 }
 
-impl Input {
-    fn item(&self, ability: Shading) -> Vec<Bits> {
-        let vertices = (0..)
-            .zip(self.vertices)
-            .fold(Bits::default(), |bits, (i, v)| {
-                bits.with(66 * i, 21, v.x)
-                    .with(66 * i + 21, 21, v.y)
-                    .with(66 * i + 42, 24, v.w)
-            });
-        let normal = (0..)
-            .zip(self.normal)
-            .fold(Bits::default(), |bits, (i, x)| bits.with(16 * i, 16, x));
-        let light = match ability {
-            Shading::Flat => Bits::default(),
-            Shading::Smooth => (0..)
-                .zip(self.light)
-                .fold(Bits::default(), |bits, (i, light)| {
-                    light_bits(bits, 41 * i, light)
-                }),
-        };
-        vec![vertices, Bits::from(u64::from(self.colour)), normal, light]
+impl Types {
+    fn of(module: &Module) -> Self {
+        let port = |name| module.record(name).layout().clone();
+        Self {
+            vertices: port("in_vertices"),
+            vertex: module.packed_type("triangle_pkg::screen_vertex_t").clone(),
+            lights: port("in_light"),
+            light: module.packed_type("triangle_pkg::light_t").clone(),
+        }
+    }
+
+    /// A vertex on the screen.
+    fn vertex(&self, vertex: ScreenVertex) -> Record {
+        let record = self.vertex.record();
+        record
+            .with("x", vertex.x)
+            .with("y", vertex.y)
+            .with("w", vertex.w)
+    }
+
+    /// The light of a vertex: of the one side that gets any.
+    fn light(&self, light: Light) -> Record {
+        let back = light.back != Lit::default();
+        let Lit([r, g, b]) = if back { light.back } else { light.front };
+        let record = self.light.record().with("back", back);
+        record
+            .with("red", r / 2)
+            .with("green", g)
+            .with("blue", b / 2)
+    }
+
+    /// The payload of the input stream.
+    fn item(&self, input: &Input, ability: Shading) -> Vec<Bits> {
+        let mut vertices = self.vertices.record();
+        let mut lights = self.lights.record();
+        for (i, part) in ["[0]", "[1]", "[2]"].into_iter().enumerate() {
+            vertices.set_bits(part, self.vertex(input.vertices[i]));
+            if ability == Shading::Smooth {
+                lights.set_bits(part, self.light(input.light[i]));
+            }
+        }
+        let colour = Bits::from(u64::from(input.colour));
+        let normal = Bits::pack(16, input.normal);
+        vec![vertices.bits(), colour, normal, lights.bits()]
     }
 }
 
@@ -128,25 +149,17 @@ impl Bench {
 
     /// Sends triangles of one frame through the setup and returns the clocks it took.
     fn check(&mut self, frame: &Frame, inputs: &[Input]) -> u64 {
-        let n = (0..)
-            .zip(frame.n)
-            .fold(Bits::default(), |bits, (i, x)| bits.with(25 * i, 25, x));
-        for (name, value) in [
-            ("width", Bits::from(u64::from(frame.size.0))),
-            ("height", Bits::from(u64::from(frame.size.1))),
-            ("cull_back", Bits::from(u64::from(frame.cull))),
-            ("camera_n", n),
-            (
-                "smooth",
-                Bits::from(u64::from(frame.shading == Shading::Smooth)),
-            ),
-        ] {
-            let port = self.module.port(name);
-            self.module.set(port, value);
+        self.module.drive("width", frame.size.0);
+        self.module.drive("height", frame.size.1);
+        self.module.drive("cull_back", frame.cull);
+        self.module.drive_all("camera_n", frame.n);
+        self.module
+            .drive("smooth", frame.shading == Shading::Smooth);
+        let types = Types::of(&self.module);
+        for input in inputs {
+            self.source.push(types.item(input, self.ability));
         }
-        inputs
-            .iter()
-            .for_each(|input| self.source.push(input.item(self.ability)));
+        let planes_type = self.module.packed_type("triangle_pkg::planes_t").clone();
         let start = self.module.cycles();
         let (mut culled, mut drawn) = (0, 0);
         loop {
@@ -172,7 +185,8 @@ impl Bench {
                 let mut descriptor = found.next().map(|item| [item[0], item[1]]);
                 // Planes of a flat triangle mean nothing.
                 if let (Some([_, planes]), Shading::Flat) = (&mut descriptor, frame.shading) {
-                    *planes = Bits::from(planes.field(288, 1));
+                    let smooth = planes_type.record_of(*planes).get("smooth");
+                    *planes = planes_type.record().with("smooth", smooth).bits();
                 }
                 assert_eq!(descriptor, Some(expected), "{input:?} in {frame:?}");
             }

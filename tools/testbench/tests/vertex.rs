@@ -6,50 +6,41 @@ mod common;
 use common::{Camera, Random};
 use glint_model::vertex::{project, transform};
 use glint_model::{MeshSetup, Projected, SIZES, ScreenVertex};
-use glint_testbench::{Bits, Module, Sink, Source, Stalls};
+use glint_testbench::{Bits, Layout, Module, Record, Sink, Source, Stalls};
 
 /// What comes out of the stage: saturated to s12.8.
-fn expected(frame: &MeshSetup, position: [i16; 3]) -> Bits {
+fn expected(layout: &Layout, frame: &MeshSetup, position: [i16; 3]) -> Record {
     let projected = project(frame, &transform(frame, position));
     let ScreenVertex { x, y, w } = projected.place().copied().unwrap_or_default();
     let [x, y] = [x, y].map(|x| x.clamp(-1 << 19, (1 << 19) - 1));
-    Bits::default()
-        .with(0, 21, x)
-        .with(21, 21, y)
-        .with(42, 24, w)
-        .with(66, 1, u8::from(projected.is_beyond_guard()))
-        .with(67, 1, u8::from(projected == Projected::Behind))
+    layout
+        .record()
+        .with("place.x", x)
+        .with("place.y", y)
+        .with("place.w", w)
+        .with("beyond", projected.is_beyond_guard())
+        .with("behind", projected == Projected::Behind)
 }
 
 fn set_frame(module: &mut Module, frame: &MeshSetup) {
-    let row = |row: [i32; 3]| {
-        (0..3).fold(Bits::default(), |bits, i| {
-            bits.with(25 * i, 25, i64::from(row[i]))
-        })
-    };
-    let number = |bits: usize, value: i64| Bits::default().with(0, bits, value);
-    let [tx, ty, tz] = frame.translation.map(|t| number(44, t));
-    for (name, value) in [
-        ("scale_shift", number(5, frame.scale_shift.into())),
-        ("row_u", row(frame.u)),
-        ("row_v", row(frame.v)),
-        ("row_n", row(frame.n)),
-        ("tx", tx),
-        ("ty", ty),
-        ("tz", tz),
-        ("near_z", number(39, frame.near)),
-        ("centre_x", number(10, (frame.width / 2).into())),
-        ("centre_y", number(10, (frame.height / 2).into())),
-        ("depth_mantissa", number(17, frame.depth.mantissa.into())),
-        ("depth_exponent", number(4, frame.depth.exponent.into())),
-    ] {
-        let port = module.port(name);
-        module.set(port, value);
+    module.drive("scale_shift", frame.scale_shift);
+    module.drive_all("row_u", frame.u);
+    module.drive_all("row_v", frame.v);
+    module.drive_all("row_n", frame.n);
+    for (name, value) in ["tx", "ty", "tz"].into_iter().zip(frame.translation) {
+        module.drive(name, value);
     }
+    module.drive("near_z", frame.near);
+    module.drive("centre_x", frame.width / 2);
+    module.drive("centre_y", frame.height / 2);
+    module.drive("depth_mantissa", frame.depth.mantissa);
+    module.drive("depth_exponent", frame.depth.exponent);
 }
 
 struct Bench {
     module: Module,
+    /// The type of a vertex that comes out.
+    vertex: Layout,
     source: Source,
     sink: Sink,
 }
@@ -61,6 +52,7 @@ impl Bench {
         Self {
             source: Source::new(&module, "in", &["position"], stalls(1, source_stalls)),
             sink: Sink::new(&module, "out", &["vertex"], stalls(2, sink_stalls)),
+            vertex: module.record("out_vertex").layout().clone(),
             module,
         }
     }
@@ -69,10 +61,7 @@ impl Bench {
     fn check(&mut self, frame: &MeshSetup, positions: &[[i16; 3]]) -> u64 {
         set_frame(&mut self.module, frame);
         for position in positions {
-            let item = (0..3).fold(Bits::default(), |bits, i| {
-                bits.with(16 * i, 16, i64::from(position[i]))
-            });
-            self.source.push(vec![item]);
+            self.source.push(vec![Bits::pack(16, *position)]);
         }
         let start = self.module.cycles();
         while self.sink.items().len() < positions.len() {
@@ -89,11 +78,8 @@ impl Bench {
             self.module.clock();
         }
         for (&position, item) in positions.iter().zip(self.sink.take()) {
-            assert_eq!(
-                item[0],
-                expected(frame, position),
-                "{position:?} in {frame:?}"
-            );
+            let expected = expected(&self.vertex, frame, position);
+            assert_eq!(item[0], expected.bits(), "{position:?} in {frame:?}");
         }
         self.module.cycles() - start
     }
@@ -196,7 +182,8 @@ fn edges() {
         for exponent in -5..=5 {
             frame.depth.exponent = exponent;
             frame.depth.mantissa = random.integer(1 << 16, (1 << 17) - 1) as u32;
-            full_depths += u32::from(expected(&frame, at).field(42, 24) == 0xFF_FFC0);
+            full_depths +=
+                u32::from(expected(&bench.vertex, &frame, at).get("place.w") == 0xFF_FFC0);
             bench.check(&frame, &[at]);
         }
         frame.depth = depth;
@@ -217,7 +204,8 @@ fn edges() {
             if frame.translation[axis].unsigned_abs() >= 1 << 42 {
                 continue;
             }
-            let edge = expected(&frame, at).signed(21 * axis, 21) - side * 2047 * 256;
+            let edge = expected(&bench.vertex, &frame, at).signed(["place.x", "place.y"][axis])
+                - side * 2047 * 256;
             guard_edges += u32::from(edge.abs() <= 2);
             bench.check(&frame, &[at]);
         }

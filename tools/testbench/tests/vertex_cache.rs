@@ -107,10 +107,8 @@ impl Bench {
             self.expected_fetches
                 .extend(misses.into_iter().map(|index| (chunk, index)));
             for (number, triangle) in triangles.iter().enumerate() {
-                let indices = (0..3).fold(Bits::default(), |bits, i| {
-                    bits.with(16 * i, 16, triangle[i])
-                });
-                self.triangles.push(vec![indices, side(chunk, number)]);
+                self.triangles
+                    .push(vec![Bits::pack(16, *triangle), side(chunk, number)]);
             }
             while !self.triangles.is_empty() {
                 assert!(self.module.cycles() < limit, "the cache stands still");
@@ -129,12 +127,11 @@ impl Bench {
             for (number, triangle) in triangles.iter().enumerate() {
                 let item = items.next().expect("as many as went in");
                 let place = format!("triangle {number} of chunk {chunk}: {triangle:?}");
-                for (i, &index) in triangle.iter().enumerate() {
-                    let expected = vertex(chunk, index);
-                    let same = item[0].field(68 * i, 64) == expected.field(0, 64)
-                        && item[0].field(68 * i + 64, 4) == expected.field(64, 4);
-                    assert!(same, "vertex {i} of {place}");
+                let mut vertices = self.module.record("out_vertices");
+                for (part, &index) in ["[0]", "[1]", "[2]"].into_iter().zip(triangle) {
+                    vertices.set_bits(part, vertex(chunk, index));
                 }
+                assert_eq!(item[0], vertices.bits(), "vertices of {place}");
                 assert_eq!(item[1], side(chunk, number), "{place}");
             }
         }

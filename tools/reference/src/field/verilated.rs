@@ -43,8 +43,7 @@ impl Raymarcher {
     pub fn new() -> Self {
         let mut module = Module::new("raymarcher", 1);
         let group = GROUP.map(|name| module.port(&format!("group_{name}")));
-        let ready = module.port("group_ready");
-        module.set(ready, 1);
+        module.drive("group_ready", 1);
         Self {
             module,
             group,
@@ -62,8 +61,8 @@ impl Raymarcher {
         set_rays(&mut self.module, setup);
         set_paint(&mut self.module, setup, &palette);
         set_blocks(&mut self.module, setup, "cone_offset", "cone_spread");
-        self.set("prepass", setup.cones.is_some().into());
-        self.set("size", u64::from(setup.width / 640));
+        self.module.drive("prepass", setup.cones.is_some());
+        self.module.drive("size", setup.width / 640);
         let [valid, done] = ["group_valid", "band_done"].map(|name| self.module.port(name));
         let lines = band_rows(setup.width);
         let eyes = if setup.stereo.is_some() { 2 } else { 1 };
@@ -77,7 +76,7 @@ impl Raymarcher {
         self.pulse("start");
         for band in 0..setup.height / lines {
             let mut left = lines * setup.width * eyes;
-            self.set("band_open", 1);
+            self.module.drive("band_open", 1);
             while !self.module.is_high(done) {
                 if self.module.is_high(valid) {
                     let found = self.pixel();
@@ -99,7 +98,7 @@ impl Raymarcher {
                 left, 0,
                 "pixels that are missing in band {band} of {setup:?}"
             );
-            self.set("band_open", 0);
+            self.module.drive("band_open", 0);
             self.pulse("band_next");
         }
         // Counters are some clocks late.
@@ -130,15 +129,10 @@ impl Raymarcher {
         }
     }
 
-    fn set(&mut self, name: &str, value: u64) {
-        let port = self.module.port(name);
-        self.module.set(port, value);
-    }
-
     fn pulse(&mut self, name: &str) {
-        self.set(name, 1);
+        self.module.drive(name, 1);
         self.module.clock();
-        self.set(name, 0);
+        self.module.drive(name, 0);
     }
 }
 

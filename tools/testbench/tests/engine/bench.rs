@@ -252,12 +252,6 @@ impl Bench {
             .iter()
             .position(|&size| size == expected.size)
             .unwrap() as u64;
-        let rows = |row: [i32; 3]| {
-            (0..).zip(row).fold(Bits::default(), |bits, (i, value)| {
-                bits.with(25 * i, 25, value)
-            })
-        };
-        let signed = |value: i64, width| Bits::default().with(0, width, value);
         let whole = self.left[self.slot]
             .is_some_and(|left| left != (expected.size, expected.options.clear));
         for (port, value) in [
@@ -291,20 +285,15 @@ impl Bench {
         ] {
             self.set(port, value);
         }
-        for (port, value) in [
-            ("row_u", rows(frame.u)),
-            ("row_v", rows(frame.v)),
-            ("row_n", rows(frame.n)),
-            ("tx", signed(frame.translation[0], 44)),
-            ("ty", signed(frame.translation[1], 44)),
-            ("tz", signed(frame.translation[2], 44)),
-            ("depth_exponent", signed(frame.depth.exponent.into(), 4)),
-        ] {
-            self.set(port, value);
+        self.module.drive_all("row_u", frame.u);
+        self.module.drive_all("row_v", frame.v);
+        self.module.drive_all("row_n", frame.n);
+        for (name, value) in ["tx", "ty", "tz"].into_iter().zip(frame.translation) {
+            self.module.drive(name, value);
         }
-        for (port, [low, high]) in [("raster_lists", LISTS), ("raster_descriptors", DESCRIPTORS)] {
-            self.set(port, Bits::default().with(0, 23, low).with(23, 23, high));
-        }
+        self.module.drive("depth_exponent", frame.depth.exponent);
+        self.set("raster_lists", Bits::pack(23, LISTS));
+        self.set("raster_descriptors", Bits::pack(23, DESCRIPTORS));
     }
 
     /// Draws a frame and compares it.
@@ -319,14 +308,8 @@ impl Bench {
         assert_eq!(counts, wanted, "{name}: error, full, triangles, exceptions");
 
         write_clipped(&mut self.memory, expected, self.ability);
-        let counts = [
-            self.count("descriptors") as u32,
-            expected.clipped.len() as u32,
-        ];
-        let counts = Bits::default()
-            .with(0, 20, counts[0])
-            .with(20, 20, counts[1]);
-        self.set("raster_counts", counts);
+        let counts = [self.count("descriptors"), expected.clipped.len() as u64];
+        self.set("raster_counts", Bits::pack(20, counts));
         self.set("present", if expected.clipped.is_empty() { 1 } else { 3 });
         self.pulse("raster_start");
         let (read, written) = (self.reads[2].given, self.frame_words());

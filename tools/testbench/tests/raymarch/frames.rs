@@ -139,7 +139,7 @@ impl Bench {
             }
             for item in sink.take() {
                 let [eye, row, line, column, mask, code, colour] =
-                    std::array::from_fn(|i| item[i].field(0, 64));
+                    std::array::from_fn(|i| item[i].number());
                 let found = Pixel {
                     eye,
                     row,

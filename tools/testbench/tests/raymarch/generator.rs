@@ -1,7 +1,7 @@
 //! The ray generator: all rays of a frame, as the model has them, in their order.
 
 use glint_model::raymarch::{FieldSetup, Prepass};
-use glint_testbench::{Bits, Module, Sink, Stalls};
+use glint_testbench::{Bits, Layout, Module, Sink, Stalls};
 
 use crate::common::Random;
 use crate::ports::{Place, cone, ray, set_blocks, set_generator};
@@ -10,8 +10,13 @@ use crate::scenes::{FIELDS, ROUND, band_lines, every_field, setup, setup_with};
 /// As it is built for all fields, and cones.
 const GENERATOR: &str = "ray_generator_all";
 
+/// The type of a ray.
+fn ray_type(module: &Module) -> Layout {
+    module.packed_type("raymarch_pkg::ray_t").clone()
+}
+
 /// The rays of the first `lines` lines.
-fn expected(setup: &FieldSetup, lines: u32) -> Vec<Bits> {
+fn expected(layout: &Layout, setup: &FieldSetup, lines: u32) -> Vec<Bits> {
     let eyes = if setup.stereo.is_some() { 2 } else { 1 };
     let band_lines = band_lines(setup.width);
     let places = (0..lines).flat_map(move |y| {
@@ -28,12 +33,12 @@ fn expected(setup: &FieldSetup, lines: u32) -> Vec<Bits> {
         })
     });
     places
-        .map(|(place, y)| ray(place, &setup.ray(place.eye, place.column, y)))
+        .map(|(place, y)| ray(layout, place, &setup.ray(place.eye, place.column, y)))
         .collect()
 }
 
 /// All cones, in the order of their numbers.
-fn expected_cones(setup: &FieldSetup) -> Vec<Bits> {
+fn expected_cones(layout: &Layout, setup: &FieldSetup) -> Vec<Bits> {
     let cones = setup.cones.expect("cones");
     let eyes = if setup.stereo.is_some() { 2 } else { 1 };
     let [columns, rows] = [setup.width, setup.height].map(|pixels| pixels >> cones.block);
@@ -44,6 +49,7 @@ fn expected_cones(setup: &FieldSetup) -> Vec<Bits> {
         .zip(places)
         .map(|(number, (eye, column, row))| {
             cone(
+                layout,
                 Place::of_cone(eye, number),
                 &setup.cone(&cones, eye, column, row),
             )
@@ -54,13 +60,11 @@ fn expected_cones(setup: &FieldSetup) -> Vec<Bits> {
 /// Runs a frame, all of it or its beginning, and returns the clocks until its last ray.
 fn check(module: &mut Module, setup: &FieldSetup, lines: u32, stalls: Stalls) -> u64 {
     set_generator(module, setup, band_lines(setup.width));
-    let round = module.port("round");
-    module.set(round, u64::from(setup.is_round()));
-    for name in ["cones", "prepass"] {
-        let port = module.port(name);
-        module.set(port, 0);
-    }
-    let clocks = run(module, setup, &expected(setup, lines), stalls);
+    module.drive("round", setup.is_round());
+    module.drive("cones", 0);
+    module.drive("prepass", 0);
+    let rays = expected(&ray_type(module), setup, lines);
+    let clocks = run(module, setup, &rays, stalls);
     end(module, lines == setup.height);
     clocks
 }
@@ -148,11 +152,11 @@ fn cones_of_whole_frames() {
             ("prepass", 1),
             ("block", cones.block),
         ] {
-            let port = module.port(name);
-            module.set(port, u64::from(value));
+            module.drive(name, value);
         }
         let stalls = Stalls::new(number, [0.0, 0.5][number as usize % 2]);
-        run(&mut module, &setup, &expected_cones(&setup), stalls);
+        let cones = expected_cones(&ray_type(&module), &setup);
+        run(&mut module, &setup, &cones, stalls);
         end(&mut module, true);
     }
 }

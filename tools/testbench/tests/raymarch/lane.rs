@@ -3,13 +3,13 @@
 use std::collections::HashMap;
 
 use glint_model::raymarch::{FieldSetup, Prepass};
-use glint_testbench::{Bits, Module, Sink, Source, Stalls};
+use glint_testbench::{Bits, Layout, Module, Sink, Source, Stalls};
 
 use crate::common::Random;
 use crate::ports::{End, Place, cone, ray, set_lane};
 use crate::scenes::{SPONGES, every_field, setup, setup_with};
 
-/// Rays of a frame.
+/// Rays or cones of a frame.
 const RAYS: usize = 2_000;
 
 /// A ray or a cone that is sent, how it ends, and its evaluations.
@@ -20,11 +20,11 @@ struct Sent {
 }
 
 /// Random rays of a frame.
-fn some_rays(random: &mut Random, setup: &FieldSetup, count: usize) -> HashMap<Place, Sent> {
+fn some_rays(random: &mut Random, layout: &Layout, setup: &FieldSetup) -> HashMap<Place, Sent> {
     let eyes = if setup.stereo.is_some() { 2 } else { 1 };
     let mut all = HashMap::new();
     // Lines of several bands have the same place.
-    while all.len() < count {
+    while all.len() < RAYS {
         let x = random.integer(0, i64::from(setup.width) - 1) as u32;
         let y = random.integer(0, i64::from(setup.height) - 1) as u32;
         let place = Place {
@@ -36,7 +36,7 @@ fn some_rays(random: &mut Random, setup: &FieldSetup, count: usize) -> HashMap<P
         let start = setup.ray(place.eye, x, y);
         let outcome = setup.march(&start);
         let sent = Sent {
-            item: ray(place, &start),
+            item: ray(layout, place, &start),
             end: End::expected(&start, &outcome),
             steps: outcome.steps * setup.passes(),
         };
@@ -46,19 +46,19 @@ fn some_rays(random: &mut Random, setup: &FieldSetup, count: usize) -> HashMap<P
 }
 
 /// Random cones of a frame.
-fn some_cones(random: &mut Random, setup: &FieldSetup, count: usize) -> HashMap<Place, Sent> {
+fn some_cones(random: &mut Random, layout: &Layout, setup: &FieldSetup) -> HashMap<Place, Sent> {
     let cones = setup.cones.expect("cones");
     let eyes = if setup.stereo.is_some() { 2 } else { 1 };
     let [columns, rows] = [setup.width, setup.height].map(|pixels| pixels >> cones.block);
     let mut all = HashMap::new();
-    while all.len() < count {
+    while all.len() < RAYS {
         let number = random.integer(0, i64::from(columns * rows) - 1) as u32;
         let eye = random.bits() as usize % eyes;
         let start = setup.cone(&cones, eye, number % columns, number / columns);
         let (t, steps) = setup.march_cone(&start);
         let place = Place::of_cone(eye, number);
         let sent = Sent {
-            item: cone(place, &start),
+            item: cone(layout, place, &start),
             end: End::expected_of_cone(&start, (t, steps)),
             steps: steps * setup.passes(),
         };
@@ -89,11 +89,16 @@ impl Bench {
         }
     }
 
+    /// The type of a ray.
+    fn ray(&self) -> Layout {
+        self.module.packed_type("raymarch_pkg::ray_t").clone()
+    }
+
     /// Sends rays or cones of a frame through the lane.
     fn check(&mut self, setup: &FieldSetup, cones: bool, mut expected: HashMap<Place, Sent>) {
         set_lane(&mut self.module, setup);
-        let port = self.module.port("cones");
-        self.module.set(port, u64::from(cones));
+        self.module.drive("cones", cones);
+        let end = self.module.packed_type("raymarch_pkg::end_t").clone();
         let [evaluates, waits] = ["evaluates", "waits"].map(|name| self.module.port(name));
         let count = expected.len();
         let evaluations: u64 = expected.values().map(|sent| u64::from(sent.steps)).sum();
@@ -117,15 +122,16 @@ impl Bench {
             self.waited += u64::from(self.module.is_high(waits));
         }
         for item in self.sink.take() {
-            let (place, end) = if cones {
-                End::of_cone(&item[0])
+            let record = end.record_of(item[0]);
+            let (place, found) = if cones {
+                End::of_cone(&record)
             } else {
-                End::of(&item[0])
+                End::of(&record)
             };
             let sent = expected
                 .remove(&place)
                 .unwrap_or_else(|| panic!("{place:?} came twice, or was never sent: {setup:?}"));
-            assert_eq!(end, sent.end, "{place:?}, {:?} in {setup:?}", sent.item);
+            assert_eq!(found, sent.end, "{place:?}, {:?} in {setup:?}", sent.item);
         }
     }
 }
@@ -150,7 +156,7 @@ fn random_rays(name: &str, fields: &[&str]) {
     for frame in 0..rays() / RAYS {
         let setup = setup(&mut random, fields);
         let bench = frame % benches.len();
-        let rays = some_rays(&mut random, &setup, RAYS);
+        let rays = some_rays(&mut random, &benches[bench].ray(), &setup);
         benches[bench].check(&setup, false, rays);
     }
 }
@@ -164,9 +170,9 @@ fn random_cones_and_rays_in_all_fields() {
         let setup = setup_with(&mut random, &every_field(), Some(Prepass::Fitting));
         let bench = &mut benches[frame % 4];
         if frame / 4 % 3 == 2 {
-            bench.check(&setup, false, some_rays(&mut random, &setup, RAYS));
+            bench.check(&setup, false, some_rays(&mut random, &bench.ray(), &setup));
         } else {
-            bench.check(&setup, true, some_cones(&mut random, &setup, RAYS));
+            bench.check(&setup, true, some_cones(&mut random, &bench.ray(), &setup));
         }
     }
 }

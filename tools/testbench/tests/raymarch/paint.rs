@@ -53,12 +53,12 @@ fn ends_of_random_rays() {
     const COUNT: usize = 4_000;
     let mut random = Random(8);
     let mut module = Module::new("ray_paint", 1);
+    let layout = module.packed_type("raymarch_pkg::end_t").clone();
     for frame in 0..24 {
         let setup = setup(&mut random, &FIELDS);
         let palette = palette(&mut random);
         set_paint(&mut module, &setup, &palette);
-        let stride = module.port("stride");
-        module.set(stride, u64::from(setup.width / 8));
+        module.drive("stride", setup.width / 8);
         let share = [0.0, 0.5][frame as usize % 2];
         let mut source = Source::new(&module, "in", &["end"], Stalls::new(frame, share));
         let payload = ["eye", "row", "line", "column", "mask", "code", "colour"];
@@ -75,7 +75,7 @@ fn ends_of_random_rays() {
                 };
                 let start = setup.ray(place.eye, column, place.line);
                 let outcome = ending(&mut random, &setup, &start);
-                source.push(vec![end(place, &start, &outcome)]);
+                source.push(vec![end(&layout, place, &start, &outcome)]);
                 (
                     pixel(&setup, &palette, place, &start, &outcome),
                     start,
@@ -97,7 +97,7 @@ fn ends_of_random_rays() {
         assert!(share > 0.0 || clocks < COUNT as u64 + 40, "{clocks} clocks");
         for (item, (wanted, start, outcome)) in sink.take().iter().zip(&expected) {
             let [eye, row, line, column, mask, code, colour] =
-                std::array::from_fn(|i| item[i].field(0, 64));
+                std::array::from_fn(|i| item[i].number());
             let found = Pixel {
                 eye,
                 row,

@@ -3,7 +3,7 @@
 use glint_model::raymarch::{
     Cone, FieldSetup, Lights, Palette, Ray, RayResult, Solid, State, Surface, paint, rgb565,
 };
-use glint_testbench::{Bits, Module};
+use glint_testbench::{Bits, Layout, Module, Record};
 
 /// A pixel's place: parity of its band, line in it, column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -14,40 +14,8 @@ pub struct Place {
     pub eye: usize,
 }
 
-const PLACE_BITS: usize = 19;
-
 impl Place {
-    fn number(&self) -> u64 {
-        let flags = u64::from(self.odd) << 18 | (self.eye as u64) << 17;
-        flags | u64::from(self.line) << 11 | u64::from(self.column)
-    }
-
-    fn of(number: u64) -> Self {
-        Self {
-            odd: number >> 18 & 1 == 1,
-            eye: (number >> 17 & 1) as usize,
-            line: (number >> 11 & 0x3F) as u32,
-            column: (number & 0x7FF) as u32,
-        }
-    }
-}
-
-/// Three numbers of so many bits, the first in the lowest.
-pub fn three(bits: usize, numbers: [i64; 3]) -> Bits {
-    (0..3).fold(Bits::default(), |all, i| {
-        all.with(bits * i, bits, numbers[i])
-    })
-}
-
-pub fn ray(place: Place, ray: &Ray) -> Bits {
-    three(18, ray.direction.map(i64::from))
-        .with(54, 23, ray.start)
-        .with(77, 10, ray.length)
-        .with(87, PLACE_BITS, place.number())
-}
-
-/// Of a number of a cone and its eye.
-impl Place {
+    /// The place of a cone: its eye and number.
     pub fn of_cone(eye: usize, number: u32) -> Self {
         Self {
             odd: false,
@@ -56,17 +24,77 @@ impl Place {
             eye,
         }
     }
+
+    fn set(&self, record: &mut Record) {
+        record.set("place.odd", self.odd);
+        record.set("place.eye", self.eye as u64);
+        record.set("place.line", self.line);
+        record.set("place.column", self.column);
+    }
+
+    fn of(record: &Record) -> Self {
+        Self {
+            odd: record.is_set("place.odd"),
+            eye: record.get("place.eye") as usize,
+            line: record.get("place.line") as u32,
+            column: record.get("place.column") as u32,
+        }
+    }
 }
 
-pub fn cone(place: Place, cone: &Cone) -> Bits {
-    ray(place, &cone.ray).with(87 + PLACE_BITS, 16, cone.spread)
+/// A `ray_t` at its beginning.
+pub fn ray(layout: &Layout, place: Place, ray: &Ray) -> Bits {
+    ray_record(layout, place, ray).bits()
+}
+
+/// A `ray_t` of a cone.
+pub fn cone(layout: &Layout, place: Place, cone: &Cone) -> Bits {
+    let record = ray_record(layout, place, &cone.ray);
+    record.with("spread", cone.spread).bits()
+}
+
+fn ray_record(layout: &Layout, place: Place, ray: &Ray) -> Record {
+    let mut record = layout.record();
+    record.set_all("direction", ray.direction);
+    record.set("start", ray.start);
+    record.set("length", ray.length);
+    place.set(&mut record);
+    record
+}
+
+/// How a ray ends, as `state_t` names it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Kind {
+    #[default]
+    Miss,
+    Hit,
+    Undecided,
+}
+
+impl Kind {
+    const NAMES: [(Self, &str); 3] = [
+        (Self::Miss, "MISS"),
+        (Self::Hit, "HIT"),
+        (Self::Undecided, "UNDECIDED"),
+    ];
+
+    fn name(self) -> &'static str {
+        Self::NAMES[self as usize].1
+    }
+
+    fn of(record: &Record) -> Self {
+        let name = record.name("state");
+        let kinds = Self::NAMES.into_iter();
+        let mut found = kinds.filter_map(|(kind, text)| (name == Some(text)).then_some(kind));
+        found.next().unwrap_or_else(|| panic!("{record:?}"))
+    }
 }
 
 /// Where a ray has come to, as the end of one says. What does not count is 0: surface and slope without a hit, t of a ray
 /// that was given up, a face behind a sphere, the direction of a ray that has not come to a sphere.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct End {
-    pub state: u64,
+    pub state: Kind,
     pub round: bool,
     pub surface: u64,
     pub face: u64,
@@ -82,9 +110,9 @@ pub struct End {
 impl End {
     pub fn expected(ray: &Ray, outcome: &RayResult) -> Self {
         let (state, surface, t) = match outcome.state {
-            State::Miss => (0, None, (ray.direction[2].max(0) >> 9) as u64),
-            State::Hit(surface) => (1, Some(surface), outcome.t.into()),
-            State::Undecided => (2, None, 0),
+            State::Miss => (Kind::Miss, None, (ray.direction[2].max(0) >> 9) as u64),
+            State::Hit(surface) => (Kind::Hit, Some(surface), outcome.t.into()),
+            State::Undecided => (Kind::Undecided, None, 0),
         };
         let number = surface.and_then(Surface::number);
         let face = surface.and_then(Surface::face);
@@ -117,254 +145,205 @@ impl End {
         }
     }
 
-    pub fn of_cone(item: &Bits) -> (Place, Self) {
+    pub fn of_cone(record: &Record) -> (Place, Self) {
         let end = Self {
-            t: item.field(35, 23),
-            steps: item.field(27, 8),
-            length: item.field(58, 10),
+            t: record.get("t"),
+            steps: record.get("steps"),
+            length: record.get("length"),
             ..Self::default()
         };
-        (Place::of(item.field(68, PLACE_BITS)), end)
+        (Place::of(record), end)
     }
 
-    pub fn of(item: &Bits) -> (Place, Self) {
-        let state = item.field(25, 2);
-        let if_hit = |value| if state == 1 { value } else { 0 };
-        let round = if_hit(item.field(87, 1)) == 1;
-        let share = if round { item.field(142, 8) } else { 0 };
+    pub fn of(record: &Record) -> (Place, Self) {
+        let state = Kind::of(record);
+        let if_hit = |name| match state {
+            Kind::Hit => record.get(name),
+            _ => 0,
+        };
+        let round = if_hit("round") == 1;
+        let share = if round { record.get("share") } else { 0 };
         let end = Self {
-            slope: if_hit(item.field(0, 10)),
-            gap: item.field(10, 12),
-            surface: if_hit(item.field(22, 3)),
+            slope: if_hit("slope"),
+            gap: record.get("gap"),
+            surface: if_hit("surface"),
             round,
-            // Nothing of it is to be seen beside a whole sphere.
+            // A face is not visible beside a whole sphere.
             face: if round && share != 255 {
-                item.field(150, 3)
+                record.get("face")
             } else {
                 0
             },
             share,
             state,
-            steps: item.field(27, 8),
-            t: if state == 2 { 0 } else { item.field(35, 23) },
-            length: item.field(58, 10),
+            steps: record.get("steps"),
+            t: match state {
+                Kind::Undecided => 0,
+                _ => record.get("t"),
+            },
+            length: record.get("length"),
             direction: if round {
-                [0, 1, 2].map(|i| (item.field(88 + 18 * i, 18) as i32) << 14 >> 14)
+                ["direction[0]", "direction[1]", "direction[2]"]
+                    .map(|part| record.signed(part) as i32)
             } else {
                 [0; 3]
             },
         };
-        (Place::of(item.field(68, PLACE_BITS)), end)
+        (Place::of(record), end)
     }
 }
 
-fn solid(setup: &FieldSetup) -> Bits {
+fn solid(mut solid: Record, setup: &FieldSetup) -> Record {
     let blend = setup.blend();
-    let all = Bits::default()
-        .with(105, 1, u8::from(setup.beside.is_some()))
-        .with(106, 17, blend.inverse)
-        .with(123, 17, blend.width);
-    let all = setup.balls().map_or(all, |balls| {
-        all.with(100, 3, balls.count as u64 - 1)
-            .with(103, 1, u8::from(balls.repeated))
-            .with(104, 1, 1)
-    });
+    solid.set("flat_too", setup.beside.is_some());
+    solid.set("blend_inverse", blend.inverse);
+    solid.set("blend_width", blend.width);
+    if let Some(balls) = setup.balls() {
+        solid.set("last_ball", balls.count as u64 - 1);
+        solid.set("balls_repeated", balls.repeated);
+        solid.set("is_round", 1);
+    }
     match setup.solid {
         Solid::Menger { depth, half, .. } => {
-            all.with(93, 6, (1_i64 << depth) - 1).with(71, 22, half)
+            solid.set("levels", (1_i64 << depth) - 1);
+            solid.set("cube_half", half);
         }
         Solid::Box {
             half,
             room,
             repeated,
         } => {
-            let all = (0..3).fold(all, |all, i| {
-                all.with(2 + i, 1, u8::from(half[i].is_some())).with(
-                    5 + 22 * i,
-                    22,
-                    half[i].unwrap_or(0),
-                )
-            });
-            all.with(0, 1, u8::from(repeated))
-                .with(1, 1, u8::from(room))
-                .with(99, 1, 1)
+            solid.set_all("box_half", half.map(Option::unwrap_or_default));
+            let has = (0..3).map(|i| u8::from(half[i].is_some()) << i);
+            solid.set("box_has", has.sum::<u8>());
+            solid.set("repeated", repeated);
+            solid.set("room", room);
+            solid.set("is_box", 1);
         }
-        Solid::Balls(_) => all,
+        Solid::Balls(_) => {}
     }
+    solid
 }
 
 /// Writes the spheres, with their materials.
 fn set_balls(module: &mut Module, setup: &FieldSetup, lights: &Lights) {
     let Some(balls) = setup.balls() else { return };
-    let [write, number, ball] = ["ball_write", "ball_number", "ball"].map(|name| module.port(name));
-    module.set(write, 1);
-    for (i, one) in (0..).zip(balls.list.iter().take(balls.count)) {
-        module.set(number, i as u64);
-        let bits = three(22, one.centre.map(i64::from))
-            .with(66, 21, one.radius)
-            .with(87, 17, one.inverse)
-            .with(104, 5, one.shift)
-            .with(109, 24, colour(lights.materials[i]));
-        module.set(ball, bits);
+    module.drive("ball_write", 1);
+    for (i, one) in balls.list.iter().take(balls.count).enumerate() {
+        let mut ball = module.record("ball");
+        ball.set_all("centre", one.centre);
+        ball.set("radius", one.radius);
+        ball.set("inverse", one.inverse);
+        ball.set("shift", one.shift);
+        ball.set("material", colour(lights.materials[i]));
+        module.drive("ball_number", i as u64);
+        module.drive_bits("ball", ball);
         module.clock();
     }
-    module.set(write, 0);
+    module.drive("ball_write", 0);
 }
 
-/// Sets what shines on spheres.
+/// Sets the lights on spheres.
 pub fn set_lights(module: &mut Module, setup: &FieldSetup, lights: &Lights) {
-    let bits = (0..).zip(lights.list).fold(
-        Bits::default()
-            .with(312, 24, colour(lights.ambient))
-            .with(336, 2, lights.count as u64 - 1),
-        |all, (i, light)| {
-            let all = all.with(216 + 24 * i, 24, colour(light.colour));
-            (0..3).fold(all, |all, axis| {
-                all.with(54 * i + 18 * axis, 18, light.direction[axis])
-            })
-        },
-    );
-    let port = module.port("lights");
-    module.set(port, bits);
+    let mut record = module.record("lights");
+    record.set("ambient", colour(lights.ambient));
+    record.set("last_light", lights.count as u64 - 1);
+    for (i, light) in lights.list.iter().enumerate() {
+        record.set(&format!("colours[{i}]"), colour(light.colour));
+        record.set_all(&format!("directions[{i}]"), light.direction);
+    }
+    module.drive_bits("lights", record);
     set_balls(module, setup, lights);
 }
 
-/// Sets what holds during a frame, as far as a lane wants it.
+/// Sets a port that has three numbers for each eye, the left one first.
+fn drive_eyes(module: &mut Module, name: &str, [left, right]: [[impl Into<i128>; 3]; 2]) {
+    module.drive_all(&format!("{name}[0]"), left);
+    module.drive_all(&format!("{name}[1]"), right);
+}
+
+/// Sets a frame's constants for a lane.
 pub fn set_lane(module: &mut Module, setup: &FieldSetup) {
-    let [left, right] = setup.eyes.map(|eye| eye.origin.map(i64::from));
-    let origins = (0..3).fold(three(25, left), |all, i| {
-        all.with(75 + 25 * i, 25, right[i])
-    });
     let tuning = &setup.tuning;
-    let tuning = Bits::default()
-        .with(0, 23, tuning.far)
-        .with(23, 8, tuning.cap)
-        .with(31, 4, tuning.footprint)
-        .with(35, 16, tuning.threshold);
-    for (name, value) in [
-        ("origins", origins),
-        ("bounds", three(24, setup.bounds.map(i64::from))),
-        ("solid", solid(setup)),
-        ("tuning", tuning),
-    ] {
-        let port = module.port(name);
-        module.set(port, value);
-    }
+    let record = module
+        .record("tuning")
+        .with("far_limit", tuning.far)
+        .with("cap", tuning.cap)
+        .with("footprint", tuning.footprint)
+        .with("threshold", tuning.threshold);
+    module.drive_bits("tuning", record);
+    drive_eyes(module, "origins", setup.eyes.map(|eye| eye.origin));
+    module.drive_all("bounds", setup.bounds);
+    let solid = solid(module.record("solid"), setup);
+    module.drive_bits("solid", solid);
     set_balls(module, setup, &Palette::default().lights);
 }
 
-/// Sets what holds during a frame, as far as the generator wants it, in bands of so many lines.
+/// Sets a frame's constants for the generator, with bands of `band_lines` lines.
 pub fn set_generator(module: &mut Module, setup: &FieldSetup, band_lines: u32) {
     for (name, value) in [
         ("last_column", setup.width - 1),
         ("last_line", band_lines - 1),
         ("last_band", setup.height / band_lines - 1),
     ] {
-        let port = module.port(name);
-        module.set(port, u64::from(value));
+        module.drive(name, value);
     }
     set_rays(module, setup);
 }
 
-/// Sets where the rays begin.
+/// Sets the constants that rays start from.
 pub fn set_rays(module: &mut Module, setup: &FieldSetup) {
     let eyes = setup.eyes;
-    let both = |bits: usize, [left, right]: [[i64; 3]; 2]| {
-        (0..3).fold(three(bits, left), |all, i| {
-            all.with(bits * (3 + i), bits, right[i])
-        })
-    };
-    let number = |value: u32| Bits::from(u64::from(value));
-    for (name, value) in [
-        ("stereo", number(setup.stereo.is_some().into())),
-        ("first", both(32, eyes.map(|eye| eye.first.map(i64::from)))),
-        ("across", three(32, setup.steps[0].map(i64::from))),
-        ("down", three(32, setup.steps[1].map(i64::from))),
-        ("near_limit", number(setup.near)),
-        (
-            "outside",
-            both(24, eyes.map(|eye| eye.outside.map(i64::from))),
-        ),
-        (
-            "origins",
-            both(25, eyes.map(|eye| eye.origin.map(i64::from))),
-        ),
-    ] {
-        let port = module.port(name);
-        module.set(port, value);
-    }
+    module.drive("stereo", setup.stereo.is_some());
+    module.drive("near_limit", setup.near);
+    drive_eyes(module, "first", eyes.map(|eye| eye.first));
+    module.drive_all("across", setup.steps[0]);
+    module.drive_all("down", setup.steps[1]);
+    drive_eyes(module, "outside", eyes.map(|eye| eye.outside));
+    drive_eyes(module, "origins", eyes.map(|eye| eye.origin));
 }
 
-/// Sets what a block of pixels is in D.
+/// Sets the size of a block of pixels in D.
 pub fn set_blocks(module: &mut Module, setup: &FieldSetup, offset: &str, spread: &str) {
     let cones = setup.cones.map(|cones| (cones.offset, cones.spread));
     let (middle, widest) = cones.unwrap_or_default();
-    for (name, value) in [
-        (offset, three(32, middle.map(i64::from))),
-        (spread, Bits::from(u64::from(widest))),
-    ] {
-        let port = module.port(name);
-        module.set(port, value);
-    }
+    module.drive_all(offset, middle);
+    module.drive(spread, widest);
 }
 
-/// The end of a ray.
-pub fn end(place: Place, ray: &Ray, outcome: &RayResult) -> Bits {
-    let End {
-        state,
-        round,
-        surface,
-        face,
-        share,
-        t,
-        steps,
-        length,
-        gap,
-        slope,
-        direction: _,
-    } = End::expected(ray, outcome);
-    Bits::default()
-        .with(0, 10, slope)
-        .with(10, 12, gap)
-        .with(22, 3, surface)
-        .with(25, 2, state)
-        .with(27, 8, steps)
-        .with(35, 23, t)
-        .with(58, 10, length)
-        .with(68, PLACE_BITS, place.number())
-        .with(87, 1, u8::from(round))
-        .with(88, 18, ray.direction[0])
-        .with(106, 18, ray.direction[1])
-        .with(124, 18, ray.direction[2])
-        .with(142, 8, share)
-        .with(150, 3, face)
+/// An `end_t`.
+pub fn end(layout: &Layout, place: Place, ray: &Ray, outcome: &RayResult) -> Bits {
+    let end = End::expected(ray, outcome);
+    let mut record = layout.record();
+    record.set("slope", end.slope);
+    record.set("gap", end.gap);
+    record.set("surface", end.surface);
+    record.set_name("state", end.state.name());
+    record.set("steps", end.steps);
+    record.set("t", end.t);
+    record.set("length", end.length);
+    place.set(&mut record);
+    record.set("round", end.round);
+    record.set_all("direction", ray.direction);
+    record.set("share", end.share);
+    record.set("face", end.face);
+    record.bits()
 }
 
 fn colour([r, g, b]: [u8; 3]) -> u64 {
     u64::from(b) << 16 | u64::from(g) << 8 | u64::from(r)
 }
 
-/// Sets what holds during a frame, as far as painting wants it, and fills its tables.
+/// Sets a frame's constants for painting, and fills its tables.
 pub fn set_paint(module: &mut Module, setup: &FieldSetup, palette: &Palette) {
-    let colours = palette
-        .faces
-        .into_iter()
-        .chain([palette.undecided, palette.zenith]);
-    let colours = (0..).zip(colours).fold(Bits::default(), |all, (i, one)| {
-        all.with(24 * i, 24, colour(one))
-    });
-    let number = |bits: usize, value: i64| Bits::default().with(0, bits, value);
-    for (name, value) in [
-        ("stereo", number(2, setup.stereo.is_some().into())),
-        ("depth_mantissa", number(17, setup.depth.mantissa.into())),
-        ("depth_exponent", number(6, setup.depth.exponent.into())),
-        ("fog_shift", number(3, palette.fog_shift.into())),
-        ("palette", colours),
-        ("horizon", number(24, colour(palette.horizon) as i64)),
-    ] {
-        let port = module.port(name);
-        module.set(port, value);
-    }
+    let rest = [palette.undecided, palette.zenith];
+    let colours = palette.faces.into_iter().chain(rest).map(colour);
+    module.drive_all("palette", colours);
+    module.drive("horizon", colour(palette.horizon));
+    module.drive("stereo", setup.stereo.is_some());
+    module.drive("depth_mantissa", setup.depth.mantissa);
+    module.drive("depth_exponent", setup.depth.exponent);
+    module.drive("fog_shift", palette.fog_shift);
     let [write, entry, part] =
         ["table_write", "table_entry", "table_part"].map(|name| module.port(name));
     module.set(write, 1);

@@ -1,0 +1,268 @@
+//! The layout of packed types, as Verilator resolves them: which bits a member has.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use serde::Deserialize;
+use thiserror::Error;
+
+use crate::{Bits, Record};
+
+/// A packed type: a vector, an enumeration, an array or a structure. Cheap to clone.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(from = "Shape")]
+pub struct Layout {
+    shape: Arc<Shape>,
+    width: usize,
+}
+
+/// A type in the description that `gateware/tests/description.py` writes.
+#[derive(Debug, Deserialize)]
+#[serde(untagged)]
+enum Shape {
+    Array {
+        count: usize,
+        /// The index of the element in the lowest bits.
+        lowest: usize,
+        element: Layout,
+    },
+    Structure {
+        name: String,
+        /// The member in the highest bits first.
+        members: Vec<(String, Layout)>,
+    },
+    Enumeration {
+        name: String,
+        width: usize,
+        values: BTreeMap<String, u64>,
+    },
+    Vector {
+        width: usize,
+        signed: bool,
+    },
+}
+
+impl From<Shape> for Layout {
+    fn from(shape: Shape) -> Self {
+        let width = match &shape {
+            Shape::Array { count, element, .. } => count * element.width,
+            Shape::Structure { members, .. } => {
+                members.iter().map(|(_, member)| member.width).sum()
+            }
+            Shape::Enumeration { width, .. } | Shape::Vector { width, .. } => *width,
+        };
+        let shape = Arc::new(shape);
+        Self { shape, width }
+    }
+}
+
+/// A part of a type: its bits from `low` on.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Part<'a> {
+    pub low: usize,
+    pub layout: &'a Layout,
+}
+
+/// A path that names no part, or a value that its part does not hold.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum LayoutError {
+    /// A name that is not a member of a structure.
+    #[error("{path}: no member `{member}` in {structure}; its members: {}", members.join(", "))]
+    Member {
+        /// The whole path.
+        path: String,
+        /// The unknown name.
+        member: String,
+        /// The structure's type.
+        structure: String,
+        /// Its members.
+        members: Vec<String>,
+    },
+    /// An index outside of an array.
+    #[error("{path}: index {index} outside of {lowest}..={highest}")]
+    Index {
+        /// The whole path.
+        path: String,
+        /// The index in the path.
+        index: String,
+        /// The lowest index.
+        lowest: usize,
+        /// The highest index.
+        highest: usize,
+    },
+    /// A member or an index of a type that has none.
+    #[error("{path}: no `{rest}` in {found}")]
+    Leaf {
+        /// The whole path.
+        path: String,
+        /// What follows the part that ends the path.
+        rest: String,
+        /// The type of that part.
+        found: String,
+    },
+    /// A value that a part does not hold.
+    #[error("{path}: {value} does not fit {width} bits")]
+    Value {
+        /// The path.
+        path: String,
+        /// The value.
+        value: String,
+        /// Bits of the part.
+        width: usize,
+    },
+    /// A name that is not a value of an enumeration.
+    #[error("{path}: no value `{name}` in {found}; its values: {}", values.join(", "))]
+    Name {
+        /// The path.
+        path: String,
+        /// The unknown name.
+        name: String,
+        /// The type of the part.
+        found: String,
+        /// The values of that type, none if it is no enumeration.
+        values: Vec<String>,
+    },
+    /// A list that is not as long as its array.
+    #[error("{path}: {found} values for {found_in}")]
+    Length {
+        /// The path.
+        path: String,
+        /// Values in the list.
+        found: usize,
+        /// The type of the part.
+        found_in: String,
+    },
+}
+
+impl Layout {
+    /// Bits of the type.
+    #[must_use]
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// A record of this type, all zero.
+    #[must_use]
+    pub fn record(&self) -> Record {
+        self.record_of(Bits::default())
+    }
+
+    /// A record of this type with the given bits.
+    ///
+    /// # Panics
+    /// With bits above the type's width.
+    #[must_use]
+    pub fn record_of(&self, bits: Bits) -> Record {
+        Record::new(self.clone(), bits)
+    }
+
+    /// The type of a part.
+    ///
+    /// # Errors
+    /// When the path names no part.
+    pub fn part(&self, path: &str) -> Result<Self, LayoutError> {
+        self.find(path).map(|part| part.layout.clone())
+    }
+
+    /// Whether a value of this type is a two's complement number.
+    pub(crate) fn is_signed(&self) -> bool {
+        matches!(*self.shape, Shape::Vector { signed: true, .. })
+    }
+
+    /// Finds a part: names of members, each behind a `.`, and indices in `[]`, as in `place.line` or `[1].half[2]`. An empty
+    /// path is the whole.
+    pub(crate) fn find(&self, path: &str) -> Result<Part<'_>, LayoutError> {
+        let mut part = Part {
+            low: 0,
+            layout: self,
+        };
+        let mut rest = path;
+        while !rest.is_empty() {
+            rest = part.enter(path, rest)?;
+        }
+        Ok(part)
+    }
+
+    /// The elements of an array, the lowest index first.
+    pub(crate) fn elements(&self) -> Option<(usize, &Self)> {
+        match &*self.shape {
+            Shape::Array { count, element, .. } => Some((*count, element)),
+            _ => None,
+        }
+    }
+
+    /// The names of an enumeration and their values.
+    pub(crate) fn values(&self) -> Option<&BTreeMap<String, u64>> {
+        match &*self.shape {
+            Shape::Enumeration { values, .. } => Some(values),
+            _ => None,
+        }
+    }
+
+    /// The type in words.
+    pub(crate) fn describe(&self) -> String {
+        match &*self.shape {
+            Shape::Array { count, element, .. } => {
+                format!("an array of {count}, each {}", element.describe())
+            }
+            Shape::Structure { name, .. } | Shape::Enumeration { name, .. } => name.clone(),
+            Shape::Vector { width, .. } => format!("a vector of {width} bits"),
+        }
+    }
+}
+
+impl Part<'_> {
+    /// Goes on to the member or element that `rest` of `path` begins with, and returns what follows it.
+    fn enter<'p>(&mut self, path: &str, rest: &'p str) -> Result<&'p str, LayoutError> {
+        match (&*self.layout.shape, rest.strip_prefix('[')) {
+            (
+                Shape::Array {
+                    count,
+                    lowest,
+                    element,
+                },
+                Some(inside),
+            ) => {
+                let (index, rest) = inside.split_once(']').unwrap_or((inside, ""));
+                let number = index.parse::<usize>().ok();
+                let number = number
+                    .and_then(|number| number.checked_sub(*lowest))
+                    .filter(|number| number < count)
+                    .ok_or_else(|| LayoutError::Index {
+                        path: path.to_owned(),
+                        index: index.to_owned(),
+                        lowest: *lowest,
+                        highest: lowest + count - 1,
+                    })?;
+                self.low += number * element.width;
+                self.layout = element;
+                Ok(rest)
+            }
+            (Shape::Structure { name, members }, None) => {
+                let rest = rest.strip_prefix('.').unwrap_or(rest);
+                let (member, rest) = rest.split_at(rest.find(['.', '[']).unwrap_or(rest.len()));
+                let position = members
+                    .iter()
+                    .position(|(name, _)| name == member)
+                    .ok_or_else(|| LayoutError::Member {
+                        path: path.to_owned(),
+                        member: member.to_owned(),
+                        structure: name.clone(),
+                        members: members.iter().map(|(name, _)| name.clone()).collect(),
+                    })?;
+                self.low += members[position + 1..]
+                    .iter()
+                    .map(|(_, member)| member.width)
+                    .sum::<usize>();
+                self.layout = &members[position].1;
+                Ok(rest)
+            }
+            _ => Err(LayoutError::Leaf {
+                path: path.to_owned(),
+                rest: rest.to_owned(),
+                found: self.layout.describe(),
+            }),
+        }
+    }
+}

@@ -1,0 +1,327 @@
+//! Values of packed types, member by member.
+
+use std::fmt;
+
+use crate::Bits;
+use crate::bits::holds;
+use crate::layout::{Layout, LayoutError, Part};
+
+/// A value of a packed type, whose members have names: `place.line`, `half[2]`, `[1][0]`, and `""` for the whole.
+///
+/// Every method that takes a path panics with a [`LayoutError`] when the type has no such part, and lists its parts.
+#[derive(Clone)]
+pub struct Record {
+    layout: Layout,
+    bits: Bits,
+}
+
+impl Record {
+    pub(crate) fn new(layout: Layout, bits: Bits) -> Self {
+        assert!(
+            bits.fits(layout.width()),
+            "{bits:?} in {}",
+            layout.describe()
+        );
+        Self { layout, bits }
+    }
+
+    /// The type.
+    #[must_use]
+    pub fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// All bits.
+    #[must_use]
+    pub fn bits(&self) -> Bits {
+        self.bits
+    }
+
+    /// With a number in a part: two's complement, or unsigned.
+    ///
+    /// # Panics
+    /// When there is no such part, or the number does not fit.
+    #[must_use]
+    pub fn with(mut self, path: &str, value: impl Into<i128>) -> Self {
+        self.set(path, value);
+        self
+    }
+
+    /// With the numbers of an array, the lowest index first.
+    ///
+    /// # Panics
+    /// When there is no such array, or one of another length, or a number does not fit.
+    #[must_use]
+    pub fn with_all(mut self, path: &str, values: impl IntoIterator<Item: Into<i128>>) -> Self {
+        self.set_all(path, values);
+        self
+    }
+
+    /// Sets a part to a number: two's complement, or unsigned.
+    ///
+    /// # Panics
+    /// When there is no such part, or the number does not fit.
+    pub fn set(&mut self, path: &str, value: impl Into<i128>) {
+        let result = self.try_set(path, value.into());
+        result.unwrap_or_else(|error| panic!("{error}"));
+    }
+
+    /// Sets an array to numbers, the lowest index first.
+    ///
+    /// # Panics
+    /// When there is no such array, or one of another length, or a number does not fit.
+    pub fn set_all(&mut self, path: &str, values: impl IntoIterator<Item: Into<i128>>) {
+        let values: Vec<i128> = values.into_iter().map(Into::into).collect();
+        let result = self.try_set_all(path, &values);
+        result.unwrap_or_else(|error| panic!("{error}"));
+    }
+
+    /// Sets an enumeration to a value by its name.
+    ///
+    /// # Panics
+    /// When there is no such part, or no such value of it.
+    pub fn set_name(&mut self, path: &str, name: &str) {
+        let result = self.try_set_name(path, name);
+        result.unwrap_or_else(|error| panic!("{error}"));
+    }
+
+    /// Sets a part to bits, such as those of another record.
+    ///
+    /// # Panics
+    /// When there is no such part, or the bits do not fit.
+    pub fn set_bits(&mut self, path: &str, bits: impl Into<Bits>) {
+        let result = self.try_set_bits(path, bits.into());
+        result.unwrap_or_else(|error| panic!("{error}"));
+    }
+
+    /// The number in a part of at most 64 bits, as unsigned.
+    ///
+    /// # Panics
+    /// When there is no such part, or a wider one.
+    #[must_use]
+    pub fn get(&self, path: &str) -> u64 {
+        let part = self.find(path);
+        self.bits.field(part.low, part.layout.width())
+    }
+
+    /// The number in a part of at most 64 bits, as two's complement.
+    ///
+    /// # Panics
+    /// When there is no such part, or a wider one.
+    #[must_use]
+    pub fn signed(&self, path: &str) -> i64 {
+        let part = self.find(path);
+        self.bits.signed(part.low, part.layout.width())
+    }
+
+    /// Whether a part of one bit is set.
+    ///
+    /// # Panics
+    /// When there is no such part, or a wider one.
+    #[must_use]
+    pub fn is_set(&self, path: &str) -> bool {
+        let part = self.find(path);
+        assert_eq!(part.layout.width(), 1, "{path}: {}", part.layout.describe());
+        self.bits.field(part.low, 1) != 0
+    }
+
+    /// The name of an enumeration's value, or `None` for a number that has none.
+    ///
+    /// # Panics
+    /// When there is no such part, or it is no enumeration.
+    #[must_use]
+    pub fn name(&self, path: &str) -> Option<&str> {
+        let part = self.find(path);
+        let values = part.layout.values();
+        let values = values.unwrap_or_else(|| panic!("{path}: {}", part.layout.describe()));
+        let value = self.bits.field(part.low, part.layout.width());
+        let found = values.iter().find(|&(_, &number)| number == value);
+        found.map(|(name, _)| name.as_str())
+    }
+
+    /// A part as a record of its own.
+    ///
+    /// # Panics
+    /// When there is no such part.
+    #[must_use]
+    pub fn part(&self, path: &str) -> Self {
+        let part = self.find(path);
+        Self {
+            layout: part.layout.clone(),
+            bits: self.bits.slice(part.low, part.layout.width()),
+        }
+    }
+
+    /// As [`set`](Self::set).
+    ///
+    /// # Errors
+    /// Where that panics.
+    pub fn try_set(&mut self, path: &str, value: i128) -> Result<(), LayoutError> {
+        let part = self.layout.find(path)?;
+        let (low, width) = (part.low, part.layout.width());
+        if !fits(value, width, part.layout.is_signed()) {
+            return Err(LayoutError::Value {
+                path: path.to_owned(),
+                value: value.to_string(),
+                width,
+            });
+        }
+        self.bits = self.bits.with(low, width, value);
+        Ok(())
+    }
+
+    /// As [`set_all`](Self::set_all).
+    ///
+    /// # Errors
+    /// Where that panics.
+    pub fn try_set_all(&mut self, path: &str, values: &[i128]) -> Result<(), LayoutError> {
+        let part = self.layout.find(path)?;
+        let elements = part.layout.elements();
+        let (_, element) = elements
+            .filter(|&(count, _)| count == values.len())
+            .ok_or_else(|| LayoutError::Length {
+                path: path.to_owned(),
+                found: values.len(),
+                found_in: part.layout.describe(),
+            })?;
+        let (width, signed) = (element.width(), element.is_signed());
+        let lows = (part.low..).step_by(width);
+        for (low, &value) in lows.zip(values) {
+            if !fits(value, width, signed) {
+                return Err(LayoutError::Value {
+                    path: path.to_owned(),
+                    value: value.to_string(),
+                    width,
+                });
+            }
+            self.bits = self.bits.with(low, width, value);
+        }
+        Ok(())
+    }
+
+    /// As [`set_name`](Self::set_name).
+    ///
+    /// # Errors
+    /// Where that panics.
+    pub fn try_set_name(&mut self, path: &str, name: &str) -> Result<(), LayoutError> {
+        let part = self.layout.find(path)?;
+        let values = part.layout.values();
+        let value = values.and_then(|values| values.get(name)).copied();
+        let value = value.ok_or_else(|| LayoutError::Name {
+            path: path.to_owned(),
+            name: name.to_owned(),
+            found: part.layout.describe(),
+            values: values.map_or_else(Vec::new, |values| values.keys().cloned().collect()),
+        })?;
+        self.try_set(path, value.into())
+    }
+
+    /// As [`set_bits`](Self::set_bits).
+    ///
+    /// # Errors
+    /// Where that panics.
+    pub fn try_set_bits(&mut self, path: &str, bits: Bits) -> Result<(), LayoutError> {
+        let part = self.layout.find(path)?;
+        let (low, width) = (part.low, part.layout.width());
+        if !bits.fits(width) {
+            return Err(LayoutError::Value {
+                path: path.to_owned(),
+                value: format!("{bits:?}"),
+                width,
+            });
+        }
+        self.bits = self.bits.with_slice(low, width, bits);
+        Ok(())
+    }
+
+    fn find(&self, path: &str) -> Part<'_> {
+        let part = self.layout.find(path);
+        part.unwrap_or_else(|error| panic!("{error}"))
+    }
+}
+
+/// Whether a part holds a number. What is not declared as signed holds signed and unsigned ones.
+fn fits(value: i128, width: usize, signed: bool) -> bool {
+    holds(width, value) && !(signed && value >= 1 << (width - 1).min(126))
+}
+
+impl From<Record> for Bits {
+    fn from(record: Record) -> Self {
+        record.bits
+    }
+}
+
+impl fmt::Debug for Record {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{} {:?}", self.layout.describe(), self.bits)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Record;
+    use crate::layout::{Layout, LayoutError};
+
+    fn layout() -> Layout {
+        serde_json::from_str(
+            r#"{"name": "solid_t", "members": [
+                ["half", {"count": 3, "lowest": 0, "element": {"width": 22, "signed": false}}],
+                ["place", {"name": "place_t", "members": [
+                    ["line", {"width": 6, "signed": false}], ["column", {"width": 11, "signed": true}]]}],
+                ["state", {"name": "state_t", "width": 2, "values": {"MISS": 0, "HIT": 1}}]]}"#,
+        )
+        .unwrap()
+    }
+
+    fn error(path: &str, value: i128) -> String {
+        layout()
+            .record()
+            .try_set(path, value)
+            .unwrap_err()
+            .to_string()
+    }
+
+    #[test]
+    fn members_have_the_bits_of_the_declaration() {
+        let mut record: Record = layout().record();
+        record.set("place.column", -5);
+        record.set("place.line", 63);
+        record.set_all("half", [1, -2, 3]);
+        record.set_name("state", "HIT");
+        assert_eq!(record.layout().width(), 3 * 22 + 17 + 2);
+        assert_eq!(record.bits().field(0, 2), 1);
+        assert_eq!(record.bits().signed(2, 11), -5);
+        assert_eq!(record.bits().field(13, 6), 63);
+        assert_eq!(record.bits().signed(19 + 22, 22), -2);
+        assert_eq!((record.get("half[2]"), record.signed("half[1]")), (3, -2));
+        assert_eq!(record.name("state"), Some("HIT"));
+        assert_eq!(record.part("place").get("line"), 63);
+        let other = layout().record_of(record.bits());
+        assert_eq!(other.signed("place.column"), -5);
+    }
+
+    #[test]
+    fn errors_list_the_parts() {
+        assert_eq!(
+            error("place.row", 1),
+            "place.row: no member `row` in place_t; its members: line, column"
+        );
+        assert_eq!(error("half[3]", 1), "half[3]: index 3 outside of 0..=2");
+        assert_eq!(error("state.high", 1), "state.high: no `.high` in state_t");
+        assert_eq!(
+            error("place.line", 64),
+            "place.line: 64 does not fit 6 bits"
+        );
+        assert_eq!(
+            error("place.column", 1024),
+            "place.column: 1024 does not fit 11 bits"
+        );
+        let names = layout().record().try_set_name("state", "LOST").unwrap_err();
+        assert!(matches!(names, LayoutError::Name { values, .. } if values == ["HIT", "MISS"]));
+        let long = layout().record().try_set_all("half", &[0; 4]).unwrap_err();
+        assert_eq!(
+            long.to_string(),
+            "half: 4 values for an array of 3, each a vector of 22 bits"
+        );
+    }
+}
