@@ -46,14 +46,14 @@ pub fn run<'l>(machine: &mut Machine, kernel: Option<&'l str>) -> Result<(), Ref
     match kernel {
         None => {
             sine(&mut machine.terminal);
-            if machine.canvas.painter.is_some() {
+            if machine.renderer.gateware.is_some() {
                 frames(machine)?;
             }
         }
         Some("sine") => sine(&mut machine.terminal),
         #[cfg(feature = "peers")]
         Some("attitude") => attitude::attitude(&mut machine.terminal),
-        Some("triangle" | "field") if machine.canvas.painter.is_none() => {
+        Some("triangle" | "field") if machine.renderer.gateware.is_none() => {
             return Err(Refusal::NoEngine);
         }
         // What is shown is measured.
@@ -75,27 +75,27 @@ fn frames<'l>(machine: &mut Machine) -> Result<(), Refusal<'l>> {
         terminal,
         scene,
         models,
-        canvas,
+        renderer,
         ..
     } = machine;
     // The frame before has to leave the screen.
-    let painted = loop {
-        if let Some(painted) = canvas.repeat(models.mesh(), scene, FRAMES) {
-            break painted.map_err(Refusal::Engine)?;
+    let rendered = loop {
+        if let Some(rendered) = renderer.repeat(models.mesh(), scene, FRAMES) {
+            break rendered.map_err(Refusal::Engine)?;
         }
     };
-    let rays = painted.stats.rays;
+    let rays = rendered.stats.field;
     let kernel = if rays.is_some() { "field" } else { "triangle" };
     terminal.print(format_args!(
         "bench {kernel} frames {FRAMES} cycles {}",
-        painted.cycles
+        rendered.cycles
     ));
     if let Some(stats) = rays {
         for (name, value) in commands::ray_values(&stats) {
             terminal.print(format_args!(" {name} {value}"));
         }
     }
-    for (name, value) in commands::engine_values(&painted.counters) {
+    for (name, value) in commands::engine_values(&rendered.counters) {
         terminal.print(format_args!(" {name} {value}"));
     }
     terminal.print(format_args!("\n"));

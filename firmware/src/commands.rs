@@ -10,19 +10,19 @@ use glint_core::fixed::{Q32_32, Turns};
 use glint_core::light::MAX_LIGHTS;
 use glint_core::mesh::MeshError;
 use glint_core::orientation::log::LogError;
-use glint_core::picture::{Backend, Size};
+use glint_core::picture::Backend;
 use glint_core::wire::{Failure, Manifest, crc32};
-use glint_hal::display::Scale;
 use glint_hal::timer::FREQUENCY;
 use glint_hal::triangle::Counters;
-use glint_model::RenderError;
 use glint_model::raymarch::FieldStats;
+use glint_model::{FrameStats, RenderError};
 use heapless::Vec;
 use litex_pac::{cpu, ctrl};
 
+use crate::gateware::Fallback;
 use crate::machine::{Job, Machine};
 use crate::models::{FIELDS, Model};
-use crate::scene::{Counts, Fallback, Painter, Scene, Sphere};
+use crate::scene::{RenderedBy, Scene, Sphere};
 use crate::terminal::Terminal;
 use crate::{appearance, bench, imu, replay, selftest, transfer};
 
@@ -259,11 +259,7 @@ pub fn execute<'l>(machine: &mut Machine, line: &'l str) -> Reply<'l> {
                 .map_err(Refusal::View)
         }
         Command::Size(size) => {
-            machine.scene.set_scale(match size {
-                Size::W320 => Scale::Four,
-                Size::W640 => Scale::Two,
-                Size::W1280 => Scale::One,
-            });
+            machine.scene.set_size(size);
             Ok(())
         }
         Command::Load(manifest) => load(machine, manifest),
@@ -283,7 +279,7 @@ pub fn execute<'l>(machine: &mut Machine, line: &'l str) -> Reply<'l> {
             machine.terminal.print(format_args!("backend {backend}\n"));
             Ok(())
         }
-        Command::Backend(Some(Backend::Gateware)) if machine.canvas.painter.is_none() => {
+        Command::Backend(Some(Backend::Gateware)) if machine.renderer.gateware.is_none() => {
             Err(Refusal::NoEngine)
         }
         Command::Backend(Some(backend)) => {
@@ -340,7 +336,7 @@ fn info<'l>(machine: &mut Machine, key: Option<&'l str>) -> Result<(), Refusal<'
         identity,
         models,
         scene,
-        canvas,
+        renderer,
         clock,
         uart,
         ..
@@ -354,9 +350,9 @@ fn info<'l>(machine: &mut Machine, key: Option<&'l str>) -> Result<(), Refusal<'
         _ => format_args!(""),
     };
     let shown: &dyn Display = field.map_or(&model, |field| field);
-    let [width, height] = scene.scale().size();
-    let (frame, depth) = (canvas.display.front().as_ptr(), canvas.depth.as_ptr());
-    let counters = canvas.display.counters();
+    let [width, height] = scene.size().pixels();
+    let (frame, depth) = (renderer.display.front().as_ptr(), renderer.depth.as_ptr());
+    let counters = renderer.display.counters();
     let lines: [(&str, fmt::Arguments); 18] = [
         ("version", format_args!("{}", env!("CARGO_PKG_VERSION"))),
         ("firmware_id", format_args!("{:#010x}", identity.firmware)),
@@ -500,7 +496,7 @@ pub fn stage<'m>(
 pub fn send_frame(machine: &mut Machine, depth: bool) -> Result<(), Refusal<'static>> {
     let Machine {
         scene,
-        canvas,
+        renderer,
         downloads,
         ..
     } = machine;
@@ -511,9 +507,9 @@ pub fn send_frame(machine: &mut Machine, depth: bool) -> Result<(), Refusal<'sta
     // The engine writes beside the cache.
     cpu::flush_data_cache();
     let bytes = if depth {
-        bytemuck::cast_slice(canvas.depths(scene))
+        bytemuck::cast_slice(renderer.depths(scene))
     } else {
-        bytemuck::cast_slice(canvas.colours(scene))
+        bytemuck::cast_slice(renderer.colours(scene))
     };
     downloads
         .send(&mut machine.terminal, bytes)
@@ -529,7 +525,7 @@ pub fn stats(machine: &mut Machine, json: bool) -> Result<(), Refusal<'static>> 
         .map_err(Refusal::Render)?;
     let mut values: Vec<(&str, u64), 32> = Vec::new();
     let (backend, engine) = match drawn.by {
-        Painter::Cpu(fallback) => {
+        RenderedBy::Cpu(fallback) => {
             if let Some(fallback) = fallback
                 && !json
             {
@@ -539,12 +535,12 @@ pub fn stats(machine: &mut Machine, json: bool) -> Result<(), Refusal<'static>> 
             }
             (Backend::Cpu, None)
         }
-        Painter::Engine(counters) => (Backend::Gateware, Some(counters)),
+        RenderedBy::Gateware(counters) => (Backend::Gateware, Some(counters)),
     };
     // There is room for them all.
     let _ = values.push(("cycles", drawn.cycles));
-    let Counts { triangles, rays } = drawn.stats;
-    if let Some(stats) = triangles {
+    let FrameStats { mesh, field } = drawn.stats;
+    if let Some(stats) = mesh {
         let _ = values.extend_from_slice(&[
             ("triangles_in", stats.triangles_in.into()),
             ("triangles_culled", stats.culled.into()),
@@ -554,11 +550,11 @@ pub fn stats(machine: &mut Machine, json: bool) -> Result<(), Refusal<'static>> 
             ("pixels_covered", stats.pixels_covered),
         ]);
         // An engine counts the field's with them.
-        if rays.is_none() {
+        if field.is_none() {
             let _ = values.push(("pixels_drawn", stats.pixels_drawn));
         }
     }
-    if let Some(stats) = rays {
+    if let Some(stats) = field {
         let _ = values.extend_from_slice(&ray_values(&stats));
     }
     let _ = values.push(("clock", FREQUENCY.into()));

@@ -16,11 +16,11 @@ use glint_hal::timer::{Clock, Deadline};
 use litex_pac::cpu;
 use litex_pac::ctrl::Ctrl;
 
-use crate::canvas::Canvas;
 use crate::commands::{self, Orbit, Refusal, Reply};
 use crate::imu::{self, SensorJob};
 use crate::interrupts::{self, UART};
 use crate::models::Models;
+use crate::renderer::Renderer;
 use crate::replay::{self, Replay};
 use crate::scene::Scene;
 use crate::sensor::{self, Imu, Inbox};
@@ -101,8 +101,8 @@ pub struct Machine {
     pub scene: Scene,
     /// Its models.
     pub models: Models,
-    /// Where it is drawn.
-    pub canvas: Canvas,
+    /// Its renderers and frame buffers.
+    pub renderer: Renderer,
     /// The sensor, and what follows it.
     pub imu: Imu,
     /// Devices, where they may be touched.
@@ -128,7 +128,7 @@ impl Machine {
         clock: Clock,
         scene: Scene,
         models: Models,
-        canvas: Canvas,
+        renderer: Renderer,
         devices: Option<Devices>,
         ctrl: Ctrl,
     ) -> Self {
@@ -139,7 +139,7 @@ impl Machine {
             terminal: Terminal::new(&UART, clock),
             scene,
             models,
-            canvas,
+            renderer,
             imu: Imu::default(),
             devices,
             ctrl,
@@ -185,10 +185,10 @@ impl Machine {
     fn is_busy(&mut self) -> bool {
         // Without video nothing would wake the machine for its heartbeat.
         self.answers_next()
-            || self.canvas.is_ready(&self.scene)
+            || self.renderer.is_ready(&self.scene)
             || sensor::has_news()
             || matches!(self.job, Some(Job::Replay))
-            || !self.canvas.display.is_visible()
+            || !self.renderer.display.is_visible()
     }
 
     /// Whether the next turn of the loop has something to answer, or to hear.
@@ -206,7 +206,7 @@ impl Machine {
         matches!(
             self.job,
             None | Some(Job::Orbit(_) | Job::Sensor(_) | Job::Replay)
-        ) && !self.canvas.is_busy()
+        ) && !self.renderer.is_busy()
     }
 
     /// Answers what was typed.
@@ -233,7 +233,7 @@ impl Machine {
 
     /// Turns the camera as the sensor says, when there is a frame to draw on.
     fn steer(&mut self) {
-        if self.canvas.is_busy() || self.canvas.display.back().is_none() {
+        if self.renderer.is_busy() || self.renderer.display.back().is_none() {
             return;
         }
         let (eye, radius) = (self.scene.view().eye(), self.scene.sphere().r);
@@ -245,22 +245,22 @@ impl Machine {
     /// Draws what has changed, if there is a frame to draw on.
     fn draw(&mut self) {
         if matches!(self.job, Some(Job::Render | Job::Frame { .. })) && self.scene.changed() {
-            self.canvas.hurry();
+            self.renderer.drop_pending();
         }
         let Self {
             terminal,
             scene,
             models,
-            canvas,
+            renderer,
             imu,
             ..
         } = self;
-        let look = || {
+        let progress = || {
             terminal.listen();
             sensor::deliver(imu);
         };
-        if (canvas.is_busy() || scene.changed() && (self.job.is_some() || self.quiet.passed()))
-            && let Some(drawn) = canvas.draw(models.mesh(), scene, look)
+        if (renderer.is_busy() || scene.changed() && (self.job.is_some() || self.quiet.passed()))
+            && let Some(drawn) = renderer.draw(models.mesh(), scene, progress)
         {
             scene.set_drawn(drawn);
         }

@@ -16,9 +16,9 @@
 
 mod appearance;
 mod bench;
-mod canvas;
 mod commands;
 mod cube;
+mod gateware;
 mod imu;
 #[allow(unsafe_code)] // Interrupts are let in.
 mod interrupts;
@@ -30,8 +30,7 @@ mod machine;
 mod memory;
 #[allow(unsafe_code)] // A mesh that outlives the borrow of its buffer.
 mod models;
-#[allow(unsafe_code)] // Memory that the triangle engine reads and writes.
-mod painter;
+mod renderer;
 mod replay;
 mod scene;
 mod selftest;

@@ -1,19 +1,17 @@
-//! What is to be seen: the camera and how the picture is drawn, and whether that has changed since it was drawn.
-
-use core::fmt;
+//! The scene: model or field, camera, size and appearance, and whether they have changed since the last frame.
 
 use glint_core::appearance::Appearance;
 use glint_core::camera::{View, ViewError};
 use glint_core::colour::Shading;
 use glint_core::field::Field;
 use glint_core::fixed::{Q32_32, Turns};
-use glint_core::picture::Backend;
+use glint_core::mesh::Mesh;
+use glint_core::picture::{Backend, Size};
 use glint_core::stereo::Stereo;
-use glint_hal::display::Scale;
-use glint_hal::raymarch::Missing;
-use glint_hal::triangle::{Counters, Fault};
-use glint_model::raymarch::FieldStats;
-use glint_model::{RenderError, Stats};
+use glint_hal::triangle::Counters;
+use glint_model::{FieldSubject, Frame, FrameStats, MeshSubject, RenderError, Subject};
+
+use crate::gateware::Fallback;
 
 /// A camera on a sphere about the origin.
 #[derive(Clone, Copy)]
@@ -43,62 +41,26 @@ impl Sphere {
 /// The last frame.
 #[derive(Clone, Copy)]
 pub struct Drawn {
-    /// Clock cycles that it took, waiting for the screen not included.
+    /// Clock cycles, without the wait for a free frame buffer.
     pub cycles: u64,
-    /// What the renderer counted.
-    pub stats: Counts,
-    /// Who drew it.
-    pub by: Painter,
-    /// Whether its depth codes are in memory.
+    /// Counts of the renderer.
+    pub stats: FrameStats,
+    /// The renderer.
+    pub by: RenderedBy,
+    /// Whether depth codes are in memory.
     pub has_depth: bool,
 }
 
-/// What was counted of a frame.
+/// The renderer of a frame.
 #[derive(Clone, Copy)]
-pub struct Counts {
-    /// Of its mesh, if it has one.
-    pub triangles: Option<Stats>,
-    /// Of its field.
-    pub rays: Option<FieldStats>,
-}
-
-/// Who has drawn a frame.
-#[derive(Clone, Copy)]
-pub enum Painter {
-    /// The CPU, because it was to, or because the gateware could not.
+pub enum RenderedBy {
+    /// The CPU, with the reason if the gateware was asked first.
     Cpu(Option<Fallback>),
-    /// The triangle engine, with its counters.
-    Engine(Counters),
+    /// The gateware, with the triangle engine's counters.
+    Gateware(Counters),
 }
 
-/// Why the gateware could not draw.
-#[derive(Clone, Copy, Debug)]
-pub enum Fallback {
-    /// The triangle engine could not.
-    Triangle(Fault),
-    /// The raymarcher lacks something, or is not there at all.
-    Field(Option<Missing>),
-}
-
-impl From<Fault> for Fallback {
-    fn from(fault: Fault) -> Self {
-        Self::Triangle(fault)
-    }
-}
-
-impl fmt::Display for Fallback {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        match self {
-            Self::Triangle(fault) => fault.fmt(f),
-            Self::Field(Some(missing)) => missing.fmt(f),
-            Self::Field(None) => {
-                f.write_str("distance fields: this gateware has no engine for them")
-            }
-        }
-    }
-}
-
-/// The state that a frame shows.
+/// The state that the console sets.
 pub struct Scene {
     field: Option<Field>,
     with_mesh: bool,
@@ -107,7 +69,7 @@ pub struct Scene {
     prepass: bool,
     view: View,
     sphere: Sphere,
-    scale: Scale,
+    size: Size,
     cull: bool,
     shading: Shading,
     backend: Backend,
@@ -117,10 +79,10 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// The start, to be drawn by `backend`.
+    /// The scene at start, drawn by `backend`.
     ///
     /// # Errors
-    /// When the first camera is none.
+    /// [`ViewError`] for the first camera.
     pub fn new(backend: Backend) -> Result<Self, ViewError> {
         let sphere = Sphere::START;
         Ok(Self {
@@ -131,7 +93,7 @@ impl Scene {
             prepass: false,
             view: sphere.view()?,
             sphere,
-            scale: Scale::Four,
+            size: Size::default(),
             cull: true,
             shading: Shading::Flat,
             backend,
@@ -141,57 +103,78 @@ impl Scene {
         })
     }
 
-    /// The distance field that is shown, instead of the mesh or with it.
+    /// The frame of the scene, with `mesh` as its model.
+    pub const fn frame<'a>(&'a self, mesh: Mesh<'a>) -> Frame<'a> {
+        let mesh = MeshSubject {
+            mesh,
+            cull: self.cull,
+            shading: self.shading,
+        };
+        let subject = match &self.field {
+            None => Subject::Mesh(mesh),
+            Some(field) => {
+                let field = FieldSubject {
+                    field,
+                    appearance: &self.appearance,
+                    stereo: self.stereo,
+                    prepass: self.prepass,
+                };
+                if self.with_mesh {
+                    Subject::MeshInField(mesh, field)
+                } else {
+                    Subject::Field(field)
+                }
+            }
+        };
+        Frame::new(subject, self.view, self.size)
+    }
+
+    /// The distance field, alone or with the mesh in it.
     pub const fn field(&self) -> Option<&Field> {
         self.field.as_ref()
     }
 
-    /// Shows a field, or the mesh.
+    /// Shows a field, or the mesh alone.
     pub fn set_field(&mut self, field: Option<Field>) {
         self.changed |= self.field != field;
         self.field = field;
     }
 
-    /// Whether a field is shown with the mesh in it.
+    /// Whether the mesh is shown in a field.
     pub const fn with_mesh(&self) -> bool {
         self.with_mesh
     }
 
-    /// Sets whether a field is shown with the mesh in it.
+    /// Shows the mesh in a field, or the field alone.
     pub fn set_with_mesh(&mut self, with_mesh: bool) {
         self.changed |= self.field.is_some() && self.with_mesh != with_mesh;
         self.with_mesh = with_mesh;
     }
 
-    /// How a field looks.
+    /// The appearance of a field.
     pub const fn appearance(&self) -> &Appearance {
         &self.appearance
     }
 
-    /// Changes how a field looks.
+    /// Sets the appearance of a field.
     pub fn set_appearance(&mut self, appearance: Appearance) {
         self.changed |= self.field.is_some() && self.appearance != appearance;
         self.appearance = appearance;
     }
 
-    /// The two eyes that look at a field.
+    /// The two eyes for a field.
     pub const fn stereo(&self) -> Option<Stereo> {
         self.stereo
     }
 
-    /// Sets two eyes, or one.
+    /// Sets two eyes or one for a field.
     pub fn set_stereo(&mut self, stereo: Option<Stereo>) {
-        // A mesh is seen with one eye.
+        // A mesh has no stereo.
         self.changed |= self.field.is_some() && self.stereo != stereo;
         self.stereo = stereo;
     }
 
-    /// Whether cones go before the rays of a field.
-    pub const fn prepass(&self) -> bool {
-        self.prepass
-    }
-
-    /// Sets whether they do.
+    /// Sets whether cones precede the rays of a field.
     pub fn set_prepass(&mut self, prepass: bool) {
         self.changed |= self.field.is_some() && self.prepass != prepass;
         self.prepass = prepass;
@@ -202,92 +185,87 @@ impl Scene {
         &self.view
     }
 
-    /// Sets any camera.
+    /// Sets the camera.
     pub fn set_view(&mut self, view: View) {
         self.changed |= self.view != view;
         self.view = view;
     }
 
-    /// The spherical camera that was set last.
+    /// The last spherical camera.
     pub const fn sphere(&self) -> Sphere {
         self.sphere
     }
 
-    /// Moves and turns the camera, and leaves its lens.
+    /// Sets position and basis of the camera, not its half width and near plane.
     pub fn move_view(&mut self, view: View) {
         self.set_view(view.with_lens_of(&self.view));
     }
 
-    /// Sets a spherical camera, and leaves its lens.
+    /// Sets position and basis from a spherical camera.
     ///
     /// # Errors
-    /// When it is out of range; then nothing changes.
+    /// [`ViewError`] for a camera out of range; then nothing changes.
     pub fn set_sphere(&mut self, sphere: Sphere) -> Result<(), ViewError> {
         self.move_view(sphere.view()?);
         self.sphere = sphere;
         Ok(())
     }
 
-    /// The picture's size, as its scale on the screen.
-    pub const fn scale(&self) -> Scale {
-        self.scale
+    /// The size of the picture.
+    pub const fn size(&self) -> Size {
+        self.size
     }
 
-    /// Sets the picture's size.
-    pub fn set_scale(&mut self, scale: Scale) {
-        self.changed |= self.scale != scale;
-        self.scale = scale;
+    /// Sets the size of the picture.
+    pub fn set_size(&mut self, size: Size) {
+        self.changed |= self.size != size;
+        self.size = size;
     }
 
-    /// Whether back faces are left out.
-    pub const fn cull(&self) -> bool {
-        self.cull
-    }
-
-    /// Sets whether back faces are left out.
+    /// Sets whether back faces are culled.
     pub fn set_cull(&mut self, cull: bool) {
         self.changed |= self.cull != cull;
         self.cull = cull;
     }
 
-    /// Where colours come from.
+    /// The shading of the mesh.
     pub const fn shading(&self) -> Shading {
         self.shading
     }
 
-    /// Sets where colours come from.
+    /// Sets the shading of the mesh.
     pub fn set_shading(&mut self, shading: Shading) {
         self.changed |= self.shading != shading;
         self.shading = shading;
     }
 
-    /// Who is to draw.
+    /// The backend.
     pub const fn backend(&self) -> Backend {
         self.backend
     }
 
-    /// Sets who is to draw.
+    /// Sets the backend.
     pub fn set_backend(&mut self, backend: Backend) {
         self.changed |= self.backend != backend;
         self.backend = backend;
     }
 
-    /// Whether depth codes are to be in memory with the next frame.
+    /// Whether the next frame needs depth codes in memory.
     pub const fn wants_depth(&self) -> bool {
         self.wants_depth
     }
 
-    /// Wants the depth codes of what is shown in memory, or no longer. The engine writes them only for those who do.
+    /// Requests depth codes in memory. The gateware writes them on request only.
     pub const fn want_depth(&mut self, wanted: bool) {
         self.wants_depth = wanted;
     }
 
-    /// Something else than the above has changed: the model.
+    /// Marks the scene as changed, after a change of the model.
     pub const fn touch(&mut self) {
         self.changed = true;
     }
 
-    /// Whether a frame is to be drawn.
+    /// Whether a new frame is needed.
     pub const fn changed(&self) -> bool {
         self.changed
             || self.wants_depth
@@ -300,12 +278,12 @@ impl Scene {
                 )
     }
 
-    /// The last frame, if one was drawn.
+    /// The last frame, if there is one.
     pub const fn drawn(&self) -> Option<Result<Drawn, RenderError>> {
         self.drawn
     }
 
-    /// A frame has been drawn of what the scene is now.
+    /// Stores the frame of the present scene.
     pub const fn set_drawn(&mut self, drawn: Result<Drawn, RenderError>) {
         self.drawn = Some(drawn);
         self.changed = false;

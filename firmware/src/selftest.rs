@@ -17,7 +17,7 @@ pub fn run(machine: &mut Machine) -> u32 {
         ("clock", machine.clock.cycles() < machine.clock.cycles()),
         ("cycle counter", cpu::cycles_low() != cpu::cycles_low()),
         ("memory", memory),
-        ("scan-out", machine.canvas.display.is_visible()),
+        ("scan-out", machine.renderer.display.is_visible()),
         ("i2c", !is_stuck(machine)),
     ];
     let mut failed = 0;

@@ -14,12 +14,12 @@ use glint_hal::triangle::Engine;
 use glint_hal::uart::Direct;
 use litex_pac::{BUILD_ID, Peripherals};
 
-use crate::canvas::Canvas;
+use crate::gateware::GatewareRenderer;
 use crate::interrupts::{self, UART};
 use crate::machine::{Devices, Identity, Machine};
 use crate::memory::{self, Memory};
 use crate::models::Models;
-use crate::painter::Painter;
+use crate::renderer::Renderer;
 use crate::scene::Scene;
 
 /// The id of the gateware that this program was built for, under a name by which tools find it in the program.
@@ -105,11 +105,11 @@ pub fn machine() -> Result<Machine, Fault> {
         (None, None, None, None)
     };
     interrupts::start(devices.is_some(), scanout.is_some(), engine.is_some());
-    let painter = engine.and_then(|engine| {
+    let gateware = engine.and_then(|engine| {
         let first_buffer = memory.frames[0].as_ptr().addr() as u32;
-        Painter::new(engine, raymarcher, memory.lists, first_buffer)
+        GatewareRenderer::new(engine, raymarcher, memory.lists, first_buffer)
     });
-    let backend = if painter.is_some() {
+    let backend = if gateware.is_some() {
         Backend::Gateware
     } else {
         Backend::Cpu
@@ -120,11 +120,11 @@ pub fn machine() -> Result<Machine, Fault> {
         clock,
         Scene::new(backend).map_err(Fault::Camera)?,
         Models::new(memory.meshes).map_err(Fault::Cube)?,
-        Canvas {
+        Renderer {
             display: Display::new(scanout, memory.frames),
             depth: memory.depth,
             scratch: memory.scratch,
-            painter,
+            gateware,
         },
         devices,
         peripherals.ctrl,

@@ -12,6 +12,7 @@
 
 use core::sync::atomic::{Ordering, compiler_fence};
 
+use glint_core::picture::Size;
 use litex_pac::scanout::{self, Control, EvEnable, EvPending};
 
 use crate::Absent;
@@ -34,19 +35,14 @@ pub enum Scale {
     Four = 4,
 }
 
-impl Scale {
-    /// The scale that fills the screen with a frame of `width` × `height` pixels.
-    #[must_use]
-    pub fn of_size(width: u32, height: u32) -> Option<Self> {
-        [Self::One, Self::Two, Self::Four]
-            .into_iter()
-            .find(|scale| scale.size() == [width, height])
-    }
-
-    /// Width and height of a frame, in pixels.
-    #[must_use]
-    pub const fn size(self) -> [u32; 2] {
-        [SCREEN[0] / self as u32, SCREEN[1] / self as u32]
+/// The scale that fills the screen.
+impl From<Size> for Scale {
+    fn from(size: Size) -> Self {
+        match size {
+            Size::W320 => Self::Four,
+            Size::W640 => Self::Two,
+            Size::W1280 => Self::One,
+        }
     }
 }
 
@@ -385,10 +381,10 @@ mod tests {
     }
 
     #[test]
-    fn sizes_are_those_that_fill_the_screen() {
-        assert_eq!(Scale::of_size(320, 180), Some(Scale::Four));
-        assert_eq!(Scale::of_size(640, 360), Some(Scale::Two));
-        assert_eq!(Scale::of_size(1280, 720), Some(Scale::One));
-        assert_eq!(Scale::of_size(320, 240), None);
+    fn every_size_fills_the_screen() {
+        for size in Size::ALL {
+            let scale = Scale::from(size) as u32;
+            assert_eq!(size.pixels().map(|pixels| scale * pixels), SCREEN);
+        }
     }
 }

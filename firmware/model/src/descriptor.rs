@@ -1,33 +1,33 @@
-//! Descriptors and band lists: what the raster unit draws from (docs/formats.md).
+//! Descriptors and band lists, the input of the raster pass (docs/formats.md).
 
 use glint_core::colour::{Rgb565, Shading};
 
 use crate::setup::{Plane, Setup};
 
-/// Columns of a group: what the raster unit draws in one clock.
+/// Columns of a group: the pixels that the raster pass draws in one clock.
 pub const GROUP: i32 = 8;
 
-/// A triangle after its setup: what gateware without smooth shading knows, and then the light.
+/// A triangle after its setup. The light follows the words that gateware without smooth shading reads.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Descriptor {
     words: [u32; SMOOTH_WORDS],
 }
 
-/// Words of 32 bits that gateware without smooth shading has for a descriptor: 48 bytes.
+/// Words of 32 bits of a descriptor for gateware without smooth shading: 48 bytes.
 const FLAT_WORDS: usize = 12;
-/// Words of 32 bits that gateware with smooth shading has for a descriptor: 96 bytes.
+/// Words of 32 bits of a descriptor for gateware with smooth shading: 96 bytes.
 const SMOOTH_WORDS: usize = 24;
 
-/// Words of 32 bits of a descriptor, a multiple of four, for gateware that can shade as far as this.
-pub const fn words(ability: Shading) -> usize {
-    match ability {
+/// Words of 32 bits of a descriptor, a multiple of four, for gateware with this capability of shading.
+pub const fn words(capability: Shading) -> usize {
+    match capability {
         Shading::Flat => FLAT_WORDS,
         Shading::Smooth => SMOOTH_WORDS,
     }
 }
 
 impl Descriptor {
-    /// Of a triangle; the colour is that of one that has no light of its own.
+    /// Packs a triangle; `colour` is that of a flat one.
     pub fn new(setup: &Setup, colour: Rgb565) -> Self {
         let bounds = setup.bounds;
         // Bounds are in the picture, so divisions need not look at signs.
@@ -55,13 +55,13 @@ impl Descriptor {
         Self { words: bits.words }
     }
 
-    /// The bits for gateware that can shade as far as this, the lowest in the lowest of the first word.
-    pub fn words(&self, ability: Shading) -> &[u32] {
-        self.words.get(..words(ability)).unwrap_or_default()
+    /// The words for gateware with this capability of shading, the lowest bits first.
+    pub fn words(&self, capability: Shading) -> &[u32] {
+        self.words.get(..words(capability)).unwrap_or_default()
     }
 }
 
-/// Puts fields behind each other.
+/// Packs bit fields one behind the other.
 #[derive(Default)]
 struct Packer {
     words: [u32; SMOOTH_WORDS],
@@ -69,7 +69,7 @@ struct Packer {
 }
 
 impl Packer {
-    /// The lowest `width` bits of a value, which is in its range.
+    /// Appends the lowest `width` bits of a value that fits them.
     fn put(&mut self, value: i64, width: usize) {
         for i in 0..width {
             let at = self.used + i;
@@ -80,7 +80,7 @@ impl Packer {
         self.used += width;
     }
 
-    /// A plane, with its start moved to the left.
+    /// Appends a plane, with its start moved `back` columns to the left.
     fn put_plane(&mut self, plane: &Plane, back: i32) {
         let start = plane
             .start
@@ -94,8 +94,8 @@ impl Packer {
 /// Words of 16 bytes before the first list of a set: the lengths of 64 lists.
 pub const TABLE_WORDS: u32 = 16;
 
-/// Where the list of a band begins, in words of 16 bytes from the beginning of its set. Lists have room for 4 << `shift`
-/// entries, and a row of a memory's bank lies between them, so that neighbours are in different banks.
+/// The start of a band's list in words of 16 bytes from the start of its set. A list has room for 4 << `shift` entries; a row
+/// of a memory bank lies between two lists, so that neighbours are in different banks.
 pub const fn list_word(band: u32, shift: u32) -> u32 {
     TABLE_WORDS + (band << shift) + 128 * band
 }
@@ -106,5 +106,95 @@ pub const fn band_rows(width: u32) -> u32 {
         320 => 45,
         640 => 24,
         _ => 12,
+    }
+}
+
+/// Words of 32 bits of the table of lengths at the start of a set.
+pub const LENGTHS: usize = 4 * TABLE_WORDS as usize;
+
+/// The `shift` of [`list_word`] for a picture of this width: lists of all its bands fit 4 MiB.
+pub const fn list_shift(width: u32) -> u32 {
+    match width {
+        320 => 15,
+        640 => 14,
+        _ => 12,
+    }
+}
+
+/// Writes descriptors and band lists in the format of the geometry pass.
+pub struct ListWriter<'a> {
+    descriptors: &'a mut [u32],
+    lists: &'a mut [u32],
+    lengths: [u32; LENGTHS],
+    count: u32,
+    width: u32,
+    capability: Shading,
+    is_full: bool,
+}
+
+/// Descriptors or list entries without room.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Full;
+
+impl<'a> ListWriter<'a> {
+    /// An empty set in two regions of memory, for a picture of this width and gateware with this capability of shading.
+    pub const fn new(
+        descriptors: &'a mut [u32],
+        lists: &'a mut [u32],
+        width: u32,
+        capability: Shading,
+    ) -> Self {
+        Self {
+            descriptors,
+            lists,
+            lengths: [0; LENGTHS],
+            count: 0,
+            width,
+            capability,
+            is_full: false,
+        }
+    }
+
+    /// Appends a triangle to the lists of all bands that its bounds meet; `colour` is that of a flat one.
+    pub fn put(&mut self, setup: &Setup, colour: Rgb565) {
+        let descriptor = Descriptor::new(setup, colour);
+        let words = descriptor.words(self.capability);
+        let at = self.count as usize * words.len();
+        let Some(to) = self.descriptors.get_mut(at..at + words.len()) else {
+            self.is_full = true;
+            return;
+        };
+        to.copy_from_slice(words);
+        let (rows, shift) = (band_rows(self.width), list_shift(self.width));
+        // Bounds are in the picture and not empty.
+        let (top, bottom) = (setup.bounds.top as u32, setup.bounds.bottom as u32);
+        for band in top / rows..=(bottom - 1) / rows {
+            let Some(length) = self.lengths.get_mut(band as usize) else {
+                continue;
+            };
+            let at = 4 * list_word(band, shift) as usize + *length as usize;
+            match self.lists.get_mut(at) {
+                Some(entry) if *length < 4 << shift => {
+                    *entry = self.count;
+                    *length += 1;
+                }
+                _ => self.is_full = true,
+            }
+        }
+        self.count += 1;
+    }
+
+    /// Writes the table of lengths and returns the number of descriptors.
+    ///
+    /// # Errors
+    /// [`Full`] if a region of memory was too small.
+    pub fn finish(self) -> Result<u32, Full> {
+        match self.lists.first_chunk_mut() {
+            Some(table) if !self.is_full => {
+                *table = self.lengths;
+                Ok(self.count)
+            }
+            _ => Err(Full),
+        }
     }
 }

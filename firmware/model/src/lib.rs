@@ -16,6 +16,7 @@ pub mod descriptor;
 mod error;
 mod exceptions;
 mod facing;
+mod frame;
 mod frame_buffer;
 pub mod mesh_in_field;
 mod mesh_setup;
@@ -33,6 +34,9 @@ pub mod vertex;
 pub use depth::DepthScale;
 pub use error::{Buffer, MAX_EYE, RenderError, SIZES};
 pub use exceptions::clip_exceptions;
+pub use frame::{
+    FieldConstants, FieldSubject, Frame, FrameConstants, FrameStats, MeshSubject, Subject,
+};
 pub use frame_buffer::FrameBuffer;
 pub use glint_core::colour::Shading;
 pub use mesh_setup::MeshSetup;

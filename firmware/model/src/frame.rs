@@ -1,0 +1,261 @@
+//! A frame: the description of one picture, its constants, and its drawing by the model.
+//!
+//! The CPU backend, the gateware's driver and the host share these types. [`Frame`] is the description, [`FrameConstants`]
+//! are the numbers computed from it once, and [`Frame::draw`] draws it in integers, bit for bit as the gateware does.
+
+use glint_core::appearance::Appearance;
+use glint_core::camera::View;
+use glint_core::colour::{Rgb565, Shading};
+use glint_core::field::Field;
+use glint_core::mesh::Mesh;
+use glint_core::picture::Size;
+use glint_core::stereo::Stereo;
+
+use crate::depth::DepthScale;
+use crate::error::RenderError;
+use crate::frame_buffer::FrameBuffer;
+use crate::mesh_in_field;
+use crate::mesh_setup::MeshSetup;
+use crate::raymarch::{
+    FieldOptions, FieldSetup, FieldStats, Palette, Prepass, Ray, RayResult, render_field,
+};
+use crate::render::{Stats, trace_frame};
+use crate::triangle::Options;
+use crate::vertex::Projected;
+
+/// Triangles between two calls of `progress` in [`Frame::draw`].
+const TRIANGLES_A_CALL: u32 = 32;
+/// Pixels of a field between two calls of `progress` in [`Frame::draw`].
+const PIXELS_A_CALL: u32 = 16;
+
+/// The description of one picture.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame<'a> {
+    /// Mesh, field, or both.
+    pub subject: Subject<'a>,
+    /// Camera.
+    pub view: View,
+    /// Size of the picture.
+    pub size: Size,
+    /// Colour of pixels without a triangle. A field covers every pixel.
+    pub clear: Rgb565,
+}
+
+/// The subject of a frame.
+#[derive(Clone, Copy, Debug)]
+pub enum Subject<'a> {
+    /// A mesh.
+    Mesh(MeshSubject<'a>),
+    /// A distance field.
+    Field(FieldSubject<'a>),
+    /// A mesh in a distance field.
+    MeshInField(MeshSubject<'a>, FieldSubject<'a>),
+}
+
+/// A mesh and its options.
+#[derive(Clone, Copy, Debug)]
+pub struct MeshSubject<'a> {
+    /// The mesh.
+    pub mesh: Mesh<'a>,
+    /// Cull back faces.
+    pub cull: bool,
+    /// Source of colours.
+    pub shading: Shading,
+}
+
+/// A distance field and its options.
+#[derive(Clone, Copy, Debug)]
+pub struct FieldSubject<'a> {
+    /// The field.
+    pub field: &'a Field,
+    /// Material, lights, background, fog and occlusion.
+    pub appearance: &'a Appearance,
+    /// Two eyes, for a field without a mesh.
+    pub stereo: Option<Stereo>,
+    /// Cones before the rays.
+    pub prepass: bool,
+}
+
+impl<'a> Subject<'a> {
+    /// A mesh with flat shading and culled back faces.
+    pub const fn mesh(mesh: Mesh<'a>) -> Self {
+        Self::Mesh(MeshSubject {
+            mesh,
+            cull: true,
+            shading: Shading::Flat,
+        })
+    }
+
+    /// The mesh, if the subject has one.
+    pub const fn mesh_part(&self) -> Option<&MeshSubject<'a>> {
+        match self {
+            Self::Mesh(mesh) | Self::MeshInField(mesh, _) => Some(mesh),
+            Self::Field(_) => None,
+        }
+    }
+
+    /// The field, if the subject has one.
+    pub const fn field_part(&self) -> Option<&FieldSubject<'a>> {
+        match self {
+            Self::Field(field) | Self::MeshInField(_, field) => Some(field),
+            Self::Mesh(_) => None,
+        }
+    }
+}
+
+impl FieldSubject<'_> {
+    fn options(&self) -> FieldOptions {
+        FieldOptions {
+            prepass: self.prepass.then_some(Prepass::Fitting),
+            ..FieldOptions::new(self.field, self.appearance, self.stereo)
+        }
+    }
+}
+
+/// Numbers computed once a frame.
+///
+/// They take some 1,500 bytes, most of them tables of a field's palette: a program with little time keeps one value and
+/// [updates](Self::update) it, instead of moving new ones.
+#[derive(Clone, Debug, Default)]
+pub struct FrameConstants {
+    mesh: Option<MeshSetup>,
+    field: Option<FieldConstants>,
+}
+
+/// Frame constants of a field.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FieldConstants {
+    /// Rays and solid.
+    pub setup: FieldSetup,
+    /// Colours.
+    pub palette: Palette,
+}
+
+impl FrameConstants {
+    /// Those of the mesh.
+    pub const fn mesh(&self) -> Option<&MeshSetup> {
+        self.mesh.as_ref()
+    }
+
+    /// Those of the field.
+    pub const fn field(&self) -> Option<&FieldConstants> {
+        self.field.as_ref()
+    }
+
+    /// The scale between depth codes and distances in world units; `None` before the first frame.
+    pub fn depth_scale(&self) -> Option<DepthScale> {
+        let of_field = || self.field().map(|field| field.setup.world_depth);
+        self.mesh().map(|mesh| mesh.depth).or_else(of_field)
+    }
+
+    /// Computes the constants of another frame.
+    ///
+    /// # Errors
+    /// [`RenderError::Eye`] or [`RenderError::Stereo`]; then the constants are those of no frame.
+    pub fn update(&mut self, frame: &Frame) -> Result<(), RenderError> {
+        (self.mesh, self.field) = (None, None);
+        let (view, [width, height]) = (&frame.view, frame.size.pixels());
+        match &frame.subject {
+            Subject::Mesh(subject) => {
+                let setup = MeshSetup::new(view, width, height, subject.mesh.radius())?;
+                self.mesh = Some(setup);
+            }
+            Subject::Field(subject) => {
+                let options = subject.options();
+                let setup = FieldSetup::new(subject.field, view, (width, height), &options)?;
+                self.set_field(setup, &options);
+            }
+            Subject::MeshInField(mesh, subject) => {
+                let (size, radius) = ((width, height), mesh.mesh.radius());
+                let options = subject.options();
+                let (mesh, field) =
+                    mesh_in_field::constants(view, size, radius, subject.field, &options)?;
+                self.mesh = Some(mesh);
+                self.set_field(field, &options);
+            }
+        }
+        Ok(())
+    }
+
+    fn set_field(&mut self, setup: FieldSetup, options: &FieldOptions) {
+        let palette = options.palette_for(&setup);
+        self.field = Some(FieldConstants { setup, palette });
+    }
+}
+
+/// Counts of a frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FrameStats {
+    /// Those of the mesh, if there is one.
+    pub mesh: Option<Stats>,
+    /// Those of the field, if there is one.
+    pub field: Option<FieldStats>,
+}
+
+impl<'a> Frame<'a> {
+    /// A frame on black.
+    pub const fn new(subject: Subject<'a>, view: View, size: Size) -> Self {
+        Self {
+            subject,
+            view,
+            size,
+            clear: Rgb565(0),
+        }
+    }
+
+    /// The constants of the frame.
+    ///
+    /// # Errors
+    /// As [`FrameConstants::update`].
+    pub fn constants(&self) -> Result<FrameConstants, RenderError> {
+        let mut constants = FrameConstants::default();
+        constants.update(self)?;
+        Ok(constants)
+    }
+
+    /// Vertices that the scratch memory of [`draw`](Self::draw) needs room for.
+    pub fn scratch_vertices(&self) -> usize {
+        let mesh = self.subject.mesh_part();
+        mesh.map_or(0, |subject| subject.mesh.largest_chunk())
+    }
+
+    /// Draws the frame from its constants, and calls `progress` at short intervals.
+    ///
+    /// # Errors
+    /// [`RenderError`] for a buffer of another size than the picture or the scratch memory needs.
+    pub fn draw(
+        &self,
+        constants: &FrameConstants,
+        buffer: &mut FrameBuffer,
+        scratch: &mut [Projected],
+        progress: &mut dyn FnMut(),
+    ) -> Result<FrameStats, RenderError> {
+        let mut stats = FrameStats::default();
+        match (self.subject.mesh_part(), constants.mesh()) {
+            (Some(subject), Some(setup)) => {
+                let options = Options {
+                    cull: subject.cull,
+                    clear: self.clear.0,
+                    shading: subject.shading,
+                };
+                let mesh = &subject.mesh;
+                let drawn = trace_frame(mesh, *setup, buffer, scratch, &options, |triangle| {
+                    if triangle.index % TRIANGLES_A_CALL == 0 {
+                        progress();
+                    }
+                })?;
+                stats.mesh = Some(drawn);
+            }
+            _ => buffer.depth.fill(0),
+        }
+        if let Some(FieldConstants { setup, palette }) = constants.field() {
+            let mut show = |x, _, _: &Ray, _: &RayResult| {
+                if x % PIXELS_A_CALL == 0 {
+                    progress();
+                }
+            };
+            stats.field = Some(render_field(setup, palette, buffer, &mut show)?);
+        }
+        Ok(stats)
+    }
+}

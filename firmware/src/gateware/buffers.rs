@@ -1,0 +1,83 @@
+//! Memory between the geometry pass and the raster pass of a frame.
+
+use core::mem;
+
+use glint_core::colour::Shading;
+use glint_hal::triangle::{Lists, Set};
+use glint_model::Stats;
+use glint_model::descriptor;
+
+/// Descriptors of a set, in their short form, and exceptions: the CPU draws a frame with more.
+const DESCRIPTORS: usize = 1 << 16;
+/// Words of a set's descriptors. The long form has room for half as many.
+const DESCRIPTOR_WORDS: usize = DESCRIPTORS * descriptor::words(Shading::Flat);
+/// Words of all lists of a set, with the table of their lengths.
+const LIST_WORDS: usize = 1 << 20;
+
+/// Memory of one frame: two sets of descriptors and lists, and the exceptions between them.
+pub struct Buffers {
+    descriptors: &'static mut [u32],
+    lists: &'static mut [u32],
+    /// Numbers of triangles that the geometry pass leaves to the clipper.
+    pub exceptions: &'static mut [u32],
+    /// Descriptors of clipped triangles.
+    pub clipped_descriptors: &'static mut [u32],
+    /// Lists of clipped triangles.
+    pub clipped_lists: &'static mut [u32],
+    /// The sets that geometry pass and clipper have made.
+    pub sets: [Option<Set>; 2],
+    /// Counts of geometry pass and clipper.
+    pub stats: Stats,
+}
+
+impl Buffers {
+    /// Splits the memory of a frame off `memory`; `None` if that is too small.
+    pub fn split_off(memory: &mut &'static mut [u32]) -> Option<Self> {
+        let mut piece = |length| {
+            let (piece, rest) = mem::take(memory).split_at_mut_checked(length)?;
+            *memory = rest;
+            Some(piece)
+        };
+        Some(Self {
+            descriptors: piece(DESCRIPTOR_WORDS)?,
+            lists: piece(LIST_WORDS)?,
+            exceptions: piece(DESCRIPTORS)?,
+            clipped_descriptors: piece(DESCRIPTOR_WORDS)?,
+            clipped_lists: piece(LIST_WORDS)?,
+            sets: [None; 2],
+            stats: Stats::default(),
+        })
+    }
+
+    /// The output of a geometry pass with this capability of shading.
+    pub fn lists(&self, capability: Shading) -> Lists {
+        Lists {
+            descriptors: address(self.descriptors),
+            descriptor_limit: (DESCRIPTOR_WORDS / descriptor::words(capability)) as u32,
+            lists: address(self.lists),
+        }
+    }
+
+    /// The set of a geometry pass with this number of descriptors.
+    pub fn set(&self, count: u32) -> Set {
+        Set {
+            descriptors: address(self.descriptors),
+            count,
+            lists: address(self.lists),
+        }
+    }
+
+    /// The set of clipped triangles with this number of descriptors.
+    pub fn clipped_set(&self, count: u32) -> Set {
+        Set {
+            descriptors: address(self.clipped_descriptors),
+            count,
+            lists: address(self.clipped_lists),
+        }
+    }
+}
+
+/// The address of a region for the engine.
+pub fn address<T>(memory: &[T]) -> u32 {
+    memory.as_ptr().addr() as u32
+}

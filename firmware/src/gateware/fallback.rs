@@ -1,0 +1,51 @@
+//! Reasons to draw a frame by the CPU.
+
+use core::fmt;
+
+use glint_hal::raymarch::Missing;
+use glint_hal::triangle::Fault;
+use glint_model::RenderError;
+
+/// The reason why the gateware cannot draw a frame.
+#[derive(Clone, Copy, Debug)]
+pub enum Fallback {
+    /// An error of the triangle engine.
+    Triangle(Fault),
+    /// A feature that the raymarcher is built without.
+    Field(Missing),
+    /// No raymarcher in this build of the gateware.
+    NoRaymarcher,
+}
+
+impl From<Fault> for Fallback {
+    fn from(fault: Fault) -> Self {
+        Self::Triangle(fault)
+    }
+}
+
+impl From<Missing> for Fallback {
+    fn from(missing: Missing) -> Self {
+        Self::Field(missing)
+    }
+}
+
+impl From<RenderError> for Fallback {
+    fn from(error: RenderError) -> Self {
+        Self::Triangle(match error {
+            RenderError::Eye(_) => Fault::Eye,
+            _ => Fault::Size,
+        })
+    }
+}
+
+impl fmt::Display for Fallback {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Triangle(fault) => fault.fmt(f),
+            Self::Field(missing) => missing.fmt(f),
+            Self::NoRaymarcher => {
+                f.write_str("distance fields: this gateware has no engine for them")
+            }
+        }
+    }
+}

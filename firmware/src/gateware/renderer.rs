@@ -1,0 +1,353 @@
+//! The passes of a frame: geometry, clipping by the CPU, raster.
+
+use glint_core::colour::Shading;
+use glint_core::picture::Size;
+use glint_hal::raymarch::{self, Raymarcher};
+use glint_hal::triangle::{Counters, Engine, Fault, Geometry, Prepared, Raster, Set};
+use glint_model::descriptor::{ListWriter, list_shift};
+use glint_model::raymarch::FieldStats;
+use glint_model::{
+    Frame, FrameConstants, FrameStats, MeshSubject, Options, Stats, Subject, clip_exceptions,
+};
+use litex_pac::cpu;
+
+use super::buffers::{Buffers, address};
+use super::fallback::Fallback;
+use super::watchdog::Watchdog;
+
+/// The memory that a frame is written to.
+pub struct Output<'a> {
+    /// RGB565, row by row.
+    pub colour: &'a mut [u16],
+    /// Depth codes, if requested.
+    pub depth: Option<&'a mut [u32]>,
+}
+
+/// A frame drawn by the gateware.
+pub struct Rendered {
+    /// Clock cycles from the first register written to the end seen.
+    pub cycles: u64,
+    /// Counts; of a benchmark's mesh, triangles of the last frame and no pixels.
+    pub stats: FrameStats,
+    /// Differences of the engine's counters.
+    pub counters: Counters,
+}
+
+/// The pass that runs.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Stage {
+    Idle,
+    Geometry,
+    Raster,
+}
+
+/// Time and counters at the start of a measurement.
+#[derive(Default)]
+struct Start {
+    cycles: u64,
+    engine: Counters,
+    raymarcher: raymarch::Counters,
+}
+
+/// The triangle engine, the raymarcher and their memory.
+pub struct GatewareRenderer {
+    pub(super) engine: Engine,
+    raymarcher: Option<Raymarcher>,
+    shading: Shading,
+    buffers: [Buffers; 2],
+    first_frame_buffer: u32,
+    /// The size of the picture that the engine drew last into each frame buffer; `None` after other writes.
+    drawn_sizes: [Option<Size>; 2],
+    stage: Stage,
+    /// Of the frame that is drawn, and, in a benchmark, of the next one.
+    constants: [FrameConstants; 2],
+    watchdog: Watchdog,
+    start: Start,
+}
+
+impl GatewareRenderer {
+    /// A renderer into two frame buffers, of which the first lies at `first_frame_buffer`; `None` if `memory` is too small.
+    pub fn new(
+        engine: Engine,
+        raymarcher: Option<Raymarcher>,
+        mut memory: &'static mut [u32],
+        first_frame_buffer: u32,
+    ) -> Option<Self> {
+        Some(Self {
+            shading: engine.ability(),
+            engine,
+            raymarcher,
+            buffers: [
+                Buffers::split_off(&mut memory)?,
+                Buffers::split_off(&mut memory)?,
+            ],
+            first_frame_buffer,
+            drawn_sizes: [None; 2],
+            stage: Stage::Idle,
+            constants: Default::default(),
+            watchdog: Watchdog::default(),
+            start: Start::default(),
+        })
+    }
+
+    /// Whether a frame has been started and not ended.
+    pub fn is_busy(&self) -> bool {
+        self.stage != Stage::Idle
+    }
+
+    /// Whether a pass has ended that [`advance`](Self::advance) waits for.
+    pub fn is_ready(&self) -> bool {
+        match self.stage {
+            Stage::Idle => false,
+            Stage::Geometry => self.engine.geometry().is_some(),
+            Stage::Raster => self.engine.raster().is_some(),
+        }
+    }
+
+    /// Marks a frame buffer as written by others: the next frame in it is flushed whole.
+    pub fn invalidate(&mut self, colour: &[u16]) {
+        let slot = usize::from(self.slot(colour));
+        if let Some(size) = self.drawn_sizes.get_mut(slot) {
+            *size = None;
+        }
+    }
+
+    /// Starts a frame or continues it; `frame` and `output` stay the same until this returns a result.
+    ///
+    /// # Errors
+    /// The frame cannot be drawn by the gateware, which is idle again.
+    pub fn advance(
+        &mut self,
+        frame: &Frame,
+        output: &mut Output,
+    ) -> Option<Result<Rendered, Fallback>> {
+        let step = match (self.stage, &frame.subject) {
+            (Stage::Idle, _) => return self.begin(frame, output).err().map(Err),
+            (Stage::Geometry, Subject::Mesh(mesh) | Subject::MeshInField(mesh, _)) => {
+                match self.engine.geometry() {
+                    None => return self.check_progress(output).err().map(Err),
+                    Some(Ok(())) => self.clip(mesh, 0),
+                    Some(fault) => fault,
+                }
+            }
+            _ => match self.engine.raster() {
+                None => return self.check_progress(output).err().map(Err),
+                Some(Ok(())) => {
+                    self.stage = Stage::Idle;
+                    return Some(Ok(self.rendered(frame, 0)));
+                }
+                Some(fault) => fault,
+            },
+        };
+        match step {
+            Ok(()) => {
+                self.start_raster(frame, output, self.sets(0));
+                self.stage = Stage::Raster;
+                None
+            }
+            Err(fault) => Some(Err(self.give_up(output, fault))),
+        }
+    }
+
+    fn begin(&mut self, frame: &Frame, output: &mut Output) -> Result<(), Fallback> {
+        self.start_measurement(frame);
+        self.update_constants(frame, 0)?;
+        self.set_field(0, false)?;
+        if let Some(mesh) = frame.subject.mesh_part() {
+            let prepared = self.prepare_geometry(mesh, 0)?;
+            self.start_geometry(prepared);
+            self.stage = Stage::Geometry;
+        } else {
+            self.start_raster(frame, output, [None; 2]);
+            self.stage = Stage::Raster;
+        }
+        Ok(())
+    }
+
+    /// Starts time, counters and watchdog.
+    pub(super) fn start_measurement(&mut self, frame: &Frame) {
+        self.watchdog = Watchdog::default();
+        self.start = Start {
+            raymarcher: self.raymarcher_counters(frame).unwrap_or_default(),
+            cycles: cpu::cycles(),
+            engine: self.engine.counters(),
+        };
+    }
+
+    /// The raymarcher's counters, for a frame with a field.
+    fn raymarcher_counters(&self, frame: &Frame) -> Option<raymarch::Counters> {
+        frame.subject.field_part()?;
+        Some(self.raymarcher.as_ref()?.counters())
+    }
+
+    /// The measurement since its start, with the triangle counts of one of the buffers.
+    pub(super) fn rendered(&self, frame: &Frame, place: usize) -> Rendered {
+        let cycles = cpu::cycles() - self.start.cycles;
+        let counters = self.engine.counters() - self.start.engine;
+        let field = self.raymarcher_counters(frame);
+        let field = field.map(|field| field - self.start.raymarcher);
+        let field_pixels = field.map_or(0, |field| field.pixels);
+        let mesh = frame.subject.mesh_part().map(|_| Stats {
+            // The walker tests a group of eight pixels a clock.
+            pixels_tested: 8 * u64::from(counters.walking),
+            pixels_covered: counters.pixels_covered.wrapping_sub(field_pixels).into(),
+            pixels_drawn: counters.pixels_drawn.into(),
+            ..self.buffers[place].stats
+        });
+        Rendered {
+            cycles,
+            stats: FrameStats {
+                mesh,
+                field: field.map(FieldStats::from),
+            },
+            counters,
+        }
+    }
+
+    /// Computes the constants of a frame that the engine can draw, into one of two places.
+    pub(super) fn update_constants(&mut self, frame: &Frame, place: usize) -> Result<(), Fallback> {
+        if let Some(mesh) = frame.subject.mesh_part()
+            && mesh.shading == Shading::Smooth
+            && self.shading == Shading::Flat
+        {
+            return Err(Fault::Shading.into());
+        }
+        Ok(self.constants[place].update(frame)?)
+    }
+
+    /// Writes the raymarcher's registers for a field, or switches it off. Its tables are not compared if they are known to be
+    /// there.
+    pub(super) fn set_field(&mut self, place: usize, has_tables: bool) -> Result<(), Fallback> {
+        match (&mut self.raymarcher, self.constants[place].field()) {
+            (Some(raymarcher), Some(field)) if has_tables => {
+                raymarcher.set_field_with_tables_held(&field.setup, &field.palette)?;
+            }
+            (Some(raymarcher), Some(field)) => {
+                raymarcher.set_field(&field.setup, &field.palette)?;
+            }
+            (Some(raymarcher), None) => raymarcher.clear_field(),
+            (None, Some(_)) => return Err(Fallback::NoRaymarcher),
+            (None, None) => {}
+        }
+        Ok(())
+    }
+
+    /// Whether the raymarcher holds the tables of a field.
+    pub(super) fn has_tables(&self, place: usize) -> bool {
+        let both = self.raymarcher.as_ref().zip(self.constants[place].field());
+        both.is_some_and(|(raymarcher, field)| raymarcher.has_tables(&field.palette))
+    }
+
+    /// Writes the registers of a geometry pass into one of the buffers, from the constants of the same number.
+    pub(super) fn prepare_geometry(
+        &mut self,
+        subject: &MeshSubject,
+        place: usize,
+    ) -> Result<Prepared, Fault> {
+        let setup = self.constants[place].mesh().ok_or(Fault::Size)?;
+        let buffers = &self.buffers[place];
+        let pass = Geometry {
+            mesh: &subject.mesh,
+            frame: setup,
+            cull: subject.cull,
+            shading: subject.shading,
+            lists: buffers.lists(self.shading),
+            exceptions: address(buffers.exceptions),
+            exception_limit: buffers.exceptions.len() as u32,
+        };
+        let shift = list_shift(setup.width) as u8;
+        Ok(self.engine.prepare_geometry(&pass, shift))
+    }
+
+    pub(super) fn start_geometry(&mut self, pass: Prepared) {
+        // SAFETY: the buffers are this renderer's own, free of the pass before, and read after the end of this one; the mesh
+        // stays while the renderer is busy.
+        unsafe { self.engine.start_geometry(pass) };
+    }
+
+    pub(super) fn start_raster(
+        &mut self,
+        frame: &Frame,
+        output: &mut Output,
+        sets: [Option<Set>; 2],
+    ) {
+        let slot = self.slot(output.colour);
+        let drawn_size = &mut self.drawn_sizes[usize::from(slot)];
+        let pass = Raster {
+            size: (frame.size.width(), frame.size.height()),
+            frame: address(output.colour),
+            slot,
+            whole: *drawn_size != Some(frame.size),
+            depth: output.depth.as_deref().map(address),
+            clear: frame.clear.0,
+            sets,
+        };
+        *drawn_size = Some(frame.size);
+        // SAFETY: the lists are this renderer's own and stay until the end of the pass; colours and depth codes are lent to it
+        // until then.
+        unsafe { self.engine.start_raster(&pass) };
+    }
+
+    /// Clips the exceptions of the geometry pass in one of the buffers.
+    pub(super) fn clip(&mut self, subject: &MeshSubject, place: usize) -> Result<(), Fault> {
+        let setup = self.constants[place].mesh().ok_or(Fault::Size)?;
+        let buffers = &mut self.buffers[place];
+        let counts = self.engine.counts();
+        buffers.sets = [Some(buffers.set(counts.descriptors)), None];
+        let mut clipped_drawn = 0;
+        if counts.exceptions > 0 {
+            cpu::flush_data_cache();
+            let exceptions = buffers.exceptions.get(..counts.exceptions as usize);
+            let mut numbers = exceptions.unwrap_or_default().iter().copied();
+            let mut writer = ListWriter::new(
+                buffers.clipped_descriptors,
+                buffers.clipped_lists,
+                setup.width,
+                self.shading,
+            );
+            let options = Options {
+                cull: subject.cull,
+                shading: subject.shading,
+                ..Options::default()
+            };
+            let mut put = |setup: &_, colour| writer.put(setup, colour);
+            clipped_drawn = clip_exceptions(&subject.mesh, setup, &options, &mut numbers, &mut put);
+            let count = writer.finish().map_err(|_| Fault::Full)?;
+            buffers.sets[1] = Some(buffers.clipped_set(count));
+        }
+        let drawn = counts.descriptors + clipped_drawn;
+        buffers.stats = Stats {
+            triangles_in: counts.triangles,
+            culled: counts.triangles.saturating_sub(drawn),
+            clipped: counts.exceptions,
+            drawn,
+            ..Stats::default()
+        };
+        Ok(())
+    }
+
+    /// Gives the frame up after a time without progress.
+    pub(super) fn check_progress(&mut self, output: &Output) -> Result<(), Fallback> {
+        if self.watchdog.is_stuck(&self.engine.counters()) {
+            return Err(self.give_up(output, Fault::Stuck));
+        }
+        Ok(())
+    }
+
+    /// Cancels the passes that run.
+    pub(super) fn give_up(&mut self, output: &Output, fault: Fault) -> Fallback {
+        self.engine.cancel();
+        self.stage = Stage::Idle;
+        self.invalidate(output.colour);
+        fault.into()
+    }
+
+    /// The sets of one of the buffers.
+    pub(super) fn sets(&self, place: usize) -> [Option<Set>; 2] {
+        self.buffers[place].sets
+    }
+
+    fn slot(&self, colour: &[u16]) -> bool {
+        address(colour) != self.first_frame_buffer
+    }
+}

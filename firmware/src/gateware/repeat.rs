@@ -1,0 +1,108 @@
+//! Benchmark: one frame drawn again and again, back to back.
+
+use glint_hal::triangle::{Engine, Outcome};
+use glint_model::{Frame, MeshSubject};
+
+use super::fallback::Fallback;
+use super::renderer::{GatewareRenderer, Output, Rendered};
+
+/// Queries of a pass's end between two checks of its progress.
+const POLLS: u32 = 100;
+
+impl GatewareRenderer {
+    /// Draws a frame `count` times: the geometry pass of each runs during the raster pass of the one before. The result covers
+    /// `count` frames, from the start of a raster pass to the start of a later one. The console waits meanwhile.
+    ///
+    /// # Errors
+    /// As [`advance`](Self::advance).
+    pub fn repeat(
+        &mut self,
+        frame: &Frame,
+        output: &mut Output,
+        count: u32,
+    ) -> Result<Rendered, Fallback> {
+        match frame.subject.mesh_part() {
+            Some(mesh) => self.repeat_mesh(mesh, frame, output, count),
+            None => self.repeat_field(frame, output, count),
+        }
+    }
+
+    fn repeat_mesh(
+        &mut self,
+        mesh: &MeshSubject,
+        frame: &Frame,
+        output: &mut Output,
+        count: u32,
+    ) -> Result<Rendered, Fallback> {
+        self.start_measurement(frame);
+        self.update_constants(frame, 0)?;
+        self.set_field(0, false)?;
+        let mut prepared = self.prepare_geometry(mesh, 0)?;
+        let (mut now, mut next) = (0, 1);
+        for number in 0..=count {
+            self.start_geometry(prepared);
+            // The next frame's, while the engine works.
+            self.update_constants(frame, next)?;
+            self.wait(Engine::geometry, output)?;
+            if let Err(fault) = self.clip(mesh, now) {
+                return Err(self.give_up(output, fault));
+            }
+            // The raster pass still reads the next frame's buffers, which the geometry pass writes only once it is started.
+            prepared = self.prepare_geometry(mesh, next)?;
+            if number > 0 {
+                self.wait(Engine::raster, output)?;
+            }
+            if number == 0 {
+                self.start_measurement(frame);
+            }
+            if number == count {
+                break;
+            }
+            // The raymarcher's registers are in use during a raster pass.
+            if frame.subject.field_part().is_some() {
+                self.set_field(now, false)?;
+            }
+            self.start_raster(frame, output, self.sets(now));
+            (now, next) = (next, now);
+        }
+        Ok(self.rendered(frame, now))
+    }
+
+    /// The constants of the next frame are computed during the raster pass, which uses the registers.
+    fn repeat_field(
+        &mut self,
+        frame: &Frame,
+        output: &mut Output,
+        count: u32,
+    ) -> Result<Rendered, Fallback> {
+        self.update_constants(frame, 0)?;
+        let mut has_tables = false;
+        self.start_measurement(frame);
+        for _ in 0..count {
+            self.set_field(0, has_tables)?;
+            self.start_raster(frame, output, [None; 2]);
+            self.update_constants(frame, 0)?;
+            has_tables = self.has_tables(0);
+            self.wait(Engine::raster, output)?;
+        }
+        Ok(self.rendered(frame, 0))
+    }
+
+    /// Waits for the end of a pass.
+    fn wait(
+        &mut self,
+        outcome: fn(&Engine) -> Outcome,
+        output: &mut Output,
+    ) -> Result<(), Fallback> {
+        loop {
+            for _ in 0..POLLS {
+                match outcome(&self.engine) {
+                    Some(Ok(())) => return Ok(()),
+                    Some(Err(fault)) => return Err(self.give_up(output, fault)),
+                    None => {}
+                }
+            }
+            self.check_progress(output)?;
+        }
+    }
+}

@@ -1,0 +1,161 @@
+//! Frames of the scene, by the gateware or by the CPU: two frame buffers with their display, and one depth buffer.
+
+use glint_core::mesh::Mesh;
+use glint_core::picture::Backend;
+use glint_hal::display::Display;
+use glint_model::{Frame, FrameBuffer, FrameStats, RenderError};
+use litex_pac::cpu;
+
+use crate::gateware::{self, Fallback, GatewareRenderer, Output};
+use crate::memory::Scratch;
+use crate::scene::{Drawn, RenderedBy, Scene};
+
+/// The renderers and their memory.
+pub struct Renderer {
+    /// Two frame buffers, one of which is shown.
+    pub display: Display,
+    /// Depth codes of the last frame that has any, one a pixel.
+    pub depth: &'static mut [u32],
+    /// Memory for projected vertices.
+    pub scratch: Scratch,
+    /// The renderer of the gateware, where the SoC has a triangle engine.
+    pub gateware: Option<GatewareRenderer>,
+}
+
+impl Renderer {
+    /// Draws the frame of `scene` with `mesh`, and shows it from the next vertical blanking on. Returns `None` while the
+    /// gateware draws, and while the frame buffer is still on the screen; `mesh` and `scene` stay the same meanwhile. A frame by
+    /// the CPU takes long and calls `progress` at short intervals.
+    pub fn draw(
+        &mut self,
+        mesh: &Mesh,
+        scene: &Scene,
+        progress: impl FnMut(),
+    ) -> Option<Result<Drawn, RenderError>> {
+        let frame = scene.frame(*mesh);
+        let drawn = match self.draw_by_gateware(&frame, scene)? {
+            Ok(gateware::Rendered {
+                cycles,
+                stats,
+                counters,
+            }) => Ok(Drawn {
+                cycles,
+                stats,
+                by: RenderedBy::Gateware(counters),
+                has_depth: scene.wants_depth(),
+            }),
+            Err(fallback) => self.draw_by_cpu(&frame, fallback, progress)?,
+        };
+        if drawn.is_ok() {
+            self.display.show(scene.size().into());
+        }
+        Some(drawn)
+    }
+
+    /// Drops a frame that waits for the next vertical blanking, so that another one can be drawn.
+    pub fn drop_pending(&mut self) {
+        if !self.is_busy() {
+            self.display.withdraw();
+        }
+    }
+
+    /// Whether the gateware draws.
+    pub fn is_busy(&self) -> bool {
+        self.gateware
+            .as_ref()
+            .is_some_and(GatewareRenderer::is_busy)
+    }
+
+    /// Whether [`draw`](Self::draw) would make progress with `scene`.
+    pub fn is_ready(&mut self, scene: &Scene) -> bool {
+        match &self.gateware {
+            Some(gateware) if gateware.is_busy() => gateware.is_ready(),
+            _ => scene.changed() && self.display.back().is_some(),
+        }
+    }
+
+    /// Draws by the gateware. `Err` is a frame for the CPU, with the reason unless the backend is the CPU or there is no engine.
+    fn draw_by_gateware(
+        &mut self,
+        frame: &Frame,
+        scene: &Scene,
+    ) -> Option<Result<gateware::Rendered, Option<Fallback>>> {
+        let colour = self.display.back()?;
+        let Some(gateware) = &mut self.gateware else {
+            return Some(Err(None));
+        };
+        if scene.backend() == Backend::Cpu && !gateware.is_busy() {
+            return Some(Err(None));
+        }
+        let depth = scene.wants_depth().then_some(&mut *self.depth);
+        let mut output = Output { colour, depth };
+        Some(gateware.advance(frame, &mut output)?.map_err(Some))
+    }
+
+    fn draw_by_cpu(
+        &mut self,
+        frame: &Frame,
+        fallback: Option<Fallback>,
+        mut progress: impl FnMut(),
+    ) -> Option<Result<Drawn, RenderError>> {
+        let ([width, height], pixels) = (frame.size.pixels(), frame.size.pixel_count());
+        let back = self.display.back()?;
+        if let Some(gateware) = &mut self.gateware {
+            gateware.invalidate(back);
+        }
+        let mut buffer = FrameBuffer {
+            width,
+            height,
+            colour: back.get_mut(..pixels).unwrap_or_default(),
+            depth: self.depth.get_mut(..pixels).unwrap_or_default(),
+        };
+        let scratch = self.scratch.vertices(frame.scratch_vertices());
+        let start = cpu::cycles();
+        let stats = draw(frame, &mut buffer, scratch, &mut progress);
+        let cycles = cpu::cycles() - start;
+        Some(stats.map(|stats| Drawn {
+            cycles,
+            stats,
+            by: RenderedBy::Cpu(fallback),
+            has_depth: true,
+        }))
+    }
+
+    /// Draws the frame of `scene` `count` times by the gateware, back to back and without showing it.
+    pub fn repeat(
+        &mut self,
+        mesh: &Mesh,
+        scene: &Scene,
+        count: u32,
+    ) -> Option<Result<gateware::Rendered, Fallback>> {
+        let colour = self.display.back()?;
+        let gateware = self.gateware.as_mut()?;
+        let mut output = Output {
+            colour,
+            depth: None,
+        };
+        Some(gateware.repeat(&scene.frame(*mesh), &mut output, count))
+    }
+
+    /// Colours of the last frame: RGB565, row by row.
+    pub fn colours(&self, scene: &Scene) -> &[u16] {
+        let pixels = scene.size().pixel_count();
+        self.display.front().get(..pixels).unwrap_or_default()
+    }
+
+    /// Depth codes of the last frame, row by row.
+    pub fn depths(&self, scene: &Scene) -> &[u32] {
+        let pixels = scene.size().pixel_count();
+        self.depth.get(..pixels).unwrap_or_default()
+    }
+}
+
+/// Draws a frame by the CPU.
+fn draw(
+    frame: &Frame,
+    buffer: &mut FrameBuffer,
+    scratch: &mut [glint_model::Projected],
+    progress: &mut dyn FnMut(),
+) -> Result<FrameStats, RenderError> {
+    frame.draw(&frame.constants()?, buffer, scratch, progress)
+}
