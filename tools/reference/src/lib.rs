@@ -14,6 +14,7 @@ pub mod camera;
 pub mod exact;
 pub mod field;
 pub mod imu;
+pub mod report;
 pub mod sine;
 pub mod smooth;
 pub mod surface;

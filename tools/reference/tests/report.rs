@@ -1,7 +1,6 @@
-//! `report sine --quick`: the files are written, the shipped kernels keep their promises, and the committed table is
-//! what the code gives. So are those of `report raymarch`, as far as that is cheap, and of `report imu`.
+//! The report: a quick run writes its files, the committed tables hold for today's code as far as that is cheap, and the
+//! committed pages are those of the committed tables.
 
-use std::collections::HashMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -15,15 +14,22 @@ use glint_reference::field::views;
 use glint_reference::imu::measure::method_error;
 use glint_reference::imu::method::Method;
 use glint_reference::imu::motion::Motion;
+use glint_reference::report::experiments::imu::methods::Trial as MethodTrial;
+use glint_reference::report::experiments::raymarch::{pictures, rates, trials};
+use glint_reference::report::experiments::sine;
+use glint_reference::report::pages::PAGES;
+use glint_reference::report::table::read_csv;
+use glint_reference::report::workspace;
 use glint_reference::sine::subjects::subjects;
 use glint_reference::sine::sweep::sweep;
+use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 /// Console lines as the firmware prints them, so that no board is needed.
 const TRANSCRIPT: &str = "bench sin_cos_q14 min 1 median 2 max 3 cycles\nok\n";
 
-fn folder() -> PathBuf {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("report");
+fn folder(name: &str) -> PathBuf {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
     fs::create_dir_all(&folder).expect("the build's own folder is writable");
     folder
 }
@@ -47,8 +53,8 @@ fn quick(folder: &Path) -> Vec<Value> {
 }
 
 #[test]
-fn a_quick_report_is_written_and_the_shipped_kernels_keep_their_promises() {
-    let folder = folder();
+fn a_quick_report_is_written_and_shipped_kernels_keep_their_bounds() {
+    let folder = folder("report");
     let rows = quick(&folder);
     let shipped: Vec<&Value> = rows.iter().filter(|row| row["shipped"] == true).collect();
     assert_eq!(shipped.len(), 3);
@@ -82,80 +88,89 @@ fn a_quick_report_is_written_and_the_shipped_kernels_keep_their_promises() {
     );
 }
 
-/// Recomputes the rows of docs/report/sine.csv that take less than a second.
-#[test]
-fn the_committed_table_is_not_stale() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/report/sine.csv");
-    let mut table = csv::Reader::from_path(&path).expect("docs/report/sine.csv is committed");
-    let header = table.headers().expect("a header").clone();
-    let column = |name: &str| {
-        header
-            .iter()
-            .position(|column| column == name)
-            .expect("a column")
-    };
-    let [kernel, inputs, samples, max, rms] =
-        ["kernel", "inputs", "samples", "max_err", "rms"].map(column);
-    let rows: Vec<csv::StringRecord> = table.records().collect::<Result<_, _>>().expect("CSV");
-    assert_eq!(
-        rows.len(),
-        subjects().len(),
-        "run `cargo xtask report sine`: kernels have come or gone"
+/// The rows of a table of docs/report.
+fn committed<T: DeserializeOwned>(name: &str) -> Vec<T> {
+    read_csv(&workspace::path("docs/report").join(name)).expect("a committed table")
+}
+
+/// Whether a committed figure is that of today, to a relative `tolerance`.
+fn assert_close(committed: f64, now: f64, tolerance: f64, what: &str) {
+    assert!(
+        (committed - now).abs() <= tolerance * now,
+        "{what} is {committed:e} in the table and {now:e} now: measure the page again with `cargo xtask report`"
     );
+}
+
+#[test]
+fn the_committed_pages_are_those_of_the_committed_tables() {
+    let committed = workspace::path("docs/report");
+    let folder = folder("pages");
+    let files = || fs::read_dir(&committed).expect("docs/report is there");
+    let paths: Vec<PathBuf> = files()
+        .map(|entry| entry.expect("an entry").path())
+        .collect();
+    let of = |extension: &str| {
+        let matches = |path: &&PathBuf| path.extension().is_some_and(|found| found == extension);
+        paths.iter().filter(matches).collect::<Vec<_>>()
+    };
+    for table in of("csv") {
+        let name = table.file_name().expect("a name");
+        fs::copy(table, folder.join(name)).expect("the build's own folder is writable");
+    }
+    for (name, rebuild) in PAGES {
+        rebuild(&folder).unwrap_or_else(|error| panic!("{name}: {error:#}"));
+    }
+    for page in [of("md"), of("svg")].concat() {
+        let name = page.file_name().expect("a name");
+        let rebuilt = fs::read_to_string(folder.join(name)).expect("a rebuilt file");
+        assert!(
+            rebuilt == fs::read_to_string(page).expect("a committed file"),
+            "{}: run `cargo xtask report pages`",
+            page.display()
+        );
+    }
+}
+
+/// Recomputes the rows of sine.csv that take less than a second.
+#[test]
+fn the_committed_errors_of_sines_hold() {
+    let rows: Vec<sine::Row> = committed("sine.csv");
+    assert_eq!(rows.len(), subjects().len(), "kernels have come or gone");
     let mut recomputed = 0;
     for (row, subject) in rows.iter().zip(subjects()) {
         assert_eq!(
-            (&row[kernel], &row[inputs]),
-            (subject.kernel, subject.inputs),
-            "run `cargo xtask report sine`"
+            (row.kernel.as_str(), row.inputs.as_str()),
+            (subject.kernel, subject.inputs)
         );
         if subject.steps() > 1 << 19 {
             continue;
         }
         let statistics = sweep(&subject, 1, &|_| ());
-        let close = |column: usize, now: f64| {
-            let committed: f64 = row[column].parse().expect("a number");
-            assert!(
-                (committed - now).abs() <= 1e-6 * now,
-                "{}: {} is {committed:e} in the table and {now:e} now: run `cargo xtask report sine`",
-                subject.kernel,
-                &header[column],
-            );
-        };
-        assert_eq!(row[samples], statistics.inputs.to_string());
-        close(max, statistics.max);
-        close(rms, statistics.rms());
+        assert_eq!(row.samples, statistics.inputs);
+        let name = |column| format!("sine.csv: {} of {}", column, subject.kernel);
+        assert_close(row.max_err, statistics.max, 1e-6, &name("max_err"));
+        assert_close(row.rms, statistics.rms(), 1e-6, &name("rms"));
         recomputed += 1;
     }
     assert!(recomputed >= 2);
 }
 
-/// The rows of a table of docs/report, by the names of their columns.
-fn committed(name: &str) -> Vec<HashMap<String, String>> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../../docs/report")
-        .join(name);
-    let mut table = csv::Reader::from_path(&path).unwrap_or_else(|error| panic!("{name}: {error}"));
-    table.deserialize().collect::<Result<_, _>>().expect("CSV")
-}
-
 /// Counts the evaluations of the sponge's small frames again, whose cycles are those of the whole SoC.
 #[test]
 fn the_committed_frames_a_second_are_of_these_frames() {
-    let rows = committed("raymarch-rates.csv");
+    let rows: Vec<rates::Row> = committed("raymarch-rates.csv");
     let mut counted = 0;
-    let cheap = |row: &&HashMap<_, _>| row["field"] == "menger:4" && row["width"] == "320";
+    let cheap = |row: &&rates::Row| row.field == "menger:4" && row.width == 320;
     for row in rows.iter().filter(cheap) {
         let views = views::views().into_iter();
-        let mut views = views.filter(|(name, ..)| *name == row["view"]);
+        let mut views = views.filter(|(name, ..)| *name == row.view);
         let (_, eye, target) = views.next().expect("a view");
-        let angles = ["yaw", "pitch", "roll"].map(|name| row[name].parse().expect("an angle"));
         let view = views::camera(eye, target)
-            .turned(angles)
+            .turned([row.yaw, row.pitch, row.roll])
             .view()
             .expect("a camera");
-        let field = Field::parse(&row["field"]).expect("a field");
-        let stereo = Some(row["stereo"].as_str()).filter(|eyes| !eyes.is_empty());
+        let field = Field::parse(&row.field).expect("a field");
+        let stereo = row.stereo.as_deref();
         let options = FieldOptions {
             stereo: stereo.map(|eyes| Stereo::parse(eyes).expect("two eyes")),
             ..FieldOptions::default()
@@ -164,19 +179,19 @@ fn the_committed_frames_a_second_are_of_these_frames() {
         let eyes = if stereo.is_some() { 2 } else { 1 };
         let rays = (0..eyes).flat_map(|eye| picture(&setup, eye));
         let evaluations: u64 = rays.map(|ray| u64::from(ray.steps)).sum();
-        let committed: u64 = row["evaluations"].parse().expect("a number");
         assert_eq!(
-            evaluations, committed,
-            "{row:?}: evaluations now and in the table: run `cargo xtask report raymarch`"
+            evaluations, row.evaluations,
+            "{} turned by {}, {}, {}: evaluations now and in the table: run `cargo xtask report raymarch`",
+            row.view, row.yaw, row.pitch, row.roll
         );
         counted += 1;
     }
     assert_eq!(counted, 4 * views::path().len());
 }
 
-/// Has the raymarcher draw what Glint uses again.
+/// Draws Glint's configuration on the verilated raymarcher again.
 #[test]
-fn the_committed_cycles_of_pictures_are_not_stale() {
+fn the_committed_cycles_of_pictures_hold() {
     let size = (320, 180);
     let mut raymarcher = Raymarcher::new();
     let options = FieldOptions::default();
@@ -185,29 +200,21 @@ fn the_committed_cycles_of_pictures_are_not_stale() {
         .iter()
         .map(|subject| raymarcher.draw(&subject.setup(&options)).clocks)
         .sum();
-    let rows = committed("raymarch-cap.csv");
-    let shipped = rows.iter().find(|row| row["shipped"] == "true");
-    let cycles = &shipped.expect("what Glint uses")["cycles"];
-    let cycles: f64 = cycles.parse().expect("cycles");
+    let rows: Vec<trials::Trial> = committed("raymarch-cap.csv");
+    let shipped = rows.iter().find(|row| row.shipped);
+    let cycles = shipped.and_then(|row| row.cycles).expect("Glint's cycles");
     let now = clocks as f64 / subjects.len() as f64;
-    // Which lane has the first turn depends on what was drawn before, and moves a picture by a clock.
+    // The lane with the first turn depends on the picture before, which moves a picture by a clock.
     assert!(
         (cycles - now).abs() <= 1.0,
         "raymarch-cap.csv: {cycles} cycles in the table and {now} now: run `cargo xtask report raymarch`"
     );
 }
 
-/// Draws the small pictures of docs/report/raymarch.csv again.
+/// Draws the small pictures of raymarch.csv again.
 #[test]
-fn the_committed_pictures_of_fields_are_not_stale() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/report/raymarch.csv");
-    let mut table = csv::Reader::from_path(&path).expect("docs/report/raymarch.csv is committed");
-    let header = table.headers().expect("a header").clone();
-    let rows: Vec<csv::StringRecord> = table.records().collect::<Result<_, _>>().expect("CSV");
-    let cell = |row: &csv::StringRecord, name: &str| {
-        let column = header.iter().position(|column| column == name);
-        row[column.expect("a column")].to_owned()
-    };
+fn the_committed_pictures_of_fields_hold() {
+    let rows: Vec<pictures::Row> = committed("raymarch.csv");
     let size = (320, 180);
     let subjects: Vec<_> = [sponges(size), others(size), rounds(size)]
         .into_iter()
@@ -218,67 +225,59 @@ fn the_committed_pictures_of_fields_are_not_stale() {
         .flat_map(|prepass| subjects.iter().map(move |subject| (prepass, subject)))
     {
         let row = rows.iter().find(|row| {
-            (cell(row, "scene"), cell(row, "view")) == (subject.scene.clone(), subject.name.clone())
-                && cell(row, "width") == "320"
-                && (cell(row, "prepass") != "0") == prepass.is_some()
+            (&row.scene, &row.view) == (&subject.scene, &subject.name)
+                && row.width == 320
+                && (row.prepass != 0) == prepass.is_some()
         });
-        let row = row.expect("run `cargo xtask report raymarch`: pictures have come or gone");
+        let row = row.expect("pictures have come or gone: run `cargo xtask report raymarch`");
         let picture = subject.picture(&FieldOptions {
             prepass,
             ..FieldOptions::of(&subject.parsed)
         });
         let measured = Measured::new(&subject.expected, &picture);
         let accuracy = measured.accuracy;
-        let depth = accuracy.depth.expect("something to see");
-        let coded = measured.coded.expect("something to see");
-        for (name, now) in [
-            ("iou", accuracy.iou),
-            ("undecided", accuracy.undecided as f64),
-            ("depth_median", depth.median),
-            ("depth_p99", depth.p99),
-            ("depth_max", depth.max),
-            ("code_median", coded.median),
-            ("code_p99", coded.p99),
-            ("wrong_faces", accuracy.wrong_faces),
-            ("evaluations", measured.cost()),
+        let depth = accuracy.depth.expect("a visible field");
+        let coded = measured.coded.expect("a visible field");
+        for (name, committed, now) in [
+            ("iou", Some(row.iou), accuracy.iou),
+            (
+                "undecided",
+                Some(row.undecided as f64),
+                accuracy.undecided as f64,
+            ),
+            ("depth_median", row.depth_median, depth.median),
+            ("depth_p99", row.depth_p99, depth.p99),
+            ("depth_max", row.depth_max, depth.max),
+            ("code_median", row.code_median, coded.median),
+            ("code_p99", row.code_p99, coded.p99),
+            ("wrong_faces", Some(row.wrong_faces), accuracy.wrong_faces),
+            ("evaluations", Some(row.evaluations), measured.cost()),
         ] {
-            let committed: f64 = cell(row, name).parse().expect("a number");
-            assert!(
-                (committed - now).abs() <= 1e-6 * now,
-                "{} {}: {name} is {committed:e} in the table and {now:e} now: run `cargo xtask report raymarch`",
-                subject.scene,
-                subject.name,
-            );
+            let what = format!("raymarch.csv: {name} of {} {}", subject.scene, subject.name);
+            assert_close(committed.expect("a number"), now, 1e-6, &what);
         }
     }
 }
 
-/// Integrates the tumble and the coning of docs/report/imu-methods.csv again, where samples are few.
+/// Integrates the tumble and the coning of imu-methods.csv again, where samples are few.
 #[test]
-fn the_committed_errors_of_attitudes_are_not_stale() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/report/imu-methods.csv");
-    let mut table =
-        csv::Reader::from_path(&path).expect("docs/report/imu-methods.csv is committed");
-    let rows: Vec<csv::StringRecord> = table.records().collect::<Result<_, _>>().expect("CSV");
+fn the_committed_errors_of_attitudes_hold() {
+    let rows: Vec<MethodTrial> = committed("imu-methods.csv");
     let coning = Motion::Coning {
         angle: 5.0,
         frequency: 10.0,
     };
     for (name, motion) in [("tumble", Motion::Tumble(700.0)), ("coning", coning)] {
         for method in Method::ALL {
-            for rate in ["50", "200"] {
+            for rate in [50.0, 200.0] {
                 let row = rows.iter().find(|row| {
-                    (&row[0], &row[1]) == (name, method.name())
-                        && row[3].parse::<f64>() == rate.parse::<f64>()
+                    (row.motion.as_str(), row.method.as_str()) == (name, method.name())
+                        && row.rate == rate
                 });
-                let row = row.expect("run `cargo xtask report imu`: methods have come or gone");
-                let committed: f64 = row[4].parse().expect("a number");
-                let now = method_error(method, motion, 20.0, rate.parse().expect("a rate"));
-                assert!(
-                    (committed - now).abs() <= 1e-3 * now,
-                    "{name}, {} at {rate}: {committed:e} in the table and {now:e} now: run `cargo xtask report imu`",
-                    method.name(),
-                );
+                let row = row.expect("methods have come or gone: run `cargo xtask report imu`");
+                let now = method_error(method, motion, 20.0, rate);
+                let what = format!("imu-methods.csv: {name}, {} at {rate}", method.name());
+                assert_close(row.error, now, 1e-3, &what);
             }
         }
     }

@@ -18,12 +18,15 @@ pub fn demo(arguments: &[String]) -> Result<()> {
     tool("glint", "glint", "demo", arguments)
 }
 
-/// Builds everything and makes the page `name` of the error-against-run-time report; for the raymarcher's that is the SoC
-/// with four lanes as well, and the raymarcher alone.
+/// Builds everything and measures the page `name` of the report; for the raymarcher's also builds the SoC with four lanes and
+/// the raymarcher alone. `pages` rebuilds all pages from their tables and needs no build.
 ///
 /// # Errors
 /// When a build or a measurement fails.
 pub fn report(name: &str, arguments: &[String]) -> Result<()> {
+    if name == "pages" {
+        return tool("glint-reference", "report", name, arguments);
+    }
     bootstrap::bootstrap()?;
     gateware::build(Board::Virtual)?;
     if name == "raymarch" {

@@ -78,9 +78,9 @@ enum Task {
     },
     /// Measure error against run time and write docs/report
     Report {
-        /// The page: `sine`, `triangle`, `gouraud`, `raymarch`, `imu`
+        /// Page to measure: `sine`, `triangle`, `gouraud`, `raymarch`, `imu`; or `pages`: rebuild all pages from their tables
         page: String,
-        /// What the page's program takes
+        /// Arguments of the report
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<String>,
     },

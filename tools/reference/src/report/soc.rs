@@ -1,4 +1,4 @@
-//! What the pages have in common that say how fast the engines are on the whole SoC.
+//! Cycles of frames on the whole SoC.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
@@ -8,24 +8,27 @@ use anyhow::{Context, Result, bail};
 use glint::board::SimulatedBoard;
 use glint::render::Renderer;
 
-/// The clock that the targets in frames a second are for, and the faster one.
+/// Clocks in Hz: the default, and the faster one.
 pub const CLOCKS: [f64; 2] = [81.25e6, 100e6];
 
-/// What many frames that follow each other took, by the names of the console's line.
-pub struct Bench {
+/// Counters of frames drawn back to back, by their names in the console's reply.
+pub struct BackToBack {
     kernel: String,
     values: BTreeMap<String, f64>,
 }
 
-impl Bench {
-    /// Has the scene that is shown drawn back to back; `kernel` is what `bench` calls it.
+impl BackToBack {
+    /// Draws the shown scene back to back; `kernel` is its name in `bench`.
+    ///
+    /// # Errors
+    /// When the console reports an error or its reply has no such line.
     pub fn measure(renderer: &mut Renderer<SimulatedBoard>, kernel: &str) -> Result<Self> {
         let command = format!("bench {kernel}");
         let lines = renderer.console().command(&command)?;
         let line = lines
             .iter()
             .find_map(|line| line.strip_prefix(&command))
-            .with_context(|| format!("{command}: no such line in {lines:?}"))?;
+            .with_context(|| format!("{command}: expected its line in {lines:?}"))?;
         let words: Vec<&str> = line.split_whitespace().collect();
         let values = words.chunks(2).map(|pair| match pair {
             [name, value] => Ok((name.to_string(), value.parse()?)),
@@ -37,18 +40,27 @@ impl Bench {
         })
     }
 
-    /// Of one frame.
+    /// The value of a counter for one frame.
+    ///
+    /// # Errors
+    /// When there is no such counter.
     pub fn frame(&self, name: &str) -> Result<f64> {
         let value = |name: &str| {
-            self.values
-                .get(name)
-                .with_context(|| format!("bench {}: no {name} in {:?}", self.kernel, self.values))
+            self.values.get(name).with_context(|| {
+                format!(
+                    "bench {}: expected {name} in {:?}",
+                    self.kernel, self.values
+                )
+            })
         };
         Ok(value(name)? / value("frames")?)
     }
 }
 
-/// Works on all items, two at a time, as a simulation keeps one core busy; the results are in their order.
+/// Results of `work` for all items, in their order. Two run at a time, because a simulation keeps one core busy.
+///
+/// # Errors
+/// When `work` fails or panics.
 pub fn two_at_a_time<T: Sync, R: Send>(
     items: &[T],
     work: impl Fn(&T) -> Result<R> + Sync,
@@ -68,7 +80,7 @@ pub fn two_at_a_time<T: Sync, R: Send>(
         let other = scope.spawn(worker);
         let mut results = worker()?;
         let others = other.join();
-        results.extend(others.map_err(|_| anyhow::anyhow!("the other half has failed"))??);
+        results.extend(others.map_err(|_| anyhow::anyhow!("a worker panicked"))??);
         anyhow::Ok(results)
     })?;
     results.sort_by_key(|(number, _)| *number);

@@ -3,9 +3,10 @@
 //! The gateware and its model have 12. Directions keep their 17 bits, which are taken from the model.
 
 use glint_model::raymarch::{DEFAULT_TUNING, FieldOptions, FieldSetup, Ray, Tuning};
-use glint_reference::field::metrics::Outcome;
-use glint_reference::field::raymarched::{Marched, Subject};
-use glint_reference::field::{Face, Field};
+
+use crate::field::metrics::Outcome;
+use crate::field::raymarched::{Marched, Subject};
+use crate::field::{Face, Field};
 
 /// Fraction bits of the model's field units.
 pub const MODEL_FRACTION: u32 = 12;
@@ -234,7 +235,7 @@ fn largest([x, y, z]: [i32; 3]) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glint_reference::field::raymarched::sponges;
+    use crate::field::raymarched::sponges;
 
     #[test]
     fn with_the_models_fraction_bits_the_picture_is_the_models() {

@@ -1,4 +1,4 @@
-//! Cycles of the kernels on the SoC, from the firmware's `bench`.
+//! Cycles of kernels on the soft core, from the firmware's `bench`.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -7,23 +7,26 @@ use anyhow::{Context, Result, bail};
 use indicatif::{ProgressBar, ProgressStyle};
 use virtual_board::{Start, VirtualBoard};
 
-use crate::in_workspace;
+use super::workspace;
 
 /// Cycles of one call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Figures {
+    /// Fastest call.
     pub min: u64,
+    /// Median of the calls.
     pub median: u64,
+    /// Slowest call.
     pub max: u64,
 }
 
 /// Figures by the kernel's name.
 pub type Cycles = BTreeMap<String, Figures>;
 
-/// Finds the lines `bench NAME min MIN median MEDIAN max MAX cycles` in what the console printed.
+/// Reads the lines `bench NAME min MIN median MEDIAN max MAX cycles` of a console's output.
 ///
 /// # Errors
-/// When a line starts so and goes on otherwise, and when there is none.
+/// When a line of this beginning is malformed, or no line is found.
 pub fn parse(console: &str) -> Result<Cycles> {
     let mut cycles = Cycles::new();
     for line in console.lines() {
@@ -60,7 +63,7 @@ pub fn parse(console: &str) -> Result<Cycles> {
     }
     if cycles.is_empty() {
         bail!(
-            "no line of the form \"bench NAME min MIN median MEDIAN max MAX cycles\" in the console's output"
+            "expected a line \"bench NAME min MIN median MEDIAN max MAX cycles\" in the console's output"
         );
     }
     Ok(cycles)
@@ -68,19 +71,19 @@ pub fn parse(console: &str) -> Result<Cycles> {
 
 /// The console's prompt.
 const PROMPT: &str = "glint> ";
-/// Cycles for the start and for all kernels, each a multiple of what they take.
+/// Limit of the start and of all kernels, each several times their duration.
 const LIMIT: u64 = 500_000_000;
 
-/// Where cycles come from.
+/// The source of measured cycles.
 #[derive(clap::Args)]
 pub struct Source {
-    /// The verilated SoC that measures cycles [default: the one that `cargo xtask gateware` makes]
+    /// Verilated SoC [default: the build of `cargo xtask gateware`]
     #[arg(long, value_name = "FILE")]
     library: Option<PathBuf>,
-    /// The firmware that it runs [default: the one that `cargo xtask firmware --features peers` makes]
+    /// Firmware [default: the build of `cargo xtask firmware --features peers`]
     #[arg(long, value_name = "FILE")]
     firmware: Option<PathBuf>,
-    /// Take the cycles from a console transcript of `bench`, from a real board say, instead of the virtual board
+    /// Console transcript of `bench`, for instance of a real board, instead of a run on the virtual board
     #[arg(long, value_name = "FILE")]
     transcript: Option<PathBuf>,
 }
@@ -89,7 +92,7 @@ impl Source {
     /// The figures of `bench KERNELS`.
     ///
     /// # Errors
-    /// When there is no transcript where it is said, or as [`measure`].
+    /// When the transcript cannot be read, or as in a run on the virtual board.
     pub fn measure(&self, kernels: &str) -> Result<Cycles> {
         if let Some(path) = &self.transcript {
             let text = std::fs::read_to_string(path)
@@ -99,15 +102,15 @@ impl Source {
         measure(&self.library(), &self.firmware(), kernels)
     }
 
-    /// The verilated SoC.
+    /// Path of the verilated SoC.
     fn library(&self) -> PathBuf {
-        let built = || in_workspace("target/gateware/virtual/libglint_soc.so");
+        let built = || workspace::path("target/gateware/virtual/libglint_soc.so");
         self.library.clone().unwrap_or_else(built)
     }
 
-    /// The firmware that it runs.
+    /// Path of the firmware.
     pub fn firmware(&self) -> PathBuf {
-        let built = || in_workspace("target/firmware/glint-peers.bin");
+        let built = || workspace::path("target/firmware/glint-peers.bin");
         self.firmware.clone().unwrap_or_else(built)
     }
 }
@@ -122,8 +125,8 @@ fn measure(library: &Path, firmware: &Path, kernels: &str) -> Result<Cycles> {
         (firmware, "cargo xtask firmware --features peers"),
     ] {
         if !path.exists() {
-            let path = path.strip_prefix(in_workspace("")).unwrap_or(path);
-            bail!("{} is not there, `{command}` makes it", path.display());
+            let path = path.strip_prefix(workspace::path("")).unwrap_or(path);
+            bail!("{} is missing: run `{command}`", path.display());
         }
     }
     let firmware = std::fs::read(firmware)?;
@@ -154,7 +157,7 @@ fn measure(library: &Path, firmware: &Path, kernels: &str) -> Result<Cycles> {
     parse(&reply).with_context(|| format!("`{command}` on the virtual board"))
 }
 
-/// Whether a command's reply is whole: its last line is `ok` or an error.
+/// Whether a command's reply is complete: its last line is `ok` or an error.
 fn ends(reply: &[u8]) -> bool {
     let last = reply.strip_suffix(PROMPT.as_bytes()).unwrap_or(reply);
     let last = last
@@ -196,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_figure_is_refused() {
+    fn malformed_lines_are_refused() {
         assert!(parse("error: unknown command\n").is_err());
         assert!(parse("bench idsp min 40 median many max 90 cycles\n").is_err());
         assert!(parse("bench idsp min 40 max 90 cycles\n").is_err());

@@ -7,7 +7,7 @@ use plotters::coord::ranged1d::ValueFormatter;
 use plotters::prelude::*;
 
 const SIZE: (u32, u32) = (960, 600);
-/// The range of the cost where nothing was measured.
+/// Range of the cost axis without measured costs.
 const EMPTY: Span = Span(10.0, 100_000.0);
 
 /// Colours of the families, dark enough for thin text.
@@ -22,12 +22,13 @@ const COLOURS: [RGBColor; 8] = [
     RGBColor(136, 104, 56),
 ];
 
-/// What a diagram says about itself.
+/// Title and axes of a diagram.
 pub struct Diagram {
+    /// Title above the diagram.
     pub title: &'static str,
-    /// What is across: an error.
+    /// Horizontal axis: an error.
     pub across: &'static str,
-    /// What is up: a cost.
+    /// Vertical axis: a cost.
     pub up: &'static str,
 }
 
@@ -35,15 +36,20 @@ pub struct Diagram {
 pub struct Point {
     /// Points of a family are joined.
     pub family: String,
+    /// Text beside the point.
     pub label: String,
+    /// Position on the horizontal axis.
     pub error: f64,
-    /// A point without it is a dashed line at its error.
+    /// Position on the vertical axis; without it the point is a dashed line at its error.
     pub cost: Option<f64>,
-    /// Whether Glint uses it.
+    /// Whether Glint uses it: ringed.
     pub shipped: bool,
 }
 
-/// Writes the diagram: one line a family, what Glint uses ringed.
+/// Writes a diagram with one line for each family of points.
+///
+/// # Errors
+/// When the file cannot be written.
 pub fn write(diagram: &Diagram, points: &[Point], path: &Path) -> Result<()> {
     draw(diagram, points, path).map_err(|error| anyhow!("cannot draw {}: {error}", path.display()))
 }
@@ -88,17 +94,23 @@ fn draw(
     Ok(())
 }
 
-/// What lies between two lines.
+/// The area between two lines.
 pub struct Band {
+    /// Name in the legend.
     pub name: &'static str,
+    /// Lower edge.
     pub low: Vec<(f64, f64)>,
+    /// Upper edge.
     pub high: Vec<(f64, f64)>,
 }
 
-/// A line and its name.
+/// A line with its name in the legend.
 pub type Line = (&'static str, Vec<(f64, f64)>);
 
 /// Writes a diagram of lines in front of a band, both axes logarithmic.
+///
+/// # Errors
+/// When there are no points or the file cannot be written.
 pub fn write_lines(diagram: &Diagram, lines: &[Line], band: &Band, path: &Path) -> Result<()> {
     draw_lines(diagram, lines, band, path)
         .map_err(|error| anyhow!("cannot draw {}: {error}", path.display()))
@@ -111,11 +123,10 @@ fn draw_lines(
     path: &Path,
 ) -> Result<(), Box<dyn std::error::Error>> {
     let points = || lines.iter().flat_map(|(_, line)| line).chain(&band.high);
-    let Some(Span(left, right)) = Span::new(points().map(|point| point.0)) else {
-        return Err("there is nothing to draw".into());
-    };
-    let Some(Span(bottom, top)) = Span::new(points().map(|point| point.1)) else {
-        return Err("there is nothing to draw".into());
+    let across = Span::new(points().map(|point| point.0));
+    let up = Span::new(points().map(|point| point.1));
+    let (Some(Span(left, right)), Some(Span(bottom, top))) = (across, up) else {
+        return Err("no points".into());
     };
     let root = SVGBackend::new(path, SIZE).into_drawing_area();
     root.fill(&WHITE)?;
@@ -160,7 +171,7 @@ fn draw_lines(
     Ok(())
 }
 
-/// Draws what is inside of the axes, and their numbers.
+/// Draws axes, points and legend.
 fn fill<'a, X, Y>(
     mut chart: ChartContext<'a, SVGBackend<'a>, Cartesian2d<X, Y>>,
     diagram: &Diagram,
@@ -227,7 +238,7 @@ where
     Ok(())
 }
 
-/// A power of ten without the digits that it does not need.
+/// A number in scientific notation, powers of ten without a mantissa's fraction.
 fn number(error: &f64) -> String {
     let short = format!("{error:.0e}");
     if short
@@ -250,12 +261,12 @@ fn families(points: &[Point]) -> Vec<&str> {
     found
 }
 
-/// From where to where an axis goes.
+/// Range of an axis.
 #[derive(Clone, Copy)]
 struct Span(f64, f64);
 
 impl Span {
-    /// Whole decades around some positive values, with room to write beside them; within one decade just the room.
+    /// Whole decades around positive values with a margin for labels; within one decade the margin alone.
     fn new(values: impl Iterator<Item = f64>) -> Option<Self> {
         let range = values.fold(None, |range: Option<(f64, f64)>, value| match range {
             None => Some((value, value)),
@@ -271,7 +282,7 @@ impl Span {
         ))
     }
 
-    /// Whether it is less than a decade, in which a logarithmic axis would have no numbers.
+    /// Whether the range is below a decade, where a logarithmic axis has no numbers.
     fn is_narrow(self) -> bool {
         self.1 < 10.0 * self.0
     }

@@ -1,0 +1,220 @@
+//! `report`: measures the error of Glint's kernels against their run time and writes the pages of `docs/report`.
+
+#![forbid(unsafe_code)]
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use clap::{Args, Parser, Subcommand};
+use glint_reference::report::cycles::{Cycles, Source};
+use glint_reference::report::experiments::{gouraud, imu, raymarch, sine, triangle};
+use glint_reference::report::pages::{self, PAGES};
+use glint_reference::report::table::write_csv;
+use glint_reference::report::workspace;
+use serde::Serialize;
+
+/// Measures error against run time.
+#[derive(Parser)]
+#[command(name = "report")]
+struct Arguments {
+    #[command(subcommand)]
+    page: Page,
+}
+
+#[derive(Subcommand)]
+enum Page {
+    /// Sine and cosine over all inputs, beside other libraries
+    Sine {
+        /// Measure a sample of the inputs instead of all (seconds instead of minutes)
+        #[arg(long)]
+        quick: bool,
+        #[command(flatten)]
+        output: Output,
+        #[command(flatten)]
+        cycles: Source,
+    },
+    /// The triangle engine on the whole SoC, beside its requirements
+    Triangle {
+        /// Leave out the CPU's frames, which take most of the time
+        #[arg(long)]
+        quick: bool,
+        /// Measure only scenes whose name contains TEXT; implies the default folder of --quick
+        #[arg(long, value_name = "TEXT")]
+        only: Option<String>,
+        #[command(flatten)]
+        output: Output,
+    },
+    /// Distance fields: errors, frames a second and studies of the raymarcher
+    Raymarch {
+        /// Measure only errors of pictures of 320x180 (seconds instead of minutes)
+        #[arg(long)]
+        quick: bool,
+        #[command(flatten)]
+        output: Output,
+    },
+    /// Smooth shading beside light that is linear on the screen
+    Gouraud {
+        /// Leave out the gateware's cost, which takes most of the time
+        #[arg(long)]
+        quick: bool,
+        #[command(flatten)]
+        output: Output,
+    },
+    /// Attitudes from gyroscope and accelerometer against f64 and the truth
+    Imu {
+        /// Shorten long motions to a tenth and leave out those of a day (half a minute instead of ten)
+        #[arg(long)]
+        quick: bool,
+        #[command(flatten)]
+        output: Output,
+        #[command(flatten)]
+        cycles: Source,
+    },
+    /// Rebuild all pages and diagrams from their CSV files, without measuring
+    Pages {
+        /// Folder of CSV files, pages and diagrams [default: docs/report]
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+    },
+}
+
+#[derive(Args)]
+struct Output {
+    /// Print the rows as JSON instead of a table
+    #[arg(long)]
+    json: bool,
+    /// Folder of CSV files, page and diagrams [default: docs/report, or target/report with --quick]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+impl Output {
+    /// The folder, created where it is missing.
+    fn folder(&self, partial: bool) -> Result<PathBuf> {
+        let default = if partial {
+            "target/report"
+        } else {
+            "docs/report"
+        };
+        let folder = self.out.clone().unwrap_or_else(|| workspace::path(default));
+        std::fs::create_dir_all(&folder)
+            .with_context(|| format!("cannot create the folder {}", folder.display()))?;
+        Ok(folder)
+    }
+
+    /// Prints rows as JSON, or the table that `table` makes of them.
+    fn print<T: Serialize>(&self, rows: &[T], table: fn(&[T]) -> String) -> Result<()> {
+        if self.json {
+            println!("{}", serde_json::to_string_pretty(rows)?);
+        } else {
+            print!("{}", table(rows));
+        }
+        Ok(())
+    }
+}
+
+fn main() -> Result<()> {
+    match Arguments::parse().page {
+        Page::Sine {
+            quick,
+            output,
+            cycles,
+        } => measure_sine(quick, &output, &cycles),
+        Page::Triangle {
+            quick,
+            only,
+            output,
+        } => measure_triangle(quick, only.as_deref(), &output),
+        Page::Raymarch { quick, output } => measure_raymarch(quick, &output),
+        Page::Gouraud { quick, output } => measure_gouraud(quick, &output),
+        Page::Imu {
+            quick,
+            output,
+            cycles,
+        } => measure_imu(quick, &output, &cycles),
+        Page::Pages { out } => {
+            let folder = out.unwrap_or_else(|| workspace::path("docs/report"));
+            PAGES
+                .iter()
+                .try_for_each(|(name, rebuild)| written(name, &folder, *rebuild))
+        }
+    }
+}
+
+/// Rebuilds a page and says so.
+fn written(name: &str, folder: &Path, rebuild: pages::Rebuild) -> Result<()> {
+    rebuild(folder).with_context(|| format!("the page {name}.md"))?;
+    eprintln!("wrote {name}.md to {}", folder.display());
+    Ok(())
+}
+
+fn measure_sine(quick: bool, output: &Output, source: &Source) -> Result<()> {
+    let cycles = source.measure("sine").unwrap_or_else(|reason| {
+        eprintln!("no cycles: {reason:#}");
+        Cycles::new()
+    });
+    let (rows, reference) = sine::measure(quick, &cycles)?;
+    output.print(&rows, pages::sine::table)?;
+    let folder = output.folder(quick)?;
+    write_csv(&rows, &folder.join("sine.csv"))?;
+    write_csv(&[reference], &folder.join("sine-reference.csv"))?;
+    written("sine", &folder, pages::sine::rebuild)
+}
+
+fn measure_triangle(quick: bool, only: Option<&str>, output: &Output) -> Result<()> {
+    let rows = triangle::measure(only, quick)?;
+    output.print(&rows, pages::triangle::table)?;
+    let folder = output.folder(quick || only.is_some())?;
+    write_csv(&rows, &folder.join("triangle.csv"))?;
+    written("triangle", &folder, pages::triangle::rebuild)
+}
+
+fn measure_raymarch(quick: bool, output: &Output) -> Result<()> {
+    let folder = output.folder(quick)?;
+    let rows = raymarch::pictures::measure(quick);
+    output.print(&rows, pages::raymarch::table)?;
+    // Each table is written as soon as it is complete, because the next one takes minutes.
+    write_csv(&rows, &folder.join("raymarch.csv"))?;
+    if !quick {
+        let rates = raymarch::rates::measure()?;
+        write_csv(&rates, &folder.join("raymarch-rates.csv"))?;
+        raymarch::studies::measure(|name, trials| {
+            write_csv(trials, &folder.join(format!("raymarch-{name}.csv")))
+        })?;
+    }
+    written("raymarch", &folder, pages::raymarch::rebuild)
+}
+
+fn measure_gouraud(quick: bool, output: &Output) -> Result<()> {
+    let rows = gouraud::measure();
+    output.print(&rows, pages::gouraud::table)?;
+    let folder = output.folder(quick)?;
+    write_csv(&rows, &folder.join("gouraud.csv"))?;
+    if !quick {
+        write_csv(&gouraud::costs()?, &folder.join("gouraud-cost.csv"))?;
+    }
+    written("gouraud", &folder, pages::gouraud::rebuild)
+}
+
+fn measure_imu(quick: bool, output: &Output, source: &Source) -> Result<()> {
+    let part = if quick { 0.1 } else { 1.0 };
+    let folder = output.folder(quick)?;
+    let file = |name: &str| folder.join(name);
+    let cycles = source.measure("attitude")?;
+    let replay = imu::soft_core::replay(source, (100_000.0 * part) as u64)?;
+    write_csv(&imu::soft_core::kernels(&cycles)?, &file("imu-cycles.csv"))?;
+    write_csv(&[replay], &file("imu-replay.csv"))?;
+    eprintln!("targets …");
+    let targets = imu::targets::measure(part);
+    write_csv(&targets, &file("imu.csv"))?;
+    eprintln!("methods …");
+    write_csv(&imu::methods::measure(&cycles), &file("imu-methods.csv"))?;
+    eprintln!("filters …");
+    write_csv(&imu::filters::measure(part), &file("imu-filters.csv"))?;
+    eprintln!("stiff cases …");
+    write_csv(&imu::stiff::measure(part, !quick), &file("imu-stiff.csv"))?;
+    eprintln!("error over time …");
+    write_csv(&imu::time::measure(190.0 * part), &file("imu-time.csv"))?;
+    output.print(&targets, pages::imu::table)?;
+    written("imu", &folder, pages::imu::rebuild)
+}

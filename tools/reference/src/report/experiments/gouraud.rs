@@ -1,0 +1,148 @@
+//! Errors of smooth shading, and its cost in the gateware.
+
+use std::process::Command;
+
+use anyhow::{Context, Result, ensure};
+use serde::{Deserialize, Serialize};
+
+use crate::report::provenance::Provenance;
+use crate::report::workspace;
+use crate::smooth::{Measured, scenes};
+
+/// A scene: a line of `gouraud.csv`. Errors are in steps of a channel.
+#[derive(Serialize, Deserialize)]
+pub struct Row {
+    /// Description of the scene.
+    pub scene: String,
+    /// Drawn triangles.
+    pub triangles: u64,
+    /// Triangles that the clipper cut.
+    pub clipped: u64,
+    /// Back faces among the drawn triangles.
+    pub back_faces: u64,
+    /// Covered pixels.
+    pub pixels: u64,
+    /// Smallest depth code.
+    pub smallest_depth_code: u32,
+    /// Bound of the error (docs/formats.md).
+    pub bound: f64,
+    /// Largest error.
+    pub max_err: f64,
+    /// RMS of the errors.
+    pub rms: f64,
+    /// Largest error of the rounded reference.
+    pub rounded_max_err: f64,
+    /// RMS of the rounded reference.
+    pub rounded_rms: f64,
+    /// Largest error of interpolation that is linear on the screen.
+    pub affine_max_err: f64,
+    /// RMS of interpolation that is linear on the screen.
+    pub affine_rms: f64,
+    /// Commit of the measurement.
+    pub commit: String,
+    /// Tools of the measurement.
+    pub tools: String,
+}
+
+impl Row {
+    fn new(name: &str, bound: f64, measured: &Measured, provenance: &Provenance) -> Self {
+        Self {
+            scene: name.to_owned(),
+            triangles: measured.triangles,
+            clipped: measured.clipped,
+            back_faces: measured.back,
+            pixels: measured.pixels,
+            smallest_depth_code: measured.farthest,
+            bound,
+            max_err: measured.model.max,
+            rms: measured.model.rms(),
+            rounded_max_err: measured.rounded.max,
+            rounded_rms: measured.rounded.rms(),
+            affine_max_err: measured.affine.max,
+            affine_rms: measured.affine.rms(),
+            commit: provenance.commit.clone(),
+            tools: provenance.tools.clone(),
+        }
+    }
+}
+
+/// Measures all scenes.
+pub fn measure() -> Vec<Row> {
+    let provenance = Provenance::find();
+    scenes()
+        .iter()
+        .map(|scene| Row::new(scene.name, scene.bound, &scene.measure(), &provenance))
+        .collect()
+}
+
+/// The triangle engine without and with smooth shading: modules of `gateware/tests/run.py`.
+const ENGINES: [(&str, &str); 2] = [
+    ("flat", "triangle_engine"),
+    ("flat and smooth", "triangle_engine_smooth"),
+];
+
+/// Resources of an engine: a line of `gouraud-cost.csv`.
+#[derive(Serialize, Deserialize)]
+pub struct Cost {
+    /// The engine's shading.
+    pub engine: String,
+    /// LUTs, those used as memory included.
+    #[serde(rename = "LUT")]
+    pub lut: u32,
+    /// Flip-flops.
+    #[serde(rename = "FF")]
+    pub ff: u32,
+    /// DSP48 slices.
+    #[serde(rename = "DSP48")]
+    pub dsp: u32,
+    /// Block RAMs of 36 Kbit.
+    #[serde(rename = "RAMB36")]
+    pub bram: f64,
+    /// Longest path in LUT levels (docs/resources.md).
+    pub path: u32,
+}
+
+/// What Yosys counts in a module.
+#[derive(Deserialize)]
+struct Cells {
+    logic: u32,
+    srl: u32,
+    lutram: u32,
+    ff: u32,
+    dsp48: u32,
+    ramb36: u32,
+    ramb18: u32,
+    path: u32,
+}
+
+/// Synthesises both engines.
+///
+/// # Errors
+/// When the synthesis fails.
+pub fn costs() -> Result<Vec<Cost>> {
+    ENGINES
+        .into_iter()
+        .map(|(engine, module)| {
+            let cells = cells(module)?;
+            Ok(Cost {
+                engine: engine.to_owned(),
+                lut: cells.logic + cells.srl + cells.lutram,
+                ff: cells.ff,
+                dsp: cells.dsp48,
+                bram: f64::from(cells.ramb36) + f64::from(cells.ramb18) / 2.0,
+                path: cells.path,
+            })
+        })
+        .collect()
+}
+
+fn cells(module: &str) -> Result<Cells> {
+    let output = Command::new(workspace::path(".venv/bin/python"))
+        .args(["gateware/tests/run.py", "--size", module])
+        .current_dir(workspace::path(""))
+        .output()
+        .context("cannot run .venv/bin/python: run `cargo xtask bootstrap`")?;
+    let text = String::from_utf8_lossy(&output.stdout);
+    ensure!(output.status.success(), "the size of {module}: {text}");
+    serde_json::from_str(&text).with_context(|| format!("expected a size in JSON, found `{text}`"))
+}

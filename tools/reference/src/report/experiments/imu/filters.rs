@@ -1,0 +1,66 @@
+//! Errors of the inclination with different filters of the accelerometer.
+
+use serde::{Deserialize, Serialize};
+
+use crate::imu::filter::Filter;
+use crate::imu::measure::{TAU, filter_inclination};
+use crate::imu::motion::Motion;
+use crate::imu::sensor::Sensor;
+use crate::report::provenance::Provenance;
+
+/// A filter: a line of `imu-filters.csv`. RMS of the inclination's error in degrees.
+#[derive(Serialize, Deserialize)]
+pub struct Tilted {
+    /// Name and parameters of the filter.
+    pub filter: String,
+    /// Whether Glint uses it.
+    pub shipped: bool,
+    /// At rest.
+    pub rest: f64,
+    /// Hand motion, mostly sideways.
+    pub hand: f64,
+    /// Hand motion, mostly up and down.
+    pub nod: f64,
+    /// A walk.
+    pub walk: f64,
+    /// Commit of the measurement.
+    pub commit: String,
+}
+
+/// Measures all filters; `part` shortens the motions to at least 30 s.
+pub fn measure(part: f64) -> Vec<Tilted> {
+    let commit = Provenance::find().commit;
+    let seconds = (120.0 * part).max(30.0);
+    let mahony = Filter::Mahony {
+        proportional: 0.74,
+        integral: 0.0012,
+    };
+    let gated = |low, high| Filter::Gated {
+        tau: TAU,
+        range: [low, high],
+    };
+    [
+        Filter::None,
+        Filter::Complementary(TAU),
+        mahony,
+        Filter::LowPass(TAU),
+        Filter::Tilt(1.0),
+        Filter::Tilt(TAU),
+        Filter::Tilt(10.0),
+        gated(0.5, 1.5),
+        gated(0.9, 1.1),
+    ]
+    .map(|filter| {
+        let rms = |motion| filter_inclination(filter, Sensor::real(200.0), motion, seconds).rms();
+        Tilted {
+            filter: filter.name(),
+            shipped: filter == Filter::Tilt(TAU),
+            rest: rms(Motion::Rest),
+            hand: rms(Motion::Hand),
+            nod: rms(Motion::Nod),
+            walk: rms(Motion::Walk),
+            commit: commit.clone(),
+        }
+    })
+    .into()
+}

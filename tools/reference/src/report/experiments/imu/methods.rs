@@ -1,0 +1,73 @@
+//! Errors of the integration methods against the truth, by sample rate.
+
+use serde::{Deserialize, Serialize};
+
+use super::motions::{CONING, TUMBLE};
+use crate::imu::measure::method_error;
+use crate::imu::method::Method;
+use crate::report::cycles::Cycles;
+use crate::report::provenance::Provenance;
+
+/// Samples a second at which methods are compared.
+pub const RATES: [f64; 5] = [50.0, 100.0, 200.0, 500.0, 1000.0];
+
+/// A method at a rate: a line of `imu-methods.csv`.
+#[derive(Serialize, Deserialize)]
+pub struct Trial {
+    /// `tumble` or `coning`.
+    pub motion: String,
+    /// Name of the method.
+    pub method: String,
+    /// Whether Glint uses it.
+    pub shipped: bool,
+    /// Samples a second.
+    pub rate: f64,
+    /// Error after 20 s in degrees.
+    pub error: f64,
+    /// Observed order: the power of the step by which the error fell from the rate before.
+    pub order: Option<f64>,
+    /// Median cycles of a sample on the soft core, for methods in the firmware.
+    pub cycles: Option<u64>,
+    /// Commit of the measurement.
+    pub commit: String,
+}
+
+/// Name of a method in `bench attitude`, for methods in the firmware.
+fn kernel(method: Method) -> Option<&'static str> {
+    match method {
+        Method::Angles => Some("angles"),
+        Method::FirstOrder => Some("first_order"),
+        Method::Newest => Some("newest"),
+        Method::Trapezoid => Some("trapezoid"),
+        Method::Parabola => Some("parabola"),
+        Method::Cubic => Some("cubic"),
+        Method::Coning | Method::PlainCubic => None,
+    }
+}
+
+/// Measures all methods at all rates.
+pub fn measure(cycles: &Cycles) -> Vec<Trial> {
+    let commit = Provenance::find().commit;
+    let mut trials = Vec::new();
+    for (name, motion) in [("tumble", TUMBLE), ("coning", CONING)] {
+        for method in Method::ALL {
+            let mut before: Option<[f64; 2]> = None;
+            for rate in RATES {
+                let error = method_error(method, motion, 20.0, rate);
+                let order = before.map(|[last, at]| (at / error).log2() / (rate / last).log2());
+                before = Some([rate, error]);
+                trials.push(Trial {
+                    motion: name.to_owned(),
+                    method: method.name().to_owned(),
+                    shipped: method == Method::Cubic,
+                    rate,
+                    error,
+                    order,
+                    cycles: kernel(method).and_then(|name| Some(cycles.get(name)?.median)),
+                    commit: commit.clone(),
+                });
+            }
+        }
+    }
+    trials
+}

@@ -1,0 +1,9 @@
+//! Errors of the attitude: against f64 and the truth, by method and filter, over time, and in stiff cases.
+
+pub mod filters;
+pub mod methods;
+mod motions;
+pub mod soft_core;
+pub mod stiff;
+pub mod targets;
+pub mod time;

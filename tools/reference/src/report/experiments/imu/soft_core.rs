@@ -1,0 +1,119 @@
+//! The attitude on the soft core: cycles of a sample, and its bits beside the host's.
+
+use anyhow::{Context, Result};
+use glint::board::{SimulatedBoard, built_firmware};
+use glint::console::Console;
+use glint::imu::log::Entry;
+use glint::imu::replay::{self, Options, Stage};
+use glint::transfer::Route;
+use glint_core::calibration::Units;
+use indicatif::{ProgressBar, ProgressStyle};
+use serde::{Deserialize, Serialize};
+
+use crate::imu::motion::Motion;
+use crate::imu::sensor::Sensor;
+use crate::report::cycles::{Cycles, Source};
+
+/// Kernels of the firmware's integration with their limits and goals, in cycles a sample.
+const KERNELS: [(&str, &str, u64, u64); 4] = [
+    ("cubic", "integration, even steps", 800, 500),
+    ("cubic_jitter", "integration, uneven steps", 800, 500),
+    ("cubic_tilt", "with tilt, even steps", 2_000, 1_200),
+    ("cubic_tilt_jitter", "with tilt, uneven steps", 2_000, 1_200),
+];
+
+/// A kernel of the firmware: a line of `imu-cycles.csv`. Cycles of a sample.
+#[derive(Serialize, Deserialize)]
+pub struct Kernel {
+    /// Integrated samples.
+    pub what: String,
+    /// Its limit.
+    pub at_least: u64,
+    /// The goal beyond the limit.
+    pub aim: u64,
+    /// Median of the runs.
+    pub median: u64,
+    /// Slowest run.
+    pub max: u64,
+}
+
+/// A long motion on the soft core: the line of `imu-replay.csv`.
+#[derive(Serialize, Deserialize)]
+pub struct Replay {
+    /// Number of samples.
+    pub samples: u64,
+    /// Attitudes that differ from the host's in any bit.
+    pub differing: usize,
+    /// Mean cycles of a sample.
+    pub cycles: u64,
+}
+
+/// The kernels of the firmware, from `bench attitude`.
+///
+/// # Errors
+/// When a kernel is missing.
+pub fn kernels(cycles: &Cycles) -> Result<Vec<Kernel>> {
+    let kernel = |(name, what, at_least, aim): (&str, &str, u64, u64)| {
+        let figures = cycles
+            .get(name)
+            .with_context(|| format!("expected {name} in `bench attitude`"))?;
+        Ok(Kernel {
+            what: what.to_owned(),
+            at_least,
+            aim,
+            median: figures.median,
+            max: figures.max,
+        })
+    };
+    KERNELS.into_iter().map(kernel).collect()
+}
+
+/// Replays a hand motion at 1 kHz on the virtual board, with tilt and a tracked bias.
+///
+/// # Errors
+/// When the board is not built or the replay fails.
+pub fn replay(source: &Source, samples: u64) -> Result<Replay> {
+    let counts = Sensor::real(1000.0).samples(Motion::Hand, samples, 1);
+    let entries: Vec<Entry> = counts
+        .map(|sample| Entry {
+            line: 0,
+            t_us: sample.t_us.into(),
+            accel: sample.accel,
+            gyro: sample.gyro,
+            temp: None,
+        })
+        .collect();
+    let options = Options {
+        units: Units::MPU_6050,
+        period: None,
+        still: None,
+        tilt: true,
+        follow_bias: true,
+    };
+    let prepared = replay::prepare(&entries, &options)?;
+    let firmware = built_firmware(Some(&source.firmware()))?;
+    let mut board = SimulatedBoard::fast(&firmware)?;
+    let mut console = Console::new(&mut board);
+    console.greet()?;
+    let bar = ProgressBar::new(samples).with_style(ProgressStyle::with_template(
+        "the soft core {wide_bar} {pos}/{len} samples, {eta} left",
+    )?);
+    let by_board = replay::on_board(
+        &prepared,
+        &mut console,
+        Route::Memory,
+        &mut |stage, done, _| {
+            if stage == Stage::Replay {
+                bar.set_position(done);
+            }
+        },
+    )?;
+    bar.finish_and_clear();
+    let by_model = replay::on_model(prepared)?;
+    let pairs = by_board.attitudes.iter().zip(&by_model.attitudes);
+    Ok(Replay {
+        samples,
+        differing: pairs.filter(|(board, model)| board != model).count(),
+        cycles: by_board.cycles.context("no cycles in the reply")?,
+    })
+}

@@ -1,0 +1,144 @@
+//! Errors with a requirement and a goal.
+
+use serde::{Deserialize, Serialize};
+
+use super::motions::{CONING, COUNT, SPIN, TUMBLE};
+use crate::imu::measure::{against_f64, calibrated, inclination, method_error, yaw_drift};
+use crate::imu::method::Method;
+use crate::imu::motion::Motion;
+use crate::imu::sensor::Sensor;
+use crate::report::provenance::Provenance;
+
+/// A requirement: a line of `imu.csv`.
+#[derive(Serialize, Deserialize)]
+pub struct Target {
+    /// The measured error.
+    pub what: String,
+    /// Its unit.
+    pub unit: String,
+    /// Its limit.
+    pub at_least: f64,
+    /// The goal beyond the limit.
+    pub aim: f64,
+    /// The measured figure.
+    pub measured: f64,
+    /// `aim`, `at least` or `missed`.
+    pub reached: String,
+    /// Commit of the measurement.
+    pub commit: String,
+    /// Tools of the measurement.
+    pub tools: String,
+}
+
+/// Measures all requirements; `part` shortens long motions.
+pub fn measure(part: f64) -> Vec<Target> {
+    let Provenance { commit, tools } = Provenance::find();
+    let mut rows = Vec::new();
+    let mut norm = 0.0_f64;
+    let mut add = |what: String, unit: &str, [at_least, aim]: [f64; 2], measured: f64| {
+        rows.push(Target {
+            what,
+            unit: unit.to_owned(),
+            at_least,
+            aim,
+            measured,
+            reached: if measured <= aim {
+                "aim"
+            } else if measured <= at_least {
+                "at least"
+            } else {
+                "missed"
+            }
+            .to_owned(),
+            commit: commit.clone(),
+            tools: tools.clone(),
+        });
+    };
+    let hour = 3600.0 * part;
+    for (name, sensor, motion, seconds, limits) in [
+        (
+            "hand motion",
+            Sensor::real(1000.0),
+            Motion::Hand,
+            190.0,
+            [0.01, 0.001],
+        ),
+        (
+            "tumble of 500 °/s",
+            Sensor::ideal(1000.0),
+            Motion::Tumble(500.0),
+            hour,
+            [0.05, 0.002],
+        ),
+        (
+            "1990 °/s about one axis",
+            Sensor::ideal(1000.0),
+            SPIN,
+            hour,
+            [0.2, 0.04],
+        ),
+        (
+            "1 count about one axis",
+            Sensor::ideal(1000.0),
+            COUNT,
+            24.0 * hour,
+            [0.05, 1e-5],
+        ),
+    ] {
+        let largest = against_f64(sensor, motion, seconds, false);
+        norm = norm.max(largest.norm);
+        let what = format!("firmware against f64 on the same counts: {name}, {seconds} s at 1 kHz");
+        add(what, "°", limits, largest.angle);
+    }
+    let hand = against_f64(Sensor::real(200.0), Motion::Hand, 190.0, true);
+    norm = norm.max(hand.norm);
+    add(
+        "the same with the accelerometer: hand motion, 190 s at 200 Hz".into(),
+        "°",
+        [0.01, 0.001],
+        hand.angle,
+    );
+    add(
+        "error of the quaternion's length in all of these".into(),
+        "",
+        [1e-8, 2e-9],
+        norm,
+    );
+    for (name, motion, limits) in [
+        ("tumble of 700 °/s", TUMBLE, [0.1, 0.01]),
+        ("coning of 5° at 10 Hz", CONING, [0.1, 0.05]),
+    ] {
+        let error = method_error(Method::Cubic, motion, 20.0, 200.0);
+        add(
+            format!("method in f64 against the truth: {name}, 20 s at 200 Hz"),
+            "°",
+            limits,
+            error,
+        );
+    }
+    for (name, motion) in [
+        ("hand motion, mostly sideways", Motion::Hand),
+        ("hand motion, mostly up and down", Motion::Nod),
+        ("walk", Motion::Walk),
+    ] {
+        let errors = inclination(Sensor::real(1000.0), motion, 60.0);
+        add(
+            format!("inclination, RMS: {name}, 60 s at 1 kHz"),
+            "°",
+            [2.0, 1.0],
+            errors.rms(),
+        );
+    }
+    if let Ok(found) = calibrated(Sensor::real(1000.0), Motion::Rest) {
+        for (name, follow) in [("kept", false), ("tracked", true)] {
+            let drift = yaw_drift(Sensor::real(1000.0), &found, part, follow);
+            add(
+                format!("yaw drift at rest after calibration, {part} h, bias {name}"),
+                "°/h",
+                [10.0, 10.0],
+                drift.abs(),
+            );
+        }
+    }
+    rows
+}

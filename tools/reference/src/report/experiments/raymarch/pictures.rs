@@ -1,0 +1,156 @@
+//! Errors of the model's pictures against exact hits, and their evaluations.
+
+use glint_model::raymarch::{FieldOptions, FieldSetup, Prepass};
+use serde::{Deserialize, Serialize};
+
+use super::requirements::{LARGE, LARGE_COST, SMALL, SMALL_COST, missed};
+use crate::field::Field;
+use crate::field::raymarched::{self, Measured, Subject};
+use crate::report::provenance::Provenance;
+
+/// A picture: a line of `raymarch.csv`. Depths are in world units along n.
+#[derive(Serialize, Deserialize)]
+pub struct Row {
+    /// The field as typed.
+    pub scene: String,
+    /// Name of the view.
+    pub view: String,
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// Side of the blocks that have a cone, in pixels; 0 without a prepass.
+    pub prepass: u32,
+    /// Intersection over union of the masks.
+    pub iou: f64,
+    /// Hits where the reference misses.
+    pub false_hits: usize,
+    /// Misses where the reference hits.
+    pub false_misses: usize,
+    /// Rays at the step limit.
+    pub undecided: usize,
+    /// Median error of the depth from t.
+    pub depth_median: Option<f64>,
+    /// 99th percentile of that error.
+    pub depth_p99: Option<f64>,
+    /// Largest error of the depth from t.
+    pub depth_max: Option<f64>,
+    /// Median error of the depth from the code.
+    pub code_median: Option<f64>,
+    /// 99th percentile of that error.
+    pub code_p99: Option<f64>,
+    /// Largest error of the depth from the code.
+    pub code_max: Option<f64>,
+    /// Part of wrong faces among common hits.
+    pub wrong_faces: f64,
+    /// 99th percentile of the angle between normals of round surfaces, in degrees.
+    pub normal_p99: Option<f64>,
+    /// Part of the pixels beside an edge, where tiny differences decide.
+    pub unstable: f64,
+    /// Mean evaluations a ray, those of cones included.
+    pub evaluations: f64,
+    /// Part of them by cones.
+    pub evaluations_cones: f64,
+    /// Evaluations of the slowest ray.
+    pub evaluations_max: u32,
+    /// Missed requirements.
+    pub missed: String,
+    /// Missed goals.
+    pub not_reached: String,
+    /// Commit of the measurement.
+    pub commit: String,
+    /// Tools of the measurement.
+    pub tools: String,
+}
+
+impl Row {
+    fn new(
+        subject: &Subject,
+        setup: &FieldSetup,
+        measured: &Measured,
+        provenance: &Provenance,
+    ) -> Self {
+        let &Measured {
+            accuracy, coded, ..
+        } = measured;
+        let (width, height) = subject.size;
+        let cost = if width == SMALL.0 {
+            SMALL_COST
+        } else {
+            LARGE_COST
+        };
+        // Requirements hold for the sponge and round fields, goals for the sponge alone.
+        let list = |level: usize| {
+            let sponge = matches!(subject.field, Field::Menger { .. });
+            let mut missed = if sponge || subject.parsed.is_round() && level == 0 {
+                missed(&accuracy, level)
+            } else {
+                vec![]
+            };
+            if sponge && measured.cost() > cost[level] {
+                missed.push("evaluations");
+            }
+            missed.join(" ")
+        };
+        Self {
+            scene: subject.scene.clone(),
+            view: subject.name.clone(),
+            width,
+            height,
+            prepass: setup.cones.map_or(0, |cones| 1 << cones.block),
+            iou: accuracy.iou,
+            false_hits: accuracy.false_hit,
+            false_misses: accuracy.false_miss,
+            undecided: accuracy.undecided,
+            depth_median: accuracy.depth.map(|depth| depth.median),
+            depth_p99: accuracy.depth.map(|depth| depth.p99),
+            depth_max: accuracy.depth.map(|depth| depth.max),
+            code_median: coded.map(|depth| depth.median),
+            code_p99: coded.map(|depth| depth.p99),
+            code_max: coded.map(|depth| depth.max),
+            wrong_faces: accuracy.wrong_faces,
+            normal_p99: accuracy.normal.map(|normal| normal.p99),
+            unstable: accuracy.unstable,
+            evaluations: measured.cost(),
+            evaluations_cones: measured.cones as f64 / accuracy.rays.max(1) as f64,
+            evaluations_max: measured.most,
+            missed: list(0),
+            not_reached: list(1),
+            commit: provenance.commit.clone(),
+            tools: provenance.tools.clone(),
+        }
+    }
+}
+
+/// Measures all pictures; `quick` leaves out those of 1280 × 720.
+pub fn measure(quick: bool) -> Vec<Row> {
+    let provenance = Provenance::find();
+    let small: Vec<Subject> = [
+        raymarched::sponges(SMALL),
+        raymarched::others(SMALL),
+        raymarched::rounds(SMALL),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    let large = if quick {
+        vec![]
+    } else {
+        raymarched::sponges(LARGE)
+    };
+    let mut rows = Vec::new();
+    for subjects in [small, large] {
+        for prepass in [None, Some(Prepass::Fitting)] {
+            rows.extend(subjects.iter().map(|subject| {
+                let options = FieldOptions {
+                    prepass,
+                    ..FieldOptions::of(&subject.parsed)
+                };
+                let setup = subject.setup(&options);
+                let measured = Measured::new(&subject.expected, &raymarched::picture(&setup, 0));
+                Row::new(subject, &setup, &measured, &provenance)
+            }));
+        }
+    }
+    rows
+}

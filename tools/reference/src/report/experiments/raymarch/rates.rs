@@ -1,0 +1,305 @@
+//! Speed of fields on the whole SoC, with LiteDRAM and scan-out running.
+
+use anyhow::{Context, Result, ensure};
+use glint::board::{SimulatedBoard, built_firmware};
+use glint::console::Console;
+use glint::render::{self, FieldSubject, Renderer, Route, Scene, Subject};
+use glint_core::appearance::Appearance;
+use glint_core::field::Field;
+use glint_core::picture::Backend;
+use glint_core::stereo::Stereo;
+use indicatif::ProgressBar;
+use serde::{Deserialize, Serialize};
+use virtual_board::{Start, VirtualBoard};
+
+use crate::camera::{Camera, Vector};
+use crate::field::views;
+use crate::report::progress;
+use crate::report::provenance::Provenance;
+use crate::report::soc::{self, BackToBack};
+use crate::report::workspace;
+
+/// A build of the SoC in a folder of `target/gateware`.
+pub struct Build {
+    folder: &'static str,
+    /// Lanes of its raymarcher.
+    pub lanes: u32,
+}
+
+const FIELDS: Build = Build {
+    folder: "virtual",
+    lanes: 2,
+};
+const SPONGE: Build = Build {
+    folder: "virtual-sponge",
+    lanes: 4,
+};
+
+/// A measured field with its required rate.
+pub struct Case {
+    /// The field as typed.
+    pub field: &'static str,
+    stereo: Option<&'static str>,
+    /// Whether cones precede the rays.
+    pub prepass: bool,
+    /// Width and height in pixels.
+    pub size: (u32, u32),
+    /// The build that draws it.
+    pub build: Build,
+    cameras: fn() -> Vec<(&'static str, Camera)>,
+    /// Rotations of each camera.
+    path: fn() -> Vec<Vector>,
+    /// Index in [`soc::CLOCKS`] of the clock for the required rate.
+    pub clock: usize,
+    /// Required frames a second.
+    pub at_least: f64,
+    /// The goal beyond the requirement.
+    pub aim: Option<f64>,
+}
+
+impl Case {
+    /// Number of eyes.
+    pub const fn eyes(&self) -> u32 {
+        if self.stereo.is_some() { 2 } else { 1 }
+    }
+
+    /// Whether a row is a pose of this case.
+    pub fn contains(&self, row: &Row) -> bool {
+        self.field == row.field
+            && self.stereo == row.stereo.as_deref()
+            && self.prepass == row.prepass
+            && self.size == (row.width, row.height)
+    }
+}
+
+/// All cases, in the order of the page.
+pub const CASES: [Case; 5] = [
+    Case {
+        field: "menger:4",
+        stereo: Some("0.03,1.5"),
+        prepass: false,
+        size: (320, 180),
+        build: FIELDS,
+        cameras: of_the_sponge,
+        path: views::path,
+        clock: 0,
+        at_least: 60.0,
+        aim: Some(120.0),
+    },
+    Case {
+        field: "menger:4",
+        stereo: None,
+        prepass: false,
+        size: (1280, 720),
+        build: SPONGE,
+        cameras: of_the_sponge,
+        path: still,
+        clock: 1,
+        at_least: 30.0,
+        aim: None,
+    },
+    Case {
+        field: "menger:4",
+        stereo: None,
+        prepass: true,
+        size: (1280, 720),
+        build: SPONGE,
+        cameras: of_the_sponge,
+        path: still,
+        clock: 0,
+        at_least: 30.0,
+        aim: Some(60.0),
+    },
+    Case {
+        field: "lattice:1,0.3",
+        stereo: Some("0.03,1.5"),
+        prepass: false,
+        size: (320, 180),
+        build: FIELDS,
+        cameras: of_the_lattice,
+        path: still,
+        clock: 0,
+        at_least: 57.0,
+        aim: None,
+    },
+    Case {
+        field: "lattice:1,0.3",
+        stereo: Some("0.03,1.5"),
+        prepass: true,
+        size: (320, 180),
+        build: FIELDS,
+        cameras: of_the_lattice,
+        path: still,
+        clock: 0,
+        at_least: 60.0,
+        aim: None,
+    },
+];
+
+fn of_the_sponge() -> Vec<(&'static str, Camera)> {
+    let views = views::views().into_iter();
+    views
+        .map(|(name, eye, target)| (name, views::camera(eye, target)))
+        .collect()
+}
+
+fn of_the_lattice() -> Vec<(&'static str, Camera)> {
+    vec![
+        (
+            "aside",
+            views::camera([2.1875, 1.6875, 1.3125], [0.015625, 0.0, 0.03125]),
+        ),
+        ("down", views::camera([0.5, 0.5, 0.5], [0.625, 0.75, -1.0])),
+    ]
+}
+
+fn still() -> Vec<Vector> {
+    vec![[0.0; 3]]
+}
+
+/// A pose of a camera: a line of `raymarch-rates.csv`.
+#[derive(Serialize, Deserialize)]
+pub struct Row {
+    /// The field as typed.
+    pub field: String,
+    /// Stereo parameters as typed; none for one eye.
+    pub stereo: Option<String>,
+    /// Whether cones precede the rays.
+    pub prepass: bool,
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// Lanes of the raymarcher.
+    pub lanes: u32,
+    /// Name of the view.
+    pub view: String,
+    /// Yaw in degrees.
+    pub yaw: f64,
+    /// Pitch in degrees.
+    pub pitch: f64,
+    /// Roll in degrees.
+    pub roll: f64,
+    /// Rays of a frame.
+    pub rays: u32,
+    /// Evaluations of a frame.
+    pub evaluations: u64,
+    /// Cycles of a frame alone: from the first register write to the end seen by the firmware.
+    pub cycles_alone: u64,
+    /// Cycles of a frame of many back to back; for the slowest pose.
+    pub cycles_frame: Option<f64>,
+    /// Commit of the measurement.
+    pub commit: String,
+}
+
+/// Draws all cases, two boards at a time.
+///
+/// # Errors
+/// When a board is not built, or a frame differs from the model's.
+pub fn measure() -> Result<Vec<Row>> {
+    let commit = Provenance::find().commit;
+    let firmware = built_firmware(None)?;
+    let mut work = Vec::new();
+    for case in &CASES {
+        let cameras = (case.cameras)().into_iter();
+        work.extend(cameras.map(|(view, camera)| (case, view, camera)));
+    }
+    let frames = work.iter().map(|(case, ..)| (case.path)().len() as u64);
+    let bar = progress::bar(frames.sum())?;
+    let rows = soc::two_at_a_time(&work, |&(case, view, ref camera)| {
+        bar.set_message(format!("{} {view} on the SoC", case.field));
+        let (width, height) = case.size;
+        let name = format!("{} {view} at {width}x{height}", case.field);
+        let rows =
+            draw(&firmware, case, view, camera, &commit, &bar).with_context(|| name.clone())?;
+        let cycles = rows.iter().find_map(|row| row.cycles_frame);
+        bar.suspend(|| eprintln!("{name}: {:.0} cycles", cycles.unwrap_or_default()));
+        Ok(rows)
+    })?;
+    bar.finish_and_clear();
+    Ok(rows.into_iter().flatten().collect())
+}
+
+/// Draws the poses of a camera on a board of its own.
+fn draw(
+    firmware: &[u8],
+    case: &Case,
+    view: &'static str,
+    camera: &Camera,
+    commit: &str,
+    bar: &ProgressBar,
+) -> Result<Vec<Row>> {
+    let library = format!("target/gateware/{}/libglint_soc.so", case.build.folder);
+    let board = VirtualBoard::builder()
+        .library(workspace::path(&library))
+        .start(Start::Fast { firmware })
+        .build()?;
+    let mut board = SimulatedBoard::new(board);
+    let mut console = Console::new(&mut board);
+    console.greet()?;
+    let mut renderer = Renderer::new(console);
+    let field = Field::parse(case.field).map_err(|error| anyhow::anyhow!("{error}"))?;
+    let stereo = case.stereo.map(Stereo::parse).transpose();
+    let stereo = stereo.map_err(|error| anyhow::anyhow!("{error}"))?;
+    let mut rows: Vec<Row> = Vec::new();
+    let mut last = None;
+    for angles in (case.path)() {
+        let scene = Scene {
+            subject: Subject::Field(FieldSubject {
+                field: &field,
+                appearance: &Appearance::default(),
+                stereo,
+                prepass: case.prepass,
+            }),
+            view: camera.turned(angles).view().map_err(anyhow::Error::msg)?,
+            size: case.size,
+            backend: Some(Backend::Gateware),
+        };
+        let expected = render::on_model(&scene)?;
+        let stats = if rows.is_empty() {
+            renderer.show(&scene, Route::Memory, &mut |_, _| {})?
+        } else {
+            renderer.look(&scene.view)?
+        };
+        ensure!(
+            stats.backend.as_deref() == Some("gateware"),
+            "expected a frame of the gateware, found the soft core's"
+        );
+        let found = renderer.colour(case.size, Route::Memory, &mut |_, _| {})?;
+        ensure!(
+            found == expected.frame.colour && stats.rays == expected.stats.rays,
+            "turned by {angles:?} degrees, the raymarcher's frame is not the model's"
+        );
+        let rays = stats.rays.context("no ray counters in the reply")?;
+        let [yaw, pitch, roll] = angles;
+        rows.push(Row {
+            field: case.field.to_owned(),
+            stereo: case.stereo.map(str::to_owned),
+            prepass: case.prepass,
+            width: case.size.0,
+            height: case.size.1,
+            lanes: case.build.lanes,
+            view: view.to_owned(),
+            yaw,
+            pitch,
+            roll,
+            rays: rays.rays,
+            evaluations: rays.evaluations,
+            cycles_alone: stats.cycles.context("no cycles in the reply")?,
+            cycles_frame: None,
+            commit: commit.to_owned(),
+        });
+        last = Some(scene.view);
+        bar.inc(1);
+    }
+    // Only the slowest pose is drawn back to back.
+    if let Some(slowest) = rows.iter_mut().max_by_key(|row| row.cycles_alone) {
+        let angles = [slowest.yaw, slowest.pitch, slowest.roll];
+        let view = camera.turned(angles).view().map_err(anyhow::Error::msg)?;
+        if last != Some(view) {
+            renderer.look(&view)?;
+        }
+        slowest.cycles_frame = Some(BackToBack::measure(&mut renderer, "field")?.frame("cycles")?);
+    }
+    Ok(rows)
+}

@@ -1,0 +1,220 @@
+//! Studies: what errors and cycles of the march depend on.
+
+use anyhow::Result;
+use glint_model::raymarch::{DEFAULT_TUNING, FieldOptions, Prepass, Tuning};
+
+use super::fixed_point::{FixedPoint, MODEL_FRACTION};
+use super::requirements::SMALL;
+use super::trials::{Trial, Views, pixels};
+use crate::field::metrics::Outcome;
+use crate::field::raymarched;
+use crate::field::variant::{Method, Norm, Taps};
+use crate::report::provenance::Provenance;
+use crate::report::{progress, soc};
+
+/// Draws the configurations of a study.
+type Study = fn(&Views) -> Vec<Trial>;
+
+/// The studies, in the order of the page: `raymarch-NAME.csv` each.
+const STUDIES: [(&str, Study); 7] = [
+    ("fraction", fractions),
+    ("cap", caps),
+    ("threshold", thresholds),
+    ("norm", norms),
+    ("end", ends),
+    ("prepass", prepasses),
+    ("normal", normals),
+];
+
+/// Runs all studies and hands each to `finished` with its name as soon as it is complete.
+///
+/// # Errors
+/// When `finished` fails.
+pub fn measure(finished: impl Fn(&str, &[Trial]) -> Result<()> + Sync) -> Result<()> {
+    let commit = Provenance::find().commit;
+    let subjects = raymarched::sponges(SMALL);
+    let bar = progress::bar(STUDIES.len() as u64)?;
+    soc::two_at_a_time(&STUDIES, |(name, study)| {
+        finished(name, &study(&Views::new(&subjects, bar.clone(), &commit)))?;
+        bar.inc(1);
+        Ok(())
+    })?;
+    bar.finish_and_clear();
+    Ok(())
+}
+
+fn tuned(tuning: Tuning) -> FieldOptions {
+    FieldOptions {
+        tuning,
+        ..FieldOptions::default()
+    }
+}
+
+/// The sponge's field units in a world unit.
+const UNITS: f64 = 40.5;
+
+/// Glint's march in f64, with another threshold.
+fn in_f64(threshold: u32) -> Method {
+    Method {
+        distance: Norm::Maximum,
+        rays: Norm::Maximum,
+        threshold: f64::from(threshold) / 4096.0 / UNITS,
+        footprint: (-f64::from(DEFAULT_TUNING.footprint)).exp2(),
+        cap: DEFAULT_TUNING.cap,
+        relax: None,
+        correct: false,
+    }
+}
+
+fn fractions(views: &Views) -> Vec<Trial> {
+    let trial = |family: &str, fraction, threshold| {
+        let shipped = (fraction, threshold) == (MODEL_FRACTION, DEFAULT_TUNING.threshold);
+        if shipped {
+            let options = FieldOptions::default();
+            return views.model(family, format!("{fraction} bits"), &options);
+        }
+        views.trial(family, format!("{fraction} bits"), 0, |subject| {
+            FixedPoint::new(subject, fraction, threshold).picture()
+        })
+    };
+    let same =
+        (8..=16).map(|fraction| trial("the same threshold", fraction, DEFAULT_TUNING.threshold));
+    let fitting = (8..=15).map(|fraction| {
+        let threshold = (DEFAULT_TUNING.threshold << MODEL_FRACTION) >> fraction;
+        let family = format!("a threshold of {} steps", DEFAULT_TUNING.threshold);
+        trial(&family, fraction, threshold)
+    });
+    same.chain(fitting).collect()
+}
+
+fn caps(views: &Views) -> Vec<Trial> {
+    let trials = [8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 255].map(|cap| {
+        let options = tuned(Tuning {
+            cap,
+            ..DEFAULT_TUNING
+        });
+        views.model("cap", format!("{cap}"), &options)
+    });
+    trials.into()
+}
+
+fn thresholds(views: &Views) -> Vec<Trial> {
+    let footprints = [10, 12, 13, 14, 15];
+    let trials = footprints.into_iter().flat_map(|footprint| {
+        [4, 8, 16, DEFAULT_TUNING.threshold, 40, 80, 160, 320].map(|threshold| {
+            let options = tuned(Tuning {
+                threshold,
+                footprint,
+                ..DEFAULT_TUNING
+            });
+            views.model(
+                &format!("t/2^{footprint}"),
+                format!("{threshold}"),
+                &options,
+            )
+        })
+    });
+    trials.collect()
+}
+
+fn norms(views: &Views) -> Vec<Trial> {
+    let families = [
+        ("maximum norm, its rays", Norm::Maximum, Norm::Maximum),
+        ("maximum norm, unit rays", Norm::Maximum, Norm::Euclidean),
+        (
+            "Euclidean norm, unit rays",
+            Norm::Euclidean,
+            Norm::Euclidean,
+        ),
+    ];
+    let mut trials: Vec<_> = families
+        .into_iter()
+        .flat_map(|(family, distance, rays)| {
+            [6, 12, 24, 48, 96].map(|threshold| {
+                let method = Method {
+                    distance,
+                    rays,
+                    ..in_f64(threshold)
+                };
+                views.variant(family, format!("{threshold}"), &method, false)
+            })
+        })
+        .collect();
+    let config = format!("Glint, {}", DEFAULT_TUNING.threshold);
+    trials.push(views.model("the model", config, &FieldOptions::default()));
+    trials
+}
+
+fn ends(views: &Views) -> Vec<Trial> {
+    let families = [
+        ("plain", None, false, false),
+        ("corrected", None, true, false),
+        ("relaxed", Some(64), false, false),
+        ("relaxed and corrected", Some(64), true, false),
+        ("exact entry", None, false, true),
+    ];
+    let trials = families
+        .into_iter()
+        .flat_map(|(family, relax, correct, exact_entry)| {
+            [6, 12, 24, 48, 96].map(|threshold| {
+                let method = Method {
+                    relax,
+                    correct,
+                    ..in_f64(threshold)
+                };
+                views.variant(family, format!("{threshold}"), &method, exact_entry)
+            })
+        });
+    trials.collect()
+}
+
+fn prepasses(views: &Views) -> Vec<Trial> {
+    let families = [
+        ("no prepass", None),
+        ("blocks of 4", Some(Prepass::Blocks(2))),
+        ("blocks of 8", Some(Prepass::Blocks(3))),
+        ("blocks of 16", Some(Prepass::Blocks(4))),
+    ];
+    let trials = families.into_iter().flat_map(|(family, prepass)| {
+        [7, 14, 28, 56, 112].map(|threshold| {
+            let options = FieldOptions {
+                prepass,
+                ..tuned(Tuning {
+                    threshold,
+                    ..DEFAULT_TUNING
+                })
+            };
+            views.model(family, format!("{threshold}"), &options)
+        })
+    });
+    trials.collect()
+}
+
+fn normals(views: &Views) -> Vec<Trial> {
+    let options = FieldOptions::default();
+    let mut trials = vec![views.model("the nearest face's", "active term".into(), &options)];
+    for (family, taps) in [
+        ("forward differences", Taps::Forward),
+        ("tetrahedron", Taps::Tetrahedron),
+    ] {
+        for bits in 8..=12 {
+            let step = (-f64::from(bits)).exp2() / UNITS;
+            trials.push(
+                views.trial(family, format!("2^-{bits}"), Taps::COUNT, |subject| {
+                    let picture = subject.picture(&options);
+                    picture
+                        .into_iter()
+                        .zip(pixels(subject))
+                        .map(|(mut marched, (_, _, ray))| {
+                            if let Outcome::Hit { t, face, .. } = &mut marched.outcome {
+                                *face = taps.face(&subject.field, ray.at(*t), step);
+                            }
+                            marched
+                        })
+                        .collect()
+                }),
+            );
+        }
+    }
+    trials
+}

@@ -1,0 +1,164 @@
+//! Configurations of the march, each over the sponge's four views at 320 × 180.
+
+use std::cell::RefCell;
+
+use glint_model::raymarch::FieldOptions;
+use indicatif::ProgressBar;
+use serde::{Deserialize, Serialize};
+
+use super::requirements::{SMALL, missed};
+use crate::camera::{Ray, Size};
+use crate::field::Field;
+use crate::field::metrics::{Expected, Outcome};
+use crate::field::raymarched::{self, Marched, Measured, Subject};
+use crate::field::variant::{Method, entry};
+use crate::field::verilated::Raymarcher;
+
+/// A configuration: a line of a study's CSV.
+#[derive(Serialize, Deserialize)]
+pub struct Trial {
+    /// Line of the diagram.
+    pub family: String,
+    /// Value of the varied parameter.
+    pub config: String,
+    /// Whether Glint uses it.
+    pub shipped: bool,
+    /// Intersection over union of the masks.
+    pub iou: f64,
+    /// Rays at the step limit.
+    pub undecided: usize,
+    /// Median error of the depth, in world units.
+    pub depth_median: Option<f64>,
+    /// 99th percentile of the depth's error.
+    pub depth_p99: Option<f64>,
+    /// Largest error of the depth.
+    pub depth_max: Option<f64>,
+    /// Part of wrong faces among common hits.
+    pub wrong_faces: f64,
+    /// Mean evaluations a ray.
+    pub evaluations: f64,
+    /// Mean clocks of the verilated raymarcher for a picture; none for configurations that only software has.
+    pub cycles: Option<f64>,
+    /// Missed requirements.
+    pub failed: String,
+    /// Commit of the measurement.
+    pub commit: String,
+}
+
+impl Trial {
+    /// Evaluations a clock and lane of the raymarcher.
+    pub fn rate(&self) -> Option<f64> {
+        let rays = f64::from(SMALL.0 * SMALL.1);
+        self.cycles
+            .map(|cycles| self.evaluations * rays / cycles / f64::from(Raymarcher::LANES))
+    }
+}
+
+/// The views that every trial draws.
+pub struct Views<'a> {
+    subjects: &'a [Subject],
+    expected: Vec<Expected>,
+    raymarcher: RefCell<Raymarcher>,
+    bar: ProgressBar,
+    commit: &'a str,
+}
+
+impl<'a> Views<'a> {
+    /// The views, a bar that shows the running trial, and the commit for its rows.
+    pub fn new(subjects: &'a [Subject], bar: ProgressBar, commit: &'a str) -> Self {
+        let expected = subjects.iter().flat_map(|subject| &subject.expected);
+        Self {
+            subjects,
+            expected: expected.copied().collect(),
+            raymarcher: RefCell::default(),
+            bar,
+            commit,
+        }
+    }
+
+    /// Draws all views with `draw`. `added` counts evaluations of each hit that the pictures do not count.
+    pub fn trial(
+        &self,
+        family: &str,
+        config: String,
+        added: u32,
+        draw: impl Fn(&Subject) -> Vec<Marched>,
+    ) -> Trial {
+        self.bar.set_message(format!("{family}, {config}"));
+        let found: Vec<Marched> = self.subjects.iter().flat_map(draw).collect();
+        let measured = Measured::new(&self.expected, &found);
+        let accuracy = measured.accuracy;
+        let hit = |ray: &&Marched| matches!(ray.outcome, Outcome::Hit { .. });
+        let hits = found.iter().filter(hit).count();
+        Trial {
+            family: family.to_owned(),
+            config,
+            shipped: false,
+            iou: accuracy.iou,
+            undecided: accuracy.undecided,
+            depth_median: accuracy.depth.map(|depth| depth.median),
+            depth_p99: accuracy.depth.map(|depth| depth.p99),
+            depth_max: accuracy.depth.map(|depth| depth.max),
+            wrong_faces: accuracy.wrong_faces,
+            evaluations: measured.cost() + (hits as f64 * f64::from(added)) / found.len() as f64,
+            cycles: None,
+            failed: missed(&accuracy, 0).join(" "),
+            commit: self.commit.to_owned(),
+        }
+    }
+
+    /// Draws the views by the model, and by the verilated raymarcher where it has the configuration.
+    pub fn model(&self, family: &str, config: String, options: &FieldOptions) -> Trial {
+        let mut trial = self.trial(family, config, 0, |subject| subject.picture(options));
+        trial.shipped = *options == FieldOptions::default();
+        let mut raymarcher = self.raymarcher.borrow_mut();
+        let pictures = self.subjects.iter();
+        let clocks: Option<u64> = pictures
+            .map(|subject| {
+                let setup = subject.setup(options);
+                let built = setup.cones.is_none_or(|cones| cones.is_fitting(&setup));
+                built.then(|| raymarcher.draw(&setup).clocks)
+            })
+            .sum();
+        trial.cycles = clocks.map(|clocks| clocks as f64 / self.subjects.len() as f64);
+        trial
+    }
+
+    /// Draws the views in f64. Rays start where the model's do, or with `exact_entry` exactly at the cube around the sponge.
+    pub fn variant(
+        &self,
+        family: &str,
+        config: String,
+        method: &Method,
+        exact_entry: bool,
+    ) -> Trial {
+        self.trial(family, config, 0, |subject| {
+            let Field::Menger { depth } = subject.field else {
+                unreachable!("trials draw the sponge");
+            };
+            let setup = subject.setup(&FieldOptions::default());
+            pixels(subject)
+                .map(|(x, y, ray)| {
+                    let begin = if exact_entry {
+                        entry(&ray).max(subject.camera.near)
+                    } else {
+                        let ray = setup.ray(0, x, y);
+                        raymarched::depth(&setup, &ray, ray.start)
+                    };
+                    method.march(depth, &ray, begin)
+                })
+                .collect()
+        })
+    }
+}
+
+/// A subject's pixels with their rays, row by row.
+pub fn pixels(subject: &Subject) -> impl Iterator<Item = (u32, u32, Ray)> {
+    let (width, height) = subject.size;
+    let size = Size { width, height };
+    let camera = subject.camera;
+    (0..width * height).map(move |i| {
+        let (x, y) = (i % width, i / width);
+        (x, y, camera.ray([x, y].map(f64::from), size))
+    })
+}

@@ -1,0 +1,317 @@
+//! The triangle engine on the whole SoC, with LiteDRAM and scan-out running.
+
+use anyhow::{Context, Result, ensure};
+use glint::board::{SimulatedBoard, built_firmware};
+use glint::console::Console;
+use glint::convert::{self, Options};
+use glint::error::Place;
+use glint::generate;
+use glint::polygons::{Corner, Polygons};
+use glint::render::{self, Renderer, Route, Scene, Stats, Subject};
+use glint::view;
+use glint_core::camera::View;
+use glint_core::picture::Backend;
+use serde::{Deserialize, Serialize};
+
+use crate::report::provenance::Provenance;
+use crate::report::soc::{self, BackToBack, CLOCKS};
+
+/// The requirement on a scene, with a goal beyond it.
+#[derive(Clone, Copy)]
+enum Target {
+    /// Pixels a clock of the walk, at least.
+    Fill(f64),
+    /// Pixels a clock, frames back to back: at least, and the goal.
+    Sustained(f64, f64),
+    /// Clocks a triangle: at most, and the goal.
+    Triangle(f64, f64),
+    /// Frames a second at 81.25 MHz: at least, and the goal.
+    Frames(f64, Option<f64>),
+}
+
+struct Case {
+    name: &'static str,
+    mesh: fn() -> Result<Vec<u8>>,
+    size: (u32, u32),
+    half_width: f64,
+    target: Target,
+}
+
+/// Half width at which a sphere of diameter 1 at distance 2 fills 96 % of the height.
+const FILLING: f64 = 0.4781;
+
+const CASES: [Case; 7] = [
+    Case {
+        name: "one triangle over the whole screen",
+        mesh: screen,
+        size: (1280, 720),
+        half_width: 0.5,
+        target: Target::Fill(8.0),
+    },
+    Case {
+        name: "icosphere:6",
+        mesh: || named("icosphere:6"),
+        size: (320, 180),
+        half_width: FILLING,
+        target: Target::Sustained(2.1, 2.6),
+    },
+    Case {
+        name: "icosphere:12",
+        mesh: || named("icosphere:12"),
+        size: (1280, 720),
+        half_width: FILLING,
+        target: Target::Sustained(3.9, 4.4),
+    },
+    Case {
+        name: "icosphere:32, small triangles",
+        mesh: || named("icosphere:32"),
+        size: (320, 180),
+        half_width: FILLING,
+        target: Target::Triangle(28.0, 10.0),
+    },
+    Case {
+        name: "icosphere:10, 2,000 triangles",
+        mesh: || named("icosphere:10"),
+        size: (320, 180),
+        half_width: FILLING,
+        target: Target::Frames(600.0, Some(1000.0)),
+    },
+    Case {
+        name: "icosphere:23, 10,580 triangles",
+        mesh: || named("icosphere:23"),
+        size: (1280, 720),
+        half_width: FILLING,
+        target: Target::Frames(60.0, None),
+    },
+    Case {
+        name: "icosphere:39, 30,420 triangles",
+        mesh: || named("icosphere:39"),
+        size: (1280, 720),
+        half_width: FILLING,
+        target: Target::Frames(60.0, None),
+    },
+];
+
+fn named(name: &str) -> Result<Vec<u8>> {
+    let polygons = generate::named(name).map_err(|error| anyhow::anyhow!("{name}: {error}"))?;
+    Ok(convert::convert(&polygons, Options::default())
+        .map_err(|error| anyhow::anyhow!("{name}: {error}"))?
+        .0)
+}
+
+/// A triangle that covers the whole screen at distance 1, inside the guard band.
+fn screen() -> Result<Vec<u8>> {
+    let mut polygons = Polygons::default();
+    let corners = [[-1.09, -1.0, -0.4], [1.09, -1.0, -0.4], [0.0, -1.0, 1.2]];
+    let made = || -> Result<Polygons, glint::error::FormatError> {
+        let mut numbers = Vec::new();
+        for corner in corners {
+            numbers.push(Corner::at(polygons.add_point(corner, Place::Whole)?));
+        }
+        polygons.add_face(&numbers, None, Place::Whole)?;
+        Ok(polygons)
+    }();
+    let options = Options { keep_scale: true };
+    made.and_then(|polygons| convert::convert(&polygons, options))
+        .map(|(mesh, _)| mesh)
+        .map_err(|error| anyhow::anyhow!("{error}"))
+}
+
+/// The view from (0, −2, 0) along y.
+fn ahead(half_width: f64) -> Result<View> {
+    let json = format!(
+        r#"{{"eye":[0,-2,0],"u":[1,0,0],"v":[0,0,-1],"n":[0,1,0],"half_width":{half_width},"near":0.5}}"#
+    );
+    view::parse(json.as_bytes()).map_err(|error| anyhow::anyhow!("{error}"))
+}
+
+/// A scene: a line of `triangle.csv`. Cycles are of one frame, in clocks of the SoC.
+#[derive(Serialize, Deserialize)]
+pub struct Row {
+    /// Name of the scene.
+    pub scene: String,
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// Triangles of the mesh.
+    pub triangles: u32,
+    /// Drawn triangles.
+    pub drawn: u32,
+    /// Clipped triangles.
+    pub clipped: u32,
+    /// Covered pixels, counted by the model.
+    pub pixels: u64,
+    /// A frame alone: from the first register write to the end seen by the firmware.
+    pub cycles_alone: u64,
+    /// Its geometry pass.
+    pub cycles_geometry: u64,
+    /// Its raster pass.
+    pub cycles_raster: u64,
+    /// A frame of many back to back.
+    pub cycles_frame: f64,
+    /// Its geometry pass, which shares memory with the raster pass of another frame.
+    pub cycles_geometry_together: f64,
+    /// Its raster pass, likewise.
+    pub cycles_raster_together: f64,
+    /// The same frame on the soft core.
+    pub cycles_cpu: Option<u64>,
+    /// Part of the raster pass alone: groups with covered pixels.
+    pub covered: f64,
+    /// Part of the raster pass alone: groups without covered pixels.
+    pub empty: f64,
+    /// Part of the raster pass alone: waits for the flush.
+    pub flush: f64,
+    /// The rest of the raster pass alone.
+    pub other: f64,
+    /// Part of the geometry pass alone: waits for a write to memory.
+    pub geometry_writes: f64,
+    /// The figure that is required.
+    pub measured: f64,
+    /// Its unit.
+    pub unit: String,
+    /// Its limit.
+    pub at_least: f64,
+    /// The goal beyond the limit.
+    pub aim: Option<f64>,
+    /// Whether the limit is met.
+    pub met: bool,
+    /// Commit of the measurement.
+    pub commit: String,
+    /// Tools of the measurement.
+    pub tools: String,
+}
+
+/// Measures the scenes whose name contains `only`; `quick` leaves out the CPU's frames.
+///
+/// # Errors
+/// When the board is not built, or a frame differs from the model's.
+pub fn measure(only: Option<&str>, quick: bool) -> Result<Vec<Row>> {
+    let provenance = Provenance::find();
+    let firmware = built_firmware(None)?;
+    let cases = CASES.iter();
+    let cases: Vec<_> = cases
+        .filter(|case| only.is_none_or(|text| case.name.contains(text)))
+        .collect();
+    soc::two_at_a_time(&cases, |case| {
+        eprintln!("{} at {}x{} …", case.name, case.size.0, case.size.1);
+        measure_case(&firmware, case, quick, &provenance)
+    })
+}
+
+/// Measures a case on a board of its own.
+fn measure_case(firmware: &[u8], case: &Case, quick: bool, provenance: &Provenance) -> Result<Row> {
+    let mut board = SimulatedBoard::fast(firmware)?;
+    let mut console = Console::new(&mut board);
+    console.greet()?;
+    let mut renderer = Renderer::new(console);
+    let mesh = (case.mesh)()?;
+    let mut scene = Scene {
+        subject: Subject::mesh(&mesh),
+        view: ahead(case.half_width)?,
+        size: case.size,
+        backend: Some(Backend::Gateware),
+    };
+    let expected = render::on_model(&scene)?;
+    renderer.show(&scene, Route::Memory, &mut |_, _| {})?;
+    let found = renderer.colour(case.size, Route::Memory, &mut |_, _| {})?;
+    ensure!(
+        found == expected.frame.colour,
+        "{}: the engine's frame is not the model's",
+        case.name
+    );
+    // Only differing words are written, so both frame buffers take the frame before it is measured.
+    renderer.look(&scene.view)?;
+    let alone = renderer.look(&scene.view)?;
+    let together = BackToBack::measure(&mut renderer, "triangle")?;
+    let cpu = if quick {
+        None
+    } else {
+        scene.backend = Some(Backend::Cpu);
+        renderer.show(&scene, Route::Memory, &mut |_, _| {})?.cycles
+    };
+    row(case, provenance, &expected.stats, &alone, &together, cpu)
+}
+
+fn row(
+    case: &Case,
+    provenance: &Provenance,
+    expected: &Stats,
+    alone: &Stats,
+    together: &BackToBack,
+    cycles_cpu: Option<u64>,
+) -> Result<Row> {
+    let expected = expected.triangles();
+    let pixels = expected.pixels_covered;
+    let engine = alone
+        .engine
+        .as_ref()
+        .with_context(|| format!("{}: the engine did not draw", case.name))?;
+    let triangles = alone.triangles();
+    let share = |part: u64, whole: u64| part as f64 / whole as f64;
+    let raster = engine.cycles_raster;
+    let walking = engine.cycles_walking;
+    let cycles_frame = together.frame("cycles")?;
+    let (measured, unit, at_least, aim, met) = match case.target {
+        Target::Fill(least) => {
+            let fill = pixels as f64 / walking as f64;
+            (
+                fill,
+                "pixels a clock of the walk",
+                least,
+                None,
+                fill >= least,
+            )
+        }
+        Target::Sustained(least, aim) => {
+            let rate = pixels as f64 / together.frame("cycles_busy")?;
+            (rate, "pixels a clock", least, Some(aim), rate >= least)
+        }
+        Target::Triangle(most, aim) => {
+            let clocks = cycles_frame / f64::from(expected.triangles_in);
+            (clocks, "clocks a triangle", most, Some(aim), clocks <= most)
+        }
+        Target::Frames(least, aim) => {
+            let rate = CLOCKS[0] / cycles_frame;
+            (
+                rate,
+                "frames a second at 81.25 MHz",
+                least,
+                aim,
+                rate >= least,
+            )
+        }
+    };
+    Ok(Row {
+        scene: case.name.to_owned(),
+        width: case.size.0,
+        height: case.size.1,
+        triangles: triangles.triangles_in,
+        drawn: triangles.triangles_drawn,
+        clipped: triangles.triangles_clipped,
+        pixels,
+        cycles_alone: alone.cycles.context("no cycles")?,
+        cycles_geometry: engine.cycles_geometry,
+        cycles_raster: raster,
+        cycles_frame,
+        cycles_geometry_together: together.frame("cycles_geometry")?,
+        cycles_raster_together: together.frame("cycles_raster")?,
+        cycles_cpu,
+        covered: share(engine.groups, raster),
+        empty: share(engine.cycles_empty, raster),
+        flush: share(engine.cycles_flush, raster),
+        other: 1.0
+            - share(
+                engine.groups + engine.cycles_empty + engine.cycles_flush,
+                raster,
+            ),
+        geometry_writes: share(engine.stalled_lists, engine.cycles_geometry),
+        measured,
+        unit: unit.to_owned(),
+        at_least,
+        aim,
+        met,
+        commit: provenance.commit.clone(),
+        tools: provenance.tools.clone(),
+    })
+}

@@ -1,0 +1,128 @@
+//! Tables of frames a second.
+
+use crate::report::experiments::raymarch::rates::{CASES, Case, Row};
+use crate::report::soc::CLOCKS;
+use crate::report::table::{Table, bold, optional};
+
+/// The poses of a view.
+struct View<'a> {
+    name: &'a str,
+    poses: Vec<&'a Row>,
+    /// The slowest pose, drawn back to back.
+    slowest: &'a Row,
+    /// Cycles of a frame of it.
+    cycles: f64,
+}
+
+impl<'a> View<'a> {
+    fn of(case: &Case, rows: &'a [Row]) -> Vec<Self> {
+        let mut views: Vec<Self> = Vec::new();
+        for row in rows.iter().filter(|row| case.contains(row)) {
+            match views.last_mut() {
+                Some(view) if view.name == row.view => view.poses.push(row),
+                _ => views.push(Self {
+                    name: &row.view,
+                    poses: vec![row],
+                    slowest: row,
+                    cycles: 0.0,
+                }),
+            }
+            if let (Some(view), Some(cycles)) = (views.last_mut(), row.cycles_frame) {
+                (view.slowest, view.cycles) = (row, cycles);
+            }
+        }
+        views
+    }
+
+    fn mean_alone(&self) -> f64 {
+        let cycles: u64 = self.poses.iter().map(|row| row.cycles_alone).sum();
+        cycles as f64 / self.poses.len() as f64
+    }
+}
+
+/// The first columns of a case.
+fn columns(case: &Case) -> [String; 4] {
+    [
+        case.field.to_owned(),
+        case.eyes().to_string(),
+        format!("{}×{}", case.size.0, case.size.1),
+        if case.prepass { "yes" } else { "" }.to_owned(),
+    ]
+}
+
+/// Required and measured frames a second of each case.
+pub fn requirements(rows: &[Row]) -> String {
+    if rows.is_empty() {
+        return "Not measured.".to_owned();
+    }
+    let mut table = Table::new([
+        "field",
+        "eyes",
+        "size",
+        "prepass",
+        "lanes",
+        "measured, slowest view",
+        "required",
+        "goal",
+    ]);
+    for case in &CASES {
+        let views = View::of(case, rows);
+        let clock = CLOCKS[case.clock];
+        let rate = clock / views.iter().map(|view| view.cycles).fold(0.0, f64::max);
+        let measured = format_args!("{rate:.2} frames a second at {} MHz", clock / 1e6).to_string();
+        let [field, eyes, size, prepass] = columns(case);
+        table.row([
+            field,
+            eyes,
+            size,
+            prepass,
+            case.build.lanes.to_string(),
+            bold(measured, rate < case.at_least),
+            case.at_least.to_string(),
+            optional(case.aim),
+        ]);
+    }
+    table.finish()
+}
+
+/// Cycles of each view.
+pub fn views(rows: &[Row]) -> String {
+    let mut table = Table::new([
+        "field",
+        "eyes",
+        "size",
+        "prepass",
+        "view",
+        "poses",
+        "cycles, frame alone: mean, slowest",
+        "slowest, back to back",
+        "frames a second at 81.25 MHz",
+        "at 100 MHz",
+        "evaluations a ray",
+        "evaluations a clock and lane",
+    ]);
+    for case in &CASES {
+        for view in View::of(case, rows) {
+            let evaluations = view.slowest.evaluations as f64;
+            let [field, eyes, size, prepass] = columns(case);
+            table.row([
+                field,
+                eyes,
+                size,
+                prepass,
+                view.name.to_owned(),
+                view.poses.len().to_string(),
+                format!("{:.0}, {}", view.mean_alone(), view.slowest.cycles_alone),
+                format!("{:.0}", view.cycles),
+                format!("{:.1}", CLOCKS[0] / view.cycles),
+                format!("{:.1}", CLOCKS[1] / view.cycles),
+                format!("{:.2}", evaluations / f64::from(view.slowest.rays)),
+                format!(
+                    "{:.3}",
+                    evaluations / view.cycles / f64::from(case.build.lanes)
+                ),
+            ]);
+        }
+    }
+    table.finish()
+}

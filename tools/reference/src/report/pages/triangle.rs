@@ -1,0 +1,115 @@
+//! The page `triangle.md`.
+
+use std::path::Path;
+
+use anyhow::Result;
+
+use super::template::{fill, made, write};
+use crate::report::experiments::triangle::Row;
+use crate::report::soc::CLOCKS;
+use crate::report::table::{Table, bold, optional, read_csv};
+
+/// Rebuilds the page.
+///
+/// # Errors
+/// When the table is missing or a file cannot be written.
+pub fn rebuild(folder: &Path) -> Result<()> {
+    let rows: Vec<Row> = read_csv(&folder.join("triangle.csv"))?;
+    let made = rows
+        .first()
+        .map_or_else(String::new, |row| made(&row.commit, &row.tools));
+    let page = fill(
+        include_str!("triangle.md"),
+        &[
+            ("requirements", requirements(&rows)),
+            ("cycles", cycles(&rows)),
+            ("parts", parts(&rows)),
+            ("made", made),
+        ],
+    )?;
+    write(&page, &folder.join("triangle.md"))
+}
+
+/// All tables of the page.
+pub fn table(rows: &[Row]) -> String {
+    [requirements(rows), cycles(rows), parts(rows)].join("\n")
+}
+
+fn requirements(rows: &[Row]) -> String {
+    let mut table = Table::new([
+        "scene",
+        "size",
+        "triangles in, drawn, clipped",
+        "pixels",
+        "measured",
+        "required",
+        "goal",
+    ]);
+    for row in rows {
+        table.row([
+            row.scene.clone(),
+            format!("{}×{}", row.width, row.height),
+            format!("{}, {}, {}", row.triangles, row.drawn, row.clipped),
+            row.pixels.to_string(),
+            bold(format_args!("{:.2} {}", row.measured, row.unit), !row.met),
+            row.at_least.to_string(),
+            optional(row.aim),
+        ]);
+    }
+    table.finish()
+}
+
+fn cycles(rows: &[Row]) -> String {
+    let mut table = Table::new([
+        "scene",
+        "cycles, frame alone",
+        "its geometry pass",
+        "its raster pass",
+        "cycles, back to back",
+        "geometry, raster pass",
+        "frames a second at 81.25 MHz",
+        "at 100 MHz",
+        "cycles on the CPU",
+    ]);
+    for row in rows {
+        table.row([
+            row.scene.clone(),
+            row.cycles_alone.to_string(),
+            row.cycles_geometry.to_string(),
+            row.cycles_raster.to_string(),
+            format!("{:.0}", row.cycles_frame),
+            format!(
+                "{:.0}, {:.0}",
+                row.cycles_geometry_together, row.cycles_raster_together
+            ),
+            format!("{:.1}", CLOCKS[0] / row.cycles_frame),
+            format!("{:.1}", CLOCKS[1] / row.cycles_frame),
+            row.cycles_cpu
+                .map_or("not measured".to_owned(), |cycles| cycles.to_string()),
+        ]);
+    }
+    table.finish()
+}
+
+fn parts(rows: &[Row]) -> String {
+    let mut table = Table::new([
+        "scene",
+        "raster pass: covered groups",
+        "empty groups",
+        "wait for the flush",
+        "rest: reading and entering triangles",
+        "geometry pass: wait for a write",
+    ]);
+    let percent = |part: f64| format!("{:.0} %", 100.0 * part);
+    for row in rows {
+        table.row([
+            row.scene.clone(),
+            percent(row.covered),
+            percent(row.empty),
+            percent(row.flush),
+            percent(row.other),
+            percent(row.geometry_writes),
+        ]);
+    }
+    table.finish()
+}

@@ -1,0 +1,56 @@
+//! The state of the source and the tools that figures were measured with.
+
+use std::process::Command;
+
+use super::workspace;
+
+/// Commit and tools of a measurement.
+pub struct Provenance {
+    /// The last commit that touched the measured source, with `-dirty` after uncommitted changes.
+    pub commit: String,
+    /// Versions of the compiler and the compared libraries.
+    pub tools: String,
+}
+
+impl Provenance {
+    /// Reads both from git, the compiler and the lock file; `unknown` where one is missing.
+    pub fn find() -> Self {
+        let lock = std::fs::read_to_string(workspace::path("Cargo.lock")).unwrap_or_default();
+        let mut tools = vec![output("rustc", &["--version"])];
+        for name in ["idsp", "cordic", "micromath", "libm"] {
+            let start = format!("name = \"{name}\"\nversion = \"");
+            let version = lock
+                .split_once(&start)
+                .and_then(|(_, rest)| rest.split_once('"'));
+            tools.push(format!(
+                "{name} {}",
+                version.map_or("unknown", |(version, _)| version)
+            ));
+        }
+        Self {
+            commit: commit(),
+            tools: tools.join(", "),
+        }
+    }
+}
+
+fn commit() -> String {
+    const MEASURED: [&str; 4] = ["Cargo.lock", "firmware", "gateware", "tools/reference"];
+    let git = |arguments: &[&str]| output("git", &[arguments, &["--"], &MEASURED].concat());
+    let changed = !git(&["status", "--porcelain"]).is_empty();
+    git(&["log", "-1", "--format=%h", "--abbrev=12"]) + if changed { "-dirty" } else { "" }
+}
+
+/// A program's standard output, or `unknown` after a failure.
+fn output(program: &str, arguments: &[&str]) -> String {
+    let run = Command::new(program)
+        .args(arguments)
+        .current_dir(workspace::path(""))
+        .output();
+    match run {
+        Ok(output) if output.status.success() => {
+            String::from_utf8_lossy(&output.stdout).trim().to_owned()
+        }
+        _ => "unknown".to_owned(),
+    }
+}

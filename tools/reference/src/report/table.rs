@@ -1,0 +1,89 @@
+//! Rows as CSV files and as Markdown tables.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use anyhow::{Context, Result};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+/// Writes rows as CSV.
+///
+/// # Errors
+/// When the file cannot be written.
+pub fn write_csv<T: Serialize>(rows: &[T], path: &Path) -> Result<()> {
+    let mut writer =
+        csv::Writer::from_path(path).with_context(|| format!("cannot write {}", path.display()))?;
+    for row in rows {
+        writer.serialize(row)?;
+    }
+    writer.flush()?;
+    Ok(())
+}
+
+/// Reads rows from CSV.
+///
+/// # Errors
+/// When the file is missing or a line is not such a row.
+pub fn read_csv<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
+    let mut reader =
+        csv::Reader::from_path(path).with_context(|| format!("cannot read {}", path.display()))?;
+    reader
+        .deserialize()
+        .collect::<Result<_, _>>()
+        .with_context(|| format!("{}: unexpected line", path.display()))
+}
+
+/// As [`read_csv`]; no rows without the file, as after a run with `--quick`.
+///
+/// # Errors
+/// When a line is not such a row.
+pub fn read_optional_csv<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
+    if path.exists() {
+        read_csv(path)
+    } else {
+        Ok(vec![])
+    }
+}
+
+/// A Markdown table of `N` columns.
+pub struct Table<const N: usize> {
+    text: String,
+}
+
+impl<const N: usize> Table<N> {
+    /// An empty table. A heading that ends in `:` makes its column right-aligned.
+    pub fn new(headings: [&str; N]) -> Self {
+        let mut table = Self {
+            text: String::new(),
+        };
+        table.row(headings.map(|heading| heading.trim_end_matches(':').to_owned()));
+        let rules = headings.map(|heading| match heading.ends_with(':') {
+            true => "---:",
+            false => "---",
+        });
+        let _ = writeln!(table.text, "|{}|", rules.join("|"));
+        table
+    }
+
+    /// Adds a row.
+    pub fn row(&mut self, cells: [String; N]) {
+        let _ = writeln!(self.text, "| {} |", cells.join(" | "));
+    }
+
+    /// The table as text, with a final line end.
+    pub fn finish(self) -> String {
+        self.text
+    }
+}
+
+/// `text` in bold where `bold` is set.
+pub fn bold(text: impl std::fmt::Display, bold: bool) -> String {
+    let mark = if bold { "**" } else { "" };
+    format!("{mark}{text}{mark}")
+}
+
+/// A value, or an empty cell.
+pub fn optional<T: ToString>(value: Option<T>) -> String {
+    value.map_or_else(String::new, |value| value.to_string())
+}

@@ -1,0 +1,10 @@
+//! Paths of the workspace.
+
+use std::path::{Path, PathBuf};
+
+/// A path relative to the workspace's root.
+pub fn path(relative: &str) -> PathBuf {
+    let reference = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = reference.ancestors().nth(2).unwrap_or(reference);
+    root.join(relative)
+}
