@@ -144,8 +144,11 @@ impl FrameConstants {
 
     /// The scale between depth codes and distances in world units; `None` before the first frame.
     pub fn depth_scale(&self) -> Option<DepthScale> {
-        let of_field = || self.field().map(|field| field.setup.world_depth);
-        self.mesh().map(|mesh| mesh.depth).or_else(of_field)
+        match (self.mesh(), self.field()) {
+            (Some(mesh), _) => Some(mesh.depth),
+            (None, Some(field)) => Some(field.setup.world_depth),
+            (None, None) => None,
+        }
     }
 
     /// Computes the constants of another frame.

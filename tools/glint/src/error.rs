@@ -1,29 +1,29 @@
-//! Errors of inputs: place, expected, found; always one line. Limits of inputs.
+//! What is wrong with an input, where, what was expected and what came: always one line.
 
 use std::fmt;
-use std::path::Path;
 
-/// Maximum size of a file in bytes. An ASCII STL of this size has about as many triangles as a board's mesh memory.
+/// The largest file that is read, in bytes. An ASCII STL as large as this holds about as many triangles as a board's mesh
+/// memory.
 pub const MAX_FILE: usize = 512 << 20;
-/// Maximum length of a line in bytes; a polygon of [`MAX_POLYGON`] corners fits.
+/// The longest line of a text file, in bytes (a polygon of [`MAX_POLYGON`] corners fits).
 pub const MAX_LINE: usize = 64 << 10;
-/// Maximum number of points in a mesh: three for each of [`MAX_TRIANGLES`].
+/// The most points a mesh may have: three for each of [`MAX_TRIANGLES`].
 pub const MAX_POINTS: usize = 3 * MAX_TRIANGLES;
-/// Maximum number of triangles in a mesh: 16-byte records that fit a board's 32 MiB of mesh memory.
+/// The most triangles a mesh may have: as many 16-byte records as a board's 32 MiB of mesh memory holds.
 pub const MAX_TRIANGLES: usize = 1 << 21;
-/// Maximum number of corners of a polygon; the time of ear clipping grows with its square.
+/// The most corners one polygon may have; ear clipping takes a time of this squared.
 pub const MAX_POLYGON: usize = 8192;
-/// Maximum magnitude of a coordinate. Larger values indicate a damaged file.
+/// The largest magnitude of a coordinate. Larger ones are read as damage: no unit makes a thing this large.
 pub const MAX_COORDINATE: f64 = 1e15;
 
-/// Place of an error in an input.
+/// Where in an input something is wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// The file as a whole.
     Whole,
     /// A line of a text file, counted from 1.
     Line(usize),
-    /// A cell of a table: its line, counted from 1, and its column's name.
+    /// A cell of a table: its line, counted from 1, and the name of its column.
     Cell(usize, &'static str),
     /// An offset in bytes from the file's start.
     Byte(usize),
@@ -40,20 +40,20 @@ impl fmt::Display for Place {
     }
 }
 
-/// Input that violates its format.
+/// An input that is not what its format says.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{place}expected {expected}, found {found}")]
 pub struct FormatError {
-    /// Place of the violation.
+    /// Where it is.
     pub place: Place,
-    /// What the format requires there.
+    /// What should have been there.
     pub expected: String,
-    /// What the input has there.
+    /// What was there.
     pub found: String,
 }
 
 impl FormatError {
-    /// Creates an error at a place.
+    /// Makes an error for a place.
     pub fn new(place: Place, expected: impl Into<String>, found: impl Into<String>) -> Self {
         Self {
             place,
@@ -62,22 +62,17 @@ impl FormatError {
         }
     }
 
-    /// Creates an error of the whole file.
+    /// Makes an error that concerns the file as a whole.
     pub fn whole(expected: impl Into<String>, found: impl Into<String>) -> Self {
         Self::new(Place::Whole, expected, found)
     }
 
-    /// Adds the file's name.
+    /// Names the file it is in.
     pub fn in_file(self, file: impl Into<String>) -> InputError {
         InputError {
             file: file.into(),
             error: self,
         }
-    }
-
-    /// Adds the file's path, escaped to one line.
-    pub fn in_path(self, path: &Path) -> InputError {
-        self.in_file(path.display().to_string().escape_debug().to_string())
     }
 }
 
@@ -85,13 +80,13 @@ impl FormatError {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}: {error}")]
 pub struct InputError {
-    /// Name of the file as given by the user.
+    /// The file's name as the user gave it.
     pub file: String,
-    /// The violation.
+    /// What is wrong with it.
     pub error: FormatError,
 }
 
-/// Quotes input in a message: printable, short, on one line.
+/// Quotes a piece of input for a message: printable, on one line, and short.
 pub fn quote(bytes: &[u8]) -> String {
     const SHOWN: usize = 40;
     match bytes.get(..SHOWN) {

@@ -1,25 +1,36 @@
-//! Frames as boards keep them, and as files show them.
+//! Drawn frames in memory and in files.
 
 use glint_core::mesh::Rgb565;
+use glint_core::picture::Size;
 use glint_model::DepthScale;
 use std::io::{self, Write};
 use std::path::Path;
 use virtual_board::Picture;
 
-/// A rendered frame.
+/// Colours and depth codes of a drawn frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Frame {
+pub struct Image {
     /// Width in pixels.
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
     /// RGB565, row by row from the top left.
     pub colour: Vec<u16>,
-    /// Depth codes in the same order; empty if they were not asked for.
+    /// Depth codes in the same order; empty unless requested.
     pub depth: Vec<u32>,
 }
 
-impl Frame {
+impl Image {
+    /// An image of this size without its colours and depth codes.
+    pub const fn empty(size: Size) -> Self {
+        Self {
+            width: size.width(),
+            height: size.height(),
+            colour: Vec::new(),
+            depth: Vec::new(),
+        }
+    }
+
     /// The picture in 8 bits a channel, by bit replication as the scan-out does it.
     pub fn picture(&self) -> Picture {
         let rgb = self
@@ -30,7 +41,7 @@ impl Frame {
         Picture::new(self.width as usize, self.height as usize, rgb)
     }
 
-    /// Writes the distance along n in world units as one little-endian f32 a pixel, +inf where nothing was drawn.
+    /// Writes the distance along n in world units as one little-endian f32 a pixel, +inf where the code is clear.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -46,15 +57,15 @@ impl Frame {
     }
 }
 
-/// Writes frames of one size as an animated PNG that runs for ever.
+/// Writes images of one size as an animated PNG that repeats forever.
 ///
 /// # Errors
-/// The file cannot be written, or there is no frame.
-pub fn save_animation(path: &Path, frames: &[Frame], frames_per_second: u16) -> io::Result<()> {
-    let Some(first) = frames.first() else {
+/// The file cannot be written, or there is no image.
+pub fn save_animation(path: &Path, images: &[Image], frames_per_second: u16) -> io::Result<()> {
+    let Some(first) = images.first() else {
         return Err(io::Error::new(
             io::ErrorKind::InvalidInput,
-            "an animation without frames",
+            "expected at least one frame, found none",
         ));
     };
     let mut encoder = png::Encoder::new(
@@ -64,11 +75,11 @@ pub fn save_animation(path: &Path, frames: &[Frame], frames_per_second: u16) -> 
     );
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_animated(frames.len() as u32, 0)?;
+    encoder.set_animated(images.len() as u32, 0)?;
     encoder.set_frame_delay(1, frames_per_second)?;
     let mut writer = encoder.write_header()?;
-    for frame in frames {
-        writer.write_image_data(frame.picture().rgb())?;
+    for image in images {
+        writer.write_image_data(image.picture().rgb())?;
     }
     writer.finish()?;
     Ok(())

@@ -1,8 +1,8 @@
-//! A mesh as read from a file: points, and polygons between them.
+//! A mesh as files give it: points, and polygons between them.
 
 use crate::error::{FormatError, MAX_POINTS, MAX_POLYGON, MAX_TRIANGLES, Place};
 
-/// A point or a direction, in the file's unit.
+/// A point or a direction, in the file's own unit.
 pub type Vector = [f64; 3];
 
 /// A colour: red, green and blue, 0 to 255.
@@ -10,10 +10,10 @@ pub type Vector = [f64; 3];
 pub struct Rgb8(pub [u8; 3]);
 
 impl Rgb8 {
-    /// Colour of surfaces without a colour: a light warm grey.
+    /// What a surface gets that has no colour of its own: a light warm grey.
     pub const DEFAULT: Self = Self([0xd8, 0xd8, 0xd0]);
 
-    /// From three intensities; values outside 0 to 1 saturate.
+    /// From three intensities; what lies outside 0 to 1 saturates.
     pub fn from_unit(rgb: [f64; 3]) -> Self {
         Self(rgb.map(|c| (c.clamp(0.0, 1.0) * 255.0).round() as u8))
     }
@@ -29,10 +29,10 @@ pub struct Corner {
 }
 
 impl Corner {
-    /// Marks a corner without a normal.
+    /// The corner's normal is not given.
     pub const NO_NORMAL: u32 = u32::MAX;
 
-    /// A corner without a normal.
+    /// A corner without a normal of its own.
     pub fn at(point: u32) -> Self {
         Self {
             point,
@@ -41,28 +41,28 @@ impl Corner {
     }
 }
 
-/// One polygon: a range of corners, counter-clockwise seen from outside.
+/// One polygon: a run of corners, counter-clockwise seen from outside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Face {
     /// Its first corner in [`Polygons::corners`].
     pub first: u32,
-    /// Number of its corners, at least 3.
+    /// How many corners it has, at least 3.
     pub count: u32,
-    /// Its colour, if any.
+    /// Its colour, if it has one.
     pub colour: Option<Rgb8>,
 }
 
 /// Points and the polygons between them.
 ///
-/// [`add_point`](Self::add_point) and [`add_face`](Self::add_face) enforce the limits of [`crate::error`], which bound the
-/// memory. Call [`check_indices`](Self::check_indices) before using the polygons.
+/// [`add_point`](Self::add_point) and [`add_face`](Self::add_face) keep the limits of [`crate::error`], so that no input
+/// takes unbounded memory; [`check_indices`](Self::check_indices) must have been called before the polygons are used.
 #[derive(Clone, Debug, Default)]
 pub struct Polygons {
     /// The points.
     pub points: Vec<Vector>,
-    /// One colour per point, or empty.
+    /// One colour a point, or none at all.
     pub point_colours: Vec<Rgb8>,
-    /// Normals of the file, of any length.
+    /// Normals given by the file, of any length.
     pub normals: Vec<Vector>,
     /// The corners of all faces.
     pub corners: Vec<Corner>,
@@ -75,12 +75,12 @@ pub struct Polygons {
     largest_normal: Largest,
 }
 
-/// The largest index and its place: enough to check forward references at the end.
+/// The largest index seen, and where: enough to check forward references at the end without keeping every place.
 #[derive(Clone, Copy, Debug, Default)]
 struct Largest(Option<(u32, Place)>);
 
 impl Largest {
-    fn update(&mut self, index: u32, place: Place) {
+    fn see(&mut self, index: u32, place: Place) {
         if self.0.is_none_or(|(largest, _)| index > largest) {
             self.0 = Some((index, place));
         }
@@ -90,8 +90,8 @@ impl Largest {
         match self.0 {
             Some((index, place)) if index as usize >= count => Err(FormatError::new(
                 place,
-                format!("a {what} index below {count}"),
-                format!("{index} (counted from 0)"),
+                format!("a {what} of the {count} in the file"),
+                format!("one with index {index}, counted from 0"),
             )),
             _ => Ok(()),
         }
@@ -102,7 +102,7 @@ impl Polygons {
     /// Adds a point and returns its index.
     ///
     /// # Errors
-    /// [`MAX_POINTS`] exceeded.
+    /// There are [`MAX_POINTS`] already.
     pub fn add_point(&mut self, point: Vector, place: Place) -> Result<u32, FormatError> {
         if self.points.len() >= MAX_POINTS {
             return Err(FormatError::new(
@@ -118,7 +118,7 @@ impl Polygons {
     /// Adds a normal and returns its index.
     ///
     /// # Errors
-    /// [`MAX_POINTS`] exceeded.
+    /// There are [`MAX_POINTS`] already.
     pub fn add_normal(&mut self, normal: Vector, place: Place) -> Result<u32, FormatError> {
         if self.normals.len() >= MAX_POINTS {
             return Err(FormatError::new(
@@ -131,10 +131,10 @@ impl Polygons {
         Ok((self.normals.len() - 1) as u32)
     }
 
-    /// Adds a polygon. Its indices may refer to points added later.
+    /// Adds a polygon. Its indices may name points that are still to come.
     ///
     /// # Errors
-    /// Fewer than three corners, more than [`MAX_POLYGON`], or [`MAX_TRIANGLES`] exceeded.
+    /// It has fewer than three corners or more than [`MAX_POLYGON`], or there are [`MAX_TRIANGLES`] already.
     pub fn add_face(
         &mut self,
         corners: &[Corner],
@@ -158,9 +158,9 @@ impl Polygons {
             ));
         }
         for corner in corners {
-            self.largest_point.update(corner.point, place);
+            self.largest_point.see(corner.point, place);
             if corner.normal != Corner::NO_NORMAL {
-                self.largest_normal.update(corner.normal, place);
+                self.largest_normal.see(corner.normal, place);
             }
         }
         self.faces.push(Face {
@@ -172,10 +172,10 @@ impl Polygons {
         Ok(())
     }
 
-    /// Checks that there is a face, and that the points and normals of all corners exist.
+    /// Checks that there is a face, and that every corner names a point and a normal that exist.
     ///
     /// # Errors
-    /// No face, or the place of the largest index out of range.
+    /// The place of the largest index that does not exist.
     pub fn check_indices(&self) -> Result<(), FormatError> {
         self.largest_point.check(self.points.len(), "point")?;
         self.largest_normal.check(self.normals.len(), "normal")?;
@@ -195,7 +195,7 @@ impl Polygons {
         self.points[corner.point as usize]
     }
 
-    /// Number of triangles of all faces.
+    /// How many triangles the faces make.
     pub fn triangle_count(&self) -> usize {
         self.triangles
     }
@@ -225,6 +225,6 @@ mod tests {
             .unwrap();
         let error = polygons.check_indices().unwrap_err();
         assert_eq!(error.place, Place::Line(2));
-        assert_eq!(error.found, "7 (counted from 0)");
+        assert_eq!(error.found, "one with index 7, counted from 0");
     }
 }

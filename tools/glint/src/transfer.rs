@@ -1,45 +1,55 @@
-//! Uploads and downloads: `glint-core`'s transfer between a slice and a board's line.
+//! Uploads and downloads: the transfers of `glint-core` over a board's line.
 
-use crate::board::{Board, BoardError};
+use crate::board::{Board, BoardError, BoardName};
 use crate::console::{Console, ConsoleError};
 use glint_core::wire::{Failure, MAX_FRAME, Manifest, Party, Receiver, Sender, State, Timing};
 
-/// Why a transfer did not come to its end.
+/// An error of a transfer.
 #[derive(Debug, thiserror::Error)]
 pub enum TransferError {
-    /// The console said no, or nothing.
+    /// An error of the console.
     #[error(transparent)]
     Console(#[from] ConsoleError),
-    /// The board cannot be talked to.
+    /// An error of the board.
     #[error(transparent)]
     Board(#[from] BoardError),
-    /// The transfer itself failed.
+    /// An error of the transfer's protocol.
     #[error("{0}")]
     Failed(Failure),
-    /// The way past the line was asked for where there is none.
-    #[error("this board has no way into its memory but its serial line")]
+    /// Direct access to the memory of a board without it.
+    #[error("memory transfer: expected the virtual board, found a board with a serial line only")]
     NoMemory,
 }
 
-/// How data gets into a board, and out of it.
+/// The route of data into and out of a board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Route {
     /// Over the serial line.
     Serial,
-    /// Past it, into the simulated memory: the virtual board only.
+    /// Directly through the simulated memory: the virtual board only.
     Memory,
 }
 
-/// Bytes that have arrived, and bytes in all.
+impl Route {
+    /// The fastest route of a board.
+    pub const fn of(board: &BoardName) -> Self {
+        match board {
+            BoardName::Virtual => Self::Memory,
+            BoardName::Serial(_) => Self::Serial,
+        }
+    }
+}
+
+/// A callback with the bytes transferred and the total.
 pub type Progress<'p> = dyn FnMut(u64, u64) + 'p;
 
-/// How long a look for an answer takes, in the board's time.
+/// The longest wait for an answer, in the board's time.
 const LOOK_MS: u64 = 2;
 
-/// Uploads a mesh and makes it the one that is shown.
+/// Uploads a mesh and shows it.
 ///
 /// # Errors
-/// The transfer fails or the firmware refuses the mesh; the board goes on showing what it showed before.
+/// The transfer fails or the firmware refuses the mesh; the board still shows its last frame.
 pub fn upload<B: Board + ?Sized>(
     console: &mut Console<B>,
     mesh: &[u8],
@@ -49,7 +59,7 @@ pub fn upload<B: Board + ?Sized>(
     upload_for(console, "load", mesh, session, progress, &mut |_| {})
 }
 
-/// Uploads what a command takes, and gives the other lines of its reply to `on_line` as they come.
+/// Uploads the data of a command, and calls `on_line` with the other lines of its reply.
 ///
 /// # Errors
 /// The transfer fails, or the firmware refuses.
@@ -67,7 +77,7 @@ pub fn upload_for<B: Board + ?Sized>(
     if console.lines(&command, on_line)? {
         let (board, pending) = console.line();
         let sent = send(board, pending, data, session, progress);
-        // The firmware's own words tell more than the failure on this side.
+        // The firmware's error says more than the error on this side.
         let reply = console.lines(&command, on_line);
         sent?;
         reply?;
@@ -75,10 +85,10 @@ pub fn upload_for<B: Board + ?Sized>(
     Ok(())
 }
 
-/// Writes data past the line to where the next upload goes: the board finds its CRC-32 right then, and skips the transfer.
+/// Writes data directly to the staging memory: the board then finds the CRC-32 of the next upload right, and skips its transfer.
 ///
 /// # Errors
-/// There is no such way, or no such room.
+/// [`TransferError::NoMemory`], or data beyond the memory.
 pub fn stage<B: Board + ?Sized>(
     console: &mut Console<B>,
     data: &[u8],
@@ -88,10 +98,10 @@ pub fn stage<B: Board + ?Sized>(
     Ok(memory.write_memory(address, data)?)
 }
 
-/// Reads past the line what lies `offset` bytes behind an address that `info` tells.
+/// Reads memory directly, `offset` bytes behind an address of `info`.
 ///
 /// # Errors
-/// There is no such way, or no such key.
+/// [`TransferError::NoMemory`], or an unknown key.
 pub fn read_memory<B: Board + ?Sized>(
     console: &mut Console<B>,
     key: &str,
@@ -105,7 +115,7 @@ pub fn read_memory<B: Board + ?Sized>(
     Ok(bytes)
 }
 
-/// An address that `info` tells.
+/// An address of `info`.
 fn address<B: Board + ?Sized>(console: &mut Console<B>, key: &str) -> Result<u32, ConsoleError> {
     let word = console.info(key)?;
     word.strip_prefix("0x")
@@ -117,10 +127,10 @@ fn address<B: Board + ?Sized>(console: &mut Console<B>, key: &str) -> Result<u32
         })
 }
 
-/// Downloads what a command such as `frame` sends, `length` bytes.
+/// Downloads the `length` bytes of a command such as `frame`.
 ///
 /// # Errors
-/// The command is refused, the transfer fails, or another length comes.
+/// The board refuses the command, the transfer fails, or the length differs.
 pub fn download<B: Board + ?Sized>(
     console: &mut Console<B>,
     command: &str,
@@ -144,7 +154,7 @@ pub fn download<B: Board + ?Sized>(
     Ok(data)
 }
 
-/// Sends data to a board that has said it is ready. What comes after the end is left in `pending`.
+/// Sends data to a board that is ready. Later bytes of the board stay in `pending`.
 ///
 /// # Errors
 /// The transfer fails.
@@ -159,8 +169,7 @@ pub fn send<B: Board + ?Sized>(
     run(board, pending, &mut sender, progress)
 }
 
-/// Receives data from a board that has said it is ready, and returns its length. What comes after the end is left in
-/// `pending`.
+/// Receives data from a board that is ready, and returns its length. Later bytes of the board stay in `pending`.
 ///
 /// # Errors
 /// The transfer fails.

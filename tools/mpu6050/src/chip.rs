@@ -3,10 +3,10 @@
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
-/// I2C address with AD0 low.
+/// Its address with AD0 low.
 pub const ADDRESS: u8 = 0x68;
 
-/// Time without an answer after a reset, in ns.
+/// For how long it does not answer after a reset, in ns.
 pub const RESET_TIME: u64 = 50_000_000;
 
 const SMPLRT_DIV: u8 = 0x19;
@@ -24,7 +24,7 @@ const DATA_RDY: u8 = 0x01;
 const DEVICE_RESET: u8 = 0x80;
 const SLEEP: u8 = 0x40;
 
-/// Delay in ms and bandwidth in Hz of the gyroscope by DLPF_CFG; the reserved 7 acts like 0.
+/// Delay in ms and bandwidth in Hz of the gyroscope by DLPF_CFG; 7 is reserved and taken as 0.
 const FILTERS: [(f64, f64); 8] = [
     (0.98, 256.0),
     (1.9, 188.0),
@@ -36,18 +36,18 @@ const FILTERS: [(f64, f64); 8] = [
     (0.98, 256.0),
 ];
 
-/// LSB per °/s by FS_SEL; LSB per g by AFS_SEL.
+/// LSB per °/s by FS_SEL, and per g by AFS_SEL.
 const PER_DPS: [f64; 4] = [131.0, 65.5, 32.8, 16.4];
 const PER_G: [f64; 4] = [16_384.0, 8_192.0, 4_096.0, 2_048.0];
 
-/// Motion of the body at one time.
+/// What the body does at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State {
-    /// Rate about each axis in °/s.
+    /// The rate about each axis in °/s.
     pub rate: [f64; 3],
-    /// Specific force along each axis in g; at rest it opposes gravity.
+    /// The force along each axis in g: at rest what holds it against gravity.
     pub force: [f64; 3],
-    /// Temperature of the chip in °C.
+    /// The chip's temperature in °C.
     pub temperature: f64,
 }
 
@@ -62,14 +62,14 @@ impl Default for State {
     }
 }
 
-/// Raw counts of the data registers.
+/// What the data registers hold.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Accelerometer.
+    /// Of the accelerometer.
     pub accel: [i16; 3],
-    /// Thermometer.
+    /// Of the thermometer.
     pub temperature: i16,
-    /// Gyroscope.
+    /// Of the gyroscope.
     pub gyro: [i16; 3],
 }
 
@@ -89,37 +89,37 @@ impl Counts {
     }
 }
 
-/// Source of the measurements.
+/// Where its measurements come from.
 pub enum Source {
-    /// Motion at a time in s; measured with all imperfections.
+    /// The motion at a time in s, measured with all imperfections.
     Motion(Box<dyn Fn(f64) -> State + Send>),
-    /// Recorded counts, each with the time in ns from which it is current; used unchanged.
+    /// Recorded counts, each with the time in ns from which on it is the newest; taken as they are.
     Log(Vec<(u64, Counts)>),
 }
 
-/// Errors of the measurement.
+/// What makes a measurement differ from the truth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Imperfections {
-    /// Bias of the gyroscope at 25 °C in °/s.
+    /// Rate at rest at 25 °C, in °/s.
     pub bias: [f64; 3],
-    /// Its temperature coefficient in °/s per °C.
+    /// How it changes, in °/s per °C.
     pub drift: [f64; 3],
-    /// Scale factor of the gyroscope.
+    /// What a rate of 1 is measured as.
     pub scale: [f64; 3],
-    /// Noise density of the gyroscope in °/s per √Hz.
+    /// In °/s per √Hz.
     pub noise: f64,
-    /// Bias of the accelerometer in g.
+    /// Force where there is none, in g.
     pub accel_bias: [f64; 3],
-    /// Scale factor of the accelerometer.
+    /// What a force of 1 is measured as.
     pub accel_scale: [f64; 3],
-    /// Noise density of the accelerometer in g per √Hz.
+    /// In g per √Hz.
     pub accel_noise: f64,
-    /// Relative error of the clock rate: 0.01 is 1 % fast.
+    /// How much faster its clock runs: 0.01 is one in a hundred.
     pub clock: f64,
 }
 
 impl Imperfections {
-    /// An ideal sensor.
+    /// None at all.
     pub const NONE: Self = Self {
         bias: [0.0; 3],
         drift: [0.0; 3],
@@ -130,7 +130,7 @@ impl Imperfections {
         accel_noise: 0.0,
         clock: 0.0,
     };
-    /// Typical errors, within the limits of the data sheet.
+    /// Within the data sheet's limits: a specimen.
     pub const TYPICAL: Self = Self {
         bias: [-4.5, 1.25, 2.0],
         drift: [0.16, -0.1, 0.05],
@@ -143,53 +143,53 @@ impl Imperfections {
     };
 }
 
-/// Faults of the chip.
+/// What is wrong with it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// Missing: no acknowledge.
+    /// It is not there: it acknowledges nothing.
     Absent,
-    /// Acknowledges its address only.
+    /// It acknowledges its address, and no byte after that.
     NoAcknowledge,
-    /// Holds SDA low until the given number of clocks; 0 is for ever.
+    /// It holds SDA low until it has seen so many clocks; 0 is for ever.
     StuckData(u32),
-    /// Stretches the clock by the given ns after each byte.
+    /// It holds SCL low for so many ns after each byte.
     Stretched(u64),
-    /// The data registers are frozen, but new data are still announced.
+    /// The data registers do not change any more; new data are announced all the same.
     Frozen,
-    /// No new measurements.
+    /// Nothing is measured any more.
     Stalled,
-    /// Value of WHO_AM_I.
+    /// WHO_AM_I reads as this.
     Identity(u8),
 }
 
 /// The chip.
 pub struct Chip {
     registers: [u8; 128],
-    /// Readable data registers, and the latest measurement.
+    /// What a read gives, and what was measured last.
     data: [u8; 14],
     newest: Option<[u8; 14]>,
     source: Source,
     imperfections: Imperfections,
     random: Pcg64Mcg,
     now: u64,
-    /// Time of the next sample; `None` in sleep mode.
+    /// When the next sample is measured; none while it sleeps.
     next: Option<u64>,
-    /// Time of the first answer after a reset.
+    /// From when on it answers.
     answers: u64,
-    /// Between start and stop the data registers do not change.
+    /// Between a start and a stop its data stay as they are.
     is_addressed: bool,
-    /// I2C address: [`ADDRESS`], or one more with AD0 high.
+    /// What it answers to: [`ADDRESS`], or one more where AD0 is high.
     pub address: u8,
-    /// Current fault.
+    /// What is wrong with it now.
     pub fault: Option<Fault>,
-    /// Number of samples.
+    /// Samples measured so far.
     pub samples: u64,
-    /// Samples overwritten before INT_STATUS was read.
+    /// Samples that were overwritten before anybody has read INT_STATUS.
     pub missed: u64,
 }
 
 impl Chip {
-    /// A chip after power-up.
+    /// A chip that has been powered long enough.
     #[must_use]
     pub fn new(source: Source, imperfections: Imperfections, seed: u64) -> Self {
         let mut chip = Self {
@@ -213,7 +213,7 @@ impl Chip {
         chip
     }
 
-    /// Resets all registers, as a drop of the supply does; the chip is asleep afterwards.
+    /// Forgets all that was written to it, as a failing supply makes it; it is asleep then.
     pub fn reset(&mut self) {
         self.registers = [0; 128];
         self.registers[usize::from(PWR_MGMT_1)] = SLEEP;
@@ -230,7 +230,7 @@ impl Chip {
         address == self.address && self.fault != Some(Fault::Absent) && self.now >= self.answers
     }
 
-    /// Advances the time to `now`, in ns; earlier times are ignored.
+    /// Lets time pass until `now`, in ns; earlier times are ignored.
     pub fn advance(&mut self, now: u64) {
         while let Some(time) = self.next
             && time <= now
@@ -244,13 +244,13 @@ impl Chip {
         self.refresh();
     }
 
-    /// Marks the start or the end of bus traffic.
+    /// Somebody talks on the bus, or no longer.
     pub fn set_addressed(&mut self, is_addressed: bool) {
         self.is_addressed = is_addressed;
         self.refresh();
     }
 
-    /// Sample period in ns.
+    /// The time between two samples, in ns.
     #[must_use]
     pub fn period(&self) -> u64 {
         let internal = match self.registers[usize::from(CONFIG)] & 7 {
@@ -261,7 +261,7 @@ impl Chip {
         (internal * divider / (1.0 + self.imperfections.clock)) as u64
     }
 
-    /// Reads a register; a read clears INT_STATUS.
+    /// Reads a register; INT_STATUS is clear afterwards.
     pub fn read(&mut self, register: u8) -> u8 {
         match register & 0x7f {
             WHO_AM_I => match self.fault {
@@ -326,7 +326,7 @@ impl Chip {
             accel_noise,
             ..
         } = self.imperfections;
-        // White noise through a single pole.
+        // White noise through one pole.
         let through = (bandwidth * std::f64::consts::FRAC_PI_2).sqrt();
         let warmth = state.temperature - 25.0;
         let gyro = [0, 1, 2].map(|i| {
@@ -345,13 +345,13 @@ impl Chip {
         }
     }
 
-    /// A random number of mean 0 and variance 1.
+    /// A number of mean 0 and variance 1.
     fn gauss(&mut self) -> f64 {
         let sum: f64 = (0..12).map(|_| self.random.random_range(0.0..1.0)).sum();
         sum - 6.0
     }
 
-    /// Updates the data registers, unless the bus is in use.
+    /// New data arrive in the registers while nobody talks on the bus.
     fn refresh(&mut self) {
         if self.is_addressed {
             return;
@@ -368,7 +368,7 @@ impl Chip {
     }
 }
 
-/// Rounds to nearest, saturating to 16 bits.
+/// To the nearest number of 16 bits.
 fn count(value: f64) -> i16 {
     value.round() as i16
 }

@@ -2,7 +2,7 @@
 
 use crate::chip::{Chip, Fault};
 
-/// Minimum times of a master in fast mode, in ns.
+/// What a master has to keep in fast mode, in ns.
 const LOW: u64 = 1_300;
 const HIGH: u64 = 600;
 const START_SETUP: u64 = 600;
@@ -11,18 +11,18 @@ const DATA_SETUP: u64 = 100;
 const STOP_SETUP: u64 = 600;
 const FREE: u64 = 1_300;
 
-/// State of the transfer.
+/// What goes over the bus between two edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Phase {
-    /// Not addressed: waits for the next start.
+    /// Nothing for us, until the next start.
     Idle,
-    /// Receives a byte: bits so far, their number, and the byte's meaning.
+    /// Bits come in: so far, how many, and what the byte will be.
     In { bits: u8, count: u8, what: Byte },
-    /// Sends a byte, and the number of bits sent.
+    /// Bits go out: the byte, and how many of it.
     Out { byte: u8, count: u8 },
 }
 
-/// Meaning of a byte from the master.
+/// What a byte from the master is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Byte {
     Address,
@@ -30,7 +30,7 @@ enum Byte {
     Value,
 }
 
-/// Times of the last edges.
+/// The times of the last edges.
 #[derive(Clone, Copy, Debug, Default)]
 struct Edges {
     scl_rose: u64,
@@ -44,18 +44,18 @@ struct Edges {
 pub struct Wires {
     /// The chip.
     pub chip: Chip,
-    /// Log of S, P and bytes with acknowledge (+) or not (-), if enabled.
+    /// S, P and the bytes on the wire, acknowledged (+) or not (-), if they are to be kept.
     pub log: Option<Vec<String>>,
-    /// Violations of the minimum times.
+    /// Where the master was faster than it may be.
     pub violations: Vec<String>,
     phase: Phase,
     register: u8,
-    /// Last state of both wires, and whether the chip pulls SDA.
+    /// Both wires as they were last, and whether SDA is pulled.
     wires: (bool, bool),
     pulls: bool,
-    /// End of clock stretching.
+    /// Until when SCL is held.
     holds: u64,
-    /// Clocks counted by a stuck chip.
+    /// Clocks that a stuck chip has seen.
     clocks: u32,
     edges: Edges,
 }
@@ -78,12 +78,12 @@ impl Wires {
         }
     }
 
-    /// Sets the master's outputs (`true` releases, `false` pulls low); returns the resulting wires. Call it at each change, and
-    /// every few µs.
+    /// The master lets go of SCL and SDA (`true`) or pulls them; returns both wires as they are then. To be called at each change, and
+    /// every few µs beside that.
     pub fn update(&mut self, now: u64, scl: bool, sda: bool) -> (bool, bool) {
         self.chip.advance(now);
         let mut wires = self.wires(now, scl, sda);
-        // The chip changes SDA after the falling edge of SCL.
+        // What the chip does to SDA comes after the falling edge of SCL that it follows.
         while wires != self.wires {
             let (before, after) = (std::mem::replace(&mut self.wires, wires), wires);
             self.follow(now, before, after);
@@ -112,7 +112,7 @@ impl Wires {
         }
     }
 
-    /// Records a time below its minimum.
+    /// Notes a time that is too short.
     fn check(&mut self, now: u64, since: u64, least: u64, what: &str) {
         if since != 0 && now - since < least {
             let time = now - since;
@@ -241,7 +241,7 @@ impl Wires {
         }
     }
 
-    /// Sets the chip's fault.
+    /// Sets what is wrong with the chip from now on.
     pub fn set_fault(&mut self, fault: Option<Fault>) {
         self.chip.fault = fault;
         self.clocks = 0;

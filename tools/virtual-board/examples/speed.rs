@@ -1,16 +1,16 @@
-//! Cost of the board over the bare model: speed of [`VirtualBoard::run`] in cycles per second, with the monitor off and on,
-//! against a C++ loop that only advances the clocks; alternating in one run.
+//! What the board costs beside the bare model: cycles a second of [`VirtualBoard::run`], with the monitor off and on,
+//! against a C++ loop that only moves the clocks, in turns in one run.
 //!
-//! Exit code 1 if the board with its monitor off is below 90 % of the bare loop's speed.
+//! Ends with 1 when the board, its monitor off, has less than 90 % of the bare loop's speed.
 
 use std::process::ExitCode;
 use std::time::Instant;
 
 use virtual_board::{Error, VirtualBoard};
 
-/// Cycles of one measurement.
+/// Cycles of one turn.
 const TURN: u64 = 100_000;
-/// Measurements of each kind; the median ignores pauses of the host.
+/// Turns of each kind. The median is what counts, so that a pause of the machine does not.
 const TURNS: usize = 15;
 
 fn main() -> Result<ExitCode, Error> {

@@ -1,80 +1,80 @@
-//! Errors of a board.
+//! What can go wrong with a board.
 
 use std::path::PathBuf;
 
-/// Error of a board.
+/// Why a board could not be made or did not do what was asked.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// The library does not exist.
+    /// There is no library to load.
     #[error("the virtual board's library {} is missing; run `cargo xtask gateware{option}`", .path.display())]
     LibraryMissing {
-        /// Its path.
+        /// Where it was expected.
         path: PathBuf,
-        /// Option of the command that builds it.
+        /// What the command needs beyond its name.
         option: &'static str,
     },
-    /// The library cannot be loaded.
+    /// The library exists and cannot be loaded.
     #[error("the virtual board's library {} cannot be loaded; run `cargo xtask gateware`", .path.display())]
     Library {
-        /// Its path.
+        /// The library.
         path: PathBuf,
-        /// Error of the loader.
+        /// What the loader said.
         source: libloading::Error,
     },
-    /// The library has another version of the interface.
+    /// The library speaks another version of the interface.
     #[error(
-        "the virtual board's library {} has interface {found}: expected {expected}; \
+        "the virtual board's library {} has interface {found}, this program needs {expected}; \
          run `cargo xtask gateware`", .path.display()
     )]
     Interface {
-        /// Its path.
+        /// The library.
         path: PathBuf,
-        /// Version of this crate.
+        /// What this crate was written for.
         expected: u32,
-        /// Version of the library.
+        /// What the library has.
         found: u32,
     },
-    /// The library's SoC has another register map.
+    /// The library's SoC has other registers than this program.
     #[error(
-        "the virtual board's build id is {found:#010x}: expected {expected:#010x}; \
+        "the virtual board's register map is {found:#010x}, this program was built for {expected:#010x}; \
          run `cargo xtask gateware` and `cargo xtask pac`"
     )]
     BuildId {
-        /// Build id of the register access crate.
+        /// Of the register access crate this program was built with.
         expected: u32,
-        /// Build id of the library.
+        /// Of the library.
         found: u32,
     },
-    /// Waveforms cannot be written.
-    #[error("waveforms to {}: cannot be written; expected an existing folder and a library of `cargo xtask gateware --waveforms`", .path.display())]
+    /// The library was built without waveforms.
+    #[error("cannot write waveforms to {}: is its folder there, and is the library one with waveforms?", .path.display())]
     Trace {
-        /// Path of the waveforms.
+        /// The file that was asked for.
         path: PathBuf,
     },
-    /// An access of the back door outside main RAM.
+    /// An access through the back door that is not wholly in main RAM.
     #[error(
-        "DDR3 access of {length} bytes at {address:#010x}: expected a range within {:#010x}..{:#010x}",
+        "DDR3 access of {length} bytes at {address:#010x}: expected it within {:#010x}..{:#010x}",
         .ram.start, .ram.end
     )]
     Address {
-        /// First byte, an address of the CPU.
+        /// First byte, as the CPU addresses it.
         address: u32,
-        /// Number of bytes.
+        /// Bytes asked for.
         length: usize,
         /// Main RAM.
         ram: std::ops::Range<u32>,
     },
-    /// A wait that timed out.
-    #[error("expected {expected} within {cycles} cycles, found {got:?}")]
+    /// What was waited for did not come.
+    #[error("waited {cycles} cycles for {expected}; got {got:?}")]
     Timeout {
-        /// Expected event.
+        /// What was waited for.
         expected: String,
-        /// Time-out in cycles.
+        /// How long.
         cycles: u64,
-        /// Output meanwhile.
+        /// What came instead.
         got: String,
     },
-    /// The operating system provides no pseudo-terminal.
+    /// The operating system refused a pseudo-terminal.
     #[error("pseudo-terminal: {0}")]
     Pty(#[from] std::io::Error),
 }

@@ -1,4 +1,4 @@
-//! Setup of a Debian machine: packages, the soft core's Rust target, the Python environment.
+//! Sets a Debian machine up: packages, the soft core's Rust target, the Python environment.
 
 use std::fs;
 use std::process::Command;
@@ -7,7 +7,7 @@ use anyhow::{Context, Result, bail};
 
 use crate::{paths, run};
 
-/// Debian packages and their purposes.
+/// Debian's packages, and what each is for.
 const PACKAGES: [(&str, &str); 4] = [
     ("gcc-riscv64-unknown-elf", "compiles the LiteX BIOS"),
     ("g++", "compiles the verilated SoC"),
@@ -15,19 +15,19 @@ const PACKAGES: [(&str, &str); 4] = [
     ("python3-venv", "holds the Python packages"),
 ];
 
-/// Rust target of the soft core: RV32IM without an operating system.
+/// What the soft core runs: RV32IM without an operating system.
 const RUST_TARGET: &str = "riscv32im-unknown-none-elf";
 
-/// Pinned Python packages, for the gateware and for the tests.
+/// What the Python environment holds, all pinned: for the gateware, and for the tests.
 const REQUIREMENTS: [&str; 2] = [
     "gateware/requirements.txt",
     "tools/reference/requirements.txt",
 ];
 
-/// Installs missing prerequisites. Fast if there are none.
+/// Does what is missing and says what it could not get. Quick when nothing is.
 ///
 /// # Errors
-/// Lists each prerequisite that is still missing, and the command that installs it.
+/// Names each thing that is still missing and the command that gets it.
 pub fn bootstrap() -> Result<()> {
     let missing: Vec<String> = [debian_packages(), rust_target(), python_environment()]
         .into_iter()
@@ -53,7 +53,7 @@ fn debian_packages() -> Result<()> {
         .iter()
         .filter(|(package, _)| missing.contains(package))
     {
-        run::print_progress(&format!("  missing: {package} ({purpose})"));
+        run::say(&format!("  missing: {package} ({purpose})"));
     }
     let by_hand = format!(
         "apt-get update && apt-get install --no-install-recommends {}",
@@ -73,7 +73,7 @@ fn debian_packages() -> Result<()> {
     .with_context(|| format!("Debian packages: type: {by_hand}"))
 }
 
-/// A package counts as present if its program works, whatever installed it.
+/// A package counts as present when what it is for works: python3 and g++ may come from elsewhere.
 fn is_present(package: &str) -> bool {
     match package {
         "gcc-riscv64-unknown-elf" => {

@@ -26,48 +26,48 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Task {
-    /// Install missing prerequisites: Debian packages, the Rust target, the Python environment
+    /// Install what is missing: Debian packages, the Rust target, the Python environment
     Bootstrap,
     /// Build the SoC of a board
     Gateware {
-        /// Board to build for
+        /// Which board
         #[arg(long, value_enum, default_value = "virtual")]
         board: gateware::Board,
-        /// Build the triangle engine with smooth shading
+        /// Build smooth shading into the triangle engine
         #[arg(long)]
         smooth: bool,
-        /// Fields of the raymarcher [default: all; faces for the urbana, which has no room for more]
+        /// What the raymarcher is built for [default: all; of the urbana, which has no room for that: faces]
         #[arg(long, value_enum)]
         fields: Option<gateware::Fields>,
-        /// Build the virtual board's library with waveform output too
+        /// Also build the virtual board's library that writes waveforms
         #[arg(long, conflicts_with_all = ["smooth", "fields"])]
         waveforms: bool,
     },
-    /// Generate the register access crate and the register map from the SoC's description
+    /// Write the register access crate and the register map from the SoC's description
     Pac {
-        /// Write nothing; fail if a generated file is stale
+        /// Write nothing; fail when a file is not what would be written
         #[arg(long)]
         check: bool,
     },
-    /// Build the firmware
+    /// Build the program for the soft core
     Firmware {
-        /// Cargo features of the firmware; `peers` adds kernels of other crates to `bench`
+        /// Features of the program; `peers` adds other crates' kernels to `bench`
         #[arg(long, value_delimiter = ',')]
         features: Vec<String>,
     },
-    /// Build everything, run it on the virtual board, write pictures to `out/`
+    /// Build everything, run it on the virtual board, write its pictures into `out/`
     Demo {
-        /// Arguments of `glint demo`: mesh files [default: generated models]
+        /// What `glint demo` takes: mesh files (none: generated ones)
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<String>,
     },
     /// Build everything and run every test
     Test,
-    /// Check the sources: no circles between modules, no `#[path]`, no file above 500 lines
+    /// Check the sources: no circle of modules, no `#[path]`, no file of more than 500 lines
     Modules,
-    /// Measure the FPGA resources of the gateware; fail above the limits of gateware/budget.toml
+    /// Measure what the gateware takes of the FPGA; fail beyond gateware/budget.toml
     Resources {
-        /// Blocks to measure: own blocks, `flat_build`, `soc` [default: all]
+        /// What to measure: own blocks, `flat_build`, `soc` (none: all of them)
         blocks: Vec<String>,
         /// Print JSON; progress goes to standard error
         #[arg(long)]

@@ -1,4 +1,4 @@
-//! Paths in the checkout.
+//! Where things lie in the checkout.
 
 use std::path::PathBuf;
 
@@ -11,17 +11,17 @@ pub fn root() -> PathBuf {
         .to_path_buf()
 }
 
-/// Folder of all build output: cargo's target directory.
+/// Where all build output goes: cargo's own target directory.
 pub fn target() -> PathBuf {
     root().join("target")
 }
 
-/// A program of the Python environment.
+/// A program of the Python environment that `cargo xtask bootstrap` makes.
 pub fn venv_program(name: &str) -> PathBuf {
     venv().join("bin").join(name)
 }
 
-/// The Python environment of `cargo xtask bootstrap`.
+/// The Python environment.
 pub fn venv() -> PathBuf {
     root().join(".venv")
 }

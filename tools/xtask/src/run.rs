@@ -1,4 +1,4 @@
-//! Running programs: a progress line while they run, their output only on failure.
+//! Running programs: a line that moves while they work, their output only when they fail.
 
 use std::collections::VecDeque;
 use std::fs::{self, File};
@@ -13,22 +13,22 @@ use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 
 use crate::paths;
 
-/// Lines of output shown on failure; the log has all.
+/// Lines of output shown when a step fails; the log has them all.
 const SHOWN_ON_FAILURE: usize = 60;
 
-/// Progress lines of the running steps.
+/// The moving lines of the steps that run now, one below the other.
 static SPINNERS: LazyLock<MultiProgress> = LazyLock::new(MultiProgress::new);
 
-/// Whether progress goes to standard error.
+/// Whether standard output is for something else than progress.
 static TO_STDERR: AtomicBool = AtomicBool::new(false);
 
-/// Sends progress to standard error from now on, for commands whose standard output is data.
+/// Has steps print to standard error from now on, because standard output is a program's.
 pub fn progress_to_stderr() {
     TO_STDERR.store(true, Ordering::Relaxed);
 }
 
-/// Prints a line above the progress lines.
-pub fn print_progress(line: &str) {
+/// Prints a line about progress, above the moving ones.
+pub fn say(line: &str) {
     SPINNERS.suspend(|| {
         if TO_STDERR.load(Ordering::Relaxed) {
             eprintln!("{line}");
@@ -38,16 +38,16 @@ pub fn print_progress(line: &str) {
     });
 }
 
-/// Runs `command` as the step `name`: shows its latest line of output meanwhile, writes all output to `target/log`, and prints
-/// one line with the run time.
+/// Runs `command` as the step `name`: shows its latest line while it runs, keeps all of its output in
+/// `target/log`, and prints one line with the time it took.
 ///
 /// # Errors
-/// The program cannot be started, or fails; then the end of its output is printed.
+/// When the program cannot be started or fails; the end of its output has then been printed.
 pub fn step(name: &str, command: &mut Command) -> Result<()> {
     watched_step(name, command, |_| ())
 }
 
-/// Like [`step`]; `watch` gets each line of output.
+/// Like [`step`], and hands each line of the output to `watch`.
 ///
 /// # Errors
 /// As [`step`].
@@ -66,7 +66,7 @@ pub fn watched_step(name: &str, command: &mut Command, mut watch: impl FnMut(&st
     let mut child = command
         .spawn()
         .with_context(|| format!("{name}: cannot start `{program}`"))?;
-    // The pipe ends once only the child holds its write end.
+    // The pipe ends when the child's copies of its write end are the last ones.
     command.stdout(Stdio::null()).stderr(Stdio::null());
     let mut tail = VecDeque::new();
     let mut lines = BufReader::new(reader);
@@ -86,22 +86,22 @@ pub fn watched_step(name: &str, command: &mut Command, mut watch: impl FnMut(&st
     bar.finish_and_clear();
     let seconds = start.elapsed().as_secs_f64();
     if status.success() {
-        print_progress(&format!("  ok   {seconds:6.1} s  {name}"));
+        say(&format!("  ok   {seconds:6.1} s  {name}"));
         return Ok(());
     }
-    // One write: another step may print at the same time.
+    // In one piece: another step may print at the same time.
     let tail: String = tail.iter().map(|line| format!("\n    {line}")).collect();
-    print_progress(&format!("  FAIL {seconds:6.1} s  {name}{tail}"));
+    say(&format!("  FAIL {seconds:6.1} s  {name}{tail}"));
     bail!(
         "{name} failed ({status}); all of its output is in {}",
         log_path.display()
     )
 }
 
-/// Runs `command` on this terminal, for programs with their own progress.
+/// Runs `command` with the terminal as its own, for programs that show their progress themselves.
 ///
 /// # Errors
-/// The program cannot be started, or fails.
+/// When the program cannot be started or fails.
 pub fn foreground(name: &str, command: &mut Command) -> Result<()> {
     let program = command.get_program().to_string_lossy().into_owned();
     let status = command
@@ -113,7 +113,7 @@ pub fn foreground(name: &str, command: &mut Command) -> Result<()> {
     Ok(())
 }
 
-/// Whether `command` runs and succeeds; its output is dropped.
+/// Whether `command` runs and succeeds; its output is thrown away.
 pub fn succeeds(command: &mut Command) -> bool {
     command
         .stdin(Stdio::null())
@@ -123,10 +123,10 @@ pub fn succeeds(command: &mut Command) -> bool {
         .is_ok_and(|status| status.success())
 }
 
-/// A spinner named `name`; without a terminal, a line at the start.
+/// A spinner named `name`; where there is no terminal, a line that says what begins.
 fn spinner(name: &str) -> ProgressBar {
     if !std::io::stderr().is_terminal() {
-        print_progress(&format!("  ...            {name}"));
+        say(&format!("  ...            {name}"));
         return ProgressBar::hidden();
     }
     let style = ProgressStyle::with_template("  {spinner} {elapsed:>8}  {prefix}  {msg:.dim}")
@@ -140,7 +140,7 @@ fn spinner(name: &str) -> ProgressBar {
     bar
 }
 
-/// `target/log/NAME.log`, with a valid file name.
+/// `target/log/NAME.log`, with NAME made fit for a file.
 fn log_path(name: &str) -> Result<std::path::PathBuf> {
     let folder = paths::target().join("log");
     fs::create_dir_all(&folder).with_context(|| format!("creating {}", folder.display()))?;

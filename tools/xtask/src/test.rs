@@ -1,4 +1,4 @@
-//! `cargo xtask test`: every check, on a machine that it sets up itself.
+//! `cargo xtask test`: every test there is, on a machine that it sets up itself.
 
 use std::process::Command;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -11,38 +11,38 @@ use anyhow::{Result, bail};
 use crate::gateware::{self, Board};
 use crate::{bootstrap, firmware, pac, paths, resources, run};
 
-/// Sets up, builds and tests everything. A failed check does not stop the others; a failed build does.
+/// Sets up, builds and tests everything. Checks go on after one that failed; builds do not.
 ///
-/// The gateware's own checks run beside cargo's, because most of either keep one core busy. The Rust tests wait for the
-/// gateware tests, which build their models.
+/// What tests the gateware alone runs beside what cargo does: most of either keeps one core busy. Only the Rust tests wait for
+/// the gateware's, which build the modules that they clock.
 ///
 /// # Errors
-/// A build or a check fails; the error names the checks.
+/// When a build or a check fails; names the checks.
 pub fn test() -> Result<()> {
     let start = Instant::now();
     bootstrap::bootstrap()?;
     gateware::build(Board::Virtual)?;
     gateware::build(Board::Urbana)?;
 
-    let results = CheckResults::default();
+    let outcomes = Outcomes::default();
     let (models_are_built, models) = mpsc::channel();
     thread::scope(|scope| -> Result<()> {
         scope.spawn(|| {
-            results.add(gateware_check("gateware tests", "gateware/tests/run.py"));
-            // The receiver is gone if a build has failed.
+            outcomes.add(gateware_check("gateware tests", "gateware/tests/run.py"));
+            // Nobody listens when a build has failed.
             let _ = models_are_built.send(());
-            results.add(gateware_check("proofs", "gateware/formal/run.py"));
-            results.add(resources::check_own_blocks().map(|()| 1));
+            outcomes.add(gateware_check("proofs", "gateware/formal/run.py"));
+            outcomes.add(resources::check_own_blocks().map(|()| 1));
         });
         firmware::build(&[])?;
         firmware::build(&["peers"])?;
-        results.add(pac::generate(true).map(|()| 1));
-        results.add(cargo("formatting", &["fmt", "--all", "--check"]));
-        results.add(cargo(
+        outcomes.add(pac::generate(true).map(|()| 1));
+        outcomes.add(cargo("formatting", &["fmt", "--all", "--check"]));
+        outcomes.add(cargo(
             "clippy",
             &["clippy", "--all-targets", "--", "-D", "warnings"],
         ));
-        results.add(cargo(
+        outcomes.add(cargo(
             "clippy of the firmware",
             &[
                 "clippy",
@@ -55,26 +55,26 @@ pub fn test() -> Result<()> {
                 "warnings",
             ],
         ));
-        results.add(documentation());
-        results.add(cargo("build of the tests", &["test", "--no-run"]));
+        outcomes.add(documentation());
+        outcomes.add(cargo("build of the tests", &["test", "--no-run"]));
         models.recv().expect("the gateware's checks do not panic");
-        results.add(cargo_tests());
+        outcomes.add(cargo_tests());
         Ok(())
     })?;
 
     let minutes = start.elapsed().as_secs_f64() / 60.0;
     println!("{minutes:.1} minutes");
-    results.finish()
+    outcomes.finish()
 }
 
-/// Numbers of passed checks, and the errors of failed ones.
+/// What has passed and what has failed.
 #[derive(Default)]
-struct CheckResults {
+struct Outcomes {
     passed: AtomicU32,
     failures: Mutex<Vec<String>>,
 }
 
-impl CheckResults {
+impl Outcomes {
     fn add(&self, outcome: Result<u32>) {
         match outcome {
             Ok(count) => {
@@ -88,7 +88,7 @@ impl CheckResults {
         self.failures.lock().expect("no check panics")
     }
 
-    /// Prints the counts; fails if a check has failed.
+    /// Prints the counts, and fails with what has failed.
     fn finish(&self) -> Result<()> {
         let failures = self.lock();
         println!(
@@ -103,7 +103,7 @@ impl CheckResults {
     }
 }
 
-/// Runs a cargo command as a check.
+/// One cargo command as a check.
 fn cargo(name: &str, arguments: &[&str]) -> Result<u32> {
     run::step(
         name,
@@ -125,7 +125,7 @@ fn documentation() -> Result<u32> {
     Ok(1)
 }
 
-/// Runs a Python program as a check: benches with board files, or proofs.
+/// A program of the gateware's checks: the benches of its modules with the board files, the proofs of its handshakes.
 fn gateware_check(name: &str, program: &str) -> Result<u32> {
     run::step(
         name,
@@ -136,8 +136,8 @@ fn gateware_check(name: &str, program: &str) -> Result<u32> {
     Ok(1)
 }
 
-/// Runs all Rust tests on the host, including those on the virtual board; returns the number of passed tests. Output of failed
-/// tests is printed again at the end.
+/// All Rust tests on the host, those on the virtual board among them; counts what passed. What failing tests print stands
+/// far above the end of the output, so it is shown again.
 fn cargo_tests() -> Result<u32> {
     let mut passed = 0;
     let mut failures = Vec::new();
@@ -161,7 +161,7 @@ fn cargo_tests() -> Result<u32> {
     outcome.map(|()| passed)
 }
 
-/// Number of passed tests in the last line of a test program: `test result: ok. 12 passed; 0 failed; …`.
+/// The count in a closing line of a Rust test program: `test result: ok. 12 passed; 0 failed; …`.
 fn passed_tests(line: &str) -> Option<u32> {
     let counts = line.strip_prefix("test result: ")?;
     let before = counts.split(" passed;").next()?;

@@ -1,4 +1,4 @@
-//! Fuzzes everything that parses external bytes, and measures the rate.
+//! Fuzzes what takes bytes from outside, and says how fast.
 #![forbid(unsafe_code)]
 
 use anyhow::Context;
@@ -10,29 +10,29 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-/// Run fuzz targets on generated inputs; a panic is a finding.
+/// Give a target many inputs; a panic is a finding.
 ///
-/// Seed and number determine an input's bytes. A finding is written to a file, and --only runs it again.
+/// The bytes of an input follow from the seed and its number alone. A finding is written to a file, and --only runs it again.
 #[derive(Parser)]
 struct Arguments {
-    /// Targets [default: all].
+    /// What to fuzz; all of them in turn unless told.
     #[arg(value_enum)]
     targets: Vec<Target>,
-    /// Inputs per target.
+    /// How many inputs each.
     #[arg(long, default_value_t = 100_000)]
     inputs: u64,
-    /// Seed of the inputs.
+    /// Which inputs.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Number of threads.
+    /// Threads.
     #[arg(long, default_value_t = 1)]
     jobs: u64,
-    /// Run only the input with this number.
+    /// Run just the input of this number.
     #[arg(long)]
     only: Option<u64>,
 }
 
-/// Inputs that a thread takes at once.
+/// Numbers that a thread takes at once.
 const STRIDE: u64 = 256;
 
 fn main() -> anyhow::Result<()> {
@@ -51,21 +51,18 @@ fn main() -> anyhow::Result<()> {
         }
         findings += fuzz(target, &inputs, &arguments)?;
     }
-    anyhow::ensure!(
-        findings == 0,
-        "{findings} findings: inputs on which a target panicked"
-    );
+    anyhow::ensure!(findings == 0, "{findings} inputs made a target panic");
     Ok(())
 }
 
-/// Counts of a run.
+/// What happened so far.
 #[derive(Default)]
 struct Tally {
     next: AtomicU64,
     done: AtomicU64,
     accepted: AtomicU64,
     findings: AtomicU64,
-    /// Longest run time of an input in microseconds.
+    /// The longest time of an input in microseconds.
     slowest: AtomicU64,
 }
 
@@ -86,18 +83,18 @@ fn fuzz(target: Target, inputs: &Inputs, arguments: &Arguments) -> anyhow::Resul
     std::panic::set_hook(quiet);
     bar.finish_and_clear();
     let seconds = start.elapsed().as_secs_f64();
-    let value = |count: &AtomicU64| count.load(Ordering::Relaxed);
-    let slowest = value(&tally.slowest);
+    let of = |count: &AtomicU64| count.load(Ordering::Relaxed);
+    let slowest = of(&tally.slowest);
     println!(
-        "{target:?}: {} inputs (seed {}) in {seconds:.1} s, {:.0} a second; {:.1} % accepted; slowest {:.1} ms; {} panics",
-        value(&tally.done),
+        "{target:?}: {} inputs (seed {}) in {seconds:.1} s, {:.0} a second; {:.1} % went the whole way; slowest {:.1} ms; {} panics",
+        of(&tally.done),
         arguments.seed,
-        value(&tally.done) as f64 / seconds,
-        100.0 * value(&tally.accepted) as f64 / value(&tally.done).max(1) as f64,
+        of(&tally.done) as f64 / seconds,
+        100.0 * of(&tally.accepted) as f64 / of(&tally.done).max(1) as f64,
         slowest as f64 / 1000.0,
-        value(&tally.findings),
+        of(&tally.findings),
     );
-    Ok(value(&tally.findings))
+    Ok(of(&tally.findings))
 }
 
 fn work(target: Target, inputs: &Inputs, arguments: &Arguments, tally: &Tally, bar: &ProgressBar) {
@@ -130,7 +127,7 @@ fn work(target: Target, inputs: &Inputs, arguments: &Arguments, tally: &Tally, b
     }
 }
 
-/// Writes the input of a finding to a file.
+/// Writes a finding where it can be looked at.
 fn keep(target: Target, inputs: &Inputs, number: u64) -> anyhow::Result<()> {
     let path = format!("fuzz-{target:?}-{number}.bin").to_lowercase();
     std::fs::write(&path, inputs.input(number))

@@ -1,11 +1,12 @@
 //! A board on a serial port.
 
-use super::{Board, BoardError};
+use super::error::BoardError;
+use super::line::Board;
 use serialport::SerialPort;
 use std::io::{self, Read, Write};
 use std::time::{Duration, Instant};
 
-/// The least time a read waits for, so that a loop around it does not spin.
+/// The shortest wait of a read: a loop around it does not spin.
 const SHORTEST: Duration = Duration::from_millis(1);
 
 /// A serial port, 8N1 without flow control.
@@ -18,7 +19,7 @@ impl SerialBoard {
     /// Opens a port.
     ///
     /// # Errors
-    /// There is no such port, or it is taken.
+    /// [`BoardError::Open`] for a port that does not exist or is in use.
     pub fn open(name: &str, baud: u32) -> Result<Self, BoardError> {
         let port = serialport::new(name, baud)
             .timeout(SHORTEST)
@@ -39,7 +40,7 @@ impl Board for SerialBoard {
         while !bytes.is_empty() {
             match self.port.write(bytes) {
                 Ok(written) => bytes = &bytes[written..],
-                // The port's buffer is full: it empties at the line's speed.
+                // The port's buffer is full and empties at the speed of the line.
                 Err(error) if is_transient(&error) => {}
                 Err(error) => return Err(error.into()),
             }

@@ -1,10 +1,11 @@
-//! The virtual board as a board: reading from it is what makes it run.
+//! The virtual board in this process. Reads run it.
 
-use super::{Board, BoardError, Memory};
+use super::error::BoardError;
+use super::line::{Board, Memory};
 use std::path::{Path, PathBuf};
 use virtual_board::{Start, VirtualBoard};
 
-/// Cycles between looks at the line.
+/// Cycles between two polls of the line.
 const SLICE: u64 = 1000;
 
 /// A virtual board in this process.
@@ -13,7 +14,7 @@ pub struct SimulatedBoard {
 }
 
 impl SimulatedBoard {
-    /// Takes a board that has been built.
+    /// A board that has been built.
     pub fn new(board: VirtualBoard) -> Self {
         Self { board }
     }
@@ -21,7 +22,7 @@ impl SimulatedBoard {
     /// A board that starts with `firmware` in its memory, without the BIOS.
     ///
     /// # Errors
-    /// The virtual board cannot be made.
+    /// The gateware is not built.
     pub fn fast(firmware: &[u8]) -> Result<Self, BoardError> {
         Ok(Self::new(
             VirtualBoard::builder()
@@ -33,23 +34,23 @@ impl SimulatedBoard {
     /// A board that starts with its BIOS.
     ///
     /// # Errors
-    /// The virtual board cannot be made.
+    /// The gateware is not built.
     pub fn full() -> Result<Self, BoardError> {
         Ok(Self::new(
             VirtualBoard::builder().start(Start::Full).build()?,
         ))
     }
 
-    /// The board behind the line: its pins, its monitor, its speed.
+    /// The virtual board: pins, monitor, cycles.
     pub fn inner(&mut self) -> &mut VirtualBoard {
         &mut self.board
     }
 }
 
-/// The firmware as `cargo xtask firmware` leaves it in this checkout, and where it was looked for.
+/// The firmware of a file, or the one that `cargo xtask firmware` has built in this checkout.
 ///
 /// # Errors
-/// It is not there.
+/// [`BoardError::Firmware`] for a file that cannot be read.
 pub fn built_firmware(path: Option<&Path>) -> Result<Vec<u8>, BoardError> {
     let built = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target/firmware/glint.bin");
     let path: PathBuf = path.map_or_else(built, Path::to_owned);

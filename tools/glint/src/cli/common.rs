@@ -1,8 +1,8 @@
-//! What several commands share: boards, progress, printing.
+//! Boards, progress bars and output for all commands.
 
 use anyhow::Context;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use glint::board::{Board, SerialBoard, SimulatedBoard, built_firmware};
+use glint::board::{Board, BoardName, SerialBoard, SimulatedBoard, built_firmware};
 use glint::console::Console;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
@@ -10,19 +10,19 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// How to reach a board.
+/// Options of a board's line.
 #[derive(clap::Args)]
 pub struct LineArguments {
-    /// Bits a second of a serial port.
+    /// Bit rate of a serial port.
     #[arg(long, default_value_t = 115_200, value_name = "BITS")]
     pub baud: u32,
-    /// The program that the virtual board starts with [default: that of `cargo xtask firmware`].
+    /// Firmware of the virtual board [default: the one built by `cargo xtask firmware`].
     #[arg(long, value_name = "FILE")]
     pub firmware: Option<PathBuf>,
 }
 
 impl LineArguments {
-    /// A virtual board whose firmware runs, and has shown its prompt.
+    /// A virtual board at its firmware's first prompt.
     pub fn virtual_board(&self) -> anyhow::Result<SimulatedBoard> {
         let firmware = built_firmware(self.firmware.as_deref())?;
         let mut board = SimulatedBoard::fast(&firmware)?;
@@ -38,11 +38,10 @@ impl LineArguments {
     }
 
     /// The board of a name, running its firmware.
-    pub fn board(&self, name: &str) -> anyhow::Result<Box<dyn Board>> {
-        Ok(if name == "virtual" {
-            Box::new(self.virtual_board()?)
-        } else {
-            Box::new(self.serial_board(name)?)
+    pub fn board(&self, name: &BoardName) -> anyhow::Result<Box<dyn Board>> {
+        Ok(match name {
+            BoardName::Virtual => Box::new(self.virtual_board()?),
+            BoardName::Serial(port) => Box::new(self.serial_board(port)?),
         })
     }
 }
@@ -58,25 +57,25 @@ pub fn named<T: Copy + Send + Sync + 'static, const N: usize>(
     })
 }
 
-/// Something that turns while something unmeasured goes on. It shows only on a terminal.
-pub fn spinner(what: &str) -> ProgressBar {
-    let spinner = ProgressBar::new_spinner().with_message(what.to_owned());
+/// A spinner for work of unknown length, on a terminal only.
+pub fn spinner(label: &str) -> ProgressBar {
+    let spinner = ProgressBar::new_spinner().with_message(label.to_owned());
     spinner.set_style(style("{spinner} {msg} {elapsed}"));
     spinner.enable_steady_tick(Duration::from_millis(200));
     spinner
 }
 
-/// A bar over bytes. It shows only on a terminal.
-pub fn bar(what: &str) -> ProgressBar {
-    let bar = ProgressBar::new(0).with_message(what.to_owned());
+/// A progress bar of bytes, on a terminal only.
+pub fn bar(label: &str) -> ProgressBar {
+    let bar = ProgressBar::new(0).with_message(label.to_owned());
     bar.set_style(style("{msg} {wide_bar} {bytes}/{total_bytes} {eta}"));
     bar
 }
 
-/// A bar over a number of things. It shows only on a terminal.
-pub fn count_bar(what: &str, things: &str) -> ProgressBar {
-    let bar = ProgressBar::new(0).with_message(what.to_owned());
-    let template = format!("{{msg}} {{wide_bar}} {{pos}}/{{len}} {things} {{eta}}");
+/// A progress bar of counted items, on a terminal only.
+pub fn count_bar(label: &str, items: &str) -> ProgressBar {
+    let bar = ProgressBar::new(0).with_message(label.to_owned());
+    let template = format!("{{msg}} {{wide_bar}} {{pos}}/{{len}} {items} {{eta}}");
     bar.set_style(style(&template));
     bar
 }
@@ -85,7 +84,7 @@ fn style(template: &str) -> ProgressStyle {
     ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
 }
 
-/// Moves a bar.
+/// Sets the position of a bar.
 pub fn advance(bar: &ProgressBar) -> impl FnMut(u64, u64) {
     move |done, all| {
         bar.set_length(all);
@@ -93,7 +92,7 @@ pub fn advance(bar: &ProgressBar) -> impl FnMut(u64, u64) {
     }
 }
 
-/// Prints a line. A reader that has gone, such as `head`, is no failure.
+/// Prints a line. A closed pipe, as behind `head`, is no error.
 pub fn say(line: impl std::fmt::Display) -> anyhow::Result<()> {
     match writeln!(std::io::stdout(), "{line}") {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {

@@ -4,42 +4,42 @@ use super::common::{print_json, say, spinner, write_file};
 use anyhow::Context;
 use clap::Args;
 use glint::convert::{self, Options, Report};
-use glint::error::FormatError;
+use glint::error::InputError;
 use glint::formats::{self, Format, write};
 use glint::polygons::Polygons;
 use glint::{generate, model};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-/// Generate a model: cube, icosphere:N, torus-knot, gear, teapot or sponge:N.
+/// Make a model: cube, icosphere:N, torus-knot, gear, teapot or sponge:N.
 #[derive(Args)]
 pub struct ModelArguments {
-    /// Name of the generator.
+    /// The model's name.
     name: String,
-    /// Output file; the extension selects the format: .obj, .stl, .ply or .glm.
+    /// The file to write; its extension says the format: .obj, .stl, .ply or .glm.
     out: PathBuf,
-    /// Keep the generator's coordinates.
+    /// Leave the generator's coordinates as they are.
     #[arg(long)]
     keep_scale: bool,
-    /// Print the report as JSON.
+    /// Print what was done as JSON.
     #[arg(long)]
     json: bool,
 }
 
-/// Convert a mesh: scale it to the 1×1×1 box about the origin, triangulate it, round it to Q2.14.
+/// Convert a mesh: scale it to the 1×1×1 box about the origin, cut it into triangles, round it to Q2.14.
 ///
-/// Reads OBJ (with vertex colours and the colours of the material file in the same folder), STL and PLY, ASCII or binary, and
-/// GLM. GLM is the format of boards. OBJ, STL and PLY are written with scaled, unrounded coordinates.
+/// Reads OBJ (with the colours of its vertices, and of the material file beside it), STL and PLY, ASCII or binary, and GLM.
+/// GLM is what boards hold; OBJ, STL and PLY are written with scaled but unrounded coordinates.
 #[derive(Args)]
 pub struct ConvertArguments {
-    /// Mesh file to read.
+    /// The mesh to read.
     input: PathBuf,
-    /// Output file; the extension selects the format: .obj, .stl, .ply or .glm.
+    /// The file to write; its extension says the format: .obj, .stl, .ply or .glm.
     out: PathBuf,
-    /// Keep the coordinates; those outside [-2, 2) are an error.
+    /// Leave the coordinates as they are, and refuse those outside [-2, 2).
     #[arg(long)]
     keep_scale: bool,
-    /// Print the report as JSON.
+    /// Print what was done as JSON.
     #[arg(long)]
     json: bool,
 }
@@ -50,13 +50,7 @@ impl ModelArguments {
         let options = Options {
             keep_scale: self.keep_scale,
         };
-        convert_to(
-            polygons,
-            Path::new(&self.name),
-            &self.out,
-            options,
-            self.json,
-        )
+        convert_to(polygons, &self.name, &self.out, options, self.json)
     }
 }
 
@@ -68,11 +62,17 @@ impl ConvertArguments {
         let options = Options {
             keep_scale: self.keep_scale,
         };
-        convert_to(polygons, &self.input, &self.out, options, self.json)
+        convert_to(
+            polygons,
+            &self.input.display().to_string(),
+            &self.out,
+            options,
+            self.json,
+        )
     }
 }
 
-/// Report of a file that is not a GLM.
+/// What was written when it was not a mesh for boards.
 #[derive(Serialize)]
 struct Copied {
     points: usize,
@@ -84,16 +84,18 @@ struct Copied {
 
 fn convert_to(
     mut polygons: Polygons,
-    name: &Path,
+    name: &str,
     out: &Path,
     options: Options,
     json: bool,
 ) -> anyhow::Result<()> {
-    let in_input = |error: FormatError| error.in_path(name);
+    let refused = |error: glint::error::FormatError| -> InputError {
+        error.in_file(name.escape_debug().to_string())
+    };
     let format = Format::of(out)?;
     if format == Format::Glm {
         let spinner = spinner("converting");
-        let (mesh, report) = convert::convert(&polygons, options).map_err(in_input)?;
+        let (mesh, report) = convert::convert(&polygons, options).map_err(refused)?;
         write_file(out, &mesh)?;
         spinner.finish_and_clear();
         return if json {
@@ -102,14 +104,14 @@ fn convert_to(
             print_report(&report)
         };
     }
-    convert::place(&mut polygons, options).map_err(in_input)?;
+    convert::place(&mut polygons, options).map_err(refused)?;
     let mut bytes = Vec::new();
     match format {
         Format::Obj => write::obj(&polygons, &mut bytes),
         Format::Stl => write::stl(&polygons, &mut bytes),
         Format::Ply | Format::Glm => write::ply(&polygons, &mut bytes),
     }
-    .context("mesh: cannot be written")?;
+    .context("the mesh cannot be written")?;
     write_file(out, &bytes)?;
     let copied = Copied {
         points: polygons.points.len(),
@@ -131,7 +133,7 @@ fn convert_to(
         .try_for_each(|remark| say(format_args!("note: {remark}")))
 }
 
-/// Prints a report as text.
+/// Prints a report for people.
 pub fn print_report(report: &Report) -> anyhow::Result<()> {
     let Report {
         points,
@@ -164,7 +166,7 @@ pub fn print_report(report: &Report) -> anyhow::Result<()> {
         .try_for_each(|remark| say(format_args!("note       {remark}")))
 }
 
-/// Loads a MODEL.
+/// Loads the model of a command line.
 pub fn load(name: &str, keep_scale: bool) -> anyhow::Result<model::Model> {
     let spinner = spinner("reading the model");
     let model = model::load(name, Options { keep_scale })?;

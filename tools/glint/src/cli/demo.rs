@@ -1,4 +1,4 @@
-//! `glint demo`: a tour of the whole machine.
+//! `glint demo`: the whole machine at work.
 
 use super::common::{advance, bar, say, spinner};
 use super::convert::load;
@@ -8,44 +8,47 @@ use glint::board::{Board, SimulatedBoard, built_firmware};
 use glint::console::Console;
 use glint::flash;
 use glint::model::Model;
-use glint::picture::{Frame, save_animation};
-use glint::render::{self, FieldSubject, Renderer, Route, Scene, Stats, Subject, view_command};
+use glint::picture::{Image, save_animation};
+use glint::render::{
+    self, BoardRenderer, FieldSubject, Frame, Route, Stats, Subject, size_command, view_command,
+};
 use glint::view;
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;
 use glint_core::field::Field;
 use glint_core::fixed::{Q32_32, Turns, U4_28};
-use glint_core::picture::Backend;
+use glint_core::mesh::Mesh;
+use glint_core::picture::{Backend, Size};
 use glint_core::stereo::{Stereo, Tint};
 use indicatif::ProgressBar;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Run the whole machine: boot the virtual board, load its firmware, upload models, render, capture the monitor.
+/// Show the whole machine: boot the virtual board, load its firmware, upload models, render, capture the monitor.
 #[derive(Args)]
 pub struct DemoArguments {
-    /// Mesh files or generators [default: icosphere:6, gear, teapot]. The first goes over the serial line of a board that boots
-    /// through its BIOS; the others go into the memory of a second board.
+    /// Mesh files or generators' names; icosphere:6, gear and teapot unless told. The first is uploaded over the serial
+    /// line of a board that has booted through its BIOS; the others are put into the memory of a second board meanwhile.
     models: Vec<String>,
-    /// Output folder.
+    /// The folder for the pictures.
     #[arg(long, default_value = "out")]
     out: PathBuf,
-    /// Firmware image [default: the output of `cargo xtask firmware`].
+    /// The program to load [default: that of `cargo xtask firmware`].
     #[arg(long, value_name = "FILE")]
     firmware: Option<PathBuf>,
-    /// Frames of the orbit animation.
+    /// Frames of the orbit.
     #[arg(long, default_value_t = 24)]
     orbit: u16,
-    /// Frames of the stereo animation of the sponge.
+    /// Frames of the sponge for two eyes.
     #[arg(long, default_value_t = 4)]
     sponge: u16,
 }
 
 const MODELS: [&str; 3] = ["icosphere:6", "gear", "teapot"];
-/// Load address and entry point of the firmware.
+/// Where a program goes and starts.
 const MAIN_RAM: u32 = 0x4000_0000;
-const SIZE: (u32, u32) = (320, 180);
-const ORBIT_SIZE: (u32, u32) = (640, 360);
+const SIZE: Size = Size::W320;
+const ORBIT_SIZE: Size = Size::W640;
 const ORBIT_FRAMES_PER_SECOND: u16 = 12;
 const SPONGE: Field = Field::Menger { depth: 4 };
 const EYES: Stereo = Stereo {
@@ -54,18 +57,18 @@ const EYES: Stereo = Stereo {
     tint: Tint::RedBlue,
 };
 const SPONGE_FRAMES_PER_SECOND: u16 = 3;
-/// Time-out of the BIOS's boot, in board time.
+/// The board's time that its BIOS may take.
 const BOOT_MS: u64 = 10_000;
 
 /// A model and its name.
 type Named<'n> = (&'n str, Model);
 
-/// One row of the table.
+/// A line of the table.
 struct Row {
     number: u32,
     picture: PathBuf,
     stats: Stats,
-    /// Cycles of the same frame drawn by the soft core, if measured.
+    /// Cycles of the same frame by the soft core, if it was let draw it.
     cpu_cycles: Option<u64>,
     cycles_per_second: f64,
 }
@@ -73,7 +76,7 @@ struct Row {
 impl DemoArguments {
     pub fn run(self) -> anyhow::Result<()> {
         std::fs::create_dir_all(&self.out)
-            .with_context(|| format!("{}: cannot be created", self.out.display()))?;
+            .with_context(|| format!("{}: cannot be made", self.out.display()))?;
         let names: Vec<String> = if self.models.is_empty() {
             MODELS.map(str::to_owned).to_vec()
         } else {
@@ -85,15 +88,15 @@ impl DemoArguments {
             .collect::<anyhow::Result<Vec<_>>>()?;
         let firmware = built_firmware(self.firmware.as_deref())?;
 
-        // Two boards: a simulation uses one core, and most hosts have two.
-        let (first, others) = models.split_first().context("no model")?;
+        // Two boards, as a machine has two cores and a simulation uses one.
+        let (first, others) = models.split_first().context("a model to show")?;
         let (mut rows, lines) = std::thread::scope(|scope| {
             let second = scope.spawn(|| self.second_board(first, others, &firmware));
             let mut rows = vec![self.first_board(first, &firmware)?];
-            let waiting = spinner("waiting for the second board");
+            let waiting = spinner("the second board is at work");
             let (others, lines) = second
                 .join()
-                .map_err(|_| anyhow::anyhow!("the second board's thread panicked"))??;
+                .map_err(|_| anyhow::anyhow!("the second board has failed"))??;
             waiting.finish_and_clear();
             rows.extend(others);
             anyhow::Ok((rows, lines))
@@ -103,19 +106,20 @@ impl DemoArguments {
         lines.into_iter().try_for_each(say)
     }
 
-    /// Full serial path: BIOS, serial boot, upload over the line; then the same picture by the soft core.
+    /// The long way: BIOS, serial boot, upload over the line; and the same picture by the soft core.
     fn first_board(&self, model: &Named, firmware: &[u8]) -> anyhow::Result<Row> {
         let mut board = SimulatedBoard::full()?;
-        let mut renderer = Renderer::new(boot(&mut board, firmware)?);
+        let mut renderer =
+            BoardRenderer::new(boot(&mut board, firmware)?).with_backend(Backend::Gateware);
         let mut row = self.show(&mut renderer, model, 0, Route::Serial)?;
-        let waiting = spinner("the soft core draws the same frame");
+        let waiting = spinner("the soft core draws the same");
         renderer.console().command("backend cpu")?;
         row.cpu_cycles = renderer.look(&camera(azimuth(0))?)?.cycles;
         waiting.finish_and_clear();
         Ok(row)
     }
 
-    /// Preloaded firmware and memory for the other models, the orbit about the last one, and the sponge.
+    /// The short way for all other models, the orbit about the last one, and the sponge.
     fn second_board(
         &self,
         first: &Named,
@@ -125,7 +129,7 @@ impl DemoArguments {
         let mut board = SimulatedBoard::fast(firmware)?;
         let mut console = Console::new(&mut board);
         console.greet()?;
-        let mut renderer = Renderer::new(console);
+        let mut renderer = BoardRenderer::new(console).with_backend(Backend::Gateware);
         let mut rows = Vec::new();
         for (number, model) in (1..).zip(models) {
             rows.push(self.show(&mut renderer, model, number, Route::Memory)?);
@@ -145,26 +149,22 @@ impl DemoArguments {
         Ok((rows, [orbit, sponge]))
     }
 
-    /// Shows a model on the board, captures the monitor, and compares the picture with the model's.
+    /// Gets a model onto the board, renders it, and looks at the monitor.
     fn show(
         &self,
-        renderer: &mut Renderer<SimulatedBoard>,
+        renderer: &mut BoardRenderer<SimulatedBoard>,
         (name, model): &Named,
         number: u32,
         route: Route,
     ) -> anyhow::Result<Row> {
         let (start, start_cycles) = (Instant::now(), renderer.board().inner().cycles());
-        let scene = Scene {
-            subject: Subject::mesh(&model.mesh),
-            view: camera(azimuth(number))?,
-            size: SIZE,
-            backend: Some(Backend::Gateware),
-        };
+        let subject = Subject::mesh(Mesh::new_checked(&model.mesh)?);
+        let frame = Frame::new(subject, camera(azimuth(number))?, SIZE);
         let bar = match route {
             Route::Serial => bar(name),
             Route::Memory => ProgressBar::hidden(),
         };
-        let stats = renderer.show(&scene, route, &mut advance(&bar))?;
+        let stats = renderer.show(&frame, route, &mut advance(&bar))?;
         bar.finish_and_clear();
         let picture = renderer.board().inner().capture()?;
         let path = self.out.join(file_stem(name)).with_extension("png");
@@ -172,11 +172,11 @@ impl DemoArguments {
             .save(&path)
             .with_context(|| format!("{}: cannot be written", path.display()))?;
 
-        let scale = virtual_board::WIDTH / SIZE.0 as usize;
-        let expected = render::on_model(&scene)?.frame.colour;
+        let scale = virtual_board::WIDTH / SIZE.width() as usize;
+        let expected = render::on_model(&frame)?.image.colour;
         anyhow::ensure!(
             picture.scaled_back(scale)? == expected,
-            "{name}: the picture on the monitor differs from the model's"
+            "{name}: the monitor's picture is not the model's"
         );
         let cycles = renderer.board().inner().cycles() - start_cycles;
         Ok(Row {
@@ -188,40 +188,45 @@ impl DemoArguments {
         })
     }
 
-    /// Renders one turn about the shown model; returns the mean cycles of a frame.
-    fn orbit(&self, renderer: &mut Renderer<SimulatedBoard>, path: &Path) -> anyhow::Result<u64> {
-        let (width, height) = ORBIT_SIZE;
+    /// Renders a turn about the model that is shown; returns the cycles of a frame, the mean of all.
+    fn orbit(
+        &self,
+        renderer: &mut BoardRenderer<SimulatedBoard>,
+        path: &Path,
+    ) -> anyhow::Result<u64> {
         let console = renderer.console();
         console.command("backend gateware")?;
-        console.command(&format!("size {width} {height}"))?;
+        console.command(&size_command(ORBIT_SIZE))?;
         console.command(&view_command(&camera(Turns(0))?))?;
         let mut cycles = 0;
-        let mut frames = Vec::new();
+        let mut images = Vec::new();
         for number in 0..self.orbit {
-            // `camera` is shorter than `view`: the serial line takes most of a frame's time.
+            // Shorter than the view's numbers: the line takes most of the time of a frame.
             let degrees = f64::from(number) * 360.0 / f64::from(self.orbit);
             let command = format!("camera {DISTANCE} {degrees:.3} {POLAR_DEGREES}");
             renderer.console().command(&command)?;
-            let stats = renderer.render()?;
+            let stats = renderer.redraw()?;
             anyhow::ensure!(
                 stats.backend.as_deref() == Some("gateware"),
                 "frame {number} of the orbit was drawn by the soft core"
             );
             cycles += stats.cycles.unwrap_or_default();
-            frames.push(Frame {
-                width,
-                height,
+            images.push(Image {
                 colour: renderer.colour(ORBIT_SIZE, Route::Memory, &mut |_, _| {})?,
-                depth: Vec::new(),
+                ..Image::empty(ORBIT_SIZE)
             });
         }
-        save_animation(path, &frames, ORBIT_FRAMES_PER_SECOND)
+        save_animation(path, &images, ORBIT_FRAMES_PER_SECOND)
             .with_context(|| format!("{}: cannot be written", path.display()))?;
         Ok(cycles / u64::from(self.orbit.max(1)))
     }
 
-    /// Moves towards the sponge and around it; returns the mean cycles of a frame.
-    fn sponge(&self, renderer: &mut Renderer<SimulatedBoard>, path: &Path) -> anyhow::Result<u64> {
+    /// Moves towards the sponge and around it; returns the cycles of a frame, the mean of all.
+    fn sponge(
+        &self,
+        renderer: &mut BoardRenderer<SimulatedBoard>,
+        path: &Path,
+    ) -> anyhow::Result<u64> {
         let lens = camera(Turns(0))?;
         let subject = FieldSubject {
             field: &SPONGE,
@@ -229,56 +234,49 @@ impl DemoArguments {
             stereo: Some(EYES),
             prepass: false,
         };
-        let (width, height) = SIZE;
         let console = renderer.console();
-        console.command(&format!("size {width} {height}"))?;
-        // A new board: every other option has its default.
+        console.command(&size_command(SIZE))?;
+        // The board is a new one: it looks as unless told.
         console.command(&format!("stereo {EYES}"))?;
         console.command(&format!("field {SPONGE}"))?;
         let mut cycles = 0;
-        let mut frames = Vec::new();
+        let mut images = Vec::new();
         for number in 0..self.sponge {
             let part = f64::from(number) / f64::from(self.sponge.max(2) - 1);
             let between = |from: f64, to: f64| format!("{:.3}", from + (to - from) * part);
             // Distance, azimuth and polar angle.
             let place = [between(3.2, 2.2), between(15.0, 60.0), between(80.0, 55.0)];
             let stats = renderer.render_after(&format!("camera {}", place.join(" ")))?;
-            let scene = Scene {
-                subject: Subject::Field(subject),
-                view: view::spherical(&place.join(","))?.with_lens_of(&lens),
-                size: SIZE,
-                backend: None,
-            };
-            let frame = Frame {
-                width,
-                height,
+            let view = view::spherical(&place.join(","))?.with_lens_of(&lens);
+            let frame = Frame::new(Subject::Field(subject), view, SIZE);
+            let image = Image {
                 colour: renderer.colour(SIZE, Route::Memory, &mut |_, _| {})?,
-                depth: Vec::new(),
+                ..Image::empty(SIZE)
             };
             anyhow::ensure!(
                 stats.backend.as_deref() == Some("gateware")
-                    && frame.colour == render::on_model(&scene)?.frame.colour,
-                "frame {number} of the sponge differs from the model's, or was drawn by the soft core"
+                    && image.colour == render::on_model(&frame)?.image.colour,
+                "frame {number} of the sponge is not the model's, or was drawn by the soft core"
             );
             cycles += stats.cycles.unwrap_or_default();
-            frames.push(frame);
+            images.push(image);
         }
-        save_animation(path, &frames, SPONGE_FRAMES_PER_SECOND)
+        save_animation(path, &images, SPONGE_FRAMES_PER_SECOND)
             .with_context(|| format!("{}: cannot be written", path.display()))?;
         Ok(cycles / u64::from(self.sponge.max(1)))
     }
 }
 
-/// Summary line of an animation; `cycles` is the mean of a frame.
-fn line(path: &Path, what: &str, (width, height): (u32, u32), cycles: u64) -> String {
+/// What is printed of an animation whose frames took so many cycles each.
+fn line(path: &Path, what: &str, size: Size, cycles: u64) -> String {
     format!(
-        "{}: {what}, {width}x{height}, by the gateware in {cycles} cycles each: {:.0} frames a second at 81.25 MHz",
+        "{}: {what}, {size}, by the gateware in {cycles} cycles each: {:.0} frames a second at 81.25 MHz",
         path.display(),
         81.25e6 / cycles as f64
     )
 }
 
-/// Azimuth of a model's picture: a different side for each.
+/// Another side of each model.
 fn azimuth(number: u32) -> Turns {
     Turns::from_degrees(Q32_32::from_num(number * 50 + 30))
 }
@@ -286,7 +284,7 @@ fn azimuth(number: u32) -> Turns {
 const DISTANCE: u32 = 2;
 const POLAR_DEGREES: u32 = 60;
 
-/// Half width of the image plane at distance 1: models nearly fill the height of the picture.
+/// The half width of the image plane at distance 1: models nearly fill the picture's height.
 const HALF_WIDTH: f64 = 0.6;
 
 /// The camera at an azimuth.
@@ -306,7 +304,7 @@ fn camera(azimuth: Turns) -> anyhow::Result<View> {
     .map_err(anyhow::Error::msg)
 }
 
-/// Boots from reset through the BIOS's serial boot to the firmware's prompt.
+/// From reset through the BIOS's serial boot to the firmware's prompt.
 fn boot<'b>(
     board: &'b mut SimulatedBoard,
     firmware: &[u8],
@@ -333,7 +331,7 @@ fn boot<'b>(
     Ok(console)
 }
 
-/// File name for a model's name.
+/// A model's name as that of a file.
 fn file_stem(name: &str) -> String {
     let stem = Path::new(name)
         .file_stem()

@@ -4,32 +4,32 @@ use super::common::{LineArguments, advance, bar, print_json, say, spinner};
 use super::convert::load;
 use anyhow::Context;
 use clap::Args;
-use glint::board::{Board, SerialBoard, SimulatedBoard};
+use glint::board::{Board, BoardName, SerialBoard, SimulatedBoard};
 use glint::console::Console;
 use glint::flash;
-use glint::render::{Renderer, Route};
+use glint::render::{BoardRenderer, Route};
 use std::path::PathBuf;
 
-/// Load a program onto a board through its BIOS, and start it.
+/// Load a program onto a board through its BIOS and start it.
 ///
-/// Uses LiteX's serial boot (SFL). Damaged frames are sent again, in shorter pieces.
+/// Speaks LiteX's serial boot (SFL), with retries: frames that a bad line damages are sent again, and get shorter.
 #[derive(Args)]
 pub struct FlashArguments {
-    /// Program to load, a flat binary.
+    /// The program, a flat binary.
     program: PathBuf,
-    /// Board: `virtual` or a serial port.
+    /// `virtual` or a serial port.
     #[arg(long, default_value = "virtual")]
-    board: String,
-    /// Load address, and entry point.
+    board: BoardName,
+    /// Where it goes in memory, and where it starts.
     #[arg(long, default_value = "0x40000000", value_parser = parse_address)]
     address: u32,
-    /// Time-out of the BIOS's request, in seconds of board time. Press reset, or the host sends `reboot`.
+    /// Seconds of the board's time to wait for its BIOS. Press reset, or have the board's program do it.
     #[arg(long, default_value_t = 60, value_name = "SECONDS")]
     wait: u64,
-    /// Baud rate of a serial port.
+    /// Bits a second of a serial port.
     #[arg(long, default_value_t = 115_200, value_name = "BITS")]
     baud: u32,
-    /// Print the report as JSON.
+    /// Print what was done as JSON.
     #[arg(long)]
     json: bool,
 }
@@ -37,17 +37,17 @@ pub struct FlashArguments {
 /// Upload a model to a board and show it.
 #[derive(Args)]
 pub struct UploadArguments {
-    /// Mesh file, or name of a generator.
+    /// A mesh file or a generator's name.
     model: String,
-    /// Board: `virtual` or a serial port.
+    /// `virtual` or a serial port.
     #[arg(long)]
-    board: String,
-    /// Keep the model's coordinates; those outside [-2, 2) are an error.
+    board: BoardName,
+    /// Leave the model's coordinates as they are, and refuse those outside [-2, 2).
     #[arg(long)]
     keep_scale: bool,
     #[command(flatten)]
     line: LineArguments,
-    /// Print the report as JSON.
+    /// Print what was done as JSON.
     #[arg(long)]
     json: bool,
 }
@@ -62,10 +62,10 @@ fn parse_address(text: &str) -> Result<u32, String> {
 impl FlashArguments {
     pub fn run(self) -> anyhow::Result<()> {
         let program = std::fs::read(&self.program)
-            .with_context(|| format!("{}: cannot be read", self.program.display()))?;
-        let mut board: Box<dyn Board> = match self.board.as_str() {
-            "virtual" => Box::new(SimulatedBoard::full()?),
-            port => Box::new(SerialBoard::open(port, self.baud)?),
+            .with_context(|| format!("{}: expected a program to read", self.program.display()))?;
+        let mut board: Box<dyn Board> = match &self.board {
+            BoardName::Virtual => Box::new(SimulatedBoard::full()?),
+            BoardName::Serial(port) => Box::new(SerialBoard::open(port, self.baud)?),
         };
         let waiting = spinner("waiting for the BIOS");
         let bar = bar("program");
@@ -96,7 +96,7 @@ impl UploadArguments {
         let mut board = self.line.board(&self.board)?;
         let start = board.now_ms();
         let bar = bar("mesh");
-        Renderer::new(Console::new(&mut *board)).upload(
+        BoardRenderer::new(Console::new(&mut *board)).upload(
             &model.mesh,
             Route::Serial,
             &mut advance(&bar),

@@ -5,26 +5,30 @@ use super::convert::load;
 use super::field::FieldArguments;
 use anyhow::Context;
 use clap::{Args, ValueEnum};
-use glint::board::{Board, SimulatedBoard};
+use glint::board::{Board, BoardName, ModelOrBoard, SimulatedBoard};
 use glint::console::Console;
 use glint::error::FormatError;
-use glint::picture::Frame;
 use glint::render::{
-    self, FieldSubject, MeshSubject, RayCounts, Rendered, Renderer, Route, Scene, Stats, Subject,
+    BoardRenderer, FieldSubject, Frame, MeshSubject, ModelRenderer, Parts, RayCounts, Rendered,
+    Renderer, Route, Stats, Subject,
 };
+use glint::transfer::Progress;
 use glint::view;
 use glint_core::camera::View;
 use glint_core::colour::Shading;
-use glint_core::picture::Backend;
+use glint_core::mesh::{Mesh, MeshError};
+use glint_core::picture::{Backend, Size};
 use glint_model::MAX_EYE;
 use glint_model::RenderError;
 use serde::Serialize;
 use std::path::PathBuf;
 
+const VIRTUAL: ModelOrBoard = ModelOrBoard::Board(BoardName::Virtual);
+
 /// Render a model, a distance field, or a model in a distance field to a picture.
 #[derive(Args)]
 pub struct RenderArguments {
-    /// A mesh file or a generator's name. With --field both are drawn, and what is nearer is seen.
+    /// A mesh file or a generator's name. With --field the mesh is drawn in the field.
     #[arg(required_unless_present = "field")]
     model: Option<String>,
     #[command(flatten)]
@@ -41,11 +45,10 @@ pub struct RenderArguments {
     /// A camera from a file: {"eye":[x,y,z],"u":[..],"v":[..],"n":[..],"half_width":h,"near":z}.
     #[arg(long, value_name = "VIEW.json")]
     view: Option<PathBuf>,
-    /// Who renders: `model` (the bit-exact model, on this machine), `virtual` (the verilated SoC) or a serial port.
+    /// The renderer: `model` (the bit-exact model, in this process), `virtual` (the verilated SoC) or a serial port.
     #[arg(long, default_value = "model")]
-    board: String,
-    /// Which renderer of a board [default: gateware where the board has it]. The model stands for both, as they are
-    /// bit-exact.
+    board: ModelOrBoard,
+    /// The backend of a board: `cpu` (the soft core) or `gateware` (the accelerators) [default: gateware where the board has it].
     #[arg(long, value_parser = named(Backend::ALL, Backend::name))]
     backend: Option<Backend>,
     /// 320x180, 640x360 or 1280x720.
@@ -54,10 +57,10 @@ pub struct RenderArguments {
     /// The picture to write.
     #[arg(long, value_name = "PICTURE.png")]
     out: PathBuf,
-    /// Write the distance along n in world units: one little-endian f32 a pixel, +inf where nothing was drawn.
+    /// Write the distance along n in world units: one little-endian f32 a pixel, +inf where no surface is.
     #[arg(long, value_name = "DEPTH.f32")]
     depth: Option<PathBuf>,
-    /// Write cycles, what was counted of triangles and pixels or of rays, and the clock as JSON.
+    /// Write cycles, counts of triangles, pixels and rays, and the clock as JSON.
     #[arg(long, value_name = "STATS.json")]
     stats: Option<PathBuf>,
     /// Draw back faces too.
@@ -69,15 +72,15 @@ pub struct RenderArguments {
     /// Leave the model's coordinates as they are, and refuse those outside [-2, 2).
     #[arg(long, requires = "model")]
     keep_scale: bool,
-    /// Where the picture of a board is taken from: its memory, or the virtual board's monitor.
+    /// The source of a board's picture: its memory, or the virtual board's monitor.
     #[arg(long, value_enum, default_value_t = Capture::Frame)]
     capture: Capture,
-    /// How mesh and picture pass between here and a board [default: memory on the virtual board, serial on a port].
+    /// The route of mesh and picture [default: memory on the virtual board, serial on a port].
     #[arg(long, value_enum)]
     transfer: Option<Route>,
     #[command(flatten)]
     line: LineArguments,
-    /// Print what was done as JSON.
+    /// Print the result as JSON.
     #[arg(long)]
     json: bool,
 }
@@ -90,20 +93,20 @@ enum Capture {
     Monitor,
 }
 
-/// What is printed with `--json`.
+/// The output of `--json`.
 #[derive(Serialize)]
 struct Outcome<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     model: Option<&'a str>,
     #[serde(skip_serializing_if = "Option::is_none")]
     field: Option<&'a str>,
-    board: &'a str,
+    board: String,
     size: [u32; 2],
     #[serde(flatten)]
     stats: &'a Totals<'a>,
 }
 
-/// What a frame took, as files and programs get it.
+/// Statistics of a frame, with derived ones.
 #[derive(Serialize)]
 struct Totals<'a> {
     #[serde(flatten)]
@@ -119,12 +122,14 @@ impl RenderArguments {
         let field = self.field.field()?;
         let appearance = self.field.appearance()?;
         let stereo = self.field.stereo(self.model.is_some())?;
-        let mesh = self.model.as_deref();
-        let mesh = mesh.map(|name| load(name, self.keep_scale)).transpose()?;
-        let mesh = mesh.as_ref().map(|model| MeshSubject {
-            bytes: &model.mesh,
-            cull: !self.no_cull,
-            shading: self.shading,
+        let model = self.model.as_deref();
+        let model = model.map(|name| load(name, self.keep_scale)).transpose()?;
+        let mesh = model.as_ref().map(|model| {
+            Ok::<_, MeshError>(MeshSubject {
+                mesh: Mesh::new_checked(&model.mesh)?,
+                cull: !self.no_cull,
+                shading: self.shading,
+            })
         });
         let field = field.as_ref().map(|field| FieldSubject {
             field,
@@ -132,26 +137,22 @@ impl RenderArguments {
             stereo,
             prepass: self.field.prepass(),
         });
-        let subject = match (mesh, field) {
-            (Some(mesh), Some(field)) => Subject::Both(mesh, field),
+        let subject = match (mesh.transpose()?, field) {
+            (Some(mesh), Some(field)) => Subject::MeshInField(mesh, field),
             (Some(mesh), None) => Subject::Mesh(mesh),
             (None, Some(field)) => Subject::Field(field),
             (None, None) => anyhow::bail!("expected a model, a --field or both, found neither"),
         };
-        let scene = Scene {
-            subject,
-            view,
-            size,
-            backend: self.backend,
-        };
-        let Rendered { frame, stats } = self.render(&scene)?;
-        frame
+        let frame = Frame::new(subject, view, size);
+        let Rendered { image, stats } = self.render(&frame)?;
+        image
             .picture()
             .save(&self.out)
             .with_context(|| format!("{}: cannot be written", self.out.display()))?;
         if let Some(path) = &self.depth {
-            frame
-                .save_depth(path, &render::depth_scale(&scene)?)
+            let scale = frame.constants()?.depth_scale();
+            image
+                .save_depth(path, &scale.context("expected a frame with a subject")?)
                 .with_context(|| format!("{}: cannot be written", path.display()))?;
         }
         let totals = Totals {
@@ -166,8 +167,8 @@ impl RenderArguments {
             let outcome = Outcome {
                 model: self.model.as_deref(),
                 field: self.field.name(),
-                board: &self.board,
-                size: [size.0, size.1],
+                board: self.board.to_string(),
+                size: size.pixels(),
                 stats: &totals,
             };
             return print_json(&outcome);
@@ -194,82 +195,77 @@ impl RenderArguments {
         Ok(view)
     }
 
-    fn render(&self, scene: &Scene) -> anyhow::Result<Rendered> {
+    fn render(&self, frame: &Frame) -> anyhow::Result<Rendered> {
         anyhow::ensure!(
-            self.board == "virtual" || self.capture == Capture::Frame,
+            self.board == VIRTUAL || self.capture == Capture::Frame,
             "--capture monitor: only the virtual board has a monitor to look at"
         );
-        match self.board.as_str() {
-            "model" => {
+        match &self.board {
+            ModelOrBoard::Model => {
                 let spinner = spinner("rendering");
-                let rendered = render::on_model(scene)?;
+                let rendered = self.render_by(&mut ModelRenderer, frame, &mut |_, _| {})?;
                 spinner.finish_and_clear();
                 Ok(rendered)
             }
-            "virtual" => {
+            ModelOrBoard::Board(BoardName::Virtual) => {
                 let mut board = self.line.virtual_board()?;
-                let route = self.transfer.unwrap_or(Route::Memory);
-                let mut rendered = self.on_board(&mut board, scene, route)?;
+                let mut rendered = self.render_on(&mut board, &BoardName::Virtual, frame)?;
                 if self.capture == Capture::Monitor {
-                    rendered.frame.colour = from_monitor(&mut board, scene.size)?;
+                    rendered.image.colour = from_monitor(&mut board, frame.size)?;
                 }
                 Ok(rendered)
             }
-            port => {
-                let mut board = self.line.serial_board(port)?;
-                self.on_board(&mut board, scene, self.transfer.unwrap_or(Route::Serial))
-            }
+            ModelOrBoard::Board(name) => self.render_on(&mut *self.line.board(name)?, name, frame),
         }
     }
 
-    fn on_board(
+    fn render_on(
         &self,
         board: &mut dyn Board,
-        scene: &Scene,
-        route: Route,
+        name: &BoardName,
+        frame: &Frame,
     ) -> anyhow::Result<Rendered> {
-        let mut renderer = Renderer::new(Console::new(board));
+        let mut renderer = BoardRenderer::new(Console::new(board))
+            .with_backend(self.backend)
+            .with_route(self.transfer.unwrap_or(Route::of(name)));
         let bar = bar("mesh and frames");
-        let (width, height) = scene.size;
-        let stats = renderer.show(scene, route, &mut advance(&bar))?;
-        let mut frame = Frame {
-            width,
-            height,
-            colour: Vec::new(),
-            depth: Vec::new(),
-        };
-        if self.capture == Capture::Frame {
-            frame.colour = renderer.colour(scene.size, route, &mut advance(&bar))?;
-        }
-        if self.depth.is_some() {
-            frame.depth = renderer.depth(scene.size, route, &mut advance(&bar))?;
-        }
+        let rendered = self.render_by(&mut renderer, frame, &mut advance(&bar))?;
         bar.finish_and_clear();
-        Ok(Rendered { frame, stats })
+        Ok(rendered)
+    }
+
+    fn render_by(
+        &self,
+        renderer: &mut dyn Renderer,
+        frame: &Frame,
+        progress: &mut Progress,
+    ) -> anyhow::Result<Rendered> {
+        let parts = Parts {
+            colour: self.capture == Capture::Frame,
+            depth: self.depth.is_some(),
+        };
+        Ok(renderer.render(frame, parts, progress)?)
     }
 }
 
-/// The frame that the virtual board's monitor shows, scaled back to the size it was drawn in.
-fn from_monitor(board: &mut SimulatedBoard, (width, _): (u32, u32)) -> anyhow::Result<Vec<u16>> {
-    let spinner = spinner("the monitor shows a frame");
+/// The frame on the virtual board's monitor, scaled back to its own size.
+fn from_monitor(board: &mut SimulatedBoard, size: Size) -> anyhow::Result<Vec<u16>> {
+    let spinner = spinner("capturing a frame of the monitor");
     let picture = board.inner().capture()?;
     spinner.finish_and_clear();
-    let scale = virtual_board::WIDTH / width as usize;
+    let scale = virtual_board::WIDTH / size.width() as usize;
     Ok(picture.scaled_back(scale)?)
 }
 
-fn parse_size(text: &str) -> anyhow::Result<(u32, u32)> {
-    let size = text
-        .split_once('x')
-        .and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)));
-    size.filter(|size| glint_model::SIZES.contains(size))
-        .ok_or_else(|| {
-            let error = FormatError::whole(
-                "320x180, 640x360 or 1280x720",
-                glint::error::quote(text.as_bytes()),
-            );
-            error.in_file("--size").into()
-        })
+fn parse_size(text: &str) -> anyhow::Result<Size> {
+    let size = Size::ALL.into_iter().find(|size| size.to_string() == text);
+    size.ok_or_else(|| {
+        let error = FormatError::whole(
+            "320x180, 640x360 or 1280x720",
+            glint::error::quote(text.as_bytes()),
+        );
+        error.in_file("--size").into()
+    })
 }
 
 fn print_stats(stats: &Stats) -> anyhow::Result<()> {

@@ -3,28 +3,28 @@
 use super::common::{LineArguments, print_json, say};
 use anyhow::Context;
 use clap::Args;
-use glint::board::Board;
+use glint::board::{Board, BoardName};
 use glint::console::Console;
 use rustix::termios::{OptionalActions, Termios, isatty, tcgetattr, tcsetattr};
 use std::io::{Read, Write};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
-/// Ctrl-]: ends the session.
+/// Ctrl-]: ends the console.
 const EXIT: u8 = 0x1d;
-/// Time-out of a read from the board, in board time.
+/// How long a look at the board's line takes, in its time.
 const LOOK_MS: u64 = 10;
 
-/// Open a board's console. Ctrl-] ends the session.
+/// Talk to a board's console. Ctrl-] ends it.
 #[derive(Args)]
 pub struct ConsoleArguments {
-    /// Board: `virtual` or a serial port.
-    board: String,
-    /// Send a command, print its reply and exit; repeatable.
+    /// `virtual` or a serial port.
+    board: BoardName,
+    /// Send this command, print its reply and end; may be given several times.
     #[arg(long, value_name = "COMMAND")]
     send: Vec<String>,
     #[command(flatten)]
     line: LineArguments,
-    /// Print the replies to --send as JSON: an array of lines for each command.
+    /// Print the replies to --send as JSON: an array with an array of lines for each.
     #[arg(long, requires = "send")]
     json: bool,
 }
@@ -52,7 +52,7 @@ impl ConsoleArguments {
     }
 }
 
-/// The terminal in raw mode, so that keys reach the board unchanged; restores the old mode when dropped.
+/// The terminal in raw mode, so that keys go to the board as they are; as it was before when this goes.
 struct RawTerminal(Option<Termios>);
 
 impl RawTerminal {
@@ -72,13 +72,13 @@ impl RawTerminal {
 impl Drop for RawTerminal {
     fn drop(&mut self) {
         if let Some(before) = &self.0 {
-            // The terminal may be gone: nothing can be restored then.
+            // Nothing to be done about a terminal that is gone.
             let _ = tcsetattr(std::io::stdin(), OptionalActions::Flush, before);
         }
     }
 }
 
-/// Pressed keys, read by a thread.
+/// Keys as they are pressed, from a thread that waits for them.
 fn keys() -> Receiver<Vec<u8>> {
     let (sender, receiver) = channel();
     std::thread::spawn(move || {
@@ -98,7 +98,7 @@ fn interact(board: &mut dyn Board) -> anyhow::Result<()> {
     let keys = keys();
     let mut output = std::io::stdout();
     let mut received = Vec::new();
-    // Makes the board print its prompt.
+    // A prompt, whatever was on the line before.
     board.write(b"\r")?;
     loop {
         board.read(&mut received, LOOK_MS)?;

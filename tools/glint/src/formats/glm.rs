@@ -1,13 +1,14 @@
-//! Conversion of Glint's own meshes to polygons.
+//! Glint's own meshes, read back into polygons.
 
 use crate::error::{FormatError, Place};
 use crate::polygons::{Corner, Polygons, Rgb8};
 use glint_core::mesh::{Mesh, Rgb565};
 
-/// Parses a GLM. Positions and normals are converted exactly, colours by bit replication; chunks are joined.
+/// Reads a mesh as it lies in memory. Positions and normals come back as the numbers they are, colours by replication of
+/// their bits, and chunks are joined.
 ///
 /// # Errors
-/// [`Mesh::new_checked`] rejects it, or it has no triangles.
+/// What [`Mesh::new_checked`] refuses, and a mesh without triangles.
 pub fn parse(bytes: &[u8]) -> Result<Polygons, FormatError> {
     let mesh = check(bytes)?;
     let world = |q: [i16; 3]| q.map(|c| f64::from(c) / 16384.0);
@@ -36,10 +37,10 @@ pub fn parse(bytes: &[u8]) -> Result<Polygons, FormatError> {
     Ok(polygons)
 }
 
-/// Checks a GLM.
+/// Checks a mesh as it lies in memory.
 ///
 /// # Errors
-/// [`Mesh::new_checked`] rejects it.
+/// What [`Mesh::new_checked`] refuses.
 pub fn check(bytes: &[u8]) -> Result<Mesh<'_>, FormatError> {
     Mesh::new_checked(bytes).map_err(|error| {
         let found = match error.expected {

@@ -1,4 +1,4 @@
-//! Mesh files: formats, reading, writing.
+//! Mesh files: which format a name means, reading and writing.
 
 pub mod glm;
 pub mod mtl;
@@ -21,17 +21,17 @@ pub enum Format {
     Obj,
     /// STL; written as binary.
     Stl,
-    /// PLY; written as binary, little-endian.
+    /// PLY; written as binary, low byte first.
     Ply,
-    /// Glint's own format: a board's memory layout.
+    /// Glint's own: the mesh as it lies in a board's memory.
     Glm,
 }
 
 impl Format {
-    /// Selects the format by a file's extension.
+    /// By the extension of a file's name.
     ///
     /// # Errors
-    /// The extension is not obj, stl, ply or glm.
+    /// The extension is none of obj, stl, ply and glm.
     pub fn of(path: &Path) -> Result<Self, InputError> {
         let extension = path
             .extension()
@@ -47,11 +47,15 @@ impl Format {
                 });
                 Err(
                     FormatError::whole("a name that ends in .obj, .stl, .ply or .glm", found)
-                        .in_path(path),
+                        .in_file(name(path)),
                 )
             }
         }
     }
+}
+
+fn name(path: &Path) -> String {
+    path.display().to_string().escape_debug().to_string()
 }
 
 /// Reads a whole file.
@@ -62,17 +66,21 @@ pub fn read_file(path: &Path) -> Result<Vec<u8>, InputError> {
     let mut bytes = Vec::new();
     File::open(path)
         .and_then(|file| file.take(MAX_FILE as u64 + 1).read_to_end(&mut bytes))
-        .map_err(|error| FormatError::whole("a file to read", error.to_string()).in_path(path))?;
+        .map_err(|error| {
+            FormatError::whole("a file to read", error.to_string()).in_file(name(path))
+        })?;
     if bytes.len() > MAX_FILE {
-        return Err(FormatError::whole(format!("at most {MAX_FILE} bytes"), "more").in_path(path));
+        return Err(
+            FormatError::whole(format!("at most {MAX_FILE} bytes"), "more").in_file(name(path)),
+        );
     }
     Ok(bytes)
 }
 
-/// Reads a mesh file of any format. Material files of an OBJ are read from its own folder only.
+/// Reads a mesh file of any format. The materials of an OBJ are looked for beside it, and nowhere else.
 ///
 /// # Errors
-/// The file cannot be read, or violates its format.
+/// The file cannot be read, or is not what its name says.
 pub fn read(path: &Path) -> Result<Polygons, InputError> {
     let format = Format::of(path)?;
     let bytes = read_file(path)?;
@@ -92,5 +100,5 @@ pub fn read(path: &Path) -> Result<Polygons, InputError> {
         Format::Ply => ply::parse(&bytes),
         Format::Glm => glm::parse(&bytes),
     };
-    parsed.map_err(|error| error.in_path(path))
+    parsed.map_err(|error| error.in_file(name(path)))
 }

@@ -1,6 +1,6 @@
-//! Fuzzing without compiler instrumentation: generated seeds, a small mutator, numbered inputs.
+//! Fuzzing without a compiler of its own: seeds made by code, a small mutator, and for each input only its number.
 //!
-//! Seed and number determine an input's bytes, on any thread: runs can be split, and findings repeated.
+//! Input `i` of a seed is always the same bytes, whatever thread makes it, so a run can be spread and a finding repeated.
 
 mod corpus;
 mod mutate;
@@ -11,7 +11,7 @@ pub use targets::{Outcome, Target};
 
 use mutate::{Random, mutate};
 
-/// Inputs of one target.
+/// The inputs of one target.
 pub struct Inputs {
     target: Target,
     seed: u64,
@@ -19,7 +19,7 @@ pub struct Inputs {
 }
 
 impl Inputs {
-    /// Creates the corpus of a target.
+    /// Makes the corpus of a target.
     pub fn new(target: Target, seed: u64) -> Self {
         Self {
             target,
@@ -28,11 +28,11 @@ impl Inputs {
         }
     }
 
-    /// Input with a number, at most [`MAX_INPUT`] bytes.
+    /// The input of a number, at most [`MAX_INPUT`] bytes.
     pub fn input(&self, number: u64) -> Vec<u8> {
         let mut random = Random::new(self.seed, number);
         let mut input = mutate(&self.corpus, self.target.words(), &mut random);
-        // A checksum rejects nearly every mutation, so half of the inputs get theirs corrected.
+        // Checksums stop nearly every mutation at the door; half of the inputs get theirs put right.
         if random.below(2) == 0 {
             self.target.repair(&mut input);
         }
@@ -40,7 +40,7 @@ impl Inputs {
         input
     }
 
-    /// Runs the target on the input with a number. The caller catches panics.
+    /// Makes the input of a number and gives it to the target. A panic is the caller's to catch.
     pub fn run(&self, number: u64) -> Outcome {
         self.target.run(&self.input(number))
     }

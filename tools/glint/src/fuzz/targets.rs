@@ -1,4 +1,4 @@
-//! Fuzz targets.
+//! What is fuzzed.
 
 use crate::convert::{self, Options};
 use crate::formats::{glm, obj, ply, stl};
@@ -10,7 +10,7 @@ use glint_core::console::{Command, Event, LineEditor, write_help};
 use glint_core::orientation::log as image;
 use glint_core::wire::{MAX_FRAME, Manifest, Receiver, Sender, State, Timing, crc32};
 
-/// A parser of external bytes.
+/// Something that takes bytes from outside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Target {
     /// Both sides of an upload.
@@ -23,25 +23,25 @@ pub enum Target {
     Stl,
     /// PLY.
     Ply,
-    /// Meshes in a board's memory layout.
+    /// Meshes as they lie in memory.
     Glm,
     /// Logs of a gyroscope and an accelerometer.
     Imu,
-    /// Logs in a board's format.
+    /// The same as they go to a board.
     Replay,
 }
 
-/// Result of a target on an input.
+/// What a target made of an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// Accepted to the end.
+    /// It went the whole way.
     Accepted,
-    /// Rejected somewhere.
+    /// It was refused somewhere.
     Refused,
 }
 
 impl Target {
-    /// Every target.
+    /// All of them.
     pub const ALL: [Self; 8] = [
         Self::Upload,
         Self::Console,
@@ -53,7 +53,7 @@ impl Target {
         Self::Replay,
     ];
 
-    /// Meaningful words of its format.
+    /// Words that mean something to it.
     pub fn words(self) -> &'static [&'static str] {
         match self {
             Self::Upload | Self::Glm | Self::Replay => &[],
@@ -96,12 +96,12 @@ impl Target {
         }
     }
 
-    /// Corrects checksums and lengths, which would reject nearly every mutation.
+    /// Puts right what would stop an input before anything else is looked at: checksums and lengths.
     pub fn repair(self, input: &mut Vec<u8>) {
         match self {
             Self::Upload => repair_frames(input),
             Self::Stl => {
-                // Sets the count that matches the file's length.
+                // The count that makes the file's length right.
                 let count = (input.len().saturating_sub(84) / 50) as u32;
                 if let (Some(field), false) = (input.get_mut(80..84), count == 0) {
                     field.copy_from_slice(&count.to_le_bytes());
@@ -116,7 +116,7 @@ impl Target {
                 }
             }
             Self::Replay => {
-                // Sets the number of samples that matches the length.
+                // The number of samples that the length is for.
                 let samples = input.len().saturating_sub(image::HEADER_BYTES) / image::RECORD_BYTES;
                 if let Some(field) = input.get_mut(4..8) {
                     field.copy_from_slice(&(samples as u32).to_le_bytes());
@@ -127,13 +127,13 @@ impl Target {
         }
     }
 
-    /// Runs the target. A panic is a bug.
+    /// Gives it an input. A bug is a panic.
     pub fn run(self, input: &[u8]) -> Outcome {
         match self {
             Self::Upload => run_transfer(input),
             Self::Console => run_console(input),
             Self::Obj => {
-                // The same bytes serve as material file.
+                // The same bytes are its material file, so that is fuzzed along.
                 let polygons = obj::parse(input, &mut |_| Some(input.to_vec()));
                 polygons.map_or(Outcome::Refused, |polygons| run_conversion(&polygons))
             }
@@ -157,9 +157,9 @@ impl Target {
     }
 }
 
-/// Converts and writes polygons that were parsed.
+/// What polygons go through after they have been read.
 fn run_conversion(polygons: &Polygons) -> Outcome {
-    // Oversized input is rejected; any other output is a valid mesh.
+    // What does not fit is refused; what comes out is a mesh, or `convert` fails.
     let _ = convert::convert(polygons, Options { keep_scale: true });
     match convert::convert(polygons, Options::default()) {
         Ok((mesh, report)) => {
@@ -175,7 +175,7 @@ fn run_conversion(polygons: &Polygons) -> Outcome {
     }
 }
 
-/// Replays a parsed log, by its time stamps and with a fixed period, with every option on.
+/// Replays a log that was read, by its stamps and by a period, with everything on.
 fn run_replay(entries: &[log::Entry]) {
     for period in [None, Some(1_000), Some(600_000)] {
         let options = replay::Options {
@@ -191,7 +191,7 @@ fn run_replay(entries: &[log::Entry]) {
             replayed.is_ok_and(|replayed| replayed.attitudes.len() == entries.len()),
             "without a calibration every log is replayed"
         );
-        // A log that moves fails the calibration.
+        // Whether it is still is the log's affair.
         let _ = replay(&replay::Options {
             still: Some(u64::MAX),
             ..options
@@ -199,7 +199,7 @@ fn run_replay(entries: &[log::Entry]) {
     }
 }
 
-/// Replays a log in a board's format: an accepted one gives attitudes.
+/// Replays a log as a board gets it: what is accepted becomes attitudes.
 fn run_image(input: &[u8]) -> Outcome {
     let mut image = input.to_vec();
     match image::replay(&mut image) {
@@ -262,7 +262,7 @@ fn run_console(input: &[u8]) -> Outcome {
             use std::fmt::Write;
             match Command::parse(line) {
                 Ok(Command::Help(name)) => {
-                    // Writing to a string cannot fail.
+                    // A string takes everything.
                     let _ = write_help(&mut text, name);
                 }
                 Ok(_) => outcome = Outcome::Accepted,
@@ -286,12 +286,12 @@ fn run_console(input: &[u8]) -> Outcome {
     outcome
 }
 
-/// Data of the transfers in the corpus.
+/// The data that transfers in the corpus carry.
 pub fn upload_data(length: usize) -> Vec<u8> {
     (0..length).map(|i| (i * 7 / 3) as u8).collect()
 }
 
-/// Feeds the input to one side of a transfer, in pieces, while time passes.
+/// Gives the input to one side of a transfer, in pieces and with time going by.
 fn run_transfer(input: &[u8]) -> Outcome {
     let &[side, pace, piece, ref stream @ ..] = input else {
         return Outcome::Refused;
@@ -366,7 +366,7 @@ fn ended(state: State) -> Outcome {
     }
 }
 
-/// Corrects the CRC-16 of every frame of a stream.
+/// Gives every frame of a stream its right CRC-16.
 fn repair_frames(input: &mut Vec<u8>) {
     const CRC: crc::Crc<u16> = crc::Crc::<u16>::new(&crc::CRC_16_IBM_3740);
     let Some((head, stream)) = input.split_at_checked(3) else {

@@ -1,42 +1,41 @@
-//! Logs as CSV: a header with `t_us,ax,ay,az,gx,gy,gz` and optionally `temp`, in any order, then one sample a line in raw
-//! counts.
+//! Logs as CSV: a header that names `t_us,ax,ay,az,gx,gy,gz`, and `temp` or not, in any order; then a sample a line, in raw counts.
 
 use crate::error::{FormatError, Place, quote};
 use crate::formats::text::{Line, Lines};
 
-/// One sample of a log.
+/// One line of a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Entry {
-    /// Its line, counted from 1.
+    /// The line, counted from 1.
     pub line: usize,
-    /// Time of the sample in µs.
+    /// When the sample was taken, in µs.
     pub t_us: u64,
-    /// Accelerometer x, y, z in raw counts.
+    /// What the accelerometer said, x, y, z.
     pub accel: [i16; 3],
-    /// Gyroscope x, y, z in raw counts.
+    /// What the gyroscope said, x, y, z.
     pub gyro: [i16; 3],
-    /// Thermometer in raw counts, if the log has it.
+    /// What the thermometer said, if the log has it.
     pub temp: Option<i16>,
 }
 
 const TIME: &str = "t_us";
 const TEMPERATURE: &str = "temp";
 const COLUMNS: [&str; 8] = [TIME, "ax", "ay", "az", "gx", "gy", "gz", TEMPERATURE];
-/// Maximum number of columns in a header; real logs have fewer.
+/// The most columns a line is looked through for; no log has as many.
 const MOST_COLUMNS: usize = 64;
 
-/// Position of each of [`COLUMNS`], and the number of columns in the file.
+/// Where the columns are: one for each of [`COLUMNS`], and how many there are.
 struct Header {
     places: [Option<usize>; COLUMNS.len()],
     count: usize,
 }
 
-/// Parses a log.
+/// Reads a log.
 ///
 /// # Errors
-/// The first violation of the format, with its line and column.
+/// The first thing that is not as it should be, with its line and column.
 pub fn parse(text: &[u8]) -> Result<Vec<Entry>, FormatError> {
-    // Spreadsheets start a CSV with a byte order mark.
+    // Spreadsheets put it in front of a CSV.
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
     let mut lines = Lines::new(text);
     let Some(first) = next_filled(&mut lines)? else {
@@ -79,7 +78,7 @@ impl Header {
         for cell in cells(line) {
             let column = COLUMNS.iter().position(|name| name.as_bytes() == cell);
             let Some(column) = column.filter(|_| count < MOST_COLUMNS) else {
-                let expected = format!("only columns {}", COLUMNS.join(","));
+                let expected = format!("columns of {}", COLUMNS.join(","));
                 return Err(FormatError::new(line.place(), expected, quote(cell)));
             };
             if places[column].replace(count).is_some() {
@@ -115,19 +114,19 @@ impl Header {
                 .and_then(|place| row.get(place))
                 .copied()
         };
-        let bad_cell = |column: usize, expected: &str| {
+        let wrong = |column: usize, expected: &str| {
             let place = Place::Cell(line.number, COLUMNS[column]);
             FormatError::new(place, expected, quote(cell(column).unwrap_or_default()))
         };
         let number = |column: usize| std::str::from_utf8(cell(column).unwrap_or_default());
         let count = |column: usize| {
             let parsed = number(column).ok().and_then(|text| text.parse().ok());
-            parsed.ok_or_else(|| bad_cell(column, "a whole number from -32768 to 32767"))
+            parsed.ok_or_else(|| wrong(column, "a whole number from -32768 to 32767"))
         };
         let t_us = number(0).ok().and_then(|text| text.parse().ok());
         Ok(Entry {
             line: line.number,
-            t_us: t_us.ok_or_else(|| bad_cell(0, "a whole number of microseconds"))?,
+            t_us: t_us.ok_or_else(|| wrong(0, "a whole number of microseconds"))?,
             accel: [count(1)?, count(2)?, count(3)?],
             gyro: [count(4)?, count(5)?, count(6)?],
             temp: match cell(7) {
@@ -163,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_name_their_place() {
+    fn what_is_wrong_is_said_with_its_place() {
         let header = "t_us,ax,ay,az,gx,gy,gz\n";
         for (text, message) in [
             (
@@ -181,7 +180,7 @@ mod tests {
             ),
             (
                 "t_us,ax,ay,az,gx,gy,gz,mx\n",
-                "line 1: expected only columns t_us,ax,ay,az,gx,gy,gz,temp, found 'mx'",
+                "line 1: expected columns of t_us,ax,ay,az,gx,gy,gz,temp, found 'mx'",
             ),
             (
                 "t_us,ax,ay,az,gx,gy,gz,ax\n",
@@ -189,7 +188,7 @@ mod tests {
             ),
             (
                 "1,2,3,4,5,6,7\n",
-                "line 1: expected only columns t_us,ax,ay,az,gx,gy,gz,temp, found '1'",
+                "line 1: expected columns of t_us,ax,ay,az,gx,gy,gz,temp, found '1'",
             ),
         ] {
             assert_eq!(parse(text.as_bytes()).unwrap_err().to_string(), message);

@@ -1,4 +1,4 @@
-//! Gyroscope and accelerometer: a board's sensor, logs, and the attitudes of logs.
+//! A gyroscope and an accelerometer: those of a board, their logs, and the attitudes that follow from them.
 
 pub mod log;
 pub mod replay;

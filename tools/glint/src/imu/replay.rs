@@ -1,4 +1,4 @@
-//! Attitudes of a log by the firmware's arithmetic, on this host or on a board.
+//! The firmware's orientation on the samples of a log, by this machine or by a board.
 
 use super::log::Entry;
 use crate::board::Board;
@@ -12,30 +12,29 @@ use glint_core::orientation::log::{
 };
 use glint_core::orientation::{Counts, LONGEST_STEP, Quaternion, Sample};
 
-/// Options of a replay.
+/// How a log is replayed.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
-    /// Scales of the raw counts.
+    /// What counts are worth.
     pub units: Units,
-    /// Sample period in µs, instead of the time stamps.
+    /// The time between two samples in µs, instead of their stamps.
     pub period: Option<u32>,
-    /// Length of the calibration at the start, in µs.
+    /// How many µs at the start are a calibration.
     pub still: Option<u64>,
-    /// Whether tilt correction is on.
+    /// Whether the accelerometer holds the tilt.
     pub tilt: bool,
-    /// Whether the bias is tracked at rest.
+    /// Whether the bias is followed at rest.
     pub follow_bias: bool,
 }
 
-/// Samples of a log with the firmware's 32-bit time stamps.
+/// The samples of a log, stamped as the firmware stamps them.
 struct Stamps<'a> {
     entries: &'a [Entry],
     period: Option<u32>,
 }
 
 impl Stamps<'_> {
-    /// Samples with 32-bit time stamps. A step backwards counts as no step, and a step beyond the longest integrated one is
-    /// shortened to just above that.
+    /// Stamps of 32 bits. A step back is no step, and one longer than any that is integrated is a little longer than that.
     fn samples(&self) -> impl Iterator<Item = Sample> {
         let mut latest = self.entries.first().map_or(0, |entry| entry.t_us);
         let mut stamp = 0_u32;
@@ -61,7 +60,7 @@ impl Stamps<'_> {
     }
 }
 
-/// A log in a board's format.
+/// A log as it goes to a board.
 #[derive(Clone, Debug)]
 pub struct Prepared {
     image: Vec<u8>,
@@ -69,43 +68,43 @@ pub struct Prepared {
     calibration: Option<Report>,
 }
 
-/// Result of a replay.
+/// What came of a log.
 #[derive(Clone, Debug)]
 pub struct Replayed {
-    /// Attitude at each sample.
+    /// The attitude at each sample.
     pub attitudes: Vec<Quaternion>,
-    /// Counts of the samples by treatment.
+    /// What happened to the samples.
     pub counts: Counts,
-    /// The calibration, if requested.
+    /// The calibration, if there was one.
     pub calibration: Option<Report>,
-    /// Mean cycles of a sample on a board.
+    /// Cycles of a board for a sample, in the mean.
     pub cycles: Option<u64>,
 }
 
-/// A replay that failed.
+/// Why there are no attitudes.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// The log is not at rest during the calibration.
+    /// The log is to be still at the start and is not.
     #[error(transparent)]
     Still(#[from] FormatError),
-    /// The model rejects the log.
+    /// The log cannot be replayed.
     #[error("{0}")]
     Log(LogError),
-    /// The board rejects the log, or the transfer fails.
+    /// The board refuses, or the transfer fails.
     #[error(transparent)]
     Transfer(#[from] TransferError),
-    /// The console reports an error, or does not answer.
+    /// The board's console says no, or nothing.
     #[error(transparent)]
     Console(#[from] ConsoleError),
-    /// An attitude of the board is not a unit quaternion.
-    #[error("attitude {0} of the board: expected a quaternion of length 1, found another length")]
+    /// What came back has no length of 1.
+    #[error("the board's attitude {0}: expected a quaternion of length 1, found another")]
     Attitude(usize),
 }
 
-/// Converts a log to a board's format, with a calibration if requested.
+/// Makes a log what goes to a board, calibrated if it is still at the start.
 ///
 /// # Errors
-/// The log moves during the calibration, or a scale is out of range.
+/// It is to be still at the start and is not, or counts are worth what no sensor's are.
 pub fn prepare(entries: &[Entry], options: &Options) -> Result<Prepared, Error> {
     let stamps = Stamps {
         entries,
@@ -118,7 +117,7 @@ pub fn prepare(entries: &[Entry], options: &Options) -> Result<Prepared, Error> 
     let bias = calibration.map_or([0; 3], |report| report.bias);
     let setup =
         Setup::new(options.units, options.tilt, options.follow_bias, bias).map_err(Error::Log)?;
-    // A count beyond 32 bits is too long for every board, which reports it; the model goes by the number of bytes.
+    // As many as 32 bits do not count are too long for any board, which says so; the model counts by the bytes.
     let count = u32::try_from(entries.len()).unwrap_or(u32::MAX);
     let mut image = setup.header(count).to_vec();
     stamps
@@ -131,10 +130,10 @@ pub fn prepare(entries: &[Entry], options: &Options) -> Result<Prepared, Error> 
     })
 }
 
-/// Replays a log on this host.
+/// Replays a log on this machine.
 ///
 /// # Errors
-/// The log exceeds the maximum length.
+/// It is longer than any log.
 pub fn on_model(mut prepared: Prepared) -> Result<Replayed, Error> {
     let counts = image::replay(&mut prepared.image).map_err(Error::Log)?;
     let records = prepared.image.get(HEADER_BYTES..).unwrap_or_default();
@@ -146,10 +145,10 @@ pub fn on_model(mut prepared: Prepared) -> Result<Replayed, Error> {
     })
 }
 
-/// Replays a log on a board. `progress` gets bytes during transfers, and samples during the replay.
+/// Replays a log on a board. What `progress` is told of are bytes of the transfers, and meanwhile samples.
 ///
 /// # Errors
-/// The firmware rejects the log, or a transfer fails.
+/// The firmware refuses, or a transfer fails.
 pub fn on_board<B: Board + ?Sized>(
     prepared: &Prepared,
     console: &mut Console<B>,
@@ -197,17 +196,17 @@ pub fn on_board<B: Board + ?Sized>(
     })
 }
 
-/// Console command.
+/// The console's command.
 const COMMAND: &str = "replay";
-/// Session number of the transfer; any will do, because a board's receiver lives for one transfer.
+/// A board's receiver lives for one transfer, so any number is another than the one before.
 const SESSION: u8 = 1;
 
-/// Stage of a replay.
+/// What is going on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
-    /// Transfer of log or attitudes, in bytes.
+    /// Bytes pass.
     Transfer,
-    /// Computation of attitudes, in samples.
+    /// Samples become attitudes.
     Replay,
 }
 
@@ -218,7 +217,7 @@ fn attitudes(records: &[u8]) -> Result<Vec<Quaternion>, Error> {
         .collect()
 }
 
-/// Calibration at the start of a log, with at most the maximum number of samples.
+/// The bias at the start of a log. A long start counts as far as a calibration goes.
 fn calibrate(stamps: &Stamps, units: Units, still: u64) -> Result<Report, FormatError> {
     let mut elapsed = 0_u64;
     let mut last = 0_u32;
@@ -254,8 +253,8 @@ fn calibrate(stamps: &Stamps, units: Units, still: u64) -> Result<Report, Format
         }
     }
     Err(FormatError::whole(
-        format!("{wanted} samples with distinct time stamps in the first {seconds} s"),
-        "repeated time stamps",
+        format!("{wanted} samples with stamps of their own in the first {seconds} s"),
+        "stamps that stand still",
     ))
 }
 
@@ -292,7 +291,7 @@ mod tests {
 
     #[test]
     fn stamps_of_any_size() {
-        // 100 °/s: a step back in time, a step across 2^32, a gap of an hour.
+        // 100 °/s: back in time, across 2^32, and an hour later.
         let log = entries(&[
             u64::from(u32::MAX) - 5_000,
             u64::from(u32::MAX) + 5_000,

@@ -1,33 +1,34 @@
-//! A board's sensor, through its console.
+//! The sensor of a board, by its console.
 
 use super::log::Entry;
 use crate::board::Board;
 use crate::console::{self, Console, ConsoleError};
 use virtual_board::virtual_mpu6050::{Chip, Counts, Imperfections, Source, State, Wires};
 
-/// Time-out of the first sample after the board's start, in ms of board time: covers detection, reset and setup.
+/// How long a sensor may take from the board's start to its first sample, in ms of the board's time: it may have to be looked for,
+/// reset and set up.
 const START_MS: u64 = 1_000;
-/// Header of `imu stream` and of a log.
+/// The header of what `imu stream` prints, and of a log.
 pub const HEADER: &str = "t_us,ax,ay,az,gx,gy,gz";
 
-/// A sensor or board that gives no samples.
+/// Why there are no samples.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// The board reports an error, or does not answer.
+    /// The board refuses, or does not answer.
     #[error(transparent)]
     Console(#[from] ConsoleError),
-    /// No sensor, or a sensor that does not work.
-    #[error("no sample within {START_MS} ms of board time: {0}")]
+    /// The board has no sensor, or it does not work.
+    #[error("no sample came within {START_MS} ms of the board's time: {0}")]
     Failure(String),
-    /// The board printed a malformed sample.
-    #[error("sample of the board: expected {HEADER} in whole numbers, found {0:?}")]
+    /// What should be a sample is none.
+    #[error("the board's sample: expected {HEADER} in whole numbers, found {0:?}")]
     Sample(String),
 }
 
-/// Waits for the sensor's first sample; returns the sensor's name.
+/// Waits for the sensor's first sample; which sensor it is.
 ///
 /// # Errors
-/// No sample in time.
+/// There is none.
 pub fn wait<B: Board + ?Sized>(console: &mut Console<B>) -> Result<String, Error> {
     const COMMAND: &str = "imu";
     let end = console.board().now_ms() + START_MS;
@@ -40,17 +41,17 @@ pub fn wait<B: Board + ?Sized>(console: &mut Console<B>) -> Result<String, Error
         }
         if console.board().now_ms() >= end {
             return Err(Error::Failure(match failure.as_str() {
-                "none" => "no sensor found yet".to_owned(),
+                "none" => "the board looks for a sensor".to_owned(),
                 _ => failure,
             }));
         }
     }
 }
 
-/// Streams `samples` samples to `on_sample`, with times in µs of board time, from 0.
+/// Gives `on_sample` so many samples as they come, stamped from 0 on in the board's µs.
 ///
 /// # Errors
-/// The sensor or the board fails.
+/// The sensor fails, or the board.
 pub fn stream<B: Board + ?Sized>(
     console: &mut Console<B>,
     samples: u32,
@@ -59,7 +60,7 @@ pub fn stream<B: Board + ?Sized>(
     let command = format!("imu stream {samples}");
     console.send(&command)?;
     let mut clock = Unwrapped::default();
-    let mut malformed = None;
+    let mut wrong = None;
     console.lines(&command, &mut |line| {
         if line == HEADER {
             return;
@@ -72,13 +73,13 @@ pub fn stream<B: Board + ?Sized>(
                 gyro,
                 temp: None,
             }),
-            None => malformed = malformed.take().or_else(|| Some(line.to_owned())),
+            None => wrong = wrong.take().or_else(|| Some(line.to_owned())),
         }
     })?;
-    malformed.map_or(Ok(()), |line| Err(Error::Sample(line)))
+    wrong.map_or(Ok(()), |line| Err(Error::Sample(line)))
 }
 
-/// Extends 32-bit time stamps to 64 bits, from 0.
+/// Stamps of 32 bits as ever later times from 0 on.
 #[derive(Default)]
 struct Unwrapped {
     last: Option<u32>,
@@ -105,23 +106,23 @@ fn sample(line: &str) -> Option<(u32, [i16; 3], [i16; 3])> {
     Some((stamp.parse().ok()?, [ax, ay, az], [gx, gy, gz]))
 }
 
-/// Result of a calibration, in °/s and °/h.
+/// What a calibration has found, in °/s and °/h.
 #[derive(Clone, Debug, serde::Serialize)]
 pub struct Calibrated {
-    /// Number of averaged samples.
+    /// How many samples it is the mean of.
     pub samples: u32,
-    /// Mean rate at rest.
+    /// What the gyroscope reads at rest.
     pub bias: [f64; 3],
-    /// Standard deviation of the samples.
+    /// By how much samples differ from that.
     pub deviation: [f64; 3],
-    /// Expected drift of an attitude.
+    /// How far an attitude is expected to drift.
     pub drift_per_hour: [f64; 3],
 }
 
-/// Calibrates with `samples` samples; `progress` gets the number so far.
+/// Calibrates with so many samples, of which `progress` is told.
 ///
 /// # Errors
-/// The sensor moves or fails, as reported by the firmware.
+/// The sensor moves, which the firmware says, or fails.
 pub fn calibrate<B: Board + ?Sized>(
     console: &mut Console<B>,
     samples: u32,
@@ -162,8 +163,7 @@ impl std::str::FromStr for Numbers {
     }
 }
 
-/// A sensor for a virtual board: at rest with typical errors, or with the counts of a log from the board's start; the last
-/// sample stays.
+/// A sensor for a virtual board: a specimen at rest, or one that measures what a log says, from the board's start on; its end stays.
 #[must_use]
 pub fn virtual_sensor(log: Option<&[Entry]>) -> Wires {
     let source = match log {

@@ -3,9 +3,10 @@
 use glint::board::{SimulatedBoard, built_firmware};
 use glint::console::{Console, value};
 use glint::convert::{self, Options};
-use glint::render::{Renderer, Scene, Stats, Subject};
+use glint::render::{BoardRenderer, Frame, Stats, Subject};
 use glint::{generate, view};
-use glint_core::picture::Backend;
+use glint_core::mesh::Mesh;
+use glint_core::picture::Size;
 
 /// Board time without output after which the firmware counts as failed.
 const PATIENCE_MS: u64 = 2000;
@@ -23,18 +24,14 @@ pub fn console(board: &mut SimulatedBoard) -> Console<'_, SimulatedBoard> {
 }
 
 /// A renderer on a board that has just started.
-pub fn renderer(board: &mut SimulatedBoard) -> Renderer<'_, SimulatedBoard> {
-    Renderer::new(console(board))
+pub fn renderer(board: &mut SimulatedBoard) -> BoardRenderer<'_, SimulatedBoard> {
+    BoardRenderer::new(console(board))
 }
 
-/// A mesh seen from outside, drawn by the soft core.
-pub fn mesh_scene<'m>(mesh: &'m [u8], camera: &str, size: (u32, u32)) -> Scene<'m> {
-    Scene {
-        subject: Subject::mesh(mesh),
-        view: view::spherical(camera).unwrap(),
-        size,
-        backend: Some(Backend::Cpu),
-    }
+/// A mesh seen from outside.
+pub fn mesh_frame<'m>(mesh: &'m [u8], camera: &str, size: Size) -> Frame<'m> {
+    let mesh = Mesh::new_checked(mesh).unwrap();
+    Frame::new(Subject::mesh(mesh), view::spherical(camera).unwrap(), size)
 }
 
 /// A generated mesh.

@@ -3,14 +3,15 @@
 use crate::common::{address, mesh, renderer, running_board, timeless};
 use glint::board::{Board, SimulatedBoard};
 use glint::console::Console;
-use glint::picture::Frame;
-use glint::render::{self, FieldSubject, MeshSubject, Route, Scene, Subject};
+use glint::picture::Image;
+use glint::render::{self, FieldSubject, Frame, MeshSubject, Route, Subject};
 use glint::view;
 use glint_core::appearance::Appearance;
 use glint_core::colour::Shading;
 use glint_core::field::Field;
 use glint_core::light::Material;
-use glint_core::picture::Backend;
+use glint_core::mesh::Mesh;
+use glint_core::picture::{Backend, Size};
 
 #[test]
 fn a_field_is_the_models() {
@@ -42,17 +43,16 @@ fn the_cpu_draws_a_mesh_in_a_field() {
         prepass: false,
     };
     let triangles = MeshSubject {
-        bytes: &mesh,
+        mesh: Mesh::new_checked(&mesh).unwrap(),
         cull: true,
         shading: Shading::Flat,
     };
-    let scene = Scene {
-        subject: Subject::Both(triangles, field),
-        view: view::parse(eye.as_bytes()).unwrap(),
-        size: (320, 180),
-        backend: Some(Backend::Cpu),
-    };
-    let Frame { colour, depth, .. } = render::on_model(&scene).unwrap().frame;
+    let frame = Frame::new(
+        Subject::MeshInField(triangles, field),
+        view::parse(eye.as_bytes()).unwrap(),
+        Size::W320,
+    );
+    let Image { colour, depth, .. } = render::on_model(&frame).unwrap().image;
     let mut seen = colour[..PIXELS].to_vec();
     seen.sort_unstable();
     seen.dedup();
@@ -69,14 +69,14 @@ fn the_cpu_draws_a_mesh_in_a_field() {
         .upload(&mesh, Route::Memory, &mut |_, _| {})
         .unwrap();
     // Two frame buffers take turns: the next frame goes to the other one.
-    renderer.render().unwrap();
+    renderer.redraw().unwrap();
     let console = renderer.console();
-    let [frame, depth] = ["frame", "depth"].map(|key| address(console, key));
+    let [colour, depth] = ["frame", "depth"].map(|key| address(console, key));
     console.command("render").unwrap();
-    let mut lines = vec![render::view_command(&scene.view), "backend cpu".to_owned()];
+    let mut lines = vec![render::view_command(&frame.view), "backend cpu".to_owned()];
     lines.extend(render::field_commands(&field, true));
     let memory = console.board().memory().unwrap();
-    for place in [frame, depth] {
+    for place in [colour, depth] {
         memory
             .write_memory(place, &UNTOUCHED.repeat(PIXELS))
             .unwrap();
@@ -90,7 +90,7 @@ fn the_cpu_draws_a_mesh_in_a_field() {
     // The frame is cleared to black first, and no visible surface is black.
     let mut waited = 0;
     loop {
-        let drawn = read(console, frame, 2 * PIXELS);
+        let drawn = read(console, colour, 2 * PIXELS);
         let last: [u8; 2] = *drawn.last_chunk().unwrap();
         if last != [0; 2] && last != [UNTOUCHED[0], UNTOUCHED[1]] {
             break;
@@ -101,7 +101,7 @@ fn the_cpu_draws_a_mesh_in_a_field() {
     }
     // The last pixel's depth may not be written yet.
     let before = PIXELS - 1;
-    assert!(read(console, frame, 2 * before) == colours[..2 * before]);
+    assert!(read(console, colour, 2 * before) == colours[..2 * before]);
     assert!(read(console, depth, 4 * before) == depths[..4 * before]);
 }
 
@@ -115,45 +115,42 @@ fn read(console: &mut Console<SimulatedBoard>, place: u32, bytes: usize) -> Vec<
 /// A small, distant field drawn by `backend`.
 fn a_field_by(backend: Backend, name: &str) {
     let mut board = running_board();
-    let mut renderer = renderer(&mut board);
+    let mut renderer = renderer(&mut board).with_backend(backend);
     let eye =
         r#"{"eye":[0,-20,0],"u":[1,0,0],"v":[0,0,-1],"n":[0,1,0],"half_width":0.3,"near":0.1}"#;
-    let scene = Scene {
-        subject: Subject::Field(FieldSubject {
-            field: &Field::parse("box:0.5,0.5,0.25").unwrap(),
-            appearance: &Appearance::default(),
-            stereo: None,
-            prepass: false,
-        }),
-        view: view::parse(eye.as_bytes()).unwrap(),
-        size: (320, 180),
-        backend: Some(backend),
+    let subject = FieldSubject {
+        field: &Field::parse("box:0.5,0.5,0.25").unwrap(),
+        appearance: &Appearance::default(),
+        stereo: None,
+        prepass: false,
     };
-    let expected = render::on_model(&scene).unwrap();
+    let view = view::parse(eye.as_bytes()).unwrap();
+    let frame = Frame::new(Subject::Field(subject), view, Size::W320);
+    let expected = render::on_model(&frame).unwrap();
     let stats = renderer
-        .show(&scene, Route::Memory, &mut |_, _| {})
+        .show(&frame, Route::Memory, &mut |_, _| {})
         .unwrap();
     println!("{:?} cycles", stats.cycles);
     assert_eq!(stats.backend.as_deref(), Some(name));
     assert_eq!(timeless(stats), expected.stats);
     let colour = renderer
-        .colour(scene.size, Route::Memory, &mut |_, _| {})
+        .colour(frame.size, Route::Memory, &mut |_, _| {})
         .unwrap();
-    assert!(colour == expected.frame.colour);
+    assert!(colour == expected.image.colour);
     let depth = renderer
-        .depth(scene.size, Route::Memory, &mut |_, _| {})
+        .depth(frame.size, Route::Memory, &mut |_, _| {})
         .unwrap();
-    assert!(depth == expected.frame.depth);
+    assert!(depth == expected.image.depth);
 
     let shown = renderer.console().command("info scene").unwrap();
     assert_eq!(shown, ["scene box:0.5,0.5,0.25"]);
     // The mesh is shown again, and the eye is too far away for it.
     renderer.console().command("field off").unwrap();
-    let error = renderer.render().unwrap_err().to_string();
+    let error = renderer.redraw().unwrap_err().to_string();
     assert!(
         error.contains("expected within 8 of the origin for a mesh"),
         "{error}"
     );
     renderer.console().command("camera 2 30 60").unwrap();
-    assert_eq!(renderer.render().unwrap().triangles().triangles_in, 12);
+    assert_eq!(renderer.redraw().unwrap().triangles().triangles_in, 12);
 }

@@ -1,13 +1,14 @@
 //! Pictures and depths of meshes: the model's, bit for bit, on the monitor, in memory and over the line.
 
-use crate::common::{mesh, mesh_scene, renderer, running_board, timeless};
+use crate::common::{mesh, mesh_frame, renderer, running_board, timeless};
 use glint::board::{Board, SimulatedBoard};
-use glint::picture::Frame;
-use glint::render::{self, MeshSubject, Renderer, Route, Scene, Subject};
+use glint::picture::Image;
+use glint::render::{self, BoardRenderer, Frame, MeshSubject, Route, Subject};
 use glint::view;
 use glint_core::camera::View;
 use glint_core::colour::Shading;
-use glint_core::picture::Backend;
+use glint_core::mesh::Mesh;
+use glint_core::picture::{Backend, Size};
 
 /// Smooth shading: by the engine if the gateware has it, otherwise by the CPU with a note in `stats`.
 #[test]
@@ -16,23 +17,21 @@ fn smooth_shading_is_the_models_on_every_backend() {
     let mut renderer = renderer(&mut board);
     let mesh = mesh("icosphere:2");
     for backend in [None, Some(Backend::Cpu)] {
-        let scene = Scene {
-            subject: Subject::Mesh(MeshSubject {
-                bytes: &mesh,
-                cull: true,
-                shading: Shading::Smooth,
-            }),
-            backend,
-            ..mesh_scene(&mesh, "2,30,60", (320, 180))
-        };
-        let expected = render::on_model(&scene).unwrap();
+        let subject = Subject::Mesh(MeshSubject {
+            mesh: Mesh::new_checked(&mesh).unwrap(),
+            cull: true,
+            shading: Shading::Smooth,
+        });
+        let frame = Frame::new(subject, view::spherical("2,30,60").unwrap(), Size::W320);
+        renderer.set_backend(backend);
+        let expected = render::on_model(&frame).unwrap();
         let stats = renderer
-            .show(&scene, Route::Memory, &mut |_, _| {})
+            .show(&frame, Route::Memory, &mut |_, _| {})
             .unwrap();
         let colour = renderer
-            .colour(scene.size, Route::Memory, &mut |_, _| {})
+            .colour(frame.size, Route::Memory, &mut |_, _| {})
             .unwrap();
-        assert!(colour == expected.frame.colour);
+        assert!(colour == expected.image.colour);
         let notes = renderer.console().command("stats").unwrap();
         let fallback = "fallback triangle engine: this gateware has no smooth shading";
         let fell_back = notes.iter().any(|line| line == fallback);
@@ -49,7 +48,7 @@ fn smooth_shading_is_the_models_on_every_backend() {
 /// Renders a mesh from three eyes, one of them inside it, on the board, and compares with the model: picture on the monitor,
 /// depth buffer, counts.
 fn the_monitor_shows_what_the_model_renders(name: &str) {
-    let size = (320, 180);
+    let size = Size::W320;
     let outside = |camera: &str| (view::spherical(camera).unwrap(), true);
     let inside = r#"{"eye":[0.21,-0.1,0.05],"u":[0.6,0.8,0],"v":[0,0,-1],"n":[-0.8,0.6,0],"half_width":1.5,"near":0.3}"#;
     let inside: View = view::parse(inside.as_bytes()).unwrap();
@@ -57,22 +56,18 @@ fn the_monitor_shows_what_the_model_renders(name: &str) {
     let cameras = [outside("2,30,60"), outside("2.5,200,130"), (inside, false)];
 
     let mut board = running_board();
-    let mut renderer = renderer(&mut board);
+    let mut renderer = renderer(&mut board).with_backend(Backend::Cpu);
     let mesh = mesh(name);
     for (number, &(view, cull)) in cameras.iter().enumerate() {
-        let scene = Scene {
-            subject: Subject::Mesh(MeshSubject {
-                bytes: &mesh,
-                cull,
-                shading: Shading::Flat,
-            }),
-            view,
-            size,
-            backend: Some(Backend::Cpu),
-        };
-        let expected = render::on_model(&scene).unwrap();
+        let subject = Subject::Mesh(MeshSubject {
+            mesh: Mesh::new_checked(&mesh).unwrap(),
+            cull,
+            shading: Shading::Flat,
+        });
+        let frame = Frame::new(subject, view, size);
+        let expected = render::on_model(&frame).unwrap();
         let stats = renderer
-            .show(&scene, Route::Memory, &mut |_, _| {})
+            .show(&frame, Route::Memory, &mut |_, _| {})
             .unwrap();
         assert_eq!(timeless(stats), expected.stats, "camera {number}");
         assert!(
@@ -80,11 +75,11 @@ fn the_monitor_shows_what_the_model_renders(name: &str) {
             "nothing was clipped"
         );
         assert!(
-            captured(&mut renderer, 4) == expected.frame.colour,
+            captured(&mut renderer, 4) == expected.image.colour,
             "camera {number}: the monitor's picture"
         );
         let depth = renderer.depth(size, Route::Memory, &mut |_, _| {}).unwrap();
-        assert!(depth == expected.frame.depth, "camera {number}: the depths");
+        assert!(depth == expected.image.depth, "camera {number}: the depths");
     }
     assert_eq!(renderer.board().inner().monitor().errors(), []);
 }
@@ -108,13 +103,13 @@ fn the_monitor_shows_the_sponge() {
 fn the_monitor_shows_the_larger_sizes() {
     let mesh = mesh("cube");
     let mut board = running_board();
-    let mut renderer = renderer(&mut board);
-    for (size, scale) in [((640, 360), 2), ((1280, 720), 1)] {
-        let scene = mesh_scene(&mesh, "2,30,60", size);
+    let mut renderer = renderer(&mut board).with_backend(Backend::Cpu);
+    for (size, scale) in [(Size::W640, 2), (Size::W1280, 1)] {
+        let frame = mesh_frame(&mesh, "2,30,60", size);
         renderer
-            .show(&scene, Route::Memory, &mut |_, _| {})
+            .show(&frame, Route::Memory, &mut |_, _| {})
             .unwrap();
-        let expected = render::on_model(&scene).unwrap().frame;
+        let expected = render::on_model(&frame).unwrap().image;
         assert!(
             captured(&mut renderer, scale) == expected.colour,
             "{size:?}"
@@ -127,13 +122,10 @@ fn the_monitor_shows_the_larger_sizes() {
 fn no_frame_is_torn() {
     let mesh = mesh("cube");
     let mut board = running_board();
-    let mut renderer = renderer(&mut board);
-    let [old, new] = ["2,30,60", "2,200,100"].map(|camera| mesh_scene(&mesh, camera, (320, 180)));
+    let mut renderer = renderer(&mut board).with_backend(Backend::Cpu);
+    let [old, new] = ["2,30,60", "2,200,100"].map(|camera| mesh_frame(&mesh, camera, Size::W320));
     renderer.show(&old, Route::Memory, &mut |_, _| {}).unwrap();
-    let [old, new] = [old, new].map(|scene| {
-        let frame = render::on_model(&scene).unwrap().frame;
-        frame.colour
-    });
+    let [old, new] = [old, new].map(|frame| render::on_model(&frame).unwrap().image.colour);
     renderer.board().inner().monitor().turn_on();
     assert!(captured(&mut renderer, 4) == old);
     renderer.board().write(b"camera 2 200 100\r").unwrap();
@@ -146,14 +138,14 @@ fn no_frame_is_torn() {
 }
 
 /// Whether the next picture on the monitor is the old frame; otherwise it must be the new one.
-fn captured_is(renderer: &mut Renderer<SimulatedBoard>, old: &[u16], new: &[u16]) -> bool {
+fn captured_is(renderer: &mut BoardRenderer<SimulatedBoard>, old: &[u16], new: &[u16]) -> bool {
     let shown = captured(renderer, 4);
     assert!(shown == old || shown == new, "a torn frame");
     shown == old
 }
 
 /// The picture on the monitor, scaled back to the frame; checks the video timing.
-fn captured(renderer: &mut Renderer<SimulatedBoard>, scale: usize) -> Vec<u16> {
+fn captured(renderer: &mut BoardRenderer<SimulatedBoard>, scale: usize) -> Vec<u16> {
     let board = renderer.board().inner();
     let picture = board.capture().unwrap();
     assert_eq!(board.monitor().errors(), []);
@@ -161,14 +153,14 @@ fn captured(renderer: &mut Renderer<SimulatedBoard>, scale: usize) -> Vec<u16> {
 }
 
 /// Shows the cube over the serial line only; returns the model's frame too.
-fn shown_over_the_line(board: &mut SimulatedBoard) -> (Renderer<'_, SimulatedBoard>, Frame) {
+fn shown_over_the_line(board: &mut SimulatedBoard) -> (BoardRenderer<'_, SimulatedBoard>, Image) {
     let mesh = mesh("cube");
-    let scene = mesh_scene(&mesh, "3,10,80", (320, 180));
-    let mut renderer = renderer(board);
+    let frame = mesh_frame(&mesh, "3,10,80", Size::W320);
+    let mut renderer = renderer(board).with_backend(Backend::Cpu);
     renderer
-        .show(&scene, Route::Serial, &mut |_, _| {})
+        .show(&frame, Route::Serial, &mut |_, _| {})
         .unwrap();
-    (renderer, render::on_model(&scene).unwrap().frame)
+    (renderer, render::on_model(&frame).unwrap().image)
 }
 
 #[test]
@@ -176,7 +168,7 @@ fn colours_come_over_the_line() {
     let mut board = running_board();
     let (mut renderer, expected) = shown_over_the_line(&mut board);
     let colour = renderer
-        .colour((320, 180), Route::Serial, &mut |_, _| {})
+        .colour(Size::W320, Route::Serial, &mut |_, _| {})
         .unwrap();
     assert!(colour == expected.colour);
 }
@@ -186,7 +178,7 @@ fn depths_come_over_the_line() {
     let mut board = running_board();
     let (mut renderer, expected) = shown_over_the_line(&mut board);
     let depth = renderer
-        .depth((320, 180), Route::Serial, &mut |_, _| {})
+        .depth(Size::W320, Route::Serial, &mut |_, _| {})
         .unwrap();
     assert!(depth == expected.depth);
 }

@@ -6,7 +6,7 @@ use std::thread;
 
 use anyhow::{Context, Result, bail};
 use glint::board::SimulatedBoard;
-use glint::render::Renderer;
+use glint::render::BoardRenderer;
 
 /// Clocks in Hz: the default, and the faster one.
 pub const CLOCKS: [f64; 2] = [81.25e6, 100e6];
@@ -22,7 +22,7 @@ impl BackToBack {
     ///
     /// # Errors
     /// When the console reports an error or its reply has no such line.
-    pub fn measure(renderer: &mut Renderer<SimulatedBoard>, kernel: &str) -> Result<Self> {
+    pub fn measure(renderer: &mut BoardRenderer<SimulatedBoard>, kernel: &str) -> Result<Self> {
         let command = format!("bench {kernel}");
         let lines = renderer.console().command(&command)?;
         let line = lines

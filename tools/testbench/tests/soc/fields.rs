@@ -3,8 +3,8 @@
 
 use glint::board::{Board, SimulatedBoard, built_firmware};
 use glint::console::Console;
-use glint::picture::Frame;
-use glint::render::{self, FieldSubject, MeshSubject, Rendered, Scene, Stats, Subject, on_model};
+use glint::picture::Image;
+use glint::render::{self, FieldSubject, Frame, MeshSubject, Rendered, Stats, Subject, on_model};
 use glint::{convert, generate};
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;
@@ -12,6 +12,8 @@ use glint_core::colour::Shading;
 use glint_core::field::Field;
 use glint_core::fixed::{Q32_32, U4_28};
 use glint_core::light::{Background, Light, Material};
+use glint_core::mesh::Mesh;
+use glint_core::picture::Size;
 use glint_core::stereo::{Stereo, Tint};
 use glint_core::wire::Manifest;
 
@@ -75,7 +77,7 @@ fn compare(
     console: &mut Console<SimulatedBoard>,
     subject: FieldSubject,
     view: &View,
-    size: (u32, u32),
+    size: Size,
     with_depth: bool,
 ) {
     let FieldSubject {
@@ -85,29 +87,23 @@ fn compare(
         ..
     } = subject;
     let cones = if prepass { ", after cones" } else { "" };
-    let name = format!("{field}, {stereo:?}, {view} at {size:?}{cones}");
-    let scene = Scene {
-        subject: Subject::Field(subject),
-        view: *view,
-        size,
-        backend: None,
-    };
-    let Rendered { frame, stats } = on_model(&scene).unwrap();
-    let told = send(console, &lines(&scene, with_depth));
+    let name = format!("{field}, {stereo:?}, {view} at {size}{cones}");
+    let frame = Frame::new(Subject::Field(subject), *view, size);
+    let Rendered { image, stats } = on_model(&frame).unwrap();
+    let told = send(console, &lines(&frame, with_depth));
     compare_rays(&told, &name, &stats);
-    compare_picture(console, &told, &name, &frame, with_depth);
+    compare_picture(console, &told, &name, &image, with_depth);
 }
 
-/// What shows a scene whose mesh is there, to be sent at once, so that nothing is drawn between them.
-fn lines(scene: &Scene, with_depth: bool) -> Vec<String> {
-    let (width, height) = scene.size;
+/// The commands of a frame whose mesh is loaded. Sent in one write they lead to one frame.
+fn lines(frame: &Frame, with_depth: bool) -> Vec<String> {
     let mut lines = vec![
-        format!("size {width} {height}"),
-        render::view_command(&scene.view),
+        render::size_command(frame.size),
+        render::view_command(&frame.view),
     ];
-    if let Subject::Field(field) | Subject::Both(_, field) = scene.subject {
-        let with_mesh = matches!(scene.subject, Subject::Both(..));
-        lines.extend(render::field_commands(&field, with_mesh));
+    if let Some(field) = frame.subject.field_part() {
+        let with_mesh = frame.subject.mesh_part().is_some();
+        lines.extend(render::field_commands(field, with_mesh));
     }
     lines.push(format!("render{}", if with_depth { " depth" } else { "" }));
     lines.push("info".to_owned());
@@ -133,18 +129,18 @@ fn compare_picture(
     console: &mut Console<SimulatedBoard>,
     told: &Told,
     name: &str,
-    frame: &Frame,
+    image: &Image,
     with_depth: bool,
 ) {
-    let place = |at: usize| (at as u32 % frame.width, at as u32 / frame.width);
-    let bytes = read(console, told.address("frame"), 2 * frame.colour.len());
-    for (at, (found, &wanted)) in bytes.chunks_exact(2).zip(&frame.colour).enumerate() {
+    let place = |at: usize| (at as u32 % image.width, at as u32 / image.width);
+    let bytes = read(console, told.address("frame"), 2 * image.colour.len());
+    for (at, (found, &wanted)) in bytes.chunks_exact(2).zip(&image.colour).enumerate() {
         let found = u16::from_le_bytes([found[0], found[1]]);
         assert_eq!(found, wanted, "{name}: the colour at {:?}", place(at));
     }
     if with_depth {
-        let bytes = read(console, told.address("depth"), 4 * frame.depth.len());
-        for (at, (found, &wanted)) in bytes.chunks_exact(4).zip(&frame.depth).enumerate() {
+        let bytes = read(console, told.address("depth"), 4 * image.depth.len());
+        for (at, (found, &wanted)) in bytes.chunks_exact(4).zip(&image.depth).enumerate() {
             let found = u32::from_le_bytes([found[0], found[1], found[2], found[3]]);
             assert_eq!(found, wanted, "{name}: the depth at {:?}", place(at));
         }
@@ -183,7 +179,7 @@ fn the_soc_draws_every_field() {
                             stereo,
                             prepass,
                         };
-                        compare(&mut console, subject, view, (320, 180), once);
+                        compare(&mut console, subject, view, Size::W320, once);
                     }
                 }
             }
@@ -208,24 +204,20 @@ fn the_soc_draws_large_fields_and_goes_back_to_meshes() {
         prepass: true,
     };
     let [view, ..] = views();
-    let sizes = [(640, 360), (1280, 720)];
+    let sizes = [Size::W640, Size::W1280];
     for &size in if all() { &sizes[..] } else { &sizes[..1] } {
-        compare(&mut console, sponge, &view, size, size.0 == 640);
-        let scene = Scene {
-            subject: Subject::mesh(&cube),
-            view,
-            size,
-            backend: None,
-        };
-        let Rendered { frame, .. } = on_model(&scene).unwrap();
+        compare(&mut console, sponge, &view, size, size == Size::W640);
+        let mesh = Mesh::new_checked(&cube).unwrap();
+        let frame = Frame::new(Subject::mesh(mesh), view, size);
+        let Rendered { image, .. } = on_model(&frame).unwrap();
         let load = load(&mut console, &cube);
         let told = send(
             &mut console,
             &[load, "render".to_owned(), "info".to_owned()],
         );
         assert_eq!(told.text("backend"), "gateware", "{:#?}", told.lines);
-        let name = format!("the cube at {size:?}");
-        compare_picture(&mut console, &told, &name, &frame, false);
+        let name = format!("the cube at {size}");
+        compare_picture(&mut console, &told, &name, &image, false);
     }
 }
 
@@ -267,33 +259,28 @@ fn the_soc_draws_a_mesh_in_a_field() {
         stereo: None,
         prepass: true,
     };
-    let both = |view, size, cull| Scene {
-        subject: Subject::Both(
-            MeshSubject {
-                bytes: &mesh,
-                cull,
-                shading: Shading::Flat,
-            },
-            field,
-        ),
-        view,
-        size,
-        backend: None,
+    let both = |view, size, cull| {
+        let mesh = MeshSubject {
+            mesh: Mesh::new_checked(&mesh).unwrap(),
+            cull,
+            shading: Shading::Flat,
+        };
+        Frame::new(Subject::MeshInField(mesh, field), view, size)
     };
     let [outside, near_by, inside] = views();
     let load = load(&mut console, &mesh);
     send(&mut console, &[load]);
-    let mut scenes = vec![both(inside, (320, 180), false)];
+    let mut frames = vec![both(inside, Size::W320, false)];
     if all() {
-        scenes.push(both(outside, (320, 180), true));
-        scenes.push(both(near_by, (640, 360), true));
+        frames.push(both(outside, Size::W320, true));
+        frames.push(both(near_by, Size::W640, true));
     }
-    for (number, scene) in scenes.iter().enumerate() {
+    for (number, frame) in frames.iter().enumerate() {
         let name = format!("scene {number}");
-        let Rendered { frame, stats } = on_model(scene).unwrap();
-        let cull = matches!(scene.subject, Subject::Both(mesh, _) if mesh.cull);
+        let Rendered { image, stats } = on_model(frame).unwrap();
+        let cull = frame.subject.mesh_part().is_some_and(|mesh| mesh.cull);
         let cull = format!("cull {}", if cull { "on" } else { "off" });
-        let lines = [vec![cull], lines(scene, true)].concat();
+        let lines = [vec![cull], lines(frame, true)].concat();
         let told = send(&mut console, &lines);
         compare_rays(&told, &name, &stats);
         let counts = ["in", "culled", "clipped", "drawn"]
@@ -318,7 +305,7 @@ fn the_soc_draws_a_mesh_in_a_field() {
             triangles.pixels_covered,
             "{name}"
         );
-        compare_picture(&mut console, &told, &name, &frame, true);
+        compare_picture(&mut console, &told, &name, &image, true);
     }
     if !all() {
         return;

@@ -21,10 +21,11 @@ mod scenes;
 
 use glint::board::{Board, BoardError, Memory, SimulatedBoard, built_firmware};
 use glint::console::{Console, value};
-use glint::render::{self, MeshSubject, Rendered, Scene, Subject};
+use glint::render::{self, Frame, MeshSubject, Rendered, Subject};
 use glint::view;
 use glint_core::colour::Shading;
-use glint_core::picture::Backend;
+use glint_core::mesh::Mesh;
+use glint_core::picture::Size;
 use glint_core::wire::Manifest;
 use rand_pcg::Pcg64Mcg;
 
@@ -188,12 +189,12 @@ fn scenes(small: bool) -> Vec<scenes::Scene> {
     scenes
 }
 
-fn draw(size: (u32, u32), scenes: Vec<scenes::Scene>) {
+fn draw(size: Size, scenes: Vec<scenes::Scene>) {
     let board = SimulatedBoard::fast(&built_firmware(None).unwrap()).unwrap();
     let mut board = Watched {
         board,
-        scale: (1280 / size.0) as usize,
-        expected: vec![("nothing".to_owned(), vec![0; (size.0 * size.1) as usize])],
+        scale: (1280 / size.width()) as usize,
+        expected: vec![("nothing".to_owned(), vec![0; size.pixel_count()])],
         seen: 1,
         pictures: 0,
     };
@@ -216,21 +217,17 @@ fn draw(size: (u32, u32), scenes: Vec<scenes::Scene>) {
         };
         let views = others.into_iter().map(|view| (view.unwrap(), false));
         for (number, (view, with_depth)) in [(view, true)].into_iter().chain(views).enumerate() {
-            let name = format!("{name} {number} at {size:?}");
-            let scene = Scene {
-                subject: Subject::Mesh(MeshSubject {
-                    bytes: &mesh,
-                    cull,
-                    shading: Shading::Flat,
-                }),
-                view,
-                size,
-                backend: Some(Backend::Gateware),
-            };
-            let Rendered { frame, stats } = render::on_model(&scene).unwrap();
+            let name = format!("{name} {number} at {size}");
+            let subject = Subject::Mesh(MeshSubject {
+                mesh: Mesh::new_checked(&mesh).unwrap(),
+                cull,
+                shading: Shading::Flat,
+            });
+            let frame = Frame::new(subject, view, size);
+            let Rendered { image, stats } = render::on_model(&frame).unwrap();
             let mut lines = vec![
                 format!("cull {}", if cull { "on" } else { "off" }),
-                format!("size {} {}", size.0, size.1),
+                render::size_command(size),
                 render::view_command(&view),
             ];
             if number == 0 {
@@ -241,7 +238,7 @@ fn draw(size: (u32, u32), scenes: Vec<scenes::Scene>) {
                 lines.push(format!("load {length} {crc32:08x}"));
             }
             lines.push("info".to_owned());
-            console.board().expect(&name, frame.colour);
+            console.board().expect(&name, image.colour);
             told = send(&mut console, &lines);
             // `render` would take back what is not on the screen yet.
             while told.number("video_frames") == drawn {
@@ -271,16 +268,16 @@ fn draw(size: (u32, u32), scenes: Vec<scenes::Scene>) {
                 counts, expected,
                 "{name}: triangles in, culled, clipped, drawn"
             );
-            let place = |at: usize| (at as u32 % size.0, at as u32 / size.0);
-            let bytes = read(&mut console, told.address("frame"), 2 * frame.depth.len());
+            let place = |at: usize| (at as u32 % size.width(), at as u32 / size.width());
+            let bytes = read(&mut console, told.address("frame"), 2 * image.depth.len());
             let (_, colour) = console.board().expected.last().unwrap();
             for (at, (found, &wanted)) in bytes.chunks_exact(2).zip(colour).enumerate() {
                 let found = u16::from_le_bytes([found[0], found[1]]);
                 assert_eq!(found, wanted, "{name}: the colour at {:?}", place(at));
             }
             if with_depth {
-                let bytes = read(&mut console, told.address("depth"), 4 * frame.depth.len());
-                for (at, (found, &wanted)) in bytes.chunks_exact(4).zip(&frame.depth).enumerate() {
+                let bytes = read(&mut console, told.address("depth"), 4 * image.depth.len());
+                for (at, (found, &wanted)) in bytes.chunks_exact(4).zip(&image.depth).enumerate() {
                     let found = u32::from_le_bytes([found[0], found[1], found[2], found[3]]);
                     assert_eq!(found, wanted, "{name}: the depth at {:?}", place(at));
                 }
@@ -301,21 +298,21 @@ fn draw(size: (u32, u32), scenes: Vec<scenes::Scene>) {
 
 #[test]
 fn the_soc_draws_at_320x180() {
-    draw((320, 180), scenes(true));
+    draw(Size::W320, scenes(true));
 }
 
 #[test]
 fn the_soc_draws_at_640x360() {
-    draw((640, 360), scenes(true));
+    draw(Size::W640, scenes(true));
 }
 
 #[test]
 fn the_soc_draws_at_1280x720() {
-    draw((1280, 720), scenes(true));
+    draw(Size::W1280, scenes(true));
 }
 
 #[test]
 #[ignore = "takes minutes, nearly all of them for the firmware's look at the meshes"]
 fn the_soc_draws_large_meshes() {
-    draw((1280, 720), scenes(false));
+    draw(Size::W1280, scenes(false));
 }

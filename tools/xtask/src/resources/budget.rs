@@ -1,4 +1,4 @@
-//! Limits of the gateware's resources: `gateware/budget.toml`.
+//! What the gateware may cost: `gateware/budget.toml`.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -11,31 +11,31 @@ use super::blocks::{ROWS, SOC};
 use super::size::{Resource, Size, number};
 use crate::paths;
 
-/// Maximum of each limited resource.
+/// The most of some resources.
 pub type Limits = BTreeMap<Resource, u32>;
 
 /// The budget file.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Budget {
-    /// Resources of the FPGA: the SoC's limits.
+    /// What the FPGA has; it limits the SoC.
     pub device: Limits,
-    /// Default limits of every own block.
+    /// Limits of every own block.
     own: Limits,
     /// Limits of single blocks.
     block: BTreeMap<String, Limits>,
 }
 
-/// A block above its limit.
+/// A resource of which a block takes more than it may.
 #[derive(Debug, PartialEq, Serialize)]
 pub struct Excess {
     /// The block.
     pub block: String,
-    /// The resource.
+    /// What it takes too much of.
     pub resource: Resource,
-    /// The limit.
+    /// What it may take.
     pub budget: u32,
-    /// The measured amount.
+    /// What it takes.
     pub measured: f64,
 }
 
@@ -56,7 +56,7 @@ impl Budget {
     /// Reads the budget file.
     ///
     /// # Errors
-    /// It cannot be read, or names an unknown block or resource.
+    /// When it cannot be read, or limits what does not exist.
     pub fn read() -> Result<Self> {
         let path = "gateware/budget.toml";
         fs::read_to_string(paths::root().join(path))
@@ -75,7 +75,7 @@ impl Budget {
         Ok(budget)
     }
 
-    /// Limits of a block: its own, otherwise those of its kind.
+    /// What a block may take: its own limits, and those of its kind where it has none.
     pub fn limits(&self, block: &str) -> Limits {
         let common = if block == SOC {
             &self.device
@@ -87,7 +87,7 @@ impl Budget {
         limits
     }
 
-    /// All blocks above their limits.
+    /// All that is beyond the budget.
     pub fn excesses(&self, sizes: &[Size]) -> Vec<Excess> {
         let mut excesses = Vec::new();
         for size in sizes {
@@ -112,7 +112,7 @@ pub mod tests {
     use super::super::size::tests::size;
     use super::*;
 
-    /// A budget that blocks of [`size`] meet, except for the SoC.
+    /// A budget that blocks of [`size`] keep, but for the SoC.
     pub const BUDGET: &str = "device = { lut = 32600, ff = 65200, dsp48 = 120, ramb36 = 75 }
         own = { path = 9 }
         [block]

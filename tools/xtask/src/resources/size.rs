@@ -1,15 +1,15 @@
-//! Resources of a block.
+//! What a block takes of the FPGA.
 
 use std::collections::BTreeMap;
 
 use anyhow::{Context, Result};
 use serde::{Deserialize, Serialize};
 
-/// Limited resources, in the order of the tables.
+/// What a budget can limit, in the order of the tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Resource {
-    /// LUTs of every kind.
+    /// All that takes a LUT.
     Lut,
     /// Flip-flops.
     Ff,
@@ -53,7 +53,7 @@ impl Resource {
 pub struct Size {
     /// The block.
     pub name: String,
-    /// Tool of the measurement, with its version.
+    /// What measured it, with its version.
     pub yosys: String,
     /// LUTs as logic.
     pub logic: u32,
@@ -73,20 +73,20 @@ pub struct Size {
     pub carry4: u32,
     /// Cells on the longest path between registers.
     pub path: u32,
-    /// Other cells by name.
+    /// All other cells by their names.
     pub others: BTreeMap<String, u32>,
 }
 
 impl Size {
-    /// Parses a line of JSON.
+    /// Reads a line of JSON.
     ///
     /// # Errors
-    /// It is not a size.
+    /// When it is not a size.
     pub fn parse(line: &str) -> Result<Self> {
         serde_json::from_str(line).with_context(|| format!("not a size: `{line}`"))
     }
 
-    /// Sum of several blocks; the path is the longest of all.
+    /// Several blocks as one; the longest path is the longest of any.
     pub fn sum(name: &str, parts: &[&Self]) -> Self {
         let total = |count: fn(&Self) -> u32| parts.iter().map(|part| count(part)).sum();
         let mut others = BTreeMap::new();
@@ -111,7 +111,7 @@ impl Size {
         }
     }
 
-    /// Amount of `resource`.
+    /// How much of `resource` it takes.
     pub fn of(&self, resource: Resource) -> f64 {
         match resource {
             Resource::Lut => f64::from(self.logic + self.srl + self.lutram),

@@ -1,10 +1,10 @@
 //! `glint imu replay`.
 
-use super::source::read_log;
+use super::source::{file_name, read_log};
 use crate::cli::common::{LineArguments, advance, bar, count_bar, print_json, say, spinner};
 use anyhow::Context;
 use clap::Args;
-use glint::board::Board;
+use glint::board::{Board, ModelOrBoard};
 use glint::console::Console;
 use glint::error::FormatError;
 use glint::imu::log::Entry;
@@ -19,54 +19,53 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-/// Compute the attitudes of a log with the firmware's integer arithmetic.
+/// Make attitudes of a log, by the firmware's integer arithmetic.
 ///
-/// LOG.csv has a header with t_us,ax,ay,az,gx,gy,gz and optionally temp, in any order, then one sample a line in raw counts.
-/// ORIENTATION.csv gets t_us,w,x,y,z,yaw,pitch,roll for each sample: the quaternion from body to world (z up), and intrinsic
-/// z-y-x angles in degrees. The first attitude is the identity, or with tilt correction yaw 0 and the measured direction of
-/// gravity. Samples with a time stamp not later than the one before are ignored. Over a gap of more than half a second the
-/// attitude is held.
+/// LOG.csv has a header that names t_us,ax,ay,az,gx,gy,gz, and temp or not, in any order, and a sample a line in raw counts. For each of
+/// them ORIENTATION.csv gets t_us,w,x,y,z,yaw,pitch,roll: the quaternion from the body to the world, whose z is up, and intrinsic z-y-x
+/// angles in degrees. It begins at the identity, or with yaw 0 and gravity where the accelerometer says. Samples that are not later
+/// than those before are ignored; over a gap of more than half a second the attitude is held.
 #[derive(Args)]
 pub struct ReplayArguments {
-    /// Log to read.
+    /// The log.
     #[arg(value_name = "LOG.csv")]
     log: PathBuf,
-    /// Backend: `model` (the firmware's arithmetic on this host), `virtual` (the verilated SoC) or a serial port. All write the
-    /// same attitudes.
+    /// Who computes: `model` (the firmware's own arithmetic, on this machine), `virtual` (the verilated SoC) or a serial port. All write the
+    /// same.
     #[arg(long, default_value = "model")]
-    board: String,
-    /// File to write.
+    board: ModelOrBoard,
+    /// The file to write.
     #[arg(long, value_name = "ORIENTATION.csv")]
     out: PathBuf,
-    /// Fixed sample period in microseconds, instead of the time stamps; ORIENTATION.csv keeps the stamps.
+    /// Take so many microseconds between two samples, and not their stamps, which are passed through.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(LONGEST_STEP)))]
     dt_us: Option<u32>,
-    /// Gyroscope scale in LSB per °/s: 131, 65.5, 32.8, 16.4 for an MPU-6050 at ±250, 500, 1000, 2000 °/s.
+    /// LSB of the gyroscope for 1 °/s: 131, 65.5, 32.8, 16.4 for an MPU-6050 at ±250, 500, 1000, 2000 °/s.
     #[arg(long, value_name = "LSB", default_value = "16.4")]
     gyro_lsb: String,
-    /// Accelerometer scale in LSB per g: 16384, 8192, 4096, 2048 for an MPU-6050 at ±2, 4, 8, 16 g.
+    /// LSB of the accelerometer for 1 g: 16384, 8192, 4096, 2048 for an MPU-6050 at ±2, 4, 8, 16 g.
     #[arg(long, value_name = "LSB", default_value = "4096")]
     accel_lsb: String,
-    /// Rest at the start of the log, in seconds: its mean rate is the bias. Motion during it is an error.
+    /// The sensor is still for so long at the start: the mean of the gyroscope meanwhile is its bias. Refused where it moves.
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     still: Option<String>,
-    /// Disable tilt correction by the accelerometer.
+    /// Leave the accelerometer out.
     #[arg(long)]
     no_tilt: bool,
-    /// Track the bias whenever the sensor is at rest.
+    /// Follow the bias whenever the sensor is at rest for a while.
     #[arg(long)]
     follow_bias: bool,
-    /// Transfer of log and attitudes [default: memory for the virtual board, serial for a port].
+    /// How log and attitudes pass between here and a board [default: memory on the virtual board, serial on a port].
     #[arg(long, value_enum)]
     transfer: Option<Route>,
     #[command(flatten)]
     line: LineArguments,
-    /// Print the summary as JSON.
+    /// Print what was done as JSON.
     #[arg(long)]
     json: bool,
 }
 
-/// The summary.
+/// What is printed.
 #[derive(Serialize)]
 struct Summary<'a> {
     log: &'a Path,
@@ -78,14 +77,14 @@ struct Summary<'a> {
     gaps: u64,
     saturated: u64,
     rejected: u64,
-    /// Mean cycles of a sample on a board.
+    /// Of a board, in the mean.
     #[serde(skip_serializing_if = "Option::is_none")]
     cycles_per_sample: Option<u64>,
     calibration: Option<Calibrated>,
     end: Attitude,
 }
 
-/// A calibration in LSB and °/h.
+/// A calibration, in LSB and °/h.
 #[derive(Serialize)]
 struct Calibrated {
     samples: u32,
@@ -105,7 +104,7 @@ impl Calibrated {
     }
 }
 
-/// An attitude in the units of ORIENTATION.csv.
+/// An attitude as it is written.
 #[derive(Serialize)]
 struct Attitude {
     w: f64,
@@ -140,7 +139,7 @@ impl ReplayArguments {
         let options = self.options()?;
         let entries = read_log(&self.log)?;
         let prepared = replay::prepare(&entries, &options).map_err(|error| match error {
-            replay::Error::Still(error) => error.in_path(&self.log).into(),
+            replay::Error::Still(error) => error.in_file(file_name(&self.log)).into(),
             error => anyhow::Error::from(error),
         })?;
         let replayed = self.replay(prepared)?;
@@ -150,20 +149,16 @@ impl ReplayArguments {
     }
 
     fn replay(&self, prepared: Prepared) -> anyhow::Result<Replayed> {
-        match self.board.as_str() {
-            "model" => {
+        match &self.board {
+            ModelOrBoard::Model => {
                 let spinner = spinner("replaying");
                 let replayed = replay::on_model(prepared)?;
                 spinner.finish_and_clear();
                 Ok(replayed)
             }
-            "virtual" => {
-                let mut board = self.line.virtual_board()?;
-                self.on_board(&prepared, &mut board, Route::Memory)
-            }
-            port => {
-                let mut board = self.line.serial_board(port)?;
-                self.on_board(&prepared, &mut board, Route::Serial)
+            ModelOrBoard::Board(name) => {
+                let mut board = self.line.board(name)?;
+                self.on_board(&prepared, &mut *board, Route::of(name))
             }
         }
     }
@@ -183,7 +178,7 @@ impl ReplayArguments {
                 Stage::Replay => replay,
             };
             if now != stage {
-                // Only one bar is shown.
+                // One bar at a time.
                 bars.iter().for_each(ProgressBar::reset);
                 stage = now;
             }
@@ -196,7 +191,7 @@ impl ReplayArguments {
     }
 
     fn options(&self) -> anyhow::Result<Options> {
-        let bad_value = |option: &str, expected: String, found: &str| {
+        let wrong = |option: &str, expected: String, found: &str| {
             FormatError::whole(expected, glint::error::quote(found.as_bytes())).in_file(option)
         };
         let gyro = Q32_32::from_str(&self.gyro_lsb).ok();
@@ -205,7 +200,7 @@ impl ReplayArguments {
             .ok_or_else(|| {
                 let [low, high] = LSB_PER_DPS;
                 let expected = format!("a number of LSB per °/s from {low} to {high}");
-                bad_value("--gyro-lsb", expected, &self.gyro_lsb)
+                wrong("--gyro-lsb", expected, &self.gyro_lsb)
             })?;
         let accel = self.accel_lsb.parse::<u32>().ok();
         let [low, high] = LSB_PER_G;
@@ -213,7 +208,7 @@ impl ReplayArguments {
             .filter(|lsb| (low..=high).contains(lsb))
             .ok_or_else(|| {
                 let expected = format!("a whole number of LSB per g from {low} to {high}");
-                bad_value("--accel-lsb", expected, &self.accel_lsb)
+                wrong("--accel-lsb", expected, &self.accel_lsb)
             })?;
         let still = match &self.still {
             None => None,
@@ -221,7 +216,7 @@ impl ReplayArguments {
                 let seconds = text.parse::<f64>().ok();
                 let seconds = seconds.filter(|seconds| *seconds > 0.0 && *seconds <= 86_400.0);
                 let seconds = seconds.ok_or_else(|| {
-                    bad_value("--still", "a number of seconds up to 86400".into(), text)
+                    wrong("--still", "a number of seconds up to 86400".into(), text)
                 })?;
                 Some((seconds * 1e6) as u64)
             }
@@ -274,7 +269,7 @@ impl ReplayArguments {
             return print_json(&summary);
         }
         say(format_args!(
-            "samples     {} in {:.3} s: {} steps, {} stale, {} gaps, {} saturated, {} without tilt correction",
+            "samples     {} in {:.3} s: {} steps, {} stale, {} gaps, {} saturated, {} with the accelerometer left out",
             summary.samples,
             summary.seconds,
             summary.steps,

@@ -12,12 +12,12 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::PathBuf;
 
-/// Stream samples: t_us,ax,ay,az,gx,gy,gz in raw counts.
+/// Print samples as they come: t_us,ax,ay,az,gx,gy,gz in raw counts.
 ///
-/// The sensor takes 1,000 samples a second. A serial line at 115,200 baud carries about 250 of them.
+/// The sensor gives 1,000 samples a second; a line of 115,200 bits a second takes some 250 of them.
 #[derive(Args)]
 pub struct StreamArguments {
-    /// Number of samples.
+    /// How many.
     #[arg(long, value_name = "N", default_value_t = 1_000, value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_SAMPLES[1])))]
     samples: u32,
     #[command(flatten)]
@@ -42,21 +42,21 @@ impl StreamArguments {
     }
 }
 
-/// A sample as a line of a log.
+/// A sample as it stands in a log.
 fn line(entry: &Entry) -> String {
     let ([ax, ay, az], [gx, gy, gz]) = (entry.accel, entry.gyro);
     format!("{},{ax},{ay},{az},{gx},{gy},{gz}", entry.t_us)
 }
 
-/// Measure the gyroscope's bias at rest; the board stores it and tracks it from then on.
+/// Find the gyroscope's bias while the sensor lies still; the board keeps it, and follows it from then on.
 #[derive(Args)]
 pub struct CalibrateArguments {
-    /// Number of samples.
+    /// With how many samples.
     #[arg(long, value_name = "N", default_value_t = SAMPLES, value_parser = clap::value_parser!(u32).range(i64::from(MOST_SAMPLES[0])..=i64::from(MOST_SAMPLES[1])))]
     samples: u32,
     #[command(flatten)]
     sensor: SensorArguments,
-    /// Print the result as JSON.
+    /// Print what was found as JSON.
     #[arg(long)]
     json: bool,
 }
@@ -87,15 +87,15 @@ impl CalibrateArguments {
     }
 }
 
-/// Record a board's samples to a log for `glint imu replay`.
+/// Write a board's samples to a log, for `glint imu replay`.
 ///
-/// The sensor takes 1,000 samples a second. A serial line at 115,200 baud carries about 250 of them, each with its time stamp.
+/// The sensor gives 1,000 samples a second; a line of 115,200 bits a second takes some 250 of them, each with the time at which it was measured.
 #[derive(Args)]
 pub struct RecordArguments {
-    /// Log to write.
+    /// The file to write.
     #[arg(value_name = "LOG.csv")]
     log: PathBuf,
-    /// Number of samples.
+    /// How many samples.
     #[arg(long, value_name = "N", default_value_t = 1_000, value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_SAMPLES[1])))]
     samples: u32,
     #[command(flatten)]

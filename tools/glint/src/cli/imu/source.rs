@@ -1,21 +1,21 @@
-//! Samples of a board's sensor, and of a log.
+//! Samples of a board's sensor, and of a file.
 
 use crate::cli::common::{LineArguments, spinner};
 use clap::Args;
-use glint::board::Board;
+use glint::board::{Board, BoardName};
 use glint::console::Console;
 use glint::formats::read_file;
 use glint::imu::log::{self, Entry};
 use glint::imu::sensor;
 use std::path::{Path, PathBuf};
 
-/// Options of a board with a sensor.
+/// A board with a sensor.
 #[derive(Args)]
 pub struct SensorArguments {
-    /// Board of the sensor: `virtual` (the verilated SoC with a virtual MPU-6050) or a serial port.
+    /// Whose sensor: `virtual` (the verilated SoC, with a virtual MPU-6050) or a serial port.
     #[arg(long)]
-    board: String,
-    /// Motion of the virtual sensor: a log in raw counts, from the board's start [default: at rest, with noise and bias].
+    board: BoardName,
+    /// What the virtual sensor measures, in raw counts from the board's start on [default: it lies still, with noise and bias].
     #[arg(long, value_name = "LOG.csv")]
     sensor: Option<PathBuf>,
     #[command(flatten)]
@@ -23,15 +23,14 @@ pub struct SensorArguments {
 }
 
 impl SensorArguments {
-    /// Opens the board and waits for its sensor's first sample.
+    /// The board, once its sensor gives samples.
     pub fn open(&self) -> anyhow::Result<Box<dyn Board>> {
         anyhow::ensure!(
-            self.board == "virtual" || self.sensor.is_none(),
-            "--sensor: expected --board virtual, found --board {}",
-            self.board
+            self.board == BoardName::Virtual || self.sensor.is_none(),
+            "--sensor: only the virtual board has a sensor that can be told what it measures"
         );
-        let mut board: Box<dyn Board> = match self.board.as_str() {
-            "virtual" => {
+        let mut board: Box<dyn Board> = match &self.board {
+            BoardName::Virtual => {
                 let entries = match &self.sensor {
                     None => None,
                     Some(path) => Some(read_log(path)?),
@@ -42,9 +41,9 @@ impl SensorArguments {
                     .plug(sensor::virtual_sensor(entries.as_deref()));
                 Box::new(board)
             }
-            port => Box::new(self.line.serial_board(port)?),
+            BoardName::Serial(port) => Box::new(self.line.serial_board(port)?),
         };
-        let spinner = spinner("waiting for the sensor");
+        let spinner = spinner("the sensor starts");
         let found = sensor::wait(&mut Console::new(board.as_mut()));
         spinner.finish_and_clear();
         eprintln!("{}", found?);
@@ -52,8 +51,13 @@ impl SensorArguments {
     }
 }
 
-/// Reads a log.
+/// A log of a file.
 pub fn read_log(path: &Path) -> anyhow::Result<Vec<Entry>> {
     let text = read_file(path)?;
-    Ok(log::parse(&text).map_err(|error| error.in_path(path))?)
+    Ok(log::parse(&text).map_err(|error| error.in_file(file_name(path)))?)
+}
+
+/// What a file is called in messages.
+pub fn file_name(path: &Path) -> String {
+    path.display().to_string().escape_debug().to_string()
 }

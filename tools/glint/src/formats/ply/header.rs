@@ -1,19 +1,19 @@
-//! Header of a PLY file: its elements and their properties.
+//! The header of a PLY file: which elements there are, and of what their instances consist.
 
 use crate::error::{FormatError, Place, quote};
 use crate::formats::text::{Line, Lines};
 
-/// Maximum number of elements in a header, and of properties in an element; real files have fewer.
+/// The most elements a header may declare, and the most properties of an element: more than any real file has.
 const MAX_DECLARED: usize = 64;
 
-/// Encoding of the values after the header.
+/// How the values behind the header are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Encoding {
-    /// Text, one line per instance.
+    /// A line for each instance.
     Ascii,
-    /// Binary, little-endian.
+    /// Binary, low byte first.
     LittleEndian,
-    /// Binary, big-endian.
+    /// Binary, high byte first.
     BigEndian,
 }
 
@@ -45,7 +45,7 @@ impl Scalar {
         })
     }
 
-    /// Size in bytes of a binary value.
+    /// Bytes of one value in a binary file.
     pub fn size(self) -> usize {
         match self {
             Self::Int8 | Self::Uint8 => 1,
@@ -55,7 +55,7 @@ impl Scalar {
         }
     }
 
-    /// Decodes the low [`size`](Self::size) bytes, least significant first.
+    /// The value of the low [`size`](Self::size) bytes, low byte first.
     pub fn decode(self, raw: [u8; 8]) -> f64 {
         let [a, b, c, d, ..] = raw;
         match self {
@@ -82,18 +82,18 @@ impl Scalar {
         })
     }
 
-    /// Whether the type can hold a value parsed from text.
+    /// Whether a value read as text fits.
     pub fn holds(self, value: f64) -> bool {
         self.range()
             .is_none_or(|(low, high)| (low..=high).contains(&value) && value.fract() == 0.0)
     }
 
-    /// Full intensity of a colour channel of this type.
+    /// What a full channel of a colour is in this type.
     pub fn full_scale(self) -> f64 {
         self.range().map_or(1.0, |(_, high)| high)
     }
 
-    /// Name in messages.
+    /// For messages.
     pub fn describe(self) -> &'static str {
         match self {
             Self::Int8 => "an int8",
@@ -108,16 +108,16 @@ impl Scalar {
     }
 }
 
-/// Type of a property: one value, or a list after its length.
+/// One value, or a list of them with its length in front.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// One value.
     Scalar(Scalar),
     /// A list.
     List {
-        /// Type of its length.
+        /// The type of its length.
         count: Scalar,
-        /// Type of its items.
+        /// The type of its items.
         item: Scalar,
     },
 }
@@ -127,37 +127,37 @@ pub enum Kind {
 pub struct Property {
     /// Its name.
     pub name: Vec<u8>,
-    /// Type of its values.
+    /// What it consists of.
     pub kind: Kind,
 }
 
-/// An element: the type of a table of instances.
+/// An element: a kind of thing of which the file has many.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Element {
     /// Its name.
     pub name: Vec<u8>,
-    /// Number of instances.
+    /// How many there are.
     pub count: u32,
-    /// Properties of each instance.
+    /// What each consists of.
     pub properties: Vec<Property>,
-    /// Place of its declaration.
+    /// Where it was declared.
     pub place: Place,
 }
 
 /// A whole header.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Header {
-    /// Encoding of the values.
+    /// How the values are written.
     pub encoding: Encoding,
-    /// Elements in file order.
+    /// The elements in the order of the file.
     pub elements: Vec<Element>,
 }
 
 impl Header {
-    /// Parses up to and including the line `end_header`; `lines` then continues with the first value.
+    /// Reads up to the line `end_header`, so that `lines` stands at the first value.
     ///
     /// # Errors
-    /// The first line that violates the format.
+    /// The first line that is not of a PLY header.
     pub fn parse(lines: &mut Lines) -> Result<Self, FormatError> {
         let mut encoding = None;
         let mut elements: Vec<Element> = Vec::new();

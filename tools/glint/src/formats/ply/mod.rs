@@ -1,7 +1,7 @@
 //! PLY (the Stanford polygon format), ASCII and binary of both byte orders.
 //!
-//! Own parser instead of `ply-rs` or `ply-rs-bw`: they need 2 GB for a header of 70 bytes that declares 30 million elements
-//! without properties, and their errors in binary files have no offset.
+//! Own code and not `ply-rs` or `ply-rs-bw`: a header of 70 bytes that declares 30 million elements without a property
+//! takes them 2 GB, and their errors in binary files carry no offset.
 
 mod header;
 mod source;
@@ -12,11 +12,11 @@ use crate::polygons::{Corner, Polygons, Rgb8};
 use header::{Element, Encoding, Header, Kind, Property, Scalar};
 use source::{AsciiSource, BinarySource, Source};
 
-/// Parses a PLY: the elements `vertex` (x y z, optionally nx ny nz and red green blue) and `face` (vertex_indices or
-/// vertex_index, optionally red green blue); other elements are skipped.
+/// Reads a whole PLY: the elements `vertex` (x y z, perhaps nx ny nz and red green blue) and `face` (vertex_indices or
+/// vertex_index, perhaps red green blue); others are skipped.
 ///
 /// # Errors
-/// The first violation of the format, with its line (header, ASCII) or offset (binary).
+/// The first thing that is not PLY, and its line (header, ASCII) or offset (binary).
 pub fn parse(file: &[u8]) -> Result<Polygons, FormatError> {
     let mut lines = Lines::new(file);
     let header = Header::parse(&mut lines)?;
@@ -35,7 +35,7 @@ pub fn parse(file: &[u8]) -> Result<Polygons, FormatError> {
 fn read_body(header: &Header, mut source: impl Source) -> Result<Polygons, FormatError> {
     let mut polygons = Polygons::default();
     for element in &header.elements {
-        // An element without properties has no bytes, whatever its count.
+        // An element without properties has no bytes either, however many there are.
         if element.properties.is_empty() {
             continue;
         }
@@ -84,12 +84,12 @@ fn list_length(count: Scalar, source: &mut impl Source) -> Result<u64, FormatErr
     Ok(length as u64)
 }
 
-/// Destination of a scalar property.
+/// Where a scalar property goes.
 #[derive(Clone, Copy)]
 enum Slot {
     Position(usize),
     Normal(usize),
-    /// Channel, and full intensity of the property's type.
+    /// The channel, and what the property's largest value is.
     Colour(usize, f64),
     None,
 }
@@ -114,7 +114,7 @@ impl Slot {
     }
 }
 
-/// Whether the properties include all three channels of a kind.
+/// Whether the properties have all three of a kind.
 fn has_all(slots: &[Slot], kind: impl Fn(&Slot) -> Option<usize>) -> bool {
     (0..3).all(|i| slots.iter().any(|slot| kind(slot) == Some(i)))
 }
@@ -179,7 +179,7 @@ fn read_vertices(
             let value = source.value(scalar)?;
             match *slot {
                 Slot::Position(i) => point[i] = coordinate(value, place)?,
-                // An invalid normal counts as none.
+                // A normal that is no number is as good as none.
                 Slot::Normal(i) => normal[i] = checked(value).unwrap_or(0.0),
                 Slot::Colour(i, full) => colour[i] = value / full,
                 Slot::None => {}
@@ -218,7 +218,7 @@ fn read_faces(
         ));
     }
     let with_colour = has_colour(&slots);
-    // Faces use the vertices' normals if the vertices come first, as in every known file.
+    // Only vertices that come before the faces, as in every known file, bring their normals along.
     let with_normal = !polygons.normals.is_empty();
     let mut corners = Vec::new();
     for _ in 0..element.count {
@@ -349,7 +349,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_name_their_place() {
+    fn refused() {
         let good = binary("little", false, 2);
         let ascii = |from: &str, to: &str| ASCII.replace(from, to).into_bytes();
         let cases: [(Vec<u8>, &str); 14] = [
@@ -393,7 +393,7 @@ mod tests {
             ),
             (
                 ascii("3 2 1 0\n", "3 2 1 4\n"),
-                "line 25: expected a point index below 4, found 4 (counted from 0)",
+                "line 25: expected a point of the 4 in the file, found one with index 4, counted from 0",
             ),
             (
                 good[..good.len() - 1].to_vec(),

@@ -7,10 +7,11 @@ use glint::convert::{self, Options};
 use glint::error::Place;
 use glint::generate;
 use glint::polygons::{Corner, Polygons};
-use glint::render::{self, Renderer, Route, Scene, Stats, Subject};
+use glint::render::{self, BoardRenderer, Frame, Route, Stats, Subject};
 use glint::view;
 use glint_core::camera::View;
-use glint_core::picture::Backend;
+use glint_core::mesh::Mesh;
+use glint_core::picture::{Backend, Size};
 use serde::{Deserialize, Serialize};
 
 use crate::report::provenance::Provenance;
@@ -204,31 +205,28 @@ fn measure_case(firmware: &[u8], case: &Case, quick: bool, provenance: &Provenan
     let mut board = SimulatedBoard::fast(firmware)?;
     let mut console = Console::new(&mut board);
     console.greet()?;
-    let mut renderer = Renderer::new(console);
+    let mut renderer = BoardRenderer::new(console).with_backend(Backend::Gateware);
     let mesh = (case.mesh)()?;
-    let mut scene = Scene {
-        subject: Subject::mesh(&mesh),
-        view: ahead(case.half_width)?,
-        size: case.size,
-        backend: Some(Backend::Gateware),
-    };
-    let expected = render::on_model(&scene)?;
-    renderer.show(&scene, Route::Memory, &mut |_, _| {})?;
-    let found = renderer.colour(case.size, Route::Memory, &mut |_, _| {})?;
+    let subject = Subject::mesh(Mesh::new_checked(&mesh)?);
+    let size = Size::of(case.size.0, case.size.1).context("the size of a picture")?;
+    let frame = Frame::new(subject, ahead(case.half_width)?, size);
+    let expected = render::on_model(&frame)?;
+    renderer.show(&frame, Route::Memory, &mut |_, _| {})?;
+    let found = renderer.colour(size, Route::Memory, &mut |_, _| {})?;
     ensure!(
-        found == expected.frame.colour,
+        found == expected.image.colour,
         "{}: the engine's frame is not the model's",
         case.name
     );
     // Only differing words are written, so both frame buffers take the frame before it is measured.
-    renderer.look(&scene.view)?;
-    let alone = renderer.look(&scene.view)?;
+    renderer.look(&frame.view)?;
+    let alone = renderer.look(&frame.view)?;
     let together = BackToBack::measure(&mut renderer, "triangle")?;
     let cpu = if quick {
         None
     } else {
-        scene.backend = Some(Backend::Cpu);
-        renderer.show(&scene, Route::Memory, &mut |_, _| {})?.cycles
+        renderer.set_backend(Backend::Cpu);
+        renderer.show(&frame, Route::Memory, &mut |_, _| {})?.cycles
     };
     row(case, provenance, &expected.stats, &alone, &together, cpu)
 }

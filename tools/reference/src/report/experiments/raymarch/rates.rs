@@ -3,10 +3,10 @@
 use anyhow::{Context, Result, ensure};
 use glint::board::{SimulatedBoard, built_firmware};
 use glint::console::Console;
-use glint::render::{self, FieldSubject, Renderer, Route, Scene, Subject};
+use glint::render::{self, BoardRenderer, FieldSubject, Frame, Route, Subject};
 use glint_core::appearance::Appearance;
 use glint_core::field::Field;
-use glint_core::picture::Backend;
+use glint_core::picture::{Backend, Size};
 use glint_core::stereo::Stereo;
 use indicatif::ProgressBar;
 use serde::{Deserialize, Serialize};
@@ -237,37 +237,35 @@ fn draw(
     let mut board = SimulatedBoard::new(board);
     let mut console = Console::new(&mut board);
     console.greet()?;
-    let mut renderer = Renderer::new(console);
+    let mut renderer = BoardRenderer::new(console).with_backend(Backend::Gateware);
+    let size = Size::of(case.size.0, case.size.1).context("the size of a picture")?;
     let field = Field::parse(case.field).map_err(|error| anyhow::anyhow!("{error}"))?;
     let stereo = case.stereo.map(Stereo::parse).transpose();
     let stereo = stereo.map_err(|error| anyhow::anyhow!("{error}"))?;
     let mut rows: Vec<Row> = Vec::new();
     let mut last = None;
     for angles in (case.path)() {
-        let scene = Scene {
-            subject: Subject::Field(FieldSubject {
-                field: &field,
-                appearance: &Appearance::default(),
-                stereo,
-                prepass: case.prepass,
-            }),
-            view: camera.turned(angles).view().map_err(anyhow::Error::msg)?,
-            size: case.size,
-            backend: Some(Backend::Gateware),
+        let subject = FieldSubject {
+            field: &field,
+            appearance: &Appearance::default(),
+            stereo,
+            prepass: case.prepass,
         };
-        let expected = render::on_model(&scene)?;
+        let pose = camera.turned(angles).view().map_err(anyhow::Error::msg)?;
+        let frame = Frame::new(Subject::Field(subject), pose, size);
+        let expected = render::on_model(&frame)?;
         let stats = if rows.is_empty() {
-            renderer.show(&scene, Route::Memory, &mut |_, _| {})?
+            renderer.show(&frame, Route::Memory, &mut |_, _| {})?
         } else {
-            renderer.look(&scene.view)?
+            renderer.look(&frame.view)?
         };
         ensure!(
             stats.backend.as_deref() == Some("gateware"),
             "expected a frame of the gateware, found the soft core's"
         );
-        let found = renderer.colour(case.size, Route::Memory, &mut |_, _| {})?;
+        let found = renderer.colour(size, Route::Memory, &mut |_, _| {})?;
         ensure!(
-            found == expected.frame.colour && stats.rays == expected.stats.rays,
+            found == expected.image.colour && stats.rays == expected.stats.rays,
             "turned by {angles:?} degrees, the raymarcher's frame is not the model's"
         );
         let rays = stats.rays.context("no ray counters in the reply")?;
@@ -289,7 +287,7 @@ fn draw(
             cycles_frame: None,
             commit: commit.to_owned(),
         });
-        last = Some(scene.view);
+        last = Some(frame.view);
         bar.inc(1);
     }
     // Only the slowest pose is drawn back to back.

@@ -1,0 +1,28 @@
+//! Errors of boards.
+
+/// An error of a board.
+#[derive(Debug, thiserror::Error)]
+pub enum BoardError {
+    /// An error of the virtual board.
+    #[error(transparent)]
+    Virtual(#[from] virtual_board::Error),
+    /// A serial port that cannot be opened.
+    #[error("{port}: expected a serial port, found: {source}")]
+    Open {
+        /// Name of the port.
+        port: String,
+        /// Error of the operating system.
+        source: serialport::Error,
+    },
+    /// An error of the serial line.
+    #[error("serial line: {0}")]
+    Line(#[from] std::io::Error),
+    /// A firmware file that cannot be read.
+    #[error("the firmware {path} cannot be read ({source}); run `cargo xtask firmware`")]
+    Firmware {
+        /// Path of the file.
+        path: String,
+        /// Error of the operating system.
+        source: std::io::Error,
+    },
+}

@@ -1,0 +1,63 @@
+//! Boards as the command line names them.
+
+use std::convert::Infallible;
+use std::fmt;
+use std::str::FromStr;
+
+/// A board by its name.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum BoardName {
+    /// `virtual`: the verilated SoC in this process.
+    Virtual,
+    /// Any other name: a serial port.
+    Serial(String),
+}
+
+impl FromStr for BoardName {
+    type Err = Infallible;
+
+    fn from_str(name: &str) -> Result<Self, Infallible> {
+        Ok(match name {
+            "virtual" => Self::Virtual,
+            port => Self::Serial(port.to_owned()),
+        })
+    }
+}
+
+impl fmt::Display for BoardName {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Self::Virtual => "virtual",
+            Self::Serial(port) => port,
+        })
+    }
+}
+
+/// The bit-exact model in this process, or a board.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ModelOrBoard {
+    /// `model`.
+    Model,
+    /// Any other name.
+    Board(BoardName),
+}
+
+impl FromStr for ModelOrBoard {
+    type Err = Infallible;
+
+    fn from_str(name: &str) -> Result<Self, Infallible> {
+        Ok(match name {
+            "model" => Self::Model,
+            name => Self::Board(name.parse()?),
+        })
+    }
+}
+
+impl fmt::Display for ModelOrBoard {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Model => f.write_str("model"),
+            Self::Board(name) => name.fmt(f),
+        }
+    }
+}

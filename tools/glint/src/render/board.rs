@@ -1,0 +1,231 @@
+//! A board as a renderer: frames become console commands.
+
+use super::commands::{field_commands, mesh_commands, size_command, view_command};
+use super::renderer::{Error, Parts, Rendered, Renderer};
+use super::stats::{Stats, stats_of};
+use crate::board::Board;
+use crate::console::{self, Console};
+use crate::picture::Image;
+use crate::transfer::{self, Progress, Route};
+use glint_core::camera::View;
+use glint_core::picture::{Backend, Size};
+use glint_model::Frame;
+
+/// A board as a renderer.
+pub struct BoardRenderer<'b, B: ?Sized = dyn Board> {
+    console: Console<'b, B>,
+    /// Uploads so far: the number of the next one differs from the last.
+    uploads: u8,
+    backend: Option<Backend>,
+    route: Route,
+}
+
+impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
+    /// A board whose firmware runs.
+    pub fn new(console: Console<'b, B>) -> Self {
+        Self {
+            console,
+            uploads: 0,
+            backend: None,
+            route: Route::Serial,
+        }
+    }
+
+    /// Sets the backend of all frames from now on; `None` leaves the board's own.
+    #[must_use]
+    pub fn with_backend(self, backend: impl Into<Option<Backend>>) -> Self {
+        let backend = backend.into();
+        Self { backend, ..self }
+    }
+
+    /// Sets the route of [`render`](Renderer::render), instead of the serial line.
+    #[must_use]
+    pub fn with_route(self, route: Route) -> Self {
+        Self { route, ..self }
+    }
+
+    /// Sets the backend of all frames from now on; `None` leaves the board's own.
+    pub fn set_backend(&mut self, backend: impl Into<Option<Backend>>) {
+        self.backend = backend.into();
+    }
+
+    /// The board itself.
+    pub fn board(&mut self) -> &mut B {
+        self.console.board()
+    }
+
+    /// The board's console.
+    pub fn console(&mut self) -> &mut Console<'b, B> {
+        &mut self.console
+    }
+
+    /// Shows a frame: uploads its mesh if it has one, and waits until it is drawn.
+    ///
+    /// # Errors
+    /// The firmware refuses, or the upload fails.
+    pub fn show(
+        &mut self,
+        frame: &Frame,
+        route: Route,
+        progress: &mut Progress,
+    ) -> Result<Stats, Error> {
+        if let Some(backend) = self.backend {
+            self.console.command(&format!("backend {backend}"))?;
+        }
+        // The board draws every change at once: the subject, which takes the longest, comes last.
+        self.console.command(&size_command(frame.size))?;
+        self.console.command(&view_command(&frame.view))?;
+        if let Some(mesh) = frame.subject.mesh_part() {
+            for command in mesh_commands(mesh) {
+                self.console.command(&command)?;
+            }
+            self.upload(mesh.mesh.bytes(), route, progress)?;
+        }
+        if let Some(field) = frame.subject.field_part() {
+            let with_mesh = frame.subject.mesh_part().is_some();
+            for command in field_commands(field, with_mesh) {
+                self.console.command(&command)?;
+            }
+        }
+        self.redraw()
+    }
+
+    /// Uploads a mesh and shows it.
+    ///
+    /// # Errors
+    /// The upload fails, or the board lacks this route.
+    pub fn upload(
+        &mut self,
+        mesh: &[u8],
+        route: Route,
+        progress: &mut Progress,
+    ) -> Result<(), Error> {
+        if route == Route::Memory {
+            transfer::stage(&mut self.console, mesh)?;
+        }
+        self.uploads = self.uploads.wrapping_add(1);
+        Ok(transfer::upload(
+            &mut self.console,
+            mesh,
+            self.uploads,
+            progress,
+        )?)
+    }
+
+    /// Moves the camera and waits for the frame.
+    ///
+    /// # Errors
+    /// The firmware refuses.
+    pub fn look(&mut self, view: &View) -> Result<Stats, Error> {
+        self.console.command(&view_command(view))?;
+        self.redraw()
+    }
+
+    /// The colours of the last frame.
+    ///
+    /// # Errors
+    /// The download fails, or the board lacks this route.
+    pub fn colour(
+        &mut self,
+        size: Size,
+        route: Route,
+        progress: &mut Progress,
+    ) -> Result<Vec<u16>, Error> {
+        let bytes = self.frame("frame", 2, size, route, progress)?;
+        Ok(bytes
+            .chunks_exact(2)
+            .map(|pixel| u16::from_le_bytes([pixel[0], pixel[1]]))
+            .collect())
+    }
+
+    /// The depth codes of the scene that is shown.
+    ///
+    /// # Errors
+    /// The download fails, or the board lacks this route.
+    pub fn depth(
+        &mut self,
+        size: Size,
+        route: Route,
+        progress: &mut Progress,
+    ) -> Result<Vec<u32>, Error> {
+        // The gateware writes depth codes on request; over the serial line the command requests them.
+        if route == Route::Memory {
+            let lines = self.console.command("stats")?;
+            if console::value::<String>("stats", &lines, "backend")? == Backend::Gateware.name() {
+                self.console.command("render depth")?;
+            }
+        }
+        let bytes = self.frame("depth", 4, size, route, progress)?;
+        let word = |pixel: &[u8]| u32::from_le_bytes([pixel[0], pixel[1], pixel[2], pixel[3]]);
+        Ok(bytes.chunks_exact(4).map(word).collect())
+    }
+
+    fn frame(
+        &mut self,
+        kind: &str,
+        pixel_bytes: usize,
+        size: Size,
+        route: Route,
+        progress: &mut Progress,
+    ) -> Result<Vec<u8>, Error> {
+        let length = pixel_bytes * size.pixel_count();
+        match route {
+            Route::Serial => {
+                let command = if kind == "depth" {
+                    "frame depth"
+                } else {
+                    "frame"
+                };
+                Ok(transfer::download(
+                    &mut self.console,
+                    command,
+                    length,
+                    progress,
+                )?)
+            }
+            Route::Memory => Ok(transfer::read_memory(&mut self.console, kind, 0, length)?),
+        }
+    }
+
+    /// Draws the frame again and reads its statistics.
+    ///
+    /// # Errors
+    /// The firmware refuses.
+    pub fn redraw(&mut self) -> Result<Stats, Error> {
+        let lines = self.console.command("render")?;
+        Ok(stats_of(&lines)?)
+    }
+
+    /// Sends a command that changes the scene, draws one frame, and reads its statistics.
+    ///
+    /// # Errors
+    /// The firmware refuses.
+    pub fn render_after(&mut self, command: &str) -> Result<Stats, Error> {
+        // In one write, so that the board does not draw the change before `render` arrives.
+        let text = format!("{command}\rrender\r");
+        self.console.board().write(text.as_bytes())?;
+        self.console.reply(command)?;
+        let lines = self.console.reply("render")?;
+        Ok(stats_of(&lines)?)
+    }
+}
+
+impl<B: Board + ?Sized> Renderer for BoardRenderer<'_, B> {
+    fn render(
+        &mut self,
+        frame: &Frame,
+        parts: Parts,
+        progress: &mut Progress,
+    ) -> Result<Rendered, Error> {
+        let (size, route) = (frame.size, self.route);
+        let stats = self.show(frame, route, progress)?;
+        let mut image = Image::empty(size);
+        if parts.colour {
+            image.colour = self.colour(size, route, progress)?;
+        }
+        if parts.depth {
+            image.depth = self.depth(size, route, progress)?;
+        }
+        Ok(Rendered { image, stats })
+    }
+}

@@ -1,0 +1,85 @@
+//! Frames as console commands.
+
+use glint_core::appearance::Appearance;
+use glint_core::camera::View;
+use glint_core::light::Hexadecimal;
+use glint_core::picture::Size;
+use glint_model::{FieldSubject, MeshSubject};
+
+/// The console command of a size.
+pub fn size_command(size: Size) -> String {
+    format!("size {} {}", size.width(), size.height())
+}
+
+/// The console commands of a mesh's options.
+pub fn mesh_commands(subject: &MeshSubject) -> [String; 2] {
+    [
+        format!("cull {}", switch(subject.cull)),
+        format!("shading {}", subject.shading),
+    ]
+}
+
+/// The console command of a view. Its decimals are exact, so that the board reads the same fixed-point numbers.
+pub fn view_command(view: &View) -> String {
+    let mut command = "view".to_owned();
+    let mut put = |number: &dyn std::fmt::Display| command.push_str(&format!(" {number}"));
+    view.eye().iter().for_each(|c| put(c));
+    for row in [view.u(), view.v(), view.n()] {
+        row.iter().for_each(|c| put(c));
+    }
+    put(&view.half_width());
+    put(&view.near());
+    command
+}
+
+/// The console commands of a field, alone or with the present mesh in it. Only the last one leads to a new frame.
+pub fn field_commands(subject: &FieldSubject, with_mesh: bool) -> Vec<String> {
+    let Appearance {
+        material,
+        lights,
+        ambient,
+        background,
+        fog,
+        occlusion,
+    } = subject.appearance;
+    let ambient = ambient.map(|ambient| Hexadecimal(ambient).to_string());
+    let mut commands = vec![
+        // A change of a field that is off needs no frame.
+        "field off".to_owned(),
+        format!("material {}", material.name()),
+        "light default".to_owned(),
+    ];
+    commands.extend(lights.iter().map(|light| format!("light {light}")));
+    commands.extend([
+        format!("ambient {}", ambient.as_deref().unwrap_or("default")),
+        format!("background {}", background.name()),
+        format!("fog {fog}"),
+        format!("occlusion {}", switch(*occlusion)),
+        // Stereo and a mesh in a field exclude each other.
+        "stereo off".to_owned(),
+        format!("mesh {}", switch(with_mesh)),
+        format!("prepass {}", switch(subject.prepass)),
+    ]);
+    commands.extend(subject.stereo.map(|stereo| format!("stereo {stereo}")));
+    commands.push(format!("field {}", subject.field));
+    commands
+}
+
+fn switch(on: bool) -> &'static str {
+    if on { "on" } else { "off" }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::view_command;
+    use crate::view;
+
+    #[test]
+    fn a_view_survives_the_console() {
+        let view = view::spherical("3.3,33.3,66.6").unwrap();
+        let command = view_command(&view);
+        assert!(command.len() < glint_core::console::LINE_MAX);
+        let parsed = glint_core::console::Command::parse(&command).unwrap();
+        assert_eq!(parsed, glint_core::console::Command::View(Some(view)));
+    }
+}

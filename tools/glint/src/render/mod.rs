@@ -1,0 +1,17 @@
+//! Frames rendered by the model in this process, or by a board.
+//!
+//! [`Frame`] and its subjects are the model's own types. A [`Renderer`] draws them: [`ModelRenderer`] or [`BoardRenderer`].
+
+mod board;
+mod commands;
+mod model;
+mod renderer;
+mod stats;
+
+pub use crate::transfer::Route;
+pub use board::BoardRenderer;
+pub use commands::{field_commands, mesh_commands, size_command, view_command};
+pub use glint_model::{FieldSubject, Frame, MeshSubject, Subject};
+pub use model::{ModelRenderer, on_model};
+pub use renderer::{Error, Parts, Rendered, Renderer};
+pub use stats::{EngineStats, RayCounts, Stats, TriangleCounts};

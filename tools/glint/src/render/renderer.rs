@@ -1,0 +1,57 @@
+//! The renderer of frames, whatever stands behind it.
+
+use super::stats::Stats;
+use crate::board::BoardError;
+use crate::console::ConsoleError;
+use crate::picture::Image;
+use crate::transfer::{Progress, TransferError};
+use glint_model::{Frame, RenderError};
+
+/// A renderer of frames: the model in this process, or a board.
+pub trait Renderer {
+    /// Draws a frame and brings the requested parts of it to this process.
+    ///
+    /// # Errors
+    /// A frame beyond the renderer's limits, or a board that does not answer.
+    fn render(
+        &mut self,
+        frame: &Frame,
+        parts: Parts,
+        progress: &mut Progress,
+    ) -> Result<Rendered, Error>;
+}
+
+/// Parts of a drawn frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Parts {
+    /// Colours.
+    pub colour: bool,
+    /// Depth codes.
+    pub depth: bool,
+}
+
+/// A drawn frame.
+#[derive(Clone, Debug)]
+pub struct Rendered {
+    /// Colours and depth codes.
+    pub image: Image,
+    /// Cycles and counts.
+    pub stats: Stats,
+}
+
+/// An error of a frame.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// A frame beyond the limits of the model.
+    #[error("{0}")]
+    Render(RenderError),
+    /// An error of the line to the board.
+    #[error(transparent)]
+    Board(#[from] BoardError),
+    /// An error of the board's console.
+    #[error(transparent)]
+    Console(#[from] ConsoleError),
+    /// An error of an upload or a download.
+    #[error(transparent)]
+    Transfer(#[from] TransferError),
+}
