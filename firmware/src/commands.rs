@@ -368,8 +368,11 @@ fn info<'l>(machine: &mut Machine, key: Option<&'l str>) -> Result<(), Refusal<'
         ("frame", format_args!("{:#010x}", frame.addr())),
         ("depth", format_args!("{:#010x}", depth.addr())),
         ("staging", format_args!("{address:#010x} {room}")),
-        ("video_frames", format_args!("{}", counters.frames)),
-        ("video_underflows", format_args!("{}", counters.underflows)),
+        ("video_frames", format_args!("{}", counters.frame_count)),
+        (
+            "video_underflows",
+            format_args!("{}", counters.underflow_count),
+        ),
         ("uart_lost", format_args!("{}", uart.lost())),
         ("uptime_ms", format_args!("{}", clock.milliseconds())),
     ];
@@ -523,7 +526,7 @@ pub fn stats(machine: &mut Machine, json: bool) -> Result<(), Refusal<'static>> 
         .drawn()
         .ok_or(Refusal::NoFrame)?
         .map_err(Refusal::Render)?;
-    let mut values: Vec<(&str, u64), 32> = Vec::new();
+    let mut values: Vec<(&str, u64), 16> = Vec::new();
     let (backend, engine) = match drawn.by {
         RenderedBy::Cpu(fallback) => {
             if let Some(fallback) = fallback
@@ -558,9 +561,9 @@ pub fn stats(machine: &mut Machine, json: bool) -> Result<(), Refusal<'static>> 
         let _ = values.extend_from_slice(&ray_values(&stats));
     }
     let _ = values.push(("clock", FREQUENCY.into()));
-    if let Some(counters) = engine {
-        let _ = values.extend_from_slice(&engine_values(&counters));
-    }
+    let values = values
+        .into_iter()
+        .chain(engine.iter().flat_map(engine_values));
     let terminal = &mut machine.terminal;
     if !json {
         terminal.print(format_args!("backend {backend}\n"));
@@ -589,26 +592,17 @@ pub fn ray_values(stats: &FieldStats) -> [(&'static str, u64); 5] {
 }
 
 /// The engine's counters by name.
-pub fn engine_values(counters: &Counters) -> [(&'static str, u64); 16] {
-    [
-        ("cycles_busy", counters.busy),
-        ("cycles_stalled", counters.stalled),
-        ("stalled_reads", counters.stalled_reads),
-        ("stalled_lists", counters.stalled_lists),
-        ("stalled_frame", counters.stalled_frame),
-        ("words_read", counters.words_read),
-        ("words_written", counters.words_written),
-        ("cycles_geometry", counters.geometry),
-        ("vertices", counters.vertices),
-        ("cycles_raster", counters.raster),
-        ("cycles_walking", counters.walking),
-        ("cycles_empty", counters.empty),
-        ("groups", counters.groups),
-        ("cycles_held", counters.held),
-        ("cycles_memory", counters.memory),
-        ("cycles_flush", counters.flush),
-    ]
-    .map(|(name, value)| (name, value.into()))
+pub fn engine_values(counters: &Counters) -> impl Iterator<Item = (&'static str, u64)> {
+    counters.iter().filter_map(|(name, value)| {
+        let name = match name {
+            "items_in" => "words_read",
+            "items_out" => "words_written",
+            // Printed with the triangles, without the pixels of a field.
+            "pixels_covered" | "pixels_drawn" => return None,
+            name => name,
+        };
+        Some((name, value.into()))
+    })
 }
 
 /// A switch on the console.

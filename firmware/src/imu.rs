@@ -14,10 +14,10 @@ use crate::machine::{Job, Machine};
 use crate::sensor;
 
 /// Why the sensor was not calibrated.
-pub type Refusal = glint_core::imu::Refusal<glint_hal::i2c::Error>;
+pub type Refusal = glint_core::imu::Refusal<glint_hal::i2c::BusError>;
 
 /// Why there are no samples.
-pub type Failure = glint_core::mpu6050::Error<glint_hal::i2c::Error>;
+pub type Failure = glint_core::mpu6050::Error<glint_hal::i2c::BusError>;
 
 /// Samples between two lines of progress of a calibration.
 const PROGRESS: u32 = 1_024;

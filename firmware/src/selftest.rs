@@ -35,7 +35,9 @@ pub fn run(machine: &mut Machine) -> u32 {
 fn is_stuck(machine: &Machine) -> bool {
     matches!(
         machine.imu.error(),
-        Some(Error::Bus(i2c::Error::ClockStuck | i2c::Error::DataStuck))
+        Some(Error::Bus(
+            i2c::BusError::ClockStuck | i2c::BusError::DataStuck
+        ))
     )
 }
 

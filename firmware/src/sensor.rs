@@ -15,13 +15,13 @@ use heapless::Deque;
 use litex_pac::cpu;
 
 /// The sensor, and what follows it.
-pub type Imu = glint_core::imu::Imu<i2c::Error>;
+pub type Imu = glint_core::imu::Imu<i2c::BusError>;
 
 /// What has happened.
 enum Event {
     Start(Identity),
     Sample(u64, Measurement),
-    Error(Error<i2c::Error>),
+    Error(Error<i2c::BusError>),
 }
 
 /// As many samples as come while a long frame is drawn.
@@ -50,7 +50,7 @@ impl Inbox {
     }
 }
 
-impl Sink<i2c::Error> for Inbox {
+impl Sink<i2c::BusError> for Inbox {
     fn on_start(&mut self, identity: Identity) {
         Self::push(Event::Start(identity));
     }
@@ -59,7 +59,7 @@ impl Sink<i2c::Error> for Inbox {
         Self::push(Event::Sample(time, *measurement));
     }
 
-    fn on_error(&mut self, error: Error<i2c::Error>) {
+    fn on_error(&mut self, error: Error<i2c::BusError>) {
         Self::push(Event::Error(error));
     }
 }

@@ -10,7 +10,7 @@ use glint_hal::gpio::{InputPort, OutputPort};
 use glint_hal::i2c::I2c;
 use glint_hal::raymarch::Raymarcher;
 use glint_hal::timer::{Clock, FREQUENCY, Stopped};
-use glint_hal::triangle::Engine;
+use glint_hal::triangle::TriangleEngine;
 use glint_hal::uart::Direct;
 use litex_pac::{BUILD_ID, Peripherals};
 
@@ -97,7 +97,7 @@ pub fn machine() -> Result<Machine, Fault> {
         };
         (
             Scanout::probe(peripherals.scanout).ok(),
-            Engine::probe(peripherals.triangle).ok(),
+            TriangleEngine::probe(peripherals.triangle).ok(),
             Raymarcher::probe(peripherals.raymarch).ok(),
             Some(devices),
         )

@@ -9,7 +9,7 @@ from pathlib import Path
 from litex.soc.integration import export
 from litex.soc.integration.builder import Builder
 
-from . import packages, register_map
+from . import description, packages, register_map
 from .raymarch import BUILDS
 from .register_map import OPTIONAL_BLOCKS
 
@@ -61,6 +61,7 @@ def main():
     builder.build()
     # The builder's own SVD and CSV carry the time of the build: the same SoC would give other bytes each time.
     (output / "csr.csv").unlink()
+    description.write(soc, output / "description.json")
     (output / "soc.svd").write_text(export.get_csr_svd(soc, vendor="glint", name="glint", description="The Glint SoC"))
 
 

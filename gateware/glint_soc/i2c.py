@@ -61,6 +61,11 @@ class I2CMaster(LiteXModule):
             CSRField("failed", offset=4, description="An error has ended the transaction; nothing more is done until `clear`."),
             CSRField("error", size=3, offset=8, values=_ERRORS, description="The error."),
         ], description="State.")
+        # The engine's queues have a register behind them.
+        self.constants = {
+            "command_places": (COMMANDS + 1, "Places in the queue of commands."),
+            "answer_places": (ANSWERS + 1, "Places in the queue of received bytes."),
+        }
         self.ev = EventManager()
         self.ev.ended = EventSourcePulse(name="ended", description="A stop has been made, with rounds the last one of a batch, or an error has ended the transaction.")
         self.ev.finalize()

@@ -155,6 +155,7 @@ class Raymarcher(LiteXModule):
         for name, description in counters.items():
             status[name] = CSRStatus(32, name=name, description=description[:-1] + ", modulo 2^32.")
             setattr(self, f"_{name}", status[name])
+        self.counters = list(counters)
 
         # # #
 

@@ -68,6 +68,7 @@ class Scanout(LiteXModule):
             "a command, modulo 2^32.")
         self._items_in = CSRStatus(32, name="items_in", description="Words of 16 bytes read from memory, modulo 2^32.")
         self._items_out = CSRStatus(32, name="items_out", description="Source lines fetched, modulo 2^32.")
+        self.counters = ["frame_count", "underflow_count", "cycles_busy", "cycles_stalled", "items_in", "items_out"]
 
         # # #
 

@@ -169,6 +169,7 @@ class TriangleEngine(LiteXModule):
             status[name] = CSRStatus(32, name=name, description=description[:-1] + ", modulo 2^32.")
         for name, register in status.items():
             setattr(self, f"_{name}", register)
+        self.counters = list(counters)
 
         # # #
 

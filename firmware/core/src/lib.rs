@@ -17,6 +17,7 @@ pub mod console;
 pub mod field;
 pub mod fixed;
 pub mod follow;
+pub mod i2c;
 pub mod imu;
 pub mod light;
 pub mod mesh;

@@ -1,13 +1,12 @@
 //! The MPU-6050, and relatives with the same registers: from power-on to samples with the times that they were measured at.
 //!
-//! [`Mpu6050`] sets the chip up over any [`I2c`], and waits for nothing by itself. [`Stream`] keeps it
-//! going for ever: it finds the chip, wakes it, reads each sample once, and comes back from whatever happens on the bus. For that the
-//! bus does the same transaction at a steady pace ([`Rounds`]), and [`Pace`] makes times of samples of those of the looks.
+//! [`Mpu6050`] sets the chip up over any [`I2c`]; it does not wait by itself. [`Stream`] runs for ever: it finds the chip, wakes it,
+//! reads each sample once, and recovers from every error of the bus. The bus repeats one read at a steady pace ([`PeriodicI2c`]);
+//! [`Pace`] computes the times of the samples from the times of these reads.
 //!
 //! Registers are those of RM-MPU-6000A 4.2. The range is ±2000 °/s and ±8 g, the filter 98 Hz (a delay of 2.8 ms), the rate 1 kHz.
 
 mod pace;
-mod rounds;
 mod stream;
 
 use core::fmt;
@@ -15,8 +14,9 @@ use core::fmt;
 use embedded_hal_async::delay::DelayNs;
 use embedded_hal_async::i2c::{Error as _, ErrorKind, I2c, Operation};
 
+use crate::i2c::{PeriodicI2c, PeriodicRead};
+
 pub use pace::Pace;
-pub use rounds::{Round, Rounds};
 pub use stream::{Sink, Stream};
 
 /// The chip's address with AD0 low, and high.
@@ -285,14 +285,14 @@ impl<B: I2c> Mpu6050<B> {
 /// What a look reads: INT_STATUS, and the sample behind it.
 type Look = [u8; 1 + Measurement::BYTES];
 
-impl<B: Rounds> Mpu6050<B> {
+impl<B: PeriodicI2c> Mpu6050<B> {
     /// Begins to look for samples, every `period` µs. A look is one burst, 0.43 ms at 400 kHz, within which the chip leaves its data as
     /// they are.
     ///
     /// # Errors
     /// Those of the bus.
     pub fn begin_looks(&mut self, period: u32) -> Result<(), Error<B::Error>> {
-        Ok(self.bus.begin(Round {
+        Ok(self.bus.begin(PeriodicRead {
             address: self.address,
             register: INT_STATUS,
             length: size_of::<Look>() as u8,

@@ -8,7 +8,8 @@ use std::task::{Context, Poll, Waker};
 
 use embedded_hal_async::delay::DelayNs;
 use embedded_hal_async::i2c::{ErrorKind, ErrorType, I2c, Operation};
-use glint_core::mpu6050::{ADDRESSES, Error, Identity, Measurement, Round, Rounds, Sink, Stream};
+use glint_core::i2c::{PeriodicI2c, PeriodicRead};
+use glint_core::mpu6050::{ADDRESSES, Error, Identity, Measurement, Sink, Stream};
 use virtual_mpu6050::{Bus, Chip, Fault, Imperfections, Source, State};
 
 const MILLISECOND: u64 = 1_000_000;
@@ -49,11 +50,11 @@ impl embedded_hal_async::i2c::Error for Trouble {
     }
 }
 
-/// A bus that does rounds, by its clock.
+/// A bus that repeats a read by its clock.
 struct Master {
     bus: Bus,
-    round: Option<Round>,
-    /// When the next round begins, in ns.
+    read: Option<PeriodicRead>,
+    /// Start of the next read, in ns.
     next: u64,
 }
 
@@ -67,37 +68,37 @@ impl I2c for Master {
         address: u8,
         operations: &mut [Operation<'_>],
     ) -> Result<(), Self::Error> {
-        self.round = None;
+        self.read = None;
         I2c::transaction(&mut self.bus, address, operations)
             .await
             .map_err(Trouble::Bus)
     }
 }
 
-impl Rounds for Master {
-    fn begin(&mut self, round: Round) -> Result<(), Self::Error> {
-        self.round = Some(round);
-        self.next = self.bus.now() + u64::from(round.period) * 1_000;
+impl PeriodicI2c for Master {
+    fn begin(&mut self, read: PeriodicRead) -> Result<(), Self::Error> {
+        self.read = Some(read);
+        self.next = self.bus.now() + u64::from(read.period) * 1_000;
         Ok(())
     }
 
     async fn next(&mut self, bytes: &mut [u8]) -> Result<u64, Self::Error> {
-        let round = self.round.expect("rounds have begun");
-        assert_eq!(bytes.len(), usize::from(round.length));
+        let read = self.read.expect("reads have begun");
+        assert_eq!(bytes.len(), usize::from(read.length));
         let now = self.bus.now();
         Clock(self.bus.clone())
             .delay_ns((self.next - now) as u32)
             .await;
         let begun = self.next;
-        self.next += u64::from(round.period) * 1_000;
-        let register = [round.register];
+        self.next += u64::from(read.period) * 1_000;
+        let register = [read.register];
         let mut operations = [Operation::Write(&register), Operation::Read(bytes)];
-        let result = I2c::transaction(&mut self.bus, round.address, &mut operations).await;
+        let result = I2c::transaction(&mut self.bus, read.address, &mut operations).await;
         if result.is_err() || self.bus.now() > self.next {
-            self.round = None;
+            self.read = None;
         }
         result.map_err(Trouble::Bus)?;
-        if self.round.is_none() {
+        if self.read.is_none() {
             return Err(Trouble::Late);
         }
         Ok(begun / 1_000)
@@ -151,7 +152,7 @@ fn run(chip: Chip, end: u64, plan: &[Action]) -> (Record, Bus) {
     let recorder = Recorder(bus.clone(), record.clone());
     let master = Master {
         bus: bus.clone(),
-        round: None,
+        read: None,
         next: 0,
     };
     let mut stream = Stream::new(master, Clock(bus.clone()), recorder);

@@ -1,18 +1,19 @@
 //! Two frames in memory and the scan-out that shows one of them while the other is drawn.
 //!
 //! [`Display`] owns the memory of both. [`Display::back`] lends the frame that is not on the screen, and
-//! [`Display::show`] has scan-out take it over at the next vertical blanking; until then no frame is free and `back`
-//! returns `None`. So a picture is never seen half drawn, and nobody waits: the vertical blanking's interrupt
-//! ([`acknowledge_vblank`]) tells when it is worth asking again.
+//! [`Display::show`] flips: scan-out takes the frame over at the next vertical blanking. Until then no frame is free and `back`
+//! returns `None`. So no picture is shown half drawn, and no call waits: the interrupt of the vertical blanking
+//! ([`acknowledge_vblank`]) reports when a frame may be free again.
 //!
-//! The CPU's data cache writes through, so what was drawn is in memory; scan-out only reads.
+//! The CPU's data cache writes through, so a drawn frame is in memory; scan-out only reads.
 //!
 //! # Limits
-//! A SoC may lack the scan-out block. Then nothing is shown, and a frame is always free.
+//! A SoC may lack the scan-out block. Then a frame is always free, and no picture is shown.
 
 use core::sync::atomic::{Ordering, compiler_fence};
 
 use glint_core::picture::Size;
+pub use litex_pac::scanout::Counters;
 use litex_pac::scanout::{self, Control, EvEnable, EvPending};
 
 use crate::Absent;
@@ -20,10 +21,7 @@ use crate::Absent;
 /// The video picture, in pixels.
 pub const SCREEN: [u32; 2] = [1280, 720];
 
-/// What `ident` reads where the block is present: `SCAN` in ASCII.
-const IDENT: u32 = u32::from_be_bytes(*b"SCAN");
-
-/// How many pixels of the screen, in each direction, show one pixel of a frame.
+/// Pixels of the screen, in each direction, that show one pixel of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Scale {
@@ -55,24 +53,17 @@ impl Scanout {
     /// Takes the block if it is there. It shows black until a [`Display`] shows a frame.
     ///
     /// # Errors
-    /// When something else answers, or nothing.
+    /// When the block is absent.
     pub fn probe(registers: scanout::Scanout) -> Result<Self, Absent> {
-        match registers.ident().read() {
-            IDENT => {
-                registers
-                    .ev_enable()
-                    .write(EvEnable::default().with_vblank(true));
-                Ok(Self { registers })
-            }
-            found => Err(Absent {
-                expected: IDENT,
-                found,
-            }),
-        }
+        Absent::check(registers.ident().read(), scanout::Scanout::IDENT)?;
+        registers
+            .ev_enable()
+            .write(EvEnable::default().with_vblank(true));
+        Ok(Self { registers })
     }
 
-    /// Has `shown` stay on the screen instead of `next`, if that is not on it yet; returns whether that is so. Not if the two
-    /// have different scales: one of them would be seen with the other's.
+    /// Keeps `shown` on the screen instead of `next`, if `next` is not shown yet; returns whether it did. Does nothing if the two
+    /// have different scales: one of them would be shown with the other's.
     fn withdraw(&self, next: u32, shown: u32) -> bool {
         let registers = &self.registers;
         if registers.fb_next().read() != next
@@ -90,13 +81,13 @@ impl Scanout {
         withdrawn
     }
 
-    /// Whether the frame at `address` is shown or will be: then it may not be drawn on.
+    /// Whether the frame at `address` is shown or will be; it must not be drawn on then.
     fn holds(&self, address: u32) -> bool {
-        // In this order: what becomes current between the two readings is still found as the next one was.
+        // In this order: a frame that becomes current between the two reads was found as the next one.
         self.registers.fb_next().read() == address || self.registers.fb_current().read() == address
     }
 
-    /// Has the frame at `address` taken over at the next vertical blanking.
+    /// Shows the frame at `address` from the next vertical blanking on.
     fn show(&self, address: u32, scale: Scale) {
         let disabled = Control::default().with_enable(false);
         if self.registers.scale().read() != scale as u8
@@ -118,7 +109,7 @@ impl Scanout {
 
 /// Clears the vertical blanking's interrupt; its handler calls this.
 pub fn acknowledge_vblank() {
-    // SAFETY: nobody else writes the pending register, and its one event is cleared as a whole.
+    // SAFETY: the pending register is written here only, and its one event is cleared as a whole.
     let registers = unsafe { scanout::Scanout::steal() };
     registers
         .ev_pending()
@@ -130,15 +121,6 @@ pub struct Display {
     scanout: Option<Scanout>,
     front: &'static mut [u16],
     back: &'static mut [u16],
-}
-
-/// What scan-out has counted since reset; each counter wraps.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Counters {
-    /// Vertical blankings.
-    pub frames: u32,
-    /// Source lines that memory delivered too late.
-    pub underflows: u32,
 }
 
 impl Display {
@@ -153,7 +135,7 @@ impl Display {
         }
     }
 
-    /// The frame to draw on, or nothing while it is still on the screen.
+    /// The frame to draw on; `None` while it is still on the screen.
     pub fn back(&mut self) -> Option<&mut [u16]> {
         let address = address(self.back);
         let held = self
@@ -163,8 +145,8 @@ impl Display {
         (!held).then_some(&mut *self.back)
     }
 
-    /// Takes back the frame shown last if it is not on the screen yet, so that there is a frame to draw on: for those who
-    /// want another picture rather than to see this one.
+    /// Takes back the frame of the last [`show`](Self::show) if it is not on the screen yet, so that there is a frame to draw on: for
+    /// a picture that is out of date before it is seen.
     pub fn withdraw(&mut self) {
         let withdrawn = self
             .scanout
@@ -184,32 +166,26 @@ impl Display {
     /// Shows the frame that [`back`](Self::back) lent, from the next vertical blanking on.
     pub fn show(&mut self, scale: Scale) {
         core::mem::swap(&mut self.front, &mut self.back);
-        // What was drawn must be on its way to memory before scan-out is told of it.
+        // The drawn pixels must be on their way to memory before scan-out gets the address.
         compiler_fence(Ordering::SeqCst);
         if let Some(scanout) = &self.scanout {
             scanout.show(address(self.front), scale);
         }
     }
 
-    /// Whether there is a scan-out to show anything.
+    /// Whether the SoC has scan-out.
     #[must_use]
     pub const fn is_visible(&self) -> bool {
         self.scanout.is_some()
     }
 
-    /// Scan-out's counters, all 0 where there is none.
+    /// Counters of scan-out; all 0 where it is absent.
     #[must_use]
     pub fn counters(&self) -> Counters {
-        self.scanout.as_ref().map_or(
-            Counters {
-                frames: 0,
-                underflows: 0,
-            },
-            |scanout| Counters {
-                frames: scanout.registers.frame_count().read(),
-                underflows: scanout.registers.underflow_count().read(),
-            },
-        )
+        let scanout = self.scanout.as_ref();
+        scanout.map_or(Counters::default(), |scanout| {
+            Counters::read(&scanout.registers)
+        })
     }
 }
 
@@ -228,6 +204,8 @@ mod tests {
     use litex_pac::bus::{self, Bus};
 
     use super::*;
+
+    const IDENT: u32 = scanout::Scanout::IDENT;
 
     /// The registers by offset, with a vertical blanking before the write that `blank_before` counts down to.
     #[derive(Default)]

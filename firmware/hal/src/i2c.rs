@@ -1,16 +1,17 @@
 //! The I2C master `i2c`, which works off a queue of commands by itself.
 //!
-//! Single master, 7-bit addresses, 400 kHz, clock stretching. A transaction is put into the queue, and the master says when it has ended:
-//! [`embedded_hal_async::i2c::I2c`] leaves the CPU to others meanwhile, [`embedded_hal::i2c::I2c`] waits. A device that was
-//! interrupted in the middle of a byte may hold SDA low for ever; each start clocks it free where it is needed.
+//! Single master, 7-bit addresses, 400 kHz, clock stretching. A transaction is put into the queue, and an interrupt reports its end:
+//! [`embedded_hal_async::i2c::I2c`] yields the CPU meanwhile, [`embedded_hal::i2c::I2c`] polls. A device that was
+//! interrupted in the middle of a byte may hold SDA low; each start clocks it free where necessary.
 //!
-//! Rounds ([`Rounds`]) are the same transaction at a steady pace, which the master keeps by itself; an interrupt tells of several.
+//! Periodic reads ([`PeriodicI2c`], the register `rounds`) are one transaction at a steady pace, which the master keeps by itself. It
+//! raises an interrupt after each batch of them.
 //!
-//! A future that is dropped before its transaction has ended leaves the bus within a byte; the next transaction begins with a
-//! start all the same.
+//! A future that is dropped before its transaction has ended may leave the bus within a byte; the next transaction clears the
+//! master and begins with a start.
 //!
 //! # Limits
-//! No second master: a wire that should be high and is low is an error, not somebody else's turn.
+//! Single master only: a wire that should be high and is low is an error, not arbitration.
 
 use core::fmt;
 use core::future::{Future, poll_fn};
@@ -19,60 +20,61 @@ use core::task::{Context, Poll, Waker};
 use core::time::Duration;
 
 use embedded_hal::i2c::{ErrorKind, ErrorType, NoAcknowledgeSource, Operation, SevenBitAddress};
-use glint_core::mpu6050::{Round, Rounds};
-use litex_pac::i2c::{self, Command, Control, EvEnable, EvPending, Rounds as Repeat, Status};
+use glint_core::i2c::{PeriodicI2c, PeriodicRead};
+use litex_pac::i2c::{
+    self, Command, Control, Error, EvEnable, EvPending, Operation as Action, Rounds, Status,
+};
 
 use crate::timer::{Clock, Deadline, cycles, microseconds};
 
-/// The longest wait for the master to go on. It gives a device up that stretches the clock for more than 25.8 ms, and of 33 bytes between
-/// two looks each takes 0.03 ms.
+/// Longest time without progress. The master itself gives up a device that stretches the clock for more than 25.8 ms, and the 33
+/// bytes of a full queue take 1 ms.
 const WAIT: Duration = Duration::from_millis(100);
 const WAIT_CYCLES: u64 = cycles(WAIT);
 
-/// Places in the queue of commands.
-const PLACES: u32 = 33;
-
-/// The most bytes that one command receives.
+/// Most bytes that one command receives.
 const MOST_RECEIVED: usize = 256;
 
-/// The most bytes that a round receives.
-const MOST_IN_ROUND: usize = 32;
+/// Most bytes of a periodic read.
+const MOST_IN_READ: usize = 32;
 
-/// The master.
+/// The I2C master.
 pub struct I2c {
     registers: i2c::I2c,
     clock: Clock,
-    rounds: Option<Going>,
+    periodic: Option<Periodic>,
 }
 
-/// Rounds that are going on.
+/// Periodic reads under way.
 #[derive(Clone, Copy)]
-struct Going {
-    /// When the next one that is asked for begins, and from one to the next, in clock cycles.
+struct Periodic {
+    /// Start of the read that is taken next, and time between two starts, in clock cycles.
     next: u64,
     period: u64,
 }
 
-/// What went wrong on the bus.
+/// Why a transaction has failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Error {
+pub enum BusError {
     /// The address has more than 7 bits.
     Address(u8),
-    /// Nobody acknowledged.
+    /// The address or a byte was not acknowledged.
     NoAcknowledge(NoAcknowledgeSource),
     /// SCL was held low longer than a device may stretch it.
     ClockStuck,
     /// SDA was low where it should have been free, and nine clocks did not free it.
     DataStuck,
-    /// The master did not go on.
+    /// No progress for 100 ms.
     Timeout,
-    /// A round was not over when the next one was due: the device stretches the clock, or nobody has taken what was received.
+    /// A periodic read was not over when the next one was due: the device stretches the clock, or the queue of received bytes is full.
     Late,
-    /// Rounds that the master cannot do: of 0 or more than 32 bytes, too long a period, or none have begun.
-    Rounds,
+    /// Periodic reads beyond the master's limits, or none have begun.
+    Reads,
+    /// The master reports an error that its description does not name.
+    Unknown,
 }
 
-impl fmt::Display for Error {
+impl fmt::Display for BusError {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Self::Address(address) => write!(f, "i2c: address {address:#x}: expected at most 0x7f"),
@@ -86,21 +88,24 @@ impl fmt::Display for Error {
             Self::DataStuck => f.write_str("i2c: SDA is held low and nine clocks did not free it"),
             Self::Timeout => write!(
                 f,
-                "i2c: the master did not go on for {} ms",
+                "i2c: timed out: no progress for {} ms",
                 WAIT.as_millis()
             ),
-            Self::Late => f.write_str("i2c: a round was not over when the next one was due"),
-            Self::Rounds => f.write_str("i2c: these rounds cannot be done"),
+            Self::Late => f.write_str("i2c: a periodic read was not over when the next one was due"),
+            Self::Reads => f.write_str(
+                "i2c: periodic reads: expected 1 to 32 bytes, batch 1 to 16, period below 2^24 cycles",
+            ),
+            Self::Unknown => f.write_str("i2c: unknown error code of the master"),
         }
     }
 }
 
-impl core::error::Error for Error {}
+impl core::error::Error for BusError {}
 
-impl embedded_hal::i2c::Error for Error {
+impl embedded_hal::i2c::Error for BusError {
     fn kind(&self) -> ErrorKind {
         match *self {
-            Self::Address(_) | Self::Timeout | Self::Rounds => ErrorKind::Other,
+            Self::Address(_) | Self::Timeout | Self::Reads | Self::Unknown => ErrorKind::Other,
             Self::Late => ErrorKind::Overrun,
             Self::NoAcknowledge(source) => ErrorKind::NoAcknowledge(source),
             Self::ClockStuck | Self::DataStuck => ErrorKind::Bus,
@@ -115,7 +120,7 @@ impl I2c {
         let mut master = Self {
             registers,
             clock,
-            rounds: None,
+            periodic: None,
         };
         master.clear();
         master
@@ -126,32 +131,33 @@ impl I2c {
     }
 
     fn clear(&mut self) {
-        self.rounds = None;
-        self.registers.rounds().write(Repeat::default());
+        self.periodic = None;
+        self.registers.rounds().write(Rounds::default());
         self.registers
             .control()
             .write(Control::default().with_clear(true));
     }
 
-    /// How it stands.
-    fn status(&self) -> Result<Status, Error> {
+    /// The status, or the error that has ended the transaction.
+    fn status(&self) -> Result<Status, BusError> {
         let status = self.registers.status().read();
         if !status.failed() {
             return Ok(status);
         }
         Err(match status.error() {
-            1 => Error::NoAcknowledge(NoAcknowledgeSource::Address),
-            2 => Error::NoAcknowledge(NoAcknowledgeSource::Data),
-            3 => Error::ClockStuck,
-            4 => Error::DataStuck,
-            _ => Error::Late,
+            Some(Error::Address) => BusError::NoAcknowledge(NoAcknowledgeSource::Address),
+            Some(Error::Byte) => BusError::NoAcknowledge(NoAcknowledgeSource::Data),
+            Some(Error::Clock) => BusError::ClockStuck,
+            Some(Error::Data) => BusError::DataStuck,
+            Some(Error::Late) => BusError::Late,
+            Some(Error::None) | None => BusError::Unknown,
         })
     }
 
-    /// All of a transaction.
-    async fn transact(&mut self, mut transfer: Transfer<'_, '_>) -> Result<(), Error> {
-        // What is left of one that was dropped.
-        if self.rounds.is_some() || !matches!(self.status(), Ok(status) if !status.busy()) {
+    /// Runs a transaction to its end.
+    async fn transact(&mut self, mut transfer: Transfer<'_, '_>) -> Result<(), BusError> {
+        // The remains of a transaction whose future was dropped.
+        if self.periodic.is_some() || !matches!(self.status(), Ok(status) if !status.busy()) {
             self.clear();
         }
         let mut deadline = None;
@@ -162,20 +168,20 @@ impl I2c {
         result
     }
 
-    /// Takes a round's bytes, behind those that have been received.
+    /// Takes the bytes of a periodic read, behind those that have been received.
     fn take(
         &self,
         bytes: &mut [u8],
         received: &mut usize,
         deadline: &mut Option<Deadline>,
-    ) -> Poll<Result<(), Error>> {
+    ) -> Poll<Result<(), BusError>> {
         while let Some(slot) = bytes.get_mut(*received) {
             let answer = self.registers.answer().read();
             if !answer.valid() {
                 // What was received before an error has been taken.
                 return match (self.status(), &deadline) {
                     (Err(error), _) => Poll::Ready(Err(error)),
-                    (_, Some(deadline)) if deadline.passed() => Poll::Ready(Err(Error::Timeout)),
+                    (_, Some(deadline)) if deadline.passed() => Poll::Ready(Err(BusError::Timeout)),
                     _ => {
                         deadline.get_or_insert_with(|| self.clock.after_cycles(WAIT_CYCLES));
                         Poll::Pending
@@ -188,13 +194,13 @@ impl I2c {
         Poll::Ready(Ok(()))
     }
 
-    /// Puts commands into the queue, as there is room, and takes what has been received. One function for both: it runs in interrupts,
-    /// and the less code it has the less has to come from memory.
+    /// Fills the queue of commands and empties the queue of received bytes. One function for both: it runs in interrupts, where code
+    /// has to come from memory, so less code is faster.
     fn serve(
         &self,
         transfer: &mut Transfer,
         deadline: &mut Option<Deadline>,
-    ) -> Poll<Result<(), Error>> {
+    ) -> Poll<Result<(), BusError>> {
         let status = match self.status() {
             Ok(status) => status,
             Err(error) => return Poll::Ready(Err(error)),
@@ -203,7 +209,7 @@ impl I2c {
         let room = if status.busy() {
             u32::from(status.room())
         } else {
-            PLACES
+            i2c::I2c::COMMAND_PLACES
         };
         let mut has_moved = false;
         for command in (0..room).map_while(|_| transfer.next_command()) {
@@ -233,7 +239,7 @@ impl I2c {
         match deadline {
             Some(deadline) if !has_moved => {
                 if deadline.passed() {
-                    return Poll::Ready(Err(Error::Timeout));
+                    return Poll::Ready(Err(BusError::Timeout));
                 }
             }
             _ => *deadline = Some(self.clock.after_cycles(WAIT_CYCLES)),
@@ -242,7 +248,7 @@ impl I2c {
     }
 }
 
-/// What comes next of a transaction.
+/// Next part of a transaction.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Stage {
     /// Operations, or a start before them.
@@ -253,7 +259,7 @@ enum Stage {
     Over,
 }
 
-/// A transaction on its way: commands that go into the queue, and bytes that come out of the other.
+/// A transaction under way: its commands go into one queue, its bytes come out of the other.
 struct Transfer<'o, 'b> {
     address: u8,
     operations: &'o mut [Operation<'b>],
@@ -296,7 +302,7 @@ impl<'o, 'b> Transfer<'o, 'b> {
         loop {
             let Some(operation) = self.operations.get(self.operation) else {
                 self.stage = Stage::Over;
-                return Some(Command::default().with_operation(STOP));
+                return Some(Command::default().with_operation(Action::Stop));
             };
             let (reads, length) = match operation {
                 Operation::Read(buffer) => (true, buffer.len()),
@@ -307,7 +313,7 @@ impl<'o, 'b> Transfer<'o, 'b> {
             if self.reads != Some(reads) && !is_nothing {
                 self.reads = Some(reads);
                 self.stage = Stage::Address;
-                return Some(Command::default().with_operation(START));
+                return Some(Command::default().with_operation(Action::Start));
             }
             if self.sent == length {
                 self.operation += 1;
@@ -322,7 +328,7 @@ impl<'o, 'b> Transfer<'o, 'b> {
             let count = (length - self.sent).min(MOST_RECEIVED);
             self.sent += count;
             let command = Command::default()
-                .with_operation(READ)
+                .with_operation(Action::Read)
                 // 1 to 256 bytes.
                 .with_argument((count - 1) as u8)
                 .with_more(self.sent < length || self.reads_on());
@@ -330,7 +336,7 @@ impl<'o, 'b> Transfer<'o, 'b> {
         }
     }
 
-    /// Whether the next operation that does anything reads as this one.
+    /// Whether the next operation that is not empty is a read.
     fn reads_on(&self) -> bool {
         let rest = self.operations.iter().skip(self.operation + 1);
         rest.map_while(|operation| match operation {
@@ -340,7 +346,7 @@ impl<'o, 'b> Transfer<'o, 'b> {
         .any(|has_bytes| has_bytes)
     }
 
-    /// Where the next bytes go; none when all are there.
+    /// Place of the next bytes; `None` when all are there.
     fn slots(&mut self) -> Option<&mut [u8]> {
         loop {
             let length = match self.operations.get(self.receiver)? {
@@ -360,19 +366,15 @@ impl<'o, 'b> Transfer<'o, 'b> {
     }
 }
 
-/// What a command does: its field `operation`.
-const START: u8 = 0;
-const WRITE: u8 = 1;
-const READ: u8 = 2;
-const STOP: u8 = 3;
-
 fn write(byte: u8) -> Command {
-    Command::default().with_operation(WRITE).with_argument(byte)
+    Command::default()
+        .with_operation(Action::Write)
+        .with_argument(byte)
 }
 
 /// Clears the master's interrupt; its handler calls this.
 pub fn acknowledge() {
-    // SAFETY: nobody else writes the pending register.
+    // SAFETY: the pending register is written here only.
     let registers = unsafe { i2c::I2c::steal() };
     registers
         .ev_pending()
@@ -380,7 +382,7 @@ pub fn acknowledge() {
 }
 
 impl ErrorType for I2c {
-    type Error = Error;
+    type Error = BusError;
 }
 
 impl embedded_hal_async::i2c::I2c<SevenBitAddress> for I2c {
@@ -388,63 +390,62 @@ impl embedded_hal_async::i2c::I2c<SevenBitAddress> for I2c {
         &mut self,
         address: u8,
         operations: &mut [Operation<'_>],
-    ) -> Result<(), Error> {
+    ) -> Result<(), BusError> {
         if address > 0x7f {
-            return Err(Error::Address(address));
+            return Err(BusError::Address(address));
         }
         self.transact(Transfer::new(address, operations)).await
     }
 }
 
 impl embedded_hal::i2c::I2c<SevenBitAddress> for I2c {
-    fn transaction(&mut self, address: u8, operations: &mut [Operation]) -> Result<(), Error> {
+    fn transaction(&mut self, address: u8, operations: &mut [Operation]) -> Result<(), BusError> {
         block_on(embedded_hal_async::i2c::I2c::transaction(
             self, address, operations,
         ))
     }
 }
 
-impl Rounds for I2c {
-    fn begin(&mut self, round: Round) -> Result<(), Error> {
+impl PeriodicI2c for I2c {
+    fn begin(&mut self, read: PeriodicRead) -> Result<(), BusError> {
         self.clear();
-        let length = usize::from(round.length);
-        let period = cycles(Duration::from_micros(round.period.into()));
+        let length = usize::from(read.length);
+        let period = cycles(Duration::from_micros(read.period.into()));
         let last_clock = u32::try_from(period)
             .ok()
             .and_then(|period| period.checked_sub(1));
         let last_clock = last_clock.filter(|clock| *clock < 1 << 24);
-        let (Some(last_clock), 1..=MOST_IN_ROUND, 1..=16) = (last_clock, length, round.batch)
-        else {
-            return Err(Error::Rounds);
+        let (Some(last_clock), 1..=MOST_IN_READ, 1..=16) = (last_clock, length, read.batch) else {
+            return Err(BusError::Reads);
         };
-        if round.address > 0x7f {
-            return Err(Error::Address(round.address));
+        if read.address > 0x7f {
+            return Err(BusError::Address(read.address));
         }
-        let repeat = Repeat::default()
+        let rounds = Rounds::default()
             .with_period(last_clock)
-            .with_batch(round.batch - 1)
+            .with_batch(read.batch - 1)
             .with_repeats(true);
-        self.registers.rounds().write(repeat);
-        self.rounds = Some(Going {
+        self.registers.rounds().write(rounds);
+        self.periodic = Some(Periodic {
             next: self.clock.cycles() + period,
             period,
         });
-        // They are in the queue before the first round is due.
-        let mut room = [0; MOST_IN_ROUND];
+        // The commands are in the queue before the first read is due.
+        let mut room = [0; MOST_IN_READ];
         let mut operations = [
-            Operation::Write(&[round.register]),
+            Operation::Write(&[read.register]),
             Operation::Read(room.get_mut(..length).unwrap_or_default()),
         ];
-        let mut transfer = Transfer::new(round.address, &mut operations);
+        let mut transfer = Transfer::new(read.address, &mut operations);
         while let Some(command) = transfer.next_command() {
             self.registers.command().write(command);
         }
         Ok(())
     }
 
-    async fn next(&mut self, bytes: &mut [u8]) -> Result<u64, Error> {
-        let Some(going) = self.rounds else {
-            return Err(Error::Rounds);
+    async fn next(&mut self, bytes: &mut [u8]) -> Result<u64, BusError> {
+        let Some(periodic) = self.periodic else {
+            return Err(BusError::Reads);
         };
         let (mut received, mut deadline) = (0, None);
         let result = poll_fn(|_| self.take(bytes, &mut received, &mut deadline)).await;
@@ -452,15 +453,15 @@ impl Rounds for I2c {
             self.clear();
             return Err(error);
         }
-        self.rounds = Some(Going {
-            next: going.next + going.period,
-            ..going
+        self.periodic = Some(Periodic {
+            next: periodic.next + periodic.period,
+            ..periodic
         });
-        Ok(microseconds(going.next))
+        Ok(microseconds(periodic.next))
     }
 }
 
-/// Waits for what nobody else has to do anything for.
+/// Polls a future that needs no other task.
 fn block_on<T>(future: impl Future<Output = T>) -> T {
     let mut future = pin!(future);
     let mut context = Context::from_waker(Waker::noop());

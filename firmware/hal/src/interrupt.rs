@@ -1,13 +1,13 @@
 //! The CPU's interrupt lines, by name.
 //!
-//! VexRiscv gathers up to 32 lines under its one external interrupt. Each line is the interrupt of a peripheral and
-//! stays active until that peripheral's own pending register is cleared, which is the handler's business.
+//! VexRiscv has one external interrupt with up to 32 lines. Each line is the interrupt of a peripheral and stays active until its
+//! handler clears the pending register of that peripheral.
 
 use litex_pac::Interrupt;
 
-/// Calls `handle` for each interrupt of `pending`, the lowest number first, and returns the lines that have no name.
+/// Calls `handle` for each interrupt of `pending`, lowest number first, and returns the lines without a name.
 ///
-/// Handlers match on [`Interrupt`], so that the compiler finds the one that is missing.
+/// Handlers match on [`Interrupt`], so the compiler finds a missing one.
 pub fn dispatch(pending: u32, mut handle: impl FnMut(Interrupt)) -> u32 {
     let mut unknown = pending;
     for interrupt in Interrupt::ALL {
@@ -19,10 +19,10 @@ pub fn dispatch(pending: u32, mut handle: impl FnMut(Interrupt)) -> u32 {
     unknown
 }
 
-/// Lets `interrupt` reach the CPU.
+/// Enables `interrupt`.
 ///
 /// # Safety
-/// Its handler must be ready, and no critical section may rely on this interrupt staying away.
+/// Its handler must be ready, and no critical section may rely on the line being disabled.
 #[cfg(target_arch = "riscv32")]
 pub unsafe fn enable(interrupt: Interrupt) {
     use litex_pac::cpu;
@@ -32,12 +32,12 @@ pub unsafe fn enable(interrupt: Interrupt) {
     });
 }
 
-/// Keeps the `lines` (bits as [`Interrupt::bit`]) from the CPU.
+/// Disables `lines` (bits as [`Interrupt::bit`]).
 #[cfg(target_arch = "riscv32")]
 pub fn disable(lines: u32) {
     use litex_pac::cpu;
     critical_section::with(|_| {
-        // SAFETY: nothing comes in that did not before; the critical section makes the change whole.
+        // SAFETY: no line is enabled; the critical section makes the change whole.
         unsafe { cpu::set_interrupt_mask(cpu::interrupt_mask() & !lines) }
     });
 }

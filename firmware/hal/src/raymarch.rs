@@ -4,18 +4,16 @@
 //! [`Raymarcher::clear_field`]. Neither may be called while a raster pass runs. It reaches no memory.
 
 use core::fmt;
-use core::ops::Sub;
 
 use glint_core::stereo::Tint;
 use glint_model::raymarch::{Balls, Blend, FieldSetup, FieldStats, Lights, Palette, Solid};
+pub use litex_pac::raymarch::Counters;
 use litex_pac::raymarch::{
-    self, Control, DepthScale, EvEnable, EvPending, Solid as SolidRegister, Sphere, Table, Tuning,
+    self, Control, DepthScale, EvEnable, EvPending, Solid as SolidRegister, Sphere, Stereo, Table,
+    Tuning,
 };
 
 use crate::Absent;
-
-/// What `ident` reads where the block is present: `MARC` in ASCII.
-const IDENT: u32 = u32::from_be_bytes(*b"MARC");
 
 /// What a raymarcher has been built with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,57 +71,15 @@ impl fmt::Display for Missing {
 
 impl core::error::Error for Missing {}
 
-/// What is counted; every counter runs freely modulo 2^32, so their differences count.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counters {
-    /// Cycles in which a field was drawn.
-    pub busy: u32,
-    /// Cycles in which a ray waited as no end of one was taken.
-    pub stalled: u32,
-    /// Cycles, of each lane, in which it had room for a ray and none came.
-    pub idle: u32,
-    /// Pixels given to the band buffer, each eye's.
-    pub pixels: u32,
-    /// Rays.
-    pub rays: u32,
-    /// Evaluations of the field.
-    pub evaluations: u32,
-    /// Rays that came to a surface.
-    pub hits: u32,
-    /// Rays that went by.
-    pub misses: u32,
-    /// Rays that were given up.
-    pub undecided: u32,
-}
-
-impl Sub for Counters {
-    type Output = Self;
-
-    fn sub(self, earlier: Self) -> Self {
-        let d = u32::wrapping_sub;
-        Self {
-            busy: d(self.busy, earlier.busy),
-            stalled: d(self.stalled, earlier.stalled),
-            idle: d(self.idle, earlier.idle),
-            pixels: d(self.pixels, earlier.pixels),
-            rays: d(self.rays, earlier.rays),
-            evaluations: d(self.evaluations, earlier.evaluations),
-            hits: d(self.hits, earlier.hits),
-            misses: d(self.misses, earlier.misses),
-            undecided: d(self.undecided, earlier.undecided),
-        }
-    }
-}
-
-impl From<Counters> for FieldStats {
-    fn from(counters: Counters) -> Self {
-        Self {
-            rays: counters.rays,
-            evaluations: counters.evaluations.into(),
-            hits: counters.hits,
-            misses: counters.misses,
-            undecided: counters.undecided,
-        }
+/// The counts of the rays among the counters.
+#[must_use]
+pub fn ray_counts(counters: &Counters) -> FieldStats {
+    FieldStats {
+        rays: counters.items_in,
+        evaluations: counters.evaluations.into(),
+        hits: counters.hits,
+        misses: counters.misses,
+        undecided: counters.undecided,
     }
 }
 
@@ -142,7 +98,7 @@ impl Raymarcher {
     /// When something else answers, or nothing.
     pub fn probe(registers: raymarch::Raymarch) -> Result<Self, Absent> {
         match registers.ident().read() {
-            IDENT => {
+            raymarch::Raymarch::IDENT => {
                 registers.ev_enable().write(EvEnable::default());
                 let caps = registers.caps().read();
                 let capabilities = Capabilities {
@@ -161,7 +117,7 @@ impl Raymarcher {
                 })
             }
             found => Err(Absent {
-                expected: IDENT,
+                expected: raymarch::Raymarch::IDENT,
                 found,
             }),
         }
@@ -282,51 +238,48 @@ impl Raymarcher {
             .cones
             .map(|cones| (cones.offset, cones.spread))
             .unwrap_or_default();
-        for (register, value) in [
-            (registers.far(), setup.tuning.far),
-            (registers.near(), setup.near),
-            (registers.origin_left_x(), origins[0][0]),
-            (registers.origin_left_y(), origins[0][1]),
-            (registers.origin_left_z(), origins[0][2]),
-            (registers.origin_right_x(), origins[1][0]),
-            (registers.origin_right_y(), origins[1][1]),
-            (registers.origin_right_z(), origins[1][2]),
-            (registers.outside_left_x(), left.outside[0]),
-            (registers.outside_left_y(), left.outside[1]),
-            (registers.outside_left_z(), left.outside[2]),
-            (registers.outside_right_x(), right.outside[0]),
-            (registers.outside_right_y(), right.outside[1]),
-            (registers.outside_right_z(), right.outside[2]),
-            (registers.first_left_x(), first[0][0]),
-            (registers.first_left_y(), first[0][1]),
-            (registers.first_left_z(), first[0][2]),
-            (registers.first_right_x(), first[1][0]),
-            (registers.first_right_y(), first[1][1]),
-            (registers.first_right_z(), first[1][2]),
-            (registers.bounds_x(), setup.bounds[0]),
-            (registers.bounds_y(), setup.bounds[1]),
-            (registers.bounds_z(), setup.bounds[2]),
-            (registers.across_x(), across[0] as u32),
-            (registers.across_y(), across[1] as u32),
-            (registers.across_z(), across[2] as u32),
-            (registers.down_x(), down[0] as u32),
-            (registers.down_y(), down[1] as u32),
-            (registers.down_z(), down[2] as u32),
-            (registers.cone_offset_x(), offset[0] as u32),
-            (registers.cone_offset_y(), offset[1] as u32),
-            (registers.cone_offset_z(), offset[2] as u32),
-            (registers.colour_0(), colour(palette.faces[0])),
-            (registers.colour_1(), colour(palette.faces[1])),
-            (registers.colour_2(), colour(palette.faces[2])),
-            (registers.colour_3(), colour(palette.faces[3])),
-            (registers.colour_4(), colour(palette.faces[4])),
-            (registers.colour_5(), colour(palette.faces[5])),
-            (registers.colour_6(), colour(palette.undecided)),
-            (registers.colour_7(), colour(palette.zenith)),
-            (registers.horizon(), colour(palette.horizon)),
-        ] {
-            register.write(value);
-        }
+        // One write after the other: a loop over registers has to keep their addresses in a table.
+        registers.far().write(setup.tuning.far);
+        registers.near().write(setup.near);
+        registers.origin_left_x().write(origins[0][0]);
+        registers.origin_left_y().write(origins[0][1]);
+        registers.origin_left_z().write(origins[0][2]);
+        registers.origin_right_x().write(origins[1][0]);
+        registers.origin_right_y().write(origins[1][1]);
+        registers.origin_right_z().write(origins[1][2]);
+        registers.outside_left_x().write(left.outside[0]);
+        registers.outside_left_y().write(left.outside[1]);
+        registers.outside_left_z().write(left.outside[2]);
+        registers.outside_right_x().write(right.outside[0]);
+        registers.outside_right_y().write(right.outside[1]);
+        registers.outside_right_z().write(right.outside[2]);
+        registers.first_left_x().write(first[0][0]);
+        registers.first_left_y().write(first[0][1]);
+        registers.first_left_z().write(first[0][2]);
+        registers.first_right_x().write(first[1][0]);
+        registers.first_right_y().write(first[1][1]);
+        registers.first_right_z().write(first[1][2]);
+        registers.bounds_x().write(setup.bounds[0]);
+        registers.bounds_y().write(setup.bounds[1]);
+        registers.bounds_z().write(setup.bounds[2]);
+        registers.across_x().write(across[0] as u32);
+        registers.across_y().write(across[1] as u32);
+        registers.across_z().write(across[2] as u32);
+        registers.down_x().write(down[0] as u32);
+        registers.down_y().write(down[1] as u32);
+        registers.down_z().write(down[2] as u32);
+        registers.cone_offset_x().write(offset[0] as u32);
+        registers.cone_offset_y().write(offset[1] as u32);
+        registers.cone_offset_z().write(offset[2] as u32);
+        registers.colour_0().write(colour(palette.faces[0]));
+        registers.colour_1().write(colour(palette.faces[1]));
+        registers.colour_2().write(colour(palette.faces[2]));
+        registers.colour_3().write(colour(palette.faces[3]));
+        registers.colour_4().write(colour(palette.faces[4]));
+        registers.colour_5().write(colour(palette.faces[5]));
+        registers.colour_6().write(colour(palette.undecided));
+        registers.colour_7().write(colour(palette.zenith));
+        registers.horizon().write(colour(palette.horizon));
         registers.cone_spread().write(spread as u16);
         registers.fog_shift().write(palette.fog_shift as u8);
         registers.depth_scale().write(
@@ -335,9 +288,9 @@ impl Raymarcher {
                 .with_exponent(setup.depth.exponent as u8 & 0x3F),
         );
         let stereo = match setup.stereo {
-            None => 0,
-            Some(Tint::RedBlue) => 1,
-            Some(Tint::RedCyan) => 2,
+            None => Stereo::Mono,
+            Some(Tint::RedBlue) => Stereo::RedBlue,
+            Some(Tint::RedCyan) => Stereo::RedCyan,
         };
         self.registers.control().write(
             Control::default()
@@ -401,18 +354,7 @@ impl Raymarcher {
     /// The counters.
     #[must_use]
     pub fn counters(&self) -> Counters {
-        let registers = &self.registers;
-        Counters {
-            busy: registers.cycles_busy().read(),
-            stalled: registers.cycles_stalled().read(),
-            idle: registers.cycles_idle().read(),
-            pixels: registers.items_out().read(),
-            rays: registers.items_in().read(),
-            evaluations: registers.evaluations().read(),
-            hits: registers.hits().read(),
-            misses: registers.misses().read(),
-            undecided: registers.undecided().read(),
-        }
+        Counters::read(&self.registers)
     }
 }
 
@@ -423,7 +365,7 @@ const fn colour([r, g, b]: [u8; 3]) -> u32 {
 
 /// Clears the raymarcher's interrupt; its handler calls this.
 pub fn acknowledge() {
-    // SAFETY: nobody else writes the pending register.
+    // SAFETY: the pending register is written here only.
     let registers = unsafe { raymarch::Raymarch::steal() };
     registers
         .ev_pending()

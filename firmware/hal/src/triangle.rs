@@ -5,92 +5,73 @@
 //! (docs/formats.md, "Descriptors and band lists"). The passes may run at the same time, for two frames.
 //!
 //! The engine reads and writes memory by addresses and beside the CPU's data cache, so starting a pass is unsafe: see
-//! [`Engine::start_geometry`] and [`Engine::start_raster`]. What the CPU wrote before is seen by the engine; what the
+//! [`TriangleEngine::start_geometry`] and [`TriangleEngine::start_raster`]. What the CPU wrote before is seen by the engine; what the
 //! engine has written is seen after `litex_pac::cpu::flush_data_cache`.
 
 use core::fmt;
-use core::ops::Sub;
 use core::sync::atomic::{Ordering, compiler_fence};
+use core::time::Duration;
 
 use glint_core::mesh::Mesh;
-use glint_model::{MeshSetup, SIZES, Shading};
+use glint_core::picture::Size;
+use glint_model::{MeshSetup, Shading};
 use litex_pac::triangle::{
     self, Control, DepthScale, EvEnable, EvPending, Geometry as GeometryStart,
     Raster as RasterStart,
 };
+pub use litex_pac::triangle::{Counters, Error};
 
 use crate::Absent;
 
-/// What `ident` reads where the block is present: `TRIA` in ASCII.
-const IDENT: u32 = u32::from_be_bytes(*b"TRIA");
-
-/// Why a pass has not done what it was asked for; the error codes of the register `status`.
+/// Why a pass has failed, or was not started.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fault {
-    /// The picture's size is none that the engine has.
-    Size,
-    /// A region of memory was not aligned, or not wholly in main memory; nothing was touched.
-    Address,
-    /// Started while busy.
-    Busy,
-    /// The mesh does not end where it says.
-    Mesh,
-    /// There was no room for all descriptors, list entries or exceptions.
-    Full,
-    /// A list was longer than lists are, or named a descriptor that is not there, or none.
-    List,
-    /// The pass was cancelled.
-    Cancelled,
-    /// Nothing was read, written or drawn for long: no code of the engine's, but what a program finds.
-    Stuck,
-    /// Smooth shading was wanted of an engine without: what a program finds, too.
+pub enum EngineError {
+    /// An error code of the register `status`, or the program's own reason of the same kind.
+    Status(Error),
+    /// No progress for longer than [`TIMEOUT`].
+    Timeout,
+    /// Smooth shading, which this gateware is built without.
     Shading,
-    /// The eye is farther away than the engine's widths allow: what a program finds, too.
+    /// The eye is farther from the origin than the engine's number formats allow.
     Eye,
 }
 
-impl Fault {
-    fn of(code: u8) -> Result<(), Self> {
+/// Longest time without progress of a pass.
+pub const TIMEOUT: Duration = Duration::from_millis(100);
+
+impl EngineError {
+    fn check(code: Error) -> Result<(), Self> {
         match code {
-            0 => Ok(()),
-            1 => Err(Self::Size),
-            2 => Err(Self::Address),
-            3 => Err(Self::Busy),
-            4 => Err(Self::Mesh),
-            5 => Err(Self::Full),
-            6 => Err(Self::List),
-            _ => Err(Self::Cancelled),
+            Error::None => Ok(()),
+            code => Err(Self::Status(code)),
         }
     }
 }
 
-impl fmt::Display for Fault {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str(match self {
-            Self::Size => "triangle engine: size: expected 320x180, 640x360 or 1280x720",
-            Self::Address => {
-                "triangle engine: address: expected a multiple of 16 bytes in main memory"
-            }
-            Self::Busy => "triangle engine: started while busy",
-            Self::Mesh => "triangle engine: the mesh does not end where it says",
-            Self::Full => {
-                "triangle engine: no room for all descriptors, list entries or exceptions"
-            }
-            Self::List => "triangle engine: a list is damaged",
-            Self::Cancelled => "triangle engine: cancelled",
-            Self::Stuck => "triangle engine: nothing moves",
-            Self::Shading => "triangle engine: this gateware has no smooth shading",
-            Self::Eye => "triangle engine: the eye is too far from the origin",
-        })
+impl From<Error> for EngineError {
+    fn from(code: Error) -> Self {
+        Self::Status(code)
     }
 }
 
-impl core::error::Error for Fault {}
+impl fmt::Display for EngineError {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("triangle engine: ")?;
+        match self {
+            Self::Status(code) => f.write_str(code.text()),
+            Self::Timeout => write!(f, "timed out: no progress for {} ms", TIMEOUT.as_millis()),
+            Self::Shading => f.write_str("this gateware has no smooth shading"),
+            Self::Eye => f.write_str("the eye is too far from the origin"),
+        }
+    }
+}
+
+impl core::error::Error for EngineError {}
 
 /// Where a geometry pass puts what it makes; every address is a multiple of 16.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lists {
-    /// Address of the descriptors, of as many bytes as the engine's [`ability`](Engine::ability) gives them.
+    /// Address of the descriptors, of as many bytes as the engine's [`shading`](TriangleEngine::shading) gives them.
     pub descriptors: u32,
     /// How many there is room for.
     pub descriptor_limit: u32,
@@ -137,8 +118,8 @@ pub struct Set {
 /// A raster pass.
 #[derive(Clone, Copy, Debug)]
 pub struct Raster {
-    /// Width and height in pixels, one of [`SIZES`].
-    pub size: (u32, u32),
+    /// Size of the picture.
+    pub size: Size,
     /// Address of the frame to write.
     pub frame: u32,
     /// Which of the two frame buffers that is.
@@ -168,106 +149,30 @@ pub struct Counts {
     pub exceptions: u32,
 }
 
-/// The engine's free-running counters. All wrap, so that differences are right.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counters {
-    /// Cycles in which a pass ran.
-    pub busy: u32,
-    /// Cycles in which memory did not take a command.
-    pub stalled: u32,
-    /// Cycles in which memory did not take a read.
-    pub stalled_reads: u32,
-    /// Cycles in which memory did not take a write of the geometry pass.
-    pub stalled_lists: u32,
-    /// Cycles in which memory did not take a write of the raster pass.
-    pub stalled_frame: u32,
-    /// Words of 16 bytes read.
-    pub words_read: u32,
-    /// Words of 16 bytes written.
-    pub words_written: u32,
-    /// Cycles of geometry passes.
-    pub geometry: u32,
-    /// Vertices transformed.
-    pub vertices: u32,
-    /// Cycles of raster passes.
-    pub raster: u32,
-    /// Cycles in which a triangle was walked over.
-    pub walking: u32,
-    /// Those of them without a pixel.
-    pub empty: u32,
-    /// Groups of eight pixels of which some were covered.
-    pub groups: u32,
-    /// Pixels covered by a triangle, each as often as it is.
-    pub pixels_covered: u32,
-    /// Pixels written: covered, and not behind what was there.
-    pub pixels_drawn: u32,
-    /// Cycles in which a group waited for the one before it.
-    pub held: u32,
-    /// Cycles in which the flush of a band waited for memory.
-    pub memory: u32,
-    /// Cycles in which a drawn band waited for the flush of the one before it.
-    pub flush: u32,
-}
-
-impl Sub for Counters {
-    type Output = Self;
-
-    fn sub(self, earlier: Self) -> Self {
-        let d = u32::wrapping_sub;
-        Self {
-            busy: d(self.busy, earlier.busy),
-            stalled: d(self.stalled, earlier.stalled),
-            stalled_reads: d(self.stalled_reads, earlier.stalled_reads),
-            stalled_lists: d(self.stalled_lists, earlier.stalled_lists),
-            stalled_frame: d(self.stalled_frame, earlier.stalled_frame),
-            words_read: d(self.words_read, earlier.words_read),
-            words_written: d(self.words_written, earlier.words_written),
-            geometry: d(self.geometry, earlier.geometry),
-            vertices: d(self.vertices, earlier.vertices),
-            raster: d(self.raster, earlier.raster),
-            walking: d(self.walking, earlier.walking),
-            empty: d(self.empty, earlier.empty),
-            groups: d(self.groups, earlier.groups),
-            pixels_covered: d(self.pixels_covered, earlier.pixels_covered),
-            pixels_drawn: d(self.pixels_drawn, earlier.pixels_drawn),
-            held: d(self.held, earlier.held),
-            memory: d(self.memory, earlier.memory),
-            flush: d(self.flush, earlier.flush),
-        }
-    }
-}
-
-/// A pass that was started: still running, or how it has ended.
-pub type Outcome = Option<Result<(), Fault>>;
+/// Result of the pass that was started last; `None` while it runs.
+pub type PassResult = Option<Result<(), EngineError>>;
 
 /// The engine, known to be there.
-pub struct Engine {
+pub struct TriangleEngine {
     registers: triangle::Triangle,
 }
 
-impl Engine {
+impl TriangleEngine {
     /// Takes the block if it is there. Its interrupt tells of the end of every pass.
     ///
     /// # Errors
     /// When something else answers, or nothing.
     pub fn probe(registers: triangle::Triangle) -> Result<Self, Absent> {
-        match registers.ident().read() {
-            IDENT => {
-                registers
-                    .ev_enable()
-                    .write(EvEnable::default().with_geometry(true).with_raster(true));
-                Ok(Self { registers })
-            }
-            found => Err(Absent {
-                expected: IDENT,
-                found,
-            }),
-        }
+        Absent::check(registers.ident().read(), triangle::Triangle::IDENT)?;
+        registers
+            .ev_enable()
+            .write(EvEnable::default().with_geometry(true).with_raster(true));
+        Ok(Self { registers })
     }
 
-    /// How far it can shade; descriptors have more words where that is smoothly (`glint_model::descriptor::words`).
+    /// Best shading that the gateware is built with. It sets the length of a descriptor (`glint_model::descriptor::words`).
     #[must_use]
-    pub fn ability(&self) -> Shading {
+    pub fn shading(&self) -> Shading {
         if self.registers.caps().read().gouraud() {
             Shading::Smooth
         } else {
@@ -277,9 +182,17 @@ impl Engine {
 
     /// Writes down a geometry pass, which is the longer part of starting it, while none runs. `list_shift`: a list has room for
     /// 4 << `list_shift` entries; that of both passes.
-    pub fn prepare_geometry(&mut self, pass: &Geometry, list_shift: u8) -> Prepared {
+    ///
+    /// # Errors
+    /// [`Error::Size`] when the engine has no such size; no register is written then.
+    pub fn prepare_geometry(
+        &mut self,
+        pass: &Geometry,
+        list_shift: u8,
+    ) -> Result<Prepared, EngineError> {
         let registers = &self.registers;
         let frame = pass.frame;
+        let size = Size::of(frame.width, frame.height).ok_or(Error::Size)?;
         let records = pass.mesh.records();
         registers.mesh().write(records.as_ptr().addr() as u32);
         registers.mesh_bytes().write(size_of_val(records) as u32);
@@ -295,44 +208,38 @@ impl Engine {
         registers.exception_limit().write(pass.exception_limit);
 
         registers.scale_shift().write(frame.scale_shift as u8);
+        // One write after the other: a loop over registers has to keep their addresses in a table.
         let [u, v, n] = [frame.u, frame.v, frame.n].map(|row| row.map(|value| value as u32));
-        for (register, value) in [
-            (registers.row_u0(), u[0]),
-            (registers.row_u1(), u[1]),
-            (registers.row_u2(), u[2]),
-            (registers.row_v0(), v[0]),
-            (registers.row_v1(), v[1]),
-            (registers.row_v2(), v[2]),
-            (registers.row_n0(), n[0]),
-            (registers.row_n1(), n[1]),
-            (registers.row_n2(), n[2]),
-            (registers.tx_low(), frame.translation[0] as u32),
-            (registers.ty_low(), frame.translation[1] as u32),
-            (registers.tz_low(), frame.translation[2] as u32),
-            (registers.near_low(), frame.near as u32),
-        ] {
-            register.write(value);
-        }
-        for (register, value) in [
-            (registers.tx_high(), frame.translation[0]),
-            (registers.ty_high(), frame.translation[1]),
-            (registers.tz_high(), frame.translation[2]),
-        ] {
-            register.write((value >> 32) as u16);
-        }
+        registers.row_u0().write(u[0]);
+        registers.row_u1().write(u[1]);
+        registers.row_u2().write(u[2]);
+        registers.row_v0().write(v[0]);
+        registers.row_v1().write(v[1]);
+        registers.row_v2().write(v[2]);
+        registers.row_n0().write(n[0]);
+        registers.row_n1().write(n[1]);
+        registers.row_n2().write(n[2]);
+        let [x, y, z] = frame.translation;
+        registers.tx_low().write(x as u32);
+        registers.tx_high().write((x >> 32) as u16);
+        registers.ty_low().write(y as u32);
+        registers.ty_high().write((y >> 32) as u16);
+        registers.tz_low().write(z as u32);
+        registers.tz_high().write((z >> 32) as u16);
+        registers.near_low().write(frame.near as u32);
         registers.near_high().write((frame.near >> 32) as u8);
         registers.depth_scale().write(
             DepthScale::default()
                 .with_mantissa(frame.depth.mantissa)
                 .with_exponent(frame.depth.exponent as u8),
         );
-        Prepared {
+        Ok(Prepared {
             start: GeometryStart::default()
                 .with_start(true)
                 .with_cull(pass.cull)
                 .with_smooth(pass.shading == Shading::Smooth)
-                .with_size(size_code((frame.width, frame.height))),
-        }
+                .with_size(code(size)),
+        })
     }
 
     /// Starts the geometry pass that was prepared last.
@@ -370,7 +277,7 @@ impl Engine {
         registers.raster().write(
             RasterStart::default()
                 .with_start(true)
-                .with_size(size_code(pass.size))
+                .with_size(code(pass.size))
                 .with_first(first.is_some())
                 .with_second(second.is_some())
                 .with_depth(pass.depth.is_some())
@@ -381,16 +288,16 @@ impl Engine {
 
     /// How the geometry pass that was started last has ended, if it has.
     #[must_use]
-    pub fn geometry(&self) -> Outcome {
+    pub fn geometry(&self) -> PassResult {
         let status = self.registers.status().read();
-        (!status.geometry_busy()).then(|| Fault::of(status.geometry_error()))
+        (!status.geometry_busy()).then(|| EngineError::check(status.geometry_error()))
     }
 
     /// How the raster pass that was started last has ended, if it has.
     #[must_use]
-    pub fn raster(&self) -> Outcome {
+    pub fn raster(&self) -> PassResult {
         let status = self.registers.status().read();
-        (!status.raster_busy()).then(|| Fault::of(status.raster_error()))
+        (!status.raster_busy()).then(|| EngineError::check(status.raster_error()))
     }
 
     /// Gives up what runs. What is started afterwards is drawn right; the frame that was given up is not, and the next one
@@ -417,27 +324,7 @@ impl Engine {
     /// The counters.
     #[must_use]
     pub fn counters(&self) -> Counters {
-        let registers = &self.registers;
-        Counters {
-            busy: registers.cycles_busy().read(),
-            stalled: registers.cycles_stalled().read(),
-            stalled_reads: registers.stalled_reads().read(),
-            stalled_lists: registers.stalled_lists().read(),
-            stalled_frame: registers.stalled_frame().read(),
-            words_read: registers.items_in().read(),
-            words_written: registers.items_out().read(),
-            geometry: registers.cycles_geometry().read(),
-            vertices: registers.vertices().read(),
-            raster: registers.cycles_raster().read(),
-            walking: registers.cycles_walking().read(),
-            empty: registers.cycles_empty().read(),
-            groups: registers.groups().read(),
-            pixels_covered: registers.pixels_covered().read(),
-            pixels_drawn: registers.pixels_drawn().read(),
-            held: registers.cycles_held().read(),
-            memory: registers.cycles_memory().read(),
-            flush: registers.cycles_flush().read(),
-        }
+        Counters::read(&self.registers)
     }
 }
 
@@ -450,12 +337,13 @@ pub fn acknowledge() {
         .write(EvPending::default().with_geometry(true).with_raster(true));
 }
 
-/// The code of a size; 3, which the engine refuses, for any that it has not.
-fn size_code(size: (u32, u32)) -> u8 {
-    SIZES
-        .iter()
-        .position(|&known| known == size)
-        .map_or(3, |code| code as u8)
+/// The value of a picture's size in the registers.
+const fn code(size: Size) -> triangle::Size {
+    match size {
+        Size::W320 => triangle::Size::W320,
+        Size::W640 => triangle::Size::W640,
+        Size::W1280 => triangle::Size::W1280,
+    }
 }
 
 #[cfg(test)]

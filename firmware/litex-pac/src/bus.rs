@@ -38,7 +38,7 @@ mod host {
     use std::boxed::Box;
     use std::thread_local;
 
-    /// What answers at the registers' addresses on a host.
+    /// A model of the bus.
     pub trait Bus {
         /// Reads the word at `address`.
         fn read(&mut self, address: usize) -> u32;
@@ -46,7 +46,7 @@ mod host {
         fn write(&mut self, address: usize, value: u32);
     }
 
-    /// A bus with nothing on it: reads are 0, as in the window of a block that was left out.
+    /// An empty bus: reads are 0, as in the window of a block that was left out.
     struct Empty;
 
     impl Bus for Empty {
@@ -69,7 +69,7 @@ mod host {
     /// Reads the word at `address`.
     ///
     /// # Safety
-    /// None here; it is what the board's own asks for.
+    /// None on a host; `unsafe` for the signature of the board's function.
     pub unsafe fn read(address: usize) -> u32 {
         BUS.with_borrow_mut(|bus| bus.read(address))
     }
@@ -77,7 +77,7 @@ mod host {
     /// Writes the word at `address`.
     ///
     /// # Safety
-    /// None here; it is what the board's own asks for.
+    /// None on a host; `unsafe` for the signature of the board's function.
     pub unsafe fn write(address: usize, value: u32) {
         BUS.with_borrow_mut(|bus| bus.write(address, value));
     }

@@ -1,4 +1,4 @@
-//! The registers of the CPU itself (VexRiscv `full`) that are in no description of the SoC.
+//! Registers and instructions of the CPU (VexRiscv `full`), which the description of the SoC does not contain.
 
 use core::arch::asm;
 use core::sync::atomic::{Ordering, compiler_fence};
@@ -13,13 +13,13 @@ pub fn interrupt_mask() -> u32 {
     mask
 }
 
-/// Lets just the interrupt lines of `mask` reach the CPU.
+/// Enables the interrupt lines of `mask`, and no others.
 ///
 /// # Safety
-/// A critical section may rely on the mask; and whatever comes in now must find its handler ready.
+/// No critical section may rely on the old mask, and the handlers of the enabled lines must be ready.
 #[inline]
 pub unsafe fn set_interrupt_mask(mask: u32) {
-    // SAFETY: writes a register that VexRiscv has; the caller answers for what comes in.
+    // SAFETY: writes a register that VexRiscv has; the caller answers for the enabled lines.
     unsafe { asm!("csrw 0xbc0, {}", in(reg) mask, options(nostack)) };
 }
 
@@ -33,8 +33,8 @@ pub fn interrupts_pending() -> u32 {
     pending
 }
 
-/// Empties the data cache, so that what another master wrote to memory is read from there. The cache writes through,
-/// so nothing is lost; what the CPU wrote is in memory already.
+/// Empties the data cache, so that reads see what another master wrote to memory. The cache writes through: everything that the
+/// CPU wrote is in memory already.
 #[inline]
 pub fn flush_data_cache() {
     compiler_fence(Ordering::SeqCst);
@@ -43,10 +43,10 @@ pub fn flush_data_cache() {
     compiler_fence(Ordering::SeqCst);
 }
 
-/// Empties the instruction cache, so that code which was written as data is fetched from memory.
+/// Empties the instruction cache, so that code written as data is fetched from memory.
 #[inline]
 pub fn flush_instruction_cache() {
-    // SAFETY: `fence.i`, and as many empty instructions as VexRiscv's pipeline may have fetched before it.
+    // SAFETY: `fence.i`, and as many `nop`s as the pipeline may have fetched before it.
     unsafe {
         asm!(
             ".word 0x100f",
@@ -84,7 +84,7 @@ pub fn cycles() -> u64 {
     }
 }
 
-/// The low word of [`cycles`]: enough for spans below 2^32 cycles (52 s at 81.25 MHz), and quicker.
+/// The low word of [`cycles`]: enough for spans below 2^32 cycles (52 s at 81.25 MHz), and faster.
 #[inline]
 #[must_use]
 pub fn cycles_low() -> u32 {

@@ -1,12 +1,11 @@
 //! Access to the registers of Glint's SoC, and the only crate that touches them.
 //!
-//! The peripherals' modules are generated from the SoC's own description (`cargo xtask pac` joins its `soc.svd` and
-//! `csr.json`); the module `cpu`, which only the board has, is written by hand, because the CPU's registers are in
-//! neither.
+//! The modules of the peripherals are generated from the SoC's own description (`cargo xtask pac`, docs/pac.md). The module `cpu`,
+//! on the board only, is written by hand, because the CPU's registers are not part of that description.
 //!
-//! A peripheral is a zero-sized handle that exists once ([`Peripherals::take`]). Its methods name registers, and a
-//! [`Register`](register::Register) is read or written as a number or as a type with one getter and one `with_…`
-//! setter a field:
+//! A peripheral is a zero-sized handle that exists once ([`Peripherals::take`]). Its methods name registers. A
+//! [`Register`](register::Register) is read or written as a number or as a type with a getter and a `with_…` setter for each field.
+//! A field with named values has an enumeration. `Counters` of a block holds a reading of all its free-running counters.
 //!
 //! ```
 //! use litex_pac::{bus, uart};
@@ -23,12 +22,10 @@
 //! }
 //! ```
 //!
-//! On a host there is no bus: [`bus::connect`] puts a model of one behind the same addresses, so that drivers are
-//! tested unchanged.
+//! A host has no such bus: [`bus::connect`] puts a model behind the same addresses, so that tests run the same drivers.
 //!
 //! # Limits
-//! A register of two words is read word by word; a counter is consistent ([`register::WideRegister::read`]), another
-//! value need not be.
+//! A register of two words is read word by word. That is consistent for a counter ([`register::WideRegister::read`]) only.
 
 #![no_std]
 
@@ -40,6 +37,7 @@ pub mod bus;
 pub mod cpu;
 #[rustfmt::skip]
 mod generated;
+mod memory;
 pub mod register;
 
 use core::cell::Cell;
@@ -47,15 +45,7 @@ use core::cell::Cell;
 use critical_section::Mutex;
 
 pub use generated::*;
-
-/// A memory on the bus.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Memory {
-    /// Address of its first byte.
-    pub base: u32,
-    /// Its size in bytes.
-    pub size: u32,
-}
+pub use memory::Memory;
 
 impl Interrupt {
     /// Its bit in the CPU's mask and pending registers.
@@ -65,15 +55,15 @@ impl Interrupt {
     }
 }
 
-/// Whether [`Peripherals::take`] has been answered.
+/// Whether [`Peripherals::take`] has returned the handles.
 static TAKEN: Mutex<Cell<bool>> = Mutex::new(Cell::new(false));
 
 impl Peripherals {
-    /// Every peripheral, the first time; nothing after that.
+    /// Every peripheral at the first call, `None` afterwards.
     #[must_use]
     pub fn take() -> Option<Self> {
         let taken = critical_section::with(|token| TAKEN.borrow(token).replace(true));
-        // SAFETY: nobody was given these handles before, and nobody will be again.
+        // SAFETY: the handles are returned once.
         (!taken).then(|| unsafe { Self::steal() })
     }
 }

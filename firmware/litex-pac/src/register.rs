@@ -10,11 +10,11 @@ pub struct ReadOnly;
 /// A register that the bus can read and write.
 pub struct ReadWrite;
 
-/// What a register of one word holds.
+/// The value of a register of one word.
 pub trait Value: Copy {
-    /// From the register's 32 bits; those beyond the value are ignored.
+    /// From the 32 bits of the register; bits beyond the value are ignored.
     fn from_bits(bits: u32) -> Self;
-    /// As the register's 32 bits; those beyond the value are 0.
+    /// The 32 bits of the register; bits beyond the value are 0.
     fn bits(self) -> u32;
 }
 
@@ -86,7 +86,7 @@ impl<T: Value> Register<T, ReadWrite> {
         unsafe { bus::write(self.address, value.bits()) }
     }
 
-    /// Reads it, and writes what `change` makes of that. An interrupt between the two is not kept out.
+    /// Reads it, and writes the changed value. An interrupt may come between the two.
     #[inline]
     pub fn modify(&self, change: impl FnOnce(T) -> T) {
         self.write(change(self.read()));
@@ -112,7 +112,7 @@ impl<A> WideRegister<A> {
         }
     }
 
-    /// Reads it: again while its high word changes, so that a counter which carries between the two words is right.
+    /// Reads it, again while its high word changes: consistent for a counter that carries between the two words.
     #[inline]
     #[must_use]
     pub fn read(&self) -> u64 {

@@ -3,23 +3,23 @@
 use core::fmt;
 
 use glint_hal::raymarch::Missing;
-use glint_hal::triangle::Fault;
+use glint_hal::triangle::{EngineError, Error};
 use glint_model::RenderError;
 
 /// The reason why the gateware cannot draw a frame.
 #[derive(Clone, Copy, Debug)]
 pub enum Fallback {
     /// An error of the triangle engine.
-    Triangle(Fault),
+    Triangle(EngineError),
     /// A feature that the raymarcher is built without.
     Field(Missing),
     /// No raymarcher in this build of the gateware.
     NoRaymarcher,
 }
 
-impl From<Fault> for Fallback {
-    fn from(fault: Fault) -> Self {
-        Self::Triangle(fault)
+impl From<EngineError> for Fallback {
+    fn from(error: EngineError) -> Self {
+        Self::Triangle(error)
     }
 }
 
@@ -32,8 +32,8 @@ impl From<Missing> for Fallback {
 impl From<RenderError> for Fallback {
     fn from(error: RenderError) -> Self {
         Self::Triangle(match error {
-            RenderError::Eye(_) => Fault::Eye,
-            _ => Fault::Size,
+            RenderError::Eye(_) => EngineError::Eye,
+            _ => Error::Size.into(),
         })
     }
 }
@@ -41,7 +41,7 @@ impl From<RenderError> for Fallback {
 impl fmt::Display for Fallback {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Self::Triangle(fault) => fault.fmt(f),
+            Self::Triangle(error) => error.fmt(f),
             Self::Field(missing) => missing.fmt(f),
             Self::NoRaymarcher => {
                 f.write_str("distance fields: this gateware has no engine for them")

@@ -3,9 +3,10 @@
 use glint_core::colour::Shading;
 use glint_core::picture::Size;
 use glint_hal::raymarch::{self, Raymarcher};
-use glint_hal::triangle::{Counters, Engine, Fault, Geometry, Prepared, Raster, Set};
+use glint_hal::triangle::{
+    Counters, EngineError, Error, Geometry, Prepared, Raster, Set, TriangleEngine,
+};
 use glint_model::descriptor::{ListWriter, list_shift};
-use glint_model::raymarch::FieldStats;
 use glint_model::{
     Frame, FrameConstants, FrameStats, MeshSubject, Options, Stats, Subject, clip_exceptions,
 };
@@ -51,7 +52,7 @@ struct Start {
 
 /// The triangle engine, the raymarcher and their memory.
 pub struct GatewareRenderer {
-    pub(super) engine: Engine,
+    pub(super) engine: TriangleEngine,
     raymarcher: Option<Raymarcher>,
     shading: Shading,
     buffers: [Buffers; 2],
@@ -68,13 +69,13 @@ pub struct GatewareRenderer {
 impl GatewareRenderer {
     /// A renderer into two frame buffers, of which the first lies at `first_frame_buffer`; `None` if `memory` is too small.
     pub fn new(
-        engine: Engine,
+        engine: TriangleEngine,
         raymarcher: Option<Raymarcher>,
         mut memory: &'static mut [u32],
         first_frame_buffer: u32,
     ) -> Option<Self> {
         Some(Self {
-            shading: engine.ability(),
+            shading: engine.shading(),
             engine,
             raymarcher,
             buffers: [
@@ -127,7 +128,7 @@ impl GatewareRenderer {
                 match self.engine.geometry() {
                     None => return self.check_progress(output).err().map(Err),
                     Some(Ok(())) => self.clip(mesh, 0),
-                    Some(fault) => fault,
+                    Some(result) => result,
                 }
             }
             _ => match self.engine.raster() {
@@ -136,7 +137,7 @@ impl GatewareRenderer {
                     self.stage = Stage::Idle;
                     return Some(Ok(self.rendered(frame, 0)));
                 }
-                Some(fault) => fault,
+                Some(result) => result,
             },
         };
         match step {
@@ -145,7 +146,7 @@ impl GatewareRenderer {
                 self.stage = Stage::Raster;
                 None
             }
-            Err(fault) => Some(Err(self.give_up(output, fault))),
+            Err(error) => Some(Err(self.give_up(output, error))),
         }
     }
 
@@ -183,13 +184,13 @@ impl GatewareRenderer {
     /// The measurement since its start, with the triangle counts of one of the buffers.
     pub(super) fn rendered(&self, frame: &Frame, place: usize) -> Rendered {
         let cycles = cpu::cycles() - self.start.cycles;
-        let counters = self.engine.counters() - self.start.engine;
+        let counters = self.engine.counters().since(&self.start.engine);
         let field = self.raymarcher_counters(frame);
-        let field = field.map(|field| field - self.start.raymarcher);
-        let field_pixels = field.map_or(0, |field| field.pixels);
+        let field = field.map(|field| field.since(&self.start.raymarcher));
+        let field_pixels = field.map_or(0, |field| field.items_out);
         let mesh = frame.subject.mesh_part().map(|_| Stats {
             // The walker tests a group of eight pixels a clock.
-            pixels_tested: 8 * u64::from(counters.walking),
+            pixels_tested: 8 * u64::from(counters.cycles_walking),
             pixels_covered: counters.pixels_covered.wrapping_sub(field_pixels).into(),
             pixels_drawn: counters.pixels_drawn.into(),
             ..self.buffers[place].stats
@@ -198,7 +199,7 @@ impl GatewareRenderer {
             cycles,
             stats: FrameStats {
                 mesh,
-                field: field.map(FieldStats::from),
+                field: field.as_ref().map(raymarch::ray_counts),
             },
             counters,
         }
@@ -210,7 +211,7 @@ impl GatewareRenderer {
             && mesh.shading == Shading::Smooth
             && self.shading == Shading::Flat
         {
-            return Err(Fault::Shading.into());
+            return Err(EngineError::Shading.into());
         }
         Ok(self.constants[place].update(frame)?)
     }
@@ -243,8 +244,8 @@ impl GatewareRenderer {
         &mut self,
         subject: &MeshSubject,
         place: usize,
-    ) -> Result<Prepared, Fault> {
-        let setup = self.constants[place].mesh().ok_or(Fault::Size)?;
+    ) -> Result<Prepared, EngineError> {
+        let setup = self.constants[place].mesh().ok_or(Error::Size)?;
         let buffers = &self.buffers[place];
         let pass = Geometry {
             mesh: &subject.mesh,
@@ -256,7 +257,7 @@ impl GatewareRenderer {
             exception_limit: buffers.exceptions.len() as u32,
         };
         let shift = list_shift(setup.width) as u8;
-        Ok(self.engine.prepare_geometry(&pass, shift))
+        self.engine.prepare_geometry(&pass, shift)
     }
 
     pub(super) fn start_geometry(&mut self, pass: Prepared) {
@@ -274,7 +275,7 @@ impl GatewareRenderer {
         let slot = self.slot(output.colour);
         let drawn_size = &mut self.drawn_sizes[usize::from(slot)];
         let pass = Raster {
-            size: (frame.size.width(), frame.size.height()),
+            size: frame.size,
             frame: address(output.colour),
             slot,
             whole: *drawn_size != Some(frame.size),
@@ -289,8 +290,8 @@ impl GatewareRenderer {
     }
 
     /// Clips the exceptions of the geometry pass in one of the buffers.
-    pub(super) fn clip(&mut self, subject: &MeshSubject, place: usize) -> Result<(), Fault> {
-        let setup = self.constants[place].mesh().ok_or(Fault::Size)?;
+    pub(super) fn clip(&mut self, subject: &MeshSubject, place: usize) -> Result<(), EngineError> {
+        let setup = self.constants[place].mesh().ok_or(Error::Size)?;
         let buffers = &mut self.buffers[place];
         let counts = self.engine.counts();
         buffers.sets = [Some(buffers.set(counts.descriptors)), None];
@@ -312,7 +313,7 @@ impl GatewareRenderer {
             };
             let mut put = |setup: &_, colour| writer.put(setup, colour);
             clipped_drawn = clip_exceptions(&subject.mesh, setup, &options, &mut numbers, &mut put);
-            let count = writer.finish().map_err(|_| Fault::Full)?;
+            let count = writer.finish().map_err(|_| Error::Full)?;
             buffers.sets[1] = Some(buffers.clipped_set(count));
         }
         let drawn = counts.descriptors + clipped_drawn;
@@ -329,17 +330,17 @@ impl GatewareRenderer {
     /// Gives the frame up after a time without progress.
     pub(super) fn check_progress(&mut self, output: &Output) -> Result<(), Fallback> {
         if self.watchdog.is_stuck(&self.engine.counters()) {
-            return Err(self.give_up(output, Fault::Stuck));
+            return Err(self.give_up(output, EngineError::Timeout));
         }
         Ok(())
     }
 
     /// Cancels the passes that run.
-    pub(super) fn give_up(&mut self, output: &Output, fault: Fault) -> Fallback {
+    pub(super) fn give_up(&mut self, output: &Output, error: EngineError) -> Fallback {
         self.engine.cancel();
         self.stage = Stage::Idle;
         self.invalidate(output.colour);
-        fault.into()
+        error.into()
     }
 
     /// The sets of one of the buffers.

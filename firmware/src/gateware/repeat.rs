@@ -1,6 +1,6 @@
 //! Benchmark: one frame drawn again and again, back to back.
 
-use glint_hal::triangle::{Engine, Outcome};
+use glint_hal::triangle::{PassResult, TriangleEngine};
 use glint_model::{Frame, MeshSubject};
 
 use super::fallback::Fallback;
@@ -43,14 +43,14 @@ impl GatewareRenderer {
             self.start_geometry(prepared);
             // The next frame's, while the engine works.
             self.update_constants(frame, next)?;
-            self.wait(Engine::geometry, output)?;
-            if let Err(fault) = self.clip(mesh, now) {
-                return Err(self.give_up(output, fault));
+            self.wait(TriangleEngine::geometry, output)?;
+            if let Err(error) = self.clip(mesh, now) {
+                return Err(self.give_up(output, error));
             }
             // The raster pass still reads the next frame's buffers, which the geometry pass writes only once it is started.
             prepared = self.prepare_geometry(mesh, next)?;
             if number > 0 {
-                self.wait(Engine::raster, output)?;
+                self.wait(TriangleEngine::raster, output)?;
             }
             if number == 0 {
                 self.start_measurement(frame);
@@ -83,7 +83,7 @@ impl GatewareRenderer {
             self.start_raster(frame, output, [None; 2]);
             self.update_constants(frame, 0)?;
             has_tables = self.has_tables(0);
-            self.wait(Engine::raster, output)?;
+            self.wait(TriangleEngine::raster, output)?;
         }
         Ok(self.rendered(frame, 0))
     }
@@ -91,14 +91,14 @@ impl GatewareRenderer {
     /// Waits for the end of a pass.
     fn wait(
         &mut self,
-        outcome: fn(&Engine) -> Outcome,
+        result: fn(&TriangleEngine) -> PassResult,
         output: &mut Output,
     ) -> Result<(), Fallback> {
         loop {
             for _ in 0..POLLS {
-                match outcome(&self.engine) {
+                match result(&self.engine) {
                     Some(Ok(())) => return Ok(()),
-                    Some(Err(fault)) => return Err(self.give_up(output, fault)),
+                    Some(Err(error)) => return Err(self.give_up(output, error)),
                     None => {}
                 }
             }

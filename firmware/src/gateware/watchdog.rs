@@ -1,10 +1,11 @@
 //! A limit on the time without progress.
 
-use glint_hal::triangle::Counters;
+use glint_hal::timer;
+use glint_hal::triangle::{Counters, TIMEOUT};
 use litex_pac::cpu;
 
-/// Cycles without progress after which a pass is cancelled: 100 ms.
-const LIMIT: u64 = glint_hal::timer::FREQUENCY as u64 / 10;
+/// Cycles without progress after which a pass is cancelled.
+const LIMIT: u64 = timer::cycles(TIMEOUT);
 
 /// Watches counters that advance while the engine works.
 #[derive(Default)]
@@ -17,9 +18,9 @@ impl Watchdog {
     /// Whether the engine has made no progress for longer than the limit, counted from the first call.
     pub fn is_stuck(&mut self, counters: &Counters) -> bool {
         let progress = counters
-            .words_read
-            .wrapping_add(counters.words_written)
-            .wrapping_add(counters.walking);
+            .items_in
+            .wrapping_add(counters.items_out)
+            .wrapping_add(counters.cycles_walking);
         let now = cpu::cycles();
         match self.since {
             Some(since) if progress == self.progress => now - since > LIMIT,

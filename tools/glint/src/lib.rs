@@ -16,6 +16,7 @@
 pub mod board;
 pub mod console;
 pub mod convert;
+pub mod counters;
 pub mod error;
 pub mod field;
 pub mod flash;

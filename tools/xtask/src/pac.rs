@@ -1,10 +1,12 @@
 //! `cargo xtask pac`: writes the register access crate and the register map's page from the SoC's own description.
 //!
 //! LiteX describes a SoC twice and each time in part: `soc.svd` has fields and interrupts, `csr.json` has access
-//! rights, constants and memories. [`soc::Soc`] joins the two by address and refuses what does not agree;
-//! [`rust`] and [`markdown`] print the result. Nothing in it depends on the time, the machine or the order in
-//! which LiteX happened to collect things, so the same SoC gives the same bytes.
+//! rights, constants and memories. `description.json` (`gateware/glint_soc/description.py`) has the rest: enumerated values, counters,
+//! the blocks' constants. [`soc::Soc`] joins the three and refuses what does not agree; [`rust`] and [`markdown`] print the
+//! result. The output does not depend on the time, the machine or the order in which LiteX collects the parts: the same SoC
+//! gives the same bytes.
 
+mod description;
 mod markdown;
 mod rust;
 mod soc;
@@ -27,10 +29,11 @@ pub fn generate(check: bool) -> Result<()> {
     let soc = Soc::read(
         &read(&built.join("soc.svd"))?,
         &read(&built.join("csr.json"))?,
+        &read(&built.join("description.json"))?,
     )
-    .with_context(|| format!("joining soc.svd and csr.json in {}", built.display()))?;
+    .with_context(|| format!("joining the SoC's descriptions in {}", built.display()))?;
     let outputs = [
-        ("firmware/litex-pac/src/generated.rs", rust::print(&soc)),
+        ("firmware/litex-pac/src/generated.rs", rust::print(&soc)?),
         ("docs/registers.md", markdown::print(&soc)),
     ];
     for (path, text) in &outputs {

@@ -6,7 +6,8 @@ use embedded_hal_async::delay::DelayNs;
 use embedded_hal_async::i2c::{Error as _, ErrorKind};
 
 use super::pace::Pace;
-use super::{Error, Identity, Measurement, Mpu6050, PERIOD, Rounds};
+use super::{Error, Identity, Measurement, Mpu6050, PERIOD};
+use crate::i2c::PeriodicI2c;
 
 /// The time between two looks for a sample, in µs: a little more than one takes, and a little less than half a period, so that each
 /// sample is found and the looks move across the samples' times by 40 µs a sample.
@@ -42,7 +43,7 @@ pub struct Stream<B, D, S> {
     sink: S,
 }
 
-impl<B: Rounds, D: DelayNs, S: Sink<B::Error>> Stream<B, D, S> {
+impl<B: PeriodicI2c, D: DelayNs, S: Sink<B::Error>> Stream<B, D, S> {
     /// From a bus to a sink.
     pub const fn new(bus: B, delay: D, sink: S) -> Self {
         Self {

@@ -12,7 +12,7 @@ use super::*;
 use crate::timer::tests::{Uptime, clock};
 
 /// Places in each queue.
-const PLACES: usize = super::PLACES as usize;
+const PLACES: usize = i2c::I2c::COMMAND_PLACES as usize;
 
 /// The master's registers, with a device that gives what it is asked for. Each look at the status lets it do a command.
 struct Master {
@@ -28,9 +28,9 @@ struct Master {
     /// The next byte is an address.
     addressing: bool,
     transaction: bool,
-    error: u32,
+    error: Error,
     /// The error that comes with the next start.
-    breaks: u32,
+    breaks: Error,
     /// Nothing is done.
     hangs: bool,
     overfull: bool,
@@ -51,8 +51,8 @@ impl Master {
             log: Vec::new(),
             addressing: false,
             transaction: false,
-            error: 0,
-            breaks: 0,
+            error: Error::None,
+            breaks: Error::None,
             hangs: false,
             overfull: false,
             repeats: 0,
@@ -67,13 +67,13 @@ impl Master {
             self.round = self.commands.drain(..).collect();
         }
         self.commands.extend(&self.round);
-        while !self.commands.is_empty() && self.error == 0 {
+        while !self.commands.is_empty() && self.error == Error::None {
             self.step();
         }
     }
 
     fn step(&mut self) {
-        if self.error != 0 || self.hangs {
+        if self.error != Error::None || self.hangs {
             return;
         }
         let Some(command) = self.commands.pop_front() else {
@@ -81,11 +81,11 @@ impl Master {
         };
         let argument = command.argument();
         match command.operation() {
-            0 => {
+            Action::Start => {
                 self.log.push("S".into());
                 (self.addressing, self.transaction, self.error) = (true, true, self.breaks);
             }
-            1 => {
+            Action::Write => {
                 let taken = if self.addressing {
                     argument >> 1 == self.address
                 } else {
@@ -96,12 +96,16 @@ impl Master {
                 let mark = if taken { '+' } else { '-' };
                 self.log.push(std::format!("{argument:02x}{mark}"));
                 if !taken {
-                    self.error = if self.addressing { 1 } else { 2 };
+                    self.error = if self.addressing {
+                        Error::Address
+                    } else {
+                        Error::Byte
+                    };
                     self.stop();
                 }
                 self.addressing = false;
             }
-            2 => {
+            Action::Read => {
                 for left in (0..=argument).rev() {
                     let mark = if left > 0 || command.more() { '+' } else { '-' };
                     self.log.push(std::format!("<{:02x}{mark}", self.next));
@@ -109,7 +113,7 @@ impl Master {
                     self.next = self.next.wrapping_add(1);
                 }
             }
-            _ => self.stop(),
+            Action::Stop => self.stop(),
         }
     }
 
@@ -134,12 +138,12 @@ impl Bus for Registers {
                     master.step();
                 }
                 let room = master.commands.len() < PLACES;
-                let failed = master.error != 0;
+                let failed = master.error != Error::None;
                 let busy = !failed && (master.transaction || !master.commands.is_empty());
                 0b11 | u32::from(room) << 2
                     | u32::from(busy) << 3
                     | u32::from(failed) << 4
-                    | master.error << 8
+                    | (master.error as u32) << 8
             }
             _ => master.uptime.read(address).unwrap(),
         }
@@ -159,7 +163,7 @@ impl Bus for Registers {
                 master.commands.clear();
                 master.answers.clear();
                 master.round.clear();
-                (master.error, master.transaction) = (0, false);
+                (master.error, master.transaction) = (Error::None, false);
             }
             0x0c => master.repeats = value,
             0x1c => assert_eq!(value, 1, "the end of a transaction is an interrupt"),
@@ -229,27 +233,30 @@ fn a_run_may_be_longer_than_the_queue_and_a_command() {
 }
 
 #[test]
-fn errors_are_told_and_the_next_transaction_is_as_the_first() {
+fn a_transaction_after_an_error_works() {
     let (mut i2c, master) = bus_with(Master::new());
-    assert_eq!(i2c.write(0x80, &[]), Err(Error::Address(0x80)));
+    assert_eq!(i2c.write(0x80, &[]), Err(BusError::Address(0x80)));
     assert_eq!(
         i2c.write(0x69, &[1; 50]),
-        Err(Error::NoAcknowledge(NoAcknowledgeSource::Address))
+        Err(BusError::NoAcknowledge(NoAcknowledgeSource::Address))
     );
     master.borrow_mut().acknowledged = 2;
     assert_eq!(
         i2c.write(0x68, &[1, 2, 3, 4]),
-        Err(Error::NoAcknowledge(NoAcknowledgeSource::Data))
+        Err(BusError::NoAcknowledge(NoAcknowledgeSource::Data))
     );
     assert_eq!(log(&master), "S d2- P S d0+ 01+ 02+ 03- P");
-    let stuck = [(3, Error::ClockStuck), (4, Error::DataStuck)];
+    let stuck = [
+        (Error::Clock, BusError::ClockStuck),
+        (Error::Data, BusError::DataStuck),
+    ];
     for (code, error) in stuck {
         master.borrow_mut().breaks = code;
         assert_eq!(i2c.read(0x68, &mut [0; 2]), Err(error));
     }
-    master.borrow_mut().breaks = 0;
+    master.borrow_mut().breaks = Error::None;
     master.borrow_mut().hangs = true;
-    assert_eq!(i2c.read(0x68, &mut [0; 2]), Err(Error::Timeout));
+    assert_eq!(i2c.read(0x68, &mut [0; 2]), Err(BusError::Timeout));
     master.borrow_mut().hangs = false;
     master.borrow_mut().log.clear();
     i2c.read(0x68, &mut [0; 2]).unwrap();
@@ -257,7 +264,7 @@ fn errors_are_told_and_the_next_transaction_is_as_the_first() {
 }
 
 #[test]
-fn what_is_left_of_a_dropped_transaction_is_cleared_away() {
+fn the_remains_of_a_dropped_transaction_are_cleared() {
     let (mut i2c, master) = bus_with(Master::new());
     let mut buffer = [0; 4];
     master.borrow_mut().hangs = true;
@@ -272,16 +279,7 @@ fn what_is_left_of_a_dropped_transaction_is_cleared_away() {
     assert_eq!(log(&master), "S S d1+ <a0+ <a1+ <a2+ <a3- P");
 }
 
-#[test]
-fn the_gateware_has_the_room_that_is_counted_on() {
-    // The map is made of the gateware's own numbers.
-    let map = include_str!("../../../litex-pac/src/generated.rs");
-    assert!(map.contains(&std::format!("puts a command into the queue of {PLACES};")));
-    let most = Repeat::default().with_period(u32::MAX).with_batch(u8::MAX);
-    assert_eq!((most.period(), most.batch()), ((1 << 24) - 1, 15));
-}
-
-const ROUND: Round = Round {
+const READ: PeriodicRead = PeriodicRead {
     address: 0x68,
     register: 0x3a,
     length: 3,
@@ -289,8 +287,8 @@ const ROUND: Round = Round {
     batch: 5,
 };
 
-/// What a look at the next round finds, if there is one.
-fn look(i2c: &mut I2c) -> Option<(Result<u64, Error>, [u8; 3])> {
+/// The next periodic read, if it is over.
+fn look(i2c: &mut I2c) -> Option<(Result<u64, BusError>, [u8; 3])> {
     let mut bytes = [0; 3];
     let found = {
         let future = pin!(i2c.next(&mut bytes));
@@ -304,9 +302,9 @@ fn look(i2c: &mut I2c) -> Option<(Result<u64, Error>, [u8; 3])> {
 }
 
 #[test]
-fn rounds_are_taken_one_by_one_with_their_times() {
+fn periodic_reads_are_taken_one_by_one_with_their_times() {
     let (mut i2c, master) = bus_with(Master::new());
-    i2c.begin(ROUND).unwrap();
+    i2c.begin(READ).unwrap();
     let begun = master.borrow().uptime.now;
     // 39,000 clock cycles, five rounds an interrupt.
     assert_eq!(master.borrow().repeats, 1 << 31 | 4 << 24 | 38_999);
@@ -325,47 +323,41 @@ fn rounds_are_taken_one_by_one_with_their_times() {
     // Another transaction ends them.
     i2c.write(0x68, &[1, 2]).unwrap();
     assert_eq!(master.borrow().repeats, 0);
-    assert_eq!(look(&mut i2c).unwrap().0, Err(Error::Rounds));
+    assert_eq!(look(&mut i2c).unwrap().0, Err(BusError::Reads));
 }
 
 #[test]
-fn rounds_end_with_an_error_behind_what_was_received() {
+fn an_error_of_periodic_reads_comes_behind_the_received_bytes() {
     let (mut i2c, master) = bus_with(Master::new());
-    i2c.begin(ROUND).unwrap();
+    i2c.begin(READ).unwrap();
     master.borrow_mut().repeat();
-    master.borrow_mut().error = 5;
+    master.borrow_mut().error = Error::Late;
     assert!(look(&mut i2c).unwrap().0.is_ok());
-    assert_eq!(look(&mut i2c).unwrap().0, Err(Error::Late));
+    assert_eq!(look(&mut i2c).unwrap().0, Err(BusError::Late));
     assert_eq!(master.borrow().repeats, 0);
     // A master that does nothing.
-    i2c.begin(ROUND).unwrap();
+    i2c.begin(READ).unwrap();
     let mut bytes = [0; 3];
-    assert_eq!(block_on(i2c.next(&mut bytes)), Err(Error::Timeout));
+    assert_eq!(block_on(i2c.next(&mut bytes)), Err(BusError::Timeout));
     let wrong = [
-        (Round { length: 0, ..ROUND }, Error::Rounds),
+        (PeriodicRead { length: 0, ..READ }, BusError::Reads),
+        (PeriodicRead { length: 33, ..READ }, BusError::Reads),
+        (PeriodicRead { period: 0, ..READ }, BusError::Reads),
         (
-            Round {
-                length: 33,
-                ..ROUND
-            },
-            Error::Rounds,
-        ),
-        (Round { period: 0, ..ROUND }, Error::Rounds),
-        (
-            Round {
+            PeriodicRead {
                 period: 300_000,
-                ..ROUND
+                ..READ
             },
-            Error::Rounds,
+            BusError::Reads,
         ),
-        (Round { batch: 17, ..ROUND }, Error::Rounds),
-        (Round { batch: 0, ..ROUND }, Error::Rounds),
+        (PeriodicRead { batch: 17, ..READ }, BusError::Reads),
+        (PeriodicRead { batch: 0, ..READ }, BusError::Reads),
         (
-            Round {
+            PeriodicRead {
                 address: 0x80,
-                ..ROUND
+                ..READ
             },
-            Error::Address(0x80),
+            BusError::Address(0x80),
         ),
     ];
     for (round, error) in wrong {

@@ -13,6 +13,8 @@ use litex_pac::bus::{self, Bus};
 
 use super::*;
 
+const IDENT: u32 = raymarch::Raymarch::IDENT;
+
 /// Registers that keep what is written, and all writes in their order.
 #[derive(Default)]
 struct Block {
@@ -204,7 +206,7 @@ fn a_field_is_described_before_it_is_enabled() {
     assert_eq!(r.horizon().read(), 0xFF_FFFF);
 
     let control = r.control().read();
-    assert!(control.enable() && control.stereo() == 0);
+    assert!(control.enable() && control.stereo() == Some(raymarch::Stereo::Mono));
     let last = block.borrow().writes.last().copied();
     assert_eq!(
         last.map(|(address, _)| address),
@@ -249,12 +251,15 @@ fn two_eyes_have_a_place_each_and_their_colours() {
     let (raymarcher, _block) = probe(IDENT, EVERYTHING);
     let mut raymarcher = raymarcher.unwrap();
     let r = registers();
-    for (eyes, code) in [("0.1,3", 1), ("0.1,3,red-cyan", 2)] {
+    for (eyes, code) in [
+        ("0.1,3", raymarch::Stereo::RedBlue),
+        ("0.1,3,red-cyan", raymarch::Stereo::RedCyan),
+    ] {
         let (setup, palette) = setup("menger:2", &stereo(eyes));
         raymarcher.set_field(&setup, &palette).unwrap();
         let control = r.control().read();
         assert!(control.enable());
-        assert_eq!(control.stereo(), code);
+        assert_eq!(control.stereo(), Some(code));
         let eye = setup.eyes[1];
         assert_ne!(eye, setup.eyes[0]);
         let first = [r.first_right_x(), r.first_right_y(), r.first_right_z()];
@@ -298,13 +303,16 @@ fn tables_are_written_where_they_change() {
 }
 
 #[test]
-fn differences_of_counters_wrap() {
-    let at = |value: u32| Counters {
-        rays: value,
-        undecided: value,
+fn ray_counts_are_the_counters_of_rays() {
+    let counters = Counters {
+        items_in: 6,
+        evaluations: 7,
+        undecided: 8,
         ..Counters::default()
     };
-    assert_eq!(at(5) - at(u32::MAX), at(6));
-    let stats = FieldStats::from(at(6));
-    assert_eq!((stats.rays, stats.undecided, stats.hits), (6, 6, 0));
+    let counts = ray_counts(&counters);
+    assert_eq!(
+        (counts.rays, counts.evaluations, counts.undecided),
+        (6, 7, 8)
+    );
 }

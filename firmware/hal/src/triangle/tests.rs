@@ -10,6 +10,8 @@ use litex_pac::bus::{self, Bus};
 
 use super::*;
 
+const IDENT: u32 = triangle::Triangle::IDENT;
+
 /// Registers that keep what is written, and the addresses in the order of their writes.
 #[derive(Default)]
 struct Block {
@@ -36,12 +38,12 @@ fn registers() -> triangle::Triangle {
     unsafe { Peripherals::steal() }.triangle
 }
 
-fn probe(ident: u32) -> (Result<Engine, Absent>, Rc<RefCell<Block>>) {
+fn probe(ident: u32) -> (Result<TriangleEngine, Absent>, Rc<RefCell<Block>>) {
     let block = Rc::new(RefCell::new(Block::default()));
     let address = registers().ident().address();
     block.borrow_mut().values.insert(address, ident);
     bus::connect(Registers(block.clone()));
-    (Engine::probe(registers()), block)
+    (TriangleEngine::probe(registers()), block)
 }
 
 /// A chunk of a triangle, behind a header.
@@ -70,13 +72,13 @@ fn something_else_is_not_taken_for_the_engine() {
 }
 
 #[test]
-fn it_says_how_it_can_shade() {
+fn the_best_shading_is_that_of_the_build() {
     let (engine, block) = probe(IDENT);
     let engine = engine.unwrap();
-    assert_eq!(engine.ability(), Shading::Flat);
+    assert_eq!(engine.shading(), Shading::Flat);
     let address = registers().caps().address();
     block.borrow_mut().values.insert(address, 1 << 3);
-    assert_eq!(engine.ability(), Shading::Smooth);
+    assert_eq!(engine.shading(), Shading::Smooth);
 }
 
 #[test]
@@ -100,7 +102,7 @@ fn a_geometry_pass_is_described_before_it_is_started() {
         exception_limit: 5,
     };
     let mut engine = engine.unwrap();
-    let prepared = engine.prepare_geometry(&pass, 9);
+    let prepared = engine.prepare_geometry(&pass, 9).unwrap();
 
     let r = registers();
     assert!(!r.geometry().read().start(), "not yet");
@@ -141,7 +143,7 @@ fn a_geometry_pass_is_described_before_it_is_started() {
     assert_eq!(r.list_shift().read(), 9);
     let start = r.geometry().read();
     assert!(start.start() && start.cull() && start.smooth());
-    assert_eq!(start.size(), 1);
+    assert_eq!(start.size(), Some(triangle::Size::W640));
     assert_eq!(block.borrow().writes.last(), Some(&r.geometry().address()));
 }
 
@@ -155,7 +157,7 @@ fn a_raster_pass_is_described_before_it_is_started() {
     };
     let mut engine = engine.unwrap();
     let pass = Raster {
-        size: (1280, 720),
+        size: Size::W1280,
         frame: 0x4100_0000,
         slot: true,
         whole: false,
@@ -184,7 +186,7 @@ fn a_raster_pass_is_described_before_it_is_started() {
             [start.first(), start.second(), start.depth()],
             [!second, second, depth]
         );
-        assert_eq!(start.size(), 2);
+        assert_eq!(start.size(), Some(triangle::Size::W1280));
         assert_eq!(block.borrow().writes.last(), Some(&r.raster().address()));
     }
     assert_eq!([r.count_0().read(), r.count_1().read()], [10, 26]);
@@ -197,35 +199,37 @@ fn a_raster_pass_is_described_before_it_is_started() {
 }
 
 #[test]
-fn how_a_pass_ends_is_told() {
+fn a_pass_ends_with_the_error_of_its_status() {
     let (engine, block) = probe(IDENT);
     let engine = engine.unwrap();
     let address = registers().status().address();
-    let faults = [
-        Ok(()),
-        Err(Fault::Size),
-        Err(Fault::Address),
-        Err(Fault::Busy),
-        Err(Fault::Mesh),
-        Err(Fault::Full),
-        Err(Fault::List),
-        Err(Fault::Cancelled),
-    ];
-    for (code, outcome) in (0..).zip(faults) {
-        let tell = |status: u32| block.borrow_mut().values.insert(address, status);
-        tell(code << 4 | 0b10);
-        assert_eq!((engine.geometry(), engine.raster()), (Some(outcome), None));
-        tell(code << 8 | 0b01);
-        assert_eq!((engine.geometry(), engine.raster()), (None, Some(outcome)));
+    for code in Error::ALL {
+        let result = match code {
+            Error::None => Ok(()),
+            code => Err(EngineError::Status(code)),
+        };
+        let set = |status: u32| block.borrow_mut().values.insert(address, status);
+        set((code as u32) << 4 | 0b10);
+        assert_eq!((engine.geometry(), engine.raster()), (Some(result), None));
+        set((code as u32) << 8 | 0b01);
+        assert_eq!((engine.geometry(), engine.raster()), (None, Some(result)));
     }
 }
 
 #[test]
-fn differences_of_counters_wrap() {
-    let at = |value: u32| Counters {
-        busy: value,
-        flush: value,
-        ..Counters::default()
+fn counters_are_read_by_name_and_their_differences_wrap() {
+    let (engine, block) = probe(IDENT);
+    let r = registers();
+    let read = |busy: u32, flush: u32| {
+        let values = [
+            (r.cycles_busy().address(), busy),
+            (r.cycles_flush().address(), flush),
+        ];
+        block.borrow_mut().values.extend(values);
+        engine.as_ref().unwrap().counters()
     };
-    assert_eq!(at(5) - at(u32::MAX), at(6));
+    let earlier = read(u32::MAX, 7);
+    let since = read(5, 7).since(&earlier);
+    let counted: Vec<_> = since.iter().filter(|(_, value)| *value != 0).collect();
+    assert_eq!(counted, [("cycles_busy", 6)]);
 }

@@ -14,4 +14,4 @@ pub use commands::{field_commands, mesh_commands, size_command, view_command};
 pub use glint_model::{FieldSubject, Frame, MeshSubject, Subject};
 pub use model::{ModelRenderer, on_model};
 pub use renderer::{Error, Parts, Rendered, Renderer};
-pub use stats::{EngineStats, RayCounts, Stats, TriangleCounts};
+pub use stats::{RayCounts, Stats, TriangleCounts};

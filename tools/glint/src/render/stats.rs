@@ -1,7 +1,9 @@
 //! Cycles and counts of a frame.
 
 use crate::console::ConsoleError;
+use crate::counters::Counters;
 use glint_model::FrameStats;
+use serde::de::value::MapDeserializer;
 use serde::{Deserialize, Serialize};
 
 /// Cycles and counts of a frame, the contents of the file of `--stats`.
@@ -22,7 +24,7 @@ pub struct Stats {
     pub backend: Option<String>,
     /// Counters of the triangle engine, if it rendered.
     #[serde(flatten)]
-    pub engine: Option<EngineStats>,
+    pub engine: Counters,
 }
 
 /// Counts of a mesh.
@@ -74,43 +76,6 @@ impl Stats {
     }
 }
 
-/// Counters of the triangle engine for a frame: cycles, and words of 16 bytes.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct EngineStats {
-    /// Cycles in which a pass ran.
-    pub cycles_busy: u64,
-    /// Cycles in which memory did not take a command.
-    pub cycles_stalled: u64,
-    /// Cycles in which memory did not take a read.
-    pub stalled_reads: u64,
-    /// Cycles in which memory did not take a write of the geometry pass.
-    pub stalled_lists: u64,
-    /// Cycles in which memory did not take a write of the raster pass.
-    pub stalled_frame: u64,
-    /// Words read from memory.
-    pub words_read: u64,
-    /// Words written to memory.
-    pub words_written: u64,
-    /// Cycles of the geometry pass.
-    pub cycles_geometry: u64,
-    /// Vertices transformed.
-    pub vertices: u64,
-    /// Cycles of the raster pass.
-    pub cycles_raster: u64,
-    /// Cycles in which a triangle was walked over.
-    pub cycles_walking: u64,
-    /// Those of them without a pixel.
-    pub cycles_empty: u64,
-    /// Groups of eight pixels of which some were covered.
-    pub groups: u64,
-    /// Cycles in which a group waited for the one before it.
-    pub cycles_held: u64,
-    /// Cycles in which the flush of a band waited for memory.
-    pub cycles_memory: u64,
-    /// Cycles in which a drawn band waited for the flush of the one before it.
-    pub cycles_flush: u64,
-}
-
 /// The statistics of a frame by the model.
 impl From<FrameStats> for Stats {
     fn from(FrameStats { mesh, field }: FrameStats) -> Self {
@@ -136,7 +101,7 @@ impl From<FrameStats> for Stats {
             rays,
             clock: None,
             backend: None,
-            engine: None,
+            engine: Counters::default(),
         }
     }
 }
@@ -151,12 +116,13 @@ pub fn stats_of(lines: &[String]) -> Result<Stats, ConsoleError> {
         .filter_map(|line| line.split_once(' '))
         .map(|(key, value)| {
             let number = value.parse::<u64>().map(serde_json::Value::from);
-            (key.to_owned(), number.unwrap_or_else(|_| value.into()))
-        })
-        .collect();
-    serde_json::from_value(serde_json::Value::Object(values)).map_err(|error| ConsoleError::Reply {
-        command: "render".to_owned(),
-        expected: format!("the statistics of a frame ({error})"),
-        found: lines.join(", "),
+            (key, number.unwrap_or_else(|_| value.into()))
+        });
+    Stats::deserialize(MapDeserializer::new(values)).map_err(|error: serde_json::Error| {
+        ConsoleError::Reply {
+            command: "render".to_owned(),
+            expected: format!("the statistics of a frame ({error})"),
+            found: lines.join(", "),
+        }
     })
 }

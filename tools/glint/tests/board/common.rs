@@ -3,6 +3,7 @@
 use glint::board::{SimulatedBoard, built_firmware};
 use glint::console::{Console, value};
 use glint::convert::{self, Options};
+use glint::counters::Counters;
 use glint::render::{BoardRenderer, Frame, Stats, Subject};
 use glint::{generate, view};
 use glint_core::mesh::Mesh;
@@ -47,7 +48,7 @@ pub fn timeless(stats: Stats) -> Stats {
         cycles: None,
         clock: None,
         backend: None,
-        engine: None,
+        engine: Counters::default(),
         ..stats
     }
 }

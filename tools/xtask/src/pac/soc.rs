@@ -1,10 +1,12 @@
-//! The SoC as both of LiteX's descriptions tell it, joined by address.
+//! The SoC as its three descriptions tell it: LiteX's two joined by address, Glint's own by name.
 
 use std::collections::BTreeMap;
 
 use anyhow::{Context, Result, bail, ensure};
 use roxmltree::{Document, Node};
 use serde_json::Value;
+
+use super::description::{self, Block, Constant, Description, NamedValue};
 
 /// Name of the constant that carries the CRC-32 of the pinned register map.
 const BUILD_ID: &str = "build_id";
@@ -32,6 +34,18 @@ pub struct Peripheral {
     pub interrupt: Option<u32>,
     /// By offset.
     pub registers: Vec<Register>,
+    /// Names of the registers that are free-running counters, in the order in which they are shown.
+    pub counters: Vec<String>,
+    /// Numbers that software relies on.
+    pub constants: Vec<Constant>,
+}
+
+impl Peripheral {
+    /// The counters' registers, in the order in which they are shown.
+    pub fn counters(&self) -> Vec<&Register> {
+        let register = |name: &String| self.registers.iter().find(|r| r.name == *name);
+        self.counters.iter().filter_map(register).collect()
+    }
 }
 
 /// One register of one or two 32-bit words, the high word first.
@@ -63,6 +77,8 @@ pub struct Field {
     pub lsb: u32,
     pub width: u32,
     pub description: String,
+    /// Values with a name of their own. Empty where the field is a number or a flag.
+    pub values: Vec<NamedValue>,
 }
 
 /// A memory on the bus.
@@ -74,27 +90,34 @@ pub struct Memory {
 }
 
 impl Soc {
-    /// Joins the texts of `soc.svd` and `csr.json`.
+    /// Joins the texts of `soc.svd`, `csr.json` and `description.json`.
     ///
     /// # Errors
-    /// When either cannot be read or the two disagree; the message names the register and what each of them says.
-    pub fn read(svd: &str, csr_json: &str) -> Result<Self> {
+    /// When one cannot be read or two disagree; the message names the register and what each of them says.
+    pub fn read(svd: &str, csr_json: &str, description_json: &str) -> Result<Self> {
         let document = Document::parse(svd).context("soc.svd is not XML")?;
         let csr: Value = serde_json::from_str(csr_json).context("csr.json is not JSON")?;
+        let mut description = Description::read(description_json)?;
         let mut constants = constants(&csr)?;
         let build_id = constants
             .remove(BUILD_ID)
             .with_context(|| format!("csr.json has no constant `{BUILD_ID}`"))?;
+        let peripherals = peripherals(&document, &csr, &mut description)?;
+        description.finish()?;
         Ok(Self {
             build_id,
-            peripherals: peripherals(&document, &csr)?,
+            peripherals,
             memories: memories(&csr)?,
             constants: constants.into_iter().collect(),
         })
     }
 }
 
-fn peripherals(document: &Document, csr: &Value) -> Result<Vec<Peripheral>> {
+fn peripherals(
+    document: &Document,
+    csr: &Value,
+    description: &mut Description,
+) -> Result<Vec<Peripheral>> {
     let mut declared = declared_registers(csr)?;
     let bases = object(csr, "csr_bases")?;
     let mut peripherals = Vec::new();
@@ -113,9 +136,15 @@ fn peripherals(document: &Document, csr: &Value) -> Result<Vec<Peripheral>> {
             base == json_base,
             "`{name}` lies at {base:#010x} in soc.svd and at {json_base:#010x} in csr.json"
         );
-        let registers = registers(node, &name, base, &mut declared)?;
+        let mut registers = registers(node, &name, base, &mut declared)?;
         // A memory behind the register bus (the identifier) has no registers in csr.json.
         if !registers.is_empty() {
+            let Block {
+                registers: described,
+                counters,
+                constants,
+            } = description.take(&name)?;
+            join_fields(&name, &mut registers, described)?;
             peripherals.push(Peripheral {
                 description: first_paragraph(
                     child(node, "description")
@@ -128,6 +157,8 @@ fn peripherals(document: &Document, csr: &Value) -> Result<Vec<Peripheral>> {
                 name,
                 base,
                 registers,
+                counters,
+                constants,
             });
         }
     }
@@ -139,6 +170,63 @@ fn peripherals(document: &Document, csr: &Value) -> Result<Vec<Peripheral>> {
     }
     peripherals.sort_by_key(|peripheral| peripheral.base);
     Ok(peripherals)
+}
+
+/// Adds the named values of `described` to the fields of `registers`, and drops the fields that LiteX invents for soc.svd where
+/// none was declared.
+fn join_fields(
+    peripheral: &str,
+    registers: &mut [Register],
+    described: Vec<description::Register>,
+) -> Result<()> {
+    ensure!(
+        registers.len() == described.len(),
+        "`{peripheral}` has {} registers in soc.svd and {} in description.json",
+        registers.len(),
+        described.len()
+    );
+    for (register, described) in registers.iter_mut().zip(described) {
+        let name = format!("{peripheral}_{}", register.name);
+        ensure!(
+            register.name == described.name && register.width == described.width,
+            "`{name}` of {} bits in soc.svd is `{peripheral}_{}` of {} bits in description.json",
+            register.width,
+            described.name,
+            described.width
+        );
+        if described.fields.is_empty() {
+            register.fields.clear();
+        }
+        ensure!(
+            register.fields.len() == described.fields.len(),
+            "`{name}` has {} fields in soc.svd and {} in description.json",
+            register.fields.len(),
+            described.fields.len()
+        );
+        for (field, described) in register.fields.iter_mut().zip(described.fields) {
+            let reset = register.reset as u32 >> field.lsb & u32::MAX >> (32 - field.width);
+            ensure!(
+                (&field.name, field.lsb, field.width, reset)
+                    == (
+                        &described.name,
+                        described.lsb,
+                        described.width,
+                        described.reset
+                    ),
+                "`{name}` has the field `{}` from bit {} of {} bits, reset to {reset}, in soc.svd, and `{}` from bit {} of {} bits, reset \
+                 to {}, in description.json",
+                field.name,
+                field.lsb,
+                field.width,
+                described.name,
+                described.lsb,
+                described.width,
+                described.reset
+            );
+            field.values = described.values;
+        }
+    }
+    Ok(())
 }
 
 /// A register as csr.json knows it.
@@ -267,17 +355,11 @@ fn register(node: Node, name: &str, offset: u32, access: Access) -> Result<Regis
             description: field_description(&flowed(
                 child(field, "description").and_then(|n| n.text()),
             )),
+            values: vec![],
         });
     }
     fields.sort_by_key(|field| field.lsb);
     let width = fields.last().map_or(32, |field| field.lsb + field.width);
-    // LiteX invents a field of the register's own name where none was declared.
-    if let [only] = fields.as_slice()
-        && only.lsb == 0
-        && (only.name == name || name.strip_prefix("ev_") == Some(&only.name))
-    {
-        fields.clear();
-    }
     Ok(Register {
         name: name.to_owned(),
         offset,

@@ -241,14 +241,14 @@ fn row(
 ) -> Result<Row> {
     let expected = expected.triangles();
     let pixels = expected.pixels_covered;
-    let engine = alone
-        .engine
-        .as_ref()
-        .with_context(|| format!("{}: the engine did not draw", case.name))?;
+    let engine = |name| {
+        let counter = alone.engine.get(name);
+        counter.with_context(|| format!("{}: the engine did not draw", case.name))
+    };
     let triangles = alone.triangles();
     let share = |part: u64, whole: u64| part as f64 / whole as f64;
-    let raster = engine.cycles_raster;
-    let walking = engine.cycles_walking;
+    let raster = engine("cycles_raster")?;
+    let walking = engine("cycles_walking")?;
     let cycles_frame = together.frame("cycles")?;
     let (measured, unit, at_least, aim, met) = match case.target {
         Target::Fill(least) => {
@@ -289,21 +289,21 @@ fn row(
         clipped: triangles.triangles_clipped,
         pixels,
         cycles_alone: alone.cycles.context("no cycles")?,
-        cycles_geometry: engine.cycles_geometry,
+        cycles_geometry: engine("cycles_geometry")?,
         cycles_raster: raster,
         cycles_frame,
         cycles_geometry_together: together.frame("cycles_geometry")?,
         cycles_raster_together: together.frame("cycles_raster")?,
         cycles_cpu,
-        covered: share(engine.groups, raster),
-        empty: share(engine.cycles_empty, raster),
-        flush: share(engine.cycles_flush, raster),
+        covered: share(engine("groups")?, raster),
+        empty: share(engine("cycles_empty")?, raster),
+        flush: share(engine("cycles_flush")?, raster),
         other: 1.0
             - share(
-                engine.groups + engine.cycles_empty + engine.cycles_flush,
+                engine("groups")? + engine("cycles_empty")? + engine("cycles_flush")?,
                 raster,
             ),
-        geometry_writes: share(engine.stalled_lists, engine.cycles_geometry),
+        geometry_writes: share(engine("stalled_lists")?, engine("cycles_geometry")?),
         measured,
         unit: unit.to_owned(),
         at_least,

@@ -1,7 +1,7 @@
-use super::{Access, Soc};
+use super::{Access, NamedValue, Soc};
 
 /// A SoC of one timer, as LiteX describes it.
-fn descriptions() -> (String, String) {
+fn descriptions() -> (String, String, String) {
     let register = |name: &str, offset: u32, fields: &str| {
         format!(
             "<register><name>{name}</name><description>Bits 0-31 of `X`. What it is.</description>\
@@ -33,17 +33,29 @@ fn descriptions() -> (String, String) {
         "constants": {"build_id": 7, "config_clock_frequency": 81250000, "timer0_interrupt": 1, "config_cpu_name": "x", "config_has_i2c": null},
         "memories": {"main_ram": {"base": 1073741824, "size": 16, "type": "cached"}, "csr": {"base": 4026531840, "size": 65536, "type": "io"}}
     }"#;
-    (svd, json.to_owned())
+    let description = r#"{"timer0": {
+        "registers": [
+            {"name": "load", "width": 8, "fields": []},
+            {"name": "ev_pending", "width": 5, "fields": [
+                {"name": "zero", "lsb": 0, "width": 1, "reset": 1, "values": []},
+                {"name": "late", "lsb": 2, "width": 3, "reset": 0, "values": [{"value": 4, "name": "very", "text": "a day"}]}
+            ]},
+            {"name": "uptime", "width": 64, "fields": []}
+        ],
+        "counters": [],
+        "constants": [{"name": "places", "value": 3, "text": "Places in the queue."}]
+    }}"#;
+    (svd, json.to_owned(), description.to_owned())
 }
 
-fn refusal(svd: &str, json: &str) -> String {
-    format!("{:#}", Soc::read(svd, json).unwrap_err())
+fn refusal(svd: &str, json: &str, description: &str) -> String {
+    format!("{:#}", Soc::read(svd, json, description).unwrap_err())
 }
 
 #[test]
 fn joins_fields_and_access_rights() {
-    let (svd, json) = descriptions();
-    let soc = Soc::read(&svd, &json).unwrap();
+    let (svd, json, description) = descriptions();
+    let soc = Soc::read(&svd, &json, &description).unwrap();
     assert_eq!(soc.build_id, 7);
     assert_eq!(
         soc.constants,
@@ -67,6 +79,13 @@ fn joins_fields_and_access_rights() {
         .map(|f| (f.name.as_str(), f.lsb, f.width))
         .collect();
     assert_eq!(fields, [("zero", 0, 1), ("late", 2, 3)]);
+    let very = NamedValue {
+        value: 4,
+        name: "very".to_owned(),
+        text: "a day".to_owned(),
+    };
+    assert_eq!(pending.fields[1].values, [very]);
+    assert_eq!(timer.constants[0].value, 3);
     assert_eq!(
         (uptime.access, uptime.words, uptime.width),
         (Access::ReadOnly, 2, 64)
@@ -77,18 +96,26 @@ fn joins_fields_and_access_rights() {
 
 #[test]
 fn refuses_descriptions_that_disagree() {
-    let (svd, json) = descriptions();
-    let moved = refusal(&svd.replace("0xF0000800", "0xF0001000"), &json);
+    let (svd, json, description) = descriptions();
+    let moved = refusal(
+        &svd.replace("0xF0000800", "0xF0001000"),
+        &json,
+        &description,
+    );
     assert!(
         moved.contains("0xf0001000 in soc.svd and at 0xf0000800 in csr.json"),
         "{moved}"
     );
-    let renamed = refusal(&svd.replace(">LOAD<", ">STORE<"), &json);
+    let renamed = refusal(&svd.replace(">LOAD<", ">STORE<"), &json, &description);
     assert!(
         renamed.contains("`store` in soc.svd and `load` in csr.json"),
         "{renamed}"
     );
-    let narrower = refusal(&svd, &json.replace("\"size\": 2", "\"size\": 1"));
+    let narrower = refusal(
+        &svd,
+        &json.replace("\"size\": 2", "\"size\": 1"),
+        &description,
+    );
     assert!(
         narrower.contains("`uptime1` in soc.svd and `uptime` in csr.json"),
         "{narrower}"
@@ -97,6 +124,7 @@ fn refuses_descriptions_that_disagree() {
     let svd_only = refusal(
         &(svd[..low_word].to_owned() + "</registers></peripheral></peripherals></device>"),
         &json,
+        &description,
     );
     assert!(
         svd_only.contains("`timer0_uptime` has 2 words in csr.json, fewer in soc.svd"),
@@ -108,12 +136,17 @@ fn refuses_descriptions_that_disagree() {
             "\"timer0_load\"",
             "\"timer0_x\": {\"addr\": 1, \"size\": 1, \"type\": \"ro\"}, \"timer0_load\"",
         ),
+        &description,
     );
     assert!(
         json_only.contains("csr.json has the register `timer0_x` at 0x00000001, soc.svd has not"),
         "{json_only}"
     );
-    let undeclared = refusal(&svd, &json.replace("4026533892", "4026533920"));
+    let undeclared = refusal(
+        &svd,
+        &json.replace("4026533892", "4026533920"),
+        &description,
+    );
     assert!(
         undeclared
             .contains("soc.svd has `timer0_ev_pending` at 0xf0000804, csr.json has nothing there"),
@@ -122,11 +155,65 @@ fn refuses_descriptions_that_disagree() {
 }
 
 #[test]
+fn refuses_a_description_of_another_soc() {
+    let (svd, json, description) = descriptions();
+    for (from, to, message) in [
+        (
+            "timer0",
+            "timer1",
+            "soc.svd has the peripheral `timer0`, description.json has not",
+        ),
+        (
+            "\"load\"",
+            "\"store\"",
+            "`timer0_load` of 8 bits in soc.svd is `timer0_store` of 8 bits",
+        ),
+        (
+            "\"late\", \"lsb\": 2",
+            "\"late\", \"lsb\": 1",
+            "`late` from bit 2 of 3 bits, reset to 0, in soc.svd",
+        ),
+        ("\"reset\": 1", "\"reset\": 0", "reset to 1, in soc.svd"),
+        (
+            "\"value\": 4",
+            "\"value\": 8",
+            "values of the field `late` of `timer0` beyond its 3 bits",
+        ),
+        (
+            "\"counters\": []",
+            "\"counters\": [\"load\"]",
+            "expected a plain register of 32 bits by that name",
+        ),
+        (
+            "{\"timer0\"",
+            "{\"more\": {\"registers\": [], \"counters\": [], \"constants\": []}, \"timer0\"",
+            "the block `more`, soc.svd has not",
+        ),
+    ] {
+        let found = refusal(&svd, &json, &description.replacen(from, to, 1));
+        assert!(found.contains(message), "{found}");
+    }
+}
+
+#[test]
 fn refuses_what_it_does_not_know() {
-    let (svd, json) = descriptions();
-    assert!(refusal(&svd, &json.replace("\"rw\"", "\"wo\"")).contains("expected \"ro\" or \"rw\""));
-    assert!(refusal(&svd, &json.replace("\"size\": 2", "\"size\": 3")).contains("3 words wide"));
-    assert!(refusal(&svd, &json.replace("build_id", "other")).contains("no constant `build_id`"));
-    assert!(refusal("<device>", &json).contains("soc.svd is not XML"));
-    assert!(refusal(&svd, "{").contains("csr.json is not JSON"));
+    let (svd, json, description) = descriptions();
+    assert!(
+        refusal(&svd, &json.replace("\"rw\"", "\"wo\""), &description)
+            .contains("expected \"ro\" or \"rw\"")
+    );
+    assert!(
+        refusal(
+            &svd,
+            &json.replace("\"size\": 2", "\"size\": 3"),
+            &description
+        )
+        .contains("3 words wide")
+    );
+    assert!(
+        refusal(&svd, &json.replace("build_id", "other"), &description)
+            .contains("no constant `build_id`")
+    );
+    assert!(refusal("<device>", &json, &description).contains("soc.svd is not XML"));
+    assert!(refusal(&svd, "{", &description).contains("csr.json is not JSON"));
 }

@@ -1,0 +1,33 @@
+//! I2C reads at a steady pace: the interface between a bus that repeats a transaction by itself and the drivers of sensors.
+
+use embedded_hal_async::i2c::I2c;
+
+/// A register read that the bus repeats.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PeriodicRead {
+    /// Address of the device.
+    pub address: u8,
+    /// First register, written to the device before each read.
+    pub register: u8,
+    /// Bytes of one read, 1 to 32.
+    pub length: u8,
+    /// Time from the start of a read to the start of the next, in µs.
+    pub period: u32,
+    /// Reads an interrupt, 1 to 16.
+    pub batch: u8,
+}
+
+/// A bus that repeats a read by itself, until another transaction or an error ends that.
+pub trait PeriodicI2c: I2c {
+    /// Begins the repetition; the first read starts one period from now.
+    ///
+    /// # Errors
+    /// When the bus cannot do it.
+    fn begin(&mut self, read: PeriodicRead) -> Result<(), Self::Error>;
+
+    /// Waits for the bytes of the next read, fills `bytes` with them, and returns the time at which the read started, in µs.
+    ///
+    /// # Errors
+    /// When the bus reports an error, nothing is repeated, or earlier reads were not taken in time and the queue is full.
+    fn next(&mut self, bytes: &mut [u8]) -> impl Future<Output = Result<u64, Self::Error>>;
+}

@@ -1,0 +1,32 @@
+//! Blocks that a SoC may lack.
+
+use core::fmt;
+
+/// A block that this SoC does not have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Absent {
+    /// `ident` where the block is present: four letters of ASCII.
+    pub expected: u32,
+    /// `ident` as read; 0 where the block was left out.
+    pub found: u32,
+}
+
+impl Absent {
+    /// Compares a block's `ident`.
+    pub(crate) const fn check(found: u32, expected: u32) -> Result<(), Self> {
+        if found == expected {
+            Ok(())
+        } else {
+            Err(Self { expected, found })
+        }
+    }
+}
+
+impl fmt::Display for Absent {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Self { expected, found } = self;
+        write!(f, "expected ident {expected:#010x}, found {found:#010x}")
+    }
+}
+
+impl core::error::Error for Absent {}

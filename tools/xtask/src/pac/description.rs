@@ -1,0 +1,108 @@
+//! The SoC's `description.json`: what LiteX's own exports leave out.
+
+use std::collections::BTreeMap;
+
+use anyhow::{Context, Result, ensure};
+use serde::Deserialize;
+
+/// The blocks of a SoC by name.
+pub struct Description(BTreeMap<String, Block>);
+
+/// A block's registers, and the numbers that stand beside them.
+#[derive(Deserialize)]
+pub struct Block {
+    /// In the order of their addresses.
+    pub registers: Vec<Register>,
+    /// Names of the registers that are free-running counters, in the order in which they are shown.
+    pub counters: Vec<String>,
+    pub constants: Vec<Constant>,
+}
+
+/// A register as the gateware declares it.
+#[derive(Deserialize)]
+pub struct Register {
+    pub name: String,
+    /// Width in bits.
+    pub width: u32,
+    /// By lowest bit. Empty where the register is one plain number.
+    pub fields: Vec<Field>,
+}
+
+/// Bits of a register with a name of their own.
+#[derive(Deserialize)]
+pub struct Field {
+    pub name: String,
+    pub lsb: u32,
+    pub width: u32,
+    pub reset: u32,
+    pub values: Vec<NamedValue>,
+}
+
+/// A value of a field with a name of its own.
+#[derive(Clone, Debug, Deserialize, PartialEq, Eq)]
+pub struct NamedValue {
+    pub value: u32,
+    pub name: String,
+    pub text: String,
+}
+
+/// A number that software relies on.
+#[derive(Debug, Deserialize, PartialEq, Eq)]
+pub struct Constant {
+    pub name: String,
+    pub value: u32,
+    pub text: String,
+}
+
+impl Description {
+    /// Reads the text of `description.json`.
+    ///
+    /// # Errors
+    /// When it is not of the form that `gateware/glint_soc/description.py` writes.
+    pub fn read(text: &str) -> Result<Self> {
+        serde_json::from_str(text)
+            .map(Self)
+            .context("description.json is not of the expected form")
+    }
+
+    /// Takes out the block `name`.
+    ///
+    /// # Errors
+    /// When there is none, or it contradicts itself.
+    pub fn take(&mut self, name: &str) -> Result<Block> {
+        let block = self.0.remove(name).with_context(|| {
+            format!("soc.svd has the peripheral `{name}`, description.json has not")
+        })?;
+        for counter in &block.counters {
+            let register = block.registers.iter().find(|r| r.name == *counter);
+            ensure!(
+                register.is_some_and(|r| r.width == 32 && r.fields.is_empty()),
+                "description.json has the counter `{counter}` of `{name}`, expected a plain register of 32 bits by that name"
+            );
+        }
+        for field in block.registers.iter().flat_map(|r| &r.fields) {
+            let limit = 1_u64 << field.width;
+            ensure!(
+                field.values.iter().all(|v| u64::from(v.value) < limit),
+                "description.json has values of the field `{}` of `{name}` beyond its {} bits",
+                field.name,
+                field.width
+            );
+        }
+        Ok(block)
+    }
+
+    /// Fails with the first block that was not taken.
+    ///
+    /// # Errors
+    /// When a block is left.
+    pub fn finish(self) -> Result<()> {
+        let left = self.0.keys().next();
+        ensure!(
+            left.is_none(),
+            "description.json has the block `{}`, soc.svd has not",
+            left.map_or("", String::as_str)
+        );
+        Ok(())
+    }
+}

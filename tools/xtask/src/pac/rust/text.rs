@@ -1,0 +1,68 @@
+//! Names, numbers and texts as Rust writes them.
+
+/// Words that cannot name a function.
+const KEYWORDS: [&str; 5] = ["in", "loop", "mod", "type", "use"];
+
+/// `ev_pending` as `EvPending`.
+pub fn camel(name: &str) -> String {
+    name.split('_')
+        .map(|part| {
+            let mut letters = part.chars();
+            letters.next().map_or(String::new(), |first| {
+                first.to_ascii_uppercase().to_string() + letters.as_str()
+            })
+        })
+        .collect()
+}
+
+/// `name`, or `name_` where Rust has that word.
+pub fn identifier(name: &str) -> String {
+    if KEYWORDS.contains(&name) {
+        format!("{name}_")
+    } else {
+        name.to_owned()
+    }
+}
+
+/// `0x4000_0000`.
+pub fn hex(value: u32) -> String {
+    if value >> 16 == 0 {
+        format!("{value:#x}")
+    } else {
+        format!("{:#06x}_{:04x}", value >> 16, value & 0xffff)
+    }
+}
+
+/// `81_250_000`.
+pub fn decimal(value: u32) -> String {
+    let digits = value.to_string();
+    let groups: Vec<_> = digits
+        .as_bytes()
+        .rchunks(3)
+        .rev()
+        .map(String::from_utf8_lossy)
+        .collect();
+    groups.join("_")
+}
+
+/// A description that rustdoc takes as text: outside code, brackets would be links and tags.
+pub fn documented(description: &str) -> String {
+    let parts = description.split('`').enumerate().map(|(index, part)| {
+        if index % 2 == 1 {
+            return part.to_owned();
+        }
+        part.replace('[', "\\[")
+            .replace(']', "\\]")
+            .replace('<', "\\<")
+            .replace('>', "\\>")
+    });
+    parts.collect::<Vec<_>>().join("`")
+}
+
+/// `no error` as `No error.`.
+pub fn sentence(text: &str) -> String {
+    let mut letters = text.trim_end_matches('.').chars();
+    letters.next().map_or(String::new(), |first| {
+        format!("{}{}.", first.to_uppercase(), letters.as_str())
+    })
+}
