@@ -2,7 +2,7 @@
 
 use core::slice;
 
-use glint_core::field::Field;
+use glint_core::field::{Cubes, Field, Menger, Primitive};
 use glint_core::fixed::Q32_32;
 use glint_core::mesh::{Mesh, MeshError};
 
@@ -44,13 +44,16 @@ impl Model {
 
 /// Fields that are shown by a name as models are.
 pub const FIELDS: [(&str, Field); 2] = [
-    ("sponge-field", Field::Menger { depth: 4 }),
+    (
+        "sponge-field",
+        Field::Primitive(Primitive::Menger(Menger { depth: 4 })),
+    ),
     (
         "cubes-field",
-        Field::Cubes {
+        Field::Primitive(Primitive::Cubes(Cubes {
             period: Q32_32::lit("2"),
             half: Q32_32::lit("0.5"),
-        },
+        })),
     ),
 ];
 

@@ -3,7 +3,7 @@
 use glint_core::camera::View;
 use glint_core::colour::Shading;
 use glint_core::console::{Command, Event, HISTORY, ImuAction, LINE_MAX, LineEditor, write_help};
-use glint_core::field::{Field, KINDS};
+use glint_core::field::{Field, KINDS, Menger};
 use glint_core::fixed::{Q2_23, Q32_32, Turns, U4_28};
 use glint_core::follow::{Direction, Mounting};
 use glint_core::imu::Follow;
@@ -254,7 +254,7 @@ fn every_command_is_understood() {
     assert_parses("field off", Command::Field(Some(None)));
     assert_parses(
         "field menger:4",
-        Command::Field(Some(Some(Field::Menger { depth: 4 }))),
+        Command::Field(Some(Some(Field::from(Menger { depth: 4 })))),
     );
     assert_parses("stereo", Command::Stereo(None));
     assert_parses("stereo off", Command::Stereo(Some(None)));

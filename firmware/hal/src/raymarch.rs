@@ -5,8 +5,9 @@
 
 use core::fmt;
 
+use glint_core::field::{FixedBox, FixedSpheres, FlatConstants, FlatSolid, Solid};
 use glint_core::stereo::Tint;
-use glint_model::raymarch::{Balls, Blend, FieldSetup, FieldStats, Lights, Palette, Solid};
+use glint_model::raymarch::{Blend, FieldSetup, FieldStats, Lights, Palette};
 pub use litex_pac::raymarch::Counters;
 use litex_pac::raymarch::{
     self, Control, DepthScale, EvEnable, EvPending, Solid as SolidRegister, Sphere, Stereo, Table,
@@ -143,10 +144,14 @@ impl Raymarcher {
             prepass,
             ..
         } = self.capabilities;
-        match setup.solid {
-            Solid::Menger { depth, .. } if depth > levels => return Err(Missing::Levels(levels)),
-            Solid::Box { .. } if !boxes => return Err(Missing::Boxes),
-            _ => {}
+        if let Solid::Flat(flat) = &setup.solid {
+            let constants = flat.constants();
+            if u32::from(constants.levels) >> levels != 0 {
+                return Err(Missing::Levels(levels));
+            }
+            if constants.kind == FixedBox::CODE && !boxes {
+                return Err(Missing::Boxes);
+            }
         }
         if setup.is_round() && !round {
             return Err(Missing::Round);
@@ -157,9 +162,7 @@ impl Raymarcher {
         if setup.stereo.is_some() && !stereo {
             return Err(Missing::Stereo);
         }
-        if let Some(cones) = &setup.cones
-            && !(prepass && cones.is_fitting(setup))
-        {
+        if setup.cones.is_some() && !(prepass && setup.has_fitting_cones()) {
             return Err(Missing::Prepass);
         }
         Ok(())
@@ -188,37 +191,18 @@ impl Raymarcher {
     ) -> Result<(), Missing> {
         self.check(setup)?;
         let registers = &self.registers;
-        let solid = match setup.solid {
-            Solid::Menger { depth, half, .. } => {
-                registers.cube_half().write(half as u32);
-                SolidRegister::default().with_levels(((1_u32 << depth) - 1) as u8)
-            }
-            Solid::Box {
-                half,
-                room,
-                repeated,
-            } => {
-                let sides = [registers.half_x(), registers.half_y(), registers.half_z()];
-                for (register, half) in sides.iter().zip(half) {
-                    register.write(half.unwrap_or(0) as u32);
-                }
-                let [x, y, z] = half.map(|half| u8::from(half.is_some()));
-                SolidRegister::default()
-                    .with_is_box(true)
-                    .with_has(x | y << 1 | z << 2)
-                    .with_room(room)
-                    .with_repeated(repeated)
-            }
-            Solid::Balls(_) => SolidRegister::default(),
+        let solid = match &setup.solid {
+            Solid::Flat(flat) => self.set_flat(&flat.constants()),
+            Solid::Spheres(_) => SolidRegister::default(),
         };
         let solid = solid.with_flat_too(setup.beside.is_some());
-        registers.solid().write(match setup.balls() {
-            Some(balls) => {
-                self.set_spheres(balls, &setup.blend(), &palette.lights);
+        registers.solid().write(match setup.spheres() {
+            Some(spheres) => {
+                self.set_spheres(spheres, &setup.blend(), &palette.lights);
                 solid
                     .with_is_round(true)
-                    .with_balls_repeated(balls.repeated)
-                    .with_last_ball((balls.count - 1) as u8)
+                    .with_balls_repeated(spheres.repeated)
+                    .with_last_ball((spheres.count - 1) as u8)
                     .with_last_light((palette.lights.count - 1) as u8)
             }
             None => solid,
@@ -301,21 +285,41 @@ impl Raymarcher {
         Ok(())
     }
 
+    /// Writes the lengths of a flat solid. Returns its bits of the register `solid`.
+    fn set_flat(&self, constants: &FlatConstants) -> SolidRegister {
+        let registers = &self.registers;
+        registers.cube_half().write(constants.cube_half);
+        let sides = [registers.half_x(), registers.half_y(), registers.half_z()];
+        for (register, half) in sides.iter().zip(constants.half) {
+            register.write(half);
+        }
+        SolidRegister::default()
+            .with_is_box(constants.kind == FixedBox::CODE)
+            .with_levels(constants.levels)
+            .with_has(constants.has)
+            .with_room(constants.room)
+            .with_repeated(constants.repeated)
+    }
+
     /// Writes the constants of spheres, of what is between them and faces, and of the light on them.
-    fn set_spheres(&self, balls: &Balls, blend: &Blend, lights: &Lights) {
+    fn set_spheres(&self, spheres: &FixedSpheres, blend: &Blend, lights: &Lights) {
         let write = |entry: u8, value: u32| {
             let constant = Sphere::default().with_entry(entry).with_value(value);
             self.registers.sphere().write(constant);
         };
         let numbers = |x: [i32; 3]| x.map(|x| x as u32 & 0xFF_FFFF);
-        for (number, (ball, material)) in
-            (0..).zip(balls.list.iter().zip(lights.materials).take(balls.count))
-        {
-            for (axis, place) in (0..).zip(numbers(ball.centre)) {
+        for (number, (sphere, material)) in (0..).zip(
+            spheres
+                .list
+                .iter()
+                .zip(lights.materials)
+                .take(spheres.count),
+        ) {
+            for (axis, place) in (0..).zip(numbers(sphere.centre)) {
                 write(axis, place);
             }
-            write(3, ball.radius as u32);
-            write(4, ball.inverse | ball.shift << 17);
+            write(3, sphere.radius as u32);
+            write(4, sphere.inverse | sphere.shift << 17);
             write(8 + number, colour(material));
         }
         write(5, colour(lights.ambient));

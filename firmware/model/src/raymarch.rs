@@ -10,24 +10,27 @@
 //! [`FieldSetup`] makes the constants of a frame, [`Ray`] is where a pixel's ray begins, [`FieldSetup::raymarch`] how it ends,
 //! [`paint()`] what it shows. [`Rays`] begin farther on after a [`Cone`] for each block of pixels.
 
-mod appearance;
 mod blend;
 mod cone;
-mod field;
-mod light;
+mod directions;
+mod fog;
+mod lights;
+mod options;
 mod paint;
+mod palette;
+mod prepass;
 mod ray;
 mod render;
 mod setup;
-mod sphere;
 
 pub use blend::{Beside, Blend};
-pub use cone::{Cone, Cones, Prepass, Rays};
-pub use field::{Sample, Solid, Surface};
+pub use cone::{Cone, Rays};
 pub use glint_core::stereo::{Stereo, Tint};
-pub use light::{Light, Lights};
-pub use paint::{Palette, paint};
+pub use lights::{Light, Lights};
+pub use options::{DEFAULT_TUNING, FieldOptions, ROUND_TUNING, Tuning};
+pub use paint::paint;
+pub use palette::Palette;
+pub use prepass::{Cones, Prepass};
 pub use ray::{Ray, RayResult, State};
 pub use render::{FieldStats, compose, render_field, rgb565};
-pub use setup::{DEFAULT_TUNING, Eye, FieldOptions, FieldSetup, ROUND_TUNING, Tuning};
-pub use sphere::{Ball, Balls};
+pub use setup::{Eye, FieldSetup};

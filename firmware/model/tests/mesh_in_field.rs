@@ -4,7 +4,7 @@ mod common;
 
 use common::{Camera, Model, Picture, Random};
 use glint_core::camera::View;
-use glint_core::field::Field;
+use glint_core::field::{Field, Menger};
 use glint_core::mesh::Mesh;
 use glint_core::stereo::Stereo;
 use glint_model::raymarch::{FieldOptions, render_field};
@@ -139,7 +139,7 @@ fn shared_constants_keep_their_ranges() {
 
 #[test]
 fn two_eyes_and_far_ones_are_refused() {
-    let field = Field::Menger { depth: 4 };
+    let field = Field::from(Menger { depth: 4 });
     let view = outside(&mut Random(4));
     let stereo = FieldOptions {
         stereo: Some(Stereo::parse("0.05,3").unwrap()),

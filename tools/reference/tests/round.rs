@@ -1,6 +1,6 @@
 //! The model's round fields against the exact hits of the same rays. `--nocapture` shows the measured figures.
 
-use glint_core::field::Field as Scene;
+use glint_core::field::{CentredSphere, Field as Scene};
 use glint_core::fixed::Q32_32;
 use glint_core::light::{Light, Lighting, Material};
 use glint_model::raymarch::{FieldOptions, Lights, Palette, paint};
@@ -44,9 +44,9 @@ fn spheres_are_lit_as_they_should_be() {
     };
     let camera = Camera::looking_at([2.1875, 1.6875, 1.3125], [0.0; 3], 0.9, 0.01);
     for radius in ["0.25", "1"] {
-        let scene = Scene::Sphere {
+        let scene = Scene::from(CentredSphere {
             radius: radius.parse::<Q32_32>().expect("a number"),
-        };
+        });
         let subject = Subject::new("above", &scene.to_string(), &camera, (320, 180));
         let setup = subject.setup(&FieldOptions::of(&scene));
         let pixels = (0..180).flat_map(|y| (0..320).map(move |x| (x, y)));

@@ -4,14 +4,13 @@
 //! h = max(k − |a − b|, 0). Its slope is a mean of both slopes, with the weight h/2k on the farther one's: so it grows no faster
 //! than they do, and the weight is what light needs too.
 
-use super::field::{Sample, Surface};
-use super::sphere::Balls;
+use glint_core::field::{FixedSpheres, Sample, Surface};
 
 /// Spheres beside a solid that has faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Beside {
     /// The spheres.
-    pub balls: Balls,
+    pub spheres: FixedSpheres,
     /// What is between both.
     pub blend: Blend,
 }

@@ -4,12 +4,12 @@
 //! most t·spread in the norm of its rays, so it goes on by the distance less t·spread, and all of them are free up to there. What it
 //! comes to is a depth, which takes the place of the near plane for its block.
 
-use super::field::{FRACTION, cropped};
-use super::ray::{Ray, magnitude};
-use super::setup::{FARTHEST, FieldSetup};
+use glint_core::field::{FRACTION, cropped, magnitude};
 
-/// Entries of the table of depths.
-pub(super) const CONES: u32 = 1 << 14;
+use super::options::FARTHEST;
+use super::prepass::{Cones, fitting};
+use super::ray::Ray;
+use super::setup::FieldSetup;
 
 /// Fraction bits of a depth in the table.
 const DEPTH_FRACTION: u32 = 7;
@@ -19,84 +19,6 @@ const MOST_STEPS: u32 = 192;
 
 /// The most blocks in a row of a picture: of 4 pixels, 1280 wide.
 const ROW: usize = 320;
-
-/// Which blocks of pixels have a cone.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Prepass {
-    /// The smallest of 4, 8 and 16 pixels each way of which the table holds those of all eyes.
-    Fitting,
-    /// Of 2^this pixels each way, 2 to 4. The gateware has only what fits; the others are there to show what they are worth.
-    Blocks(u32),
-}
-
-/// The constants of a frame's cones.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Cones {
-    /// Blocks are of 2^this pixels each way: 2, 3, 4.
-    pub block: u32,
-    /// What D grows by from a block's first pixel to its middle, 30 fraction bits.
-    pub offset: [i32; 3],
-    /// The most by which D differs from the middle's anywhere in a block, in the norm of the rays, u0.18, 14 bits, rounded up.
-    pub spread: u32,
-}
-
-impl Cones {
-    /// For a picture whose D grows by `steps` with a pixel to the right and one down.
-    pub(super) fn new(
-        prepass: Prepass,
-        (width, height): (u32, u32),
-        eyes: u32,
-        round: bool,
-        steps: &[[i32; 3]; 2],
-    ) -> Self {
-        let block = match prepass {
-            Prepass::Fitting => fitting((width, height), eyes),
-            Prepass::Blocks(block) => block.clamp(2, 4),
-        };
-        let [across, down] = steps.map(|step| step.map(i64::from));
-        let half = |sum: i64| (sum * ((1 << block) - 1)) >> 1;
-        let diagonals = [1, -1]
-            .map(|sign| [0, 1, 2].map(|i: usize| half((across[i] + sign * down[i]).abs()) as u64));
-        let widest = diagonals.map(|diagonal| {
-            if round {
-                diagonal.map(|part| part * part).iter().sum::<u64>().isqrt()
-            } else {
-                diagonal.into_iter().fold(0, u64::max)
-            }
-        });
-        Self {
-            block,
-            offset: [0, 1, 2].map(|i: usize| half(across[i] + down[i]) as i32),
-            // D is cut to 24 bits, both that of the middle and that of a pixel; halves are cut too.
-            spread: (widest[0].max(widest[1]) >> 12) as u32 + 2,
-        }
-    }
-
-    /// Whether blocks are those that the gateware has for such a frame.
-    pub const fn is_fitting(&self, setup: &FieldSetup) -> bool {
-        let eyes = if setup.stereo.is_some() { 2 } else { 1 };
-        self.block == fitting((setup.width, setup.height), eyes)
-    }
-
-    /// What the entry of a cone's length is larger by than that of its middle: no direction in its block gets longer than 1.
-    const fn margin(&self, round: bool) -> u32 {
-        if round {
-            // (|D| + s)² − |D|² is at most 2·s + s², of which s is at most 2^−4.
-            (self.spread >> 7) + (self.spread >> 12) + 2
-        } else {
-            (self.spread >> 8) + 1
-        }
-    }
-}
-
-/// The smallest blocks of which the table holds those of all eyes.
-const fn fitting((width, height): (u32, u32), eyes: u32) -> u32 {
-    let mut block = 2;
-    while block < 4 && eyes * (width >> block) * (height >> block) > CONES {
-        block += 1;
-    }
-    block
-}
 
 /// A cone at its beginning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -108,6 +30,13 @@ pub struct Cone {
 }
 
 impl FieldSetup {
+    /// Whether the blocks are those that the gateware has for such a frame.
+    pub fn has_fitting_cones(&self) -> bool {
+        let eyes = if self.stereo.is_some() { 2 } else { 1 };
+        self.cones
+            .is_none_or(|cones| cones.block == fitting((self.width, self.height), eyes))
+    }
+
     /// The cone of a block, by its place among blocks.
     pub fn cone(&self, cones: &Cones, eye: usize, column: u32, row: u32) -> Cone {
         let direction = [0, 1, 2].map(|i: usize| {

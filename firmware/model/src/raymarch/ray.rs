@@ -1,7 +1,9 @@
 //! A pixel's ray: where it begins, and where it ends.
 
-use super::field::{FRACTION, Surface, cropped};
-use super::setup::{Eye, FARTHEST, FieldSetup};
+use glint_core::field::{FRACTION, Surface, cropped, magnitude};
+
+use super::options::FARTHEST;
+use super::setup::{Eye, FieldSetup};
 
 /// Below 1/m for every m that begins with these ten bits behind its point: 2^10/(i + 1), cut so that no product
 /// with m rounds to 1. u8.9, 17 bits.
@@ -34,11 +36,6 @@ const fn round_inverses() -> [u32; 1024] {
         i += 1;
     }
     table
-}
-
-/// |x|, or one less: |x| − 1 of a negative x.
-pub(super) const fn magnitude(x: i32) -> u32 {
-    (x ^ (x >> 31)) as u32
 }
 
 /// A ray at its beginning.

@@ -3,7 +3,8 @@
 use glint_core::stereo::Tint;
 
 use super::cone::Rays;
-use super::paint::{Palette, paint};
+use super::paint::paint;
+use super::palette::Palette;
 use super::ray::{Ray, RayResult, State};
 use super::setup::FieldSetup;
 use crate::error::RenderError;

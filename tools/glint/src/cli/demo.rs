@@ -15,7 +15,7 @@ use glint::render::{
 use glint::view;
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;
-use glint_core::field::Field;
+use glint_core::field::{Field, Menger, Primitive};
 use glint_core::fixed::{Q32_32, Turns, U4_28};
 use glint_core::mesh::Mesh;
 use glint_core::picture::{Backend, Size};
@@ -50,7 +50,7 @@ const MAIN_RAM: u32 = 0x4000_0000;
 const SIZE: Size = Size::W320;
 const ORBIT_SIZE: Size = Size::W640;
 const ORBIT_FRAMES_PER_SECOND: u16 = 12;
-const SPONGE: Field = Field::Menger { depth: 4 };
+const SPONGE: Field = Field::Primitive(Primitive::Menger(Menger { depth: 4 }));
 const EYES: Stereo = Stereo {
     half_separation: Q32_32::lit("0.05"),
     zero_parallax: Q32_32::lit("2.2"),

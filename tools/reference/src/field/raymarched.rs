@@ -1,9 +1,12 @@
 //! Pictures of the model's raymarcher as [`metrics`] takes them, and what each ray cost.
 
 use glint_core::camera::View;
-use glint_core::field::Field as Scene;
+use glint_core::field::{
+    CentredSphere, Cubes, Cuboid, Field as Scene, Lattice, Menger, MovingSphere, Planes, Primitive,
+    Surface,
+};
 use glint_core::fixed::Q32_32;
-use glint_model::raymarch::{self, FieldOptions, FieldSetup, State, Surface};
+use glint_model::raymarch::{self, FieldOptions, FieldSetup, State};
 
 use super::metrics::{self, Accuracy, Expected, Outcome, Quantiles, accuracy};
 use super::{Face, Field, Sphere, views};
@@ -135,52 +138,61 @@ fn pixels(setup: &FieldSetup) -> impl Iterator<Item = (u32, u32)> {
 impl Field {
     /// The solid with the numbers as they are.
     pub fn of(scene: &Scene) -> Self {
+        match scene {
+            Scene::Primitive(primitive) => Self::of_primitive(primitive),
+            Scene::Union(union) => {
+                let [a, b] = [union.flat(), union.round()]
+                    .map(|member| Box::new(Self::of_primitive(member)));
+                match union.blend().to_num() {
+                    0.0 => Self::Union(a, b),
+                    k => Self::SmoothUnion { k, a, b },
+                }
+            }
+        }
+    }
+
+    fn of_primitive(primitive: &Primitive) -> Self {
         let number = |x: Q32_32| x.to_num::<f64>();
-        let ball = |centre: [Q32_32; 3], radius| Sphere {
-            centre: centre.map(number),
-            radius: number(radius),
-        };
-        match *scene {
-            Scene::Menger { depth } => Self::Menger {
+        match *primitive {
+            Primitive::Menger(Menger { depth }) => Self::Menger {
                 depth: depth.into(),
             },
-            Scene::Box { half } => Self::Box {
+            Primitive::Box(Cuboid { half }) => Self::Box {
                 half: half.map(number),
             },
-            Scene::Cubes { period, half } => Self::Cubes {
+            Primitive::Cubes(Cubes { period, half }) => Self::Cubes {
                 period: number(period),
                 half: number(half),
             },
-            Scene::Planes { half } => Self::Planes { half: number(half) },
-            Scene::Sphere { radius } => Self::Spheres(vec![ball([Q32_32::ZERO; 3], radius)]),
-            Scene::Spheres(ref spheres) => Self::Spheres(
+            Primitive::Planes(Planes { half }) => Self::Planes { half: number(half) },
+            Primitive::Sphere(CentredSphere { radius }) => Self::Spheres(vec![Sphere {
+                centre: [0.0; 3],
+                radius: number(radius),
+            }]),
+            Primitive::Spheres(ref spheres) => Self::Spheres(
                 spheres
                     .iter()
-                    .map(|sphere| ball(sphere.centre, sphere.radius))
+                    .map(|sphere| Sphere {
+                        centre: sphere.centre.map(number),
+                        radius: number(sphere.radius),
+                    })
                     .collect(),
             ),
-            Scene::Lattice { period, radius } => Self::Lattice {
+            Primitive::Lattice(Lattice { period, radius }) => Self::Lattice {
                 period: number(period),
                 radius: number(radius),
             },
-            Scene::Moving {
+            Primitive::Moving(MovingSphere {
                 radius,
                 orbit,
                 angle,
-            } => {
+            }) => {
                 let angle = f64::from(angle.0) * (-32f64).exp2() * std::f64::consts::TAU;
                 let orbit = number(orbit);
                 Self::Spheres(vec![Sphere {
                     centre: [orbit * angle.cos(), orbit * angle.sin(), 0.0],
                     radius: number(radius),
                 }])
-            }
-            Scene::Union { flat, round, blend } => {
-                let [a, b] = [flat.into(), round.into()].map(|scene| Box::new(Self::of(&scene)));
-                match number(blend) {
-                    0.0 => Self::Union(a, b),
-                    k => Self::SmoothUnion { k, a, b },
-                }
             }
         }
     }

@@ -1,6 +1,7 @@
 //! What the ends of rays look like.
 
-use glint_model::raymarch::{FieldSetup, Palette, Ray, RayResult, State, Surface};
+use glint_core::field::Surface;
+use glint_model::raymarch::{FieldSetup, Palette, Ray, RayResult, State};
 use glint_testbench::{Module, Sink, Source, Stalls};
 
 use crate::common::Random;

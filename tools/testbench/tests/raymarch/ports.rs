@@ -1,7 +1,8 @@
 //! The raymarcher's constants and items as its ports have them.
 
+use glint_core::field::{FixedBox, FlatSolid, Solid, Surface};
 use glint_model::raymarch::{
-    Cone, FieldSetup, Lights, Palette, Ray, RayResult, Solid, State, Surface, paint, rgb565,
+    Cone, FieldSetup, Lights, Palette, Ray, RayResult, State, paint, rgb565,
 };
 use glint_testbench::{Bits, Layout, Module, Record};
 
@@ -198,38 +199,31 @@ fn solid(mut solid: Record, setup: &FieldSetup) -> Record {
     solid.set("flat_too", setup.beside.is_some());
     solid.set("blend_inverse", blend.inverse);
     solid.set("blend_width", blend.width);
-    if let Some(balls) = setup.balls() {
-        solid.set("last_ball", balls.count as u64 - 1);
-        solid.set("balls_repeated", balls.repeated);
+    if let Some(spheres) = setup.spheres() {
+        solid.set("last_ball", spheres.count as u64 - 1);
+        solid.set("balls_repeated", spheres.repeated);
         solid.set("is_round", 1);
     }
-    match setup.solid {
-        Solid::Menger { depth, half, .. } => {
-            solid.set("levels", (1_i64 << depth) - 1);
-            solid.set("cube_half", half);
-        }
-        Solid::Box {
-            half,
-            room,
-            repeated,
-        } => {
-            solid.set_all("box_half", half.map(Option::unwrap_or_default));
-            let has = (0..3).map(|i| u8::from(half[i].is_some()) << i);
-            solid.set("box_has", has.sum::<u8>());
-            solid.set("repeated", repeated);
-            solid.set("room", room);
-            solid.set("is_box", 1);
-        }
-        Solid::Balls(_) => {}
+    if let Solid::Flat(flat) = &setup.solid {
+        let constants = flat.constants();
+        solid.set("is_box", constants.kind == FixedBox::CODE);
+        solid.set("levels", constants.levels);
+        solid.set("cube_half", constants.cube_half);
+        solid.set_all("box_half", constants.half);
+        solid.set("box_has", constants.has);
+        solid.set("repeated", constants.repeated);
+        solid.set("room", constants.room);
     }
     solid
 }
 
 /// Writes the spheres, with their materials.
 fn set_balls(module: &mut Module, setup: &FieldSetup, lights: &Lights) {
-    let Some(balls) = setup.balls() else { return };
+    let Some(spheres) = setup.spheres() else {
+        return;
+    };
     module.drive("ball_write", 1);
-    for (i, one) in balls.list.iter().take(balls.count).enumerate() {
+    for (i, one) in spheres.list.iter().take(spheres.count).enumerate() {
         let mut ball = module.record("ball");
         ball.set_all("centre", one.centre);
         ball.set("radius", one.radius);

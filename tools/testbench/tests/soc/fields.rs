@@ -9,7 +9,7 @@ use glint::{convert, generate};
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;
 use glint_core::colour::Shading;
-use glint_core::field::Field;
+use glint_core::field::{Field, Menger};
 use glint_core::fixed::{Q32_32, U4_28};
 use glint_core::light::{Background, Light, Material};
 use glint_core::mesh::Mesh;
@@ -198,7 +198,7 @@ fn the_soc_draws_large_fields_and_goes_back_to_meshes() {
     )
     .unwrap();
     let sponge = FieldSubject {
-        field: &Field::Menger { depth: 4 },
+        field: &Field::from(Menger { depth: 4 }),
         appearance: &Appearance::default(),
         stereo: None,
         prepass: true,

@@ -116,7 +116,7 @@ impl<'a> Views<'a> {
         let clocks: Option<u64> = pictures
             .map(|subject| {
                 let setup = subject.setup(options);
-                let built = setup.cones.is_none_or(|cones| cones.is_fitting(&setup));
+                let built = setup.has_fitting_cones();
                 built.then(|| raymarcher.draw(&setup).clocks)
             })
             .sum();

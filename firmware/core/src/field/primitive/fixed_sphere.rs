@@ -1,24 +1,22 @@
 //! Distances to spheres: a square root by a table, rounded down so that a step never passes a surface.
 
-use glint_core::field::MAX_SPHERES;
-
-use super::field::{Sample, Surface};
-use super::ray::magnitude;
+use crate::field::limits::MAX_SPHERES;
+use crate::field::surface::{Sample, Surface, magnitude};
 
 /// A sphere in field units, 12 fraction bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Ball {
+pub struct FixedSphere {
     /// Its centre, s9.12.
     pub centre: [i32; 3],
     /// Its radius, u9.12, above 2^6.
     pub radius: i32,
-    /// What it takes to divide by it: 2^37 over the radius shifted to 21 bits, 17 bits, to nearest but for what is more ...
+    /// Reciprocal of the radius: 2^37 over the radius shifted to 21 bits, 17 bits, nearest, saturated.
     pub inverse: u32,
-    /// ... and how far a product with it, 16 fraction bits, is shifted to have 17 bits: 6 to 20.
+    /// Right shift, 6 to 20, that leaves 17 bits of a product with the radius and a number of 16 fraction bits.
     pub shift: u32,
 }
 
-impl Ball {
+impl FixedSphere {
     /// A sphere of a radius from 2^6 to 2^21 − 1.
     pub fn new(centre: [i32; 3], radius: i32) -> Self {
         let lead = radius.max(1).ilog2().clamp(6, 20);
@@ -33,30 +31,30 @@ impl Ball {
     }
 }
 
-/// Some spheres: one evaluation looks at each of them in turn.
+/// Several spheres: one evaluation takes a pass for each of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Balls {
-    /// The first `count` of them are there.
-    pub list: [Ball; MAX_SPHERES],
+pub struct FixedSpheres {
+    /// The first `count` entries are valid.
+    pub list: [FixedSphere; MAX_SPHERES],
     /// 1 to 8.
     pub count: usize,
     /// Whether they repeat themselves every 64 units along each axis. Then there is one, about the origin.
     pub repeated: bool,
 }
 
-/// More than any distance is: s10.12.
+/// Largest distance, s10.12.
 const MOST: i32 = (1 << 21) - 1;
 
-impl Balls {
+impl FixedSpheres {
     /// The nearest sphere; of equals, the first.
     pub fn sample(&self, point: [i32; 3]) -> Sample {
         let mut nearest = Sample {
             distance: MOST,
             surface: Surface::Round { number: 0 },
         };
-        for (number, ball) in (0..).zip(self.list.iter().take(self.count)) {
+        for (number, sphere) in (0..).zip(self.list.iter().take(self.count)) {
             // Below 2^23 before.
-            let distance = length(self.from(ball, point)) - ball.radius;
+            let distance = length(self.from(sphere, point)) - sphere.radius;
             if distance < nearest.distance {
                 nearest = Sample {
                     distance,
@@ -68,10 +66,10 @@ impl Balls {
     }
 
     /// A point as seen from a sphere's centre, s11.12.
-    pub(super) fn from(&self, ball: &Ball, point: [i32; 3]) -> [i32; 3] {
+    pub fn from(&self, sphere: &FixedSphere, point: [i32; 3]) -> [i32; 3] {
         // 64 units are 2^18: the middle of the cell in which the point lies is where the lowest 18 bits are 0.
         let beyond = if self.repeated { 14 } else { 9 };
-        [0, 1, 2].map(|i: usize| (point[i] - ball.centre[i]) << beyond >> beyond)
+        [0, 1, 2].map(|i: usize| (point[i] - sphere.centre[i]) << beyond >> beyond)
     }
 }
 
@@ -83,7 +81,7 @@ const fn roots() -> [(u32, u32); 512] {
     let mut table = [(0, 0); 512];
     let mut i = 0;
     while i < table.len() {
-        // What is below 1 is nothing at all.
+        // Squares begin at 1: entries below are unused.
         let from = if i < 128 { 128 } else { i as u64 };
         let root = (from << 29).isqrt() as u32;
         table[i] = (root, ((from + 1) << 29).isqrt() as u32 - root);

@@ -1,11 +1,7 @@
 //! Light on what is round, whose normals are different at every point: ambient light and that of some directions.
 
-use glint_core::field::MAX_SPHERES;
+use glint_core::field::{FixedSphere, MAX_SPHERES};
 use glint_core::light::{Lighting, MAX_LIGHTS, Material, Rgb};
-
-use super::ray::{Ray, RayResult, State};
-use super::setup::FieldSetup;
-use super::sphere::Ball;
 
 /// Light from one direction, and what there is of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -63,10 +59,10 @@ pub(super) const fn whole(part: u8) -> i32 {
 impl Lights {
     /// A sphere's material in the light at a point, by the point as seen from its centre: (ambient + Σ max(0, n·l)·colour) times the
     /// material, where n is the point over the radius.
-    pub(super) fn shine_on(&self, number: u8, ball: &Ball, from_centre: [i32; 3]) -> Rgb {
+    pub(super) fn shine_on(&self, number: u8, sphere: &FixedSphere, from_centre: [i32; 3]) -> Rgb {
         let mut sum = self.ambient.map(|part| i32::from(part) << 8);
         for light in self.list.iter().take(self.count) {
-            let share = ball.cosine(from_centre, light.direction);
+            let share = cosine(sphere, from_centre, light.direction);
             for (sum, part) in sum.iter_mut().zip(light.colour) {
                 *sum += share * i32::from(part);
             }
@@ -79,26 +75,12 @@ impl Lights {
     }
 }
 
-impl Ball {
-    /// The cosine between the normal and a direction in 256ths, rounded down, 0 if it is negative: 256 is the most.
-    fn cosine(&self, from_centre: [i32; 3], direction: [i32; 3]) -> i32 {
-        let product: i64 = core::iter::zip(from_centre, direction)
-            .map(|(a, b)| i64::from(a) * i64::from(b))
-            .sum();
-        // The radius, shifted alike, has 21 bits; so this has 17 where it is not beyond the sphere.
-        let size = (product.max(0) >> self.shift).min((1 << 17) - 1);
-        ((size * i64::from(self.inverse)) >> 25).min(256) as i32
-    }
-}
-
-impl FieldSetup {
-    /// The normal where a ray has come to a sphere, of about the radius' length: field units, 12 fraction bits.
-    pub fn normal(&self, ray: &Ray, outcome: &RayResult) -> Option<[i32; 3]> {
-        let State::Hit(surface) = outcome.state else {
-            return None;
-        };
-        let (balls, number) = (self.balls()?, surface.number()?);
-        let ball = balls.list.get(usize::from(number))?;
-        Some(balls.from(ball, self.point(ray, outcome.t)))
-    }
+/// The cosine between the normal and a direction in 256ths, rounded down, 0 if it is negative: 256 is the most.
+fn cosine(sphere: &FixedSphere, from_centre: [i32; 3], direction: [i32; 3]) -> i32 {
+    let product: i64 = core::iter::zip(from_centre, direction)
+        .map(|(a, b)| i64::from(a) * i64::from(b))
+        .sum();
+    // The radius, shifted alike, has 21 bits; so this has 17 where it is not beyond the sphere.
+    let size = (product.max(0) >> sphere.shift).min((1 << 17) - 1);
+    ((size * i64::from(sphere.inverse)) >> 25).min(256) as i32
 }

@@ -1,0 +1,188 @@
+//! The numbers of a field: read from text, or drawn at random from the same ranges.
+
+use super::error::FieldError;
+use super::limits::MAX_SPHERES;
+use crate::fixed::{Q32_32, Turns};
+
+/// A source of a field's numbers. Each kind asks it for its numbers by name and range, so its parser, its errors and its random
+/// tests state the ranges once.
+pub trait Arguments<'a> {
+    /// The next number, within the range and both of its ends.
+    ///
+    /// # Errors
+    /// The number is missing, not a number, or out of range.
+    fn number(&mut self, name: &'static str, range: [Q32_32; 2]) -> Result<Q32_32, FieldError<'a>>;
+
+    /// The next number, which is an integer.
+    ///
+    /// # Errors
+    /// As [`number`](Self::number).
+    fn integer(&mut self, name: &'static str, range: [u8; 2]) -> Result<u8, FieldError<'a>>;
+
+    /// An angle in degrees, 0 where the numbers end.
+    ///
+    /// # Errors
+    /// The word is not a number.
+    fn angle(&mut self, name: &'static str) -> Result<Turns, FieldError<'a>>;
+
+    /// Goes to the next group of numbers, of those with a semicolon between them. `false` after the last one.
+    ///
+    /// # Errors
+    /// The group before it has a number too many.
+    fn group(&mut self) -> Result<bool, FieldError<'a>>;
+}
+
+/// Checks that a number is within its range.
+pub(in crate::field) fn check(
+    name: &'static str,
+    value: Q32_32,
+    [least, most]: [Q32_32; 2],
+) -> Result<Q32_32, FieldError<'static>> {
+    if (least..=most).contains(&value) {
+        Ok(value)
+    } else {
+        Err(FieldError::Range { name, least, most })
+    }
+}
+
+/// The numbers after a kind's name, with commas between them.
+pub(in crate::field) struct Words<'a> {
+    kind: &'a str,
+    words: core::str::Split<'a, char>,
+    /// Groups that have not been opened.
+    rest: Option<&'a str>,
+    in_group: bool,
+}
+
+impl<'a> Words<'a> {
+    pub fn new(kind: &'a str, numbers: &'a str) -> Self {
+        Self {
+            kind,
+            words: numbers.split(','),
+            rest: Some(numbers),
+            in_group: false,
+        }
+    }
+
+    fn word(&mut self) -> Option<&'a str> {
+        self.words.find(|word| !word.is_empty())
+    }
+
+    fn next_if_any(&mut self, name: &'static str) -> Result<Option<Q32_32>, FieldError<'a>> {
+        let read = |word| Q32_32::from_str(word).map_err(|_| FieldError::Number { name, word });
+        self.word().map(read).transpose()
+    }
+
+    fn next(&mut self, name: &'static str) -> Result<Q32_32, FieldError<'a>> {
+        let kind = self.kind;
+        self.next_if_any(name)?
+            .ok_or(FieldError::Missing { kind, name })
+    }
+
+    /// Checks that no number is left.
+    pub fn end(&mut self) -> Result<(), FieldError<'a>> {
+        let kind = self.kind;
+        self.word()
+            .map_or(Ok(()), |word| Err(FieldError::Extra { kind, word }))
+    }
+}
+
+impl<'a> Arguments<'a> for Words<'a> {
+    fn number(&mut self, name: &'static str, range: [Q32_32; 2]) -> Result<Q32_32, FieldError<'a>> {
+        check(name, self.next(name)?, range)
+    }
+
+    fn integer(
+        &mut self,
+        name: &'static str,
+        [least, most]: [u8; 2],
+    ) -> Result<u8, FieldError<'a>> {
+        let number = self.next(name)?;
+        number
+            .checked_to_num::<u8>()
+            .filter(|&whole| number == whole && (least..=most).contains(&whole))
+            .ok_or(FieldError::Range {
+                name,
+                least: least.into(),
+                most: most.into(),
+            })
+    }
+
+    fn angle(&mut self, name: &'static str) -> Result<Turns, FieldError<'a>> {
+        let degrees = self.next_if_any(name)?;
+        Ok(degrees.map_or(Turns::default(), Turns::from_degrees))
+    }
+
+    fn group(&mut self) -> Result<bool, FieldError<'a>> {
+        if self.in_group {
+            self.end()?;
+        }
+        self.in_group = true;
+        while let Some(rest) = self.rest {
+            let (group, rest) = rest
+                .split_once(';')
+                .map_or((rest, None), |(group, rest)| (group, Some(rest)));
+            (self.rest, self.words) = (rest, group.split(','));
+            if !group.is_empty() {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+}
+
+/// Random numbers: each is an end of its range or anything between. For tests and test vectors.
+#[derive(Debug)]
+pub struct Random<F> {
+    bits: F,
+    groups: u32,
+}
+
+impl<F: FnMut() -> u32> Random<F> {
+    /// Draws by a source of 32 random bits.
+    pub fn new(mut bits: F) -> Self {
+        let groups = 1 + bits() % MAX_SPHERES as u32;
+        Self { bits, groups }
+    }
+
+    /// One of several things.
+    pub(in crate::field) fn choose(&mut self, count: usize) -> usize {
+        (self.bits)() as usize % count.max(1)
+    }
+}
+
+impl<F: FnMut() -> u32> Arguments<'static> for Random<F> {
+    fn number(
+        &mut self,
+        _: &'static str,
+        [least, most]: [Q32_32; 2],
+    ) -> Result<Q32_32, FieldError<'static>> {
+        let span = i128::from(most.to_bits()) - i128::from(least.to_bits());
+        Ok(match (self.bits)() % 8 {
+            0 => least,
+            1 => most,
+            _ => {
+                let part = (span * i128::from((self.bits)())) >> 32;
+                Q32_32::from_bits(least.to_bits() + part as i64)
+            }
+        })
+    }
+
+    fn integer(
+        &mut self,
+        _: &'static str,
+        [least, most]: [u8; 2],
+    ) -> Result<u8, FieldError<'static>> {
+        Ok(least + self.choose(usize::from(most - least) + 1) as u8)
+    }
+
+    fn angle(&mut self, _: &'static str) -> Result<Turns, FieldError<'static>> {
+        Ok(Turns((self.bits)()))
+    }
+
+    fn group(&mut self) -> Result<bool, FieldError<'static>> {
+        let more = self.groups > 0;
+        self.groups = self.groups.saturating_sub(1);
+        Ok(more)
+    }
+}

@@ -1,0 +1,79 @@
+//! What a field that is typed can be wrong in.
+
+use core::fmt;
+
+use super::limits::MAX_SPHERES;
+use crate::fixed::Q32_32;
+
+/// Why a text names no field.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FieldError<'a> {
+    /// No kind has this name.
+    Kind {
+        /// The word before the colon.
+        kind: &'a str,
+        /// All kinds, with their descriptions.
+        kinds: &'static [(&'static str, &'static str)],
+    },
+    /// A number is missing.
+    Missing {
+        /// The kind.
+        kind: &'a str,
+        /// Name of the number.
+        name: &'static str,
+    },
+    /// There is a number too many.
+    Extra {
+        /// The kind.
+        kind: &'a str,
+        /// The first word that is not expected.
+        word: &'a str,
+    },
+    /// A word is not a number.
+    Number {
+        /// Name of the number.
+        name: &'static str,
+        /// The word.
+        word: &'a str,
+    },
+    /// The kinds on either side of a union cannot be its members.
+    Union,
+    /// No sphere, or more than [`MAX_SPHERES`].
+    Spheres,
+    /// A number is out of its range.
+    Range {
+        /// Name of the number.
+        name: &'static str,
+        /// Smallest accepted value.
+        least: Q32_32,
+        /// Largest accepted value.
+        most: Q32_32,
+    },
+}
+
+impl fmt::Display for FieldError<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Kind { kind, kinds } => {
+                write!(f, "no field is named {kind}: expected")?;
+                kinds.iter().enumerate().try_for_each(|(i, (form, _))| {
+                    write!(f, "{} {form}", if i == 0 { "" } else { "," })
+                })
+            }
+            Self::Missing { kind, name } => write!(f, "{kind} needs one more number: {name}"),
+            Self::Extra { kind, word } => {
+                write!(f, "{kind} has one number too many: {word}")
+            }
+            Self::Number { name, word } => write!(f, "{name} {word}: expected a number"),
+            Self::Union => {
+                f.write_str("union: expected menger or box, +, and sphere, spheres or moving")
+            }
+            Self::Spheres => write!(f, "spheres: expected 1 to {MAX_SPHERES}"),
+            Self::Range { name, least, most } => {
+                write!(f, "{name}: expected {least} to {most}")
+            }
+        }
+    }
+}
+
+impl core::error::Error for FieldError<'_> {}

@@ -1,0 +1,68 @@
+//! Coordinates under mirrors and exchanges, which keep the maximum norm and the direction of the nearest face.
+
+use super::surface::Surface;
+
+/// A coordinate on its way through the folds: its value, and the direction in the world in which it grows.
+///
+/// A coordinate k stands for k + 1/2, the middle of the interval that was cut to k: so −x is exactly `!k`, and a mirror takes no carry.
+#[derive(Clone, Copy)]
+pub(in crate::field) struct Folded {
+    pub value: i32,
+    axis: u8,
+    positive: bool,
+}
+
+impl Folded {
+    /// The coordinates of a point in the world.
+    pub fn of(point: [i32; 3]) -> [Self; 3] {
+        [0, 1, 2].map(|axis: u8| Self {
+            value: point[usize::from(axis)],
+            axis,
+            positive: true,
+        })
+    }
+
+    /// −x, or x.
+    pub fn negated_if(self, negate: bool) -> Self {
+        if negate {
+            Self {
+                value: !self.value,
+                positive: !self.positive,
+                ..self
+            }
+        } else {
+            self
+        }
+    }
+
+    /// Another value on the same way.
+    pub fn with(self, value: i32) -> Self {
+        Self { value, ..self }
+    }
+
+    pub fn plus(self, offset: i32) -> Self {
+        Self {
+            value: self.value + offset,
+            ..self
+        }
+    }
+
+    /// The face across its axis.
+    pub const fn face(self) -> Surface {
+        Surface::Face {
+            axis: self.axis,
+            positive: self.positive,
+        }
+    }
+}
+
+/// Which of three numbers is the largest; of equals the second, then the first.
+pub(in crate::field) fn largest([x, y, z]: [i32; 3]) -> usize {
+    if z > x && z > y {
+        2
+    } else if x > y {
+        0
+    } else {
+        1
+    }
+}

@@ -1,0 +1,215 @@
+//! The two lists that every kind of field is in: [`Primitive`] as it is typed, and, of those with faces, [`Flat`] as the engine
+//! evaluates it.
+
+use core::fmt;
+
+mod cuboid;
+mod fixed_sphere;
+mod menger;
+mod sphere;
+
+use super::argument::{Arguments, Random, Words};
+use super::error::FieldError;
+use super::shape::{FlatConstants, FlatSolid, Placed, Shape};
+use super::surface::Sample;
+
+pub use cuboid::{Cubes, Cuboid, FixedBox, Planes};
+pub use fixed_sphere::{FixedSphere, FixedSpheres};
+pub use menger::{FixedSponge, MAX_DEPTH, Menger};
+pub use sphere::{CentredSphere, Lattice, MovingSphere, Sphere, Spheres};
+
+/// The kinds of fields, in the order of the help.
+macro_rules! primitives {
+    ($($kind:ident($shape:ty)),* $(,)?) => {
+        /// A field that is not a union.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[expect(
+            clippy::large_enum_variant,
+            reason = "there is nowhere to box the spheres"
+        )]
+        pub enum Primitive {
+            $(#[doc = concat!("[`", stringify!($shape), "`].")] $kind($shape),)*
+        }
+
+        impl Primitive {
+            /// The names of all kinds.
+            pub const NAMES: [&str; [$(stringify!($kind)),*].len()] = [$(<$shape>::NAME),*];
+
+            /// A field of each kind, as it is typed, in the order of [`NAMES`](Self::NAMES).
+            pub const EXAMPLES: [&str; Self::NAMES.len()] = [$(<$shape>::EXAMPLE),*];
+
+            pub(super) const FORMS: [(&str, &str); Self::NAMES.len()] = [$((<$shape>::FORM, <$shape>::ABOUT)),*];
+
+            /// Reads the numbers of a kind; `None` where no kind has this name.
+            fn read<'a>(kind: &str, numbers: &mut impl Arguments<'a>) -> Option<Result<Self, FieldError<'a>>> {
+                match kind {
+                    $(<$shape>::NAME => Some(<$shape>::read(numbers).map(Self::$kind)),)*
+                    _ => None,
+                }
+            }
+
+            /// Whether it has spheres.
+            pub const fn is_round(&self) -> bool {
+                match self {
+                    $(Self::$kind(_) => <$shape>::ROUND,)*
+                }
+            }
+
+            /// Whether a union can have it.
+            pub const fn joins(&self) -> bool {
+                match self {
+                    $(Self::$kind(_) => <$shape>::JOINS,)*
+                }
+            }
+
+            /// Its solid in field units.
+            pub fn placed(&self) -> Placed<Solid> {
+                match self {
+                    $(Self::$kind(shape) => shape.placed().map(Into::into),)*
+                }
+            }
+        }
+
+        impl fmt::Display for Primitive {
+            fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                match self {
+                    $(Self::$kind(shape) => {
+                        write!(f, "{}:", <$shape>::NAME)?;
+                        shape.write(f)
+                    })*
+                }
+            }
+        }
+
+        $(impl From<$shape> for Primitive {
+            fn from(shape: $shape) -> Self {
+                Self::$kind(shape)
+            }
+        })*
+    };
+}
+
+primitives! {
+    Menger(Menger),
+    Box(Cuboid),
+    Cubes(Cubes),
+    Planes(Planes),
+    Sphere(CentredSphere),
+    Spheres(Spheres),
+    Lattice(Lattice),
+    Moving(MovingSphere),
+}
+
+/// The flat solids of the engine.
+macro_rules! flat_solids {
+    ($($solid:ident),* $(,)?) => {
+        /// A flat solid in field units.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum Flat {
+            $(#[doc = concat!("[`", stringify!($solid), "`].")] $solid($solid),)*
+        }
+
+        impl Flat {
+            /// The distance of a point, each coordinate s10.12.
+            #[inline]
+            pub fn sample(&self, point: [i32; 3]) -> Sample {
+                match self {
+                    $(Self::$solid(solid) => solid.sample(point),)*
+                }
+            }
+
+            /// The constants that the gateware needs.
+            pub fn constants(&self) -> FlatConstants {
+                match self {
+                    $(Self::$solid(solid) => solid.constants(),)*
+                }
+            }
+
+            /// The fields that need it, for errors.
+            pub const fn needed_for(&self) -> &'static str {
+                match self {
+                    $(Self::$solid(_) => $solid::NEEDED_FOR,)*
+                }
+            }
+        }
+
+        $(impl From<$solid> for Flat {
+            fn from(solid: $solid) -> Self {
+                Self::$solid(solid)
+            }
+        }
+
+        impl From<$solid> for Solid {
+            fn from(solid: $solid) -> Self {
+                Self::Flat(Flat::$solid(solid))
+            }
+        })*
+    };
+}
+
+flat_solids! {
+    FixedSponge,
+    FixedBox,
+}
+
+/// A solid in field units.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Solid {
+    /// A solid with faces.
+    Flat(Flat),
+    /// Spheres.
+    Spheres(FixedSpheres),
+}
+
+impl Solid {
+    /// The distance of a point, each coordinate s10.12.
+    #[inline]
+    pub fn sample(&self, point: [i32; 3]) -> Sample {
+        match self {
+            Self::Flat(flat) => flat.sample(point),
+            Self::Spheres(spheres) => spheres.sample(point),
+        }
+    }
+
+    /// Its spheres.
+    pub const fn spheres(&self) -> Option<&FixedSpheres> {
+        match self {
+            Self::Flat(_) => None,
+            Self::Spheres(spheres) => Some(spheres),
+        }
+    }
+
+    /// Whether it repeats itself every 64 units along each axis.
+    pub fn is_repeated(&self) -> bool {
+        match self {
+            Self::Flat(flat) => flat.constants().repeated,
+            Self::Spheres(spheres) => spheres.repeated,
+        }
+    }
+}
+
+impl From<FixedSpheres> for Solid {
+    fn from(spheres: FixedSpheres) -> Self {
+        Self::Spheres(spheres)
+    }
+}
+
+impl Primitive {
+    /// Reads a field as it is typed; `None` where no kind has this name.
+    pub(super) fn parse(text: &str) -> Option<Result<Self, FieldError<'_>>> {
+        let (kind, numbers) = text.split_once(':').unwrap_or((text, ""));
+        let mut words = Words::new(kind, numbers);
+        let primitive = Self::read(kind, &mut words)?;
+        Some(primitive.and_then(|primitive| words.end().map(|()| primitive)))
+    }
+
+    /// Draws a field of any kind at random, its numbers from their ranges.
+    pub(super) fn draw<F: FnMut() -> u32>(numbers: &mut Random<F>) -> Self {
+        loop {
+            let kind = Self::NAMES[numbers.choose(Self::NAMES.len())];
+            if let Some(Ok(primitive)) = Self::read(kind, numbers) {
+                return primitive;
+            }
+        }
+    }
+}

@@ -1,0 +1,175 @@
+//! `box:X,Y,Z`, `cubes:PERIOD,HALF` and `planes:HALF`: boxes, alone or repeated, from outside or from within.
+
+use core::fmt;
+
+use crate::field::argument::Arguments;
+use crate::field::error::FieldError;
+use crate::field::folded::{Folded, largest};
+use crate::field::limits::{MAX_EXTENT, PERIOD, SMALLEST};
+use crate::field::shape::{FlatConstants, FlatSolid, Placed, SCALE, Shape, scale_of};
+use crate::field::surface::{FRACTION, Sample, cropped, units};
+use crate::fixed::Q32_32;
+
+/// A box about the origin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cuboid {
+    /// Half of each side.
+    pub half: [Q32_32; 3],
+}
+
+/// Cubes at all multiples of the period, in all of space.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cubes {
+    /// From centre to centre.
+    pub period: Q32_32,
+    /// Half of a cube's side, below half the period.
+    pub half: Q32_32,
+}
+
+/// A floor and a ceiling, which recede to the horizon.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Planes {
+    /// The height of the ceiling above the origin, and the depth of the floor below it.
+    pub half: Q32_32,
+}
+
+impl Shape for Cuboid {
+    type Solid = FixedBox;
+
+    const NAME: &'static str = "box";
+    const FORM: &'static str = "box:X,Y,Z";
+    const ABOUT: &'static str = "a box about the origin, by half its sides";
+    const EXAMPLE: &'static str = "box:1,0.5,0.25";
+    const JOINS: bool = true;
+
+    fn read<'a>(numbers: &mut impl Arguments<'a>) -> Result<Self, FieldError<'a>> {
+        let mut side = |name| numbers.number(name, [SMALLEST, MAX_EXTENT]);
+        let half = [side("x")?, side("y")?, side("z")?];
+        Ok(Self { half })
+    }
+
+    fn write(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let [x, y, z] = self.half;
+        write!(f, "{x},{y},{z}")
+    }
+
+    fn placed(&self) -> Placed<FixedBox> {
+        let solid = FixedBox {
+            half: self.half.map(|x| Some(units(x, SCALE) as i32)),
+            room: false,
+            repeated: false,
+        };
+        Placed::bounded(solid, self.half)
+    }
+}
+
+impl Shape for Cubes {
+    type Solid = FixedBox;
+
+    const NAME: &'static str = "cubes";
+    const FORM: &'static str = "cubes:PERIOD,HALF";
+    const ABOUT: &'static str = "cubes everywhere, by half their side";
+    const EXAMPLE: &'static str = "cubes:2,0.8";
+
+    fn read<'a>(numbers: &mut impl Arguments<'a>) -> Result<Self, FieldError<'a>> {
+        let period = numbers.number("period", PERIOD)?;
+        let half = numbers.number("half", [SMALLEST, period / 2 - Q32_32::DELTA])?;
+        Ok(Self { period, half })
+    }
+
+    fn write(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{},{}", self.period, self.half)
+    }
+
+    fn placed(&self) -> Placed<FixedBox> {
+        let scale = scale_of(self.period);
+        let solid = FixedBox {
+            half: [Some(units(self.half, scale) as i32); 3],
+            room: false,
+            repeated: true,
+        };
+        Placed {
+            scale,
+            ..Placed::endless(solid)
+        }
+    }
+}
+
+impl Shape for Planes {
+    type Solid = FixedBox;
+
+    const NAME: &'static str = "planes";
+    const FORM: &'static str = "planes:HALF";
+    const ABOUT: &'static str = "a floor and a ceiling at +-HALF";
+    const EXAMPLE: &'static str = "planes:0.9";
+
+    fn read<'a>(numbers: &mut impl Arguments<'a>) -> Result<Self, FieldError<'a>> {
+        let half = numbers.number("half", [SMALLEST, MAX_EXTENT])?;
+        Ok(Self { half })
+    }
+
+    fn write(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{}", self.half)
+    }
+
+    fn placed(&self) -> Placed<FixedBox> {
+        let half = units(self.half, SCALE) as i32;
+        Placed::endless(FixedBox {
+            half: [None, None, Some(half)],
+            room: true,
+            repeated: false,
+        })
+    }
+}
+
+/// Boxes, or the room inside one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FixedBox {
+    /// Half of each side; `None` where the box has no end.
+    half: [Option<i32>; 3],
+    /// Whether the solid is outside the box.
+    room: bool,
+    /// Whether it repeats itself every 64 units along each axis.
+    repeated: bool,
+}
+
+impl FlatSolid for FixedBox {
+    const CODE: u8 = 1;
+    const NEEDED_FOR: &'static str = "boxes, cubes and planes";
+
+    /// The largest of |x| − half.
+    #[inline]
+    fn sample(&self, point: [i32; 3]) -> Sample {
+        // 64 units are 2^18: the middle of the cell in which the point lies is where the lowest 18 bits are 0.
+        let wrap = |x: i32| {
+            if self.repeated {
+                cropped(x, 6 + FRACTION)
+            } else {
+                x
+            }
+        };
+        let p = Folded::of(point.map(wrap)).map(|x| x.negated_if(x.value < 0));
+        // Beyond all points: below −2^21 and no larger in magnitude than 23 bits hold.
+        let nowhere = -1 << (10 + FRACTION);
+        let outside =
+            [0, 1, 2].map(|i: usize| self.half[i].map_or(nowhere, |half| p[i].value - half));
+        let big = largest(outside);
+        let nearest = p[big].with(outside[big]).negated_if(self.room);
+        Sample {
+            distance: nearest.value,
+            surface: nearest.face(),
+        }
+    }
+
+    fn constants(&self) -> FlatConstants {
+        let [x, y, z] = self.half.map(|half| u8::from(half.is_some()));
+        FlatConstants {
+            kind: Self::CODE,
+            has: x | y << 1 | z << 2,
+            room: self.room,
+            repeated: self.repeated,
+            half: self.half.map(|half| half.unwrap_or(0) as u32),
+            ..FlatConstants::default()
+        }
+    }
+}

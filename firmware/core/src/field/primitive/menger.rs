@@ -1,0 +1,101 @@
+//! `menger:DEPTH`: the Menger sponge.
+
+use core::fmt;
+
+use crate::field::argument::Arguments;
+use crate::field::error::FieldError;
+use crate::field::folded::{Folded, largest};
+use crate::field::shape::{FlatConstants, FlatSolid, Placed, Shape};
+use crate::field::surface::{FRACTION, Sample};
+use crate::fixed::Q32_32;
+
+/// The deepest sponge.
+pub const MAX_DEPTH: u8 = 6;
+
+/// The Menger sponge that fills [−1, 1]³.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Menger {
+    /// Number of levels of holes, 1 to [`MAX_DEPTH`].
+    pub depth: u8,
+}
+
+impl Shape for Menger {
+    type Solid = FixedSponge;
+
+    const NAME: &'static str = "menger";
+    const FORM: &'static str = "menger:DEPTH";
+    const ABOUT: &'static str = "the Menger sponge in [-1, 1]^3, depth 1 to 6";
+    const EXAMPLE: &'static str = "menger:4";
+    const JOINS: bool = true;
+
+    fn read<'a>(numbers: &mut impl Arguments<'a>) -> Result<Self, FieldError<'a>> {
+        let depth = numbers.integer("depth", [1, MAX_DEPTH])?;
+        Ok(Self { depth })
+    }
+
+    fn write(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{}", self.depth)
+    }
+
+    fn placed(&self) -> Placed<FixedSponge> {
+        // 81/3^i, each an even number of 2^−12.
+        let one = 1 << FRACTION;
+        let [third, ninth] = [3, 9].map(|parts| (one / 2 + parts / 2) / parts * 2);
+        let levels = [27 * one, 9 * one, 3 * one, one, third, ninth];
+        let last = levels[usize::from(self.depth.clamp(1, MAX_DEPTH)) - 1];
+        let sponge = FixedSponge {
+            levels,
+            depth: self.depth,
+            half: last / 2,
+        };
+        Placed::bounded(sponge, [Q32_32::ONE; 3])
+    }
+}
+
+/// The sponge of half side 40.5 field units.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FixedSponge {
+    /// S of every level: 27, 9, 3, 1, 1/3, 1/9, each an even number of 2^−12.
+    levels: [i32; MAX_DEPTH as usize],
+    /// Number of levels that count.
+    depth: u8,
+    /// Half the side of the cubes that are left: half of the last S.
+    half: i32,
+}
+
+impl FlatSolid for FixedSponge {
+    const CODE: u8 = 0;
+    const NEEDED_FOR: &'static str = "sponges";
+
+    /// Each level mirrors space until one of its cubes is left, and the hole through it has become its outside.
+    ///
+    /// S − |x| is above S/2 where a coordinate lies in the middle third. A point is in a hole where two coordinates do; so the
+    /// largest is mirrored at S/2, by which the hole falls outside of the cube |x| ≤ S/2 and everything else stays as
+    /// it was. Mirrors and permutations keep the maximum norm.
+    #[inline]
+    fn sample(&self, point: [i32; 3]) -> Sample {
+        let mut p = Folded::of(point);
+        for &s in self.levels.iter().take(usize::from(self.depth)) {
+            p = p.map(|x| x.negated_if(x.value >= 0).plus(s));
+            let big = largest(p.map(|x| x.value));
+            p.swap(1, big);
+            let low = p[1].value < s / 2;
+            p[1] = p[1].negated_if(low).plus(if low { 0 } else { -s });
+        }
+        let p = p.map(|x| x.negated_if(x.value < 0));
+        let big = p[largest(p.map(|x| x.value))];
+        Sample {
+            distance: big.value - self.half,
+            surface: big.face(),
+        }
+    }
+
+    fn constants(&self) -> FlatConstants {
+        FlatConstants {
+            kind: Self::CODE,
+            levels: ((1_u32 << self.depth) - 1) as u8,
+            cube_half: self.half as u32,
+            ..FlatConstants::default()
+        }
+    }
+}

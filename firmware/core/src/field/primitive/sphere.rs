@@ -1,0 +1,260 @@
+//! `sphere:R`, `spheres:X,Y,Z,R;...`, `lattice:PERIOD,R` and `moving:R,ORBIT[,DEGREES]`: spheres, alone, several, repeated or on
+//! an orbit.
+
+use core::fmt;
+
+use super::fixed_sphere::{FixedSphere, FixedSpheres};
+use crate::field::argument::{Arguments, check};
+use crate::field::error::FieldError;
+use crate::field::limits::{MAX_EXTENT, MAX_SPHERES, PERIOD, SMALLEST};
+use crate::field::shape::{Placed, SCALE, Shape, scale_of};
+use crate::field::surface::units;
+use crate::fixed::{Q2_30, Q32_32, Turns};
+use crate::trig::sin_cos_q30;
+
+/// A sphere.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Sphere {
+    /// Centre, in world units.
+    pub centre: [Q32_32; 3],
+    /// Radius, in world units.
+    pub radius: Q32_32,
+}
+
+impl Sphere {
+    /// A sphere within [`MAX_EXTENT`].
+    fn checked(self) -> Result<Self, FieldError<'static>> {
+        check("radius", self.radius, [SMALLEST, MAX_EXTENT])?;
+        let room = MAX_EXTENT - self.radius;
+        for coordinate in self.centre {
+            check("centre", coordinate, [-room, room])?;
+        }
+        Ok(self)
+    }
+}
+
+/// A sphere about the origin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CentredSphere {
+    /// Radius, in world units.
+    pub radius: Q32_32,
+}
+
+/// One sphere to [`MAX_SPHERES`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Spheres {
+    list: [Sphere; MAX_SPHERES],
+    count: usize,
+}
+
+impl Spheres {
+    /// Several spheres, [`MAX_SPHERES`] at most.
+    ///
+    /// # Errors
+    /// Their number, or the first number of a sphere that is not in its range.
+    pub fn new(spheres: &[Sphere]) -> Result<Self, FieldError<'static>> {
+        let mut list = [Sphere::default(); MAX_SPHERES];
+        let count = spheres.len();
+        if count == 0 || count > MAX_SPHERES {
+            return Err(FieldError::Spheres);
+        }
+        for (place, sphere) in list.iter_mut().zip(spheres) {
+            *place = sphere.checked()?;
+        }
+        Ok(Self { list, count })
+    }
+
+    /// Each of them.
+    pub fn iter(&self) -> impl Iterator<Item = &Sphere> {
+        self.list.iter().take(self.count)
+    }
+}
+
+/// Spheres at all multiples of the period, in all of space.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Lattice {
+    /// From centre to centre, in world units.
+    pub period: Q32_32,
+    /// Radius of each sphere, below half the period.
+    pub radius: Q32_32,
+}
+
+/// A sphere that circles about the z axis at height 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MovingSphere {
+    /// Radius, in world units.
+    pub radius: Q32_32,
+    /// From the origin to its centre, in world units.
+    pub orbit: Q32_32,
+    /// Its place on the orbit, from the x axis towards the y axis.
+    pub angle: Turns,
+}
+
+impl Shape for CentredSphere {
+    type Solid = FixedSpheres;
+
+    const NAME: &'static str = "sphere";
+    const FORM: &'static str = "sphere:R";
+    const ABOUT: &'static str = "a sphere about the origin";
+    const EXAMPLE: &'static str = "sphere:1";
+    const JOINS: bool = true;
+    const ROUND: bool = true;
+
+    fn read<'a>(numbers: &mut impl Arguments<'a>) -> Result<Self, FieldError<'a>> {
+        let radius = numbers.number("radius", [SMALLEST, MAX_EXTENT])?;
+        Ok(Self { radius })
+    }
+
+    fn write(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{}", self.radius)
+    }
+
+    fn placed(&self) -> Placed<FixedSpheres> {
+        placed(&[Sphere {
+            radius: self.radius,
+            ..Sphere::default()
+        }])
+    }
+}
+
+impl Shape for Spheres {
+    type Solid = FixedSpheres;
+
+    const NAME: &'static str = "spheres";
+    const FORM: &'static str = "spheres:X,Y,Z,R;...";
+    const ABOUT: &'static str = "up to 8 spheres";
+    const EXAMPLE: &'static str = "spheres:0,0,0,0.75;1,0.25,0.5,0.5;-0.75,-0.5,0.75,0.25";
+    const JOINS: bool = true;
+    const ROUND: bool = true;
+
+    fn read<'a>(numbers: &mut impl Arguments<'a>) -> Result<Self, FieldError<'a>> {
+        let mut list = [Sphere::default(); MAX_SPHERES];
+        let mut count = 0;
+        let room = MAX_EXTENT - SMALLEST;
+        while numbers.group()? {
+            let mut part = |name| numbers.number(name, [-room, room]);
+            let centre = [part("x")?, part("y")?, part("z")?];
+            let beside = centre
+                .iter()
+                .fold(MAX_EXTENT, |left, x| left.min(MAX_EXTENT - x.abs()));
+            let radius = numbers.number("radius", [SMALLEST, beside])?;
+            *list.get_mut(count).ok_or(FieldError::Spheres)? = Sphere { centre, radius };
+            count += 1;
+        }
+        Self::new(list.get(..count).unwrap_or_default())
+    }
+
+    fn write(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        self.iter().enumerate().try_for_each(|(i, sphere)| {
+            let [x, y, z] = sphere.centre;
+            let between = if i == 0 { "" } else { ";" };
+            write!(f, "{between}{x},{y},{z},{}", sphere.radius)
+        })
+    }
+
+    fn placed(&self) -> Placed<FixedSpheres> {
+        placed(self.iter())
+    }
+}
+
+impl Shape for Lattice {
+    type Solid = FixedSpheres;
+
+    const NAME: &'static str = "lattice";
+    const FORM: &'static str = "lattice:PERIOD,R";
+    const ABOUT: &'static str = "spheres everywhere";
+    const EXAMPLE: &'static str = "lattice:2,0.8";
+    const ROUND: bool = true;
+
+    fn read<'a>(numbers: &mut impl Arguments<'a>) -> Result<Self, FieldError<'a>> {
+        let period = numbers.number("period", PERIOD)?;
+        let radius = numbers.number("radius", [SMALLEST, period / 2 - Q32_32::DELTA])?;
+        Ok(Self { period, radius })
+    }
+
+    fn write(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{},{}", self.period, self.radius)
+    }
+
+    fn placed(&self) -> Placed<FixedSpheres> {
+        let scale = scale_of(self.period);
+        let mut list = [FixedSphere::default(); MAX_SPHERES];
+        list[0] = FixedSphere::new([0; 3], units(self.radius, scale) as i32);
+        Placed {
+            solid: (FixedSpheres {
+                list,
+                count: 1,
+                repeated: true,
+            }),
+            scale,
+            extent: None,
+        }
+    }
+}
+
+impl Shape for MovingSphere {
+    type Solid = FixedSpheres;
+
+    const NAME: &'static str = "moving";
+    const FORM: &'static str = "moving:R,ORBIT[,DEGREES]";
+    const ABOUT: &'static str = "a sphere that circles about the z axis";
+    const EXAMPLE: &'static str = "moving:0.5,0.75,-60";
+    const JOINS: bool = true;
+    const ROUND: bool = true;
+
+    fn read<'a>(numbers: &mut impl Arguments<'a>) -> Result<Self, FieldError<'a>> {
+        let radius = numbers.number("radius", [SMALLEST, MAX_EXTENT])?;
+        Ok(Self {
+            radius,
+            orbit: numbers.number("orbit", [Q32_32::ZERO, MAX_EXTENT - radius])?,
+            angle: numbers.angle("angle")?,
+        })
+    }
+
+    fn write(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{},{}", self.radius, self.orbit)?;
+        match self.angle {
+            Turns(0) => Ok(()),
+            angle => write!(f, ",{}", angle.to_degrees()),
+        }
+    }
+
+    fn placed(&self) -> Placed<FixedSpheres> {
+        let (sine, cosine) = sin_cos_q30(self.angle);
+        // At most 12, with 20 and 30 fraction bits.
+        let along = |part: Q2_30| {
+            Q32_32::from_bits(((self.orbit.to_bits() >> 12) * i64::from(part.to_bits())) >> 18)
+        };
+        // The same box in every frame of a turn.
+        let reach = self.orbit + self.radius;
+        Placed {
+            extent: Some([reach, reach, self.radius]),
+            ..placed(&[Sphere {
+                centre: [along(cosine), along(sine), Q32_32::ZERO],
+                radius: self.radius,
+            }])
+        }
+    }
+}
+
+/// Spheres in field units.
+fn placed<'a>(spheres: impl IntoIterator<Item = &'a Sphere>) -> Placed<FixedSpheres> {
+    let mut list = [FixedSphere::default(); MAX_SPHERES];
+    let mut extent = [Q32_32::ZERO; 3];
+    let mut count = 0;
+    for (fixed, sphere) in list.iter_mut().zip(spheres) {
+        let length = |x: Q32_32| units(x, SCALE) as i32;
+        *fixed = FixedSphere::new(sphere.centre.map(length), length(sphere.radius));
+        extent = [0, 1, 2].map(|i: usize| extent[i].max(sphere.centre[i].abs() + sphere.radius));
+        count += 1;
+    }
+    Placed {
+        solid: (FixedSpheres {
+            list,
+            count,
+            repeated: false,
+        }),
+        scale: SCALE,
+        extent: Some(extent),
+    }
+}

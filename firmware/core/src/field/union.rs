@@ -1,0 +1,109 @@
+//! `union:A+B` and `smooth:K,A+B`: a flat field and a round one, sharp or with a fillet between them.
+
+use core::fmt;
+
+use super::argument::{Arguments, Words, check};
+use super::error::FieldError;
+use super::primitive::Primitive;
+use crate::fixed::Q32_32;
+
+/// Width of a fillet.
+const BLEND: [Q32_32; 2] = [Q32_32::lit("0.01"), Q32_32::lit("0.5")];
+
+/// The union of a flat field and a round one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Union {
+    flat: Primitive,
+    round: Primitive,
+    blend: Q32_32,
+}
+
+impl Union {
+    /// Name and numbers of both kinds of union, and their descriptions.
+    pub(super) const KINDS: [(&str, &str); 2] = [
+        (
+            "union:A+B",
+            "A menger or box, B sphere, spheres or moving, both together",
+        ),
+        (
+            "smooth:K,A+B",
+            "the same with a fillet of the width K between them",
+        ),
+    ];
+
+    /// A union of members that can join, with a fillet of the given width, or none at 0.
+    ///
+    /// # Errors
+    /// The members are not a flat field and a round one that can join, or the width is out of range.
+    pub fn new(
+        flat: Primitive,
+        round: Primitive,
+        blend: Q32_32,
+    ) -> Result<Self, FieldError<'static>> {
+        if blend != Q32_32::ZERO {
+            check("k", blend, BLEND)?;
+        }
+        if flat.joins() && !flat.is_round() && round.joins() && round.is_round() {
+            Ok(Self { flat, round, blend })
+        } else {
+            Err(FieldError::Union)
+        }
+    }
+
+    /// The flat member.
+    pub const fn flat(&self) -> &Primitive {
+        &self.flat
+    }
+
+    /// The round member.
+    pub const fn round(&self) -> &Primitive {
+        &self.round
+    }
+
+    /// Width of the fillet between them in world units: the difference of both distances up to which it reaches. 0: none.
+    pub const fn blend(&self) -> Q32_32 {
+        self.blend
+    }
+
+    /// Reads the members after `union:`.
+    pub(super) fn parse_sharp(text: &str) -> Result<Self, FieldError<'_>> {
+        Self::parse(text, Q32_32::ZERO)
+    }
+
+    /// Reads the width and the members after `smooth:`.
+    pub(super) fn parse_smooth(text: &str) -> Result<Self, FieldError<'_>> {
+        let (blend, members) = text.split_once(',').ok_or(FieldError::Union)?;
+        let blend = Words::new("smooth", blend).number("k", BLEND)?;
+        Self::parse(members, blend)
+    }
+
+    fn parse(text: &str, blend: Q32_32) -> Result<Self, FieldError<'_>> {
+        let (flat, round) = text.split_once('+').ok_or(FieldError::Union)?;
+        let member = |text| Primitive::parse(text).unwrap_or(Err(FieldError::Union));
+        Self::new(member(flat)?, member(round)?, blend)
+    }
+
+    /// Draws the members, and a fillet or none.
+    pub(super) fn draw(
+        flat: Primitive,
+        round: Primitive,
+        numbers: &mut impl Arguments<'static>,
+    ) -> Result<Self, FieldError<'static>> {
+        let blend = match numbers.integer("fillet", [0, 1])? {
+            0 => Q32_32::ZERO,
+            _ => numbers.number("k", BLEND)?,
+        };
+        Self::new(flat, round, blend)
+    }
+}
+
+impl fmt::Display for Union {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        if self.blend == Q32_32::ZERO {
+            f.write_str("union:")?;
+        } else {
+            write!(f, "smooth:{},", self.blend)?;
+        }
+        write!(f, "{}+{}", self.flat, self.round)
+    }
+}

@@ -1,0 +1,71 @@
+//! Fog: the part of a surface that it hides, by depth.
+
+use glint_core::fixed::U4_28;
+
+use super::options::FieldOptions;
+use super::palette::Palette;
+use super::setup::FieldSetup;
+
+impl FieldOptions {
+    /// The colours of a frame: with its fog, and grey for two eyes.
+    pub fn palette_for(&self, setup: &FieldSetup) -> Palette {
+        let palette = if self.fog == U4_28::ZERO {
+            self.palette
+        } else {
+            self.palette.with_fog(setup, self.fog)
+        };
+        match setup.stereo {
+            Some(_) => palette.grey(),
+            None => palette,
+        }
+    }
+}
+
+impl Palette {
+    /// With fog that leaves e^(−density·z) of what is z world units away along n. An entry is that of the middle of its
+    /// depths, within 0.51; the last one is that of everything behind it too.
+    #[must_use]
+    pub fn with_fog(self, setup: &FieldSetup, density: U4_28) -> Self {
+        // The smallest step of 256 that come to e^−8, or the largest that there is.
+        const ENOUGH: u64 = 8 << 32;
+        let unit = fog_of_unit(setup, density);
+        let fog_shift = (0..7).find(|shift| unit << (shift + 8) >= ENOUGH);
+        let fog_shift = fog_shift.unwrap_or(7);
+        // Half a step first, then whole ones.
+        let half = faded((unit << fog_shift) / 2);
+        let whole = product(half, half);
+        let mut left = half;
+        Self {
+            fog: core::array::from_fn(|_| {
+                let hidden = FULL - left;
+                left = product(left, whole);
+                ((u128::from(hidden) * 255 + (1 << 61)) >> 62) as u8
+            }),
+            fog_shift,
+            ..self
+        }
+    }
+}
+
+/// 1 with 62 fraction bits.
+const FULL: u64 = 1 << 62;
+
+/// Of two numbers with 62 fraction bits.
+fn product(a: u64, b: u64) -> u64 {
+    ((u128::from(a) * u128::from(b)) >> 62) as u64
+}
+
+/// What a field unit times 2^e adds to the exponent of the fog, 32 fraction bits, rounded down: below 2^35.
+fn fog_of_unit(setup: &FieldSetup, density: U4_28) -> u64 {
+    let units = setup.scale.to_bits().max(1) as u128;
+    // 28 and 36 over 32 fraction bits.
+    (((u128::from(density.to_bits()) << 36) / units) >> setup.exponent) as u64
+}
+
+/// e^−x, 62 fraction bits, of x with 32: (1 − x/2^20)^(2^20), smaller by a part of x²/2^21, and 0 from 16 on.
+fn faded(x: u64) -> u64 {
+    if x >= 16 << 32 {
+        return 0;
+    }
+    (0..20).fold(FULL - (x << 10), |power, _| product(power, power))
+}
