@@ -1,4 +1,4 @@
-//! From polygons to the mesh that a board holds: scaling, triangles, normals, rounding to Q2.14.
+//! Conversion of polygons to a board's mesh: scaling, triangulation, normals, rounding to Q2.14.
 
 mod rounding;
 
@@ -11,50 +11,50 @@ use rounding::{ONE, Placing, Rounded};
 use serde::Serialize;
 use std::collections::HashMap;
 
-/// How a mesh is converted.
+/// Options of a conversion.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Options {
-    /// Leaves the coordinates as they are, instead of scaling the mesh to the 1×1×1 box about the origin.
+    /// Keeps the coordinates, instead of scaling the mesh to the 1×1×1 box about the origin.
     pub keep_scale: bool,
 }
 
-/// What a conversion did.
+/// Report of a conversion.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     /// Points in the file.
     pub points: usize,
     /// Polygons in the file.
     pub faces: usize,
-    /// Vertices in the mesh, those repeated in several chunks counted each time.
+    /// Vertices in the mesh; a vertex in several chunks counts in each.
     pub vertices: u32,
     /// Triangles in the mesh.
     pub triangles: u32,
-    /// Triangles left out, as they have no area at the mesh's resolution.
+    /// Triangles dropped because they have no area after rounding.
     pub degenerate: usize,
     /// Chunks of at most 65,535 vertices.
     pub chunks: usize,
     /// The mesh's length in bytes.
     pub bytes: usize,
-    /// What the file's lengths were multiplied with.
+    /// Scale factor from the file's lengths to world units.
     pub scale: f64,
     /// The file's point that became the origin.
     pub centre: Vector,
-    /// The largest distance between a point and the vertex it was rounded to, in world units.
+    /// Maximum distance between a point and its rounded vertex, in world units.
     pub error_max: f64,
-    /// The root of the mean of those distances' squares, in world units.
+    /// Root mean square of these distances, in world units.
     pub error_rms: f64,
-    /// `error_max` in units of the last place, 2^-14.
+    /// `error_max` in units of 2^-14.
     pub error_max_lsb: f64,
-    /// `error_rms` in units of the last place, 2^-14.
+    /// `error_rms` in units of 2^-14.
     pub error_rms_lsb: f64,
-    /// What else the user should know.
+    /// Remarks for the user.
     pub remarks: Vec<String>,
 }
 
-/// Converts polygons whose indices have been checked to a mesh as it lies in memory.
+/// Converts polygons with checked indices to the board's memory layout.
 ///
 /// # Errors
-/// The mesh has no extent, does not fit Q2.14 (with `keep_scale`), has no triangle with an area, or is too large.
+/// The mesh has no extent, exceeds Q2.14 (with `keep_scale`), has no triangle with an area, or is too large.
 pub fn convert(polygons: &Polygons, options: Options) -> Result<(Vec<u8>, Report), FormatError> {
     let placing = Placing::of(polygons, options.keep_scale)?;
     let rounded = Rounded::of(polygons, &placing)?;
@@ -93,10 +93,10 @@ pub fn convert(polygons: &Polygons, options: Options) -> Result<(Vec<u8>, Report
     Ok((bytes, report))
 }
 
-/// Moves and scales the points as [`convert`] would, without rounding them.
+/// Moves and scales the points like [`convert`], without rounding.
 ///
 /// # Errors
-/// Those of the placing: no extent, or (with `keep_scale`) beyond Q2.14.
+/// The mesh has no extent.
 pub fn place(polygons: &mut Polygons, options: Options) -> Result<(), FormatError> {
     let placing = Placing::of(polygons, options.keep_scale)?;
     for point in &mut polygons.points {
@@ -105,14 +105,14 @@ pub fn place(polygons: &mut Polygons, options: Options) -> Result<(), FormatErro
     Ok(())
 }
 
-/// A triangle that has an area, with its face's normal.
+/// A triangle with an area, and its face normal.
 struct FlatTriangle {
     corners: [Corner; 3],
     normal: Vector,
     colour: Option<Rgb8>,
 }
 
-/// All triangles that have an area after rounding, and how many have not.
+/// All triangles that have an area after rounding, and the number of the others.
 fn flat_triangles(polygons: &Polygons, rounded: &Rounded) -> (Vec<FlatTriangle>, usize) {
     let mut triangles = Vec::with_capacity(polygons.triangle_count());
     let mut degenerate = 0;
@@ -132,14 +132,14 @@ fn flat_triangles(polygons: &Polygons, rounded: &Rounded) -> (Vec<FlatTriangle>,
     (triangles, degenerate)
 }
 
-/// The normal of the triangle as it was before rounding; `None` if it has no area after.
+/// Face normal before rounding; `None` if the triangle has no area after rounding.
 fn normal(polygons: &Polygons, rounded: &Rounded, corners: [Corner; 3]) -> Option<Vector> {
-    // Differences of 17 bits and their products are exact in f64, so "no area" is exact too.
+    // Differences have 17 bits, and their products are exact in f64: the test for zero area is exact.
     let after = unit(area_vector(
         corners.map(|corner| rounded.position(corner).map(f64::from)),
     ))?;
     let before = unit(area_vector(corners.map(|corner| polygons.point(corner))));
-    // A sliver may have turned over: what is drawn is the rounded one.
+    // Rounding may flip a sliver: the rounded triangle is the one that is drawn.
     Some(
         before
             .filter(|before| dot(*before, after) > 0.0)
@@ -147,7 +147,7 @@ fn normal(polygons: &Polygons, rounded: &Rounded, corners: [Corner; 3]) -> Optio
     )
 }
 
-/// Vertices, each once, and the triangles between them.
+/// Unique vertices, and the triangles between them.
 fn index(
     polygons: &Polygons,
     rounded: &Rounded,
@@ -202,7 +202,7 @@ fn index(
     (vertices, indexed)
 }
 
-/// What makes two vertices the same.
+/// Identity of a vertex.
 #[derive(PartialEq, Eq, Hash)]
 struct VertexKey([i16; 3], [i16; 3], Rgb565);
 
@@ -219,7 +219,7 @@ fn point_colour(polygons: &Polygons, corner: Corner) -> Option<Rgb8> {
     polygons.point_colours.get(corner.point as usize).copied()
 }
 
-/// The mean of the corners' colours: what a flat triangle between coloured points looks like from afar.
+/// Mean of the corners' colours, for the flat colour of a triangle between coloured points.
 fn mean_colour(polygons: &Polygons, corners: [Corner; 3]) -> Option<Rgb8> {
     let mut sums = [0_u16; 3];
     for corner in corners {
@@ -254,7 +254,7 @@ mod tests {
 
     #[test]
     fn scaled_to_the_unit_box() {
-        // The stray point does not count.
+        // The unused point does not count.
         let polygons = soup(
             &[
                 [10.0, 0.0, 0.0],
@@ -338,7 +338,7 @@ mod tests {
 
     #[test]
     fn normals_of_a_corner() {
-        // Three faces of a cube's corner: the shared point looks along the diagonal, whatever the faces' triangles.
+        // Three faces of a cube's corner: the shared normal is the diagonal, however the faces are triangulated.
         let polygons = soup(
             &[
                 [0.0, 0.0, 0.0],
@@ -378,7 +378,7 @@ mod tests {
             )
         };
         let default = Rgb565::from_rgb888(Rgb8::DEFAULT.0).0;
-        // Points between faces of different colours are two vertices each.
+        // Points between faces of different colours become two vertices each.
         assert_eq!(colours(&polygons), (vec![0xf800, default], 6));
         polygons.point_colours = vec![
             Rgb8([0, 0, 255]),

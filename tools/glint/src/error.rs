@@ -1,29 +1,28 @@
-//! What is wrong with an input, where, what was expected and what came: always one line.
+//! Errors of inputs: place, expected, found; always one line. Limits of inputs.
 
 use std::fmt;
 
-/// The largest file that is read, in bytes. An ASCII STL as large as this holds about as many triangles as a board's mesh
-/// memory.
+/// Maximum size of a file in bytes. An ASCII STL of this size has about as many triangles as a board's mesh memory.
 pub const MAX_FILE: usize = 512 << 20;
-/// The longest line of a text file, in bytes (a polygon of [`MAX_POLYGON`] corners fits).
+/// Maximum length of a line in bytes; a polygon of [`MAX_POLYGON`] corners fits.
 pub const MAX_LINE: usize = 64 << 10;
-/// The most points a mesh may have: three for each of [`MAX_TRIANGLES`].
+/// Maximum number of points in a mesh: three for each of [`MAX_TRIANGLES`].
 pub const MAX_POINTS: usize = 3 * MAX_TRIANGLES;
-/// The most triangles a mesh may have: as many 16-byte records as a board's 32 MiB of mesh memory holds.
+/// Maximum number of triangles in a mesh: 16-byte records that fit a board's 32 MiB of mesh memory.
 pub const MAX_TRIANGLES: usize = 1 << 21;
-/// The most corners one polygon may have; ear clipping takes a time of this squared.
+/// Maximum number of corners of a polygon; the time of ear clipping grows with its square.
 pub const MAX_POLYGON: usize = 8192;
-/// The largest magnitude of a coordinate. Larger ones are read as damage: no unit makes a thing this large.
+/// Maximum magnitude of a coordinate. Larger values indicate a damaged file.
 pub const MAX_COORDINATE: f64 = 1e15;
 
-/// Where in an input something is wrong.
+/// Place of an error in an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// The file as a whole.
     Whole,
     /// A line of a text file, counted from 1.
     Line(usize),
-    /// A cell of a table: its line, counted from 1, and the name of its column.
+    /// A cell of a table: its line, counted from 1, and its column's name.
     Cell(usize, &'static str),
     /// An offset in bytes from the file's start.
     Byte(usize),
@@ -40,20 +39,20 @@ impl fmt::Display for Place {
     }
 }
 
-/// An input that is not what its format says.
+/// Input that violates its format.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{place}expected {expected}, found {found}")]
 pub struct FormatError {
-    /// Where it is.
+    /// Place of the violation.
     pub place: Place,
-    /// What should have been there.
+    /// What the format requires there.
     pub expected: String,
-    /// What was there.
+    /// What the input has there.
     pub found: String,
 }
 
 impl FormatError {
-    /// Makes an error for a place.
+    /// Creates an error at a place.
     pub fn new(place: Place, expected: impl Into<String>, found: impl Into<String>) -> Self {
         Self {
             place,
@@ -62,12 +61,12 @@ impl FormatError {
         }
     }
 
-    /// Makes an error that concerns the file as a whole.
+    /// Creates an error of the whole file.
     pub fn whole(expected: impl Into<String>, found: impl Into<String>) -> Self {
         Self::new(Place::Whole, expected, found)
     }
 
-    /// Names the file it is in.
+    /// Adds the file's name.
     pub fn in_file(self, file: impl Into<String>) -> InputError {
         InputError {
             file: file.into(),
@@ -80,13 +79,13 @@ impl FormatError {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}: {error}")]
 pub struct InputError {
-    /// The file's name as the user gave it.
+    /// Name of the file as given by the user.
     pub file: String,
-    /// What is wrong with it.
+    /// The violation.
     pub error: FormatError,
 }
 
-/// Quotes a piece of input for a message: printable, on one line, and short.
+/// Quotes input in a message: printable, short, on one line.
 pub fn quote(bytes: &[u8]) -> String {
     const SHOWN: usize = 40;
     match bytes.get(..SHOWN) {

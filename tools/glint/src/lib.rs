@@ -1,16 +1,16 @@
-//! Glint's host side: mesh files and models, the board behind a serial line or in simulation, pictures.
+//! Host side of Glint: mesh files and generators, boards on a serial line or simulated, pictures.
 //!
-//! | module | what it does |
+//! | module | purpose |
 //! |---|---|
 //! | [`formats`], [`polygons`] | reads and writes OBJ, STL, PLY and GLM |
-//! | [`generate`] | makes models without a file |
-//! | [`mod@convert`], [`triangulate`], [`normals`] | scales, cuts into triangles, rounds to the mesh a board holds |
-//! | [`model`], [`view`], [`picture`] | models, cameras and frames as the command line names them |
-//! | [`render`] | a scene into a frame, by the model or by a board |
-//! | [`board`] | a board behind its serial line, simulated or real |
-//! | [`mod@flash`], [`console`], [`transfer`] | what is said on that line: serial boot, commands, uploads |
-//! | [`imu`] | logs of a gyroscope and an accelerometer, and the attitudes that follow from them |
-//! | [`fuzz`] | inputs for everything above that takes bytes from outside |
+//! | [`generate`] | generates models |
+//! | [`mod@convert`], [`triangulate`], [`normals`] | scaling, triangulation and rounding to a board's mesh |
+//! | [`model`], [`view`], [`picture`] | models, cameras and frames of the command line |
+//! | [`render`] | renders a scene by the model or by a board |
+//! | [`board`] | boards: serial port, or simulation |
+//! | [`mod@flash`], [`console`], [`transfer`] | protocols of the serial line: serial boot, commands, uploads |
+//! | [`imu`] | logs of a gyroscope and an accelerometer, and their attitudes |
+//! | [`fuzz`] | fuzz targets for everything that parses external bytes |
 #![forbid(unsafe_code)]
 
 pub mod board;

@@ -1,4 +1,4 @@
-//! The program `glint`: models in, pictures out.
+//! The program `glint`.
 #![forbid(unsafe_code)]
 
 mod cli;
@@ -7,9 +7,9 @@ use clap::Parser;
 use glint::error::{FormatError, InputError};
 use std::process::ExitCode;
 
-/// The exit code for input that is not what it should be; clap takes the same for a wrong command line.
+/// Exit code for bad input; clap uses it for a bad command line too.
 const BAD_INPUT: u8 = 2;
-/// The exit code for everything else that went wrong.
+/// Exit code for every other failure.
 const FAILED: u8 = 1;
 
 fn main() -> ExitCode {
@@ -19,7 +19,7 @@ fn main() -> ExitCode {
     let bad_input = error
         .chain()
         .any(|cause| cause.is::<InputError>() || cause.is::<FormatError>());
-    // One line, whatever an operating system or a board has said.
+    // One line, even if the message of an operating system or board has several.
     eprintln!(
         "error: {}",
         format!("{error:#}").trim_end().replace('\n', " ")

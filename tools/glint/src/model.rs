@@ -1,4 +1,4 @@
-//! What the command line calls a MODEL: a mesh file, or the name of a generator.
+//! MODEL of the command line: a mesh file, or a generator.
 
 use crate::convert::{self, Options, Report};
 use crate::error::InputError;
@@ -7,23 +7,23 @@ use crate::generate;
 use crate::polygons::Polygons;
 use std::path::Path;
 
-/// A mesh ready for a board, and what its conversion did, if it needed one.
+/// A mesh for boards, and the report of its conversion.
 pub struct Model {
-    /// The mesh as it lies in memory.
+    /// The mesh in the board's memory layout.
     pub mesh: Vec<u8>,
-    /// What the conversion did; nothing for a `.glm`, which is taken as it is.
+    /// The report; none for a `.glm`, which needs no conversion.
     pub report: Option<Report>,
 }
 
-/// Whether a name is that of a generator. A file of that name goes before.
+/// Whether `name` names a generator. A file of the same name takes precedence.
 fn is_generated(name: &str) -> bool {
     generate::is_name(name) && !Path::new(name).exists()
 }
 
-/// Reads or makes the polygons of a model.
+/// Reads or generates the polygons of a model.
 ///
 /// # Errors
-/// It cannot be read, is not what its name says, or there is no such generator.
+/// The file cannot be read or parsed, or no such generator exists.
 pub fn polygons(name: &str) -> Result<Polygons, InputError> {
     if is_generated(name) {
         generate::named(name).map_err(|error| error.in_file(name))
@@ -32,7 +32,7 @@ pub fn polygons(name: &str) -> Result<Polygons, InputError> {
     }
 }
 
-/// Reads or makes a model and converts it.
+/// Reads or generates a model and converts it.
 ///
 /// # Errors
 /// As [`polygons`] and [`convert::convert`].

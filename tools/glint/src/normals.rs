@@ -1,23 +1,23 @@
-//! Normals of vertices, where a file has none.
+//! Vertex normals for files without them.
 
 use crate::polygons::Vector;
 use crate::triangulate::{dot, sub, unit};
 
-/// Sums up the normals of the faces about each point, each weighted with the angle that its face has there, so that the
-/// result does not depend on how the surface is cut into triangles (Thürmer and Wüthrich, 1998).
+/// Sums the face normals about each point, weighted with the face's angle there, so that the result does not depend on the
+/// triangulation (Thürmer and Wüthrich, 1998).
 pub struct Smooth {
     sums: Vec<Vector>,
 }
 
 impl Smooth {
-    /// For as many points.
+    /// Sums for a number of points.
     pub fn new(points: usize) -> Self {
         Self {
             sums: vec![[0.0; 3]; points],
         }
     }
 
-    /// Adds a triangle between three points of the given numbers and places.
+    /// Adds a triangle: numbers and positions of its points.
     pub fn add(&mut self, numbers: [usize; 3], places: [Vector; 3], normal: Vector) {
         let [a, b, c] = places;
         for (number, [a, b, c]) in numbers.into_iter().zip([[a, b, c], [b, c, a], [c, a, b]]) {
@@ -31,9 +31,9 @@ impl Smooth {
         }
     }
 
-    /// The normal at a point; `None` where its faces cancel each other out.
+    /// Normal at a point; `None` if its faces cancel out.
     pub fn at(&self, number: usize) -> Option<Vector> {
-        // Angles add up to a few turns at most: less than this is rounding.
+        // The sum of angles is at most a few turns: a smaller value is rounding error.
         self.sums
             .get(number)
             .copied()

@@ -1,8 +1,8 @@
-//! A mesh as files give it: points, and polygons between them.
+//! A mesh as read from a file: points, and polygons between them.
 
 use crate::error::{FormatError, MAX_POINTS, MAX_POLYGON, MAX_TRIANGLES, Place};
 
-/// A point or a direction, in the file's own unit.
+/// A point or a direction, in the file's unit.
 pub type Vector = [f64; 3];
 
 /// A colour: red, green and blue, 0 to 255.
@@ -10,10 +10,10 @@ pub type Vector = [f64; 3];
 pub struct Rgb8(pub [u8; 3]);
 
 impl Rgb8 {
-    /// What a surface gets that has no colour of its own: a light warm grey.
+    /// Colour of surfaces without a colour: a light warm grey.
     pub const DEFAULT: Self = Self([0xd8, 0xd8, 0xd0]);
 
-    /// From three intensities; what lies outside 0 to 1 saturates.
+    /// From three intensities; values outside 0 to 1 saturate.
     pub fn from_unit(rgb: [f64; 3]) -> Self {
         Self(rgb.map(|c| (c.clamp(0.0, 1.0) * 255.0).round() as u8))
     }
@@ -29,10 +29,10 @@ pub struct Corner {
 }
 
 impl Corner {
-    /// The corner's normal is not given.
+    /// Marks a corner without a normal.
     pub const NO_NORMAL: u32 = u32::MAX;
 
-    /// A corner without a normal of its own.
+    /// A corner without a normal.
     pub fn at(point: u32) -> Self {
         Self {
             point,
@@ -41,28 +41,28 @@ impl Corner {
     }
 }
 
-/// One polygon: a run of corners, counter-clockwise seen from outside.
+/// One polygon: a range of corners, counter-clockwise seen from outside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Face {
     /// Its first corner in [`Polygons::corners`].
     pub first: u32,
-    /// How many corners it has, at least 3.
+    /// Number of its corners, at least 3.
     pub count: u32,
-    /// Its colour, if it has one.
+    /// Its colour, if any.
     pub colour: Option<Rgb8>,
 }
 
 /// Points and the polygons between them.
 ///
-/// [`add_point`](Self::add_point) and [`add_face`](Self::add_face) keep the limits of [`crate::error`], so that no input
-/// takes unbounded memory; [`check_indices`](Self::check_indices) must have been called before the polygons are used.
+/// [`add_point`](Self::add_point) and [`add_face`](Self::add_face) enforce the limits of [`crate::error`], which bound the
+/// memory. Call [`check_indices`](Self::check_indices) before using the polygons.
 #[derive(Clone, Debug, Default)]
 pub struct Polygons {
     /// The points.
     pub points: Vec<Vector>,
-    /// One colour a point, or none at all.
+    /// One colour per point, or empty.
     pub point_colours: Vec<Rgb8>,
-    /// Normals given by the file, of any length.
+    /// Normals of the file, of any length.
     pub normals: Vec<Vector>,
     /// The corners of all faces.
     pub corners: Vec<Corner>,
@@ -75,7 +75,7 @@ pub struct Polygons {
     largest_normal: Largest,
 }
 
-/// The largest index seen, and where: enough to check forward references at the end without keeping every place.
+/// The largest index and its place: enough to check forward references at the end.
 #[derive(Clone, Copy, Debug, Default)]
 struct Largest(Option<(u32, Place)>);
 
@@ -102,7 +102,7 @@ impl Polygons {
     /// Adds a point and returns its index.
     ///
     /// # Errors
-    /// There are [`MAX_POINTS`] already.
+    /// [`MAX_POINTS`] exceeded.
     pub fn add_point(&mut self, point: Vector, place: Place) -> Result<u32, FormatError> {
         if self.points.len() >= MAX_POINTS {
             return Err(FormatError::new(
@@ -118,7 +118,7 @@ impl Polygons {
     /// Adds a normal and returns its index.
     ///
     /// # Errors
-    /// There are [`MAX_POINTS`] already.
+    /// [`MAX_POINTS`] exceeded.
     pub fn add_normal(&mut self, normal: Vector, place: Place) -> Result<u32, FormatError> {
         if self.normals.len() >= MAX_POINTS {
             return Err(FormatError::new(
@@ -131,10 +131,10 @@ impl Polygons {
         Ok((self.normals.len() - 1) as u32)
     }
 
-    /// Adds a polygon. Its indices may name points that are still to come.
+    /// Adds a polygon. Its indices may refer to points added later.
     ///
     /// # Errors
-    /// It has fewer than three corners or more than [`MAX_POLYGON`], or there are [`MAX_TRIANGLES`] already.
+    /// Fewer than three corners, more than [`MAX_POLYGON`], or [`MAX_TRIANGLES`] exceeded.
     pub fn add_face(
         &mut self,
         corners: &[Corner],
@@ -172,10 +172,10 @@ impl Polygons {
         Ok(())
     }
 
-    /// Checks that there is a face, and that every corner names a point and a normal that exist.
+    /// Checks that there is a face, and that the points and normals of all corners exist.
     ///
     /// # Errors
-    /// The place of the largest index that does not exist.
+    /// No face, or the place of the largest index out of range.
     pub fn check_indices(&self) -> Result<(), FormatError> {
         self.largest_point.check(self.points.len(), "point")?;
         self.largest_normal.check(self.normals.len(), "normal")?;
@@ -195,7 +195,7 @@ impl Polygons {
         self.points[corner.point as usize]
     }
 
-    /// How many triangles the faces make.
+    /// Number of triangles of all faces.
     pub fn triangle_count(&self) -> usize {
         self.triangles
     }

@@ -1,11 +1,11 @@
-//! Polygons into triangles.
+//! Triangulation of polygons.
 //!
-//! Ear clipping that always gives n − 2 triangles and uses every corner. That keeps a closed mesh closed: a
-//! triangulation that drops corners it finds collinear leaves a neighbour with a vertex in the middle of an edge.
+//! Ear clipping that always gives n − 2 triangles and uses every corner, so that a closed mesh stays closed: dropping a
+//! collinear corner would leave a neighbour's vertex in the middle of an edge.
 
 use crate::polygons::{Corner, Face, Polygons, Vector};
 
-/// Buffers that are used again for each face.
+/// Buffers reused for each face.
 #[derive(Default)]
 pub struct Scratch {
     plane: Vec<[f64; 2]>,
@@ -15,7 +15,7 @@ pub struct Scratch {
     triangles: Vec<[Corner; 3]>,
 }
 
-/// Twice the area of a triangle as a vector, counter-clockwise seen from its tip.
+/// Vector of twice a triangle's area; its tip is on the side from which the triangle runs counter-clockwise.
 pub fn area_vector([a, b, c]: [Vector; 3]) -> Vector {
     cross(sub(b, a), sub(c, a))
 }
@@ -39,7 +39,7 @@ pub fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// The vector of length 1 in a direction, if there is one. No length is too small or too large for it.
+/// Vector of length 1 in the direction of `v`; `None` for zero and for infinite or invalid vectors. Any finite length works.
 pub fn unit(v: Vector) -> Option<Vector> {
     let largest = v.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
     if !(largest > 0.0 && largest.is_finite()) {
@@ -50,7 +50,7 @@ pub fn unit(v: Vector) -> Option<Vector> {
     Some(v.map(|c| c / length))
 }
 
-/// The triangles of a face, with the corners' order of the face.
+/// Triangles of a face, in the face's winding.
 pub fn face<'a>(polygons: &Polygons, face: &Face, scratch: &'a mut Scratch) -> &'a [[Corner; 3]] {
     let corners = polygons.corners_of(face);
     scratch.triangles.clear();
@@ -63,7 +63,7 @@ pub fn face<'a>(polygons: &Polygons, face: &Face, scratch: &'a mut Scratch) -> &
     &scratch.triangles
 }
 
-/// Projects a polygon along the axis that is nearest to its normal, by Newell's method, so that it runs counter-clockwise.
+/// Projects a polygon along the axis nearest to its normal (Newell's method), so that it runs counter-clockwise.
 fn project(polygons: &Polygons, corners: &[Corner], plane: &mut Vec<[f64; 2]>) {
     let origin = corners
         .first()
@@ -97,8 +97,8 @@ fn area([ax, ay]: [f64; 2], [bx, by]: [f64; 2], [cx, cy]: [f64; 2]) -> f64 {
     (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
 }
 
-/// Cuts off one ear after the other. Whether a corner is an ear is kept and looked at again only beside a cut, so the time
-/// is of the number of corners squared. A polygon that crosses itself has no ears at some point; then any corner goes.
+/// Clips one ear after the other. Whether a corner is an ear is cached and updated beside a cut only, so the time grows with
+/// the square of the number of corners. A self-intersecting polygon may run out of ears: then any corner is clipped.
 fn clip_ears(corners: &[Corner], scratch: &mut Scratch) {
     let n = corners.len();
     scratch.next.clear();
@@ -126,12 +126,12 @@ fn clip_ears(corners: &[Corner], scratch: &mut Scratch) {
         for i in [before, after] {
             scratch.is_ear[i] = is_ear(scratch, i);
         }
-        // Not the neighbour: taking turns round the polygon makes fewer slivers than a fan.
+        // Skipping the neighbour makes fewer slivers than a fan.
         at = scratch.next[after];
     }
 }
 
-/// Whether a corner sticks out and no other corner lies in the triangle it makes with its neighbours.
+/// Whether a corner is convex and no other corner lies in the triangle with its neighbours.
 fn is_ear(scratch: &Scratch, i: usize) -> bool {
     let (before, after) = (scratch.previous[i], scratch.next[i]);
     let [a, b, c] = [before, i, after].map(|i| scratch.plane[i]);
@@ -141,7 +141,7 @@ fn is_ear(scratch: &Scratch, i: usize) -> bool {
     let mut at = scratch.next[after];
     while at != before {
         let p = scratch.plane[at];
-        // A hole joined to the outline passes the same points twice; those do not hinder.
+        // A hole that is joined to the outline passes the same points twice; they do not count.
         let shared = p == a || p == b || p == c;
         if !shared && area(a, b, p) >= 0.0 && area(b, c, p) >= 0.0 && area(c, a, p) >= 0.0 {
             return false;
@@ -166,7 +166,7 @@ mod tests {
         polygons
     }
 
-    /// The signed areas of a face's triangles in the plane x, y.
+    /// Signed areas of a face's triangles in the plane x, y.
     fn areas(points: &[Vector]) -> Vec<f64> {
         let polygons = polygon(points);
         face(&polygons, &polygons.faces[0], &mut Scratch::default())

@@ -8,7 +8,7 @@ use glint_core::fixed::{Q32_32, Turns};
 use serde::Deserialize;
 use std::path::Path;
 
-/// What a file of a view holds. Lengths are in world units, vectors are rows of the camera's basis.
+/// Contents of a view file. Lengths in world units; u, v and n are the rows of the camera's basis.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ViewFile {
@@ -23,14 +23,14 @@ struct ViewFile {
 /// Reads a view: `{"eye":[x,y,z],"u":[..],"v":[..],"n":[..],"half_width":h,"near":z}`.
 ///
 /// # Errors
-/// The file cannot be read, is not such JSON, or is not a camera that [`View::new_checked`] takes.
+/// The file cannot be read, has other contents, or [`View::new_checked`] rejects the camera.
 pub fn read(path: &Path) -> Result<View, InputError> {
     let bytes = read_file(path)?;
     parse(&bytes)
         .map_err(|error| error.in_file(path.display().to_string().escape_debug().to_string()))
 }
 
-/// As [`read`], from the file's bytes.
+/// Parses the bytes of a view file; see [`read`].
 ///
 /// # Errors
 /// As [`read`].
@@ -55,7 +55,7 @@ fn vector<T: Fixed>(values: [f64; 3], name: &str) -> Result<[T; 3], FormatError>
     Ok([number(x, name)?, number(y, name)?, number(z, name)?])
 }
 
-/// To nearest.
+/// Converts to fixed point, to nearest.
 fn number<T: Fixed>(value: f64, name: &str) -> Result<T, FormatError> {
     T::checked_from_num(value).ok_or_else(|| {
         FormatError::whole(
@@ -65,10 +65,10 @@ fn number<T: Fixed>(value: f64, name: &str) -> Result<T, FormatError> {
     })
 }
 
-/// A camera on a sphere about the origin from `R,THETA,PHI`: the distance and two angles in degrees.
+/// Camera on a sphere about the origin, from `R,THETA,PHI`: distance and two angles in degrees.
 ///
 /// # Errors
-/// There are not three decimals, or they are out of the range of [`View::spherical`].
+/// Not three decimals, or outside the range of [`View::spherical`].
 pub fn spherical(text: &str) -> Result<View, FormatError> {
     let refuse = || {
         FormatError::whole(
@@ -111,7 +111,7 @@ mod tests {
         assert_eq!(view.eye().map(|c| c.to_num::<f64>()), [0.0, -3.0, 0.0]);
         assert_eq!(view.half_width(), glint_core::camera::DEFAULT_HALF_WIDTH);
         assert_eq!(view.near(), glint_core::camera::DEFAULT_NEAR);
-        // The same as the spherical camera at theta = -90, phi = 90.
+        // Equal to the spherical camera at theta = -90, phi = 90.
         assert_eq!(view, spherical("3,-90,90").unwrap());
     }
 

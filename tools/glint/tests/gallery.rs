@@ -1,18 +1,18 @@
-//! The pictures of docs/gallery.md are what the commands beside them make, and every field has one.
+//! The commands in docs/gallery.md produce its pictures, and every field has a picture.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use glint_core::field::KINDS;
 
-/// The most bytes of all pictures together.
+/// Maximum size of all pictures together, in bytes.
 const MOST: u64 = 400_000;
 
 fn docs() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs")
 }
 
-/// The arguments of each `glint …` of the page, which may go on behind a `\`.
+/// Arguments of each `glint …` command of the page; a `\` continues a line.
 fn commands() -> Vec<Vec<String>> {
     let page = std::fs::read_to_string(docs().join("gallery.md")).expect("the page");
     let page = page.replace("\\\n", " ");
@@ -22,7 +22,7 @@ fn commands() -> Vec<Vec<String>> {
         .collect()
 }
 
-/// What stands behind an option.
+/// The value of an option.
 fn value<'a>(command: &'a [String], option: &str) -> &'a str {
     let at = command.iter().position(|word| word == option);
     let value = at.and_then(|at| command.get(at + 1));
@@ -39,7 +39,7 @@ fn pixels(path: &Path) -> Vec<u8> {
     pixels
 }
 
-/// Makes every picture, in place of the one that is there with `GLINT_UPDATE` in the environment.
+/// Renders every picture; with `GLINT_UPDATE` in the environment it replaces the committed one.
 #[test]
 fn the_pictures_are_what_their_commands_make() {
     let update = std::env::var_os("GLINT_UPDATE").is_some();

@@ -1,5 +1,5 @@
-//! The firmware goes in through the BIOS's serial boot, over the virtual board's pseudo-terminal: by LiteX's own terminal,
-//! and by `glint flash`.
+//! Serial boot of the firmware through the BIOS, over the virtual board's pseudo-terminal: by LiteX's own terminal, and by
+//! `glint flash`.
 
 use glint::board::SerialBoard;
 use glint::console::Console;
@@ -12,16 +12,16 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::Duration;
 use virtual_board::{Start, VirtualBoard, pty::Pty};
 
-/// Cycles of the board after which it has failed: several times what it needs.
+/// Time-out in cycles of the board: several times the need.
 const LIMIT: u64 = 400_000_000;
 
-/// Bytes of output that are kept while something else is waited for: enough for a message of failure.
+/// Bytes of output kept for an error message.
 const KEPT: usize = 1000;
 
-/// The host's time after which `glint flash` or a console has failed.
+/// Time-out of `glint flash` and of a console, in host time.
 const PATIENCE_MS: u64 = 300_000;
 
-/// The firmware that `cargo xtask firmware` builds.
+/// The firmware built by `cargo xtask firmware`.
 fn firmware() -> PathBuf {
     root().join("target/firmware/glint.bin")
 }
@@ -30,12 +30,12 @@ fn root() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
 }
 
-/// A board that starts as it does at power on, on a pseudo-terminal.
+/// A board on a pseudo-terminal, started as at power-on.
 fn board() -> Pty {
     Pty::start(VirtualBoard::builder().start(Start::Full).build().unwrap()).unwrap()
 }
 
-/// A program with a terminal for its input, which litex_term insists on.
+/// A program with a terminal as its input, as litex_term requires.
 struct Terminal {
     child: Child,
     keys: File,
@@ -54,7 +54,7 @@ impl Terminal {
             .write(true)
             .open(path)
             .unwrap();
-        // It hears Ctrl-C only from a terminal that is its own.
+        // Ctrl-C works in a controlling terminal only.
         let mut child = Command::new("setsid")
             .arg("--ctty")
             .arg(program)
@@ -88,14 +88,14 @@ impl Terminal {
         }
     }
 
-    /// Waits until the program has printed `wanted` behind what was waited for before.
+    /// Waits until the program prints `wanted`, after the match of the last wait.
     fn wait_for(&mut self, wanted: &str, board: &Pty) {
         loop {
             if let Some(at) = self.seen.find(wanted) {
                 self.seen.drain(..at + wanted.len());
                 return;
             }
-            // Its progress bar goes on for megabytes.
+            // The progress bar prints megabytes.
             let keep = self
                 .seen
                 .floor_char_boundary(self.seen.len().saturating_sub(KEPT));
@@ -124,7 +124,7 @@ impl Terminal {
 
 impl Drop for Terminal {
     fn drop(&mut self) {
-        // Ended already, unless a test has failed.
+        // The program has ended already, unless the test failed.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
@@ -142,7 +142,7 @@ fn litex_term_loads_the_firmware_and_gets_an_answer() {
     terminal.type_in(b"info\r");
     terminal.wait_for("triangles 12", &board);
     terminal.wait_for("ok", &board);
-    // The second must come within half a second of the first, but not before it has been heard.
+    // litex_term ends on two Ctrl-C within half a second; the second counts once the first was read.
     terminal.type_in(b"\x03");
     terminal.wait_for("^C", &board);
     terminal.type_in(b"\x03");

@@ -7,19 +7,19 @@ use embedded_hal::i2c::{ErrorKind, ErrorType, NoAcknowledgeSource, Operation};
 
 use crate::chip::{Chip, Fault};
 
-/// A byte at 400 kHz, in ns.
+/// Time of a byte at 400 kHz, in ns.
 const BYTE: u64 = 9 * 2_500;
-/// For how long a master waits for a stretched clock, in ns.
+/// A master's time-out of clock stretching, in ns.
 const PATIENCE: u64 = 25_000_000;
-/// Clocks that a master gives a stuck device.
+/// Clocks with which a master frees a stuck device.
 const CLEARING: u32 = 9;
 
-/// What goes wrong.
+/// Bus errors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Error {
-    /// Nobody acknowledged.
+    /// No acknowledge.
     NoAcknowledge(NoAcknowledgeSource),
-    /// SCL or SDA stays low.
+    /// SCL or SDA is stuck low.
     Stuck,
 }
 
@@ -32,7 +32,7 @@ impl embedded_hal::i2c::Error for Error {
     }
 }
 
-/// A bus with a chip, and a clock: transfers and delays let the same time pass for both. Clones are handles of the same bus.
+/// A bus with a chip and a clock; transfers and delays advance the same time. Clones are handles of one bus.
 #[derive(Clone)]
 pub struct Bus {
     shared: Rc<RefCell<Shared>>,
@@ -60,24 +60,24 @@ impl Bus {
         }
     }
 
-    /// Does something with the chip.
+    /// Runs a closure on the chip.
     pub fn with_chip<T>(&self, action: impl FnOnce(&mut Chip) -> T) -> T {
         action(&mut self.shared.borrow_mut().chip)
     }
 
-    /// The time, in ns.
+    /// Current time in ns.
     #[must_use]
     pub fn now(&self) -> u64 {
         self.shared.borrow().now
     }
 
-    /// Transactions so far.
+    /// Number of transactions.
     #[must_use]
     pub fn transactions(&self) -> u64 {
         self.shared.borrow().transactions
     }
 
-    /// Lets time pass, in ns.
+    /// Advances the time by ns.
     pub fn pass(&self, time: u64) {
         self.shared.borrow_mut().pass(time);
     }
@@ -99,7 +99,7 @@ impl Shared {
         result
     }
 
-    /// What a master does before a start.
+    /// Checks that the bus is free, as a master does before a start.
     fn free(&mut self) -> Result<(), Error> {
         match self.chip.fault {
             Some(Fault::StuckData(clocks @ 1..=CLEARING)) => {
@@ -117,7 +117,7 @@ impl Shared {
 
     fn operate(&mut self, address: u8, operations: &mut [Operation]) -> Result<(), Error> {
         let mut reading = None;
-        // The first byte of a run of writes is a register.
+        // The first byte of a sequence of writes is a register.
         let mut has_register = false;
         for operation in operations {
             let reads = matches!(operation, Operation::Read(_));
@@ -155,7 +155,7 @@ impl Shared {
         Ok(())
     }
 
-    /// A byte goes over the bus.
+    /// Advances the time by a byte.
     fn byte(&mut self) -> Result<(), Error> {
         self.pass(BYTE);
         match self.chip.fault {

@@ -3,10 +3,10 @@
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
-/// Its address with AD0 low.
+/// I2C address with AD0 low.
 pub const ADDRESS: u8 = 0x68;
 
-/// For how long it does not answer after a reset, in ns.
+/// Time without an answer after a reset, in ns.
 pub const RESET_TIME: u64 = 50_000_000;
 
 const SMPLRT_DIV: u8 = 0x19;
@@ -24,7 +24,7 @@ const DATA_RDY: u8 = 0x01;
 const DEVICE_RESET: u8 = 0x80;
 const SLEEP: u8 = 0x40;
 
-/// Delay in ms and bandwidth in Hz of the gyroscope by DLPF_CFG; 7 is reserved and taken as 0.
+/// Delay in ms and bandwidth in Hz of the gyroscope by DLPF_CFG; the reserved 7 acts like 0.
 const FILTERS: [(f64, f64); 8] = [
     (0.98, 256.0),
     (1.9, 188.0),
@@ -36,18 +36,18 @@ const FILTERS: [(f64, f64); 8] = [
     (0.98, 256.0),
 ];
 
-/// LSB per °/s by FS_SEL, and per g by AFS_SEL.
+/// LSB per °/s by FS_SEL; LSB per g by AFS_SEL.
 const PER_DPS: [f64; 4] = [131.0, 65.5, 32.8, 16.4];
 const PER_G: [f64; 4] = [16_384.0, 8_192.0, 4_096.0, 2_048.0];
 
-/// What the body does at a time.
+/// Motion of the body at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State {
-    /// The rate about each axis in °/s.
+    /// Rate about each axis in °/s.
     pub rate: [f64; 3],
-    /// The force along each axis in g: at rest what holds it against gravity.
+    /// Specific force along each axis in g; at rest it opposes gravity.
     pub force: [f64; 3],
-    /// The chip's temperature in °C.
+    /// Temperature of the chip in °C.
     pub temperature: f64,
 }
 
@@ -62,14 +62,14 @@ impl Default for State {
     }
 }
 
-/// What the data registers hold.
+/// Raw counts of the data registers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Of the accelerometer.
+    /// Accelerometer.
     pub accel: [i16; 3],
-    /// Of the thermometer.
+    /// Thermometer.
     pub temperature: i16,
-    /// Of the gyroscope.
+    /// Gyroscope.
     pub gyro: [i16; 3],
 }
 
@@ -89,37 +89,37 @@ impl Counts {
     }
 }
 
-/// Where its measurements come from.
+/// Source of the measurements.
 pub enum Source {
-    /// The motion at a time in s, measured with all imperfections.
+    /// Motion at a time in s; measured with all imperfections.
     Motion(Box<dyn Fn(f64) -> State + Send>),
-    /// Recorded counts, each with the time in ns from which on it is the newest; taken as they are.
+    /// Recorded counts, each with the time in ns from which it is current; used unchanged.
     Log(Vec<(u64, Counts)>),
 }
 
-/// What makes a measurement differ from the truth.
+/// Errors of the measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Imperfections {
-    /// Rate at rest at 25 °C, in °/s.
+    /// Bias of the gyroscope at 25 °C in °/s.
     pub bias: [f64; 3],
-    /// How it changes, in °/s per °C.
+    /// Its temperature coefficient in °/s per °C.
     pub drift: [f64; 3],
-    /// What a rate of 1 is measured as.
+    /// Scale factor of the gyroscope.
     pub scale: [f64; 3],
-    /// In °/s per √Hz.
+    /// Noise density of the gyroscope in °/s per √Hz.
     pub noise: f64,
-    /// Force where there is none, in g.
+    /// Bias of the accelerometer in g.
     pub accel_bias: [f64; 3],
-    /// What a force of 1 is measured as.
+    /// Scale factor of the accelerometer.
     pub accel_scale: [f64; 3],
-    /// In g per √Hz.
+    /// Noise density of the accelerometer in g per √Hz.
     pub accel_noise: f64,
-    /// How much faster its clock runs: 0.01 is one in a hundred.
+    /// Relative error of the clock rate: 0.01 is 1 % fast.
     pub clock: f64,
 }
 
 impl Imperfections {
-    /// None at all.
+    /// An ideal sensor.
     pub const NONE: Self = Self {
         bias: [0.0; 3],
         drift: [0.0; 3],
@@ -130,7 +130,7 @@ impl Imperfections {
         accel_noise: 0.0,
         clock: 0.0,
     };
-    /// Within the data sheet's limits: a specimen.
+    /// Typical errors, within the limits of the data sheet.
     pub const TYPICAL: Self = Self {
         bias: [-4.5, 1.25, 2.0],
         drift: [0.16, -0.1, 0.05],
@@ -143,53 +143,53 @@ impl Imperfections {
     };
 }
 
-/// What is wrong with it.
+/// Faults of the chip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// It is not there: it acknowledges nothing.
+    /// Missing: no acknowledge.
     Absent,
-    /// It acknowledges its address, and no byte after that.
+    /// Acknowledges its address only.
     NoAcknowledge,
-    /// It holds SDA low until it has seen so many clocks; 0 is for ever.
+    /// Holds SDA low until the given number of clocks; 0 is for ever.
     StuckData(u32),
-    /// It holds SCL low for so many ns after each byte.
+    /// Stretches the clock by the given ns after each byte.
     Stretched(u64),
-    /// The data registers do not change any more; new data are announced all the same.
+    /// The data registers are frozen, but new data are still announced.
     Frozen,
-    /// Nothing is measured any more.
+    /// No new measurements.
     Stalled,
-    /// WHO_AM_I reads as this.
+    /// Value of WHO_AM_I.
     Identity(u8),
 }
 
 /// The chip.
 pub struct Chip {
     registers: [u8; 128],
-    /// What a read gives, and what was measured last.
+    /// Readable data registers, and the latest measurement.
     data: [u8; 14],
     newest: Option<[u8; 14]>,
     source: Source,
     imperfections: Imperfections,
     random: Pcg64Mcg,
     now: u64,
-    /// When the next sample is measured; none while it sleeps.
+    /// Time of the next sample; `None` in sleep mode.
     next: Option<u64>,
-    /// From when on it answers.
+    /// Time of the first answer after a reset.
     answers: u64,
-    /// Between a start and a stop its data stay as they are.
+    /// Between start and stop the data registers do not change.
     is_addressed: bool,
-    /// What it answers to: [`ADDRESS`], or one more where AD0 is high.
+    /// I2C address: [`ADDRESS`], or one more with AD0 high.
     pub address: u8,
-    /// What is wrong with it now.
+    /// Current fault.
     pub fault: Option<Fault>,
-    /// Samples measured so far.
+    /// Number of samples.
     pub samples: u64,
-    /// Samples that were overwritten before anybody has read INT_STATUS.
+    /// Samples overwritten before INT_STATUS was read.
     pub missed: u64,
 }
 
 impl Chip {
-    /// A chip that has been powered long enough.
+    /// A chip after power-up.
     #[must_use]
     pub fn new(source: Source, imperfections: Imperfections, seed: u64) -> Self {
         let mut chip = Self {
@@ -213,7 +213,7 @@ impl Chip {
         chip
     }
 
-    /// Forgets all that was written to it, as a failing supply makes it; it is asleep then.
+    /// Resets all registers, as a drop of the supply does; the chip is asleep afterwards.
     pub fn reset(&mut self) {
         self.registers = [0; 128];
         self.registers[usize::from(PWR_MGMT_1)] = SLEEP;
@@ -230,7 +230,7 @@ impl Chip {
         address == self.address && self.fault != Some(Fault::Absent) && self.now >= self.answers
     }
 
-    /// Lets time pass until `now`, in ns; earlier times are ignored.
+    /// Advances the time to `now`, in ns; earlier times are ignored.
     pub fn advance(&mut self, now: u64) {
         while let Some(time) = self.next
             && time <= now
@@ -244,13 +244,13 @@ impl Chip {
         self.refresh();
     }
 
-    /// Somebody talks on the bus, or no longer.
+    /// Marks the start or the end of bus traffic.
     pub fn set_addressed(&mut self, is_addressed: bool) {
         self.is_addressed = is_addressed;
         self.refresh();
     }
 
-    /// The time between two samples, in ns.
+    /// Sample period in ns.
     #[must_use]
     pub fn period(&self) -> u64 {
         let internal = match self.registers[usize::from(CONFIG)] & 7 {
@@ -261,7 +261,7 @@ impl Chip {
         (internal * divider / (1.0 + self.imperfections.clock)) as u64
     }
 
-    /// Reads a register; INT_STATUS is clear afterwards.
+    /// Reads a register; a read clears INT_STATUS.
     pub fn read(&mut self, register: u8) -> u8 {
         match register & 0x7f {
             WHO_AM_I => match self.fault {
@@ -326,7 +326,7 @@ impl Chip {
             accel_noise,
             ..
         } = self.imperfections;
-        // White noise through one pole.
+        // White noise through a single pole.
         let through = (bandwidth * std::f64::consts::FRAC_PI_2).sqrt();
         let warmth = state.temperature - 25.0;
         let gyro = [0, 1, 2].map(|i| {
@@ -345,13 +345,13 @@ impl Chip {
         }
     }
 
-    /// A number of mean 0 and variance 1.
+    /// A random number of mean 0 and variance 1.
     fn gauss(&mut self) -> f64 {
         let sum: f64 = (0..12).map(|_| self.random.random_range(0.0..1.0)).sum();
         sum - 6.0
     }
 
-    /// New data arrive in the registers while nobody talks on the bus.
+    /// Updates the data registers, unless the bus is in use.
     fn refresh(&mut self) {
         if self.is_addressed {
             return;
@@ -368,7 +368,7 @@ impl Chip {
     }
 }
 
-/// To the nearest number of 16 bits.
+/// Rounds to nearest, saturating to 16 bits.
 fn count(value: f64) -> i16 {
     value.round() as i16
 }

@@ -1,16 +1,16 @@
-//! An MPU-6050 that is not there: what the chip does as a master on its I2C bus can see it.
+//! A virtual MPU-6050: the chip as its I2C master sees it.
 //!
-//! | part | what it is |
+//! | part | purpose |
 //! |---|---|
-//! | [`Chip`] | registers, sample clock, and what the sensor measures of its motion |
-//! | [`Wires`] | the chip on SCL and SDA, edge by edge; notes where a master is faster than the data sheet lets it be |
-//! | [`Bus`] | the chip behind `embedded-hal`, byte by byte, with a clock of its own |
+//! | [`Chip`] | registers, sample clock, and measurement of a motion |
+//! | [`Wires`] | the chip on SCL and SDA, edge by edge; records violations of the data sheet's timing |
+//! | [`Bus`] | the chip behind `embedded-hal`, byte by byte, with its own clock |
 //!
-//! Everything follows from the calls and a seed; time is what the caller says it is, in ns.
+//! The calls and a seed determine everything; the caller passes the time, in ns.
 //!
 //! # Limits
-//! The low-pass filter delays, and sets the noise, but leaves the amplitude as it is. There is no FIFO, no auxiliary bus, no
-//! self-test, no cycle mode and no interrupt pin; these registers keep what is written to them. After waking the data are good at once.
+//! The low-pass filter delays, and limits the noise, but does not attenuate. There is no FIFO, no auxiliary bus, no self-test,
+//! no cycle mode and no interrupt pin; their registers store what is written. Data are valid right after wake-up.
 
 #![forbid(unsafe_code)]
 

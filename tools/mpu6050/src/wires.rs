@@ -2,7 +2,7 @@
 
 use crate::chip::{Chip, Fault};
 
-/// What a master has to keep in fast mode, in ns.
+/// Minimum times of a master in fast mode, in ns.
 const LOW: u64 = 1_300;
 const HIGH: u64 = 600;
 const START_SETUP: u64 = 600;
@@ -11,18 +11,18 @@ const DATA_SETUP: u64 = 100;
 const STOP_SETUP: u64 = 600;
 const FREE: u64 = 1_300;
 
-/// What goes over the bus between two edges.
+/// State of the transfer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Phase {
-    /// Nothing for us, until the next start.
+    /// Not addressed: waits for the next start.
     Idle,
-    /// Bits come in: so far, how many, and what the byte will be.
+    /// Receives a byte: bits so far, their number, and the byte's meaning.
     In { bits: u8, count: u8, what: Byte },
-    /// Bits go out: the byte, and how many of it.
+    /// Sends a byte, and the number of bits sent.
     Out { byte: u8, count: u8 },
 }
 
-/// What a byte from the master is.
+/// Meaning of a byte from the master.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Byte {
     Address,
@@ -30,7 +30,7 @@ enum Byte {
     Value,
 }
 
-/// The times of the last edges.
+/// Times of the last edges.
 #[derive(Clone, Copy, Debug, Default)]
 struct Edges {
     scl_rose: u64,
@@ -44,18 +44,18 @@ struct Edges {
 pub struct Wires {
     /// The chip.
     pub chip: Chip,
-    /// S, P and the bytes on the wire, acknowledged (+) or not (-), if they are to be kept.
+    /// Log of S, P and bytes with acknowledge (+) or not (-), if enabled.
     pub log: Option<Vec<String>>,
-    /// Where the master was faster than it may be.
+    /// Violations of the minimum times.
     pub violations: Vec<String>,
     phase: Phase,
     register: u8,
-    /// Both wires as they were last, and whether SDA is pulled.
+    /// Last state of both wires, and whether the chip pulls SDA.
     wires: (bool, bool),
     pulls: bool,
-    /// Until when SCL is held.
+    /// End of clock stretching.
     holds: u64,
-    /// Clocks that a stuck chip has seen.
+    /// Clocks counted by a stuck chip.
     clocks: u32,
     edges: Edges,
 }
@@ -78,12 +78,12 @@ impl Wires {
         }
     }
 
-    /// The master lets go of SCL and SDA (`true`) or pulls them; returns both wires as they are then. To be called at each change, and
-    /// every few µs beside that.
+    /// Sets the master's outputs (`true` releases, `false` pulls low); returns the resulting wires. Call it at each change, and
+    /// every few µs.
     pub fn update(&mut self, now: u64, scl: bool, sda: bool) -> (bool, bool) {
         self.chip.advance(now);
         let mut wires = self.wires(now, scl, sda);
-        // What the chip does to SDA comes after the falling edge of SCL that it follows.
+        // The chip changes SDA after the falling edge of SCL.
         while wires != self.wires {
             let (before, after) = (std::mem::replace(&mut self.wires, wires), wires);
             self.follow(now, before, after);
@@ -112,7 +112,7 @@ impl Wires {
         }
     }
 
-    /// Notes a time that is too short.
+    /// Records a time below its minimum.
     fn check(&mut self, now: u64, since: u64, least: u64, what: &str) {
         if since != 0 && now - since < least {
             let time = now - since;
@@ -241,7 +241,7 @@ impl Wires {
         }
     }
 
-    /// Sets what is wrong with the chip from now on.
+    /// Sets the chip's fault.
     pub fn set_fault(&mut self, fault: Option<Fault>) {
         self.chip.fault = fault;
         self.clocks = 0;

@@ -1,4 +1,4 @@
-//! The model against the data sheet and the register map.
+//! The chip's model against the data sheet and the register map.
 
 use embedded_hal::delay::DelayNs;
 use embedded_hal::i2c::{I2c, NoAcknowledgeSource};
@@ -32,14 +32,14 @@ fn write(bus: &mut Bus, register: u8, value: u8) {
         .expect("an acknowledge");
 }
 
-/// Awake at 1 kHz with the filter of 98 Hz, ±2000 °/s and ±8 g.
+/// Awake at 1 kHz with the 98 Hz filter, ±2000 °/s and ±8 g.
 fn wake(bus: &mut Bus) {
     for (register, value) in [(0x6b, 1), (0x1a, 2), (0x1b, 0x18), (0x1c, 0x10), (0x38, 1)] {
         write(bus, register, value);
     }
 }
 
-/// The status and the counts in one burst.
+/// Status and counts in one burst.
 fn burst(bus: &mut Bus) -> (bool, Counts) {
     let mut bytes = [0; 15];
     bus.write_read(ADDRESS, &[0x3a], &mut bytes)
@@ -67,7 +67,7 @@ fn it_wakes_as_the_register_map_says() {
     assert_eq!(counts.accel, [0, 0, 4096]);
     assert_eq!(counts.temperature, -3920);
     assert!(!burst(&mut bus).0, "reading clears the status");
-    // A reset takes time and leaves it asleep.
+    // A reset takes time and ends in sleep mode.
     write(&mut bus, 0x6b, 0x80);
     let error = bus.write(ADDRESS, &[0x6b, 1]).expect_err("no answer");
     assert_eq!(error, Error::NoAcknowledge(NoAcknowledgeSource::Address));
@@ -146,7 +146,7 @@ fn imperfections_are_those_asked_for() {
     let mut bus = bus_of(motion, imperfections);
     wake(&mut bus);
     let mean = |bus: &mut Bus| {
-        // The sample that is there was measured before the range was set.
+        // The current sample was measured with the old range.
         bus.delay_ms(2);
         burst(bus);
         let (mut sum, mut squares, mut count) = ([0.0; 3], 0.0, 0.0);
@@ -166,7 +166,7 @@ fn imperfections_are_those_asked_for() {
     for (rate, expected) in rates.into_iter().zip([206.0, 4.5, 0.0]) {
         assert!((rate - expected).abs() < 0.02, "{rates:?}");
     }
-    // 0.005 °/s/√Hz through 98 Hz, and the counts' rounding.
+    // 0.005 °/s/√Hz through 98 Hz, and the rounding of counts.
     assert!((0.055..0.075).contains(&deviation), "{deviation}");
     assert!((2018.0..2022.0).contains(&count), "{count}");
     bus.pass(20_000 * MILLISECOND);

@@ -1,16 +1,16 @@
-//! What the board costs beside the bare model: cycles a second of [`VirtualBoard::run`], with the monitor off and on,
-//! against a C++ loop that only moves the clocks, in turns in one run.
+//! Cost of the board over the bare model: speed of [`VirtualBoard::run`] in cycles per second, with the monitor off and on,
+//! against a C++ loop that only advances the clocks; alternating in one run.
 //!
-//! Ends with 1 when the board, its monitor off, has less than 90 % of the bare loop's speed.
+//! Exit code 1 if the board with its monitor off is below 90 % of the bare loop's speed.
 
 use std::process::ExitCode;
 use std::time::Instant;
 
 use virtual_board::{Error, VirtualBoard};
 
-/// Cycles of one turn.
+/// Cycles of one measurement.
 const TURN: u64 = 100_000;
-/// Turns of each kind. The median is what counts, so that a pause of the machine does not.
+/// Measurements of each kind; the median ignores pauses of the host.
 const TURNS: usize = 15;
 
 fn main() -> Result<ExitCode, Error> {

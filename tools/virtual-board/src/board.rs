@@ -1,4 +1,4 @@
-//! The board itself: clock, reset, pins and back door.
+//! The board: clock, reset, pins and back door.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -11,26 +11,26 @@ use virtual_mpu6050::Wires;
 use crate::library::Soc;
 use crate::{Error, Monitor, Picture, TimingError, boot};
 
-/// Cycles between looks at what the SoC has sent and shown.
+/// Cycles between two reads of the SoC's output and video.
 const SLICE: u64 = 1000;
 
-/// A frame takes 1650 × 750 ticks of the pixel clock; this many cycles hold two of them.
+/// Two frames in cycles; a frame takes 1650 × 750 ticks of the pixel clock.
 const TWO_FRAMES: u64 = 2 * 1650 * 750 * 325 / 297 + SLICE;
 
-/// How a board starts.
+/// Start of a board.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Start<'a> {
-    /// As a real board: the BIOS in ROM tests the memory and waits for a serial boot.
+    /// Like a real board: the BIOS in ROM tests the memory and waits for a serial boot.
     #[default]
     Full,
-    /// `firmware` lies at the start of main RAM already, and the ROM jumps there at once.
+    /// Preloaded: `firmware` is in main RAM, and the ROM jumps to it.
     Fast {
-        /// The program's image.
+        /// The firmware's image.
         firmware: &'a [u8],
     },
 }
 
-/// How to make a [`VirtualBoard`].
+/// Options of a [`VirtualBoard`].
 #[derive(Clone, Debug, Default)]
 pub struct Builder<'a> {
     library: Option<PathBuf>,
@@ -39,32 +39,31 @@ pub struct Builder<'a> {
 }
 
 impl<'a> Builder<'a> {
-    /// The library to load instead of the one that `cargo xtask gateware` left in this checkout.
+    /// Library to load [default: the one that `cargo xtask gateware` built in this checkout].
     #[must_use]
     pub fn library(mut self, path: impl Into<PathBuf>) -> Self {
         self.library = Some(path.into());
         self
     }
 
-    /// How it starts; [`Start::Full`] unless told.
+    /// Start; [`Start::Full`] by default.
     #[must_use]
     pub fn start(mut self, start: Start<'a>) -> Self {
         self.start = start;
         self
     }
 
-    /// Writes waveforms (VCD, about 1 kB a cycle) to `path`, from the first cycle on.
+    /// Writes waveforms (VCD, about 1 kB per cycle) to `path`, from the first cycle on.
     #[must_use]
     pub fn trace(mut self, path: impl Into<PathBuf>) -> Self {
         self.trace = Some(path.into());
         self
     }
 
-    /// A board whose clocks have not moved yet.
+    /// Creates a board before its first clock edge.
     ///
     /// # Errors
-    /// When the library is missing or of another version, firmware does not fit in main RAM, or waveforms cannot be
-    /// written.
+    /// The library is missing or has another version, the firmware exceeds main RAM, or waveforms cannot be written.
     pub fn build(self) -> Result<VirtualBoard, Error> {
         let (name, option) = match self.trace {
             None => ("libglint_soc.so", ""),
@@ -102,7 +101,7 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// Where `cargo xtask gateware` puts the libraries of this checkout.
+/// Folder of this checkout's libraries.
 fn built_libraries() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target/gateware/virtual")
 }
@@ -112,13 +111,13 @@ pub struct VirtualBoard {
     soc: Soc,
     monitor: Monitor,
     sensor: Option<Wires>,
-    /// What the SoC has sent and nobody has read.
+    /// Unread output of the SoC.
     uart: Vec<u8>,
     running: Duration,
 }
 
 impl VirtualBoard {
-    /// A board is made with options.
+    /// Options of a board.
     #[must_use]
     pub fn builder<'a>() -> Builder<'a> {
         Builder::default()
@@ -144,16 +143,16 @@ impl VirtualBoard {
         self.running += start.elapsed();
     }
 
-    /// Runs `cycles` cycles in a bare C++ loop around the model: the yardstick for [`run`](Self::run). What the SoC sends
-    /// and shows meanwhile is lost, and what is sent to it waits.
+    /// Runs `cycles` cycles in a bare C++ loop around the model: the reference speed for [`run`](Self::run). Output and video
+    /// of the SoC are lost meanwhile, and its input waits.
     pub fn run_bare(&mut self, cycles: u64) {
         let start = Instant::now();
         self.soc.run_bare(cycles);
         self.running += start.elapsed();
     }
 
-    /// Runs until `done` says so, which is asked every 1000 cycles, but no longer than `limit` cycles. Returns whether
-    /// it was done.
+    /// Runs until `done` returns true, but at most `limit` cycles; checks every 1000 cycles. Returns whether `done` was
+    /// reached.
     pub fn run_until(&mut self, limit: u64, mut done: impl FnMut(&mut Self) -> bool) -> bool {
         let end = self.cycles().saturating_add(limit);
         loop {
@@ -168,7 +167,7 @@ impl VirtualBoard {
         }
     }
 
-    /// Lets the sensor see the wires, and move them.
+    /// Passes the wires to the sensor, and its outputs back.
     fn move_wires(&mut self) {
         let now = u128::from(self.cycles()) * 1_000_000_000 / u128::from(self.clock_hz());
         let soc = self.soc.i2c_released();
@@ -178,7 +177,7 @@ impl VirtualBoard {
         }
     }
 
-    /// Takes what the SoC has sent and shown since the last time.
+    /// Reads new output and video of the SoC.
     fn collect(&mut self) {
         self.soc.uart_read(&mut self.uart);
         if self.monitor.is_on() {
@@ -193,45 +192,44 @@ impl VirtualBoard {
         self.soc.cycles()
     }
 
-    /// Cycles simulated in a second of wall time, over the board's whole life.
+    /// Mean simulation speed since the start, in cycles per second of wall time.
     #[must_use]
     pub fn cycles_per_second(&self) -> f64 {
         self.cycles() as f64 / self.running.as_secs_f64().max(f64::MIN_POSITIVE)
     }
 
-    /// Frequency of the system clock that the SoC was built for, in Hz.
+    /// System clock frequency of the SoC in Hz.
     #[must_use]
     pub fn clock_hz(&self) -> u32 {
         self.soc.clock_hz()
     }
 
-    /// CRC-32 of the gateware's register map.
+    /// Build id: CRC-32 of the gateware's register map.
     #[must_use]
     pub fn build_id(&self) -> u32 {
         self.soc.build_id()
     }
 
-    /// Sends bytes to the SoC's UART. They wait until it takes them; none is lost.
+    /// Sends bytes to the SoC's UART. They queue until the UART takes them.
     pub fn uart_write(&mut self, bytes: &[u8]) {
         self.soc.uart_write(bytes);
     }
 
-    /// Bytes sent to the UART that it has not taken yet.
+    /// Bytes queued for the UART.
     #[must_use]
     pub fn uart_queued(&self) -> usize {
         self.soc.uart_queued()
     }
 
-    /// Appends all that the SoC has sent and nobody has read to `output`.
+    /// Appends the unread output of the SoC to `output`.
     pub fn uart_read(&mut self, output: &mut Vec<u8>) {
         output.append(&mut self.uart);
     }
 
-    /// Runs until the SoC has sent `expected`, and returns everything up to and including it. What comes after it
-    /// stays to be read.
+    /// Runs until the SoC has sent `expected`, and returns its output up to and including it. Later output stays unread.
     ///
     /// # Errors
-    /// [`Error::Timeout`] with what came, when `limit` cycles pass without it.
+    /// [`Error::Timeout`] with the output so far, after `limit` cycles.
     pub fn read_until(&mut self, expected: &str, limit: u64) -> Result<String, Error> {
         let wanted = expected.as_bytes();
         let mut searched = 0;
@@ -259,23 +257,23 @@ impl VirtualBoard {
         }
     }
 
-    /// Holds buttons 0 to 3 down, a bit each.
+    /// Presses buttons 0 to 3, one bit each.
     pub fn set_buttons(&mut self, pressed: u8) {
         self.soc.set_buttons(pressed);
     }
 
-    /// Sets the 16 switches, a bit each.
+    /// Sets the 16 switches, one bit each.
     pub fn set_switches(&mut self, on: u16) {
         self.soc.set_switches(on);
     }
 
-    /// The 16 LEDs, a bit each.
+    /// The 16 LEDs, one bit each.
     #[must_use]
     pub fn leds(&self) -> u16 {
         self.soc.leds()
     }
 
-    /// Plugs a sensor into the I2C bus, in place of the one that is there, or of what [`i2c_drive`](Self::i2c_drive) does.
+    /// Connects a sensor to the I2C bus; it replaces the present one, and [`i2c_drive`](Self::i2c_drive).
     pub fn plug(&mut self, sensor: Wires) {
         self.sensor = Some(sensor);
     }
@@ -285,13 +283,13 @@ impl VirtualBoard {
         self.sensor.as_mut()
     }
 
-    /// Takes the sensor off the I2C bus.
+    /// Disconnects the sensor from the I2C bus.
     pub fn unplug(&mut self) -> Option<Wires> {
         self.soc.i2c_drive(0b11);
         self.sensor.take()
     }
 
-    /// What devices on the I2C bus do to the wires: SCL in bit 0, SDA in bit 1; 0 pulls low, 1 releases.
+    /// Drives the I2C wires as a device: SCL in bit 0, SDA in bit 1; 0 pulls low, 1 releases.
     pub fn i2c_drive(&mut self, released: u8) {
         self.soc.i2c_drive(released);
     }
@@ -302,16 +300,16 @@ impl VirtualBoard {
         self.soc.i2c_wires()
     }
 
-    /// The monitor on the video output. It is off until [`Monitor::turn_on`].
+    /// The monitor on the video output. It is off before [`Monitor::turn_on`].
     pub fn monitor(&mut self) -> &mut Monitor {
         &mut self.monitor
     }
 
-    /// Captures the next frame that is shown from its first line to its last, or the one that is being shown when the
-    /// monitor is on already. Takes up to two frames' time, 2.7 million cycles.
+    /// Captures the next whole frame; if the monitor is on already, the current one. Takes up to two frames' time, 2.7 million
+    /// cycles.
     ///
     /// # Errors
-    /// [`Error::Timeout`] when there is no video.
+    /// [`Error::Timeout`] without video.
     pub fn capture(&mut self) -> Result<Picture, Error> {
         let was_on = self.monitor.is_on();
         self.monitor.turn_on();
@@ -332,11 +330,11 @@ impl VirtualBoard {
         })
     }
 
-    /// Reads DDR3 from `address` on, as the CPU addresses it. A board that has run runs about a thousand cycles more
-    /// before that, so that the CPU's stores have arrived.
+    /// Reads DDR3 from `address`, an address of the CPU. On a board that has run it first runs about a thousand cycles, so that
+    /// stores of the CPU arrive.
     ///
     /// # Errors
-    /// [`Error::Address`] when the range is not within main RAM.
+    /// [`Error::Address`] if the range is not within main RAM.
     pub fn ddr_read(&mut self, address: u32, bytes: &mut [u8]) -> Result<(), Error> {
         let offset = main_ram_offset(address, bytes.len())?;
         self.soc.ddr_read(offset, bytes);
@@ -344,11 +342,11 @@ impl VirtualBoard {
         Ok(())
     }
 
-    /// Writes DDR3 from `address` on, as the CPU addresses it, and drops what the CPU's caches hold. A board that
-    /// has run runs about a thousand cycles more before that, so that the CPU's stores do not come after.
+    /// Writes DDR3 from `address`, an address of the CPU, and invalidates the CPU's caches. On a board that has run it first
+    /// runs about a thousand cycles, so that stores of the CPU do not arrive later.
     ///
     /// # Errors
-    /// [`Error::Address`] when the range is not within main RAM.
+    /// [`Error::Address`] if the range is not within main RAM.
     pub fn ddr_write(&mut self, address: u32, bytes: &[u8]) -> Result<(), Error> {
         let offset = main_ram_offset(address, bytes.len())?;
         self.soc.ddr_write(offset, bytes);
@@ -357,7 +355,7 @@ impl VirtualBoard {
     }
 }
 
-/// Where `length` bytes at `address` lie in main RAM.
+/// Offset in main RAM of `length` bytes at `address`.
 fn main_ram_offset(address: u32, length: usize) -> Result<u32, Error> {
     let ram: Range<u32> = MAIN_RAM.base..MAIN_RAM.base + MAIN_RAM.size;
     let fits = ram.contains(&address) && length as u64 <= u64::from(ram.end - address);

@@ -1,4 +1,4 @@
-//! The fast start: a few instructions in place of the BIOS.
+//! ROM of the preloaded start: a few instructions instead of the BIOS.
 
 use litex_pac::memories::MAIN_RAM;
 
@@ -7,17 +7,17 @@ const T0: u32 = 5;
 const T1: u32 = 6;
 const ZERO: u32 = 0;
 
-/// A program for the ROM that hands the DDR3 to its controller and jumps to the start of main RAM.
+/// ROM contents that hand the DDR3 to its controller and jump to the start of main RAM.
 ///
-/// On a real DDR3 the BIOS has to write mode registers and train the PHY before that; the model needs neither.
+/// A real DDR3 needs mode registers and PHY training first; the model needs neither.
 pub(crate) fn stub() -> Vec<u8> {
-    // SAFETY: nothing is accessed; only a register's address is asked for.
+    // SAFETY: only the address of a register is taken; nothing is accessed.
     let control = unsafe { litex_pac::sdram::Sdram::steal() }
         .dfii_control()
         .address() as u32;
     let controller_in_charge = litex_pac::sdram::DfiiControl::default().with_sel(true);
     [
-        // Bit 11 of the low part is its sign: the high part makes up for it.
+        // Bit 11 of the low part is its sign; the high part compensates.
         lui(T0, control.wrapping_add(0x800) >> 12),
         addi(
             T1,

@@ -1,80 +1,80 @@
-//! What can go wrong with a board.
+//! Errors of a board.
 
 use std::path::PathBuf;
 
-/// Why a board could not be made or did not do what was asked.
+/// Error of a board.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// There is no library to load.
+    /// The library does not exist.
     #[error("the virtual board's library {} is missing; run `cargo xtask gateware{option}`", .path.display())]
     LibraryMissing {
-        /// Where it was expected.
+        /// Its path.
         path: PathBuf,
-        /// What the command needs beyond its name.
+        /// Option of the command that builds it.
         option: &'static str,
     },
-    /// The library exists and cannot be loaded.
+    /// The library cannot be loaded.
     #[error("the virtual board's library {} cannot be loaded; run `cargo xtask gateware`", .path.display())]
     Library {
-        /// The library.
+        /// Its path.
         path: PathBuf,
-        /// What the loader said.
+        /// Error of the loader.
         source: libloading::Error,
     },
-    /// The library speaks another version of the interface.
+    /// The library has another version of the interface.
     #[error(
         "the virtual board's library {} has interface {found}, this program needs {expected}; \
          run `cargo xtask gateware`", .path.display()
     )]
     Interface {
-        /// The library.
+        /// Its path.
         path: PathBuf,
-        /// What this crate was written for.
+        /// Version of this crate.
         expected: u32,
-        /// What the library has.
+        /// Version of the library.
         found: u32,
     },
-    /// The library's SoC has other registers than this program.
+    /// The library's SoC has another register map.
     #[error(
         "the virtual board's register map is {found:#010x}, this program was built for {expected:#010x}; \
          run `cargo xtask gateware` and `cargo xtask pac`"
     )]
     BuildId {
-        /// Of the register access crate this program was built with.
+        /// Build id of the register access crate.
         expected: u32,
-        /// Of the library.
+        /// Build id of the library.
         found: u32,
     },
-    /// The library was built without waveforms.
+    /// Waveforms cannot be written.
     #[error("cannot write waveforms to {}: is its folder there, and is the library one with waveforms?", .path.display())]
     Trace {
-        /// The file that was asked for.
+        /// Path of the waveforms.
         path: PathBuf,
     },
-    /// An access through the back door that is not wholly in main RAM.
+    /// An access of the back door outside main RAM.
     #[error(
         "DDR3 access of {length} bytes at {address:#010x}: expected it within {:#010x}..{:#010x}",
         .ram.start, .ram.end
     )]
     Address {
-        /// First byte, as the CPU addresses it.
+        /// First byte, an address of the CPU.
         address: u32,
-        /// Bytes asked for.
+        /// Number of bytes.
         length: usize,
         /// Main RAM.
         ram: std::ops::Range<u32>,
     },
-    /// What was waited for did not come.
+    /// A wait that timed out.
     #[error("waited {cycles} cycles for {expected}; got {got:?}")]
     Timeout {
-        /// What was waited for.
+        /// Expected event.
         expected: String,
-        /// How long.
+        /// Time-out in cycles.
         cycles: u64,
-        /// What came instead.
+        /// Output meanwhile.
         got: String,
     },
-    /// The operating system refused a pseudo-terminal.
+    /// The operating system provides no pseudo-terminal.
     #[error("pseudo-terminal: {0}")]
     Pty(#[from] std::io::Error),
 }

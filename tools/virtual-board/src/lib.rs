@@ -1,8 +1,8 @@
-//! The virtual board: Glint's verilated SoC with everything around it that a real board has.
+//! The virtual board: Glint's verilated SoC and models of the devices around it.
 //!
-//! `cargo xtask gateware` compiles the SoC to a shared library; this crate loads it, owns its clocks and pins, and
-//! models what is plugged in: a UART as a byte stream ([`VirtualBoard::uart_write`], or on a pseudo-terminal with
-//! [`pty::Pty`]), buttons, switches, LEDs, an MPU-6050 ([`VirtualBoard::plug`]), and a [`Monitor`] that checks the video timing and captures pictures.
+//! `cargo xtask gateware` compiles the SoC to a shared library. This crate loads it, drives its clocks and pins, and models its
+//! devices: a UART as a byte stream ([`VirtualBoard::uart_write`], or on a pseudo-terminal with [`pty::Pty`]), buttons,
+//! switches, LEDs, an MPU-6050 ([`VirtualBoard::plug`]), and a [`Monitor`] that checks the video timing and captures pictures.
 //! A back door reads and writes DDR3 at run time, coherent with the CPU's caches.
 //!
 //! ```no_run
@@ -16,12 +16,12 @@
 //! ```
 //!
 //! # Time
-//! One cycle is one period of the SoC's system clock, 1/81.25 MHz; the pixel clock runs along at exactly 297/325 of
-//! it. Nothing here depends on wall time: the same calls give the same board, cycle by cycle.
+//! One cycle is one period of the SoC's system clock, 1/81.25 MHz; the pixel clock has exactly 297/325 of its frequency.
+//! Nothing depends on wall time: equal calls give equal boards, cycle by cycle.
 //!
 //! # Limits
-//! The UART moves a byte in a cycle where a serial line needs 7053, so what a program sends arrives sooner than on a
-//! real board. Waveforms need the library of `cargo xtask gateware --waveforms`.
+//! The UART moves one byte per cycle, where a serial line needs 7053 cycles, so output arrives earlier than on a real board.
+//! Waveforms need the library built by `cargo xtask gateware --waveforms`.
 
 mod board;
 mod boot;

@@ -9,10 +9,10 @@ use libloading::Library;
 
 use crate::Error;
 
-/// The version of the C interface that this file is written for (`GLINT_SOC_ABI`).
+/// Version of the C interface (`GLINT_SOC_ABI`) that this file implements.
 const ABI: u32 = 3;
 
-/// `glint_soc`, which only the library can look into.
+/// The library's opaque `glint_soc`.
 #[repr(C)]
 struct Opaque {
     _private: [u8; 0],
@@ -20,7 +20,7 @@ struct Opaque {
 
 type Handle = *mut Opaque;
 
-/// Declares the table of the library's functions and how it is filled.
+/// Declares the table of the library's functions, and its loading.
 macro_rules! functions {
     ($($name:ident: fn($($argument:ty),*) $(-> $result:ty)?;)*) => {
         struct Functions {
@@ -28,13 +28,13 @@ macro_rules! functions {
         }
 
         impl Functions {
-            /// Looks every function up.
+            /// Looks up every function.
             ///
             /// # Safety
-            /// The library must be one made from `glint_soc.h`, and has to outlive the table.
+            /// The library implements `glint_soc.h` and outlives the table.
             unsafe fn load(library: &Library) -> Result<Self, libloading::Error> {
                 Ok(Self {
-                    // SAFETY: the caller vouches for the library; the types are those of glint_soc.h.
+                    // SAFETY: guaranteed by the caller; the types are those of glint_soc.h.
                     $($name: *unsafe { library.get(concat!("glint_soc_", stringify!($name)).as_bytes())? },)*
                 })
             }
@@ -74,7 +74,7 @@ functions! {
 pub(crate) struct Soc {
     handle: NonNull<Opaque>,
     functions: Functions,
-    // Last, so that it is unloaded after everything that lives in it.
+    // Last field: unloaded after everything that refers to it.
     _library: Library,
 }
 
@@ -82,7 +82,7 @@ pub(crate) struct Soc {
 unsafe impl Send for Soc {}
 
 impl Soc {
-    /// Loads the library and makes a SoC that has not seen a clock edge.
+    /// Loads the library and creates a SoC before its first clock edge.
     pub fn load(path: &Path) -> Result<Self, Error> {
         let error = |source| Error::Library {
             path: path.to_owned(),
@@ -125,7 +125,7 @@ impl Soc {
         unsafe { (self.functions.clock_hz)() }
     }
 
-    /// Starts writing waveforms; whether the library could.
+    /// Starts writing waveforms; returns whether the library can.
     pub fn trace(&mut self, path: &Path) -> bool {
         let Ok(path) = CString::new(path.as_os_str().as_encoded_bytes()) else {
             return false;
@@ -139,7 +139,7 @@ impl Soc {
         unsafe { (self.functions.run)(self.raw(), cycles) }
     }
 
-    /// Moves the clocks and does nothing else.
+    /// Advances the clocks only.
     pub fn run_bare(&mut self, cycles: u64) {
         // SAFETY: the handle is alive and ours alone.
         unsafe { (self.functions.run_bare)(self.raw(), cycles) }
@@ -160,7 +160,7 @@ impl Soc {
         unsafe { (self.functions.uart_queued)(self.raw()) }
     }
 
-    /// Appends everything that the SoC has sent to `output`.
+    /// Appends the unread output of the SoC to `output`.
     pub fn uart_read(&mut self, output: &mut Vec<u8>) {
         let mut buffer = [0; 256];
         loop {
@@ -200,13 +200,13 @@ impl Soc {
         unsafe { (self.functions.i2c_wires)(self.raw()) }
     }
 
-    /// What the SoC does to the wires.
+    /// The SoC's I2C outputs.
     pub fn i2c_released(&self) -> u8 {
         // SAFETY: the handle is alive.
         unsafe { (self.functions.i2c_released)(self.raw()) }
     }
 
-    /// Runs until the SoC does something else to the wires, but no longer than `cycles`; returns how long.
+    /// Runs until the SoC changes its I2C outputs, but at most `cycles`; returns the cycles run.
     pub fn run_to_i2c(&mut self, cycles: u64) -> u64 {
         // SAFETY: the handle is alive and ours alone.
         unsafe { (self.functions.run_to_i2c)(self.raw(), cycles) }
@@ -217,7 +217,7 @@ impl Soc {
         unsafe { (self.functions.video_record)(self.raw(), on.into()) }
     }
 
-    /// Hands the recorded samples to `consume` and forgets them.
+    /// Passes the recorded samples to `consume` and clears them.
     pub fn video_take(&mut self, consume: impl FnOnce(&[u32])) {
         let mut count = 0;
         // SAFETY: the handle is alive and ours alone, `count` is a place for the result.
@@ -252,7 +252,7 @@ impl Soc {
 
 impl Drop for Soc {
     fn drop(&mut self) {
-        // SAFETY: the handle is alive, and nobody uses it afterwards.
+        // SAFETY: the handle is alive, and not used afterwards.
         unsafe { (self.functions.free)(self.raw()) }
     }
 }

@@ -1,4 +1,4 @@
-//! The monitor: checks the video timing tick by tick and captures pictures.
+//! The monitor: checks the video timing at every tick and captures pictures.
 
 use std::fmt;
 
@@ -9,8 +9,8 @@ pub const WIDTH: usize = 1280;
 /// Lines of a picture.
 pub const HEIGHT: usize = 720;
 
-/// CEA-861 1280×720 at 60 Hz. A line begins with the leading edge of hsync and a frame with that of vsync, which fall
-/// together; both are high during the sync.
+/// CEA-861 1280×720 at 60 Hz. A line starts with the leading edge of hsync, a frame with that of vsync, at the same tick. Both
+/// syncs are active high.
 const H_SYNC: usize = 40;
 const H_BACK: usize = 220;
 const H_FRONT: usize = 110;
@@ -20,7 +20,7 @@ const V_FRONT: usize = 5;
 const LINE: usize = H_SYNC + H_BACK + WIDTH + H_FRONT;
 const FRAME: usize = LINE * (V_SYNC + V_BACK + HEIGHT + V_FRONT);
 
-/// Departures from the timing that are kept; all are counted.
+/// Maximum number of stored timing errors; all are counted.
 const KEPT_ERRORS: usize = 16;
 
 /// The pins at one tick of the pixel clock, as glint_soc.h packs them.
@@ -42,7 +42,7 @@ impl Pins {
         [r, g, b]
     }
 
-    /// What the control pins have to be `position` ticks into a frame.
+    /// Expected control pins at tick `position` of a frame.
     fn expected_control(position: usize) -> u32 {
         let (x, y) = (position % LINE, position / LINE);
         let active = (H_SYNC + H_BACK..H_SYNC + H_BACK + WIDTH).contains(&x)
@@ -65,7 +65,7 @@ impl fmt::Display for Pins {
     }
 }
 
-/// A tick at which the control pins were not what CEA-861 says.
+/// A timing error: a tick whose control pins violate CEA-861.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TimingError {
     /// Whole frames before it.
@@ -74,9 +74,9 @@ pub struct TimingError {
     pub line: usize,
     /// Tick in the line, 0 being the first of hsync.
     pub tick: usize,
-    /// The control pins as they should be, packed as the monitor's samples.
+    /// Expected control pins, packed as in the samples.
     pub expected: u32,
-    /// The control pins as they were.
+    /// Actual control pins.
     pub found: u32,
 }
 
@@ -93,19 +93,19 @@ impl fmt::Display for TimingError {
     }
 }
 
-/// What is plugged into the video output.
+/// Monitor on the video output.
 ///
-/// From the first leading edge of vsync on, every tick of hsync, vsync and de is compared with CEA-861's 1280×720:
-/// 1280/110/40/220 ticks and 720/5/5/20 lines, syncs positive. It never looks for another sync after that, so a stall
-/// or a glitch shows up as errors for as long as the timing is off.
+/// From the first leading edge of vsync on, it compares hsync, vsync and de at every tick with CEA-861 1280×720:
+/// 1280/110/40/220 ticks, 720/5/5/20 lines, positive syncs. It never resynchronizes, so a stall or a glitch causes errors until
+/// the end.
 #[derive(Default)]
 pub struct Monitor {
     on: bool,
-    /// Ticks since the frame began; nothing until the first vsync.
+    /// Ticks since the start of the frame; `None` before the first vsync.
     position: Option<usize>,
-    /// The last tick's pins; a monitor that was just turned on has not seen a vsync begin.
+    /// Pins of the last tick; initially as during vsync, so that only a new vsync starts a frame.
     last: Option<Pins>,
-    /// Pixels of the frame that is being shown.
+    /// Pixels of the current frame.
     pixels: Vec<u8>,
     picture: Option<Picture>,
     frames: u64,
@@ -114,7 +114,7 @@ pub struct Monitor {
 }
 
 impl Monitor {
-    /// Begins to watch; a frame that is being shown is not captured.
+    /// Turns the monitor on; the current frame is not captured.
     pub fn turn_on(&mut self) {
         if !self.on {
             *self = Self {
@@ -125,47 +125,47 @@ impl Monitor {
         }
     }
 
-    /// Stops watching, which makes the board a little faster. Counts and errors stay until it is turned on again.
+    /// Turns the monitor off, for more speed. Counts and errors are kept until it is turned on.
     pub fn turn_off(&mut self) {
         self.on = false;
     }
 
-    /// Whether it watches.
+    /// Whether it is on.
     #[must_use]
     pub fn is_on(&self) -> bool {
         self.on
     }
 
-    /// Frames seen from the first line to the last since it was turned on.
+    /// Whole frames since it was turned on.
     #[must_use]
     pub fn frames(&self) -> u64 {
         self.frames
     }
 
-    /// Ticks at which the timing was wrong since it was turned on.
+    /// Timing errors since it was turned on.
     #[must_use]
     pub fn error_count(&self) -> u64 {
         self.error_count
     }
 
-    /// The first few of them.
+    /// The first timing errors.
     #[must_use]
     pub fn errors(&self) -> &[TimingError] {
         &self.errors
     }
 
-    /// Whether [`take_picture`](Self::take_picture) has one.
+    /// Whether [`take_picture`](Self::take_picture) has a picture.
     #[must_use]
     pub fn has_picture(&self) -> bool {
         self.picture.is_some()
     }
 
-    /// The last whole frame, once.
+    /// Takes the last whole frame.
     pub fn take_picture(&mut self) -> Option<Picture> {
         self.picture.take()
     }
 
-    /// Takes one sample for each tick of the pixel clock.
+    /// Processes one sample per tick of the pixel clock.
     pub(crate) fn watch(&mut self, samples: &[u32]) {
         for &sample in samples {
             self.tick(Pins(sample));
@@ -215,7 +215,7 @@ impl Monitor {
 mod tests {
     use super::*;
 
-    /// A stretch of right video that begins `before` ticks ahead of a vsync; each pixel tells its place.
+    /// Correct video from `before` ticks ahead of a vsync; each pixel encodes its position.
     fn video(before: usize, ticks: usize) -> Vec<u32> {
         (0..ticks)
             .map(|tick| {
@@ -264,7 +264,7 @@ mod tests {
     #[test]
     fn a_frame_that_was_joined_in_its_middle_is_not_captured() {
         let mut monitor = watching();
-        // The first sample is in the middle of vsync: its beginning was not seen.
+        // The first sample is within a vsync, whose start was not seen.
         monitor.watch(&video(0, FRAME)[1000..]);
         assert_eq!((monitor.frames(), monitor.error_count()), (0, 0));
     }
@@ -277,7 +277,7 @@ mod tests {
         monitor.watch(&samples);
         assert!(monitor.error_count() > 0);
         let first = monitor.errors()[0];
-        // The tick after the doubled one that differs from its neighbour: the beginning of the next hsync.
+        // The start of the next hsync: the first tick after the doubled one that differs from its neighbour.
         assert_eq!((first.line, first.tick), (4, 0));
         assert!(
             first

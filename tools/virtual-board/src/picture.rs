@@ -4,20 +4,20 @@ use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
 
-/// Why a picture is not the enlarged RGB565 frame that it should be.
+/// A picture that is no enlarged RGB565 frame.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PictureError {
-    /// The picture's sides are not multiples of the scale.
+    /// The sides of the picture are not multiples of the scale.
     #[error("a picture of {width}x{height} cannot come from scaling by {scale}")]
     Scale {
         /// Pixels of a line.
         width: usize,
         /// Lines.
         height: usize,
-        /// The scale that was asked for.
+        /// The requested scale.
         scale: usize,
     },
-    /// Pixels that show one source pixel differ.
+    /// Pixels of one source pixel differ.
     #[error(
         "pixel {x}, {y} is {found:?}, expected {expected:?} as in the rest of its {scale}x{scale} block"
     )]
@@ -33,7 +33,7 @@ pub enum PictureError {
         /// The pixel.
         found: [u8; 3],
     },
-    /// A colour that RGB565 widened by bit replication cannot give.
+    /// A colour that bit replication of RGB565 cannot produce.
     #[error(
         "pixel {x}, {y} is {found:?}, which is not an RGB565 colour; the nearest gives {expected:?}"
     )]
@@ -42,7 +42,7 @@ pub enum PictureError {
         x: usize,
         /// Line.
         y: usize,
-        /// The colour whose upper bits are those of the pixel.
+        /// The nearest colour with the same upper bits.
         expected: [u8; 3],
         /// The pixel.
         found: [u8; 3],
@@ -58,10 +58,10 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// `rgb` has three bytes a pixel.
+    /// Creates a picture from three bytes per pixel.
     ///
     /// # Panics
-    /// When the number of bytes is another.
+    /// The number of bytes does not match.
     #[must_use]
     pub fn new(width: usize, height: usize, rgb: Vec<u8>) -> Self {
         assert_eq!(rgb.len(), 3 * width * height, "three bytes a pixel");
@@ -89,7 +89,7 @@ impl Picture {
     /// Red, green and blue at column `x` of line `y`.
     ///
     /// # Panics
-    /// When there is no such pixel.
+    /// The pixel does not exist.
     #[must_use]
     pub fn pixel(&self, x: usize, y: usize) -> [u8; 3] {
         assert!(
@@ -102,10 +102,10 @@ impl Picture {
         [self.rgb[at], self.rgb[at + 1], self.rgb[at + 2]]
     }
 
-    /// The RGB565 frame that scan-out enlarged by `scale` to this picture, row by row.
+    /// The RGB565 frame behind this picture, which scan-out enlarged by `scale`, row by row.
     ///
     /// # Errors
-    /// When a block of `scale` × `scale` is not of one colour, or a colour is not RGB565 widened by bit replication.
+    /// A block of `scale` × `scale` has several colours, or a colour is not RGB565 widened by bit replication.
     pub fn scaled_back(&self, scale: usize) -> Result<Vec<u16>, PictureError> {
         let Self { width, height, .. } = *self;
         if scale == 0 || !width.is_multiple_of(scale) || !height.is_multiple_of(scale) {
@@ -151,7 +151,7 @@ impl Picture {
     /// Writes a PNG.
     ///
     /// # Errors
-    /// When the file cannot be written.
+    /// The file cannot be written.
     pub fn save(&self, path: &Path) -> std::io::Result<()> {
         let mut encoder = png::Encoder::new(
             BufWriter::new(File::create(path)?),
@@ -165,12 +165,12 @@ impl Picture {
     }
 }
 
-/// The upper bits of each channel: red in bits 15:11, green in 10:5, blue in 4:0.
+/// Upper bits of each channel: red in bits 15:11, green in 10:5, blue in 4:0.
 fn to_rgb565([r, g, b]: [u8; 3]) -> u16 {
     u16::from(r >> 3) << 11 | u16::from(g >> 2) << 5 | u16::from(b >> 3)
 }
 
-/// Each channel widened to 8 bits by repeating its upper bits below it.
+/// Widens each channel to 8 bits by bit replication.
 fn from_rgb565(colour: u16) -> [u8; 3] {
     let five = |shift: u16| (colour >> shift & 0x1f) as u8;
     let six = (colour >> 5 & 0x3f) as u8;

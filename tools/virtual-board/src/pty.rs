@@ -1,4 +1,4 @@
-//! The board behind a pseudo-terminal, for programs that expect a serial port.
+//! The board on a pseudo-terminal, for programs that expect a serial port.
 
 use std::fs::File;
 use std::io::{self, ErrorKind, Read, Write};
@@ -12,31 +12,31 @@ use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 
 use crate::{Error, VirtualBoard};
 
-/// Cycles between looks at the terminal.
+/// Cycles between two reads of the terminal.
 const SLICE: u64 = 2000;
 
-/// Bytes from the terminal that wait for the UART before the terminal has to wait itself.
+/// Maximum number of bytes queued for the UART; beyond it the terminal waits.
 const QUEUE: usize = 4096;
 
-/// Something to do with the board between two slices.
+/// A task for the board's thread, run between two slices.
 type Task = Box<dyn FnOnce(&mut VirtualBoard) + Send>;
 
-/// A board that runs in a thread of its own, with its UART on a pseudo-terminal.
+/// A board in its own thread, with its UART on a pseudo-terminal.
 ///
-/// The terminal is raw: every byte passes as it is, in both directions. The board stops when this is dropped.
+/// The terminal is raw: every byte passes unchanged in both directions. Dropping this stops the board.
 pub struct Pty {
     path: PathBuf,
     tasks: Option<Sender<Task>>,
     thread: Option<JoinHandle<VirtualBoard>>,
-    /// Keeps the terminal's other side open, so that programs may come and go.
+    /// Keeps the terminal's other side open, so that programs can close and reopen it.
     _terminal: OwnedFd,
 }
 
 impl Pty {
-    /// Lets `board` run.
+    /// Starts the board's thread.
     ///
     /// # Errors
-    /// When the system has no pseudo-terminal to give.
+    /// The system provides no pseudo-terminal.
     pub fn start(board: VirtualBoard) -> Result<Self, Error> {
         let (side, terminal, path) = open().map_err(io::Error::from)?;
         let (tasks, queue) = channel();
@@ -51,23 +51,23 @@ impl Pty {
         })
     }
 
-    /// The device that programs open, such as `/dev/pts/3`.
+    /// Path of the device for programs, such as `/dev/pts/3`.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Does something with the board between two of its cycles and returns what came of it.
+    /// Runs a closure on the board between two cycles and returns its result.
     ///
     /// # Panics
-    /// When the board's thread has panicked, in an earlier task.
+    /// The board's thread has panicked.
     pub fn with<R: Send + 'static>(
         &self,
         task: impl FnOnce(&mut VirtualBoard) -> R + Send + 'static,
     ) -> R {
         let (reply, answer) = channel();
         let task: Task = Box::new(move |board| {
-            // The caller waits for it.
+            // The caller waits for the result.
             let _ = reply.send(task(board));
         });
         let sent = self
@@ -78,10 +78,10 @@ impl Pty {
         answer.recv().expect("the virtual board's thread has ended")
     }
 
-    /// Stops the board and takes it back.
+    /// Stops the board and returns it.
     ///
     /// # Panics
-    /// When the board's thread has panicked.
+    /// The board's thread has panicked.
     #[must_use]
     pub fn stop(mut self) -> VirtualBoard {
         self.tasks = None;
@@ -99,13 +99,13 @@ impl Drop for Pty {
     fn drop(&mut self) {
         self.tasks = None;
         if let Some(thread) = self.thread.take() {
-            // A panic in there has been printed.
+            // The thread's panic has been printed already.
             let _ = thread.join();
         }
     }
 }
 
-/// A raw pseudo-terminal: our side, which does not block, the other side, and its path.
+/// A raw pseudo-terminal: this side, non-blocking; the other side; its path.
 fn open() -> rustix::io::Result<(File, OwnedFd, PathBuf)> {
     use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
     let side = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
@@ -154,7 +154,7 @@ fn run(mut board: VirtualBoard, mut terminal: File, tasks: &Receiver<Task>) -> V
     }
 }
 
-/// Whether it may work the next time.
+/// Whether the thread goes on.
 fn is_passing(error: &io::Error) -> bool {
     matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted)
 }

@@ -5,13 +5,13 @@ use virtual_board::{Start, VirtualBoard};
 /// The BIOS's prompt, with its colours.
 const PROMPT: &str = "\x1b[92;1mlitex\x1b[0m> ";
 
-/// More than the BIOS needs to its prompt, the quarter of a second for the serial boot included.
+/// Time-out of the boot in cycles, which includes a quarter of a second for the serial boot.
 const BOOT_LIMIT: u64 = 60_000_000;
 
-/// More than the BIOS needs for a command.
+/// Time-out of a command in cycles.
 const COMMAND_LIMIT: u64 = 2_000_000;
 
-/// A board at the BIOS's prompt, and what the BIOS said until there.
+/// A board at the BIOS's prompt, and its output so far.
 fn booted() -> (VirtualBoard, String) {
     let mut board = VirtualBoard::builder()
         .start(Start::Full)
@@ -20,13 +20,13 @@ fn booted() -> (VirtualBoard, String) {
     let start = board
         .read_until("Press Q or ESC to abort boot completely.", BOOT_LIMIT)
         .expect("the BIOS offers a serial boot");
-    // Nothing answers the serial boot: Q saves 20 million cycles of waiting.
+    // Q skips the serial boot, which saves 20 million cycles.
     board.uart_write(b"Q");
     let rest = board.read_until(PROMPT, BOOT_LIMIT).expect("a prompt");
     (board, start + &rest)
 }
 
-/// Types a command and returns what the BIOS answers.
+/// Sends a command and returns the answer.
 fn command(board: &mut VirtualBoard, line: &str) -> String {
     board.uart_write(format!("{line}\n").as_bytes());
     board
@@ -34,7 +34,7 @@ fn command(board: &mut VirtualBoard, line: &str) -> String {
         .expect("an answer and a prompt")
 }
 
-/// The bytes of a `mem_read` of one 16-byte line.
+/// The bytes of `mem_read` of one 16-byte line.
 fn mem_read(board: &mut VirtualBoard, address: u32) -> Vec<u8> {
     let answer = command(board, &format!("mem_read {address:#010x} 16"));
     let start = format!("{address:#010x}  ");
@@ -70,7 +70,7 @@ fn the_bios_boots_and_the_back_door_is_coherent_with_the_cpu() {
 }
 
 fn both_see_the_same_memory(board: &mut VirtualBoard) {
-    // One address in each bank, and in the first and last row.
+    // One address in each bank, in the first and in the last row.
     let banks = (0..8).map(|bank| 0x4010_0000 + bank * 0x800 + 0x7f0);
     for (number, address) in banks.chain([0x4200_0000, 0x47ff_fff0]).enumerate() {
         let written: Vec<u8> = (0..16).map(|i| (number * 16 + i) as u8 ^ 0xa5).collect();
@@ -95,7 +95,7 @@ fn both_see_the_same_memory(board: &mut VirtualBoard) {
 }
 
 fn ranges_cross_banks_and_rows_in_order(board: &mut VirtualBoard) {
-    // An odd start and length, over all banks and into the next row.
+    // Odd start and length, across all banks and into the next row.
     let start = 0x4100_3fff - 5;
     let written: Vec<u8> = (0..20_001_u32)
         .map(|i| (i.wrapping_mul(0x9e37_79b1) >> 24) as u8)
@@ -117,7 +117,7 @@ fn ranges_cross_banks_and_rows_in_order(board: &mut VirtualBoard) {
 fn a_cached_line_is_read_anew(board: &mut VirtualBoard) {
     let address = 0x4020_0040;
     board.ddr_write(address, &[0x11; 16]).expect("main RAM");
-    // The first read puts the line into the data cache, where the second finds it.
+    // The first read fills the data cache line that the second one hits.
     assert_eq!(mem_read(board, address), [0x11; 16]);
     assert_eq!(mem_read(board, address), [0x11; 16]);
     board.ddr_write(address, &[0x22; 16]).expect("main RAM");

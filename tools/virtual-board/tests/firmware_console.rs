@@ -1,4 +1,4 @@
-//! What the console says, word for word, and that nothing typed at it goes wrong or gets lost.
+//! The console's output, word for word, and its behaviour on noise and long input.
 
 mod firmware;
 
@@ -6,7 +6,7 @@ use std::path::Path;
 
 use firmware::{PROMPT, command, image, started};
 
-/// Keys whose value is a time or depends on one.
+/// Keys whose values depend on time.
 const TIMES: [&str; 15] = [
     "cycles ",
     "video_frames ",
@@ -25,7 +25,7 @@ const TIMES: [&str; 15] = [
     "cycles_flush ",
 ];
 
-/// `text` without what differs from build to build.
+/// `text` without values that change between builds.
 fn lasting(text: &str) -> String {
     let build_id = format!("{:#010x}", litex_pac::BUILD_ID);
     let text = text.replace(&build_id, "BUILD_ID").replace("\r\n", "\n");
@@ -42,8 +42,8 @@ fn lasting(text: &str) -> String {
     text.split('\n').map(line).collect::<Vec<_>>().join("\n")
 }
 
-/// Plays the committed transcript: what stands behind its prompts is typed, and the whole must come out again. With
-/// `GLINT_UPDATE` in the environment the transcript is written anew.
+/// Replays the committed transcript: sends the text after each prompt and compares all output. With `GLINT_UPDATE` in the
+/// environment it rewrites the transcript.
 #[test]
 fn the_console_speaks_as_in_the_transcript() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/firmware/console.txt");
@@ -78,14 +78,14 @@ fn the_console_speaks_as_in_the_transcript() {
 #[test]
 fn noise_and_overlong_lines_are_refused_and_nothing_is_lost() {
     let (mut board, _) = started(&image());
-    // Every byte but those that end a line: editing keys, halves of characters and escape sequences.
+    // Every byte except line ends: editing keys, partial characters and escape sequences.
     let noise = (0..500_u32).map(|index| (index.wrapping_mul(0x9e37_79b9) >> 24) as u8);
     board.uart_write(
         &noise
             .filter(|byte| !b"\r\n\x03".contains(byte))
             .collect::<Vec<_>>(),
     );
-    // A zero drops what the noise has left in the line.
+    // A zero clears the noise from the line.
     board.uart_write(b"\0leds 7\r");
     board
         .read_until("leds 7\r\nok\r\nglint> ", firmware::LIMIT)
@@ -97,7 +97,7 @@ fn noise_and_overlong_lines_are_refused_and_nothing_is_lost() {
         answer.ends_with("\r\nerror: line: expected at most 640 bytes, came more\r\nglint> "),
         "{answer:?}"
     );
-    // Twenty commands typed ahead of the machine are all answered.
+    // Twenty commands in one write are all answered.
     board.uart_write(b"buttons\r".repeat(20).as_slice());
     for _ in 0..20 {
         let answer = board
@@ -127,7 +127,7 @@ fn a_still_scene_renders_nothing_and_a_change_is_rendered_once() {
     let (mut board, _) = started(&image());
     command(&mut board, "camera 3 10 80");
     command(&mut board, "render");
-    // Frames and depth as nobody draws them.
+    // Different contents of frame and depth buffer mark the undrawn ones.
     let windows = [0x4100_0000, 0x4120_0000, 0x4140_0000];
     for window in windows {
         board
@@ -139,7 +139,7 @@ fn a_still_scene_renders_nothing_and_a_change_is_rendered_once() {
         board.ddr_read(window, &mut bytes).expect("main RAM");
         bytes.iter().all(|byte| *byte == 0xa5)
     };
-    // The same camera again, and more than the time of a frame.
+    // The same camera again, for longer than a frame takes.
     command(&mut board, "camera 3 10 80");
     board.run(1_500_000);
     assert!(
@@ -148,8 +148,7 @@ fn a_still_scene_renders_nothing_and_a_change_is_rendered_once() {
             .iter()
             .all(|untouched| *untouched)
     );
-    // Another one is drawn without being asked for, on the frame that is not on the screen. The engine writes depths only
-    // for those who ask.
+    // A new camera is drawn at once, to the frame buffer that is not shown. The engine writes depths on request only.
     command(&mut board, "camera 3 11 80");
     board.run(2_500_000);
     let [a, b, depth] = windows.map(|window| untouched(&mut board, window));

@@ -1,4 +1,4 @@
-//! The firmware when something is wrong: gateware of another build, and programs that trap.
+//! The firmware on gateware of another build, and its report of traps.
 
 mod firmware;
 
@@ -8,7 +8,7 @@ use litex_pac::BUILD_ID;
 #[test]
 fn gateware_of_another_build_is_said_and_the_console_works() {
     let mut image = image();
-    // A program that was built for other gateware.
+    // A program built for other gateware.
     patch(&mut image, address(&["GLINT_BUILD_ID"]), &[!BUILD_ID]);
     let (mut board, said) = started(&image);
     let (found, expected) = (
@@ -27,15 +27,15 @@ fn gateware_of_another_build_is_said_and_the_console_works() {
         )),
         "{info}"
     );
-    // What needs no other register still works, the rest is refused.
+    // Commands without other registers work; the others fail.
     assert!(command(&mut board, "render").contains("triangles_drawn 6\r\n"));
     assert!(command(&mut board, "leds 1").contains("error: "));
     assert_eq!(board.leds(), 0);
     assert!(command(&mut board, "selftest").contains("selftest identity FAILED"));
 }
 
-/// Each trap's cause, the code for it, and the value that the CPU gives with it. (An address with nothing behind it is
-/// no trap: LiteX's bus answers for it after a while.)
+/// Cause of each trap, code that triggers it, and its trap value. (An address without a device is no trap: LiteX's bus answers
+/// after a time-out.)
 const TRAPS: [(&str, &[u32], u32); 2] = [
     ("illegal instruction (mcause 2)", &[0x0000_0000], 0),
     // li a0, 1; lw a0, 0(a0)

@@ -1,18 +1,18 @@
-//! The fast start, the pins, and the back door against a program that has everything in its caches.
+//! The preloaded start, the pins, and the back door against a program whose data are in the caches.
 
 mod program;
 
 use litex_pac::{buttons, leds, switches};
 use virtual_board::{Start, VirtualBoard};
 
-/// Where the program looks for its word, in a row of its own.
+/// Address of the program's word, in a row of its own.
 const WORD: u32 = 0x4012_3450;
 
-/// More than the program needs for a round.
+/// Time-out of a round of the program.
 const ROUND: u64 = 500;
 
 fn board() -> VirtualBoard {
-    // SAFETY: only addresses are asked for.
+    // SAFETY: only addresses are taken.
     let (buttons, switches, leds) = unsafe {
         (
             buttons::Buttons::steal(),
@@ -61,8 +61,8 @@ fn buttons_and_switches_reach_the_program_and_it_the_leds() {
 #[test]
 fn the_back_door_reaches_what_the_caches_hold() {
     let mut board = board();
-    // Many times, so that the writes meet the program at every point of its rounds: also when the last fill of the 16
-    // rounds that displace the word is under way, which would leave old data for the next 16.
+    // Repeated, so that the writes meet every phase of the program's rounds, also the last fill of the 16 rounds that displace
+    // the word, which would leave old data for the next 16.
     for i in 0..600_u16 {
         let value = (i * 7) & 15;
         board.ddr_write(WORD, &[value as u8]).expect("main RAM");
@@ -83,7 +83,7 @@ fn the_back_door_reaches_what_the_caches_hold() {
 
 #[test]
 fn the_back_door_sees_what_the_program_has_stored() {
-    // SAFETY: only an address is asked for.
+    // SAFETY: only an address is taken.
     let leds = unsafe { leds::Leds::steal() }.out().address() as u32;
     let firmware = program::assemble("stores", &[("WORD", WORD), ("LEDS_OUT", leds)]);
     let start = Start::Fast {
@@ -107,7 +107,7 @@ fn the_back_door_sees_what_the_program_has_stored() {
     }
 }
 
-/// Where the program adds nothing to its word.
+/// Address where the program copies its word without the increment.
 fn patch_address(board: &mut VirtualBoard) -> u32 {
     const START: u32 = 0x4000_0000;
     const ADDI_T2_T2_0: u32 = 0x0003_8393;

@@ -1,21 +1,21 @@
-//! Scan-out to the monitor through the whole SoC: all scales, a flip, and a CPU that wants the memory as well.
+//! Scan-out to the monitor through the whole SoC: all scales, a flip, and memory traffic of the CPU.
 
 mod program;
 
 use litex_pac::{leds, scanout};
 use virtual_board::{HEIGHT, Start, VirtualBoard, WIDTH};
 
-/// Two frames, as far apart in memory as the largest is long.
+/// Two frame buffers, a largest frame apart.
 const FRAME: u32 = 0x4100_0000;
 const OTHER_FRAME: u32 = 0x4120_0000;
 
-/// What the program is told.
+/// Address of the program's parameters.
 const PARAMETERS: u32 = 0x4010_0000;
 
-/// What the program reads and writes all the time.
+/// Address of the memory traffic.
 const TRAFFIC: u32 = 0x4080_0000;
 
-/// A frame that has every colour bit in every place.
+/// A frame that uses every colour bit at every position.
 fn frame(pixels: usize, seed: u32) -> Vec<u16> {
     (0..pixels as u32)
         .map(|i| (i.wrapping_add(seed).wrapping_mul(0x9e37_79b1) >> 13) as u16)
@@ -26,9 +26,9 @@ fn bytes(frame: &[u16]) -> Vec<u8> {
     frame.iter().flat_map(|pixel| pixel.to_le_bytes()).collect()
 }
 
-/// Shows a frame, flips to another, and compares what the monitor sees for `frames` frames.
+/// Shows a frame, flips to another, and compares the monitor's pictures for `frames` frames.
 fn shows_and_flips(scale: usize, frames: u64) {
-    // SAFETY: only addresses are asked for.
+    // SAFETY: only addresses are taken.
     let (scanout, leds) = unsafe { (scanout::Scanout::steal(), leds::Leds::steal()) };
     let base = scanout::Scanout::BASE;
     let firmware = program::assemble(

@@ -1,4 +1,4 @@
-//! The SoC's I2C master and a virtual MPU-6050 on its pins.
+//! The SoC's I2C master with a virtual MPU-6050 on its pins.
 
 mod firmware;
 mod program;
@@ -8,17 +8,17 @@ use litex_pac::{i2c, leds};
 use virtual_board::virtual_mpu6050::{Chip, Fault, Imperfections, Source, State, Wires};
 use virtual_board::{Start, VirtualBoard};
 
-/// Cycles of a transaction of five bytes, and a good deal more.
+/// Time-out in cycles of a transaction of five bytes.
 const ROUND: u64 = 20_000;
 
-/// Between two looks whether a fault is over, in ms.
+/// Interval between two checks for the end of a fault, in ms.
 const STEP: u64 = 8;
 
 /// Cycles of a millisecond.
 const MILLISECOND: u64 = 81_250;
 
 fn sensor(motion: impl Fn(f64) -> State + Send + 'static) -> Wires {
-    // Noise as of a specimen, and nothing that would have to be calibrated.
+    // Noise of a typical sensor, without errors that need calibration.
     let imperfections = Imperfections {
         noise: 0.005,
         accel_noise: 0.0004,
@@ -33,7 +33,7 @@ fn sensor(motion: impl Fn(f64) -> State + Send + 'static) -> Wires {
 
 #[test]
 fn a_program_reads_the_sensor_through_the_pins() {
-    // SAFETY: only addresses are asked for.
+    // SAFETY: only addresses are taken.
     let (i2c, leds) = unsafe { (i2c::I2c::steal(), leds::Leds::steal()) };
     let firmware = program::assemble(
         "i2c",
@@ -68,7 +68,7 @@ fn a_program_reads_the_sensor_through_the_pins() {
     assert!(violations.is_empty(), "{violations:#?}");
 }
 
-/// At rest but for a turn of 45° to the left, from 0.03 s on in 0.05 s.
+/// At rest, except for a turn of 45° to the left, which starts at 0.03 s and takes 0.05 s.
 fn turn(time: f64) -> State {
     let turns = (0.03..0.08).contains(&time);
     State {
@@ -77,10 +77,10 @@ fn turn(time: f64) -> State {
     }
 }
 
-/// What the angle of that turn may be off by, in degrees.
+/// Tolerance of the angle of that turn, in degrees.
 const ANGLE: f64 = 0.1;
 
-/// The line of `key` in an answer.
+/// The line of an answer with `key`.
 fn line<'a>(answer: &'a str, key: &str) -> &'a str {
     let mut lines = answer.lines();
     lines
@@ -93,7 +93,7 @@ fn numbers(text: &str) -> Vec<f64> {
     words.map(|word| word.parse().expect("a number")).collect()
 }
 
-/// A board with a sensor that a program before this one has set up: a reset would take a tenth of a second.
+/// A board with a sensor that is already set up: a reset would take a tenth of a second.
 fn board_with_sensor(motion: impl Fn(f64) -> State + Send + 'static) -> VirtualBoard {
     let image = image();
     let start = Start::Fast { firmware: &image };
@@ -130,7 +130,7 @@ fn the_camera_follows_the_sensor_and_a_lost_one_is_found_again() {
     assert!((80..92).contains(&samples), "{status}");
     let angles = numbers(line(&status, "angles"));
     assert!((angles[0] - 45.0).abs() < ANGLE, "{status}");
-    // The picture's camera is the attitude, as soon as there is a frame for it.
+    // The camera is the attitude of the next frame.
     board.run(35 * MILLISECOND);
     let view = command(&mut board, "view");
     let view = numbers(line(&view, "view"));
@@ -138,7 +138,7 @@ fn the_camera_follows_the_sensor_and_a_lost_one_is_found_again() {
     for (found, expected) in view[9..12].iter().zip([-sine, cosine, 0.0]) {
         assert!((found - expected).abs() < ANGLE.to_radians(), "{view:?}");
     }
-    // Pulled out and put back; the attitude is held.
+    // The sensor is unplugged and plugged again; the attitude is held.
     let sensor = board.unplug().expect("the sensor");
     board.run(15 * MILLISECOND);
     let status = command(&mut board, "imu");
@@ -168,10 +168,11 @@ fn the_camera_follows_the_sensor_and_a_lost_one_is_found_again() {
     assert!(violations.is_empty(), "{violations:#?}");
 }
 
-/// A rotation as a matrix, from the body to the world.
+/// A rotation matrix from body to world.
 type Rotation = [[f64; 3]; 3];
 
-/// What is done one after the other, each with a rest behind it: for how many s, at which mean rate about one axis in °/s, or there and
+/// Parts of the motion, each followed by a rest: duration in s, mean rate about one axis in °/s or the peak rate and number of
+/// oscillations, and a shake along all axes in g.
 /// back again so many times at that rate at most, and with how much of a shake along all axes, in g.
 struct Part {
     name: &'static str,
@@ -192,7 +193,8 @@ impl Part {
         }
     }
 
-    /// After `time` seconds of `length`: for how many seconds it has turned at its rate, the rate of now, and the shake's part of now. All
+    /// At `time` seconds of `length`: seconds turned at full rate, relative rate, and relative shake. Starts and ends are
+    /// smooth, as sampling requires.
     /// begins and ends softly, as what is measured by samples has to.
     fn at(&self, time: f64, length: f64) -> (f64, f64, f64) {
         if self.swings > 0.0 {
@@ -207,13 +209,13 @@ impl Part {
     }
 }
 
-/// The script's beginning, in seconds, and how long each rest takes.
+/// Start of the script, and length of each rest, in seconds.
 const BEGIN: f64 = 0.03;
 const RESTING: f64 = 0.035;
 
 const SCRIPT: [Part; 6] = [
     Part::turn("yaw", 0.05, [0.0, 0.0, 900.0]),
-    // From the level up through the pole, and 9° down behind it.
+    // From level up through the pole, to 9° beyond it.
     Part::turn("pitch through 90°", 0.104, [950.0, 0.0, 0.0]),
     Part::turn("roll", 0.05, [0.0, -900.0, 0.0]),
     Part::turn("tumble", 0.06, [600.0, -800.0, 500.0]),
@@ -232,7 +234,7 @@ fn times(a: &Rotation, b: &Rotation) -> Rotation {
     [0, 1, 2].map(|i| [0, 1, 2].map(|j| (0..3).map(|k| a[i][k] * b[k][j]).sum()))
 }
 
-/// The rotation about the direction of `axis`, by its length times `degrees` (Rodrigues).
+/// The rotation about `axis` by its length times `degrees` (Rodrigues).
 fn rotation(axis: [f64; 3], degrees: f64) -> Rotation {
     let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
     if length == 0.0 {
@@ -260,7 +262,8 @@ fn rotation(axis: [f64; 3], degrees: f64) -> Rotation {
     ]
 }
 
-/// What the script has turned until `time`, and what the sensor feels then. Each part takes `stretch` times as long, at a rate by as much
+/// The rotation of the script until `time`, and the sensor's inputs then. `stretch` multiplies each part's duration and divides
+/// its rate.
 /// lower.
 fn script(time: f64, stretch: f64) -> (Rotation, State) {
     let mut turned = rotation([0.0; 3], 0.0);
@@ -277,7 +280,7 @@ fn script(time: f64, stretch: f64) -> (Rotation, State) {
         }
         begin += length + RESTING;
     }
-    // Gravity is the world's z in the body's axes.
+    // Gravity is the world's z axis in body axes.
     let state = State {
         rate,
         force: turned[2].map(|up| up + shake),
@@ -286,7 +289,8 @@ fn script(time: f64, stretch: f64) -> (Rotation, State) {
     (turned, state)
 }
 
-/// The camera goes where f64 says that the sensor has gone, through the pole of the pitch too: 0.6 s of the board's time, and with
+/// The camera follows the f64 reference of the sensor's motion, also through the pole of the pitch: 0.6 s of board time, and
+/// with `GLINT_IMU_MOTION` at a seventh of the speed in 2.6 s.
 /// `GLINT_IMU_MOTION` seven times as slow in 2.6 s.
 #[test]
 fn the_camera_follows_a_script() {
@@ -302,7 +306,7 @@ fn the_camera_follows_a_script() {
     let mut end = BEGIN;
     for part in &SCRIPT {
         end += part.time * stretch + RESTING;
-        // Shortly before the next part begins: the filter's delay and a frame are over.
+        // Just before the next part: after the filter's delay and a frame.
         let until = ((end - 0.005) * 1e3 * MILLISECOND as f64) as u64;
         board.run(until.saturating_sub(board.cycles()));
         let (turned, _) = script(end, stretch);
@@ -324,7 +328,7 @@ fn the_camera_follows_a_script() {
     assert_eq!(line(&answer, "video_underflows"), "0");
 }
 
-/// Each fault on the board: told on the console, and over within its time; the pictures go on. A second of the board's time and more.
+/// Every fault on the board: reported on the console, ended in time, without an effect on the pictures. A second of board time.
 #[test]
 fn every_fault_is_told_and_survived() {
     let mut board = board_with_sensor(|_| State::default());
@@ -337,7 +341,7 @@ fn every_fault_is_told_and_survived() {
         (failure, number("failures"), number("samples"))
     };
     let gone = "i2c: no device acknowledged the address";
-    // What is wrong, the ms until it is told, the ms until it is over, and what is told.
+    // Fault, time-out of its report in ms, time-out of its end in ms, and its report.
     let faults: [(Option<Fault>, u64, u64, &str); 8] = [
         (Some(Fault::Absent), 10, 100, gone),
         (
@@ -376,7 +380,7 @@ fn every_fault_is_told_and_survived() {
             250,
             "WHO_AM_I is 0x12: expected 0x68",
         ),
-        // Its supply fails for a moment.
+        // A short loss of supply.
         (None, 25, 250, gone),
     ];
     for (fault, until_told, until_over, text) in faults {

@@ -1,4 +1,4 @@
-//! Sets a Debian machine up: packages, the soft core's Rust target, the Python environment.
+//! Setup of a Debian machine: packages, the soft core's Rust target, the Python environment.
 
 use std::fs;
 use std::process::Command;
@@ -7,7 +7,7 @@ use anyhow::{Context, Result, bail};
 
 use crate::{paths, run};
 
-/// Debian's packages, and what each is for.
+/// Debian packages and their purposes.
 const PACKAGES: [(&str, &str); 4] = [
     ("gcc-riscv64-unknown-elf", "compiles the LiteX BIOS"),
     ("g++", "compiles the verilated SoC"),
@@ -15,19 +15,19 @@ const PACKAGES: [(&str, &str); 4] = [
     ("python3-venv", "holds the Python packages"),
 ];
 
-/// What the soft core runs: RV32IM without an operating system.
+/// Rust target of the soft core: RV32IM without an operating system.
 const RUST_TARGET: &str = "riscv32im-unknown-none-elf";
 
-/// What the Python environment holds, all pinned: for the gateware, and for the tests.
+/// Pinned Python packages, for the gateware and for the tests.
 const REQUIREMENTS: [&str; 2] = [
     "gateware/requirements.txt",
     "tools/reference/requirements.txt",
 ];
 
-/// Does what is missing and says what it could not get. Quick when nothing is.
+/// Installs missing prerequisites. Fast if there are none.
 ///
 /// # Errors
-/// Names each thing that is still missing and the command that gets it.
+/// Lists each prerequisite that is still missing, and the command that installs it.
 pub fn bootstrap() -> Result<()> {
     let missing: Vec<String> = [debian_packages(), rust_target(), python_environment()]
         .into_iter()
@@ -73,7 +73,7 @@ fn debian_packages() -> Result<()> {
     .with_context(|| format!("Debian packages: type: {by_hand}"))
 }
 
-/// A package counts as present when what it is for works: python3 and g++ may come from elsewhere.
+/// A package counts as present if its program works, whatever installed it.
 fn is_present(package: &str) -> bool {
     match package {
         "gcc-riscv64-unknown-elf" => {

@@ -1,4 +1,4 @@
-//! `cargo xtask demo` and `cargo xtask report`: build what is needed, then hand over to the program that does it.
+//! `cargo xtask demo` and `cargo xtask report`: build the prerequisites, then run the program.
 
 use std::process::Command;
 
@@ -7,10 +7,10 @@ use anyhow::Result;
 use crate::gateware::{self, Board};
 use crate::{bootstrap, firmware, paths, run};
 
-/// Builds everything and runs `glint demo` with `arguments` (mesh files; none: generated ones).
+/// Builds everything and runs `glint demo` with `arguments`.
 ///
 /// # Errors
-/// When a build or the demo fails.
+/// A build or the demo fails.
 pub fn demo(arguments: &[String]) -> Result<()> {
     bootstrap::bootstrap()?;
     gateware::build(Board::Virtual)?;
@@ -22,7 +22,7 @@ pub fn demo(arguments: &[String]) -> Result<()> {
 /// the raymarcher alone. `pages` rebuilds all pages from their tables and needs no build.
 ///
 /// # Errors
-/// When a build or a measurement fails.
+/// A build or a measurement fails.
 pub fn report(name: &str, arguments: &[String]) -> Result<()> {
     if name == "pages" {
         return tool("glint-reference", "report", name, arguments);
@@ -42,7 +42,7 @@ pub fn report(name: &str, arguments: &[String]) -> Result<()> {
     tool("glint-reference", "report", name, arguments)
 }
 
-/// Builds a program of the workspace behind a progress line, then gives it the terminal.
+/// Builds a program of the workspace as a step, then runs it on this terminal.
 fn tool(package: &str, program: &str, subcommand: &str, arguments: &[String]) -> Result<()> {
     let select = ["--package", package, "--bin", program];
     run::step(

@@ -1,4 +1,4 @@
-//! `cargo xtask firmware`: the program for the soft core, as the bytes that the BIOS loads.
+//! `cargo xtask firmware`: the firmware as the image that the BIOS loads.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,14 +12,14 @@ use object::{Endianness, Object, ObjectSection, ObjectSymbol, SectionKind};
 
 use crate::{paths, run};
 
-/// What the soft core runs.
+/// Rust target of the soft core.
 pub const TARGET: &str = "riscv32im-unknown-none-elf";
 
 /// Builds the firmware with `features` and returns its image, `target/firmware/glint.bin`, or `glint-FEATURE….bin` with
-/// features. The program with its symbols lies beside it as `.elf`.
+/// features. The ELF file is in the same folder.
 ///
 /// # Errors
-/// When it does not build, or does not fit the SoC's memory.
+/// It does not compile, or exceeds the SoC's memory.
 pub fn build(features: &[&str]) -> Result<PathBuf> {
     let name = [&["glint"], features].concat().join("-");
     let built = paths::target().join("firmware-build");
@@ -35,14 +35,14 @@ pub fn build(features: &[&str]) -> Result<PathBuf> {
     ]);
     cargo.arg("--features").arg(features.join(","));
     if features.contains(&"peers") {
-        // Generic kernels are compiled with the program, and are to be as fast there as they can be.
+        // Generic kernels are instantiated in the program's crate, and need its optimization level.
         for package in ["glint-firmware", "\"*\""] {
             cargo
                 .arg("--config")
                 .arg(format!("profile.firmware.package.{package}.opt-level = 3"));
         }
     }
-    // Not the folder of the tools' builds: they would wait for each other.
+    // A folder of its own: cargo locks a target folder during a build.
     cargo
         .arg("--target-dir")
         .arg(&built)
@@ -61,7 +61,7 @@ pub fn build(features: &[&str]) -> Result<PathBuf> {
     Ok(path)
 }
 
-/// Leaves a file alone that is already so, so that what depends on it is not rebuilt.
+/// Writes a file only if its contents change, so that dependents are not rebuilt.
 fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     if fs::read(path).is_ok_and(|old| old == bytes) {
         return Ok(());
@@ -69,7 +69,7 @@ fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     fs::write(path, bytes).with_context(|| format!("writing {}", path.display()))
 }
 
-/// The bytes to load to the start of main memory, and what they are made of.
+/// The bytes for the start of main memory, and the sections that they consist of.
 fn image(elf: &[u8]) -> Result<(Vec<u8>, String)> {
     let file = ElfFile32::<Endianness>::parse(elf).context("not an ELF file")?;
     let endian = file.endian();
@@ -106,7 +106,7 @@ fn image(elf: &[u8]) -> Result<(Vec<u8>, String)> {
         if segment.p_type(endian) != PT_LOAD {
             continue;
         }
-        // Where it is loaded, which is not always where it runs.
+        // Load address, which may differ from the run address.
         let address = u64::from(segment.p_paddr(endian));
         let length = u64::from(segment.p_memsz(endian));
         let Ok(data) = segment.data(endian, elf) else {

@@ -26,48 +26,48 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Task {
-    /// Install what is missing: Debian packages, the Rust target, the Python environment
+    /// Install missing prerequisites: Debian packages, the Rust target, the Python environment
     Bootstrap,
     /// Build the SoC of a board
     Gateware {
-        /// Which board
+        /// Board to build for
         #[arg(long, value_enum, default_value = "virtual")]
         board: gateware::Board,
-        /// Build smooth shading into the triangle engine
+        /// Build the triangle engine with smooth shading
         #[arg(long)]
         smooth: bool,
-        /// What the raymarcher is built for [default: all; of the urbana, which has no room for that: faces]
+        /// Fields of the raymarcher [default: all; faces for the urbana, which has no room for more]
         #[arg(long, value_enum)]
         fields: Option<gateware::Fields>,
-        /// Also build the virtual board's library that writes waveforms
+        /// Build the virtual board's library with waveform output too
         #[arg(long, conflicts_with_all = ["smooth", "fields"])]
         waveforms: bool,
     },
-    /// Write the register access crate and the register map from the SoC's description
+    /// Generate the register access crate and the register map from the SoC's description
     Pac {
-        /// Write nothing; fail when a file is not what would be written
+        /// Write nothing; fail if a generated file is stale
         #[arg(long)]
         check: bool,
     },
-    /// Build the program for the soft core
+    /// Build the firmware
     Firmware {
-        /// Features of the program; `peers` adds other crates' kernels to `bench`
+        /// Cargo features of the firmware; `peers` adds kernels of other crates to `bench`
         #[arg(long, value_delimiter = ',')]
         features: Vec<String>,
     },
-    /// Build everything, run it on the virtual board, write its pictures into `out/`
+    /// Build everything, run it on the virtual board, write pictures to `out/`
     Demo {
-        /// What `glint demo` takes: mesh files (none: generated ones)
+        /// Arguments of `glint demo`: mesh files [default: generated models]
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<String>,
     },
     /// Build everything and run every test
     Test,
-    /// Check the sources: no circle of modules, no `#[path]`, no file of more than 500 lines
+    /// Check the sources: no circles between modules, no `#[path]`, no file above 500 lines
     Modules,
-    /// Measure what the gateware takes of the FPGA; fail beyond gateware/budget.toml
+    /// Measure the FPGA resources of the gateware; fail above the limits of gateware/budget.toml
     Resources {
-        /// What to measure: own blocks, `flat_build`, `soc` (none: all of them)
+        /// Blocks to measure: own blocks, `flat_build`, `soc` [default: all]
         blocks: Vec<String>,
         /// Print JSON; progress goes to standard error
         #[arg(long)]

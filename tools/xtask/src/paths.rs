@@ -1,4 +1,4 @@
-//! Where things lie in the checkout.
+//! Paths in the checkout.
 
 use std::path::PathBuf;
 
@@ -11,17 +11,17 @@ pub fn root() -> PathBuf {
         .to_path_buf()
 }
 
-/// Where all build output goes: cargo's own target directory.
+/// Folder of all build output: cargo's target directory.
 pub fn target() -> PathBuf {
     root().join("target")
 }
 
-/// A program of the Python environment that `cargo xtask bootstrap` makes.
+/// A program of the Python environment.
 pub fn venv_program(name: &str) -> PathBuf {
     venv().join("bin").join(name)
 }
 
-/// The Python environment.
+/// The Python environment of `cargo xtask bootstrap`.
 pub fn venv() -> PathBuf {
     root().join(".venv")
 }

@@ -1,4 +1,4 @@
-//! `cargo xtask resources`: what the gateware costs on the FPGA, against `gateware/budget.toml`.
+//! `cargo xtask resources`: FPGA resources of the gateware, against `gateware/budget.toml`.
 //!
 //! `gateware/tests/size.py` measures one block with Yosys; two blocks are measured at a time. [`size::Size`] is the result,
 //! [`budget::Budget`] its limit; [`table`] prints both.
@@ -22,14 +22,14 @@ use blocks::{BUILDS, FLAT, FLAT_PARTS, OWN, ROWS, SOC};
 use budget::{Budget, Excess};
 use size::Size;
 
-/// Yosys at a time: each keeps one core busy and takes about a gigabyte.
+/// Parallel runs of Yosys; each needs one core and about a gigabyte.
 const AT_ONCE: usize = 2;
 
-/// What the command line asks for.
+/// Options of the command line.
 pub struct Options {
-    /// Blocks to measure; none: the own ones and the SoC.
+    /// Blocks to measure; empty: all.
     pub blocks: Vec<String>,
-    /// Print JSON and nothing else to standard output.
+    /// Print only JSON to standard output.
     pub json: bool,
     /// Write `docs/resources.md`.
     pub write: bool,
@@ -38,7 +38,7 @@ pub struct Options {
 /// Measures, prints, and compares with the budget.
 ///
 /// # Errors
-/// When something costs more than its budget, or cannot be measured.
+/// A block exceeds its budget, or cannot be measured.
 pub fn resources(options: &Options) -> Result<()> {
     if options.json {
         run::progress_to_stderr();
@@ -63,7 +63,7 @@ pub fn resources(options: &Options) -> Result<()> {
     within(&excesses)
 }
 
-/// Compares the own blocks with the budget; the SoC takes too long for every test.
+/// Checks the own blocks against the budget; the SoC takes too long for every test.
 ///
 /// # Errors
 /// As [`resources`].
@@ -72,7 +72,7 @@ pub fn check_own_blocks() -> Result<()> {
     within(&budget.excesses(&measure(OWN.map(String::from).into())?))
 }
 
-/// Fails with one line for each excess.
+/// Fails with one line per excess.
 fn within(excesses: &[Excess]) -> Result<()> {
     if excesses.is_empty() {
         return Ok(());
@@ -81,7 +81,7 @@ fn within(excesses: &[Excess]) -> Result<()> {
     bail!("beyond gateware/budget.toml:\n{}", lines.join("\n"))
 }
 
-/// What to measure for `blocks`, each thing once, the slowest first.
+/// Blocks to measure, without repeats, the slowest first.
 fn selection(blocks: &[String]) -> VecDeque<String> {
     let mut names = VecDeque::new();
     let wanted: Vec<&str> = if blocks.is_empty() {
@@ -104,7 +104,7 @@ fn selection(blocks: &[String]) -> VecDeque<String> {
     names
 }
 
-/// Measures blocks, some at a time, and adds the flat build when all of its parts are there.
+/// Measures blocks in parallel, and adds the flat build if all its parts are present.
 fn measure(names: VecDeque<String>) -> Result<Vec<Size>> {
     if names.iter().any(|name| name == SOC) {
         gateware::build(Board::Urbana)?;
@@ -162,7 +162,7 @@ fn measure_one(name: &str) -> Result<Size> {
     Size::parse(&line_of_size).with_context(|| format!("reading the size of {name}"))
 }
 
-/// Adds the sum of the flat build's parts, if all are there.
+/// Adds the sum of the flat build's parts, if all are present.
 fn add_flat_build(sizes: &mut Vec<Size>) {
     let parts: Vec<&Size> = sizes
         .iter()

@@ -1,4 +1,4 @@
-//! Running programs: a line that moves while they work, their output only when they fail.
+//! Running programs: a progress line while they run, their output only on failure.
 
 use std::collections::VecDeque;
 use std::fs::{self, File};
@@ -13,21 +13,21 @@ use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 
 use crate::paths;
 
-/// Lines of output shown when a step fails; the log has them all.
+/// Lines of output shown on failure; the log has all.
 const SHOWN_ON_FAILURE: usize = 60;
 
-/// The moving lines of the steps that run now, one below the other.
+/// Progress lines of the running steps.
 static SPINNERS: LazyLock<MultiProgress> = LazyLock::new(MultiProgress::new);
 
-/// Whether standard output is for something else than progress.
+/// Whether progress goes to standard error.
 static TO_STDERR: AtomicBool = AtomicBool::new(false);
 
-/// Has steps print to standard error from now on, because standard output is a program's.
+/// Sends progress to standard error from now on, for commands whose standard output is data.
 pub fn progress_to_stderr() {
     TO_STDERR.store(true, Ordering::Relaxed);
 }
 
-/// Prints a line about progress, above the moving ones.
+/// Prints a line above the progress lines.
 pub fn say(line: &str) {
     SPINNERS.suspend(|| {
         if TO_STDERR.load(Ordering::Relaxed) {
@@ -38,16 +38,16 @@ pub fn say(line: &str) {
     });
 }
 
-/// Runs `command` as the step `name`: shows its latest line while it runs, keeps all of its output in
-/// `target/log`, and prints one line with the time it took.
+/// Runs `command` as the step `name`: shows its latest line of output meanwhile, writes all output to `target/log`, and prints
+/// one line with the run time.
 ///
 /// # Errors
-/// When the program cannot be started or fails; the end of its output has then been printed.
+/// The program cannot be started, or fails; then the end of its output is printed.
 pub fn step(name: &str, command: &mut Command) -> Result<()> {
     watched_step(name, command, |_| ())
 }
 
-/// Like [`step`], and hands each line of the output to `watch`.
+/// Like [`step`]; `watch` gets each line of output.
 ///
 /// # Errors
 /// As [`step`].
@@ -66,7 +66,7 @@ pub fn watched_step(name: &str, command: &mut Command, mut watch: impl FnMut(&st
     let mut child = command
         .spawn()
         .with_context(|| format!("{name}: cannot start `{program}`"))?;
-    // The pipe ends when the child's copies of its write end are the last ones.
+    // The pipe ends once only the child holds its write end.
     command.stdout(Stdio::null()).stderr(Stdio::null());
     let mut tail = VecDeque::new();
     let mut lines = BufReader::new(reader);
@@ -89,7 +89,7 @@ pub fn watched_step(name: &str, command: &mut Command, mut watch: impl FnMut(&st
         say(&format!("  ok   {seconds:6.1} s  {name}"));
         return Ok(());
     }
-    // In one piece: another step may print at the same time.
+    // One write: another step may print at the same time.
     let tail: String = tail.iter().map(|line| format!("\n    {line}")).collect();
     say(&format!("  FAIL {seconds:6.1} s  {name}{tail}"));
     bail!(
@@ -98,10 +98,10 @@ pub fn watched_step(name: &str, command: &mut Command, mut watch: impl FnMut(&st
     )
 }
 
-/// Runs `command` with the terminal as its own, for programs that show their progress themselves.
+/// Runs `command` on this terminal, for programs with their own progress.
 ///
 /// # Errors
-/// When the program cannot be started or fails.
+/// The program cannot be started, or fails.
 pub fn foreground(name: &str, command: &mut Command) -> Result<()> {
     let program = command.get_program().to_string_lossy().into_owned();
     let status = command
@@ -113,7 +113,7 @@ pub fn foreground(name: &str, command: &mut Command) -> Result<()> {
     Ok(())
 }
 
-/// Whether `command` runs and succeeds; its output is thrown away.
+/// Whether `command` runs and succeeds; its output is dropped.
 pub fn succeeds(command: &mut Command) -> bool {
     command
         .stdin(Stdio::null())
@@ -123,7 +123,7 @@ pub fn succeeds(command: &mut Command) -> bool {
         .is_ok_and(|status| status.success())
 }
 
-/// A spinner named `name`; where there is no terminal, a line that says what begins.
+/// A spinner named `name`; without a terminal, a line at the start.
 fn spinner(name: &str) -> ProgressBar {
     if !std::io::stderr().is_terminal() {
         say(&format!("  ...            {name}"));
@@ -140,7 +140,7 @@ fn spinner(name: &str) -> ProgressBar {
     bar
 }
 
-/// `target/log/NAME.log`, with NAME made fit for a file.
+/// `target/log/NAME.log`, with a valid file name.
 fn log_path(name: &str) -> Result<std::path::PathBuf> {
     let folder = paths::target().join("log");
     fs::create_dir_all(&folder).with_context(|| format!("creating {}", folder.display()))?;

@@ -1,4 +1,4 @@
-//! `cargo xtask test`: every test there is, on a machine that it sets up itself.
+//! `cargo xtask test`: every check, on a machine that it sets up itself.
 
 use std::process::Command;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -11,13 +11,13 @@ use anyhow::{Result, bail};
 use crate::gateware::{self, Board};
 use crate::{bootstrap, firmware, pac, paths, resources, run};
 
-/// Sets up, builds and tests everything. Checks go on after one that failed; builds do not.
+/// Sets up, builds and tests everything. A failed check does not stop the others; a failed build does.
 ///
-/// What tests the gateware alone runs beside what cargo does: most of either keeps one core busy. Only the Rust tests wait for
-/// the gateware's, which build the modules that they clock.
+/// The gateware's own checks run beside cargo's, because most of either keep one core busy. The Rust tests wait for the
+/// gateware tests, which build their models.
 ///
 /// # Errors
-/// When a build or a check fails; names the checks.
+/// A build or a check fails; the error names the checks.
 pub fn test() -> Result<()> {
     let start = Instant::now();
     bootstrap::bootstrap()?;
@@ -29,7 +29,7 @@ pub fn test() -> Result<()> {
     thread::scope(|scope| -> Result<()> {
         scope.spawn(|| {
             outcomes.add(gateware_check("gateware tests", "gateware/tests/run.py"));
-            // Nobody listens when a build has failed.
+            // The receiver is gone if a build has failed.
             let _ = models_are_built.send(());
             outcomes.add(gateware_check("proofs", "gateware/formal/run.py"));
             outcomes.add(resources::check_own_blocks().map(|()| 1));
@@ -67,7 +67,7 @@ pub fn test() -> Result<()> {
     outcomes.finish()
 }
 
-/// What has passed and what has failed.
+/// Numbers of passed checks, and the errors of failed ones.
 #[derive(Default)]
 struct Outcomes {
     passed: AtomicU32,
@@ -88,7 +88,7 @@ impl Outcomes {
         self.failures.lock().expect("no check panics")
     }
 
-    /// Prints the counts, and fails with what has failed.
+    /// Prints the counts; fails if a check has failed.
     fn finish(&self) -> Result<()> {
         let failures = self.lock();
         println!(
@@ -103,7 +103,7 @@ impl Outcomes {
     }
 }
 
-/// One cargo command as a check.
+/// Runs a cargo command as a check.
 fn cargo(name: &str, arguments: &[&str]) -> Result<u32> {
     run::step(
         name,
@@ -125,7 +125,7 @@ fn documentation() -> Result<u32> {
     Ok(1)
 }
 
-/// A program of the gateware's checks: the benches of its modules with the board files, the proofs of its handshakes.
+/// Runs a Python program as a check: benches with board files, or proofs.
 fn gateware_check(name: &str, program: &str) -> Result<u32> {
     run::step(
         name,
@@ -136,8 +136,8 @@ fn gateware_check(name: &str, program: &str) -> Result<u32> {
     Ok(1)
 }
 
-/// All Rust tests on the host, those on the virtual board among them; counts what passed. What failing tests print stands
-/// far above the end of the output, so it is shown again.
+/// Runs all Rust tests on the host, including those on the virtual board; returns the number of passed tests. Output of failed
+/// tests is printed again at the end.
 fn cargo_tests() -> Result<u32> {
     let mut passed = 0;
     let mut failures = Vec::new();
@@ -161,7 +161,7 @@ fn cargo_tests() -> Result<u32> {
     outcome.map(|()| passed)
 }
 
-/// The count in a closing line of a Rust test program: `test result: ok. 12 passed; 0 failed; …`.
+/// Number of passed tests in the last line of a test program: `test result: ok. 12 passed; 0 failed; …`.
 fn passed_tests(line: &str) -> Option<u32> {
     let counts = line.strip_prefix("test result: ")?;
     let before = counts.split(" passed;").next()?;

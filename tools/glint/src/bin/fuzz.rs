@@ -1,4 +1,4 @@
-//! Fuzzes what takes bytes from outside, and says how fast.
+//! Fuzzes everything that parses external bytes, and measures the rate.
 #![forbid(unsafe_code)]
 
 use anyhow::Context;
@@ -10,29 +10,29 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-/// Give a target many inputs; a panic is a finding.
+/// Run fuzz targets on generated inputs; a panic is a finding.
 ///
-/// The bytes of an input follow from the seed and its number alone. A finding is written to a file, and --only runs it again.
+/// Seed and number determine an input's bytes. A finding is written to a file, and --only runs it again.
 #[derive(Parser)]
 struct Arguments {
-    /// What to fuzz; all of them in turn unless told.
+    /// Targets [default: all].
     #[arg(value_enum)]
     targets: Vec<Target>,
-    /// How many inputs each.
+    /// Inputs per target.
     #[arg(long, default_value_t = 100_000)]
     inputs: u64,
-    /// Which inputs.
+    /// Seed of the inputs.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Threads.
+    /// Number of threads.
     #[arg(long, default_value_t = 1)]
     jobs: u64,
-    /// Run just the input of this number.
+    /// Run only the input with this number.
     #[arg(long)]
     only: Option<u64>,
 }
 
-/// Numbers that a thread takes at once.
+/// Inputs that a thread takes at once.
 const STRIDE: u64 = 256;
 
 fn main() -> anyhow::Result<()> {
@@ -55,14 +55,14 @@ fn main() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// What happened so far.
+/// Counts of a run.
 #[derive(Default)]
 struct Tally {
     next: AtomicU64,
     done: AtomicU64,
     accepted: AtomicU64,
     findings: AtomicU64,
-    /// The longest time of an input in microseconds.
+    /// Longest run time of an input in microseconds.
     slowest: AtomicU64,
 }
 
@@ -127,7 +127,7 @@ fn work(target: Target, inputs: &Inputs, arguments: &Arguments, tally: &Tally, b
     }
 }
 
-/// Writes a finding where it can be looked at.
+/// Writes the input of a finding to a file.
 fn keep(target: Target, inputs: &Inputs, number: u64) -> anyhow::Result<()> {
     let path = format!("fuzz-{target:?}-{number}.bin").to_lowercase();
     std::fs::write(&path, inputs.input(number))

@@ -11,35 +11,35 @@ use glint::{generate, model};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-/// Make a model: cube, icosphere:N, torus-knot, gear, teapot or sponge:N.
+/// Generate a model: cube, icosphere:N, torus-knot, gear, teapot or sponge:N.
 #[derive(Args)]
 pub struct ModelArguments {
-    /// The model's name.
+    /// Name of the generator.
     name: String,
-    /// The file to write; its extension says the format: .obj, .stl, .ply or .glm.
+    /// Output file; the extension selects the format: .obj, .stl, .ply or .glm.
     out: PathBuf,
-    /// Leave the generator's coordinates as they are.
+    /// Keep the generator's coordinates.
     #[arg(long)]
     keep_scale: bool,
-    /// Print what was done as JSON.
+    /// Print the report as JSON.
     #[arg(long)]
     json: bool,
 }
 
-/// Convert a mesh: scale it to the 1×1×1 box about the origin, cut it into triangles, round it to Q2.14.
+/// Convert a mesh: scale it to the 1×1×1 box about the origin, triangulate it, round it to Q2.14.
 ///
-/// Reads OBJ (with the colours of its vertices, and of the material file beside it), STL and PLY, ASCII or binary, and GLM.
-/// GLM is what boards hold; OBJ, STL and PLY are written with scaled but unrounded coordinates.
+/// Reads OBJ (with vertex colours and the colours of the material file in the same folder), STL and PLY, ASCII or binary, and
+/// GLM. GLM is the format of boards. OBJ, STL and PLY are written with scaled, unrounded coordinates.
 #[derive(Args)]
 pub struct ConvertArguments {
-    /// The mesh to read.
+    /// Mesh file to read.
     input: PathBuf,
-    /// The file to write; its extension says the format: .obj, .stl, .ply or .glm.
+    /// Output file; the extension selects the format: .obj, .stl, .ply or .glm.
     out: PathBuf,
-    /// Leave the coordinates as they are, and refuse those outside [-2, 2).
+    /// Keep the coordinates; those outside [-2, 2) are an error.
     #[arg(long)]
     keep_scale: bool,
-    /// Print what was done as JSON.
+    /// Print the report as JSON.
     #[arg(long)]
     json: bool,
 }
@@ -72,7 +72,7 @@ impl ConvertArguments {
     }
 }
 
-/// What was written when it was not a mesh for boards.
+/// Report of a file that is not a GLM.
 #[derive(Serialize)]
 struct Copied {
     points: usize,
@@ -133,7 +133,7 @@ fn convert_to(
         .try_for_each(|remark| say(format_args!("note: {remark}")))
 }
 
-/// Prints a report for people.
+/// Prints a report as text.
 pub fn print_report(report: &Report) -> anyhow::Result<()> {
     let Report {
         points,
@@ -166,7 +166,7 @@ pub fn print_report(report: &Report) -> anyhow::Result<()> {
         .try_for_each(|remark| say(format_args!("note       {remark}")))
 }
 
-/// Loads the model of a command line.
+/// Loads a MODEL.
 pub fn load(name: &str, keep_scale: bool) -> anyhow::Result<model::Model> {
     let spinner = spinner("reading the model");
     let model = model::load(name, Options { keep_scale })?;

@@ -1,4 +1,4 @@
-//! `glint demo`: the whole machine at work.
+//! `glint demo`: a tour of the whole machine.
 
 use super::common::{advance, bar, say, spinner};
 use super::convert::load;
@@ -24,28 +24,28 @@ use indicatif::ProgressBar;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Show the whole machine: boot the virtual board, load its firmware, upload models, render, capture the monitor.
+/// Run the whole machine: boot the virtual board, load its firmware, upload models, render, capture the monitor.
 #[derive(Args)]
 pub struct DemoArguments {
-    /// Mesh files or generators' names; icosphere:6, gear and teapot unless told. The first is uploaded over the serial
-    /// line of a board that has booted through its BIOS; the others are put into the memory of a second board meanwhile.
+    /// Mesh files or generators [default: icosphere:6, gear, teapot]. The first goes over the serial line of a board that boots
+    /// through its BIOS; the others go into the memory of a second board.
     models: Vec<String>,
-    /// The folder for the pictures.
+    /// Output folder.
     #[arg(long, default_value = "out")]
     out: PathBuf,
-    /// The program to load [default: that of `cargo xtask firmware`].
+    /// Firmware image [default: the output of `cargo xtask firmware`].
     #[arg(long, value_name = "FILE")]
     firmware: Option<PathBuf>,
-    /// Frames of the orbit.
+    /// Frames of the orbit animation.
     #[arg(long, default_value_t = 24)]
     orbit: u16,
-    /// Frames of the sponge for two eyes.
+    /// Frames of the stereo animation of the sponge.
     #[arg(long, default_value_t = 4)]
     sponge: u16,
 }
 
 const MODELS: [&str; 3] = ["icosphere:6", "gear", "teapot"];
-/// Where a program goes and starts.
+/// Load address and entry point of the firmware.
 const MAIN_RAM: u32 = 0x4000_0000;
 const SIZE: Size = Size::W320;
 const ORBIT_SIZE: Size = Size::W640;
@@ -57,18 +57,18 @@ const EYES: Stereo = Stereo {
     tint: Tint::RedBlue,
 };
 const SPONGE_FRAMES_PER_SECOND: u16 = 3;
-/// The board's time that its BIOS may take.
+/// Time-out of the BIOS's boot, in board time.
 const BOOT_MS: u64 = 10_000;
 
 /// A model and its name.
 type Named<'n> = (&'n str, Model);
 
-/// A line of the table.
+/// One row of the table.
 struct Row {
     number: u32,
     picture: PathBuf,
     stats: Stats,
-    /// Cycles of the same frame by the soft core, if it was let draw it.
+    /// Cycles of the same frame drawn by the soft core, if measured.
     cpu_cycles: Option<u64>,
     cycles_per_second: f64,
 }
@@ -88,7 +88,7 @@ impl DemoArguments {
             .collect::<anyhow::Result<Vec<_>>>()?;
         let firmware = built_firmware(self.firmware.as_deref())?;
 
-        // Two boards, as a machine has two cores and a simulation uses one.
+        // Two boards: a simulation uses one core, and most hosts have two.
         let (first, others) = models.split_first().context("a model to show")?;
         let (mut rows, lines) = std::thread::scope(|scope| {
             let second = scope.spawn(|| self.second_board(first, others, &firmware));
@@ -106,7 +106,7 @@ impl DemoArguments {
         lines.into_iter().try_for_each(say)
     }
 
-    /// The long way: BIOS, serial boot, upload over the line; and the same picture by the soft core.
+    /// Full serial path: BIOS, serial boot, upload over the line; then the same picture by the soft core.
     fn first_board(&self, model: &Named, firmware: &[u8]) -> anyhow::Result<Row> {
         let mut board = SimulatedBoard::full()?;
         let mut renderer =
@@ -119,7 +119,7 @@ impl DemoArguments {
         Ok(row)
     }
 
-    /// The short way for all other models, the orbit about the last one, and the sponge.
+    /// Preloaded firmware and memory for the other models, the orbit about the last one, and the sponge.
     fn second_board(
         &self,
         first: &Named,
@@ -149,7 +149,7 @@ impl DemoArguments {
         Ok((rows, [orbit, sponge]))
     }
 
-    /// Gets a model onto the board, renders it, and looks at the monitor.
+    /// Shows a model on the board, captures the monitor, and compares the picture with the model's.
     fn show(
         &self,
         renderer: &mut BoardRenderer<SimulatedBoard>,
@@ -201,7 +201,7 @@ impl DemoArguments {
         let mut cycles = 0;
         let mut images = Vec::new();
         for number in 0..self.orbit {
-            // Shorter than the view's numbers: the line takes most of the time of a frame.
+            // `camera` is shorter than `view`: the serial line takes most of a frame's time.
             let degrees = f64::from(number) * 360.0 / f64::from(self.orbit);
             let command = format!("camera {DISTANCE} {degrees:.3} {POLAR_DEGREES}");
             renderer.console().command(&command)?;
@@ -276,7 +276,7 @@ fn line(path: &Path, what: &str, size: Size, cycles: u64) -> String {
     )
 }
 
-/// Another side of each model.
+/// Azimuth of a model's picture: a different side for each.
 fn azimuth(number: u32) -> Turns {
     Turns::from_degrees(Q32_32::from_num(number * 50 + 30))
 }
@@ -284,7 +284,7 @@ fn azimuth(number: u32) -> Turns {
 const DISTANCE: u32 = 2;
 const POLAR_DEGREES: u32 = 60;
 
-/// The half width of the image plane at distance 1: models nearly fill the picture's height.
+/// Half width of the image plane at distance 1: models nearly fill the height of the picture.
 const HALF_WIDTH: f64 = 0.6;
 
 /// The camera at an azimuth.
@@ -304,7 +304,7 @@ fn camera(azimuth: Turns) -> anyhow::Result<View> {
     .map_err(anyhow::Error::msg)
 }
 
-/// From reset through the BIOS's serial boot to the firmware's prompt.
+/// Boots from reset through the BIOS's serial boot to the firmware's prompt.
 fn boot<'b>(
     board: &'b mut SimulatedBoard,
     firmware: &[u8],
@@ -331,7 +331,7 @@ fn boot<'b>(
     Ok(console)
 }
 
-/// A model's name as that of a file.
+/// File name for a model's name.
 fn file_stem(name: &str) -> String {
     let stem = Path::new(name)
         .file_stem()

@@ -10,26 +10,26 @@ use glint::flash;
 use glint::render::{BoardRenderer, Route};
 use std::path::PathBuf;
 
-/// Load a program onto a board through its BIOS and start it.
+/// Load a program onto a board through its BIOS, and start it.
 ///
-/// Speaks LiteX's serial boot (SFL), with retries: frames that a bad line damages are sent again, and get shorter.
+/// Uses LiteX's serial boot (SFL). Damaged frames are sent again, in shorter pieces.
 #[derive(Args)]
 pub struct FlashArguments {
-    /// The program, a flat binary.
+    /// Program to load, a flat binary.
     program: PathBuf,
-    /// `virtual` or a serial port.
+    /// Board: `virtual` or a serial port.
     #[arg(long, default_value = "virtual")]
     board: BoardName,
     /// Where it goes in memory, and where it starts.
     #[arg(long, default_value = "0x40000000", value_parser = parse_address)]
     address: u32,
-    /// Seconds of the board's time to wait for its BIOS. Press reset, or have the board's program do it.
+    /// Time-out of the BIOS's request, in seconds of board time. Press reset, or the host sends `reboot`.
     #[arg(long, default_value_t = 60, value_name = "SECONDS")]
     wait: u64,
-    /// Bits a second of a serial port.
+    /// Baud rate of a serial port.
     #[arg(long, default_value_t = 115_200, value_name = "BITS")]
     baud: u32,
-    /// Print what was done as JSON.
+    /// Print the report as JSON.
     #[arg(long)]
     json: bool,
 }
@@ -37,9 +37,9 @@ pub struct FlashArguments {
 /// Upload a model to a board and show it.
 #[derive(Args)]
 pub struct UploadArguments {
-    /// A mesh file or a generator's name.
+    /// Mesh file, or name of a generator.
     model: String,
-    /// `virtual` or a serial port.
+    /// Board: `virtual` or a serial port.
     #[arg(long)]
     board: BoardName,
     /// Leave the model's coordinates as they are, and refuse those outside [-2, 2).
@@ -47,7 +47,7 @@ pub struct UploadArguments {
     keep_scale: bool,
     #[command(flatten)]
     line: LineArguments,
-    /// Print what was done as JSON.
+    /// Print the report as JSON.
     #[arg(long)]
     json: bool,
 }

@@ -11,11 +11,11 @@ mod terminal;
 
 use clap::{Parser, Subcommand};
 
-/// Glint's host program: models in, pictures out.
+/// Host program of Glint: converts meshes, renders pictures, controls boards.
 ///
-/// MODEL is a mesh file (.obj, .stl, .ply, .glm) or a generator's name: cube, icosphere:N (frequency, 1 to 64), torus-knot, gear, teapot,
-/// sponge:N (0 to 4). BOARD is `virtual` or a serial port such as /dev/ttyUSB1. Bad input ends with exit code 2 and one line
-/// that says where and what; anything else that fails ends with 1.
+/// MODEL is a mesh file (.obj, .stl, .ply, .glm) or a generator: cube, icosphere:N (frequency, 1 to 64), torus-knot, gear,
+/// teapot, sponge:N (0 to 4). BOARD is `virtual` or a serial port such as /dev/ttyUSB1. Exit code 2: bad input, with one line
+/// that names the place, the expected and the found. Exit code 1: any other failure.
 #[derive(Parser)]
 #[command(name = "glint", version, max_term_width = 110)]
 pub struct Arguments {
@@ -37,7 +37,7 @@ enum Command {
 }
 
 impl Arguments {
-    /// Does what was asked.
+    /// Runs the command.
     pub fn run(self) -> anyhow::Result<()> {
         match self.command {
             Command::Model(arguments) => arguments.run(),

@@ -9,12 +9,12 @@ use rustix::termios::{OptionalActions, Termios, isatty, tcgetattr, tcsetattr};
 use std::io::{Read, Write};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
-/// Ctrl-]: ends the console.
+/// Ctrl-]: ends the session.
 const EXIT: u8 = 0x1d;
-/// How long a look at the board's line takes, in its time.
+/// Time-out of a read from the board, in board time.
 const LOOK_MS: u64 = 10;
 
-/// Talk to a board's console. Ctrl-] ends it.
+/// Open a board's console. Ctrl-] ends the session.
 #[derive(Args)]
 pub struct ConsoleArguments {
     /// `virtual` or a serial port.
@@ -24,7 +24,7 @@ pub struct ConsoleArguments {
     send: Vec<String>,
     #[command(flatten)]
     line: LineArguments,
-    /// Print the replies to --send as JSON: an array with an array of lines for each.
+    /// Print the replies to --send as JSON: an array of lines for each command.
     #[arg(long, requires = "send")]
     json: bool,
 }
@@ -52,7 +52,7 @@ impl ConsoleArguments {
     }
 }
 
-/// The terminal in raw mode, so that keys go to the board as they are; as it was before when this goes.
+/// The terminal in raw mode, so that keys reach the board unchanged; restores the old mode when dropped.
 struct RawTerminal(Option<Termios>);
 
 impl RawTerminal {
@@ -72,13 +72,13 @@ impl RawTerminal {
 impl Drop for RawTerminal {
     fn drop(&mut self) {
         if let Some(before) = &self.0 {
-            // Nothing to be done about a terminal that is gone.
+            // The terminal may be gone: nothing can be restored then.
             let _ = tcsetattr(std::io::stdin(), OptionalActions::Flush, before);
         }
     }
 }
 
-/// Keys as they are pressed, from a thread that waits for them.
+/// Pressed keys, read by a thread.
 fn keys() -> Receiver<Vec<u8>> {
     let (sender, receiver) = channel();
     std::thread::spawn(move || {
@@ -98,7 +98,7 @@ fn interact(board: &mut dyn Board) -> anyhow::Result<()> {
     let keys = keys();
     let mut output = std::io::stdout();
     let mut received = Vec::new();
-    // A prompt, whatever was on the line before.
+    // Makes the board print its prompt.
     board.write(b"\r")?;
     loop {
         board.read(&mut received, LOOK_MS)?;

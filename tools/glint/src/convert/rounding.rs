@@ -7,7 +7,7 @@ use std::collections::HashMap;
 /// One in Q2.14.
 pub const ONE: f64 = 16384.0;
 
-/// The map from the file's coordinates to world units: (P − centre)·scale.
+/// Map from the file's coordinates to world units: (P − centre)·scale.
 pub struct Placing {
     /// The point that becomes the origin.
     pub centre: Vector,
@@ -57,13 +57,13 @@ impl Placing {
 
 /// All points in Q2.14; points that round to the same position share it.
 pub struct Rounded {
-    /// For each point of the file its number in `positions`.
+    /// Number of each point's position in `positions`.
     of_point: Vec<u32>,
     /// The positions in Q2.14.
     pub positions: Vec<[i16; 3]>,
-    /// The largest distance between a point and its position, in world units.
+    /// Maximum distance between a point and its position, in world units.
     pub error_max: f64,
-    /// The root of the mean square of these distances, in world units.
+    /// Root mean square of these distances, in world units.
     pub error_rms: f64,
 }
 
@@ -122,7 +122,7 @@ impl Rounded {
     }
 }
 
-/// Q2.14, to nearest, ties up; `None` outside [−2, 2 − 2^−14].
+/// Rounds to Q2.14, to nearest, ties up; `None` outside [−2, 2 − 2^−14].
 fn nearest(exact: Vector) -> Option<[i16; 3]> {
     let mut position = [0; 3];
     for (q, c) in position.iter_mut().zip(exact) {

@@ -1,14 +1,13 @@
-//! Glint's own meshes, read back into polygons.
+//! Conversion of Glint's own meshes to polygons.
 
 use crate::error::{FormatError, Place};
 use crate::polygons::{Corner, Polygons, Rgb8};
 use glint_core::mesh::{Mesh, Rgb565};
 
-/// Reads a mesh as it lies in memory. Positions and normals come back as the numbers they are, colours by replication of
-/// their bits, and chunks are joined.
+/// Parses a GLM. Positions and normals are converted exactly, colours by bit replication; chunks are joined.
 ///
 /// # Errors
-/// What [`Mesh::new_checked`] refuses, and a mesh without triangles.
+/// [`Mesh::new_checked`] rejects it, or it has no triangles.
 pub fn parse(bytes: &[u8]) -> Result<Polygons, FormatError> {
     let mesh = check(bytes)?;
     let world = |q: [i16; 3]| q.map(|c| f64::from(c) / 16384.0);
@@ -37,10 +36,10 @@ pub fn parse(bytes: &[u8]) -> Result<Polygons, FormatError> {
     Ok(polygons)
 }
 
-/// Checks a mesh as it lies in memory.
+/// Checks a GLM.
 ///
 /// # Errors
-/// What [`Mesh::new_checked`] refuses.
+/// [`Mesh::new_checked`] rejects it.
 pub fn check(bytes: &[u8]) -> Result<Mesh<'_>, FormatError> {
     Mesh::new_checked(bytes).map_err(|error| {
         let found = match error.expected {

@@ -1,4 +1,4 @@
-//! Mesh files: which format a name means, reading and writing.
+//! Mesh files: formats, reading, writing.
 
 pub mod glm;
 pub mod mtl;
@@ -21,17 +21,17 @@ pub enum Format {
     Obj,
     /// STL; written as binary.
     Stl,
-    /// PLY; written as binary, low byte first.
+    /// PLY; written as binary, little-endian.
     Ply,
-    /// Glint's own: the mesh as it lies in a board's memory.
+    /// Glint's own format: a board's memory layout.
     Glm,
 }
 
 impl Format {
-    /// By the extension of a file's name.
+    /// Selects the format by a file's extension.
     ///
     /// # Errors
-    /// The extension is none of obj, stl, ply and glm.
+    /// The extension is not obj, stl, ply or glm.
     pub fn of(path: &Path) -> Result<Self, InputError> {
         let extension = path
             .extension()
@@ -77,10 +77,10 @@ pub fn read_file(path: &Path) -> Result<Vec<u8>, InputError> {
     Ok(bytes)
 }
 
-/// Reads a mesh file of any format. The materials of an OBJ are looked for beside it, and nowhere else.
+/// Reads a mesh file of any format. Material files of an OBJ are read from its own folder only.
 ///
 /// # Errors
-/// The file cannot be read, or is not what its name says.
+/// The file cannot be read, or violates its format.
 pub fn read(path: &Path) -> Result<Polygons, InputError> {
     let format = Format::of(path)?;
     let bytes = read_file(path)?;

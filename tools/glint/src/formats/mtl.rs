@@ -1,11 +1,11 @@
-//! The diffuse colours of a Wavefront material file.
+//! Diffuse colours of a Wavefront material file.
 
 use super::text::{Lines, coordinate};
 use crate::error::{FormatError, quote};
 use crate::polygons::Rgb8;
 use std::collections::HashMap;
 
-/// Adds each material's diffuse colour (`Kd`) to the palette; everything else of a material is skipped.
+/// Adds each material's diffuse colour (`Kd`) to the palette; other statements are skipped.
 ///
 /// # Errors
 /// A line that is too long, a `Kd` before the first `newmtl`, or one without numbers.

@@ -1,7 +1,7 @@
 //! Wavefront OBJ.
 //!
-//! Own code and not `tobj`, whose errors carry no line, which takes NaN and infinity for coordinates, and which reads lines
-//! of any length.
+//! Own parser instead of `tobj`: its errors have no line number, it accepts NaN and infinity as coordinates, and it has no
+//! limit on line length.
 
 use super::mtl;
 use super::text::{Line, Lines, coordinate, vector};
@@ -10,7 +10,7 @@ use crate::polygons::{Corner, Polygons, Rgb8};
 use std::borrow::Cow;
 use std::collections::HashMap;
 
-/// Statements of the format that say nothing about the surface drawn.
+/// Statements without effect on the drawn surface.
 const IGNORED: &[&[u8]] = &[
     b"vt",
     b"vp",
@@ -48,10 +48,10 @@ const IGNORED: &[&[u8]] = &[
     b"usemap",
 ];
 
-/// What a material file beside the OBJ is read with: its bytes, or `None` where there is no such file.
+/// Reads a material file by name; `None` if it does not exist.
 pub type Materials<'a> = dyn FnMut(&str) -> Option<Vec<u8>> + 'a;
 
-/// Why an OBJ could not be read: it may be the fault of its material file.
+/// An error in an OBJ or in its material file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ObjError {
     /// In the OBJ.
@@ -66,12 +66,12 @@ impl From<FormatError> for ObjError {
     }
 }
 
-/// Reads a whole OBJ: faces with any number of corners, indices from the start or (negative) from the end, normals, vertex
-/// colours (`v x y z r g b`, to 1 or to 255) and the diffuse colour (`Kd`) of materials. Texture coordinates, lines,
-/// points and curves are skipped.
+/// Parses an OBJ: faces with any number of corners, indices from the start or (negative) from the end, normals, vertex colours
+/// (`v x y z r g b`, up to 1 or up to 255) and the diffuse colour (`Kd`) of materials. Texture coordinates, lines, points and
+/// curves are skipped.
 ///
 /// # Errors
-/// The first thing that is not OBJ, and its line.
+/// The first violation of the format, with its line.
 pub fn parse(text: &[u8], materials: &mut Materials) -> Result<Polygons, ObjError> {
     let mut reader = Reader::default();
     let mut lines = Lines::new(text);
@@ -88,7 +88,7 @@ pub fn parse(text: &[u8], materials: &mut Materials) -> Result<Polygons, ObjErro
     Ok(reader.finish()?)
 }
 
-/// A line that ends in a backslash goes on in the next.
+/// Joins a line that ends in a backslash with the next one.
 fn join_continued<'a>(
     first: Line<'a>,
     lines: &mut Lines<'a>,
@@ -116,7 +116,7 @@ fn join_continued<'a>(
 #[derive(Default)]
 struct Reader {
     polygons: Polygons,
-    /// As the file gives them; whether they go to 1 or to 255 is known at the end.
+    /// Colours as in the file; their scale, 1 or 255, is known at the end.
     point_colours: Vec<Option<[f32; 3]>>,
     palette: HashMap<Vec<u8>, Rgb8>,
     colour: Option<Rgb8>,
@@ -172,9 +172,9 @@ impl Reader {
             count += 1;
         }
         let colour = match count {
-            // Nothing, or a weight, which only curves use.
+            // A fourth number is a weight, used by curves only.
             0 | 1 => None,
-            // Colour, perhaps with an opacity.
+            // Colour, with an optional opacity.
             3 | 4 => Some([extra[0] as f32, extra[1] as f32, extra[2] as f32]),
             _ => {
                 return Err(FormatError::new(
@@ -211,7 +211,7 @@ impl Reader {
             match parts.next() {
                 None | Some(b"") => {}
                 Some(part) => {
-                    // Texture coordinates are not used; where they point does not matter.
+                    // Texture indices are parsed, but their range does not matter.
                     index(part, i32::MAX as usize).ok_or_else(|| expected("a texture index"))?;
                 }
             }
@@ -229,7 +229,7 @@ impl Reader {
     }
 
     fn library(&mut self, names: &[u8], materials: &mut Materials) -> Result<(), ObjError> {
-        // One name with spaces, or several names: the first of these readings that finds a file is meant.
+        // One name with spaces, or several names: the first reading that finds a file wins.
         let mut found = false;
         let whole = std::iter::once(names);
         let parts = names
@@ -282,7 +282,7 @@ impl Reader {
     }
 }
 
-/// What follows the keyword: a name, which may have spaces in it.
+/// The text after the keyword: a name that may contain spaces.
 fn rest_of(line: Line<'_>) -> &[u8] {
     let text = line.text.trim_ascii();
     text[text
@@ -292,8 +292,8 @@ fn rest_of(line: Line<'_>) -> &[u8] {
         .trim_ascii_start()
 }
 
-/// An index from 0: `1` is the first, `-1` the last of the `count` so far. Zero, what lies before the first, and what does
-/// not fit 32 bits is none.
+/// Converts an index to count from 0: `1` is the first, `-1` the last of the `count` so far. `None` for zero, for indices
+/// before the first, and beyond 32 bits.
 fn index(word: &[u8], count: usize) -> Option<u32> {
     let index: i64 = std::str::from_utf8(word).ok()?.parse().ok()?;
     let index = match index {

@@ -1,7 +1,7 @@
 //! STL, ASCII and binary.
 //!
-//! Own code and not `stl_io`, whose errors carry neither line nor offset, which skips the colours of the attribute word, and
-//! which takes a binary file for ASCII when its header starts with `solid`.
+//! Own parser instead of `stl_io`: its errors have neither line nor offset, it skips the colours of the attribute word, and it
+//! takes a binary file for ASCII if its header starts with `solid`.
 
 use super::text::{Lines, any_number, checked_at, vector};
 use crate::error::{FormatError, MAX_TRIANGLES, Place, quote};
@@ -10,11 +10,11 @@ use crate::polygons::{Corner, Polygons, Rgb8, Vector};
 const HEADER: usize = 84;
 const RECORD: usize = 50;
 
-/// Reads a whole STL. A file of just the length that its count of triangles asks for is binary; another one that starts
-/// with `solid` is ASCII. Normals are not used: the winding says the same and is more often right.
+/// Parses an STL. A file with exactly the length of its triangle count is binary; any other file that starts with `solid` is
+/// ASCII. Normals are ignored: the winding has the same information and is more reliable.
 ///
 /// # Errors
-/// The first thing that is not STL, and its line or offset.
+/// The first violation of the format, with its line or offset.
 pub fn parse(file: &[u8]) -> Result<Polygons, FormatError> {
     let count = file
         .get(80..HEADER)
@@ -47,13 +47,12 @@ pub fn parse(file: &[u8]) -> Result<Polygons, FormatError> {
     Ok(polygons)
 }
 
-/// How the attribute word of a binary record gives a colour. Both ways have five bits a channel.
+/// Encoding of a colour in the attribute word of a binary record; both have five bits a channel.
 #[derive(Clone, Copy)]
 enum Colours {
-    /// VisCAM, SolidView: bit 15 says that there is a colour, red is the highest.
+    /// VisCAM, SolidView: bit 15 marks a colour; red is in the highest bits.
     VisCam,
-    /// Materialise Magics: the header has a colour for the whole, bit 15 clear says that the face has its own, blue is
-    /// the highest.
+    /// Materialise Magics: the header has a default colour, a clear bit 15 marks a face's own; blue is in the highest bits.
     Magics(Rgb8),
 }
 
@@ -112,7 +111,7 @@ fn parse_binary(file: &[u8], count: u32) -> Result<Polygons, FormatError> {
     Ok(polygons)
 }
 
-/// What the next line of an ASCII STL may be.
+/// Expected next line of an ASCII STL.
 #[derive(Clone, Copy, PartialEq)]
 enum Expect {
     Solid,
@@ -154,7 +153,7 @@ fn parse_ascii(file: &[u8]) -> Result<Polygons, FormatError> {
             word.is_some_and(|word| word.eq_ignore_ascii_case(text.as_bytes()))
         };
         let refuse = || FormatError::new(place, expect.text(), quote(line.text.trim_ascii()));
-        // What may follow a keyword on its line; a solid's name may be anything.
+        // Remaining words of the line; the name of a solid is arbitrary.
         expect = match expect {
             Expect::Solid if is(Some(keyword), "solid") => {
                 words.by_ref().for_each(drop);
@@ -166,7 +165,7 @@ fn parse_ascii(file: &[u8]) -> Result<Polygons, FormatError> {
             }
             Expect::Facet if is(Some(keyword), "facet") && is(words.next(), "normal") => {
                 facet = place;
-                // Exporters write nan for the normal of a sliver.
+                // Some exporters write nan for the normal of a sliver.
                 for _ in 0..3 {
                     words.next().and_then(any_number).ok_or_else(refuse)?;
                 }

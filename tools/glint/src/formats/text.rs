@@ -1,24 +1,24 @@
-//! Lines, words and numbers of text files, each with its place.
+//! Lines, words and numbers of text files, with their places.
 
 use crate::error::{FormatError, MAX_COORDINATE, MAX_LINE, Place, quote};
 
-/// The lines of a text: ended by LF, CR LF or CR.
+/// Lines of a text, ended by LF, CR LF or CR.
 pub struct Lines<'a> {
     rest: &'a [u8],
     number: usize,
 }
 
-/// One line without its end.
+/// One line, without its end.
 #[derive(Clone, Copy, Debug)]
 pub struct Line<'a> {
     /// Counted from 1.
     pub number: usize,
-    /// Its bytes; text files of the wild are not all UTF-8.
+    /// Its bytes; not always UTF-8.
     pub text: &'a [u8],
 }
 
 impl<'a> Lines<'a> {
-    /// Over a whole text.
+    /// The lines of a whole text.
     pub fn new(text: &'a [u8]) -> Self {
         Self {
             rest: text,
@@ -58,14 +58,14 @@ impl<'a> Lines<'a> {
         }))
     }
 
-    /// What has not been read.
+    /// The unread rest of the text.
     pub fn rest(&self) -> &'a [u8] {
         self.rest
     }
 }
 
 impl<'a> Line<'a> {
-    /// Its words, parted by white space.
+    /// Its words, separated by white space.
     pub fn words(self) -> impl Iterator<Item = &'a [u8]> {
         self.text
             .split(u8::is_ascii_whitespace)
@@ -78,15 +78,15 @@ impl<'a> Line<'a> {
     }
 }
 
-/// Reads a number of any size, infinite or not a number included.
+/// Parses a number, infinity and NaN included.
 pub fn any_number(word: &[u8]) -> Option<f64> {
     std::str::from_utf8(word).ok()?.parse().ok()
 }
 
-/// Reads a coordinate: a number within [`MAX_COORDINATE`].
+/// Parses a coordinate: a number within [`MAX_COORDINATE`].
 ///
 /// # Errors
-/// It is no number, not finite or too large.
+/// Not a number, not finite, or too large.
 pub fn coordinate(word: &[u8], place: Place) -> Result<f64, FormatError> {
     any_number(word).and_then(checked).ok_or_else(|| {
         FormatError::new(
@@ -97,15 +97,15 @@ pub fn coordinate(word: &[u8], place: Place) -> Result<f64, FormatError> {
     })
 }
 
-/// The value if it can be a coordinate.
+/// The value, if it is a valid coordinate.
 pub fn checked(value: f64) -> Option<f64> {
     (value.abs() <= MAX_COORDINATE).then_some(value)
 }
 
-/// A coordinate of a binary file.
+/// Checks a coordinate of a binary file.
 ///
 /// # Errors
-/// It is not finite or too large.
+/// Not finite, or too large.
 pub fn checked_at(value: f64, offset: usize) -> Result<f64, FormatError> {
     checked(value).ok_or_else(|| {
         FormatError::new(
@@ -116,10 +116,10 @@ pub fn checked_at(value: f64, offset: usize) -> Result<f64, FormatError> {
     })
 }
 
-/// Reads the next three words as coordinates.
+/// Parses the next three words as coordinates.
 ///
 /// # Errors
-/// There are fewer, or one is not a coordinate.
+/// Fewer words, or one is not a coordinate.
 pub fn vector<'a>(
     words: &mut impl Iterator<Item = &'a [u8]>,
     what: &str,

@@ -1,14 +1,13 @@
-//! Writing polygons as OBJ, binary STL and binary PLY.
+//! Writers of OBJ, binary STL and binary PLY.
 
 use crate::polygons::{Polygons, Rgb8};
 use crate::triangulate;
 use std::io::{self, Write};
 
-/// Writes an OBJ with the colours of points behind their coordinates. Colours of faces, which OBJ has only through a
-/// second file, are left out.
+/// Writes an OBJ with point colours after the coordinates. Face colours, which need a material file, are left out.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn obj(polygons: &Polygons, out: &mut impl Write) -> io::Result<()> {
     for (i, [x, y, z]) in polygons.points.iter().enumerate() {
         write!(out, "v {x} {y} {z}")?;
@@ -28,10 +27,10 @@ pub fn obj(polygons: &Polygons, out: &mut impl Write) -> io::Result<()> {
     Ok(())
 }
 
-/// Writes a binary STL with the colours of faces in the attribute word (the VisCAM way).
+/// Writes a binary STL with face colours in the attribute word (VisCAM).
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn stl(polygons: &Polygons, out: &mut impl Write) -> io::Result<()> {
     let mut header = [0; 80];
     header[..5].copy_from_slice(b"glint");
@@ -57,10 +56,10 @@ pub fn stl(polygons: &Polygons, out: &mut impl Write) -> io::Result<()> {
     Ok(())
 }
 
-/// Writes a binary PLY, low byte first, with the colours of points and faces.
+/// Writes a binary PLY, little-endian, with the colours of points and faces.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn ply(polygons: &Polygons, out: &mut impl Write) -> io::Result<()> {
     const COLOUR: &str = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
     let with_faces = polygons.faces.iter().any(|face| face.colour.is_some());
@@ -97,7 +96,7 @@ pub fn ply(polygons: &Polygons, out: &mut impl Write) -> io::Result<()> {
         }
     }
     for face in &polygons.faces {
-        // No face has more than MAX_POLYGON corners.
+        // MAX_POLYGON corners fit 16 bits.
         out.write_all(&(face.count as u16).to_le_bytes())?;
         for corner in polygons.corners_of(face) {
             out.write_all(&corner.point.to_le_bytes())?;

@@ -1,4 +1,4 @@
-//! The seeds: small, valid, and with every feature of their format.
+//! Seeds: small, valid, with every feature of their format.
 
 use super::mutate::MAX_INPUT;
 use super::targets::Target;
@@ -12,7 +12,7 @@ use glint_core::orientation::Sample;
 use glint_core::orientation::log::{Setup, record, to_bytes};
 use glint_core::wire::{MAX_FRAME, Manifest, Receiver, Sender, State, Timing};
 
-/// The seeds of a target, all of them shorter than an input may be.
+/// Seeds of a target, within the maximum length.
 pub fn of(target: Target) -> Vec<Vec<u8>> {
     let seeds = match target {
         Target::Upload => transfers(),
@@ -34,7 +34,7 @@ fn texts(texts: &[&str]) -> Vec<Vec<u8>> {
     texts.iter().map(|text| text.as_bytes().to_vec()).collect()
 }
 
-/// Small models: generated ones, and a concave polygon with colours.
+/// Small models: generated ones, and a concave coloured polygon.
 fn models() -> Vec<Polygons> {
     let mut models: Vec<Polygons> = ["cube", "icosphere:1", "icosphere:2", "sponge:0"]
         .iter()
@@ -79,7 +79,7 @@ fn meshes() -> Vec<Vec<u8>> {
         .collect()
 }
 
-/// What each side of a transfer says, behind three bytes that say how it is given to the other side.
+/// Output of each side of a transfer, after three bytes that select its delivery to the other side.
 fn transfers() -> Vec<Vec<u8>> {
     let mut seeds = Vec::new();
     for length in [0, 1, 16, 100, 1500] {
@@ -106,7 +106,7 @@ fn transfers() -> Vec<Vec<u8>> {
     seeds
 }
 
-/// A log of a sensor at rest, long enough for a calibration.
+/// A log at rest, long enough for a calibration.
 fn still_log() -> Vec<u8> {
     let mut log = String::from("t_us,ax,ay,az,gx,gy,gz\n");
     for i in 0..80 {
@@ -122,7 +122,7 @@ fn still_log() -> Vec<u8> {
     log.into_bytes()
 }
 
-/// Logs as they go to a board: with everything and with nothing, moving and at rest, with a gap and stamps that stand still.
+/// Logs in a board's format: with all options and none, moving and at rest, with a gap and repeated time stamps.
 fn images() -> Vec<Vec<u8>> {
     let image = |tilt, follow_bias, samples: u32| {
         let setup = Setup::new(Units::MPU_6050, tilt, follow_bias, [1_000, -300, 0]).ok()?;

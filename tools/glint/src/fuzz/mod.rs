@@ -1,6 +1,6 @@
-//! Fuzzing without a compiler of its own: seeds made by code, a small mutator, and for each input only its number.
+//! Fuzzing without compiler instrumentation: generated seeds, a small mutator, numbered inputs.
 //!
-//! Input `i` of a seed is always the same bytes, whatever thread makes it, so a run can be spread and a finding repeated.
+//! Seed and number determine an input's bytes, on any thread: runs can be split, and findings repeated.
 
 mod corpus;
 mod mutate;
@@ -11,7 +11,7 @@ pub use targets::{Outcome, Target};
 
 use mutate::{Random, mutate};
 
-/// The inputs of one target.
+/// Inputs of one target.
 pub struct Inputs {
     target: Target,
     seed: u64,
@@ -19,7 +19,7 @@ pub struct Inputs {
 }
 
 impl Inputs {
-    /// Makes the corpus of a target.
+    /// Creates the corpus of a target.
     pub fn new(target: Target, seed: u64) -> Self {
         Self {
             target,
@@ -28,11 +28,11 @@ impl Inputs {
         }
     }
 
-    /// The input of a number, at most [`MAX_INPUT`] bytes.
+    /// Input with a number, at most [`MAX_INPUT`] bytes.
     pub fn input(&self, number: u64) -> Vec<u8> {
         let mut random = Random::new(self.seed, number);
         let mut input = mutate(&self.corpus, self.target.words(), &mut random);
-        // Checksums stop nearly every mutation at the door; half of the inputs get theirs put right.
+        // A checksum rejects nearly every mutation, so half of the inputs get theirs corrected.
         if random.below(2) == 0 {
             self.target.repair(&mut input);
         }
@@ -40,7 +40,7 @@ impl Inputs {
         input
     }
 
-    /// Makes the input of a number and gives it to the target. A panic is the caller's to catch.
+    /// Runs the target on the input with a number. The caller catches panics.
     pub fn run(&self, number: u64) -> Outcome {
         self.target.run(&self.input(number))
     }

@@ -1,9 +1,9 @@
-//! A mutator for bytes and for text.
+//! Mutator of bytes and text.
 
-/// The longest input in bytes.
+/// Maximum length of an input in bytes.
 pub const MAX_INPUT: usize = 4096;
 
-/// SplitMix64 (Steele, Lea and Flood, 2014): any seed will do, and numbers next to each other give unrelated streams.
+/// SplitMix64 (Steele, Lea and Flood, 2014): any seed works, and neighbouring numbers give unrelated streams.
 pub struct Random(u64);
 
 impl Random {
@@ -22,7 +22,7 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// A number below `limit`, or 0 if that is 0.
+    /// A number below `limit`; 0 if `limit` is 0.
     pub fn below(&mut self, limit: usize) -> usize {
         (self.next() % (limit as u64).max(1)) as usize
     }
@@ -32,7 +32,7 @@ impl Random {
     }
 }
 
-/// Numbers at which something changes.
+/// Numbers at limits of types.
 const WORDS: [&str; 20] = [
     "0",
     "1",
@@ -57,7 +57,7 @@ const WORDS: [&str; 20] = [
 ];
 const BYTES: [u8; 10] = [0, 1, 0x0a, 0x0d, 0x1b, 0x20, 0x7f, 0x80, 0xfe, 0xff];
 
-/// One of the corpus, changed in one to eight places.
+/// A seed of the corpus with one to eight mutations.
 pub fn mutate(corpus: &[Vec<u8>], words: &[&str], random: &mut Random) -> Vec<u8> {
     let mut input = random.pick(corpus).cloned().unwrap_or_default();
     for _ in 0..=random.below(8) {
@@ -93,7 +93,7 @@ pub fn mutate(corpus: &[Vec<u8>], words: &[&str], random: &mut Random) -> Vec<u8
     input
 }
 
-/// A range of a sequence, mostly a short one.
+/// A random range, mostly short.
 fn range(length: usize, random: &mut Random) -> std::ops::Range<usize> {
     let start = random.below(length + 1);
     let longest = if random.below(4) == 0 {
@@ -128,7 +128,7 @@ fn change_byte(input: &mut [u8], random: &mut Random, to: impl FnOnce(u8, &mut R
     }
 }
 
-/// Puts another word where a word is.
+/// Replaces a word by another.
 fn replace_word(input: &mut Vec<u8>, random: &mut Random, words: &[&str]) {
     let Some(word) = random.pick(words) else {
         return;

@@ -1,4 +1,4 @@
-//! What is fuzzed.
+//! Fuzz targets.
 
 use crate::convert::{self, Options};
 use crate::formats::{glm, obj, ply, stl};
@@ -10,7 +10,7 @@ use glint_core::console::{Command, Event, LineEditor, write_help};
 use glint_core::orientation::log as image;
 use glint_core::wire::{MAX_FRAME, Manifest, Receiver, Sender, State, Timing, crc32};
 
-/// Something that takes bytes from outside.
+/// A parser of external bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Target {
     /// Both sides of an upload.
@@ -23,25 +23,25 @@ pub enum Target {
     Stl,
     /// PLY.
     Ply,
-    /// Meshes as they lie in memory.
+    /// Meshes in a board's memory layout.
     Glm,
     /// Logs of a gyroscope and an accelerometer.
     Imu,
-    /// The same as they go to a board.
+    /// Logs in a board's format.
     Replay,
 }
 
-/// What a target made of an input.
+/// Result of a target on an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// It went the whole way.
+    /// Accepted to the end.
     Accepted,
-    /// It was refused somewhere.
+    /// Rejected somewhere.
     Refused,
 }
 
 impl Target {
-    /// All of them.
+    /// Every target.
     pub const ALL: [Self; 8] = [
         Self::Upload,
         Self::Console,
@@ -53,7 +53,7 @@ impl Target {
         Self::Replay,
     ];
 
-    /// Words that mean something to it.
+    /// Meaningful words of its format.
     pub fn words(self) -> &'static [&'static str] {
         match self {
             Self::Upload | Self::Glm | Self::Replay => &[],
@@ -96,12 +96,12 @@ impl Target {
         }
     }
 
-    /// Puts right what would stop an input before anything else is looked at: checksums and lengths.
+    /// Corrects checksums and lengths, which would reject nearly every mutation.
     pub fn repair(self, input: &mut Vec<u8>) {
         match self {
             Self::Upload => repair_frames(input),
             Self::Stl => {
-                // The count that makes the file's length right.
+                // Sets the count that matches the file's length.
                 let count = (input.len().saturating_sub(84) / 50) as u32;
                 if let (Some(field), false) = (input.get_mut(80..84), count == 0) {
                     field.copy_from_slice(&count.to_le_bytes());
@@ -116,7 +116,7 @@ impl Target {
                 }
             }
             Self::Replay => {
-                // The number of samples that the length is for.
+                // Sets the number of samples that matches the length.
                 let samples = input.len().saturating_sub(image::HEADER_BYTES) / image::RECORD_BYTES;
                 if let Some(field) = input.get_mut(4..8) {
                     field.copy_from_slice(&(samples as u32).to_le_bytes());
@@ -127,13 +127,13 @@ impl Target {
         }
     }
 
-    /// Gives it an input. A bug is a panic.
+    /// Runs the target. A panic is a bug.
     pub fn run(self, input: &[u8]) -> Outcome {
         match self {
             Self::Upload => run_transfer(input),
             Self::Console => run_console(input),
             Self::Obj => {
-                // The same bytes are its material file, so that is fuzzed along.
+                // The same bytes serve as material file.
                 let polygons = obj::parse(input, &mut |_| Some(input.to_vec()));
                 polygons.map_or(Outcome::Refused, |polygons| run_conversion(&polygons))
             }
@@ -157,9 +157,9 @@ impl Target {
     }
 }
 
-/// What polygons go through after they have been read.
+/// Converts and writes polygons that were parsed.
 fn run_conversion(polygons: &Polygons) -> Outcome {
-    // What does not fit is refused; what comes out is a mesh, or `convert` fails.
+    // Oversized input is rejected; any other output is a valid mesh.
     let _ = convert::convert(polygons, Options { keep_scale: true });
     match convert::convert(polygons, Options::default()) {
         Ok((mesh, report)) => {
@@ -175,7 +175,7 @@ fn run_conversion(polygons: &Polygons) -> Outcome {
     }
 }
 
-/// Replays a log that was read, by its stamps and by a period, with everything on.
+/// Replays a parsed log, by its time stamps and with a fixed period, with every option on.
 fn run_replay(entries: &[log::Entry]) {
     for period in [None, Some(1_000), Some(600_000)] {
         let options = replay::Options {
@@ -191,7 +191,7 @@ fn run_replay(entries: &[log::Entry]) {
             replayed.is_ok_and(|replayed| replayed.attitudes.len() == entries.len()),
             "without a calibration every log is replayed"
         );
-        // Whether it is still is the log's affair.
+        // A log that moves fails the calibration.
         let _ = replay(&replay::Options {
             still: Some(u64::MAX),
             ..options
@@ -199,7 +199,7 @@ fn run_replay(entries: &[log::Entry]) {
     }
 }
 
-/// Replays a log as a board gets it: what is accepted becomes attitudes.
+/// Replays a log in a board's format: an accepted one gives attitudes.
 fn run_image(input: &[u8]) -> Outcome {
     let mut image = input.to_vec();
     match image::replay(&mut image) {
@@ -262,7 +262,7 @@ fn run_console(input: &[u8]) -> Outcome {
             use std::fmt::Write;
             match Command::parse(line) {
                 Ok(Command::Help(name)) => {
-                    // A string takes everything.
+                    // Writing to a string cannot fail.
                     let _ = write_help(&mut text, name);
                 }
                 Ok(_) => outcome = Outcome::Accepted,
@@ -286,12 +286,12 @@ fn run_console(input: &[u8]) -> Outcome {
     outcome
 }
 
-/// The data that transfers in the corpus carry.
+/// Data of the transfers in the corpus.
 pub fn upload_data(length: usize) -> Vec<u8> {
     (0..length).map(|i| (i * 7 / 3) as u8).collect()
 }
 
-/// Gives the input to one side of a transfer, in pieces and with time going by.
+/// Feeds the input to one side of a transfer, in pieces, while time passes.
 fn run_transfer(input: &[u8]) -> Outcome {
     let &[side, pace, piece, ref stream @ ..] = input else {
         return Outcome::Refused;
@@ -366,7 +366,7 @@ fn ended(state: State) -> Outcome {
     }
 }
 
-/// Gives every frame of a stream its right CRC-16.
+/// Corrects the CRC-16 of every frame of a stream.
 fn repair_frames(input: &mut Vec<u8>) {
     const CRC: crc::Crc<u16> = crc::Crc::<u16>::new(&crc::CRC_16_IBM_3740);
     let Some((head, stream)) = input.split_at_checked(3) else {

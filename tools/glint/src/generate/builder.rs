@@ -1,4 +1,4 @@
-//! Faces between points that are the same when their coordinates are.
+//! Builder of meshes from faces given by points; equal points are shared.
 
 use crate::error::{FormatError, Place};
 use crate::polygons::{Corner, Polygons, Rgb8, Vector};
@@ -12,7 +12,7 @@ pub struct Builder {
 }
 
 impl Builder {
-    /// The number of a point. Points are one only if all bits of their coordinates agree (and zero has one sign).
+    /// Number of a point. Points are equal if all bits of their coordinates are (zero has one sign).
     pub fn point(&mut self, point: Vector) -> Result<u32, FormatError> {
         let point = point.map(|c| c + 0.0);
         let key = point.map(f64::to_bits);
@@ -24,7 +24,7 @@ impl Builder {
         Ok(number)
     }
 
-    /// Adds a face, counter-clockwise seen from outside. Corners that fall together with the one before are left out, and
+    /// Adds a face, counter-clockwise seen from outside. Repeated corners are dropped, and so is a face with fewer than three.
     /// a face with fewer than three is none.
     pub fn face(&mut self, points: &[Vector], colour: Option<Rgb8>) -> Result<(), FormatError> {
         let mut corners = Vec::with_capacity(points.len());
@@ -41,7 +41,7 @@ impl Builder {
         self.polygons.add_face(&corners, colour, Place::Whole)
     }
 
-    /// Adds a grid of rows of points as quads; `a × b` of the directions along the rows and across them points outside.
+    /// Adds a grid of rows of points as quads. The cross product of the directions along and across the rows points outside.
     pub fn grid(
         &mut self,
         rows: &[Vec<Vector>],
@@ -59,7 +59,7 @@ impl Builder {
         Ok(())
     }
 
-    /// Ends with a colour for each point.
+    /// Finishes with a colour for each point.
     pub fn coloured(mut self, colour: impl Fn(Vector) -> Rgb8) -> Polygons {
         self.polygons.point_colours = self
             .polygons
@@ -70,13 +70,13 @@ impl Builder {
         self.polygons
     }
 
-    /// Ends with the colours of the faces.
+    /// Finishes with face colours.
     pub fn finish(self) -> Polygons {
         self.polygons
     }
 }
 
-/// A colour of the rainbow, light enough that shading shows: `turns` once round from red.
+/// A light colour of the rainbow: `turns` of the colour wheel from red.
 pub fn hue(turns: f64) -> Rgb8 {
     let channel = |shift: f64| 0.62 + 0.36 * (std::f64::consts::TAU * (turns - shift)).cos();
     Rgb8::from_unit([channel(0.0), channel(1.0 / 3.0), channel(2.0 / 3.0)])

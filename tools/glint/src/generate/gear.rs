@@ -16,7 +16,7 @@ const TOOTH: [(f64, f64); 6] = [
     (0.92, 0.17),
 ];
 const BORE: f64 = 0.30;
-/// The hub stands out from the wheel's sides.
+/// The hub is thicker than the wheel.
 const HUB: f64 = 0.45;
 const WEB: f64 = 0.66;
 const HALF_WIDTH: f64 = 0.16;
@@ -29,7 +29,7 @@ const BRASS: Rgb8 = Rgb8([0xd8, 0xa8, 0x50]);
 
 /// The gear about the z axis.
 pub fn gear() -> Result<Polygons, FormatError> {
-    // Every ring has a point for each point of the outline, so the whole is a grid, closed in both directions.
+    // Every ring has one point per point of the outline, so that the surface is a grid, closed in both directions.
     let angles: Vec<(f64, f64)> = (0..TEETH)
         .flat_map(|tooth| {
             TOOTH.map(|(radius, pitch)| (radius, (tooth as f64 + pitch) / TEETH as f64 * TAU))

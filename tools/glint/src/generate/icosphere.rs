@@ -1,4 +1,4 @@
-//! The icosphere of frequency f: an icosahedron whose edges are cut in f parts, all points pushed out to the sphere.
+//! The icosphere of frequency f: an icosahedron with edges cut into f parts, and all points moved to the sphere.
 
 use super::builder::Builder;
 use crate::error::FormatError;
@@ -48,7 +48,7 @@ fn normalised(point: Vector) -> Vector {
     unit(point).unwrap_or(point)
 }
 
-/// The same triangle, counter-clockwise seen from outside a body about the origin.
+/// The same triangle, counter-clockwise seen from outside a solid about the origin.
 fn facing_out([a, b, c]: [Vector; 3]) -> [Vector; 3] {
     use crate::triangulate::{cross, dot};
     if dot(a, cross(b, c)) > 0.0 {
@@ -58,14 +58,14 @@ fn facing_out([a, b, c]: [Vector; 3]) -> [Vector; 3] {
     }
 }
 
-/// Cuts a triangle's edges in `frequency` parts, and the triangle in the square of that.
+/// Cuts a triangle's edges into `frequency` parts, and the triangle into frequency² parts.
 fn divide(
     builder: &mut Builder,
     [a, b, c]: [Vector; 3],
     frequency: u32,
 ) -> Result<(), FormatError> {
-    // Steps from `a` towards `b` and towards `c`. On an edge one of the three weights is zero and the sum of the other
-    // two has no order, so both triangles on the edge get the same bits.
+    // Weights of `b` and `c`. On an edge one of the three weights is zero and the sum of the other two does not depend on their
+    // order, so both triangles at the edge get the same bits.
     let point = |to_b: u32, to_c: u32| -> Vector {
         let weights = [frequency - to_b - to_c, to_b, to_c].map(f64::from);
         normalised(

@@ -1,4 +1,4 @@
-//! Models made by arithmetic: closed surfaces, counter-clockwise seen from outside, z up.
+//! Generated models: closed surfaces, counter-clockwise seen from outside, z up.
 
 mod builder;
 mod cube;
@@ -11,11 +11,11 @@ mod torus_knot;
 use crate::error::FormatError;
 use crate::polygons::Polygons;
 
-/// The names that [`named`] knows, for messages and help.
+/// Names of the generators, for messages and help.
 pub const NAMES: &str =
     "cube, icosphere:N (frequency, 1 to 64), torus-knot, gear, teapot or sponge:N (0 to 4)";
 
-/// Whether a name is meant for [`named`] and not for a file.
+/// Whether a name is a generator's, not a file's.
 pub fn is_name(name: &str) -> bool {
     let stem = name.split(':').next().unwrap_or_default();
     matches!(
@@ -24,10 +24,10 @@ pub fn is_name(name: &str) -> bool {
     )
 }
 
-/// Makes the model of a name such as `icosphere:4`.
+/// Generates the model with a name such as `icosphere:4`.
 ///
 /// # Errors
-/// There is no such model, or its number is missing or out of range.
+/// No such model, or its number is missing or out of range.
 pub fn named(name: &str) -> Result<Polygons, FormatError> {
     let refuse = || {
         FormatError::whole(
@@ -70,7 +70,7 @@ mod tests {
         "sponge:2",
     ];
 
-    /// Six times the volume inside, positive when the faces run counter-clockwise seen from outside.
+    /// Six times the enclosed volume, positive for faces that run counter-clockwise seen from outside.
     pub fn volume(polygons: &Polygons) -> f64 {
         let mut scratch = triangulate::Scratch::default();
         let mut sum = 0.0;
@@ -83,7 +83,7 @@ mod tests {
         sum
     }
 
-    /// Every edge is run along as often in one direction as in the other.
+    /// Every edge occurs equally often in both directions.
     fn assert_closed(name: &str, edges: impl Iterator<Item = (u32, u32)>) {
         let mut balance: HashMap<(u32, u32), i32> = HashMap::new();
         for (a, b) in edges {

@@ -1,17 +1,17 @@
-//! The Menger sponge: only the faces between a full cell and an empty one, with shared points.
+//! The Menger sponge: the faces between full and empty cells, with shared points.
 
 use super::builder::Builder;
 use crate::error::FormatError;
 use crate::polygons::{Polygons, Rgb8, Vector};
 
-/// The sponge of a level in the cube of edge 1 about the origin, coloured by place.
+/// The sponge of a level in the cube of edge 1 about the origin, coloured by position.
 pub fn sponge(level: u32) -> Result<Polygons, FormatError> {
     let mut builder = Builder::default();
     cells(&mut builder, [0; 3], level, 3_i64.pow(level))?;
     Ok(builder.coloured(|point| Rgb8::from_unit(point.map(|c| 0.66 + 0.6 * c))))
 }
 
-/// Goes through the cells by cubes in cubes, so that neighbours come close to each other and chunks share few points.
+/// Visits the cells in octree order, so that neighbours are close to each other and chunks share few points.
 fn cells(
     builder: &mut Builder,
     corner: [i64; 3],
@@ -36,7 +36,7 @@ fn cells(
     Ok(())
 }
 
-/// Of the 27 parts of a cube the middles of the sides and of the whole are empty.
+/// Of the 27 parts of a cube, those in the middle of a side and in the centre are empty.
 fn is_hole(place: [i64; 3]) -> bool {
     place.iter().filter(|&&c| c == 1).count() >= 2
 }

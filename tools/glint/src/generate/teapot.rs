@@ -1,14 +1,13 @@
-//! The teapot, from the control points that Martin Newell published in 1975 (and the bottom that others added later): 32
-//! bicubic Bézier patches.
+//! The Utah teapot: 32 bicubic Bézier patches, with the control points of Martin Newell (1975) and the bottom added later.
 //!
-//! His surfaces leave a slit round the lid and an open spout; four caps close the body, the spout and the handle, so that
-//! each of the three is a closed surface. They run into each other as his do.
+//! The original has a slit around the lid and an open spout. Four caps close body, spout and handle: each becomes a closed
+//! surface. They intersect like the original's.
 
 use super::builder::Builder;
 use crate::error::FormatError;
 use crate::polygons::{Polygons, Rgb8, Vector};
 
-/// Quads along each side of a patch.
+/// Quads along a patch's side.
 const CUTS: usize = 10;
 
 const GLAZE: Rgb8 = Rgb8([0xe8, 0xc8, 0xa0]);
@@ -28,8 +27,8 @@ const fn ring(r: f64, k: f64, z: f64) -> Ring {
     Ring { r, k, z }
 }
 
-/// The inner edge of the pot's opening, over the rim, down the body and to the middle of the bottom. Each patch takes four
-/// rows, the last of which is the first of the next.
+/// From the inner edge of the opening over the rim and down the body to the centre of the bottom. Each patch has four rows; its
+/// last row is the first of the next patch.
 const BODY: [Ring; 13] = [
     ring(1.4, 0.784, 2.4),
     ring(1.3375, 0.749, 2.53125),
@@ -68,7 +67,7 @@ const fn half(upper: [f64; 2], lower: [f64; 2], y: f64) -> HalfRing {
     HalfRing { upper, lower, y }
 }
 
-/// From the top of the body round to its side.
+/// From the top of the body around to its side.
 const GRIP: [HalfRing; 7] = [
     half([-1.6, 2.025], [-1.5, 2.25], 0.3),
     half([-2.3, 2.025], [-2.5, 2.25], 0.3),
@@ -79,7 +78,7 @@ const GRIP: [HalfRing; 7] = [
     half([-2.0, 0.9], [-1.9, 0.6], 0.3),
 ];
 
-/// From the body to the inside of the mouth.
+/// From the body to the inside of the spout.
 const NOZZLE: [HalfRing; 7] = [
     half([1.7, 1.425], [1.7, 0.6], 0.66),
     half([2.6, 1.425], [3.1, 0.825], 0.66),
@@ -95,7 +94,7 @@ pub fn teapot() -> Result<Polygons, FormatError> {
     let mut builder = Builder::default();
     let body = turned(&mut builder, &BODY, |_| GLAZE)?;
     let cover = turned(&mut builder, &COVER, |_| LID)?;
-    // The slit between the lid's edge, where the cover ends, and the rim's, where the body begins.
+    // The slit between the lid's edge (end of the cover) and the rim's (start of the body).
     let (Some(lid_edge), Some(rim_edge)) = (cover.last(), body.first()) else {
         return Ok(builder.finish());
     };
@@ -113,7 +112,7 @@ pub fn teapot() -> Result<Polygons, FormatError> {
     Ok(builder.finish())
 }
 
-/// The rows of a surface given by rows of control points, each patch cut into `CUTS` rows.
+/// Rows of a surface given by rows of control points; each patch is cut into `CUTS` rows.
 fn rows<const N: usize>(
     control: &[[[Vector; N]; 4]],
     row: impl Fn([Vector; N]) -> Vec<Vector>,
@@ -132,7 +131,7 @@ fn rows<const N: usize>(
     rows
 }
 
-/// The patches over rows of control points: each begins with the row that the last one ended with.
+/// Patches over rows of control points; each starts with the last row of the one before.
 fn patches<T, const N: usize>(
     control: &[T],
     row: impl Fn(&T) -> [Vector; N],
@@ -144,7 +143,7 @@ fn patches<T, const N: usize>(
         .collect()
 }
 
-/// Adds a surface round the z axis from a quarter of it.
+/// Adds a surface of revolution about the z axis from one quarter of it.
 fn turned(
     builder: &mut Builder,
     rings: &[Ring],
@@ -157,7 +156,7 @@ fn turned(
         let quarter: Vec<Vector> = (0..=CUTS)
             .map(|i| bezier(quarter, i as f64 / CUTS as f64))
             .collect();
-        // Clockwise seen from above, as the quarter runs; the mirrored quarters run the other way.
+        // The quarter runs clockwise seen from above; mirrored quarters run in reverse.
         let mirrored = |sx: f64, sy: f64| quarter.iter().map(move |&[x, y, z]| [sx * x, sy * y, z]);
         let mut ring: Vec<Vector> = mirrored(1.0, 1.0).collect();
         ring.extend(mirrored(-1.0, 1.0).rev().skip(1));
@@ -202,8 +201,8 @@ fn tube(
     Ok(rows)
 }
 
-/// A point of a cubic Bézier curve, by de Casteljau. At its ends, and where all control points are the same, it is exactly
-/// the control points, so that patches and poles close.
+/// A point of a cubic Bézier curve, by de Casteljau. The ends, and curves with equal control points, are exact, so that patches
+/// and poles close.
 fn bezier(mut control: [Vector; 4], t: f64) -> Vector {
     if t == 1.0 {
         return control[3];
@@ -262,7 +261,7 @@ mod tests {
             (-3.01..-2.9).contains(&back) && (3.4..3.5).contains(&front),
             "{back} {front}"
         );
-        // A body of revolution of about this profile holds 25; handle and spout add a little.
+        // A body of revolution with about this profile has a volume of 25; handle and spout add a little.
         let volume = volume(&teapot);
         assert!((25.0..31.0).contains(&volume), "{volume}");
     }

@@ -12,20 +12,20 @@ const LENGTH: usize = 240;
 const GIRTH: usize = 16;
 const TUBE_RADIUS: f64 = 0.42;
 
-/// The knot's middle line at a part of its length.
+/// The knot's centre line at a fraction of its length.
 fn line(t: f64) -> Vector {
     let (p, q) = (2.0 * TAU * t, 3.0 * TAU * t);
     let r = 2.0 + q.cos();
     [r * p.cos(), r * p.sin(), q.sin()]
 }
 
-/// The tube round the knot, its colour once through the rainbow.
+/// The tube around the knot, with one turn of the colour wheel.
 pub fn torus_knot() -> Result<Polygons, FormatError> {
     let ring = |j: usize| -> Vec<Vector> {
         let t = (j % LENGTH) as f64 / LENGTH as f64;
         let centre = line(t);
         let ahead = sub(line(t + 1e-4), line(t - 1e-4));
-        // A frame that turns with the torus, and so closes after one round.
+        // A frame that rotates with the torus, and so closes after one round.
         let [x, y, _] = centre;
         let radial = [x, y, 0.0];
         let side = unit(cross(ahead, radial)).unwrap_or([0.0, 0.0, 1.0]);

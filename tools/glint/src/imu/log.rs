@@ -1,41 +1,42 @@
-//! Logs as CSV: a header that names `t_us,ax,ay,az,gx,gy,gz`, and `temp` or not, in any order; then a sample a line, in raw counts.
+//! Logs as CSV: a header with `t_us,ax,ay,az,gx,gy,gz` and optionally `temp`, in any order, then one sample a line in raw
+//! counts.
 
 use crate::error::{FormatError, Place, quote};
 use crate::formats::text::{Line, Lines};
 
-/// One line of a log.
+/// One sample of a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Entry {
-    /// The line, counted from 1.
+    /// Its line, counted from 1.
     pub line: usize,
-    /// When the sample was taken, in µs.
+    /// Time of the sample in µs.
     pub t_us: u64,
-    /// What the accelerometer said, x, y, z.
+    /// Accelerometer x, y, z in raw counts.
     pub accel: [i16; 3],
-    /// What the gyroscope said, x, y, z.
+    /// Gyroscope x, y, z in raw counts.
     pub gyro: [i16; 3],
-    /// What the thermometer said, if the log has it.
+    /// Thermometer in raw counts, if the log has it.
     pub temp: Option<i16>,
 }
 
 const TIME: &str = "t_us";
 const TEMPERATURE: &str = "temp";
 const COLUMNS: [&str; 8] = [TIME, "ax", "ay", "az", "gx", "gy", "gz", TEMPERATURE];
-/// The most columns a line is looked through for; no log has as many.
+/// Maximum number of columns in a header; real logs have fewer.
 const MOST_COLUMNS: usize = 64;
 
-/// Where the columns are: one for each of [`COLUMNS`], and how many there are.
+/// Position of each of [`COLUMNS`], and the number of columns in the file.
 struct Header {
     places: [Option<usize>; COLUMNS.len()],
     count: usize,
 }
 
-/// Reads a log.
+/// Parses a log.
 ///
 /// # Errors
-/// The first thing that is not as it should be, with its line and column.
+/// The first violation of the format, with its line and column.
 pub fn parse(text: &[u8]) -> Result<Vec<Entry>, FormatError> {
-    // Spreadsheets put it in front of a CSV.
+    // Spreadsheets start a CSV with a byte order mark.
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
     let mut lines = Lines::new(text);
     let Some(first) = next_filled(&mut lines)? else {

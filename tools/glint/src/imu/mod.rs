@@ -1,4 +1,4 @@
-//! A gyroscope and an accelerometer: those of a board, their logs, and the attitudes that follow from them.
+//! Gyroscope and accelerometer: a board's sensor, logs, and the attitudes of logs.
 
 pub mod log;
 pub mod replay;

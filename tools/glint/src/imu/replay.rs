@@ -1,4 +1,4 @@
-//! The firmware's orientation on the samples of a log, by this machine or by a board.
+//! Attitudes of a log by the firmware's arithmetic, on this host or on a board.
 
 use super::log::Entry;
 use crate::board::Board;
@@ -12,29 +12,30 @@ use glint_core::orientation::log::{
 };
 use glint_core::orientation::{Counts, LONGEST_STEP, Quaternion, Sample};
 
-/// How a log is replayed.
+/// Options of a replay.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
-    /// What counts are worth.
+    /// Scales of the raw counts.
     pub units: Units,
-    /// The time between two samples in µs, instead of their stamps.
+    /// Sample period in µs, instead of the time stamps.
     pub period: Option<u32>,
-    /// How many µs at the start are a calibration.
+    /// Length of the calibration at the start, in µs.
     pub still: Option<u64>,
-    /// Whether the accelerometer holds the tilt.
+    /// Whether tilt correction is on.
     pub tilt: bool,
-    /// Whether the bias is followed at rest.
+    /// Whether the bias is tracked at rest.
     pub follow_bias: bool,
 }
 
-/// The samples of a log, stamped as the firmware stamps them.
+/// Samples of a log with the firmware's 32-bit time stamps.
 struct Stamps<'a> {
     entries: &'a [Entry],
     period: Option<u32>,
 }
 
 impl Stamps<'_> {
-    /// Stamps of 32 bits. A step back is no step, and one longer than any that is integrated is a little longer than that.
+    /// Samples with 32-bit time stamps. A step backwards counts as no step, and a step beyond the longest integrated one is
+    /// shortened to just above that.
     fn samples(&self) -> impl Iterator<Item = Sample> {
         let mut latest = self.entries.first().map_or(0, |entry| entry.t_us);
         let mut stamp = 0_u32;
@@ -60,7 +61,7 @@ impl Stamps<'_> {
     }
 }
 
-/// A log as it goes to a board.
+/// A log in a board's format.
 #[derive(Clone, Debug)]
 pub struct Prepared {
     image: Vec<u8>,
@@ -68,43 +69,43 @@ pub struct Prepared {
     calibration: Option<Report>,
 }
 
-/// What came of a log.
+/// Result of a replay.
 #[derive(Clone, Debug)]
 pub struct Replayed {
-    /// The attitude at each sample.
+    /// Attitude at each sample.
     pub attitudes: Vec<Quaternion>,
-    /// What happened to the samples.
+    /// Counts of the samples by treatment.
     pub counts: Counts,
-    /// The calibration, if there was one.
+    /// The calibration, if requested.
     pub calibration: Option<Report>,
-    /// Cycles of a board for a sample, in the mean.
+    /// Mean cycles of a sample on a board.
     pub cycles: Option<u64>,
 }
 
-/// Why there are no attitudes.
+/// A replay that failed.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// The log is to be still at the start and is not.
+    /// The log is not at rest during the calibration.
     #[error(transparent)]
     Still(#[from] FormatError),
-    /// The log cannot be replayed.
+    /// The model rejects the log.
     #[error("{0}")]
     Log(LogError),
-    /// The board refuses, or the transfer fails.
+    /// The board rejects the log, or the transfer fails.
     #[error(transparent)]
     Transfer(#[from] TransferError),
-    /// The board's console says no, or nothing.
+    /// The console reports an error, or does not answer.
     #[error(transparent)]
     Console(#[from] ConsoleError),
-    /// What came back has no length of 1.
+    /// An attitude of the board is not a unit quaternion.
     #[error("the board's attitude {0}: expected a quaternion of length 1, found another")]
     Attitude(usize),
 }
 
-/// Makes a log what goes to a board, calibrated if it is still at the start.
+/// Converts a log to a board's format, with a calibration if requested.
 ///
 /// # Errors
-/// It is to be still at the start and is not, or counts are worth what no sensor's are.
+/// The log moves during the calibration, or a scale is out of range.
 pub fn prepare(entries: &[Entry], options: &Options) -> Result<Prepared, Error> {
     let stamps = Stamps {
         entries,
@@ -117,7 +118,7 @@ pub fn prepare(entries: &[Entry], options: &Options) -> Result<Prepared, Error> 
     let bias = calibration.map_or([0; 3], |report| report.bias);
     let setup =
         Setup::new(options.units, options.tilt, options.follow_bias, bias).map_err(Error::Log)?;
-    // As many as 32 bits do not count are too long for any board, which says so; the model counts by the bytes.
+    // A count beyond 32 bits is too long for every board, which reports it; the model goes by the number of bytes.
     let count = u32::try_from(entries.len()).unwrap_or(u32::MAX);
     let mut image = setup.header(count).to_vec();
     stamps
@@ -130,10 +131,10 @@ pub fn prepare(entries: &[Entry], options: &Options) -> Result<Prepared, Error> 
     })
 }
 
-/// Replays a log on this machine.
+/// Replays a log on this host.
 ///
 /// # Errors
-/// It is longer than any log.
+/// The log exceeds the maximum length.
 pub fn on_model(mut prepared: Prepared) -> Result<Replayed, Error> {
     let counts = image::replay(&mut prepared.image).map_err(Error::Log)?;
     let records = prepared.image.get(HEADER_BYTES..).unwrap_or_default();
@@ -145,10 +146,10 @@ pub fn on_model(mut prepared: Prepared) -> Result<Replayed, Error> {
     })
 }
 
-/// Replays a log on a board. What `progress` is told of are bytes of the transfers, and meanwhile samples.
+/// Replays a log on a board. `progress` gets bytes during transfers, and samples during the replay.
 ///
 /// # Errors
-/// The firmware refuses, or a transfer fails.
+/// The firmware rejects the log, or a transfer fails.
 pub fn on_board<B: Board + ?Sized>(
     prepared: &Prepared,
     console: &mut Console<B>,
@@ -196,17 +197,17 @@ pub fn on_board<B: Board + ?Sized>(
     })
 }
 
-/// The console's command.
+/// Console command.
 const COMMAND: &str = "replay";
-/// A board's receiver lives for one transfer, so any number is another than the one before.
+/// Session number of the transfer; any will do, because a board's receiver lives for one transfer.
 const SESSION: u8 = 1;
 
-/// What is going on.
+/// Stage of a replay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
-    /// Bytes pass.
+    /// Transfer of log or attitudes, in bytes.
     Transfer,
-    /// Samples become attitudes.
+    /// Computation of attitudes, in samples.
     Replay,
 }
 
@@ -217,7 +218,7 @@ fn attitudes(records: &[u8]) -> Result<Vec<Quaternion>, Error> {
         .collect()
 }
 
-/// The bias at the start of a log. A long start counts as far as a calibration goes.
+/// Calibration at the start of a log, with at most the maximum number of samples.
 fn calibrate(stamps: &Stamps, units: Units, still: u64) -> Result<Report, FormatError> {
     let mut elapsed = 0_u64;
     let mut last = 0_u32;
@@ -291,7 +292,7 @@ mod tests {
 
     #[test]
     fn stamps_of_any_size() {
-        // 100 °/s: back in time, across 2^32, and an hour later.
+        // 100 °/s: a step back in time, a step across 2^32, a gap of an hour.
         let log = entries(&[
             u64::from(u32::MAX) - 5_000,
             u64::from(u32::MAX) + 5_000,

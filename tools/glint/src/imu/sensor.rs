@@ -1,34 +1,33 @@
-//! The sensor of a board, by its console.
+//! A board's sensor, through its console.
 
 use super::log::Entry;
 use crate::board::Board;
 use crate::console::{self, Console, ConsoleError};
 use virtual_board::virtual_mpu6050::{Chip, Counts, Imperfections, Source, State, Wires};
 
-/// How long a sensor may take from the board's start to its first sample, in ms of the board's time: it may have to be looked for,
-/// reset and set up.
+/// Time-out of the first sample after the board's start, in ms of board time: covers detection, reset and setup.
 const START_MS: u64 = 1_000;
-/// The header of what `imu stream` prints, and of a log.
+/// Header of `imu stream` and of a log.
 pub const HEADER: &str = "t_us,ax,ay,az,gx,gy,gz";
 
-/// Why there are no samples.
+/// A sensor or board that gives no samples.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// The board refuses, or does not answer.
+    /// The board reports an error, or does not answer.
     #[error(transparent)]
     Console(#[from] ConsoleError),
-    /// The board has no sensor, or it does not work.
+    /// No sensor, or a sensor that does not work.
     #[error("no sample came within {START_MS} ms of the board's time: {0}")]
     Failure(String),
-    /// What should be a sample is none.
+    /// The board printed a malformed sample.
     #[error("the board's sample: expected {HEADER} in whole numbers, found {0:?}")]
     Sample(String),
 }
 
-/// Waits for the sensor's first sample; which sensor it is.
+/// Waits for the sensor's first sample; returns the sensor's name.
 ///
 /// # Errors
-/// There is none.
+/// No sample in time.
 pub fn wait<B: Board + ?Sized>(console: &mut Console<B>) -> Result<String, Error> {
     const COMMAND: &str = "imu";
     let end = console.board().now_ms() + START_MS;
@@ -48,10 +47,10 @@ pub fn wait<B: Board + ?Sized>(console: &mut Console<B>) -> Result<String, Error
     }
 }
 
-/// Gives `on_sample` so many samples as they come, stamped from 0 on in the board's µs.
+/// Streams `samples` samples to `on_sample`, with times in µs of board time, from 0.
 ///
 /// # Errors
-/// The sensor fails, or the board.
+/// The sensor or the board fails.
 pub fn stream<B: Board + ?Sized>(
     console: &mut Console<B>,
     samples: u32,
@@ -79,7 +78,7 @@ pub fn stream<B: Board + ?Sized>(
     wrong.map_or(Ok(()), |line| Err(Error::Sample(line)))
 }
 
-/// Stamps of 32 bits as ever later times from 0 on.
+/// Extends 32-bit time stamps to 64 bits, from 0.
 #[derive(Default)]
 struct Unwrapped {
     last: Option<u32>,
@@ -106,23 +105,23 @@ fn sample(line: &str) -> Option<(u32, [i16; 3], [i16; 3])> {
     Some((stamp.parse().ok()?, [ax, ay, az], [gx, gy, gz]))
 }
 
-/// What a calibration has found, in °/s and °/h.
+/// Result of a calibration, in °/s and °/h.
 #[derive(Clone, Debug, serde::Serialize)]
 pub struct Calibrated {
-    /// How many samples it is the mean of.
+    /// Number of averaged samples.
     pub samples: u32,
-    /// What the gyroscope reads at rest.
+    /// Mean rate at rest.
     pub bias: [f64; 3],
-    /// By how much samples differ from that.
+    /// Standard deviation of the samples.
     pub deviation: [f64; 3],
-    /// How far an attitude is expected to drift.
+    /// Expected drift of an attitude.
     pub drift_per_hour: [f64; 3],
 }
 
-/// Calibrates with so many samples, of which `progress` is told.
+/// Calibrates with `samples` samples; `progress` gets the number so far.
 ///
 /// # Errors
-/// The sensor moves, which the firmware says, or fails.
+/// The sensor moves or fails, as reported by the firmware.
 pub fn calibrate<B: Board + ?Sized>(
     console: &mut Console<B>,
     samples: u32,
@@ -163,7 +162,8 @@ impl std::str::FromStr for Numbers {
     }
 }
 
-/// A sensor for a virtual board: a specimen at rest, or one that measures what a log says, from the board's start on; its end stays.
+/// A sensor for a virtual board: at rest with typical errors, or with the counts of a log from the board's start; the last
+/// sample stays.
 #[must_use]
 pub fn virtual_sensor(log: Option<&[Entry]>) -> Wires {
     let source = match log {

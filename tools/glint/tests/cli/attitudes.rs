@@ -5,7 +5,7 @@ use crate::common::{folder, refused, succeed};
 #[test]
 fn logs_of_a_gyroscope() {
     let folder = folder("imu");
-    // At rest for 0.1 s with noise and a bias, then 90 °/s about z for a second; the last 10 ms are lost.
+    // At rest for 0.1 s with noise and a bias, then 90 °/s about z for a second; the last 10 ms are missing.
     let mut log = String::from("gx,gy,gz,t_us,temp,ax,ay,az\n");
     for i in (0..=1090).chain([1100]) {
         let noise = i * 7 % 5 - 2;
@@ -37,7 +37,7 @@ fn logs_of_a_gyroscope() {
     );
     let last = numbers(said.last().unwrap());
     assert_eq!(last[0], 4_100_000.0);
-    // The first turning sample follows a still one: half of its step is missing, and what a cubic makes of the corner.
+    // The first sample in motion follows one at rest: half a step is missing, and the error of a cubic at the corner.
     assert!(
         (last[5] - 89.96).abs() < 0.02 && last[6].abs() < 0.1 && last[7].abs() < 0.1,
         "{last:?}"
@@ -52,7 +52,7 @@ fn logs_of_a_gyroscope() {
     let yaw = summary["end"]["yaw"].as_f64().unwrap();
     assert!((yaw - last[5]).abs() < 1e-6, "{yaw}");
 
-    // Twice as long between samples, half as much a count: the same. And without the gap, which is a step now.
+    // Twice the sample period and half the scale give the same attitude. The gap becomes an ordinary step.
     let said = replay(
         "turn.csv",
         &["--dt-us", "2000", "--gyro-lsb", "32.8", "--no-tilt"],
@@ -63,11 +63,11 @@ fn logs_of_a_gyroscope() {
         said[0]
     );
     let turned = numbers(said.last().unwrap())[5];
-    // The bias of 5 LSB counts here.
+    // The bias of 5 LSB is not removed here.
     let expected = (991.0 * 1481.0 + 100.5 * 5.0) * 0.002 / 32.8;
     assert!((turned - expected).abs() < 0.1, "{turned} {expected}");
 
-    // On its side gravity says so, unless it is left out.
+    // A sensor on its side: gravity gives the roll, unless tilt correction is off.
     let side = "t_us,ax,ay,az,gx,gy,gz\n0,0,4096,0,0,0,0\n1000,0,4096,0,0,0,0\n";
     std::fs::write(folder.join("side.csv"), side).unwrap();
     let angles = |more: &[&str]| numbers(replay("side.csv", more).last().unwrap())[5..].to_vec();

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// A folder of this test's own.
+/// An empty folder for a test.
 pub fn folder(name: &str) -> PathBuf {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR"))
         .join("cli")
@@ -15,7 +15,7 @@ pub fn folder(name: &str) -> PathBuf {
     path
 }
 
-/// Runs the program with a quarter of a gigabyte of address space: unbounded memory would show.
+/// Runs the program with 256 MiB of address space, which exposes unbounded memory.
 pub fn glint(folder: &Path, arguments: &[&str]) -> Output {
     Command::new("sh")
         .args([
@@ -36,7 +36,7 @@ pub fn succeed(folder: &Path, arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// The one line of a refusal.
+/// The single error line of a rejected input.
 pub fn refused(folder: &Path, arguments: &[&str]) -> String {
     let output = glint(folder, arguments);
     let error = String::from_utf8(output.stderr).unwrap();
@@ -53,7 +53,7 @@ pub fn refused(folder: &Path, arguments: &[&str]) -> String {
 pub const VIEW: &str =
     r#"{"eye":[0,-2,0],"u":[1,0,0],"v":[0,0,-1],"n":[0,1,0],"half_width":0.9,"near":0.1}"#;
 
-/// The pixels of a picture of 16 to 9, three bytes each.
+/// The RGB pixels of a 16:9 picture.
 pub fn picture(path: &Path) -> Vec<u8> {
     let decoder = png::Decoder::new(std::io::BufReader::new(std::fs::File::open(path).unwrap()));
     let mut reader = decoder.read_info().unwrap();

@@ -5,7 +5,7 @@ use crate::common::{SQUARE, folder, refused, succeed};
 #[test]
 fn conversions_by_every_way_agree() {
     let folder = folder("conversions");
-    // A model whose faces have no colours of their own, so that no format loses any.
+    // A model without face colours, which not every format can store.
     succeed(&folder, &["model", "icosphere:4", "straight.glm"]);
     for extension in ["obj", "ply"] {
         let between = format!("between.{extension}");
@@ -14,7 +14,7 @@ fn conversions_by_every_way_agree() {
         let read = |name: &str| std::fs::read(folder.join(name)).unwrap();
         assert_eq!(read("straight.glm"), read("back.glm"), "{extension}");
     }
-    // STL has neither shared points nor colours of points: each face has its own colour, and so its own vertices.
+    // STL has neither shared points nor point colours: each face has its own colour, and so its own vertices.
     succeed(
         &folder,
         &["convert", "straight.glm", "between.stl", "--keep-scale"],

@@ -5,7 +5,7 @@ use crate::common::{VIEW, depths, folder, json, picture, refused, succeed};
 #[test]
 fn fields_and_their_files() {
     let folder = folder("fields");
-    // A box of half a unit, from 20 away: farther than a mesh allows.
+    // A box of half a unit at distance 20, which is too far for a mesh.
     let view = VIEW.replace("[0,-2,0]", "[0,-20,0]");
     std::fs::write(
         folder.join("far.json"),
@@ -36,7 +36,7 @@ fn fields_and_their_files() {
     assert_eq!(stats["evaluations_per_ray"], mean);
     assert!(stats["cycles"].is_null() && stats.get("triangles_in").is_none());
 
-    // The face towards the camera, in the colour of its normal, in front of white.
+    // The front face, in the colour of its normal, on a white background.
     let depth = depths(&folder.join("a.f32"));
     for (z, pixel) in depth.iter().zip(one.chunks_exact(3)) {
         assert!(
@@ -59,7 +59,7 @@ fn fields_and_their_files() {
         said.starts_with("{\"field\":\"box:0.5,0.5,0.25\",") && said.contains("\"rays\":115200,"),
         "{said}"
     );
-    // Five lights are one too many.
+    // At most four lights.
     let lights = ["--light", "0,0,1"].repeat(5);
     let arguments = [
         &["render", "--field", "menger:1", "--out", "b.png"],
@@ -70,7 +70,7 @@ fn fields_and_their_files() {
         refused(&folder, &arguments),
         "error: --light: expected at most 4 lights, found 5"
     );
-    // Blue light from above, and nothing from anywhere else.
+    // One blue light from above, and no ambient light.
     let blue = [
         "--material",
         "ivory",
@@ -96,13 +96,13 @@ fn fields_and_their_files() {
             "{more:?}"
         );
     }
-    // The camera without a name sees the whole sponge.
+    // The default camera sees the whole sponge.
     let (sponge, _) = render("menger:3", &[]);
     assert_eq!(sponge[..3], [0xff; 3]);
     assert_ne!(sponge, render("menger:3", &["--camera", "3,30,60"]).0);
 }
 
-/// A sphere of radius 1 looks out of the faces of a box, and the box's corners look out of the sphere.
+/// A sphere of radius 1 protrudes from the faces of a box, and the corners of the box from the sphere.
 #[test]
 fn a_mesh_in_a_field() {
     let folder = folder("mesh-in-field");
@@ -126,7 +126,7 @@ fn a_mesh_in_a_field() {
     let mut seen = [0, 0];
     for (i, pixel) in both.chunks_exact(3).enumerate() {
         let (a, b) = (mesh_depth[i], field_depth[i]);
-        // Each has codes of its own alone.
+        // Depth codes of mesh and field have different scales when each is drawn alone.
         if (a - b).abs() < 1e-3 {
             continue;
         }

@@ -1,4 +1,4 @@
-//! What the tests of the firmware share: the program as `cargo xtask firmware` leaves it, on a board that has started.
+//! Helpers for tests of the firmware: its image, and boards that run it.
 
 #![allow(dead_code)] // Each test program uses its part.
 
@@ -8,13 +8,13 @@ use litex_pac::memories::MAIN_RAM;
 use object::{Object, ObjectSymbol};
 use virtual_board::{Start, VirtualBoard};
 
-/// What the console writes before it reads a line.
+/// Prompt of the console.
 pub const PROMPT: &str = "glint> ";
 
-/// Many times the cycles of what is waited for, the bus's time-out of a million cycles included.
+/// Time-out in cycles, which includes the bus's time-out of a million cycles.
 pub const LIMIT: u64 = 30_000_000;
 
-/// The program's image.
+/// The firmware's image.
 pub fn image() -> Vec<u8> {
     read("glint.bin")
 }
@@ -27,7 +27,7 @@ fn read(name: &str) -> Vec<u8> {
         .unwrap_or_else(|error| panic!("{}: {error}; run `cargo xtask firmware`", path.display()))
 }
 
-/// The address of the symbol whose mangled name contains all of `parts`.
+/// Address of the symbol whose mangled name contains all of `parts`.
 pub fn address(parts: &[&str]) -> u32 {
     let elf = read("glint.elf");
     let file = object::File::parse(elf.as_slice()).expect("an ELF file");
@@ -45,14 +45,14 @@ pub fn address(parts: &[&str]) -> u32 {
     u32::try_from(symbol.address()).expect("32 bits")
 }
 
-/// Puts words into the program's image.
+/// Writes words to the image.
 pub fn patch(image: &mut [u8], address: u32, words: &[u32]) {
     let offset = (address - MAIN_RAM.base) as usize;
     let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
     image[offset..][..bytes.len()].copy_from_slice(&bytes);
 }
 
-/// A board that runs `image`, and what it said up to its first prompt.
+/// A board that runs `image`, and its output up to the first prompt.
 pub fn started(image: &[u8]) -> (VirtualBoard, String) {
     let start = Start::Fast { firmware: image };
     let mut board = VirtualBoard::builder()
@@ -63,7 +63,7 @@ pub fn started(image: &[u8]) -> (VirtualBoard, String) {
     (board, said)
 }
 
-/// Types a line and returns all that follows up to the next prompt, the echo first.
+/// Sends a line and returns the output up to the next prompt, echo first.
 pub fn command(board: &mut VirtualBoard, line: &str) -> String {
     board.uart_write(line.as_bytes());
     board.uart_write(b"\r");

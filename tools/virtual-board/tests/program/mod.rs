@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Mutex;
 
-/// Tests run beside each other, and some assemble the same program into the same files.
+/// Tests run in parallel, and some assemble the same program.
 static FILES: Mutex<()> = Mutex::new(());
 
-/// The image of `tests/programs/NAME.S`, to be put at the start of main RAM. `symbols` are its constants.
+/// The image of `tests/programs/NAME.S`, linked to the start of main RAM, with constants `symbols`.
 pub fn assemble(name: &str, symbols: &[(&str, u32)]) -> Vec<u8> {
     let _files = FILES.lock().expect("no other test fails here");
     let source = Path::new(env!("CARGO_MANIFEST_DIR"))

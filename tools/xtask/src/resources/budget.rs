@@ -1,4 +1,4 @@
-//! What the gateware may cost: `gateware/budget.toml`.
+//! Limits of the gateware's resources: `gateware/budget.toml`.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -11,31 +11,31 @@ use super::blocks::{ROWS, SOC};
 use super::size::{Resource, Size, number};
 use crate::paths;
 
-/// The most of some resources.
+/// Maximum of each limited resource.
 pub type Limits = BTreeMap<Resource, u32>;
 
 /// The budget file.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Budget {
-    /// What the FPGA has; it limits the SoC.
+    /// Resources of the FPGA: the SoC's limits.
     pub device: Limits,
-    /// Limits of every own block.
+    /// Default limits of every own block.
     own: Limits,
     /// Limits of single blocks.
     block: BTreeMap<String, Limits>,
 }
 
-/// A resource of which a block takes more than it may.
+/// A block above its limit.
 #[derive(Debug, PartialEq, Serialize)]
 pub struct Excess {
     /// The block.
     pub block: String,
-    /// What it takes too much of.
+    /// The resource.
     pub resource: Resource,
-    /// What it may take.
+    /// The limit.
     pub budget: u32,
-    /// What it takes.
+    /// The measured amount.
     pub measured: f64,
 }
 
@@ -56,7 +56,7 @@ impl Budget {
     /// Reads the budget file.
     ///
     /// # Errors
-    /// When it cannot be read, or limits what does not exist.
+    /// It cannot be read, or names an unknown block or resource.
     pub fn read() -> Result<Self> {
         let path = "gateware/budget.toml";
         fs::read_to_string(paths::root().join(path))
@@ -75,7 +75,7 @@ impl Budget {
         Ok(budget)
     }
 
-    /// What a block may take: its own limits, and those of its kind where it has none.
+    /// Limits of a block: its own, otherwise those of its kind.
     pub fn limits(&self, block: &str) -> Limits {
         let common = if block == SOC {
             &self.device
@@ -87,7 +87,7 @@ impl Budget {
         limits
     }
 
-    /// All that is beyond the budget.
+    /// All blocks above their limits.
     pub fn excesses(&self, sizes: &[Size]) -> Vec<Excess> {
         let mut excesses = Vec::new();
         for size in sizes {
@@ -112,7 +112,7 @@ pub mod tests {
     use super::super::size::tests::size;
     use super::*;
 
-    /// A budget that blocks of [`size`] keep, but for the SoC.
+    /// A budget that blocks of [`size`] meet, except for the SoC.
     pub const BUDGET: &str = "device = { lut = 32600, ff = 65200, dsp48 = 120, ramb36 = 75 }
         own = { path = 9 }
         [block]

@@ -1,15 +1,15 @@
-//! What a block takes of the FPGA.
+//! Resources of a block.
 
 use std::collections::BTreeMap;
 
 use anyhow::{Context, Result};
 use serde::{Deserialize, Serialize};
 
-/// What a budget can limit, in the order of the tables.
+/// Limited resources, in the order of the tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Resource {
-    /// All that takes a LUT.
+    /// LUTs of every kind.
     Lut,
     /// Flip-flops.
     Ff,
@@ -53,7 +53,7 @@ impl Resource {
 pub struct Size {
     /// The block.
     pub name: String,
-    /// What measured it, with its version.
+    /// Tool of the measurement, with its version.
     pub yosys: String,
     /// LUTs as logic.
     pub logic: u32,
@@ -73,20 +73,20 @@ pub struct Size {
     pub carry4: u32,
     /// Cells on the longest path between registers.
     pub path: u32,
-    /// All other cells by their names.
+    /// Other cells by name.
     pub others: BTreeMap<String, u32>,
 }
 
 impl Size {
-    /// Reads a line of JSON.
+    /// Parses a line of JSON.
     ///
     /// # Errors
-    /// When it is not a size.
+    /// It is not a size.
     pub fn parse(line: &str) -> Result<Self> {
         serde_json::from_str(line).with_context(|| format!("not a size: `{line}`"))
     }
 
-    /// Several blocks as one; the longest path is the longest of any.
+    /// Sum of several blocks; the path is the longest of all.
     pub fn sum(name: &str, parts: &[&Self]) -> Self {
         let total = |count: fn(&Self) -> u32| parts.iter().map(|part| count(part)).sum();
         let mut others = BTreeMap::new();
@@ -111,7 +111,7 @@ impl Size {
         }
     }
 
-    /// How much of `resource` it takes.
+    /// Amount of `resource`.
     pub fn of(&self, resource: Resource) -> f64 {
         match resource {
             Resource::Lut => f64::from(self.logic + self.srl + self.lutram),

@@ -8,7 +8,7 @@ use super::blocks::{FLAT, FLAT_PARTS, OWN, SOC};
 use super::budget::{Budget, Excess};
 use super::size::{Resource, Size, number};
 
-/// What the numbers say and what they do not.
+/// Notes on the method.
 const NOTES: [&str; 7] = [
     "Cells are those of the netlist that Yosys maps: none is estimated. Nothing is placed or routed, so wires have no delay and \
      no clock rate follows. Another tool maps to other counts; Yosys' own move by a cell of path or a percent of LUTs with \
@@ -27,10 +27,10 @@ const NOTES: [&str; 7] = [
     "The SoC's path is shown and not limited: the soft core has longer ones than the own blocks.",
 ];
 
-/// Rows of equal length, the first of which is the head.
+/// Rows of equal length; the first is the head.
 type Rows = Vec<Vec<String>>;
 
-/// What each block takes, and what share of the device the SoC is.
+/// Sizes of the blocks, and the SoC's share of the device.
 fn sizes_rows(sizes: &[Size], budget: &Budget) -> Rows {
     let mut rows = vec![strings(&[
         "block", "LUT", "logic", "SRL", "LUTRAM", "FF", "DSP48", "RAMB36", "CARRY4", "path",
@@ -63,7 +63,7 @@ fn sizes_rows(sizes: &[Size], budget: &Budget) -> Rows {
     rows
 }
 
-/// What each block may take.
+/// Limits of the blocks.
 fn budget_rows(sizes: &[Size], budget: &Budget) -> Rows {
     let mut head = vec!["block".to_owned()];
     head.extend(Resource::ALL.map(|resource| resource.name().to_owned()));
@@ -81,7 +81,7 @@ fn budget_rows(sizes: &[Size], budget: &Budget) -> Rows {
     rows
 }
 
-/// The SoC's cells that are none of the resources.
+/// Cells of the SoC that count as no resource.
 fn others(sizes: &[Size]) -> Option<String> {
     let soc = sizes.iter().find(|size| size.name == SOC)?;
     let cells: Vec<String> = soc
@@ -145,7 +145,7 @@ pub fn page(sizes: &[Size], budget: &Budget) -> String {
     out
 }
 
-/// For scripts: every count, the sums, the budgets' excesses.
+/// JSON for scripts: all counts, sums and excesses.
 pub fn json(sizes: &[Size], excesses: &[Excess]) -> Value {
     let blocks: Vec<Value> = sizes
         .iter()
@@ -165,7 +165,7 @@ fn strings(words: &[&str]) -> Vec<String> {
     words.iter().map(|word| (*word).to_owned()).collect()
 }
 
-/// The first column to the left, the others to the right.
+/// Aligns the first column left, the others right.
 fn aligned(rows: &Rows) -> String {
     let columns = rows[0].len();
     let widths: Vec<usize> = (0..columns)

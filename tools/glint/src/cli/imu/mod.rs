@@ -8,7 +8,7 @@ use clap::Subcommand;
 use replay::ReplayArguments;
 use sensor::{CalibrateArguments, RecordArguments, StreamArguments};
 
-/// A gyroscope and an accelerometer.
+/// Gyroscope and accelerometer: stream, calibrate, record, replay.
 #[derive(Subcommand)]
 pub enum ImuCommand {
     Stream(StreamArguments),

@@ -19,53 +19,54 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-/// Make attitudes of a log, by the firmware's integer arithmetic.
+/// Compute the attitudes of a log with the firmware's integer arithmetic.
 ///
-/// LOG.csv has a header that names t_us,ax,ay,az,gx,gy,gz, and temp or not, in any order, and a sample a line in raw counts. For each of
-/// them ORIENTATION.csv gets t_us,w,x,y,z,yaw,pitch,roll: the quaternion from the body to the world, whose z is up, and intrinsic z-y-x
-/// angles in degrees. It begins at the identity, or with yaw 0 and gravity where the accelerometer says. Samples that are not later
-/// than those before are ignored; over a gap of more than half a second the attitude is held.
+/// LOG.csv has a header with t_us,ax,ay,az,gx,gy,gz and optionally temp, in any order, then one sample a line in raw counts.
+/// ORIENTATION.csv gets t_us,w,x,y,z,yaw,pitch,roll for each sample: the quaternion from body to world (z up), and intrinsic
+/// z-y-x angles in degrees. The first attitude is the identity, or with tilt correction yaw 0 and the measured direction of
+/// gravity. Samples with a time stamp not later than the one before are ignored. Over a gap of more than half a second the
+/// attitude is held.
 #[derive(Args)]
 pub struct ReplayArguments {
-    /// The log.
+    /// Log to read.
     #[arg(value_name = "LOG.csv")]
     log: PathBuf,
-    /// Who computes: `model` (the firmware's own arithmetic, on this machine), `virtual` (the verilated SoC) or a serial port. All write the
-    /// same.
+    /// Backend: `model` (the firmware's arithmetic on this host), `virtual` (the verilated SoC) or a serial port. All write the
+    /// same attitudes.
     #[arg(long, default_value = "model")]
     board: ModelOrBoard,
     /// The file to write.
     #[arg(long, value_name = "ORIENTATION.csv")]
     out: PathBuf,
-    /// Take so many microseconds between two samples, and not their stamps, which are passed through.
+    /// Fixed sample period in microseconds, instead of the time stamps; ORIENTATION.csv keeps the stamps.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(LONGEST_STEP)))]
     dt_us: Option<u32>,
-    /// LSB of the gyroscope for 1 °/s: 131, 65.5, 32.8, 16.4 for an MPU-6050 at ±250, 500, 1000, 2000 °/s.
+    /// Gyroscope scale in LSB per °/s: 131, 65.5, 32.8, 16.4 for an MPU-6050 at ±250, 500, 1000, 2000 °/s.
     #[arg(long, value_name = "LSB", default_value = "16.4")]
     gyro_lsb: String,
-    /// LSB of the accelerometer for 1 g: 16384, 8192, 4096, 2048 for an MPU-6050 at ±2, 4, 8, 16 g.
+    /// Accelerometer scale in LSB per g: 16384, 8192, 4096, 2048 for an MPU-6050 at ±2, 4, 8, 16 g.
     #[arg(long, value_name = "LSB", default_value = "4096")]
     accel_lsb: String,
-    /// The sensor is still for so long at the start: the mean of the gyroscope meanwhile is its bias. Refused where it moves.
+    /// Rest at the start of the log, in seconds: its mean rate is the bias. Motion during it is an error.
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     still: Option<String>,
-    /// Leave the accelerometer out.
+    /// Disable tilt correction by the accelerometer.
     #[arg(long)]
     no_tilt: bool,
-    /// Follow the bias whenever the sensor is at rest for a while.
+    /// Track the bias whenever the sensor is at rest.
     #[arg(long)]
     follow_bias: bool,
-    /// How log and attitudes pass between here and a board [default: memory on the virtual board, serial on a port].
+    /// Transfer of log and attitudes [default: memory for the virtual board, serial for a port].
     #[arg(long, value_enum)]
     transfer: Option<Route>,
     #[command(flatten)]
     line: LineArguments,
-    /// Print what was done as JSON.
+    /// Print the summary as JSON.
     #[arg(long)]
     json: bool,
 }
 
-/// What is printed.
+/// The summary.
 #[derive(Serialize)]
 struct Summary<'a> {
     log: &'a Path,
@@ -77,14 +78,14 @@ struct Summary<'a> {
     gaps: u64,
     saturated: u64,
     rejected: u64,
-    /// Of a board, in the mean.
+    /// Mean cycles of a sample on a board.
     #[serde(skip_serializing_if = "Option::is_none")]
     cycles_per_sample: Option<u64>,
     calibration: Option<Calibrated>,
     end: Attitude,
 }
 
-/// A calibration, in LSB and °/h.
+/// A calibration in LSB and °/h.
 #[derive(Serialize)]
 struct Calibrated {
     samples: u32,
@@ -104,7 +105,7 @@ impl Calibrated {
     }
 }
 
-/// An attitude as it is written.
+/// An attitude in the units of ORIENTATION.csv.
 #[derive(Serialize)]
 struct Attitude {
     w: f64,
@@ -178,7 +179,7 @@ impl ReplayArguments {
                 Stage::Replay => replay,
             };
             if now != stage {
-                // One bar at a time.
+                // Only one bar is shown.
                 bars.iter().for_each(ProgressBar::reset);
                 stage = now;
             }

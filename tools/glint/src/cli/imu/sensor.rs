@@ -12,12 +12,12 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::PathBuf;
 
-/// Print samples as they come: t_us,ax,ay,az,gx,gy,gz in raw counts.
+/// Stream samples: t_us,ax,ay,az,gx,gy,gz in raw counts.
 ///
-/// The sensor gives 1,000 samples a second; a line of 115,200 bits a second takes some 250 of them.
+/// The sensor takes 1,000 samples a second. A serial line at 115,200 baud carries about 250 of them.
 #[derive(Args)]
 pub struct StreamArguments {
-    /// How many.
+    /// Number of samples.
     #[arg(long, value_name = "N", default_value_t = 1_000, value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_SAMPLES[1])))]
     samples: u32,
     #[command(flatten)]
@@ -42,21 +42,21 @@ impl StreamArguments {
     }
 }
 
-/// A sample as it stands in a log.
+/// A sample as a line of a log.
 fn line(entry: &Entry) -> String {
     let ([ax, ay, az], [gx, gy, gz]) = (entry.accel, entry.gyro);
     format!("{},{ax},{ay},{az},{gx},{gy},{gz}", entry.t_us)
 }
 
-/// Find the gyroscope's bias while the sensor lies still; the board keeps it, and follows it from then on.
+/// Measure the gyroscope's bias at rest; the board stores it and tracks it from then on.
 #[derive(Args)]
 pub struct CalibrateArguments {
-    /// With how many samples.
+    /// Number of samples.
     #[arg(long, value_name = "N", default_value_t = SAMPLES, value_parser = clap::value_parser!(u32).range(i64::from(MOST_SAMPLES[0])..=i64::from(MOST_SAMPLES[1])))]
     samples: u32,
     #[command(flatten)]
     sensor: SensorArguments,
-    /// Print what was found as JSON.
+    /// Print the result as JSON.
     #[arg(long)]
     json: bool,
 }
@@ -87,15 +87,15 @@ impl CalibrateArguments {
     }
 }
 
-/// Write a board's samples to a log, for `glint imu replay`.
+/// Record a board's samples to a log for `glint imu replay`.
 ///
-/// The sensor gives 1,000 samples a second; a line of 115,200 bits a second takes some 250 of them, each with the time at which it was measured.
+/// The sensor takes 1,000 samples a second. A serial line at 115,200 baud carries about 250 of them, each with its time stamp.
 #[derive(Args)]
 pub struct RecordArguments {
-    /// The file to write.
+    /// Log to write.
     #[arg(value_name = "LOG.csv")]
     log: PathBuf,
-    /// How many samples.
+    /// Number of samples.
     #[arg(long, value_name = "N", default_value_t = 1_000, value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_SAMPLES[1])))]
     samples: u32,
     #[command(flatten)]

@@ -1,4 +1,4 @@
-//! Samples of a board's sensor, and of a file.
+//! Samples of a board's sensor, and of a log.
 
 use crate::cli::common::{LineArguments, spinner};
 use clap::Args;
@@ -9,10 +9,10 @@ use glint::imu::log::{self, Entry};
 use glint::imu::sensor;
 use std::path::{Path, PathBuf};
 
-/// A board with a sensor.
+/// Options of a board with a sensor.
 #[derive(Args)]
 pub struct SensorArguments {
-    /// Whose sensor: `virtual` (the verilated SoC, with a virtual MPU-6050) or a serial port.
+    /// Board of the sensor: `virtual` (the verilated SoC with a virtual MPU-6050) or a serial port.
     #[arg(long)]
     board: BoardName,
     /// What the virtual sensor measures, in raw counts from the board's start on [default: it lies still, with noise and bias].
@@ -23,7 +23,7 @@ pub struct SensorArguments {
 }
 
 impl SensorArguments {
-    /// The board, once its sensor gives samples.
+    /// Opens the board and waits for its sensor's first sample.
     pub fn open(&self) -> anyhow::Result<Box<dyn Board>> {
         anyhow::ensure!(
             self.board == BoardName::Virtual || self.sensor.is_none(),
@@ -51,13 +51,13 @@ impl SensorArguments {
     }
 }
 
-/// A log of a file.
+/// Reads a log.
 pub fn read_log(path: &Path) -> anyhow::Result<Vec<Entry>> {
     let text = read_file(path)?;
     Ok(log::parse(&text).map_err(|error| error.in_file(file_name(path)))?)
 }
 
-/// What a file is called in messages.
+/// A file's name in messages.
 pub fn file_name(path: &Path) -> String {
     path.display().to_string().escape_debug().to_string()
 }

@@ -1,19 +1,19 @@
-//! The header of a PLY file: which elements there are, and of what their instances consist.
+//! Header of a PLY file: its elements and their properties.
 
 use crate::error::{FormatError, Place, quote};
 use crate::formats::text::{Line, Lines};
 
-/// The most elements a header may declare, and the most properties of an element: more than any real file has.
+/// Maximum number of elements in a header, and of properties in an element; real files have fewer.
 const MAX_DECLARED: usize = 64;
 
-/// How the values behind the header are written.
+/// Encoding of the values after the header.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Encoding {
-    /// A line for each instance.
+    /// Text, one line per instance.
     Ascii,
-    /// Binary, low byte first.
+    /// Binary, little-endian.
     LittleEndian,
-    /// Binary, high byte first.
+    /// Binary, big-endian.
     BigEndian,
 }
 
@@ -45,7 +45,7 @@ impl Scalar {
         })
     }
 
-    /// Bytes of one value in a binary file.
+    /// Size in bytes of a binary value.
     pub fn size(self) -> usize {
         match self {
             Self::Int8 | Self::Uint8 => 1,
@@ -55,7 +55,7 @@ impl Scalar {
         }
     }
 
-    /// The value of the low [`size`](Self::size) bytes, low byte first.
+    /// Decodes the low [`size`](Self::size) bytes, least significant first.
     pub fn decode(self, raw: [u8; 8]) -> f64 {
         let [a, b, c, d, ..] = raw;
         match self {
@@ -82,18 +82,18 @@ impl Scalar {
         })
     }
 
-    /// Whether a value read as text fits.
+    /// Whether the type can hold a value parsed from text.
     pub fn holds(self, value: f64) -> bool {
         self.range()
             .is_none_or(|(low, high)| (low..=high).contains(&value) && value.fract() == 0.0)
     }
 
-    /// What a full channel of a colour is in this type.
+    /// Full intensity of a colour channel of this type.
     pub fn full_scale(self) -> f64 {
         self.range().map_or(1.0, |(_, high)| high)
     }
 
-    /// For messages.
+    /// Name in messages.
     pub fn describe(self) -> &'static str {
         match self {
             Self::Int8 => "an int8",
@@ -108,16 +108,16 @@ impl Scalar {
     }
 }
 
-/// One value, or a list of them with its length in front.
+/// Type of a property: one value, or a list after its length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// One value.
     Scalar(Scalar),
     /// A list.
     List {
-        /// The type of its length.
+        /// Type of its length.
         count: Scalar,
-        /// The type of its items.
+        /// Type of its items.
         item: Scalar,
     },
 }
@@ -127,37 +127,37 @@ pub enum Kind {
 pub struct Property {
     /// Its name.
     pub name: Vec<u8>,
-    /// What it consists of.
+    /// Type of its values.
     pub kind: Kind,
 }
 
-/// An element: a kind of thing of which the file has many.
+/// An element: the type of a table of instances.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Element {
     /// Its name.
     pub name: Vec<u8>,
-    /// How many there are.
+    /// Number of instances.
     pub count: u32,
-    /// What each consists of.
+    /// Properties of each instance.
     pub properties: Vec<Property>,
-    /// Where it was declared.
+    /// Place of its declaration.
     pub place: Place,
 }
 
 /// A whole header.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Header {
-    /// How the values are written.
+    /// Encoding of the values.
     pub encoding: Encoding,
-    /// The elements in the order of the file.
+    /// Elements in file order.
     pub elements: Vec<Element>,
 }
 
 impl Header {
-    /// Reads up to the line `end_header`, so that `lines` stands at the first value.
+    /// Parses up to and including the line `end_header`; `lines` then continues with the first value.
     ///
     /// # Errors
-    /// The first line that is not of a PLY header.
+    /// The first line that violates the format.
     pub fn parse(lines: &mut Lines) -> Result<Self, FormatError> {
         let mut encoding = None;
         let mut elements: Vec<Element> = Vec::new();

@@ -1,7 +1,7 @@
 //! PLY (the Stanford polygon format), ASCII and binary of both byte orders.
 //!
-//! Own code and not `ply-rs` or `ply-rs-bw`: a header of 70 bytes that declares 30 million elements without a property
-//! takes them 2 GB, and their errors in binary files carry no offset.
+//! Own parser instead of `ply-rs` or `ply-rs-bw`: they need 2 GB for a header of 70 bytes that declares 30 million elements
+//! without properties, and their errors in binary files have no offset.
 
 mod header;
 mod source;
@@ -12,11 +12,11 @@ use crate::polygons::{Corner, Polygons, Rgb8};
 use header::{Element, Encoding, Header, Kind, Property, Scalar};
 use source::{AsciiSource, BinarySource, Source};
 
-/// Reads a whole PLY: the elements `vertex` (x y z, perhaps nx ny nz and red green blue) and `face` (vertex_indices or
-/// vertex_index, perhaps red green blue); others are skipped.
+/// Parses a PLY: the elements `vertex` (x y z, optionally nx ny nz and red green blue) and `face` (vertex_indices or
+/// vertex_index, optionally red green blue); other elements are skipped.
 ///
 /// # Errors
-/// The first thing that is not PLY, and its line (header, ASCII) or offset (binary).
+/// The first violation of the format, with its line (header, ASCII) or offset (binary).
 pub fn parse(file: &[u8]) -> Result<Polygons, FormatError> {
     let mut lines = Lines::new(file);
     let header = Header::parse(&mut lines)?;
@@ -35,7 +35,7 @@ pub fn parse(file: &[u8]) -> Result<Polygons, FormatError> {
 fn read_body(header: &Header, mut source: impl Source) -> Result<Polygons, FormatError> {
     let mut polygons = Polygons::default();
     for element in &header.elements {
-        // An element without properties has no bytes either, however many there are.
+        // An element without properties has no bytes, whatever its count.
         if element.properties.is_empty() {
             continue;
         }
@@ -84,12 +84,12 @@ fn list_length(count: Scalar, source: &mut impl Source) -> Result<u64, FormatErr
     Ok(length as u64)
 }
 
-/// Where a scalar property goes.
+/// Destination of a scalar property.
 #[derive(Clone, Copy)]
 enum Slot {
     Position(usize),
     Normal(usize),
-    /// The channel, and what the property's largest value is.
+    /// Channel, and full intensity of the property's type.
     Colour(usize, f64),
     None,
 }
@@ -114,7 +114,7 @@ impl Slot {
     }
 }
 
-/// Whether the properties have all three of a kind.
+/// Whether the properties include all three channels of a kind.
 fn has_all(slots: &[Slot], kind: impl Fn(&Slot) -> Option<usize>) -> bool {
     (0..3).all(|i| slots.iter().any(|slot| kind(slot) == Some(i)))
 }
@@ -179,7 +179,7 @@ fn read_vertices(
             let value = source.value(scalar)?;
             match *slot {
                 Slot::Position(i) => point[i] = coordinate(value, place)?,
-                // A normal that is no number is as good as none.
+                // An invalid normal counts as none.
                 Slot::Normal(i) => normal[i] = checked(value).unwrap_or(0.0),
                 Slot::Colour(i, full) => colour[i] = value / full,
                 Slot::None => {}
@@ -218,7 +218,7 @@ fn read_faces(
         ));
     }
     let with_colour = has_colour(&slots);
-    // Only vertices that come before the faces, as in every known file, bring their normals along.
+    // Faces use the vertices' normals if the vertices come first, as in every known file.
     let with_normal = !polygons.normals.is_empty();
     let mut corners = Vec::new();
     for _ in 0..element.count {

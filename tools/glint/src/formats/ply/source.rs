@@ -6,11 +6,11 @@ use crate::formats::text::{Lines, any_number};
 
 /// The values of a PLY's elements in file order.
 pub trait Source {
-    /// Starts an element's next instance.
+    /// Starts the next instance of an element.
     fn start(&mut self) -> Result<(), FormatError>;
-    /// The next value.
+    /// Reads the next value.
     fn value(&mut self, scalar: Scalar) -> Result<f64, FormatError>;
-    /// Ends an instance.
+    /// Ends the instance.
     fn end(&mut self) -> Result<(), FormatError>;
     /// The place of the next value.
     fn place(&self) -> Place;
