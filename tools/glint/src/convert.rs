@@ -62,7 +62,7 @@ pub fn convert(polygons: &Polygons, options: Options) -> Result<(Vec<u8>, Report
     if triangles.is_empty() {
         return Err(FormatError::whole(
             "a triangle with an area at a resolution of 2^-14",
-            format!("{degenerate} without one"),
+            format!("only degenerate ones ({degenerate})"),
         ));
     }
     let (vertices, indexed) = index(polygons, &rounded, &triangles);
@@ -324,7 +324,7 @@ mod tests {
         assert!((report.error_max_lsb - 0.2).abs() < 1e-9);
         assert!((report.error_rms_lsb - 0.2 / 5f64.sqrt()).abs() < 1e-9);
         let error = convert(&soup(&points, &[&[0, 3, 2]]), KEEP).unwrap_err();
-        assert_eq!(error.found, "1 without one");
+        assert_eq!(error.found, "only degenerate ones (1)");
     }
 
     #[test]
@@ -332,7 +332,7 @@ mod tests {
         let error = convert(&soup(&[[1.0; 3]; 3], &[&[0, 1, 2]]), Options::default()).unwrap_err();
         assert_eq!(
             error.to_string(),
-            "expected a mesh with an extent, found one of 0e0"
+            "expected a mesh with an extent, found extent 0e0"
         );
     }
 

@@ -1,6 +1,7 @@
 //! Errors of inputs: place, expected, found; always one line. Limits of inputs.
 
 use std::fmt;
+use std::path::Path;
 
 /// Maximum size of a file in bytes. An ASCII STL of this size has about as many triangles as a board's mesh memory.
 pub const MAX_FILE: usize = 512 << 20;
@@ -72,6 +73,11 @@ impl FormatError {
             file: file.into(),
             error: self,
         }
+    }
+
+    /// Adds the file's path, escaped to one line.
+    pub fn in_path(self, path: &Path) -> InputError {
+        self.in_file(path.display().to_string().escape_debug().to_string())
     }
 }
 

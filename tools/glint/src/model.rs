@@ -40,11 +40,11 @@ pub fn load(name: &str, options: Options) -> Result<Model, InputError> {
     let path = Path::new(name);
     if !is_generated(name) && Format::of(path)? == Format::Glm {
         let mesh = formats::read_file(path)?;
-        glm::check(&mesh).map_err(|error| error.in_file(name.escape_debug().to_string()))?;
+        glm::check(&mesh).map_err(|error| error.in_path(path))?;
         return Ok(Model { mesh, report: None });
     }
-    let (mesh, report) = convert::convert(&polygons(name)?, options)
-        .map_err(|error| error.in_file(name.escape_debug().to_string()))?;
+    let (mesh, report) =
+        convert::convert(&polygons(name)?, options).map_err(|error| error.in_path(path))?;
     Ok(Model {
         mesh,
         report: Some(report),

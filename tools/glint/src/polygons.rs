@@ -80,7 +80,7 @@ pub struct Polygons {
 struct Largest(Option<(u32, Place)>);
 
 impl Largest {
-    fn see(&mut self, index: u32, place: Place) {
+    fn update(&mut self, index: u32, place: Place) {
         if self.0.is_none_or(|(largest, _)| index > largest) {
             self.0 = Some((index, place));
         }
@@ -90,8 +90,8 @@ impl Largest {
         match self.0 {
             Some((index, place)) if index as usize >= count => Err(FormatError::new(
                 place,
-                format!("a {what} of the {count} in the file"),
-                format!("one with index {index}, counted from 0"),
+                format!("a {what} index below {count}"),
+                format!("{index} (counted from 0)"),
             )),
             _ => Ok(()),
         }
@@ -158,9 +158,9 @@ impl Polygons {
             ));
         }
         for corner in corners {
-            self.largest_point.see(corner.point, place);
+            self.largest_point.update(corner.point, place);
             if corner.normal != Corner::NO_NORMAL {
-                self.largest_normal.see(corner.normal, place);
+                self.largest_normal.update(corner.normal, place);
             }
         }
         self.faces.push(Face {
@@ -225,6 +225,6 @@ mod tests {
             .unwrap();
         let error = polygons.check_indices().unwrap_err();
         assert_eq!(error.place, Place::Line(2));
-        assert_eq!(error.found, "one with index 7, counted from 0");
+        assert_eq!(error.found, "7 (counted from 0)");
     }
 }

@@ -26,8 +26,7 @@ struct ViewFile {
 /// The file cannot be read, has other contents, or [`View::new_checked`] rejects the camera.
 pub fn read(path: &Path) -> Result<View, InputError> {
     let bytes = read_file(path)?;
-    parse(&bytes)
-        .map_err(|error| error.in_file(path.display().to_string().escape_debug().to_string()))
+    parse(&bytes).map_err(|error| error.in_path(path))
 }
 
 /// Parses the bytes of a view file; see [`read`].

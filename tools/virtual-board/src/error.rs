@@ -23,7 +23,7 @@ pub enum Error {
     },
     /// The library has another version of the interface.
     #[error(
-        "the virtual board's library {} has interface {found}, this program needs {expected}; \
+        "the virtual board's library {} has interface {found}: expected {expected}; \
          run `cargo xtask gateware`", .path.display()
     )]
     Interface {
@@ -36,7 +36,7 @@ pub enum Error {
     },
     /// The library's SoC has another register map.
     #[error(
-        "the virtual board's register map is {found:#010x}, this program was built for {expected:#010x}; \
+        "the virtual board's build id is {found:#010x}: expected {expected:#010x}; \
          run `cargo xtask gateware` and `cargo xtask pac`"
     )]
     BuildId {
@@ -46,14 +46,14 @@ pub enum Error {
         found: u32,
     },
     /// Waveforms cannot be written.
-    #[error("cannot write waveforms to {}: is its folder there, and is the library one with waveforms?", .path.display())]
+    #[error("waveforms to {}: cannot be written; expected an existing folder and a library of `cargo xtask gateware --waveforms`", .path.display())]
     Trace {
         /// Path of the waveforms.
         path: PathBuf,
     },
     /// An access of the back door outside main RAM.
     #[error(
-        "DDR3 access of {length} bytes at {address:#010x}: expected it within {:#010x}..{:#010x}",
+        "DDR3 access of {length} bytes at {address:#010x}: expected a range within {:#010x}..{:#010x}",
         .ram.start, .ram.end
     )]
     Address {
@@ -65,7 +65,7 @@ pub enum Error {
         ram: std::ops::Range<u32>,
     },
     /// A wait that timed out.
-    #[error("waited {cycles} cycles for {expected}; got {got:?}")]
+    #[error("expected {expected} within {cycles} cycles, found {got:?}")]
     Timeout {
         /// Expected event.
         expected: String,

@@ -8,7 +8,7 @@ use std::path::Path;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PictureError {
     /// The sides of the picture are not multiples of the scale.
-    #[error("a picture of {width}x{height} cannot come from scaling by {scale}")]
+    #[error("picture of {width}x{height}: expected multiples of the scale {scale}")]
     Scale {
         /// Pixels of a line.
         width: usize,
@@ -19,7 +19,7 @@ pub enum PictureError {
     },
     /// Pixels of one source pixel differ.
     #[error(
-        "pixel {x}, {y} is {found:?}, expected {expected:?} as in the rest of its {scale}x{scale} block"
+        "pixel {x}, {y}: expected {expected:?} as in the rest of its {scale}x{scale} block, found {found:?}"
     )]
     Block {
         /// Column.
@@ -34,9 +34,7 @@ pub enum PictureError {
         found: [u8; 3],
     },
     /// A colour that bit replication of RGB565 cannot produce.
-    #[error(
-        "pixel {x}, {y} is {found:?}, which is not an RGB565 colour; the nearest gives {expected:?}"
-    )]
+    #[error("pixel {x}, {y}: expected the RGB565 colour {expected:?}, found {found:?}")]
     Colour {
         /// Column.
         x: usize,

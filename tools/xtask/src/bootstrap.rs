@@ -53,7 +53,7 @@ fn debian_packages() -> Result<()> {
         .iter()
         .filter(|(package, _)| missing.contains(package))
     {
-        run::say(&format!("  missing: {package} ({purpose})"));
+        run::print_progress(&format!("  missing: {package} ({purpose})"));
     }
     let by_hand = format!(
         "apt-get update && apt-get install --no-install-recommends {}",

@@ -58,7 +58,7 @@ pub fn resources(options: &Options) -> Result<()> {
         let path = paths::root().join("docs/resources.md");
         fs::write(&path, table::page(&sizes, &budget))
             .with_context(|| format!("writing {}", path.display()))?;
-        run::say("wrote docs/resources.md");
+        run::print_progress("wrote docs/resources.md");
     }
     within(&excesses)
 }

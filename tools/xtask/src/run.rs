@@ -28,7 +28,7 @@ pub fn progress_to_stderr() {
 }
 
 /// Prints a line above the progress lines.
-pub fn say(line: &str) {
+pub fn print_progress(line: &str) {
     SPINNERS.suspend(|| {
         if TO_STDERR.load(Ordering::Relaxed) {
             eprintln!("{line}");
@@ -86,12 +86,12 @@ pub fn watched_step(name: &str, command: &mut Command, mut watch: impl FnMut(&st
     bar.finish_and_clear();
     let seconds = start.elapsed().as_secs_f64();
     if status.success() {
-        say(&format!("  ok   {seconds:6.1} s  {name}"));
+        print_progress(&format!("  ok   {seconds:6.1} s  {name}"));
         return Ok(());
     }
     // One write: another step may print at the same time.
     let tail: String = tail.iter().map(|line| format!("\n    {line}")).collect();
-    say(&format!("  FAIL {seconds:6.1} s  {name}{tail}"));
+    print_progress(&format!("  FAIL {seconds:6.1} s  {name}{tail}"));
     bail!(
         "{name} failed ({status}); all of its output is in {}",
         log_path.display()
@@ -126,7 +126,7 @@ pub fn succeeds(command: &mut Command) -> bool {
 /// A spinner named `name`; without a terminal, a line at the start.
 fn spinner(name: &str) -> ProgressBar {
     if !std::io::stderr().is_terminal() {
-        say(&format!("  ...            {name}"));
+        print_progress(&format!("  ...            {name}"));
         return ProgressBar::hidden();
     }
     let style = ProgressStyle::with_template("  {spinner} {elapsed:>8}  {prefix}  {msg:.dim}")

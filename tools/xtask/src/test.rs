@@ -24,25 +24,25 @@ pub fn test() -> Result<()> {
     gateware::build(Board::Virtual)?;
     gateware::build(Board::Urbana)?;
 
-    let outcomes = Outcomes::default();
+    let results = CheckResults::default();
     let (models_are_built, models) = mpsc::channel();
     thread::scope(|scope| -> Result<()> {
         scope.spawn(|| {
-            outcomes.add(gateware_check("gateware tests", "gateware/tests/run.py"));
+            results.add(gateware_check("gateware tests", "gateware/tests/run.py"));
             // The receiver is gone if a build has failed.
             let _ = models_are_built.send(());
-            outcomes.add(gateware_check("proofs", "gateware/formal/run.py"));
-            outcomes.add(resources::check_own_blocks().map(|()| 1));
+            results.add(gateware_check("proofs", "gateware/formal/run.py"));
+            results.add(resources::check_own_blocks().map(|()| 1));
         });
         firmware::build(&[])?;
         firmware::build(&["peers"])?;
-        outcomes.add(pac::generate(true).map(|()| 1));
-        outcomes.add(cargo("formatting", &["fmt", "--all", "--check"]));
-        outcomes.add(cargo(
+        results.add(pac::generate(true).map(|()| 1));
+        results.add(cargo("formatting", &["fmt", "--all", "--check"]));
+        results.add(cargo(
             "clippy",
             &["clippy", "--all-targets", "--", "-D", "warnings"],
         ));
-        outcomes.add(cargo(
+        results.add(cargo(
             "clippy of the firmware",
             &[
                 "clippy",
@@ -55,26 +55,26 @@ pub fn test() -> Result<()> {
                 "warnings",
             ],
         ));
-        outcomes.add(documentation());
-        outcomes.add(cargo("build of the tests", &["test", "--no-run"]));
+        results.add(documentation());
+        results.add(cargo("build of the tests", &["test", "--no-run"]));
         models.recv().expect("the gateware's checks do not panic");
-        outcomes.add(cargo_tests());
+        results.add(cargo_tests());
         Ok(())
     })?;
 
     let minutes = start.elapsed().as_secs_f64() / 60.0;
     println!("{minutes:.1} minutes");
-    outcomes.finish()
+    results.finish()
 }
 
 /// Numbers of passed checks, and the errors of failed ones.
 #[derive(Default)]
-struct Outcomes {
+struct CheckResults {
     passed: AtomicU32,
     failures: Mutex<Vec<String>>,
 }
 
-impl Outcomes {
+impl CheckResults {
     fn add(&self, outcome: Result<u32>) {
         match outcome {
             Ok(count) => {

@@ -51,7 +51,10 @@ fn main() -> anyhow::Result<()> {
         }
         findings += fuzz(target, &inputs, &arguments)?;
     }
-    anyhow::ensure!(findings == 0, "{findings} inputs made a target panic");
+    anyhow::ensure!(
+        findings == 0,
+        "{findings} findings: inputs on which a target panicked"
+    );
     Ok(())
 }
 
@@ -83,18 +86,18 @@ fn fuzz(target: Target, inputs: &Inputs, arguments: &Arguments) -> anyhow::Resul
     std::panic::set_hook(quiet);
     bar.finish_and_clear();
     let seconds = start.elapsed().as_secs_f64();
-    let of = |count: &AtomicU64| count.load(Ordering::Relaxed);
-    let slowest = of(&tally.slowest);
+    let value = |count: &AtomicU64| count.load(Ordering::Relaxed);
+    let slowest = value(&tally.slowest);
     println!(
-        "{target:?}: {} inputs (seed {}) in {seconds:.1} s, {:.0} a second; {:.1} % went the whole way; slowest {:.1} ms; {} panics",
-        of(&tally.done),
+        "{target:?}: {} inputs (seed {}) in {seconds:.1} s, {:.0} a second; {:.1} % accepted; slowest {:.1} ms; {} panics",
+        value(&tally.done),
         arguments.seed,
-        of(&tally.done) as f64 / seconds,
-        100.0 * of(&tally.accepted) as f64 / of(&tally.done).max(1) as f64,
+        value(&tally.done) as f64 / seconds,
+        100.0 * value(&tally.accepted) as f64 / value(&tally.done).max(1) as f64,
         slowest as f64 / 1000.0,
-        of(&tally.findings),
+        value(&tally.findings),
     );
-    Ok(of(&tally.findings))
+    Ok(value(&tally.findings))
 }
 
 fn work(target: Target, inputs: &Inputs, arguments: &Arguments, tally: &Tally, bar: &ProgressBar) {

@@ -4,7 +4,7 @@ use super::common::{print_json, say, spinner, write_file};
 use anyhow::Context;
 use clap::Args;
 use glint::convert::{self, Options, Report};
-use glint::error::InputError;
+use glint::error::FormatError;
 use glint::formats::{self, Format, write};
 use glint::polygons::Polygons;
 use glint::{generate, model};
@@ -50,7 +50,13 @@ impl ModelArguments {
         let options = Options {
             keep_scale: self.keep_scale,
         };
-        convert_to(polygons, &self.name, &self.out, options, self.json)
+        convert_to(
+            polygons,
+            Path::new(&self.name),
+            &self.out,
+            options,
+            self.json,
+        )
     }
 }
 
@@ -62,13 +68,7 @@ impl ConvertArguments {
         let options = Options {
             keep_scale: self.keep_scale,
         };
-        convert_to(
-            polygons,
-            &self.input.display().to_string(),
-            &self.out,
-            options,
-            self.json,
-        )
+        convert_to(polygons, &self.input, &self.out, options, self.json)
     }
 }
 
@@ -84,18 +84,16 @@ struct Copied {
 
 fn convert_to(
     mut polygons: Polygons,
-    name: &str,
+    name: &Path,
     out: &Path,
     options: Options,
     json: bool,
 ) -> anyhow::Result<()> {
-    let refused = |error: glint::error::FormatError| -> InputError {
-        error.in_file(name.escape_debug().to_string())
-    };
+    let in_input = |error: FormatError| error.in_path(name);
     let format = Format::of(out)?;
     if format == Format::Glm {
         let spinner = spinner("converting");
-        let (mesh, report) = convert::convert(&polygons, options).map_err(refused)?;
+        let (mesh, report) = convert::convert(&polygons, options).map_err(in_input)?;
         write_file(out, &mesh)?;
         spinner.finish_and_clear();
         return if json {
@@ -104,14 +102,14 @@ fn convert_to(
             print_report(&report)
         };
     }
-    convert::place(&mut polygons, options).map_err(refused)?;
+    convert::place(&mut polygons, options).map_err(in_input)?;
     let mut bytes = Vec::new();
     match format {
         Format::Obj => write::obj(&polygons, &mut bytes),
         Format::Stl => write::stl(&polygons, &mut bytes),
         Format::Ply | Format::Glm => write::ply(&polygons, &mut bytes),
     }
-    .context("the mesh cannot be written")?;
+    .context("mesh: cannot be written")?;
     write_file(out, &bytes)?;
     let copied = Copied {
         points: polygons.points.len(),

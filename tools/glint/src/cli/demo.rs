@@ -76,7 +76,7 @@ struct Row {
 impl DemoArguments {
     pub fn run(self) -> anyhow::Result<()> {
         std::fs::create_dir_all(&self.out)
-            .with_context(|| format!("{}: cannot be made", self.out.display()))?;
+            .with_context(|| format!("{}: cannot be created", self.out.display()))?;
         let names: Vec<String> = if self.models.is_empty() {
             MODELS.map(str::to_owned).to_vec()
         } else {
@@ -89,14 +89,14 @@ impl DemoArguments {
         let firmware = built_firmware(self.firmware.as_deref())?;
 
         // Two boards: a simulation uses one core, and most hosts have two.
-        let (first, others) = models.split_first().context("a model to show")?;
+        let (first, others) = models.split_first().context("no model")?;
         let (mut rows, lines) = std::thread::scope(|scope| {
             let second = scope.spawn(|| self.second_board(first, others, &firmware));
             let mut rows = vec![self.first_board(first, &firmware)?];
-            let waiting = spinner("the second board is at work");
+            let waiting = spinner("waiting for the second board");
             let (others, lines) = second
                 .join()
-                .map_err(|_| anyhow::anyhow!("the second board has failed"))??;
+                .map_err(|_| anyhow::anyhow!("the second board's thread panicked"))??;
             waiting.finish_and_clear();
             rows.extend(others);
             anyhow::Ok((rows, lines))
@@ -112,7 +112,7 @@ impl DemoArguments {
         let mut renderer =
             BoardRenderer::new(boot(&mut board, firmware)?).with_backend(Backend::Gateware);
         let mut row = self.show(&mut renderer, model, 0, Route::Serial)?;
-        let waiting = spinner("the soft core draws the same");
+        let waiting = spinner("the soft core draws the same frame");
         renderer.console().command("backend cpu")?;
         row.cpu_cycles = renderer.look(&camera(azimuth(0))?)?.cycles;
         waiting.finish_and_clear();
@@ -176,7 +176,7 @@ impl DemoArguments {
         let expected = render::on_model(&frame)?.image.colour;
         anyhow::ensure!(
             picture.scaled_back(scale)? == expected,
-            "{name}: the monitor's picture is not the model's"
+            "{name}: the picture on the monitor differs from the model's"
         );
         let cycles = renderer.board().inner().cycles() - start_cycles;
         Ok(Row {
@@ -256,7 +256,7 @@ impl DemoArguments {
             anyhow::ensure!(
                 stats.backend.as_deref() == Some("gateware")
                     && image.colour == render::on_model(&frame)?.image.colour,
-                "frame {number} of the sponge is not the model's, or was drawn by the soft core"
+                "frame {number} of the sponge differs from the model's, or was drawn by the soft core"
             );
             cycles += stats.cycles.unwrap_or_default();
             images.push(image);

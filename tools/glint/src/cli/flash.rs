@@ -62,7 +62,7 @@ fn parse_address(text: &str) -> Result<u32, String> {
 impl FlashArguments {
     pub fn run(self) -> anyhow::Result<()> {
         let program = std::fs::read(&self.program)
-            .with_context(|| format!("{}: expected a program to read", self.program.display()))?;
+            .with_context(|| format!("{}: cannot be read", self.program.display()))?;
         let mut board: Box<dyn Board> = match &self.board {
             BoardName::Virtual => Box::new(SimulatedBoard::full()?),
             BoardName::Serial(port) => Box::new(SerialBoard::open(port, self.baud)?),

@@ -40,7 +40,7 @@ impl Placing {
         if !scale.is_finite() {
             return Err(FormatError::whole(
                 "a mesh with an extent",
-                format!("one of {extent:e}"),
+                format!("extent {extent:e}"),
             ));
         }
         Ok(Self {

@@ -47,15 +47,11 @@ impl Format {
                 });
                 Err(
                     FormatError::whole("a name that ends in .obj, .stl, .ply or .glm", found)
-                        .in_file(name(path)),
+                        .in_path(path),
                 )
             }
         }
     }
-}
-
-fn name(path: &Path) -> String {
-    path.display().to_string().escape_debug().to_string()
 }
 
 /// Reads a whole file.
@@ -66,13 +62,9 @@ pub fn read_file(path: &Path) -> Result<Vec<u8>, InputError> {
     let mut bytes = Vec::new();
     File::open(path)
         .and_then(|file| file.take(MAX_FILE as u64 + 1).read_to_end(&mut bytes))
-        .map_err(|error| {
-            FormatError::whole("a file to read", error.to_string()).in_file(name(path))
-        })?;
+        .map_err(|error| FormatError::whole("a file to read", error.to_string()).in_path(path))?;
     if bytes.len() > MAX_FILE {
-        return Err(
-            FormatError::whole(format!("at most {MAX_FILE} bytes"), "more").in_file(name(path)),
-        );
+        return Err(FormatError::whole(format!("at most {MAX_FILE} bytes"), "more").in_path(path));
     }
     Ok(bytes)
 }
@@ -100,5 +92,5 @@ pub fn read(path: &Path) -> Result<Polygons, InputError> {
         Format::Ply => ply::parse(&bytes),
         Format::Glm => glm::parse(&bytes),
     };
-    parsed.map_err(|error| error.in_file(name(path)))
+    parsed.map_err(|error| error.in_path(path))
 }

@@ -379,7 +379,7 @@ mod tests {
     }
 
     #[test]
-    fn refused() {
+    fn errors_name_their_place() {
         let cases = [
             ("", "expected at least one face, found none"),
             ("v 0 0 0\n", "expected at least one face, found none"),
@@ -401,7 +401,7 @@ mod tests {
             ),
             (
                 "v 0 0 0\nf 1 1 9\n",
-                "line 2: expected a point of the 1 in the file, found one with index 8, counted from 0",
+                "line 2: expected a point index below 1, found 8 (counted from 0)",
             ),
             (
                 "v 0 0 0\nf 1 1 -2\n",
@@ -417,7 +417,7 @@ mod tests {
             ),
             (
                 "v 0 0 0\nf 1//1 1//1 1//1\n",
-                "line 2: expected a normal of the 0 in the file, found one with index 0, counted from 0",
+                "line 2: expected a normal index below 0, found 0 (counted from 0)",
             ),
             (
                 "v 0 0 0 1 2\n",

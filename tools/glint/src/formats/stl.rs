@@ -265,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn refused() {
+    fn errors_name_their_place() {
         let nan = {
             let mut c = CORNERS;
             c[4] = f32::NAN;

@@ -79,7 +79,7 @@ impl Header {
         for cell in cells(line) {
             let column = COLUMNS.iter().position(|name| name.as_bytes() == cell);
             let Some(column) = column.filter(|_| count < MOST_COLUMNS) else {
-                let expected = format!("columns of {}", COLUMNS.join(","));
+                let expected = format!("only columns {}", COLUMNS.join(","));
                 return Err(FormatError::new(line.place(), expected, quote(cell)));
             };
             if places[column].replace(count).is_some() {
@@ -115,19 +115,19 @@ impl Header {
                 .and_then(|place| row.get(place))
                 .copied()
         };
-        let wrong = |column: usize, expected: &str| {
+        let bad_cell = |column: usize, expected: &str| {
             let place = Place::Cell(line.number, COLUMNS[column]);
             FormatError::new(place, expected, quote(cell(column).unwrap_or_default()))
         };
         let number = |column: usize| std::str::from_utf8(cell(column).unwrap_or_default());
         let count = |column: usize| {
             let parsed = number(column).ok().and_then(|text| text.parse().ok());
-            parsed.ok_or_else(|| wrong(column, "a whole number from -32768 to 32767"))
+            parsed.ok_or_else(|| bad_cell(column, "a whole number from -32768 to 32767"))
         };
         let t_us = number(0).ok().and_then(|text| text.parse().ok());
         Ok(Entry {
             line: line.number,
-            t_us: t_us.ok_or_else(|| wrong(0, "a whole number of microseconds"))?,
+            t_us: t_us.ok_or_else(|| bad_cell(0, "a whole number of microseconds"))?,
             accel: [count(1)?, count(2)?, count(3)?],
             gyro: [count(4)?, count(5)?, count(6)?],
             temp: match cell(7) {
@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_said_with_its_place() {
+    fn errors_name_their_place() {
         let header = "t_us,ax,ay,az,gx,gy,gz\n";
         for (text, message) in [
             (
@@ -181,7 +181,7 @@ mod tests {
             ),
             (
                 "t_us,ax,ay,az,gx,gy,gz,mx\n",
-                "line 1: expected columns of t_us,ax,ay,az,gx,gy,gz,temp, found 'mx'",
+                "line 1: expected only columns t_us,ax,ay,az,gx,gy,gz,temp, found 'mx'",
             ),
             (
                 "t_us,ax,ay,az,gx,gy,gz,ax\n",
@@ -189,7 +189,7 @@ mod tests {
             ),
             (
                 "1,2,3,4,5,6,7\n",
-                "line 1: expected columns of t_us,ax,ay,az,gx,gy,gz,temp, found '1'",
+                "line 1: expected only columns t_us,ax,ay,az,gx,gy,gz,temp, found '1'",
             ),
         ] {
             assert_eq!(parse(text.as_bytes()).unwrap_err().to_string(), message);

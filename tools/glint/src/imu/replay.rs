@@ -98,7 +98,7 @@ pub enum Error {
     #[error(transparent)]
     Console(#[from] ConsoleError),
     /// An attitude of the board is not a unit quaternion.
-    #[error("the board's attitude {0}: expected a quaternion of length 1, found another")]
+    #[error("attitude {0} of the board: expected a quaternion of length 1, found another length")]
     Attitude(usize),
 }
 
@@ -254,8 +254,8 @@ fn calibrate(stamps: &Stamps, units: Units, still: u64) -> Result<Report, Format
         }
     }
     Err(FormatError::whole(
-        format!("{wanted} samples with stamps of their own in the first {seconds} s"),
-        "stamps that stand still",
+        format!("{wanted} samples with distinct time stamps in the first {seconds} s"),
+        "repeated time stamps",
     ))
 }
 

@@ -17,10 +17,10 @@ pub enum Error {
     #[error(transparent)]
     Console(#[from] ConsoleError),
     /// No sensor, or a sensor that does not work.
-    #[error("no sample came within {START_MS} ms of the board's time: {0}")]
+    #[error("no sample within {START_MS} ms of board time: {0}")]
     Failure(String),
     /// The board printed a malformed sample.
-    #[error("the board's sample: expected {HEADER} in whole numbers, found {0:?}")]
+    #[error("sample of the board: expected {HEADER} in whole numbers, found {0:?}")]
     Sample(String),
 }
 
@@ -40,7 +40,7 @@ pub fn wait<B: Board + ?Sized>(console: &mut Console<B>) -> Result<String, Error
         }
         if console.board().now_ms() >= end {
             return Err(Error::Failure(match failure.as_str() {
-                "none" => "the board looks for a sensor".to_owned(),
+                "none" => "no sensor found yet".to_owned(),
                 _ => failure,
             }));
         }
@@ -59,7 +59,7 @@ pub fn stream<B: Board + ?Sized>(
     let command = format!("imu stream {samples}");
     console.send(&command)?;
     let mut clock = Unwrapped::default();
-    let mut wrong = None;
+    let mut malformed = None;
     console.lines(&command, &mut |line| {
         if line == HEADER {
             return;
@@ -72,10 +72,10 @@ pub fn stream<B: Board + ?Sized>(
                 gyro,
                 temp: None,
             }),
-            None => wrong = wrong.take().or_else(|| Some(line.to_owned())),
+            None => malformed = malformed.take().or_else(|| Some(line.to_owned())),
         }
     })?;
-    wrong.map_or(Ok(()), |line| Err(Error::Sample(line)))
+    malformed.map_or(Ok(()), |line| Err(Error::Sample(line)))
 }
 
 /// Extends 32-bit time stamps to 64 bits, from 0.

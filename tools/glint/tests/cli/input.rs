@@ -44,7 +44,7 @@ fn bad_meshes() {
         (
             "range.obj",
             SQUARE.replace("f 1", "f 5").into(),
-            "line 5: expected a point of the 4 in the file, found one with index 4",
+            "line 5: expected a point index below 4, found 4",
         ),
         (
             "negative.obj",
@@ -74,7 +74,7 @@ fn bad_meshes() {
         (
             "point.obj",
             b"v 1 1 1\nf 1 1 1\n".to_vec(),
-            "expected a mesh with an extent, found one of 0e0",
+            "expected a mesh with an extent, found extent 0e0",
         ),
         (
             "flat.obj",
@@ -109,7 +109,7 @@ fn bad_meshes() {
         (
             "range.ply",
             ply("1", "3 0 1 3\n"),
-            "line 13: expected a point of the 3 in the file, found one with index 3",
+            "line 13: expected a point index below 3, found 3",
         ),
         (
             "nothing.ply",

@@ -1,6 +1,6 @@
 //! `glint imu replay`.
 
-use super::source::{file_name, read_log};
+use super::source::read_log;
 use crate::cli::common::{LineArguments, advance, bar, count_bar, print_json, say, spinner};
 use anyhow::Context;
 use clap::Args;
@@ -140,7 +140,7 @@ impl ReplayArguments {
         let options = self.options()?;
         let entries = read_log(&self.log)?;
         let prepared = replay::prepare(&entries, &options).map_err(|error| match error {
-            replay::Error::Still(error) => error.in_file(file_name(&self.log)).into(),
+            replay::Error::Still(error) => error.in_path(&self.log).into(),
             error => anyhow::Error::from(error),
         })?;
         let replayed = self.replay(prepared)?;
@@ -192,7 +192,7 @@ impl ReplayArguments {
     }
 
     fn options(&self) -> anyhow::Result<Options> {
-        let wrong = |option: &str, expected: String, found: &str| {
+        let bad_value = |option: &str, expected: String, found: &str| {
             FormatError::whole(expected, glint::error::quote(found.as_bytes())).in_file(option)
         };
         let gyro = Q32_32::from_str(&self.gyro_lsb).ok();
@@ -201,7 +201,7 @@ impl ReplayArguments {
             .ok_or_else(|| {
                 let [low, high] = LSB_PER_DPS;
                 let expected = format!("a number of LSB per °/s from {low} to {high}");
-                wrong("--gyro-lsb", expected, &self.gyro_lsb)
+                bad_value("--gyro-lsb", expected, &self.gyro_lsb)
             })?;
         let accel = self.accel_lsb.parse::<u32>().ok();
         let [low, high] = LSB_PER_G;
@@ -209,7 +209,7 @@ impl ReplayArguments {
             .filter(|lsb| (low..=high).contains(lsb))
             .ok_or_else(|| {
                 let expected = format!("a whole number of LSB per g from {low} to {high}");
-                wrong("--accel-lsb", expected, &self.accel_lsb)
+                bad_value("--accel-lsb", expected, &self.accel_lsb)
             })?;
         let still = match &self.still {
             None => None,
@@ -217,7 +217,7 @@ impl ReplayArguments {
                 let seconds = text.parse::<f64>().ok();
                 let seconds = seconds.filter(|seconds| *seconds > 0.0 && *seconds <= 86_400.0);
                 let seconds = seconds.ok_or_else(|| {
-                    wrong("--still", "a number of seconds up to 86400".into(), text)
+                    bad_value("--still", "a number of seconds up to 86400".into(), text)
                 })?;
                 Some((seconds * 1e6) as u64)
             }
@@ -270,7 +270,7 @@ impl ReplayArguments {
             return print_json(&summary);
         }
         say(format_args!(
-            "samples     {} in {:.3} s: {} steps, {} stale, {} gaps, {} saturated, {} with the accelerometer left out",
+            "samples     {} in {:.3} s: {} steps, {} stale, {} gaps, {} saturated, {} without tilt correction",
             summary.samples,
             summary.seconds,
             summary.steps,

@@ -27,7 +27,7 @@ impl SensorArguments {
     pub fn open(&self) -> anyhow::Result<Box<dyn Board>> {
         anyhow::ensure!(
             self.board == BoardName::Virtual || self.sensor.is_none(),
-            "--sensor: only the virtual board has a sensor that can be told what it measures"
+            "--sensor: expected --board virtual"
         );
         let mut board: Box<dyn Board> = match &self.board {
             BoardName::Virtual => {
@@ -43,7 +43,7 @@ impl SensorArguments {
             }
             BoardName::Serial(port) => Box::new(self.line.serial_board(port)?),
         };
-        let spinner = spinner("the sensor starts");
+        let spinner = spinner("waiting for the sensor");
         let found = sensor::wait(&mut Console::new(board.as_mut()));
         spinner.finish_and_clear();
         eprintln!("{}", found?);
@@ -54,10 +54,5 @@ impl SensorArguments {
 /// Reads a log.
 pub fn read_log(path: &Path) -> anyhow::Result<Vec<Entry>> {
     let text = read_file(path)?;
-    Ok(log::parse(&text).map_err(|error| error.in_file(file_name(path)))?)
-}
-
-/// A file's name in messages.
-pub fn file_name(path: &Path) -> String {
-    path.display().to_string().escape_debug().to_string()
+    Ok(log::parse(&text).map_err(|error| error.in_path(path))?)
 }

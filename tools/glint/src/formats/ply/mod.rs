@@ -349,7 +349,7 @@ mod tests {
     }
 
     #[test]
-    fn refused() {
+    fn errors_name_their_place() {
         let good = binary("little", false, 2);
         let ascii = |from: &str, to: &str| ASCII.replace(from, to).into_bytes();
         let cases: [(Vec<u8>, &str); 14] = [
@@ -393,7 +393,7 @@ mod tests {
             ),
             (
                 ascii("3 2 1 0\n", "3 2 1 4\n"),
-                "line 25: expected a point of the 4 in the file, found one with index 4, counted from 0",
+                "line 25: expected a point index below 4, found 4 (counted from 0)",
             ),
             (
                 good[..good.len() - 1].to_vec(),
