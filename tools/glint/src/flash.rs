@@ -96,12 +96,12 @@ mod tests {
     use super::frame::{JUMP, LOAD, frame};
     use super::*;
     use crate::board::BoardError;
+    use crate::fuzz::Random;
     use std::collections::BTreeMap;
 
     const ADDRESS: u32 = 0x4000_0000;
 
     /// The BIOS's side of the protocol, behind a line that drops, flips and repeats bytes.
-    #[derive(Default)]
     struct Bios {
         now_ms: u64,
         output: Vec<u8>,
@@ -112,34 +112,34 @@ mod tests {
         jumped: Option<u32>,
         accepted: bool,
         /// Bytes in 1000 that are hit, in both directions.
-        faults: u64,
-        random: u64,
+        faults: usize,
+        random: Random,
     }
 
     impl Bios {
-        fn asking(faults: u64) -> Self {
+        fn asking(faults: usize, line: u64) -> Self {
             Self {
+                now_ms: 0,
                 output: [b"BIOS...\n", REQUEST].concat(),
+                partial: Vec::new(),
+                since_ms: 0,
+                memory: BTreeMap::new(),
+                jumped: None,
+                accepted: false,
                 faults,
-                random: 1,
-                ..Self::default()
+                random: Random::new(1, line),
             }
         }
 
         /// A byte after the line: dropped, flipped, repeated or unchanged.
         fn line(&mut self, byte: u8) -> Vec<u8> {
-            self.random = self
-                .random
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            let draw = (self.random >> 33) % 3000;
-            match draw / 3 < self.faults {
-                false => vec![byte],
-                true => match draw % 3 {
-                    0 => vec![],
-                    1 => vec![byte ^ 1 << (self.random >> 60 & 7)],
-                    _ => vec![byte, byte],
-                },
+            if self.random.below(1000) >= self.faults {
+                return vec![byte];
+            }
+            match self.random.below(3) {
+                0 => vec![],
+                1 => vec![byte ^ 1 << self.random.below(8)],
+                _ => vec![byte, byte],
             }
         }
 
@@ -224,9 +224,9 @@ mod tests {
             .collect()
     }
 
-    fn loads(faults: u64) -> Report {
+    fn loads(faults: usize, line: u64) -> Report {
         let program = program(20_001);
-        let mut bios = Bios::asking(faults);
+        let mut bios = Bios::asking(faults, line);
         let report = flash(&mut bios, &program, ADDRESS, 1000, &mut |_, _| {}).unwrap();
         assert_eq!(bios.jumped, Some(ADDRESS));
         assert!(report.said.ends_with(b"Liftoff!"));
@@ -244,7 +244,7 @@ mod tests {
 
     #[test]
     fn a_clean_line_takes_no_retries() {
-        let report = loads(0);
+        let report = loads(0, 0);
         assert_eq!(
             (report.retries, report.frames),
             (0, 20_001_u32.div_ceil(96) + 1)
@@ -253,13 +253,15 @@ mod tests {
 
     #[test]
     fn a_bad_line_takes_retries_and_loads_the_same() {
-        assert!(loads(1).retries > 0);
-        assert!(loads(10).retries > 5);
+        for line in 0..20 {
+            assert!(loads(1, line).retries > 0);
+            assert!(loads(10, line).retries > 5);
+        }
     }
 
     #[test]
     fn a_dead_line_is_given_up() {
-        let mut bios = Bios::asking(400);
+        let mut bios = Bios::asking(400, 0);
         let error = flash(&mut bios, &program(1000), ADDRESS, 1000, &mut |_, _| {}).unwrap_err();
         assert!(
             error.to_string().starts_with(

@@ -104,15 +104,7 @@ impl Polygons {
     /// # Errors
     /// [`MAX_POINTS`] exceeded.
     pub fn add_point(&mut self, point: Vector, place: Place) -> Result<u32, FormatError> {
-        if self.points.len() >= MAX_POINTS {
-            return Err(FormatError::new(
-                place,
-                format!("at most {MAX_POINTS} points"),
-                "one more",
-            ));
-        }
-        self.points.push(point);
-        Ok((self.points.len() - 1) as u32)
+        push(&mut self.points, point, "points", place)
     }
 
     /// Adds a normal and returns its index.
@@ -120,15 +112,7 @@ impl Polygons {
     /// # Errors
     /// [`MAX_POINTS`] exceeded.
     pub fn add_normal(&mut self, normal: Vector, place: Place) -> Result<u32, FormatError> {
-        if self.normals.len() >= MAX_POINTS {
-            return Err(FormatError::new(
-                place,
-                format!("at most {MAX_POINTS} normals"),
-                "one more",
-            ));
-        }
-        self.normals.push(normal);
-        Ok((self.normals.len() - 1) as u32)
+        push(&mut self.normals, normal, "normals", place)
     }
 
     /// Adds a polygon. Its indices may refer to points added later.
@@ -199,6 +183,24 @@ impl Polygons {
     pub fn triangle_count(&self) -> usize {
         self.triangles
     }
+}
+
+/// Appends to a list of at most [`MAX_POINTS`]; returns the index.
+fn push(
+    list: &mut Vec<Vector>,
+    vector: Vector,
+    name: &str,
+    place: Place,
+) -> Result<u32, FormatError> {
+    if list.len() >= MAX_POINTS {
+        return Err(FormatError::new(
+            place,
+            format!("at most {MAX_POINTS} {name}"),
+            "one more",
+        ));
+    }
+    list.push(vector);
+    Ok((list.len() - 1) as u32)
 }
 
 #[cfg(test)]

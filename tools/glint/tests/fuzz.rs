@@ -17,42 +17,25 @@ fn run(target: Target) {
     );
 }
 
-#[test]
-fn upload() {
-    run(Target::Upload);
+/// A test for each target, so that they run in parallel.
+macro_rules! tests {
+    ($($name:ident: $target:ident),*) => {
+        $(
+            #[test]
+            fn $name() {
+                run(Target::$target);
+            }
+        )*
+    };
 }
 
-#[test]
-fn console() {
-    run(Target::Console);
-}
-
-#[test]
-fn obj() {
-    run(Target::Obj);
-}
-
-#[test]
-fn stl() {
-    run(Target::Stl);
-}
-
-#[test]
-fn ply() {
-    run(Target::Ply);
-}
-
-#[test]
-fn glm() {
-    run(Target::Glm);
-}
-
-#[test]
-fn imu() {
-    run(Target::Imu);
-}
-
-#[test]
-fn replay() {
-    run(Target::Replay);
+tests! {
+    upload: Upload,
+    console: Console,
+    obj: Obj,
+    stl: Stl,
+    ply: Ply,
+    glm: Glm,
+    imu: Imu,
+    replay: Replay
 }

@@ -3,7 +3,7 @@
 mod program;
 
 use litex_pac::{buttons, leds, switches};
-use virtual_board::{Start, VirtualBoard};
+use virtual_board::VirtualBoard;
 
 /// Address of the program's word, in a row of its own.
 const WORD: u32 = 0x4012_3450;
@@ -20,7 +20,7 @@ fn board() -> VirtualBoard {
             leds::Leds::steal(),
         )
     };
-    let firmware = program::assemble(
+    let mut board = program::started(
         "pins",
         &[
             ("BUTTONS_IN", buttons.in_().address() as u32),
@@ -29,13 +29,6 @@ fn board() -> VirtualBoard {
             ("WORD", WORD),
         ],
     );
-    let start = Start::Fast {
-        firmware: &firmware,
-    };
-    let mut board = VirtualBoard::builder()
-        .start(start)
-        .build()
-        .expect("a virtual board");
     board.ddr_write(WORD, &[0]).expect("main RAM");
     board.run(2000);
     board
@@ -85,14 +78,7 @@ fn the_back_door_reaches_what_the_caches_hold() {
 fn the_back_door_sees_what_the_program_has_stored() {
     // SAFETY: only an address is taken.
     let leds = unsafe { leds::Leds::steal() }.out().address() as u32;
-    let firmware = program::assemble("stores", &[("WORD", WORD), ("LEDS_OUT", leds)]);
-    let start = Start::Fast {
-        firmware: &firmware,
-    };
-    let mut board = VirtualBoard::builder()
-        .start(start)
-        .build()
-        .expect("a virtual board");
+    let mut board = program::started("stores", &[("WORD", WORD), ("LEDS_OUT", leds)]);
     board.run(2000);
     for i in 0..300 {
         board.run(100 + i % 37);

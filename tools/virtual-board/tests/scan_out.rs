@@ -3,7 +3,7 @@
 mod program;
 
 use litex_pac::{leds, scanout};
-use virtual_board::{HEIGHT, Start, VirtualBoard, WIDTH};
+use virtual_board::{HEIGHT, WIDTH};
 
 /// Two frame buffers, a largest frame apart.
 const FRAME: u32 = 0x4100_0000;
@@ -31,7 +31,7 @@ fn shows_and_flips(scale: usize, frames: u64) {
     // SAFETY: only addresses are taken.
     let (scanout, leds) = unsafe { (scanout::Scanout::steal(), leds::Leds::steal()) };
     let base = scanout::Scanout::BASE;
-    let firmware = program::assemble(
+    let mut board = program::started(
         "scan_out",
         &[
             ("SCANOUT", base as u32),
@@ -51,13 +51,6 @@ fn shows_and_flips(scale: usize, frames: u64) {
     );
     let pixels = WIDTH * HEIGHT / (scale * scale);
     let (first, second) = (frame(pixels, 1), frame(pixels, 1 << 20));
-    let start = Start::Fast {
-        firmware: &firmware,
-    };
-    let mut board = VirtualBoard::builder()
-        .start(start)
-        .build()
-        .expect("a virtual board");
     for (address, data) in [
         (FRAME, bytes(&first)),
         (OTHER_FRAME, bytes(&second)),

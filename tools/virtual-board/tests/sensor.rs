@@ -35,7 +35,7 @@ fn sensor(motion: impl Fn(f64) -> State + Send + 'static) -> Wires {
 fn a_program_reads_the_sensor_through_the_pins() {
     // SAFETY: only addresses are taken.
     let (i2c, leds) = unsafe { (i2c::I2c::steal(), leds::Leds::steal()) };
-    let firmware = program::assemble(
+    let mut board = program::started(
         "i2c",
         &[
             ("COMMAND", i2c.command().address() as u32),
@@ -43,13 +43,6 @@ fn a_program_reads_the_sensor_through_the_pins() {
             ("LEDS_OUT", leds.out().address() as u32),
         ],
     );
-    let start = Start::Fast {
-        firmware: &firmware,
-    };
-    let mut board = VirtualBoard::builder()
-        .start(start)
-        .build()
-        .expect("a virtual board");
     let mut sensor = sensor(|_| State::default());
     sensor.log = Some(Vec::new());
     board.plug(sensor);

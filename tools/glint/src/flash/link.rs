@@ -16,6 +16,9 @@ const PROMPT_MS: u64 = 2;
 const QUIET_MS: u64 = 300;
 /// Time-out of an answer: a frame on a slow line and the delay of an adapter.
 const ANSWER_MS: u64 = 500;
+/// Maximum length of the BIOS's answers to one frame: `C` and, after the time-out of a surplus byte, `E`, each repeated by the line.
+/// Longer output comes from the program.
+const MAX_ANSWER: usize = 4;
 /// Failed batches in a row after which the transfer fails.
 const MAX_FAILURES: u32 = 24;
 
@@ -220,7 +223,7 @@ impl<'b> Link<'b> {
             }
             match said.as_slice() {
                 [b'K', rest @ ..] => self.report.said = rest.to_vec(),
-                [] | [_] => {
+                short if short.len() <= MAX_ANSWER => {
                     self.shrink(address, 1, format!("'{}'", said.escape_ascii()))?;
                     continue;
                 }

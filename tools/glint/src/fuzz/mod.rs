@@ -6,10 +6,10 @@ mod corpus;
 mod mutate;
 mod targets;
 
-pub use mutate::MAX_INPUT;
+pub use mutate::{MAX_INPUT, Random};
 pub use targets::{Outcome, Target};
 
-use mutate::{Random, mutate};
+use mutate::mutate;
 
 /// Inputs of one target.
 pub struct Inputs {

@@ -1,6 +1,7 @@
 //! Attitudes of logs: the board's are the model's.
 
 use crate::common::{console, mesh, running_board};
+use glint::fuzz::Random;
 use glint::imu::log::Entry;
 use glint::imu::replay::{self, Options, Replayed, Stage};
 use glint::render::Route;
@@ -11,20 +12,14 @@ use glint_core::orientation::Counts;
 /// A log with every kind of event: rest, tumbling, coning, saturation of both sensors, shocks, and time stamps with jitter, repeats,
 /// steps backwards and a gap.
 fn eventful_log(samples: usize) -> Vec<Entry> {
-    let mut random = 1_u64;
-    let mut draw = move |below: u64| {
-        random = random
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (random >> 33) % below
-    };
+    let mut random = Random::new(1, 0);
     let mut t_us = 4_294_000_000;
     let entry = |i: usize| {
         let time = i as f64 * 0.002;
         let wave = |amplitude: f64, hertz: f64, phase: f64| {
             (amplitude * (std::f64::consts::TAU * (hertz * time + phase)).sin()) as i16
         };
-        let mut noise = || draw(5) as i16 - 2;
+        let mut noise = || random.below(5) as i16 - 2;
         let [mut gyro, mut accel] = [[20, -7, 3], [-90, 40, 4_080]].map(|v| v.map(|x| x + noise()));
         match i / 500 % 4 {
             1 => {
@@ -45,10 +40,10 @@ fn eventful_log(samples: usize) -> Vec<Entry> {
             }
             _ => {}
         }
-        t_us += match draw(40) {
+        t_us += match random.below(40) {
             0 if i > 500 => 0,
-            1 => 6_000 + draw(30_000),
-            2..10 => 1_000 + draw(2_000),
+            1 => 6_000 + random.below(30_000) as u64,
+            2..10 => 1_000 + random.below(2_000) as u64,
             _ => 2_000,
         };
         if i == 3_700 {

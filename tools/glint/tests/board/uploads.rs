@@ -3,13 +3,14 @@
 use crate::common::{address, console, info, mesh, running_board};
 use glint::board::{Board, BoardError, SimulatedBoard};
 use glint::console::{Console, ConsoleError};
+use glint::fuzz::Random;
 use glint::transfer::{self, TransferError};
 use glint_core::wire::{Failure, Manifest, Reason};
 
 /// A line with faults: in both directions it drops, flips or repeats one byte in a hundred.
 struct BadLine<'b> {
     board: &'b mut dyn Board,
-    random: u64,
+    random: Random,
     hit: u32,
 }
 
@@ -17,15 +18,11 @@ impl BadLine<'_> {
     fn pass(&mut self, bytes: &[u8]) -> Vec<u8> {
         let mut passed = Vec::with_capacity(bytes.len());
         for &byte in bytes {
-            self.random = self
-                .random
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            let draw = (self.random >> 33) % 300;
+            let draw = self.random.below(300);
             self.hit += u32::from(draw < 3);
             match draw {
                 0 => {}
-                1 => passed.push(byte ^ 1 << (self.random >> 61)),
+                1 => passed.push(byte ^ 1 << self.random.below(8)),
                 2 => passed.extend([byte, byte]),
                 _ => passed.push(byte),
             }
@@ -65,7 +62,7 @@ fn an_upload_over_a_bad_line_arrives_bit_for_bit() {
         let (board, pending) = console.line();
         let mut line = BadLine {
             board,
-            random: 1,
+            random: Random::new(1, 0),
             hit: 0,
         };
         transfer::send(&mut line, pending, &mesh, 1, &mut |_, _| {}).unwrap();

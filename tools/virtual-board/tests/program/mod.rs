@@ -4,11 +4,24 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Mutex;
 
+use virtual_board::{Start, VirtualBoard};
+
 /// Tests run in parallel, and some assemble the same program.
 static FILES: Mutex<()> = Mutex::new(());
 
-/// The image of `tests/programs/NAME.S`, linked to the start of main RAM, with constants `symbols`.
-pub fn assemble(name: &str, symbols: &[(&str, u32)]) -> Vec<u8> {
+/// A board that runs `tests/programs/NAME.S` from the start of main RAM, with constants `symbols`.
+pub fn started(name: &str, symbols: &[(&str, u32)]) -> VirtualBoard {
+    let start = Start::Fast {
+        firmware: &assemble(name, symbols),
+    };
+    VirtualBoard::builder()
+        .start(start)
+        .build()
+        .expect("a virtual board")
+}
+
+/// Assembles a program; returns its image.
+fn assemble(name: &str, symbols: &[(&str, u32)]) -> Vec<u8> {
     let _files = FILES.lock().expect("no other test fails here");
     let source = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("tests/programs")
