@@ -88,7 +88,7 @@ fn chain(tree: &Crate, arrows: &Arrows, circle: &[usize]) -> String {
     text
 }
 
-/// What `cargo metadata` says, as far as it is used.
+/// The used part of `cargo metadata`'s output.
 #[derive(Deserialize)]
 struct Metadata {
     packages: Vec<Package>,

@@ -168,7 +168,7 @@ fn run_conversion(polygons: &Polygons) -> Outcome {
                 "the rounding is to nearest: {}",
                 report.error_max_lsb
             );
-            assert!(glm::check(&mesh).is_ok(), "what is converted is a mesh");
+            assert!(glm::check(&mesh).is_ok(), "a conversion gives a valid mesh");
             Outcome::Accepted
         }
         Err(_) => Outcome::Refused,
@@ -214,7 +214,7 @@ fn run_image(input: &[u8]) -> Outcome {
         }
         Err(error) => {
             assert!(!error.to_string().contains('\n'));
-            assert_eq!(image, input, "what is refused is left alone");
+            assert_eq!(image, input, "a rejected log stays unchanged");
             Outcome::Refused
         }
     }
