@@ -34,7 +34,7 @@ pub(crate) fn length(a: Vector) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// At length 1; `a` is not zero.
+/// `a` scaled to length 1; `a` is not zero.
 pub(crate) fn normalised(a: Vector) -> Vector {
     let length = length(a);
     a.map(|c| c / length)
@@ -43,9 +43,9 @@ pub(crate) fn normalised(a: Vector) -> Vector {
 /// A half line whose points are origin + t·direction, t at least 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Where t is 0, in world units.
+    /// The point at t = 0, in world units.
     pub origin: Vector,
-    /// What one unit of t adds, in world units; of any length but 0.
+    /// Change of the point for one unit of t, in world units; not 0.
     pub direction: Vector,
 }
 
@@ -65,12 +65,12 @@ pub enum Side {
     Right,
 }
 
-/// Two eyes beside each other that look in parallel, their pictures shifted (an off-axis pair, not toed in).
+/// Two parallel eyes with shifted pictures (off-axis projection).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stereo {
-    /// From the camera's eye to each of the two along u, in world units.
+    /// Distance of each eye from the camera along u, in world units.
     pub offset: f64,
-    /// The depth at which both pictures show a point in the same pixel, in world units.
+    /// Depth of zero parallax, in world units.
     pub zero: f64,
 }
 
@@ -92,7 +92,7 @@ pub struct Camera {
 }
 
 impl From<&View> for Camera {
-    /// The camera with the view's own numbers, which f64 holds exactly.
+    /// The camera with the view's numbers, which f64 holds exactly.
     fn from(view: &View) -> Self {
         Self {
             eye: view.eye().map(|c| c.to_num()),
@@ -115,10 +115,9 @@ pub struct Size {
 }
 
 impl Camera {
-    /// A camera at `eye` that looks at `target` and holds +z up.
+    /// A camera at `eye` that looks at `target`, with +z up.
     ///
-    /// `half_width` and `near` are the fields of that name. The line from `eye` to `target` must not be parallel to z: then
-    /// there is no such camera, and u and v are not numbers.
+    /// `half_width` and `near` are the fields of these names. For a line of sight parallel to z, u and v are NaN.
     pub fn looking_at(eye: Vector, target: Vector, half_width: f64, near: f64) -> Self {
         let n = normalised(subtract(target, eye));
         let u = normalised(cross(n, [0.0, 0.0, 1.0]));
@@ -132,12 +131,12 @@ impl Camera {
         }
     }
 
-    /// This camera turned about its eye by yaw to the right, then pitch downwards, then roll, in degrees, as
-    /// [`View::look`] turns the one that looks along y.
+    /// This camera turned about its eye by yaw to the right, then pitch downwards, then roll, in degrees, like
+    /// [`View::look`].
     #[must_use]
     pub fn turned(&self, angles: Vector) -> Self {
         let [(sy, cy), (sp, cp), (sr, cr)] = angles.map(|angle| angle.to_radians().sin_cos());
-        // Right, up and forward by those of this camera.
+        // In coordinates of this camera: right, up, forward.
         let right = [cy, 0.0, -sy];
         let up = [sp * sy, cp, sp * cy];
         let forward = [cp * sy, -sp, cp * cy];
@@ -153,13 +152,13 @@ impl Camera {
         }
     }
 
-    /// The view with the nearest numbers.
+    /// The view with the nearest representable numbers.
     ///
     /// # Errors
     /// As [`View::new_checked`].
     ///
     /// # Panics
-    /// When a number is beyond those of its format.
+    /// When a number exceeds its format.
     pub fn view(&self) -> Result<View, ViewError> {
         let row = |row: Vector| row.map(Q2_23::from_num);
         View::new_checked(
@@ -172,9 +171,9 @@ impl Camera {
         )
     }
 
-    /// The ray through a pixel's centre, `pixel` its column and row counted from 0; fractions lie between the centres.
+    /// The ray through a pixel's centre. `pixel` is its column and row from 0; fractions lie between centres.
     ///
-    /// Its direction is 1 long along n, so that its parameter is the depth.
+    /// The direction's component along n is 1, so the parameter is the depth.
     pub fn ray(&self, [x, y]: [f64; 2], size: Size) -> Ray {
         let width = f64::from(size.width);
         let right = (2.0 * x + 1.0 - width) / width * self.half_width;
@@ -186,7 +185,7 @@ impl Camera {
         }
     }
 
-    /// As [`Self::ray`], from one eye of a pair; the parameter is still the depth.
+    /// As [`Self::ray`], from one eye of a stereo pair.
     pub fn stereo_ray(&self, side: Side, stereo: Stereo, pixel: [f64; 2], size: Size) -> Ray {
         let offset = match side {
             Side::Left => -stereo.offset,
@@ -205,7 +204,7 @@ impl Camera {
         [dot(d, self.u), dot(d, self.v), dot(d, self.n)]
     }
 
-    /// Where a point in camera coordinates, in front of the eye, falls on the screen, in pixels from the top left.
+    /// The screen position, in pixels from the top left, of a point in camera coordinates in front of the eye.
     pub fn screen(&self, point: Vector, size: Size) -> [f64; 2] {
         let scale = self.pixels_per_unit(size);
         [
@@ -214,7 +213,7 @@ impl Camera {
         ]
     }
 
-    /// Pixels for one unit in the plane at distance 1; pixels are square.
+    /// Pixels of one unit in the plane at distance 1; pixels are square.
     pub fn pixels_per_unit(&self, size: Size) -> f64 {
         f64::from(size.width) / 2.0 / self.half_width
     }
@@ -241,10 +240,10 @@ impl Camera {
         kept
     }
 
-    /// K of the depth codes, code = K/z: (2^18 − 4)·max(near, −eye·n − radius·(1 + 2^-13)), cut to 17 significant bits. The
-    /// radius grows a little because n may be a little longer than 1.
+    /// K of the depth codes, code = K/z: (2^18 − 4)·max(near, −eye·n − radius·(1 + 2^-13)), truncated to 17 significant bits.
+    /// The factor on the radius covers a length of n slightly above 1.
     ///
-    /// `radius` is that of the scene about the origin, in world units.
+    /// `radius` is the scene's about the origin, in world units.
     pub fn depth_scale(&self, radius: f64) -> f64 {
         let nearest = (-dot(self.eye, self.n) - radius * (1.0 + 1.0 / 8192.0)).max(self.near);
         let full = f64::from((1 << 18) - 4) * nearest;
@@ -279,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ray_goes_to_what_its_pixel_shows_and_its_parameter_is_the_depth() {
+    fn a_ray_goes_through_its_pixel_and_its_parameter_is_the_depth() {
         for pixel in [[0.0, 0.0], [319.0, 179.0], [17.25, 140.5]] {
             let point = CAMERA.coordinates(CAMERA.ray(pixel, SIZE).at(6.0));
             assert!((point[2] - 6.0).abs() < 1e-12);
@@ -302,7 +301,7 @@ mod tests {
         for ray in [left, right] {
             assert!(length(subtract(ray.at(stereo.zero), meeting)) < 1e-12);
         }
-        // Nearer than that the left eye sees a point further to the right.
+        // The left eye sees nearer points further to the right.
         assert!(left.at(1.0)[0] < right.at(1.0)[0]);
     }
 
@@ -342,7 +341,7 @@ mod tests {
 
     #[test]
     fn depth_scale_leaves_four_codes_at_the_nearest_depth() {
-        // 3·262140 has 20 bits, of which the lowest three are cut.
+        // 3·262140 has 20 bits, and its lowest three are truncated.
         assert_eq!(CAMERA.depth_scale(0.0), 786_416.0);
         // (2 − 2^-13)·262140 = 524248.0 has 19 bits and ends in two zeros.
         assert_eq!(CAMERA.depth_scale(1.0), 524_248.0);

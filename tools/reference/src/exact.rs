@@ -2,7 +2,7 @@
 //!
 //! The rule is that of Direct3D and Vulkan: a pixel is covered when its centre lies inside the triangle, or on an
 //! edge that is a *top* edge (exactly horizontal, the triangle below it) or a *left* edge (not horizontal, the triangle
-//! to its right). It is applied here as it is worded, by where the opposite vertex lies, so the winding plays no part.
+//! to its right). It is applied by the position of the opposite vertex, so the winding does not matter.
 
 /// Steps of the snapped grid in one pixel.
 pub const SUBPIXELS: i64 = 256;
@@ -35,7 +35,7 @@ impl Edge {
     /// The edge from `a` to `b` of a triangle whose third vertex is `opposite`, which does not lie on the edge's line.
     fn new(a: SnappedVertex, b: SnappedVertex, opposite: SnappedVertex) -> Self {
         let top = a.y == b.y && opposite.y > a.y;
-        // Walking down the edge, what lies to the right of it on the screen is at a negative orientation.
+        // Down the edge, points to its right on the screen have a negative orientation.
         let (upper, lower) = if a.y < b.y { (a, b) } else { (b, a) };
         let left = a.y != b.y && orientation(upper, lower, opposite) < 0;
         let sign = orientation(a, b, opposite).signum();
@@ -75,7 +75,7 @@ pub struct ExactTriangle {
 }
 
 impl ExactTriangle {
-    /// The triangle of three snapped vertices in any order; `None` when its area is zero, for then it covers nothing.
+    /// The triangle of three snapped vertices in any order; `None` when its area is zero.
     pub fn new(vertices: [SnappedVertex; 3]) -> Option<Self> {
         let [a, b, c] = vertices;
         let doubled_area = orientation(a, b, c).abs();
@@ -122,7 +122,7 @@ impl ExactTriangle {
         }
     }
 
-    /// The steepest change of the plane of depth, in depth codes a pixel.
+    /// The steepest slope of the plane of depth, in depth codes a pixel.
     pub fn depth_slope(&self) -> f64 {
         let here = self.depth(0, 0).codes();
         let (right, below) = (self.depth(1, 0).codes(), self.depth(0, 1).codes());
@@ -148,9 +148,7 @@ impl ExactDepth {
         self.numerator as f64 / self.denominator as f64
     }
 
-    /// How far `code` lies above this depth, in codes.
-    ///
-    /// The difference is formed exactly before it is rounded.
+    /// `code` minus this depth, in codes; exact before its rounding to f64.
     pub fn error_of(&self, code: u32) -> f64 {
         (i128::from(code) * self.denominator - self.numerator) as f64 / self.denominator as f64
     }

@@ -1,12 +1,13 @@
-//! References that Glint is measured against, written from the rules and not from the model.
+//! References for Glint's errors, written from the specification and independent of the model, and the report.
 //!
 //! - [`exact`]: coverage and depth of a snapped triangle in integers.
 //! - [`camera`]: the camera in f64.
-//! - [`surface`]: what each pixel of the unsnapped scene shows, and where that depends on snapping.
-//! - [`field`]: what a ray hits of a solid that is given by its distance field, and the errors of pictures of it.
-//! - [`imu`]: attitudes from a gyroscope and an accelerometer, of motions whose truth is known.
+//! - [`surface`]: the visible surface of each pixel of the unsnapped scene, and the pixels that depend on snapping.
+//! - [`field`]: hits of rays on distance fields, and the errors of pictures of fields.
+//! - [`imu`]: attitudes from a gyroscope and an accelerometer, for motions of known truth.
+//! - [`report`]: the measurements and pages of docs/report.
 //! - [`sine`]: exhaustive error tables of sine and cosine, beside other libraries.
-//! - [`smooth`]: what interpolation of light between vertices makes of named scenes, and the errors of it.
+//! - [`smooth`]: errors of light interpolated between vertices, in named scenes.
 
 #![forbid(unsafe_code)]
 

@@ -1,5 +1,5 @@
-//! Smooth shading: the model's pixels against the exact quotient of the planes through a triangle's vertices, and beside them
-//! what interpolation without the division makes of the same triangles.
+//! Smooth shading: errors of the model's pixels against the exact quotient of the planes through a triangle's vertices, and of
+//! interpolation without the division.
 
 use glint_core::camera::View;
 use glint_core::colour::Rgb565;
@@ -12,10 +12,10 @@ use glint_model::{
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
-/// The largest number of each channel, and its range: what a lit channel of 1 would be.
+/// Steps of each channel for a light of 1.
 const RANGES: [f64; 3] = [32.0, 64.0, 32.0];
 
-/// A triangle on the screen as the references take it: what they interpolate is exact.
+/// A triangle on the screen with exact interpolation.
 #[derive(Clone, Copy, Debug)]
 pub struct Interpolated {
     places: [[f64; 2]; 3],
@@ -24,7 +24,7 @@ pub struct Interpolated {
 }
 
 impl Interpolated {
-    /// Of snapped vertices and their light.
+    /// The triangle of snapped vertices and their light.
     pub fn new(vertices: &[ScreenVertex; 3], lit: &[Lit; 3]) -> Self {
         Self {
             places: vertices.map(|v| [v.x, v.y].map(|x| f64::from(x) / 256.0)),
@@ -36,12 +36,12 @@ impl Interpolated {
         }
     }
 
-    /// What part of the triangle's area is on the other side of a point from each vertex.
+    /// Barycentric coordinates of a point.
     fn parts(&self, [x, y]: [f64; 2]) -> [f64; 3] {
         let [a, b, c] = self.places.map(|[px, py]| [px - x, py - y]);
         let cross = |p: [f64; 2], q: [f64; 2]| p[0] * q[1] - p[1] * q[0];
         let areas = [cross(b, c), cross(c, a), cross(a, b)];
-        // Not the sum of the three, of which each has a rounding error of its own.
+        // Not the sum of the three: each has a rounding error of its own.
         let side = |k: usize| [0, 1].map(|axis| self.places[k][axis] - self.places[0][axis]);
         areas.map(|area| area / cross(side(1), side(2)))
     }
@@ -56,22 +56,22 @@ impl Interpolated {
         })
     }
 
-    /// The channels at a point, in their steps, linear on the triangle in space: as they should be.
+    /// The channels at a point in steps, linear on the triangle in space: the exact result.
     pub fn perspective(&self, point: [f64; 2]) -> [f64; 3] {
         let parts = self.parts(point);
         self.weighted([0, 1, 2].map(|i| parts[i] * self.w[i]))
     }
 
-    /// The channels at a point, in their steps, linear on the screen.
+    /// The channels at a point in steps, linear on the screen.
     pub fn affine(&self, point: [f64; 2]) -> [f64; 3] {
         self.weighted(self.parts(point))
     }
 }
 
-/// Errors of channels, in their steps.
+/// Errors of channels, in steps.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Errors {
-    /// The largest.
+    /// The largest error.
     pub max: f64,
     squares: f64,
     count: u64,
@@ -84,30 +84,30 @@ impl Errors {
         self.count += 1;
     }
 
-    /// The root of the mean square.
+    /// Root of the mean square.
     pub fn rms(&self) -> f64 {
         (self.squares / self.count.max(1) as f64).sqrt()
     }
 }
 
-/// What a scene has shown.
+/// The figures of a scene.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Measured {
     /// Triangles on the screen.
     pub triangles: u64,
-    /// Those of them that the clipper has made.
+    /// Triangles made by the clipper among them.
     pub clipped: u64,
-    /// Those of them that are seen from behind.
+    /// Back faces among them.
     pub back: u64,
-    /// Pixels covered, each as often as it is.
+    /// Covered pixels, counted for each triangle.
     pub pixels: u64,
     /// The smallest depth code.
     pub farthest: u32,
-    /// The model, to a channel's step.
+    /// Errors of the model.
     pub model: Errors,
-    /// The reference itself, rounded to a step: no method is better.
+    /// Errors of the reference rounded to a step, the lower bound of all methods.
     pub rounded: Errors,
-    /// Linear on the screen, rounded to a step.
+    /// Errors of interpolation that is linear on the screen, rounded to a step.
     pub affine: Errors,
 }
 
@@ -149,17 +149,17 @@ impl Measured {
     }
 }
 
-/// Something to look at, with the most that the model's channels may be off, in steps.
+/// A scene with a bound of the model's error.
 pub struct Scene {
-    /// What it is.
+    /// Description.
     pub name: &'static str,
-    /// The largest error allowed.
+    /// Largest allowed error, in steps of a channel.
     pub bound: f64,
     content: Content,
 }
 
 enum Content {
-    /// A mesh, and how it is looked at.
+    /// A mesh with its camera.
     Mesh {
         bytes: Vec<u8>,
         view: Box<View>,
@@ -171,10 +171,10 @@ enum Content {
 }
 
 impl Scene {
-    /// Draws it, each triangle alone.
+    /// Draws each triangle alone and measures its pixels.
     ///
     /// # Panics
-    /// When the mesh is not one.
+    /// When the mesh is malformed.
     pub fn measure(&self) -> Measured {
         let mut measured = Measured::default();
         match &self.content {
@@ -206,7 +206,7 @@ impl Scene {
     }
 }
 
-/// What the model draws of a mesh.
+/// The triangles of a mesh that the model draws.
 fn drawn(bytes: &[u8], view: &View, (width, height): (u32, u32), cull: bool) -> Vec<DrawnTriangle> {
     let mesh = Mesh::new_checked(bytes).expect("a scene's mesh is good");
     let vertices = mesh.chunks().map(|chunk| chunk.vertex_count()).max();
@@ -234,17 +234,17 @@ fn drawn(bytes: &[u8], view: &View, (width, height): (u32, u32), cull: bool) -> 
     drawn
 }
 
-/// The most that a step of light may be off where the depth has at least this many codes, beside the half that the last
-/// rounding takes: docs/formats.md, "Smooth shading".
+/// Bound of a channel's error in steps for depth codes of at least `farthest`: half a step of the last rounding, and the bound of
+/// docs/formats.md, "Smooth shading".
 fn bound(farthest: f64) -> f64 {
     0.5 + 0.032 + 43.0 / farthest
 }
 
-/// The smallest depth that a camera and a mesh can make, in codes.
+/// Smallest depth code of any camera and mesh.
 const FARTHEST: f64 = 228.0;
 const LARGEST: u32 = ((1 << 18) - 4) * 64;
 
-/// Looks along y from x = z = 0.
+/// The view along y from x = z = 0.
 fn along(y: f64, half_width: f64, near: f64) -> Box<View> {
     let json = format!(
         r#"{{"eye":[0,{y},0],"u":[1,0,0],"v":[0,0,-1],"n":[0,1,0],"half_width":{half_width},"near":{near}}}"#
@@ -252,7 +252,7 @@ fn along(y: f64, half_width: f64, near: f64) -> Box<View> {
     Box::new(glint::view::parse(json.as_bytes()).expect("a good camera"))
 }
 
-/// A mesh of triangles that share no vertex, with random colours and normals of which most are turned to where y is small.
+/// A mesh of triangles without shared vertices, with random colours and normals, most of which point towards small y.
 fn soup(random: &mut Pcg64Mcg, triangles: &[[[f64; 3]; 3]]) -> Vec<u8> {
     let quantised = |x: f64| (x * 16384.0).round().clamp(-32768.0, 32767.0) as i16;
     let vertices: Vec<Vertex> = triangles
@@ -266,7 +266,7 @@ fn soup(random: &mut Pcg64Mcg, triangles: &[[[f64; 3]; 3]]) -> Vec<u8> {
                 random.random_range(-0.7..0.7),
             ]
             .map(quantised),
-            // One in two is white or black: the steepest light there is.
+            // One in two is white or black, for the steepest light.
             colour: Rgb565(
                 [0, 0xFFFF, random.random(), random.random()][random.random_range(0..4)],
             ),
@@ -282,7 +282,7 @@ fn soup(random: &mut Pcg64Mcg, triangles: &[[[f64; 3]; 3]]) -> Vec<u8> {
     encode(&vertices, &triangles).expect("a small mesh")
 }
 
-/// Triangles on the screen of every shape, at any depths of the mode.
+/// Triangles of every shape on the screen, over the whole range of depths.
 fn screen(random: &mut Pcg64Mcg, thin: bool) -> Vec<([ScreenVertex; 3], [Lit; 3])> {
     const GUARD: i32 = 2047 << 8;
     (0..300)
@@ -315,7 +315,7 @@ fn screen(random: &mut Pcg64Mcg, thin: bool) -> Vec<([ScreenVertex; 3], [Lit; 3]
         .collect()
 }
 
-/// Everyday scenes and the hardest ones.
+/// Common scenes and extreme ones.
 pub fn scenes() -> Vec<Scene> {
     let mut random = Pcg64Mcg::new(1);
     let [small, _, large] = glint_model::SIZES;
@@ -324,7 +324,7 @@ pub fn scenes() -> Vec<Scene> {
         let made = glint::convert::convert(&polygons, glint::convert::Options::default());
         made.expect("a good mesh").0
     };
-    // From just before the eye to the end of what meshes reach, as a floor.
+    // A floor from just before the eye to the limit of a mesh.
     let floor = |from: f64| {
         let (near, far) = (0.05, 1.9);
         [

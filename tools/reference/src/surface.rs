@@ -1,11 +1,11 @@
-//! What is to be seen in each pixel of the exact, unsnapped scene, and where snapping may change it.
+//! The visible surface of each pixel of the exact, unsnapped scene, and the pixels that snapping may change.
 //!
 //! The classes follow the rasterization checks of the Khronos conformance tests (dEQP): a pixel whose centre is inside
-//! by more than the tolerance must be drawn, one that is outside by more must not, and in between both are right.
+//! by more than the tolerance must be drawn, a pixel outside by more must not, and either result is right in between.
 
 use crate::camera::{Camera, Size, Vector, cross, dot, subtract};
 
-/// How a triangle relates to a pixel's centre.
+/// Position of a pixel's centre relative to a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
     /// Inside by at least the tolerance: must be drawn.
@@ -19,13 +19,13 @@ pub enum Class {
 /// A triangle clipped and projected in f64.
 #[derive(Clone, Debug)]
 pub struct ProjectedTriangle {
-    /// The corners of what is in front of the near plane, in pixels; empty when nothing is.
+    /// Corners of the part beyond the near plane, in pixels; empty without such a part.
     pub corners: Vec<[f64; 2]>,
     /// Lines through the edges as (a, b, c): a·x + b·y + c is the distance to the edge, positive inside, in pixels.
     edges: Vec<Vector>,
     /// 1/z = plane · (x, y, 1) with x and y in pixels, z in world units.
     inverse_depth: Vector,
-    /// Seen from the side from which its vertices run counter-clockwise.
+    /// Whether the front face is visible: its vertices run counter-clockwise.
     pub front: bool,
 }
 
@@ -49,7 +49,7 @@ impl ProjectedTriangle {
         let c = normal[2] - a * f64::from(size.width) / 2.0 - b * f64::from(size.height) / 2.0;
         let front = offset < 0.0;
         let inverse_depth = if offset == 0.0 {
-            // Seen edge-on its depth is no function of the place.
+            // Edge-on, depth is no function of the position.
             [0.0, 0.0, f64::INFINITY]
         } else {
             [a / offset, b / offset, c / offset]
@@ -68,7 +68,7 @@ impl ProjectedTriangle {
             return Class::None;
         }
         let here = centre(column, row);
-        // Fewer than three edges have no inside.
+        // Fewer than three edges enclose nothing.
         let most = if self.edges.len() < 3 {
             0.0
         } else {
@@ -88,12 +88,12 @@ impl ProjectedTriangle {
         }
     }
 
-    /// 1/z of the triangle's plane at a pixel's centre, z in world units along n; infinite when it is seen edge-on.
+    /// 1/z of the triangle's plane at a pixel's centre, z in world units along n; infinite for a triangle seen edge-on.
     pub fn inverse_depth(&self, column: u32, row: u32) -> f64 {
         dot(self.inverse_depth, centre(column, row))
     }
 
-    /// The steepest change of 1/z a pixel.
+    /// The steepest slope of 1/z, per pixel.
     pub fn inverse_depth_slope(&self) -> f64 {
         self.inverse_depth[0].hypot(self.inverse_depth[1])
     }
@@ -113,7 +113,7 @@ impl ProjectedTriangle {
     }
 }
 
-/// An edge shorter than this many pixels has no direction to trust. Without it a polygon is longer only where it is as narrow.
+/// Length in pixels below which an edge has no reliable direction. Leaving it out extends a polygon only where it is as narrow.
 const SHORTEST_EDGE: f64 = 1e-6;
 
 /// The edges of a convex polygon, their normals pointing inwards. A front face runs counter-clockwise in the world and, y
@@ -137,25 +137,25 @@ fn centre(column: u32, row: u32) -> Vector {
     [f64::from(column) + 0.5, f64::from(row) + 0.5, 1.0]
 }
 
-/// What a pixel shows.
+/// The visible surface of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Visible {
-    /// Nothing, whatever way the vertices are snapped.
+    /// No surface, for any snapping of the vertices.
     Background,
-    /// This triangle, whatever way the vertices are snapped.
+    /// This triangle, for any snapping of the vertices.
     Surface {
-        /// Its place in the scene's list of triangles.
+        /// Its index in the scene's list of triangles.
         triangle: usize,
         /// 1/z at the pixel's centre, z in world units.
         inverse_depth: f64,
-        /// The change of 1/z a pixel.
+        /// Slope of 1/z, per pixel.
         slope: f64,
     },
-    /// It depends on the snapping of vertices or the rounding of depth.
+    /// Dependent on the snapping of vertices or the rounding of depth.
     Unstable,
 }
 
-/// How far the device may be from the exact scene.
+/// Tolerated deviation from the exact scene.
 #[derive(Clone, Copy, Debug)]
 pub struct Tolerance {
     /// Displacement of an edge, in pixels.
@@ -164,10 +164,10 @@ pub struct Tolerance {
     pub inverse_depth: f64,
 }
 
-/// Finds what each pixel shows, row by row.
+/// The visible surfaces of a picture, row by row.
 ///
-/// With `cull`, triangles seen from behind are left out; near their edges they still make pixels uncertain, for a very thin
-/// one may be turned over by snapping.
+/// With `cull`, back faces are left out. Pixels near their edges stay unstable, because snapping can turn a very thin triangle
+/// over.
 pub fn visible_surfaces(
     camera: &Camera,
     size: Size,
@@ -200,7 +200,7 @@ pub fn visible_surfaces(
     pixels.iter().map(Candidates::decide).collect()
 }
 
-/// The nearest surface so far, and the nearest that any other could appear.
+/// The nearest surface so far, and the largest 1/z that another one can reach.
 #[derive(Clone)]
 struct Candidates {
     nearest: Option<(usize, f64, f64, f64)>,

@@ -12,7 +12,7 @@ use glint_reference::imu::motion::Motion;
 use glint_reference::imu::quaternion::Quaternion;
 use glint_reference::imu::sensor::Sensor;
 
-/// Seconds of a motion: all of them, or by default a part of them.
+/// Duration of a motion in seconds: whole, or by default shortened.
 fn seconds(whole: f64, part: f64) -> f64 {
     if std::env::var("GLINT_IMU").is_ok_and(|value| value == "long") {
         whole
@@ -52,7 +52,7 @@ fn the_firmware_is_its_method_in_f64() {
     assert!(error <= 0.002 && norm <= 2e-9, "{error:e} {norm:e}");
 }
 
-/// The error of a method of an order against its twin in f64, in degrees.
+/// The error of a method against the same method in f64, in degrees.
 fn order_against_f64<const ORDER: u32>(method: Method) -> f64 {
     let sensor = Sensor::ideal(200.0);
     let rate = |gyro: [i16; 3]| gyro.map(|x| (f64::from(x) / sensor.gyro_lsb).to_radians());
@@ -98,13 +98,12 @@ fn the_method_is_as_near_to_the_truth_as_it_should_be() {
     let coning = method_error(Method::Cubic, CONING, 20.0, 200.0);
     println!("tumble {tumble:.1e}°, coning {coning:.1e}°");
     assert!(tumble <= 0.01 && coning <= 0.05, "{tumble:e} {coning:e}");
-    // What the coefficient of the coning buys.
+    // The effect of the coning coefficient.
     let plain = method_error(Method::PlainCubic, CONING, 20.0, 200.0);
     assert!(plain > 5.0 * coning, "{plain:e} {coning:e}");
 }
 
-/// The cubic is of order 4 once it has three steps to look back on; what its first two leave is of order 3, and here it is all that is
-/// left.
+/// The cubic is of order 4 after three steps. Its first two steps leave an error of order 3, which dominates here.
 #[test]
 fn orders_are_those_of_the_methods() {
     let tumble = Motion::Tumble(700.0);
@@ -160,7 +159,7 @@ fn yaw_stays_after_calibration() {
     assert!(calibrated(sensor, Motion::Hand).is_err());
 }
 
-/// The gyroscope turns further than its range for a while: the tilt comes back, and nothing else is lost.
+/// After a rotation beyond the gyroscope's range only the tilt is restored, and no other state is lost.
 #[test]
 fn saturation_costs_what_it_hides_and_no_more() {
     let sensor = Sensor::real(1000.0);

@@ -1,4 +1,4 @@
-//! Ways to hold the tilt by the accelerometer, each in f64.
+//! Filters that correct the tilt by the accelerometer, in f64.
 
 use std::f64::consts::{SQRT_2, TAU};
 
@@ -8,30 +8,30 @@ use super::method::{Integrator, Method};
 use super::quaternion::Quaternion;
 use crate::camera::{Vector, cross, dot};
 
-/// A way to use the accelerometer. Times are in seconds.
+/// A filter of the accelerometer. Times are in seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Filter {
-    /// It is left out.
+    /// The accelerometer is ignored.
     None,
     /// Pitch and roll of the attitude and of the reading, mixed by an exact gain with this time constant.
     Complementary(f64),
-    /// Mahony's: the reading at length 1 against the attitude's up, as a rate and in a bias.
+    /// Mahony's: the normalised reading against the attitude's up, as a rate and in a bias.
     Mahony {
         /// Proportional gain in 1/s.
         proportional: f64,
         /// Integral gain in 1/s².
         integral: f64,
     },
-    /// Readings in the world's axes as the gyroscope alone gives them, through a low pass of second order, then the attitude
-    /// that makes their mean point up: that of Laidig and Seel's VQF without its estimate of the bias.
+    /// A second-order low pass of readings in the world's axes by the gyroscope alone, then the attitude that turns their mean
+    /// upwards: Laidig and Seel's VQF without its bias estimate.
     LowPass(f64),
     /// The firmware's, with this time constant.
     Tilt(f64),
-    /// The firmware's, where only readings within a range in g count.
+    /// The firmware's, with readings outside a range ignored.
     Gated {
         /// Time constant.
         tau: f64,
-        /// From where to where.
+        /// Lowest and highest strength in g.
         range: [f64; 2],
     },
     /// The firmware's with the gain dt/τ.
@@ -65,23 +65,23 @@ pub struct Estimator {
     filter: Filter,
     gyro_lsb: f64,
     accel_lsb: f64,
-    /// In rad/s.
+    /// Bias in rad/s.
     bias: Vector,
     integrator: Integrator,
     last: Option<u32>,
-    /// Where to begin without an accelerometer.
+    /// First attitude without an accelerometer.
     start: Quaternion,
     age: f64,
-    /// Half an angle that the last reading asks for, about the body's axes; the next step makes it.
+    /// Correction by the last reading, half an angle about each of the body's axes; the next step applies it.
     correction: Vector,
-    /// Of [`Filter::LowPass`].
+    /// Low passes of [`Filter::LowPass`].
     low_pass: [Butterworth; 3],
-    /// Of [`Filter::LowPass`]: from the axes of the gyroscope alone to the world's.
+    /// Rotation of [`Filter::LowPass`] from the axes of the gyroscope alone to the world's.
     upright: Quaternion,
 }
 
 impl Estimator {
-    /// Waits for its first sample; units are LSB per °/s and per g.
+    /// An estimator without a sample; units are LSB per °/s and per g.
     pub fn new(method: Method, filter: Filter, gyro_lsb: f64, accel_lsb: f64) -> Self {
         Self {
             filter,
@@ -98,12 +98,12 @@ impl Estimator {
         }
     }
 
-    /// Sets what the gyroscope reads at rest, in LSB.
+    /// Sets the gyroscope's bias, in LSB.
     pub fn set_bias(&mut self, lsb: Vector) {
         self.bias = lsb.map(|x| (x / self.gyro_lsb).to_radians());
     }
 
-    /// Says where a filter begins that leaves the accelerometer out; at the identity unless told.
+    /// Sets the first attitude of a filter without accelerometer (default: identity).
     pub fn begin_at(&mut self, attitude: Quaternion) {
         self.start = attitude;
     }
@@ -113,7 +113,7 @@ impl Estimator {
         self.upright.times(self.integrator.attitude())
     }
 
-    /// Takes a sample. One that is not later than the last is ignored.
+    /// Takes a sample. A sample not later than the last is ignored.
     pub fn on_sample(&mut self, sample: &Sample) {
         let rate = [0, 1, 2]
             .map(|i| (f64::from(sample.gyro[i]) / self.gyro_lsb).to_radians() - self.bias[i]);
@@ -146,7 +146,7 @@ impl Estimator {
     fn advance(&mut self, rate: Vector, force: Vector, step: f64) {
         let correction = std::mem::take(&mut self.correction);
         self.integrator.advance_corrected(rate, step, correction);
-        // A reading is compared with the attitude that it was made in.
+        // The reading belongs to the attitude after this step.
         let up = self.integrator.attitude().up();
         let strength = dot(force, force).sqrt();
         let turn = |gain: f64| cross(force, up).map(|x| x * gain / 2.0);
@@ -213,7 +213,7 @@ impl Estimator {
         }
     }
 
-    /// The exact gain, as large as that of a running mean at first.
+    /// The exact gain, at first that of a running mean.
     fn aged_gain(&mut self, tau: f64, step: f64) -> f64 {
         if self.age < tau {
             self.age = (self.age + step).min(tau);
@@ -222,7 +222,7 @@ impl Estimator {
     }
 }
 
-/// A low pass of second order after Butterworth by the bilinear transform, a mean over its first τ.
+/// A second-order Butterworth low pass by the bilinear transform; a mean over its first τ.
 #[derive(Clone, Copy, Debug, Default)]
 struct Butterworth {
     age: f64,
@@ -233,7 +233,7 @@ struct Butterworth {
 
 impl Butterworth {
     fn next(&mut self, x: f64, step: f64, tau: f64) -> f64 {
-        // The frequency that VQF takes for a time constant.
+        // VQF's cut-off frequency for a time constant.
         let c = (TAU / 2.0 * SQRT_2 / (TAU * tau) * step).tan();
         let d = c * c + SQRT_2 * c + 1.0;
         let b0 = c * c / d;
@@ -243,7 +243,7 @@ impl Butterworth {
             self.sum += x;
             self.count += 1.0;
             let mean = self.sum / self.count;
-            // The state in which the mean would go on for ever.
+            // The state of a constant mean.
             self.state = [(1.0 - b0) * mean, (b0 - a[1]) * mean];
             return mean;
         }

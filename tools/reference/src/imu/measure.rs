@@ -1,4 +1,4 @@
-//! What tests and the report measure.
+//! Measurements of tests and the report.
 
 use glint_core::calibration::{Calibration, Progress, Refusal, Report, RestBias, SAMPLES, Units};
 use glint_core::fixed::Q32_32;
@@ -13,10 +13,10 @@ use super::sensor::Sensor;
 /// The firmware's time constant of the tilt, in seconds.
 pub const TAU: f64 = TIME_CONSTANT as f64 * 1e-6;
 
-/// A firmware's tracker for a sensor, its bias known to 1/256 LSB.
+/// The firmware's tracker for a sensor, with its bias to 1/256 LSB.
 ///
 /// # Panics
-/// When the sensor's units are not the firmware's.
+/// When the firmware does not support the sensor's units.
 pub fn tracker(sensor: &Sensor, tilt: bool) -> Tracker {
     let scale = Scale::new(Q32_32::from_num(sensor.gyro_lsb)).expect("units of the firmware");
     let tilt = tilt.then(|| Tilt::new(sensor.accel_lsb as u32, TIME_CONSTANT));
@@ -25,7 +25,7 @@ pub fn tracker(sensor: &Sensor, tilt: bool) -> Tracker {
     tracker
 }
 
-/// In 1/256 LSB.
+/// The sensor's bias in 1/256 LSB.
 fn bias(sensor: &Sensor) -> [f64; 3] {
     sensor
         .bias
@@ -37,7 +37,7 @@ fn bias(sensor: &Sensor) -> [f64; 3] {
 pub struct Largest {
     /// Against the same method in f64 on the same counts, in degrees.
     pub angle: f64,
-    /// Of the length.
+    /// Error of the quaternion's length.
     pub norm: f64,
 }
 
@@ -63,7 +63,7 @@ pub fn against_f64(sensor: Sensor, motion: Motion, seconds: f64, tilt: bool) -> 
     largest
 }
 
-/// The error of a method at the end, in degrees, on rates that are not rounded.
+/// The error of a method at the end in degrees, on unrounded rates.
 pub fn method_error(method: Method, motion: Motion, seconds: f64, rate: f64) -> f64 {
     let start = motion.attitude(0.0).unwrap_or(Quaternion::IDENTITY);
     let mut integrator = Integrator::new(method, start, motion.rate(0.0));
@@ -76,12 +76,12 @@ pub fn method_error(method: Method, motion: Motion, seconds: f64, rate: f64) -> 
     integrator.attitude().angle_to(truth)
 }
 
-/// What a calibration and some weather leave of a bias, in °/s, along x, y and z.
+/// Bias left after a calibration and a change of temperature, in °/s, along x, y and z.
 pub const LEFT_BIAS: [f64; 3] = [0.02, -0.02, 0.02];
-/// When errors of the tilt begin to count, in seconds.
+/// Time in seconds from which errors of the tilt count.
 const SETTLED: f64 = 10.0;
 
-/// Root of the mean square of some errors, and the largest.
+/// RMS and maximum of errors.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Errors {
     squares: f64,
@@ -124,7 +124,7 @@ pub fn inclination(sensor: Sensor, motion: Motion, seconds: f64) -> Errors {
     errors
 }
 
-/// The same of a filter in f64.
+/// The inclination of a filter in f64 against the truth, in degrees, with [`LEFT_BIAS`].
 ///
 /// # Panics
 /// As [`inclination`].
@@ -146,13 +146,13 @@ pub fn filter_inclination(filter: Filter, sensor: Sensor, motion: Motion, second
     errors
 }
 
-/// Calibrates by so many samples of a motion.
+/// Calibrates the firmware by samples of a motion.
 ///
 /// # Errors
 /// As the firmware's calibration.
 ///
 /// # Panics
-/// When the samples end before the calibration does.
+/// When the samples end before the calibration.
 pub fn calibrated(sensor: Sensor, motion: Motion) -> Result<Report, Refusal> {
     let mut calibration = Calibration::new(Units::MPU_6050, SAMPLES);
     for sample in sensor.samples(motion, u64::from(SAMPLES) + 1, 3) {
@@ -163,7 +163,7 @@ pub fn calibrated(sensor: Sensor, motion: Motion) -> Result<Report, Refusal> {
     unreachable!("a calibration takes as many samples as it was told");
 }
 
-/// By how much yaw drifts at rest after a calibration, in °/h, with the bias kept or followed.
+/// Drift of yaw at rest after a calibration, in °/h, with the bias kept or tracked.
 pub fn yaw_drift(sensor: Sensor, report: &Report, hours: f64, follow: bool) -> f64 {
     let mut tracker = tracker(&sensor, true);
     tracker.set_bias(report.bias);

@@ -1,13 +1,13 @@
-//! Ways from samples of the angular rate to an attitude, each in f64.
+//! Integration methods from angular rates to an attitude, in f64.
 
 use super::quaternion::Quaternion;
 use crate::camera::{Vector, cross};
 use glint_core::orientation::{LONGEST_CURVE, MOST_STRETCH};
 
-/// A way to integrate.
+/// An integration method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// Rates about the body's axes added to yaw, pitch and roll, as the first design did.
+    /// Rates about the body's axes added to yaw, pitch and roll.
     Angles,
     /// q + q·ω·dt/2, normalised, with the newest sample.
     FirstOrder,
@@ -15,18 +15,18 @@ pub enum Method {
     Newest,
     /// The exponential, with the mean of two samples.
     Trapezoid,
-    /// That, with the coning of a rate that is linear between two samples.
+    /// The trapezoid, with the coning of a rate that is linear between two samples.
     Coning,
     /// The parabola through three samples, with its coning.
     Parabola,
     /// The cubic through four samples, as the firmware integrates it.
     Cubic,
-    /// The same with the coning of the cubic alone, which leaves out what the cubic leaves out.
+    /// The cubic with the coning term of its own polynomial.
     PlainCubic,
 }
 
 impl Method {
-    /// All of them, the cheapest first.
+    /// All methods, the cheapest first.
     pub const ALL: [Self; 8] = [
         Self::Angles,
         Self::FirstOrder,
@@ -53,12 +53,12 @@ impl Method {
     }
 }
 
-/// An attitude that is integrated.
+/// An integrated attitude.
 #[derive(Clone, Debug)]
 pub struct Integrator {
     method: Method,
     attitude: Quaternion,
-    /// Of [`Method::Angles`].
+    /// Yaw, pitch and roll of [`Method::Angles`].
     angles: Vector,
     last: Vector,
     difference: Vector,
@@ -72,7 +72,7 @@ fn combine(a: Vector, b: Vector, factor: f64) -> Vector {
 }
 
 impl Integrator {
-    /// Begins at an attitude and a rate.
+    /// An integrator at an attitude and a rate.
     pub fn new(method: Method, attitude: Quaternion, rate: Vector) -> Self {
         Self {
             method,
@@ -86,24 +86,24 @@ impl Integrator {
         }
     }
 
-    /// Begins again at a rate, with the attitude as it is.
+    /// Restarts at a rate and keeps the attitude.
     pub fn restart(&mut self, rate: Vector) {
         self.last = rate;
         self.steps = 0;
     }
 
-    /// The way it integrates.
+    /// The method.
     pub fn method(&self) -> Method {
         self.method
     }
 
-    /// Goes on from another attitude.
+    /// Continues from another attitude.
     pub fn set_attitude(&mut self, attitude: Quaternion) {
         self.attitude = attitude;
         self.angles = attitude.angles();
     }
 
-    /// The attitude now.
+    /// The current attitude.
     pub fn attitude(&self) -> Quaternion {
         self.attitude
     }
@@ -113,7 +113,7 @@ impl Integrator {
         self.advance_corrected(rate, step, [0.0; 3]);
     }
 
-    /// The same, and turns further by `correction`, half an angle about each of the body's axes.
+    /// As [`Self::advance`], plus a rotation by `correction`, half an angle about each of the body's axes.
     pub fn advance_corrected(&mut self, rate: Vector, step: f64, correction: Vector) {
         match self.method {
             Method::Angles => {
@@ -136,7 +136,7 @@ impl Integrator {
 
     /// The rotation vector of a step.
     fn turn(&mut self, rate: Vector, step: f64) -> Vector {
-        // The firmware's times are whole microseconds, so a little more is as much.
+        // The firmware's times are whole microseconds, so smaller differences are equal.
         let within = |longest: f64| step <= longest + 1e-9;
         let curved = within(f64::from(LONGEST_CURVE) * 1e-6)
             && (self.steps == 0 || within(f64::from(MOST_STRETCH) * self.ages[0]));

@@ -29,31 +29,31 @@ fn slope(waves: &[Wave], t: f64) -> f64 {
 /// A motion, at times in seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Motion {
-    /// Nothing moves.
+    /// At rest.
     Rest,
     /// A constant rate in °/s about each axis.
     Spin(Vector),
-    /// Turning over about all axes, up to so many °/s. Without an attitude in closed form.
+    /// Rotation about all axes up to a rate in °/s, without an attitude in closed form.
     Tumble(f64),
-    /// The body's z axis goes round a cone of so many degrees half its angle, so many times a second.
+    /// The body's z axis moves around a cone.
     Coning {
-        /// Between the axis and the middle of the cone, in degrees.
+        /// Half the cone's angle, in degrees.
         angle: f64,
-        /// In Hz.
+        /// Turns a second.
         frequency: f64,
     },
-    /// A rate in °/s about z that changes its sign this many times a second, at once.
+    /// A square wave of the rate about z.
     Square {
-        /// In °/s.
+        /// Amplitude in °/s.
         rate: f64,
-        /// Of the whole period, in Hz.
+        /// Frequency in Hz.
         frequency: f64,
     },
-    /// Held in a hand and turned about a wrist 10 cm away, mostly to the sides, 0.5 to 2 Hz, up to 300 °/s.
+    /// Hand motion about a wrist 10 cm away, mostly sideways, 0.5 to 2 Hz, up to 300 °/s.
     Hand,
-    /// The same, mostly up and down.
+    /// Hand motion, mostly up and down.
     Nod,
-    /// Carried at a walk: ±3 m/s² up and down at 2 Hz, ±1.5 fore and aft, and with every step 10 m/s² upwards for 50 ms.
+    /// A walk: ±3 m/s² up and down at 2 Hz, ±1.5 m/s² fore and aft, and 10 m/s² upwards for 50 ms with every step.
     Walk,
 }
 
@@ -109,7 +109,7 @@ impl Motion {
         }
     }
 
-    /// Yaw, pitch and roll of the motions that are given by them.
+    /// Yaw, pitch and roll of motions defined by them.
     fn waves(self) -> [&'static [Wave]; 3] {
         match self {
             Self::Hand => HAND,
@@ -119,7 +119,7 @@ impl Motion {
         }
     }
 
-    /// The attitude where it is known in closed form.
+    /// The attitude, for motions with a closed form.
     pub fn attitude(self, t: f64) -> Option<Quaternion> {
         match self {
             Self::Rest => Some(Quaternion::IDENTITY),
@@ -141,8 +141,8 @@ impl Motion {
         }
     }
 
-    /// The attitude after `seconds` from [`Self::attitude`] at 0, or from the identity: in closed form, or by 16 times as many
-    /// steps as `rate` samples a second give.
+    /// The attitude after `seconds` from [`Self::attitude`] at 0, or from the identity: in closed form, or with 16 times
+    /// `rate` steps a second.
     pub fn attitude_after(self, seconds: f64, rate: f64) -> Quaternion {
         self.attitude(seconds).unwrap_or_else(|| {
             let step = 1.0 / (16.0 * rate);
@@ -156,8 +156,8 @@ impl Motion {
         })
     }
 
-    /// What an accelerometer measures, along the body's axes in g; nothing but gravity where the motion says no place, and where
-    /// it says no attitude either, gravity along z.
+    /// The reading of an accelerometer along the body's axes in g: gravity alone for motions without a position, and gravity along z
+    /// for those without an attitude.
     pub fn force(self, t: f64) -> Vector {
         let attitude = self.attitude(t).unwrap_or(Quaternion::IDENTITY);
         let [x, y, z] = self.acceleration(t);
@@ -171,7 +171,7 @@ impl Motion {
     fn acceleration(self, t: f64) -> Vector {
         match self {
             Self::Hand | Self::Nod => {
-                // Its own error, about 1e-6 m/s², is nothing here.
+                // The error of the difference, about 1e-6 m/s², is negligible.
                 let step = 1e-3;
                 let [a, b, c] = [t - step, t, t + step].map(|t| {
                     let attitude = self.attitude(t).unwrap_or(Quaternion::IDENTITY);

@@ -15,7 +15,7 @@ impl From<orientation::Quaternion> for Quaternion {
 }
 
 impl Quaternion {
-    /// Body and world have the same axes.
+    /// No rotation.
     pub const IDENTITY: Self = Self([1.0, 0.0, 0.0, 0.0]);
 
     /// The rotation by twice a vector, in radians.
@@ -53,26 +53,26 @@ impl Quaternion {
         ])
     }
 
-    /// The other way round.
+    /// The inverse rotation.
     #[must_use]
     pub fn inverse(self) -> Self {
         let [w, x, y, z] = self.0;
         Self([w, -x, -y, -z])
     }
 
-    /// Its length.
+    /// Length.
     pub fn norm(self) -> f64 {
         self.0.iter().map(|x| x * x).sum::<f64>().sqrt()
     }
 
-    /// At length 1.
+    /// Scaled to length 1.
     #[must_use]
     pub fn normalised(self) -> Self {
         let norm = self.norm();
         Self(self.0.map(|x| x / norm))
     }
 
-    /// What the body sees as `v`, in the world's axes.
+    /// `v` rotated from the body's axes to the world's.
     pub fn rotate(self, v: Vector) -> Vector {
         let [w, x, y, z] = self.0;
         let twice = cross([x, y, z], v).map(|c| 2.0 * c);
@@ -91,14 +91,14 @@ impl Quaternion {
         2.0 * (x * x + y * y + z * z).sqrt().atan2(w.abs()).to_degrees()
     }
 
-    /// The angle between where the two say up is, in degrees.
+    /// The angle between the up directions of two attitudes, in degrees.
     pub fn inclination_to(self, other: Self) -> f64 {
         let (a, b) = (self.up(), other.up());
         let sine = cross(a, b);
         dot(sine, sine).sqrt().atan2(dot(a, b)).to_degrees()
     }
 
-    /// Yaw, pitch and roll in radians, as [`Self::of_angles`] takes them.
+    /// Yaw, pitch and roll in radians, the inverse of [`Self::of_angles`].
     pub fn angles(self) -> Vector {
         let [w, x, y, z] = self.0;
         let level = [w * w + x * x - y * y - z * z, 2.0 * (x * y + w * z)];

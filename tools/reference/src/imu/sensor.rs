@@ -1,4 +1,4 @@
-//! A sensor: what it makes of a motion.
+//! Sensors: samples of a motion.
 
 use glint_core::orientation::Sample;
 use rand::{Rng, RngExt, SeedableRng};
@@ -14,24 +14,24 @@ pub struct Sensor {
     pub gyro_lsb: f64,
     /// LSB per g.
     pub accel_lsb: f64,
-    /// Of the gyroscope, in °/s.
+    /// Bias of the gyroscope in °/s.
     pub bias: Vector,
     /// Standard deviation of a sample of the gyroscope, in °/s.
     pub noise: f64,
-    /// The same of the accelerometer, in g.
+    /// Standard deviation of a sample of the accelerometer, in g.
     pub accel_noise: f64,
-    /// How much the gyroscope reads too much, as a part of the rate.
+    /// Scale error of the gyroscope, as a part of the rate.
     pub scale_error: f64,
     /// Samples a second.
     pub rate: f64,
-    /// How far a sample may be from its even place, as a part of the time between two.
+    /// Largest jitter of a sample's time, as a part of the period.
     pub jitter: f64,
-    /// The part of the samples that are lost.
+    /// Part of lost samples.
     pub lost: f64,
 }
 
 impl Sensor {
-    /// Without any error but that of counts; ±2000 °/s and ±8 g.
+    /// A sensor without errors except rounding; ±2000 °/s and ±8 g.
     pub fn ideal(rate: f64) -> Self {
         Self {
             gyro_lsb: 16.4,
@@ -46,7 +46,7 @@ impl Sensor {
         }
     }
 
-    /// The noise and the bias of a real one, as logged.
+    /// A sensor with the noise and bias of a logged one.
     pub fn real(rate: f64) -> Self {
         Self {
             bias: [4.5, 0.05, 1.1],
@@ -56,7 +56,7 @@ impl Sensor {
         }
     }
 
-    /// Samples of a motion, `count` of them but for those that are lost; the first and the last never are, and are in their place.
+    /// `count` samples of a motion, minus lost ones. The first and the last are never lost and have no jitter.
     pub fn samples(self, motion: Motion, count: u64, seed: u64) -> impl Iterator<Item = Sample> {
         let mut random = Pcg64Mcg::seed_from_u64(seed);
         let period = 1e6 / self.rate;
@@ -68,12 +68,12 @@ impl Sensor {
                 0.0
             };
             let lost = uniform(&mut random) < self.lost && inner;
-            // The clock that stamps a sample has whole microseconds; the sample is taken at the stamp.
+            // Time stamps are whole microseconds; the sample is taken at its stamp.
             let t_us = ((i as f64 + jitter) * period).round();
             let t = t_us * 1e-6;
             let (rate, force) = (motion.rate(t), motion.force(t));
             let sample = Sample {
-                // The stamps wrap as they do on the board.
+                // Time stamps wrap as on the board.
                 t_us: t_us as u64 as u32,
                 gyro: [0, 1, 2].map(|k| {
                     let true_rate = rate[k].to_degrees() * (1.0 + self.scale_error);
@@ -89,7 +89,7 @@ impl Sensor {
     }
 }
 
-/// To nearest; saturates as the sensor does.
+/// Rounds to nearest; saturates like the sensor.
 fn counts(x: f64) -> i16 {
     x.round() as i16
 }
@@ -98,7 +98,7 @@ fn uniform(random: &mut impl Rng) -> f64 {
     random.random()
 }
 
-/// Noise of a standard deviation, if there is any.
+/// Normal noise of a standard deviation.
 fn scaled_noise(deviation: f64, random: &mut impl Rng) -> f64 {
     if deviation == 0.0 {
         0.0
@@ -107,7 +107,7 @@ fn scaled_noise(deviation: f64, random: &mut impl Rng) -> f64 {
     }
 }
 
-/// By Box and Muller; one of the two is thrown away.
+/// A standard normal number, by Box and Muller.
 fn normal(random: &mut impl Rng) -> f64 {
     let radius = (-2.0 * (1.0 - uniform(random)).ln()).sqrt();
     radius * (std::f64::consts::TAU * uniform(random)).cos()

@@ -1,8 +1,8 @@
-//! Sine and cosine: error tables over every input, for Glint's kernels and beside other libraries.
+//! Sine and cosine: errors over all inputs, of Glint's kernels and of other libraries.
 //!
-//! - [`truth`]: the f64 reference, and how wrong it is itself.
-//! - [`statistics`]: what is kept of the errors.
-//! - [`subjects`]: the kernels, each with all its natural inputs.
+//! - [`truth`]: the f64 reference, and its own error.
+//! - [`statistics`]: statistics of the errors.
+//! - [`subjects`]: the kernels, each with all inputs of its format.
 //! - [`sweep`]: runs a subject over its inputs on all cores.
 
 pub mod statistics;

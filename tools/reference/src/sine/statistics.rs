@@ -1,8 +1,8 @@
-//! What is kept of a sweep's errors.
+//! Statistics of a sweep's errors.
 
 use super::truth::SinCos;
 
-/// Which of the two outputs.
+/// One of the two outputs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Function {
     /// The sine.
@@ -20,22 +20,22 @@ impl std::fmt::Display for Function {
     }
 }
 
-/// Buckets of the histogram in one octave; a percentile is good to 1/64.
+/// Buckets of the histogram in one octave; percentiles have a relative resolution of 1/64.
 const BUCKETS_PER_OCTAVE: u64 = 64;
 /// Errors below 2^-64 share the first bucket, and errors from 1 up the last.
 const OCTAVES: u64 = 64;
 
 /// Errors of sine and cosine together, absolute.
 ///
-/// Each input counts with a weight, the part of the circle that it stands for, so that means are means over the angle even
-/// where inputs crowd, as floats do near zero.
+/// The weight of an input is its part of the circle, so means are over the angle even where inputs are dense, as floats near
+/// zero.
 #[derive(Clone, Debug)]
 pub struct Statistics {
-    /// Inputs seen; each has a sine and a cosine.
+    /// Number of inputs; each has a sine and a cosine.
     pub inputs: u64,
     /// The largest error.
     pub max: f64,
-    /// The number of the input with the largest error, as the subject counts them; the first of several.
+    /// Number of the first input with the largest error, as the subject counts.
     pub worst_input: u64,
     /// The output with the largest error.
     pub worst_function: Function,
@@ -73,8 +73,7 @@ impl Statistics {
         self.add_both(input, truth, got, weight);
     }
 
-    /// Adds the outputs of `count` inputs that are images of one another, with outputs and truth alike but for signs and
-    /// order. `input` stands for all of them.
+    /// Adds the outputs of `count` images of an input, whose outputs and truth are equal apart from signs and order.
     pub fn add_images(&mut self, input: u64, truth: SinCos, got: SinCos, count: u64) {
         self.inputs += count;
         self.add_both(input, truth, got, count as f64);
@@ -101,7 +100,7 @@ impl Statistics {
         }
     }
 
-    /// Adds what was found over later inputs.
+    /// Adds the statistics of later inputs.
     pub fn merge(&mut self, later: &Self) {
         self.inputs += later.inputs;
         // Inputs need not come in order of their numbers.
@@ -129,7 +128,7 @@ impl Statistics {
         self.sum / self.weight
     }
 
-    /// The error that 99 % of the outputs do not pass, rounded up by at most 1/64 of itself.
+    /// The 99th percentile, rounded up by at most 1/64 of itself.
     pub fn p99(&self) -> f64 {
         let mut below = 0.0;
         for (index, count) in self.histogram.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! The kernels that are measured, each over all inputs of its own format.
+//! The measured kernels, each over all inputs of its own format.
 
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -13,34 +13,34 @@ use micromath::F32Ext;
 use super::statistics::Statistics;
 use super::truth::{Image, OCTANT, SinCos, TURN};
 
-/// A kernel and its inputs, numbered in steps. One step may stand for several inputs.
+/// A kernel and its inputs, numbered in steps. A step may cover several inputs.
 pub struct Subject {
-    /// The kernel's name, that of its line in the firmware's `bench sine`.
+    /// Name of the kernel, as in the firmware's `bench sine`.
     pub kernel: &'static str,
-    /// The line of the work-precision diagram on which it lies.
+    /// Its line in the work-precision diagram.
     pub family: &'static str,
-    /// Which variant.
+    /// Variant.
     pub config: &'static str,
-    /// The format of the outputs.
+    /// Number format of the outputs.
     pub format: &'static str,
-    /// The last place of that format, for floats that just below 1.
+    /// Unit in the last place of that format, for floats of numbers just below 1.
     pub ulp: f64,
-    /// The inputs in words.
+    /// Description of the inputs.
     pub inputs: &'static str,
-    /// Its inputs are phases, so the symmetries of the circle can be checked bit for bit.
+    /// Whether the inputs are phases, whose symmetries can be checked bit for bit.
     pub by_phase: bool,
-    /// Used by Glint itself.
+    /// Whether Glint uses it.
     pub shipped: bool,
     steps: u64,
     run: Box<Run>,
     show: Box<dyn Fn(u64) -> String + Sync>,
 }
 
-/// Adds the errors of every so many of a range of steps.
+/// Adds the errors of a range of steps, with a stride.
 type Run = dyn Fn(Range<u64>, u64, &mut Statistics) + Sync;
 
 impl Subject {
-    /// How many steps make all inputs.
+    /// Number of steps for all inputs.
     pub fn steps(&self) -> u64 {
         self.steps
     }
@@ -50,7 +50,7 @@ impl Subject {
         (self.run)(range, stride, statistics);
     }
 
-    /// An input's number in words.
+    /// Description of the input of a number.
     pub fn show_input(&self, number: u64) -> String {
         (self.show)(number)
     }
@@ -141,14 +141,14 @@ pub fn subjects() -> Vec<Subject> {
 
 const GLINT: &str = "glint: table of 64 and Taylor";
 
-/// Every so many of a format's inputs, and that in words.
+/// Stride through a format's inputs, and its description.
 type Inputs = (u32, &'static str);
 
 const SHORT_PHASES: Inputs = (1 << 16, "all 2^16 phases of 16 bits");
 const ALL_PHASES: Inputs = (1, "all 2^32 phases");
 const SOME_PHASES: Inputs = (15, "every 15th phase of an octant, in all octants");
 const ALL_RADIANS: Inputs = (1, "all radians in [−π, π]");
-/// For a format with over 10^9 of them and a slow kernel.
+/// For a format with over 10^9 inputs and a slow kernel.
 const SOME_RADIANS: Inputs = (17, "every 17th of the radians in [−π, π]");
 
 fn q14(angle: u32) -> (i32, i32) {
@@ -171,9 +171,8 @@ fn last_place(fraction_bits: u32) -> f64 {
     (-f64::from(fraction_bits)).exp2()
 }
 
-/// A kernel of phases. A step is a phase of the first octant. The kernel is evaluated at its images in all octants too; those
-/// whose outputs are the same bits, signs and order apart, have the same errors and are counted, the others are measured
-/// one by one.
+/// A kernel of phases. A step is a phase of the first octant, evaluated at its images in all octants. Images with the same output
+/// bits, apart from signs and order, have the same error and are only counted; others are measured singly.
 fn phases(
     [kernel, family, config, format]: [&'static str; 4],
     fraction_bits: u32,
@@ -220,7 +219,7 @@ fn phases(
     }
 }
 
-/// A kernel of fixed-point radians with as many fraction bits as its outputs: every `spacing`-th input in [−π, π].
+/// A kernel of fixed-point radians with the fraction bits of its outputs: every `spacing`-th input in [−π, π].
 fn radians(
     [kernel, family, config, format]: [&'static str; 4],
     fraction_bits: u32,
@@ -290,7 +289,7 @@ fn floats(
     }
 }
 
-/// The table with one entry a degree, in 16.16, of the student design: all angles in [0°, 360°) in 16.16.
+/// A table with one entry a degree, in 16.16: all angles in [0°, 360°) in 16.16.
 fn degrees() -> Subject {
     let table: Vec<f64> = (0..=180)
         .map(|degree| (f64::from(degree).to_radians().sin() * 65536.0).round() / 65536.0)
@@ -337,9 +336,9 @@ mod tests {
             .expect("a subject")
     }
 
-    /// Figures that are known from theory or from the libraries' own documents.
+    /// Errors known from theory or from the libraries' documents.
     #[test]
-    fn comparators_show_the_errors_they_are_known_for() {
+    fn other_libraries_have_their_documented_errors() {
         for (kernel, at_least, at_most) in [
             ("degree_table", 0.01744, 0.01747),
             ("idsp", 1.8e-5, 1.95e-5),
@@ -354,7 +353,7 @@ mod tests {
     }
 
     #[test]
-    fn floats_weigh_as_much_of_the_circle_as_they_stand_for() {
+    fn the_weight_of_a_float_is_its_part_of_the_circle() {
         // Half of the inputs are below 2^-11 rad, where a cosine of 1 would be nearly right.
         let careless = floats(["", "", "", ""], |_| (0.0, 1.0));
         let statistics = sweep(&careless, 997, &|_| ());

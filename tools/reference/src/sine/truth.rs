@@ -40,8 +40,7 @@ pub struct Image {
 impl Image {
     /// The images of an octant phase.
     ///
-    /// Over all phases from 0 to [`OCTANT`] they are all 2^32 angles, each once: the borders of octants are left out where
-    /// they would come twice.
+    /// Over all phases from 0 to [`OCTANT`] they are all 2^32 angles, each once: shared borders of octants come once.
     pub fn all(phase: u32) -> impl Iterator<Item = Self> {
         (0..8)
             .map(|i| Self {
@@ -61,7 +60,7 @@ impl Image {
         }
     }
 
-    /// Carries the sine and cosine of the octant phase to this image, by identities that hold exactly.
+    /// Sine and cosine of this image from those of the octant phase, by exact identities.
     pub fn carry<T: Copy + std::ops::Neg<Output = T>>(self, sin: T, cos: T) -> (T, T) {
         let (sin, cos) = if self.mirrored {
             (cos, sin)
@@ -77,8 +76,8 @@ impl Image {
     }
 }
 
-/// The largest error of [`SinCos::of_octant`] over every `stride`-th phase, against a series in 62-bit integers whose own
-/// error is below 2^-56.
+/// The largest error of [`SinCos::of_octant`] over every `stride`-th phase, against a series in 62-bit integers with an
+/// error below 2^-56.
 pub fn reference_error(stride: u32) -> f64 {
     let apart = |exact: i128, value: f64| (exact - (value * ONE as f64) as i128).abs();
     let worst = (0..=OCTANT)
@@ -98,8 +97,8 @@ const ONE: i128 = 1 << 62;
 /// π with 93 fraction bits, to the nearest.
 const PI_Q93: i128 = 31_112_826_664_028_885_653_815_243_078;
 
-/// Sine and cosine of an octant phase with 62 fraction bits, by Taylor's series: some twenty terms, each cut by less
-/// than four units of the last place.
+/// Sine and cosine of an octant phase with 62 fraction bits, by Taylor's series: about twenty terms, each truncated
+/// by less than four units of the last place.
 fn series(phase: u32) -> (i128, i128) {
     // phase·2π/2^32 = phase·π/2^31; the product stays below 2^124.
     let angle = (i128::from(phase) * PI_Q93) >> 62;
@@ -107,7 +106,7 @@ fn series(phase: u32) -> (i128, i128) {
     let sum = |first: i128, start: i128| {
         let (mut term, mut total, mut n) = (first, first, start);
         while term != 0 {
-            // Dividing the magnitude keeps every step a cut toward zero.
+            // Division of the magnitude truncates toward zero.
             term = -(term.signum() * (((term.abs() * square) >> 62) / (n * (n + 1))));
             total += term;
             n += 2;
@@ -141,11 +140,11 @@ mod tests {
     }
 
     #[test]
-    fn the_reference_is_good_to_an_f64s_last_place() {
+    fn the_reference_is_accurate_to_an_f64s_last_place() {
         let error = reference_error((1 << 10) + 1);
         assert!(
             error > 0.0 && error < 2.3e-16,
-            "the reference is off by {error:e}"
+            "error of the reference: {error:e}"
         );
     }
 }

@@ -26,7 +26,7 @@ pub fn view(camera: &Camera) -> View {
 /// A camera at `eye` that looks at `target`, rolled by `roll` radians about its axis.
 pub fn looking_at(eye: Vector, target: Vector, roll: f64, half_width: f64, near: f64) -> Camera {
     let n = unit(minus(target, eye));
-    // Any direction that is not n's will do for a start.
+    // Any direction not parallel to n.
     let aside = if n[2].abs() < 0.9 {
         [0.0, 0.0, 1.0]
     } else {
@@ -46,7 +46,7 @@ pub fn looking_at(eye: Vector, target: Vector, roll: f64, half_width: f64, near:
     }
 }
 
-/// A camera in a random direction, `distance` from a point near the origin that it looks at.
+/// A camera in a random direction, at a distance of `distance` from its target near the origin.
 pub fn around(random: &mut Pcg64, distance: f64, half_width: f64, near: f64) -> Camera {
     let target = [(); 3].map(|()| random.random_range(-0.3..0.3));
     let direction = direction(random);
@@ -60,7 +60,7 @@ pub fn around(random: &mut Pcg64, distance: f64, half_width: f64, near: f64) -> 
     )
 }
 
-/// A random direction, evenly spread.
+/// A random direction, uniform on the sphere.
 pub fn direction(random: &mut Pcg64) -> Vector {
     let z: f64 = random.random_range(-1.0..1.0);
     let (sin, cos) = random.random_range(0.0..std::f64::consts::TAU).sin_cos();
@@ -68,7 +68,7 @@ pub fn direction(random: &mut Pcg64) -> Vector {
     [across * cos, across * sin, z]
 }
 
-/// A number whose logarithm is evenly spread.
+/// A log-uniform random number.
 pub fn log_range(random: &mut Pcg64, low: f64, high: f64) -> f64 {
     random
         .random_range(low.ln()..high.ln())

@@ -8,7 +8,7 @@ use crate::cameras::view;
 use crate::renderer::{Renderer, exact};
 use crate::scenes::{Case, LARGE, Scene, random_case};
 
-/// What has been compared, and the worst that was found.
+/// Counts and largest errors of the comparison.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Tally {
     triangles: u64,
@@ -38,10 +38,10 @@ impl Tally {
     }
 }
 
-/// Depth may be this many codes from the exact plane.
+/// Largest deviation of the depth from the exact plane, in codes.
 const DEPTH_LIMIT: f64 = 2.0;
 
-/// How far snapping may move an edge, in pixels. The conformance tests allow three steps of the grid.
+/// Largest displacement of an edge by snapping, in pixels. The conformance tests allow three steps of the grid.
 pub fn snap_limit(size: Size) -> f64 {
     if size == LARGE {
         2.0 / 256.0
@@ -85,7 +85,7 @@ fn against_exact(renderer: &Renderer, size: Size) -> Tally {
         part.for_each_pixel(size.width, size.height, |column, row| {
             let code = &mut left[(row * size.width + column) as usize];
             if *code == 0 {
-                // Not drawn, or already counted for another part: parts do not overlap.
+                // Not drawn, or counted for another part: parts do not overlap.
                 tally.missing += 1;
             } else {
                 tally.covered += 1;
@@ -121,7 +121,7 @@ fn classify(renderer: &Renderer, camera: &Camera, scene: &Scene, case: &Case, ta
             }
         }
     }
-    // What was drawn outside the bounds.
+    // Pixels drawn outside the bounds.
     tally.class_extra += drawn;
 }
 

@@ -12,8 +12,8 @@ use crate::scenes::{Case, ONE, SMALL, Scene};
 /// Steps along an edge of a [`Cut`].
 const STEPS: i64 = 200;
 
-/// A large triangle cut into many that share edges. All vertices lie on a lattice of the triangle's plane, so that the
-/// parts are exactly the whole.
+/// A large triangle cut into many with shared edges. All vertices lie on a lattice in the triangle's plane, so the parts cover
+/// exactly the whole.
 struct Cut {
     origin: [i64; 3],
     sides: [[i64; 3]; 2],
@@ -36,8 +36,8 @@ impl Cut {
         }
     }
 
-    /// Cuts one triangle in three at a point inside, if the lattice has one there. The parts name their vertices from
-    /// any of them on: the first is the origin of the depth plane.
+    /// Cuts one triangle in three at an inner lattice point, if there is one. The parts start at any of their vertices: the first is
+    /// the origin of the depth plane.
     fn cut(&mut self, random: &mut Pcg64) {
         let chosen = random.random_range(0..self.triangles.len());
         let [a, b, c] = self.triangles[chosen];
@@ -105,7 +105,7 @@ fn mix_winding(random: &mut Pcg64, scene: &mut Scene) {
     }
 }
 
-/// How often each pixel is covered by the triangles of a case, drawn one by one.
+/// Coverage count of each pixel by the triangles of a case, drawn one by one.
 fn counts(renderer: &mut Renderer, case: &Case) -> Vec<u32> {
     let view = view(&case.camera);
     let mut counts = vec![0; (case.size.width * case.size.height) as usize];
@@ -118,7 +118,7 @@ fn counts(renderer: &mut Renderer, case: &Case) -> Vec<u32> {
     counts
 }
 
-/// Compares counts with the outline: once inside, never outside, at most once on the way.
+/// Compares counts with the outline: one inside, none outside, at most one between.
 fn check_against_outline(case: &Case, outline: usize, whole: &Scene, counts: &[u32]) -> u64 {
     let camera = Camera::from(&view(&case.camera));
     let outline = ProjectedTriangle::new(&camera, case.size, whole.corners(outline));
@@ -162,7 +162,7 @@ fn a_cut_triangle_covers_what_it_did_before_and_once() {
         let counts = counts(&mut renderer, &case);
         check_against_outline(&case, 0, &whole, &counts);
 
-        // Nothing is clipped here, so the outline's own snapped corners tell exactly which pixels are inside.
+        // Without clipping the outline's snapped corners decide exactly which pixels are inside.
         renderer.draw(&whole, &view(&case.camera), case.size, false);
         let mut expected = vec![0; counts.len()];
         if let Some(outline) = renderer.drawn.first().and_then(exact) {

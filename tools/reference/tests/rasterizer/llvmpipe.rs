@@ -1,7 +1,7 @@
-//! Coverage against Mesa's software rasterizer, where it and moderngl are on the machine.
+//! Coverage against Mesa's software rasterizer, on machines with Mesa and moderngl.
 //!
 //! llvmpipe draws each triangle twice. From the model's snapped vertices it must cover the same pixels. From the f64
-//! vertices it snaps by itself, so pixels may differ, but only where a vertex snapped differently.
+//! vertices it does its own snapping, so pixels may differ only where a vertex snapped differently.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -16,7 +16,7 @@ use crate::cameras::view;
 use crate::renderer::Renderer;
 use crate::scenes::{SMALL, random_case};
 
-/// What compare.py reads.
+/// Input of compare.py.
 #[derive(Serialize)]
 struct Scenes {
     width: u32,
@@ -32,7 +32,7 @@ struct Triangle {
     covered: Vec<[u32; 3]>,
 }
 
-/// What compare.py prints.
+/// Output of compare.py.
 #[derive(Deserialize)]
 struct Results {
     renderer: String,
@@ -62,19 +62,19 @@ impl Differences {
     }
 }
 
-/// A triangle as the model drew it, and what else is needed to explain a difference.
+/// A triangle as the model drew it, with data to explain a difference.
 struct Subject {
     name: String,
     exact: ProjectedTriangle,
-    /// Its corners' places in f64, in pixels; of no meaning for those behind the eye.
+    /// Its corners' positions in f64, in pixels; undefined behind the eye.
     places: [[f64; 2]; 3],
     /// Its corners as the model snapped them, in the order of `places`; `None` when it was clipped.
     snapped: Option<[SnappedVertex; 3]>,
     covered: Vec<bool>,
 }
 
-/// llvmpipe's viewport goes this many pixels from the middle of the picture: beyond the model's guard band, so that it clips
-/// only what the model clips too.
+/// Extent of llvmpipe's viewport from the middle of the picture, in pixels: beyond the model's guard band, so llvmpipe clips only
+/// triangles that the model clips too.
 const REACH: u32 = 2400;
 
 /// Clip coordinates: x and y are −1 and 1 at the ends of the viewport, and z ≥ −w is the near plane.
@@ -100,7 +100,7 @@ fn spans(covered: &[bool], size: Size) -> Vec<[u32; 3]> {
     spans
 }
 
-/// The snapped vertices of the model's only triangle in the order of the corners' places, if it was not clipped.
+/// The snapped vertices of the model's only triangle in the order of the corners' positions, if it was not clipped.
 fn snapped_corners(renderer: &Renderer, places: [[f64; 2]; 3]) -> Option<[SnappedVertex; 3]> {
     let [drawn] = renderer.drawn.as_slice() else {
         return None;
@@ -159,15 +159,15 @@ fn subjects() -> (Scenes, Vec<Subject>) {
     (scenes, subjects)
 }
 
-/// How llvmpipe snaps a place in f64, or `None` when the floats it computes with may fall on either side.
+/// llvmpipe's snapping of a position in f64, or `None` when its floats may round to either side.
 fn llvmpipe_snap(place: f64) -> Option<i64> {
     let steps = place * 256.0;
-    // A few roundings of 2^-24 on numbers of the place's size and the picture's.
+    // A few roundings of 2^-24 on numbers as large as the position and the picture.
     let uncertain = 0.01 + (steps.abs() + 160.0 * 256.0) * 4.0 / 16_777_216.0;
     ((steps - steps.floor() - 0.5).abs() > uncertain).then(|| steps.round() as i64)
 }
 
-/// The vertices as llvmpipe snaps them, if that is certain.
+/// The vertices as snapped by llvmpipe, if certain.
 fn llvmpipe_vertices(places: [[f64; 2]; 3]) -> Option<[SnappedVertex; 3]> {
     let [a, b, c] = places.map(|[x, y]| {
         let (x, y) = (llvmpipe_snap(x)?, llvmpipe_snap(y)?);
@@ -176,7 +176,7 @@ fn llvmpipe_vertices(places: [[f64; 2]; 3]) -> Option<[SnappedVertex; 3]> {
     Some([a?, b?, c?])
 }
 
-/// What llvmpipe covered, from the model's coverage and the differences.
+/// llvmpipe's coverage, from the model's and the differences.
 fn llvmpipe_coverage(subject: &Subject, differences: &Differences) -> Vec<bool> {
     let mut covered = subject.covered.clone();
     for &[column, row] in differences.pixels() {
@@ -192,7 +192,7 @@ fn llvmpipe_differs_only_where_a_vertex_snapped_differently() {
     let results = match compare(&scenes) {
         Ok(results) => results,
         Err(reason) => {
-            // Past the test harness, which would keep it to itself.
+            // Directly to the terminal, because the test harness captures output.
             let _ = writeln!(
                 std::io::stderr(),
                 "SKIPPED the comparison with llvmpipe: {reason}"
@@ -212,15 +212,15 @@ fn llvmpipe_differs_only_where_a_vertex_snapped_differently() {
     );
 }
 
-/// What was compared, and the pixels that differ.
+/// Compared triangles, and differing pixels.
 #[derive(Debug, Default)]
 struct Tally {
-    /// Drawn as they are.
+    /// Drawn without clipping.
     whole: usize,
     covered: usize,
     snapped_differently: usize,
     differing_pixels: usize,
-    /// Clipped, or without a pixel.
+    /// Clipped, or without pixels.
     others: usize,
     other_covered: usize,
     other_differing_pixels: usize,
@@ -230,7 +230,7 @@ impl Tally {
     fn add(&mut self, subject: &Subject, comparison: &Comparison) {
         let covered = subject.covered.iter().filter(|&&covered| covered).count();
         let projected = &comparison.projected;
-        // Where both draw by the rules from vertices within a step, only pixels that close to an edge can differ.
+        // Both draw by the rules from vertices within a step, so only pixels that close to an edge can differ.
         for &[column, row] in projected.pixels() {
             let class = subject.exact.classify(column, row, 2.0 / 256.0);
             assert_eq!(
@@ -272,7 +272,7 @@ impl Tally {
             self.snapped_differently += 1;
             self.differing_pixels += projected.count();
         }
-        // Where it is certain how llvmpipe snapped, it covers what the exact rasterizer covers.
+        // With certain snapping llvmpipe covers the exact rasterizer's pixels.
         if let Some(theirs) = theirs {
             let mut expected = vec![false; subject.covered.len()];
             if let Some(triangle) = ExactTriangle::new(theirs) {
@@ -290,7 +290,7 @@ impl Tally {
     }
 }
 
-/// Runs compare.py; the error says why it cannot.
+/// Runs compare.py; the error is the reason it cannot run.
 fn compare(scenes: &Scenes) -> Result<Results, String> {
     let reference = Path::new(env!("CARGO_MANIFEST_DIR"));
     let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("llvmpipe-scenes.json");
@@ -310,7 +310,7 @@ fn compare(scenes: &Scenes) -> Result<Results, String> {
     read(&output)
 }
 
-/// The results, or why there are none. Anything but a machine without llvmpipe is a failure.
+/// The results, or the reason for their absence. Any reason except a machine without llvmpipe is a failure.
 fn read(output: &Output) -> Result<Results, String> {
     let complaint = String::from_utf8_lossy(&output.stderr).trim().to_owned();
     match output.status.code() {

@@ -1,4 +1,4 @@
-//! The model behind a simple face: a scene goes in, a picture and its trace come out.
+//! A simple interface to the model: from a scene to a picture and its trace.
 
 use glint_core::camera::View;
 use glint_core::mesh::Mesh;
@@ -8,20 +8,20 @@ use glint_reference::exact::{ExactTriangle, SnappedVertex};
 
 use crate::scenes::Scene;
 
-/// Holds the buffers from one picture to the next.
+/// Buffers kept from one picture to the next.
 #[derive(Default)]
 pub struct Renderer {
     /// RGB565 of the last picture.
     pub colour: Vec<u16>,
     /// Depth codes of the last picture.
     pub depth: Vec<u32>,
-    /// What the last picture was made of.
+    /// The triangles of the last picture.
     pub drawn: Vec<DrawnTriangle>,
     scratch: Vec<Projected>,
 }
 
 impl Renderer {
-    /// Draws a scene over 0.
+    /// Draws a scene over cleared buffers.
     pub fn draw(&mut self, scene: &Scene, view: &View, size: Size, cull: bool) -> Stats {
         let bytes = scene.encode();
         let mesh = Mesh::new_checked(&bytes).expect("the encoder makes good meshes");
@@ -56,7 +56,7 @@ impl Renderer {
     }
 }
 
-/// A vertex of the model as the exact rasterizer takes it.
+/// A vertex of the model for the exact rasterizer.
 pub fn snapped(vertex: ScreenVertex) -> SnappedVertex {
     SnappedVertex {
         x: vertex.x.into(),
@@ -65,7 +65,7 @@ pub fn snapped(vertex: ScreenVertex) -> SnappedVertex {
     }
 }
 
-/// A drawn triangle for the exact rasterizer; `None` without an area.
+/// A drawn triangle for the exact rasterizer; `None` for an area of 0.
 pub fn exact(drawn: &DrawnTriangle) -> Option<ExactTriangle> {
     ExactTriangle::new(drawn.vertices.map(snapped))
 }

@@ -1,4 +1,4 @@
-//! Meshes, and random cases of every kind.
+//! Meshes and random cases.
 
 use glint_core::mesh::{IndexedTriangle, Rgb565, Vertex, encode};
 use glint_reference::camera::{Camera, Size, Vector};
@@ -35,19 +35,19 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Adds a vertex at the nearest place that Q2.14 has, and returns its number.
+    /// Adds a vertex at the nearest position in Q2.14 and returns its number.
     pub fn vertex(&mut self, point: Vector) -> u32 {
         self.positions.push(point.map(|x| (x * ONE).round() as i16));
         self.positions.len() as u32 - 1
     }
 
-    /// Adds a triangle with vertices of its own.
+    /// Adds a triangle with its own vertices.
     pub fn triangle(&mut self, points: [Vector; 3]) {
         let indices = points.map(|point| self.vertex(point));
         self.triangles.push(indices);
     }
 
-    /// A triangle's corners as f64 has them, which is exactly.
+    /// A triangle's corners, exact in f64.
     pub fn corners(&self, triangle: usize) -> [Vector; 3] {
         self.triangles[triangle]
             .map(|index| self.positions[index as usize].map(|x| f64::from(x) / ONE))
@@ -58,7 +58,7 @@ impl Scene {
         (0..self.triangles.len()).map(|i| self.corners(i)).collect()
     }
 
-    /// The scene with one of its triangles only.
+    /// The scene reduced to one of its triangles.
     pub fn only(&self, triangle: usize) -> Self {
         Self {
             positions: self.triangles[triangle]
@@ -94,7 +94,7 @@ impl Scene {
     }
 }
 
-/// A scene and how it is looked at.
+/// A scene with its camera.
 pub struct Case {
     pub name: String,
     pub scene: Scene,
@@ -124,7 +124,7 @@ pub fn random_case(seed: u64) -> Case {
     let kinds = KINDS.len() as u64;
     let (kind, make) = KINDS[(seed % kinds) as usize];
     let (mut scene, camera) = make(&mut random);
-    // Large pictures take time, so they get fewer triangles.
+    // Fewer triangles in large pictures, to save time.
     let (size, most) = match seed / kinds % 10 {
         8 => (MIDDLE, 25),
         9 => (LARGE, 10),
@@ -149,7 +149,7 @@ fn near(random: &mut Pcg64, middle: Vector, reach: f64) -> Vector {
     [0, 1, 2].map(|i| middle[i] + offset[i])
 }
 
-/// `count` triangles of a size between two, spread in a box of half width `reach`.
+/// `count` triangles within a range of sizes, spread in a box of half width `reach`.
 fn spread(random: &mut Pcg64, count: usize, reach: f64, sizes: [f64; 2]) -> Scene {
     let mut scene = Scene::default();
     for _ in 0..count {

@@ -38,7 +38,7 @@ fn shades_are_within_one_step_of_the_exact_product() {
         let mut scene = Scene::default();
         for _ in 0..60 {
             scene.triangle([(); 3].map(|()| direction(&mut random)));
-            // Some normals are longer or shorter than 1: a mesh may hold any.
+            // Some normals are longer or shorter than 1, as a mesh may contain any.
             let length = random.random_range(0.0..1.5) * ONE;
             scene
                 .normals

@@ -26,7 +26,7 @@ fn case(name: &str, camera: Camera, triangles: &[[Vector; 3]]) -> Case {
     }
 }
 
-/// Looks along +y from 2 away; x is right and z is up.
+/// The view along +y from a distance of 2; x is right and z is up.
 fn ahead() -> Camera {
     looking_at([0.0, -2.0, 0.0], [0.0; 3], 0.0, 0.5, 0.1)
 }
@@ -57,7 +57,7 @@ fn covered(renderer: &mut Renderer, case: &Case) -> usize {
 fn triangles_without_area_draw_nothing() {
     let point = [0.1, 0.2, 0.3];
     let triangles = [
-        // A point, a line there and back, a line on, and a plane seen edge-on.
+        // A point, a line with a return, a straight line, and a plane seen edge-on.
         [point; 3],
         [[-0.5, 0.0, 0.0], [0.5, 0.0, 0.25], [-0.5, 0.0, 0.0]],
         [[-0.5, 0.0, 0.0], [0.0, 0.0, 0.0], [0.5, 0.0, 0.0]],
@@ -123,7 +123,7 @@ fn an_apex_at_the_eye() {
     for i in 0..12 {
         let (sin, cos) = (f64::from(i) * 0.55).sin_cos();
         triangles.push([eye, [cos, 1.0, sin], [0.7 * sin, 1.5, 0.7 * cos]]);
-        // Another whose apex is one step from the eye, on either side of the near plane.
+        // A triangle with an apex one step from the eye, on either side of the near plane.
         let beside = [eye[0] + STEP, eye[1] + f64::from(i) * STEP * 32.0, eye[2]];
         triangles.push([beside, [sin, 0.5, cos], [-cos, 1.5, sin]]);
     }

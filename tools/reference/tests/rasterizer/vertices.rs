@@ -19,7 +19,7 @@ struct Worst {
     vertices: u64,
     across: f64,
     distance: f64,
-    /// The distance when the camera's own rounding counts too.
+    /// The distance with the camera's rounding included.
     unrounded_distance: f64,
     depth: f64,
 }
@@ -34,7 +34,7 @@ impl fmt::Display for Worst {
     }
 }
 
-/// What is left between a snapped vertex and a point of the screen, in steps of the grid.
+/// Distance between a snapped vertex and a point of the screen, in steps of the grid.
 fn offset(snapped: ScreenVertex, exact: [f64; 2]) -> [f64; 2] {
     [
         f64::from(snapped.x) - exact[0] * 256.0,
@@ -42,9 +42,9 @@ fn offset(snapped: ScreenVertex, exact: [f64; 2]) -> [f64; 2] {
     ]
 }
 
-/// Projects random vertices through random cameras and compares those that are in the guard band.
+/// Projects random vertices through random cameras and compares those in the guard band.
 ///
-/// `limit` is for the distance from the projection through the camera as it was asked for, in steps of the grid.
+/// `limit` bounds the distance from the projection through the unrounded camera, in steps of the grid.
 fn compare(size: Size, seeds: std::ops::Range<u64>, limit: f64) -> Worst {
     let mut worst = Worst::default();
     for seed in seeds {
@@ -55,7 +55,7 @@ fn compare(size: Size, seeds: std::ops::Range<u64>, limit: f64) -> Worst {
         let asked = around(&mut random, distance, half_width, near);
         let view = view(&asked);
         let camera = Camera::from(&view);
-        // A mesh of vertices that the picture shows, or nearly.
+        // A mesh of vertices in or near the picture.
         let setup = MeshSetup::new(&view, size.width, size.height, MAX_RADIUS).expect("a size");
         let depth_scale = camera.depth_scale(f64::from(MAX_RADIUS) / ONE);
         for _ in 0..400 {
@@ -81,7 +81,7 @@ fn compare(size: Size, seeds: std::ops::Range<u64>, limit: f64) -> Worst {
                 ux.hypot(uy),
                 asked.screen(asked.coordinates(point), size),
             );
-            // The steps before it round w by less than the half step of its own rounding, so half a code is far.
+            // Earlier steps round w by less than the half step of its last rounding, so half a code is a wide bound.
             assert!(
                 depth.abs() <= 32.0,
                 "seed {seed}: depth of {position:?} is {depth:.2}/64 codes off\n{asked:?}"
@@ -91,7 +91,7 @@ fn compare(size: Size, seeds: std::ops::Range<u64>, limit: f64) -> Worst {
     worst
 }
 
-/// A vertex of Q2.14 that falls on the picture or a little beside it, if the random direction meets any.
+/// A vertex of Q2.14 in the picture or close to it, if the random direction has one.
 fn somewhere_in_view(random: &mut Pcg64, camera: &Camera, size: Size) -> Option<[i16; 3]> {
     let z = log_range(random, camera.near, 10.0);
     let scale = camera.pixels_per_unit(size);

@@ -1,4 +1,4 @@
-//! Whole scenes: the right surface in front, at the right depth, wherever snapping cannot change it.
+//! Whole scenes: the visible surface and its depth, in all pixels that snapping cannot change.
 
 use glint_reference::camera::Camera;
 use glint_reference::surface::{Tolerance, Visible, visible_surfaces};
@@ -8,20 +8,20 @@ use crate::coverage::snap_limit;
 use crate::renderer::Renderer;
 use crate::scenes::{Case, ONE, random_case};
 
-/// What has been compared.
+/// Counts of the comparison.
 #[derive(Debug, Default)]
 struct Tally {
     stable: u64,
     surface: u64,
     unstable: u64,
-    /// The largest error of depth on flat ground, in codes: what snapping does on a slope is taken off.
+    /// Largest error of the depth in codes, without the effect of snapping on a slope.
     depth_error: f64,
 }
 
-/// Depth may be this many codes off, beside what a displaced vertex does.
+/// Bound of the depth's error in codes, beside the effect of a displaced vertex.
 const DEPTH_LIMIT: f64 = 2.0;
 
-/// Gives every triangle a colour of its own and a normal towards the camera, so that shading leaves the colour.
+/// Gives every triangle its own colour and a normal towards the camera, so shading keeps the colour.
 fn colour_by_number(case: &mut Case) {
     let camera = &case.camera;
     for (i, [a, b, c]) in case.scene.all_corners().into_iter().enumerate() {
