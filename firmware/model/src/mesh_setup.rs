@@ -101,7 +101,18 @@ impl Scale {
     fn row(&self, row: [Q2_23; 3]) -> [i32; 3] {
         row.map(|r| {
             let dividend = i64::from(r.to_bits()) * (self.numerator >> 23);
-            (2 * dividend + self.half_width).div_euclid(2 * self.half_width) as i32
+            floor(2 * dividend + self.half_width, 2 * self.half_width) as i32
         })
+    }
+}
+
+/// The quotient of a divisor above 0, rounded down. One unsigned division: a 32-bit processor divides 64 bits in software.
+const fn floor(dividend: i64, divisor: i64) -> i64 {
+    let divisor = divisor.unsigned_abs();
+    if dividend < 0 {
+        // floor(x/d) = −1 − floor((−1 − x)/d)
+        !((!dividend as u64 / divisor) as i64)
+    } else {
+        (dividend as u64 / divisor) as i64
     }
 }

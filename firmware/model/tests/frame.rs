@@ -1,0 +1,176 @@
+//! Frames: constants, drawing in one call, and the lists of clipped triangles.
+
+mod common;
+
+use common::triangles::set_up;
+use common::{Camera, Model, Picture, Random};
+use glint_core::appearance::Appearance;
+use glint_core::camera::View;
+use glint_core::colour::{Rgb565, Shading};
+use glint_core::field::Field;
+use glint_core::mesh::Mesh;
+use glint_core::picture::Size;
+use glint_model::descriptor::{
+    Descriptor, Full, LENGTHS, ListWriter, band_rows, list_shift, list_word, words,
+};
+use glint_model::{
+    FieldSubject, Frame, FrameConstants, FrameStats, MeshSubject, Projected, RenderError, Subject,
+};
+
+fn view() -> View {
+    Camera::looking([0.0, -3.0, 1.0], [0.0; 3], 0.5, 0.1).rounded()
+}
+
+/// The picture of a frame, its counts, and the calls of `progress`.
+fn drawn(frame: &Frame, constants: &FrameConstants) -> (Picture, FrameStats, u32) {
+    let [width, height] = frame.size.pixels();
+    let mut picture = Picture::blank((width, height));
+    let mut scratch = vec![Projected::Behind; frame.scratch_vertices()];
+    let mut calls = 0;
+    let stats = frame.draw(constants, &mut picture.target(), &mut scratch, &mut || {
+        calls += 1;
+    });
+    (picture, stats.unwrap(), calls)
+}
+
+#[test]
+fn a_frame_is_drawn_from_constants_that_served_another_one() {
+    let bytes = Model::cube(8192).encoded();
+    let mesh = Mesh::new_checked(&bytes).unwrap();
+    let mesh = MeshSubject {
+        mesh,
+        cull: true,
+        shading: Shading::Flat,
+    };
+    let field = FieldSubject {
+        field: &Field::parse("box:0.25,2,0.25").unwrap(),
+        appearance: &Appearance::default(),
+        stereo: None,
+        prepass: true,
+    };
+    let mut constants = FrameConstants::default();
+    assert_eq!(constants.depth_scale(), None);
+    let frames = [
+        Subject::MeshInField(mesh, field),
+        Subject::Mesh(mesh),
+        Subject::Field(field),
+    ]
+    .map(|subject| Frame::new(subject, view(), Size::W320));
+    let pictures = frames.map(|frame| {
+        constants.update(&frame).unwrap();
+        let (picture, stats, calls) = drawn(&frame, &constants);
+        let (fresh, ..) = drawn(&frame, &frame.constants().unwrap());
+        assert!(picture.colour == fresh.colour && picture.depth == fresh.depth);
+        assert_eq!(stats.mesh.is_some(), frame.subject.mesh_part().is_some());
+        assert_eq!(stats.field.is_some(), frame.subject.field_part().is_some());
+        assert!(calls > 0 || stats.field.is_none());
+        picture
+    });
+    let [both, mesh, field] = &pictures;
+    assert!(both.colour != mesh.colour && both.colour != field.colour);
+    assert!(mesh.covered() > 0 && mesh.covered() < 320 * 180);
+}
+
+#[test]
+fn a_clear_colour_fills_the_pixels_without_a_triangle() {
+    let bytes = Model::cube(8192).encoded();
+    let mesh = Mesh::new_checked(&bytes).unwrap();
+    let clear = Rgb565(0x1234);
+    let frame = Frame {
+        clear,
+        ..Frame::new(Subject::mesh(mesh), view(), Size::W640)
+    };
+    let (picture, ..) = drawn(&frame, &frame.constants().unwrap());
+    let pixels = picture.colour.iter().zip(&picture.depth);
+    assert!(
+        pixels
+            .into_iter()
+            .all(|(&colour, &code)| (colour == clear.0) == (code == 0))
+    );
+}
+
+#[test]
+fn a_frame_beyond_the_limits_has_no_constants() {
+    let bytes = Model::cube(8192).encoded();
+    let mesh = Mesh::new_checked(&bytes).unwrap();
+    let far = Camera::looking([0.0, -20.0, 1.0], [0.0; 3], 0.5, 0.1).rounded();
+    let mut constants = FrameConstants::default();
+    let frame = Frame::new(Subject::mesh(mesh), view(), Size::W320);
+    constants.update(&frame).unwrap();
+    let error = constants.update(&Frame { view: far, ..frame });
+    assert!(matches!(error, Err(RenderError::Eye(_))), "{error:?}");
+    assert!(constants.mesh().is_none() && constants.field().is_none());
+}
+
+/// Every triangle stands in the lists of its bands, and only there.
+#[test]
+fn lists_name_the_triangles_of_their_bands() {
+    const DESCRIPTORS: usize = 64;
+    let mut random = Random(7);
+    for size in Size::ALL {
+        for capability in Shading::ALL {
+            let shift = list_shift(size.width());
+            let bands = size.height() / band_rows(size.width());
+            let list_words = 4 * list_word(bands, shift) as usize;
+            let mut descriptors = vec![0; DESCRIPTORS * words(capability)];
+            let mut lists = vec![0; list_words];
+            let mut writer =
+                ListWriter::new(&mut descriptors, &mut lists, size.width(), capability);
+            let mut put = vec![];
+            while put.len() < DESCRIPTORS {
+                let triangle = common::triangles::random_triangle(&mut random);
+                let Some((_, setup)) = set_up(triangle, (size.width(), size.height())) else {
+                    continue;
+                };
+                writer.put(&setup, Rgb565::WHITE);
+                put.push(setup);
+            }
+            assert_eq!(writer.finish(), Ok(DESCRIPTORS as u32));
+            for band in 0..bands {
+                let rows = band_rows(size.width()) as i32;
+                let (top, bottom) = (band as i32 * rows, (band as i32 + 1) * rows);
+                let expected: Vec<u32> = (0..)
+                    .zip(&put)
+                    .filter(|(_, setup)| setup.bounds.top < bottom && setup.bounds.bottom > top)
+                    .map(|(number, _)| number)
+                    .collect();
+                let start = 4 * list_word(band, shift) as usize;
+                let length = lists[band as usize] as usize;
+                assert_eq!(lists[start..start + length], expected[..], "band {band}");
+            }
+            assert!(
+                lists[bands as usize..LENGTHS]
+                    .iter()
+                    .all(|&length| length == 0)
+            );
+            for (setup, found) in put.iter().zip(descriptors.chunks(words(capability))) {
+                assert_eq!(
+                    Descriptor::new(setup, Rgb565::WHITE).words(capability),
+                    found
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn lists_without_room_are_refused() {
+    let mut random = Random(8);
+    let setup = loop {
+        let triangle = common::triangles::random_triangle(&mut random);
+        if let Some((_, setup)) = set_up(triangle, (320, 180)) {
+            break setup;
+        }
+    };
+    for (descriptor_words, list_words, expected) in [
+        (words(Shading::Flat), 1 << 20, Ok(1)),
+        (words(Shading::Flat) - 1, 1 << 20, Err(Full)),
+        (words(Shading::Flat), LENGTHS, Err(Full)),
+        (words(Shading::Flat), LENGTHS - 1, Err(Full)),
+    ] {
+        let (mut descriptors, mut lists) = (vec![0; descriptor_words], vec![0; list_words]);
+        let mut writer = ListWriter::new(&mut descriptors, &mut lists, 320, Shading::Flat);
+        writer.put(&setup, Rgb565::WHITE);
+        assert_eq!(writer.finish(), expected);
+    }
+}
