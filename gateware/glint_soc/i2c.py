@@ -6,26 +6,27 @@ from litex.soc.interconnect.csr_eventmanager import EventManager, EventSourcePul
 from migen import ClockSignal, Instance, ResetSignal, Signal
 from migen.fhdl.specials import Tristate
 
+from .packed import Enumeration, Package, Struct
 from .rtl import add_sources
 
 BIT_RATE = 400_000
 """Fast mode, in bits a second at most."""
 
-_OPERATIONS = [
-    ("0", "start", "a start, or within a transaction a repeated one"),
-    ("1", "write", "sends the byte `argument`"),
-    ("2", "read", "receives `argument` + 1 bytes"),
-    ("3", "stop", "a stop"),
-]
+OPERATIONS = Enumeration("operation", "Operations of a command.", {
+    "start": "a start, or within a transaction a repeated one",
+    "write": "sends the byte `argument`",
+    "read": "receives `argument` + 1 bytes",
+    "stop": "a stop",
+})
 
-_ERRORS = [
-    ("0", "none", "no error"),
-    ("1", "address", "the byte after a start was not acknowledged"),
-    ("2", "byte", "another byte was not acknowledged"),
-    ("3", "clock", "SCL was held low longer than a device may stretch it"),
-    ("4", "data", "SDA was low where it should have been free, and nine clocks did not free it"),
-    ("5", "late", "a round was not over when the next one was due"),
-]
+ERRORS = Enumeration("error", "Errors.", {
+    "none": "no error",
+    "address": "the byte after a start was not acknowledged",
+    "byte": "another byte was not acknowledged",
+    "clock": "SCL was held low longer than a device may stretch it",
+    "data": "SDA was low where it should have been free, and nine clocks did not free it",
+    "late": "a round was not over when the next one was due",
+})
 
 COMMANDS = 32
 ANSWERS = 128
@@ -38,7 +39,7 @@ class I2CMaster(LiteXModule):
     def __init__(self, platform, pads, sys_clk_freq):
         self._command = CSRStorage(name="command", fields=[
             CSRField("argument", size=8, offset=0, description="Of `write` and `read`."),
-            CSRField("operation", size=2, offset=8, values=_OPERATIONS, description="What to do."),
+            CSRField("operation", size=OPERATIONS.bits, offset=8, values=OPERATIONS.values, description="What to do."),
             CSRField("more", offset=10, description="A `read` acknowledges its last byte too: another one follows."),
         ], description=f"A write puts a command into the queue of {COMMANDS + 1}; one that has no room, see `status`, is lost.")
         self._answer = CSRStatus(name="answer", fields=[
@@ -59,7 +60,7 @@ class I2CMaster(LiteXModule):
             CSRField("room", offset=2, description="There is room for a command."),
             CSRField("busy", offset=3, description="Between a start and the end of the stop, or commands wait."),
             CSRField("failed", offset=4, description="An error has ended the transaction; nothing more is done until `clear`."),
-            CSRField("error", size=3, offset=8, values=_ERRORS, description="The error."),
+            CSRField("error", size=ERRORS.bits, offset=8, values=ERRORS.values, description="The error."),
         ], description="State.")
         # The engine's queues have a register behind them.
         self.constants = {
@@ -71,6 +72,10 @@ class I2CMaster(LiteXModule):
         self.ev.finalize()
 
         # # #
+
+        command = Struct("command_t", "A command.", {
+            name: getattr(self._command.fields, name) for name in ("more", "operation", "argument")})
+        self.package = Package("i2c", enumerations=[OPERATIONS, ERRORS], structs=[command])
 
         reset = Signal()
         wires = {name: Signal() for name in ("scl_in", "scl_out", "sda_in", "sda_out")}
@@ -84,7 +89,7 @@ class I2CMaster(LiteXModule):
             i_rst           = reset,
             i_command_valid = self._command.re,
             o_command_ready = self._status.fields.room,
-            i_command_data  = self._command.storage,
+            i_command_data  = command.value,
             i_repeats       = self._rounds.fields.repeats,
             i_period        = self._rounds.fields.period,
             i_batch         = self._rounds.fields.batch,

@@ -52,7 +52,7 @@ module i2c_engine #(
     input  wire         rst,
     input  wire         command_valid,
     output logic        command_ready,
-    input  wire  [10:0] command_data,
+    input  wire i2c_registers_pkg::command_t command_data,
     input  wire         repeats,
     input  wire  [23:0] period,
     input  wire  [3:0]  batch,
@@ -72,8 +72,11 @@ module i2c_engine #(
     input  wire         sda_in,
     output logic        sda_out
 );
-    localparam logic [1:0] START = 2'd0, WRITE = 2'd1, READ = 2'd2, STOP = 2'd3;
-    localparam logic [2:0] NONE = 3'd0, ADDRESS = 3'd1, BYTE = 3'd2, CLOCK = 3'd3, DATA = 3'd4, LATE = 3'd5;
+    localparam logic [1:0] START = i2c_registers_pkg::OPERATION_START, WRITE = i2c_registers_pkg::OPERATION_WRITE,
+                           READ = i2c_registers_pkg::OPERATION_READ, STOP = i2c_registers_pkg::OPERATION_STOP;
+    localparam logic [2:0] NONE = i2c_registers_pkg::ERROR_NONE, ADDRESS = i2c_registers_pkg::ERROR_ADDRESS,
+                           BYTE = i2c_registers_pkg::ERROR_BYTE, CLOCK = i2c_registers_pkg::ERROR_CLOCK,
+                           DATA = i2c_registers_pkg::ERROR_DATA, LATE = i2c_registers_pkg::ERROR_LATE;
     localparam int unsigned PHASE_BITS = $clog2(PHASE);
     localparam logic [3:0]  LAST_CLOCK = 4'd8;
 
@@ -81,9 +84,11 @@ module i2c_engine #(
     typedef enum logic [3:0] {IDLE, HELD, SET, HIGH, LOW, FALL, RISE, FREE, FAILED} state_t;
     state_t state;
 
-    logic                  pending, taken, more, room, received;
-    logic [1:0]            kind, operation;
-    logic [7:0]            argument, bytes;
+    i2c_registers_pkg::command_t command;
+
+    logic                  pending, taken, room, received;
+    logic [1:0]            operation;
+    logic [7:0]            bytes;
     // Sent from the top, received at the bottom: a byte and its acknowledge.
     logic [8:0]            shift;
     logic [3:0]            clocks;
@@ -99,10 +104,10 @@ module i2c_engine #(
 
     assign again = repeats && taken;
 
-    fifo #(.WIDTH(11), .DEPTH(COMMANDS)) commands (
+    fifo #(.WIDTH($bits(command)), .DEPTH(COMMANDS)) commands (
         .clk, .rst, .in_valid(command_valid || again), .in_ready(command_ready),
-        .in_data(again ? {more, kind, argument} : command_data),
-        .out_valid(pending), .out_ready(taken), .out_data({more, kind, argument})
+        .in_data(again ? command : command_data),
+        .out_valid(pending), .out_ready(taken), .out_data(command)
     );
     fifo #(.WIDTH(8), .DEPTH(ANSWERS)) answers (
         .clk, .rst, .in_valid(received), .in_ready(room), .in_data(shift[8:1]),
@@ -112,8 +117,8 @@ module i2c_engine #(
     spike_filter scl_filter (.clk, .rst, .level(scl_in), .filtered(scl));
     spike_filter sda_filter (.clk, .rst, .level(sda_in), .filtered(sda));
 
-    assign operation = error != NONE ? STOP : kind;
-    assign last_byte = kind != READ || bytes == argument;
+    assign operation = error != NONE ? STOP : command.operation;
+    assign last_byte = command.operation != READ || bytes == command.argument;
     assign ninth     = clocks == LAST_CLOCK;
     assign held      = scl_out && !scl;
     assign expired   = phase == '0;
@@ -128,7 +133,7 @@ module i2c_engine #(
     always_comb begin
         taken = 1'b0;
         if (error == NONE) case (state)
-            LOW:     taken = expired && (kind == START || ninth && last_byte);
+            LOW:     taken = expired && (command.operation == START || ninth && last_byte);
             FREE:    taken = expired;
             default: taken = 1'b0;
         endcase
@@ -143,12 +148,12 @@ module i2c_engine #(
         case (state)
             IDLE, HELD: begin
                 clocks <= '0;
-                shift  <= kind == WRITE ? {argument, 1'b1} : {8'hff, last_byte && !more};
+                shift  <= command.operation == WRITE ? {command.argument, 1'b1} : {8'hff, last_byte && !command.more};
                 if (begins) state <= HIGH;
                 else if (!(state == IDLE && operation == START) && (pending && !(operation == READ && !room) || error != NONE)) begin
                     state   <= SET;
                     scl_out <= 1'b0;
-                    sda_out <= operation == START || operation != STOP && (kind == READ || argument[7]);
+                    sda_out <= operation == START || operation != STOP && (command.operation == READ || command.argument[7]);
                 end
             end
             SET: if (expired) begin
@@ -183,7 +188,7 @@ module i2c_engine #(
                         state   <= LOW;
                         shift   <= {shift[7:0], sda};
                         // Somebody else pulls SDA.
-                        if (!ninth && kind == WRITE && sda != shift[8]) begin
+                        if (!ninth && command.operation == WRITE && sda != shift[8]) begin
                             error   <= DATA;
                             scl_out <= 1'b1;
                             sda_out <= 1'b1;
