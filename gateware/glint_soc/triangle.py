@@ -5,6 +5,8 @@ from litex.soc.interconnect.csr import CSRField, CSRStatus, CSRStorage
 from litex.soc.interconnect.csr_eventmanager import EventManager, EventSourcePulse
 from migen import Cat, ClockSignal, If, Instance, Record, ResetSignal, Signal
 
+from .counters import Counters
+from .packed import Enumeration, Package, Struct
 from .rtl import add_sources
 
 IDENT = int.from_bytes(b"TRIA", "big")
@@ -15,18 +17,18 @@ _FIELD_GROUP = [("halves", 2), ("row", 11), ("line", 6), ("column", 8), ("mask",
 _ADDRESS_BITS = 23
 _COUNT_BITS = 20
 
-_ERRORS = [
-    ("0", "none", "no error"),
-    ("1", "size", "`size` was 3"),
-    ("2", "address", "a region was not at a multiple of 16 bytes, or not wholly in main memory; nothing was touched"),
-    ("3", "busy", "started while it was busy; the pass under way went on"),
-    ("4", "mesh", "a chunk without vertices, or one beyond `mesh_bytes`; what came before it was drawn"),
-    ("5", "full", "no room for all descriptors, list entries or exceptions; what had room was drawn"),
-    ("6", "list", "a list was longer than it may be, or named a descriptor beyond the count, or what was no descriptor; the frame is wrong"),
-    ("7", "cancelled", "ended by `cancel`"),
-]
+ERRORS = Enumeration("error", "Results of a pass.", {
+    "none": "no error",
+    "size": "`size` was 3",
+    "address": "a region was not at a multiple of 16 bytes, or not wholly in main memory; nothing was touched",
+    "busy": "started while it was busy; the pass under way went on",
+    "mesh": "a chunk without vertices, or one beyond `mesh_bytes`; what came before it was drawn",
+    "full": "no room for all descriptors, list entries or exceptions; what had room was drawn",
+    "list": "a list was longer than it may be, or named a descriptor beyond the count, or what was no descriptor; the frame is wrong",
+    "cancelled": "ended by `cancel`",
+})
 
-_SIZES = [("0", "w320", "320x180"), ("1", "w640", "640x360"), ("2", "w1280", "1280x720")]
+SIZES = Enumeration("size", "Sizes of a picture.", {"w320": "320x180", "w640": "640x360", "w1280": "1280x720"})
 
 
 class TriangleEngine(LiteXModule):
@@ -60,9 +62,9 @@ class TriangleEngine(LiteXModule):
         self._status = CSRStatus(name="status", fields=[
             CSRField("geometry_busy", offset=0, description="The geometry pass runs."),
             CSRField("raster_busy", offset=1, description="The raster pass runs."),
-            CSRField("geometry_error", size=3, offset=4, values=_ERRORS,
+            CSRField("geometry_error", size=ERRORS.bits, offset=4, values=ERRORS.values,
                      description="How the geometry pass that was started last has ended."),
-            CSRField("raster_error", size=3, offset=8, values=_ERRORS,
+            CSRField("raster_error", size=ERRORS.bits, offset=8, values=ERRORS.values,
                      description="How the raster pass that was started last has ended."),
         ], description="State.")
         self.ev = EventManager()
@@ -76,7 +78,7 @@ class TriangleEngine(LiteXModule):
         self._geometry = CSRStorage(name="geometry", fields=[
             CSRField("start", offset=0, pulse=True, description="Write 1 to make descriptors and lists of the mesh."),
             CSRField("cull", offset=1, description="Back faces are left out."),
-            CSRField("size", size=2, offset=2, values=_SIZES, description="Size of the picture."),
+            CSRField("size", size=SIZES.bits, offset=2, values=SIZES.values, description="Size of the picture."),
             CSRField("smooth", offset=4, description="Colours come from the vertices. Without effect where `caps` has no `gouraud`."),
         ], description="Starts the geometry pass. All other registers of geometry have to hold while it runs.")
         address = "Byte address, a multiple of 16, of"
@@ -113,7 +115,7 @@ class TriangleEngine(LiteXModule):
         # Raster: parameters that hold while it runs.
         self._raster = CSRStorage(name="raster", fields=[
             CSRField("start", offset=0, pulse=True, description="Write 1 to draw a frame from lists."),
-            CSRField("size", size=2, offset=1, values=_SIZES, description="Size of the picture."),
+            CSRField("size", size=SIZES.bits, offset=1, values=SIZES.values, description="Size of the picture."),
             CSRField("first", offset=3, description="There is a first set of lists."),
             CSRField("second", offset=4, description="There is a second set, drawn after the first in each band."),
             CSRField("depth", offset=5, description="Depths go to memory as well; the whole frame is written then."),
@@ -141,8 +143,10 @@ class TriangleEngine(LiteXModule):
             "descriptor_count": "Descriptors made.",
             "exception_count": "Triangles that need clipping, listed in `exceptions`.",
         }
-        # Counters that run freely.
-        counters = {
+        results = {name: CSRStatus(32, name=name, description=description) for name, description in results.items()}
+        for name, register in results.items():
+            setattr(self, f"_{name}", register)
+        self.counters = Counters(self, {
             "cycles_busy": "Clock cycles in which a pass ran.",
             "cycles_stalled": "Clock cycles in which memory did not take a command.",
             "stalled_reads": "Clock cycles in which memory did not take a read.",
@@ -156,25 +160,15 @@ class TriangleEngine(LiteXModule):
             "cycles_walking": "Clock cycles in which a triangle was walked over.",
             "cycles_empty": "Those of them without a pixel.",
             "groups": "Groups of eight pixels of which some are covered.",
-            "pixels_covered": "Pixels covered by a triangle, each as often as it is.",
-            "pixels_drawn": "Pixels of which the depth was nearer, or as near.",
+            "pixels_covered": ("Pixels covered by a triangle, each as often as it is.", 4),
+            "pixels_drawn": ("Pixels of which the depth was nearer, or as near.", 4),
             "cycles_held": "Clock cycles in which a group waited for the one before it.",
             "cycles_memory": "Clock cycles in which the flush of a band waited for memory.",
             "cycles_flush": "Clock cycles in which a drawn band waited for the flush of the one before it.",
-        }
-        status = {}
-        for name, description in results.items():
-            status[name] = CSRStatus(32, name=name, description=description)
-        for name, description in counters.items():
-            status[name] = CSRStatus(32, name=name, description=description[:-1] + ", modulo 2^32.")
-        for name, register in status.items():
-            setattr(self, f"_{name}", register)
-        self.counters = list(counters)
+        })
 
         # # #
 
-        mesh_reader, vertex_reader, raster_reader = readers
-        descriptor_writer, list_writer, even_writer, odd_writer = writers
         # The engine stands still but for these times, so its clock may.
         self.clk = Signal()
         self.clock_enable = Signal()
@@ -188,175 +182,132 @@ class TriangleEngine(LiteXModule):
         # The last counts are some clocks late.
         self.sync += If(working, linger.eq(31)).Elif(linger != 0, linger.eq(linger - 1))
 
-        geometry_kept, raster_kept = Signal(4), Signal(7)
         # What a raymarcher beside the engine says and hears: see rtl/triangle/raster_unit.sv.
         self.field = field = Record([
             ("enable", 1), ("compose", 2), ("start", 1), ("restart", 1), ("size", 2), ("open", 1), ("done", 1), ("next", 1),
             ("valid", 1), ("ready", 1), *_FIELD_GROUP])
-        self.comb += [field.restart.eq(self._control.fields.cancel), field.size.eq(raster_kept[:2])]
-        link = {name: Signal() for name in (
-            "ready", "geometry_start", "geometry_busy", "geometry_done", "mesh_error", "full",
-            "raster_start", "raster_busy", "raster_done", "list_error")}
+
+        geometry_flags = Struct("geometry_flags_t", "Choices of a geometry pass.", {
+            name: getattr(self._geometry.fields, name) for name in ("size", "cull", "smooth")})
+        geometry = Struct("geometry_t", "Parameters of the geometry pass. Places in memory are byte addresses.", {
+            "mesh": self._mesh.storage,
+            "mesh_bytes": self._mesh_bytes.storage,
+            "descriptors": self._geometry_descriptors.storage,
+            "descriptor_limit": self._descriptor_limit.storage,
+            "lists": self._geometry_lists.storage,
+            "list_shift": self._list_shift.storage,
+            "exceptions": self._exceptions.storage,
+            "exception_limit": self._exception_limit.storage,
+        })
+        view = Struct("view_t", "Camera of the geometry pass: docs/formats.md, the transform of a vertex.", {
+            "scale_shift": self._scale_shift.storage,
+            **{f"row_{row}": values for row, values in rows.items()},
+            **{f"t{axis}": value for axis, value in translation.items()},
+            "near_z": Cat(self._near_low.storage, self._near_high.storage),
+            "depth_mantissa": self._depth_scale.fields.mantissa,
+            "depth_exponent": self._depth_scale.fields.exponent,
+        })
+        raster_flags = Struct("raster_flags_t", "Choices of a raster pass.", {
+            name: getattr(self._raster.fields, name) for name in ("size", "first", "second", "depth", "slot", "whole")})
+        raster = Struct("raster_t", "Parameters of the raster pass. Places in memory are byte addresses.", {
+            "frame": self._frame.storage,
+            "depth": self._depth.storage,
+            "clear": self._clear.storage,
+            "list_shift": self._list_shift.storage,
+            **{name: [getattr(self, f"_{name}_{k}").storage for k in (0, 1)] for name in ("lists", "descriptors", "count")},
+        })
+        counts = ("descriptor_count", "exception_count")
+        results = Struct("results_t", "Results of the geometry pass.", {
+            name: register.status[:_COUNT_BITS] if name in counts else register.status for name, register in results.items()})
+        status = Struct("status_t", "State of the engine. `done` is high for one clock, its errors count with it.", {
+            name: Signal(name=f"engine_{name}") for name in (
+                "ready", "geometry_busy", "geometry_done", "mesh_error", "full", "raster_busy", "raster_done", "list_error")})
+        field_source = Struct("field_source_t", "A raymarcher to the engine.", {
+            name: getattr(field, name) for name in ("enable", "compose", "done", "valid", *(name for name, _ in _FIELD_GROUP))})
+        field_sink = Struct("field_sink_t", "The engine to a raymarcher.", {
+            name: getattr(field, name) for name in ("start", "open", "next", "ready")})
+        read_ports = {name: _read_port(port) for name, port in zip(("mesh", "vertex", "raster"), readers, strict=True)}
+        write_ports = {name: _write_port(port) for name, port in zip(
+            ("descriptors", "lists", "frame_even", "frame_odd"), writers, strict=True)}
+        self.package = Package(
+            "triangle", {"ADDRESS_BITS": _ADDRESS_BITS, "COUNT_BITS": _COUNT_BITS}, [ERRORS],
+            [geometry_flags, geometry, view, raster_flags, raster, results, status, self.counters.events, field_source, field_sink,
+             *read_ports["mesh"].values(), *write_ports["lists"].values()])
+
+        geometry_kept, raster_kept = geometry_flags.signals(), raster_flags.signals()
+        start = {name: Signal(name=name) for name in ("geometry_start", "raster_start")}
         cancel = self._control.fields.cancel
         self.comb += [
+            field.restart.eq(cancel),
+            field.size.eq(raster_kept["size"]),
             *(port.rdata.ready.eq(1) for port in readers),
             *(port.cmd.we.eq(1) for port in writers),
         ]
-        controlled = {"ready", "geometry_busy", "geometry_done", "mesh_error", "full", "raster_busy", "raster_done", "list_error"}
         self.specials += Instance("triangle_control", name="triangle_control",
-            p_ADDRESS_BITS         = _ADDRESS_BITS,
-            p_COUNT_BITS           = _COUNT_BITS,
-            p_BASE                 = main_ram.origin,
-            p_SMOOTH               = int(smooth),
-            i_clk                  = ClockSignal("sys"),
-            i_rst                  = ResetSignal("sys"),
-            i_cancel               = cancel,
-            i_geometry_ask         = self._geometry.fields.start,
-            i_geometry_flags       = Cat(*(getattr(self._geometry.fields, name) for name in (
-                                         "size", "cull", "smooth"))),
-            o_recovering           = recovering,
-            o_geometry_kept        = geometry_kept,
-            o_geometry_active      = self._status.fields.geometry_busy,
-            o_geometry_ended       = self.ev.geometry.trigger,
-            o_geometry_error       = self._status.fields.geometry_error,
-            i_mesh                 = self._mesh.storage,
-            i_mesh_bytes           = self._mesh_bytes.storage,
-            i_geometry_descriptors = self._geometry_descriptors.storage,
-            i_descriptor_limit     = self._descriptor_limit.storage,
-            i_geometry_lists       = self._geometry_lists.storage,
-            i_list_shift           = self._list_shift.storage,
-            i_exceptions           = self._exceptions.storage,
-            i_exception_limit      = self._exception_limit.storage,
-            i_raster_ask           = self._raster.fields.start,
-            i_raster_flags         = Cat(*(getattr(self._raster.fields, name) for name in (
-                                         "size", "first", "second", "depth", "slot", "whole"))),
-            o_raster_kept          = raster_kept,
-            o_raster_active        = self._status.fields.raster_busy,
-            o_raster_ended         = self.ev.raster.trigger,
-            o_raster_error         = self._status.fields.raster_error,
-            i_frame                = self._frame.storage,
-            i_depth                = self._depth.storage,
-            **{f"i_{name}_{k}": getattr(self, f"_{name}_{k}").storage
-               for name in ("lists", "descriptors", "count") for k in (0, 1)},
-            **{f"{'i' if name in controlled else 'o'}_{name}": signal for name, signal in link.items()},
+            p_BASE            = main_ram.origin,
+            p_SMOOTH          = int(smooth),
+            i_clk             = ClockSignal("sys"),
+            i_rst             = ResetSignal("sys"),
+            i_cancel          = cancel,
+            i_geometry_ask    = self._geometry.fields.start,
+            i_geometry_flags  = geometry_flags.value,
+            i_geometry        = geometry.value,
+            o_geometry_kept   = geometry_kept.value,
+            o_geometry_active = self._status.fields.geometry_busy,
+            o_geometry_ended  = self.ev.geometry.trigger,
+            o_geometry_error  = self._status.fields.geometry_error,
+            i_raster_ask      = self._raster.fields.start,
+            i_raster_flags    = raster_flags.value,
+            i_raster          = raster.value,
+            o_raster_kept     = raster_kept.value,
+            o_raster_active   = self._status.fields.raster_busy,
+            o_raster_ended    = self.ev.raster.trigger,
+            o_raster_error    = self._status.fields.raster_error,
+            i_engine          = status.value,
+            o_recovering      = recovering,
+            **{f"o_{name}": signal for name, signal in start.items()},
         )
-        word = slice(4, 4 + _ADDRESS_BITS)
-        mesh_last = Signal(_ADDRESS_BITS)
-        self.sync += mesh_last.eq(self._mesh.storage[word] + self._mesh_bytes.storage[word] - 1)
         self.specials += Instance("triangle_engine", name="triangle_engine",
-            p_ADDRESS_BITS         = _ADDRESS_BITS,
-            p_COUNT_BITS           = _COUNT_BITS,
-            p_SMOOTH               = int(smooth),
-            p_FIELDS               = int(fields),
-            i_clk                  = self.clk,
-            i_rst                  = ResetSignal("sys"),
-            i_cancel               = cancel,
-            **{f"{'o' if name in controlled else 'i'}_{name}": signal
-               for name, signal in link.items()},
-            i_mesh_first           = self._mesh.storage[word],
-            i_mesh_last            = mesh_last,
-            i_geometry_descriptors = self._geometry_descriptors.storage[word],
-            i_descriptor_limit     = self._descriptor_limit.storage,
-            i_geometry_lists       = self._geometry_lists.storage[word],
-            i_list_shift           = self._list_shift.storage,
-            i_exception_base       = self._exceptions.storage[word],
-            i_exception_limit      = self._exception_limit.storage,
-            i_geometry_size        = geometry_kept[:2],
-            i_cull_back            = geometry_kept[2],
-            i_smooth               = geometry_kept[3],
-            i_scale_shift          = self._scale_shift.storage,
-            **{f"i_row_{row}": Cat(*values) for row, values in rows.items()},
-            **{f"i_t{axis}": value for axis, value in translation.items()},
-            i_near_z               = Cat(self._near_low.storage, self._near_high.storage),
-            i_depth_mantissa       = self._depth_scale.fields.mantissa,
-            i_depth_exponent       = self._depth_scale.fields.exponent,
-            o_triangles            = status["triangles"].status,
-            o_unseen_count         = status["unseen"].status,
-            o_culled_count         = status["culled"].status,
-            o_descriptors          = status["descriptor_count"].status[:_COUNT_BITS],
-            o_exceptions           = status["exception_count"].status[:_COUNT_BITS],
-            o_geometry_clocks      = status["cycles_geometry"].status,
-            o_vertices             = status["vertices"].status,
-            i_raster_size          = raster_kept[:2],
-            i_present              = raster_kept[2:4],
-            i_with_depth           = raster_kept[4],
-            i_frame_slot           = raster_kept[5],
-            i_whole                = raster_kept[6],
-            i_frame_base           = self._frame.storage[word],
-            i_depth_base           = self._depth.storage[word],
-            i_clear                = self._clear.storage,
-            i_raster_lists         = Cat(self._lists_0.storage[word], self._lists_1.storage[word]),
-            i_raster_counts        = Cat(self._count_0.storage, self._count_1.storage),
-            i_raster_descriptors   = Cat(self._descriptors_0.storage[word], self._descriptors_1.storage[word]),
-            o_raster_clocks        = status["cycles_raster"].status,
-            o_clocks_walking       = status["cycles_walking"].status,
-            o_clocks_empty         = status["cycles_empty"].status,
-            o_groups_in            = status["groups"].status,
-            o_pixels_covered       = status["pixels_covered"].status,
-            o_pixels_drawn         = status["pixels_drawn"].status,
-            o_clocks_held          = status["cycles_held"].status,
-            o_clocks_memory        = status["cycles_memory"].status,
-            o_clocks_flush         = status["cycles_flush"].status,
-            i_field                = field.enable,
-            i_compose              = field.compose,
-            o_field_start          = field.start,
-            o_field_open           = field.open,
-            i_field_done           = field.done,
-            o_field_next           = field.next,
-            i_field_valid          = field.valid,
-            o_field_ready          = field.ready,
-            **{f"i_field_{name}": getattr(field, name) for name, _ in _FIELD_GROUP},
-            **_read_port("mesh_read", mesh_reader),
-            **_read_port("vertex_read", vertex_reader),
-            **_read_port("raster_read", raster_reader),
-            **_write_port("descriptors", descriptor_writer),
-            **_write_port("lists", list_writer),
-            **_write_port("frame_even", even_writer),
-            **_write_port("frame_odd", odd_writer),
+            p_SMOOTH          = int(smooth),
+            p_FIELDS          = int(fields),
+            i_clk             = self.clk,
+            i_rst             = ResetSignal("sys"),
+            i_cancel          = cancel,
+            o_status          = status.value,
+            **{f"i_{name}": signal for name, signal in start.items()},
+            i_geometry_flags  = geometry_kept.value,
+            i_geometry        = geometry.value,
+            i_view            = view.value,
+            o_results         = results.value,
+            i_raster_flags    = raster_kept.value,
+            i_raster          = raster.value,
+            i_field_source    = field_source.value,
+            o_field_sink      = field_sink.value,
+            o_events          = self.counters.events.value,
+            **{f"o_{name}_read_request": port["request"].value for name, port in read_ports.items()},
+            **{f"i_{name}_read_answer": port["answer"].value for name, port in read_ports.items()},
+            **{f"o_{name}_write_request": port["request"].value for name, port in write_ports.items()},
+            **{f"i_{name}_write_answer": port["answer"].value for name, port in write_ports.items()},
         )
-        reads_stalled = _any(port.cmd.valid & ~port.cmd.ready for port in readers)
-        stalls = [reads_stalled, *(_any(port.cmd.valid & ~port.cmd.ready for port in some) for some in (writers[:2], writers[2:]))]
-        self.sync += [
-            If(link["geometry_busy"] | link["raster_busy"],
-                status["cycles_busy"].status.eq(status["cycles_busy"].status + 1)),
-            If(_any(stalls),
-                status["cycles_stalled"].status.eq(status["cycles_stalled"].status + 1)),
-            *(If(stall, status[name].status.eq(status[name].status + 1))
-              for name, stall in zip(("stalled_reads", "stalled_lists", "stalled_frame"), stalls, strict=True)),
-            # The controller answers one port at a time, and takes data from one.
-            status["items_in"].status.eq(status["items_in"].status + _any(port.rdata.valid for port in readers)),
-            status["items_out"].status.eq(status["items_out"].status + _any(
-                port.wdata.valid & port.wdata.ready for port in writers)),
-        ]
         add_sources(platform, "triangle_control", "triangle_engine")
 
 
-def _any(signals):
-    result = 0
-    for signal in signals:
-        result = signal | result
-    return result
-
-
-def _read_port(name, port):
-    """The engine's read port `name` at a native port."""
+def _read_port(port):
+    """Both directions of a native read port of the memory."""
     return {
-        f"o_{name}_cmd_valid": port.cmd.valid,
-        f"i_{name}_cmd_ready": port.cmd.ready,
-        f"o_{name}_cmd_addr": port.cmd.addr,
-        f"i_{name}_rdata_valid": port.rdata.valid,
-        f"i_{name}_rdata": port.rdata.data,
+        "request": Struct("read_request_t", "A read port of the memory: to the memory.", {
+            "cmd_valid": port.cmd.valid, "cmd_addr": port.cmd.addr}),
+        "answer": Struct("read_answer_t", "A read port of the memory: from the memory.", {
+            "cmd_ready": port.cmd.ready, "rdata_valid": port.rdata.valid, "rdata": port.rdata.data}),
     }
 
 
-def _write_port(name, port):
-    """The engine's write port `name` at a native port."""
+def _write_port(port):
+    """Both directions of a native write port of the memory."""
     return {
-        f"o_{name}_cmd_valid": port.cmd.valid,
-        f"i_{name}_cmd_ready": port.cmd.ready,
-        f"o_{name}_cmd_addr": port.cmd.addr,
-        f"o_{name}_wdata_valid": port.wdata.valid,
-        f"i_{name}_wdata_ready": port.wdata.ready,
-        f"o_{name}_wdata": port.wdata.data,
-        f"o_{name}_wdata_strobe": port.wdata.we,
+        "request": Struct("write_request_t", "A write port of the memory: to the memory.", {
+            "cmd_valid": port.cmd.valid, "cmd_addr": port.cmd.addr,
+            "wdata_valid": port.wdata.valid, "wdata": port.wdata.data, "wdata_strobe": port.wdata.we}),
+        "answer": Struct("write_answer_t", "A write port of the memory: from the memory.", {
+            "cmd_ready": port.cmd.ready, "wdata_ready": port.wdata.ready}),
     }

@@ -82,13 +82,7 @@ module band_buffer #(
     input  wire                     word_ready,
     output logic [ADDRESS_BITS-1:0] word_addr,
     output logic [127:0]            word_data,
-    // Counters.
-    output logic [31:0]             groups_in,
-    output logic [31:0]             pixels_covered,
-    output logic [31:0]             pixels_drawn,
-    output logic [31:0]             clocks_held,
-    output logic [31:0]             clocks_memory,
-    output logic [31:0]             clocks_flush
+    output triangle_registers_pkg::events_t events
 );
     localparam int unsigned ROW_BITS = 11;
 
@@ -207,33 +201,19 @@ module band_buffer #(
     // Without STEREO both halves are written.
     wire _unused_half = draw_halves[1];
 
-    // The events are registered first: a carry chain of 32 bits is long enough by itself.
-    logic       group_came, was_held, memory_waited, flush_waited;
-    logic [3:0] covered, lanes_drawn;
-
     function automatic logic [3:0] ones(input logic [7:0] lanes);
         ones = '0;
         for (int i = 0; i < 8; i++) ones = ones + 4'(lanes[i]);
     endfunction
 
-    always_ff @(posedge clk) begin
-        group_came    <= group_valid && group_ready;
-        was_held      <= held;
-        memory_waited <= flush_waits;
-        flush_waited  <= closing && empty && !flush_idle;
-        covered       <= group_valid && group_ready ? ones(group_mask) : '0;
-        lanes_drawn   <= ones(draw_lanes);
-        groups_in     <= groups_in + 32'(group_came);
-        pixels_covered <= pixels_covered + 32'(covered);
-        pixels_drawn  <= pixels_drawn + 32'(lanes_drawn);
-        clocks_held   <= clocks_held + 32'(was_held);
-        clocks_memory <= clocks_memory + 32'(memory_waited);
-        clocks_flush  <= clocks_flush + 32'(flush_waited);
-
-        if (rst) begin
-            {group_came, was_held, memory_waited, flush_waited, covered, lanes_drawn} <= '0;
-            {groups_in, pixels_covered, pixels_drawn, clocks_held, clocks_memory, clocks_flush} <= '0;
-        end
+    always_comb begin
+        events = '0;
+        events.groups         = group_valid && group_ready;
+        events.pixels_covered = group_valid && group_ready ? ones(group_mask) : '0;
+        events.pixels_drawn   = ones(draw_lanes);
+        events.cycles_held    = held;
+        events.cycles_memory  = flush_waits;
+        events.cycles_flush   = closing && empty && !flush_idle;
     end
 endmodule
 

@@ -19,9 +19,9 @@
 `default_nettype none
 
 module geometry_unit #(
-    parameter int unsigned ADDRESS_BITS = 23,
-    parameter int unsigned COUNT_BITS   = 20,
-    parameter bit          SMOOTH       = 1'b0
+    parameter  bit          SMOOTH       = 1'b0,
+    localparam int unsigned ADDRESS_BITS = triangle_registers_pkg::ADDRESS_BITS,
+    localparam int unsigned COUNT_BITS   = triangle_registers_pkg::COUNT_BITS
 ) (
     input  wire                      clk,
     input  wire                      rst,
@@ -31,31 +31,9 @@ module geometry_unit #(
     output logic                     done,
     output logic                     mesh_error,
     output logic                     full,
-    // The mesh: its first chunk and its last word.
-    input  wire  [ADDRESS_BITS-1:0]  mesh_first,
-    input  wire  [ADDRESS_BITS-1:0]  mesh_last,
-    // Where things go (binner).
-    input  wire  [ADDRESS_BITS-1:0]  descriptor_base,
-    input  wire  [COUNT_BITS-1:0]    descriptor_limit,
-    input  wire  [ADDRESS_BITS-1:0]  list_base,
-    input  wire  [4:0]               list_shift,
-    input  wire  [ADDRESS_BITS-1:0]  exception_base,
-    input  wire  [COUNT_BITS-1:0]    exception_limit,
-    // The frame's constants (vertex_stage, setup). 320x180, 640x360, 1280x720: 0, 1, 2.
-    input  wire  [1:0]               size,
-    input  wire                      cull_back,
-    // Colours from the vertices, where there is SMOOTH.
-    input  wire                      smooth,
-    input  wire  [4:0]               scale_shift,
-    input  wire  [2:0][24:0]         row_u,
-    input  wire  [2:0][24:0]         row_v,
-    input  wire  [2:0][24:0]         row_n,
-    input  wire  signed [43:0]       tx,
-    input  wire  signed [43:0]       ty,
-    input  wire  signed [43:0]       tz,
-    input  wire  [38:0]              near_z,
-    input  wire  [16:0]              depth_mantissa,
-    input  wire  signed [3:0]        depth_exponent,
+    input  wire triangle_registers_pkg::geometry_flags_t flags,
+    input  wire triangle_registers_pkg::geometry_t parameters,
+    input  wire triangle_registers_pkg::view_t view,
     // Memory: the clients of the mesh and of the vertices.
     output logic [1:0]               ask_valid,
     input  wire  [1:0]               ask_ready,
@@ -63,27 +41,12 @@ module geometry_unit #(
     input  wire  [1:0]               data_valid,
     output logic [1:0]               data_ready,
     input  wire  [2*128-1:0]         data,
-    output logic                     descriptors_cmd_valid,
-    input  wire                      descriptors_cmd_ready,
-    output logic [ADDRESS_BITS-1:0]  descriptors_cmd_addr,
-    output logic                     descriptors_wdata_valid,
-    input  wire                      descriptors_wdata_ready,
-    output logic [127:0]             descriptors_wdata,
-    output logic                     lists_cmd_valid,
-    input  wire                      lists_cmd_ready,
-    output logic [ADDRESS_BITS-1:0]  lists_cmd_addr,
-    output logic                     lists_wdata_valid,
-    input  wire                      lists_wdata_ready,
-    output logic [127:0]             lists_wdata,
-    output logic [15:0]              lists_wdata_strobe,
-    // What became of the triangles.
-    output logic [31:0]              triangles,
-    output logic [31:0]              unseen_count,
-    output logic [31:0]              culled_count,
-    output logic [COUNT_BITS-1:0]    descriptors,
-    output logic [COUNT_BITS-1:0]    exceptions,
-    output logic [31:0]              clocks_busy,
-    output logic [31:0]              vertices
+    output triangle_registers_pkg::write_request_t descriptors_write_request,
+    input  wire triangle_registers_pkg::write_answer_t descriptors_write_answer,
+    output triangle_registers_pkg::write_request_t lists_write_request,
+    input  wire triangle_registers_pkg::write_answer_t lists_write_answer,
+    output triangle_registers_pkg::results_t results,
+    output triangle_registers_pkg::events_t events
 );
     // Colour and normal of a triangle.
     localparam int unsigned SIDE_BITS = 64;
@@ -95,8 +58,8 @@ module geometry_unit #(
     logic [10:0] width;
     logic [9:0]  height;
 
-    assign width  = 11'd320 << size;
-    assign height = 10'd180 << size;
+    assign width  = 11'd320 << flags.size;
+    assign height = 10'd180 << flags.size;
 
     typedef enum logic [2:0] {IDLE, PREPARE, BEGIN, WALK, FINISH} state_t;
     state_t state;
@@ -128,7 +91,11 @@ module geometry_unit #(
 
     logic                    triangle_valid, triangle_ready, chunk;
     logic [127:0]            triangle;
-    logic [ADDRESS_BITS-1:0] vertex_base;
+    logic [ADDRESS_BITS-1:0] vertex_base, mesh_first, mesh_last;
+
+    assign mesh_first = parameters.mesh[4 +: ADDRESS_BITS];
+
+    always_ff @(posedge clk) mesh_last <= mesh_first + parameters.mesh_bytes[4 +: ADDRESS_BITS] - 1'b1;
 
     mesh_walk #(.ADDRESS_BITS(ADDRESS_BITS)) mesh_walk (
         .clk, .rst(rst || restart), .start(state == BEGIN), .first(mesh_first), .last(mesh_last), .drained,
@@ -163,8 +130,11 @@ module geometry_unit #(
     assign ask_addr[ADDRESS_BITS +: ADDRESS_BITS] = vertex_base + ADDRESS_BITS'(fetch_index);
 
     vertex_stage vertex_stage (
-        .clk, .rst(rst || restart), .scale_shift, .row_u, .row_v, .row_n, .tx, .ty, .tz, .near_z,
-        .centre_x(width[10:1]), .centre_y({1'b0, height[9:1]}), .depth_mantissa, .depth_exponent,
+        .clk, .rst(rst || restart), .scale_shift(view.scale_shift),
+        .row_u(view.row_u), .row_v(view.row_v), .row_n(view.row_n),
+        .tx(view.tx), .ty(view.ty), .tz(view.tz), .near_z(view.near_z),
+        .centre_x(width[10:1]), .centre_y({1'b0, height[9:1]}),
+        .depth_mantissa(view.depth_mantissa), .depth_exponent(view.depth_exponent),
         .in_valid(data_valid[1]), .in_ready(data_ready[1]), .in_position(data[128 +: 48]),
         .out_valid(projected_valid), .out_ready(projected_ready), .out_vertex(projected)
     );
@@ -177,7 +147,7 @@ module geometry_unit #(
         logic [LIGHT_BITS-1:0] projected_light;
 
         vertex_light vertex_light (
-            .clk, .rst(rst || restart), .row_n, .take(data_valid[1] && data_ready[1]),
+            .clk, .rst(rst || restart), .row_n(view.row_n), .take(data_valid[1] && data_ready[1]),
             .in_normal(data[128 + 48 +: 48]), .in_colour(data[128 + 96 +: 16]),
             .give(projected_valid && projected_ready), .out_light(projected_light)
         );
@@ -199,7 +169,7 @@ module geometry_unit #(
 
     /* verilator lint_off PINCONNECTEMPTY */
     classify #(.SIDE_BITS(SIDE_BITS + 3 * LIGHT_BITS)) classify (
-        .clk, .rst(rst || restart), .restart(clear), .width, .height, .idle(), .unseen, .count(triangles),
+        .clk, .rst(rst || restart), .restart(clear), .width, .height, .idle(), .unseen, .count(results.triangles),
         .in_valid(placed_valid), .in_ready(placed_ready), .in_vertices(placed), .in_side({placed_light, placed_side}),
         .regular_valid, .regular_ready, .regular_vertices(regular),
         .regular_side({regular_light, regular_side}),
@@ -211,7 +181,8 @@ module geometry_unit #(
     logic [(SMOOTH ? 289 : 1)-1:0] planes;
 
     setup #(.SMOOTH(SMOOTH)) setup (
-        .clk, .rst(rst || restart), .width, .height, .cull_back, .camera_n(row_n), .smooth, .busy(), .culled, .drawn(),
+        .clk, .rst(rst || restart), .width, .height, .cull_back(flags.cull), .camera_n(view.row_n),
+        .smooth(flags.smooth), .busy(), .culled, .drawn(),
         .in_valid(regular_valid), .in_ready(regular_ready), .in_vertices(regular),
         .in_colour(regular_side[15:0]), .in_normal(regular_side[63:16]), .in_light(regular_light),
         .out_valid(descriptor_valid), .out_ready(descriptor_ready), .out_descriptor(descriptor),
@@ -226,8 +197,11 @@ module geometry_unit #(
 
     binner #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS), .SMOOTH(SMOOTH)) binner (
         .clk, .rst(rst || restart), .restart(clear), .finish(state == FINISH), .done(lists_done), .idle(lists_idle), .full,
-        .size, .descriptor_base, .descriptor_limit, .list_base, .list_shift, .exception_base, .exception_limit,
-        .descriptors, .exceptions,
+        .size(flags.size), .descriptor_base(parameters.descriptors[4 +: ADDRESS_BITS]),
+        .descriptor_limit(parameters.descriptor_limit), .list_base(parameters.lists[4 +: ADDRESS_BITS]),
+        .list_shift(parameters.list_shift), .exception_base(parameters.exceptions[4 +: ADDRESS_BITS]),
+        .exception_limit(parameters.exception_limit),
+        .descriptors(results.descriptor_count), .exceptions(results.exception_count),
         .in_valid(descriptor_valid), .in_ready(descriptor_ready), .in_descriptor(descriptor), .in_planes(planes),
         .exception_valid, .exception_ready, .exception_number,
         .write_valid, .write_ready, .write_addr, .write_data, .write_strobe, .write_descriptor
@@ -237,22 +211,24 @@ module geometry_unit #(
     assign write_ready = write_descriptor ? descriptors_ready : lists_ready;
 
     // Descriptors follow each other in memory and lists do not: neither waits for the other's turns.
-    /* verilator lint_off PINCONNECTEMPTY */
     write_port #(.ADDRESS_BITS(ADDRESS_BITS)) descriptors_port (
         .clk, .rst, .hurry, .idle(writes_idle[0]),
         .in_valid(write_valid && write_descriptor), .in_ready(descriptors_ready), .in_addr(write_addr), .in_data(write_data),
         .in_strobe(write_strobe),
-        .cmd_valid(descriptors_cmd_valid), .cmd_ready(descriptors_cmd_ready), .cmd_addr(descriptors_cmd_addr),
-        .wdata_valid(descriptors_wdata_valid), .wdata_ready(descriptors_wdata_ready), .wdata(descriptors_wdata), .wdata_strobe()
+        .cmd_valid(descriptors_write_request.cmd_valid), .cmd_ready(descriptors_write_answer.cmd_ready),
+        .cmd_addr(descriptors_write_request.cmd_addr), .wdata_valid(descriptors_write_request.wdata_valid),
+        .wdata_ready(descriptors_write_answer.wdata_ready), .wdata(descriptors_write_request.wdata),
+        .wdata_strobe(descriptors_write_request.wdata_strobe)
     );
-    /* verilator lint_on PINCONNECTEMPTY */
 
     write_port #(.ADDRESS_BITS(ADDRESS_BITS)) lists_port (
         .clk, .rst, .hurry, .idle(writes_idle[1]),
         .in_valid(write_valid && !write_descriptor), .in_ready(lists_ready), .in_addr(write_addr), .in_data(write_data),
         .in_strobe(write_strobe),
-        .cmd_valid(lists_cmd_valid), .cmd_ready(lists_cmd_ready), .cmd_addr(lists_cmd_addr),
-        .wdata_valid(lists_wdata_valid), .wdata_ready(lists_wdata_ready), .wdata(lists_wdata), .wdata_strobe(lists_wdata_strobe)
+        .cmd_valid(lists_write_request.cmd_valid), .cmd_ready(lists_write_answer.cmd_ready),
+        .cmd_addr(lists_write_request.cmd_addr), .wdata_valid(lists_write_request.wdata_valid),
+        .wdata_ready(lists_write_answer.wdata_ready), .wdata(lists_write_request.wdata),
+        .wdata_strobe(lists_write_request.wdata_strobe)
     );
 
     // Triangles between the walk and the place where they end.
@@ -270,20 +246,24 @@ module geometry_unit #(
 
         flight       <= flight + FLIGHT_BITS'(came) - FLIGHT_BITS'(was_unseen) - FLIGHT_BITS'(was_culled)
                       - FLIGHT_BITS'(was_kept) - FLIGHT_BITS'(was_exception);
-        unseen_count <= unseen_count + 32'(was_unseen);
-        culled_count <= culled_count + 32'(was_culled);
-        clocks_busy  <= clocks_busy + 32'(busy);
-        vertices     <= vertices + 32'(fetch_valid && fetch_ready);
+        results.unseen <= results.unseen + 32'(was_unseen);
+        results.culled <= results.culled + 32'(was_culled);
 
-        if (clear) {unseen_count, culled_count} <= '0;
+        if (clear) {results.unseen, results.culled} <= '0;
         if (rst || restart) begin
             {came, was_unseen, was_culled, was_kept, was_exception} <= '0;
             flight <= '0;
         end
-        if (rst) {unseen_count, culled_count, clocks_busy, vertices} <= '0;
+        if (rst) {results.unseen, results.culled} <= '0;
     end
 
-    wire _unused = &{1'b0, triangle[127:112], data[255:176]};
+    always_comb begin
+        events = '0;
+        events.cycles_geometry = busy;
+        events.vertices        = fetch_valid && fetch_ready;
+    end
+
+    wire _unused = &{1'b0, triangle[127:112], data[255:176], parameters};
 endmodule
 
 `default_nettype wire

@@ -27,10 +27,10 @@
 `default_nettype none
 
 module raster_unit #(
-    parameter int unsigned ADDRESS_BITS = 23,
-    parameter int unsigned COUNT_BITS   = 20,
-    parameter bit          SMOOTH       = 1'b0,
-    parameter bit          FIELDS       = 1'b0
+    parameter  bit          SMOOTH       = 1'b0,
+    parameter  bit          FIELDS       = 1'b0,
+    localparam int unsigned ADDRESS_BITS = triangle_registers_pkg::ADDRESS_BITS,
+    localparam int unsigned COUNT_BITS   = triangle_registers_pkg::COUNT_BITS
 ) (
     input  wire                       clk,
     input  wire                       rst,
@@ -39,37 +39,13 @@ module raster_unit #(
     input  wire                       start,
     output logic                      busy,
     output logic                      done,
-    // 320x180, 640x360, 1280x720: 0, 1, 2.
-    input  wire  [1:0]                size,
-    input  wire  [ADDRESS_BITS-1:0]   frame_base,
-    input  wire  [ADDRESS_BITS-1:0]   depth_base,
-    input  wire                       with_depth,
-    input  wire  [15:0]               clear,
-    input  wire                       frame_slot,
-    input  wire                       whole,
-    input  wire  [1:0]                present,
-    input  wire  [2*ADDRESS_BITS-1:0] list_base,
-    input  wire  [2*ADDRESS_BITS-1:0] descriptor_base,
-    input  wire  [2*COUNT_BITS-1:0]   counts,
-    input  wire  [4:0]                list_shift,
-    input  wire                       field,
-    input  wire  [1:0]                compose,
     // With `done`: a list was damaged (list_reader), or what it named was no descriptor and was left out.
     output logic                      list_error,
+    input  wire triangle_registers_pkg::raster_flags_t flags,
+    input  wire triangle_registers_pkg::raster_t parameters,
     // The raymarcher, groups of one pixel.
-    output logic                      field_start,
-    output logic                      field_open,
-    input  wire                       field_done,
-    output logic                      field_next,
-    input  wire                       field_valid,
-    output logic                      field_ready,
-    input  wire  [1:0]                field_halves,
-    input  wire  [10:0]               field_row,
-    input  wire  [5:0]                field_line,
-    input  wire  [7:0]                field_column,
-    input  wire  [7:0]                field_mask,
-    input  wire  [17:0]               field_code,
-    input  wire  [15:0]               field_colour,
+    input  wire triangle_registers_pkg::field_source_t field_source,
+    output triangle_registers_pkg::field_sink_t field_sink,
     // Memory.
     output logic [2:0]                ask_valid,
     input  wire  [2:0]                ask_ready,
@@ -77,29 +53,18 @@ module raster_unit #(
     input  wire  [2:0]                data_valid,
     output logic [2:0]                data_ready,
     input  wire  [3*128-1:0]          data,
-    output logic [1:0]                cmd_valid,
-    input  wire  [1:0]                cmd_ready,
-    output logic [2*ADDRESS_BITS-1:0] cmd_addr,
-    output logic [1:0]                wdata_valid,
-    input  wire  [1:0]                wdata_ready,
-    output logic [2*128-1:0]          wdata,
-    // Counters.
-    output logic [31:0]               clocks_busy,
-    output logic [31:0]               clocks_walking,
-    output logic [31:0]               clocks_empty,
-    output logic [31:0]               groups_in,
-    output logic [31:0]               pixels_covered,
-    output logic [31:0]               pixels_drawn,
-    output logic [31:0]               clocks_held,
-    output logic [31:0]               clocks_memory,
-    output logic [31:0]               clocks_flush
+    output triangle_registers_pkg::write_request_t even_write_request,
+    input  wire triangle_registers_pkg::write_answer_t even_write_answer,
+    output triangle_registers_pkg::write_request_t odd_write_request,
+    input  wire triangle_registers_pkg::write_answer_t odd_write_answer,
+    output triangle_registers_pkg::events_t events
 );
     // Bands of a picture, lines of a band, groups of a line, words of a band.
     logic [5:0]  last_band, rows;
     logic [7:0]  stride;
     logic [10:0] words;
 
-    assign {last_band, rows, stride, words} = band_pkg::cut(size);
+    assign {last_band, rows, stride, words} = band_pkg::cut(flags.size);
 
     typedef enum logic [2:0] {IDLE, DRAW, FIELD, HAND_OVER, FLUSH} state_t;
     state_t state;
@@ -118,10 +83,10 @@ module raster_unit #(
 
     always_ff @(posedge clk) begin
         if (state == IDLE) begin
-            all_words <= whole || !known[frame_slot];
-            if (start) known[frame_slot] <= 1'b0;
+            all_words <= flags.whole || !known[flags.slot];
+            if (start) known[flags.slot] <= 1'b0;
         end
-        if (state == FLUSH && in_memory) known[frame_slot] <= 1'b1;
+        if (state == FLUSH && in_memory) known[flags.slot] <= 1'b1;
         if (rst) known <= '0;
     end
 
@@ -129,10 +94,10 @@ module raster_unit #(
     assign ready = !clearing && in_memory;
     assign begins = state == IDLE && start;
 
-    assign has_field   = FIELDS && field;
-    assign field_start = begins && has_field;
-    assign field_open  = state == FIELD;
-    assign field_next  = state == HAND_OVER && band_ready && has_field;
+    assign has_field        = FIELDS && field_source.enable;
+    assign field_sink.start = begins && has_field;
+    assign field_sink.open  = state == FIELD;
+    assign field_sink.next  = state == HAND_OVER && band_ready && has_field;
 
     always_ff @(posedge clk) begin
         done <= 1'b0;
@@ -140,12 +105,12 @@ module raster_unit #(
             IDLE: begin
                 band            <= '0;
                 first_row       <= '0;
-                base            <= frame_base;
-                band_depth_base <= depth_base;
+                base            <= parameters.frame[4 +: ADDRESS_BITS];
+                band_depth_base <= parameters.depth[4 +: ADDRESS_BITS];
                 if (start) state <= DRAW;
             end
             DRAW: if (drawn) state <= has_field ? FIELD : HAND_OVER;
-            FIELD: if (field_done) state <= HAND_OVER;
+            FIELD: if (field_source.done) state <= HAND_OVER;
             HAND_OVER: if (band_ready) begin
                 band            <= band + 1'b1;
                 first_row       <= first_row + 10'(rows);
@@ -193,7 +158,11 @@ module raster_unit #(
     end
 
     list_reader #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS), .SMOOTH(SMOOTH)) list_reader (
-        .clk, .rst(rst || restart), .start(begins), .forget(state == IDLE), .last_band, .present, .list_base, .descriptor_base, .counts, .list_shift,
+        .clk, .rst(rst || restart), .start(begins), .forget(state == IDLE), .last_band,
+        .present({flags.second, flags.first}),
+        .list_base({parameters.lists[1][4 +: ADDRESS_BITS], parameters.lists[0][4 +: ADDRESS_BITS]}),
+        .descriptor_base({parameters.descriptors[1][4 +: ADDRESS_BITS], parameters.descriptors[0][4 +: ADDRESS_BITS]}),
+        .counts(parameters.count), .list_shift(parameters.list_shift),
         .list_error(list_damaged),
         .ask_valid, .ask_ready, .ask_addr, .data_valid, .data_ready, .data,
         .out_valid(item_valid), .out_ready(item_ready), .out_end(band_ends), .out_descriptor(descriptor),
@@ -229,21 +198,21 @@ module raster_unit #(
 
     if (FIELDS) begin : meeting
         always_comb begin
-            drawn_ready   = group_ready && !field_open;
-            field_ready   = group_ready && field_open;
-            group_valid   = field_open ? field_valid : drawn_valid;
-            group_halves  = field_open ? field_halves : 2'b11;
-            group_row     = field_open ? field_row : drawn_row;
-            group_line    = field_open ? field_line : drawn_line;
-            group_column  = field_open ? field_column : drawn_column;
-            group_mask    = field_open ? field_mask : drawn_mask;
-            group_codes   = field_open ? {8{field_code}} : drawn_codes;
-            group_colours = field_open ? {8{field_colour}} : drawn_colours;
+            drawn_ready   = group_ready && !field_sink.open;
+            field_sink.ready   = group_ready && field_sink.open;
+            group_valid   = field_sink.open ? field_source.valid : drawn_valid;
+            group_halves  = field_sink.open ? field_source.halves : 2'b11;
+            group_row     = field_sink.open ? field_source.row : drawn_row;
+            group_line    = field_sink.open ? field_source.line : drawn_line;
+            group_column  = field_sink.open ? field_source.column : drawn_column;
+            group_mask    = field_sink.open ? field_source.mask : drawn_mask;
+            group_codes   = field_sink.open ? {8{field_source.code}} : drawn_codes;
+            group_colours = field_sink.open ? {8{field_source.colour}} : drawn_colours;
         end
     end else begin : triangles_alone
         always_comb begin
             drawn_ready  = group_ready;
-            field_ready  = 1'b0;
+            field_sink.ready  = 1'b0;
             group_valid  = drawn_valid;
             group_halves = 2'b11;
             group_row    = drawn_row;
@@ -253,8 +222,7 @@ module raster_unit #(
             group_codes  = drawn_codes;
             group_colours = drawn_colours;
         end
-        wire _unused = &{1'b0, field_valid, field_halves, field_row, field_line, field_column, field_mask, field_code, field_colour,
-                         field_done, field, compose};
+        wire _unused = &{1'b0, field_source};
     end
 
     logic                    word_valid, word_ready, odd_bank;
@@ -262,39 +230,46 @@ module raster_unit #(
     logic [127:0]            word_data;
     logic [1:0]              port_ready, port_idle;
 
+    triangle_registers_pkg::events_t band_events;
+
     band_buffer #(.ADDRESS_BITS(ADDRESS_BITS), .STEREO(FIELDS)) band_buffer (
         .clk, .rst, .restart, .clearing, .flushed,
         .group_valid, .group_ready, .group_row, .group_line, .group_column, .group_mask, .group_halves, .group_codes, .group_colours,
         .band_valid(state == HAND_OVER), .band_ready, .band_base(base), .band_depth_base, .band_lines(rows), .band_stride(stride),
-        .band_first_line(first_row), .band_slot(frame_slot), .band_whole(all_words),
-        .band_with_depth(with_depth), .band_clear(clear), .band_compose(has_field ? compose : 2'd0),
+        .band_first_line(first_row), .band_slot(flags.slot), .band_whole(all_words),
+        .band_with_depth(flags.depth), .band_clear(parameters.clear), .band_compose(has_field ? field_source.compose : 2'd0),
         .word_valid, .word_ready, .word_addr, .word_data,
-        .groups_in, .pixels_covered, .pixels_drawn, .clocks_held, .clocks_memory, .clocks_flush
+        .events(band_events)
     );
 
     assign odd_bank   = word_addr[$clog2(list_pkg::BANK_WORDS)];
     assign word_ready = port_ready[odd_bank];
     assign in_memory  = flushed && &port_idle;
 
-    for (genvar bank = 0; bank < 2; bank++) begin : ports
-        /* verilator lint_off PINCONNECTEMPTY */
-        write_port #(.ADDRESS_BITS(ADDRESS_BITS)) write (
-            .clk, .rst, .hurry(1'b1), .idle(port_idle[bank]),
-            .in_valid(word_valid && odd_bank == 1'(bank)), .in_ready(port_ready[bank]), .in_addr(word_addr), .in_data(word_data),
-            .in_strobe('1),
-            .cmd_valid(cmd_valid[bank]), .cmd_ready(cmd_ready[bank]), .cmd_addr(cmd_addr[bank*ADDRESS_BITS +: ADDRESS_BITS]),
-            .wdata_valid(wdata_valid[bank]), .wdata_ready(wdata_ready[bank]), .wdata(wdata[bank*128 +: 128]), .wdata_strobe()
-        );
-        /* verilator lint_on PINCONNECTEMPTY */
+    write_port #(.ADDRESS_BITS(ADDRESS_BITS)) even_port (
+        .clk, .rst, .hurry(1'b1), .idle(port_idle[0]),
+        .in_valid(word_valid && !odd_bank), .in_ready(port_ready[0]), .in_addr(word_addr), .in_data(word_data), .in_strobe('1),
+        .cmd_valid(even_write_request.cmd_valid), .cmd_ready(even_write_answer.cmd_ready), .cmd_addr(even_write_request.cmd_addr),
+        .wdata_valid(even_write_request.wdata_valid), .wdata_ready(even_write_answer.wdata_ready),
+        .wdata(even_write_request.wdata), .wdata_strobe(even_write_request.wdata_strobe)
+    );
+
+    write_port #(.ADDRESS_BITS(ADDRESS_BITS)) odd_port (
+        .clk, .rst, .hurry(1'b1), .idle(port_idle[1]),
+        .in_valid(word_valid && odd_bank), .in_ready(port_ready[1]), .in_addr(word_addr), .in_data(word_data), .in_strobe('1),
+        .cmd_valid(odd_write_request.cmd_valid), .cmd_ready(odd_write_answer.cmd_ready), .cmd_addr(odd_write_request.cmd_addr),
+        .wdata_valid(odd_write_request.wdata_valid), .wdata_ready(odd_write_answer.wdata_ready),
+        .wdata(odd_write_request.wdata), .wdata_strobe(odd_write_request.wdata_strobe)
+    );
+
+    always_comb begin
+        events = band_events;
+        events.cycles_raster  = busy;
+        events.cycles_walking = walking;
+        events.cycles_empty   = walking && !candidate;
     end
 
-    always_ff @(posedge clk) begin
-        if (busy)                  clocks_busy    <= clocks_busy + 1'b1;
-        if (walking)               clocks_walking <= clocks_walking + 1'b1;
-        if (walking && !candidate) clocks_empty   <= clocks_empty + 1'b1;
-
-        if (rst) {clocks_busy, clocks_walking, clocks_empty} <= '0;
-    end
+    wire _unused_parameters = &{1'b0, parameters};
 endmodule
 
 `default_nettype wire

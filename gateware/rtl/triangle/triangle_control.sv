@@ -18,59 +18,41 @@
 `default_nettype none
 
 module triangle_control #(
-    parameter int unsigned ADDRESS_BITS = 23,
-    parameter int unsigned COUNT_BITS   = 20,
-    parameter logic [31:0] BASE         = 32'h4000_0000,
-    parameter bit          SMOOTH       = 1'b0
+    parameter  logic [31:0] BASE         = 32'h4000_0000,
+    parameter  bit          SMOOTH       = 1'b0,
+    localparam int unsigned ADDRESS_BITS = triangle_registers_pkg::ADDRESS_BITS,
+    localparam int unsigned COUNT_BITS   = triangle_registers_pkg::COUNT_BITS
 ) (
     input  wire                    clk,
     input  wire                    rst,
     input  wire                    cancel,
-    // Geometry: flags {smooth, cull back faces, size}.
+    // Geometry.
     input  wire                    geometry_ask,
-    input  wire  [3:0]             geometry_flags,
-    output logic [3:0]             geometry_kept,
+    input  wire triangle_registers_pkg::geometry_flags_t geometry_flags,
+    input  wire triangle_registers_pkg::geometry_t geometry,
+    output triangle_registers_pkg::geometry_flags_t geometry_kept,
     output logic                   geometry_active,
     output logic                   geometry_ended,
     output logic [2:0]             geometry_error,
-    input  wire  [31:0]            mesh,
-    input  wire  [31:0]            mesh_bytes,
-    input  wire  [31:0]            geometry_descriptors,
-    input  wire  [COUNT_BITS-1:0]  descriptor_limit,
-    input  wire  [31:0]            geometry_lists,
-    input  wire  [4:0]             list_shift,
-    input  wire  [31:0]            exceptions,
-    input  wire  [COUNT_BITS-1:0]  exception_limit,
-    // Raster: flags {whole, slot, with depth, second set, first set, size}.
+    // Raster.
     input  wire                    raster_ask,
-    input  wire  [6:0]             raster_flags,
-    output logic [6:0]             raster_kept,
+    input  wire triangle_registers_pkg::raster_flags_t raster_flags,
+    input  wire triangle_registers_pkg::raster_t raster,
+    output triangle_registers_pkg::raster_flags_t raster_kept,
     output logic                   raster_active,
     output logic                   raster_ended,
     output logic [2:0]             raster_error,
-    input  wire  [31:0]            frame,
-    input  wire  [31:0]            depth,
-    input  wire  [31:0]            lists_0,
-    input  wire  [31:0]            lists_1,
-    input  wire  [31:0]            descriptors_0,
-    input  wire  [31:0]            descriptors_1,
-    input  wire  [COUNT_BITS-1:0]  count_0,
-    input  wire  [COUNT_BITS-1:0]  count_1,
     // Engine.
-    input  wire                    ready,
+    input  wire triangle_registers_pkg::status_t engine,
     output logic                   recovering,
     output logic                   geometry_start,
-    input  wire                    geometry_busy,
-    input  wire                    geometry_done,
-    input  wire                    mesh_error,
-    input  wire                    full,
-    output logic                   raster_start,
-    input  wire                    raster_busy,
-    input  wire                    raster_done,
-    input  wire                    list_error
+    output logic                   raster_start
 );
-    localparam logic [2:0] ERROR_NONE = 3'd0, ERROR_SIZE = 3'd1, ERROR_ADDRESS = 3'd2, ERROR_BUSY = 3'd3, ERROR_MESH = 3'd4,
-                           ERROR_FULL = 3'd5, ERROR_LIST = 3'd6, ERROR_CANCELLED = 3'd7;
+    localparam logic [2:0] ERROR_NONE = triangle_registers_pkg::ERROR_NONE, ERROR_SIZE = triangle_registers_pkg::ERROR_SIZE,
+                           ERROR_ADDRESS = triangle_registers_pkg::ERROR_ADDRESS, ERROR_BUSY = triangle_registers_pkg::ERROR_BUSY,
+                           ERROR_MESH = triangle_registers_pkg::ERROR_MESH, ERROR_FULL = triangle_registers_pkg::ERROR_FULL,
+                           ERROR_LIST = triangle_registers_pkg::ERROR_LIST,
+                           ERROR_CANCELLED = triangle_registers_pkg::ERROR_CANCELLED;
 
     // Words of a region: more than memory has are still told apart.
     localparam int unsigned WORD_BITS  = ADDRESS_BITS + 2;
@@ -89,10 +71,10 @@ module triangle_control #(
     logic [1:0] size;
     logic [5:0] bands;
 
-    assign geometry_active = geometry_pending || geometry_start || geometry_busy || geometry_done;
-    assign raster_active   = raster_pending || raster_start || raster_busy || raster_done;
+    assign geometry_active = geometry_pending || geometry_start || engine.geometry_busy || engine.geometry_done;
+    assign raster_active   = raster_pending || raster_start || engine.raster_busy || engine.raster_done;
 
-    assign size = rastering ? raster_kept[1:0] : geometry_kept[1:0];
+    assign size = rastering ? raster_kept.size : geometry_kept.size;
 
     always_comb begin
         case (size)
@@ -106,9 +88,11 @@ module triangle_control #(
     logic [31:0]          first;
     logic [WORD_BITS-1:0] words, mesh_words, list_words, frame_words, descriptor_words;
     logic [COUNT_BITS-1:0] count;
+    logic [4:0]           list_shift;
     logic                 used;
 
-    assign mesh_words  = mesh_bytes[31:WORD_BITS+4] != '0 ? '1 : WORD_BITS'(mesh_bytes >> 4);
+    assign list_shift  = rastering ? raster.list_shift : geometry.list_shift;
+    assign mesh_words  = geometry.mesh_bytes[31:WORD_BITS+4] != '0 ? '1 : WORD_BITS'(geometry.mesh_bytes >> 4);
     assign list_words  = list_shift > LAST_SHIFT ? '1 : WORD_BITS'(list_pkg::TABLE_WORDS)
                       + (WORD_BITS'(bands) << list_shift) + WORD_BITS'(bands * list_pkg::BANK_WORDS);
     assign frame_words = WORD_BITS'(SMALL_FRAME_WORDS) << {size, 1'b0};
@@ -116,23 +100,23 @@ module triangle_control #(
     always_comb begin
         used = 1'b1;
         case (region)
-            4'd1:    count = descriptor_limit;
-            4'd3:    count = exception_limit;
-            4'd8:    count = count_0;
-            default: count = count_1;
+            4'd1:    count = geometry.descriptor_limit;
+            4'd3:    count = geometry.exception_limit;
+            4'd8:    count = raster.count[0];
+            default: count = raster.count[1];
         endcase
         descriptor_words = (WORD_BITS'(count) + (WORD_BITS'(count) << 1)) << SMOOTH;
         case (region)
-            4'd0:    begin first = mesh;                 words = mesh_words; end
-            4'd1:    begin first = geometry_descriptors; words = descriptor_words; end
-            4'd2:    begin first = geometry_lists;       words = list_words; end
-            4'd3:    begin first = exceptions;           words = (WORD_BITS'(count) + WORD_BITS'(3)) >> 2; end
-            4'd4:    begin first = frame;                words = frame_words; end
-            4'd5:    begin first = depth;                words = frame_words << 1; used = raster_kept[4]; end
-            4'd6:    begin first = lists_0;              words = list_words; used = raster_kept[2]; end
-            4'd7:    begin first = lists_1;              words = list_words; used = raster_kept[3]; end
-            4'd8:    begin first = descriptors_0;        words = descriptor_words; used = raster_kept[2]; end
-            default: begin first = descriptors_1;        words = descriptor_words; used = raster_kept[3]; end
+            4'd0:    begin first = geometry.mesh;                 words = mesh_words; end
+            4'd1:    begin first = geometry.descriptors; words = descriptor_words; end
+            4'd2:    begin first = geometry.lists;       words = list_words; end
+            4'd3:    begin first = geometry.exceptions;           words = (WORD_BITS'(count) + WORD_BITS'(3)) >> 2; end
+            4'd4:    begin first = raster.frame;                words = frame_words; end
+            4'd5:    begin first = raster.depth;                words = frame_words << 1; used = raster_kept.depth; end
+            4'd6:    begin first = raster.lists[0];              words = list_words; used = raster_kept.first; end
+            4'd7:    begin first = raster.lists[1];              words = list_words; used = raster_kept.second; end
+            4'd8:    begin first = raster.descriptors[0];        words = descriptor_words; used = raster_kept.first; end
+            default: begin first = raster.descriptors[1];        words = descriptor_words; used = raster_kept.second; end
         endcase
     end
 
@@ -162,7 +146,7 @@ module triangle_control #(
         geometry_ended <= 1'b0;
         raster_ended   <= 1'b0;
 
-        if (ready) recovering <= 1'b0;
+        if (engine.ready) recovering <= 1'b0;
 
         // Asked while the same pass is asked for or busy: refused, and the pass goes on.
         if (geometry_ask) begin
@@ -217,14 +201,14 @@ module triangle_control #(
             end
         endcase
 
-        if (geometry_done) begin
+        if (engine.geometry_done) begin
             geometry_ended <= 1'b1;
-            if (mesh_error) geometry_error <= ERROR_MESH;
-            else if (full)  geometry_error <= ERROR_FULL;
+            if (engine.mesh_error) geometry_error <= ERROR_MESH;
+            else if (engine.full)  geometry_error <= ERROR_FULL;
         end
-        if (raster_done) begin
+        if (engine.raster_done) begin
             raster_ended <= 1'b1;
-            if (list_error) raster_error <= ERROR_LIST;
+            if (engine.list_error) raster_error <= ERROR_LIST;
         end
 
         if (cancel) begin
@@ -253,7 +237,7 @@ module triangle_control #(
         end
     end
 
-    wire _unused = &{1'b0, mesh_bytes[3:0]};
+    wire _unused = &{1'b0, geometry, raster};
 endmodule
 
 `default_nettype wire

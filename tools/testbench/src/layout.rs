@@ -184,6 +184,16 @@ impl Layout {
         Ok(part)
     }
 
+    /// The names of a structure's members, the highest first; none of another type.
+    pub(crate) fn member_names(&self) -> Vec<String> {
+        match &*self.shape {
+            Shape::Structure { members, .. } => {
+                members.iter().map(|(name, _)| name.clone()).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
     /// The elements of an array, the lowest index first.
     pub(crate) fn elements(&self) -> Option<(usize, &Self)> {
         match &*self.shape {

@@ -7,6 +7,7 @@
 //! `python gateware/tests/run.py --models` builds the modules; `cargo xtask test` sees to it.
 
 mod bits;
+mod counters;
 mod layout;
 mod library;
 mod memory;
@@ -15,6 +16,7 @@ mod record;
 mod stream;
 
 pub use bits::Bits;
+pub use counters::Counters;
 pub use layout::{Layout, LayoutError};
 pub use memory::{Memory, ReadPort, WritePort};
 pub use module::{Module, Port};

@@ -71,8 +71,8 @@ impl Memory {
 /// Clocks from a command to its data, unless told.
 const LATENCY: u64 = 12;
 
-/// The memory's side of a read port: `cmd_valid`, `cmd_ready`, `cmd_addr`, `rdata_valid`, `rdata`, behind a prefix. Data comes
-/// when it comes, whether it is wanted or not.
+/// The memory's side of a read port: the structs `NAME_read_request` and `NAME_read_answer`. Data comes when it comes, whether the
+/// module waits for it or not.
 pub struct ReadPort {
     cmd: [Port; 3],
     rdata: [Port; 2],
@@ -86,13 +86,18 @@ pub struct ReadPort {
 }
 
 impl ReadPort {
-    /// The port whose names begin with `prefix`.
+    /// The port `name`.
     #[must_use]
-    pub fn new(module: &Module, prefix: &str, stalls: Stalls) -> Self {
-        let port = |name: &str| module.port(&format!("{prefix}{name}"));
+    pub fn new(module: &Module, name: &str, stalls: Stalls) -> Self {
+        let request = |member| module.port(&format!("{name}_read_request.{member}"));
+        let answer = |member| module.port(&format!("{name}_read_answer.{member}"));
         Self {
-            cmd: [port("cmd_valid"), port("cmd_ready"), port("cmd_addr")],
-            rdata: [port("rdata_valid"), port("rdata")],
+            cmd: [
+                request("cmd_valid"),
+                answer("cmd_ready"),
+                request("cmd_addr"),
+            ],
+            rdata: [answer("rdata_valid"), answer("rdata")],
             queue: VecDeque::new(),
             stalls,
             latency: LATENCY,
@@ -126,8 +131,8 @@ impl ReadPort {
     }
 }
 
-/// The memory's side of a write port: `cmd_valid`, `cmd_ready`, `cmd_addr`, `wdata_valid`, `wdata_ready`, `wdata` and
-/// `wdata_strobe`, behind a prefix. It takes the data of a command when it wants to, and they have to be there.
+/// The memory's side of a write port: the structs `NAME_write_request` and `NAME_write_answer`. The memory takes the data of a
+/// command at any time after it, and they must be there.
 pub struct WritePort {
     cmd: [Port; 3],
     wdata: [Port; 4],
@@ -140,17 +145,22 @@ pub struct WritePort {
 }
 
 impl WritePort {
-    /// The port whose names begin with `prefix`.
+    /// The port `name`.
     #[must_use]
-    pub fn new(module: &Module, prefix: &str, stalls: Stalls) -> Self {
-        let port = |name: &str| module.port(&format!("{prefix}{name}"));
+    pub fn new(module: &Module, name: &str, stalls: Stalls) -> Self {
+        let request = |member| module.port(&format!("{name}_write_request.{member}"));
+        let answer = |member| module.port(&format!("{name}_write_answer.{member}"));
         Self {
-            cmd: [port("cmd_valid"), port("cmd_ready"), port("cmd_addr")],
+            cmd: [
+                request("cmd_valid"),
+                answer("cmd_ready"),
+                request("cmd_addr"),
+            ],
             wdata: [
-                port("wdata_valid"),
-                port("wdata_ready"),
-                port("wdata"),
-                port("wdata_strobe"),
+                request("wdata_valid"),
+                answer("wdata_ready"),
+                request("wdata"),
+                request("wdata_strobe"),
             ],
             owed: VecDeque::new(),
             takes: false,

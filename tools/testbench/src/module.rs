@@ -5,9 +5,13 @@ use std::path::Path;
 use crate::library::Instance;
 use crate::{Bits, Layout, Record};
 
-/// A port of a [`Module`].
+/// A port of a [`Module`], or a part of one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Port(usize);
+pub struct Port {
+    index: usize,
+    pub(crate) low: usize,
+    pub(crate) width: usize,
+}
 
 /// One instance of a module, with a clock `clk` and a reset `rst`.
 pub struct Module {
@@ -36,8 +40,10 @@ impl Module {
             cycles: 0,
         };
         for port in 0..module.instance.description().ports.len() {
-            if !module.instance.port(port).output {
-                module.set(Port(port), 0);
+            let description = module.instance.port(port);
+            if !description.output {
+                let name = description.name.clone();
+                module.drive_bits(&name, Bits::default());
             }
         }
         let rst = module.port("rst");
@@ -49,24 +55,32 @@ impl Module {
         module
     }
 
-    /// The port of a name.
+    /// A port, or a part of one: `busy`, `status.busy`, `origins[2]`. See [`Record`] for paths.
     ///
     /// # Panics
     /// When there is none; lists the names.
     #[must_use]
-    pub fn port(&self, name: &str) -> Port {
-        let ports = &self.instance.description().ports;
-        let found = ports.iter().position(|port| port.name == name);
-        Port(found.unwrap_or_else(|| {
-            let names: Vec<_> = ports.iter().map(|port| port.name.as_str()).collect();
-            panic!("no port {name:?}; the ports: {}", names.join(", "))
-        }))
+    pub fn port(&self, path: &str) -> Port {
+        self.part(path).0
     }
 
-    /// The type of a port.
-    #[must_use]
-    pub fn layout(&self, port: Port) -> &Layout {
-        &self.instance.port(port.0).layout
+    /// A port or a part of one, with its type.
+    fn part(&self, path: &str) -> (Port, &Layout) {
+        let (name, rest) = split(path);
+        let ports = &self.instance.description().ports;
+        let found = ports.iter().position(|port| port.name == name);
+        let index = found.unwrap_or_else(|| {
+            let names: Vec<_> = ports.iter().map(|port| port.name.as_str()).collect();
+            panic!("no port {name:?}; the ports: {}", names.join(", "))
+        });
+        let part = ports[index].layout.find(rest);
+        let part = part.unwrap_or_else(|error| panic!("{name}: {error}"));
+        let port = Port {
+            index,
+            low: part.low,
+            width: part.layout.width(),
+        };
+        (port, part.layout)
     }
 
     /// A type of a package by its name, as `raymarch_pkg::end_t`.
@@ -82,13 +96,13 @@ impl Module {
         })
     }
 
-    /// A record of the type of a port by its name, all zero.
+    /// A record of the type of a port or a part of one, all zero.
     ///
     /// # Panics
-    /// When there is no such port.
+    /// When there is no such part.
     #[must_use]
-    pub fn record(&self, name: &str) -> Record {
-        self.layout(self.port(name)).record()
+    pub fn record(&self, path: &str) -> Record {
+        self.part(path).1.record()
     }
 
     /// Drives an input, or a part of one, with a number: `stereo`, `solid.levels`, `origins[0][2]`. See [`Record`] for paths.
@@ -96,7 +110,7 @@ impl Module {
     /// # Panics
     /// When there is no such part, or the number does not fit.
     pub fn drive(&mut self, path: &str, value: impl Into<i128>) {
-        self.change(path, |record, rest| record.set(rest, value));
+        self.change(path, |record| record.set("", value));
     }
 
     /// Drives an array with numbers, the lowest index first.
@@ -104,7 +118,7 @@ impl Module {
     /// # Panics
     /// When there is no such array, or one of another length, or a number does not fit.
     pub fn drive_all(&mut self, path: &str, values: impl IntoIterator<Item: Into<i128>>) {
-        self.change(path, |record, rest| record.set_all(rest, values));
+        self.change(path, |record| record.set_all("", values));
     }
 
     /// Drives an input, or a part of one, with bits, such as those of a record.
@@ -112,7 +126,7 @@ impl Module {
     /// # Panics
     /// When there is no such part, or the bits do not fit.
     pub fn drive_bits(&mut self, path: &str, bits: impl Into<Bits>) {
-        self.change(path, |record, rest| record.set_bits(rest, bits));
+        self.set(self.port(path), bits);
     }
 
     /// The number on a port or a part of one, as unsigned.
@@ -121,26 +135,23 @@ impl Module {
     /// When there is no such part, or one of more than 64 bits.
     #[must_use]
     pub fn read(&self, path: &str) -> u64 {
-        let (name, rest) = split(path);
-        self.read_record(name).get(rest)
+        self.value(self.port(path))
     }
 
-    /// A port as a record of its type.
+    /// A port or a part of one as a record of its type.
     ///
     /// # Panics
-    /// When there is no such port.
+    /// When there is no such part.
     #[must_use]
-    pub fn read_record(&self, name: &str) -> Record {
-        let port = self.port(name);
-        self.layout(port).record_of(self.get(port))
+    pub fn read_record(&self, path: &str) -> Record {
+        let (port, layout) = self.part(path);
+        layout.record_of(self.get(port))
     }
 
-    fn change(&mut self, path: &str, change: impl FnOnce(&mut Record, &str)) {
-        let (name, rest) = split(path);
-        let port = self.port(name);
-        let mut record = self.layout(port).record_of(self.get(port));
-        change(&mut record, rest);
-        self.set(port, record);
+    fn change(&mut self, path: &str, change: impl FnOnce(&mut Record)) {
+        let mut record = self.read_record(path);
+        change(&mut record);
+        self.set(self.port(path), record);
     }
 
     /// Drives an input with the lowest bits of a value.
@@ -148,16 +159,19 @@ impl Module {
     /// # Panics
     /// When it is an output, or the value does not fit.
     pub fn set(&mut self, port: Port, value: impl Into<Bits>) {
-        let value = value.into();
-        let description = self.instance.port(port.0);
-        assert!(!description.output, "{} is an output", description.name);
+        let mut value = value.into();
+        let Port { index, low, width } = port;
+        let description = self.instance.port(index);
+        let name = &description.name;
+        assert!(!description.output, "{name} is an output");
         assert!(
-            value.fits(description.layout.width()),
-            "{value:?} in the {} bits of {}",
-            description.layout.width(),
-            description.name
+            value.fits(width),
+            "{value:?} in {width} bits of {name} from bit {low}"
         );
-        let target = self.instance.bytes_mut(port.0);
+        if width != description.layout.width() {
+            value = self.whole(index).with_slice(low, width, value);
+        }
+        let target = self.instance.bytes_mut(index);
         let bytes = value.words().iter().flat_map(|word| word.to_le_bytes());
         target
             .iter_mut()
@@ -168,8 +182,17 @@ impl Module {
     /// What is on a port, as of the last [`settle`](Self::settle) or [`clock`](Self::clock).
     #[must_use]
     pub fn get(&self, port: Port) -> Bits {
+        let whole = self.whole(port.index);
+        if port.width == self.instance.port(port.index).layout.width() {
+            return whole;
+        }
+        whole.slice(port.low, port.width)
+    }
+
+    /// All bits of a port.
+    fn whole(&self, index: usize) -> Bits {
         let mut words = [0; 16];
-        for (i, &byte) in self.instance.bytes(port.0).iter().enumerate() {
+        for (i, &byte) in self.instance.bytes(index).iter().enumerate() {
             words[i / 4] |= u32::from(byte) << (8 * (i % 4));
         }
         Bits::from_words(&words)
@@ -181,7 +204,14 @@ impl Module {
     /// When it is wider.
     #[must_use]
     pub fn value(&self, port: Port) -> u64 {
-        self.get(port).field(0, self.layout(port).width())
+        let Port { index, low, width } = port;
+        assert!(width <= 64, "{width} bits");
+        // 64 bits from anywhere are in nine bytes.
+        let bytes = self.instance.bytes(index).iter().skip(low / 8).take(9);
+        let nine = bytes
+            .rev()
+            .fold(0_u128, |all, &byte| all << 8 | u128::from(byte));
+        (nine >> (low % 8)) as u64 & ((1_u128 << width) - 1) as u64
     }
 
     /// Whether a port of one bit is high.

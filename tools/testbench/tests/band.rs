@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::ops::Range;
 
 use glint_model::raymarch::{Tint, compose};
-use glint_testbench::{Bits, Module, Port, Sink, Source, Stalls};
+use glint_testbench::{Bits, Counters, Module, Port, Sink, Source, Stalls};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
@@ -147,6 +147,7 @@ struct Bench {
     expected: Vec<Word>,
     /// Rows of a line.
     stride: usize,
+    counters: Counters,
 }
 
 impl Bench {
@@ -200,6 +201,7 @@ impl Bench {
             flushed_last: None,
             expected: Vec::new(),
             stride: 40,
+            counters: Counters::new(&module, "events"),
             module,
         }
     }
@@ -221,7 +223,7 @@ impl Bench {
     }
 
     fn counter(&self, name: &str) -> u64 {
-        self.module.value(self.module.port(name))
+        self.counters.get(name)
     }
 
     fn push_group(&mut self, group: Group) {
@@ -265,6 +267,7 @@ impl Bench {
         self.band_source.drive(module);
         self.words.drive(module);
         module.settle();
+        self.counters.sample(module);
         self.group_source.sample(module);
         self.band_source.sample(module);
         self.words.sample(module);
@@ -534,7 +537,7 @@ fn a_bank_after_reset_is_clear() {
         bench.push_band(plain_band([48, 40]));
     }
     bench.finish();
-    assert_eq!(bench.counter("groups_in"), 0);
+    assert_eq!(bench.counter("groups"), 0);
 }
 
 #[test]
@@ -552,8 +555,8 @@ fn one_group_a_clock_where_rows_or_lanes_differ() {
     let clocks = bench.module.cycles() - start;
     assert!(clocks <= 2 * COUNT as u64 + 2, "{clocks} clocks");
     bench.finish();
-    assert_eq!(bench.counter("clocks_held"), 0);
-    assert_eq!(bench.counter("groups_in"), 2 * COUNT as u64);
+    assert_eq!(bench.counter("cycles_held"), 0);
+    assert_eq!(bench.counter("groups"), 2 * COUNT as u64);
 }
 
 #[test]
@@ -571,7 +574,7 @@ fn a_group_waits_for_the_lanes_it_shares() {
         }]);
         bench.draw(groups, plain_band([5, 40]));
         bench.finish();
-        assert_eq!(bench.counter("clocks_held"), held, "{between} between");
+        assert_eq!(bench.counter("cycles_held"), held, "{between} between");
     }
 }
 
@@ -602,8 +605,8 @@ fn the_flush_keeps_up_with_memory_and_overlaps_with_drawing() {
     let clocks = bench.module.cycles() - start;
     assert!(clocks <= 7 * (1920 + 24), "{clocks} clocks");
     let (memory, flush) = (
-        bench.counter("clocks_memory"),
-        bench.counter("clocks_flush"),
+        bench.counter("cycles_memory"),
+        bench.counter("cycles_flush"),
     );
     assert!(memory == 0 && flush < 6 * 24, "{memory} and {flush} clocks");
 }
@@ -644,8 +647,8 @@ fn waits_for_memory_are_counted() {
         bench.draw([], plain_band([25, 40]));
     }
     bench.finish();
-    assert!(bench.counter("clocks_memory") > 1000);
-    assert!(bench.counter("clocks_flush") > 1000);
+    assert!(bench.counter("cycles_memory") > 1000);
+    assert!(bench.counter("cycles_flush") > 1000);
 }
 
 #[test]

@@ -23,10 +23,45 @@ const GEOMETRY: usize = 0;
 const RASTER: usize = 1;
 const NAMES: [&str; 2] = ["geometry", "raster"];
 
+/// The size of a picture, and whether each of the other flags is set.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Flags {
+    size: u64,
+    others: Vec<(&'static str, bool)>,
+}
+
+impl Flags {
+    fn is_set(&self, name: &str) -> bool {
+        self.others.contains(&(name, true))
+    }
+
+    /// Sets the flags that are named and clears the others.
+    fn choose(&mut self, names: &[&str]) {
+        for (name, set) in &mut self.others {
+            *set = names.contains(name);
+        }
+    }
+
+    fn invert(&mut self) {
+        self.size ^= 3;
+        for (_, set) in &mut self.others {
+            *set = !*set;
+        }
+    }
+
+    /// The members of a port with these flags, and their values.
+    fn members(&self, port: &str) -> Vec<(String, u64)> {
+        let others = self.others.iter().map(|&(name, set)| (name, set.into()));
+        let all = [("size", self.size)].into_iter().chain(others);
+        all.map(|(name, value)| (format!("{port}.{name}"), value))
+            .collect()
+    }
+}
+
 /// A pass with its parameters: flags, and values of ports.
 #[derive(Clone, Debug)]
 struct Pass {
-    flags: u64,
+    flags: Flags,
     ports: Vec<(&'static str, u64)>,
 }
 
@@ -43,38 +78,50 @@ impl Pass {
     /// Passes that can be done.
     fn good() -> [Self; 2] {
         let geometry = [
-            ("mesh", BASE + 0x10_0000),
-            ("mesh_bytes", 0x1000),
-            ("geometry_descriptors", BASE + 0x20_0000),
-            ("descriptor_limit", 1000),
-            ("geometry_lists", BASE + 0x40_0000),
-            ("exceptions", BASE + 0x60_0000),
-            ("exception_limit", 1000),
+            ("geometry.mesh", BASE + 0x10_0000),
+            ("geometry.mesh_bytes", 0x1000),
+            ("geometry.descriptors", BASE + 0x20_0000),
+            ("geometry.descriptor_limit", 1000),
+            ("geometry.lists", BASE + 0x40_0000),
+            ("geometry.exceptions", BASE + 0x60_0000),
+            ("geometry.exception_limit", 1000),
         ];
         let raster = [
-            ("frame", BASE + 0x100_0000),
-            ("depth", BASE + 0x200_0000),
-            ("lists_0", BASE + 0x40_0000),
-            ("lists_1", BASE + 0x60_0000),
-            ("descriptors_0", BASE + 0x20_0000),
-            ("descriptors_1", BASE + 0x30_0000),
-            ("count_0", 1000),
-            ("count_1", 1000),
+            ("raster.frame", BASE + 0x100_0000),
+            ("raster.depth", BASE + 0x200_0000),
+            ("raster.lists[0]", BASE + 0x40_0000),
+            ("raster.lists[1]", BASE + 0x60_0000),
+            ("raster.descriptors[0]", BASE + 0x20_0000),
+            ("raster.descriptors[1]", BASE + 0x30_0000),
+            ("raster.count[0]", 1000),
+            ("raster.count[1]", 1000),
         ];
         [
             Self {
-                flags: 0b101,
+                flags: Flags {
+                    size: 1,
+                    others: vec![("cull", true), ("smooth", false)],
+                },
                 ports: geometry.to_vec(),
             },
             Self {
-                flags: 0b001_1100,
+                flags: Flags {
+                    size: 0,
+                    others: vec![
+                        ("first", true),
+                        ("second", true),
+                        ("depth", true),
+                        ("slot", false),
+                        ("whole", false),
+                    ],
+                },
                 ports: raster.to_vec(),
             },
         ]
     }
 
     fn size(&self) -> usize {
-        (self.flags & 3) as usize
+        self.flags.size as usize
     }
 }
 
@@ -93,24 +140,35 @@ fn regions(
         _ => 1 << 60,
     };
     let pixels = (320 * 180) << (2 * size);
-    let flag = |bit: u64| pass.flags >> bit & 1 == 1;
+    let flag = |name| pass.flags.is_set(name);
     match which {
         GEOMETRY => vec![
-            ("mesh", pass.get("mesh_bytes") & !15),
+            ("geometry.mesh", pass.get("geometry.mesh_bytes") & !15),
             (
-                "geometry_descriptors",
-                descriptor * pass.get("descriptor_limit"),
+                "geometry.descriptors",
+                descriptor * pass.get("geometry.descriptor_limit"),
             ),
-            ("geometry_lists", lists),
-            ("exceptions", 4 * pass.get("exception_limit")),
+            ("geometry.lists", lists),
+            (
+                "geometry.exceptions",
+                4 * pass.get("geometry.exception_limit"),
+            ),
         ],
         _ => [
-            (true, "frame", 2 * pixels),
-            (flag(4), "depth", 4 * pixels),
-            (flag(2), "lists_0", lists),
-            (flag(3), "lists_1", lists),
-            (flag(2), "descriptors_0", descriptor * pass.get("count_0")),
-            (flag(3), "descriptors_1", descriptor * pass.get("count_1")),
+            (true, "raster.frame", 2 * pixels),
+            (flag("depth"), "raster.depth", 4 * pixels),
+            (flag("first"), "raster.lists[0]", lists),
+            (flag("second"), "raster.lists[1]", lists),
+            (
+                flag("first"),
+                "raster.descriptors[0]",
+                descriptor * pass.get("raster.count[0]"),
+            ),
+            (
+                flag("second"),
+                "raster.descriptors[1]",
+                descriptor * pass.get("raster.count[1]"),
+            ),
         ]
         .into_iter()
         .filter_map(|(used, name, bytes)| used.then_some((name, bytes)))
@@ -165,7 +223,7 @@ struct Bench {
     states: [State; 2],
     /// What `error` should say, and the flags that should be kept.
     errors: [u64; 2],
-    kept: [Option<u64>; 2],
+    kept: [Option<Flags>; 2],
     recovery: Recovery,
     /// Clocks until the engine is ready again.
     ready_in: u64,
@@ -204,7 +262,7 @@ impl Bench {
             list_shift: 9,
             states: [State::Idle; 2],
             errors: [NONE; 2],
-            kept: [None; 2],
+            kept: [None, None],
             recovery: Recovery::Waits,
             ready_in: 0,
             runs: [20, 30],
@@ -261,10 +319,17 @@ impl Bench {
         self.module.value(self.port(which, name))
     }
 
+    fn set_flags(&mut self, which: usize, flags: &Flags) {
+        for (path, value) in flags.members(&format!("{}_flags", NAMES[which])) {
+            self.module.drive(&path, value);
+        }
+    }
+
     /// Puts the parameters on the ports.
     fn configure(&mut self) {
-        let shift = self.module.port("list_shift");
-        self.module.set(shift, self.list_shift);
+        for path in ["geometry.list_shift", "raster.list_shift"] {
+            self.module.drive(path, self.list_shift);
+        }
         for pass in self.passes.clone() {
             for (name, value) in pass.ports {
                 let port = self.module.port(name);
@@ -272,7 +337,8 @@ impl Bench {
             }
         }
         for which in [GEOMETRY, RASTER] {
-            self.set(which, "flags", self.passes[which].flags);
+            let flags = self.passes[which].flags.clone();
+            self.set_flags(which, &flags);
         }
     }
 
@@ -284,7 +350,7 @@ impl Bench {
     fn clock(&mut self, events: Events) {
         let now = self.clocks;
         let ready = self.ready_in == 0;
-        let port = self.module.port("ready");
+        let port = self.module.port("engine.ready");
         self.module.set(port, u64::from(ready));
         let port = self.module.port("cancel");
         self.module.set(port, u64::from(events.cancel));
@@ -311,7 +377,7 @@ impl Bench {
                         refusal(which, &self.passes[which], self.list_shift, self.descriptor);
                     self.states[which] = State::Asked(now, refusal);
                     self.errors[which] = NONE;
-                    self.kept[which] = Some(self.passes[which].flags);
+                    self.kept[which] = Some(self.passes[which].flags.clone());
                     self.counts[which][0] += 1;
                 }
             }
@@ -378,8 +444,10 @@ impl Bench {
             let found = ["active", "error"].map(|port| self.value(which, port));
             let active = u64::from(self.is_active(which));
             assert_eq!(found, [active, self.errors[which]], "{name}: active, error");
-            if let Some(kept) = self.kept[which] {
-                assert_eq!(self.value(which, "kept"), kept, "{name}: flags");
+            if let Some(kept) = &self.kept[which] {
+                for (path, value) in kept.members(&format!("{name}_kept")) {
+                    assert_eq!(self.module.read(&path), value, "{path}");
+                }
             }
         }
     }
@@ -390,8 +458,9 @@ impl Bench {
             // `busy` rises after the start and falls with `done`.
             let done = self.states[which] == State::Runs(0);
             let busy = matches!(self.states[which], State::Runs(left) if left > 0 && left < self.runs[which]);
-            self.set(which, "busy", busy.into());
-            self.set(which, "done", done.into());
+            let name = NAMES[which];
+            self.module.drive(&format!("engine.{name}_busy"), busy);
+            self.module.drive(&format!("engine.{name}_done"), done);
             // What a pass has come to counts only with `done`.
             let noise = self.clocks.is_multiple_of(3);
             let says = |error| {
@@ -402,8 +471,11 @@ impl Bench {
                 })
             };
             let ports: &[_] = match which {
-                GEOMETRY => &[("mesh_error", says(MESH)), ("full", says(FULL))],
-                _ => &[("list_error", says(LIST))],
+                GEOMETRY => &[
+                    ("engine.mesh_error", says(MESH)),
+                    ("engine.full", says(FULL)),
+                ],
+                _ => &[("engine.list_error", says(LIST))],
             };
             for &(port, value) in ports {
                 let port = self.module.port(port);
@@ -456,7 +528,9 @@ fn regions_are_wholly_in_memory() {
         for size in 0..3 {
             bench.passes = Pass::good();
             // All that there is, of the raster.
-            bench.passes[which].flags = if which == RASTER { 0b111_1100 } else { 0b100 } | size;
+            let flags = &mut bench.passes[which].flags;
+            flags.size = size;
+            flags.choose(&["cull", "first", "second", "depth", "slot", "whole"]);
             for (port, bytes) in regions(
                 which,
                 &bench.passes[which],
@@ -505,16 +579,25 @@ fn regions_are_wholly_in_memory() {
 fn lengths_are_counted_to_the_last_word() {
     let mut bench = Bench::new(2);
     for (which, count, region, item) in [
-        (GEOMETRY, "exception_limit", "exceptions", 4),
-        (GEOMETRY, "mesh_bytes", "mesh", 1),
+        (
+            GEOMETRY,
+            "geometry.exception_limit",
+            "geometry.exceptions",
+            4,
+        ),
+        (GEOMETRY, "geometry.mesh_bytes", "geometry.mesh", 1),
     ] {
         bench.lengths(which, count, region, item);
     }
     for mut bench in [Bench::new(2), Bench::smooth(2)] {
         for (which, count, region) in [
-            (GEOMETRY, "descriptor_limit", "geometry_descriptors"),
-            (RASTER, "count_0", "descriptors_0"),
-            (RASTER, "count_1", "descriptors_1"),
+            (
+                GEOMETRY,
+                "geometry.descriptor_limit",
+                "geometry.descriptors",
+            ),
+            (RASTER, "raster.count[0]", "raster.descriptors[0]"),
+            (RASTER, "raster.count[1]", "raster.descriptors[1]"),
         ] {
             bench.lengths(which, count, region, bench.descriptor);
         }
@@ -522,9 +605,9 @@ fn lengths_are_counted_to_the_last_word() {
 
     // Longer than memory, wherever.
     bench.passes = Pass::good();
-    bench.passes[GEOMETRY].set("mesh", BASE);
+    bench.passes[GEOMETRY].set("geometry.mesh", BASE);
     for bytes in [MEMORY + 16, 1 << 28, 1 << 29, 1 << 30, 1 << 31, 0xffff_fff0] {
-        bench.passes[GEOMETRY].set("mesh_bytes", bytes);
+        bench.passes[GEOMETRY].set("geometry.mesh_bytes", bytes);
         assert_eq!(
             bench.ask([true, false])[GEOMETRY],
             ADDRESS,
@@ -536,12 +619,14 @@ fn lengths_are_counted_to_the_last_word() {
         for shift in 0..32 {
             bench.passes = Pass::good();
             bench.list_shift = shift;
-            bench.passes[GEOMETRY].flags = size;
-            bench.passes[RASTER].flags = 0b1100 | size;
-            for port in ["lists_0", "lists_1"] {
+            for which in [GEOMETRY, RASTER] {
+                bench.passes[which].flags.size = size;
+                bench.passes[which].flags.choose(&["first", "second"]);
+            }
+            for port in ["raster.lists[0]", "raster.lists[1]"] {
                 bench.passes[RASTER].set(port, BASE);
             }
-            bench.passes[GEOMETRY].set("geometry_lists", BASE);
+            bench.passes[GEOMETRY].set("geometry.lists", BASE);
             let expected = [GEOMETRY, RASTER]
                 .map(|which| refusal(which, &bench.passes[which], shift, bench.descriptor));
             assert_eq!(expected[GEOMETRY], expected[RASTER]);
@@ -559,25 +644,25 @@ fn lengths_are_counted_to_the_last_word() {
 fn regions_without_use_are_not_looked_at() {
     let mut bench = Bench::new(3);
     for used in 0..8 {
-        for (wrong, bit) in [
-            ("depth", 4),
-            ("lists_0", 2),
-            ("lists_1", 3),
-            ("descriptors_0", 2),
-            ("descriptors_1", 3),
+        let used: Vec<_> = (0..3)
+            .filter(|bit| used >> bit & 1 == 1)
+            .map(|bit| ["first", "second", "depth"][bit])
+            .collect();
+        for (wrong, flag) in [
+            ("raster.depth", "depth"),
+            ("raster.lists[0]", "first"),
+            ("raster.lists[1]", "second"),
+            ("raster.descriptors[0]", "first"),
+            ("raster.descriptors[1]", "second"),
         ] {
             bench.passes = Pass::good();
-            bench.passes[RASTER].flags = used << 2;
+            bench.passes[RASTER].flags.choose(&used);
             bench.passes[RASTER].set(wrong, 4);
-            let expected = if used << 2 >> bit & 1 == 1 {
-                ADDRESS
-            } else {
-                NONE
-            };
+            let expected = if used.contains(&flag) { ADDRESS } else { NONE };
             assert_eq!(
                 bench.ask([false, true])[RASTER],
                 expected,
-                "{wrong}, flags {used}"
+                "{wrong}, flags {used:?}"
             );
         }
     }
@@ -635,7 +720,7 @@ fn asks_in_between_are_refused() {
                     bench.passes = Pass::good();
                     bench.ends = [end; 2];
                     if wrong {
-                        bench.passes[which].set(["mesh", "frame"][which], 0);
+                        bench.passes[which].set(["geometry.mesh", "raster.frame"][which], 0);
                     }
                     bench.configure();
                     let ask = Events {
@@ -645,14 +730,13 @@ fn asks_in_between_are_refused() {
                     bench.clock(ask);
                     bench.wait(after);
                     let was_active = bench.is_active(which);
-                    // The flags of the one that is refused are nobody's.
-                    let flags = bench.passes[which].flags;
-                    bench.set(which, "flags", flags ^ 3);
-                    if !was_active {
-                        bench.set(which, "flags", flags);
-                    }
+                    // The flags of a refused pass are ignored.
+                    let flags = bench.passes[which].flags.clone();
+                    let mut others = flags.clone();
+                    others.invert();
+                    bench.set_flags(which, if was_active { &others } else { &flags });
                     bench.clock(ask);
-                    bench.set(which, "flags", flags);
+                    bench.set_flags(which, &flags);
                     bench.finish();
                     let own = if wrong { ADDRESS } else { end };
                     let expected = if was_active && own == NONE { BUSY } else { own };
@@ -744,9 +828,12 @@ fn random_sequences() {
 /// A pass that is good, or of which something is wrong.
 fn some_pass(random: &mut Pcg64Mcg, which: usize) -> Pass {
     let mut pass = Pass::good()[which].clone();
-    pass.flags = random.random_range(0..8 << (4 * which));
-    if pass.flags & 3 == 3 && random.random_bool(0.9) {
-        pass.flags ^= 1;
+    pass.flags.size = random.random_range(0..4);
+    for (_, set) in &mut pass.flags.others {
+        *set = random.random();
+    }
+    if pass.flags.size == 3 && random.random_bool(0.9) {
+        pass.flags.size = 2;
     }
     if random.random_bool(0.5) {
         let (name, value) = pass.ports[random.random_range(0..pass.ports.len())];
@@ -756,7 +843,7 @@ fn some_pass(random: &mut Pcg64Mcg, which: usize) -> Pass {
             2 => value & 0xf_fff0,
             _ => value,
         };
-        let small = name.starts_with("count") || name.ends_with("limit");
+        let small = name.contains("count") || name.ends_with("limit");
         pass.set(name, if small { value & 0xf_ffff } else { value });
     }
     pass

@@ -7,7 +7,7 @@ use glint_model::setup::{Bounds, Oriented, Setup};
 use glint_model::{
     DrawnTriangle, FrameBuffer, MeshSetup, Options, Projected, Shading, Stats, trace,
 };
-use glint_testbench::{Bits, Memory, Module, ReadPort, Stalls, WritePort};
+use glint_testbench::{Bits, Counters, Memory, Module, ReadPort, Stalls, WritePort};
 
 pub const SIZES: [(u32, u32); 3] = glint_model::SIZES;
 
@@ -133,6 +133,7 @@ fn write_clipped(memory: &mut Memory, expected: &Expected, ability: Shading) {
 
 pub struct Bench {
     pub module: Module,
+    counters: Counters,
     ability: Shading,
     memory: Memory,
     pub reads: [ReadPort; 3],
@@ -173,10 +174,11 @@ impl Bench {
         let seed = u64::from(seed);
         Self {
             memory: Memory::new(WORDS),
-            reads: ["mesh_read_", "vertex_read_", "raster_read_"]
+            reads: ["mesh", "vertex", "raster"]
                 .map(|name| ReadPort::new(&module, name, Stalls::new(seed, stalls))),
-            writes: ["descriptors_", "lists_", "frame_even_", "frame_odd_"]
+            writes: ["descriptors", "lists", "frame_even", "frame_odd"]
                 .map(|name| WritePort::new(&module, name, Stalls::new(seed + 1, stalls))),
+            counters: Counters::new(&module, "events"),
             module,
             ability,
             with_depth: true,
@@ -185,13 +187,19 @@ impl Bench {
         }
     }
 
-    pub fn set(&mut self, port: &str, value: impl Into<Bits>) {
-        let port = self.module.port(port);
+    pub fn set(&mut self, path: &str, value: impl Into<Bits>) {
+        let port = self.module.port(path);
         self.module.set(port, value);
     }
 
-    pub fn count(&self, port: &str) -> u64 {
-        self.module.value(self.module.port(port))
+    /// The number on a port.
+    pub fn read(&self, path: &str) -> u64 {
+        self.module.read(path)
+    }
+
+    /// The sum of an event so far.
+    pub fn count(&self, event: &str) -> u64 {
+        self.counters.get(event)
     }
 
     pub fn clock(&mut self) {
@@ -202,6 +210,7 @@ impl Bench {
             write.drive(&mut self.module);
         }
         self.module.settle();
+        self.counters.sample(&self.module);
         for read in &mut self.reads {
             read.sample(&self.module);
         }
@@ -221,7 +230,7 @@ impl Bench {
                 "nothing for {clocks} clocks: given {:?} written {} groups {}",
                 self.reads.each_ref().map(|read| read.given),
                 self.frame_words(),
-                self.count("groups_in")
+                self.count("groups")
             );
             self.clock();
         }
@@ -254,68 +263,92 @@ impl Bench {
             .unwrap() as u64;
         let whole = self.left[self.slot]
             .is_some_and(|left| left != (expected.size, expected.options.clear));
-        for (port, value) in [
-            ("mesh_first", u64::from(MESH) + 2),
-            ("mesh_last", u64::from(MESH) + mesh.len() as u64 / 16 - 1),
-            ("geometry_descriptors", DESCRIPTORS[0].into()),
+        let frame_slot = self.slot as u64;
+        let options = &expected.options;
+        let bytes = |word: u32| u64::from(word) * 16;
+        for (path, value) in [
+            // The mesh begins with a header of two words.
+            ("geometry.mesh", bytes(MESH + 2)),
             (
-                "descriptor_limit",
+                "geometry.mesh_bytes",
+                (mesh.len() as u64).saturating_sub(32),
+            ),
+            ("geometry.descriptors", bytes(DESCRIPTORS[0])),
+            (
+                "geometry.descriptor_limit",
                 (LIMIT * 12 / words(self.ability) as u32).into(),
             ),
-            ("geometry_lists", LISTS[0].into()),
-            ("list_shift", LIST_SHIFT.into()),
-            ("exception_base", EXCEPTIONS.into()),
-            ("exception_limit", LIMIT.into()),
-            ("geometry_size", size),
-            ("raster_size", size),
-            ("cull_back", expected.options.cull.into()),
+            ("geometry.lists", bytes(LISTS[0])),
+            ("geometry.list_shift", LIST_SHIFT.into()),
+            ("geometry.exceptions", bytes(EXCEPTIONS)),
+            ("geometry.exception_limit", LIMIT.into()),
+            ("geometry_flags.size", size),
+            ("geometry_flags.cull", options.cull.into()),
             (
-                "smooth",
-                (expected.options.shading == Shading::Smooth).into(),
+                "geometry_flags.smooth",
+                (options.shading == Shading::Smooth).into(),
             ),
-            ("scale_shift", frame.scale_shift.into()),
-            ("near_z", frame.near as u64),
-            ("depth_mantissa", frame.depth.mantissa.into()),
-            ("frame_base", FRAMES[self.slot].into()),
-            ("depth_base", DEPTH.into()),
-            ("with_depth", self.with_depth.into()),
-            ("clear", expected.options.clear.into()),
-            ("frame_slot", self.slot as u64),
-            ("whole", whole.into()),
+            ("view.scale_shift", frame.scale_shift.into()),
+            ("view.near_z", frame.near as u64),
+            ("view.depth_mantissa", frame.depth.mantissa.into()),
+            ("raster_flags.size", size),
+            ("raster_flags.depth", self.with_depth.into()),
+            ("raster_flags.slot", frame_slot),
+            ("raster_flags.whole", whole.into()),
+            ("raster.frame", bytes(FRAMES[self.slot])),
+            ("raster.depth", bytes(DEPTH)),
+            ("raster.clear", options.clear.into()),
+            ("raster.list_shift", LIST_SHIFT.into()),
         ] {
-            self.set(port, value);
+            self.set(path, value);
         }
-        self.module.drive_all("row_u", frame.u);
-        self.module.drive_all("row_v", frame.v);
-        self.module.drive_all("row_n", frame.n);
-        for (name, value) in ["tx", "ty", "tz"].into_iter().zip(frame.translation) {
-            self.module.drive(name, value);
+        self.module.drive_all("view.row_u", frame.u);
+        self.module.drive_all("view.row_v", frame.v);
+        self.module.drive_all("view.row_n", frame.n);
+        let translation = ["view.tx", "view.ty", "view.tz"];
+        for (path, value) in translation.into_iter().zip(frame.translation) {
+            self.module.drive(path, value);
         }
-        self.module.drive("depth_exponent", frame.depth.exponent);
-        self.set("raster_lists", Bits::pack(23, LISTS));
-        self.set("raster_descriptors", Bits::pack(23, DESCRIPTORS));
+        self.module
+            .drive("view.depth_exponent", frame.depth.exponent);
+        self.module.drive_all("raster.lists", LISTS.map(bytes));
+        self.module
+            .drive_all("raster.descriptors", DESCRIPTORS.map(bytes));
     }
 
     /// Draws a frame and compares it.
     pub fn draw(&mut self, name: &str, mesh: &[u8], expected: &Expected) -> Clocks {
         self.configure(mesh, expected);
-        self.wait_for("ready");
+        self.wait_for("status.ready");
         self.pulse("geometry_start");
-        let geometry = self.wait_for("geometry_done");
-        let counts = ["mesh_error", "full", "triangles", "exceptions"].map(|port| self.count(port));
+        let geometry = self.wait_for("status.geometry_done");
+        let counts = [
+            "status.mesh_error",
+            "status.full",
+            "results.triangles",
+            "results.exception_count",
+        ]
+        .map(|path| self.read(path));
         let stats = &expected.stats;
         let wanted = [0, 0, stats.triangles_in.into(), stats.clipped.into()];
         assert_eq!(counts, wanted, "{name}: error, full, triangles, exceptions");
 
         write_clipped(&mut self.memory, expected, self.ability);
-        let counts = [self.count("descriptors"), expected.clipped.len() as u64];
-        self.set("raster_counts", Bits::pack(20, counts));
-        self.set("present", if expected.clipped.is_empty() { 1 } else { 3 });
+        let counts = [
+            self.read("results.descriptor_count"),
+            expected.clipped.len() as u64,
+        ];
+        self.module.drive_all("raster.count", counts);
+        self.set("raster_flags.first", 1);
+        self.set(
+            "raster_flags.second",
+            u64::from(!expected.clipped.is_empty()),
+        );
         self.pulse("raster_start");
         let (read, written) = (self.reads[2].given, self.frame_words());
-        let raster = self.wait_for("raster_done");
+        let raster = self.wait_for("status.raster_done");
         self.left[self.slot] = Some((expected.size, expected.options.clear));
-        assert_eq!(self.count("list_error"), 0, "{name}: the lists");
+        assert_eq!(self.read("status.list_error"), 0, "{name}: the lists");
         self.compare(name, expected);
         Clocks {
             geometry,
@@ -349,11 +382,12 @@ impl Bench {
         }
         let behind = FRAMES[self.slot] + expected.size.0 * expected.size.1 / 8;
         self.memory.write(behind, &[0x77; 16 * BEHIND]);
-        self.set("raster_counts", descriptors.len() as u64 / 48);
-        self.set("present", 1);
-        self.wait_for("ready");
+        self.set("raster.count[0]", descriptors.len() as u64 / 48);
+        self.set("raster_flags.first", 1);
+        self.set("raster_flags.second", 0);
+        self.wait_for("status.ready");
         self.pulse("raster_start");
-        self.wait_for("raster_done");
+        self.wait_for("status.raster_done");
         self.left[self.slot] = Some((expected.size, expected.options.clear));
         for word in 0..BEHIND as u32 {
             let found = self.memory.word(behind + word);

@@ -131,9 +131,9 @@ fn frames_after_each_other() {
             let expected = expected_on(clear, &mesh, &ahead(1.0, 0.1), size, false);
             if random.random_ratio(1, 8) {
                 bench.configure(&mesh, &expected);
-                bench.wait_for("ready");
+                bench.wait_for("status.ready");
                 bench.pulse("geometry_start");
-                bench.wait_for("geometry_done");
+                bench.wait_for("status.geometry_done");
                 bench.pulse("raster_start");
                 for _ in 0..random.random_range(0..3000) {
                     bench.clock();
@@ -201,10 +201,10 @@ fn all_is_in_memory_when_a_pass_has_ended() {
             let expected = expected(&mesh, &inside(), SIZES[0], false);
             let mut bench = Bench::new(seed, stalls);
             bench.configure(&mesh, &expected);
-            bench.wait_for("ready");
+            bench.wait_for("status.ready");
             for (start, done) in [
-                ("geometry_start", "geometry_done"),
-                ("raster_start", "raster_done"),
+                ("geometry_start", "status.geometry_done"),
+                ("raster_start", "status.raster_done"),
             ] {
                 bench.pulse(start);
                 bench.wait_for(done);
@@ -245,12 +245,8 @@ fn a_cancelled_frame_leaves_a_working_engine() {
                 bench.clock();
             }
             bench.pulse("cancel");
-            let (geometry, raster) = (bench.count("geometry_busy"), bench.count("raster_busy"));
-            assert_eq!(
-                (geometry, raster),
-                (0, 0),
-                "{port}: still busy after it was cancelled"
-            );
+            let busy = ["status.geometry_busy", "status.raster_busy"].map(|path| bench.read(path));
+            assert_eq!(busy, [0, 0], "{port}: still busy after it was cancelled");
             bench.draw(
                 &format!("{port} cancelled after {clocks} clocks with stalls {stalls}"),
                 &mesh,
@@ -279,23 +275,23 @@ fn bad_meshes_and_full_lists_are_told() {
         ("cut short", mesh[..mesh.len() - 16].to_vec()),
     ] {
         bench.configure(&mesh, &expected);
-        bench.wait_for("ready");
+        bench.wait_for("status.ready");
         bench.pulse("geometry_start");
-        bench.wait_for("geometry_done");
-        assert_eq!(bench.count("mesh_error"), 1, "{name}");
+        bench.wait_for("status.geometry_done");
+        assert_eq!(bench.read("status.mesh_error"), 1, "{name}");
         bench.draw("a good mesh", &generated("icosphere:4"), &expected);
     }
     for (port, limit) in [
-        ("descriptor_limit", 10),
-        ("exception_limit", 3),
-        ("list_shift", 0),
+        ("geometry.descriptor_limit", 10),
+        ("geometry.exception_limit", 3),
+        ("geometry.list_shift", 0),
     ] {
         bench.configure(&mesh, &expected);
-        bench.wait_for("ready");
+        bench.wait_for("status.ready");
         bench.set(port, limit);
         bench.pulse("geometry_start");
-        bench.wait_for("geometry_done");
-        assert_eq!(bench.count("full"), 1, "{port} {limit}");
+        bench.wait_for("status.geometry_done");
+        assert_eq!(bench.read("status.full"), 1, "{port} {limit}");
         bench.draw("with room", &mesh, &expected);
     }
 }
@@ -325,7 +321,7 @@ fn whatever_lies_in_memory_a_frame_ends() {
         let list: Vec<_> = (0..40).map(|_| random.random_range(0..300)).collect();
         let name = format!("seed {seed}");
         bench.draw_whatever(&name, &expected, &descriptors, lengths, &list);
-        let wrong = bench.count("list_error");
+        let wrong = bench.read("status.list_error");
         assert_eq!(wrong, u64::from(matches!(seed % 4, 0 | 3)), "{name}");
         bench.draw(&format!("after {name}"), &mesh, &expected);
     }
@@ -352,7 +348,7 @@ fn a_sphere_is_drawn_fast() {
         };
         bench.with_depth = false;
         bench.draw("before it", &mesh, &expected);
-        let counts = ["clocks_walking", "clocks_empty"].map(|count| bench.count(count));
+        let counts = ["cycles_walking", "cycles_empty"].map(|count| bench.count(count));
         let clocks = bench.draw(name, &mesh, &expected);
         let pixels = expected.stats.pixels_covered as f64;
         let rates = [
@@ -364,8 +360,8 @@ fn a_sphere_is_drawn_fast() {
              {:.2} pixels a clock alone, {:.2} overlapped",
             clocks.geometry,
             clocks.raster,
-            bench.count("clocks_walking") - counts[0],
-            bench.count("clocks_empty") - counts[1],
+            bench.count("cycles_walking") - counts[0],
+            bench.count("cycles_empty") - counts[1],
             clocks.read,
             clocks.written,
             rates[0],

@@ -1,0 +1,172 @@
+// Generated from gateware/glint_soc/triangle.py by `python -m glint_soc.packages`. Do not edit.
+// Numbers and types of the block's ports. docs/registers.md describes the registers.
+
+`default_nettype none
+
+package triangle_registers_pkg;
+    // Each module uses some.
+    /* verilator lint_off UNUSEDPARAM */
+    localparam int unsigned ADDRESS_BITS = 23;
+    localparam int unsigned COUNT_BITS = 20;
+
+    // Results of a pass.
+    localparam logic [2:0] ERROR_NONE = 3'd0;
+    localparam logic [2:0] ERROR_SIZE = 3'd1;
+    localparam logic [2:0] ERROR_ADDRESS = 3'd2;
+    localparam logic [2:0] ERROR_BUSY = 3'd3;
+    localparam logic [2:0] ERROR_MESH = 3'd4;
+    localparam logic [2:0] ERROR_FULL = 3'd5;
+    localparam logic [2:0] ERROR_LIST = 3'd6;
+    localparam logic [2:0] ERROR_CANCELLED = 3'd7;
+
+    // Choices of a geometry pass.
+    typedef struct packed {
+        logic [1:0] size;
+        logic cull;
+        logic smooth;
+    } geometry_flags_t;
+
+    // Parameters of the geometry pass. Places in memory are byte addresses.
+    typedef struct packed {
+        logic [31:0] mesh;
+        logic [31:0] mesh_bytes;
+        logic [31:0] descriptors;
+        logic [19:0] descriptor_limit;
+        logic [31:0] lists;
+        logic [4:0] list_shift;
+        logic [31:0] exceptions;
+        logic [19:0] exception_limit;
+    } geometry_t;
+
+    // Camera of the geometry pass: docs/formats.md, the transform of a vertex.
+    typedef struct packed {
+        logic [4:0] scale_shift;
+        logic [2:0][24:0] row_u;
+        logic [2:0][24:0] row_v;
+        logic [2:0][24:0] row_n;
+        logic [43:0] tx;
+        logic [43:0] ty;
+        logic [43:0] tz;
+        logic [38:0] near_z;
+        logic [16:0] depth_mantissa;
+        logic [3:0] depth_exponent;
+    } view_t;
+
+    // Choices of a raster pass.
+    typedef struct packed {
+        logic [1:0] size;
+        logic first;
+        logic second;
+        logic depth;
+        logic slot;
+        logic whole;
+    } raster_flags_t;
+
+    // Parameters of the raster pass. Places in memory are byte addresses.
+    typedef struct packed {
+        logic [31:0] frame;
+        logic [31:0] depth;
+        logic [15:0] clear;
+        logic [4:0] list_shift;
+        logic [1:0][31:0] lists;
+        logic [1:0][31:0] descriptors;
+        logic [1:0][19:0] count;
+    } raster_t;
+
+    // Results of the geometry pass.
+    typedef struct packed {
+        logic [31:0] triangles;
+        logic [31:0] unseen;
+        logic [31:0] culled;
+        logic [19:0] descriptor_count;
+        logic [19:0] exception_count;
+    } results_t;
+
+    // State of the engine. `done` is high for one clock, its errors count with it.
+    typedef struct packed {
+        logic ready;
+        logic geometry_busy;
+        logic geometry_done;
+        logic mesh_error;
+        logic full;
+        logic raster_busy;
+        logic raster_done;
+        logic list_error;
+    } status_t;
+
+    // Growth of each counter in this clock.
+    typedef struct packed {
+        logic cycles_busy;
+        logic cycles_stalled;
+        logic stalled_reads;
+        logic stalled_lists;
+        logic stalled_frame;
+        logic items_in;
+        logic items_out;
+        logic cycles_geometry;
+        logic vertices;
+        logic cycles_raster;
+        logic cycles_walking;
+        logic cycles_empty;
+        logic groups;
+        logic [3:0] pixels_covered;
+        logic [3:0] pixels_drawn;
+        logic cycles_held;
+        logic cycles_memory;
+        logic cycles_flush;
+    } events_t;
+
+    // A raymarcher to the engine.
+    typedef struct packed {
+        logic enable;
+        logic [1:0] compose;
+        logic done;
+        logic valid;
+        logic [1:0] halves;
+        logic [10:0] row;
+        logic [5:0] line;
+        logic [7:0] column;
+        logic [7:0] mask;
+        logic [17:0] code;
+        logic [15:0] colour;
+    } field_source_t;
+
+    // The engine to a raymarcher.
+    typedef struct packed {
+        logic start;
+        logic open;
+        logic next;
+        logic ready;
+    } field_sink_t;
+
+    // A read port of the memory: to the memory.
+    typedef struct packed {
+        logic cmd_valid;
+        logic [22:0] cmd_addr;
+    } read_request_t;
+
+    // A read port of the memory: from the memory.
+    typedef struct packed {
+        logic cmd_ready;
+        logic rdata_valid;
+        logic [127:0] rdata;
+    } read_answer_t;
+
+    // A write port of the memory: to the memory.
+    typedef struct packed {
+        logic cmd_valid;
+        logic [22:0] cmd_addr;
+        logic wdata_valid;
+        logic [127:0] wdata;
+        logic [15:0] wdata_strobe;
+    } write_request_t;
+
+    // A write port of the memory: from the memory.
+    typedef struct packed {
+        logic cmd_ready;
+        logic wdata_ready;
+    } write_answer_t;
+    /* verilator lint_on UNUSEDPARAM */
+endpackage
+
+`default_nettype wire
