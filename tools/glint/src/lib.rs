@@ -6,7 +6,7 @@
 //! | [`generate`] | generates models |
 //! | [`mod@convert`], [`triangulate`], [`normals`] | scaling, triangulation and rounding to a board's mesh |
 //! | [`model`], [`view`], [`picture`] | models, cameras and frames of the command line |
-//! | [`render`] | renders a scene by the model or by a board |
+//! | [`render`] | renders a frame by the model or by a board |
 //! | [`board`] | boards: serial port, or simulation |
 //! | [`mod@flash`], [`console`], [`transfer`] | protocols of the serial line: serial boot, commands, uploads |
 //! | [`imu`] | logs of a gyroscope and an accelerometer, and their attitudes |

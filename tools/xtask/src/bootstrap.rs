@@ -35,7 +35,7 @@ pub fn bootstrap() -> Result<()> {
         .map(|error| format!("{error:#}"))
         .collect();
     if !missing.is_empty() {
-        bail!("the set-up is not complete:\n- {}", missing.join("\n- "));
+        bail!("the setup is incomplete:\n- {}", missing.join("\n- "));
     }
     Ok(())
 }
@@ -60,7 +60,7 @@ fn debian_packages() -> Result<()> {
         missing.join(" ")
     );
     if !run::succeeds(Command::new("sh").args(["-c", "test \"$(id -u)\" = 0"])) {
-        bail!("Debian packages: this needs root; type: sudo sh -c '{by_hand}'");
+        bail!("Debian packages: root required; run: sudo sh -c '{by_hand}'");
     }
     run::step("apt-get update", Command::new("apt-get").arg("update"))?;
     run::step(
@@ -70,7 +70,7 @@ fn debian_packages() -> Result<()> {
             .args(&missing)
             .env("DEBIAN_FRONTEND", "noninteractive"),
     )
-    .with_context(|| format!("Debian packages: type: {by_hand}"))
+    .with_context(|| format!("Debian packages: run: {by_hand}"))
 }
 
 /// A package counts as present if its program works, whatever installed it.
@@ -97,7 +97,7 @@ fn rust_target() -> Result<()> {
         "rustup target add",
         Command::new("rustup").args(["target", "add", RUST_TARGET]),
     )
-    .with_context(|| format!("the soft core's Rust target: type: rustup target add {RUST_TARGET}"))
+    .with_context(|| format!("the soft core's Rust target: run: rustup target add {RUST_TARGET}"))
 }
 
 fn python_environment() -> Result<()> {
@@ -120,7 +120,7 @@ fn python_environment() -> Result<()> {
             .args(["-m", "venv", "--clear"])
             .arg(paths::venv()),
     )
-    .context("the Python environment: Debian's package python3-venv is needed")?;
+    .context("the Python environment: expected Debian's package python3-venv")?;
     run::step(
         "python packages",
         Command::new(paths::venv_program("pip"))
@@ -128,6 +128,6 @@ fn python_environment() -> Result<()> {
             .args(REQUIREMENTS.iter().flat_map(|file| ["--requirement", file]))
             .current_dir(paths::root()),
     )
-    .context("the Python packages: is PyPI reachable?")?;
+    .context("the Python packages: expected access to PyPI")?;
     fs::write(&stamp, requirements).with_context(|| format!("writing {}", stamp.display()))
 }

@@ -32,7 +32,7 @@ pub fn report(name: &str, arguments: &[String]) -> Result<()> {
     if name == "raymarch" {
         gateware::build_sponge_beside()?;
         run::step(
-            "the raymarcher alone",
+            "model of the raymarcher",
             Command::new(paths::venv_program("python"))
                 .args(["gateware/tests/run.py", "--models", "raymarcher"])
                 .current_dir(paths::root()),

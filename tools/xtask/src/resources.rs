@@ -78,7 +78,10 @@ fn within(excesses: &[Excess]) -> Result<()> {
         return Ok(());
     }
     let lines: Vec<String> = excesses.iter().map(ToString::to_string).collect();
-    bail!("beyond gateware/budget.toml:\n{}", lines.join("\n"))
+    bail!(
+        "above the limits of gateware/budget.toml:\n{}",
+        lines.join("\n")
+    )
 }
 
 /// Blocks to measure, without repeats, the slowest first.
@@ -215,7 +218,7 @@ mod tests {
         let message = within(&[excess]).unwrap_err().to_string();
         assert_eq!(
             message,
-            "beyond gateware/budget.toml:\nsetup: LUT: budget 2,400, measured 2,401"
+            "above the limits of gateware/budget.toml:\nsetup: LUT: budget 2,400, measured 2,401"
         );
     }
 }

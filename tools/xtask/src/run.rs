@@ -92,10 +92,7 @@ pub fn watched_step(name: &str, command: &mut Command, mut watch: impl FnMut(&st
     // One write: another step may print at the same time.
     let tail: String = tail.iter().map(|line| format!("\n    {line}")).collect();
     print_progress(&format!("  FAIL {seconds:6.1} s  {name}{tail}"));
-    bail!(
-        "{name} failed ({status}); all of its output is in {}",
-        log_path.display()
-    )
+    bail!("{name} failed ({status}); see {}", log_path.display())
 }
 
 /// Runs `command` on this terminal, for programs with their own progress.

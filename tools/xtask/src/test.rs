@@ -85,7 +85,7 @@ impl CheckResults {
     }
 
     fn lock(&self) -> MutexGuard<'_, Vec<String>> {
-        self.failures.lock().expect("no check panics")
+        self.failures.lock().expect("checks do not panic")
     }
 
     /// Prints the counts; fails if a check has failed.

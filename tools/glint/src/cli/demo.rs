@@ -188,7 +188,7 @@ impl DemoArguments {
         })
     }
 
-    /// Renders a turn about the model that is shown; returns the cycles of a frame, the mean of all.
+    /// Renders one turn about the shown model; returns the mean cycles of a frame.
     fn orbit(
         &self,
         renderer: &mut BoardRenderer<SimulatedBoard>,
@@ -221,7 +221,7 @@ impl DemoArguments {
         Ok(cycles / u64::from(self.orbit.max(1)))
     }
 
-    /// Moves towards the sponge and around it; returns the cycles of a frame, the mean of all.
+    /// Moves towards the sponge and around it; returns the mean cycles of a frame.
     fn sponge(
         &self,
         renderer: &mut BoardRenderer<SimulatedBoard>,
@@ -236,7 +236,7 @@ impl DemoArguments {
         };
         let console = renderer.console();
         console.command(&size_command(SIZE))?;
-        // The board is a new one: it looks as unless told.
+        // A new board: every other option has its default.
         console.command(&format!("stereo {EYES}"))?;
         console.command(&format!("field {SPONGE}"))?;
         let mut cycles = 0;
@@ -267,7 +267,7 @@ impl DemoArguments {
     }
 }
 
-/// What is printed of an animation whose frames took so many cycles each.
+/// Summary line of an animation; `cycles` is the mean of a frame.
 fn line(path: &Path, what: &str, size: Size, cycles: u64) -> String {
     format!(
         "{}: {what}, {size}, by the gateware in {cycles} cycles each: {:.0} frames a second at 81.25 MHz",

@@ -20,7 +20,7 @@ pub struct FlashArguments {
     /// Board: `virtual` or a serial port.
     #[arg(long, default_value = "virtual")]
     board: BoardName,
-    /// Where it goes in memory, and where it starts.
+    /// Load address, and entry point.
     #[arg(long, default_value = "0x40000000", value_parser = parse_address)]
     address: u32,
     /// Time-out of the BIOS's request, in seconds of board time. Press reset, or the host sends `reboot`.
@@ -42,7 +42,7 @@ pub struct UploadArguments {
     /// Board: `virtual` or a serial port.
     #[arg(long)]
     board: BoardName,
-    /// Leave the model's coordinates as they are, and refuse those outside [-2, 2).
+    /// Keep the model's coordinates; those outside [-2, 2) are an error.
     #[arg(long)]
     keep_scale: bool,
     #[command(flatten)]

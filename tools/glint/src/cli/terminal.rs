@@ -17,9 +17,9 @@ const LOOK_MS: u64 = 10;
 /// Open a board's console. Ctrl-] ends the session.
 #[derive(Args)]
 pub struct ConsoleArguments {
-    /// `virtual` or a serial port.
+    /// Board: `virtual` or a serial port.
     board: BoardName,
-    /// Send this command, print its reply and end; may be given several times.
+    /// Send a command, print its reply and exit; repeatable.
     #[arg(long, value_name = "COMMAND")]
     send: Vec<String>,
     #[command(flatten)]

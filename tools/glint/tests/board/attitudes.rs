@@ -1,4 +1,4 @@
-//! Attitudes of logs: the board's are the model's.
+//! Attitudes of logs: board and model agree bit for bit.
 
 use crate::common::{console, mesh, running_board};
 use glint::fuzz::Random;

@@ -69,7 +69,7 @@ impl Budget {
         let budget: Self = toml::from_str(text)?;
         for name in budget.block.keys() {
             if !ROWS.contains(&name.as_str()) {
-                bail!("no block is named {name}; there are: {}", ROWS.join(" "));
+                bail!("unknown block {name}: expected one of {}", ROWS.join(" "));
             }
         }
         Ok(budget)
@@ -176,7 +176,7 @@ pub mod tests {
     #[test]
     fn refuses_unknown_blocks_and_resources() {
         for (from, to, said) in [
-            ("setup", "set_up", "no block is named set_up"),
+            ("setup", "set_up", "unknown block set_up"),
             ("lut = 1234", "luts = 1234", "unknown variant `luts`"),
             ("own =", "owned =", "unknown field `owned`"),
             ("lut = 1234", "lut = -1", "invalid value"),

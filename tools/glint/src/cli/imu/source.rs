@@ -15,7 +15,7 @@ pub struct SensorArguments {
     /// Board of the sensor: `virtual` (the verilated SoC with a virtual MPU-6050) or a serial port.
     #[arg(long)]
     board: BoardName,
-    /// What the virtual sensor measures, in raw counts from the board's start on [default: it lies still, with noise and bias].
+    /// Motion of the virtual sensor: a log in raw counts, from the board's start [default: at rest, with noise and bias].
     #[arg(long, value_name = "LOG.csv")]
     sensor: Option<PathBuf>,
     #[command(flatten)]
