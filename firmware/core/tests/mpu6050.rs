@@ -20,7 +20,7 @@ struct Clock(Bus);
 
 impl DelayNs for Clock {
     async fn delay_ns(&mut self, ns: u32) {
-        self.0.pass(ns.into());
+        self.0.advance(ns.into());
         let mut over = false;
         poll_fn(|_| {
             if over {

@@ -3,7 +3,7 @@
 mod rounding;
 
 use crate::error::FormatError;
-use crate::normals::Smooth;
+use crate::normals::NormalSums;
 use crate::polygons::{Corner, Polygons, Rgb8, Vector};
 use crate::triangulate::{self, area_vector, dot, unit};
 use glint_core::mesh::{self, IndexedTriangle, Rgb565, Vertex};
@@ -153,7 +153,7 @@ fn index(
     rounded: &Rounded,
     triangles: &[FlatTriangle],
 ) -> (Vec<Vertex>, Vec<IndexedTriangle>) {
-    let mut smooth = Smooth::new(rounded.positions.len());
+    let mut smooth = NormalSums::new(rounded.positions.len());
     for triangle in triangles {
         let numbers = triangle
             .corners

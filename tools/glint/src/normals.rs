@@ -5,11 +5,11 @@ use crate::triangulate::{dot, sub, unit};
 
 /// Sums the face normals about each point, weighted with the face's angle there, so that the result does not depend on the
 /// triangulation (Thürmer and Wüthrich, 1998).
-pub struct Smooth {
+pub struct NormalSums {
     sums: Vec<Vector>,
 }
 
-impl Smooth {
+impl NormalSums {
     /// Sums for a number of points.
     pub fn new(points: usize) -> Self {
         Self {

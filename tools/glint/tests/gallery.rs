@@ -41,7 +41,7 @@ fn pixels(path: &Path) -> Vec<u8> {
 
 /// Renders every picture; with `GLINT_UPDATE` in the environment it replaces the committed one.
 #[test]
-fn the_pictures_are_what_their_commands_make() {
+fn the_commands_produce_their_pictures() {
     let update = std::env::var_os("GLINT_UPDATE").is_some();
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("gallery");
     std::fs::create_dir_all(&folder).expect("the build's own folder");

@@ -8,11 +8,11 @@ use embedded_hal::i2c::{ErrorKind, ErrorType, NoAcknowledgeSource, Operation};
 use crate::chip::{Chip, Fault};
 
 /// Time of a byte at 400 kHz, in ns.
-const BYTE: u64 = 9 * 2_500;
+const BYTE_TIME: u64 = 9 * 2_500;
 /// A master's time-out of clock stretching, in ns.
-const PATIENCE: u64 = 25_000_000;
+const STRETCH_TIMEOUT: u64 = 25_000_000;
 /// Clocks with which a master frees a stuck device.
-const CLEARING: u32 = 9;
+const RECOVERY_CLOCKS: u32 = 9;
 
 /// Bus errors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,37 +78,37 @@ impl Bus {
     }
 
     /// Advances the time by ns.
-    pub fn pass(&self, time: u64) {
-        self.shared.borrow_mut().pass(time);
+    pub fn advance(&self, time: u64) {
+        self.shared.borrow_mut().advance(time);
     }
 }
 
 impl Shared {
-    fn pass(&mut self, time: u64) {
+    fn advance(&mut self, time: u64) {
         self.now += time;
         self.chip.advance(self.now);
     }
 
     fn transaction(&mut self, address: u8, operations: &mut [Operation]) -> Result<(), Error> {
         self.transactions += 1;
-        self.free()?;
+        self.require_free()?;
         self.chip.set_addressed(true);
         let result = self.operate(address, operations);
         self.chip.set_addressed(false);
-        self.pass(BYTE / 9);
+        self.advance(BYTE_TIME / 9);
         result
     }
 
     /// Checks that the bus is free, as a master does before a start.
-    fn free(&mut self) -> Result<(), Error> {
+    fn require_free(&mut self) -> Result<(), Error> {
         match self.chip.fault {
-            Some(Fault::StuckData(clocks @ 1..=CLEARING)) => {
-                self.pass(u64::from(clocks) * BYTE / 9);
+            Some(Fault::StuckData(clocks @ 1..=RECOVERY_CLOCKS)) => {
+                self.advance(u64::from(clocks) * BYTE_TIME / 9);
                 self.chip.fault = None;
                 Ok(())
             }
             Some(Fault::StuckData(_)) => {
-                self.pass(BYTE);
+                self.advance(BYTE_TIME);
                 Err(Error::Stuck)
             }
             _ => Ok(()),
@@ -122,7 +122,7 @@ impl Shared {
         for operation in operations {
             let reads = matches!(operation, Operation::Read(_));
             if reading != Some(reads) {
-                self.byte()?;
+                self.advance_byte()?;
                 if !self.chip.answers(address) {
                     return Err(Error::NoAcknowledge(NoAcknowledgeSource::Address));
                 }
@@ -131,7 +131,7 @@ impl Shared {
             match operation {
                 Operation::Write(bytes) => {
                     for &byte in bytes.iter() {
-                        self.byte()?;
+                        self.advance_byte()?;
                         if self.chip.fault == Some(Fault::NoAcknowledge) {
                             return Err(Error::NoAcknowledge(NoAcknowledgeSource::Data));
                         }
@@ -145,7 +145,7 @@ impl Shared {
                 }
                 Operation::Read(buffer) => {
                     for slot in buffer.iter_mut() {
-                        self.byte()?;
+                        self.advance_byte()?;
                         *slot = self.chip.read(self.register);
                         self.register = self.register.wrapping_add(1);
                     }
@@ -156,15 +156,15 @@ impl Shared {
     }
 
     /// Advances the time by a byte.
-    fn byte(&mut self) -> Result<(), Error> {
-        self.pass(BYTE);
+    fn advance_byte(&mut self) -> Result<(), Error> {
+        self.advance(BYTE_TIME);
         match self.chip.fault {
-            Some(Fault::Stretched(time)) if time > PATIENCE => {
-                self.pass(PATIENCE);
+            Some(Fault::Stretched(time)) if time > STRETCH_TIMEOUT => {
+                self.advance(STRETCH_TIMEOUT);
                 Err(Error::Stuck)
             }
             Some(Fault::Stretched(time)) => {
-                self.pass(time);
+                self.advance(time);
                 Ok(())
             }
             _ => Ok(()),
@@ -194,12 +194,12 @@ impl embedded_hal_async::i2c::I2c for Bus {
 
 impl embedded_hal::delay::DelayNs for Bus {
     fn delay_ns(&mut self, ns: u32) {
-        self.pass(ns.into());
+        self.advance(ns.into());
     }
 }
 
 impl embedded_hal_async::delay::DelayNs for Bus {
     async fn delay_ns(&mut self, ns: u32) {
-        self.pass(ns.into());
+        self.advance(ns.into());
     }
 }

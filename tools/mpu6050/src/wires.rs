@@ -86,7 +86,7 @@ impl Wires {
         // The chip changes SDA after the falling edge of SCL.
         while wires != self.wires {
             let (before, after) = (std::mem::replace(&mut self.wires, wires), wires);
-            self.follow(now, before, after);
+            self.on_edge(now, before, after);
             wires = self.wires(now, scl, sda);
         }
         wires
@@ -106,7 +106,7 @@ impl Wires {
         }
     }
 
-    fn note(&mut self, what: impl Into<String>) {
+    fn record(&mut self, what: impl Into<String>) {
         if let Some(log) = &mut self.log {
             log.push(what.into());
         }
@@ -122,14 +122,14 @@ impl Wires {
         }
     }
 
-    fn follow(&mut self, now: u64, before: (bool, bool), after: (bool, bool)) {
+    fn on_edge(&mut self, now: u64, before: (bool, bool), after: (bool, bool)) {
         let edges = self.edges;
         match (before, after) {
             ((true, true), (true, false)) => {
                 self.check(now, edges.scl_rose, START_SETUP, "start set-up");
                 self.check(now, edges.stop, FREE, "free bus");
                 self.edges.start = now;
-                self.note("S");
+                self.record("S");
                 self.begin(Byte::Address);
                 self.pulls = false;
                 self.chip.set_addressed(true);
@@ -137,7 +137,7 @@ impl Wires {
             ((true, false), (true, true)) => {
                 self.check(now, edges.scl_rose, STOP_SETUP, "stop set-up");
                 self.edges.stop = now;
-                self.note("P");
+                self.record("P");
                 self.phase = Phase::Idle;
                 self.chip.set_addressed(false);
             }
@@ -182,7 +182,7 @@ impl Wires {
                 *count += 1;
                 if *count == 9 {
                     let byte = *byte;
-                    self.note(format!("{byte:02x}{}", if sda { '-' } else { '+' }));
+                    self.record(format!("{byte:02x}{}", if sda { '-' } else { '+' }));
                     self.phase = if sda { Phase::Idle } else { self.next_out() };
                 }
             }
@@ -209,7 +209,7 @@ impl Wires {
                     _ => self.chip.fault != Some(Fault::NoAcknowledge),
                 };
                 let mark = if self.pulls { '+' } else { '-' };
-                self.note(format!("{bits:02x}{mark}"));
+                self.record(format!("{bits:02x}{mark}"));
                 if !self.pulls {
                     self.phase = Phase::Idle;
                 } else if let Some(Fault::Stretched(time)) = self.chip.fault {

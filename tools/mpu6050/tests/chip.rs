@@ -54,7 +54,7 @@ fn burst(bus: &mut Bus) -> (bool, Counts) {
 }
 
 #[test]
-fn it_wakes_as_the_register_map_says() {
+fn it_wakes_up_as_in_the_register_map() {
     let mut bus = still();
     assert_eq!((read(&mut bus, 0x75), read(&mut bus, 0x6b)), (0x68, 0x40));
     bus.delay_ms(20);
@@ -71,12 +71,12 @@ fn it_wakes_as_the_register_map_says() {
     write(&mut bus, 0x6b, 0x80);
     let error = bus.write(ADDRESS, &[0x6b, 1]).expect_err("no answer");
     assert_eq!(error, Error::NoAcknowledge(NoAcknowledgeSource::Address));
-    bus.pass(RESET_TIME);
+    bus.advance(RESET_TIME);
     assert_eq!((read(&mut bus, 0x6b), read(&mut bus, 0x1b)), (0x40, 0));
 }
 
 #[test]
-fn rates_and_ranges_are_those_of_the_registers() {
+fn rates_and_ranges_follow_the_registers() {
     let rate = |_| State {
         rate: [100.0, -100.0, 1990.0],
         ..State::default()
@@ -129,7 +129,7 @@ fn the_filter_delays() {
 }
 
 #[test]
-fn imperfections_are_those_asked_for() {
+fn errors_match_the_imperfections() {
     let motion = |time: f64| State {
         rate: [200.0, 0.0, 0.0],
         temperature: if time < 20.0 { 25.0 } else { 45.0 },
@@ -169,7 +169,7 @@ fn imperfections_are_those_asked_for() {
     // 0.005 °/s/√Hz through 98 Hz, and the rounding of counts.
     assert!((0.055..0.075).contains(&deviation), "{deviation}");
     assert!((2018.0..2022.0).contains(&count), "{count}");
-    bus.pass(20_000 * MILLISECOND);
+    bus.advance(20_000 * MILLISECOND);
     let (rates, ..) = mean(&mut bus);
     assert!((rates[2] - 2.0).abs() < 0.02, "{rates:?}");
 }
@@ -193,7 +193,7 @@ fn a_burst_is_one_sample_and_single_bytes_need_not_be() {
 }
 
 #[test]
-fn a_log_is_played_as_it_is() {
+fn a_log_is_played_unchanged() {
     let sample = |x| Counts {
         gyro: [x, 0, 0],
         ..Counts::default()

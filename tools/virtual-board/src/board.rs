@@ -137,7 +137,7 @@ impl VirtualBoard {
                 }
                 Some(_) => self.soc.run_to_i2c(slice),
             };
-            self.move_wires();
+            self.update_wires();
             self.collect();
         }
         self.running += start.elapsed();
@@ -168,7 +168,7 @@ impl VirtualBoard {
     }
 
     /// Passes the wires to the sensor, and its outputs back.
-    fn move_wires(&mut self) {
+    fn update_wires(&mut self) {
         let now = u128::from(self.cycles()) * 1_000_000_000 / u128::from(self.clock_hz());
         let soc = self.soc.i2c_released();
         if let Some(sensor) = &mut self.sensor {

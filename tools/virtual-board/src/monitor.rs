@@ -248,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn right_timing_is_accepted_and_every_pixel_lands_in_its_place() {
+    fn correct_timing_is_accepted_and_every_pixel_is_in_its_place() {
         let mut monitor = watching();
         monitor.watch(&video(777, 777 + 2 * FRAME));
         assert_eq!((monitor.frames(), monitor.error_count()), (2, 0));
@@ -262,7 +262,7 @@ mod tests {
     }
 
     #[test]
-    fn a_frame_that_was_joined_in_its_middle_is_not_captured() {
+    fn a_frame_seen_from_its_middle_is_not_captured() {
         let mut monitor = watching();
         // The first sample is within a vsync, whose start was not seen.
         monitor.watch(&video(0, FRAME)[1000..]);
@@ -270,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stall_of_one_tick_is_seen() {
+    fn a_stall_of_one_tick_is_detected() {
         let mut samples = video(1, 1 + FRAME);
         samples.insert(5000, samples[5000]);
         let mut monitor = watching();
@@ -287,7 +287,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wrong_porch_and_a_negative_sync_are_seen() {
+    fn a_wrong_porch_and_a_negative_sync_are_detected() {
         let mut monitor = watching();
         let negative: Vec<u32> = video(1, 1 + FRAME)
             .iter()

@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn every_rgb565_colour_survives_the_way_there_and_back() {
+    fn every_rgb565_colour_survives_a_round_trip() {
         for colour in 0..=u16::MAX {
             assert_eq!(to_rgb565(from_rgb565(colour)), colour);
         }

@@ -45,7 +45,7 @@ fn lasting(text: &str) -> String {
 /// Replays the committed transcript: sends the text after each prompt and compares all output. With `GLINT_UPDATE` in the
 /// environment it rewrites the transcript.
 #[test]
-fn the_console_speaks_as_in_the_transcript() {
+fn console_output_matches_the_transcript() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/firmware/console.txt");
     let expected = std::fs::read_to_string(&path).expect("the transcript");
     let (mut board, mut transcript) = started(&image());
@@ -76,7 +76,7 @@ fn the_console_speaks_as_in_the_transcript() {
 }
 
 #[test]
-fn noise_and_overlong_lines_are_refused_and_nothing_is_lost() {
+fn noise_and_overlong_lines_are_rejected_and_nothing_is_lost() {
     let (mut board, _) = started(&image());
     // Every byte except line ends: editing keys, partial characters and escape sequences.
     let noise = (0..500_u32).map(|index| (index.wrapping_mul(0x9e37_79b9) >> 24) as u8);

@@ -6,7 +6,7 @@ use firmware::{LIMIT, address, command, image, patch, started};
 use litex_pac::BUILD_ID;
 
 #[test]
-fn gateware_of_another_build_is_said_and_the_console_works() {
+fn gateware_of_another_build_is_reported_and_the_console_works() {
     let mut image = image();
     // A program built for other gateware.
     patch(&mut image, address(&["GLINT_BUILD_ID"]), &[!BUILD_ID]);
@@ -47,7 +47,7 @@ const TRAPS: [(&str, &[u32], u32); 2] = [
 ];
 
 #[test]
-fn a_trap_says_its_cause_and_address_and_enter_restarts() {
+fn a_trap_reports_its_cause_and_address_and_enter_restarts() {
     let reboot = address(&["commands", "reboot"]);
     let mut image = image();
     for (cause, code, value) in TRAPS {

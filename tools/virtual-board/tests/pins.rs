@@ -35,7 +35,7 @@ fn board() -> VirtualBoard {
 }
 
 #[test]
-fn buttons_and_switches_reach_the_program_and_it_the_leds() {
+fn the_program_reads_buttons_and_switches_and_sets_the_leds() {
     let mut board = board();
     assert_eq!(board.leds(), 0);
     for bit in 0..4 {

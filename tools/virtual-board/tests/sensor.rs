@@ -111,7 +111,7 @@ fn board_with_sensor(motion: impl Fn(f64) -> State + Send + 'static) -> VirtualB
 }
 
 #[test]
-fn the_camera_follows_the_sensor_and_a_lost_one_is_found_again() {
+fn the_camera_follows_the_sensor_and_a_replugged_one_is_found() {
     let mut board = board_with_sensor(turn);
     command(&mut board, "imu look");
     board.run((90 * MILLISECOND).saturating_sub(board.cycles()));
@@ -323,7 +323,7 @@ fn the_camera_follows_a_script() {
 
 /// Every fault on the board: reported on the console, ended in time, without an effect on the pictures. A second of board time.
 #[test]
-fn every_fault_is_told_and_survived() {
+fn every_fault_is_reported_and_recovered() {
     let mut board = board_with_sensor(|_| State::default());
     command(&mut board, "imu orbit");
     board.run(20 * MILLISECOND);

@@ -58,7 +58,7 @@ pub fn stream<B: Board + ?Sized>(
 ) -> Result<(), Error> {
     let command = format!("imu stream {samples}");
     console.send(&command)?;
-    let mut clock = Unwrapped::default();
+    let mut clock = ExtendedTime::default();
     let mut malformed = None;
     console.lines(&command, &mut |line| {
         if line == HEADER {
@@ -80,12 +80,12 @@ pub fn stream<B: Board + ?Sized>(
 
 /// Extends 32-bit time stamps to 64 bits, from 0.
 #[derive(Default)]
-struct Unwrapped {
+struct ExtendedTime {
     last: Option<u32>,
     time: u64,
 }
 
-impl Unwrapped {
+impl ExtendedTime {
     fn at(&mut self, stamp: u32) -> u64 {
         let last = self.last.replace(stamp).unwrap_or(stamp);
         self.time += u64::from(stamp.wrapping_sub(last));
@@ -138,7 +138,7 @@ pub fn calibrate<B: Board + ?Sized>(
         },
     )?;
     let three = |key| -> Result<[f64; 3], ConsoleError> {
-        let Numbers(numbers) = console::value(&command, &lines, key)?;
+        let Triple(numbers) = console::value(&command, &lines, key)?;
         Ok(numbers)
     };
     Ok(Calibrated {
@@ -150,9 +150,9 @@ pub fn calibrate<B: Board + ?Sized>(
 }
 
 /// Three numbers.
-struct Numbers([f64; 3]);
+struct Triple([f64; 3]);
 
-impl std::str::FromStr for Numbers {
+impl std::str::FromStr for Triple {
     type Err = ();
 
     fn from_str(text: &str) -> Result<Self, ()> {
@@ -192,7 +192,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn samples_are_read_and_nothing_else() {
+    fn only_samples_are_parsed() {
         assert_eq!(
             sample("4294967295,1,-2,4096,0,32767,-32768"),
             Some((u32::MAX, [1, -2, 4096], [0, i16::MAX, i16::MIN]))
@@ -209,8 +209,8 @@ mod tests {
     }
 
     #[test]
-    fn stamps_go_on_behind_their_end() {
-        let mut clock = Unwrapped::default();
+    fn time_stamps_continue_across_2_to_the_32() {
+        let mut clock = ExtendedTime::default();
         let times = [u32::MAX - 1, u32::MAX, 1, 1_001].map(|stamp| clock.at(stamp));
         assert_eq!(times, [0, 1, 3, 1_003]);
     }

@@ -254,7 +254,7 @@ fn bad_names_and_numbers() {
 }
 
 #[test]
-fn failures_that_are_no_bad_input() {
+fn failures_other_than_bad_input() {
     let folder = folder("failures");
     for (arguments, message) in [
         (

@@ -174,7 +174,7 @@ pub mod tests {
     }
 
     #[test]
-    fn refuses_unknown_blocks_and_resources() {
+    fn rejects_unknown_blocks_and_resources() {
         for (from, to, said) in [
             ("setup", "set_up", "unknown block set_up"),
             ("lut = 1234", "luts = 1234", "unknown variant `luts`"),

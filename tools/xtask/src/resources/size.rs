@@ -159,7 +159,7 @@ pub mod tests {
     }
 
     #[test]
-    fn refuses_what_is_no_size() {
+    fn rejects_malformed_sizes() {
         assert!(Size::parse("").is_err());
         let line = r#"{"name": "a", "yosys": "b", "logic": 1}"#;
         assert!(format!("{:#}", Size::parse(line).unwrap_err()).contains("missing field `srl`"));
@@ -181,7 +181,7 @@ pub mod tests {
     }
 
     #[test]
-    fn groups_thousands_and_tells_halves() {
+    fn groups_thousands_and_shows_halves() {
         let shown = [0.0, 60.5, 999.0, 1000.0, 32600.0, 1234567.0].map(number);
         assert_eq!(shown, ["0", "60.5", "999", "1,000", "32,600", "1,234,567"]);
     }
