@@ -1,13 +1,13 @@
 //! A short run of every fuzz target; `cargo run --bin fuzz` runs long ones.
 
-use glint::fuzz::{Inputs, Outcome, Target};
+use glint::fuzz::{Inputs, Target, Verdict};
 
 const INPUTS: u64 = 20_000;
 
 fn run(target: Target) {
     let inputs = Inputs::new(target, 0x610e);
     let accepted = (0..INPUTS)
-        .filter(|&number| inputs.run(number) == Outcome::Accepted)
+        .filter(|&number| inputs.run(number) == Verdict::Accepted)
         .count();
     // Both rejected and accepted inputs are needed: otherwise the parser's first check, or only its good path, is fuzzed.
     let share = accepted as f64 / INPUTS as f64;

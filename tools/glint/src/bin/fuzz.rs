@@ -3,7 +3,7 @@
 
 use anyhow::Context;
 use clap::Parser;
-use glint::fuzz::{Inputs, Outcome, Target};
+use glint::fuzz::{Inputs, Target, Verdict};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -110,13 +110,13 @@ fn work(target: Target, inputs: &Inputs, arguments: &Arguments, tally: &Tally, b
         let last = arguments.inputs.min(first + STRIDE);
         for number in first..last {
             let start = Instant::now();
-            let outcome = Cell::new(Outcome::Refused);
-            let run = catch_unwind(AssertUnwindSafe(|| outcome.set(inputs.run(number))));
+            let verdict = Cell::new(Verdict::Rejected);
+            let run = catch_unwind(AssertUnwindSafe(|| verdict.set(inputs.run(number))));
             tally.slowest.fetch_max(
                 start.elapsed().min(Duration::from_secs(3600)).as_micros() as u64,
                 Ordering::Relaxed,
             );
-            accepted += u64::from(outcome.get() == Outcome::Accepted);
+            accepted += u64::from(verdict.get() == Verdict::Accepted);
             if run.is_err() {
                 tally.findings.fetch_add(1, Ordering::Relaxed);
                 if let Err(error) = keep(target, inputs, number) {

@@ -7,7 +7,7 @@ mod mutate;
 mod targets;
 
 pub use mutate::{MAX_INPUT, Random};
-pub use targets::{Outcome, Target};
+pub use targets::{Target, Verdict};
 
 use mutate::mutate;
 
@@ -41,7 +41,7 @@ impl Inputs {
     }
 
     /// Runs the target on the input with a number. The caller catches panics.
-    pub fn run(&self, number: u64) -> Outcome {
+    pub fn run(&self, number: u64) -> Verdict {
         self.target.run(&self.input(number))
     }
 }

@@ -33,11 +33,11 @@ pub enum Target {
 
 /// Result of a target on an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outcome {
+pub enum Verdict {
     /// Accepted to the end.
     Accepted,
     /// Rejected somewhere.
-    Refused,
+    Rejected,
 }
 
 impl Target {
@@ -128,29 +128,29 @@ impl Target {
     }
 
     /// Runs the target. A panic is a bug.
-    pub fn run(self, input: &[u8]) -> Outcome {
+    pub fn run(self, input: &[u8]) -> Verdict {
         match self {
             Self::Upload => run_transfer(input),
             Self::Console => run_console(input),
             Self::Obj => {
                 // The same bytes serve as material file.
                 let polygons = obj::parse(input, &mut |_| Some(input.to_vec()));
-                polygons.map_or(Outcome::Refused, |polygons| run_conversion(&polygons))
+                polygons.map_or(Verdict::Rejected, |polygons| run_conversion(&polygons))
             }
             Self::Stl => {
-                stl::parse(input).map_or(Outcome::Refused, |polygons| run_conversion(&polygons))
+                stl::parse(input).map_or(Verdict::Rejected, |polygons| run_conversion(&polygons))
             }
             Self::Ply => {
-                ply::parse(input).map_or(Outcome::Refused, |polygons| run_conversion(&polygons))
+                ply::parse(input).map_or(Verdict::Rejected, |polygons| run_conversion(&polygons))
             }
-            Self::Glm => glm::parse(input).map_or(Outcome::Refused, |polygons| {
+            Self::Glm => glm::parse(input).map_or(Verdict::Rejected, |polygons| {
                 run_conversion(&polygons);
                 run_model(input);
-                Outcome::Accepted
+                Verdict::Accepted
             }),
-            Self::Imu => log::parse(input).map_or(Outcome::Refused, |entries| {
+            Self::Imu => log::parse(input).map_or(Verdict::Rejected, |entries| {
                 run_replay(&entries);
-                Outcome::Accepted
+                Verdict::Accepted
             }),
             Self::Replay => run_image(input),
         }
@@ -158,7 +158,7 @@ impl Target {
 }
 
 /// Converts and writes polygons that were parsed.
-fn run_conversion(polygons: &Polygons) -> Outcome {
+fn run_conversion(polygons: &Polygons) -> Verdict {
     // Oversized input is rejected; any other output is a valid mesh.
     let _ = convert::convert(polygons, Options { keep_scale: true });
     match convert::convert(polygons, Options::default()) {
@@ -169,9 +169,9 @@ fn run_conversion(polygons: &Polygons) -> Outcome {
                 report.error_max_lsb
             );
             assert!(glm::check(&mesh).is_ok(), "a conversion gives a valid mesh");
-            Outcome::Accepted
+            Verdict::Accepted
         }
-        Err(_) => Outcome::Refused,
+        Err(_) => Verdict::Rejected,
     }
 }
 
@@ -200,7 +200,7 @@ fn run_replay(entries: &[log::Entry]) {
 }
 
 /// Replays a log in a board's format: an accepted one gives attitudes.
-fn run_image(input: &[u8]) -> Outcome {
+fn run_image(input: &[u8]) -> Verdict {
     let mut image = input.to_vec();
     match image::replay(&mut image) {
         Ok(counts) => {
@@ -210,12 +210,12 @@ fn run_image(input: &[u8]) -> Outcome {
                 records.all(|record| image::attitude(image::from_bytes(record)).is_some()),
                 "every attitude has length 1"
             );
-            Outcome::Accepted
+            Verdict::Accepted
         }
         Err(error) => {
             assert!(!error.to_string().contains('\n'));
             assert_eq!(image, input, "a rejected log stays unchanged");
-            Outcome::Refused
+            Verdict::Rejected
         }
     }
 }
@@ -253,10 +253,10 @@ fn run_model(mesh: &[u8]) {
     );
 }
 
-fn run_console(input: &[u8]) -> Outcome {
+fn run_console(input: &[u8]) -> Verdict {
     let mut editor = LineEditor::new();
     let (mut echo, mut text) = (String::new(), String::new());
-    let mut outcome = Outcome::Refused;
+    let mut verdict = Verdict::Rejected;
     for &byte in input {
         if let Event::Line(line) = editor.on_byte(byte, &mut echo) {
             use std::fmt::Write;
@@ -265,7 +265,7 @@ fn run_console(input: &[u8]) -> Outcome {
                     // Writing to a string cannot fail.
                     let _ = write_help(&mut text, name);
                 }
-                Ok(_) => outcome = Outcome::Accepted,
+                Ok(_) => verdict = Verdict::Accepted,
                 Err(error) => {
                     let _ = write!(text, "{error}");
                     assert!(
@@ -283,7 +283,7 @@ fn run_console(input: &[u8]) -> Outcome {
         );
         echo.clear();
     }
-    outcome
+    verdict
 }
 
 /// Data of the transfers in the corpus.
@@ -292,9 +292,9 @@ pub fn upload_data(length: usize) -> Vec<u8> {
 }
 
 /// Feeds the input to one side of a transfer, in pieces, while time passes.
-fn run_transfer(input: &[u8]) -> Outcome {
+fn run_transfer(input: &[u8]) -> Verdict {
     let &[side, pace, piece, ref stream @ ..] = input else {
-        return Outcome::Refused;
+        return Verdict::Rejected;
     };
     let data = upload_data(1500);
     let mut frame = [0; MAX_FRAME];
@@ -312,10 +312,10 @@ fn run_transfer(input: &[u8]) -> Outcome {
             assert!(receiver.poll(now, &mut frame) <= MAX_FRAME);
             now += u64::from(pace) * 4;
         }
-        let outcome = ended(receiver.state());
-        match (outcome, receiver.received(), announced) {
-            (Outcome::Accepted, None, _) => panic!("done without data"),
-            (Outcome::Refused, Some(_), _) => panic!("data without being done"),
+        let verdict = ended(receiver.state());
+        match (verdict, receiver.received(), announced) {
+            (Verdict::Accepted, None, _) => panic!("done without data"),
+            (Verdict::Rejected, Some(_), _) => panic!("data without being done"),
             (_, Some(got), Some(manifest)) => {
                 assert_eq!(
                     (got.len() as u32, crc32(got)),
@@ -333,7 +333,7 @@ fn run_transfer(input: &[u8]) -> Outcome {
             State::Running,
             "a silent line ends a transfer"
         );
-        outcome
+        verdict
     } else {
         let length = [1500, 0, 100, 16][usize::from(side >> 1 & 3)];
         let mut sender = Sender::new(&data[..length], 5, Timing::HOST, now);
@@ -344,7 +344,7 @@ fn run_transfer(input: &[u8]) -> Outcome {
             now += u64::from(pace) * 4;
         }
         while sender.poll(now, &mut frame) > 0 {}
-        let outcome = ended(sender.state());
+        let verdict = ended(sender.state());
         for _ in 0..5 {
             now += 30_000;
             while sender.poll(now, &mut frame) > 0 {}
@@ -354,15 +354,15 @@ fn run_transfer(input: &[u8]) -> Outcome {
             State::Running,
             "a silent line ends a transfer"
         );
-        outcome
+        verdict
     }
 }
 
-fn ended(state: State) -> Outcome {
+fn ended(state: State) -> Verdict {
     if state == State::Done {
-        Outcome::Accepted
+        Verdict::Accepted
     } else {
-        Outcome::Refused
+        Verdict::Rejected
     }
 }
 

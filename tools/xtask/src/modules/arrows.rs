@@ -8,7 +8,7 @@ use syn::{
     Attribute, Block, ImplItemFn, Item, ItemMacro, ItemUse, Macro, Meta, PatIdent, Path, Stmt,
 };
 
-use super::tree::{self, Crate, Id, Segments, Target};
+use super::tree::{self, Crate, Definition, Id, Segments};
 
 /// For each arrow (from, to) the names that `from` takes from `to`.
 pub type Arrows = BTreeMap<(Id, Id), BTreeSet<String>>;
@@ -43,9 +43,9 @@ struct Collector<'a> {
 }
 
 impl Collector<'_> {
-    /// An item of the module itself.
+    /// An item at the module's top level.
     fn item(&mut self, item: &Item) {
-        // Child modules are walked on their own.
+        // Child modules have their own collector.
         if matches!(item, Item::Mod(_)) {
             return;
         }
@@ -55,8 +55,8 @@ impl Collector<'_> {
         self.visit_item(item);
     }
 
-    fn arrow(&mut self, target: &Target) {
-        if let Target::Item(definer, name) = target {
+    fn arrow(&mut self, target: &Definition) {
+        if let Definition::Item(definer, name) = target {
             let ends = [self.module, *definer].map(|id| self.tree.modules[id].file_module);
             if ends[0] != ends[1] {
                 self.arrows
@@ -86,10 +86,10 @@ impl Collector<'_> {
         }
     }
 
-    /// Paths in tokens that no grammar describes: the arguments of a macro. With `absolute` only those from `crate`.
+    /// Paths in the arguments of a macro or attribute, which are tokens; with `absolute` only paths from `crate`.
     fn tokens(&mut self, tokens: TokenStream, absolute: bool) {
         let mut path = Segments::new();
-        // The last tokens: `.` before a name makes it a field or a method, `::` goes on with the path.
+        // The last tokens: a single `.` before a name makes it a field or a method, `::` continues the path.
         let (mut colons, mut dot) = (0, false);
         for token in tokens {
             match token {
@@ -105,7 +105,7 @@ impl Collector<'_> {
                 TokenTree::Punct(punct) if punct.as_char() == ':' => colons += 1,
                 TokenTree::Punct(punct) => {
                     self.token_path(&mut path, absolute);
-                    (colons, dot) = (0, punct.as_char() == '.');
+                    (colons, dot) = (0, punct.as_char() == '.' && !dot);
                 }
                 TokenTree::Group(group) => {
                     self.token_path(&mut path, absolute);
@@ -146,7 +146,7 @@ impl<'ast> Visit<'ast> for Collector<'_> {
     fn visit_item_use(&mut self, item: &'ast ItemUse) {
         for import in tree::imports(&item.tree) {
             for target in self.tree.resolve(self.module, &import.path) {
-                let from_below = matches!(&target, Target::Item(definer, _) if self.tree.is_below(*definer, self.module));
+                let from_below = matches!(&target, Definition::Item(definer, _) if self.tree.is_below(*definer, self.module));
                 if !(from_below && tree::is_reexport(&item.vis)) {
                     self.arrow(&target);
                 }

@@ -49,6 +49,7 @@ fn imports_of_each_other_make_a_circle() {
         "pub struct A; fn f() { use crate::b::B as C; C::new(); }",
         "pub struct A; fn f() { use crate::b; b::B::new(); }",
         "pub struct A; fn f() { println!(\"{}\", x.y(&[super::b::B::NAME])); }",
+        "pub struct A; fn f() { g!(0..super::b::B::LIMIT) }",
         "pub struct A; fn f() -> bool { matches!(g(), crate::b::B { .. }) }",
         "#[derive(Parser)] pub struct A { #[arg(value_parser = crate::b::B::parse)] a: u32 }",
         "pub struct A; macro_rules! b { () => { $crate::b::B } }",

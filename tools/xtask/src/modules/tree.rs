@@ -48,7 +48,7 @@ enum Name {
 
 /// The meaning of a path.
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
-pub enum Target {
+pub enum Definition {
     /// A module.
     Module(Id),
     /// An item and the module that defines it.
@@ -212,17 +212,17 @@ impl Crate {
     }
 
     /// The meanings of `path` in the scope of module `from`; none for names of other crates, locals and primitives.
-    pub fn resolve(&self, from: Id, path: &[String]) -> Vec<Target> {
+    pub fn resolve(&self, from: Id, path: &[String]) -> Vec<Definition> {
         self.resolve_guarded(from, path, &mut HashSet::new())
     }
 
     /// Where the macro `name` comes from by order of text: an ancestor of `from` that defines it before its `mod`.
-    pub fn textual_macro(&self, from: Id, name: &str) -> Option<Target> {
+    pub fn textual_macro(&self, from: Id, name: &str) -> Option<Definition> {
         let mut next = Some(from);
         while let Some(id) = next {
             let is_macro = |item: &Item| matches!(item, Item::Macro(item) if item.ident.as_ref().is_some_and(|ident| ident == name));
             if self.modules[id].items.iter().any(is_macro) {
-                return Some(Target::Item(id, name.to_owned()));
+                return Some(Definition::Item(id, name.to_owned()));
             }
             next = self.modules[id].parent;
         }
@@ -235,7 +235,7 @@ impl Crate {
         from: Id,
         path: &[String],
         seen: &mut HashSet<(Id, &'a [String])>,
-    ) -> Vec<Target> {
+    ) -> Vec<Definition> {
         let Some(first) = path.first() else {
             return Vec::new();
         };
@@ -267,9 +267,9 @@ impl Crate {
         module: Id,
         path: &[String],
         seen: &mut HashSet<(Id, &'a [String])>,
-    ) -> Vec<Target> {
+    ) -> Vec<Definition> {
         let Some((name, rest)) = path.split_first() else {
-            return vec![Target::Module(module)];
+            return vec![Definition::Module(module)];
         };
         let found = self.lookup(module, name, seen);
         if rest.is_empty() {
@@ -278,8 +278,8 @@ impl Crate {
         let modules: Vec<Id> = found
             .iter()
             .filter_map(|target| match target {
-                Target::Module(id) => Some(*id),
-                Target::Item(..) => None,
+                Definition::Module(id) => Some(*id),
+                Definition::Item(..) => None,
             })
             .collect();
         if modules.is_empty() {
@@ -299,14 +299,14 @@ impl Crate {
         module: Id,
         name: &str,
         seen: &mut HashSet<(Id, &'a [String])>,
-    ) -> Vec<Target> {
+    ) -> Vec<Definition> {
         let scope = &self.modules[module];
         let mut targets = Vec::new();
         if let Some(meanings) = scope.names.get(name) {
             for meaning in meanings {
                 match meaning {
-                    Name::Item(id) => targets.push(Target::Item(*id, name.to_owned())),
-                    Name::Module(id) => targets.push(Target::Module(*id)),
+                    Name::Item(id) => targets.push(Definition::Item(*id, name.to_owned())),
+                    Name::Module(id) => targets.push(Definition::Module(*id)),
                     Name::Import(path) => {
                         if seen.insert((module, path)) {
                             targets.extend(self.resolve_guarded(module, path, seen));
@@ -320,7 +320,7 @@ impl Crate {
         for glob in &scope.globs {
             if seen.insert((module, glob)) {
                 for target in self.resolve_guarded(module, glob, seen) {
-                    if let Target::Module(id) = target {
+                    if let Definition::Module(id) = target {
                         targets.extend(self.lookup(id, name, seen));
                     }
                 }
