@@ -1,4 +1,4 @@
-# Reads the register WHO_AM_I of an MPU-6050, with what the master's register `answer` has besides, and shows it on the LEDs; and again.
+# Loop: reads WHO_AM_I of an MPU-6050 and shows the whole register `answer`, status included, on the LEDs.
     .option norelax
     li   s0, COMMAND
     li   s1, ANSWER

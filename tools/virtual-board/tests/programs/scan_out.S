@@ -1,5 +1,5 @@
-# Shows the frame at FRAME at the scale in the word at PARAMETERS, and a frame later the one whose address the word after
-# it holds, while it reads and writes memory as fast as it can. The LEDs show the underflows.
+# Shows the frame at FRAME with the scale at PARAMETERS, and one frame later the frame whose address is in the next word.
+# Meanwhile it reads and writes memory at full speed. The LEDs show the underflow count.
     .option norelax
     li   s0, SCANOUT
     li   s1, PARAMETERS
@@ -15,7 +15,7 @@
     sw   t0, CONTROL(s0)
     li   s5, 0
 
-# Each round misses the cache twice and stores twice, over 64 KiB, so that rows and banks change as well.
+# Each round has two cache misses and two stores, over 64 KiB, which changes rows and banks.
 again:
     mv   t0, s3
 traffic:

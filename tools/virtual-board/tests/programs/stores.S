@@ -1,4 +1,4 @@
-# Counts in a word of DDR3, and then shows the count on the LEDs.
+# Stores a count to a word of DDR3, then to the LEDs.
     .option norelax
     li   s0, WORD
     li   s1, LEDS_OUT
