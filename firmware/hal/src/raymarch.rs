@@ -48,7 +48,7 @@ pub enum Missing {
     Blend,
     /// Two eyes.
     Stereo,
-    /// Cones before the rays, or so fine ones.
+    /// Cones before the rays.
     Prepass,
 }
 
@@ -162,7 +162,7 @@ impl Raymarcher {
         if setup.stereo.is_some() && !stereo {
             return Err(Missing::Stereo);
         }
-        if setup.cones.is_some() && !(prepass && setup.has_fitting_cones()) {
+        if setup.cones.is_some() && !prepass {
             return Err(Missing::Prepass);
         }
         Ok(())

@@ -17,7 +17,7 @@ use crate::frame_buffer::FrameBuffer;
 use crate::mesh_in_field;
 use crate::mesh_setup::MeshSetup;
 use crate::raymarch::{
-    FieldOptions, FieldSetup, FieldStats, Palette, Prepass, Ray, RayResult, render_field,
+    FieldOptions, FieldSetup, FieldStats, Palette, Ray, RayResult, render_field,
 };
 use crate::render::{Stats, trace_frame};
 use crate::triangle::Options;
@@ -106,7 +106,7 @@ impl<'a> Subject<'a> {
 impl FieldSubject<'_> {
     fn options(&self) -> FieldOptions {
         FieldOptions {
-            prepass: self.prepass.then_some(Prepass::Fitting),
+            prepass: self.prepass,
             ..FieldOptions::new(self.field, self.appearance, self.stereo)
         }
     }

@@ -1,37 +1,36 @@
-//! The prepass against exact hits: no ray begins behind the surface that it should come to.
+//! The prepass against exact hits: no ray starts behind its surface.
 
 use glint_core::camera::View;
 use glint_core::field::Field as Scene;
 use glint_core::fixed::Q32_32;
 use glint_model::SIZES;
-use glint_model::raymarch::{FieldOptions, FieldSetup, Prepass, Rays, Stereo, Tint};
+use glint_model::raymarch::{Cones, FieldOptions, FieldSetup, Rays, Stereo, Tint};
 use glint_reference::camera::Camera;
 use glint_reference::field::{Field, views};
 
-/// What is cut from a point, and once more from where a solid's faces are, in field units.
+/// Truncation of a point, and of the position of a face, in field units.
 const STEPS: f64 = 2.0 / 4096.0;
 
-/// The prepass of one picture beside its rays without: what was found.
+/// Rays of a picture with a prepass, compared with those without.
 #[derive(Debug, Default)]
 struct Seen {
     hits: usize,
-    /// Rays that begin farther on than without.
+    /// Rays that start farther along.
     helped: usize,
-    /// How far a ray begins behind a surface at most, in field units.
+    /// Largest distance of a start behind the surface, in field units.
     behind: f64,
-    /// Rays that end otherwise than without.
+    /// Rays with another end.
     changed: usize,
     /// Evaluations a ray, without and with.
     cost: [f64; 2],
 }
 
-/// Looks at a pixel of each `stride` in both directions.
-fn see(scene: &str, view: &View, size: (u32, u32), options: &FieldOptions, stride: u32) -> Seen {
-    let parsed = Scene::parse(scene).expect("a field");
-    let field = Field::of(&parsed);
-    let setup = FieldSetup::new(&parsed, view, size, options).expect("a size");
+/// Compares a pixel of each `stride` in both directions.
+fn see(scene: &str, setup: &FieldSetup, stride: u32) -> Seen {
+    let field = Field::of(&Scene::parse(scene).expect("a field"));
+    let size = (setup.width, setup.height);
     let units = setup.scale.to_num::<f64>() * 4096.0;
-    let mut rays = Rays::new(&setup);
+    let mut rays = Rays::new(setup);
     let mut seen = Seen::default();
     let eyes = if setup.stereo.is_some() { 2 } else { 1 };
     let mut count = 0;
@@ -59,7 +58,7 @@ fn see(scene: &str, view: &View, size: (u32, u32), options: &FieldOptions, strid
                 let behind = f64::from(ray.start) / 4096.0 - hit.t * units / 4096.0;
                 assert!(
                     behind <= STEPS,
-                    "{scene}, pixel {x}, {y} of eye {eye} begins {behind} behind {hit:?}: {ray:?}, {found:?}"
+                    "{scene}, pixel {x}, {y} of eye {eye} starts {behind} behind {hit:?}: {ray:?}, {found:?}"
                 );
                 seen.behind = seen.behind.max(behind);
             }
@@ -70,26 +69,26 @@ fn see(scene: &str, view: &View, size: (u32, u32), options: &FieldOptions, strid
     seen
 }
 
-fn with(scene: &str, prepass: Prepass) -> FieldOptions {
-    FieldOptions {
-        prepass: Some(prepass),
-        ..FieldOptions::of(&Scene::parse(scene).expect("a field"))
-    }
+/// The constants of a picture with a prepass.
+fn with_prepass(scene: &str, view: &View, size: (u32, u32), stereo: Option<Stereo>) -> FieldSetup {
+    let scene = Scene::parse(scene).expect("a field");
+    let options = FieldOptions {
+        prepass: true,
+        stereo,
+        ..FieldOptions::of(&scene)
+    };
+    FieldSetup::new(&scene, view, size, &options).expect("a size")
 }
 
 #[test]
-fn no_ray_of_the_views_begins_behind_a_surface() {
+fn no_ray_of_the_views_starts_behind_a_surface() {
     for (name, eye, target) in views::views() {
         let view = views::camera(eye, target).view().unwrap();
-        for (block, size) in [(2, SIZES[0]), (3, SIZES[0]), (4, SIZES[0])] {
-            let seen = see(
-                "menger:4",
-                &view,
-                size,
-                &with("menger:4", Prepass::Blocks(block)),
-                1,
-            );
-            println!("{name}, {size:?}, blocks of {}: {seen:?}", 1 << block);
+        for block in 2..=4 {
+            let mut setup = with_prepass("menger:4", &view, SIZES[0], None);
+            setup.cones = Some(Cones::new(block, setup.is_round(), &setup.steps));
+            let seen = see("menger:4", &setup, 1);
+            println!("{name}, blocks of {}: {seen:?}", 1 << block);
             assert!(seen.hits > 10_000 && seen.changed < 10, "{seen:?}");
         }
     }
@@ -97,7 +96,7 @@ fn no_ray_of_the_views_begins_behind_a_surface() {
 
 /// Cameras anywhere and of any width, with one eye and with two, in every field: 39 frames, or `GLINT_CONES`.
 #[test]
-fn no_ray_of_random_cameras_begins_behind_a_surface() {
+fn no_ray_of_random_cameras_starts_behind_a_surface() {
     let mut state = 7_u64;
     let mut random = |low: f64, high: f64| {
         state = state
@@ -135,21 +134,13 @@ fn no_ray_of_random_cameras_begins_behind_a_surface() {
         );
         let view = camera.view().expect("a camera");
         let scene = fields[frame % fields.len()];
-        let mut options = with(scene, Prepass::Fitting);
-        if frame % 3 == 0 {
-            options.stereo = Some(Stereo {
-                half_separation: Q32_32::from_num(random(0.0, 0.3)),
-                zero_parallax: Q32_32::from_num(random(1.0, 5.0)),
-                tint: Tint::RedBlue,
-            });
-        }
-        let seen = see(
-            scene,
-            &view,
-            SIZES[frame % 3],
-            &options,
-            [3, 7, 13][frame % 3],
-        );
+        let stereo = (frame % 3 == 0).then(|| Stereo {
+            half_separation: Q32_32::from_num(random(0.0, 0.3)),
+            zero_parallax: Q32_32::from_num(random(1.0, 5.0)),
+            tint: Tint::RedBlue,
+        });
+        let setup = with_prepass(scene, &view, SIZES[frame % 3], stereo);
+        let seen = see(scene, &setup, [3, 7, 13][frame % 3]);
         hits += seen.hits;
         helped += seen.helped;
         changed += seen.changed;

@@ -7,7 +7,7 @@ use glint_core::camera::View;
 use glint_core::field::Field;
 use glint_core::fixed::{Q32_32, Turns, U4_28};
 use glint_core::stereo::Stereo;
-use glint_model::raymarch::{FieldOptions, Prepass};
+use glint_model::raymarch::FieldOptions;
 use litex_pac::Peripherals;
 use litex_pac::bus::{self, Bus};
 
@@ -66,7 +66,7 @@ fn setup(field: &str, options: &FieldOptions) -> (FieldSetup, Palette) {
 
 fn cones() -> FieldOptions {
     FieldOptions {
-        prepass: Some(Prepass::Fitting),
+        prepass: true,
         ..FieldOptions::default()
     }
 }
@@ -127,23 +127,10 @@ fn what_is_not_built_is_refused_and_nothing_is_written() {
     assert_eq!(raymarcher.set_field(&setup, &palette), Ok(()));
 }
 
-/// Cones of a field are of the size that the gateware has, and of no other.
 #[test]
 fn cones_come_before_the_rays() {
     let (raymarcher, _block) = probe(IDENT, EVERYTHING);
     let mut raymarcher = raymarcher.unwrap();
-    let (others, palette) = setup(
-        "menger:4",
-        &FieldOptions {
-            prepass: Some(Prepass::Blocks(4)),
-            ..FieldOptions::default()
-        },
-    );
-    assert_eq!(
-        raymarcher.set_field(&others, &palette),
-        Err(Missing::Prepass),
-        "of 16 pixels"
-    );
     let (setup, palette) = setup("menger:4", &cones());
     raymarcher.set_field(&setup, &palette).unwrap();
     let (cones, r) = (setup.cones.unwrap(), registers());

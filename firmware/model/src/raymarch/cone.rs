@@ -7,7 +7,7 @@
 use glint_core::field::{FRACTION, cropped, magnitude};
 
 use super::options::FARTHEST;
-use super::prepass::{Cones, fitting};
+use super::prepass::Cones;
 use super::ray::Ray;
 use super::setup::FieldSetup;
 
@@ -30,13 +30,6 @@ pub struct Cone {
 }
 
 impl FieldSetup {
-    /// Whether the blocks are those that the gateware has for such a frame.
-    pub fn has_fitting_cones(&self) -> bool {
-        let eyes = if self.stereo.is_some() { 2 } else { 1 };
-        self.cones
-            .is_none_or(|cones| cones.block == fitting((self.width, self.height), eyes))
-    }
-
     /// The cone of a block, by its place among blocks.
     pub fn cone(&self, cones: &Cones, eye: usize, column: u32, row: u32) -> Cone {
         let direction = [0, 1, 2].map(|i: usize| {

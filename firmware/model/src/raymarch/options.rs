@@ -6,7 +6,6 @@ use glint_core::fixed::U4_28;
 use glint_core::stereo::Stereo;
 
 use super::palette::Palette;
-use super::prepass::Prepass;
 
 /// Upper limit of t, u11.12.
 pub(super) const FARTHEST: u32 = (1 << (11 + FRACTION)) - 1;
@@ -56,8 +55,8 @@ pub struct FieldOptions {
     pub palette: Palette,
     /// How dense the fog is: e^−z of something is left that is z/density world units away. 0 is none.
     pub fog: U4_28,
-    /// Cones before the rays, if any.
-    pub prepass: Option<Prepass>,
+    /// Whether cones precede the rays.
+    pub prepass: bool,
 }
 
 impl FieldOptions {
@@ -104,7 +103,7 @@ impl Default for FieldOptions {
             tuning: DEFAULT_TUNING,
             palette: Palette::default(),
             fog: U4_28::ZERO,
-            prepass: None,
+            prepass: false,
         }
     }
 }

@@ -1,16 +1,7 @@
-//! Which cones go before the rays, and their constants.
+//! Cones before the rays: their blocks and constants.
 
 /// Entries of the table of depths.
 const CONES: u32 = 1 << 14;
-
-/// Which blocks of pixels have a cone.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Prepass {
-    /// The smallest of 4, 8 and 16 pixels each way of which the table holds those of all eyes.
-    Fitting,
-    /// Of 2^this pixels each way, 2 to 4. The gateware has only what fits; the others are there to show what they are worth.
-    Blocks(u32),
-}
 
 /// The constants of a frame's cones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,18 +15,9 @@ pub struct Cones {
 }
 
 impl Cones {
-    /// For a picture whose D grows by `steps` with a pixel to the right and one down.
-    pub(super) fn new(
-        prepass: Prepass,
-        (width, height): (u32, u32),
-        eyes: u32,
-        round: bool,
-        steps: &[[i32; 3]; 2],
-    ) -> Self {
-        let block = match prepass {
-            Prepass::Fitting => fitting((width, height), eyes),
-            Prepass::Blocks(block) => block.clamp(2, 4),
-        };
+    /// The cones of blocks of 2^`block` pixels each way, 2 to 4. `steps` is the change of D for a pixel to the right and one down.
+    pub fn new(block: u32, round: bool, steps: &[[i32; 3]; 2]) -> Self {
+        let block = block.clamp(2, 4);
         let [across, down] = steps.map(|step| step.map(i64::from));
         let half = |sum: i64| (sum * ((1 << block) - 1)) >> 1;
         let diagonals = [1, -1]
@@ -66,8 +48,8 @@ impl Cones {
     }
 }
 
-/// The smallest blocks of which the table holds those of all eyes.
-pub(super) const fn fitting((width, height): (u32, u32), eyes: u32) -> u32 {
+/// Blocks of a picture: the smallest whose cones for all eyes fit the table, 2^this pixels each way.
+pub(super) const fn block_for((width, height): (u32, u32), eyes: u32) -> u32 {
     let mut block = 2;
     while block < 4 && eyes * (width >> block) * (height >> block) > CONES {
         block += 1;

@@ -10,7 +10,7 @@ use glint_core::stereo::{Stereo, Tint};
 use super::blend::{Beside, Blend};
 use super::directions::Directions;
 use super::options::{FARTHEST, FieldOptions, Tuning};
-use super::prepass::Cones;
+use super::prepass::{Cones, block_for};
 use crate::depth::DepthScale;
 use crate::error::{RenderError, SIZES};
 
@@ -136,7 +136,7 @@ impl FieldSetup {
         let eyes = if options.stereo.is_some() { 2 } else { 1 };
         let cones = options
             .prepass
-            .map(|prepass| Cones::new(prepass, (width, height), eyes, round, &steps));
+            .then(|| Cones::new(block_for((width, height), eyes), round, &steps));
         Ok(Self {
             width,
             height,

@@ -1,7 +1,7 @@
 //! Whole frames of the raymarcher: every pixel once, as the model has it, in the band that is open.
 
 use glint_model::SIZES;
-use glint_model::raymarch::{FieldSetup, FieldStats, Palette, Prepass, Rays, State};
+use glint_model::raymarch::{FieldSetup, FieldStats, Palette, Rays, State};
 use glint_testbench::{Module, Sink, Stalls};
 
 use crate::common::Random;
@@ -202,7 +202,7 @@ fn frames_of_sponges_with_cones_and_stalls() {
     let mut random = Random(12);
     let mut bench = Bench::new("raymarcher_sponge", 4, 2);
     for _ in 0..3 {
-        let mut setup = setup_with(&mut random, &SPONGES, Some(Prepass::Fitting));
+        let mut setup = setup_with(&mut random, &SPONGES, true);
         setup.tuning.cap = setup.tuning.cap.min(20);
         bench.draw(&mut random, &setup, &Palette::default(), false);
     }
@@ -214,7 +214,7 @@ fn frames_of_round_fields_in_all_lights() {
     let mut bench = Bench::new("raymarcher", 2, 1);
     for frame in 0..5 {
         let fields = [&ROUND[..], &UNIONS, &SPONGES][frame % 3];
-        let prepass = (frame % 2 == 1).then_some(Prepass::Fitting);
+        let prepass = frame % 2 == 1;
         let mut setup = setup_with(&mut random, fields, prepass);
         setup.tuning.cap = setup.tuning.cap.min(20);
         let palette = Palette {
@@ -270,10 +270,10 @@ fn cones_take_evaluations_off_the_rays_of_a_tunnel() {
     let size = SIZES[if all { 2 } else { 0 }];
     let mut random = Random(13);
     let mut bench = Bench::new("raymarcher_sponge", 4, 1);
-    let clocks = [None, Some(Prepass::Fitting)].map(|prepass| {
+    let clocks = [false, true].map(|prepass| {
         let setup = tunnel(size, prepass);
         let taken = bench.draw(&mut random, &setup, &Palette::default(), true);
-        println!("{size:?}, {prepass:?}: {}", taken.busy(&bench));
+        println!("{size:?}, prepass {prepass}: {}", taken.busy(&bench));
         taken.counters[0]
     });
     assert!(clocks[1] * 3 < clocks[0] * 2, "{clocks:?} clocks");

@@ -1,6 +1,6 @@
 //! The ray generator: all rays of a frame, as the model has them, in their order.
 
-use glint_model::raymarch::{FieldSetup, Prepass};
+use glint_model::raymarch::FieldSetup;
 use glint_testbench::{Bits, Layout, Module, Sink, Stalls};
 
 use crate::common::Random;
@@ -138,7 +138,7 @@ fn cones_of_whole_frames() {
     let mut random = Random(7);
     let mut module = Module::new(GENERATOR, 3);
     for number in 0..12 {
-        let setup = setup_with(&mut random, &every_field(), Some(Prepass::Fitting));
+        let setup = setup_with(&mut random, &every_field(), true);
         let cones = setup.cones.expect("cones");
         let [columns, rows] = [setup.width, setup.height].map(|pixels| pixels >> cones.block);
         set_generator(&mut module, &setup, 45);

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use glint_model::raymarch::{FieldSetup, Prepass};
+use glint_model::raymarch::FieldSetup;
 use glint_testbench::{Bits, Layout, Module, Sink, Source, Stalls};
 
 use crate::common::Random;
@@ -167,7 +167,7 @@ fn random_cones_and_rays_in_all_fields() {
     let mut random = Random(4);
     let mut benches = benches("ring_lane_all");
     for frame in 0..rays() / RAYS / 5 {
-        let setup = setup_with(&mut random, &every_field(), Some(Prepass::Fitting));
+        let setup = setup_with(&mut random, &every_field(), true);
         let bench = &mut benches[frame % 4];
         if frame / 4 % 3 == 2 {
             bench.check(&setup, false, some_rays(&mut random, &bench.ray(), &setup));

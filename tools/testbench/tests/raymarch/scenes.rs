@@ -4,7 +4,7 @@ use glint_core::camera::View;
 use glint_core::field::Field;
 use glint_core::fixed::Q32_32;
 use glint_model::SIZES;
-use glint_model::raymarch::{FieldOptions, FieldSetup, Light, Lights, Prepass, Stereo, Tint};
+use glint_model::raymarch::{FieldOptions, FieldSetup, Light, Lights, Stereo, Tint};
 
 use crate::common::{Camera, Random};
 
@@ -87,11 +87,11 @@ pub fn camera(random: &mut Random) -> View {
 
 /// The constants of a frame: how finely it is marched is random too, and how many eyes look.
 pub fn setup(random: &mut Random, fields: &[&str]) -> FieldSetup {
-    setup_with(random, fields, None)
+    setup_with(random, fields, false)
 }
 
 /// The same with cones before the rays, or without.
-pub fn setup_with(random: &mut Random, fields: &[&str], prepass: Option<Prepass>) -> FieldSetup {
+pub fn setup_with(random: &mut Random, fields: &[&str], prepass: bool) -> FieldSetup {
     let field = Field::parse(fields[random.bits() as usize % fields.len()]).unwrap();
     let mut options = FieldOptions {
         prepass,
@@ -133,7 +133,7 @@ pub fn lights(random: &mut Random) -> Lights {
 }
 
 /// In the largest tunnel of the sponge: the report's view.
-pub fn tunnel(size: (u32, u32), prepass: Option<Prepass>) -> FieldSetup {
+pub fn tunnel(size: (u32, u32), prepass: bool) -> FieldSetup {
     let (eye, target) = ([0.0625, -0.8125, 0.09375], [-0.125, 0.9375, 0.03125]);
     let view = Camera::looking(eye, target, 0.9, 0.01).rounded();
     let options = FieldOptions {

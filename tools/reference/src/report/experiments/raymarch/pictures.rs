@@ -1,6 +1,6 @@
 //! Errors of the model's pictures against exact hits, and their evaluations.
 
-use glint_model::raymarch::{FieldOptions, FieldSetup, Prepass};
+use glint_model::raymarch::{FieldOptions, FieldSetup};
 use serde::{Deserialize, Serialize};
 
 use super::requirements::{LARGE, LARGE_COST, SMALL, SMALL_COST, missed};
@@ -140,7 +140,7 @@ pub fn measure(quick: bool) -> Vec<Row> {
     };
     let mut rows = Vec::new();
     for subjects in [small, large] {
-        for prepass in [None, Some(Prepass::Fitting)] {
+        for prepass in [false, true] {
             rows.extend(subjects.iter().map(|subject| {
                 let options = FieldOptions {
                     prepass,

@@ -1,7 +1,7 @@
 //! Studies: what errors and cycles of the march depend on.
 
 use anyhow::Result;
-use glint_model::raymarch::{DEFAULT_TUNING, FieldOptions, Prepass, Tuning};
+use glint_model::raymarch::{Cones, DEFAULT_TUNING, FieldOptions, Tuning};
 
 use super::fixed_point::{FixedPoint, MODEL_FRACTION};
 use super::requirements::SMALL;
@@ -169,25 +169,32 @@ fn ends(views: &Views) -> Vec<Trial> {
 }
 
 fn prepasses(views: &Views) -> Vec<Trial> {
-    let families = [
-        ("no prepass", None),
-        ("blocks of 4", Some(Prepass::Blocks(2))),
-        ("blocks of 8", Some(Prepass::Blocks(3))),
-        ("blocks of 16", Some(Prepass::Blocks(4))),
-    ];
-    let trials = families.into_iter().flat_map(|(family, prepass)| {
-        [7, 14, 28, 56, 112].map(|threshold| {
-            let options = FieldOptions {
-                prepass,
-                ..tuned(Tuning {
-                    threshold,
-                    ..DEFAULT_TUNING
-                })
-            };
-            views.model(family, format!("{threshold}"), &options)
+    const THRESHOLDS: [u32; 5] = [7, 14, 28, 56, 112];
+    let options = |threshold, prepass| FieldOptions {
+        prepass,
+        ..tuned(Tuning {
+            threshold,
+            ..DEFAULT_TUNING
+        })
+    };
+    // The gateware has blocks of 4 pixels for pictures of this size.
+    let built = [("no prepass", false), ("blocks of 4", true)];
+    let built = built.into_iter().flat_map(|(family, prepass)| {
+        THRESHOLDS.map(|threshold| {
+            views.model(family, format!("{threshold}"), &options(threshold, prepass))
         })
     });
-    trials.collect()
+    let others = [3, 4].into_iter().flat_map(|block| {
+        THRESHOLDS.map(|threshold| {
+            let family = format!("blocks of {}", 1 << block);
+            views.trial(&family, format!("{threshold}"), 0, |subject| {
+                let mut setup = subject.setup(&options(threshold, false));
+                setup.cones = Some(Cones::new(block, setup.is_round(), &setup.steps));
+                raymarched::picture(&setup, 0)
+            })
+        })
+    });
+    built.chain(others).collect()
 }
 
 fn normals(views: &Views) -> Vec<Trial> {
