@@ -1,4 +1,4 @@
-//! The windows of main memory that `memory.x` sets aside, as what they hold.
+//! The windows of main memory of `memory.x` as typed slices.
 
 use core::mem::MaybeUninit;
 use core::ptr;
@@ -10,17 +10,17 @@ use litex_pac::cpu;
 
 use crate::models::Buffer;
 
-/// Every window, each handed out once.
+/// All windows, each lent once.
 pub struct Memory {
-    /// Two frames: RGB565, one number a pixel.
+    /// Two frame buffers: RGB565, one number a pixel.
     pub frames: [&'static mut [u16]; 2],
     /// Depth codes, one a pixel.
     pub depth: &'static mut [u32],
-    /// Room for projected vertices.
+    /// Projected vertices of the CPU backend.
     pub scratch: Scratch,
-    /// Room for two meshes.
+    /// Two meshes: the shown one, and the staging memory.
     pub meshes: [Buffer; 2],
-    /// What passes between the passes of the triangle engine.
+    /// Descriptors and band lists between the passes of the triangle engine.
     pub lists: &'static mut [u32],
 }
 
@@ -42,21 +42,21 @@ unsafe extern "C" {
     static _fast_loaded: u8;
 }
 
-/// The windows, from symbol to slice: `window!(first byte, bytes, kind of element)`.
+/// A window as a slice: `window!(first byte, size in bytes, element)`.
 macro_rules! window {
     ($start:ident, $size:ident, $element:ty) => {{
         let bytes = (&raw const $size).addr();
         // SAFETY: memory.x keeps this window for this use alone and asserts that it is aligned and overlaps nothing;
-        // every bit pattern is an element; and the caller hands it out once.
+        // every bit pattern is an element; the caller lends it once.
         unsafe { slice::from_raw_parts_mut((&raw mut $start).cast::<$element>(), bytes / size_of::<$element>()) }
     }};
 }
 
 impl Memory {
-    /// The windows, the first time; nothing after that.
+    /// The windows on the first call, `None` afterwards.
     pub fn take() -> Option<Self> {
         static TAKEN: AtomicBool = AtomicBool::new(false);
-        // Only the main program calls this, so that nothing comes between the two.
+        // Only the main program calls this: no interrupt comes between load and store.
         if TAKEN.load(Ordering::Relaxed) {
             return None;
         }
@@ -80,26 +80,25 @@ impl Memory {
     }
 }
 
-/// Puts the code that memory.x has in the memory beside the processor there. Nothing of it may run before. Every SoC of this kind has that
-/// memory, as its BIOS runs on it.
+/// Copies the fast code of memory.x to the SRAM. None of it may run before. Every SoC has this SRAM, because its BIOS uses it.
 pub fn load_fast_code() {
     let size = (&raw const _fast_size).addr();
-    // SAFETY: memory.x keeps this memory for this code alone, and the linker has put the code into the program; both are whole words, and
-    // nobody else looks at either.
+    // SAFETY: memory.x keeps this SRAM for the fast code alone, and the program holds its image; both are whole words without
+    // another user.
     unsafe {
         ptr::copy_nonoverlapping(&raw const _fast_loaded, &raw mut _fast, size);
     }
     cpu::flush_instruction_cache();
 }
 
-/// Room for projected vertices, of which only the first ones hold any: not every bit pattern is one.
+/// Memory for projected vertices. Only the first ones are initialised, because not every bit pattern is a vertex.
 pub struct Scratch {
     memory: &'static mut [MaybeUninit<Projected>],
     ready: usize,
 }
 
 impl Scratch {
-    /// Room for at least `count` vertices, if there is so much.
+    /// Memory for at least `count` vertices, or all if it is smaller.
     pub fn vertices(&mut self, count: usize) -> &mut [Projected] {
         let count = count.min(self.memory.len());
         if let Some(fresh) = self.memory.get_mut(self.ready..count) {
@@ -107,7 +106,7 @@ impl Scratch {
             self.ready = count;
         }
         let ready = self.memory.get_mut(..self.ready).unwrap_or_default();
-        // SAFETY: the first `ready` have been filled, and a `MaybeUninit` lies in memory as what it holds.
+        // SAFETY: the first `ready` are initialised, and a `MaybeUninit` has the layout of its content.
         unsafe { &mut *(ptr::from_mut(ready) as *mut [Projected]) }
     }
 }

@@ -1,4 +1,4 @@
-//! The mesh that is shown and room for the next one, and fields with a name.
+//! The shown mesh, the staging memory of the next one, and named fields.
 
 use core::slice;
 
@@ -14,18 +14,18 @@ pub struct Buffer {
 }
 
 impl Buffer {
-    /// A buffer of `memory`, at a multiple of 16 bytes.
+    /// A buffer in `memory`, aligned to 16 bytes.
     pub const fn new(memory: &'static mut [u8]) -> Self {
         Self { memory }
     }
 }
 
-/// Which model is shown.
+/// A model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Model {
-    /// The one in the program, so that there is something to see before any upload.
+    /// The cube in the program, shown before any upload.
     Cube,
-    /// The one uploaded last.
+    /// The last upload.
     Uploaded,
 }
 
@@ -33,7 +33,7 @@ impl Model {
     /// Every model, in the order of help texts.
     pub const ALL: [Self; 2] = [Self::Cube, Self::Uploaded];
 
-    /// Its name on the console.
+    /// The name on the console.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Cube => "cube",
@@ -42,7 +42,7 @@ impl Model {
     }
 }
 
-/// Fields that are shown by a name as models are.
+/// Named fields of the `scene` command.
 pub const FIELDS: [(&str, Field); 2] = [
     (
         "sponge-field",
@@ -57,20 +57,20 @@ pub const FIELDS: [(&str, Field); 2] = [
     ),
 ];
 
-/// Both meshes, and two buffers of which the one that holds no mesh takes the next upload.
+/// Both models, and two buffers: one for the uploaded mesh, one as staging memory.
 pub struct Models {
     buffers: [Buffer; 2],
-    /// The uploaded mesh; it lies in the first buffer.
+    /// The uploaded mesh, in the first buffer.
     uploaded: Option<Mesh<'static>>,
     shown: Model,
     cube: Mesh<'static>,
 }
 
 impl Models {
-    /// No upload yet; the cube is shown.
+    /// The models at start: the cube is shown.
     ///
     /// # Errors
-    /// When the program's own cube is not a mesh.
+    /// [`MeshError`] for a damaged cube.
     pub fn new(buffers: [Buffer; 2]) -> Result<Self, MeshError> {
         let cube = Mesh::new_checked(&cube::BYTES)?;
         Ok(Self {
@@ -81,7 +81,7 @@ impl Models {
         })
     }
 
-    /// The mesh that is shown.
+    /// The shown mesh.
     pub fn mesh(&self) -> &Mesh<'_> {
         match (self.shown, &self.uploaded) {
             (Model::Uploaded, Some(mesh)) => mesh,
@@ -89,17 +89,17 @@ impl Models {
         }
     }
 
-    /// Which model that is.
+    /// The shown model.
     pub const fn shown(&self) -> Model {
         self.shown
     }
 
-    /// Whether there is such a model.
+    /// Whether the model exists.
     pub const fn has(&self, model: Model) -> bool {
         matches!(model, Model::Cube) || self.uploaded.is_some()
     }
 
-    /// Shows another model, if there is one, and tells whether there is.
+    /// Shows a model and returns true if it exists.
     pub const fn show(&mut self, model: Model) -> bool {
         let exists = self.has(model);
         if exists {
@@ -108,7 +108,7 @@ impl Models {
         exists
     }
 
-    /// Where the next upload goes: never over the mesh that is shown.
+    /// The staging memory of the next upload, apart from the shown mesh.
     pub fn staging(&mut self) -> &mut [u8] {
         self.buffers[1].memory
     }
@@ -116,12 +116,11 @@ impl Models {
     /// Checks the first `length` bytes of [`staging`](Self::staging) and shows them as the uploaded model.
     ///
     /// # Errors
-    /// When they are not a mesh; then nothing changes.
+    /// [`MeshError`] for an invalid mesh; then nothing changes.
     pub fn accept(&mut self, length: usize) -> Result<(), MeshError> {
         let staged = self.buffers[1].memory.get(..length).unwrap_or_default();
-        // SAFETY: the memory is 'static. The mesh is kept as `uploaded` of these bytes' buffer, which below becomes the
-        // first; only `staging` lends a buffer for writing, always the second, and the two change places only here,
-        // where the mesh that looked at the other one is dropped.
+        // SAFETY: the memory is 'static. The mesh is stored as `uploaded`, and its buffer becomes the first below. Only `staging`
+        // lends a buffer for writing, always the second, and the two change places only here, where the old mesh is dropped.
         let staged: &'static [u8] = unsafe { slice::from_raw_parts(staged.as_ptr(), staged.len()) };
         self.uploaded = Some(Mesh::new_checked(staged)?);
         self.buffers.swap(0, 1);

@@ -1,7 +1,7 @@
 //! The clipper, for triangles that cross the near plane or leave the guard band.
 //!
-//! It works on camera coordinates, before the division. An intersection is the exact one, rounded: it does not depend on
-//! the direction of its edge, so both triangles at an edge cut it at the same vertex.
+//! Clipping works on camera coordinates, before the division. An intersection is rounded from the exact one and does not depend
+//! on the direction of its edge: both triangles at an edge meet at the same vertex.
 
 use crate::mesh_setup::MeshSetup;
 use crate::vertex::CameraVertex;
@@ -10,7 +10,7 @@ use crate::vertex::CameraVertex;
 /// 3 → 4 → 6 → 9 → 13 → 19. (A convex polygon reaches 8, but rounding may bend one.)
 const MAX_VERTICES: usize = 19;
 
-/// What is left of a triangle.
+/// A clipped triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct Polygon {
     vertices: [CameraVertex; MAX_VERTICES],
@@ -25,7 +25,7 @@ impl Polygon {
         }
     }
 
-    /// The vertices in order; fewer than three when nothing is left.
+    /// The vertices in order; fewer than three if the triangle is outside.
     pub fn vertices(&self) -> &[CameraVertex] {
         self.vertices.get(..self.len).unwrap_or_default()
     }
@@ -54,10 +54,10 @@ pub enum Plane {
 }
 
 impl Plane {
-    /// All of them, in the order in which they cut.
+    /// All planes, in the order of clipping.
     pub const ALL: [Self; 5] = [Self::Near, Self::Left, Self::Right, Self::Top, Self::Bottom];
 
-    /// How far inside a vertex is, times a positive number that depends on the plane alone; negative is outside. Exact.
+    /// The exact distance of a vertex inwards, up to a positive factor of the plane; negative is outside.
     pub fn distance(self, frame: &MeshSetup, vertex: &CameraVertex) -> i64 {
         let [width, height] = [frame.width, frame.height].map(i64::from);
         match self {
@@ -69,7 +69,7 @@ impl Plane {
         }
     }
 
-    /// Puts what the plane leaves of `polygon` into `left`. Returns whether it cuts anything; if not, nothing is put.
+    /// Writes the part of `polygon` inside the plane to `left`. Returns false, without writing, for a polygon wholly inside.
     fn cut(self, frame: &MeshSetup, polygon: &Polygon, left: &mut Polygon) -> bool {
         let vertices = polygon.vertices();
         let Some(mut from) = vertices.last() else {
@@ -101,7 +101,7 @@ impl Plane {
         true
     }
 
-    /// Where the edge from a vertex inside to one outside meets the plane.
+    /// The intersection of the plane with the edge from a vertex inside to one outside.
     fn intersection(
         self,
         frame: &MeshSetup,
@@ -132,9 +132,9 @@ fn half_pixels(frame: &MeshSetup, x: i64) -> i64 {
     x << (24 - frame.scale_shift)
 }
 
-/// Whether a triangle is wholly off one side of the picture, behind the eye or not: the side's plane goes through the eye.
+/// Whether a triangle is wholly off one side of the picture, behind the eye or not: the side's plane contains the eye.
 ///
-/// Clipping would find nothing that covers a pixel, in much more time.
+/// A fast test: clipping such a triangle leaves nothing that covers a pixel.
 pub fn off_picture(frame: &MeshSetup, triangle: &[CameraVertex; 3]) -> bool {
     let off = |x: fn(&CameraVertex) -> i64, size: u32| {
         let places = triangle
@@ -145,7 +145,7 @@ pub fn off_picture(frame: &MeshSetup, triangle: &[CameraVertex; 3]) -> bool {
     off(|v| v.x, frame.width) || off(|v| v.y, frame.height)
 }
 
-/// Cuts a triangle to the view volume, starting with its first vertex.
+/// Clips a triangle to the view volume, starting with its first vertex.
 pub fn clip(frame: &MeshSetup, triangle: [CameraVertex; 3]) -> Polygon {
     let (mut polygon, mut left) = (Polygon::empty(), Polygon::empty());
     triangle.into_iter().for_each(|vertex| polygon.push(vertex));

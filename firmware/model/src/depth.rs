@@ -12,8 +12,8 @@ pub struct DepthScale {
 }
 
 impl DepthScale {
-    /// (2^18 − 4) times the nearest depth that the mesh can have: at least the near plane's, or else that of the sphere
-    /// about the origin that holds it. `n` may be 10^−4 longer than 1, so the radius takes 2^−13 more.
+    /// (2^18 − 4) times the smallest possible depth of the mesh: that of the near plane, or that of the mesh's bounding sphere
+    /// about the origin if it lies behind the plane. `n` may be 10^−4 longer than 1, so the radius grows by 2^−13.
     pub(crate) fn new(origin: i64, near: i64, radius: u32) -> Self {
         let radius = i64::from(radius);
         let reach = (radius << 23) + (radius << 10);
@@ -27,14 +27,14 @@ impl DepthScale {
         Self::cut(scale, -37)
     }
 
-    /// This times a number above 0 and 2^`shift`, to 17 bits.
+    /// The product with a number above 0 and 2^`shift`, truncated to 17 bits.
     pub(crate) fn times(&self, scale: Q32_32, shift: u32) -> Self {
         // 17 by 40 bits.
         let product = u64::from(self.mantissa) * (scale.to_bits() as u64 >> 8);
         Self::cut(product, self.exponent - 24 + shift as i32)
     }
 
-    /// value·2^exponent, cut to 17 bits.
+    /// value·2^exponent, truncated to 17 bits.
     fn cut(value: u64, exponent: i32) -> Self {
         let lead = value.ilog2();
         Self {
@@ -43,7 +43,7 @@ impl DepthScale {
         }
     }
 
-    /// The distance along n of a depth code, to nearest; `None` for 0, where nothing was drawn.
+    /// The distance along n of a depth code, to nearest; `None` for the clear code 0.
     pub fn distance(&self, code: u32) -> Option<Q32_32> {
         let code = u64::from(code);
         // Below 2^(17 + 37).

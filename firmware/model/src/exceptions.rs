@@ -1,4 +1,4 @@
-//! The triangles that the gateware leaves to be clipped.
+//! Clipping of the gateware's exceptions.
 
 use glint_core::mesh::{Mesh, Rgb565};
 

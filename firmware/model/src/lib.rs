@@ -1,12 +1,13 @@
 //! Bit-exact twins of Glint's accelerators.
 //!
-//! This is the triangle pipeline of `docs/formats.md` in integers: the renderer of the CPU backend, and the oracle
-//! that the gateware's tests compare with. A vertex goes through [`vertex`], a triangle through [`setup`] and [`raster`], one
-//! that leaves the guard band or crosses the near plane through [`clip`]; [`render()`] runs a whole frame.
+//! The triangle pipeline and the raymarcher of `docs/formats.md` in integers: the renderer of the CPU backend, and the oracle
+//! of the gateware's tests. A [`Frame`] describes a picture, and [`Frame::draw`] draws it. Its vertices go through [`vertex`], its
+//! triangles through [`setup`] and [`raster`], those beyond the guard band or the near plane through [`clip`], its rays through
+//! [`raymarch`].
 //!
 //! No floating point, no allocation, no 128-bit integers. Every sum and product fits its type for every camera that
 //! [`glint_core::camera::View`] accepts and for every mesh; the comments prove it, and tests with overflow checks
-//! run the extremes. Where arithmetic is meant to be modular it says `wrapping`.
+//! run the extremes. Modular arithmetic is written as `wrapping`.
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,4 @@
-//! A mesh and a field in one picture, which meet by their depth codes (formats.md, "A mesh in a field").
+//! A mesh in a field: one scale of depth codes for both (formats.md, "A mesh in a field").
 
 use glint_core::camera::View;
 use glint_core::field::Field;
@@ -8,12 +8,12 @@ use crate::error::RenderError;
 use crate::mesh_setup::MeshSetup;
 use crate::raymarch::{FieldOptions, FieldSetup};
 
-/// Low bits of km that are 0, so that K times the 40.5 field units of a world unit has 17 bits too.
+/// Zero low bits of km, so that K times the 40.5 field units of a world unit has 17 bits too.
 const EVEN_BITS: u32 = 7;
 
-/// The constants of a mesh with the given radius (u.14) and of a field, whose depth codes mean the same distances.
+/// The constants of a mesh with the given radius (u.14) and of a field, with one scale of depth codes.
 ///
-/// [`trace_frame`](crate::trace_frame) draws the mesh, and [`render_field`](crate::raymarch::render_field) then the field over it.
+/// [`trace_frame`](crate::trace_frame) draws the mesh first, [`render_field`](crate::raymarch::render_field) the field over it.
 ///
 /// # Errors
 /// [`RenderError::Size`], [`RenderError::Eye`], and [`RenderError::Stereo`] for two eyes.
@@ -36,7 +36,7 @@ pub fn constants(
     Ok((frame, setup))
 }
 
-/// The smaller K, of which no depth of either has too large a code, cut to 10 bits.
+/// The smaller K, truncated to 10 bits: no depth code of either overflows.
 fn shared(a: DepthScale, b: DepthScale) -> DepthScale {
     let smaller = if (a.exponent, a.mantissa) < (b.exponent, b.mantissa) {
         a

@@ -17,17 +17,17 @@ pub struct MeshSetup {
     pub height: u32,
     /// f, the fraction bits of `u` and `v`: 10 to 18.
     pub scale_shift: u32,
-    /// The direction to the right in pixels at distance 1, f fraction bits, 25 bits.
+    /// The right axis in pixels at distance 1, f fraction bits, 25 bits.
     pub u: [i32; 3],
-    /// The direction down in pixels at distance 1, f fraction bits, 25 bits.
+    /// The down axis in pixels at distance 1, f fraction bits, 25 bits.
     pub v: [i32; 3],
-    /// The forward direction, s2.23.
+    /// The forward axis, s2.23.
     pub n: [i32; 3],
     /// −C·u and −C·v with 14 + f fraction bits, −C·n with 37; each s44.
     pub translation: [i64; 3],
     /// The near plane's distance, 37 fraction bits.
     pub near: i64,
-    /// K, which relates depth codes to distances.
+    /// K, the scale of depth codes.
     pub depth: DepthScale,
 }
 
@@ -83,7 +83,7 @@ impl Scale {
     fn new(width: u32, view: &View) -> (u32, Self) {
         let half_width = i64::from(view.half_width().to_bits());
         let numerator = |shift| i64::from(width / 2) << (28 + shift);
-        // ceil(s·2^24); cutting its low bits upwards is the ceil of the smaller powers.
+        // ceil(s·2^24), from which rounding low bits up gives the ceil of smaller powers.
         let ceil = (numerator(24) + half_width - 1) / half_width;
         let fits = |cut: u32| ((ceil + (1 << cut) - 1) >> cut) * 4097 < 1 << 36;
         let cut = (0..24).find(|&cut| fits(cut)).unwrap_or(24);

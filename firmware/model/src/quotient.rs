@@ -1,4 +1,4 @@
-//! The division of a pixel under smooth shading: colours from the planes of its light and its depth (docs/formats.md,
+//! The division of a pixel under smooth shading: the colour from the planes of light and depth (docs/formats.md,
 //! "Smooth shading").
 
 use glint_core::colour::Rgb565;
@@ -21,15 +21,15 @@ const fn inverses() -> [u32; 1024] {
 /// The bits of red, green and blue.
 const CHANNEL_BITS: [u32; 3] = [5, 6, 5];
 
-/// The colour where the light and the depth, with half a code, have these accumulators.
+/// The colour of a pixel with these accumulators of light, and of depth plus half a code.
 ///
-/// Covered pixels have a depth of 2^7 codes or more; any other numbers give a meaningless colour.
+/// The depth of a covered pixel is at least 2^7 codes. Below that the colour is meaningless.
 pub fn colour(light: [u32; 3], depth: u32) -> Rgb565 {
     let shift = depth.leading_zeros().min(11);
     let inverse = INVERSE[((depth << shift) >> 21 & 0x3FF) as usize];
     let mut colour = 0;
     for (value, bits) in core::iter::zip(light, CHANNEL_BITS) {
-        // Light is at most 63/64 of the depth, so this is 0 from which the rounding has taken something.
+        // Light is at most 63/64 of the depth: a negative value is a rounded 0.
         let product = if value >> 26 == 0x3F {
             0
         } else {

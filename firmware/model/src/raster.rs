@@ -1,8 +1,8 @@
 //! The walker: finds the pixels of a triangle row by row, tests their depth and writes them.
 //!
-//! A triangle is convex, so each row has one span. The span starts where all edges of the left side are passed and ends
-//! where an edge of the right side fails; from one row to the next both ends move along their edges, and the walker
-//! follows them pixel by pixel instead of looking through the row. Horizontal edges need no test: the bounds hold the
+//! A triangle is convex, so each row has one span. The span starts where all edges of the left side pass and ends where an
+//! edge of the right side fails. From one row to the next both ends move along their edges, and the walker follows them pixel
+//! by pixel. Horizontal edges need no test: the bounds hold the
 //! rows at or below a top edge and above a bottom edge.
 
 use core::ops::{Add, BitOr, Sub};
@@ -13,18 +13,18 @@ use crate::frame_buffer::FrameBuffer;
 use crate::quotient;
 use crate::setup::{Edge, Plane, Setup};
 
-/// What drawing one triangle took.
+/// Counts of one triangle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Coverage {
-    /// Pixels that the walker came to: those covered, and those where it found that a span has ended.
+    /// Pixels tested: covered pixels, and pixels just outside the ends of a span.
     pub tested: u32,
     /// Pixels covered.
     pub covered: u32,
-    /// Pixels covered that passed the depth test and were written.
+    /// Pixels written: covered, and passed by the depth test.
     pub drawn: u32,
 }
 
-/// Draws a triangle; the colour is that of one that has no light of its own.
+/// Draws a triangle; `colour` is that of a flat one.
 pub fn draw(setup: &Setup, colour: Rgb565, target: &mut FrameBuffer) -> Coverage {
     match &setup.light {
         None => draw_with(setup, colour, target),
@@ -32,7 +32,7 @@ pub fn draw(setup: &Setup, colour: Rgb565, target: &mut FrameBuffer) -> Coverage
     }
 }
 
-/// Not inlined, so that flat triangles need no room for it in an instruction cache.
+/// Not inlined: flat triangles leave the instruction cache to other code.
 #[inline(never)]
 fn draw_smooth(setup: &Setup, light: &[Plane; 3], target: &mut FrameBuffer) -> Coverage {
     draw_with(setup, light.map(Accumulation::new), target)
@@ -46,19 +46,19 @@ fn draw_with(setup: &Setup, brush: impl Brush, target: &mut FrameBuffer) -> Cove
     }
 }
 
-/// What gives pixels their colours, and goes over the triangle with the depth.
+/// The source of pixel colours, moved over the triangle with the depth.
 trait Brush {
-    /// Goes to the column `offset` from the start, in the row where it is.
+    /// Moves to the column `offset` from the start column of the row.
     fn go_to(&mut self, offset: u32);
-    /// Goes one pixel to the right.
+    /// Moves one pixel to the right.
     fn go_right(&mut self);
-    /// Goes to the next row; which column does not matter.
+    /// Moves to the next row, to an unspecified column.
     fn go_down(&mut self);
-    /// The colour here; the accumulator of the depth has half a code added.
+    /// The colour of the pixel; `depth` is the accumulator plus half a code.
     fn colour(&self, depth: u32) -> Rgb565;
 }
 
-/// One colour everywhere.
+/// Flat shading.
 impl Brush for Rgb565 {
     fn go_to(&mut self, _: u32) {}
     fn go_right(&mut self) {}
@@ -68,7 +68,7 @@ impl Brush for Rgb565 {
     }
 }
 
-/// A plane's value, and the one at the start column.
+/// A plane's value at the pixel and at the start column.
 #[derive(Clone, Copy)]
 struct Accumulation {
     plane: Plane,
@@ -86,7 +86,7 @@ impl Accumulation {
     }
 }
 
-/// The light.
+/// Smooth shading.
 impl Brush for [Accumulation; 3] {
     fn go_to(&mut self, offset: u32) {
         for light in self {
@@ -110,7 +110,7 @@ impl Brush for [Accumulation; 3] {
     }
 }
 
-/// An accumulator of E': `i32` where the setup has proven that it fits, else `i64`.
+/// An accumulator of E': `i32` for a narrow setup, else `i64`.
 trait Accumulator:
     Copy
     + Default
@@ -171,8 +171,8 @@ fn walk<A: Accumulator>(
     coverage
 }
 
-/// Fills the columns `from` to `to` of a row where the depth test passes; the depth has half a code added, so that cutting
-/// it rounds to nearest. Returns how many pixels were written.
+/// Fills the columns `from` to `to` of a row where the depth test passes. `depth` is the accumulator plus half a code, so that
+/// truncation rounds to nearest. Returns the number of pixels written.
 fn fill(
     target: &mut FrameBuffer,
     row: i32,
@@ -184,7 +184,7 @@ fn fill(
 ) -> u32 {
     let start = row as usize * target.width as usize;
     let span = start + from as usize..start + to as usize + 1;
-    // The bounds are in the picture, so both spans are there.
+    // The bounds are in the picture, so both spans exist.
     let colours = target.colour.get_mut(span.clone()).unwrap_or_default();
     let depths = target.depth.get_mut(span).unwrap_or_default();
     let mut drawn = 0;
@@ -201,9 +201,9 @@ fn fill(
     drawn
 }
 
-/// One end of the row's span: the outermost column that passes the one or two edges of its side.
+/// One end of a row's span: the outermost column that passes the one or two edges of its side.
 ///
-/// Outwards, E' of these edges falls by |dy| a pixel. Where a side has only one edge the other is 0 everywhere, which passes.
+/// Outwards, E' of these edges falls by |dy| a pixel. On a side with one edge the other is 0 everywhere, which passes.
 struct End<A> {
     value: [A; 2],
     inwards: [A; 2],
@@ -212,7 +212,7 @@ struct End<A> {
     outwards: i32,
     /// The outermost column in the bounds.
     outermost: i32,
-    /// The column next to the innermost: no column passes.
+    /// The column beside the innermost: no column passes.
     nowhere: i32,
 }
 
@@ -249,7 +249,7 @@ impl<A: Accumulator> End<A> {
         end
     }
 
-    /// Moves to the end of this row's span; returns how many pixels outside of the edges it came to.
+    /// Moves to the end of this row's span; returns the number of tested pixels outside.
     fn settle(&mut self) -> u32 {
         let mut missed = 0;
         if passes(self.value) {
@@ -276,7 +276,7 @@ impl<A: Accumulator> End<A> {
     }
 }
 
-/// The sign of the bitwise or is set when one of the signs is.
+/// The bitwise or is negative if one of the values is.
 fn passes<A: Accumulator>([a, b]: [A; 2]) -> bool {
     a | b >= A::default()
 }

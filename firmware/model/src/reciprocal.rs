@@ -1,4 +1,4 @@
-//! The reciprocal that the vertex stage takes of 1/Z and the triangle setup of 1/|2A|.
+//! The reciprocals 1/Z of the vertex stage and 1/|2A| of the triangle setup.
 //!
 //! A table of 256 seeds and two Newton steps; each product fits a 25×18 multiplier.
 
@@ -30,7 +30,7 @@ pub const fn recip(m: u32) -> u32 {
     if y < 1 << 24 { y } else { (1 << 24) - 1 }
 }
 
-/// How far m·y is below its power of two (2^33 for the seed, 2^40 for the first step), over 2^8, floor: s18.
+/// The residue of m·y below its power of two (2^33 for the seed, 2^40 for the first step), over 2^8, floor: s18.
 ///
 /// The difference is smaller than 2^25, and both powers are 0 modulo 2^32: the low word of the product is enough.
 const fn residue(m: u32, y: u32) -> i32 {
@@ -47,9 +47,9 @@ pub struct Reciprocal {
 }
 
 impl Reciprocal {
-    /// The reciprocal of `v` cut to 24 bits; that of 0 is that of 1.
+    /// The reciprocal of `v`, truncated to 24 bits. 0 counts as 1.
     ///
-    /// The relative error is below 2^−22: 2^−23 from the cut and one unit of `y`.
+    /// The relative error is below 2^−22: 2^−23 from the truncation and one unit of `y`.
     pub const fn of(v: u64) -> Self {
         let v = v | (v == 0) as u64;
         let lead = v.ilog2();

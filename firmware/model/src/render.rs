@@ -156,7 +156,7 @@ struct Renderer<'a, 'b> {
 }
 
 impl Renderer<'_, '_> {
-    /// Draws what needs no clipping, and counts what does.
+    /// Draws the triangles that need no clipping, and counts the others.
     fn regular(&mut self, mesh: &Mesh, scratch: &mut [Projected]) {
         let mut index = 0;
         for chunk in mesh.chunks() {
@@ -181,7 +181,7 @@ impl Renderer<'_, '_> {
         }
     }
 
-    /// Draws what needs clipping.
+    /// Draws the triangles that need clipping.
     fn exceptions(&mut self, mesh: &Mesh, scratch: &mut [Projected]) {
         let mut left = self.stats.clipped;
         if left == 0 {
@@ -216,7 +216,7 @@ impl Renderer<'_, '_> {
     }
 
     fn path<'s>(&self, triangle: &Triangle, scratch: &'s [Projected]) -> Path<'s> {
-        // A checked mesh has all the vertices it names.
+        // A checked mesh has all vertices of its indices.
         let [Some(a), Some(b), Some(c)] = triangle.indices.map(|i| scratch.get(usize::from(i)))
         else {
             return Path::Unseen;
@@ -241,7 +241,7 @@ impl Renderer<'_, '_> {
         off([a.x, b.x, c.x], self.frame.width) || off([a.y, b.y, c.y], self.frame.height)
     }
 
-    /// Clips a triangle and draws what is left. Returns whether a part of it reached the walker.
+    /// Clips a triangle and draws its parts. Returns whether one reached the walker.
     fn clip(&mut self, index: u32, triangle: &Triangle, chunk: &Chunk) -> bool {
         let (frame, shading) = (self.frame, self.options.shading);
         let mut any = false;

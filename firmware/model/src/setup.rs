@@ -46,7 +46,7 @@ fn cross(v0: ScreenVertex, v1: ScreenVertex, v2: ScreenVertex) -> i64 {
     x10 * y20 - x20 * y10
 }
 
-/// The pixels that a triangle may cover, in the picture: `left`…`right` − 1 and `top`…`bottom` − 1.
+/// Bounding rows and columns of a triangle in the picture: `left`…`right` − 1 and `top`…`bottom` − 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Bounds {
     /// The first column.
@@ -60,9 +60,9 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The pixels in the picture whose centres c have min ≤ c < max; `None` when there are none.
+    /// The pixels of the picture with centres c in min ≤ c < max; `None` without any.
     ///
-    /// The far sides are open because the top-left rule is that of a point moved a little to the right and less down.
+    /// The far sides are open: the top-left rule moves a point a little to the right and less down.
     pub fn new(vertices: &[ScreenVertex; 3], width: u32, height: u32) -> Option<Self> {
         let (left, right) = columns(vertices.map(|v| v.x), width);
         let (top, bottom) = columns(vertices.map(|v| v.y), height);
@@ -90,9 +90,9 @@ fn columns([a, b, c]: [i32; 3], size: u32) -> (i32, i32) {
 pub struct Edge {
     /// E' = floor((E − bias)/256), s34.
     pub start: i64,
-    /// What one pixel to the right adds, −dy, s21: positive on the left side of a triangle, negative on its right side.
+    /// Step of one pixel to the right, −dy, s21: positive on the left side of a triangle, negative on its right side.
     pub step_x: i32,
-    /// What one pixel down adds, dx, s21.
+    /// Step of one pixel down, dx, s21.
     pub step_y: i32,
 }
 
@@ -118,17 +118,17 @@ impl Edge {
 pub struct Plane {
     /// The value at the start pixel.
     pub start: u32,
-    /// What one pixel to the right adds.
+    /// Step of one pixel to the right.
     pub step_x: u32,
-    /// What one pixel down adds.
+    /// Step of one pixel down.
     pub step_y: u32,
 }
 
 impl Plane {
     /// Steps 6 to 8 for the values at the vertices, u18.6.
     ///
-    /// A difference of values is below 2^24 and one of places below 2^20, so N < 2^45. Inlined for flat triangles, which have
-    /// one plane and should not pay for the call.
+    /// A difference of values is below 2^24 and one of places below 2^20, so N < 2^45. Inlined, because a flat triangle has one
+    /// plane only.
     #[inline(always)]
     fn new(triangle: &Oriented, [w0, w1, w2]: [u32; 3], [i, j]: [i32; 2]) -> Self {
         let [v0, v1, v2] = triangle.vertices;
@@ -161,7 +161,7 @@ impl Plane {
 
 /// nearest(N·y·2^−(lead + 8)) for |N| < 2^45, exact: at most 2^62.
 ///
-/// The product has 69 bits, so N is taken in two parts of which the low one is shifted out first.
+/// The product has 69 bits: N is split in two parts, and the low one is shifted out first.
 const fn gradient(numerator: i64, Reciprocal { y, lead }: Reciprocal) -> i64 {
     let shift = lead + 8;
     let high = (numerator >> 24) * y as i64;
@@ -173,10 +173,10 @@ const fn gradient(numerator: i64, Reciprocal { y, lead }: Reciprocal) -> i64 {
     }
 }
 
-/// All that the walker needs to know of a triangle.
+/// The input of the walker for one triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Setup {
-    /// The pixels to look at.
+    /// Bounding rows and columns.
     pub bounds: Bounds,
     /// The column of the start pixel, in the bounds and near the topmost vertex. Its row is the first of the bounds.
     pub start_column: i32,
@@ -191,7 +191,7 @@ pub struct Setup {
 }
 
 impl Setup {
-    /// Steps 4 to 8 for a triangle in one colour and its bounds.
+    /// Steps 4 to 8, for a flat triangle.
     pub fn new(triangle: &Oriented, bounds: Bounds) -> Self {
         let [v0, v1, v2] = triangle.vertices;
         let topmost = if v0.y <= v1.y && v0.y <= v2.y {
@@ -217,9 +217,9 @@ impl Setup {
         }
     }
 
-    /// Steps 4 to 9 for a triangle with the light of its vertices, in their order, and its bounds.
+    /// Steps 4 to 9, for a triangle with the light of its vertices in their order.
     ///
-    /// Not inlined, so that flat triangles need no room for it in an instruction cache.
+    /// Not inlined: flat triangles leave the instruction cache to other code.
     #[inline(never)]
     pub fn smooth(triangle: &Oriented, bounds: Bounds, lit: &[Lit; 3]) -> Self {
         let setup = Self::new(triangle, bounds);
@@ -234,8 +234,8 @@ impl Setup {
     }
 }
 
-/// E is the doubled area of the triangle that an edge makes with the pixel, which is at most the area of a box that holds
-/// both: the triangle's, with a pixel around it. E' = E/256 fits 32 bits when that area is below 2^39.
+/// E is the doubled area of the triangle of an edge and the pixel: at most the area of the bounding box with a pixel around
+/// it. E' = E/256 fits 32 bits if that area is below 2^39.
 fn narrow(vertices: &[ScreenVertex; 3]) -> bool {
     let extent = |[a, b, c]: [i32; 3]| i64::from(a.max(b).max(c) - a.min(b).min(c) + 2 * 256);
     extent(vertices.map(|v| v.x)) * extent(vertices.map(|v| v.y)) < 1 << 39

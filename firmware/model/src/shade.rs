@@ -1,4 +1,4 @@
-//! Shading with the light at the camera.
+//! Shading with a light at the camera.
 
 use glint_core::colour::Rgb565;
 
@@ -45,17 +45,17 @@ impl Lit {
     }
 }
 
-/// The light of a vertex: what it gives to triangles of which the front is seen, and to others.
+/// The light of a vertex, for front faces and for back faces.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Light {
-    /// To a front face.
+    /// For front faces.
     pub front: Lit,
-    /// To a back face.
+    /// For back faces.
     pub back: Lit,
 }
 
 impl Light {
-    /// That of a vertex of the mesh.
+    /// The light of a mesh's vertex.
     pub fn new(colour: Rgb565, normal: [i16; 3], n: &[i32; 3]) -> Self {
         let to = |facing| Lit::new(colour, intensity(normal, n, facing));
         Self {
@@ -64,7 +64,7 @@ impl Light {
         }
     }
 
-    /// What a triangle gets of which this side is seen.
+    /// The light for a triangle with this visible side.
     pub const fn to(self, facing: Facing) -> Lit {
         match facing {
             Facing::Front => self.front,
@@ -72,7 +72,7 @@ impl Light {
         }
     }
 
-    /// Each number of two lights by itself.
+    /// Combines two lights channel by channel.
     pub fn zip_with(self, other: Self, operation: impl Fn(u16, u16) -> u16) -> Self {
         let both = |Lit(a): Lit, Lit(b): Lit| {
             Lit([0, 1, 2].map(|channel| operation(a[channel], b[channel])))

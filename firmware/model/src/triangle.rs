@@ -1,4 +1,4 @@
-//! One triangle on its way from the vertex stage to the walker: facing, bounds, light, and the fan that the clipper leaves.
+//! One triangle between vertex stage and walker: facing, bounds, light, and the fan of a clipped one.
 
 use glint_core::colour::Shading;
 use glint_core::mesh::{Chunk, Rgb565, Triangle};
@@ -79,11 +79,11 @@ impl Placed {
 
 /// The light of a triangle's vertices.
 ///
-/// Not inlined, so that flat triangles need no room for it in an instruction cache.
+/// Not inlined: flat triangles leave the instruction cache to other code.
 #[inline(never)]
 pub fn vertex_light(frame: &MeshSetup, indices: [u16; 3], chunk: &Chunk) -> [Light; 3] {
     indices.map(|i| {
-        // A checked mesh has all the vertices it names.
+        // A checked mesh has all vertices of its indices.
         chunk.vertex(usize::from(i)).map_or(Light::default(), |v| {
             Light::new(v.colour, v.normal, &frame.n)
         })
@@ -114,7 +114,7 @@ pub fn clip_fan(
     let [Some(a), Some(b), Some(c)] = triangle.indices.map(|i| chunk.vertex(usize::from(i))) else {
         return;
     };
-    // Starting at the smallest position, so that it does not matter which vertex the triangle names first.
+    // The smallest position comes first, so that the order of the triangle's indices does not matter.
     let [p, q, r] = [&a, &b, &c].map(|vertex| vertex.position);
     let vertices = if p <= q && p <= r {
         [a, b, c]

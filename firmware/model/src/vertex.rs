@@ -1,4 +1,4 @@
-//! The vertex stage: from a position of the mesh to a place on the screen.
+//! The vertex stage: from a position in the mesh to a position on the screen.
 
 use crate::mesh_setup::MeshSetup;
 use crate::reciprocal::Reciprocal;
@@ -17,34 +17,34 @@ pub struct CameraVertex {
     pub y: i64,
     /// D·n in world units, s44 with 37 fraction bits.
     pub z: i64,
-    /// What smooth shading makes of it; nothing where nobody asks.
+    /// Light under smooth shading, otherwise black.
     pub light: Light,
 }
 
 /// A vertex on the screen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ScreenVertex {
-    /// Pixels from the left, 8 fraction bits; s12.8 for every vertex that is drawn.
+    /// Pixels from the left, 8 fraction bits; s12.8 inside the guard band.
     pub x: i32,
     /// Pixels from the top, as `x`.
     pub y: i32,
-    /// The depth code before its rounding, u18.6; larger is nearer.
+    /// Depth code before rounding, u18.6; larger is nearer.
     pub w: u32,
 }
 
-/// What the vertex stage makes of a vertex.
+/// The result of the vertex stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Projected {
     /// Inside the guard band.
     Visible(ScreenVertex),
     /// Nearer than the near plane, or behind the eye.
     Behind,
-    /// Beyond the near plane, but outside the guard band. The place has saturated: only the sides on which it lies count.
+    /// Beyond the near plane, but outside the guard band. The position is saturated: only its side of the picture counts.
     BeyondGuard(ScreenVertex),
 }
 
 impl Projected {
-    /// Where on the screen it is, inside the guard band or not; `None` when it is behind.
+    /// Position on the screen, inside the guard band or not; `None` behind the near plane.
     pub const fn place(&self) -> Option<&ScreenVertex> {
         match self {
             Self::Visible(place) | Self::BeyondGuard(place) => Some(place),
@@ -52,7 +52,7 @@ impl Projected {
         }
     }
 
-    /// Whether it is beyond the near plane but outside the guard band.
+    /// Whether the vertex is beyond the near plane but outside the guard band.
     pub const fn is_beyond_guard(&self) -> bool {
         matches!(self, Self::BeyondGuard(_))
     }
@@ -93,7 +93,7 @@ pub fn project(frame: &MeshSetup, vertex: &CameraVertex) -> Projected {
 
 /// Steps 4 to 8, for a vertex that is not behind.
 ///
-/// A place more than 4096 pixels from the centre saturates at 4096 pixels or more: it stays outside the guard band.
+/// A position more than 4096 pixels from the centre saturates at 4096 pixels or more: it stays outside the guard band.
 pub fn snap(frame: &MeshSetup, vertex: &CameraVertex) -> ScreenVertex {
     let Reciprocal { y, lead } = Reciprocal::of(vertex.z as u64);
     // Z is at least near, so lead ≥ 30 (and ≤ 40); with f in 10…18 the shift is in 6…24.
@@ -110,7 +110,7 @@ pub fn snap(frame: &MeshSetup, vertex: &CameraVertex) -> ScreenVertex {
     }
 }
 
-/// Step 8: w = K/Z. A mesh that keeps to its radius never saturates.
+/// Step 8: w = K/Z. A mesh within its radius never saturates.
 fn depth(frame: &MeshSetup, y: u32, lead: u32) -> u32 {
     // 17 by 24 bits; the exponent is in −5…5, so the shift is in 6…26.
     let product = u64::from(frame.depth.mantissa) * u64::from(y);
