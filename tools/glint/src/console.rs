@@ -1,59 +1,59 @@
-//! The firmware's console from a program's side: a command goes out, its reply comes back line by line.
+//! The firmware's console for programs: a command and its reply, line by line.
 
 use crate::board::{Board, BoardError};
 use glint_core::console::PROMPT;
 
-/// Why a command has no reply.
+/// An error of a command.
 #[derive(Debug, thiserror::Error)]
 pub enum ConsoleError {
-    /// The board cannot be talked to.
+    /// An error of the board.
     #[error(transparent)]
     Board(#[from] BoardError),
-    /// The firmware said no.
+    /// The firmware refuses the command.
     #[error("the board refused `{command}`: {reason}")]
     Refused {
-        /// What was asked.
+        /// The command.
         command: String,
-        /// What it said behind `error: `.
+        /// The text behind `error: `.
         reason: String,
     },
-    /// Nothing more came, and the reply was not complete.
+    /// A timeout before the end of the reply.
     #[error(
         "waited {waited_ms} ms of the board's time for {expected}; the last lines were {last:?}"
     )]
     Silence {
-        /// What was waited for.
+        /// The awaited text.
         expected: String,
-        /// For how long nothing came.
+        /// Time without a byte, in milliseconds.
         waited_ms: u64,
-        /// What came before.
+        /// The last text received.
         last: String,
     },
-    /// The reply has not the form it should have.
+    /// A reply of another form.
     #[error("the reply to `{command}`: expected {expected}, found {found:?}")]
     Reply {
-        /// What was asked.
+        /// The command.
         command: String,
-        /// What the reply should have had.
+        /// The expected form.
         expected: String,
-        /// What it was.
+        /// The reply.
         found: String,
     },
 }
 
-/// How long a board may be silent before it has failed: the time for the slowest frame, of a board without engines.
+/// Timeout of a reply in milliseconds: longer than the slowest frame of a board without accelerators.
 pub const PATIENCE_MS: u64 = 30_000;
 
 /// The console of a board.
 pub struct Console<'b, B: ?Sized = dyn Board> {
     board: &'b mut B,
-    /// What came and has not been looked at.
+    /// Received bytes that are not read yet.
     pending: Vec<u8>,
     patience_ms: u64,
 }
 
 impl<'b, B: Board + ?Sized> Console<'b, B> {
-    /// On a board whose firmware runs.
+    /// The console of a board whose firmware runs.
     pub fn new(board: &'b mut B) -> Self {
         Self {
             board,
@@ -62,7 +62,7 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         }
     }
 
-    /// With another time after which a silent board has failed, in milliseconds of its own time.
+    /// Sets the timeout of replies, in milliseconds of the board's time.
     #[must_use]
     pub fn patience(self, patience_ms: u64) -> Self {
         Self {
@@ -71,15 +71,15 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         }
     }
 
-    /// Takes text that has been read from the board already.
+    /// Adds bytes that have been received elsewhere.
     pub fn hear(&mut self, said: &[u8]) {
         self.pending.extend_from_slice(said);
     }
 
-    /// Waits for the first prompt after a start, and returns what was said before it.
+    /// Waits for the first prompt after a start, and returns the text before it.
     ///
     /// # Errors
-    /// [`ConsoleError::Silence`] when there is no prompt.
+    /// [`ConsoleError::Silence`] without a prompt.
     pub fn greet(&mut self) -> Result<String, ConsoleError> {
         let mut said = String::new();
         loop {
@@ -100,24 +100,24 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
     /// Sends a command and returns the lines of its reply without the final `ok`.
     ///
     /// # Errors
-    /// The firmware refuses it, or does not answer.
+    /// The firmware refuses the command, or does not answer.
     pub fn command(&mut self, command: &str) -> Result<Vec<String>, ConsoleError> {
         self.send(command)?;
         self.reply(command)
     }
 
-    /// Sends a command that leads to a transfer. Returns whether the board is ready for it; if not, the command is done
+    /// Sends a command with a transfer. Returns true if the board is ready for the transfer, and false if the command has ended
     /// without one.
     ///
     /// # Errors
-    /// The firmware refuses it, or does not answer.
+    /// The firmware refuses the command, or does not answer.
     pub fn command_with_transfer(&mut self, command: &str) -> Result<bool, ConsoleError> {
         self.send(command)?;
         self.lines(command, &mut |_| {})
     }
 
-    /// Gives the lines of a reply to `on_line`, as they come, up to `ready` or the final `ok`. Returns whether the board is
-    /// ready for a transfer.
+    /// Calls `on_line` with each line of a reply up to `ready` or the final `ok`. Returns true for `ready`: the board waits for a
+    /// transfer.
     ///
     /// # Errors
     /// The firmware refuses the command, or does not answer.
@@ -138,10 +138,10 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         }
     }
 
-    /// The first word of what `info` says of a key.
+    /// The first word of a value of `info`.
     ///
     /// # Errors
-    /// The firmware knows no such key, or does not answer.
+    /// An unknown key, or no answer.
     pub fn info(&mut self, key: &str) -> Result<String, ConsoleError> {
         let command = format!("info {key}");
         let lines = self.command(&command)?;
@@ -149,7 +149,7 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         Ok(found.split(' ').next().unwrap_or_default().to_owned())
     }
 
-    /// The line during a transfer, and what has come of it already.
+    /// The line and its received bytes, for a transfer.
     pub fn line(&mut self) -> (&mut B, &mut Vec<u8>) {
         (self.board, &mut self.pending)
     }
@@ -169,15 +169,15 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         Ok(lines)
     }
 
-    /// Sends a command's line and takes in its echo.
+    /// Sends a command and reads its echo.
     ///
     /// # Errors
     /// The board does not answer.
     pub fn send(&mut self, command: &str) -> Result<(), ConsoleError> {
-        // A zero drops whatever is on the line already.
+        // A zero discards an unfinished line.
         self.board.write(format!("\0{command}\r").as_bytes())?;
         loop {
-            // What was on the way before, such as the prompt, stands before the echo.
+            // Earlier output such as the prompt precedes the echo.
             if self.next_line(command)?.ends_with(command) {
                 return Ok(());
             }
@@ -193,7 +193,7 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         }
     }
 
-    /// The next whole line that came. Behind a transfer the text begins after the last zero byte.
+    /// The next complete line. After a transfer its text starts behind the last zero byte.
     fn take_line(&mut self) -> Option<String> {
         let end = self.pending.iter().position(|&b| b == b'\n')?;
         let line: Vec<u8> = self.pending.drain(..=end).collect();
@@ -230,7 +230,7 @@ fn refused(command: &str, line: &str) -> Result<(), ConsoleError> {
 /// The value of a reply's line `key value`.
 ///
 /// # Errors
-/// There is no such line, or its value is of another kind.
+/// [`ConsoleError::Reply`] without such a line, or for a value of another type.
 pub fn value<T: std::str::FromStr>(
     command: &str,
     lines: &[String],
@@ -254,14 +254,14 @@ fn find(bytes: &[u8], wanted: &[u8]) -> Option<usize> {
         .position(|window| window == wanted)
 }
 
-/// Text without the sequences that move a terminal's cursor.
+/// Text without the escape sequences of terminals.
 fn plain(bytes: &[u8]) -> String {
     let mut text = Vec::with_capacity(bytes.len());
     let mut rest = bytes.iter();
     while let Some(&byte) = rest.next() {
         match byte {
             0x1b => {
-                // CSI: parameters up to a letter.
+                // A control sequence ends with a letter.
                 if rest.as_slice().first() == Some(&b'[') {
                     rest.next();
                     rest.by_ref().find(|b| (0x40..0x7f).contains(*b));
@@ -279,7 +279,7 @@ mod tests {
     use super::*;
     use std::collections::VecDeque;
 
-    /// Plays what a board said after each line it was sent.
+    /// Replays a board's output, one part after each line sent.
     struct Script {
         replies: VecDeque<&'static str>,
         output: Vec<u8>,
@@ -295,7 +295,7 @@ mod tests {
         }
 
         fn read(&mut self, bytes: &mut Vec<u8>, wait_ms: u64) -> Result<(), BoardError> {
-            // A byte at a time: no line comes whole.
+            // Byte by byte: no line arrives in one read.
             if self.output.is_empty() {
                 self.now_ms += wait_ms;
             } else {

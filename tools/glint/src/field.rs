@@ -1,4 +1,4 @@
-//! Fields from the command line and from files.
+//! Fields on the command line and in files.
 
 use crate::error::{FormatError, InputError};
 use crate::formats::read_file;
@@ -6,11 +6,10 @@ use glint_core::field::MAX_SPHERES;
 use std::borrow::Cow;
 use std::path::Path;
 
-/// Puts the spheres of a file into a field as it is typed: `spheres:FILE.json`, alone or in a union, becomes
-/// `spheres:X,Y,Z,R;...`. Anything else stays as it is.
+/// Replaces `spheres:FILE.json` in the text of a field, alone or in a union, by `spheres:X,Y,Z,R;...`. Other text is unchanged.
 ///
 /// # Errors
-/// The file cannot be read, or is not what [`spheres`] takes.
+/// The file cannot be read, or [`spheres`] refuses it.
 pub fn with_files(text: &str) -> Result<Cow<'_, str>, InputError> {
     const KIND: &str = "spheres:";
     let Some(at) = text.find(KIND).filter(|_| text.ends_with(".json")) else {
@@ -22,10 +21,10 @@ pub fn with_files(text: &str) -> Result<Cow<'_, str>, InputError> {
     Ok(format!("{kind}{list}").into())
 }
 
-/// Reads spheres, `[[cx,cy,cz,r],...]` in world units, and writes them as they are typed.
+/// Reads spheres, `[[cx,cy,cz,r],...]` in world units, and returns them as `X,Y,Z,R;...`.
 ///
 /// # Errors
-/// It is not such JSON, or has no sphere or more than [`MAX_SPHERES`]. Their numbers are checked with the field.
+/// Other JSON, no sphere, or more than [`MAX_SPHERES`]. The parser of fields checks the numbers.
 pub fn spheres(bytes: &[u8]) -> Result<String, FormatError> {
     let list: Vec<[f64; 4]> = serde_json::from_slice(bytes).map_err(|error| {
         let found = error.to_string().escape_debug().to_string();

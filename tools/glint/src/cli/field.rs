@@ -1,4 +1,4 @@
-//! What the command line says of a distance field.
+//! Options of a distance field.
 
 use super::common::named;
 use clap::Args;
@@ -11,41 +11,41 @@ use glint_core::light::{self, Background, Light, MAX_LIGHTS, Material, parse_rgb
 use glint_core::stereo::{self, Stereo};
 use std::fmt::Display;
 
-/// A field and how it is drawn.
+/// A field and its appearance.
 #[derive(Args)]
 pub struct FieldArguments {
     #[arg(long, value_name = "FIELD", help = field_help())]
     field: Option<String>,
-    /// Look at a field without a mesh with two eyes, each E (0 to 1) beside the camera's, which see the same at the distance ZERO; the left
-    /// one in red, the right one in blue unless told.
+    /// Stereo for a field without a mesh: two eyes, each E (0 to 1) beside the camera, with zero parallax at the distance ZERO. The left
+    /// eye is red, the right one blue or cyan [default tint: red-blue].
     #[arg(long, value_name = stereo::FORM, allow_hyphen_values = true)]
     stereo: Option<String>,
-    /// What a field is made of; `normal` has each face in the colour of its normal [default: normal].
+    /// Material of a field; `normal` colours each face by its normal [default: normal].
     #[arg(long, value_parser = named(Material::ALL, Material::name))]
     material: Option<Material>,
-    /// A light on a field: the direction to it and its colour, white unless told; up to four [default: none on `normal`,
+    /// A light on a field: the direction to it and its colour [default colour: white]; up to four [default: none on `normal`,
     /// sun and sky on others].
     #[arg(long, value_name = light::FORM, allow_hyphen_values = true)]
     light: Vec<String>,
-    /// The light on a field that comes from everywhere [default: white without lights, 404040 with some].
+    /// Ambient light on a field [default: white without lights, 404040 with some].
     #[arg(long, value_name = "RRGGBB")]
     ambient: Option<String>,
-    /// What is behind a field [default: white].
+    /// Background of a field [default: white].
     #[arg(long, value_parser = named(Background::ALL, Background::name))]
     background: Option<Background>,
-    /// Fog of the background's colour in front of a field: e^-z of its light is left z/DENSITY world units away. 0 to below 16.
+    /// Fog in the background's colour: transmittance is exp(-distance * DENSITY). 0 to below 16.
     #[arg(long, value_name = "DENSITY", allow_hyphen_values = true)]
     fog: Option<String>,
-    /// Darken the narrow places of a field.
+    /// Ambient occlusion: darken narrow places of a field.
     #[arg(long)]
     occlusion: bool,
-    /// March a cone for each block of a field's pixels before their rays, which begin where it has come to: fewer evaluations.
+    /// March a cone for each block of pixels first; its rays start where the cone ends. Fewer evaluations of the field.
     #[arg(long)]
     prepass: bool,
 }
 
 impl FieldArguments {
-    /// The field as it was typed, if there is one.
+    /// The text of the field, if there is one.
     pub fn name(&self) -> Option<&str> {
         self.field.as_deref()
     }
@@ -60,7 +60,7 @@ impl FieldArguments {
         self.name().map(parse).transpose()
     }
 
-    /// Two eyes that look at it, if there are two.
+    /// The two eyes of stereo, if requested.
     pub fn stereo(&self, with_mesh: bool) -> Result<Option<Stereo>, InputError> {
         let Some(text) = &self.stereo else {
             return Ok(None);
@@ -68,7 +68,7 @@ impl FieldArguments {
         if with_mesh {
             return Err(refusal(
                 "--stereo",
-                "a --field alone, as a mesh is seen with one eye",
+                "a --field without a mesh",
                 "a mesh".to_owned(),
             ));
         }
@@ -77,14 +77,14 @@ impl FieldArguments {
             .map_err(|error| refusal("--stereo", "two eyes", escaped(error)))
     }
 
-    /// Whether cones go before its rays.
+    /// Whether cones precede the rays.
     pub const fn prepass(&self) -> bool {
         self.prepass
     }
 
-    /// How it looks; of a mesh nothing of this may be said.
+    /// The appearance of the field; an error if options of a field come without one.
     pub fn appearance(&self) -> Result<Appearance, InputError> {
-        let said = [
+        let given = [
             ("--material", self.material.is_some()),
             ("--light", !self.light.is_empty()),
             ("--ambient", self.ambient.is_some()),
@@ -93,12 +93,8 @@ impl FieldArguments {
             ("--occlusion", self.occlusion),
             ("--prepass", self.prepass),
         ];
-        if let (None, Some((option, _))) = (&self.field, said.iter().find(|(_, said)| *said)) {
-            return Err(refusal(
-                option,
-                "a --field, which alone has it",
-                "a mesh".to_owned(),
-            ));
+        if let (None, Some((option, _))) = (&self.field, given.iter().find(|(_, given)| *given)) {
+            return Err(refusal(option, "a --field", "a mesh".to_owned()));
         }
         let fog = self.fog.as_deref().map(|text| {
             let found = quote(text.as_bytes());
@@ -133,17 +129,17 @@ impl FieldArguments {
 fn field_help() -> String {
     let kinds = KINDS.map(|(form, what)| format!("{form} ({what})"));
     format!(
-        "A distance field instead of a model, or around it: {}. `spheres:FILE.json` reads [[cx,cy,cz,r],...]",
+        "A distance field, alone or around the model: {}. `spheres:FILE.json` reads [[cx,cy,cz,r],...]",
         kinds.join(", ")
     )
 }
 
-/// A message about text that may be anything, on one line.
+/// An error about arbitrary text, escaped to one line.
 fn escaped(error: impl Display) -> String {
     error.to_string().escape_debug().to_string()
 }
 
-/// What an option says is not what was `expected`.
+/// The error of an option that is not as `expected`.
 fn refusal(option: &str, expected: &str, found: String) -> InputError {
     FormatError::whole(expected, found).in_file(option)
 }

@@ -198,7 +198,8 @@ impl RenderArguments {
     fn render(&self, frame: &Frame) -> anyhow::Result<Rendered> {
         anyhow::ensure!(
             self.board == VIRTUAL || self.capture == Capture::Frame,
-            "--capture monitor: only the virtual board has a monitor to look at"
+            "--capture monitor: expected the virtual board, found --board {}",
+            self.board
         );
         match &self.board {
             ModelOrBoard::Model => {

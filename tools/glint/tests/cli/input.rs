@@ -206,17 +206,17 @@ fn bad_names_and_numbers() {
         ),
         (
             &["render", "cube", "--stereo", "0.05,3", "--out", "out.png"],
-            "error: --stereo: expected a --field alone, as a mesh is seen with one eye, found a mesh",
+            "error: --stereo: expected a --field without a mesh, found a mesh",
         ),
         (
             &[
                 "render", "cube", "--field", "menger:2", "--stereo", "0.05,3", "--out", "out.png",
             ],
-            "error: --stereo: expected a --field alone, as a mesh is seen with one eye, found a mesh",
+            "error: --stereo: expected a --field without a mesh, found a mesh",
         ),
         (
             &["render", "cube", "--out", "out.png", "--fog", "1"],
-            "error: --fog: expected a --field, which alone has it, found a mesh",
+            "error: --fog: expected a --field, found a mesh",
         ),
         (
             &[
@@ -267,7 +267,7 @@ fn failures_other_than_bad_input() {
         ),
         (
             &["render", "cube", "--out", "a.png", "--capture", "monitor"],
-            "error: --capture monitor: only the virtual board",
+            "error: --capture monitor: expected the virtual board, found --board model",
         ),
     ] {
         let output = glint(&folder, arguments);
