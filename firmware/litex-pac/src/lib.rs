@@ -37,6 +37,7 @@ pub mod bus;
 pub mod cpu;
 #[rustfmt::skip]
 mod generated;
+mod interrupt;
 mod memory;
 pub mod register;
 
@@ -46,14 +47,7 @@ use critical_section::Mutex;
 
 pub use generated::*;
 pub use memory::Memory;
-
-impl Interrupt {
-    /// Its bit in the CPU's mask and pending registers.
-    #[must_use]
-    pub const fn bit(self) -> u32 {
-        1 << self as u8
-    }
-}
+pub use riscv_types::{ExternalInterruptNumber, InterruptNumber};
 
 /// Whether [`Peripherals::take`] has returned the handles.
 static TAKEN: Mutex<Cell<bool>> = Mutex::new(Cell::new(false));
