@@ -10,10 +10,15 @@ A block (a `LiteXModule` with registers) may have two attributes beside its regi
 
 import json
 
+from . import constants
+
 
 def describe(soc):
-    """The description of a finalized SoC as plain data, by block."""
-    return {name: _block(getattr(soc, name, None), region.obj) for name, region in soc.csr.regions.items()}
+    """The description of a finalized SoC as plain data: its blocks, and the numbers that all of Glint shares."""
+    return {
+        "blocks": {name: _block(getattr(soc, name, None), region.obj) for name, region in soc.csr.regions.items()},
+        "machine": constants.describe(),
+    }
 
 
 def write(soc, path):

@@ -1,9 +1,10 @@
-"""Writes the SystemVerilog packages that follow from the blocks' descriptions: `python -m glint_soc.packages [--check]`."""
+"""Writes the SystemVerilog packages that follow from the shared constants and the blocks' descriptions: `python -m glint_soc.packages [--check]`."""
 
 import argparse
 import logging
 import sys
 
+from . import constants
 from .register_map import OPTIONAL_BLOCKS, PINNED
 from .rtl import RTL
 from .virtual import VirtualSoC
@@ -13,7 +14,8 @@ def packages(soc):
     """Returns the text of each generated file of a full build."""
     blocks = [getattr(soc, name) for name in PINNED if hasattr(soc, name)]
     found = [block.package for block in blocks if hasattr(block, "package")]
-    return {RTL / package.block / f"{package.name}.sv": package.text() for package in found}
+    shared = {RTL / folder / f"{name}.sv": text for (folder, name), text in constants.packages().items()}
+    return shared | {RTL / package.block / f"{package.name}.sv": package.text() for package in found}
 
 
 def stale(soc):

@@ -5,10 +5,10 @@ from litex.soc.interconnect.csr import CSRField, CSRStatus, CSRStorage
 from litex.soc.interconnect.csr_eventmanager import EventManager, EventSourcePulse
 from migen import ClockSignal, Instance, Record, ResetSignal, Signal
 
+from .constants import SIZES
 from .rtl import add_sources
 
 IDENT = int.from_bytes(b"SCAN", "big")
-WIDTH, HEIGHT = 1280, 720
 
 VIDEO_LAYOUT = [("hsync", 1), ("vsync", 1), ("de", 1), ("r", 8), ("g", 8), ("b", 8)]
 
@@ -30,8 +30,8 @@ class Scanout(LiteXModule):
 
         self._ident = CSRStatus(32, name="ident", reset=IDENT, description="`SCAN` in ASCII; 0 where the block is absent.")
         self._caps = CSRStatus(name="caps", fields=[
-            CSRField("width", size=12, offset=0, reset=WIDTH, description="Pixels of an output line."),
-            CSRField("height", size=12, offset=12, reset=HEIGHT, description="Lines of an output frame."),
+            CSRField("width", size=12, offset=0, reset=SIZES[-1].width, description="Pixels of an output line."),
+            CSRField("height", size=12, offset=12, reset=SIZES[-1].height, description="Lines of an output frame."),
             CSRField("scales", size=3, offset=24, reset=0b111,
                      description="Bit k is set if the scale 2^k is supported."),
         ], description="What this block can do.")

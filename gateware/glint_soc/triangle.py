@@ -5,6 +5,8 @@ from litex.soc.interconnect.csr import CSRField, CSRStatus, CSRStorage
 from litex.soc.interconnect.csr_eventmanager import EventManager, EventSourcePulse
 from migen import Cat, ClockSignal, If, Instance, Record, ResetSignal, Signal
 
+from . import constants
+from .constants import DESCRIPTOR_BYTES
 from .counters import Counters
 from .packed import Enumeration, Package, Struct
 from .rtl import add_sources
@@ -28,7 +30,7 @@ ERRORS = Enumeration("error", "Results of a pass.", {
     "cancelled": "ended by `cancel`",
 })
 
-SIZES = Enumeration("size", "Sizes of a picture.", {"w320": "320x180", "w640": "640x360", "w1280": "1280x720"})
+SIZES = Enumeration("size", "Sizes of a picture.", {size.name: size.text for size in constants.SIZES})
 
 
 class TriangleEngine(LiteXModule):
@@ -52,7 +54,8 @@ class TriangleEngine(LiteXModule):
         self._caps = CSRStatus(name="caps", fields=[
             CSRField("sizes", size=3, offset=0, reset=0b111, description="Bit k is set if `size` k is supported."),
             CSRField("gouraud", offset=3, reset=int(smooth), description="Smooth shading: colours can be interpolated between "
-                     "vertices. A descriptor has 96 bytes then, and 48 where it is not built."),
+                     f"vertices. A descriptor has {DESCRIPTOR_BYTES['smooth']} bytes then, and {DESCRIPTOR_BYTES['flat']} where it "
+                     "is not built."),
             CSRField("count_bits", size=6, offset=8, reset=_COUNT_BITS, description="Bits of a count of descriptors or entries."),
         ], description="What this block can do.")
         self._control = CSRStorage(name="control", fields=[
@@ -85,7 +88,8 @@ class TriangleEngine(LiteXModule):
         self._mesh = CSRStorage(32, name="mesh", description=f"{address} the mesh's first chunk.")
         self._mesh_bytes = CSRStorage(32, name="mesh_bytes", description="Length of all its chunks, a multiple of 16.")
         self._geometry_descriptors = CSRStorage(32, name="geometry_descriptors", description=f"{address} the descriptors to make.")
-        self._descriptor_limit = CSRStorage(_COUNT_BITS, name="descriptor_limit", description="Room there, 48 or 96 bytes each, see `caps`.")
+        self._descriptor_limit = CSRStorage(_COUNT_BITS, name="descriptor_limit", description="Room there, "
+                                             f"{DESCRIPTOR_BYTES['flat']} or {DESCRIPTOR_BYTES['smooth']} bytes each, see `caps`.")
         self._geometry_lists = CSRStorage(32, name="geometry_lists", description=f"{address} the band lists to make.")
         self._list_shift = CSRStorage(5, name="list_shift", description="A band's list has room for 4 << list_shift entries. "
             "Of both passes.")

@@ -8,6 +8,7 @@ mod rest;
 use core::fmt;
 
 use crate::fixed::Q32_32;
+use crate::mpu6050::GYRO_LSB_PER_DPS;
 use crate::orientation::Sample;
 
 pub use rest::RestBias;
@@ -38,7 +39,7 @@ pub struct Units {
 impl Units {
     /// An MPU-6050 at ±2000 °/s and ±8 g.
     pub const MPU_6050: Self = Self {
-        per_dps: Q32_32::lit("16.4"),
+        per_dps: GYRO_LSB_PER_DPS,
         per_g: 4_096,
     };
 

@@ -8,7 +8,7 @@ use crate::calibration::{self, Calibration, Progress, Report, RestBias, Units};
 use crate::camera::{View, ViewError};
 use crate::fixed::Q32_32;
 use crate::follow::{self, Mounting, Steering};
-use crate::mpu6050::{Error, Identity, Measurement, Sink};
+use crate::mpu6050::{self, Error, Identity, Measurement, Sink};
 use crate::orientation::{Counts, Quaternion, Sample, Scale, TIME_CONSTANT, Tilt, Tracker};
 
 /// How the camera follows the sensor.
@@ -137,12 +137,9 @@ impl<E: Copy> Imu<E> {
         self.tracker.counts()
     }
 
-    /// What the gyroscope is taken to read at rest, in °/s, rounded down to 2^−32.
+    /// What the gyroscope is taken to read at rest, in °/s, rounded towards zero to 2^−32.
     pub fn bias(&self) -> [Q32_32; 3] {
-        // 16.4 LSB are 1 °/s.
-        self.tracker
-            .bias()
-            .map(|bias| Q32_32::from_bits((i64::from(bias) << 24) * 10 / 164))
+        self.tracker.bias().map(mpu6050::degrees_per_second)
     }
 
     /// Begins a calibration of so many samples, in place of one that is going on.

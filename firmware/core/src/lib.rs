@@ -20,6 +20,8 @@ pub mod follow;
 pub mod i2c;
 pub mod imu;
 pub mod light;
+#[rustfmt::skip]
+pub mod machine;
 pub mod mesh;
 pub mod mpu6050;
 pub mod orientation;

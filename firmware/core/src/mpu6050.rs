@@ -14,6 +14,7 @@ use core::fmt;
 use embedded_hal_async::delay::DelayNs;
 use embedded_hal_async::i2c::{Error as _, ErrorKind, I2c, Operation};
 
+use crate::fixed::Q32_32;
 use crate::i2c::{PeriodicI2c, PeriodicRead};
 
 pub use pace::Pace;
@@ -21,6 +22,17 @@ pub use stream::{Sink, Stream};
 
 /// The chip's address with AD0 low, and high.
 pub const ADDRESSES: [u8; 2] = [0x68, 0x69];
+
+/// LSB of the gyroscope at 10 °/s, with the range that [`Mpu6050`] sets up.
+const LSB_PER_10_DPS: i64 = 164;
+/// LSB of the gyroscope per °/s: 16.4.
+pub const GYRO_LSB_PER_DPS: Q32_32 = Q32_32::from_bits((LSB_PER_10_DPS << 32) / 10);
+
+/// A rate in 1/256 LSB as °/s, rounded towards zero to 2^−32.
+#[must_use]
+pub const fn degrees_per_second(rate: i32) -> Q32_32 {
+    Q32_32::from_bits(((rate as i64) << 24) * 10 / LSB_PER_10_DPS)
+}
 
 /// The time between two samples, in µs.
 pub const PERIOD: u32 = 1_000;
@@ -107,7 +119,7 @@ pub struct Measurement {
     pub accel: [i16; 3],
     /// See [`Identity::temperature`].
     pub temperature: i16,
-    /// The rate about each axis, 1/16.4 °/s.
+    /// The rate about each axis, [`GYRO_LSB_PER_DPS`].
     pub gyro: [i16; 3],
 }
 

@@ -2,7 +2,9 @@
 
 use core::fmt;
 
-/// The size of a picture.
+use crate::machine::{PICTURES, Picture};
+
+/// The size of a picture, by its code in registers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Size {
     /// 320×180.
@@ -25,13 +27,14 @@ impl Size {
             .find(|size| size.pixels() == [width, height])
     }
 
+    const fn machine(self) -> Picture {
+        PICTURES[self as usize]
+    }
+
     /// Width and height in pixels.
     pub const fn pixels(self) -> [u32; 2] {
-        match self {
-            Self::W320 => [320, 180],
-            Self::W640 => [640, 360],
-            Self::W1280 => [1280, 720],
-        }
+        let Picture { width, height, .. } = self.machine();
+        [width, height]
     }
 
     /// Width in pixels.
@@ -42,6 +45,16 @@ impl Size {
     /// Height in pixels.
     pub const fn height(self) -> u32 {
         self.pixels()[1]
+    }
+
+    /// Lines of a band.
+    pub const fn band_lines(self) -> u32 {
+        self.machine().band_lines
+    }
+
+    /// Bands of a picture.
+    pub const fn bands(self) -> u32 {
+        self.height() / self.band_lines()
     }
 
     /// Width times height.
@@ -94,6 +107,7 @@ mod tests {
         for size in Size::ALL {
             assert_eq!(Size::of(size.width(), size.height()), Some(size));
         }
+        assert_eq!(Size::W320.pixels(), [320, 180]);
         assert_eq!(Size::of(320, 360), None);
         assert_eq!(Size::of(0, 0), None);
     }

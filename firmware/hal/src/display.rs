@@ -18,9 +18,6 @@ use litex_pac::scanout::{self, Control, EvEnable, EvPending};
 
 use crate::Absent;
 
-/// The video picture, in pixels.
-pub const SCREEN: [u32; 2] = [1280, 720];
-
 /// Pixels of the screen, in each direction, that show one pixel of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
@@ -362,7 +359,10 @@ mod tests {
     fn every_size_fills_the_screen() {
         for size in Size::ALL {
             let scale = Scale::from(size) as u32;
-            assert_eq!(size.pixels().map(|pixels| scale * pixels), SCREEN);
+            assert_eq!(
+                size.pixels().map(|pixels| scale * pixels),
+                Size::W1280.pixels()
+            );
         }
     }
 }

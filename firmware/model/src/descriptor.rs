@@ -1,11 +1,13 @@
 //! Descriptors and band lists, the input of the raster pass (docs/formats.md).
 
 use glint_core::colour::{Rgb565, Shading};
+use glint_core::machine::{self, LIST_GAP_WORDS, LIST_TABLE_WORDS};
+use glint_core::picture::Size;
 
 use crate::setup::{Plane, Setup};
 
 /// Columns of a group: the pixels that the raster pass draws in one clock.
-pub const GROUP: i32 = 8;
+pub const GROUP: i32 = machine::GROUP as i32;
 
 /// A triangle after its setup. The light follows the words that gateware without smooth shading reads.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -13,10 +15,10 @@ pub struct Descriptor {
     words: [u32; SMOOTH_WORDS],
 }
 
-/// Words of 32 bits of a descriptor for gateware without smooth shading: 48 bytes.
-const FLAT_WORDS: usize = 12;
-/// Words of 32 bits of a descriptor for gateware with smooth shading: 96 bytes.
-const SMOOTH_WORDS: usize = 24;
+/// Words of 32 bits of a descriptor for gateware without smooth shading.
+const FLAT_WORDS: usize = machine::FLAT_DESCRIPTOR_BYTES as usize / 4;
+/// Words of 32 bits of a descriptor for gateware with smooth shading.
+const SMOOTH_WORDS: usize = machine::SMOOTH_DESCRIPTOR_BYTES as usize / 4;
 
 /// Words of 32 bits of a descriptor, a multiple of four, for gateware with this capability of shading.
 pub const fn words(capability: Shading) -> usize {
@@ -91,34 +93,38 @@ impl Packer {
     }
 }
 
-/// Words of 16 bytes before the first list of a set: the lengths of 64 lists.
-pub const TABLE_WORDS: u32 = 16;
-
 /// The start of a band's list in words of 16 bytes from the start of its set. A list has room for 4 << `shift` entries; a row
 /// of a memory bank lies between two lists, so that neighbours are in different banks.
 pub const fn list_word(band: u32, shift: u32) -> u32 {
-    TABLE_WORDS + (band << shift) + 128 * band
+    LIST_TABLE_WORDS + (band << shift) + LIST_GAP_WORDS * band
 }
 
-/// Rows of a band of a picture of this width, one of [`SIZES`](crate::SIZES): at most 15,360 pixels.
+/// Lines of a band of a picture of this width, one of [`SIZES`](crate::SIZES).
 pub const fn band_rows(width: u32) -> u32 {
-    match width {
-        320 => 45,
-        640 => 24,
-        _ => 12,
+    size(width).band_lines()
+}
+
+const fn size(width: u32) -> Size {
+    let [small, medium, large] = Size::ALL;
+    if width == small.width() {
+        small
+    } else if width == medium.width() {
+        medium
+    } else {
+        large
     }
 }
 
 /// Words of 32 bits of the table of lengths at the start of a set.
-pub const LENGTHS: usize = 4 * TABLE_WORDS as usize;
+pub const LENGTHS: usize = 4 * LIST_TABLE_WORDS as usize;
 
-/// The `shift` of [`list_word`] for a picture of this width: lists of all its bands fit 4 MiB.
+/// Words of 32 bits of all lists of a set, with the table of their lengths: 4 MiB.
+pub const LIST_SET_WORDS: usize = 1 << 20;
+
+/// The `shift` of [`list_word`] for a picture of this width: the largest with which the lists of all its bands fit a set.
 pub const fn list_shift(width: u32) -> u32 {
-    match width {
-        320 => 15,
-        640 => 14,
-        _ => 12,
-    }
+    let room = LIST_SET_WORDS as u32 / 4 - LIST_TABLE_WORDS;
+    (room / size(width).bands() - LIST_GAP_WORDS).ilog2()
 }
 
 /// Writes descriptors and band lists in the format of the geometry pass.
@@ -127,7 +133,8 @@ pub struct ListWriter<'a> {
     lists: &'a mut [u32],
     lengths: [u32; LENGTHS],
     count: u32,
-    width: u32,
+    band_rows: u32,
+    list_shift: u32,
     capability: Shading,
     is_full: bool,
 }
@@ -149,7 +156,8 @@ impl<'a> ListWriter<'a> {
             lists,
             lengths: [0; LENGTHS],
             count: 0,
-            width,
+            band_rows: band_rows(width),
+            list_shift: list_shift(width),
             capability,
             is_full: false,
         }
@@ -165,7 +173,7 @@ impl<'a> ListWriter<'a> {
             return;
         };
         to.copy_from_slice(words);
-        let (rows, shift) = (band_rows(self.width), list_shift(self.width));
+        let (rows, shift) = (self.band_rows, self.list_shift);
         // Bounds are in the picture and not empty.
         let (top, bottom) = (setup.bounds.top as u32, setup.bounds.bottom as u32);
         for band in top / rows..=(bottom - 1) / rows {
@@ -195,6 +203,22 @@ impl<'a> ListWriter<'a> {
                 Ok(self.count)
             }
             _ => Err(Full),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glint_core::picture::Size;
+
+    use super::{LIST_SET_WORDS, list_shift, list_word};
+
+    #[test]
+    fn the_lists_of_all_bands_fit_a_set() {
+        for (size, shift) in [(Size::W320, 15), (Size::W640, 14), (Size::W1280, 12)] {
+            assert_eq!(list_shift(size.width()), shift);
+            assert!(4 * list_word(size.bands(), shift) as usize <= LIST_SET_WORDS);
+            assert!(4 * list_word(size.bands(), shift + 1) as usize > LIST_SET_WORDS);
         }
     }
 }

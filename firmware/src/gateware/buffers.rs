@@ -11,8 +11,6 @@ use glint_model::descriptor;
 const DESCRIPTORS: usize = 1 << 16;
 /// Words of a set's descriptors. The long form has room for half as many.
 const DESCRIPTOR_WORDS: usize = DESCRIPTORS * descriptor::words(Shading::Flat);
-/// Words of all lists of a set, with the table of their lengths.
-const LIST_WORDS: usize = 1 << 20;
 
 /// Memory of one frame: two sets of descriptors and lists, and the exceptions between them.
 pub struct Buffers {
@@ -40,10 +38,10 @@ impl Buffers {
         };
         Some(Self {
             descriptors: piece(DESCRIPTOR_WORDS)?,
-            lists: piece(LIST_WORDS)?,
+            lists: piece(descriptor::LIST_SET_WORDS)?,
             exceptions: piece(DESCRIPTORS)?,
             clipped_descriptors: piece(DESCRIPTOR_WORDS)?,
-            clipped_lists: piece(LIST_WORDS)?,
+            clipped_lists: piece(descriptor::LIST_SET_WORDS)?,
             sets: [None; 2],
             stats: Stats::default(),
         })

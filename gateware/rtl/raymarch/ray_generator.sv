@@ -318,6 +318,8 @@ module ray_generator #(
     logic [raymarch_pkg::SPREAD_BITS-1:0] spread_23;
 
     if (PREPASS) begin : with_prepass
+        localparam int unsigned CONES_ACROSS = picture_pkg::CONES_ACROSS;
+
         // The lines of a block that have come, and the number of its first one in a row of blocks.
         logic [3:0]         line;
         logic [13:0]        row_number, number_1, counted;
@@ -331,12 +333,12 @@ module ray_generator #(
                     line <= line + 1'b1;
                     if ((line | ~4'b0 << block) == '1) begin
                         line       <= '0;
-                        row_number <= row_number + (fine || STEREO && stereo ? 14'd160 : 14'd80);
+                        row_number <= row_number + (fine || STEREO && stereo ? 14'(CONES_ACROSS) : 14'(CONES_ACROSS / 2));
                     end
                 end
             end
             if (enable) begin
-                number_1 <= row_number + (STEREO && place.eye ? 14'd80 : 14'd0) + 14'(place.column >> block);
+                number_1 <= row_number + (STEREO && place.eye ? 14'(CONES_ACROSS / 2) : 14'd0) + 14'(place.column >> block);
                 near_18  <= prepass && !cones && cleared > near_limit ? cleared : near_limit;
             end
         end

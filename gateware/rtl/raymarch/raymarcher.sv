@@ -254,6 +254,8 @@ module raymarcher #(
     /* verilator lint_on PINCONNECTEMPTY */
 
     if (PREPASS) begin : with_prepass
+        localparam int unsigned CONES = picture_pkg::CONES_ACROSS * picture_pkg::CONES_DOWN;
+
         logic cone_ends;
 
         assign fine      = size != 2'd0 && !(STEREO && stereo);
@@ -268,7 +270,7 @@ module raymarcher #(
             end
             if (start) begin
                 cones      <= prepass;
-                cones_left <= fine ? 14'd14399 : STEREO && stereo ? 14'd7199 : 14'd3599;
+                cones_left <= fine ? 14'(CONES - 1) : STEREO && stereo ? 14'(CONES / 2 - 1) : 14'(CONES / 4 - 1);
             end
             if (reset) {cones, generate_rays} <= '0;
         end

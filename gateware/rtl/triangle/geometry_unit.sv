@@ -58,8 +58,8 @@ module geometry_unit #(
     logic [10:0] width;
     logic [9:0]  height;
 
-    assign width  = 11'd320 << flags.size;
-    assign height = 10'd180 << flags.size;
+    assign width  = 11'(picture_pkg::WIDTH) << flags.size;
+    assign height = 10'(picture_pkg::HEIGHT) << flags.size;
 
     typedef enum logic [2:0] {IDLE, PREPARE, BEGIN, WALK, FINISH} state_t;
     state_t state;

@@ -58,8 +58,6 @@ module triangle_control #(
     localparam int unsigned WORD_BITS  = ADDRESS_BITS + 2;
     // Lists of more entries than can be counted are of no use.
     localparam logic [4:0]  LAST_SHIFT = 5'(COUNT_BITS - 3);
-    // 320x180 pixels of two bytes.
-    localparam int unsigned SMALL_FRAME_WORDS = 7200;
 
     typedef enum logic [2:0] {IDLE, CHECK, SETTLE, JUDGE, START} state_t;
     state_t state;
@@ -76,13 +74,7 @@ module triangle_control #(
 
     assign size = rastering ? raster_kept.size : geometry_kept.size;
 
-    always_comb begin
-        case (size)
-            2'd0:    bands = 6'd4;
-            2'd1:    bands = 6'd15;
-            default: bands = 6'd60;
-        endcase
-    end
+    assign bands = band_pkg::bands(size);
 
     // Lengths, for the one region that is looked at.
     logic [31:0]          first;
@@ -95,7 +87,7 @@ module triangle_control #(
     assign mesh_words  = geometry.mesh_bytes[31:WORD_BITS+4] != '0 ? '1 : WORD_BITS'(geometry.mesh_bytes >> 4);
     assign list_words  = list_shift > LAST_SHIFT ? '1 : WORD_BITS'(list_pkg::TABLE_WORDS)
                       + (WORD_BITS'(bands) << list_shift) + WORD_BITS'(bands * list_pkg::BANK_WORDS);
-    assign frame_words = WORD_BITS'(SMALL_FRAME_WORDS) << {size, 1'b0};
+    assign frame_words = WORD_BITS'(picture_pkg::FRAME_WORDS) << {size, 1'b0};
 
     always_comb begin
         used = 1'b1;

@@ -146,3 +146,38 @@ fn image(elf: &[u8]) -> Result<(Vec<u8>, String)> {
     );
     Ok((image, sizes))
 }
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use crate::paths;
+
+    /// Origin and length of each window of `memory.x`, as docs/architecture.md writes them.
+    fn windows(memory_x: &str) -> Vec<(String, String)> {
+        let windows = memory_x.lines().filter_map(|line| {
+            let (_, rest) = line.split_once(": ORIGIN = 0x")?;
+            let (origin, length) = rest.split_once(", LENGTH = ")?;
+            let (high, low) = origin.split_at_checked(4)?;
+            let (number, unit) = length.split_at_checked(length.len() - 1)?;
+            let unit = if unit == "M" { "MB" } else { "KiB" };
+            Some((format!("0x{high}_{low}"), format!("{number} {unit}")))
+        });
+        windows.collect()
+    }
+
+    #[test]
+    fn the_documented_memory_map_is_that_of_memory_x() {
+        let read = |path| fs::read_to_string(paths::root().join(path)).unwrap();
+        let windows = windows(&read("memory.x"));
+        let documented = read("docs/architecture.md");
+        assert_eq!(windows.len(), 9, "{windows:?}");
+        for (origin, length) in windows.iter().filter(|(_, length)| length.ends_with("MB")) {
+            let row = format!("| {origin} | {length} |");
+            assert!(
+                documented.contains(&row),
+                "docs/architecture.md has no row `{row}`"
+            );
+        }
+    }
+}

@@ -7,6 +7,7 @@
 //! gives the same bytes.
 
 mod description;
+mod machine;
 mod markdown;
 mod rust;
 mod soc;
@@ -19,7 +20,7 @@ use anyhow::{Context, Result, bail};
 use crate::paths;
 use soc::Soc;
 
-/// Generates `firmware/litex-pac/src/generated.rs` and `docs/registers.md` from the virtual board's SoC.
+/// Generates `firmware/litex-pac/src/generated.rs`, `firmware/core/src/machine.rs` and `docs/registers.md` from the virtual board's SoC.
 /// With `check` nothing is written: the files must already be what would be generated.
 ///
 /// # Errors
@@ -34,6 +35,7 @@ pub fn generate(check: bool) -> Result<()> {
     .with_context(|| format!("joining the SoC's descriptions in {}", built.display()))?;
     let outputs = [
         ("firmware/litex-pac/src/generated.rs", rust::print(&soc)?),
+        ("firmware/core/src/machine.rs", machine::print(&soc.machine)),
         ("docs/registers.md", markdown::print(&soc)),
     ];
     for (path, text) in &outputs {

@@ -1,6 +1,7 @@
 //! What a count of the gyroscope is worth.
 
 use crate::fixed::Q32_32;
+use crate::mpu6050::GYRO_LSB_PER_DPS;
 
 /// Half an angle for each count and microsecond.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,7 +15,7 @@ pub const LSB_PER_DPS: [Q32_32; 2] = [Q32_32::lit("8"), Q32_32::lit("4096")];
 
 impl Scale {
     /// An MPU-6050 at ±2000 °/s: 16.4 LSB per °/s.
-    pub const MPU_6050: Self = Self::of(Q32_32::lit("16.4"));
+    pub const MPU_6050: Self = Self::of(GYRO_LSB_PER_DPS);
 
     /// So many LSB per °/s, if they are within [`LSB_PER_DPS`].
     pub fn new(lsb_per_dps: Q32_32) -> Option<Self> {

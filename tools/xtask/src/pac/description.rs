@@ -5,8 +5,33 @@ use std::collections::BTreeMap;
 use anyhow::{Context, Result, ensure};
 use serde::Deserialize;
 
-/// The blocks of a SoC by name.
-pub struct Description(BTreeMap<String, Block>);
+/// What LiteX's exports leave out.
+#[derive(Deserialize)]
+pub struct Description {
+    blocks: BTreeMap<String, Block>,
+    /// Numbers that gateware, firmware and host share.
+    machine: Machine,
+}
+
+/// Numbers that gateware, firmware and host share: `gateware/glint_soc/constants.py`.
+#[derive(Debug, Deserialize)]
+pub struct Machine {
+    /// By code.
+    pub sizes: Vec<Size>,
+    pub group: u32,
+    pub list_table_words: u32,
+    pub list_gap_words: u32,
+    pub flat_descriptor_bytes: u32,
+    pub smooth_descriptor_bytes: u32,
+}
+
+/// A size of a picture.
+#[derive(Debug, Deserialize)]
+pub struct Size {
+    pub width: u32,
+    pub height: u32,
+    pub band_lines: u32,
+}
 
 /// A block's registers, and the numbers that stand beside them.
 #[derive(Deserialize)]
@@ -60,9 +85,7 @@ impl Description {
     /// # Errors
     /// When it is not of the form that `gateware/glint_soc/description.py` writes.
     pub fn read(text: &str) -> Result<Self> {
-        serde_json::from_str(text)
-            .map(Self)
-            .context("description.json is not of the expected form")
+        serde_json::from_str(text).context("description.json is not of the expected form")
     }
 
     /// Takes out the block `name`.
@@ -70,7 +93,7 @@ impl Description {
     /// # Errors
     /// When there is none, or it contradicts itself.
     pub fn take(&mut self, name: &str) -> Result<Block> {
-        let block = self.0.remove(name).with_context(|| {
+        let block = self.blocks.remove(name).with_context(|| {
             format!("soc.svd has the peripheral `{name}`, description.json has not")
         })?;
         for counter in &block.counters {
@@ -92,17 +115,17 @@ impl Description {
         Ok(block)
     }
 
-    /// Fails with the first block that was not taken.
+    /// The shared numbers, when all blocks are taken.
     ///
     /// # Errors
-    /// When a block is left.
-    pub fn finish(self) -> Result<()> {
-        let left = self.0.keys().next();
+    /// When a block is left; names the first one.
+    pub fn finish(self) -> Result<Machine> {
+        let left = self.blocks.keys().next();
         ensure!(
             left.is_none(),
             "description.json has the block `{}`, soc.svd has not",
             left.map_or("", String::as_str)
         );
-        Ok(())
+        Ok(self.machine)
     }
 }

@@ -6,7 +6,7 @@ use anyhow::{Context, Result, bail, ensure};
 use roxmltree::{Document, Node};
 use serde_json::Value;
 
-use super::description::{self, Block, Constant, Description, NamedValue};
+use super::description::{self, Block, Constant, Description, Machine, NamedValue};
 
 /// Name of the constant that carries the CRC-32 of the pinned register map.
 const BUILD_ID: &str = "build_id";
@@ -20,6 +20,8 @@ pub struct Soc {
     pub peripherals: Vec<Peripheral>,
     /// By base address, `csr` itself left out.
     pub memories: Vec<Memory>,
+    /// Numbers that gateware, firmware and host share.
+    pub machine: Machine,
     /// By name: the numbers among the constants that firmware may rely on.
     pub constants: Vec<(String, u32)>,
 }
@@ -103,10 +105,10 @@ impl Soc {
             .remove(BUILD_ID)
             .with_context(|| format!("csr.json has no constant `{BUILD_ID}`"))?;
         let peripherals = peripherals(&document, &csr, &mut description)?;
-        description.finish()?;
         Ok(Self {
             build_id,
             peripherals,
+            machine: description.finish()?,
             memories: memories(&csr)?,
             constants: constants.into_iter().collect(),
         })
