@@ -1,6 +1,7 @@
 //! References for Glint's errors, written from the specification and independent of the model, and the report.
 //!
 //! - [`exact`]: coverage and depth of a snapped triangle in integers.
+//! - [`errors`]: RMS and maximum of errors.
 //! - [`camera`]: the camera in f64.
 //! - [`surface`]: the visible surface of each pixel of the unsnapped scene, and the pixels that depend on snapping.
 //! - [`field`]: hits of rays on distance fields, and the errors of pictures of fields.
@@ -12,6 +13,7 @@
 #![forbid(unsafe_code)]
 
 pub mod camera;
+pub mod errors;
 pub mod exact;
 pub mod field;
 pub mod imu;

@@ -12,6 +12,8 @@ use glint_model::{
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
+use crate::errors::Errors;
+
 /// Steps of each channel for a light of 1.
 const RANGES: [f64; 3] = [32.0, 64.0, 32.0];
 
@@ -68,29 +70,7 @@ impl Interpolated {
     }
 }
 
-/// Errors of channels, in steps.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Errors {
-    /// The largest error.
-    pub max: f64,
-    squares: f64,
-    count: u64,
-}
-
-impl Errors {
-    fn add(&mut self, error: f64) {
-        self.max = self.max.max(error.abs());
-        self.squares += error * error;
-        self.count += 1;
-    }
-
-    /// Root of the mean square.
-    pub fn rms(&self) -> f64 {
-        (self.squares / self.count.max(1) as f64).sqrt()
-    }
-}
-
-/// The figures of a scene.
+/// The figures of a scene. Errors are in steps of a channel.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Measured {
     /// Triangles on the screen.

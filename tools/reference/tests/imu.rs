@@ -63,13 +63,13 @@ fn order_against_f64<const ORDER: u32>(method: Method) -> f64 {
         orientation::Quaternion::IDENTITY,
         first.map(|x| i32::from(x) << 8),
     );
-    let mut twin = Integrator::new(method, Quaternion::IDENTITY, rate(first));
+    let mut reference = Integrator::new(method, Quaternion::IDENTITY, rate(first));
     let mut largest = 0.0_f64;
     for sample in samples {
         firmware.advance_order::<ORDER>(sample.gyro.map(|x| i32::from(x) << 8), 5_000, [0; 3]);
-        twin.advance(rate(sample.gyro), 5e-3);
+        reference.advance(rate(sample.gyro), 5e-3);
         let attitude = Quaternion::from(firmware.attitude());
-        largest = largest.max(attitude.angle_to(twin.attitude()));
+        largest = largest.max(attitude.angle_to(reference.attitude()));
     }
     largest
 }

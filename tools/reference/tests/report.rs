@@ -20,7 +20,7 @@ use glint_reference::report::experiments::sine;
 use glint_reference::report::pages::PAGES;
 use glint_reference::report::table::read_csv;
 use glint_reference::report::workspace;
-use glint_reference::sine::subjects::subjects;
+use glint_reference::sine::kernels::kernels;
 use glint_reference::sine::sweep::sweep;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -135,19 +135,19 @@ fn the_committed_pages_are_those_of_the_committed_tables() {
 #[test]
 fn the_committed_errors_of_sines_hold() {
     let rows: Vec<sine::Row> = committed("sine.csv");
-    assert_eq!(rows.len(), subjects().len(), "kernels have come or gone");
+    assert_eq!(rows.len(), kernels().len(), "kernels have come or gone");
     let mut recomputed = 0;
-    for (row, subject) in rows.iter().zip(subjects()) {
+    for (row, kernel) in rows.iter().zip(kernels()) {
         assert_eq!(
             (row.kernel.as_str(), row.inputs.as_str()),
-            (subject.kernel, subject.inputs)
+            (kernel.name, kernel.inputs)
         );
-        if subject.steps() > 1 << 19 {
+        if kernel.steps() > 1 << 19 {
             continue;
         }
-        let statistics = sweep(&subject, 1, &|_| ());
+        let statistics = sweep(&kernel, 1, &|_| ());
         assert_eq!(row.samples, statistics.inputs);
-        let name = |column| format!("sine.csv: {} of {}", column, subject.kernel);
+        let name = |column| format!("sine.csv: {} of {}", column, kernel.name);
         assert_close(row.max_err, statistics.max, 1e-6, &name("max_err"));
         assert_close(row.rms, statistics.rms(), 1e-6, &name("rms"));
         recomputed += 1;

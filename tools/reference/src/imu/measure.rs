@@ -9,6 +9,7 @@ use super::method::{Integrator, Method};
 use super::motion::Motion;
 use super::quaternion::Quaternion;
 use super::sensor::Sensor;
+use crate::errors::Errors;
 
 /// The firmware's time constant of the tilt, in seconds.
 pub const TAU: f64 = TIME_CONSTANT as f64 * 1e-6;
@@ -49,15 +50,15 @@ pub fn against_f64(sensor: Sensor, motion: Motion, seconds: f64, tilt: bool) -> 
     } else {
         Filter::None
     };
-    let mut twin = Estimator::new(Method::Cubic, filter, sensor.gyro_lsb, sensor.accel_lsb);
-    twin.set_bias(bias(&sensor).map(|bias| bias / 256.0));
+    let mut reference = Estimator::new(Method::Cubic, filter, sensor.gyro_lsb, sensor.accel_lsb);
+    reference.set_bias(bias(&sensor).map(|bias| bias / 256.0));
     let count = (seconds * sensor.rate) as u64 + 1;
     let mut largest = Largest::default();
     for sample in sensor.samples(motion, count, 1) {
         tracker.on_sample(&sample);
-        twin.on_sample(&sample);
+        reference.on_sample(&sample);
         let attitude = Quaternion::from(tracker.attitude());
-        largest.angle = largest.angle.max(attitude.angle_to(twin.attitude()));
+        largest.angle = largest.angle.max(attitude.angle_to(reference.attitude()));
         largest.norm = largest.norm.max((attitude.norm() - 1.0).abs());
     }
     largest
@@ -80,28 +81,6 @@ pub fn method_error(method: Method, motion: Motion, seconds: f64, rate: f64) -> 
 pub const LEFT_BIAS: [f64; 3] = [0.02, -0.02, 0.02];
 /// Time in seconds from which errors of the tilt count.
 const SETTLED: f64 = 10.0;
-
-/// RMS and maximum of errors.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Errors {
-    squares: f64,
-    count: f64,
-    /// The largest.
-    pub max: f64,
-}
-
-impl Errors {
-    fn add(&mut self, error: f64) {
-        self.squares += error * error;
-        self.count += 1.0;
-        self.max = self.max.max(error);
-    }
-
-    /// Root of the mean square.
-    pub fn rms(&self) -> f64 {
-        (self.squares / self.count).sqrt()
-    }
-}
 
 /// The firmware's inclination against the truth, in degrees, with [`LEFT_BIAS`].
 ///

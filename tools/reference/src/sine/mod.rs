@@ -2,10 +2,10 @@
 //!
 //! - [`truth`]: the f64 reference, and its own error.
 //! - [`statistics`]: statistics of the errors.
-//! - [`subjects`]: the kernels, each with all inputs of its format.
-//! - [`sweep`]: runs a subject over its inputs on all cores.
+//! - [`kernels`]: the kernels, each with all inputs of its format.
+//! - [`sweep`]: runs a kernel over its inputs on all cores.
 
+pub mod kernels;
 pub mod statistics;
-pub mod subjects;
 pub mod sweep;
 pub mod truth;

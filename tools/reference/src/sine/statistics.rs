@@ -35,7 +35,7 @@ pub struct Statistics {
     pub inputs: u64,
     /// The largest error.
     pub max: f64,
-    /// Number of the first input with the largest error, as the subject counts.
+    /// Number of the first input with the largest error, as the kernel counts.
     pub worst_input: u64,
     /// The output with the largest error.
     pub worst_function: Function,

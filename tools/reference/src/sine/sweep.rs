@@ -1,18 +1,18 @@
-//! Runs a subject over its inputs on all cores, with the same result whatever the cores do.
+//! Runs a kernel over its inputs on all cores, with the same result whatever the cores do.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread;
 
+use super::kernels::Kernel;
 use super::statistics::Statistics;
-use super::subjects::Subject;
 
 /// Steps that one core takes at a time; the sums of a part do not depend on who made it.
 const PART: u64 = 1 << 18;
 
-/// The errors of `subject` over every `stride`-th of its steps. `progress` is told of steps done.
-pub fn sweep(subject: &Subject, stride: u64, progress: &(dyn Fn(u64) + Sync)) -> Statistics {
-    let steps = subject.steps().div_ceil(stride);
+/// The errors of `kernel` over every `stride`-th of its steps. `progress` is told of steps done.
+pub fn sweep(kernel: &Kernel, stride: u64, progress: &(dyn Fn(u64) + Sync)) -> Statistics {
+    let steps = kernel.steps().div_ceil(stride);
     let parts = steps.div_ceil(PART);
     let next = AtomicU64::new(0);
     let done = Mutex::new(Vec::new());
@@ -24,7 +24,7 @@ pub fn sweep(subject: &Subject, stride: u64, progress: &(dyn Fn(u64) + Sync)) ->
             }
             let (first, last) = (part * PART, ((part + 1) * PART).min(steps));
             let mut statistics = Statistics::default();
-            subject.run(first..last, stride, &mut statistics);
+            kernel.run(first..last, stride, &mut statistics);
             if let Ok(mut done) = done.lock() {
                 done.push((part, statistics));
             }

@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 use crate::report::cycles::{Cycles, Figures};
 use crate::report::progress;
 use crate::report::provenance::Provenance;
+use crate::sine::kernels::{self, Kernel};
 use crate::sine::statistics::Statistics;
-use crate::sine::subjects::{Subject, subjects};
 use crate::sine::sweep::sweep;
 use crate::sine::truth::reference_error;
 
@@ -61,35 +61,35 @@ pub struct Row {
 
 impl Row {
     fn new(
-        subject: &Subject,
+        kernel: &Kernel,
         stride: u64,
         statistics: &Statistics,
         cycles: Option<Figures>,
         provenance: &Provenance,
     ) -> Self {
         Self {
-            kernel: subject.kernel.into(),
-            family: subject.family.into(),
-            config: subject.config.into(),
-            word_length: subject.format.into(),
-            shipped: subject.shipped,
+            kernel: kernel.name.into(),
+            family: kernel.family.into(),
+            config: kernel.config.into(),
+            word_length: kernel.format.into(),
+            shipped: kernel.shipped,
             inputs: match stride {
-                1 => subject.inputs.to_owned(),
-                _ => format!("a sample of {}", subject.inputs),
+                1 => kernel.inputs.to_owned(),
+                _ => format!("a sample of {}", kernel.inputs),
             },
             samples: statistics.inputs,
             max_err: statistics.max,
-            max_ulp: statistics.max / subject.ulp,
+            max_ulp: statistics.max / kernel.ulp,
             rms: statistics.rms(),
             p99: statistics.p99(),
             bias: statistics.bias(),
             argmax: format!(
                 "{} of {}",
                 statistics.worst_function,
-                subject.show_input(statistics.worst_input)
+                kernel.show_input(statistics.worst_input)
             ),
             max_norm: statistics.max_norm,
-            asymmetric: subject.by_phase.then_some(statistics.asymmetric),
+            asymmetric: kernel.by_phase.then_some(statistics.asymmetric),
             cycles_min: cycles.map(|cycles| cycles.min),
             cycles_median: cycles.map(|cycles| cycles.median),
             cycles_max: cycles.map(|cycles| cycles.max),
@@ -117,24 +117,24 @@ pub struct Reference {
 /// When the terminal refuses a progress bar.
 pub fn measure(quick: bool, cycles: &Cycles) -> Result<(Vec<Row>, Reference)> {
     let provenance = Provenance::find();
-    let subjects = subjects();
-    let stride = |subject: &Subject| match quick {
-        true => (subject.steps() / SAMPLE) | 1,
+    let kernels = kernels::kernels();
+    let stride = |kernel: &Kernel| match quick {
+        true => (kernel.steps() / SAMPLE) | 1,
         false => 1,
     };
-    let steps = subjects
+    let steps = kernels
         .iter()
-        .map(|subject| subject.steps().div_ceil(stride(subject)))
+        .map(|kernel| kernel.steps().div_ceil(stride(kernel)))
         .sum();
     let bar = progress::bar(steps)?;
-    let rows = subjects
+    let rows = kernels
         .iter()
-        .map(|subject| {
-            bar.set_message(format!("{} {}", subject.kernel, subject.config));
-            let stride = stride(subject);
-            let statistics = sweep(subject, stride, &|steps| bar.inc(steps));
-            let figures = cycles.get(subject.kernel).copied();
-            Row::new(subject, stride, &statistics, figures, &provenance)
+        .map(|kernel| {
+            bar.set_message(format!("{} {}", kernel.name, kernel.config));
+            let stride = stride(kernel);
+            let statistics = sweep(kernel, stride, &|steps| bar.inc(steps));
+            let figures = cycles.get(kernel.name).copied();
+            Row::new(kernel, stride, &statistics, figures, &provenance)
         })
         .collect();
     bar.set_message("the reference itself");

@@ -6,12 +6,12 @@ use anyhow::Result;
 
 use super::template::{fill, made, write};
 use crate::imu::measure::LEFT_BIAS;
-use crate::report::experiments::imu::filters::Tilted;
+use crate::report::experiments::imu::filters::FilterErrors;
 use crate::report::experiments::imu::methods::{RATES, Trial};
 use crate::report::experiments::imu::soft_core::{Kernel, Replay};
-use crate::report::experiments::imu::stiff::Stiff;
+use crate::report::experiments::imu::stiff::StiffCase;
 use crate::report::experiments::imu::targets::Target;
-use crate::report::experiments::imu::time::Moment;
+use crate::report::experiments::imu::time::ErrorsAtTime;
 use crate::report::plot::{self, Band, Diagram, Point};
 use crate::report::table::{Table, bold, read_csv};
 
@@ -24,9 +24,9 @@ pub fn rebuild(folder: &Path) -> Result<()> {
     let trials: Vec<Trial> = read_csv(&folder.join("imu-methods.csv"))?;
     let kernels: Vec<Kernel> = read_csv(&folder.join("imu-cycles.csv"))?;
     let replays: Vec<Replay> = read_csv(&folder.join("imu-replay.csv"))?;
-    let filters: Vec<Tilted> = read_csv(&folder.join("imu-filters.csv"))?;
-    let stiff: Vec<Stiff> = read_csv(&folder.join("imu-stiff.csv"))?;
-    let moments: Vec<Moment> = read_csv(&folder.join("imu-time.csv"))?;
+    let filters: Vec<FilterErrors> = read_csv(&folder.join("imu-filters.csv"))?;
+    let stiff: Vec<StiffCase> = read_csv(&folder.join("imu-stiff.csv"))?;
+    let moments: Vec<ErrorsAtTime> = read_csv(&folder.join("imu-time.csv"))?;
     for (motion, title) in [
         ("tumble", "Tumble of 700 °/s: error against cycles"),
         ("coning", "Coning of 5° at 10 Hz: error against cycles"),
@@ -154,7 +154,7 @@ fn replay_text(replays: &[Replay]) -> String {
     lines.collect()
 }
 
-fn filter_table(filters: &[Tilted]) -> String {
+fn filter_table(filters: &[FilterErrors]) -> String {
     let mut table = Table::new([
         "filter",
         "rest:",
@@ -170,7 +170,7 @@ fn filter_table(filters: &[Tilted]) -> String {
     table.finish()
 }
 
-fn stiff_table(stiff: &[Stiff]) -> String {
+fn stiff_table(stiff: &[StiffCase]) -> String {
     let mut table = Table::new(["case", "other methods", "Glint", "outcome"]);
     for row in stiff {
         table.row([&row.case, &row.other, &row.glint, &row.outcome].map(String::clone));
@@ -198,9 +198,9 @@ fn draw_methods(motion: &str, title: &'static str, trials: &[Trial], folder: &Pa
     plot::write(&diagram, &points, &folder.join(format!("imu-{motion}.svg")))
 }
 
-fn draw_moments(moments: &[Moment], folder: &Path) -> Result<()> {
-    let series = |error: fn(&Moment) -> f64| -> Vec<(f64, f64)> {
-        let point = |moment: &Moment| (moment.seconds, error(moment).max(1e-8));
+fn draw_moments(moments: &[ErrorsAtTime], folder: &Path) -> Result<()> {
+    let series = |error: fn(&ErrorsAtTime) -> f64| -> Vec<(f64, f64)> {
+        let point = |moment: &ErrorsAtTime| (moment.seconds, error(moment).max(1e-8));
         moments.iter().map(point).collect()
     };
     plot::write_lines(

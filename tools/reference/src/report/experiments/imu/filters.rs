@@ -10,7 +10,7 @@ use crate::report::provenance::Provenance;
 
 /// A filter: a line of `imu-filters.csv`. RMS of the inclination's error in degrees.
 #[derive(Serialize, Deserialize)]
-pub struct Tilted {
+pub struct FilterErrors {
     /// Name and parameters of the filter.
     pub filter: String,
     /// Whether Glint uses it.
@@ -28,7 +28,7 @@ pub struct Tilted {
 }
 
 /// Measures all filters; `part` shortens the motions to at least 30 s.
-pub fn measure(part: f64) -> Vec<Tilted> {
+pub fn measure(part: f64) -> Vec<FilterErrors> {
     let commit = Provenance::find().commit;
     let seconds = (120.0 * part).max(30.0);
     let mahony = Filter::Mahony {
@@ -52,7 +52,7 @@ pub fn measure(part: f64) -> Vec<Tilted> {
     ]
     .map(|filter| {
         let rms = |motion| filter_inclination(filter, Sensor::real(200.0), motion, seconds).rms();
-        Tilted {
+        FilterErrors {
             filter: filter.name(),
             shipped: filter == Filter::Tilt(TAU),
             rest: rms(Motion::Rest),

@@ -1,4 +1,4 @@
-//! Stiff and extreme cases of the attitude.
+//! StiffCase and extreme cases of the attitude.
 
 use glint_core::calibration::{RestBias, Units};
 use glint_core::orientation::{Gain, Sample};
@@ -12,7 +12,7 @@ use crate::imu::sensor::Sensor;
 
 /// A case: a line of `imu-stiff.csv`.
 #[derive(Serialize, Deserialize)]
-pub struct Stiff {
+pub struct StiffCase {
     /// Input and measured quantity.
     pub case: String,
     /// Result of other methods.
@@ -24,7 +24,7 @@ pub struct Stiff {
 }
 
 /// Measures all cases; `part` shortens long ones, `day` adds those of 24 hours.
-pub fn measure(part: f64, day: bool) -> Vec<Stiff> {
+pub fn measure(part: f64, day: bool) -> Vec<StiffCase> {
     let mut rows = gains();
     rows.extend(words(part));
     rows.push(rest_cycle());
@@ -34,7 +34,7 @@ pub fn measure(part: f64, day: bool) -> Vec<Stiff> {
     if day {
         for (name, motion) in [("1 count", COUNT), ("1990 °/s", SPIN)] {
             let largest = against_f64(Sensor::ideal(1000.0), motion, 86_400.0, false);
-            rows.push(Stiff {
+            rows.push(StiffCase {
                 case: format!("{name} about one axis, 24 h at 1 kHz"),
                 other: String::new(),
                 glint: format!(
@@ -49,7 +49,7 @@ pub fn measure(part: f64, day: bool) -> Vec<Stiff> {
 }
 
 /// One step of a first-order filter, explicit and exact.
-fn gains() -> Vec<Stiff> {
+fn gains() -> Vec<StiffCase> {
     [1e-4, 1e-3, 1e-2, 0.1, 0.5, 1.0, 1.9, 2.1, 5.0, 10.0]
         .map(|ratio: f64| {
             let step = 10_000;
@@ -63,7 +63,7 @@ fn gains() -> Vec<Stiff> {
                 x if x > 1.0 => "explicit oscillates, exact is monotone",
                 _ => "both are monotone",
             };
-            Stiff {
+            StiffCase {
                 case: format!("dt/τ = {ratio:.4}: error left after a step"),
                 other: format!("explicit {explicit:.6}"),
                 glint: format!(
@@ -78,7 +78,7 @@ fn gains() -> Vec<Stiff> {
 }
 
 /// A bias of 1 LSB, learnt by running means of different word lengths.
-fn words(part: f64) -> Vec<Stiff> {
+fn words(part: f64) -> Vec<StiffCase> {
     [10, 100, 1000]
         .map(|time_constant: u32| {
             let gain = u64::from(Gain::new(time_constant * 1_000_000).of(1_000));
@@ -95,7 +95,7 @@ fn words(part: f64) -> Vec<Stiff> {
             let others: Vec<String> = [16, 20, 24, 28]
                 .map(|bits| format!("{bits} bits {:.3}", learnt(bits)))
                 .into();
-            Stiff {
+            StiffCase {
                 case: format!(
                     "bias with τ = {time_constant} s at 1 kHz: learnt part of 1 LSB after {:.0} s, exact {exact:.5}",
                     steps as f64 * 1e-3
@@ -109,7 +109,7 @@ fn words(part: f64) -> Vec<Stiff> {
 }
 
 /// The attitude at rest without noise, to find a limit cycle.
-fn rest_cycle() -> Stiff {
+fn rest_cycle() -> StiffCase {
     let mut tracker = tracker(&Sensor::ideal(1000.0), true);
     let mut first: Option<Quaternion> = None;
     let mut moved = 0.0_f64;
@@ -124,7 +124,7 @@ fn rest_cycle() -> Stiff {
             moved = moved.max(first.get_or_insert(attitude).angle_to(attitude));
         }
     }
-    Stiff {
+    StiffCase {
         case: "tilted, at rest for 1000 s without noise: motion of the attitude in the second half"
             .into(),
         other: String::new(),
@@ -134,7 +134,7 @@ fn rest_cycle() -> Stiff {
 }
 
 /// Uneven and lost samples, integrated by their time stamps and as if they were even.
-fn uneven() -> Vec<Stiff> {
+fn uneven() -> Vec<StiffCase> {
     let even = Sensor::ideal(200.0);
     let error = |sensor: Sensor, stamped: bool| {
         let mut tracker = tracker(&sensor, false);
@@ -168,7 +168,7 @@ fn uneven() -> Vec<Stiff> {
             },
         ),
     ]
-    .map(|(name, sensor)| Stiff {
+    .map(|(name, sensor)| StiffCase {
         case: format!("tumble of 700 °/s, 20 s at 200 Hz, {name}: error at the end"),
         other: format!("without time stamps {:.2e}°", error(sensor, false)),
         glint: format!("{:.2e}°", error(sensor, true)),
@@ -178,7 +178,7 @@ fn uneven() -> Vec<Stiff> {
 }
 
 /// A saturated gyroscope for 30 ms of a hand motion.
-fn saturation() -> Stiff {
+fn saturation() -> StiffCase {
     let sensor = Sensor::real(1000.0);
     let mut tracker = tracker(&sensor, true);
     let mut errors = [0.0; 3];
@@ -198,7 +198,7 @@ fn saturation() -> Stiff {
             _ => {}
         }
     }
-    Stiff {
+    StiffCase {
         case: "x saturated for 30 ms of a hand motion at 1 kHz: inclination at its end, after 3 s, after 10 s".into(),
         other: String::new(),
         glint: format!("{:.1}°, {:.1}°, {:.2}°", errors[0], errors[1], errors[2]),
@@ -207,7 +207,7 @@ fn saturation() -> Stiff {
 }
 
 /// Rates of zero mean over long periods.
-fn squares() -> Vec<Stiff> {
+fn squares() -> Vec<StiffCase> {
     [(1500.0, 1.0), (1500.0, 0.1), (5.0, 0.1)]
         .map(|(rate, frequency)| {
             let motion = Motion::Square { rate, frequency };
@@ -221,7 +221,7 @@ fn squares() -> Vec<Stiff> {
                 tracker.on_sample(&sample);
             }
             let learnt = tracker.bias().iter().map(|x| x.abs()).max().unwrap_or(0);
-            Stiff {
+            StiffCase {
                 case: format!("square wave of ±{rate} °/s, {frequency} Hz, 60 s: learnt bias"),
                 other: String::new(),
                 glint: format!("{:.3} LSB", f64::from(learnt) / 256.0),

@@ -14,7 +14,7 @@ const WALK: f64 = 0.1 * 0.031_622_776_601_683_79;
 
 /// Errors at a time: a line of `imu-time.csv`, in degrees.
 #[derive(Serialize, Deserialize)]
-pub struct Moment {
+pub struct ErrorsAtTime {
     /// Time since the start.
     pub seconds: f64,
     /// Firmware against f64 on the same counts.
@@ -28,14 +28,15 @@ pub struct Moment {
 }
 
 /// Measures a hand motion by the gyroscope alone.
-pub fn measure(seconds: f64) -> Vec<Moment> {
+pub fn measure(seconds: f64) -> Vec<ErrorsAtTime> {
     let motion = Motion::Hand;
     let ideal = Sensor::ideal(1000.0);
     let real = Sensor::real(1000.0);
     let count = (seconds * 1000.0) as u64 + 1;
     let start = motion.attitude(0.0).unwrap_or(Quaternion::IDENTITY);
     let mut trackers = [tracker(&ideal, false), tracker(&real, false)];
-    let mut twin = Estimator::new(Method::Cubic, Filter::None, ideal.gyro_lsb, ideal.accel_lsb);
+    let mut reference =
+        Estimator::new(Method::Cubic, Filter::None, ideal.gyro_lsb, ideal.accel_lsb);
     let mut moments = Vec::new();
     let mut due = 0.1;
     for (exact, noisy) in ideal
@@ -44,7 +45,7 @@ pub fn measure(seconds: f64) -> Vec<Moment> {
     {
         trackers[0].on_sample(&exact);
         trackers[1].on_sample(&noisy);
-        twin.on_sample(&exact);
+        reference.on_sample(&exact);
         let seconds = f64::from(exact.t_us) * 1e-6;
         if seconds < due {
             continue;
@@ -57,9 +58,9 @@ pub fn measure(seconds: f64) -> Vec<Moment> {
         let attitudes = trackers
             .each_ref()
             .map(|tracker| Quaternion::from(tracker.attitude()));
-        moments.push(Moment {
+        moments.push(ErrorsAtTime {
             seconds,
-            numeric: attitudes[0].angle_to(twin.attitude()),
+            numeric: attitudes[0].angle_to(reference.attitude()),
             counts: attitudes[0].angle_to(truth),
             sensor: attitudes[1].angle_to(truth),
             floor: WALK * seconds.sqrt(),

@@ -14,9 +14,9 @@ use super::statistics::Statistics;
 use super::truth::{Image, OCTANT, SinCos, TURN};
 
 /// A kernel and its inputs, numbered in steps. A step may cover several inputs.
-pub struct Subject {
+pub struct Kernel {
     /// Name of the kernel, as in the firmware's `bench sine`.
-    pub kernel: &'static str,
+    pub name: &'static str,
     /// Its line in the work-precision diagram.
     pub family: &'static str,
     /// Variant.
@@ -39,7 +39,7 @@ pub struct Subject {
 /// Adds the errors of a range of steps, with a stride.
 type Run = dyn Fn(Range<u64>, u64, &mut Statistics) + Sync;
 
-impl Subject {
+impl Kernel {
     /// Number of steps for all inputs.
     pub fn steps(&self) -> u64 {
         self.steps
@@ -56,10 +56,10 @@ impl Subject {
     }
 }
 
-/// All subjects, Glint's own first.
-pub fn subjects() -> Vec<Subject> {
+/// All kernels, Glint's first.
+pub fn kernels() -> Vec<Kernel> {
     vec![
-        Subject {
+        Kernel {
             shipped: true,
             ..phases(
                 ["sin_cos_q14", GLINT, "order 2", "Q2.14"],
@@ -68,7 +68,7 @@ pub fn subjects() -> Vec<Subject> {
                 q14,
             )
         },
-        Subject {
+        Kernel {
             shipped: true,
             ..phases(
                 ["sin_cos_q14", GLINT, "order 2", "Q2.14"],
@@ -77,7 +77,7 @@ pub fn subjects() -> Vec<Subject> {
                 q14,
             )
         },
-        Subject {
+        Kernel {
             shipped: true,
             ..phases(
                 ["sin_cos_q30", GLINT, "order 3", "Q2.30"],
@@ -174,19 +174,19 @@ fn last_place(fraction_bits: u32) -> f64 {
 /// A kernel of phases. A step is a phase of the first octant, evaluated at its images in all octants. Images with the same output
 /// bits, apart from signs and order, have the same error and are only counted; others are measured singly.
 fn phases(
-    [kernel, family, config, format]: [&'static str; 4],
+    [name, family, config, format]: [&'static str; 4],
     fraction_bits: u32,
     (spacing, inputs): Inputs,
     evaluate: impl Fn(u32) -> (i32, i32) + Sync + 'static,
-) -> Subject {
+) -> Kernel {
     let ulp = last_place(fraction_bits);
     let real = move |(sin, cos): (i32, i32)| SinCos {
         sin: f64::from(sin) * ulp,
         cos: f64::from(cos) * ulp,
     };
     let spacing = u64::from(spacing);
-    Subject {
-        kernel,
+    Kernel {
+        name,
         family,
         config,
         format,
@@ -221,16 +221,16 @@ fn phases(
 
 /// A kernel of fixed-point radians with the fraction bits of its outputs: every `spacing`-th input in [−π, π].
 fn radians(
-    [kernel, family, config, format]: [&'static str; 4],
+    [name, family, config, format]: [&'static str; 4],
     fraction_bits: u32,
     (spacing, inputs): Inputs,
     evaluate: impl Fn(i32) -> (i32, i32) + Sync + 'static,
-) -> Subject {
+) -> Kernel {
     let ulp = last_place(fraction_bits);
     let last = (PI / ulp) as i64;
     let spacing = u64::from(spacing);
-    Subject {
-        kernel,
+    Kernel {
+        name,
         family,
         config,
         format,
@@ -257,13 +257,13 @@ fn radians(
 
 /// A kernel of f32 radians: all floats from 2^-24, below which a sine is its angle, to 2π.
 fn floats(
-    [kernel, family, config, format]: [&'static str; 4],
+    [name, family, config, format]: [&'static str; 4],
     evaluate: impl Fn(f32) -> (f32, f32) + Sync + 'static,
-) -> Subject {
+) -> Kernel {
     let first = u64::from(2f32.powi(-24).to_bits());
     let last = u64::from(std::f32::consts::TAU.to_bits());
-    Subject {
-        kernel,
+    Kernel {
+        name,
         family,
         config,
         format,
@@ -290,7 +290,7 @@ fn floats(
 }
 
 /// A table with one entry a degree, in 16.16: all angles in [0°, 360°) in 16.16.
-fn degrees() -> Subject {
+fn degrees() -> Kernel {
     let table: Vec<f64> = (0..=180)
         .map(|degree| (f64::from(degree).to_radians().sin() * 65536.0).round() / 65536.0)
         .collect();
@@ -298,8 +298,8 @@ fn degrees() -> Subject {
         low @ 0..=180 => table[low as usize],
         high => -table[high as usize - 180],
     };
-    Subject {
-        kernel: "degree_table",
+    Kernel {
+        name: "degree_table",
         family: "table of degrees",
         config: "181 entries",
         format: "Q16.16",
@@ -329,26 +329,26 @@ mod tests {
     use super::super::sweep::sweep;
     use super::*;
 
-    fn named(kernel: &str) -> Subject {
-        subjects()
+    fn named(name: &str) -> Kernel {
+        kernels()
             .into_iter()
-            .find(|subject| subject.kernel == kernel)
-            .expect("a subject")
+            .find(|kernel| kernel.name == name)
+            .expect("a kernel")
     }
 
     /// Errors known from theory or from the libraries' documents.
     #[test]
     fn other_libraries_have_their_documented_errors() {
-        for (kernel, at_least, at_most) in [
+        for (name, at_least, at_most) in [
             ("degree_table", 0.01744, 0.01747),
             ("idsp", 1.8e-5, 1.95e-5),
             ("micromath", 8e-4, 2e-3),
             ("libm", 2.5e-8, 6e-8),
         ] {
-            let subject = named(kernel);
-            let statistics = sweep(&subject, subject.steps() / 300_000 + 1, &|_| ());
+            let kernel = named(name);
+            let statistics = sweep(&kernel, kernel.steps() / 300_000 + 1, &|_| ());
             let max = statistics.max;
-            assert!((at_least..=at_most).contains(&max), "{kernel}: {max:e}");
+            assert!((at_least..=at_most).contains(&max), "{name}: {max:e}");
         }
     }
 
