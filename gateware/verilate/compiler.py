@@ -1,0 +1,88 @@
+"""Verilator, the C++ compiler and the harness around a model."""
+
+import json
+import os
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from .description import describe
+from .programs import GATEWARE, VERILATOR_ROOT, digest, files_below, is_current, run, run_verilator
+
+HARNESS = GATEWARE.parent / "tools" / "testbench" / "harness"
+_HERE = Path(__file__).resolve().parent
+RECIPE = [*(_HERE / f"{part}.py" for part in ("compiler", "description", "programs")), *files_below(HARNESS),
+          VERILATOR_ROOT / "bin" / "verilator_bin"]
+"""Files that every library depends on."""
+
+_RUNTIME = [VERILATOR_ROOT / "include" / f"{part}.cpp" for part in ("verilated", "verilated_threads")]
+_RUNTIME_OF_WAVEFORMS = VERILATOR_ROOT / "include" / "verilated_vcd_c.cpp"
+_runtime_lock = threading.Lock()
+
+
+def flags(folder, waveforms=False):
+    """Options of g++ for a model in `folder`. Hidden symbols let the compiler inline: a module runs a third faster."""
+    values = {"SC": 0, "COVERAGE": 0, "TIMING": 0, "TRACE": int(waveforms), "TRACE_VCD": int(waveforms)}
+    includes = [folder, HARNESS, VERILATOR_ROOT / "include", VERILATOR_ROOT / "include" / "vltstd"]
+    return ["-std=gnu++20", "-fPIC", "-fvisibility=hidden", "-pthread", "-w", *(f"-DVM_{key}={value}" for key, value in values.items()),
+            "-DMODEL=Vmodel", '-DMODEL_HEADER="Vmodel.h"', *(f"-I{include}" for include in includes)]
+
+
+def verilate(top, sources, parameters, folder, options):
+    """Writes the C++ of a design and the description of its ports to `folder`."""
+    run_verilator("--cc", "-O3", "--prefix", "Vmodel", "--top-module", top, "-Mdir", folder, *options,
+                  *(f"-G{key}={value}" for key, value in parameters.items()), *sources)
+    description = describe(top, sources, parameters, folder)
+    (folder / "ports.inc").write_text("".join(f"PORT({port['name']})\n" for port in description["ports"]))
+    # One literal a line: compilers need not take literals of any length.
+    text = "".join(json.dumps(line) + "\n" for line in json.dumps(description, indent=0).splitlines())
+    (folder / "description.inc").write_text(text)
+
+
+def model_sources(folder, waveforms=False):
+    """The C++ of a verilated design and Verilator's runtime."""
+    return [*sorted(folder.glob("Vmodel*.cpp")), *_RUNTIME, *([_RUNTIME_OF_WAVEFORMS] if waveforms else [])]
+
+
+def object_of(source, folder):
+    """The object file of a source."""
+    return folder / f"{source.stem}.o"
+
+
+def compile_all(name, sources, folder, options):
+    """Compiles every source to an object in `folder`, as many at a time as there are cores, and prints the progress."""
+    done = 0
+    lock = threading.Lock()
+
+    def compile_one(source):
+        # Verilator calls slow what runs once.
+        slow = ["-O1"] if "__Slow" in source.name else []
+        run(["g++", *options, *slow, "-c", source, "-o", object_of(source, folder)])
+        nonlocal done
+        with lock:
+            done += 1
+            print(f"{name}: {done} of {len(sources)}", flush=True)
+
+    # The largest first: they decide when the last one is done.
+    queue = sorted(sources, key=lambda source: -source.stat().st_size)
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        list(pool.map(compile_one, queue))
+
+
+def link(objects, built, library):
+    """Links a shared library. A program that runs keeps the library it has opened: the new one takes its place by renaming."""
+    run(["g++", "-shared", "-pthread", *objects, "-o", built])
+    built.rename(library)
+
+
+def runtime(folder, options):
+    """Objects of Verilator's runtime, in `folder`: the same for all models with these options."""
+    objects = [object_of(source, folder) for source in _RUNTIME]
+    with _runtime_lock:
+        stamp, inputs = folder / "inputs", digest(_RUNTIME, options)
+        if not is_current(stamp, inputs, *objects):
+            folder.mkdir(parents=True, exist_ok=True)
+            for source, target in zip(_RUNTIME, objects):
+                run(["g++", *options, f"-I{VERILATOR_ROOT}/include", f"-I{VERILATOR_ROOT}/include/vltstd", "-c", source, "-o", target])
+            stamp.write_text(inputs)
+    return objects

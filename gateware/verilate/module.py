@@ -1,0 +1,35 @@
+"""A module on its own as a shared library, which `glint_testbench::Module` loads."""
+
+import shutil
+from pathlib import Path
+
+from . import compiler
+from .programs import GATEWARE, digest, is_current, run
+
+MODELS = GATEWARE.parent / "target" / "gateware" / "models"
+
+_OPTIMISE = "-O2"
+
+# Registers start with noise, and `x` is noise: a test sees a value that was never written.
+_VERILATE = ["-Wall", "--x-initial", "unique", "--x-assign", "unique"]
+
+
+def build(top, sources, name, parameters):
+    """Builds `target/gateware/models/NAME.so`, a variant of a module with some parameters, where it is not up to date."""
+    library, folder = MODELS / f"{name}.so", MODELS / name
+    stamp = folder / "inputs"
+    inputs = digest([*sources, *compiler.RECIPE, Path(__file__)], top, name, parameters)
+    if is_current(stamp, inputs, library):
+        return
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    compiler.verilate(top, sources, parameters, folder, _VERILATE)
+    options = [*compiler.flags(folder), _OPTIMISE]
+    # In one piece: each of the files alone costs as much as all of them.
+    parts = [*sorted(folder.glob("Vmodel*.cpp")), compiler.HARNESS / "module.cpp"]
+    whole = folder / "whole.cpp"
+    whole.write_text("".join(f'#include "{path}"\n' for path in parts))
+    run(["g++", *options, "-c", whole, "-o", folder / "whole.o"])
+    runtime = compiler.runtime(MODELS / "runtime", ["-std=gnu++20", "-fPIC", "-fvisibility=hidden", "-pthread", "-w", _OPTIMISE])
+    compiler.link([folder / "whole.o", *runtime], folder / "built.so", library)
+    stamp.write_text(inputs)

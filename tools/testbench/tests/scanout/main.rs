@@ -1,0 +1,204 @@
+//! Scan-out between two clocks, a memory of any behaviour and a monitor; the bench checks every cycle and every pixel.
+//!
+//! `scanout` is the module as built, CEA-861 1280×720. `scanout_small` has a raster of a few thousand clocks and as much time a line
+//! for its memory words, so that thousands of frames fit in a test.
+
+mod bench;
+mod memory;
+mod monitor;
+mod raster;
+
+use rand::RngExt;
+use rand_pcg::Pcg64Mcg;
+
+use bench::{Bench, Settings, error};
+use memory::Manners;
+use raster::{Clocks, Raster};
+
+const SMALL: Raster = Raster::SMALL;
+
+/// Software that changes its mind at any time, several times a frame.
+fn restless(random: &mut Pcg64Mcg, asked: &mut Settings) {
+    if random.random_range(0..1500) == 0 {
+        *asked = Settings::random(random);
+    }
+}
+
+fn all_scales_are_pixel_exact(clocks: Clocks) {
+    let mut bench = Bench::new("scanout", Raster::CEA, clocks, 1);
+    bench.memory.manners = Manners::BUSY;
+    for scale in [4, 2, 1] {
+        bench.asked = Settings::shown(scale, 0x12_3456 * scale);
+        // Taken over there.
+        bench.run_to_vblank();
+    }
+    bench.run_to_vblank();
+    assert_eq!((bench.monitor.late, bench.monitor.frames), (0, 3));
+    // As many lines as the frames have, and each word once.
+    assert_eq!(bench.module.read("items_out"), 180 + 360 + 720);
+    let words = 180 * 40 + 360 * 80 + 720 * 160;
+    assert_eq!(bench.module.read("items_in"), words);
+}
+
+#[test]
+fn all_scales_are_pixel_exact_at_81_25_mhz() {
+    all_scales_are_pixel_exact(Clocks::SLOW);
+}
+
+#[test]
+fn all_scales_are_pixel_exact_at_100_mhz() {
+    all_scales_are_pixel_exact(Clocks::FAST);
+}
+
+#[test]
+fn flips_and_switches_at_any_time_with_seven_clock_ratios() {
+    let ratios = [
+        (7425, 7425),
+        (7426, 7425),
+        (20_000, 7425),
+        (7425, 11_000),
+        (15_000, 7425),
+    ];
+    let ratios = ratios.into_iter().map(|(sys, pix)| Clocks { sys, pix });
+    let ratios = [Clocks::SLOW, Clocks::FAST].into_iter().chain(ratios);
+    for (seed, clocks) in (100..).zip(ratios) {
+        let mut bench = Bench::small(clocks, seed);
+        bench.memory.manners = Manners::SHARED;
+        bench.software = Some(restless);
+        bench.run_frames(60);
+        assert_eq!(bench.monitor.late, 0, "{clocks:?}");
+    }
+}
+
+#[test]
+fn a_late_line_is_replaced_by_the_one_before() {
+    for scale in [1, 2, 4] {
+        let mut bench = Bench::small(Clocks::SLOW, 200 + scale);
+        bench.asked = Settings::shown(scale, 0x100);
+        bench.run_frames(2);
+        bench.monitor.may_be_late = true;
+        // Into the picture, then no memory for twice the time of a source line.
+        bench.run_lines(SMALL.lines_to_picture());
+        bench.memory.stopped = true;
+        bench.run_lines(2 * scale);
+        bench.memory.stopped = false;
+        bench.run_to_vblank();
+        let late = bench.monitor.late;
+        assert!((1..=3).contains(&late), "scale {scale}: {late} late lines");
+        // The late line is shown in what is left of its time.
+        assert!(scale < 4 || bench.monitor.late_again >= 1);
+        assert_eq!(bench.module.read("error"), error::UNDERFLOW);
+        bench.monitor.may_be_late = false;
+        bench.run_frames(2);
+        assert_eq!(bench.module.read("error"), error::NONE);
+    }
+}
+
+#[test]
+fn starved_memory_never_disturbs_the_raster() {
+    let (mut late, mut again) = (0, 0);
+    for seed in 300..312_u64 {
+        let clocks = [Clocks::FAST, Clocks::SLOW][seed as usize & 1];
+        let mut bench = Bench::small(clocks, seed);
+        bench.monitor.may_be_late = true;
+        // From lines to whole frames without memory.
+        bench.memory.manners = Manners {
+            ready: 0.6,
+            deliver: 0.6,
+            latency: [2, 150],
+            pause: 0.0005,
+            pause_cycles: if seed.is_multiple_of(3) { 20_000 } else { 1500 },
+        };
+        bench.software = Some(restless);
+        bench.run_frames(60);
+        late += bench.monitor.late;
+        again += bench.monitor.late_again;
+    }
+    assert!(
+        late > 500 && again > 20,
+        "{late} late lines, {again} caught up"
+    );
+}
+
+#[test]
+fn dead_memory_shows_black_and_comes_back() {
+    let mut bench = Bench::small(Clocks::SLOW, 400);
+    bench.memory.stopped = true;
+    bench.asked = Settings::shown(2, 0x4000);
+    bench.run_to_vblank();
+    bench.monitor.may_be_late = true;
+    bench.run_frames(3);
+    assert_eq!(bench.monitor.late, 3 * SMALL.v_active / 2);
+    // What comes now was asked for three frames ago, and for another base.
+    bench.asked.base = 0x8000;
+    bench.run_to_vblank();
+    bench.memory.stopped = false;
+    bench.monitor.may_be_late = false;
+    let late = bench.monitor.late;
+    bench.run_frames(2);
+    assert_eq!(bench.monitor.late, late, "memory came back in the blanking");
+}
+
+#[test]
+fn unknown_scales_are_refused() {
+    let mut bench = Bench::small(Clocks::SLOW, 500);
+    bench.asked = Settings::shown(2, 0x77);
+    bench.run_frames(2);
+    for scale in [0, 3, 5, 6, 7] {
+        bench.asked.scale = scale;
+        bench.run_frames(2);
+        let found = ["error", "scale_current"].map(|name| bench.module.read(name));
+        assert_eq!(found, [error::SCALE, 2], "scale {scale}");
+    }
+}
+
+#[test]
+fn either_side_may_be_reset_alone() {
+    let clocks = Clocks::FAST;
+    let mut bench = Bench::small(clocks, 600);
+    bench.memory.manners = Manners::SHARED;
+    let frame = clocks.sys_cycles(SMALL.frame());
+    for round in 0..200 {
+        bench.asked = Settings::shown(1 << (round % 3), 0x1000 * round);
+        bench.run_frames(2);
+        let cycles = bench.random.random_range(0..frame);
+        bench.run_cycles(cycles);
+        // The raster goes on while sys alone is reset: the monitor keeps its position.
+        if round % 2 == 0 {
+            bench.reset_sys(true);
+        }
+        if round % 4 != 0 {
+            bench.reset_pix(true);
+        }
+        let cycles = bench.random.random_range(8..3008);
+        bench.run_cycles(cycles);
+        bench.reset_sys(false);
+        bench.reset_pix(false);
+        // A processor needs longer to set anything.
+        bench.run_cycles(20);
+    }
+    bench.asked.enable = true;
+    bench.run_frames(3);
+    assert_eq!(bench.monitor.late, 0);
+}
+
+#[test]
+fn a_fetch_may_outlive_its_request() {
+    let mut bench = Bench::small(Clocks::SLOW, 700);
+    bench.asked = Settings::shown(1, 0x300);
+    bench.run_frames(2);
+    bench.run_lines(SMALL.lines_to_picture());
+    bench.memory.stopped = true;
+    while !bench.is_fetching() {
+        bench.run_cycles(1);
+    }
+    bench.reset_pix(true);
+    bench.run_cycles(20);
+    bench.reset_pix(false);
+    bench.run_to_vblank();
+    // Line 0 is asked for while the old line is still under way.
+    bench.run_lines(2);
+    bench.memory.stopped = false;
+    bench.run_frames(2);
+    assert_eq!(bench.monitor.late, 0);
+}

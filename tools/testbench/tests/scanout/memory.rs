@@ -1,0 +1,169 @@
+//! The memory that scan-out reads from, with a chosen behaviour.
+
+use std::collections::VecDeque;
+
+use glint_testbench::{Bits, Module, Port};
+use rand::RngExt;
+use rand_pcg::Pcg64Mcg;
+
+use crate::bench::Settings;
+use crate::raster::{Raster, pixel_at};
+
+/// Bytes of a memory word.
+pub const WORD: u64 = 16;
+
+/// How memory behaves: the share of cycles in which it takes a command and delivers a word, and the latency in cycles.
+#[derive(Clone, Copy, Debug)]
+pub struct Manners {
+    pub ready: f64,
+    pub deliver: f64,
+    pub latency: [u64; 2],
+    /// The chance in a cycle that memory pauses altogether, and for how many cycles at most.
+    pub pause: f64,
+    pub pause_cycles: u64,
+}
+
+impl Manners {
+    /// Always ready, after 8 cycles.
+    pub const PROMPT: Self = Self {
+        ready: 1.0,
+        deliver: 1.0,
+        latency: [8, 8],
+        pause: 0.0,
+        pause_cycles: 0,
+    };
+    /// Shared with others that are mostly idle.
+    pub const SHARED: Self = Self {
+        ready: 0.8,
+        deliver: 0.9,
+        latency: [2, 20],
+        ..Self::PROMPT
+    };
+    /// Shared with others that are busy.
+    pub const BUSY: Self = Self {
+        ready: 0.5,
+        deliver: 0.7,
+        latency: [5, 60],
+        ..Self::PROMPT
+    };
+}
+
+/// Whether an event of a probability happens.
+pub fn chance(random: &mut Pcg64Mcg, share: f64) -> bool {
+    share >= 1.0 || share > 0.0 && random.random_bool(share)
+}
+
+/// The memory's side of the read port.
+pub struct Memory {
+    pub manners: Manners,
+    /// Takes and delivers nothing.
+    pub stopped: bool,
+    cmd: [Port; 3],
+    rdata: [Port; 2],
+    /// Addresses in words, and when their data are due.
+    commands: VecDeque<(u64, u64)>,
+    /// Address of a command that was not taken.
+    held: Option<u64>,
+    paused_until: u64,
+}
+
+impl Memory {
+    pub fn new(module: &Module) -> Self {
+        Self {
+            manners: Manners::PROMPT,
+            stopped: false,
+            cmd: ["cmd_valid", "cmd_ready", "cmd_addr"].map(|name| module.port(name)),
+            rdata: ["rdata_valid", "rdata"].map(|name| module.port(name)),
+            commands: VecDeque::new(),
+            held: None,
+            paused_until: 0,
+        }
+    }
+
+    /// Forgets all commands: the other side has been reset.
+    pub fn reset(&mut self, module: &mut Module) {
+        self.commands.clear();
+        self.held = None;
+        self.rest(module);
+    }
+
+    /// Neither takes nor delivers.
+    pub fn rest(&self, module: &mut Module) {
+        module.set_value(self.rdata[0], 0);
+        module.set_value(self.cmd[1], 0);
+    }
+
+    /// Takes the command of this cycle, which must be one for the frame `from`. Returns whether a command waits.
+    pub fn sample(
+        &mut self,
+        module: &Module,
+        random: &mut Pcg64Mcg,
+        raster: &Raster,
+        cycle: u64,
+        from: &Settings,
+    ) -> bool {
+        let valid = module.is_high(self.cmd[0]);
+        let address = module.value(self.cmd[2]);
+        if let Some(held) = self.held.take() {
+            assert!(
+                valid && address == held,
+                "command {held:#x} was changed or withdrawn before it was taken"
+            );
+        }
+        if !valid {
+            return false;
+        }
+        if !module.is_high(self.cmd[1]) {
+            self.held = Some(address);
+            return true;
+        }
+        let words = raster.h_active / from.scale * (raster.v_active / from.scale) / 8;
+        assert!(
+            from.enable && address.wrapping_sub(from.base) < words,
+            "read of word {address:#x}, outside the frame at {:#x}",
+            from.base
+        );
+        assert!(
+            (self.commands.len() as u64) < raster.h_active / 8,
+            "more commands under way than a line has words"
+        );
+        let [least, most] = self.manners.latency;
+        let due = cycle + random.random_range(least..=most);
+        // In order.
+        let due = self.commands.back().map_or(due, |&(_, last)| due.max(last));
+        self.commands.push_back((address, due));
+        false
+    }
+
+    /// Whether a word is delivered in this cycle.
+    pub fn delivers(&self, module: &Module) -> bool {
+        module.is_high(self.rdata[0])
+    }
+
+    /// Delivers a word or noise, and is ready for a command or not.
+    pub fn drive(&mut self, module: &mut Module, random: &mut Pcg64Mcg, cycle: u64) {
+        let manners = self.manners;
+        if cycle >= self.paused_until && chance(random, manners.pause) {
+            self.paused_until = cycle + random.random_range(0..manners.pause_cycles);
+        }
+        let awake = cycle >= self.paused_until && !self.stopped;
+        module.set_value(
+            self.cmd[1],
+            u64::from(awake && chance(random, manners.ready)),
+        );
+        let due = self.commands.front().is_some_and(|&(_, due)| due <= cycle);
+        let given = awake && due && chance(random, manners.deliver);
+        module.set_value(self.rdata[0], u64::from(given));
+        let words: [u32; 4] = match self.commands.front() {
+            Some(&(address, _)) if given => {
+                self.commands.pop_front();
+                std::array::from_fn(|i| {
+                    let byte = address * WORD + 4 * i as u64;
+                    u32::from(pixel_at(byte)) | u32::from(pixel_at(byte + 2)) << 16
+                })
+            }
+            _ => random.random(),
+        };
+        module.set(self.rdata[1], Bits::from_words(&words));
+    }
+}

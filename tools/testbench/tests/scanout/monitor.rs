@@ -1,0 +1,145 @@
+//! The monitor: it knows the video timing and the rules of the picture, and nothing of the module.
+//!
+//! At each pixel clock it checks the syncs against a position counted from the first edge of vsync, and at the end of each line that
+//! the line is the right one, or, where memory was late, the one before it.
+
+use glint_testbench::{Module, Port};
+
+use crate::bench::Settings;
+use crate::memory::WORD;
+use crate::raster::{Raster, pixel_at, rgb888};
+
+pub struct Monitor {
+    raster: Raster,
+    hsync: Port,
+    vsync: Port,
+    de: Port,
+    rgb: [Port; 3],
+    /// Pixel clocks since the leading edge of vsync.
+    position: Option<u64>,
+    vsync_before: bool,
+    line: Vec<u32>,
+    /// A reset fell into this line.
+    pub line_unchecked: bool,
+    /// The source line that this frame showed last.
+    pub line_shown: Option<u64>,
+    /// Lines may be late.
+    pub may_be_late: bool,
+    /// Frames whose last line was shown.
+    pub frames: u64,
+    /// Source lines that came late.
+    pub late: u64,
+    /// Lines of the picture in which a late source line was caught up.
+    pub late_again: u64,
+}
+
+impl Monitor {
+    pub fn new(module: &Module, raster: Raster) -> Self {
+        Self {
+            raster,
+            hsync: module.port("video_hsync"),
+            vsync: module.port("video_vsync"),
+            de: module.port("video_de"),
+            rgb: ["video_r", "video_g", "video_b"].map(|name| module.port(name)),
+            position: None,
+            vsync_before: true,
+            line: Vec::new(),
+            line_unchecked: false,
+            line_shown: None,
+            may_be_late: false,
+            frames: 0,
+            late: 0,
+            late_again: 0,
+        }
+    }
+
+    /// Waits for vsync again.
+    pub fn reset(&mut self) {
+        self.position = None;
+        self.line.clear();
+        self.vsync_before = true;
+    }
+
+    /// Checks a pixel clock. Returns whether it was the last one of a frame's picture.
+    pub fn watch(&mut self, module: &Module, in_force: &Settings) -> bool {
+        let vsync = module.is_high(self.vsync);
+        let position = match self.position {
+            None if vsync && !self.vsync_before => 0,
+            None => {
+                self.vsync_before = vsync;
+                return false;
+            }
+            Some(position) => (position + 1) % self.raster.frame(),
+        };
+        self.position = Some(position);
+        // A line begins with the leading edge of hsync, a frame with that of vsync.
+        let raster = &self.raster;
+        let (x, y) = (position % raster.h_total(), position / raster.h_total());
+        let (left, top) = (raster.h_sync + raster.h_back, raster.v_sync + raster.v_back);
+        let de = (top..top + raster.v_active).contains(&y)
+            && (left..left + raster.h_active).contains(&x);
+        let hsync = module.is_high(self.hsync);
+        assert_eq!(hsync, x < raster.h_sync, "hsync at x {x}, y {y}");
+        assert_eq!(vsync, y < raster.v_sync, "vsync at x {x}, y {y}");
+        let found = module.is_high(self.de);
+        assert_eq!(found, de, "de at x {x}, y {y}");
+        let [r, g, b] = self.rgb.map(|port| module.value(port) as u32);
+        let rgb = r << 16 | g << 8 | b;
+        if !de {
+            assert_eq!(rgb, 0, "colour in the blanking at x {x}, y {y}");
+            return false;
+        }
+        self.line.push(rgb);
+        if self.line.len() as u64 == raster.h_active {
+            self.check_line(y - top, in_force);
+            self.line.clear();
+            return y - top == self.raster.v_active - 1;
+        }
+        false
+    }
+
+    fn line_is(&self, source_line: u64, in_force: &Settings) -> bool {
+        let scale = in_force.scale;
+        let width = self.raster.h_active / scale;
+        let start = in_force.base * WORD + source_line * width * 2;
+        let pixels = (0..).zip(self.line.chunks(scale as usize));
+        let mut pixels = pixels.map(|(x, run)| (rgb888(pixel_at(start + 2 * x)), run));
+        pixels.all(|(pixel, run)| run.iter().all(|&shown| shown == pixel))
+    }
+
+    fn line_is_black(&self) -> bool {
+        self.line.iter().all(|&pixel| pixel == 0)
+    }
+
+    fn check_line(&mut self, y: u64, in_force: &Settings) {
+        self.frames += u64::from(y == self.raster.v_active - 1);
+        if std::mem::take(&mut self.line_unchecked) {
+            return;
+        }
+        if !in_force.enable {
+            assert!(self.line_is_black(), "line {y} is not black while disabled");
+            return;
+        }
+        let needed = y / in_force.scale;
+        let first_use = y.is_multiple_of(in_force.scale);
+        if self.line_is(needed, in_force) {
+            self.late_again += u64::from(!first_use && self.line_shown != Some(needed));
+            self.line_shown = Some(needed);
+            return;
+        }
+        assert!(
+            self.may_be_late,
+            "line {y} does not show source line {needed} (first pixel {:06x})",
+            self.line[0]
+        );
+        self.late += u64::from(first_use);
+        let before = match self.line_shown {
+            Some(shown) => self.line_is(shown, in_force),
+            None => self.line_is_black(),
+        };
+        assert!(
+            before,
+            "line {y} shows neither source line {needed} nor the line before it"
+        );
+    }
+}

@@ -1,0 +1,105 @@
+//! The video timing, and the picture that memory holds.
+
+/// Active pixels, front porch, sync and back porch of a line, and the same of a frame in lines.
+#[derive(Clone, Copy, Debug)]
+pub struct Raster {
+    pub h_active: u64,
+    pub h_front: u64,
+    pub h_sync: u64,
+    pub h_back: u64,
+    pub v_active: u64,
+    pub v_front: u64,
+    pub v_sync: u64,
+    pub v_back: u64,
+}
+
+impl Raster {
+    /// CEA-861, 1280×720 at 60 Hz: that of the module `scanout`.
+    pub const CEA: Self = Self {
+        h_active: 1280,
+        h_front: 110,
+        h_sync: 40,
+        h_back: 220,
+        v_active: 720,
+        v_front: 5,
+        v_sync: 5,
+        v_back: 20,
+    };
+
+    /// That of the module `scanout_small`: as much time for a memory word, in a two-hundredth of the frame.
+    pub const SMALL: Self = Self {
+        h_active: 160,
+        h_front: 8,
+        h_sync: 4,
+        h_back: 12,
+        v_active: 24,
+        v_front: 2,
+        v_sync: 2,
+        v_back: 4,
+    };
+
+    /// Pixel clocks of a line.
+    pub const fn h_total(&self) -> u64 {
+        self.h_active + self.h_front + self.h_sync + self.h_back
+    }
+
+    /// Lines of a frame.
+    pub const fn v_total(&self) -> u64 {
+        self.v_active + self.v_front + self.v_sync + self.v_back
+    }
+
+    /// Pixel clocks of a frame.
+    pub const fn frame(&self) -> u64 {
+        self.h_total() * self.v_total()
+    }
+
+    /// Lines from vertical blanking to line 9 of the picture, from its first line on.
+    pub const fn lines_to_picture(&self) -> u64 {
+        self.v_front + self.v_sync + self.v_back + 9
+    }
+}
+
+/// Frequencies of `sys_clk` and `pix_clk` in any common unit: only their ratio and phase count.
+#[derive(Clone, Copy, Debug)]
+pub struct Clocks {
+    pub sys: u64,
+    pub pix: u64,
+}
+
+impl Clocks {
+    /// 81.25 MHz and 74.25 MHz.
+    pub const SLOW: Self = Self {
+        sys: 8125,
+        pix: 7425,
+    };
+    /// 100 MHz and 74.25 MHz.
+    pub const FAST: Self = Self {
+        sys: 10_000,
+        pix: 7425,
+    };
+
+    /// Cycles of `sys_clk` in as many of `pix_clk`.
+    pub const fn sys_cycles(&self, pixels: u64) -> u64 {
+        pixels * self.sys / self.pix
+    }
+}
+
+/// The RGB565 pixel at a byte address: a hash of the address, so that no two lines of any frames are alike.
+pub fn pixel_at(address: u64) -> u16 {
+    let z = address
+        .wrapping_mul(0x9E37_79B9_7F4A_7C15)
+        .wrapping_add(0xD1B5_4A32_D192_ED03);
+    let z = (z ^ z >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    let z = (z ^ z >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
+    (z ^ z >> 31) as u16
+}
+
+/// RGB565 in 24 bits: each channel repeats its bits, the first eight bits of value/31 or value/63 in binary.
+pub fn rgb888(pixel: u16) -> u32 {
+    let (r, g, b) = (
+        u32::from(pixel >> 11),
+        u32::from(pixel >> 5 & 63),
+        u32::from(pixel & 31),
+    );
+    ((r * 33) >> 2) << 16 | ((g * 65) >> 4) << 8 | ((b * 33) >> 2)
+}
