@@ -1,11 +1,9 @@
 //! What crosses the near plane or leaves the guard band.
 
-mod common;
-
-use common::{Camera, Model, Picture, Random, world};
 use glint_model::clip::clip;
 use glint_model::vertex::{CameraVertex, project, transform};
 use glint_model::{MeshSetup, Projected, SIZES};
+use glint_vectors::{Camera, Model, Picture, Random, math::world};
 
 const SIZE: (u32, u32) = SIZES[0];
 

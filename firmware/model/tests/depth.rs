@@ -1,13 +1,11 @@
 //! Depth codes of screen triangles.
 
-mod common;
-
-use common::triangles::{SIZE, at, random_triangle, set_up};
-use common::{Picture, Random};
 use glint_core::colour::Rgb565;
 use glint_model::raster::draw;
 use glint_model::reciprocal::Reciprocal;
 use glint_model::{SIZES, ScreenVertex};
+use glint_vectors::triangles::{SIZE, at, random_triangle, set_up};
+use glint_vectors::{Picture, Random};
 
 /// The stored code against the exact plane through the three (x, y, w), at every covered pixel; returns the largest error in
 /// codes, which has half a code from the last rounding.

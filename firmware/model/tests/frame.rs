@@ -1,9 +1,5 @@
 //! Frames: constants, drawing in one call, and the lists of clipped triangles.
 
-mod common;
-
-use common::triangles::set_up;
-use common::{Camera, Model, Picture, Random};
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;
 use glint_core::colour::{Rgb565, Shading};
@@ -16,6 +12,8 @@ use glint_model::descriptor::{
 use glint_model::{
     FieldSubject, Frame, FrameConstants, FrameStats, MeshSubject, Projected, RenderError, Subject,
 };
+use glint_vectors::triangles::set_up;
+use glint_vectors::{Camera, Model, Picture, Random};
 
 fn view() -> View {
     Camera::looking([0.0, -3.0, 1.0], [0.0; 3], 0.5, 0.1).rounded()
@@ -118,7 +116,7 @@ fn lists_name_the_triangles_of_their_bands() {
                 ListWriter::new(&mut descriptors, &mut lists, size.width(), capability);
             let mut put = vec![];
             while put.len() < DESCRIPTORS {
-                let triangle = common::triangles::random_triangle(&mut random);
+                let triangle = glint_vectors::triangles::random_triangle(&mut random);
                 let Some((_, setup)) = set_up(triangle, (size.width(), size.height())) else {
                     continue;
                 };
@@ -157,7 +155,7 @@ fn lists_name_the_triangles_of_their_bands() {
 fn lists_without_room_are_refused() {
     let mut random = Random(8);
     let setup = loop {
-        let triangle = common::triangles::random_triangle(&mut random);
+        let triangle = glint_vectors::triangles::random_triangle(&mut random);
         if let Some((_, setup)) = set_up(triangle, (320, 180)) {
             break setup;
         }

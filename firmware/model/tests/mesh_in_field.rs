@@ -1,14 +1,12 @@
 //! A mesh in a field: depth codes that mean the same, and what is in front of what.
 
-mod common;
-
-use common::{Camera, Model, Picture, Random};
 use glint_core::camera::View;
 use glint_core::field::{Field, Menger};
 use glint_core::mesh::Mesh;
 use glint_core::stereo::Stereo;
 use glint_model::raymarch::{FieldOptions, render_field};
 use glint_model::{Options, Projected, RenderError, mesh_in_field, trace_frame};
+use glint_vectors::{Camera, Model, Picture, Random};
 
 const SIZE: (u32, u32) = (320, 180);
 

@@ -1,11 +1,9 @@
 //! Snapped places and depths against a projection in f64.
 
-mod common;
-
-use common::{Camera, Random, world};
 use glint_model::reciprocal::Reciprocal;
 use glint_model::vertex::{project, transform};
 use glint_model::{MeshSetup, Projected, SIZES, ScreenVertex};
+use glint_vectors::{Camera, Random, math::world};
 
 /// The radius of a mesh that fills the 1×1×1 box, and of one with vertices at ±2; u.14.
 const RADII: [u32; 2] = [14_190, 56_756];
@@ -46,7 +44,7 @@ fn aimed(
         let distance = random.real(0.0, 8.0);
         let eye = random.direction().map(|x| x * distance);
         let towards = [0, 1, 2].map(|i| world(point)[i] - eye[i]);
-        let length = common::dot(towards, towards).sqrt();
+        let length = glint_vectors::math::dot(towards, towards).sqrt();
         // In pixels, half of the time on the screen.
         let (x, y) = if random.coin() {
             (
@@ -136,7 +134,7 @@ fn depths_against_f64() {
             assert!(exact < 64.0 * 262_140.5, "{exact} at {z}");
             worst = worst.max((f64::from(place.w) - exact).abs());
         }
-        let origin = -common::dot(Camera::of(&view).n, Camera::of(&view).eye);
+        let origin = -glint_vectors::math::dot(Camera::of(&view).n, Camera::of(&view).eye);
         let nearest = view
             .near()
             .to_num::<f64>()

@@ -1,13 +1,11 @@
 //! Whole frames: order, facing, chunks, errors.
 
-mod common;
-
-use common::{CLEAR, Camera, Model, Picture, Random};
 use glint_core::camera::View;
 use glint_core::fixed::Q32_32;
 use glint_core::mesh::Mesh;
 use glint_model::setup::{Facing, Oriented};
 use glint_model::{Buffer, FrameBuffer, MeshSetup, Options, Projected, RenderError, SIZES, render};
+use glint_vectors::{Camera, Model, Picture, Random, picture::CLEAR};
 
 const SIZE: (u32, u32) = SIZES[0];
 

@@ -1,9 +1,5 @@
 //! Smooth shading: what is exact about it. `tools/reference` has its errors.
 
-mod common;
-
-use common::triangles::{SIZE, random_triangle};
-use common::{Camera, Picture, Random};
 use glint_core::colour::Rgb565;
 use glint_model::clip::clip;
 use glint_model::quotient::{INVERSE, colour};
@@ -12,6 +8,8 @@ use glint_model::setup::{Bounds, Facing, Oriented, Setup};
 use glint_model::shade::{Light, Lit, intensity, lit};
 use glint_model::vertex::{CameraVertex, transform};
 use glint_model::{MeshSetup, SIZES};
+use glint_vectors::triangles::{SIZE, random_triangle};
+use glint_vectors::{Camera, Picture, Random};
 
 fn any_colour(random: &mut Random) -> Rgb565 {
     Rgb565(random.bits() as u16)

@@ -1,14 +1,12 @@
 //! The walker and the setup on screen triangles: what is covered.
 
-mod common;
-
-use common::triangles::{SIZE, at, random_triangle, set_up};
-use common::{Picture, Random};
 use glint_core::colour::Rgb565;
 use glint_model::raster::{Coverage, draw};
 use glint_model::setup::{Oriented, Setup};
 use glint_model::vertex::GUARD;
 use glint_model::{SIZES, ScreenVertex};
+use glint_vectors::triangles::{SIZE, at, random_triangle, set_up};
+use glint_vectors::{Picture, Random};
 
 fn pixels([x, y]: [f64; 2]) -> [i64; 2] {
     [x, y].map(|x| (x * 256.0).round() as i64)

@@ -12,6 +12,7 @@ mod layout;
 mod library;
 mod memory;
 mod module;
+pub mod raymarch;
 mod record;
 mod stream;
 

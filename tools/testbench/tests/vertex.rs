@@ -1,12 +1,9 @@
 //! The vertex stage against the model's.
 
-#[path = "../../../firmware/model/tests/common/mod.rs"]
-mod common;
-
-use common::{Camera, Random};
 use glint_model::vertex::{project, transform};
 use glint_model::{MeshSetup, Projected, SIZES, ScreenVertex};
 use glint_testbench::{Bits, Layout, Module, Record, Sink, Source, Stalls};
+use glint_vectors::{Camera, Random};
 
 /// What comes out of the stage: saturated to s12.8.
 fn expected(layout: &Layout, frame: &MeshSetup, position: [i16; 3]) -> Record {

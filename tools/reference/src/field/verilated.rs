@@ -2,14 +2,8 @@
 
 use glint_model::descriptor::band_rows;
 use glint_model::raymarch::{FieldSetup, Palette, Rays};
+use glint_testbench::raymarch::{Pixel, Place, pixel, set_blocks, set_lane, set_paint, set_rays};
 use glint_testbench::{Module, Port};
-
-// The raymarcher's tests use the rest.
-#[allow(dead_code)]
-#[path = "../../../testbench/tests/raymarch/ports.rs"]
-mod ports;
-
-use ports::{Pixel, Place, pixel, set_blocks, set_lane, set_paint, set_rays};
 
 /// What a group of pixels consists of, in the order of [`Pixel`].
 const GROUP: [&str; 7] = ["eye", "row", "line", "column", "mask", "code", "colour"];

@@ -2,22 +2,28 @@
 //! clipper is the model's, as it is on the board.
 
 mod bench;
-mod meshes;
-mod scenes;
 
 use bench::{Bench, CLEAR, SIZES, expected, expected_on, expected_smooth};
+use glint::{convert, generate};
 use glint_core::camera::View;
 use glint_core::fixed::{Q32_32, Turns};
-use meshes::{ahead, at};
+use glint_vectors::meshes::{self, ahead, at};
+use glint_vectors::scenes::{inside, scenes};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
-use scenes::{generated, inside, scenes};
+
+/// The mesh of a generated model.
+fn generated(name: &str) -> Vec<u8> {
+    let model = generate::named(name).expect("a model");
+    let converted = convert::convert(&model, convert::Options::default());
+    converted.expect("a mesh").0
+}
 
 /// Draws every scene at one size, with its depth and without, in one frame buffer or the other.
 fn all_scenes(size: (u32, u32), stalls: f64) {
     let mut bench = Bench::new(size.0, stalls);
     let mut random = Pcg64Mcg::new(size.0.into());
-    for (name, mesh, view, cull) in scenes() {
+    for (name, mesh, view, cull) in scenes(generated) {
         let expected = expected(&mesh, &view, size, cull);
         bench.slot = random.random_range(0..2);
         bench.with_depth = true;
@@ -52,7 +58,7 @@ fn scenes_at_1280x720() {
 fn scenes_with_smooth_shading() {
     for stalls in [0.0, 0.4] {
         let mut bench = Bench::smooth(5, stalls);
-        for (name, mesh, view, cull) in scenes() {
+        for (name, mesh, view, cull) in scenes(generated) {
             // Large meshes have nothing new but their time.
             if mesh.len() > 1 << 20 {
                 continue;

@@ -4,11 +4,13 @@ use glint_model::SIZES;
 use glint_model::raymarch::{FieldSetup, FieldStats, Palette, Rays, State};
 use glint_testbench::{Module, Sink, Stalls};
 
-use crate::common::Random;
-use crate::ports::{Pixel, Place, pixel, set_blocks, set_lane, set_lights, set_paint, set_rays};
 use crate::scenes::{
     FIELDS, ROUND, SPONGES, UNIONS, band_lines, lights, setup, setup_with, tunnel,
 };
+use glint_testbench::raymarch::{
+    Pixel, Place, pixel, set_blocks, set_lane, set_lights, set_paint, set_rays,
+};
+use glint_vectors::Random;
 
 const COUNTERS: [&str; 8] = [
     "clocks_busy",

@@ -3,9 +3,9 @@
 use glint_model::raymarch::FieldSetup;
 use glint_testbench::{Bits, Layout, Module, Sink, Stalls};
 
-use crate::common::Random;
-use crate::ports::{Place, cone, ray, set_blocks, set_generator};
 use crate::scenes::{FIELDS, ROUND, band_lines, every_field, setup, setup_with};
+use glint_testbench::raymarch::{Place, cone, ray, set_blocks, set_generator};
+use glint_vectors::Random;
 
 /// As it is built for all fields, and cones.
 const GENERATOR: &str = "ray_generator_all";

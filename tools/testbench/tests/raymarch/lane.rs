@@ -5,9 +5,9 @@ use std::collections::HashMap;
 use glint_model::raymarch::FieldSetup;
 use glint_testbench::{Bits, Layout, Module, Sink, Source, Stalls};
 
-use crate::common::Random;
-use crate::ports::{End, Place, cone, ray, set_lane};
 use crate::scenes::{SPONGES, every_field, setup, setup_with};
+use glint_testbench::raymarch::{End, Place, cone, ray, set_lane};
+use glint_vectors::Random;
 
 /// Rays or cones of a frame.
 const RAYS: usize = 2_000;

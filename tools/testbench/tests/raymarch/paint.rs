@@ -4,9 +4,9 @@ use glint_core::field::Surface;
 use glint_model::raymarch::{FieldSetup, Palette, Ray, RayResult, State};
 use glint_testbench::{Module, Sink, Source, Stalls};
 
-use crate::common::Random;
-use crate::ports::{Pixel, Place, end, pixel, set_paint};
 use crate::scenes::{FIELDS, band_lines, setup};
+use glint_testbench::raymarch::{Pixel, Place, end, pixel, set_paint};
+use glint_vectors::Random;
 
 fn palette(random: &mut Random) -> Palette {
     let mut colour = || [0; 3].map(|_| random.bits() as u8);

@@ -6,7 +6,7 @@ use glint_core::fixed::Q32_32;
 use glint_model::SIZES;
 use glint_model::raymarch::{FieldOptions, FieldSetup, Light, Lights, Stereo, Tint};
 
-use crate::common::{Camera, Random};
+use glint_vectors::{Camera, Random};
 
 /// What is built without anything but the sponge.
 pub const SPONGES: [&str; 4] = ["menger:4", "menger:3", "menger:2", "menger:1"];

@@ -17,8 +17,8 @@ use glint_core::picture::Size;
 use glint_core::stereo::{Stereo, Tint};
 use glint_core::wire::Manifest;
 
-use crate::common::Camera;
 use crate::{Told, read, send};
+use glint_vectors::Camera;
 
 /// The board's time after which a silent firmware has failed.
 const PATIENCE_MS: u64 = 4000;

@@ -11,23 +11,26 @@
 //! board     load 0, draw 0      load 1, d 1   load 2, d 2   load 3, d 3
 //! ```
 
-#[path = "../../../../firmware/model/tests/common/mod.rs"]
-mod common;
 mod fields;
-#[path = "../engine/meshes.rs"]
-mod meshes;
-#[path = "../engine/scenes.rs"]
-mod scenes;
 
 use glint::board::{Board, BoardError, Memory, SimulatedBoard, built_firmware};
 use glint::console::{Console, value};
 use glint::render::{self, Frame, MeshSubject, Rendered, Subject};
-use glint::view;
+use glint::{convert, generate, view};
 use glint_core::colour::Shading;
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
 use glint_core::wire::Manifest;
+use glint_vectors::meshes;
+use glint_vectors::scenes::Scene;
 use rand_pcg::Pcg64Mcg;
+
+/// The mesh of a generated model.
+fn generated(name: &str) -> Vec<u8> {
+    let model = generate::named(name).expect("a model");
+    let converted = convert::convert(&model, convert::Options::default());
+    converted.expect("a mesh").0
+}
 
 /// The board's time after which a silent firmware has failed.
 const PATIENCE_MS: u64 = 2000;
@@ -178,8 +181,8 @@ fn read<B: Board>(console: &mut Console<B>, address: u32, length: usize) -> Vec<
 const SMALL: usize = 256 << 10;
 
 /// The scenes whose meshes are small, or the others, and one that has what a large one may have: two chunks.
-fn scenes(small: bool) -> Vec<scenes::Scene> {
-    let mut scenes = scenes::scenes();
+fn scenes(small: bool) -> Vec<Scene> {
+    let mut scenes = glint_vectors::scenes::scenes(generated);
     scenes.retain(|(_, mesh, ..)| (mesh.len() <= SMALL) == small);
     if small {
         let triangles = meshes::random(&mut Pcg64Mcg::new(2), 500, 0.1);
@@ -189,7 +192,7 @@ fn scenes(small: bool) -> Vec<scenes::Scene> {
     scenes
 }
 
-fn draw(size: Size, scenes: Vec<scenes::Scene>) {
+fn draw(size: Size, scenes: Vec<Scene>) {
     let board = SimulatedBoard::fast(&built_firmware(None).unwrap()).unwrap();
     let mut board = Watched {
         board,

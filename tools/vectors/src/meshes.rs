@@ -1,9 +1,10 @@
-//! Meshes of a few triangles, or of very many, as they lie in memory.
+//! Meshes of single triangles, few or many, as they lie in memory.
 
-use glint::view;
 use glint_core::camera::View;
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
+
+use crate::camera::Camera;
 
 /// A unit in the mesh's coordinates.
 pub const ONE: i32 = 1 << 14;
@@ -12,6 +13,7 @@ pub const ONE: i32 = 1 << 14;
 pub type Triangle = ([[i16; 3]; 3], u16);
 
 /// The mesh of these triangles, each with vertices of its own, in chunks of at most `most` vertices.
+#[must_use]
 pub fn mesh(triangles: &[Triangle], most: usize) -> Vec<u8> {
     let mut body = Vec::new();
     let per_chunk = most / 3;
@@ -21,7 +23,7 @@ pub fn mesh(triangles: &[Triangle], most: usize) -> Vec<u8> {
     };
     let mut vertices = 0;
     for chunk in &chunks {
-        // A chunk has a vertex, even if nobody uses it.
+        // A chunk has a vertex, even an unused one.
         let count = (3 * chunk.len()).max(1);
         vertices += count;
         for word in [count as u32, chunk.len() as u32, 0, 0] {
@@ -75,19 +77,26 @@ pub fn mesh(triangles: &[Triangle], most: usize) -> Vec<u8> {
 }
 
 /// From (0, -2, 0) towards +y: a point at (x, y, z) is at distance y + 2, to the right with x and up with z.
+#[must_use]
 pub fn ahead(half_width: f64, near: f64) -> View {
-    let json = format!(
-        r#"{{"eye":[0,-2,0],"u":[1,0,0],"v":[0,0,-1],"n":[0,1,0],"half_width":{half_width},"near":{near}}}"#
-    );
-    view::parse(json.as_bytes()).unwrap()
+    let camera = Camera {
+        eye: [0.0, -2.0, 0.0],
+        u: [1.0, 0.0, 0.0],
+        v: [0.0, 0.0, -1.0],
+        n: [0.0, 1.0, 0.0],
+        half_width,
+        near,
+    };
+    camera.rounded()
 }
 
 /// A point in units.
+#[must_use]
 pub fn at(x: f64, y: f64, z: f64) -> [i16; 3] {
     [x, y, z].map(|c| (c * f64::from(ONE)).round() as i16)
 }
 
-/// `count` triangles of about `size` units, somewhere.
+/// `count` triangles of about `size` units at random places.
 pub fn random(random: &mut Pcg64Mcg, count: usize, size: f64) -> Vec<Triangle> {
     let reach = (size * f64::from(ONE)) as i32;
     (0..count)

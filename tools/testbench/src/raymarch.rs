@@ -1,17 +1,21 @@
-//! The raymarcher's constants and items as its ports have them.
+//! The raymarcher's frame constants, rays, ends and pixels on its ports.
 
+use crate::{Bits, Layout, Module, Record};
 use glint_core::field::{FixedBox, FlatSolid, Solid, Surface};
 use glint_model::raymarch::{
     Cone, FieldSetup, Lights, Palette, Ray, RayResult, State, paint, rgb565,
 };
-use glint_testbench::{Bits, Layout, Module, Record};
 
 /// A pixel's place: parity of its band, line in it, column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Place {
+    /// The parity of its band.
     pub odd: bool,
+    /// The line in its band.
     pub line: u32,
+    /// The column.
     pub column: u32,
+    /// The eye, 0 for the left one or the only one.
     pub eye: usize,
 }
 
@@ -66,9 +70,12 @@ fn ray_record(layout: &Layout, place: Place, ray: &Ray) -> Record {
 /// How a ray ends, as `state_t` names it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Kind {
+    /// Far limit reached.
     #[default]
     Miss,
+    /// Surface reached.
     Hit,
+    /// Step limit reached.
     Undecided,
 }
 
@@ -91,24 +98,37 @@ impl Kind {
     }
 }
 
-/// Where a ray has come to, as the end of one says. What does not count is 0: surface and slope without a hit, t of a ray
-/// that was given up, a face behind a sphere, the direction of a ray that has not come to a sphere.
+/// The end of a ray or cone. A member without a meaning is 0: surface and slope without a hit, t of an undecided ray, a face behind a
+/// sphere, the direction without a sphere.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct End {
+    /// The result.
     pub state: Kind,
+    /// A sphere was hit.
     pub round: bool,
+    /// Number of the sphere, or axis and sign of the face.
     pub surface: u64,
+    /// Axis and sign of the face of a fillet.
     pub face: u64,
+    /// Share of the sphere in a fillet, u0.8.
     pub share: u64,
+    /// Distance, u11.12; of a miss, the sine above the horizon in 8 bits.
     pub t: u64,
+    /// Evaluations, at most 255.
     pub steps: u64,
+    /// Length of the ray's direction.
     pub length: u64,
+    /// Distance from t to the face.
     pub gap: u64,
+    /// Slope of the ray towards the face.
     pub slope: u64,
+    /// Direction, of a hit sphere.
     pub direction: [i32; 3],
 }
 
 impl End {
+    /// The end of a ray by the model.
+    #[must_use]
     pub fn expected(ray: &Ray, outcome: &RayResult) -> Self {
         let (state, surface, t) = match outcome.state {
             State::Miss => (Kind::Miss, None, (ray.direction[2].max(0) >> 9) as u64),
@@ -146,6 +166,8 @@ impl End {
         }
     }
 
+    /// Place and end of a cone from an `end_t`.
+    #[must_use]
     pub fn of_cone(record: &Record) -> (Place, Self) {
         let end = Self {
             t: record.get("t"),
@@ -156,6 +178,8 @@ impl End {
         (Place::of(record), end)
     }
 
+    /// Place and end of a ray from an `end_t`.
+    #[must_use]
     pub fn of(record: &Record) -> (Place, Self) {
         let state = Kind::of(record);
         let if_hit = |name| match state {
@@ -350,15 +374,22 @@ pub fn set_paint(module: &mut Module, setup: &FieldSetup, palette: &Palette) {
     module.set(write, 0);
 }
 
-/// A pixel as it goes to the band buffer.
+/// A pixel on its way to the band buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pixel {
+    /// The eye.
     pub eye: u64,
+    /// The row of the band.
     pub row: u64,
+    /// The line in the band.
     pub line: u64,
+    /// The column of eight pixels.
     pub column: u64,
+    /// The one lane.
     pub mask: u64,
+    /// The depth code.
     pub code: u64,
+    /// RGB565, or the luminance twice.
     pub colour: u64,
 }
 

@@ -4,12 +4,15 @@ use glint_model::setup::{Bounds, Oriented, Setup};
 use glint_model::vertex::GUARD;
 use glint_model::{SIZES, ScreenVertex};
 
-use super::Random;
+use crate::random::Random;
 
+/// Columns and lines of the picture.
 pub const SIZE: (u32, u32) = SIZES[0];
-/// A depth like any other.
+/// A depth.
 pub const FLAT: u32 = 1000 * 64;
 
+/// A vertex at a place in 1/256 pixels, at the depth [`FLAT`].
+#[must_use]
 pub fn at([x, y]: [i64; 2]) -> ScreenVertex {
     ScreenVertex {
         x: x as i32,
@@ -18,6 +21,8 @@ pub fn at([x, y]: [i64; 2]) -> ScreenVertex {
     }
 }
 
+/// The setup of a triangle, where it has an area and touches the picture.
+#[must_use]
 pub fn set_up(
     vertices: [ScreenVertex; 3],
     (width, height): (u32, u32),

@@ -1,26 +1,27 @@
 //! Scenes that both the engine and the whole SoC draw.
 
-use glint::{convert, generate, view};
 use glint_core::camera::View;
+use glint_core::fixed::{Q32_32, Turns};
 use rand_pcg::Pcg64Mcg;
 
+use crate::camera::Camera;
 use crate::meshes::{self, Triangle, ahead, at};
 
 /// A mesh, a camera, and whether back faces are culled.
 pub type Scene = (&'static str, Vec<u8>, View, bool);
 
-/// A generated model's mesh.
-pub fn generated(name: &str) -> Vec<u8> {
-    let model = generate::named(name).unwrap();
-    convert::convert(&model, convert::Options::default())
-        .unwrap()
-        .0
-}
-
 /// From near the middle of a model, with a wide angle.
+#[must_use]
 pub fn inside() -> View {
-    let json = r#"{"eye":[0.21,-0.1,0.05],"u":[0.6,0.8,0],"v":[0,0,-1],"n":[-0.8,0.6,0],"half_width":1.5,"near":0.05}"#;
-    view::parse(json.as_bytes()).unwrap()
+    let camera = Camera {
+        eye: [0.21, -0.1, 0.05],
+        u: [0.6, 0.8, 0.0],
+        v: [0.0, 0.0, -1.0],
+        n: [-0.8, 0.6, 0.0],
+        half_width: 1.5,
+        near: 0.05,
+    };
+    camera.rounded()
 }
 
 /// Front faces, seen from the front, at the distance y + 2: around a centre, from angle to angle.
@@ -39,8 +40,9 @@ fn fan(y: f64, radius: f64, parts: usize) -> Vec<Triangle> {
         .collect()
 }
 
-/// All of them.
-pub fn scenes() -> Vec<Scene> {
+/// All scenes. `generated` makes the mesh of a model by its name, such as `icosphere:6`.
+#[must_use]
+pub fn scenes(generated: impl Fn(&str) -> Vec<u8>) -> Vec<Scene> {
     let mut random = Pcg64Mcg::new(1);
     let many = usize::from(u16::MAX);
     let mesh = |triangles: &[Triangle]| meshes::mesh(triangles, many);
@@ -173,7 +175,7 @@ pub fn scenes() -> Vec<Scene> {
         (
             "a sphere",
             generated("icosphere:6"),
-            view::spherical("2,30,60").unwrap(),
+            spherical(2, 30, 60),
             true,
         ),
         ("at the near plane", mesh(&at_near), ahead(1.0, 1.0), false),
@@ -186,4 +188,10 @@ pub fn scenes() -> Vec<Scene> {
         ("65,535 vertices", mesh(&full), ahead(0.8, 0.5), false),
         ("two chunks", mesh(&beyond), ahead(0.8, 0.5), true),
     ]
+}
+
+/// A camera on a sphere about the origin, with angles in degrees.
+fn spherical(r: i32, theta: i32, phi: i32) -> View {
+    let [theta, phi] = [theta, phi].map(|angle| Turns::from_degrees(Q32_32::from_num(angle)));
+    View::spherical(Q32_32::from_num(r), theta, phi).expect("a camera within the limits")
 }

@@ -1,0 +1,122 @@
+//! Cameras in `f64`.
+
+use glint_core::camera::View;
+use glint_core::fixed::{Q2_23, Q32_32, U4_28};
+
+use crate::math::{cross, dot, normalised};
+use crate::random::Random;
+
+/// A camera before it is rounded.
+#[derive(Clone, Copy, Debug)]
+pub struct Camera {
+    /// Position.
+    pub eye: [f64; 3],
+    /// To the right.
+    pub u: [f64; 3],
+    /// Down.
+    pub v: [f64; 3],
+    /// Forward.
+    pub n: [f64; 3],
+    /// Half the width of the picture at distance 1.
+    pub half_width: f64,
+    /// Distance of the near plane.
+    pub near: f64,
+}
+
+impl Camera {
+    /// Looks from `eye` so that the direction `towards` is at (a, b) on the image plane at distance 1.
+    pub fn aimed(
+        random: &mut Random,
+        eye: [f64; 3],
+        towards: [f64; 3],
+        [a, b]: [f64; 2],
+        half_width: f64,
+        near: f64,
+    ) -> Self {
+        let frame = |first: [f64; 3], other: [f64; 3]| {
+            let second = normalised(cross(first, other));
+            [first, second, cross(first, second)]
+        };
+        let world = frame(normalised(towards), random.direction());
+        let camera = frame(normalised([a, b, 1.0]), [0.6, -0.64, 0.48]);
+        // The rotation that takes one frame to the other, applied to the camera's axes.
+        let [u, v, n] = [0, 1, 2]
+            .map(|axis| [0, 1, 2].map(|i| (0..3).map(|k| world[k][i] * camera[k][axis]).sum()));
+        Self {
+            eye,
+            u,
+            v,
+            n,
+            half_width,
+            near,
+        }
+    }
+
+    /// Somewhere within 1 of the origin, looking anywhere.
+    pub fn inside(random: &mut Random) -> Self {
+        let eye = [0; 3].map(|_| random.real(-1.0, 1.0));
+        let (half_width, near) = (random.logarithmic(0.05, 4.0), random.logarithmic(0.01, 0.5));
+        let towards = random.direction();
+        Self::aimed(random, eye, towards, [0.0; 2], half_width, near)
+    }
+
+    /// Looks from `eye` at `target`, with v as near to −z as can be.
+    #[must_use]
+    pub fn looking(eye: [f64; 3], target: [f64; 3], half_width: f64, near: f64) -> Self {
+        let n = normalised([0, 1, 2].map(|i| target[i] - eye[i]));
+        let u = normalised(cross(n, [0.0, 0.0, 1.0]));
+        Self {
+            eye,
+            u,
+            v: cross(n, u),
+            n,
+            half_width,
+            near,
+        }
+    }
+
+    /// The camera in the formats of the engine.
+    ///
+    /// # Panics
+    /// When it is not one that the engine takes.
+    #[must_use]
+    pub fn rounded(&self) -> View {
+        let basis = |row: [f64; 3]| row.map(|x| Q2_23::from_num(x));
+        View::new_checked(
+            self.eye.map(|x| Q32_32::from_num(x)),
+            basis(self.u),
+            basis(self.v),
+            basis(self.n),
+            U4_28::from_num(self.half_width),
+            U4_28::from_num(self.near),
+        )
+        .unwrap()
+    }
+
+    /// The camera of a view.
+    #[must_use]
+    pub fn of(view: &View) -> Self {
+        let basis = |row: [Q2_23; 3]| row.map(|x| x.to_num::<f64>());
+        Self {
+            eye: view.eye().map(|x| x.to_num::<f64>()),
+            u: basis(view.u()),
+            v: basis(view.v()),
+            n: basis(view.n()),
+            half_width: view.half_width().to_num(),
+            near: view.near().to_num(),
+        }
+    }
+
+    /// x and y in pixels, and z.
+    #[must_use]
+    pub fn project(&self, position: [f64; 3], width: u32, height: u32) -> [f64; 3] {
+        let d = [0, 1, 2].map(|i| position[i] - self.eye[i]);
+        let (half, z) = (f64::from(width) / 2.0, dot(self.n, d));
+        let scale = half / self.half_width / z;
+        [
+            half + dot(self.u, d) * scale,
+            f64::from(height) / 2.0 + dot(self.v, d) * scale,
+            z,
+        ]
+    }
+}

@@ -1,0 +1,15 @@
+//! Test vectors that several crates share: random numbers, cameras in `f64`, models, meshes, triangles on the screen and scenes.
+
+pub mod camera;
+pub mod math;
+pub mod meshes;
+pub mod model;
+pub mod picture;
+pub mod random;
+pub mod scenes;
+pub mod triangles;
+
+pub use camera::Camera;
+pub use model::Model;
+pub use picture::Picture;
+pub use random::Random;

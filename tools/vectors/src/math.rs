@@ -1,0 +1,30 @@
+//! Vectors of three `f64`.
+
+/// The inner product.
+#[must_use]
+pub fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// The vector product.
+#[must_use]
+pub fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+/// The unit vector in the same direction.
+#[must_use]
+pub fn normalised(v: [f64; 3]) -> [f64; 3] {
+    let length = dot(v, v).sqrt();
+    v.map(|x| x / length)
+}
+
+/// A mesh position, Q2.14, in world units.
+#[must_use]
+pub fn world(position: [i16; 3]) -> [f64; 3] {
+    position.map(|x| f64::from(x) / 16384.0)
+}

@@ -1,0 +1,157 @@
+//! Models made of formulas.
+
+use glint_core::colour::Rgb565;
+use glint_core::mesh::{IndexedTriangle, Vertex, encode};
+
+use crate::math::{cross, dot, normalised, world};
+use crate::random::Random;
+
+/// A triangle soup or an indexed mesh.
+#[derive(Clone, Debug, Default)]
+pub struct Model {
+    /// Positions, Q2.14.
+    pub positions: Vec<[i16; 3]>,
+    /// Positions of each triangle.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+impl Model {
+    /// Triangles that share no vertices.
+    #[must_use]
+    pub fn soup(triangles: &[[[i16; 3]; 3]]) -> Self {
+        let positions = triangles.concat();
+        let triangles = (0..triangles.len() as u32)
+            .map(|i| [3 * i, 3 * i + 1, 3 * i + 2])
+            .collect();
+        Self {
+            positions,
+            triangles,
+        }
+    }
+
+    /// Triangles all over a cube: cameras inside it see them cross the near plane and the guard band.
+    pub fn random(random: &mut Random, triangles: usize, reach: i64) -> Self {
+        let mut corner = || [0; 3].map(|_| random.integer(-reach, reach - 1) as i16);
+        Self::soup(
+            &(0..triangles)
+                .map(|_| [corner(), corner(), corner()])
+                .collect::<Vec<_>>(),
+        )
+    }
+
+    /// A box of the given half size about the origin, counter-clockwise from outside.
+    #[must_use]
+    pub fn cube(half: i16) -> Self {
+        let positions = (0..8)
+            .map(|i| [0, 1, 2].map(|axis| if i >> axis & 1 == 1 { half } else { -half }))
+            .collect();
+        let triangles = [
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+        ]
+        .iter()
+        .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
+        .collect();
+        Self {
+            positions,
+            triangles,
+        }
+    }
+
+    /// A sphere of `rings` rings about the origin, closed and counter-clockwise from outside.
+    #[must_use]
+    pub fn sphere(radius: f64, rings: u32) -> Self {
+        let around = 2 * rings;
+        let quantised = |x: f64| (x * radius * 16384.0).round() as i16;
+        let mut positions = vec![[0, 0, quantised(1.0)], [0, 0, quantised(-1.0)]];
+        for ring in 1..rings {
+            let (sp, cp) = (std::f64::consts::PI * f64::from(ring) / f64::from(rings)).sin_cos();
+            for i in 0..around {
+                let (st, ct) = (std::f64::consts::TAU * f64::from(i) / f64::from(around)).sin_cos();
+                positions.push([sp * ct, sp * st, cp].map(quantised));
+            }
+        }
+        let at = |ring: u32, i: u32| match ring {
+            0 => 0,
+            _ if ring == rings => 1,
+            _ => 2 + (ring - 1) * around + i % around,
+        };
+        let mut triangles = Vec::new();
+        for ring in 0..rings {
+            for i in 0..around {
+                let (a, b, c, d) = (
+                    at(ring, i),
+                    at(ring + 1, i),
+                    at(ring + 1, i + 1),
+                    at(ring, i + 1),
+                );
+                triangles.extend((ring + 1 < rings).then_some([a, b, c]));
+                triangles.extend((ring > 0).then_some([a, c, d]));
+            }
+        }
+        Self {
+            positions,
+            triangles,
+        }
+    }
+
+    /// The same triangles, each starting with another vertex.
+    #[must_use]
+    pub fn rotated(&self, turns: usize) -> Self {
+        let mut model = self.clone();
+        model
+            .triangles
+            .iter_mut()
+            .for_each(|t| t.rotate_left(turns));
+        model
+    }
+
+    /// The same triangles, seen from behind.
+    #[must_use]
+    pub fn flipped(&self) -> Self {
+        let mut model = self.clone();
+        model.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+        model
+    }
+
+    /// The bytes of the mesh; each triangle has a colour of its own and its geometric normal.
+    ///
+    /// # Panics
+    /// With more vertices than a chunk holds.
+    #[must_use]
+    pub fn encoded(&self) -> Vec<u8> {
+        let vertices: Vec<Vertex> = self
+            .positions
+            .iter()
+            .map(|&position| Vertex {
+                position,
+                ..Default::default()
+            })
+            .collect();
+        let triangles: Vec<IndexedTriangle> = self
+            .triangles
+            .iter()
+            .enumerate()
+            .map(|(i, &indices)| {
+                let [a, b, c] = indices.map(|i| world(self.positions[i as usize]));
+                let edge = |p: [f64; 3]| [0, 1, 2].map(|i| p[i] - a[i]);
+                let normal = cross(edge(b), edge(c));
+                let normal = if dot(normal, normal) > 0.0 {
+                    normalised(normal)
+                } else {
+                    [0.0; 3]
+                };
+                IndexedTriangle {
+                    indices,
+                    colour: Rgb565((i as u16).wrapping_mul(0x9E37) | 0x8410),
+                    normal: normal.map(|x| (x * 16384.0).round() as i16),
+                }
+            })
+            .collect();
+        encode(&vertices, &triangles).unwrap()
+    }
+}

@@ -1,0 +1,110 @@
+//! Pictures of the model.
+
+use glint_core::camera::View;
+use glint_core::mesh::Mesh;
+use glint_model::{DrawnTriangle, FrameBuffer, Options, Projected, Stats, trace};
+
+use crate::model::Model;
+
+/// A rendered picture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Picture {
+    /// Columns.
+    pub width: u32,
+    /// Lines.
+    pub height: u32,
+    /// RGB565, line by line.
+    pub colour: Vec<u16>,
+    /// Depth codes, line by line.
+    pub depth: Vec<u32>,
+    /// Counts of the renderer.
+    pub stats: Stats,
+    /// Triangles that were set up.
+    pub drawn: Vec<DrawnTriangle>,
+}
+
+/// The clear colour.
+pub const CLEAR: u16 = 0x0841;
+
+impl Picture {
+    /// A cleared picture.
+    #[must_use]
+    pub fn blank((width, height): (u32, u32)) -> Self {
+        let pixels = (width * height) as usize;
+        Self {
+            width,
+            height,
+            colour: vec![CLEAR; pixels],
+            depth: vec![0; pixels],
+            stats: Stats::default(),
+            drawn: vec![],
+        }
+    }
+
+    /// The picture as the renderer takes it.
+    pub fn target(&mut self) -> FrameBuffer<'_> {
+        FrameBuffer {
+            width: self.width,
+            height: self.height,
+            colour: &mut self.colour,
+            depth: &mut self.depth,
+        }
+    }
+
+    /// A rendered mesh.
+    ///
+    /// # Panics
+    /// When the bytes are no mesh, or the counts of the renderer disagree.
+    #[must_use]
+    pub fn of_bytes(bytes: &[u8], view: &View, size: (u32, u32), cull: bool) -> Self {
+        let mesh = Mesh::new_checked(bytes).unwrap();
+        let mut scratch =
+            vec![Projected::Behind; mesh.chunks().map(|c| c.vertex_count()).max().unwrap()];
+        let mut picture = Self::blank(size);
+        // What is not drawn must be cleared.
+        picture.colour.fill(0xDEAD);
+        picture.depth.fill(0xDEAD);
+        let mut drawn = Vec::new();
+        let options = Options {
+            cull,
+            clear: CLEAR,
+            ..Options::default()
+        };
+        let stats = trace(
+            &mesh,
+            view,
+            &mut picture.target(),
+            &mut scratch,
+            &options,
+            |t| drawn.push(*t),
+        )
+        .unwrap();
+        assert_eq!(stats.triangles_in, mesh.triangle_count());
+        assert_eq!(stats.culled + stats.drawn, stats.triangles_in);
+        assert!(
+            stats.pixels_tested >= stats.pixels_covered
+                && stats.pixels_covered >= stats.pixels_drawn
+        );
+        picture.stats = stats;
+        picture.drawn = drawn;
+        picture
+    }
+
+    /// A rendered model.
+    #[must_use]
+    pub fn of(model: &Model, view: &View, size: (u32, u32), cull: bool) -> Self {
+        Self::of_bytes(&model.encoded(), view, size, cull)
+    }
+
+    /// Pixels that were drawn.
+    #[must_use]
+    pub fn coverage(&self) -> Vec<bool> {
+        self.depth.iter().map(|&code| code != 0).collect()
+    }
+
+    /// The count of pixels that were drawn.
+    #[must_use]
+    pub fn covered(&self) -> usize {
+        self.depth.iter().filter(|&&code| code != 0).count()
+    }
+}
