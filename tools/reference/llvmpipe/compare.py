@@ -2,19 +2,20 @@
 
     python compare.py SCENES.json
 
-SCENES.json is `{"width": W, "height": H, "reach": R, "triangles": [...]}`. llvmpipe clips to the viewport, and a clipped edge is
-snapped anew; so the viewport is larger than the picture and reaches R pixels from its middle. A triangle has
+SCENES.json is `{"width": W, "height": H, "reach": R, "triangles": [...]}`. llvmpipe clips to the viewport and snaps clipped edges
+again, so the viewport is larger than the picture and extends R pixels from its middle. A triangle has
 
     clip      its corners in homogeneous clip coordinates (x, y, z, w) of that viewport, y down the screen, near plane
               at z = -w
-    screen    its corners as they were snapped, in pixels from the top left, or null when it was clipped
-    covered   what is to be compared: [row, first column, column after the last] for each span
+    screen    its snapped corners, in pixels from the top left, or null when it was clipped
+    covered   the expected coverage: [row, first column, column after the last] for each span
 
-Each triangle is drawn by itself, from `clip` and, where it is there, from `screen`. What comes out is, on the standard
-output, `{"renderer": R, "version": V, "triangles": [{"projected": D, "snapped": D or null}]}` with
-D = `{"missing": [[column, row], ...], "extra": [...]}`: pixels that llvmpipe covers and `covered` does not, and the reverse.
+Each triangle is drawn alone, from `clip` and, unless null, from `screen`. The standard output is
+`{"renderer": R, "version": V, "triangles": [{"projected": D, "snapped": D or null}]}` with
+D = `{"missing": [[column, row], ...], "extra": [...]}`: `missing` are pixels that only llvmpipe covers, `extra` pixels
+that only `covered` has.
 
-Exits with 3, and says why on the standard error, where there is no llvmpipe to compare with.
+Exits with 3 and a reason on the standard error when llvmpipe is missing.
 """
 
 import json
@@ -76,12 +77,12 @@ class Rasterizer:
         self.corners.write(b"".join(struct.pack("4f", *corner) for corner in corners))
         self.frame.clear()
         self.triangle.render()
-        # Row 0 of a texture is where y is least, and `clip` has the top of the picture there: no row is turned over, and
-        # llvmpipe fills by the top-left rule in this sense of y.
+        # Row 0 of a texture has the least y, and `clip` puts the top of the picture there. So rows keep their order, and
+        # llvmpipe's top-left rule has this sense of y.
         return self.frame.read(components=1, alignment=1)
 
     def from_screen(self, points):
-        """Corners in clip coordinates for places in pixels."""
+        """Corners in clip coordinates for positions in pixels."""
         middle_x, middle_y = self.middle
         return [((x - middle_x) / self.reach, (y - middle_y) / self.reach, 0, 1) for x, y in points]
 

@@ -367,7 +367,7 @@ pub fn scenes() -> Vec<Scene> {
             mesh(soup(&thin), along(-1.99, 0.9, 0.01), large, false),
         ),
         scene(
-            "inside icosphere:2, from behind",
+            "inside icosphere:2, back faces",
             600.0,
             mesh(
                 generated("icosphere:2"),
@@ -377,7 +377,7 @@ pub fn scenes() -> Vec<Scene> {
             ),
         ),
         scene(
-            "among triangles larger than the picture, 1280×720",
+            "inside a soup of triangles larger than the picture, 1280×720",
             600.0,
             mesh(
                 soup(&full),
@@ -387,17 +387,17 @@ pub fn scenes() -> Vec<Scene> {
             ),
         ),
         scene(
-            "among triangles everywhere",
+            "inside a soup of triangles",
             600.0,
             mesh(soup(&crowd), along(-0.2, 3.0, 0.01), small, false),
         ),
         scene(
-            "any triangles on the screen, from the nearest depth to the farthest",
+            "triangles on the screen over the whole range of depths",
             FARTHEST,
             Content::Screen(screen_any),
         ),
         scene(
-            "slivers on the screen, likewise",
+            "slivers on the screen over the whole range of depths",
             FARTHEST,
             Content::Screen(screen_thin),
         ),

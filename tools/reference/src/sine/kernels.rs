@@ -200,19 +200,19 @@ fn phases(
                 let phase = (step * stride * spacing) as u32;
                 let truth = SinCos::of_octant(phase);
                 let (first_sin, first_cos) = evaluate(phase);
-                let mut alike = 0;
+                let mut equal = 0;
                 for image in Image::all(phase) {
                     let angle = image.angle(phase);
                     let got = evaluate(angle);
                     if got == image.carry(first_sin, first_cos) {
-                        alike += 1;
+                        equal += 1;
                     } else {
                         let (sin, cos) = image.carry(truth.sin, truth.cos);
                         statistics.asymmetric += 1;
                         statistics.add(angle.into(), SinCos { sin, cos }, real(got), 1.0);
                     }
                 }
-                statistics.add_images(phase.into(), truth, real((first_sin, first_cos)), alike);
+                statistics.add_images(phase.into(), truth, real((first_sin, first_cos)), equal);
             }
         }),
         show: Box::new(move |angle| format!("0x{angle:08x} ({:.6}°)", angle as f64 / TURN * 360.0)),

@@ -1,4 +1,4 @@
-//! Runs a kernel over its inputs on all cores, with the same result whatever the cores do.
+//! Runs a kernel over its inputs on all cores. The result does not depend on their number.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -7,10 +7,10 @@ use std::thread;
 use super::kernels::Kernel;
 use super::statistics::Statistics;
 
-/// Steps that one core takes at a time; the sums of a part do not depend on who made it.
+/// Steps of a part, the unit of work of a core. Parts are summed in order, so the result is reproducible.
 const PART: u64 = 1 << 18;
 
-/// The errors of `kernel` over every `stride`-th of its steps. `progress` is told of steps done.
+/// The errors of `kernel` over every `stride`-th of its steps. `progress` receives the number of completed steps.
 pub fn sweep(kernel: &Kernel, stride: u64, progress: &(dyn Fn(u64) + Sync)) -> Statistics {
     let steps = kernel.steps().div_ceil(stride);
     let parts = steps.div_ceil(PART);

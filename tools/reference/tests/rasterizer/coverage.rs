@@ -1,4 +1,4 @@
-//! Coverage and depth of each triangle by itself: against the exact rasterizer with the model's own snapped vertices,
+//! Coverage and depth of single triangles: against the exact rasterizer with the model's own snapped vertices,
 //! and against the unsnapped triangle by the classes of the conformance tests.
 
 use glint_reference::camera::{Camera, Size};
@@ -50,7 +50,7 @@ pub fn snap_limit(size: Size) -> f64 {
     }
 }
 
-/// Draws each triangle of a case by itself and compares every pixel of it.
+/// Draws each triangle of a case alone and compares all its pixels.
 pub fn check(renderer: &mut Renderer, case: &Case) -> Tally {
     let view = view(&case.camera);
     let camera = Camera::from(&view);

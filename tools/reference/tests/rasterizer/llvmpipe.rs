@@ -265,7 +265,7 @@ impl Tally {
             assert_eq!(
                 projected.count(),
                 0,
-                "{}: all vertices snapped alike, but {projected:?}",
+                "{}: all vertices snapped equally, but {projected:?}",
                 subject.name
             );
         } else {

@@ -153,7 +153,7 @@ pub struct Row {
     pub cycles_frame: f64,
     /// Its geometry pass, which shares memory with the raster pass of another frame.
     pub cycles_geometry_together: f64,
-    /// Its raster pass, likewise.
+    /// Its raster pass, which shares memory with the geometry pass of another frame.
     pub cycles_raster_together: f64,
     /// The same frame on the soft core.
     pub cycles_cpu: Option<u64>,

@@ -135,7 +135,7 @@ impl FixedPoint {
                 let outside = u64::from(self.origin[i].unsigned_abs().saturating_sub(self.bound));
                 let part = magnitude(ray.direction[i]);
                 let inverse = u64::from(self.reciprocal(part >> 7));
-                // The reciprocal is too small, so what is left after the first product is divided again.
+                // The reciprocal is too small, so the remainder after the first product is divided again.
                 let first = ((outside * inverse) >> 9).min(farthest.into());
                 let gone = (first * (u64::from(part) + 1)) >> 17;
                 first + ((outside.saturating_sub(gone + 1) * inverse) >> 9)
@@ -145,7 +145,7 @@ impl FixedPoint {
         near.max(entry.min(farthest.into()) as u32).min(farthest)
     }
 
-    /// The point of a ray, cut to 10 integer bits.
+    /// The point of a ray at t.
     fn point(&self, ray: &Ray, t: u32) -> [i32; 3] {
         [0, 1, 2].map(|i: usize| {
             let way = i64::from(t) * i64::from(ray.direction[i]);
@@ -174,7 +174,7 @@ impl FixedPoint {
         (value - half, axis, positive)
     }
 
-    /// What is left of a ray to the plane of a face that it goes towards.
+    /// Remaining t to the plane of a face ahead of the ray.
     fn rest(&self, ray: &Ray, distance: i32, axis: usize, positive: bool) -> u32 {
         let part = ray.direction[axis];
         let slope = if (part < 0) == positive {
