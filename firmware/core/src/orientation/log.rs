@@ -21,9 +21,10 @@
 use core::fmt;
 
 use super::quaternion::Quaternion;
+use super::sample::Sample;
 use super::scale::{LSB_PER_DPS, Scale};
 use super::tilt::{LSB_PER_G, TIME_CONSTANT, Tilt};
-use super::tracker::{Counts, Sample, Tracker};
+use super::tracker::{Counts, Tracker};
 use crate::calibration::{RestBias, Units};
 use crate::fixed::Q32_32;
 

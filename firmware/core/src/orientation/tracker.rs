@@ -4,20 +4,10 @@ use core::mem;
 
 use super::integrator::{Integrator, LONGEST_STEP};
 use super::quaternion::Quaternion;
+use super::sample::Sample;
 use super::scale::Scale;
 use super::tilt::{Tilt, is_end};
 use crate::calibration::RestBias;
-
-/// What the sensor has measured at a time, in counts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Sample {
-    /// When, in µs; it may wrap.
-    pub t_us: u32,
-    /// The force along each axis.
-    pub accel: [i16; 3],
-    /// The rate about each axis.
-    pub gyro: [i16; 3],
-}
 
 /// What became of a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

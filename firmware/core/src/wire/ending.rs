@@ -1,7 +1,7 @@
 //! The end of a transfer.
 
 use super::frame::{Message, write};
-use super::{Failure, State, Timing};
+use super::state::{Failure, State, Timing};
 
 /// How often the last word is said, as nobody answers it.
 const COPIES: u8 = 3;

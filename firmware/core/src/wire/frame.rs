@@ -5,7 +5,8 @@
 
 use cobs::{CobsEncoder, DestBufTooSmallError, decode_in_place};
 
-use super::{BLOCK, MAX_BLOCKS, Manifest, Reason};
+use super::format::{BLOCK, MAX_BLOCKS, Manifest};
+use super::state::Reason;
 
 /// Bytes of a data frame besides its data, as sent: the kind, the number, the block, the CRC-16, the COBS code and two zeros.
 pub const OVERHEAD: usize = 10;

@@ -1,7 +1,7 @@
 //! How long frames are, and how long to wait for an answer.
 
+use super::format::{BLOCK, MAX_BLOCKS};
 use super::frame::OVERHEAD;
-use super::{BLOCK, MAX_BLOCKS};
 
 /// How many sent bytes are remembered.
 const MEMORY: u32 = 8_192;

@@ -1,10 +1,10 @@
 //! The side that wants the data.
 
 use super::ending::Ending;
+use super::format::{BLOCK, CRC_32, MAX_LENGTH, Manifest, WINDOW};
 use super::frame::{Acknowledge, Data, MAX_FRAME, Message, Reader, write};
-use super::{
-    BLOCK, CRC_32, Failure, MAX_LENGTH, Manifest, Peer, Reason, State, Timing, WINDOW, feed,
-};
+use super::peer::{Peer, feed};
+use super::state::{Failure, Reason, State, Timing};
 
 /// Receives one transfer into a buffer.
 ///

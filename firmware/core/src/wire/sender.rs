@@ -1,10 +1,12 @@
 //! The side that has the data.
 
 use super::ending::Ending;
+use super::format::{BLOCK, MAX_LENGTH, Manifest};
 use super::frame::{Acknowledge, Data, MAX_FRAME, Message, OVERHEAD, Reader, write};
 use super::pace::{FrameSize, Patience};
+use super::peer::{Peer, feed};
+use super::state::{Failure, Reason, State, Timing};
 use super::window::Window;
-use super::{BLOCK, Failure, MAX_LENGTH, Manifest, Peer, Reason, State, Timing, feed};
 
 /// How often a transfer starts again when its CRC-32 is wrong at the end.
 const RESTARTS: u8 = 3;

@@ -1,6 +1,6 @@
 //! What the sender knows of the blocks on their way.
 
-use super::WINDOW;
+use super::format::WINDOW;
 use super::frame::Acknowledge;
 
 /// Numbers of data frames are modulo 256; with no more than this on their way, older and newer stay apart.

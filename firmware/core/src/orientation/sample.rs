@@ -1,0 +1,12 @@
+//! Samples of a sensor.
+
+/// One measurement of the sensor in raw counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Sample {
+    /// Time in µs, modulo 2^32.
+    pub t_us: u32,
+    /// Specific force along each axis.
+    pub accel: [i16; 3],
+    /// Rate about each axis.
+    pub gyro: [i16; 3],
+}

@@ -1,0 +1,44 @@
+//! Blocks and the manifest of a transfer.
+
+/// Bytes in a block, the unit of acknowledgement.
+pub const BLOCK: u32 = 16;
+/// Maximum number of blocks in a frame.
+pub const MAX_BLOCKS: u32 = 15;
+/// Maximum number of blocks in flight: the bits of an acknowledgement's map.
+pub const WINDOW: u32 = u128::BITS;
+
+/// Maximum length of a transfer in bytes: block numbers have 24 bits.
+pub const MAX_LENGTH: u32 = ((1 << 24) - 1) * BLOCK;
+
+/// The CRC-32 of a transfer.
+pub static CRC_32: crc::Crc<u32> = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
+
+/// The CRC-32 (IEEE 802.3, as in zlib) of a whole transfer.
+pub fn crc32(data: &[u8]) -> u32 {
+    CRC_32.checksum(data)
+}
+
+/// Length and CRC-32 of a transfer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Manifest {
+    /// Its length in bytes, at most [`MAX_LENGTH`].
+    pub length: u32,
+    /// The [`crc32`] of all bytes.
+    pub crc32: u32,
+}
+
+impl Manifest {
+    /// The manifest of some data.
+    pub fn of(data: &[u8]) -> Self {
+        // Both sides reject lengths above `MAX_LENGTH`.
+        Self {
+            length: u32::try_from(data.len()).unwrap_or(u32::MAX),
+            crc32: crc32(data),
+        }
+    }
+
+    /// Number of blocks; the last one may be short.
+    pub const fn blocks(self) -> u32 {
+        self.length.div_ceil(BLOCK)
+    }
+}

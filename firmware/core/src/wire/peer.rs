@@ -1,0 +1,28 @@
+//! Frames from received bytes.
+
+use super::ending::Ending;
+use super::frame::{Message, Reader};
+
+/// Reactions of a side to received frames.
+pub trait Peer {
+    /// Processes a valid frame.
+    fn on_message(&mut self, now_ms: u64, session: u8, message: Message);
+    /// The end of the transfer, once reached.
+    fn ending(&mut self) -> Option<&mut Ending>;
+}
+
+/// Passes the frames in `bytes` to a side; returns the number of bytes that belongs to the transfer.
+pub fn feed(reader: &mut Reader, peer: &mut impl Peer, now_ms: u64, bytes: &[u8]) -> usize {
+    let mut taken = 0;
+    while let Some(rest) = bytes.get(taken..).filter(|rest| !rest.is_empty()) {
+        if let Some(ending) = peer.ending() {
+            return taken + ending.on_bytes(now_ms, rest);
+        }
+        let (length, frame) = reader.take(rest);
+        taken += length;
+        if let Some((session, message)) = frame {
+            peer.on_message(now_ms, session, message);
+        }
+    }
+    taken
+}
