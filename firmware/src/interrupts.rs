@@ -1,4 +1,4 @@
-//! What comes in by itself.
+//! Interrupts.
 
 use glint_hal::{display, i2c, interrupt, raymarch, timer, triangle};
 use litex_pac::{Interrupt, cpu};
@@ -6,10 +6,10 @@ use litex_pac::{Interrupt, cpu};
 use crate::sensor;
 use crate::terminal::ConsoleUart;
 
-/// The UART, which its interrupt and the program share.
+/// The UART, shared by its interrupt and the program.
 pub static UART: ConsoleUart = ConsoleUart::new();
 
-/// Lets interrupts in. To be called once, when everything that its handler touches has been started.
+/// Enables interrupts. Call once, after the start of all devices that the handler accesses.
 pub fn start(with_devices: bool, with_scanout: bool, with_triangle: bool) {
     // SAFETY: `handle` is ready, and no critical section is open.
     unsafe {
@@ -29,10 +29,10 @@ pub fn start(with_devices: bool, with_scanout: bool, with_triangle: bool) {
     }
 }
 
-/// Sleeps until an interrupt has come in, unless `awake` says that there is something to do.
+/// Sleeps until an interrupt, unless `awake` reports work.
 pub fn sleep_unless(awake: impl FnOnce() -> bool) {
-    // An interrupt between the question and the sleep would be slept through. Masked, it still ends the sleep, and is
-    // handled after it.
+    // An interrupt between `awake` and the sleep would not end the sleep. A masked interrupt ends it, and is handled
+    // afterwards.
     riscv::interrupt::free(|| {
         if !awake() {
             riscv::asm::wfi();
@@ -56,7 +56,7 @@ fn handle() {
             timer::acknowledge();
             sensor::advance(start);
         }
-        // Nobody enables these.
+        // Not enabled.
         Interrupt::Buttons => interrupt::disable(interrupt.bit()),
     });
     interrupt::disable(unexpected);

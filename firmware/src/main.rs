@@ -1,50 +1,58 @@
-//! The program on Glint's soft core: it starts the machine and then answers the console, draws what has changed and
-//! shows it. Nothing here computes a picture; that is `glint-model`, and what it needs is `glint-core`.
+//! The program on Glint's soft core: start, console, drawing and display.
+//!
+//! Pictures are computed by `glint-model` and the engines, everything else by `glint-core`. Imports go down:
 //!
 //! ```text
-//! main ── start ── machine ──┬── terminal ── commands ──┬── scene, models
-//!                            │                          ├── transfer (uploads, downloads)
-//!                            ├── draw ── display        ├── bench, selftest
-//!                            ├── imu (what the sensor's samples are for)
-//!                            └── job (what a reply waits for)
-//! interrupts: UART queues, vertical blanking, sensor        last_words: traps, panics
+//! start, main_loop
+//! commands (scene, appearance, camera, imu, replay, frame, statistics, bench, machine)
+//! selftest, job (replies, work that continues after a command)
+//! error
+//! machine (state) ─┬─ renderer, gateware, scene, models, memory
+//!                  ├─ terminal, transfer
+//!                  ├─ sensor, replay
+//!                  └─ interrupts
+//! panic (traps, panics)    bench (kernels)
 //! ```
 
 #![no_std]
 #![no_main]
 #![deny(unsafe_code)]
 
-mod appearance;
 mod bench;
 mod commands;
 mod cube;
+mod error;
+mod format;
 mod gateware;
-mod imu;
-#[allow(unsafe_code)] // Interrupts are let in.
+#[allow(unsafe_code)] // Enables interrupts.
 mod interrupts;
-#[allow(unsafe_code)] // The trap handler's name, and the UART taken from a program that has ended.
-mod last_words;
-#[allow(unsafe_code)] // It never returns, and says so.
+mod job;
 mod machine;
+#[allow(unsafe_code)] // Starts the sensor's stream in a function that does not return.
+mod main_loop;
 #[allow(unsafe_code)] // Linker symbols as slices.
 mod memory;
 #[allow(unsafe_code)] // A mesh that outlives the borrow of its buffer.
 mod models;
+#[allow(unsafe_code)] // The trap handler's symbol, and the UART of a program that has ended.
+mod panic;
 mod renderer;
 mod replay;
 mod scene;
 mod selftest;
-#[allow(unsafe_code)] // A future that the main loop keeps, for interrupts.
+#[allow(unsafe_code)] // Pinned future polled from interrupts.
 mod sensor;
 #[allow(unsafe_code)] // The UART before it has an owner.
 mod start;
 mod terminal;
 mod transfer;
 
+use main_loop::MainLoop;
+
 #[riscv_rt::entry]
 fn main() -> ! {
     match start::machine() {
-        Ok(mut machine) => machine.run(),
-        Err(fault) => last_words::farewell(format_args!("cannot start: {fault}")),
+        Ok(machine) => MainLoop::new(machine).run(),
+        Err(error) => panic::report(format_args!("cannot start: {error}")),
     }
 }

@@ -1,102 +1,95 @@
-//! The command `replay`: a log comes in as meshes do, and each of its records becomes the attitude after it, where it lies.
+//! Replay of a log in memory: each record of a sample becomes the record of the attitude after it.
 
-use glint_core::orientation::Tracker;
+use core::ops::Range;
+
 use glint_core::orientation::log::{self, HEADER_BYTES, RECORD_BYTES, Record};
-use glint_core::wire::Manifest;
+use glint_core::orientation::{Counts, Tracker};
 use litex_pac::cpu;
 
-use crate::commands::{self, Refusal, Reply};
-use crate::machine::{Job, Machine};
-
-/// Samples of a turn of the main loop: some milliseconds.
+/// Samples of one turn of the main loop: some milliseconds.
 const SLICE: usize = 256;
-/// Samples between two lines of progress.
-const PROGRESS: usize = 1_024;
 
-/// A log in the staging memory, as far as it has become attitudes.
+/// A log in the staging memory and the progress of its replay.
 pub struct Replay {
     tracker: Tracker,
     samples: usize,
     done: usize,
-    /// How many of them have been told.
-    told: usize,
-    /// Cycles of the tracker, and of interrupts that came meanwhile.
+    /// Samples done at the last report.
+    reported: usize,
+    /// Cycles of the tracker, with interrupts during its work.
     cycles: u64,
 }
 
-/// Takes a log and begins.
-pub fn begin<'l>(machine: &mut Machine, manifest: Manifest) -> Reply<'l> {
-    let opened = commands::stage(machine, "replay", manifest)
-        .and_then(|staged| log::open(staged).map_err(Refusal::Log))
-        .map(|(setup, records)| Replay {
-            tracker: setup.tracker(),
-            samples: records.len(),
+impl Replay {
+    /// The replay of a log with this number of samples.
+    pub const fn new(tracker: Tracker, samples: usize) -> Self {
+        Self {
+            tracker,
+            samples,
             done: 0,
-            told: 0,
+            reported: 0,
             cycles: 0,
-        });
-    match opened {
-        Ok(replay) => {
-            machine.replay = Some(replay);
-            Reply::After(Job::Replay)
         }
-        Err(refusal) => Reply::Now(Err(refusal)),
+    }
+
+    /// Samples of the log.
+    pub const fn samples(&self) -> usize {
+        self.samples
+    }
+
+    /// Whether all samples have become attitudes.
+    pub const fn is_done(&self) -> bool {
+        self.done == self.samples
+    }
+
+    /// Events of the samples so far.
+    pub const fn counts(&self) -> Counts {
+        self.tracker.counts()
+    }
+
+    /// Samples done since the last report.
+    pub const fn unreported(&self) -> usize {
+        self.done - self.reported
+    }
+
+    /// Samples done so far, to report.
+    pub const fn report(&mut self) -> usize {
+        self.reported = self.done;
+        self.done
+    }
+
+    /// Mean cycles of a sample, rounded to nearest.
+    pub fn cycles_per_sample(&self) -> u64 {
+        let samples = self.samples.max(1) as u64;
+        (self.cycles + samples / 2) / samples
+    }
+
+    /// The records of the log in the staging memory.
+    pub fn records<'m>(&self, staging: &'m [u8]) -> &'m [u8] {
+        staging.get(self.range()).unwrap_or_default()
+    }
+
+    const fn range(&self) -> Range<usize> {
+        HEADER_BYTES..HEADER_BYTES + RECORD_BYTES * self.samples
+    }
+
+    /// Replays the next slice of the log in the staging memory.
+    pub fn advance(&mut self, staging: &mut [u8]) {
+        let records = staging.get_mut(self.range()).unwrap_or_default();
+        // The memory is aligned, header and records are whole words, and this core has their byte order.
+        let records = bytemuck::try_cast_slice_mut::<u8, Record>(records).unwrap_or_default();
+        let end = self.samples.min(self.done + SLICE);
+        let records = records.get_mut(self.done..end).unwrap_or_default();
+        self.cycles += track(&mut self.tracker, records);
+        self.done = end;
     }
 }
 
-/// Goes on by a slice; how it has ended, if it has.
-pub fn pursue(machine: &mut Machine) -> Option<Result<(), Refusal<'static>>> {
-    let Machine {
-        terminal,
-        models,
-        replay,
-        uart,
-        ..
-    } = machine;
-    let Some(replay) = replay else {
-        return Some(Err(Refusal::NoReplay));
-    };
-    let records = models
-        .staging()
-        .get_mut(HEADER_BYTES..HEADER_BYTES + RECORD_BYTES * replay.samples)
-        .unwrap_or_default();
-    // The memory is aligned, header and records are whole words, and this core has their byte order.
-    let records = bytemuck::try_cast_slice_mut::<u8, Record>(records).unwrap_or_default();
-    let end = replay.samples.min(replay.done + SLICE);
-    let records = records.get_mut(replay.done..end).unwrap_or_default();
-    replay.cycles += track(&mut replay.tracker, records);
-    replay.done = end;
-    if end < replay.samples {
-        // A slow line is told less often.
-        if end - replay.told >= PROGRESS && uart.has_sent() {
-            replay.told = end;
-            terminal.print(format_args!("replaying {end}\n"));
-        }
-        return None;
-    }
-    let counts = replay.tracker.counts();
-    let samples = replay.samples as u64;
-    // There is at least one.
-    let mean = (replay.cycles + samples / 2) / samples.max(1);
-    for (key, value) in [
-        ("samples", samples),
-        ("steps", counts.steps),
-        ("stale", counts.stale),
-        ("gaps", counts.gaps),
-        ("saturated", counts.saturated),
-        ("rejected", counts.rejected),
-        ("cycles_per_sample", mean),
-    ] {
-        terminal.print(format_args!("{key} {value}\n"));
-    }
-    Some(Ok(()))
-}
-
-/// Makes attitudes of samples where they lie, and gives the cycles that the tracker took.
-// It is called with many samples, and lies beside the tracker: memory.x.
+/// Replaces samples by attitudes, and returns the cycles of the tracker.
+// The linker script places this function beside the tracker.
 #[inline(never)]
 pub fn track(tracker: &mut Tracker, records: &mut [Record]) -> u64 {
-    // What reading the counter twice takes by itself.
+    // Cycles of two readings of the counter.
     let start = cpu::cycles_low();
     let own = cpu::cycles_low().wrapping_sub(start);
     let mut all = 0;
@@ -109,26 +102,4 @@ pub fn track(tracker: &mut Tracker, records: &mut [Record]) -> u64 {
         *record = log::attitude_record(tracker.attitude());
     }
     all
-}
-
-/// Sends the attitudes of the last log.
-pub fn send(machine: &mut Machine) -> Result<(), Refusal<'static>> {
-    let Machine {
-        terminal,
-        models,
-        replay,
-        downloads,
-        ..
-    } = machine;
-    let replay = replay
-        .as_ref()
-        .filter(|replay| replay.done == replay.samples);
-    let samples = replay.ok_or(Refusal::NoReplay)?.samples;
-    let attitudes = models
-        .staging()
-        .get(HEADER_BYTES..HEADER_BYTES + RECORD_BYTES * samples)
-        .unwrap_or_default();
-    downloads
-        .send(terminal, attitudes)
-        .map_err(Refusal::Transfer)
 }

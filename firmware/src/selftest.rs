@@ -1,4 +1,4 @@
-//! What the machine can tell about itself.
+//! The machine's tests of itself.
 
 use glint_core::mpu6050::Error;
 use glint_hal::i2c;
@@ -6,29 +6,20 @@ use litex_pac::cpu;
 
 use crate::machine::Machine;
 
-/// Bytes of memory that are tested: four times what the data cache holds.
+/// Bytes of memory that are tested: four times the data cache.
 const TESTED: usize = 16 << 10;
 
-/// Runs all tests, prints a line for each, and returns how many failed.
-pub fn run(machine: &mut Machine) -> u32 {
+/// Runs all tests and returns the name of each test and whether it passed.
+pub fn run(machine: &mut Machine) -> [(&'static str, bool); 6] {
     let memory = memory(machine.models.staging());
-    let tests = [
+    [
         ("identity", machine.identity.matches()),
         ("clock", machine.clock.cycles() < machine.clock.cycles()),
         ("cycle counter", cpu::cycles_low() != cpu::cycles_low()),
         ("memory", memory),
         ("scan-out", machine.renderer.display.is_visible()),
         ("i2c", !is_stuck(machine)),
-    ];
-    let mut failed = 0;
-    for (name, passed) in tests {
-        machine.terminal.print(format_args!(
-            "selftest {name} {}\n",
-            if passed { "ok" } else { "FAILED" }
-        ));
-        failed += u32::from(!passed);
-    }
-    failed
+    ]
 }
 
 /// Whether the sensor's bus is held low.
@@ -41,7 +32,7 @@ fn is_stuck(machine: &Machine) -> bool {
     )
 }
 
-/// Whether memory keeps numbers that differ at every address, read back from behind the cache.
+/// Whether memory keeps a different word at each address, read back after a flush of the cache.
 fn memory(window: &mut [u8]) -> bool {
     let (words, _) = window
         .get_mut(..TESTED)

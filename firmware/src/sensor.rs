@@ -1,7 +1,7 @@
-//! The sensor's stream: a future that interrupts drive, and what came of it for the main loop.
+//! The sensor's stream: a future that interrupts poll, and a queue of its events for the main loop.
 //!
-//! The end of a transfer, of some rounds, and of a pause are interrupts, and each lets the stream go on. So samples are read when they are due,
-//! whatever the program does meanwhile; what comes of them waits in a queue until the program has time.
+//! The end of a transfer, of a batch of samples, and of a pause are interrupts, and each polls the stream. Samples are
+//! therefore read on time during long work of the program, and wait in the queue.
 
 use core::cell::{Cell, RefCell};
 use core::mem;
@@ -14,37 +14,43 @@ use glint_hal::i2c;
 use heapless::Deque;
 use litex_pac::cpu;
 
-/// The sensor, and what follows it.
+/// Samples, attitude and calibration of the sensor.
 pub type Imu = glint_core::imu::Imu<i2c::BusError>;
 
-/// What has happened.
+/// Reason why the sensor gives no samples.
+pub type SensorError = Error<i2c::BusError>;
+
+/// Reason why a calibration failed.
+pub type CalibrationError = glint_core::imu::CalibrationError<i2c::BusError>;
+
+/// An event of the stream.
 enum Event {
     Start(Identity),
     Sample(u64, Measurement),
-    Error(Error<i2c::BusError>),
+    Error(SensorError),
 }
 
-/// As many samples as come while a long frame is drawn.
-const WAITING: usize = 256;
+/// Capacity of the queue: the samples of a long frame.
+const QUEUE: usize = 256;
 
-/// A stream that never ends.
+/// The sensor's stream, which does not end.
 struct Stream(Pin<&'static mut dyn Future<Output = ()>>);
 
-// SAFETY: there is one core, and so nobody else to send it to but interrupts, which a critical section keeps away.
+// SAFETY: there is one core, and a critical section excludes interrupts.
 unsafe impl Send for Stream {}
 
 static STREAM: Mutex<RefCell<Option<Stream>>> = Mutex::new(RefCell::new(None));
-static EVENTS: Mutex<RefCell<Deque<Event, WAITING>>> = Mutex::new(RefCell::new(Deque::new()));
-/// Cycles that the stream has taken, and what was made of its samples.
+static EVENTS: Mutex<RefCell<Deque<Event, QUEUE>>> = Mutex::new(RefCell::new(Deque::new()));
+/// Cycles of the stream and of the processing of its samples.
 static CYCLES: Mutex<Cell<[u64; 2]>> = Mutex::new(Cell::new([0; 2]));
 
-/// Where the stream puts what happens.
+/// The sink of the stream: it queues the events.
 pub struct Inbox;
 
 impl Inbox {
     fn push(event: Event) {
         critical_section::with(|token| {
-            // Nobody has asked for so long that the attitude is lost anyway: what is new is dropped, and its time tells.
+            // Queue full: drop the event. The gap between time stamps reveals it.
             let _ = EVENTS.borrow_ref_mut(token).push_back(event);
         });
     }
@@ -67,9 +73,9 @@ impl Sink<i2c::BusError> for Inbox {
 /// Starts a stream into the [`Inbox`].
 ///
 /// # Safety
-/// The caller must never return.
+/// The caller does not return.
 pub unsafe fn start(stream: Pin<&mut dyn Future<Output = ()>>) {
-    // SAFETY: what is borrowed lives in a function that does not return, so it lives for ever.
+    // SAFETY: the future lives in a function that does not return, so it is never dropped.
     let stream = unsafe {
         mem::transmute::<Pin<&mut dyn Future<Output = ()>>, Pin<&'static mut dyn Future<Output = ()>>>(
             stream,
@@ -80,19 +86,19 @@ pub unsafe fn start(stream: Pin<&mut dyn Future<Output = ()>>) {
     advance(cpu::cycles_low());
 }
 
-/// Lets the stream go on. Interrupts call this when a transfer or a pause has ended; the cycles since `start` count as the stream's.
+/// Polls the stream. Interrupts call this after a transfer or a pause; the cycles since `start` count as the stream's.
 pub fn advance(start: u32) {
     critical_section::with(|token| {
         if let Some(stream) = &mut *STREAM.borrow_ref_mut(token) {
             let mut context = Context::from_waker(Waker::noop());
-            // It never ends.
+            // The stream is always pending.
             let _ = stream.0.as_mut().poll(&mut context);
         }
     });
     count(0, start);
 }
 
-/// Counts the cycles since `start` for one of the two.
+/// Adds the cycles since `start` to counter `which`.
 fn count(which: usize, start: u32) {
     let cycles = cpu::cycles_low().wrapping_sub(start);
     critical_section::with(|token| {
@@ -102,17 +108,17 @@ fn count(which: usize, start: u32) {
     });
 }
 
-/// Cycles that the stream has taken since its start, and what was made of its samples, with the interrupts that came meanwhile.
+/// Cycles of the stream and of the processing of its samples since start, including interrupts.
 pub fn cycles() -> [u64; 2] {
     critical_section::with(|token| CYCLES.borrow(token).get())
 }
 
-/// Whether [`deliver`] has something.
-pub fn has_news() -> bool {
+/// Whether the queue has an event.
+pub fn has_events() -> bool {
     critical_section::with(|token| !EVENTS.borrow_ref(token).is_empty())
 }
 
-/// Tells `imu` what has happened.
+/// Gives all queued events to `imu`.
 pub fn deliver(imu: &mut Imu) {
     while let Some(event) = critical_section::with(|token| EVENTS.borrow_ref_mut(token).pop_front())
     {

@@ -1,4 +1,4 @@
-//! From reset to a machine that runs.
+//! Start of the machine after reset.
 
 use core::fmt::{self, Write as _};
 
@@ -22,26 +22,26 @@ use crate::models::Models;
 use crate::renderer::Renderer;
 use crate::scene::Scene;
 
-/// The id of the gateware that this program was built for, under a name by which tools find it in the program.
+/// Build id of the gateware that the firmware was built for. Tools find it by its symbol.
 #[unsafe(no_mangle)]
 static GLINT_BUILD_ID: u32 = BUILD_ID;
 
-/// Why the machine does not start.
-pub enum Fault {
-    /// It has been started before.
+/// Reason why the machine does not start.
+pub enum StartError {
+    /// The machine was started before.
     Started,
-    /// There is no time.
+    /// The timer does not run.
     Clock(Stopped),
-    /// The program's own model is none.
+    /// The built-in model is not a mesh.
     Cube(MeshError),
-    /// The first camera is none.
+    /// The first camera is out of range.
     Camera(ViewError),
 }
 
-impl fmt::Display for Fault {
+impl fmt::Display for StartError {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Self::Started => f.write_str("the machine has been started before"),
+            Self::Started => f.write_str("the machine was started before"),
             Self::Clock(stopped) => stopped.fmt(f),
             Self::Cube(error) => write!(f, "the built-in cube: {error}"),
             Self::Camera(error) => write!(f, "the first camera: {error}"),
@@ -49,24 +49,24 @@ impl fmt::Display for Fault {
     }
 }
 
-/// Starts everything.
+/// Starts the machine.
 ///
-/// The banner comes first and needs only the UART, so that whatever fails afterwards fails visibly. Where the gateware
-/// is not the one that this program was built for, just the console is started.
+/// The banner comes first and needs only the UART, so that later errors are visible. On a gateware with another build
+/// id only the console is started.
 ///
 /// # Errors
-/// When something is missing that nothing works without.
-pub fn machine() -> Result<Machine, Fault> {
-    // SAFETY: nobody has the UART yet.
+/// Timer, built-in model or camera fail.
+pub fn machine() -> Result<Machine, StartError> {
+    // SAFETY: the UART has no owner yet.
     let mut banner = unsafe { Direct::seize() };
-    // A line that takes nothing has nobody listening.
+    // An error means that the line takes no text.
     let _ = write!(banner, "\r\nGlint {}\r\n", env!("CARGO_PKG_VERSION"));
 
     memory::load_fast_code();
-    let peripherals = Peripherals::take().ok_or(Fault::Started)?;
-    let memory = Memory::take().ok_or(Fault::Started)?;
+    let peripherals = Peripherals::take().ok_or(StartError::Started)?;
+    let memory = Memory::take().ok_or(StartError::Started)?;
     let identity = Identity {
-        // SAFETY: a static may be read. Volatile, because a tool may have changed it in the program's file.
+        // SAFETY: the pointer is that of a static. Volatile, because tools change the value in the program's file.
         firmware: unsafe { (&raw const GLINT_BUILD_ID).read_volatile() },
         gateware: peripherals.identity.build_id().read(),
         blocks: peripherals.identity.blocks().read(),
@@ -86,7 +86,7 @@ pub fn machine() -> Result<Machine, Fault> {
         );
     }
 
-    let clock = Clock::new(peripherals.timer0).map_err(Fault::Clock)?;
+    let clock = Clock::new(peripherals.timer0).map_err(StartError::Clock)?;
     UART.start(peripherals.uart);
     let (scanout, engine, raymarcher, devices) = if identity.matches() {
         let devices = Devices {
@@ -118,8 +118,8 @@ pub fn machine() -> Result<Machine, Fault> {
     Ok(Machine::new(
         identity,
         clock,
-        Scene::new(backend).map_err(Fault::Camera)?,
-        Models::new(memory.meshes).map_err(Fault::Cube)?,
+        Scene::new(backend).map_err(StartError::Camera)?,
+        Models::new(memory.meshes).map_err(StartError::Cube)?,
         Renderer {
             display: Display::new(scanout, memory.frames),
             depth: memory.depth,

@@ -1,4 +1,4 @@
-//! The console's line: what is typed becomes lines, what is said goes out.
+//! The console on the UART: lines of input, and text output.
 
 use core::fmt;
 use core::time::Duration;
@@ -9,21 +9,21 @@ use glint_hal::timer::Clock;
 use glint_hal::uart::{Uart, Writer};
 use heapless::String;
 
-/// Bytes that may wait to be read: more than a second of typing at 115,200 baud, and several windows of an upload.
+/// Capacity of the receive queue: more than a second of typing at 115,200 baud, and several windows of an upload.
 const RECEIVE_QUEUE: usize = 16 << 10;
-/// Bytes that may wait to be sent.
+/// Capacity of the send queue.
 const SEND_QUEUE: usize = 4 << 10;
 
 /// The UART of the SoC.
 pub type ConsoleUart = Uart<RECEIVE_QUEUE, SEND_QUEUE>;
 
-/// How long text waits for a line that takes nothing before it is dropped.
-const PATIENCE: Duration = Duration::from_millis(500);
+/// Longest wait for a line that takes no text. The text is then dropped.
+const SEND_TIMEOUT: Duration = Duration::from_millis(500);
 
-/// What somebody has typed.
+/// Input from the user.
 #[expect(
     clippy::large_enum_variant,
-    reason = "there is no heap to put the line on, and there is one of these"
+    reason = "one input exists at a time, and there is no heap"
 )]
 pub enum Input {
     /// A whole line.
@@ -46,7 +46,7 @@ impl Terminal {
     /// A terminal on `uart`.
     pub fn new(uart: &'static ConsoleUart, clock: Clock) -> Self {
         let output = Output {
-            writer: uart.writer(clock, PATIENCE),
+            writer: uart.writer(clock, SEND_TIMEOUT),
         };
         Self {
             uart,
@@ -56,13 +56,13 @@ impl Terminal {
         }
     }
 
-    /// Takes what was typed until a line is complete, and echoes it. Further lines wait their turn in the UART's queue.
+    /// Receives and echoes input until a line is complete. Further lines wait in the UART's queue.
     pub fn listen(&mut self) {
         let mut byte = [0];
         while self.waiting.is_none() && self.uart.receive(&mut byte) > 0 {
             self.waiting = match self.editor.on_byte(byte[0], &mut self.output) {
                 Event::None => None,
-                // The editor keeps to the length, so that nothing is cut.
+                // The editor keeps to the capacity.
                 Event::Line(line) => Some(Input::Line(String::try_from(line).unwrap_or_default())),
                 Event::Overlong => Some(Input::Overlong),
                 Event::Interrupt => Some(Input::Interrupt),
@@ -70,38 +70,43 @@ impl Terminal {
         }
     }
 
-    /// The input that is complete, if any.
+    /// Takes the complete input.
     pub fn input(&mut self) -> Option<Input> {
         self.waiting.take()
     }
 
-    /// Whether [`input`](Self::input) has something.
+    /// Whether an input is complete.
     pub const fn has_input(&self) -> bool {
         self.waiting.is_some()
     }
 
-    /// Says that a command is welcome.
+    /// Prints the prompt.
     pub fn prompt(&mut self) {
         self.print(format_args!("{PROMPT}"));
     }
 
-    /// Prints text. A line that takes nothing loses it: nobody is there to read.
+    /// Prints text, which is lost if the line takes none.
     pub fn print(&mut self, text: fmt::Arguments) {
         let _ = fmt::Write::write_fmt(&mut self.output, text);
     }
 
-    /// Where text goes.
+    /// Prints a line with a key and its value.
+    pub fn print_entry(&mut self, key: &str, value: &dyn fmt::Display) {
+        self.print(format_args!("{key} {value}\n"));
+    }
+
+    /// The output for text.
     pub const fn output(&mut self) -> &mut Output {
         &mut self.output
     }
 
-    /// Waits until all text is on its way.
+    /// Waits until the UART has sent all text.
     pub fn flush(&mut self) {
         let _ = self.output.writer.flush();
     }
 }
 
-/// Text for a terminal: a line feed also returns the carriage.
+/// Text output: a carriage return precedes each line feed.
 pub struct Output {
     writer: Writer<'static, RECEIVE_QUEUE, SEND_QUEUE>,
 }

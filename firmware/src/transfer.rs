@@ -1,17 +1,17 @@
 //! Uploads and downloads: `glint-core`'s transfer between a buffer and the UART.
 //!
-//! While one runs, the line is its own: nothing is echoed or printed. It ends when it is done, when it is given up, or
-//! after a silence.
+//! During a transfer the line carries no other text. A transfer ends when it is complete, when the other side cancels it,
+//! or after a timeout.
 
 use glint_core::wire::{Failure, MAX_FRAME, Manifest, Party, Receiver, Sender, State, Timing};
 use glint_hal::timer::Clock;
 
 use crate::terminal::{ConsoleUart, Terminal};
 
-/// Receives what `manifest` announces into `buffer`.
+/// Receives the upload of `manifest` into `buffer`.
 ///
 /// # Errors
-/// When it does not come whole.
+/// The upload is incomplete.
 pub fn receive(
     uart: &ConsoleUart,
     clock: Clock,
@@ -27,7 +27,7 @@ pub fn receive(
     run(uart, clock, receiver)
 }
 
-/// The side that sends, and how often it has: each transfer has another number than the one before.
+/// The sender of downloads. Each transfer has another session number than the one before.
 pub struct Downloads {
     uart: &'static ConsoleUart,
     clock: Clock,
@@ -35,7 +35,7 @@ pub struct Downloads {
 }
 
 impl Downloads {
-    /// Nothing has been sent yet.
+    /// A sender before its first transfer.
     pub const fn new(uart: &'static ConsoleUart, clock: Clock) -> Self {
         Self {
             uart,
@@ -44,10 +44,10 @@ impl Downloads {
         }
     }
 
-    /// Says that it is ready, and sends `data`.
+    /// Prints `ready` and sends `data`.
     ///
     /// # Errors
-    /// When it does not arrive whole.
+    /// The download is incomplete.
     pub fn send(&mut self, terminal: &mut Terminal, data: &[u8]) -> Result<(), Failure> {
         terminal.print(format_args!("ready\n"));
         self.session = self.session.wrapping_add(1);
@@ -60,7 +60,7 @@ impl Downloads {
 fn run(uart: &ConsoleUart, clock: Clock, mut party: impl Party) -> Result<(), Failure> {
     let mut received = [0; 256];
     let mut frame = [0; MAX_FRAME];
-    // The part of the frame that still waits for room in the UART's queue.
+    // The part of the frame for which the UART's queue has no room yet.
     let mut unsent = 0..0;
     loop {
         let now = clock.milliseconds();

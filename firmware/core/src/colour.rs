@@ -1,6 +1,6 @@
 //! Colours in RGB565, and the shading of triangles.
 
-use core::fmt;
+use crate::choice::choices;
 
 /// A colour as the frame buffer holds it: red in bits 15–11, green in 10–5, blue in 4–0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -44,24 +44,10 @@ pub enum Shading {
     Smooth,
 }
 
-impl Shading {
-    /// All ways of shading, in the order of help texts.
-    pub const ALL: [Self; 2] = [Self::Flat, Self::Smooth];
-
-    /// The name on the console and on the command line.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Flat => "flat",
-            Self::Smooth => "smooth",
-        }
-    }
-}
-
-impl fmt::Display for Shading {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
+choices!(Shading {
+    Flat: "flat",
+    Smooth: "smooth"
+});
 
 #[cfg(test)]
 mod tests {

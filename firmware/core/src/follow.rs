@@ -6,6 +6,7 @@
 use core::fmt;
 
 use crate::camera::{DEFAULT_HALF_WIDTH, DEFAULT_NEAR, RADIUS, View, ViewError};
+use crate::choice::choices;
 use crate::fixed::{Q2_23, Q2_30, Q32_32, Turns};
 use crate::orientation::Quaternion;
 use crate::polar::polar;
@@ -13,49 +14,48 @@ use crate::trig::sin_cos_q30;
 
 /// A direction of the sensor along one of its axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Direction {
-    /// 0, 1, 2 for x, y, z.
-    axis: u8,
-    negative: bool,
+pub enum Direction {
+    /// Along x.
+    X,
+    /// Against x.
+    MinusX,
+    /// Along y.
+    Y,
+    /// Against y.
+    MinusY,
+    /// Along z.
+    Z,
+    /// Against z.
+    MinusZ,
 }
 
+choices!(Direction {
+    X: "x",
+    MinusX: "-x",
+    Y: "y",
+    MinusY: "-y",
+    Z: "z",
+    MinusZ: "-z",
+});
+
 impl Direction {
-    /// Reads `x`, `-x`, `y`, …; `+x` is `x`.
-    pub fn parse(text: &str) -> Option<Self> {
-        let (negative, name) = match text.strip_prefix('-') {
-            Some(name) => (true, name),
-            None => (false, text.strip_prefix('+').unwrap_or(text)),
-        };
-        let axis = match name {
-            "x" => 0,
-            "y" => 1,
-            "z" => 2,
-            _ => return None,
-        };
-        Some(Self { axis, negative })
+    /// 0, 1, 2 for x, y, z.
+    const fn axis(self) -> usize {
+        match self {
+            Self::X | Self::MinusX => 0,
+            Self::Y | Self::MinusY => 1,
+            Self::Z | Self::MinusZ => 2,
+        }
     }
 
     /// The direction in the world, 30 fraction bits.
     fn of(self, axes: &[[i32; 3]; 3]) -> [i32; 3] {
-        let axis = axes[usize::from(self.axis)];
-        if self.negative {
+        let axis = axes[self.axis()];
+        match self {
+            Self::X | Self::Y | Self::Z => axis,
             // At most 2^30 and a bit.
-            axis.map(|x| -x)
-        } else {
-            axis
+            Self::MinusX | Self::MinusY | Self::MinusZ => axis.map(|x| -x),
         }
-    }
-}
-
-impl fmt::Display for Direction {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let sign = if self.negative { "-" } else { "" };
-        let axis = match self.axis {
-            0 => "x",
-            1 => "y",
-            _ => "z",
-        };
-        write!(f, "{sign}{axis}")
     }
 }
 
@@ -70,14 +70,8 @@ impl Default for Mounting {
     /// Forward is y and up is z, so that at the identity the camera looks along +y, as [`View::look`] does with all angles 0.
     fn default() -> Self {
         Self {
-            forward: Direction {
-                axis: 1,
-                negative: false,
-            },
-            up: Direction {
-                axis: 2,
-                negative: false,
-            },
+            forward: Direction::Y,
+            up: Direction::Z,
         }
     }
 }
@@ -85,7 +79,7 @@ impl Default for Mounting {
 impl Mounting {
     /// By the direction that looks into the scene and the one that points up on the screen, if they are perpendicular.
     pub fn new(forward: Direction, up: Direction) -> Option<Self> {
-        (forward.axis != up.axis).then_some(Self { forward, up })
+        (forward.axis() != up.axis()).then_some(Self { forward, up })
     }
 }
 

@@ -6,6 +6,7 @@ use core::fmt;
 
 use crate::calibration::{self, Calibration, Progress, Report, RestBias, Units};
 use crate::camera::{View, ViewError};
+use crate::choice::choices;
 use crate::fixed::Q32_32;
 use crate::follow::{self, Mounting, Steering};
 use crate::mpu6050::{self, Error, Identity, Measurement, Sink};
@@ -20,9 +21,14 @@ pub enum Follow {
     Orbit,
 }
 
+choices!(Follow {
+    Look: "look",
+    Orbit: "orbit"
+});
+
 /// Why there is no calibration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Refusal<E> {
+pub enum CalibrationError<E> {
     /// It moved, or does not measure.
     Sensor(calibration::Refusal),
     /// No samples came.
@@ -31,7 +37,7 @@ pub enum Refusal<E> {
     Absent,
 }
 
-impl<E: fmt::Display> fmt::Display for Refusal<E> {
+impl<E: fmt::Display> fmt::Display for CalibrationError<E> {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Self::Sensor(refusal) => refusal.fmt(f),
@@ -46,7 +52,7 @@ impl<E: fmt::Display> fmt::Display for Refusal<E> {
 enum Calibrating<E> {
     Never,
     Going(Calibration, u32),
-    Ended(Result<Report, Refusal<E>>),
+    Ended(Result<Report, CalibrationError<E>>),
 }
 
 /// A sensor and what follows it. `E` is what its bus fails with.
@@ -145,8 +151,8 @@ impl<E: Copy> Imu<E> {
     /// Begins a calibration of so many samples, in place of one that is going on.
     pub fn calibrate(&mut self, samples: u32) {
         self.calibrating = match self.error {
-            Some(error) => Calibrating::Ended(Err(Refusal::Failed(error))),
-            None if self.identity.is_none() => Calibrating::Ended(Err(Refusal::Absent)),
+            Some(error) => Calibrating::Ended(Err(CalibrationError::Failed(error))),
+            None if self.identity.is_none() => Calibrating::Ended(Err(CalibrationError::Absent)),
             None => Calibrating::Going(Calibration::new(Units::MPU_6050, samples), 0),
         };
     }
@@ -160,7 +166,7 @@ impl<E: Copy> Imu<E> {
     }
 
     /// How the last calibration has ended.
-    pub const fn calibration(&self) -> Option<Result<Report, Refusal<E>>> {
+    pub const fn calibration(&self) -> Option<Result<Report, CalibrationError<E>>> {
         match self.calibrating {
             Calibrating::Ended(result) => Some(result),
             _ => None,
@@ -219,7 +225,9 @@ impl<E: Copy> Imu<E> {
                 self.tracker.follow_bias(resting);
                 self.calibrating = Calibrating::Ended(Ok(report));
             }
-            Err(refusal) => self.calibrating = Calibrating::Ended(Err(Refusal::Sensor(refusal))),
+            Err(refusal) => {
+                self.calibrating = Calibrating::Ended(Err(CalibrationError::Sensor(refusal)))
+            }
         }
     }
 
@@ -267,7 +275,7 @@ impl<E: Copy> Sink<E> for Imu<E> {
         self.error = Some(error);
         self.errors = self.errors.saturating_add(1);
         if let Calibrating::Going(..) = self.calibrating {
-            self.calibrating = Calibrating::Ended(Err(Refusal::Failed(error)));
+            self.calibrating = Calibrating::Ended(Err(CalibrationError::Failed(error)));
         }
     }
 }

@@ -12,6 +12,7 @@ extern crate std;
 pub mod appearance;
 pub mod calibration;
 pub mod camera;
+pub mod choice;
 pub mod colour;
 pub mod console;
 pub mod field;

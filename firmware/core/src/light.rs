@@ -8,6 +8,7 @@ use core::fmt;
 
 use heapless::Vec;
 
+use crate::choice::choices;
 use crate::field::MAX_SPHERES;
 use crate::fixed::Q32_32;
 
@@ -140,7 +141,7 @@ impl fmt::Display for LightError<'_> {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Self::Form { text } => write!(f, "{text}: expected {FORM}"),
-            Self::Nowhere => f.write_str("direction 0,0,0: expected one that is not 0"),
+            Self::Nowhere => f.write_str("direction 0,0,0: expected a non-zero direction"),
         }
     }
 }
@@ -228,42 +229,17 @@ pub enum Material {
     Slate,
 }
 
+choices!(Material {
+    Normal: "normal",
+    Clay: "clay",
+    Jade: "jade",
+    Sky: "sky",
+    Gold: "gold",
+    Ivory: "ivory",
+    Slate: "slate",
+});
+
 impl Material {
-    /// All of them.
-    pub const ALL: [Self; 7] = [
-        Self::Normal,
-        Self::Clay,
-        Self::Jade,
-        Self::Sky,
-        Self::Gold,
-        Self::Ivory,
-        Self::Slate,
-    ];
-
-    /// What they are called, in the same order.
-    pub const NAMES: [&'static str; Self::ALL.len()] = {
-        let mut names = [""; Self::ALL.len()];
-        let mut i = 0;
-        while i < names.len() {
-            names[i] = Self::ALL[i].name();
-            i += 1;
-        }
-        names
-    };
-
-    /// What it is called.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Normal => "normal",
-            Self::Clay => "clay",
-            Self::Jade => "jade",
-            Self::Sky => "sky",
-            Self::Gold => "gold",
-            Self::Ivory => "ivory",
-            Self::Slate => "slate",
-        }
-    }
-
     /// The colours of its faces in full light, in the order −x, x, −y, y, −z, z.
     pub const fn faces(self) -> [Rgb; 6] {
         match self {
@@ -317,29 +293,12 @@ pub enum Background {
     Sky,
 }
 
+choices!(Background {
+    White: "white",
+    Sky: "sky"
+});
+
 impl Background {
-    /// All of them.
-    pub const ALL: [Self; 2] = [Self::White, Self::Sky];
-
-    /// What they are called, in the same order.
-    pub const NAMES: [&'static str; Self::ALL.len()] = {
-        let mut names = [""; Self::ALL.len()];
-        let mut i = 0;
-        while i < names.len() {
-            names[i] = Self::ALL[i].name();
-            i += 1;
-        }
-        names
-    };
-
-    /// What it is called.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::White => "white",
-            Self::Sky => "sky",
-        }
-    }
-
     /// Its colours above, and at the horizon and below.
     pub const fn colours(self) -> [Rgb; 2] {
         match self {

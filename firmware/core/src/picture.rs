@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use crate::choice::choices;
 use crate::machine::{PICTURES, Picture};
 
 /// The size of a picture, by its code in registers.
@@ -79,24 +80,10 @@ pub enum Backend {
     Gateware,
 }
 
-impl Backend {
-    /// All backends, in the order of help texts.
-    pub const ALL: [Self; 2] = [Self::Cpu, Self::Gateware];
-
-    /// The name on the console and on the command line.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Cpu => "cpu",
-            Self::Gateware => "gateware",
-        }
-    }
-}
-
-impl fmt::Display for Backend {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
+choices!(Backend {
+    Cpu: "cpu",
+    Gateware: "gateware"
+});
 
 #[cfg(test)]
 mod tests {

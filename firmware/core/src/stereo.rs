@@ -5,6 +5,7 @@
 
 use core::fmt;
 
+use crate::choice::{Choice as _, choices};
 use crate::fixed::Q32_32;
 
 /// The half separations that are accepted.
@@ -25,18 +26,10 @@ pub enum Tint {
     RedCyan,
 }
 
-impl Tint {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::RedBlue, Self::RedCyan];
-
-    /// What it is called.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::RedBlue => "red-blue",
-            Self::RedCyan => "red-cyan",
-        }
-    }
-}
+choices!(Tint {
+    RedBlue: "red-blue",
+    RedCyan: "red-cyan"
+});
 
 /// Two eyes, beside each other along u.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,7 +78,7 @@ impl Stereo {
         };
         let tint = match words.next() {
             None => Some(Tint::default()),
-            Some(word) => Tint::ALL.into_iter().find(|tint| tint.name() == word),
+            Some(word) => Tint::from_word(word),
         };
         match (tint, words.next()) {
             (Some(tint), None) => Self {

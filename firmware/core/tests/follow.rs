@@ -1,6 +1,7 @@
 //! Cameras that an attitude drives: where they look, and that they never jump.
 
 use glint_core::camera::{View, ViewError};
+use glint_core::choice::Choice;
 use glint_core::fixed::{Q2_23, Q32_32, Turns};
 use glint_core::follow::{Direction, Mounting, NATURAL, Steering, free_look, orbit};
 use glint_core::orientation::{Angles, Quaternion};
@@ -51,12 +52,10 @@ fn free_look_is_look_where_the_angles_are_the_same() {
 
 #[test]
 fn every_mounting_is_right_handed_and_orthonormal() {
-    let names = ["x", "-x", "+y", "-y", "z", "-z"];
     let mut found = 0;
-    for forward in names {
-        for up in names {
-            let [f, u] = [forward, up].map(|name| Direction::parse(name).expect("an axis"));
-            let Some(mounting) = Mounting::new(f, u) else {
+    for forward in Direction::ALL {
+        for up in Direction::ALL {
+            let Some(mounting) = Mounting::new(forward, up) else {
                 continue;
             };
             found += 1;
@@ -74,8 +73,9 @@ fn every_mounting_is_right_handed_and_orthonormal() {
         }
     }
     assert_eq!(found, 24);
-    assert_eq!(Direction::parse("w"), None);
-    assert_eq!(Direction::parse("--x"), None);
+    assert_eq!(Direction::from_word("-y"), Some(Direction::MinusY));
+    assert_eq!(Direction::from_word("w"), None);
+    assert_eq!(Direction::from_word("--x"), None);
 }
 
 /// Over the top, down to the bottom, and across both while turning: a step of a hundredth of a degree moves no number by more than
@@ -86,11 +86,7 @@ fn the_camera_never_jumps() {
     let arc = step.to_radians();
     for mounting in [
         Mounting::default(),
-        Mounting::new(
-            Direction::parse("x").expect("an axis"),
-            Direction::parse("-y").expect("an axis"),
-        )
-        .expect("perpendicular"),
+        Mounting::new(Direction::X, Direction::MinusY).expect("perpendicular"),
     ] {
         for (yaw, roll) in [(0.0, 0.0), (40.0, 20.0), (-120.0, 90.0)] {
             let mut before: Option<[View; 3]> = None;

@@ -3,7 +3,7 @@
 use glint_core::calibration;
 use glint_core::fixed::Q32_32;
 use glint_core::follow::{Direction, Mounting};
-use glint_core::imu::{Follow, Imu, Refusal};
+use glint_core::imu::{CalibrationError, Follow, Imu};
 use glint_core::mpu6050::{Error, Identity, Measurement, Sink};
 
 type TestImu = Imu<&'static str>;
@@ -62,22 +62,27 @@ fn a_calibration_ends_when_it_moves_fails_or_has_no_sensor() {
     imu.on_sample(1_000, &moving);
     assert!(matches!(
         imu.calibration(),
-        Some(Err(Refusal::Sensor(calibration::Refusal::Turned {
-            axis: 2,
-            ..
-        })))
+        Some(Err(CalibrationError::Sensor(
+            calibration::Refusal::Turned { axis: 2, .. }
+        )))
     ));
     imu.calibrate(64);
     imu.on_error(Error::Silent);
-    assert_eq!(imu.calibration(), Some(Err(Refusal::Failed(Error::Silent))));
+    assert_eq!(
+        imu.calibration(),
+        Some(Err(CalibrationError::Failed(Error::Silent)))
+    );
     imu.calibrate(64);
-    assert_eq!(imu.calibration(), Some(Err(Refusal::Failed(Error::Silent))));
+    assert_eq!(
+        imu.calibration(),
+        Some(Err(CalibrationError::Failed(Error::Silent)))
+    );
     assert_eq!((imu.errors(), imu.is_running()), (1, false));
     imu.on_start(Identity::Mpu6050);
     assert!(imu.is_running());
     let mut nobody = TestImu::default();
     nobody.calibrate(64);
-    assert_eq!(nobody.calibration(), Some(Err(Refusal::Absent)));
+    assert_eq!(nobody.calibration(), Some(Err(CalibrationError::Absent)));
 }
 
 #[test]
@@ -114,8 +119,7 @@ fn the_camera_follows_and_can_be_recentred() {
     near(n, [0.0, 1.0, 0.0]);
     near(eye, [0.0, -2.5, 0.0]);
     // Mounted the other way round, and turned half as far.
-    let [back, up] = ["-y", "z"].map(|text| Direction::parse(text).expect("a direction"));
-    imu.set_mounting(Mounting::new(back, up).expect("perpendicular"));
+    imu.set_mounting(Mounting::new(Direction::MinusY, Direction::Z).expect("perpendicular"));
     near(forward(&mut imu).0, [0.0, -1.0, 0.0]);
     imu.set_mounting(Mounting::default());
     imu.set_sensitivity(128);

@@ -148,7 +148,7 @@ fn lights_and_colours_are_read() {
         );
     }
     let error = Light::parse("0,-0,0").expect_err("nowhere").to_string();
-    assert_eq!(error, "direction 0,0,0: expected one that is not 0");
+    assert_eq!(error, "direction 0,0,0: expected a non-zero direction");
     assert_eq!(parse_rgb("0102ff"), Some([1, 2, 255]));
     assert_eq!(parse_rgb("\u{e9}\u{e9}\u{e9}"), None);
 }

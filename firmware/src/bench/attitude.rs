@@ -1,4 +1,4 @@
-//! Ways to an attitude: what a sample costs.
+//! Clock cycles of methods of attitude integration, per sample.
 
 use core::cell::RefCell;
 
@@ -7,21 +7,21 @@ use glint_core::orientation::{
     Integrator, Quaternion, Sample, Scale, TIME_CONSTANT, Tilt, Tracker, log,
 };
 
-use super::{measure, print};
+use super::measure::{Cycles, Report, measure};
 use crate::replay;
-use crate::terminal::Terminal;
 
 /// The time between two samples, in µs.
 const STEP: u32 = 5_000;
 
-/// Samples one after the other of which a mean is taken, and so many means.
+/// Samples in a row, which give one mean.
 const RUN: u32 = 64;
+/// Number of means.
 const RUNS: usize = 16;
 
 /// Measures each method, as `cargo xtask report imu` calls them.
-pub fn attitude(terminal: &mut Terminal) {
+pub fn attitude(report: Report) {
     let angles = RefCell::new([0_u32; 3]);
-    measure(terminal, "angles", rate, |rate: [i32; 3]| {
+    measure(report, "angles", rate, |rate: [i32; 3]| {
         for (angle, rate) in angles.borrow_mut().iter_mut().zip(rate) {
             // A count of 2^−8 over 2^20 µs is 2^32/(16.4·360·256)·2^20/10^6 of 2^−32 turns.
             let turned = (i64::from(rate) * i64::from(STEP) * 2_980) >> 20;
@@ -29,7 +29,7 @@ pub fn attitude(terminal: &mut Terminal) {
         }
     });
     let first = RefCell::new([1 << 30, 0, 0, 0]);
-    measure(terminal, "first_order", rate, |rate| {
+    measure(report, "first_order", rate, |rate| {
         first_order(&mut first.borrow_mut(), rate);
     });
     let integrator = || {
@@ -40,20 +40,20 @@ pub fn attitude(terminal: &mut Terminal) {
         ))
     };
     let newest = integrator();
-    measure(terminal, "newest", rate, |rate| {
+    measure(report, "newest", rate, |rate| {
         newest.borrow_mut().advance_order::<1>(rate, STEP, [0; 3]);
     });
     let trapezoid = integrator();
-    measure(terminal, "trapezoid", rate, |rate| {
+    measure(report, "trapezoid", rate, |rate| {
         trapezoid
             .borrow_mut()
             .advance_order::<2>(rate, STEP, [0; 3]);
     });
     let parabola = integrator();
-    measure(terminal, "parabola", rate, |rate| {
+    measure(report, "parabola", rate, |rate| {
         parabola.borrow_mut().advance_order::<3>(rate, STEP, [0; 3]);
     });
-    // The shipped one as it is shipped: from the memory beside the processor, sample after sample as `replay` takes them.
+    // The shipped method, with the code and the memory that `replay` uses.
     let tilt = || Some(Tilt::new(Units::MPU_6050.per_g, TIME_CONSTANT));
     for (name, jitter, tilt) in [
         ("cubic", 0, None),
@@ -76,21 +76,21 @@ pub fn attitude(terminal: &mut Terminal) {
             let cycles = riscv::interrupt::free(|| replay::track(&mut tracker, &mut records));
             (cycles / u64::from(RUN)) as u32
         };
-        // Until the tilt has its time constant each reading has another gain.
+        // The gain of the tilt correction varies until the time constant has passed.
         for _ in 0..=TIME_CONSTANT / STEP / RUN {
             run();
         }
         let mut means: [u32; RUNS] = core::array::from_fn(|_| run());
-        print(terminal, name, &mut means);
+        report(name, Cycles::of(&mut means));
     }
 }
 
-/// A slow rate in 1/256 LSB, so that what stays upright in the mean stays so.
+/// A slow rate in 1/256 LSB, which keeps the attitude upright on average.
 fn rate(phase: u32) -> [i32; 3] {
     [0, 8, 16].map(|turn| phase.rotate_left(turn).cast_signed() >> 14)
 }
 
-/// q + ½·q·ω·dt, made of length 1 by a step of Newton. 30 fraction bits.
+/// q + ½·q·ω·dt, normalised by one Newton step. 30 fraction bits.
 fn first_order(q: &mut [i32; 4], rate: [i32; 3]) {
     // Half an angle of 2^−8 LSB over 2^20 µs: 2^50·π/360/16.4/256/10^6 of 2^−30 rad.
     const HALF: i64 = 2_340;

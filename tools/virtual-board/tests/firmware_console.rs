@@ -94,7 +94,7 @@ fn noise_and_overlong_lines_are_rejected_and_nothing_is_lost() {
     board.uart_write(&[b'x'; 720]);
     let answer = command(&mut board, "");
     assert!(
-        answer.ends_with("\r\nerror: line: expected at most 640 bytes, came more\r\nglint> "),
+        answer.ends_with("\r\nerror: line: expected at most 640 bytes\r\nglint> "),
         "{answer:?}"
     );
     // Twenty commands in one write are all answered.

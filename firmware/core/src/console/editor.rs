@@ -4,8 +4,10 @@ use core::fmt::{self, Write};
 
 use heapless::{Deque, Vec};
 
-use super::PROMPT;
+use super::completion::complete;
 
+/// What the console writes before it reads a line.
+pub const PROMPT: &str = "glint> ";
 /// The longest line in bytes.
 pub const LINE_MAX: usize = 640;
 /// How many lines are remembered.
@@ -35,6 +37,7 @@ pub enum Event<'a> {
 /// | ←, →, Home, End, Ctrl-B, -F, -A, -E | move the cursor |
 /// | ↑, ↓, Ctrl-P, Ctrl-N | bring back an earlier or later line |
 /// | Ctrl-U, Ctrl-K, Ctrl-W | delete to the start, to the end, or the word before the cursor |
+/// | Tab | completes a command or a word of its arguments, or lists the candidates |
 /// | Ctrl-L | writes prompt and line again |
 /// | Ctrl-C | gives the line up |
 ///
@@ -89,6 +92,7 @@ enum Key {
     DeleteToStart,
     DeleteToEnd,
     DeleteWord,
+    Complete,
     Redraw,
 }
 
@@ -203,6 +207,7 @@ impl LineEditor {
             (Escape::No, 0x05) => Key::End,
             (Escape::No, 0x06) => Key::Right,
             (Escape::No, 0x08 | 0x7F) => Key::Backspace,
+            (Escape::No, b'\t') => Key::Complete,
             (Escape::No, 0x0B) => Key::DeleteToEnd,
             (Escape::No, 0x0C) => Key::Redraw,
             (Escape::No, 0x0E) => Key::Down,
@@ -255,14 +260,55 @@ impl LineEditor {
                     .map_or(0, |blank| blank + 1);
                 self.delete(start, self.cursor, echo)
             }
-            Key::Redraw => {
-                write!(
-                    echo,
-                    "\r\x1B[K{PROMPT}{}",
-                    text(self.line.get(..self.cursor).unwrap_or_default())
-                )?;
-                self.write_tail(echo)
+            Key::Complete => self.complete(echo),
+            Key::Redraw => self.redraw(echo),
+        }
+    }
+
+    /// The line up to the cursor.
+    fn before(&self) -> &str {
+        text(self.line.get(..self.cursor).unwrap_or_default())
+    }
+
+    fn redraw(&self, echo: &mut dyn Write) -> fmt::Result {
+        write!(echo, "\r\x1B[K{PROMPT}{}", self.before())?;
+        self.write_tail(echo)
+    }
+
+    /// Inserts what all candidates have in common, or lists them.
+    fn complete(&mut self, echo: &mut dyn Write) -> fmt::Result {
+        let (mut count, mut common) = (0, "");
+        complete(self.before(), &mut |_, rest| {
+            let length = rest
+                .bytes()
+                .zip(common.bytes())
+                .take_while(|(a, b)| a == b)
+                .count();
+            common = if count == 0 {
+                rest
+            } else {
+                common.get(..length).unwrap_or_default()
+            };
+            count += 1;
+        });
+        if self.line.capacity() - self.line.len() <= common.len() {
+            return Ok(());
+        }
+        for byte in common.bytes() {
+            self.insert(byte, echo)?;
+        }
+        match count {
+            1 => self.insert(b' ', echo),
+            2.. if common.is_empty() => {
+                let mut result = echo.write_str("\n");
+                complete(self.before(), &mut |word, _| {
+                    result = result.and_then(|()| write!(echo, "{word} "));
+                });
+                result?;
+                echo.write_str("\n")?;
+                self.redraw(echo)
             }
+            _ => Ok(()),
         }
     }
 

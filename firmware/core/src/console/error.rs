@@ -1,8 +1,9 @@
-//! Why a line is not a command.
+//! Reasons why a line is not a command.
 
-use core::fmt;
+use core::fmt::{self, Display};
 
-use super::grammar::{Argument, Syntax, Word};
+use super::syntax::{Parameter, Syntax};
+use super::words::Word;
 use crate::camera::ViewError;
 use crate::field::FieldError;
 use crate::fixed::Q32_32;
@@ -10,113 +11,122 @@ use crate::follow::SENSITIVITY;
 use crate::light::LightError;
 use crate::stereo::StereoError;
 
-/// Why a line is not a command; its `Display` says what is wrong, where, and what was expected.
+/// Reason why a line is not a command. `Display` states the error, its place, and the expected input.
 #[derive(Clone, Copy, Debug)]
-pub struct ParseError<'a>(pub(super) Fault<'a>);
+pub struct ParseError<'a>(pub(super) ParseErrorKind<'a>);
 
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Fault<'a> {
-    /// There is no such command.
+pub(super) enum ParseErrorKind<'a> {
+    /// The first word is not the name of a command.
     Unknown { word: Word<'a> },
-    /// The line ends before this argument.
+    /// The line ends before this parameter.
     Missing {
         syntax: &'static Syntax,
-        argument: &'static Argument,
+        parameter: &'static Parameter,
     },
-    /// This argument is something else.
-    Wrong {
+    /// The word is not accepted for this parameter.
+    Word {
         syntax: &'static Syntax,
-        argument: &'static Argument,
+        parameter: &'static Parameter,
         word: Word<'a>,
     },
-    /// This word and what follows are too much.
+    /// The line goes on after the last parameter.
     Surplus {
         syntax: &'static Syntax,
         word: Word<'a>,
     },
-    /// The picture cannot have this size.
-    Size { width: u32, height: u32 },
-    /// A number of samples follows what takes none.
-    Samples { count: u32 },
+    /// The words are accepted one by one, their value is not.
+    Value {
+        syntax: &'static Syntax,
+        error: ValueError<'a>,
+    },
+}
+
+/// Reason why the words of an argument have no value.
+#[derive(Clone, Copy, Debug)]
+pub enum ValueError<'a> {
+    /// The word is not of the parameter's kind.
+    Kind,
+    /// The picture cannot have this width and height.
+    Size([u32; 2]),
+    /// A number of samples follows an action without samples.
+    Samples {
+        /// The action.
+        action: &'static str,
+        /// The number of samples.
+        samples: u32,
+    },
     /// Both directions of the sensor lie on one axis.
     Mounting,
-    /// A sensitivity beyond [`SENSITIVITY`].
+    /// The gain is outside [`SENSITIVITY`].
     Sensitivity,
     /// The numbers are not a camera.
     View(ViewError),
-    /// The word is no field.
+    /// The word is not a field.
     Field(FieldError<'a>),
-    /// The word is no pair of eyes.
+    /// The word is not a pair of eyes.
     Stereo(StereoError<'a>),
-    /// The word is no light.
+    /// The word is not a light.
     Light(LightError<'a>),
 }
 
-impl fmt::Display for ParseError<'_> {
+impl Display for ParseError<'_> {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self.0 {
-            Fault::Unknown { word } => write!(f, "{word}: expected a command, `help` lists them"),
-            Fault::Missing {
-                syntax,
-                argument: (name, kind),
-            } => {
-                write!(
-                    f,
-                    "{}: {name} is missing: expected {kind}, as in `{syntax}`",
-                    syntax.name
-                )
+            ParseErrorKind::Unknown { word } => {
+                write!(f, "{word}: expected a command, `help` lists them")
             }
-            Fault::Wrong {
-                syntax,
-                argument: (name, kind),
-                word,
-            } => {
-                write!(f, "{}: {name} is {word}: expected {kind}", syntax.name)
-            }
-            Fault::Surplus { syntax, word } => {
-                write!(
-                    f,
-                    "{}: {word}: expected the end of the line, as in `{syntax}`",
-                    syntax.name
-                )
-            }
-            Fault::Size { width, height } => {
-                write!(
-                    f,
-                    "size: {width} x {height}: expected 320 180, 640 360 or 1280 720"
-                )
-            }
-            Fault::Samples { count } => write!(
+            ParseErrorKind::Missing { syntax, parameter } => write!(
                 f,
-                "imu: SAMPLES is {count}: expected it after calibrate or stream"
+                "{}: {} is missing: expected {parameter}, usage: {syntax}",
+                syntax.name,
+                parameter.form()
             ),
-            Fault::Mounting => f.write_str(
-                "mounting: FORWARD and UP are on the same axis: expected two that are perpendicular",
+            ParseErrorKind::Word {
+                syntax,
+                parameter,
+                word,
+            } => write!(
+                f,
+                "{}: {} is {word}: expected {parameter}",
+                syntax.name,
+                parameter.form()
             ),
-            Fault::Sensitivity => {
-                let [least, most] = SENSITIVITY.map(|part| Q32_32::from_num(part) / 256);
-                write!(f, "sensitivity: expected a number from {least} to {most}")
-            }
-            Fault::View(error) => write!(f, "view: {error}"),
-            Fault::Field(error) => write!(f, "field: {error}"),
-            Fault::Stereo(error) => write!(f, "stereo: {error}"),
-            Fault::Light(error) => write!(f, "light: {error}"),
+            ParseErrorKind::Surplus { syntax, word } => write!(
+                f,
+                "{}: {word}: expected the end of the line, usage: {syntax}",
+                syntax.name
+            ),
+            ParseErrorKind::Value { syntax, error } => write!(f, "{}: {error}", syntax.name),
         }
     }
 }
 
 impl core::error::Error for ParseError<'_> {}
 
-/// The word, shortened and without control characters, and its place.
-impl fmt::Display for Word<'_> {
+impl Display for ValueError<'_> {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        const LONGEST: usize = 24;
-        let mut rest = self.text.chars();
-        f.write_str("\"")?;
-        for c in rest.by_ref().take(LONGEST) {
-            write!(f, "{}", c.escape_debug())?;
+        match self {
+            Self::Kind => f.write_str("not an accepted word"),
+            Self::Size([width, height]) => write!(
+                f,
+                "{width} x {height}: expected 320 180, 640 360 or 1280 720"
+            ),
+            Self::Samples { action, samples } => write!(
+                f,
+                "SAMPLES is {samples} after {action}: expected only after calibrate or stream"
+            ),
+            Self::Mounting => f.write_str(
+                "FORWARD and UP are on the same axis: expected perpendicular directions",
+            ),
+            Self::Sensitivity => {
+                let [least, most] = SENSITIVITY.map(|part| Q32_32::from_num(part) / 256);
+                write!(f, "expected a number from {least} to {most}")
+            }
+            Self::View(error) => error.fmt(f),
+            Self::Field(error) => error.fmt(f),
+            Self::Stereo(error) => error.fmt(f),
+            Self::Light(error) => error.fmt(f),
         }
-        f.write_str(if rest.next().is_some() { "...\"" } else { "\"" })?;
-        write!(f, " (column {})", self.column)
     }
 }

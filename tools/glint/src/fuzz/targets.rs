@@ -261,9 +261,9 @@ fn run_console(input: &[u8]) -> Verdict {
         if let Event::Line(line) = editor.on_byte(byte, &mut echo) {
             use std::fmt::Write;
             match Command::parse(line) {
-                Ok(Command::Help(name)) => {
+                Ok(Some(Command::Help { command })) => {
                     // Writing to a string cannot fail.
-                    let _ = write_help(&mut text, name);
+                    let _ = write_help(&mut text, command);
                 }
                 Ok(_) => verdict = Verdict::Accepted,
                 Err(error) => {

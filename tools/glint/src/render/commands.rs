@@ -80,6 +80,7 @@ mod tests {
         let command = view_command(&view);
         assert!(command.len() < glint_core::console::LINE_MAX);
         let parsed = glint_core::console::Command::parse(&command).unwrap();
-        assert_eq!(parsed, glint_core::console::Command::View(Some(view)));
+        let view = Some(view);
+        assert_eq!(parsed, Some(glint_core::console::Command::View { view }));
     }
 }

@@ -1,4 +1,4 @@
-//! Traps and panics: what happened and where, said without anything that may be broken, then a way to start again.
+//! Traps and panics: a report over the UART without interrupts, then a restart on Enter.
 
 use core::fmt::Write;
 use core::panic::PanicInfo;
@@ -10,11 +10,11 @@ use riscv_rt::TrapFrame;
 
 use crate::interrupts::UART;
 
-/// Every exception ends here; none is expected.
+/// The handler of all exceptions. None is expected.
 #[unsafe(export_name = "ExceptionHandler")]
 extern "C" fn exception(frame: &TrapFrame) -> ! {
     let code = mcause::read().code();
-    farewell(format_args!(
+    report(format_args!(
         "trap: {} (mcause {code}) at {:#010x}, mtval {:#010x}, ra {:#010x}",
         name(code),
         mepc::read(),
@@ -23,7 +23,7 @@ extern "C" fn exception(frame: &TrapFrame) -> ! {
     ))
 }
 
-/// What the privileged specification calls an exception.
+/// The name of an exception in the privileged specification.
 const fn name(code: usize) -> &'static str {
     match code {
         0 => "instruction address misaligned",
@@ -41,16 +41,16 @@ const fn name(code: usize) -> &'static str {
 
 #[panic_handler]
 fn panic(info: &PanicInfo) -> ! {
-    farewell(format_args!("{info}"))
+    report(format_args!("{info}"))
 }
 
-/// Says `reason` and the build, and starts the SoC again when somebody answers.
-pub fn farewell(reason: core::fmt::Arguments) -> ! {
+/// Prints `reason` and the build id, and resets the SoC on Enter.
+pub fn report(reason: core::fmt::Arguments) -> ! {
     riscv::interrupt::disable();
     UART.drain();
-    // SAFETY: what was running does not run on.
+    // SAFETY: the interrupted program does not continue.
     let (mut console, peripherals) = unsafe { (Direct::seize(), Peripherals::steal()) };
-    // A line that takes nothing has nobody listening.
+    // An error means that the line takes no text.
     let _ = write!(
         console,
         "\r\n{reason}\r\nGlint {}, build id {:#010x}: halted, press Enter to restart\r\n",

@@ -1,0 +1,62 @@
+//! Types with a fixed list of named values, such as materials and backends.
+
+/// A type with a fixed list of values. Each value has a name, which console and command line share.
+pub trait Choice: Copy + 'static {
+    /// All values.
+    const VALUES: &'static [Self];
+    /// Names of [`VALUES`](Self::VALUES), in the same order.
+    const WORDS: &'static [&'static str];
+
+    /// The value with this name.
+    fn from_word(word: &str) -> Option<Self> {
+        Self::VALUES.get(position(Self::WORDS, word)?).copied()
+    }
+}
+
+#[inline(never)]
+fn position(words: &[&str], word: &str) -> Option<usize> {
+    words.iter().position(|&known| known == word)
+}
+
+/// States the names of a type's values once: `choices!(Type { Variant: "name", … })`.
+///
+/// Gives the type `ALL`, `NAMES`, `name`, `Display` and [`Choice`].
+macro_rules! choices {
+    ($type:ident { $($variant:ident: $name:literal),+ $(,)? }) => {
+        impl $type {
+            /// All values.
+            pub const ALL: [Self; [$($name),+].len()] = [$(Self::$variant),+];
+            /// Names of [`ALL`](Self::ALL), in the same order.
+            pub const NAMES: [&'static str; Self::ALL.len()] = [$($name),+];
+
+            /// The name on console and command line.
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $name),+
+                }
+            }
+        }
+
+        impl ::core::fmt::Display for $type {
+            fn fmt(&self, f: &mut ::core::fmt::Formatter) -> ::core::fmt::Result {
+                f.write_str(self.name())
+            }
+        }
+
+        impl $crate::choice::Choice for $type {
+            const VALUES: &'static [Self] = &Self::ALL;
+            const WORDS: &'static [&'static str] = &Self::NAMES;
+        }
+    };
+}
+pub(crate) use choices;
+
+impl Choice for bool {
+    const VALUES: &'static [Self] = &[true, false];
+    const WORDS: &'static [&'static str] = &["on", "off"];
+}
+
+/// `on` or `off`.
+pub const fn switch_name(on: bool) -> &'static str {
+    if on { "on" } else { "off" }
+}

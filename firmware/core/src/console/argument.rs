@@ -1,0 +1,264 @@
+//! Types of arguments: how words become values.
+
+use core::marker::PhantomData;
+
+use super::error::{ParseError, ParseErrorKind, ValueError};
+use super::syntax::{Kind, Parameter, Shape, Syntax};
+use super::words::{Word, Words};
+use crate::choice::Choice;
+
+/// The type of an argument.
+pub trait Argument {
+    /// The value that the words of the argument state.
+    type Value<'a>;
+    /// Whether the line may end before the argument.
+    const OPTIONAL: bool = false;
+    /// The words of the argument.
+    const SHAPE: Shape;
+
+    /// Takes the argument's words and gives their value. `None` is an error, which the reader keeps.
+    fn read<'a>(reader: &mut Reader<'a>, parameter: &'static Parameter) -> Option<Self::Value<'a>>;
+}
+
+/// The type of an argument of one word.
+pub trait WordArgument {
+    /// The value that the word states.
+    type Value<'a>;
+    /// The accepted texts.
+    const KIND: Kind;
+
+    /// The value of a word. `None` refuses it.
+    fn parse(text: &str) -> Option<Self::Value<'_>>;
+
+    /// The reason why [`parse`](Self::parse) refuses a word.
+    fn refusal(_: &str) -> ValueError<'_> {
+        ValueError::Kind
+    }
+}
+
+/// The words of a line after the command's name, and the first error.
+///
+/// The reader keeps the error, so that the many small functions that read arguments return plain options, which is less
+/// code than results with the error.
+pub struct Reader<'a> {
+    syntax: &'static Syntax,
+    words: Words<'a>,
+    word: Word<'a>,
+    error: Option<ParseError<'a>>,
+}
+
+impl<'a> Reader<'a> {
+    /// The arguments in `words`, of a command with this syntax and name.
+    pub const fn new(syntax: &'static Syntax, name: Word<'a>, words: Words<'a>) -> Self {
+        Self {
+            syntax,
+            words,
+            word: name,
+            error: None,
+        }
+    }
+
+    /// Reads the value of one parameter. `None` is an error.
+    pub fn read<T: Argument>(&mut self, parameter: &'static Parameter) -> Option<T::Value<'a>> {
+        T::read(self, parameter)
+    }
+
+    /// Whether the line has no further word.
+    #[inline(never)]
+    fn is_empty(&self) -> bool {
+        self.words.clone().next().is_none()
+    }
+
+    /// Takes one word.
+    #[inline(never)]
+    fn word(&mut self, parameter: &'static Parameter) -> Option<&'a str> {
+        let syntax = self.syntax;
+        if let Some(word) = self.words.next() {
+            self.word = word;
+            return Some(word.text);
+        }
+        self.error = Some(ParseError(ParseErrorKind::Missing { syntax, parameter }));
+        None
+    }
+
+    /// Keeps the error of the last word.
+    #[cold]
+    #[inline(never)]
+    fn refuse_word(&mut self, parameter: &'static Parameter, refusal: Refusal) {
+        let Self { syntax, word, .. } = *self;
+        match refusal(word.text) {
+            ValueError::Kind => {
+                self.error = Some(ParseError(ParseErrorKind::Word {
+                    syntax,
+                    parameter,
+                    word,
+                }));
+            }
+            error => self.refuse(error),
+        }
+    }
+
+    /// Keeps an error about words that are accepted one by one.
+    #[cold]
+    #[inline(never)]
+    pub fn refuse(&mut self, error: ValueError<'a>) {
+        let syntax = self.syntax;
+        self.error = Some(ParseError(ParseErrorKind::Value { syntax, error }));
+    }
+
+    /// Ends the line.
+    ///
+    /// # Errors
+    /// An argument was refused, or the line goes on.
+    pub fn end(mut self) -> Result<(), ParseError<'a>> {
+        let syntax = self.syntax;
+        if let Some(error) = self.error {
+            return Err(error);
+        }
+        match self.words.next() {
+            Some(word) => Err(ParseError(ParseErrorKind::Surplus { syntax, word })),
+            None => Ok(()),
+        }
+    }
+}
+
+/// [`WordArgument::refusal`].
+type Refusal = fn(&str) -> ValueError<'_>;
+
+impl Parameter {
+    /// A parameter of type `T`.
+    pub const fn of<T: Argument>(name: &'static str) -> Self {
+        Self {
+            name,
+            optional: T::OPTIONAL,
+            shape: T::SHAPE,
+        }
+    }
+}
+
+impl<T: WordArgument> Argument for T {
+    type Value<'a> = T::Value<'a>;
+    const SHAPE: Shape = Shape::Word(&T::KIND);
+
+    // Commands share this code.
+    #[inline(never)]
+    fn read<'a>(reader: &mut Reader<'a>, parameter: &'static Parameter) -> Option<Self::Value<'a>> {
+        let value = T::parse(reader.word(parameter)?);
+        if value.is_none() {
+            reader.refuse_word(parameter, T::refusal);
+        }
+        value
+    }
+}
+
+/// An argument that may be left out, with all words that follow it.
+impl<T: Argument> Argument for Option<T> {
+    type Value<'a> = Option<T::Value<'a>>;
+    const OPTIONAL: bool = true;
+    const SHAPE: Shape = T::SHAPE;
+
+    fn read<'a>(reader: &mut Reader<'a>, parameter: &'static Parameter) -> Option<Self::Value<'a>> {
+        if reader.is_empty() {
+            return Some(None);
+        }
+        T::read(reader, parameter).map(Some)
+    }
+}
+
+/// The parameter's own name, or nothing: whether it is there.
+pub struct Flag;
+
+impl Argument for Flag {
+    type Value<'a> = bool;
+    const OPTIONAL: bool = true;
+    const SHAPE: Shape = Shape::Flag;
+
+    fn read<'a>(reader: &mut Reader<'a>, parameter: &'static Parameter) -> Option<bool> {
+        if reader.is_empty() {
+            return Some(false);
+        }
+        if reader.word(parameter)? == parameter.name {
+            return Some(true);
+        }
+        reader.refuse_word(parameter, |_| ValueError::Kind);
+        None
+    }
+}
+
+/// A value that takes several words: `group!(Name: Value = (word: Type, …) => expression)`. The expression has the words'
+/// values under their names, and is a `Result` with a [`ValueError`].
+macro_rules! group {
+    ($(#[$doc:meta])* $name:ident: $value:ty = ($($word:ident: $type:ty),+ $(,)?) => $build:expr) => {
+        $(#[$doc])*
+        pub struct $name;
+
+        impl Argument for $name {
+            type Value<'a> = $value;
+            const SHAPE: Shape = Shape::group(const { &[$(Parameter::of::<$type>(stringify!($word))),+] });
+
+            fn read<'a>(
+                reader: &mut Reader<'a>,
+                _: &'static Parameter,
+            ) -> Option<$value> {
+                $(let $word = reader.read::<$type>(const { &Parameter::of::<$type>(stringify!($word)) })?;)+
+                match $build {
+                    Ok(value) => Some(value),
+                    Err(error) => {
+                        reader.refuse(error);
+                        None
+                    }
+                }
+            }
+        }
+    };
+}
+pub(super) use group;
+
+/// One of the names of a type's values.
+impl<T: Choice> WordArgument for T {
+    type Value<'a> = T;
+    const KIND: Kind = Kind::Words(T::WORDS);
+
+    fn parse(text: &str) -> Option<T> {
+        T::from_word(text)
+    }
+}
+
+/// A keyword instead of a value.
+pub trait Keyword {
+    /// The keyword.
+    const WORD: &'static str;
+}
+
+/// The keyword `off`.
+pub struct Off;
+
+impl Keyword for Off {
+    const WORD: &'static str = "off";
+}
+
+/// The keyword `default`.
+pub struct Default;
+
+impl Keyword for Default {
+    const WORD: &'static str = "default";
+}
+
+/// A keyword, which is `None`, or a value.
+pub struct Or<K, T>(PhantomData<(K, T)>);
+
+impl<K: Keyword, T: WordArgument> WordArgument for Or<K, T> {
+    type Value<'a> = Option<T::Value<'a>>;
+    const KIND: Kind = Kind::Either(K::WORD, &T::KIND);
+
+    fn parse(text: &str) -> Option<Self::Value<'_>> {
+        if text == K::WORD {
+            return Some(None);
+        }
+        T::parse(text).map(Some)
+    }
+
+    fn refusal(text: &str) -> ValueError<'_> {
+        T::refusal(text)
+    }
+}

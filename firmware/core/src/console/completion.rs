@@ -1,0 +1,45 @@
+//! Completion of command names and of words that an argument is chosen from.
+
+use super::command::{find, syntaxes};
+use super::syntax::{Kind, Parameter, Shape};
+use super::words::{Word, Words};
+
+/// Calls `offer` with each word that can stand at the end of `line` and begins with the line's last word, and with the
+/// part of it that the line lacks.
+pub fn complete(line: &str, offer: &mut dyn FnMut(&'static str, &'static str)) {
+    let words = Words::new(line);
+    // A blank at the end begins a new word.
+    let ends = line.is_empty() || line.ends_with(' ');
+    let count = words.clone().count() + usize::from(ends);
+    let begun = words.clone().last().filter(|_| !ends);
+    let begun = begun.map_or("", |word: Word| word.text);
+    let mut offer = |word: &'static str| {
+        if let Some(rest) = word.strip_prefix(begun) {
+            offer(word, rest);
+        }
+    };
+    let shape = match (count, words.clone().next()) {
+        (0 | 1, _) | (_, None) => Some((&Shape::Word(&Kind::Command), "")),
+        (_, Some(command)) => {
+            parameter(command.text, count - 2).map(|parameter| (&parameter.shape, parameter.name))
+        }
+    };
+    match shape {
+        Some((Shape::Flag, name)) => offer(name),
+        Some((Shape::Word(Kind::Words(words)), _)) => words.iter().for_each(|word| offer(word)),
+        Some((Shape::Word(Kind::Either(keyword, _)), _)) => offer(keyword),
+        Some((Shape::Word(Kind::Command), _)) => syntaxes().for_each(|syntax| offer(syntax.name)),
+        _ => {}
+    }
+}
+
+/// The parameter of a command at `index`, from 0.
+fn parameter(command: &str, index: usize) -> Option<&'static Parameter> {
+    let mut left = index;
+    find(command)?
+        .visit::<&'static Parameter>(&mut |parameter| {
+            left = left.checked_sub(1).ok_or(parameter)?;
+            Ok(())
+        })
+        .err()
+}

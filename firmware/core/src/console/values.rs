@@ -1,0 +1,326 @@
+//! The arguments that commands share: numbers, angles, colours, fields and values of several words.
+//!
+//! Parsers of numbers and fields are not inlined: commands share them, and less code boots faster.
+
+use core::fmt::{self, Display};
+
+use super::argument::{Argument, Reader, WordArgument, group};
+use super::error::ValueError;
+use super::syntax::{Kind, Parameter, Shape};
+use crate::calibration::{MOST_SAMPLES, SAMPLES};
+use crate::camera;
+use crate::choice::choices;
+use crate::field::{self, KINDS};
+use crate::fixed::{Q2_23, Q32_32, Turns, U4_28};
+use crate::follow::{self, Direction, SENSITIVITY};
+use crate::imu::Follow;
+use crate::light::{self, Rgb, parse_rgb};
+use crate::mesh::MAX_BYTES;
+use crate::picture;
+use crate::stereo;
+use crate::wire::Manifest;
+
+/// A word without restriction.
+pub struct Name;
+
+impl WordArgument for Name {
+    type Value<'a> = &'a str;
+    const KIND: Kind = Kind::Text(&"a name");
+
+    fn parse(text: &str) -> Option<&str> {
+        Some(text)
+    }
+}
+
+/// A decimal number.
+impl WordArgument for Q32_32 {
+    type Value<'a> = Self;
+    const KIND: Kind = Kind::Text(&"a number");
+
+    #[inline(never)]
+    fn parse(text: &str) -> Option<Self> {
+        text.parse().ok()
+    }
+}
+
+/// A decimal number in Q2.23.
+impl WordArgument for Q2_23 {
+    type Value<'a> = Self;
+    const KIND: Kind = Kind::Text(&"a number from -2 to 2");
+
+    #[inline(never)]
+    fn parse(text: &str) -> Option<Self> {
+        let number = text.parse().ok();
+        number.filter(|number| (-2..2).contains(number))
+    }
+}
+
+/// A decimal number in U4.28.
+impl WordArgument for U4_28 {
+    type Value<'a> = Self;
+    const KIND: Kind = Kind::Text(&"a number from 0 to below 16");
+
+    #[inline(never)]
+    fn parse(text: &str) -> Option<Self> {
+        text.parse().ok()
+    }
+}
+
+/// An angle in degrees.
+impl WordArgument for Turns {
+    type Value<'a> = Self;
+    const KIND: Kind = Kind::Text(&"a number of degrees");
+
+    #[inline(never)]
+    fn parse(text: &str) -> Option<Self> {
+        Q32_32::parse(text).map(Self::from_degrees)
+    }
+}
+
+/// An angle from 0 to 180 degrees.
+pub struct HalfTurn;
+
+impl WordArgument for HalfTurn {
+    type Value<'a> = Turns;
+    const KIND: Kind = Kind::Text(&"a number of degrees from 0 to 180");
+
+    fn parse(text: &str) -> Option<Turns> {
+        let degrees = Q32_32::parse(text)?;
+        let is_accepted = (0..=180).contains(&degrees);
+        is_accepted.then(|| Turns::from_degrees(degrees))
+    }
+}
+
+/// A whole number from 0 to `MAX`, decimal, or hexadecimal with `0x`.
+pub struct Whole<const MAX: u32>;
+
+impl<const MAX: u32> WordArgument for Whole<MAX> {
+    type Value<'a> = u32;
+    const KIND: Kind = Kind::Text(&UpTo(MAX));
+
+    fn parse(text: &str) -> Option<u32> {
+        whole(text).filter(|&number| number <= MAX)
+    }
+}
+
+/// A whole number of 16 bits.
+impl WordArgument for u16 {
+    type Value<'a> = Self;
+    const KIND: Kind = Kind::Text(&UpTo(Self::MAX as u32));
+
+    fn parse(text: &str) -> Option<Self> {
+        whole(text)?.try_into().ok()
+    }
+}
+
+struct UpTo(u32);
+
+impl Display for UpTo {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "a whole number from 0 to {}", self.0)
+    }
+}
+
+/// A number of up to 8 hexadecimal digits.
+pub struct Hexadecimal;
+
+impl WordArgument for Hexadecimal {
+    type Value<'a> = u32;
+    const KIND: Kind = Kind::Text(&"up to 8 hexadecimal digits");
+
+    fn parse(text: &str) -> Option<u32> {
+        digits(text.strip_prefix("0x").unwrap_or(text), 16)
+    }
+}
+
+#[inline(never)]
+fn whole(text: &str) -> Option<u32> {
+    match text.strip_prefix("0x") {
+        Some(text) => digits(text, 16),
+        None => digits(text, 10),
+    }
+}
+
+/// Digits only, without a sign.
+#[inline(never)]
+fn digits(text: &str, radix: u32) -> Option<u32> {
+    let digits = text.bytes().all(|byte| byte.is_ascii_hexdigit());
+    u32::from_str_radix(text, radix).ok().filter(|_| digits)
+}
+
+/// A colour.
+impl WordArgument for Rgb {
+    type Value<'a> = Self;
+    const KIND: Kind = Kind::Text(&"a colour RRGGBB");
+
+    fn parse(text: &str) -> Option<Self> {
+        parse_rgb(text)
+    }
+}
+
+/// A distance field.
+impl WordArgument for field::Field {
+    type Value<'a> = Self;
+    const KIND: Kind = Kind::Text(&FieldForms);
+
+    #[inline(never)]
+    fn parse(text: &str) -> Option<Self> {
+        Self::parse(text).ok()
+    }
+
+    fn refusal(text: &str) -> ValueError<'_> {
+        Self::parse(text)
+            .err()
+            .map_or(ValueError::Kind, ValueError::Field)
+    }
+}
+
+struct FieldForms;
+
+impl Display for FieldForms {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        KINDS.iter().enumerate().try_for_each(|(i, (form, _))| {
+            f.write_str(if i == 0 { "" } else { " or " })?;
+            f.write_str(form)
+        })
+    }
+}
+
+/// A pair of eyes.
+impl WordArgument for stereo::Stereo {
+    type Value<'a> = Self;
+    const KIND: Kind = Kind::Text(&stereo::FORM);
+
+    fn parse(text: &str) -> Option<Self> {
+        Self::parse(text).ok()
+    }
+
+    fn refusal(text: &str) -> ValueError<'_> {
+        Self::parse(text)
+            .err()
+            .map_or(ValueError::Kind, ValueError::Stereo)
+    }
+}
+
+/// A light.
+impl WordArgument for light::Light {
+    type Value<'a> = Self;
+    const KIND: Kind = Kind::Text(&light::FORM);
+
+    fn parse(text: &str) -> Option<Self> {
+        Self::parse(text).ok()
+    }
+
+    fn refusal(text: &str) -> ValueError<'_> {
+        Self::parse(text)
+            .err()
+            .map_or(ValueError::Kind, ValueError::Light)
+    }
+}
+
+/// A camera gain in 1/256, rounded down.
+pub struct Sensitivity;
+
+impl WordArgument for Sensitivity {
+    type Value<'a> = u16;
+    const KIND: Kind = U4_28::KIND;
+
+    fn parse(text: &str) -> Option<u16> {
+        // 28 fraction bits: the upper 12 bits are units of 1/256.
+        let gain = (<U4_28 as WordArgument>::parse(text)?.to_bits() >> 20) as u16;
+        (SENSITIVITY[0]..=SENSITIVITY[1])
+            .contains(&gain)
+            .then_some(gain)
+    }
+
+    fn refusal(text: &str) -> ValueError<'_> {
+        <U4_28 as WordArgument>::parse(text).map_or(ValueError::Kind, |_| ValueError::Sensitivity)
+    }
+}
+
+group! {
+    /// Length and checksum of an upload.
+    Upload: Manifest = (bytes: Whole<MAX_BYTES>, crc32: Hexadecimal)
+        => Ok::<_, ValueError>(Manifest { length: bytes, crc32 })
+}
+
+group! {
+    /// Width and height of the picture.
+    Size: picture::Size = (w: Whole<1280>, h: Whole<720>)
+        => picture::Size::of(w, h).ok_or(ValueError::Size([w, h]))
+}
+
+group! {
+    /// A camera: eye, basis, half width and near plane.
+    View: camera::View = (
+        ex: Q32_32, ey: Q32_32, ez: Q32_32,
+        ux: Q2_23, uy: Q2_23, uz: Q2_23,
+        vx: Q2_23, vy: Q2_23, vz: Q2_23,
+        nx: Q2_23, ny: Q2_23, nz: Q2_23,
+        half_width: U4_28, near: U4_28,
+    ) => camera::View::new_checked([ex, ey, ez], [ux, uy, uz], [vx, vy, vz], [nx, ny, nz], half_width, near)
+        .map_err(ValueError::View)
+}
+
+group! {
+    /// Directions of the sensor.
+    Mounting: follow::Mounting = (forward: Direction, up: Direction)
+        => follow::Mounting::new(forward, up).ok_or(ValueError::Mounting)
+}
+
+/// What the sensor is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ImuAction {
+    /// Measure the bias with this number of samples.
+    Calibrate(u32),
+    /// Print this number of samples, or samples until the next command.
+    Stream(Option<u32>),
+    /// Steer the camera, or stop steering it.
+    Follow(Option<Follow>),
+    /// Turn the camera's heading to the start.
+    Recentre,
+}
+
+/// The first word of an [`ImuAction`].
+#[derive(Clone, Copy)]
+enum Action {
+    Calibrate,
+    Stream,
+    Look,
+    Orbit,
+    Off,
+    Recentre,
+}
+
+choices!(Action {
+    Calibrate: "calibrate",
+    Stream: "stream",
+    Look: "look",
+    Orbit: "orbit",
+    Off: "off",
+    Recentre: "recentre",
+});
+
+impl ImuAction {
+    const fn new(action: Action, samples: Option<u32>) -> Result<Self, ValueError<'static>> {
+        Ok(match (action, samples) {
+            (Action::Calibrate, None) => Self::Calibrate(SAMPLES),
+            (Action::Calibrate, Some(samples)) => Self::Calibrate(samples),
+            (Action::Stream, samples) => Self::Stream(samples),
+            (_, Some(samples)) => {
+                let action = action.name();
+                return Err(ValueError::Samples { action, samples });
+            }
+            (Action::Look, None) => Self::Follow(Some(Follow::Look)),
+            (Action::Orbit, None) => Self::Follow(Some(Follow::Orbit)),
+            (Action::Off, None) => Self::Follow(None),
+            (Action::Recentre, None) => Self::Recentre,
+        })
+    }
+}
+
+group! {
+    /// An action of the sensor, and its number of samples.
+    Imu: ImuAction = (action: Action, samples: Option<Whole<{ MOST_SAMPLES[1] }>>)
+        => ImuAction::new(action, samples)
+}

@@ -1,0 +1,58 @@
+//! Words of a line.
+
+use core::fmt::{self, Write as _};
+
+/// A word and its place in the line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Word<'a> {
+    /// The word, without blanks.
+    pub text: &'a str,
+    /// Column of its first byte, from 1.
+    pub column: usize,
+}
+
+/// The word, shortened, with other characters than visible ASCII as `?`, and its column.
+impl fmt::Display for Word<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        const LONGEST: usize = 24;
+        let mut rest = self.text.chars();
+        f.write_str("\"")?;
+        for c in rest.by_ref().take(LONGEST) {
+            f.write_char(if c.is_ascii_graphic() { c } else { '?' })?;
+        }
+        f.write_str(if rest.next().is_some() { "...\"" } else { "\"" })?;
+        write!(f, " (column {})", self.column)
+    }
+}
+
+/// The words of a line, separated by blanks.
+#[derive(Clone, Debug)]
+pub struct Words<'a> {
+    line: &'a str,
+    offset: usize,
+}
+
+impl<'a> Words<'a> {
+    /// The words of `line`.
+    pub const fn new(line: &'a str) -> Self {
+        Self { line, offset: 0 }
+    }
+}
+
+impl<'a> Iterator for Words<'a> {
+    type Item = Word<'a>;
+
+    // Called in many places: one copy is less code.
+    #[inline(never)]
+    fn next(&mut self) -> Option<Self::Item> {
+        let rest = self.line.get(self.offset..)?;
+        let text = rest.trim_ascii_start();
+        let start = self.offset + (rest.len() - text.len());
+        let text = text.split_ascii_whitespace().next()?;
+        self.offset = start + text.len();
+        Some(Word {
+            text,
+            column: start + 1,
+        })
+    }
+}

@@ -1,0 +1,287 @@
+//! Every command with its arguments.
+
+use glint_core::camera::View;
+use glint_core::colour::Shading;
+use glint_core::console::{Command, ImuAction, LINE_MAX};
+use glint_core::field::{Field, Menger};
+use glint_core::fixed::{Q2_23, Q32_32, Turns, U4_28};
+use glint_core::follow::{Direction, Mounting};
+use glint_core::imu::Follow;
+use glint_core::light::{Background, Light, Material};
+use glint_core::picture::{Backend, Size};
+use glint_core::stereo::{Stereo, Tint};
+use glint_core::wire::Manifest;
+use proptest::prelude::*;
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 500, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn no_line_upsets_the_parser(line in any::<String>()) {
+        let _ = Command::parse(&line).map_err(|error| error.to_string());
+    }
+
+    #[test]
+    fn no_arguments_upset_the_parser(
+        name in proptest::sample::select(&["field", "stereo", "material", "light", "ambient", "fog", "camera", "view", "look", "orbit", "size", "load", "leds", "help"][..]),
+        words in proptest::collection::vec("(box:)?[-+]?[0-9a-fx_.,e]{0,12}", 0..16),
+    ) {
+        let line = format!("{name} {}", words.join(" "));
+        let _ = Command::parse(&line).map_err(|error| error.to_string());
+    }
+
+    /// What the console prints for `view` sets the same view again.
+    #[test]
+    fn views_come_back_bit_for_bit(r in 2_i64 << 32..=5 << 32, theta in any::<u32>(), phi in 0..=1_u32 << 31) {
+        let view = View::spherical(Q32_32::from_bits(r), Turns(theta), Turns(phi)).expect("in range");
+        let line = format!("view {view}");
+        prop_assert!(line.len() <= LINE_MAX);
+        prop_assert_eq!(Command::parse(&line).map_err(|error| error.to_string()), Ok(Some(Command::View { view: Some(view) })));
+    }
+}
+
+#[track_caller]
+fn assert_parses<'a>(line: &'a str, expected: Command<'a>) {
+    assert_eq!(
+        Command::parse(line).map_err(|error| error.to_string()),
+        Ok(Some(expected))
+    );
+}
+
+#[test]
+fn a_blank_line_is_no_command() {
+    for line in ["", " \t "] {
+        assert_eq!(Command::parse(line).expect("nothing to refuse"), None);
+    }
+}
+
+#[test]
+fn every_command_is_understood() {
+    let degrees = |x: i32| Turns::from_degrees(x.into());
+    assert_parses("help", Command::Help { command: None });
+    assert_parses(
+        "help view",
+        Command::Help {
+            command: Some("view"),
+        },
+    );
+    assert_parses("info", Command::Info { key: None });
+    assert_parses("info frame", Command::Info { key: Some("frame") });
+    assert_parses("scene", Command::Scene { name: None });
+    assert_parses(
+        "  scene   menger ",
+        Command::Scene {
+            name: Some("menger"),
+        },
+    );
+    assert_parses("field", Command::Field { field: None });
+    assert_parses("field off", Command::Field { field: Some(None) });
+    assert_parses(
+        "field menger:4",
+        Command::Field {
+            field: Some(Some(Field::from(Menger { depth: 4 }))),
+        },
+    );
+    assert_parses("stereo", Command::Stereo { eyes: None });
+    assert_parses("stereo off", Command::Stereo { eyes: Some(None) });
+    let stereo = Stereo {
+        half_separation: Q32_32::lit("0.05"),
+        zero_parallax: Q32_32::lit("3"),
+        tint: Tint::RedCyan,
+    };
+    assert_parses(
+        "stereo 0.05,3,red-cyan",
+        Command::Stereo {
+            eyes: Some(Some(stereo)),
+        },
+    );
+    assert_parses("mesh", Command::Mesh { on: None });
+    assert_parses("mesh on", Command::Mesh { on: Some(true) });
+    assert_parses("material", Command::Material { material: None });
+    for (name, material) in Material::NAMES.into_iter().zip(Material::ALL) {
+        assert_parses(
+            &format!("material {name}"),
+            Command::Material {
+                material: Some(material),
+            },
+        );
+    }
+    assert_parses("light", Command::Light { light: None });
+    assert_parses("light default", Command::Light { light: Some(None) });
+    let light = Light::new([1, -2, 3].map(Into::into), [0xFF, 0x80, 0x0A]).expect("a direction");
+    assert_parses(
+        "light 1,-2,3,ff800a",
+        Command::Light {
+            light: Some(Some(light)),
+        },
+    );
+    assert_parses("ambient", Command::Ambient { colour: None });
+    assert_parses("ambient default", Command::Ambient { colour: Some(None) });
+    assert_parses(
+        "ambient 00ff7f",
+        Command::Ambient {
+            colour: Some(Some([0, 0xFF, 0x7F])),
+        },
+    );
+    assert_parses("background", Command::Background { background: None });
+    for (name, background) in Background::NAMES.into_iter().zip(Background::ALL) {
+        assert_parses(
+            &format!("background {name}"),
+            Command::Background {
+                background: Some(background),
+            },
+        );
+    }
+    assert_parses("fog", Command::Fog { density: None });
+    assert_parses(
+        "fog off",
+        Command::Fog {
+            density: Some(None),
+        },
+    );
+    assert_parses(
+        "fog 0.25",
+        Command::Fog {
+            density: Some(Some(U4_28::lit("0.25"))),
+        },
+    );
+    assert_parses("occlusion", Command::Occlusion { on: None });
+    assert_parses("occlusion off", Command::Occlusion { on: Some(false) });
+    let camera = Command::Camera {
+        r: Q32_32::lit("3.5"),
+        theta: degrees(-90),
+        phi: degrees(60),
+    };
+    assert_parses("camera 3.5 -90 60", camera);
+    assert_parses("camera 3.5 270 60.0", camera);
+    let numbers = "0 0 3 1 0 0 0 -1 0 0 0 -1 0.9 0.1";
+    let view = View::new_checked(
+        [0, 0, 3].map(Into::into),
+        [1, 0, 0].map(Q2_23::from_num),
+        [0, -1, 0].map(Q2_23::from_num),
+        [0, 0, -1].map(Q2_23::from_num),
+        "0.9".parse().expect("a number"),
+        "0.1".parse().expect("a number"),
+    );
+    assert_parses("view", Command::View { view: None });
+    assert_parses(
+        &format!("view {numbers}"),
+        Command::View {
+            view: Some(view.expect("a camera")),
+        },
+    );
+    let look = Command::Look {
+        yaw: degrees(10),
+        pitch: degrees(-20),
+        roll: degrees(30),
+    };
+    assert_parses("look 10 -20 30", look);
+    assert_parses("imu", Command::Imu { action: None });
+    let imu = |line, action| {
+        assert_parses(
+            line,
+            Command::Imu {
+                action: Some(action),
+            },
+        )
+    };
+    imu("imu calibrate", ImuAction::Calibrate(8_192));
+    imu("imu calibrate 100", ImuAction::Calibrate(100));
+    imu("imu stream", ImuAction::Stream(None));
+    imu("imu stream 5", ImuAction::Stream(Some(5)));
+    imu("imu look", ImuAction::Follow(Some(Follow::Look)));
+    imu("imu orbit", ImuAction::Follow(Some(Follow::Orbit)));
+    imu("imu off", ImuAction::Follow(None));
+    imu("imu recentre", ImuAction::Recentre);
+    assert_parses("mounting", Command::Mounting { mounting: None });
+    assert_parses(
+        "mounting -x z",
+        Command::Mounting {
+            mounting: Mounting::new(Direction::MinusX, Direction::Z),
+        },
+    );
+    assert_parses("sensitivity", Command::Sensitivity { gain: None });
+    assert_parses("sensitivity 0.125", Command::Sensitivity { gain: Some(32) });
+    assert_parses("sensitivity 2.5", Command::Sensitivity { gain: Some(640) });
+    assert_parses("orbit", Command::Orbit { frames: None });
+    assert_parses("orbit 48", Command::Orbit { frames: Some(48) });
+    assert_parses("size 320 180", Command::Size { size: Size::W320 });
+    assert_parses("size 640 360", Command::Size { size: Size::W640 });
+    assert_parses("size 1280 720", Command::Size { size: Size::W1280 });
+    assert_parses("frame", Command::Frame { depth: false });
+    assert_parses("frame depth", Command::Frame { depth: true });
+    assert_parses(
+        "load 33554432 DEADbeef",
+        Command::Load {
+            upload: Manifest {
+                length: 32 << 20,
+                crc32: 0xDEAD_BEEF,
+            },
+        },
+    );
+    assert_parses(
+        "load 0x10 0",
+        Command::Load {
+            upload: Manifest {
+                length: 16,
+                crc32: 0,
+            },
+        },
+    );
+    assert_parses("replay", Command::Replay { upload: None });
+    assert_parses(
+        "replay 64 1f",
+        Command::Replay {
+            upload: Some(Manifest {
+                length: 64,
+                crc32: 0x1F,
+            }),
+        },
+    );
+    assert_parses("render", Command::Render { depth: false });
+    assert_parses("render depth", Command::Render { depth: true });
+    assert_parses("cull on", Command::Cull { on: true });
+    assert_parses("prepass on", Command::Prepass { on: true });
+    assert_parses("prepass off", Command::Prepass { on: false });
+    assert_parses("cull off", Command::Cull { on: false });
+    assert_parses("stats", Command::Stats { json: false });
+    assert_parses("stats json", Command::Stats { json: true });
+    assert_parses("shading", Command::Shading { shading: None });
+    assert_parses(
+        "shading flat",
+        Command::Shading {
+            shading: Some(Shading::Flat),
+        },
+    );
+    assert_parses(
+        "shading smooth",
+        Command::Shading {
+            shading: Some(Shading::Smooth),
+        },
+    );
+    assert_parses("backend", Command::Backend { backend: None });
+    assert_parses(
+        "backend cpu",
+        Command::Backend {
+            backend: Some(Backend::Cpu),
+        },
+    );
+    assert_parses(
+        "backend gateware",
+        Command::Backend {
+            backend: Some(Backend::Gateware),
+        },
+    );
+    assert_parses("bench", Command::Bench { kernel: None });
+    assert_parses(
+        "bench sine",
+        Command::Bench {
+            kernel: Some("sine"),
+        },
+    );
+    assert_parses("selftest", Command::SelfTest {});
+    assert_parses("leds 65535", Command::Leds { value: 0xFFFF });
+    assert_parses("leds 0x00ff", Command::Leds { value: 0xFF });
+    assert_parses("buttons", Command::Buttons {});
+    assert_parses("reboot", Command::Reboot {});
+}

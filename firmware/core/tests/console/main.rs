@@ -1,0 +1,6 @@
+//! The console: line editor, completion, grammar and help.
+
+mod commands;
+mod editor;
+mod errors;
+mod help;

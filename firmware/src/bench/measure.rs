@@ -1,0 +1,95 @@
+//! Measurement of a kernel's clock cycles.
+//!
+//! A kernel is called with [`INPUTS`] inputs spread over its range, with code and tables in the caches and interrupts
+//! disabled. The cycles of the measurement itself are measured in the same way and subtracted.
+//!
+//! The instruction cache is direct-mapped, and a miss costs more than a kernel. Measuring code that shares cache lines
+//! with the kernel would measure their conflict. It therefore exists at two places, and the place with fewer misses is
+//! used.
+
+use core::arch::asm;
+use core::hint::black_box;
+
+use litex_pac::cpu;
+
+/// Inputs of each kernel.
+const INPUTS: usize = 256;
+
+/// Inputs that select the place of the measuring code.
+const TRIALS: usize = 16;
+
+/// Clock cycles of a kernel, over all inputs.
+#[derive(Clone, Copy)]
+pub struct Cycles {
+    /// The smallest number.
+    pub min: u32,
+    /// The median.
+    pub median: u32,
+    /// The largest number.
+    pub max: u32,
+}
+
+impl Cycles {
+    /// The figures of measurements, which are sorted in place. Without measurements they are 0.
+    pub fn of(cycles: &mut [u32]) -> Self {
+        cycles.sort_unstable();
+        let at = |index: usize| cycles.get(index).copied().unwrap_or(0);
+        Self {
+            min: at(0),
+            median: at(cycles.len() / 2),
+            max: at(cycles.len().saturating_sub(1)),
+        }
+    }
+}
+
+/// Takes the name of a kernel and its cycles.
+pub type Report<'a> = &'a mut dyn FnMut(&str, Cycles);
+
+/// Measures `kernel` for the inputs that `input` makes of phases all around the circle.
+pub fn measure<I: Copy, O>(
+    report: Report,
+    name: &str,
+    input: impl Fn(u32) -> I,
+    kernel: impl Fn(I) -> O,
+) {
+    // Multiples of the golden section of 2^32 fill the circle evenly, in an order without a pattern.
+    let input = |index: usize| input((index as u32).wrapping_mul(0x9e37_79b9));
+    let timers: [fn(&_, I) -> u32; 2] = [timed::<0, _, I, O>, timed::<1, _, I, O>];
+    let noise = |timer: &fn(&_, I) -> u32| {
+        let pass = || {
+            (0..TRIALS)
+                .map(|index| timer(&kernel, input(index)))
+                .sum::<u32>()
+        };
+        // The first pass brings code and tables into the caches.
+        pass().min(pass())
+    };
+    let quieter = if noise(&timers[0]) <= noise(&timers[1]) {
+        timers[0]
+    } else {
+        timers[1]
+    };
+    let mut cycles: [u32; INPUTS] = core::array::from_fn(|index| quieter(&kernel, input(index)));
+    let nothing = |input: I| input;
+    let overhead = (0..TRIALS)
+        .map(|index| timed::<0, _, I, I>(&nothing, input(index)))
+        .min()
+        .unwrap_or(0);
+    cycles = cycles.map(|cycles| cycles.saturating_sub(overhead));
+    report(name, Cycles::of(&mut cycles));
+}
+
+/// Clock cycles of a call and of reading the counter. Each `PLACE` has its own code, half a cache away from the other.
+#[inline(never)]
+#[allow(unsafe_code)]
+fn timed<const PLACE: usize, K: Fn(I) -> O, I, O>(kernel: &K, input: I) -> u32 {
+    // SAFETY: jumps over unused space and has no other effect.
+    unsafe {
+        asm!("j 1f", ".space {}", "1:", const PLACE * 2048 + 4, options(nomem, nostack, preserves_flags))
+    };
+    riscv::interrupt::free(|| {
+        let start = cpu::cycles_low();
+        black_box(kernel(black_box(input)));
+        cpu::cycles_low().wrapping_sub(start)
+    })
+}

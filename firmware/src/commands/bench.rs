@@ -1,0 +1,88 @@
+//! The command `bench`: selection of kernels, and their figures as text.
+
+use super::statistics::{engine_values, ray_values};
+use crate::bench::{self, Cycles};
+use crate::error::CommandError;
+use crate::machine::Machine;
+
+/// Names of the kernels.
+#[cfg(not(feature = "peers"))]
+const KERNELS: &[&str] = &["sine", "triangle", "field"];
+/// Names of the kernels.
+#[cfg(feature = "peers")]
+const KERNELS: &[&str] = &["sine", "attitude", "triangle", "field"];
+
+/// Frames that the engine draws back to back.
+const FRAMES: u32 = 8;
+
+/// Measures the kernels of a name, or all kernels that this machine has.
+///
+/// # Errors
+/// The name is unknown, or the machine or its scene lacks the kernel.
+pub fn run<'l>(machine: &mut Machine, kernel: Option<&'l str>) -> Result<(), CommandError<'l>> {
+    let has_engine = machine.renderer.gateware.is_some();
+    let mut print = |name: &str, cycles: Cycles| {
+        let Cycles { min, median, max } = cycles;
+        machine.terminal.print(format_args!(
+            "bench {name} min {min} median {median} max {max} cycles\n"
+        ));
+    };
+    match kernel {
+        None => {
+            bench::sine(&mut print);
+            if has_engine {
+                frames(machine)?;
+            }
+        }
+        Some("sine") => bench::sine(&mut print),
+        #[cfg(feature = "peers")]
+        Some("attitude") => bench::attitude(&mut print),
+        Some("triangle" | "field") if !has_engine => return Err(CommandError::NoEngine),
+        Some("triangle") if machine.scene.field().is_some() => {
+            return Err(CommandError::FieldShown);
+        }
+        Some("field") if machine.scene.field().is_none() => return Err(CommandError::NoField),
+        Some("triangle" | "field") => frames(machine)?,
+        Some(name) => {
+            return Err(CommandError::Kernel {
+                name,
+                expected: KERNELS,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Measures frames of the present scene, back to back: the geometry pass of a frame runs during the raster pass of the
+/// frame before. The frames are not shown.
+fn frames<'l>(machine: &mut Machine) -> Result<(), CommandError<'l>> {
+    let Machine {
+        terminal,
+        scene,
+        models,
+        renderer,
+        ..
+    } = machine;
+    // A pending flip has to happen first.
+    let rendered = loop {
+        if let Some(rendered) = renderer.repeat(models.mesh(), scene, FRAMES) {
+            break rendered.map_err(CommandError::Engine)?;
+        }
+    };
+    let rays = rendered.stats.field;
+    let kernel = if rays.is_some() { "field" } else { "triangle" };
+    terminal.print(format_args!(
+        "bench {kernel} frames {FRAMES} cycles {}",
+        rendered.cycles
+    ));
+    if let Some(stats) = rays {
+        for (name, value) in ray_values(&stats) {
+            terminal.print(format_args!(" {name} {value}"));
+        }
+    }
+    for (name, value) in engine_values(&rendered.counters) {
+        terminal.print(format_args!(" {name} {value}"));
+    }
+    terminal.print(format_args!("\n"));
+    Ok(())
+}

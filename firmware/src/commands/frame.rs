@@ -1,0 +1,101 @@
+//! Commands of frames: settings, drawing and download.
+
+use glint_core::colour::Shading;
+use glint_core::console::FrameCommands;
+use glint_core::picture::{Backend, Size};
+use litex_pac::cpu;
+
+use super::{bench, statistics};
+use crate::error::CommandError;
+use crate::job::{Job, Outcome, Reply};
+use crate::machine::Machine;
+
+impl<'l> FrameCommands<'l> for Machine {
+    fn size(&mut self, size: Size) -> Outcome<'l> {
+        self.scene.set_size(size);
+        Ok(Reply::Done)
+    }
+
+    fn backend(&mut self, backend: Option<Backend>) -> Outcome<'l> {
+        match backend {
+            Some(Backend::Gateware) if self.renderer.gateware.is_none() => {
+                return Err(CommandError::NoEngine);
+            }
+            Some(backend) => self.scene.set_backend(backend),
+            None => {
+                let backend = self.scene.backend();
+                self.terminal.print_entry("backend", &backend);
+            }
+        }
+        Ok(Reply::Done)
+    }
+
+    fn shading(&mut self, shading: Option<Shading>) -> Outcome<'l> {
+        match shading {
+            Some(shading) => self.scene.set_shading(shading),
+            None => {
+                let shading = self.scene.shading();
+                self.terminal.print_entry("shading", &shading);
+            }
+        }
+        Ok(Reply::Done)
+    }
+
+    fn cull(&mut self, on: bool) -> Outcome<'l> {
+        self.scene.set_cull(on);
+        Ok(Reply::Done)
+    }
+
+    fn prepass(&mut self, on: bool) -> Outcome<'l> {
+        self.scene.set_prepass(on);
+        Ok(Reply::Done)
+    }
+
+    fn render(&mut self, depth: bool) -> Outcome<'l> {
+        self.scene.touch();
+        self.scene.want_depth(depth);
+        Ok(Reply::After(Job::Render))
+    }
+
+    fn frame(&mut self, depth: bool) -> Outcome<'l> {
+        self.scene.want_depth(depth);
+        Ok(Reply::After(Job::Frame { depth }))
+    }
+
+    fn stats(&mut self, json: bool) -> Outcome<'l> {
+        statistics::print(self, json)?;
+        Ok(Reply::Done)
+    }
+
+    fn bench(&mut self, kernel: Option<&'l str>) -> Outcome<'l> {
+        bench::run(self, kernel)?;
+        Ok(Reply::Done)
+    }
+}
+
+/// Sends the last frame: its depth codes or its colour.
+///
+/// # Errors
+/// No frame was drawn, its drawing failed, or the transfer fails.
+pub fn send_frame(machine: &mut Machine, depth: bool) -> Result<(), CommandError<'static>> {
+    let Machine {
+        scene,
+        renderer,
+        downloads,
+        ..
+    } = machine;
+    scene
+        .drawn()
+        .ok_or(CommandError::NoFrame)?
+        .map_err(CommandError::Render)?;
+    // The engine writes to memory behind the cache.
+    cpu::flush_data_cache();
+    let bytes = if depth {
+        bytemuck::cast_slice(renderer.depths(scene))
+    } else {
+        bytemuck::cast_slice(renderer.colours(scene))
+    };
+    downloads
+        .send(&mut machine.terminal, bytes)
+        .map_err(CommandError::Transfer)
+}

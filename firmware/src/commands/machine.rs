@@ -1,0 +1,127 @@
+//! Commands of the machine and its devices.
+
+use core::fmt::{self, Display};
+
+use glint_core::console::{MachineCommands, write_help};
+use glint_hal::timer::FREQUENCY;
+use litex_pac::ctrl;
+
+use crate::error::CommandError;
+use crate::job::{Outcome, Reply};
+use crate::machine::{Devices, Machine};
+use crate::selftest;
+
+impl<'l> MachineCommands<'l> for Machine {
+    fn help(&mut self, command: Option<&'l str>) -> Outcome<'l> {
+        // An error means that the line takes no text, so no reader is lost.
+        let _ = write_help(self.terminal.output(), command);
+        Ok(Reply::Done)
+    }
+
+    fn info(&mut self, key: Option<&'l str>) -> Outcome<'l> {
+        let Self {
+            terminal,
+            identity,
+            models,
+            scene,
+            renderer,
+            clock,
+            uart,
+            ..
+        } = self;
+        let staging = models.staging();
+        let (address, room) = (staging.as_ptr().addr(), staging.len());
+        let mesh = models.mesh();
+        let (field, model) = (scene.field(), models.shown().name());
+        let with_mesh = match field {
+            Some(_) if scene.with_mesh() => format_args!(" with {model}"),
+            _ => format_args!(""),
+        };
+        let shown: &dyn Display = field.map_or(&model, |field| field);
+        let [width, height] = scene.size().pixels();
+        let (frame, depth) = (renderer.display.front().as_ptr(), renderer.depth.as_ptr());
+        let counters = renderer.display.counters();
+        let entries: [(&str, fmt::Arguments); 18] = [
+            ("version", format_args!("{}", env!("CARGO_PKG_VERSION"))),
+            ("firmware_id", format_args!("{:#010x}", identity.firmware)),
+            ("gateware_id", format_args!("{:#010x}", identity.gateware)),
+            ("blocks", format_args!("{:#x}", identity.blocks)),
+            ("clock", format_args!("{FREQUENCY}")),
+            ("scene", format_args!("{shown}{with_mesh}")),
+            ("vertices", format_args!("{}", mesh.vertex_count())),
+            ("triangles", format_args!("{}", mesh.triangle_count())),
+            ("size", format_args!("{width} {height}")),
+            ("shading", format_args!("{}", scene.shading())),
+            ("backend", format_args!("{}", scene.backend())),
+            ("frame", format_args!("{:#010x}", frame.addr())),
+            ("depth", format_args!("{:#010x}", depth.addr())),
+            ("staging", format_args!("{address:#010x} {room}")),
+            ("video_frames", format_args!("{}", counters.frame_count)),
+            (
+                "video_underflows",
+                format_args!("{}", counters.underflow_count),
+            ),
+            ("uart_lost", format_args!("{}", uart.lost())),
+            ("uptime_ms", format_args!("{}", clock.milliseconds())),
+        ];
+        let mut found = key.is_none();
+        for (name, value) in entries {
+            if key.is_none_or(|key| key == name) {
+                terminal.print_entry(name, &value);
+                found = true;
+            }
+        }
+        match key {
+            Some(key) if !found => Err(CommandError::Key(key)),
+            _ => Ok(Reply::Done),
+        }
+    }
+
+    fn selftest(&mut self) -> Outcome<'l> {
+        let mut failed = 0;
+        for (name, passed) in selftest::run(self) {
+            let result = if passed { "ok" } else { "FAILED" };
+            self.terminal
+                .print(format_args!("selftest {name} {result}\n"));
+            failed += u32::from(!passed);
+        }
+        match failed {
+            0 => Ok(Reply::Done),
+            failed => Err(CommandError::SelfTest(failed)),
+        }
+    }
+
+    fn leds(&mut self, value: u16) -> Outcome<'l> {
+        devices(self)?.leds.set(value);
+        self.heartbeat = false;
+        Ok(Reply::Done)
+    }
+
+    fn buttons(&mut self) -> Outcome<'l> {
+        let devices = devices(self)?;
+        let (buttons, switches) = (devices.buttons.read(), devices.switches.read());
+        self.terminal.print(format_args!(
+            "buttons {buttons:#x}\nswitches {switches:#06x}\n"
+        ));
+        Ok(Reply::Done)
+    }
+
+    // Tests find this function in the program and place a trap in it.
+    #[inline(never)]
+    fn reboot(&mut self) -> Outcome<'l> {
+        self.terminal.print(format_args!("ok\n"));
+        self.terminal.flush();
+        self.ctrl
+            .reset()
+            .write(ctrl::Reset::default().with_soc_rst(true));
+        // The reset takes some cycles.
+        loop {
+            core::hint::spin_loop();
+        }
+    }
+}
+
+/// The devices, where they may be accessed.
+fn devices<'l>(machine: &mut Machine) -> Result<&mut Devices, CommandError<'l>> {
+    machine.devices.as_mut().ok_or(CommandError::Mismatch)
+}

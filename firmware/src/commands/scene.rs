@@ -1,0 +1,113 @@
+//! Commands of the scene: mesh and field.
+
+use glint_core::choice::switch_name;
+use glint_core::console::SceneCommands;
+use glint_core::field::Field;
+use glint_core::stereo::Stereo;
+use glint_core::wire::Manifest;
+
+use super::upload;
+use crate::error::CommandError;
+use crate::format::OrOff;
+use crate::job::{Outcome, Reply};
+use crate::machine::Machine;
+use crate::models::{FIELDS, Model};
+
+impl<'l> SceneCommands<'l> for Machine {
+    fn scene(&mut self, name: Option<&'l str>) -> Outcome<'l> {
+        match name {
+            Some(name) => show(self, name)?,
+            None => list(self),
+        }
+        Ok(Reply::Done)
+    }
+
+    fn load(&mut self, upload: Manifest) -> Outcome<'l> {
+        upload::receive(self, "load", upload)?;
+        let length = upload.length as usize;
+        self.models.accept(length).map_err(CommandError::Mesh)?;
+        self.scene.set_field(None);
+        self.scene.touch();
+        Ok(Reply::Done)
+    }
+
+    fn field(&mut self, field: Option<Option<Field>>) -> Outcome<'l> {
+        match field {
+            Some(field) => self.scene.set_field(field),
+            None => {
+                let field = OrOff(self.scene.field());
+                self.terminal.print_entry("field", &field);
+            }
+        }
+        Ok(Reply::Done)
+    }
+
+    fn mesh(&mut self, on: Option<bool>) -> Outcome<'l> {
+        match on {
+            Some(true) if self.scene.stereo().is_some() => return Err(CommandError::MeshInStereo),
+            Some(on) => self.scene.set_with_mesh(on),
+            None => {
+                let on = switch_name(self.scene.with_mesh());
+                self.terminal.print_entry("mesh", &on);
+            }
+        }
+        Ok(Reply::Done)
+    }
+
+    fn stereo(&mut self, eyes: Option<Option<Stereo>>) -> Outcome<'l> {
+        match eyes {
+            Some(Some(_)) if self.scene.with_mesh() => return Err(CommandError::StereoOfMesh),
+            Some(eyes) => self.scene.set_stereo(eyes),
+            None => {
+                let eyes = OrOff(self.scene.stereo());
+                self.terminal.print_entry("stereo", &eyes);
+            }
+        }
+        Ok(Reply::Done)
+    }
+}
+
+fn list(machine: &mut Machine) {
+    let Machine {
+        terminal,
+        models,
+        scene,
+        ..
+    } = machine;
+    let field = scene.field();
+    for model in Model::ALL {
+        let shown = (field.is_none() || scene.with_mesh()) && model == models.shown();
+        let state = match (shown, models.has(model)) {
+            (true, _) => "shown",
+            (_, true) => "there",
+            (_, false) => "empty",
+        };
+        terminal.print(format_args!("scene {} {state}\n", model.name()));
+    }
+    for (name, named) in FIELDS {
+        let shown = field == Some(&named);
+        let state = if shown { "shown" } else { "there" };
+        terminal.print(format_args!("scene {name} {state}\n"));
+    }
+}
+
+fn show<'l>(machine: &mut Machine, name: &'l str) -> Result<(), CommandError<'l>> {
+    let Machine { models, scene, .. } = machine;
+    if let Some((_, field)) = FIELDS.iter().find(|(field, _)| *field == name) {
+        scene.set_field(Some(*field));
+        return Ok(());
+    }
+    let model = Model::ALL
+        .into_iter()
+        .find(|model| model.name() == name)
+        .ok_or(CommandError::Scene(name))?;
+    let before = models.shown();
+    if !models.show(model) {
+        return Err(CommandError::NoUpload);
+    }
+    scene.set_field(None);
+    if model != before {
+        scene.touch();
+    }
+    Ok(())
+}

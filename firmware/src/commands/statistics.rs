@@ -1,0 +1,101 @@
+//! Statistics of frames as keys and values.
+
+use glint_core::picture::Backend;
+use glint_hal::timer::FREQUENCY;
+use glint_hal::triangle::Counters;
+use glint_model::FrameStats;
+use glint_model::raymarch::FieldStats;
+use heapless::Vec;
+
+use crate::error::CommandError;
+use crate::machine::Machine;
+use crate::scene::RenderedBy;
+
+/// Prints the statistics of the last frame.
+///
+/// # Errors
+/// No frame was drawn, or its drawing failed.
+pub fn print(machine: &mut Machine, json: bool) -> Result<(), CommandError<'static>> {
+    let Machine {
+        terminal, scene, ..
+    } = machine;
+    let drawn = scene
+        .drawn()
+        .ok_or(CommandError::NoFrame)?
+        .map_err(CommandError::Render)?;
+    let (backend, engine) = match drawn.by {
+        RenderedBy::Cpu(fallback) => {
+            if let Some(fallback) = fallback.filter(|_| !json) {
+                terminal.print_entry("fallback", &fallback);
+            }
+            (Backend::Cpu, None)
+        }
+        RenderedBy::Gateware(counters) => (Backend::Gateware, Some(counters)),
+    };
+    let values = frame_values(drawn.cycles, &drawn.stats)
+        .into_iter()
+        .chain(engine.iter().flat_map(engine_values));
+    if !json {
+        terminal.print_entry("backend", &backend);
+        for (key, value) in values {
+            terminal.print_entry(key, &value);
+        }
+        return Ok(());
+    }
+    terminal.print(format_args!("{{\"backend\":\"{backend}\""));
+    for (key, value) in values {
+        terminal.print(format_args!(",\"{key}\":{value}"));
+    }
+    terminal.print(format_args!("}}\n"));
+    Ok(())
+}
+
+/// Statistics of a frame by either backend. The list has room for all of them.
+fn frame_values(cycles: u64, stats: &FrameStats) -> Vec<(&'static str, u64), 16> {
+    let mut values = Vec::new();
+    let _ = values.push(("cycles", cycles));
+    if let Some(mesh) = &stats.mesh {
+        let _ = values.extend_from_slice(&[
+            ("triangles_in", mesh.triangles_in.into()),
+            ("triangles_culled", mesh.culled.into()),
+            ("triangles_clipped", mesh.clipped.into()),
+            ("triangles_drawn", mesh.drawn.into()),
+            ("pixels_tested", mesh.pixels_tested),
+            ("pixels_covered", mesh.pixels_covered),
+        ]);
+        // An engine's count includes the pixels of a field.
+        if stats.field.is_none() {
+            let _ = values.push(("pixels_drawn", mesh.pixels_drawn));
+        }
+    }
+    if let Some(field) = &stats.field {
+        let _ = values.extend_from_slice(&ray_values(field));
+    }
+    let _ = values.push(("clock", FREQUENCY.into()));
+    values
+}
+
+/// Counts of a field's rays by name.
+pub fn ray_values(stats: &FieldStats) -> [(&'static str, u64); 5] {
+    [
+        ("rays", stats.rays.into()),
+        ("evaluations", stats.evaluations),
+        ("hits", stats.hits.into()),
+        ("misses", stats.misses.into()),
+        ("undecided", stats.undecided.into()),
+    ]
+}
+
+/// Counters of the engine by name.
+pub fn engine_values(counters: &Counters) -> impl Iterator<Item = (&'static str, u64)> {
+    counters.iter().filter_map(|(name, value)| {
+        let name = match name {
+            "items_in" => "words_read",
+            "items_out" => "words_written",
+            // Printed with the triangles, without the pixels of a field.
+            "pixels_covered" | "pixels_drawn" => return None,
+            name => name,
+        };
+        Some((name, value.into()))
+    })
+}

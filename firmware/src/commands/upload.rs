@@ -1,0 +1,46 @@
+//! Uploads of commands.
+
+use glint_core::wire::{Manifest, crc32};
+use litex_pac::cpu;
+
+use crate::error::CommandError;
+use crate::machine::Machine;
+use crate::transfer;
+
+/// Receives the upload of a command into the staging memory, unless the memory holds it already.
+///
+/// # Errors
+/// The upload is too long, or the transfer fails.
+pub fn receive<'m>(
+    machine: &'m mut Machine,
+    command: &'static str,
+    manifest: Manifest,
+) -> Result<&'m mut [u8], CommandError<'static>> {
+    let Machine {
+        terminal,
+        models,
+        replay,
+        clock,
+        uart,
+        ..
+    } = machine;
+    let staging = models.staging();
+    let room = staging.len();
+    let Some(staging) = staging.get_mut(..manifest.length as usize) else {
+        return Err(CommandError::TooLong {
+            command,
+            bytes: manifest.length,
+            room,
+        });
+    };
+    // The upload overwrites the attitudes of a replay.
+    *replay = None;
+    // The memory may have been written behind the cache: by a tool's back door, or by a transfer that was cut off near
+    // its end.
+    cpu::flush_data_cache();
+    if crc32(staging) != manifest.crc32 {
+        terminal.print(format_args!("ready\n"));
+        transfer::receive(uart, *clock, staging, manifest).map_err(CommandError::Transfer)?;
+    }
+    Ok(staging)
+}

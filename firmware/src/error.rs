@@ -1,0 +1,145 @@
+//! Errors of commands.
+
+use core::fmt::{self, Display};
+
+use glint_core::camera::ViewError;
+use glint_core::console::{LINE_MAX, ParseError};
+use glint_core::light::MAX_LIGHTS;
+use glint_core::mesh::MeshError;
+use glint_core::orientation::log::LogError;
+use glint_core::wire::Failure;
+use glint_model::RenderError;
+
+use crate::gateware::Fallback;
+use crate::models::{FIELDS, Model};
+use crate::sensor::{CalibrationError, SensorError};
+
+/// Reason why a command failed. `Display` is the text after `error: `.
+#[derive(Debug)]
+pub enum CommandError<'l> {
+    /// Not a command.
+    Parse(ParseError<'l>),
+    /// The line is longer than [`LINE_MAX`].
+    Overlong,
+    /// The camera is out of range.
+    View(ViewError),
+    /// `info` has no such entry.
+    Key(&'l str),
+    /// No model and no field has this name.
+    Scene(&'l str),
+    /// No mesh was uploaded.
+    NoUpload,
+    /// The SoC has no triangle engine.
+    NoEngine,
+    /// Stereo is not available for a mesh in a field.
+    StereoOfMesh,
+    /// A mesh in a field is not available in stereo.
+    MeshInStereo,
+    /// The list of lights is full.
+    Lights,
+    /// No field is shown to measure.
+    NoField,
+    /// A field is shown in place of the triangles to measure.
+    FieldShown,
+    /// The engine could not draw.
+    Engine(Fallback),
+    /// An upload is longer than its memory.
+    TooLong {
+        /// Name of the command.
+        command: &'static str,
+        /// Length of the upload in bytes.
+        bytes: u32,
+        /// Length of the memory in bytes.
+        room: usize,
+    },
+    /// A transfer failed.
+    Transfer(Failure),
+    /// The upload is not a mesh.
+    Mesh(MeshError),
+    /// The frame could not be drawn.
+    Render(RenderError),
+    /// No frame has been drawn yet.
+    NoFrame,
+    /// No kernel has this name.
+    Kernel {
+        /// The name.
+        name: &'l str,
+        /// The known names.
+        expected: &'static [&'static str],
+    },
+    /// This number of self-tests failed.
+    SelfTest(u32),
+    /// The sensor was not calibrated.
+    Calibration(CalibrationError),
+    /// The sensor gives no samples.
+    Sensor(SensorError),
+    /// The upload is not a log.
+    Log(LogError),
+    /// No log has been replayed to its end since the last upload.
+    NoReplay,
+    /// Devices are not accessed on gateware of another build.
+    Mismatch,
+}
+
+impl Display for CommandError<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Parse(error) => error.fmt(f),
+            Self::Overlong => write!(f, "line: expected at most {LINE_MAX} bytes"),
+            Self::View(error) => error.fmt(f),
+            Self::Key(key) => write!(f, "info `{key}`: expected an entry, `info` lists them"),
+            Self::Scene(name) => {
+                write!(f, "scene `{name}`: expected")?;
+                let models = Model::ALL.iter().map(|model| model.name());
+                let fields = FIELDS.iter().map(|(name, _)| *name);
+                models.chain(fields).enumerate().try_for_each(|(i, name)| {
+                    write!(f, "{} {name}", if i == 0 { "" } else { " or" })
+                })
+            }
+            Self::NoUpload => f.write_str("scene model: no mesh uploaded, expected `load` first"),
+            Self::NoEngine => f.write_str("gateware: no triangle engine in this SoC, expected cpu"),
+            Self::StereoOfMesh => f.write_str(
+                "stereo: not available for a mesh in a field, expected `mesh off` first",
+            ),
+            Self::MeshInStereo => {
+                f.write_str("mesh: not available in stereo, expected `stereo off` first")
+            }
+            Self::Lights => write!(
+                f,
+                "light: expected at most {MAX_LIGHTS} lights, `light default` removes them"
+            ),
+            Self::NoField => {
+                f.write_str("bench field: no field shown, expected `field FIELD` first")
+            }
+            Self::FieldShown => {
+                f.write_str("bench triangle: field shown, expected `field off` first")
+            }
+            Self::Engine(error) => error.fmt(f),
+            Self::TooLong {
+                command,
+                bytes,
+                room,
+            } => write!(f, "{command} {bytes}: expected at most {room} bytes"),
+            Self::Transfer(error) => error.fmt(f),
+            Self::Mesh(error) => write!(f, "load: not a mesh, previous mesh kept: {error}"),
+            Self::Render(error) => write!(f, "render: {error}"),
+            Self::NoFrame => f.write_str("stats: no frame drawn, expected `render` first"),
+            Self::Kernel { name, expected } => {
+                write!(f, "bench `{name}`: expected one of")?;
+                expected
+                    .iter()
+                    .try_for_each(|kernel| write!(f, " {kernel}"))
+            }
+            Self::SelfTest(failed) => write!(f, "selftest: {failed} failed, expected none"),
+            Self::Calibration(error) => write!(f, "imu calibrate: {error}"),
+            Self::Sensor(error) => write!(f, "imu: {error}"),
+            Self::Log(error) => write!(f, "replay: {error}"),
+            Self::NoReplay => {
+                f.write_str("replay: no attitudes, expected an upload of a log first")
+            }
+            Self::Mismatch => f.write_str(
+                "devices: build ids of firmware and gateware differ, expected a matching gateware",
+            ),
+        }
+    }
+}

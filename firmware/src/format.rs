@@ -1,0 +1,27 @@
+//! Formats of values in replies.
+
+use core::fmt::{self, Display};
+
+use glint_core::fixed::Q32_32;
+
+/// A value, or `off`.
+pub struct OrOff<T>(pub Option<T>);
+
+impl<T: Display> Display for OrOff<T> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match &self.0 {
+            Some(value) => value.fmt(f),
+            None => f.write_str("off"),
+        }
+    }
+}
+
+/// Three numbers with six decimals.
+pub struct Vector(pub [Q32_32; 3]);
+
+impl Display for Vector {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let [x, y, z] = self.0;
+        write!(f, "{x:.6} {y:.6} {z:.6}")
+    }
+}

@@ -1,0 +1,94 @@
+//! Replies of commands, and the jobs that some replies wait for.
+
+use core::task::Poll;
+
+use glint_core::fixed::Turns;
+
+use crate::error::CommandError;
+use crate::scene::{Scene, Sphere};
+
+/// The result of a command.
+pub type Outcome<'l> = Result<Reply, CommandError<'l>>;
+
+/// The result of a job, once it has ended.
+pub type JobResult = Poll<Result<(), CommandError<'static>>>;
+
+/// The reply of a command that has not failed.
+pub enum Reply {
+    /// The command is done.
+    Done,
+    /// The command is done when this job has ended.
+    After(Job),
+}
+
+/// Work that goes on after a command has returned.
+pub enum Job {
+    /// Draw the scene, then print the frame's statistics.
+    Render,
+    /// Draw the scene, then send the frame.
+    Frame {
+        /// Send depth codes, not colour.
+        depth: bool,
+    },
+    /// Turn the camera around the model.
+    Orbit(Orbit),
+    /// Wait for the sensor.
+    Sensor(SensorJob),
+    /// Compute attitudes of a log.
+    Replay,
+}
+
+/// A job of the sensor.
+pub enum SensorJob {
+    /// Report the calibration until it ends.
+    Calibrate {
+        /// Samples in the last report.
+        reported: u32,
+    },
+    /// Print samples.
+    Stream {
+        /// Samples still to print; `None` is no limit.
+        left: Option<u32>,
+        /// Number of the last printed sample.
+        last: u32,
+    },
+}
+
+/// One turn of the spherical camera about the z axis, a frame at a time.
+pub struct Orbit {
+    start: Sphere,
+    frames: u32,
+    frame: u32,
+}
+
+/// Default number of frames of a turn: one frame each 1.5°.
+const ORBIT_FRAMES: u32 = 240;
+
+impl Orbit {
+    /// A turn from `start` in this number of frames.
+    pub fn new(start: Sphere, frames: Option<u32>) -> Self {
+        Self {
+            start,
+            frames: frames.unwrap_or(ORBIT_FRAMES),
+            frame: 0,
+        }
+    }
+
+    /// Moves the camera to the next frame, until the turn is complete.
+    pub fn poll(&mut self, scene: &mut Scene) -> JobResult {
+        if self.frame == self.frames {
+            return Poll::Ready(Ok(()));
+        }
+        self.frame += 1;
+        // The product has 64 bits. The quotient is at most one turn, which wraps to 0.
+        let turned = Turns(((u64::from(self.frame) << 32) / u64::from(self.frames)) as u32);
+        let sphere = Sphere {
+            theta: self.start.theta.wrapping_add(turned),
+            ..self.start
+        };
+        match scene.set_sphere(sphere) {
+            Ok(()) => Poll::Pending,
+            Err(error) => Poll::Ready(Err(CommandError::View(error))),
+        }
+    }
+}

@@ -1,0 +1,252 @@
+//! The main loop.
+//!
+//! No step of the loop waits: interrupts fill queues, and each turn takes their contents. A command whose reply needs a
+//! frame or samples leaves a [`Job`]; input waits in the UART's queue meanwhile.
+
+use core::future::pending;
+use core::pin::pin;
+use core::task::Poll;
+use core::time::Duration;
+
+use embedded_hal::digital::StatefulOutputPin;
+use glint_core::calibration::SAMPLES;
+use glint_core::mpu6050::Stream;
+use glint_hal::timer::Deadline;
+use litex_pac::cpu;
+
+use crate::commands::{self, imu, replay, statistics};
+use crate::error::CommandError;
+use crate::interrupts;
+use crate::job::{Job, Reply};
+use crate::machine::Machine;
+use crate::sensor::{self, Inbox};
+use crate::terminal::Input;
+
+/// Idle time before redrawing. A series of commands gives one frame, and the delay is not visible.
+const QUIET: Duration = Duration::from_millis(2);
+
+/// Button 2 calibrates the sensor.
+const CALIBRATE: u8 = 1 << 2;
+/// Button 3 recentres the camera.
+const RECENTRE: u8 = 1 << 3;
+
+/// Half a period of the blinking LED.
+const HEARTBEAT: Duration = Duration::from_millis(500);
+
+/// The machine and the state of its main loop.
+pub struct MainLoop {
+    machine: Machine,
+    job: Option<Job>,
+    /// Next change of the blinking LED.
+    beat: Deadline,
+    /// Buttons at the last poll.
+    pressed: u8,
+    /// End of the idle time after a reply.
+    quiet: Deadline,
+}
+
+impl MainLoop {
+    /// The main loop of `machine`.
+    pub fn new(machine: Machine) -> Self {
+        let clock = machine.clock;
+        Self {
+            machine,
+            job: None,
+            beat: clock.after(Duration::ZERO),
+            pressed: 0,
+            quiet: clock.after(QUIET),
+        }
+    }
+
+    /// Runs until reset.
+    pub fn run(&mut self) -> ! {
+        let terminal = &mut self.machine.terminal;
+        terminal.print(format_args!("Type help for the commands.\n"));
+        terminal.prompt();
+        let devices = self.machine.devices.as_mut();
+        let bus = devices.and_then(|devices| devices.i2c.take());
+        let clock = self.machine.clock;
+        let stream = pin!(async move {
+            if let Some(bus) = bus {
+                Stream::new(bus, clock, Inbox).run().await;
+            }
+            pending().await
+        });
+        // SAFETY: this function does not return.
+        unsafe { sensor::start(stream) };
+        loop {
+            self.beat();
+            self.poll_buttons();
+            self.machine.terminal.listen();
+            sensor::deliver(&mut self.machine.imu);
+            self.answer();
+            self.steer();
+            self.draw();
+            self.poll_job();
+            interrupts::sleep_unless(|| self.is_busy());
+        }
+    }
+
+    /// Whether the next turn of the loop has work.
+    fn is_busy(&mut self) -> bool {
+        // Without scan-out no interrupt would wake the loop for the blinking LED.
+        self.answers_next()
+            || self.machine.renderer.is_ready(&self.machine.scene)
+            || sensor::has_events()
+            || matches!(self.job, Some(Job::Replay))
+            || !self.machine.renderer.display.is_visible()
+    }
+
+    /// Whether the next turn of the loop executes or receives input.
+    fn answers_next(&self) -> bool {
+        if self.machine.terminal.has_input() {
+            self.takes_input()
+        } else {
+            self.machine.uart.has_received()
+        }
+    }
+
+    /// Whether a line is executed now. A line waits for the end of a job and of a frame that the engine draws. It ends
+    /// an orbit, a job of the sensor, and a replay.
+    fn takes_input(&self) -> bool {
+        matches!(
+            self.job,
+            None | Some(Job::Orbit(_) | Job::Sensor(_) | Job::Replay)
+        ) && !self.machine.renderer.is_busy()
+    }
+
+    /// Executes a line.
+    fn answer(&mut self) {
+        if !self.takes_input() {
+            return;
+        }
+        let Some(input) = self.machine.terminal.input() else {
+            return;
+        };
+        if self.job.is_some() {
+            self.finish(Ok(()));
+        }
+        match input {
+            Input::Line(line) => match commands::execute(&mut self.machine, &line) {
+                Ok(None) => self.machine.terminal.prompt(),
+                Ok(Some(Reply::Done)) => self.finish(Ok(())),
+                Ok(Some(Reply::After(job))) => self.job = Some(job),
+                Err(error) => self.finish(Err(error)),
+            },
+            Input::Overlong => self.finish(Err(CommandError::Overlong)),
+            Input::Interrupt => self.machine.terminal.prompt(),
+        }
+    }
+
+    /// Turns the camera by the sensor, if a frame can be drawn.
+    fn steer(&mut self) {
+        let Machine {
+            renderer,
+            scene,
+            imu,
+            ..
+        } = &mut self.machine;
+        if renderer.is_busy() || renderer.display.back().is_none() {
+            return;
+        }
+        let (eye, radius) = (scene.view().eye(), scene.sphere().r);
+        if let Some(Ok(view)) = imu.view(eye, radius) {
+            scene.move_view(view);
+        }
+    }
+
+    /// Draws the scene if it has changed and a frame buffer is free.
+    fn draw(&mut self) {
+        let Machine {
+            terminal,
+            scene,
+            models,
+            renderer,
+            imu,
+            ..
+        } = &mut self.machine;
+        if matches!(self.job, Some(Job::Render | Job::Frame { .. })) && scene.changed() {
+            renderer.drop_pending();
+        }
+        let progress = || {
+            terminal.listen();
+            sensor::deliver(imu);
+        };
+        if (renderer.is_busy() || scene.changed() && (self.job.is_some() || self.quiet.passed()))
+            && let Some(drawn) = renderer.draw(models.mesh(), scene, progress)
+        {
+            scene.set_drawn(drawn);
+        }
+    }
+
+    /// Continues the job, and ends its reply when it has ended.
+    fn poll_job(&mut self) {
+        let machine = &mut self.machine;
+        let Some(job) = &mut self.job else { return };
+        let result = match job {
+            Job::Sensor(job) => imu::poll(machine, job),
+            Job::Replay => replay::poll(machine),
+            _ if machine.scene.changed() => Poll::Pending,
+            Job::Render => Poll::Ready(statistics::print(machine, false)),
+            Job::Frame { depth } => Poll::Ready(commands::send_frame(machine, *depth)),
+            Job::Orbit(orbit) => orbit.poll(&mut machine.scene),
+        };
+        if let Poll::Ready(result) = result {
+            self.finish(result);
+        }
+    }
+
+    /// Ends a reply.
+    fn finish(&mut self, result: Result<(), CommandError>) {
+        self.job = None;
+        let Machine {
+            terminal,
+            scene,
+            clock,
+            ..
+        } = &mut self.machine;
+        scene.want_depth(false);
+        self.quiet = clock.after(QUIET);
+        match result {
+            Ok(()) => terminal.print(format_args!("ok\n")),
+            Err(error) => terminal.print(format_args!("error: {error}\n")),
+        }
+        terminal.prompt();
+    }
+
+    /// Acts on buttons that were pressed since the last poll.
+    fn poll_buttons(&mut self) {
+        let Machine { devices, imu, .. } = &mut self.machine;
+        let Some(devices) = devices else {
+            return;
+        };
+        let pressed = devices.buttons.read();
+        let new = pressed & !self.pressed;
+        self.pressed = pressed;
+        if new & CALIBRATE != 0 {
+            imu.calibrate(SAMPLES);
+        }
+        if new & RECENTRE != 0 {
+            imu.recentre();
+        }
+    }
+
+    /// Blinks the first LED.
+    fn beat(&mut self) {
+        if !self.beat.passed() {
+            return;
+        }
+        let Machine {
+            clock,
+            devices,
+            heartbeat,
+            ..
+        } = &mut self.machine;
+        self.beat = clock.after(HEARTBEAT);
+        // The stream gives up a transfer whose interrupt is missing.
+        sensor::advance(cpu::cycles_low());
+        if let Some(devices) = devices.as_ref().filter(|_| *heartbeat) {
+            let Ok(()) = devices.leds.pin(0).toggle();
+        }
+    }
+}
