@@ -166,7 +166,6 @@ type Rotation = [[f64; 3]; 3];
 
 /// Parts of the motion, each followed by a rest: duration in s, mean rate about one axis in °/s or the peak rate and number of
 /// oscillations, and a shake along all axes in g.
-/// back again so many times at that rate at most, and with how much of a shake along all axes, in g.
 struct Part {
     name: &'static str,
     time: f64,
@@ -188,7 +187,6 @@ impl Part {
 
     /// At `time` seconds of `length`: seconds turned at full rate, relative rate, and relative shake. Starts and ends are
     /// smooth, as sampling requires.
-    /// begins and ends softly, as what is measured by samples has to.
     fn at(&self, time: f64, length: f64) -> (f64, f64, f64) {
         if self.swings > 0.0 {
             let turns = std::f64::consts::TAU * self.swings / length;
@@ -257,7 +255,6 @@ fn rotation(axis: [f64; 3], degrees: f64) -> Rotation {
 
 /// The rotation of the script until `time`, and the sensor's inputs then. `stretch` multiplies each part's duration and divides
 /// its rate.
-/// lower.
 fn script(time: f64, stretch: f64) -> (Rotation, State) {
     let mut turned = rotation([0.0; 3], 0.0);
     let (mut rate, mut shake) = ([0.0; 3], 0.0);
@@ -284,7 +281,6 @@ fn script(time: f64, stretch: f64) -> (Rotation, State) {
 
 /// The camera follows the f64 reference of the sensor's motion, also through the pole of the pitch: 0.6 s of board time, and
 /// with `GLINT_IMU_MOTION` at a seventh of the speed in 2.6 s.
-/// `GLINT_IMU_MOTION` seven times as slow in 2.6 s.
 #[test]
 fn the_camera_follows_a_script() {
     let is_slow = std::env::var_os("GLINT_IMU_MOTION").is_some();

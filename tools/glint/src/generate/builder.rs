@@ -25,7 +25,6 @@ impl Builder {
     }
 
     /// Adds a face, counter-clockwise seen from outside. Repeated corners are dropped, and so is a face with fewer than three.
-    /// a face with fewer than three is none.
     pub fn face(&mut self, points: &[Vector], colour: Option<Rgb8>) -> Result<(), FormatError> {
         let mut corners = Vec::with_capacity(points.len());
         for &point in points {
