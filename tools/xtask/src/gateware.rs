@@ -1,9 +1,8 @@
-//! `cargo xtask gateware`: the SoC of a board, and for the virtual board the library that runs it.
+//! `cargo xtask gateware`: the SoC of a board, and the virtual board's library.
 //!
-//! LiteX writes Verilog, the BIOS and the SoC's description to `target/gateware/BOARD`. For the virtual board,
-//! Verilator then turns the Verilog into C++, and g++ turns that and the harness of `tools/virtual-board/soc` into
-//! `libglint_soc.so`; twice, since what the first counts makes the second faster. Each part is skipped when its inputs have not
-//! changed.
+//! LiteX writes Verilog, the BIOS and the SoC's description to `target/gateware/BOARD`. For the virtual board, Verilator
+//! translates the Verilog to C++, and g++ compiles it with the harness of `tools/virtual-board/soc` to `libglint_soc.so`:
+//! twice, because the first build collects the profile of the second. Each part is skipped if its inputs have not changed.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -18,7 +17,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::{paths, run};
 
-/// What the gateware is built for.
+/// Board of a gateware.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Board {
     /// The verilated SoC.
@@ -28,7 +27,7 @@ pub enum Board {
 }
 
 impl Board {
-    /// The board's name in paths and on the command line of `glint_soc`.
+    /// Name in paths and on the command line of `glint_soc`.
     fn name(self) -> &'static str {
         match self {
             Self::Virtual => "virtual",
@@ -36,27 +35,27 @@ impl Board {
         }
     }
 
-    /// Where everything of this board is built.
+    /// Build folder.
     fn folder(self) -> PathBuf {
         paths::target().join("gateware").join(self.name())
     }
 }
 
-/// What a raymarcher is built for: `BUILDS` of `glint_soc/raymarch.py`.
+/// Fields of a raymarcher: `BUILDS` of `glint_soc/raymarch.py`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Fields {
-    /// Two lanes for every field, with cones before the rays.
+    /// Every field, with cones: two lanes
     All,
-    /// Two lanes for all but fillets and the two finest levels of the sponge, without cones.
+    /// No fillets, sponge up to depth 4, no cones: two lanes
     Round,
-    /// The same without spheres.
+    /// As `round`, without spheres
     Faces,
-    /// Four lanes for the sponge up to depth 4 alone, with cones.
+    /// Sponge up to depth 4 only, with cones: four lanes
     Sponge,
 }
 
 impl Fields {
-    /// The name on the command line of `glint_soc`.
+    /// Name on the command line of `glint_soc`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::All => "all",
@@ -67,15 +66,15 @@ impl Fields {
     }
 }
 
-/// Builds what is out of date for `board`.
+/// Builds the gateware of `board`, if out of date.
 ///
 /// # Errors
-/// When a tool is missing or fails; its output has then been printed.
+/// A tool is missing or fails; then its output is printed.
 pub fn build(board: Board) -> Result<()> {
     build_with(board, &[])
 }
 
-/// Builds `board` with options of `glint_soc`, in place of the build without.
+/// Builds `board` with options of `glint_soc`; replaces the build without.
 ///
 /// # Errors
 /// As [`build`].
@@ -88,8 +87,8 @@ pub fn build_with(board: Board, options: &[&str]) -> Result<()> {
     Ok(())
 }
 
-/// Builds the virtual board with the four lanes of [`Fields::Sponge`] in `target/gateware/virtual-sponge`, beside the build that
-/// is there for all.
+/// Builds the virtual board with the four lanes of [`Fields::Sponge`] in `target/gateware/virtual-sponge`; keeps the standard
+/// build.
 ///
 /// # Errors
 /// As [`build`].
@@ -103,7 +102,7 @@ pub fn build_sponge_beside() -> Result<()> {
     verilate(&folder, Waveforms::Without)
 }
 
-/// Builds the virtual board's second library, which can write waveforms and is slower.
+/// Builds the virtual board's second library, slower and with waveform output.
 ///
 /// # Errors
 /// As [`build`].
@@ -147,7 +146,7 @@ fn generate(board: Board, folder: &Path, options: &[&str]) -> Result<()> {
     fs::write(&stamp, inputs).with_context(|| format!("writing {}", stamp.display()))
 }
 
-/// Whether a library can write waveforms.
+/// Waveform output of a library.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Waveforms {
     With,
@@ -157,7 +156,7 @@ enum Waveforms {
 /// The top module of the virtual board's Verilog.
 const TOP: &str = "glint_virtual";
 
-/// Runs Verilator and g++ over what [`generate`] left for a virtual board.
+/// Runs Verilator and g++ on the output of [`generate`] for a virtual board.
 fn verilate(folder: &Path, waveforms: Waveforms) -> Result<()> {
     let harness = paths::root().join("tools/virtual-board/soc");
     let (objects, library) = match waveforms {
@@ -183,8 +182,8 @@ fn verilate(folder: &Path, waveforms: Waveforms) -> Result<()> {
         [&folder.join("software/include"), &harness].map(|path| format!("-I{}", path.display())),
     );
 
-    // The model, which takes the time.
-    // How this file builds is an input as well.
+    // The model takes most of the compile time.
+    // The build's own source counts as an input.
     let inputs = fingerprint(
         &[
             verilog.clone(),
@@ -195,7 +194,7 @@ fn verilate(folder: &Path, waveforms: Waveforms) -> Result<()> {
     )?;
     let stamp = objects.join("model.stamp");
     if !is_current(&stamp, &inputs) {
-        // Verilator names its output by what it contains: nothing of an older build may stay.
+        // The names of Verilator's output depend on its contents: no file of an older build may remain.
         if objects.exists() {
             fs::remove_dir_all(&objects)
                 .with_context(|| format!("clearing {}", objects.display()))?;
@@ -230,29 +229,29 @@ fn verilate(folder: &Path, waveforms: Waveforms) -> Result<()> {
         let (rare, hot): (Vec<_>, Vec<_>) = model_sources(&objects, &verilator, waveforms)?
             .into_iter()
             .partition(|path| runs_once(path));
-        compile("compile the virtual board", &rare, &objects, &flags)?;
+        compile("compile the cold code", &rare, &objects, &flags)?;
         let mut hot_flags = flags.clone();
-        // Waveforms cost more than this gains.
+        // Writing waveforms takes most of the time: a profile gains little.
         if waveforms == Waveforms::Without {
             let train = ["glint_soc.cpp", "train.cpp"].map(|name| harness.join(name));
-            compile("compile its training", &train, &objects, &harness_flags)?;
+            compile(
+                "compile the profiling run",
+                &train,
+                &objects,
+                &harness_flags,
+            )?;
             hot_flags.push("-fprofile-generate".into());
-            compile("compile it with counters", &hot, &objects, &hot_flags)?;
+            compile("compile with profile counters", &hot, &objects, &hot_flags)?;
             profile(&objects)?;
             hot_flags.pop();
-            // What the BIOS leaves alone is to be fast all the same.
+            // The BIOS does not run all code: the rest is optimized all the same.
             hot_flags.extend(["-fprofile-use", "-fprofile-partial-training"].map(String::from));
         }
-        compile(
-            "compile what it does in each cycle",
-            &hot,
-            &objects,
-            &hot_flags,
-        )?;
+        compile("compile the hot code", &hot, &objects, &hot_flags)?;
         fs::write(&stamp, &inputs).with_context(|| format!("writing {}", stamp.display()))?;
     }
 
-    // The harness around it.
+    // The harness.
     let inputs = fingerprint(&[harness.clone(), bios.clone()], &inputs)?;
     let stamp = objects.join("library.stamp");
     if library.exists() && is_current(&stamp, &inputs) {
@@ -264,7 +263,7 @@ fn verilate(folder: &Path, waveforms: Waveforms) -> Result<()> {
         &objects,
         &harness_flags,
     )?;
-    // A board that is running keeps the library it has opened: the new one takes its place by renaming.
+    // A running board keeps its open library: the new one replaces it by a rename.
     let linked = objects.join("library.so");
     run::step(
         "link the virtual board",
@@ -278,36 +277,36 @@ fn verilate(folder: &Path, waveforms: Waveforms) -> Result<()> {
     fs::write(&stamp, inputs).with_context(|| format!("writing {}", stamp.display()))
 }
 
-/// Runs the training in `objects`, whose counters then lie beside the objects that count: what is often done, and which way
-/// branches mostly go. A model that is compiled with it needs a quarter less time for a cycle.
+/// Runs the training program in `objects`, which writes profile counters beside the object files: hot code, and branch
+/// directions. A model compiled with the profile needs a quarter less time per cycle.
 fn profile(objects: &Path) -> Result<()> {
     let program = objects.join("train");
     run::step(
-        "link its training",
+        "link the profiling run",
         Command::new("g++")
             .arg("-fprofile-generate")
             .args(object_files(objects)?)
             .arg("-o")
             .arg(&program),
     )?;
-    run::step("train it", &mut Command::new(&program))?;
+    run::step("collect the profile", &mut Command::new(&program))?;
     let object = object(Path::new("train.cpp"), objects);
     fs::remove_file(&object).with_context(|| format!("removing {}", object.display()))
 }
 
-/// All objects in a folder.
+/// All object files in a folder.
 fn object_files(folder: &Path) -> Result<Vec<PathBuf>> {
     let mut objects = files(folder)?;
     objects.retain(|path| path.extension() == Some(OsStr::new("o")));
     Ok(objects)
 }
 
-/// Whether a source of the model is what Verilator calls slow, which runs once.
+/// Whether Verilator marks a source as slow: code that runs once.
 fn runs_once(source: &Path) -> bool {
     source.to_string_lossy().contains("__Slow")
 }
 
-/// What g++ is told, but for where to look.
+/// Compiler options of g++, without include paths.
 fn compiler_flags(waveforms: Waveforms) -> Vec<String> {
     let trace = if waveforms == Waveforms::With { 1 } else { 0 };
     let mut flags = ["-std=gnu++17", "-O3", "-fPIC", "-fvisibility=hidden", "-w"]
@@ -318,7 +317,7 @@ fn compiler_flags(waveforms: Waveforms) -> Vec<String> {
     flags
 }
 
-/// What Verilator wrote to `objects`, and its runtime.
+/// Verilator's output in `objects`, and its runtime.
 fn model_sources(objects: &Path, verilator: &Path, waveforms: Waveforms) -> Result<Vec<PathBuf>> {
     let mut sources = files(objects)?;
     sources.retain(|path| path.extension() == Some(OsStr::new("cpp")));
@@ -330,10 +329,10 @@ fn model_sources(objects: &Path, verilator: &Path, waveforms: Waveforms) -> Resu
     Ok(sources)
 }
 
-/// Compiles every source to an object in `folder`, as many at a time as there are cores. `name` is what that is called.
+/// Compiles every source to an object file in `folder`, one per core at a time. `name` is the step's name.
 fn compile(name: &str, sources: &[PathBuf], folder: &Path, flags: &[String]) -> Result<()> {
     let start = Instant::now();
-    // The largest first: they decide when the last one is done.
+    // The largest first: they determine the end of the step.
     let mut queue: Vec<&PathBuf> = sources.iter().collect();
     queue.sort_by_key(|path| std::cmp::Reverse(fs::metadata(path).map_or(0, |data| data.len())));
     let style = ProgressStyle::with_template("  {bar:30} {pos}/{len}  {elapsed}  {msg}")?;
@@ -375,14 +374,14 @@ fn compile(name: &str, sources: &[PathBuf], folder: &Path, flags: &[String]) -> 
     Ok(())
 }
 
-/// The object file of `source`.
+/// Object file of `source`.
 fn object(source: &Path, folder: &Path) -> PathBuf {
     folder
         .join(source.file_name().unwrap_or_default())
         .with_extension("o")
 }
 
-/// The folder of the pinned Verilator in the Python environment.
+/// Folder of the pinned Verilator in the Python environment.
 fn verilator_root() -> Result<PathBuf> {
     let output = Command::new(paths::venv_program("python"))
         .args([
@@ -397,7 +396,7 @@ fn verilator_root() -> Result<PathBuf> {
     Ok(PathBuf::from(String::from_utf8(output.stdout)?))
 }
 
-/// A line that changes when a file below `roots` or `salt` does.
+/// A line that changes with any file below `roots`, and with `salt`.
 fn fingerprint(roots: &[PathBuf], salt: &str) -> Result<String> {
     let mut hasher = DefaultHasher::new();
     salt.hash(&mut hasher);
@@ -412,7 +411,7 @@ fn fingerprint(roots: &[PathBuf], salt: &str) -> Result<String> {
     Ok(format!("{:016x}\n", hasher.finish()))
 }
 
-/// All files below `root` in a fixed order, or `root` itself if it is a file; Python's caches are not inputs.
+/// All files below `root` in a fixed order, or `root` itself if it is a file; without Python's caches.
 fn files(root: &Path) -> Result<Vec<PathBuf>> {
     if !root.is_dir() {
         return Ok(vec![root.to_owned()]);
@@ -434,7 +433,7 @@ fn files(root: &Path) -> Result<Vec<PathBuf>> {
     Ok(found)
 }
 
-/// Whether the last build left `inputs` as its stamp.
+/// Whether the last build had the same `inputs`.
 fn is_current(stamp: &Path, inputs: &str) -> bool {
     fs::read_to_string(stamp).is_ok_and(|last| last == inputs)
 }
