@@ -7,14 +7,13 @@
 //                                ▼        │
 //   vertices ─────────────────▶ vertex_stage
 //
-// `start` (one clock, not while `busy`) takes the parameters, which hold until `done` (one clock): everything is in memory
-// then. `mesh_error` (a chunk without vertices or beyond the mesh's end) and `full` (no room for all descriptors, list entries
-// or exceptions) tell then that the frame is not whole; what there is, is listed. `restart` may come at any time, and gives
-// the frame up; the unit is to be started again when read_port has thrown away what was on its way.
+// `start` (one clock, not while `busy`) begins a frame. The parameters must hold from a clock before it until `done` (one clock),
+// when all results are in memory. With `done`, `mesh_error` (a chunk without vertices or beyond the mesh's end) and `full` (no room
+// for all descriptors, list entries or exceptions) mark an incomplete frame, whose descriptors are listed all the same. `restart`
+// (any time) cancels the frame; the next start must wait until read_port is idle.
 //
-// Throughput: 11 clocks a drawn triangle, 4 a culled one, 6 a vertex that is not in the cache, 4 and one a band in the
-// binner; the slowest of these counts. Memory: two clients of a read_port, two native write ports.
-// Counts are those of the frame; `clocks_busy` and `vertices` run freely.
+// Throughput: the slowest of 11 clocks a drawn triangle, 4 a culled one, 6 a vertex that is not in the cache, 4 and one a band in
+// the binner. Memory: two clients of a read_port, two native write ports. Results are those of the frame.
 
 `default_nettype none
 
@@ -91,14 +90,16 @@ module geometry_unit #(
 
     logic                    triangle_valid, triangle_ready, chunk;
     logic [127:0]            triangle;
-    logic [ADDRESS_BITS-1:0] vertex_base, mesh_first, mesh_last;
+    logic [ADDRESS_BITS-1:0] vertex_base, mesh_first;
+    // The word behind the mesh.
+    logic [ADDRESS_BITS:0]   mesh_past;
 
     assign mesh_first = parameters.mesh[4 +: ADDRESS_BITS];
 
-    always_ff @(posedge clk) mesh_last <= mesh_first + parameters.mesh_bytes[4 +: ADDRESS_BITS] - 1'b1;
+    always_ff @(posedge clk) mesh_past <= {1'b0, mesh_first} + parameters.mesh_bytes[4 +: ADDRESS_BITS+1];
 
     mesh_walk #(.ADDRESS_BITS(ADDRESS_BITS)) mesh_walk (
-        .clk, .rst(rst || restart), .start(state == BEGIN), .first(mesh_first), .last(mesh_last), .drained,
+        .clk, .rst(rst || restart), .start(state == BEGIN), .first(mesh_first), .past(mesh_past), .drained,
         .busy(walk_busy), .error(mesh_error), .chunk, .vertex_base,
         .ask_valid(ask_valid[0]), .ask_ready(ask_ready[0]), .ask_addr(ask_addr[0 +: ADDRESS_BITS]),
         .data_valid(data_valid[0]), .data_ready(data_ready[0]), .data(data[0 +: 128]),
@@ -210,16 +211,19 @@ module geometry_unit #(
     assign hurry       = state == FINISH || state == IDLE;
     assign write_ready = write_descriptor ? descriptors_ready : lists_ready;
 
-    // Descriptors follow each other in memory and lists do not: neither waits for the other's turns.
+    // Descriptors follow each other in memory, lists do not: ports of their own keep their bank turns apart.
+    assign descriptors_write_request.wdata_strobe = '1;
+
+    /* verilator lint_off PINCONNECTEMPTY */
     write_port #(.ADDRESS_BITS(ADDRESS_BITS)) descriptors_port (
         .clk, .rst, .hurry, .idle(writes_idle[0]),
         .in_valid(write_valid && write_descriptor), .in_ready(descriptors_ready), .in_addr(write_addr), .in_data(write_data),
         .in_strobe(write_strobe),
         .cmd_valid(descriptors_write_request.cmd_valid), .cmd_ready(descriptors_write_answer.cmd_ready),
         .cmd_addr(descriptors_write_request.cmd_addr), .wdata_valid(descriptors_write_request.wdata_valid),
-        .wdata_ready(descriptors_write_answer.wdata_ready), .wdata(descriptors_write_request.wdata),
-        .wdata_strobe(descriptors_write_request.wdata_strobe)
+        .wdata_ready(descriptors_write_answer.wdata_ready), .wdata(descriptors_write_request.wdata), .wdata_strobe()
     );
+    /* verilator lint_on PINCONNECTEMPTY */
 
     write_port #(.ADDRESS_BITS(ADDRESS_BITS)) lists_port (
         .clk, .rst, .hurry, .idle(writes_idle[1]),
@@ -231,7 +235,7 @@ module geometry_unit #(
         .wdata_strobe(lists_write_request.wdata_strobe)
     );
 
-    // Triangles between the walk and the place where they end.
+    // Triangles between the walk and their end.
     logic [FLIGHT_BITS-1:0] flight;
     logic                   came, was_unseen, was_culled, was_kept, was_exception;
 

@@ -1,12 +1,12 @@
-// Walks through a mesh in memory (docs/formats.md) and gives out its triangles, chunk by chunk.
+// Walks through a mesh in memory (docs/formats.md): its triangles, chunk by chunk.
 //
-// Reads words of 16 bytes by a client of read_port: a chunk's header, then its triangles one after the other; the
-// vertices between them are read by whoever needs them, from `vertex_base` on, which belongs to the triangles that are
-// out. So the next chunk begins only when the pipeline behind is `drained`: some hundred clocks a chunk of up to 65,535
-// vertices. Throughput within a chunk: a triangle a clock, if memory gives it.
+// Reads words of 16 bytes as a client of read_port: a chunk's header, then its triangles one after the other. The vertices of the
+// chunk, from `vertex_base` on, are read by the vertex stage; they belong to the triangles that are out, so the next chunk begins
+// only when the pipeline behind is `drained`: some hundred clocks a chunk of up to 65,535 vertices. Throughput within a chunk: a
+// triangle a clock, as far as memory keeps up.
 //
-// `start` (one clock, not while `busy`) takes the mesh from `first`, the word of its first chunk, to `last`, its last word.
-// A chunk that has no vertex or does not end by `last` ends the walk with `error`, which stays until the next start.
+// `start` (one clock, not while `busy`) begins at `first`, the word of the mesh's first chunk; `past` is the word behind the mesh.
+// A chunk without vertices or beyond `past` ends the walk with `error`, which holds until the next start.
 
 `default_nettype none
 
@@ -17,7 +17,7 @@ module mesh_walk #(
     input  wire                     rst,
     input  wire                     start,
     input  wire  [ADDRESS_BITS-1:0] first,
-    input  wire  [ADDRESS_BITS-1:0] last,
+    input  wire  [ADDRESS_BITS:0]   past,
     input  wire                     drained,
     output logic                    busy,
     output logic                    error,
@@ -54,7 +54,7 @@ module mesh_walk #(
     assign out_triangle = data;
     assign out_valid    = state == TRIANGLES && data_valid;
     assign data_ready   = state == HEADER || state == TRIANGLES && out_ready;
-    assign wild         = vertices == '0 || end_base > SUM_BITS'(last) + 1'b1;
+    assign wild         = vertices == '0 || end_base > SUM_BITS'(past);
 
     always_ff @(posedge clk) begin
         chunk <= 1'b0;
@@ -102,7 +102,7 @@ module mesh_walk #(
             default: begin
                 header   <= end_base[ADDRESS_BITS-1:0];
                 ask_addr <= end_base[ADDRESS_BITS-1:0];
-                if (drained) state <= error || end_base > SUM_BITS'(last) ? IDLE : ASK;
+                if (drained) state <= error || end_base >= SUM_BITS'(past) ? IDLE : ASK;
             end
         endcase
 

@@ -1,28 +1,26 @@
-// Draws a frame, band by band, from the lists that the geometry unit and the firmware have left in memory.
+// Draws a frame, band by band, from the descriptors and band lists of the geometry unit and of the firmware.
 //
 //                                                                             ┌─▶ write_port 0 ─┐
 //   lists, descriptors ──▶ list_reader ──▶ triangle_raster ──┬▶ band_buffer ──┴─▶ write_port 1 ─┴─▶ frame, depth
 //   pixels of a field, from a raymarcher ────────────────────┘
 //
-// `start` (one clock, not while `busy`) takes the parameters, which hold until `done` (one clock): everything is in memory
-// then. A band takes as long as its groups, and about 16 clocks to be handed over; descriptors are read ahead meanwhile, and the
-// first triangles of the next band prepared. `restart` may come at any time, and gives the frame up; the unit is to be started
-// again when it is `ready` and read_port has thrown away what was on its way.
+// `start` (one clock, not while `busy`) begins a frame. The parameters must hold until `done` (one clock), when the frame is in
+// memory. A band takes the time of its groups, and about 16 clocks to be handed over; meanwhile descriptors are read ahead and the
+// first triangles of the next band prepared. `restart` (any time) cancels the frame; the next start must wait until the unit is
+// `ready` and read_port is idle.
 //
-// With FIELDS, a frame that has a `field` takes it from a raymarcher beside the unit: `field_start` tells it to begin; when the triangles
-// of a band are drawn, `field_open` lets its pixels in until it says `field_done`, and `field_next` that the band is handed over.
-// `compose` says how the luminances of two eyes become colours, see band_flush.
+// With FIELDS, a frame with `field_source.enable` has the field of a raymarcher beside the unit. `start` begins it; when the
+// triangles of a band are drawn, `open` admits its pixels until it says `done`, and `next` hands the band over. `compose` maps the
+// luminances of two eyes to colours, see band_flush.
 //
-// `frame_slot` says which of two frame buffers the frame is for. Only words that can differ from what the frame before in the
-// same slot has left there are written, unless `whole` says that all are to be: nothing is known of the frame buffer (it is
-// fresh, or elsewhere; another size or another clear colour was drawn there, or somebody else has written to it). `with_depth`
-// implies `whole`, and so does a slot in which no frame is whole: after reset, and after a frame for it was given up.
+// `slot` is the number of the frame buffer. Only words that can differ from the last frame in the same slot are written. `whole`
+// writes all words; it is required when the contents of the frame buffer are unknown (a new buffer, another size or clear colour,
+// a write by the CPU). `depth` implies `whole`, and so does a slot without a complete frame: after reset, and after a cancelled
+// frame.
 //
 // Memory: three clients of a read_port, and two native write ports, one for the even banks of memory and one for the odd ones.
-// A port turns to another bank only when the bank before has done its work, a dozen clocks later, and a band's lines change the
-// bank at every step: while one port waits for its bank the other one has begun.
-// Counters run freely: clocks busy, clocks without a triangle in the walker, clocks in which it stood in a group, and
-// those of the band buffer.
+// A port turns to another bank only when the previous bank is idle, a dozen clocks later, and a band's lines change the bank at
+// every step: while one port waits for its bank, the other one writes.
 
 `default_nettype none
 
@@ -39,7 +37,7 @@ module raster_unit #(
     input  wire                       start,
     output logic                      busy,
     output logic                      done,
-    // With `done`: a list was damaged (list_reader), or what it named was no descriptor and was left out.
+    // With `done`: a list was damaged (list_reader), or an entry named no descriptor and was skipped.
     output logic                      list_error,
     input  wire triangle_registers_pkg::raster_flags_t flags,
     input  wire triangle_registers_pkg::raster_t parameters,
@@ -73,7 +71,7 @@ module raster_unit #(
     logic [9:0]              first_row;
     logic [ADDRESS_BITS-1:0] base, band_depth_base;
     logic                    clearing, flushed, in_memory, band_ready, begins, drawn, has_field;
-    // The band whose triangles are read: that which is drawn, or the next one.
+    // The band whose triangles are read: the drawn one, or the next.
     logic [9:0]              read_row;
     logic                    read_odd;
 
@@ -133,13 +131,13 @@ module raster_unit #(
     triangle_pkg::descriptor_t descriptor;
     logic [(SMOOTH ? 289 : 1)-1:0] planes;
 
-    // What cannot be a descriptor is left out: it would be drawn beside the picture.
+    // A descriptor beyond the picture is skipped.
     logic stray, list_damaged;
 
     assign stray = descriptor.group_left > descriptor.group_start || descriptor.group_start > descriptor.group_right
                 || descriptor.group_right >= stride;
 
-    // The end of the band that is read waits until it is that which is drawn.
+    // The end of the band that is read waits until that band is drawn.
     assign triangle_valid = item_valid && !band_ends && !stray;
     assign item_ready     = band_ends ? read_odd == band[0] : stray || triangle_ready;
     assign drawn          = read_odd != band[0] && raster_idle;
@@ -170,7 +168,7 @@ module raster_unit #(
     );
 
     // In each band first the triangles, then the field.
-    logic            group_valid, group_ready, walking, candidate;
+    logic            group_valid, group_ready;
     logic            drawn_valid, drawn_ready;
     logic [10:0]     drawn_row;
     logic [5:0]      drawn_line;
@@ -186,15 +184,15 @@ module raster_unit #(
     logic [8*18-1:0] group_codes;
     logic [8*16-1:0] group_colours;
 
-    /* verilator lint_off PINCONNECTEMPTY */
+    triangle_registers_pkg::events_t walk_events, band_events;
+
     triangle_raster #(.SMOOTH(SMOOTH)) triangle_raster (
-        .clk, .rst(rst || restart), .odd(band[0]), .rows, .stride, .idle(raster_idle), .walking, .candidate, .stalled(),
+        .clk, .rst(rst || restart), .odd(band[0]), .rows, .stride, .idle(raster_idle), .events(walk_events),
         .triangle_valid, .triangle_ready, .triangle_y0(read_row), .triangle_odd(read_odd), .triangle_descriptor(descriptor),
         .triangle_planes(planes),
         .group_valid(drawn_valid), .group_ready(drawn_ready), .group_row(drawn_row), .group_line(drawn_line),
         .group_column(drawn_column), .group_mask(drawn_mask), .group_codes(drawn_codes), .group_colours(drawn_colours)
     );
-    /* verilator lint_on PINCONNECTEMPTY */
 
     if (FIELDS) begin : meeting
         always_comb begin
@@ -230,8 +228,6 @@ module raster_unit #(
     logic [127:0]            word_data;
     logic [1:0]              port_ready, port_idle;
 
-    triangle_registers_pkg::events_t band_events;
-
     band_buffer #(.ADDRESS_BITS(ADDRESS_BITS), .STEREO(FIELDS)) band_buffer (
         .clk, .rst, .restart, .clearing, .flushed,
         .group_valid, .group_ready, .group_row, .group_line, .group_column, .group_mask, .group_halves, .group_codes, .group_colours,
@@ -246,12 +242,16 @@ module raster_unit #(
     assign word_ready = port_ready[odd_bank];
     assign in_memory  = flushed && &port_idle;
 
+    assign even_write_request.wdata_strobe = '1;
+    assign odd_write_request.wdata_strobe  = '1;
+
+    /* verilator lint_off PINCONNECTEMPTY */
     write_port #(.ADDRESS_BITS(ADDRESS_BITS)) even_port (
         .clk, .rst, .hurry(1'b1), .idle(port_idle[0]),
         .in_valid(word_valid && !odd_bank), .in_ready(port_ready[0]), .in_addr(word_addr), .in_data(word_data), .in_strobe('1),
         .cmd_valid(even_write_request.cmd_valid), .cmd_ready(even_write_answer.cmd_ready), .cmd_addr(even_write_request.cmd_addr),
         .wdata_valid(even_write_request.wdata_valid), .wdata_ready(even_write_answer.wdata_ready),
-        .wdata(even_write_request.wdata), .wdata_strobe(even_write_request.wdata_strobe)
+        .wdata(even_write_request.wdata), .wdata_strobe()
     );
 
     write_port #(.ADDRESS_BITS(ADDRESS_BITS)) odd_port (
@@ -259,14 +259,13 @@ module raster_unit #(
         .in_valid(word_valid && odd_bank), .in_ready(port_ready[1]), .in_addr(word_addr), .in_data(word_data), .in_strobe('1),
         .cmd_valid(odd_write_request.cmd_valid), .cmd_ready(odd_write_answer.cmd_ready), .cmd_addr(odd_write_request.cmd_addr),
         .wdata_valid(odd_write_request.wdata_valid), .wdata_ready(odd_write_answer.wdata_ready),
-        .wdata(odd_write_request.wdata), .wdata_strobe(odd_write_request.wdata_strobe)
+        .wdata(odd_write_request.wdata), .wdata_strobe()
     );
+    /* verilator lint_on PINCONNECTEMPTY */
 
     always_comb begin
-        events = band_events;
-        events.cycles_raster  = busy;
-        events.cycles_walking = walking;
-        events.cycles_empty   = walking && !candidate;
+        events = walk_events | band_events;
+        events.cycles_raster = busy;
     end
 
     wire _unused_parameters = &{1'b0, parameters};

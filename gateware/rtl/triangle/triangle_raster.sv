@@ -4,20 +4,18 @@
 //   triangle ──▶│ band_entry │────▶│ walker │────▶│ lanes │────▶│ skid_buffer │──▶ group
 //               └────────────┘     └────────┘     └───────┘     └─────────────┘
 //
-// With SMOOTH, the planes of a triangle go with it, and lane_shades is between the lanes and the buffer: latency 25.
+// With SMOOTH, a triangle carries its colour planes, and lane_shades stands between the lanes and the buffer: latency 25.
 //
 // A group is {line = y - y0, column = x / 8, row address in the band = line * stride + column, mask, eight depth codes u18, eight
-// colours RGB565}, lane 0 (the leftmost) in the lowest bits, mask never 0. A triangle gives each of its groups once; triangles
-// keep their order.
+// colours RGB565}, lane 0 (the leftmost) in the lowest bits, mask never 0. Each group of a triangle appears once; triangles keep
+// their order.
 //
 // Streams are valid/ready with a register between any two readies. Latency 19 clocks from a descriptor to its first group.
-// Throughput: a group of the walk a clock, at most a triangle in 8 clocks. A band's first row `triangle_y0` comes with each of
-// its triangles, and so does `triangle_odd`, which tells it from the bands before and after: triangles of the next band may
-// come and are prepared, but wait until `odd`, that of the band that is drawn, is theirs. `idle` is high when nothing of that
-// band is inside, and low from the clock after its descriptor was taken until its last group was taken. `rows` of a band and
-// `stride` (groups in a line: 40, 80 or 160) hold while triangles are inside. For counters: `walking` in clocks in which the
-// walker is at a group, `candidate` in those of them in which it goes to the lanes, `stalled` in clocks in which a group waits to
-// be taken.
+// Throughput: a group of the walk a clock, at most a triangle in 8 clocks. `triangle_y0`, the band's first row, comes with each
+// triangle, and so does `triangle_odd`, the parity of its band. Triangles of the next band are accepted and prepared, but wait
+// until `odd`, the parity of the band that is drawn, matches theirs. `idle` is low from the clock after a descriptor of the drawn
+// band is taken until its last group is taken. `rows` of a band and `stride` (groups of a line: 40, 80 or 160) must hold while
+// triangles are inside.
 
 `default_nettype none
 
@@ -32,9 +30,7 @@ module triangle_raster #(
     input  wire  [5:0]                     rows,
     input  wire  [7:0]                     stride,
     output logic                           idle,
-    output logic                           walking,
-    output logic                           candidate,
-    output logic                           stalled,
+    output triangle_registers_pkg::events_t events,
     // Descriptors.
     input  wire                            triangle_valid,
     output logic                           triangle_ready,
@@ -57,14 +53,18 @@ module triangle_raster #(
     logic                   placed_valid, placed_ready, placed_odd;
     raster_pkg::placed_t    placed;
     logic [PLANES_BITS-1:0] placed_planes;
-    logic                   walked_valid, walked_ready;
+    logic                   walking, walked_valid, walked_ready;
     raster_pkg::candidate_t walked;
     logic [VALUES_BITS-1:0] walked_light;
 
-    assign waits     = placed_odd != odd;
-    assign idle      = !holds[odd] && walker_idle && lanes_idle && shades_idle && !group_valid;
-    assign candidate = walked_valid && walked_ready;
-    assign stalled   = group_valid && !group_ready;
+    assign waits = placed_odd != odd;
+    assign idle  = !holds[odd] && walker_idle && lanes_idle && shades_idle && !group_valid;
+
+    always_comb begin
+        events = '0;
+        events.cycles_walking = walking;
+        events.cycles_empty   = walking && !(walked_valid && walked_ready);
+    end
 
     band_entry #(.SMOOTH(SMOOTH)) band_entry (
         .clk, .rst, .rows, .holds,

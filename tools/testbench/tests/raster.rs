@@ -61,8 +61,8 @@ struct Counts {
     clocks: u64,
     /// Clocks in which the walker was at a group.
     walked: u64,
-    /// Groups that went to the lanes.
-    candidates: u64,
+    /// Those of them in which no group went to the lanes.
+    empty: u64,
     /// Groups that came out.
     groups: u64,
     pixels: u64,
@@ -77,7 +77,7 @@ struct Bench {
     band: [Port; 3],
     idle: Port,
     walking: Port,
-    candidate: Port,
+    empty: Port,
     counts: Counts,
 }
 
@@ -110,8 +110,8 @@ impl Bench {
             ),
             band: ["triangle_y0", "rows", "stride"].map(|name| module.port(name)),
             idle: module.port("idle"),
-            walking: module.port("walking"),
-            candidate: module.port("candidate"),
+            walking: module.port("events.cycles_walking"),
+            empty: module.port("events.cycles_empty"),
             module,
             counts: Counts::default(),
         }
@@ -144,7 +144,7 @@ impl Bench {
             self.source.sample(&self.module);
             self.sink.sample(&self.module);
             self.counts.walked += self.module.value(self.walking);
-            self.counts.candidates += self.module.value(self.candidate);
+            self.counts.empty += self.module.value(self.empty);
             self.module.clock();
         }
         self.counts.clocks += self.module.cycles() - start;
@@ -702,9 +702,9 @@ fn a_sphere_is_walked_efficiently() {
             counts.entries,
             counts.pixels,
             counts.walked,
-            counts.walked - counts.candidates,
-            counts.candidates,
-            counts.candidates - counts.groups,
+            counts.empty,
+            counts.walked - counts.empty,
+            counts.walked - counts.empty - counts.groups,
             rate(counts.groups),
             rate(counts.walked),
             rate(counts.clocks),
