@@ -32,20 +32,20 @@ def main():
                         help="optional blocks of this build (default: all)")
     parser.add_argument("--smooth", action="store_true", help="build smooth shading into the triangle engine")
     parser.add_argument("--fields", choices=list(BUILDS),
-                        help="what the raymarcher is built for (default: all; of the urbana, which has no room for that: faces)")
+                        help="build of the raymarcher (default: all; for the urbana, with less room: faces)")
     arguments = parser.parse_args()
     logging.getLogger().setLevel(logging.WARNING)
     # The BIOS build calls meson and ninja of the virtual environment that runs this.
     os.environ["PATH"] = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
 
-    # LiteX asks git which version of it this is, and would be told this project's.
+    # LiteX asks git for its own version, and would get that of this project.
     os.environ["GIT_CEILING_DIRECTORIES"] = sys.prefix
 
     full = make_soc("virtual", 0, OPTIONAL_BLOCKS)
     full.finalize()
     build_id = register_map.build_id(full)
     for path in packages.stale(full):
-        parser.error(f"{path} differs from the descriptions: `python -m glint_soc.packages` writes it")
+        parser.error(f"{path} differs from the descriptions: `{packages.WRITER}` writes it")
 
     fields = BUILDS[arguments.fields or {"virtual": "all", "urbana": "faces"}[arguments.board]]
     soc = make_soc(arguments.board, build_id, arguments.blocks, arguments.smooth, fields)

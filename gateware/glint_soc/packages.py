@@ -1,26 +1,12 @@
-"""Writes the SystemVerilog packages that follow from the shared constants and the blocks' descriptions: `python -m glint_soc.packages [--check]`."""
-
-import argparse
-import logging
-import sys
+"""The SystemVerilog packages that follow from the shared constants and the blocks' descriptions."""
 
 from . import constants
 from .register_map import OPTIONAL_BLOCKS, PINNED
 from .rtl import RTL
 from .virtual import VirtualSoC
 
-
-def packages(soc):
-    """Returns the text of each generated file of a full build."""
-    blocks = [getattr(soc, name) for name in PINNED if hasattr(soc, name)]
-    found = [block.package for block in blocks if hasattr(block, "package")]
-    shared = {RTL / folder / f"{name}.sv": text for (folder, name), text in constants.packages().items()}
-    return shared | {RTL / package.block / f"{package.name}.sv": package.text() for package in found}
-
-
-def stale(soc):
-    """Returns the generated files that differ from the descriptions."""
-    return [path for path, text in packages(soc).items() if not path.exists() or path.read_text() != text]
+WRITER = ".venv/bin/python gateware/tests/run.py --packages"
+"""The command that writes them."""
 
 
 def full_soc():
@@ -28,21 +14,20 @@ def full_soc():
     return VirtualSoC(0, OPTIONAL_BLOCKS)
 
 
-def main():
-    """Writes or checks."""
-    parser = argparse.ArgumentParser(prog="python -m glint_soc.packages", description=__doc__)
-    parser.add_argument("--check", action="store_true", help="write nothing, and fail where a file differs")
-    arguments = parser.parse_args()
-    logging.disable(logging.INFO)
-    soc = full_soc()
-    texts = packages(soc)
-    for path in stale(soc):
-        print(path.relative_to(RTL.parent.parent))
-        if not arguments.check:
-            path.write_text(texts[path])
-    if arguments.check and stale(soc):
-        sys.exit(f"out of date: `{parser.prog}` writes them")
+def stale(soc):
+    """Returns the texts of the files that differ from the descriptions of a full build, by path."""
+    blocks = [getattr(soc, name) for name in PINNED if hasattr(soc, name)]
+    packages = [block.package for block in blocks if hasattr(block, "package")]
+    texts = {
+        **{RTL / folder / f"{name}.sv": text for (folder, name), text in constants.packages().items()},
+        **{RTL / package.block / f"{package.name}.sv": package.text() for package in packages},
+    }
+    return {path: text for path, text in texts.items() if not path.exists() or path.read_text() != text}
 
 
-if __name__ == "__main__":
-    main()
+def write(soc):
+    """Writes these files and returns their paths."""
+    texts = stale(soc)
+    for path, text in texts.items():
+        path.write_text(text)
+    return list(texts)

@@ -1,7 +1,7 @@
 """Packed structs that a block's description and its RTL share, connected by the names of their members.
 
 A description builds each `Struct` from the signals of its registers. `Package` writes the SystemVerilog type of each struct
-to a package in the block's RTL folder, so that nobody types the place or the width of a member. `python -m glint_soc.packages`
+to a package in the block's RTL folder, so that place and width of a member are never typed. `gateware/tests/run.py --packages`
 writes the packages of all blocks.
 """
 
@@ -104,8 +104,8 @@ class Package:
             *(struct.typedef() for struct in self._structs),
         ]
         return "\n".join([
-            f"// Generated from gateware/glint_soc/{self.block}.py by `python -m glint_soc.packages`. Do not edit.",
-            f"// Numbers and types of the block's ports. docs/registers.md describes the registers.",
+            f"// Generated from gateware/glint_soc/{self.block}.py by `gateware/tests/run.py --packages`. Do not edit.",
+            "// Numbers and types of the block's ports. docs/registers.md describes the registers.",
             "",
             "`default_nettype none",
             "",

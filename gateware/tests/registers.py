@@ -9,7 +9,7 @@ from glint_soc.packed import Enumeration, Struct
 def check_packages():
     """The committed SystemVerilog packages are those of the descriptions."""
     stale = packages.stale(packages.full_soc())
-    return [f"{path} is out of date: `python -m glint_soc.packages` writes it" for path in stale]
+    return [f"{path} is out of date: `{packages.WRITER}` writes it" for path in stale]
 
 
 def check_struct():

@@ -3,6 +3,8 @@
     python gateware/tests/run.py           runs everything, one line a test; ends with 1 if anything failed
     python gateware/tests/run.py --models [NAME ...]
                                            builds what the tests in tools/testbench need instead, or only these modules of it
+    python gateware/tests/run.py --packages
+                                           writes the SystemVerilog packages that follow from the blocks' descriptions instead
     python gateware/tests/run.py --size NAME
                                            prints what a module, or `soc`, costs on the FPGA instead, as JSON:
                                            `cargo xtask resources` makes tables of it
@@ -23,6 +25,7 @@ import memory_bridge  # noqa: E402
 import size  # noqa: E402
 import tables  # noqa: E402
 import urbana  # noqa: E402
+from glint_soc import packages  # noqa: E402
 from modules import MODULES  # noqa: E402
 from tools import ToolError, prepare_yosys  # noqa: E402
 from verilate import module as verilated_module  # noqa: E402
@@ -45,7 +48,7 @@ def check(name, action):
 
 
 def module_checks():
-    """Yields what is checked of the modules, as functions that return whether they failed."""
+    """Yields the checks of the modules, as functions that return whether they failed."""
     for module in MODULES:
         for name, parameters in module.builds().items():
             yield partial(check, f"{name}: lint", partial(run_lint, module, parameters))
@@ -104,15 +107,25 @@ def build_models(names):
     return run_all(build for module in chosen for build in model_builds(module))
 
 
+def write_packages():
+    """Writes the packages that differ from the descriptions. Returns whether that failed: it does not."""
+    for path in packages.write(packages.full_soc()):
+        print(path, flush=True)
+    return False
+
+
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     what = parser.add_mutually_exclusive_group()
     what.add_argument("--size", metavar="NAME", help="print a size instead")
     what.add_argument("--models", nargs="*", metavar="NAME", choices=[module.top for module in MODULES],
                       help="build what the tests in tools/testbench need instead, or only these modules of it")
+    what.add_argument("--packages", action="store_true", help="write the packages of the blocks' registers instead")
     arguments = parser.parse_args()
     logging.disable(logging.INFO) # LiteX describes all it does
-    if arguments.size:
+    if arguments.packages:
+        failed = write_packages()
+    elif arguments.size:
         failed = print_size(arguments.size)
     elif arguments.models is not None:
         failed = build_models(arguments.models)
