@@ -26,7 +26,7 @@ module band_entry_proof (
     triangle_pkg::descriptor_t descriptor;
     raster_pkg::placed_t       placed;
 
-    // What is dropped has a number that never comes.
+    // Dropped triangles have a number that never comes.
     assign number = in_kept ? kept : '1;
 
     always_comb begin

@@ -1,4 +1,4 @@
-// The flush of the band buffer, small: any of four rows in any spans, four words on their way, whoever takes them, any restart.
+// The flush of the band buffer, small: any of four rows in any spans, four words in flight, any back-pressure, any restart.
 //
 // The bank's row r holds r in every colour and r + 1 in every depth, and all of it is drawn. So the words that must come
 // are known: the colours of the rows in the spans, in their order, each once, and of each row both halves of the depths after the
@@ -10,7 +10,7 @@
 module band_flush_proof (
     input wire       clk,
     input wire       start,
-    // The rows to flush, given as spans when it pleases whoever gives them, in pieces or not.
+    // The rows to flush, as spans at any time, in pieces or not.
     input wire [3:0] rows,
     input wire       gives,
     input wire       in_pieces,
@@ -20,7 +20,7 @@ module band_flush_proof (
     input wire       out_ready
 );
     localparam logic [15:0] BACKGROUND = 16'h8421;
-    // Clocks that may pass without a word while memory takes whatever there is.
+    // Clocks that may pass without a word while memory takes all words.
     localparam int unsigned WITHIN = 10;
 
     (* anyconst *) logic [5:0] base, depth_base;
@@ -109,7 +109,7 @@ module band_flush_proof (
         end
     end
 
-    // What is to come: rows whose colours and whose depths have not, and the half of the next depths.
+    // Pending: rows whose colours and whose depths have not come, and the half of the next depths.
     logic [5:0] flush_base, flush_depth_base, expected_addr;
     logic [3:0] flush_rows, colour_rows, depth_rows;
     logic [1:0] colour_row, depth_row;

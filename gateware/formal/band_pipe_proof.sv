@@ -1,4 +1,4 @@
-// The read-modify-write hazard of the band buffer: what is drawn is what a memory without any latency would hold.
+// The read-modify-write hazard of the band buffer: the result equals that of a memory without latency.
 //
 // Two rows, any groups at any time, on a depth memory and its marks with band_bank's latencies. One pixel, any lane of any
 // row, is followed beside them: each group that is taken acts on it at once. When the pipe is empty both must agree.

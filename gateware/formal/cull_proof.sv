@@ -1,4 +1,4 @@
-// Culled triangles do not block: whatever the triangles are and in whatever order they come, one waits for the stage no
+// Culled triangles do not block: for any triangles in any order, one waits for the stage no
 // longer than 3 clocks in which the output is not held up, each leaves once, culled or drawn, and no stretch of 8 such
 // clocks passes without one that leaves while there are some.
 

@@ -30,7 +30,7 @@ module lanes_proof (
     logic [BITS-1:0]        kept = '0, went = '0, number;
     logic [2:0]             unseen = '0, refused = '0;
 
-    // What covers nothing has a number that never comes: two edges, of which one passes in lane 7 only and one in lane 0.
+    // Groups without coverage have a number that never comes: two edges, one passing in lane 7 only, one in lane 0 only.
     assign number = in_kept ? kept : '1;
 
     always_comb begin

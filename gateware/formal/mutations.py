@@ -149,12 +149,12 @@ MUTATIONS = {
         Mutation("skid_buffer.sv", "if (!out_valid || out_ready)", "if (1'b1)", "spans.valid_stays"),
         Mutation("skid_buffer.sv", "if (!out_valid || out_ready)", "if (!out_valid || out_ready || in_valid)",
                  "spans.payload_stable"),
-        # What was there is forgotten, or is that of another frame buffer.
+        # The last extent is lost, or is that of another frame buffer.
         _extents("united(earlier, now_3);", "now_3;", "in_order"),
         _extents("to       <= from;", "to       <= {1'b0, from[PLACE_BITS-2:0]};", "in_order"),
         # Lines that are overtaken while spans are not taken.
         _extents("        if (advance) begin", "        if (1'b1) begin", "none_left_out"),
-        # What is there now is left for the next band, or only its last group counts.
+        # The new extent stays for the next band, or only its last group counts.
         _extents("empties ? EMPTY : united", "united", "in_order"),
         _extents("united(kept[bank], {add_column, add_column})", "{add_column, add_column}", "in_order"),
         _extents("if (valid[4]) line_row", "line_row", "in_order"),
@@ -197,7 +197,7 @@ MUTATIONS = {
         _entry("if (next_free) begin", "if (1'b1) begin", "shown.valid_stays"),
         _entry("            out_triangle <= placed;\n        end", "        end\n        out_triangle <= placed;", "shown.payload_stable"),
         _entry("            if (pass == ROWS_KNOWN && count == '0) busy <= 1'b0;\n", "", "nothing_made_up"),
-        # What is held is overwritten by the next triangle.
+        # The held triangle is overwritten by the next one.
         _entry("pass != STALLS || !held_valid || !out_valid;", "1'b1;", "in_order"),
         _entry("if (pass == LAST) begin", "if (busy) begin", "in_order"),
         _entry("k == 2 ? ending[2] :", "k == 2 ? ending[1] :", "in_order"),

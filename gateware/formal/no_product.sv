@@ -1,4 +1,4 @@
-// In place of multiply_add, where all products are 0: what is added comes out, so it can be told whose it is.
+// Replaces multiply_add where all products are 0: the addend comes out and identifies its triangle.
 
 `default_nettype none
 

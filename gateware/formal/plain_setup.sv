@@ -1,4 +1,4 @@
-// In place of the parts of the setup that calculate: each passes on one of its operands, so it can be told whose the result is.
+// Replaces the arithmetic parts of the setup: each passes on one of its operands, which identifies the triangle.
 // In place of cull: a triangle is culled or goes on as its colour says, with its number in all that goes along.
 
 `default_nettype none

@@ -25,7 +25,7 @@ module setup_proof #(
 
     triangle_pkg::descriptor_t descriptor;
 
-    // What is culled has a number that never comes.
+    // Culled triangles have a number that never comes.
     assign number = in_culled ? '1 : kept;
 
     setup #(.LAST(4'd2)) dut (

@@ -1,4 +1,4 @@
-// Watches one stream: what is valid and not taken must be there again in the next clock, unchanged.
+// Watches one stream: an item that is valid and not taken must be valid again in the next clock, unchanged.
 //
 // GIVEN = 1 assumes it, for a stream that comes from outside the module under proof; GIVEN = 0 asserts it.
 

@@ -1,4 +1,4 @@
-"""The I2C master. The work is done by rtl/i2c; this is its register block."""
+"""Register block of the I2C master (rtl/i2c)."""
 
 from litex.gen import LiteXModule
 from litex.soc.interconnect.csr import CSRField, CSRStatus, CSRStorage
@@ -10,57 +10,57 @@ from .packed import Enumeration, Package, Struct
 from .rtl import add_sources
 
 BIT_RATE = 400_000
-"""Fast mode, in bits a second at most."""
+"""Most bits a second: fast mode."""
 
 OPERATIONS = Enumeration("operation", "Operations of a command.", {
-    "start": "a start, or within a transaction a repeated one",
-    "write": "sends the byte `argument`",
-    "read": "receives `argument` + 1 bytes",
-    "stop": "a stop",
+    "start": "start condition, or repeated start within a transaction",
+    "write": "send the byte `argument`",
+    "read": "receive `argument` + 1 bytes",
+    "stop": "stop condition",
 })
 
 ERRORS = Enumeration("error", "Errors.", {
     "none": "no error",
-    "address": "the byte after a start was not acknowledged",
+    "address": "the address byte was not acknowledged",
     "byte": "another byte was not acknowledged",
-    "clock": "SCL was held low longer than a device may stretch it",
-    "data": "SDA was low where it should have been free, and nine clocks did not free it",
-    "late": "a round was not over when the next one was due",
+    "clock": "a device held SCL low beyond the stretching limit",
+    "data": "a device held SDA low, and nine clocks did not release it",
+    "late": "a round was still running when the next one was due",
 })
 
 COMMANDS = 32
 ANSWERS = 128
-"""Places in the queues, but for the one that is about to leave."""
+"""Places in the queues, without the output register."""
 
 
 class I2CMaster(LiteXModule):
-    """Works off a queue of starts, bytes and stops on `pads`, and keeps the bytes that it has received."""
+    """Executes a queue of commands on `pads` and queues the received bytes."""
 
     def __init__(self, platform, pads, sys_clk_freq):
         self._command = CSRStorage(name="command", fields=[
-            CSRField("argument", size=8, offset=0, description="Of `write` and `read`."),
-            CSRField("operation", size=OPERATIONS.bits, offset=8, values=OPERATIONS.values, description="What to do."),
-            CSRField("more", offset=10, description="A `read` acknowledges its last byte too: another one follows."),
-        ], description=f"A write puts a command into the queue of {COMMANDS + 1}; one that has no room, see `status`, is lost.")
+            CSRField("argument", size=8, offset=0, description="Byte to send (`write`), or bytes to receive less one (`read`)."),
+            CSRField("operation", size=OPERATIONS.bits, offset=8, values=OPERATIONS.values, description="Operation."),
+            CSRField("more", offset=10, description="A `read` acknowledges its last byte too: another `read` follows."),
+        ], description=f"A write appends a command to the queue of {COMMANDS + 1}. A full queue drops the command, see `room`.")
         self._answer = CSRStatus(name="answer", fields=[
-            CSRField("byte", size=8, offset=0, description="The byte."),
-            CSRField("valid", offset=8, description="There is one."),
-        ], description=f"A read takes the next received byte out of the queue of {ANSWERS + 1}; the master waits while that is full.")
+            CSRField("byte", size=8, offset=0, description="Received byte."),
+            CSRField("valid", offset=8, description="`byte` is valid."),
+        ], description=f"A read removes the next byte from the queue of {ANSWERS + 1}. The master waits while the queue is full.")
         self._control = CSRStorage(name="control", fields=[
-            CSRField("clear", offset=0, pulse=True, description="Write 1 to let go of the wires, empty both queues and forget the error."),
+            CSRField("clear", offset=0, pulse=True, description="Write 1 to release the wires, empty both queues and clear the error."),
         ], description="Operation.")
         self._rounds = CSRStorage(name="rounds", fields=[
-            CSRField("period", size=24, offset=0, description="Clock cycles from the start of a round to that of the next, less one."),
-            CSRField("batch", size=4, offset=24, description="So many rounds, less one, are an interrupt."),
-            CSRField("repeats", offset=31, description="What is in the queue is done again and again, first a period after this is written."),
-        ], description="Rounds: one transaction, its commands in the queue before the first of them, at a steady pace.")
+            CSRField("period", size=24, offset=0, description="Clock cycles between the starts of two rounds, less one."),
+            CSRField("batch", size=4, offset=24, description="Rounds per interrupt, less one."),
+            CSRField("repeats", offset=31, description="Repeat the commands in the queue, first one period after this write."),
+        ], description="Rounds: one transaction, repeated at a steady pace. Its commands are queued before the first round.")
         self._status = CSRStatus(name="status", fields=[
             CSRField("scl", offset=0, description="State of the SCL wire."),
             CSRField("sda", offset=1, description="State of the SDA wire."),
-            CSRField("room", offset=2, description="There is room for a command."),
-            CSRField("busy", offset=3, description="Between a start and the end of the stop, or commands wait."),
-            CSRField("failed", offset=4, description="An error has ended the transaction; nothing more is done until `clear`."),
-            CSRField("error", size=ERRORS.bits, offset=8, values=ERRORS.values, description="The error."),
+            CSRField("room", offset=2, description="The queue has room for a command."),
+            CSRField("busy", offset=3, description="A transaction runs, or commands are queued."),
+            CSRField("failed", offset=4, description="An error has ended the transaction; commands wait for `clear`."),
+            CSRField("error", size=ERRORS.bits, offset=8, values=ERRORS.values, description="Error."),
         ], description="State.")
         # The engine's queues have a register behind them.
         self.constants = {
@@ -68,7 +68,7 @@ class I2CMaster(LiteXModule):
             "answer_places": (ANSWERS + 1, "Places in the queue of received bytes."),
         }
         self.ev = EventManager()
-        self.ev.ended = EventSourcePulse(name="ended", description="A stop has been made, with rounds the last one of a batch, or an error has ended the transaction.")
+        self.ev.ended = EventSourcePulse(name="ended", description="End of a transaction, or of the last round of a batch, or an error.")
         self.ev.finalize()
 
         # # #
@@ -81,7 +81,7 @@ class I2CMaster(LiteXModule):
         wires = {name: Signal() for name in ("scl_in", "scl_out", "sda_in", "sda_out")}
         self.comb += reset.eq(ResetSignal("sys") | self._control.fields.clear)
         self.specials += Instance("i2c_engine", name="i2c_core",
-            # Three phases are a bit: rounded up, so that it is not too fast.
+            # A bit has three phases. Rounded up: at most BIT_RATE.
             p_PHASE         = -int(-sys_clk_freq // (3 * BIT_RATE)),
             p_COMMANDS      = COMMANDS,
             p_ANSWERS       = ANSWERS,

@@ -1,7 +1,9 @@
-"""Who this gateware is: firmware compares it with what it was built for."""
+"""Identity of the gateware, which the firmware compares with its own."""
 
 from litex.gen import LiteXModule
 from litex.soc.interconnect.csr import CSRStatus
+
+from .register_map import OPTIONAL_BLOCKS
 
 
 class Identity(LiteXModule):
@@ -11,4 +13,5 @@ class Identity(LiteXModule):
         self.build_id = CSRStatus(
             32, reset=build_id, description="CRC-32 of the register map of the full build.")
         self.blocks = CSRStatus(
-            32, reset=blocks, description="Accelerators in this build, a bit each: 0 scan-out, 1 triangle engine.")
+            32, reset=blocks, description="Optional blocks of this build, a bit each: "
+            + ", ".join(f"{bit} `{name}`" for name, bit in OPTIONAL_BLOCKS.items()) + ".")

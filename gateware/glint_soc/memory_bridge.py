@@ -38,7 +38,7 @@ class MemoryBridge(LiteXModule):
 
         # Data of writes, from the command's acceptance to the moment the controller asks for them.
         self.writes = writes = stream.SyncFIFO([("data", _BUS_BITS), ("sel", _BUS_BITS // 8), ("beat", 2)], depth=8)
-        # Both words of a line: the controller does not wait for anybody to take them.
+        # Both words of a line: the controller sends them without back-pressure.
         self.reads = reads = stream.SyncFIFO([("data", _PORT_BITS)], depth=2)
         self.comb += [
             writes.sink.data.eq(bus.dat_w),
@@ -112,7 +112,7 @@ class MemoryBridge(LiteXModule):
                 NextState("DROP"),
             )
         )
-        # A burst that ended early leaves words that nobody wants.
+        # Discards the words left by a burst that ended early.
         fsm.act("DROP",
             reads.source.ready.eq(1),
             If((owed == 0) | ((owed == 1) & reads.source.valid),

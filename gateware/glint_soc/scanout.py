@@ -1,4 +1,4 @@
-"""Scan-out: shows a frame in DDR3 as 1280x720 video. The work is done by rtl/scanout; this is its register block."""
+"""Register block of the scan-out (rtl/scanout): shows a frame in DDR3 as 1280x720 video."""
 
 from litex.gen import LiteXModule
 from litex.soc.interconnect.csr import CSRField, CSRStatus, CSRStorage
@@ -12,7 +12,7 @@ IDENT = int.from_bytes(b"SCAN", "big")
 
 VIDEO_LAYOUT = [("hsync", 1), ("vsync", 1), ("de", 1), ("r", 8), ("g", 8), ("b", 8)]
 
-# Address bits of a 16-byte word in the CPU's 32-bit space. The memory port uses as many of the low ones as it has.
+# Address bits of a 16-byte word in the CPU's 32-bit space. The memory port uses the lowest of them.
 _WORD_ADDRESS_BITS = 28
 
 
@@ -33,38 +33,37 @@ class Scanout(LiteXModule):
             CSRField("width", size=12, offset=0, reset=SIZES[-1].width, description="Pixels of an output line."),
             CSRField("height", size=12, offset=12, reset=SIZES[-1].height, description="Lines of an output frame."),
             CSRField("scales", size=3, offset=24, reset=0b111,
-                     description="Bit k is set if the scale 2^k is supported."),
-        ], description="What this block can do.")
+                     description="Bit k: the scale 2^k is supported."),
+        ], description="Capabilities of this build.")
         self._control = CSRStorage(name="control", fields=[
-            CSRField("enable", description="1 shows the frame, 0 a black picture; the syncs run on. Taken over at vblank."),
+            CSRField("enable", description="1: show the frame. 0: black picture, syncs continue. Latched at vblank."),
         ], description="Operation.")
         self._status = CSRStatus(name="status", fields=[
-            CSRField("enabled", offset=0, description="The frame is shown (`enable` as taken over at the last vblank)."),
-            CSRField("fetching", offset=1, description="A source line is being read from memory."),
-            CSRField("scale", size=3, offset=4, description="The scale in force."),
+            CSRField("enabled", offset=0, description="The frame is shown: `enable` as latched at the last vblank."),
+            CSRField("fetching", offset=1, description="A source line is read from memory."),
+            CSRField("scale", size=3, offset=4, description="Scale, as latched at the last vblank."),
             CSRField("error", size=2, offset=8, values=[
                 ("0", "none", "no error"),
-                ("1", "scale", "`scale` was not 1, 2 or 4 at the last vblank; the scale before it stays in force"),
-                ("2", "underflow", "a line came late in the last frame (see `underflow_count`)"),
-            ], description="What went wrong, judged anew at each vblank."),
+                ("1", "scale", "`scale` was not 1, 2 or 4 at the last vblank; the previous scale stays"),
+                ("2", "underflow", "a line was late in the last frame, see `underflow_count`"),
+            ], description="Error of the last frame, updated at each vblank."),
         ], description="State.")
         self.ev = EventManager()
         self.ev.vblank = EventSourcePulse(
-            name="vblank", description="The vertical blanking has begun and `fb_next`, `scale` and `control` are in force.")
+            name="vblank", description="Start of vertical blanking: `fb_next`, `scale` and `control` are latched.")
         self.ev.finalize()
         self._fb_next = CSRStorage(32, name="fb_next", description="Byte address of the frame to show next, a multiple of "
-            "16 (the low four bits are ignored): (1280/scale) x (720/scale) pixels of RGB565, row by row. Taken over at "
-            "vblank; the whole of the next frame comes from it.")
-        self._scale = CSRStorage(3, reset=4, name="scale", description="Each pixel of the frame is shown as a square of "
-            "scale x scale: 4 for 320x180, 2 for 640x360, 1 for 1280x720. Taken over at vblank.")
-        self._fb_current = CSRStatus(32, name="fb_current", description="Byte address of the frame in force: being shown or, in "
-            "the vertical blanking, about to be. A frame that is neither this nor `fb_next` is free to be drawn on.")
+            "16 (the low four bits are ignored): (1280/scale) x (720/scale) pixels of RGB565, row by row. Latched at "
+            "vblank for the whole next frame.")
+        self._scale = CSRStorage(3, reset=4, name="scale", description="Enlargement: a pixel of the frame is shown as a square of "
+            "scale x scale pixels. 4 for 320x180, 2 for 640x360, 1 for 1280x720. Latched at vblank.")
+        self._fb_current = CSRStatus(32, name="fb_current", description="Byte address of the frame that is shown, in "
+            "vertical blanking the next one. A frame buffer that is neither this nor `fb_next` is free for drawing.")
         self._frame_count = CSRStatus(32, name="frame_count", description="Vertical blankings since reset, modulo 2^32.")
-        self._underflow_count = CSRStatus(32, name="underflow_count", description="Source lines that had not come from memory "
-            "when first needed, modulo 2^32. The line before is shown again (black if there is none in the frame).")
-        self._cycles_busy = CSRStatus(32, name="cycles_busy", description="Clock cycles in which a line was being fetched, "
-            "modulo 2^32.")
-        self._cycles_stalled = CSRStatus(32, name="cycles_stalled", description="Clock cycles in which memory did not take "
+        self._underflow_count = CSRStatus(32, name="underflow_count", description="Source lines that came too late from memory, "
+            "modulo 2^32. The previous line is shown again, or black in the first line.")
+        self._cycles_busy = CSRStatus(32, name="cycles_busy", description="Clock cycles of line fetches, modulo 2^32.")
+        self._cycles_stalled = CSRStatus(32, name="cycles_stalled", description="Clock cycles in which memory refused "
             "a command, modulo 2^32.")
         self._items_in = CSRStatus(32, name="items_in", description="Words of 16 bytes read from memory, modulo 2^32.")
         self._items_out = CSRStatus(32, name="items_out", description="Source lines fetched, modulo 2^32.")

@@ -1,4 +1,4 @@
-"""The triangle engine: from a mesh in DDR3 to a frame in DDR3. The work is done by rtl/triangle; this is its register block."""
+"""Register block of the triangle engine (rtl/triangle): draws a mesh in DDR3 to a frame in DDR3."""
 
 from litex.gen import LiteXModule
 from litex.soc.interconnect.csr import CSRField, CSRStatus, CSRStorage
@@ -13,7 +13,7 @@ from .rtl import add_sources
 
 IDENT = int.from_bytes(b"TRIA", "big")
 
-# A group of one pixel, or of one eye's half of it.
+# A group of one pixel, or of its half for one eye.
 _FIELD_GROUP = [("halves", 2), ("row", 11), ("line", 6), ("column", 8), ("mask", 8), ("code", 18), ("colour", 16)]
 
 _ADDRESS_BITS = 23
@@ -22,11 +22,11 @@ _COUNT_BITS = 20
 ERRORS = Enumeration("error", "Results of a pass.", {
     "none": "no error",
     "size": "`size` was 3",
-    "address": "a region was not at a multiple of 16 bytes, or not wholly in main memory; nothing was touched",
-    "busy": "started while it was busy; the pass under way went on",
-    "mesh": "a chunk without vertices, or one beyond `mesh_bytes`; what came before it was drawn",
-    "full": "no room for all descriptors, list entries or exceptions; what had room was drawn",
-    "list": "a list was longer than it may be, or named a descriptor beyond the count, or what was no descriptor; the frame is wrong",
+    "address": "a region was not aligned to 16 bytes or not within main memory; memory is unchanged",
+    "busy": "started while the same pass was running; that pass continued",
+    "mesh": "a chunk without vertices or beyond `mesh_bytes`; the chunks before it were drawn",
+    "full": "no room for all descriptors, list entries or exceptions; the others were drawn",
+    "list": "a band list was too long, or named a number that is no descriptor; the frame is wrong",
     "cancelled": "ended by `cancel`",
 })
 
@@ -37,9 +37,9 @@ class TriangleEngine(LiteXModule):
     """Draws meshes, in two passes that may run at the same time for two frames.
 
     `readers` are three native 128-bit LiteDRAM read ports (triangles, vertices, raster), `writers` four write ports
-    (descriptors, lists, frame in even and in odd banks), all in the domain `sys`. `clk`, to be driven, is its clock, or that
-    gated by `clock_enable`. `main_ram` is the region they reach. `smooth` builds smooth shading, `fields` the way in for a
-    raymarcher: `field`.
+    (descriptors, lists, frame in even and in odd banks), all in the domain `sys`. The parent drives `clk` with the clock of
+    `sys`, or with that clock gated by `clock_enable`. `main_ram` is the region that the ports reach. `smooth` builds smooth
+    shading, `fields` the input for a raymarcher, `field`.
     """
 
     def __init__(self, platform, readers, writers, main_ram, smooth=False, fields=False):
@@ -52,49 +52,48 @@ class TriangleEngine(LiteXModule):
 
         self._ident = CSRStatus(32, name="ident", reset=IDENT, description="`TRIA` in ASCII; 0 where the block is absent.")
         self._caps = CSRStatus(name="caps", fields=[
-            CSRField("sizes", size=3, offset=0, reset=0b111, description="Bit k is set if `size` k is supported."),
-            CSRField("gouraud", offset=3, reset=int(smooth), description="Smooth shading: colours can be interpolated between "
-                     f"vertices. A descriptor has {DESCRIPTOR_BYTES['smooth']} bytes then, and {DESCRIPTOR_BYTES['flat']} where it "
-                     "is not built."),
+            CSRField("sizes", size=3, offset=0, reset=0b111, description="Bit k: `size` k is supported."),
+            CSRField("gouraud", offset=3, reset=int(smooth), description="Smooth shading: colours interpolated between "
+                     f"vertices. A descriptor has {DESCRIPTOR_BYTES['smooth']} bytes with smooth shading, {DESCRIPTOR_BYTES['flat']} without."),
             CSRField("count_bits", size=6, offset=8, reset=_COUNT_BITS, description="Bits of a count of descriptors or entries."),
-        ], description="What this block can do.")
+        ], description="Capabilities of this build.")
         self._control = CSRStorage(name="control", fields=[
-            CSRField("cancel", offset=0, pulse=True, description="Write 1 to give up both passes. What is started after it waits "
-                     "until memory has answered what was asked and the band buffer is clear."),
+            CSRField("cancel", offset=0, pulse=True, description="Write 1 to cancel both passes. A pass started afterwards waits "
+                     "for outstanding reads and for a clear band buffer."),
         ], description="Operation.")
         self._status = CSRStatus(name="status", fields=[
             CSRField("geometry_busy", offset=0, description="The geometry pass runs."),
             CSRField("raster_busy", offset=1, description="The raster pass runs."),
             CSRField("geometry_error", size=ERRORS.bits, offset=4, values=ERRORS.values,
-                     description="How the geometry pass that was started last has ended."),
+                     description="Result of the last geometry pass."),
             CSRField("raster_error", size=ERRORS.bits, offset=8, values=ERRORS.values,
-                     description="How the raster pass that was started last has ended."),
+                     description="Result of the last raster pass."),
         ], description="State.")
         self.ev = EventManager()
-        self.ev.geometry = EventSourcePulse(name="geometry", description="The geometry pass has ended, see `status`; what it "
-            "made is in memory.")
+        self.ev.geometry = EventSourcePulse(name="geometry", description="The geometry pass has ended, see `status`; its "
+            "descriptors and lists are in memory.")
         self.ev.raster = EventSourcePulse(name="raster", description="The raster pass has ended, see `status`; the frame is in "
             "memory.")
         self.ev.finalize()
 
         # Geometry: parameters that hold while it runs.
         self._geometry = CSRStorage(name="geometry", fields=[
-            CSRField("start", offset=0, pulse=True, description="Write 1 to make descriptors and lists of the mesh."),
-            CSRField("cull", offset=1, description="Back faces are left out."),
+            CSRField("start", offset=0, pulse=True, description="Write 1 to start."),
+            CSRField("cull", offset=1, description="Cull back faces."),
             CSRField("size", size=SIZES.bits, offset=2, values=SIZES.values, description="Size of the picture."),
-            CSRField("smooth", offset=4, description="Colours come from the vertices. Without effect where `caps` has no `gouraud`."),
-        ], description="Starts the geometry pass. All other registers of geometry have to hold while it runs.")
+            CSRField("smooth", offset=4, description="Interpolate colours between vertices. No effect without `gouraud` in `caps`."),
+        ], description="Start of the geometry pass: descriptors and band lists of a mesh. The registers down to `depth_scale` must hold while it runs.")
         address = "Byte address, a multiple of 16, of"
         self._mesh = CSRStorage(32, name="mesh", description=f"{address} the mesh's first chunk.")
-        self._mesh_bytes = CSRStorage(32, name="mesh_bytes", description="Length of all its chunks, a multiple of 16.")
-        self._geometry_descriptors = CSRStorage(32, name="geometry_descriptors", description=f"{address} the descriptors to make.")
-        self._descriptor_limit = CSRStorage(_COUNT_BITS, name="descriptor_limit", description="Room there, "
+        self._mesh_bytes = CSRStorage(32, name="mesh_bytes", description="Length of all chunks of the mesh in bytes, a multiple of 16.")
+        self._geometry_descriptors = CSRStorage(32, name="geometry_descriptors", description=f"{address} the descriptors, written by the pass.")
+        self._descriptor_limit = CSRStorage(_COUNT_BITS, name="descriptor_limit", description="Most descriptors, "
                                              f"{DESCRIPTOR_BYTES['flat']} or {DESCRIPTOR_BYTES['smooth']} bytes each, see `caps`.")
-        self._geometry_lists = CSRStorage(32, name="geometry_lists", description=f"{address} the band lists to make.")
-        self._list_shift = CSRStorage(5, name="list_shift", description="A band's list has room for 4 << list_shift entries. "
-            "Of both passes.")
-        self._exceptions = CSRStorage(32, name="exceptions", description=f"{address} the list of exceptions to make.")
-        self._exception_limit = CSRStorage(_COUNT_BITS, name="exception_limit", description="Room there, 4 bytes each.")
+        self._geometry_lists = CSRStorage(32, name="geometry_lists", description=f"{address} the band lists, written by the pass.")
+        self._list_shift = CSRStorage(5, name="list_shift", description="Entries of a band list: at most 4 << list_shift, "
+            "in both passes.")
+        self._exceptions = CSRStorage(32, name="exceptions", description=f"{address} the list of exceptions, written by the pass.")
+        self._exception_limit = CSRStorage(_COUNT_BITS, name="exception_limit", description="Most exceptions, 4 bytes each.")
         self._scale_shift = CSRStorage(5, name="scale_shift", description="Scale shift f of rows U and V.")
         rows = {}
         for row, meaning in [("u", "U"), ("v", "V"), ("n", "n")]:
@@ -112,25 +111,24 @@ class TriangleEngine(LiteXModule):
         self._near_low = CSRStorage(32, name="near_low", description="Near plane, 37 fraction bits: bits 0 to 31.")
         self._near_high = CSRStorage(7, name="near_high", description="Near plane: bits 32 to 38.")
         self._depth_scale = CSRStorage(name="depth_scale", fields=[
-            CSRField("mantissa", size=17, offset=0, description="km, in 2^16 to 2^17 - 1."),
+            CSRField("mantissa", size=17, offset=0, description="km, 2^16 to 2^17 - 1."),
             CSRField("exponent", size=4, offset=17, description="ke, two's complement."),
         ], description="Depth scale K = km * 2^ke.")
 
         # Raster: parameters that hold while it runs.
         self._raster = CSRStorage(name="raster", fields=[
-            CSRField("start", offset=0, pulse=True, description="Write 1 to draw a frame from lists."),
+            CSRField("start", offset=0, pulse=True, description="Write 1 to start."),
             CSRField("size", size=SIZES.bits, offset=1, values=SIZES.values, description="Size of the picture."),
-            CSRField("first", offset=3, description="There is a first set of lists."),
-            CSRField("second", offset=4, description="There is a second set, drawn after the first in each band."),
-            CSRField("depth", offset=5, description="Depths go to memory as well; the whole frame is written then."),
-            CSRField("slot", offset=6, description="Which of two frame buffers `frame` is: what was drawn there is remembered."),
-            CSRField("whole", offset=7, description="Nothing is known of what the frame buffer holds: all of it is written. To be "
-                     "set for a buffer's first frame, after a cancelled one, after another size or `clear`, and after anybody else "
-                     "has written there."),
-        ], description="Starts the raster pass. All other registers of the raster have to hold while it runs.")
-        self._frame = CSRStorage(32, name="frame", description=f"{address} the frame to write, RGB565.")
-        self._depth = CSRStorage(32, name="depth", description=f"{address} the depths to write, 32 bits each.")
-        self._clear = CSRStorage(16, name="clear", description="Colour where nothing is drawn, RGB565.")
+            CSRField("first", offset=3, description="Draw the first set of lists."),
+            CSRField("second", offset=4, description="Draw the second set, in each band after the first."),
+            CSRField("depth", offset=5, description="Write depths too, and the whole frame."),
+            CSRField("slot", offset=6, description="Number of the frame buffer: the engine remembers the extents of the last frame in each slot."),
+            CSRField("whole", offset=7, description="Write all of the frame buffer. Required for the first frame of a buffer, "
+                     "after a cancelled frame, after a change of size or `clear`, and after writes by the CPU."),
+        ], description="Start of the raster pass: a frame from descriptors and band lists. The registers down to `count_1` must hold while it runs.")
+        self._frame = CSRStorage(32, name="frame", description=f"{address} the frame, RGB565, written by the pass.")
+        self._depth = CSRStorage(32, name="depth", description=f"{address} the depth codes, 32 bits each, written by the pass.")
+        self._clear = CSRStorage(16, name="clear", description="Background colour, RGB565.")
         for k, which in enumerate(["first", "second"]):
             for name, register in [
                 (f"lists_{k}", CSRStorage(32, name=f"lists_{k}", description=f"{address} the {which} set's lists.")),
@@ -139,41 +137,41 @@ class TriangleEngine(LiteXModule):
             ]:
                 setattr(self, f"_{name}", register)
 
-        # Results of the geometry pass that ended last.
+        # Results of the last geometry pass.
         results = {
             "triangles": "Triangles of the mesh.",
-            "unseen": "Triangles that were behind, or off one side of the picture.",
-            "culled": "Triangles left out by the setup: back faces, those without area or without a pixel's centre in their bounds.",
-            "descriptor_count": "Descriptors made.",
+            "unseen": "Triangles behind the near plane or beyond one side of the picture.",
+            "culled": "Triangles culled by the setup: back faces, triangles without area or without a pixel centre in their bounds.",
+            "descriptor_count": "Descriptors written.",
             "exception_count": "Triangles that need clipping, listed in `exceptions`.",
         }
         results = {name: CSRStatus(32, name=name, description=description) for name, description in results.items()}
         for name, register in results.items():
             setattr(self, f"_{name}", register)
         self.counters = Counters(self, {
-            "cycles_busy": "Clock cycles in which a pass ran.",
-            "cycles_stalled": "Clock cycles in which memory did not take a command.",
-            "stalled_reads": "Clock cycles in which memory did not take a read.",
-            "stalled_lists": "Clock cycles in which memory did not take a write of the geometry pass.",
-            "stalled_frame": "Clock cycles in which memory did not take a write of the raster pass.",
+            "cycles_busy": "Clock cycles of both passes.",
+            "cycles_stalled": "Clock cycles in which memory refused a command.",
+            "stalled_reads": "Clock cycles in which memory refused a read.",
+            "stalled_lists": "Clock cycles in which memory refused a write of the geometry pass.",
+            "stalled_frame": "Clock cycles in which memory refused a write of the raster pass.",
             "items_in": "Words of 16 bytes read from memory.",
             "items_out": "Words of 16 bytes written to memory.",
             "cycles_geometry": "Clock cycles of geometry passes.",
             "vertices": "Vertices transformed.",
             "cycles_raster": "Clock cycles of raster passes.",
-            "cycles_walking": "Clock cycles in which a triangle was walked over.",
-            "cycles_empty": "Those of them without a pixel.",
-            "groups": "Groups of eight pixels of which some are covered.",
-            "pixels_covered": ("Pixels covered by a triangle, each as often as it is.", 4),
-            "pixels_drawn": ("Pixels of which the depth was nearer, or as near.", 4),
-            "cycles_held": "Clock cycles in which a group waited for the one before it.",
+            "cycles_walking": "Clock cycles in which the walker was at a group of pixels.",
+            "cycles_empty": "Clock cycles in which the walker was at a group without a covered pixel.",
+            "groups": "Groups of eight pixels with a covered pixel.",
+            "pixels_covered": ("Pixels covered, for each triangle.", 4),
+            "pixels_drawn": ("Pixels that passed the depth test.", 4),
+            "cycles_held": "Clock cycles in which a group waited for an earlier group of the same pixels.",
             "cycles_memory": "Clock cycles in which the flush of a band waited for memory.",
-            "cycles_flush": "Clock cycles in which a drawn band waited for the flush of the one before it.",
+            "cycles_flush": "Clock cycles in which a drawn band waited for the flush of the band before it.",
         })
 
         # # #
 
-        # The engine stands still but for these times, so its clock may.
+        # The engine needs its clock only at these times.
         self.clk = Signal()
         self.clock_enable = Signal()
         recovering, linger = Signal(), Signal(5)
@@ -183,10 +181,10 @@ class TriangleEngine(LiteXModule):
                        | self._status.fields.geometry_busy | self._status.fields.raster_busy),
             self.clock_enable.eq(working | (linger != 0)),
         ]
-        # The last counts are some clocks late.
+        # The last events come some clocks after the end of a pass.
         self.sync += If(working, linger.eq(31)).Elif(linger != 0, linger.eq(linger - 1))
 
-        # What a raymarcher beside the engine says and hears: see rtl/triangle/raster_unit.sv.
+        # The link to a raymarcher: see rtl/triangle/raster_unit.sv.
         self.field = field = Record([
             ("enable", 1), ("compose", 2), ("start", 1), ("restart", 1), ("size", 2), ("open", 1), ("done", 1), ("next", 1),
             ("valid", 1), ("ready", 1), *_FIELD_GROUP])
@@ -223,12 +221,12 @@ class TriangleEngine(LiteXModule):
         counts = ("descriptor_count", "exception_count")
         results = Struct("results_t", "Results of the geometry pass.", {
             name: register.status[:_COUNT_BITS] if name in counts else register.status for name, register in results.items()})
-        status = Struct("status_t", "State of the engine. `done` is high for one clock, its errors count with it.", {
+        status = Struct("status_t", "State of the engine. `geometry_done` and `raster_done` are high for one clock; the errors are valid in that clock.", {
             name: Signal(name=f"engine_{name}") for name in (
                 "ready", "geometry_busy", "geometry_done", "mesh_error", "full", "raster_busy", "raster_done", "list_error")})
-        field_source = Struct("field_source_t", "A raymarcher to the engine.", {
+        field_source = Struct("field_source_t", "Link from a raymarcher to the engine.", {
             name: getattr(field, name) for name in ("enable", "compose", "done", "valid", *(name for name, _ in _FIELD_GROUP))})
-        field_sink = Struct("field_sink_t", "The engine to a raymarcher.", {
+        field_sink = Struct("field_sink_t", "Link from the engine to a raymarcher.", {
             name: getattr(field, name) for name in ("start", "open", "next", "ready")})
         read_ports = {name: _read_port(port) for name, port in zip(("mesh", "vertex", "raster"), readers, strict=True)}
         write_ports = {name: _write_port(port) for name, port in zip(

@@ -95,13 +95,13 @@ class VirtualSoC(GlintSoC):
         self.rom.mem.init = None
         self.sram.mem.init = None
         self.add_dram(self.ddrphy)
-        # What has no clock takes no time to simulate: half of the whole.
+        # A block without a clock takes no time to simulate: half of the whole.
         add_sources(platform, "clock_gate")
         for name in sorted({"triangle", "raymarch"} & self.blocks):
             block = getattr(self, name)
             self.specials += Instance("clock_gate", name=f"{name}_clock",
                 i_clk=self.crg.cd_sys.clk, i_enable=block.clock_enable, o_gated=block.clk)
-        # The BIOS tests 2 MiB unless told otherwise: minutes here.
+        # The BIOS tests 2 MiB by default: minutes here.
         self.add_constant("MEMTEST_DATA_SIZE", 8 * 1024)
         self.add_constant("MEMTEST_ADDR_SIZE", 8 * 1024)
         # The pins are there in every build, so that one harness fits all.

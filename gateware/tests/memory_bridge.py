@@ -1,4 +1,4 @@
-"""The memory bridge under random traffic, against a memory that is never twice equally fast."""
+"""The memory bridge under random traffic, against a memory of random latency."""
 
 import random
 from collections import deque
@@ -17,7 +17,7 @@ TRANSACTIONS = 250
 
 
 class Memory:
-    """A native port's other side: takes commands when it likes, and answers without asking whether it is convenient."""
+    """The memory's side of a native port: takes commands at random, and answers without back-pressure."""
 
     def __init__(self, bus, port, rng):
         self.bus = bus
@@ -35,7 +35,7 @@ class Memory:
         cycle, earliest = 0, 0
         previous = None
         while True:
-            # What the command channel shows must not change until it is taken, unless the bus gives the access up.
+            # A command must not change until it is taken, unless the bus withdraws the access.
             shown = None
             if (yield port.cmd.valid):
                 shown = ((yield port.cmd.we), (yield port.cmd.addr))
@@ -83,7 +83,7 @@ def merged(old, new, sel):
 
 
 def master(bus, memory, rng, errors, counts):
-    """Random reads, bursts, bursts given up, and writes; keeps its own picture of the memory."""
+    """Random reads, bursts, aborted bursts, and writes, against its own copy of the memory."""
     expected = list(memory.words)
 
     def beat():

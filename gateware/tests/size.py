@@ -1,4 +1,4 @@
-"""What a module, or the SoC, costs on a 7-series FPGA, by Yosys: no place and route, no vendor tool."""
+"""Resources of a module, or of the SoC, on a 7-series FPGA, by Yosys: no place and route, no vendor tool."""
 
 import json
 import os
@@ -14,7 +14,7 @@ SOC = "soc"
 _SOC_FILES = BUILD.parent / "urbana" / "gateware"
 _FOLDER = BUILD.parent / "size"
 
-# The cells of each resource. What is none of these is counted by its name.
+# The cells of each resource. Other cells are counted by their names.
 _RESOURCES = {"logic": r"LUT[1-6]|INV", "srl": r"SRL16E|SRLC32E", "lutram": r"RAM\d+[MX]\w*", "ff": r"(FD[RSCP]|LD[CP])E(_1)?",
               "dsp48": r"DSP48E1", "ramb36": r"RAMB36E1", "ramb18": r"RAMB18E1", "carry4": r"CARRY4"}
 
@@ -35,9 +35,9 @@ tee -q -o {folder}/path.txt ltp"""
 
 
 def measure(name):
-    """Returns a dictionary of what a block, a variant of one, or the SoC takes of each resource, and its longest path in cells.
+    """Returns the resources of a block, a variant of one, or the SoC, and its longest path in cells, as a dictionary.
 
-    What Yosys said stays in `target/gateware/size/NAME`; `path.txt` there names the cells of the path.
+    The output of Yosys stays in `target/gateware/size/NAME`; `path.txt` there names the cells of the path.
     """
     if name == SOC:
         return _measure("glint_urbana", urbana.synthesis_sources(_SOC_FILES), SOC, _MARKS, _SOC_FILES)
@@ -69,8 +69,8 @@ def _set(top, parameters):
 
 
 def sort_cells(cells, ignored=frozenset()):
-    """Sums the cells of a netlist by resource; LUT memories count as the LUTs that they take. What is no resource is
-    counted by its name, unless ignored."""
+    """Sums the cells of a netlist by resource; LUT memories count as the LUTs that they take. Other cells are
+    counted by their names, unless ignored."""
     resources, others = dict.fromkeys(_RESOURCES, 0), {}
     for cell, count in sorted(cells.items()):
         resource = next((resource for resource, pattern in _RESOURCES.items() if re.fullmatch(pattern, cell)), None)
@@ -104,7 +104,7 @@ def check_sample():
 
 
 def check_sorting():
-    """Cells are sorted by resource, and what is unknown is told."""
+    """Cells are sorted by resource, and unknown ones are reported."""
     cells = {"LUT1": 1, "LUT6": 2, "INV": 4, "SRL16E": 8, "SRLC32E": 16, "RAM32M": 3, "RAM64X1S": 5, "FDRE": 32, "FDPE": 64,
              "FDCE_1": 1, "LDCE": 2, "RAMB18E1": 3, "RAMB36E1": 4, "DSP48E1": 5, "CARRY4": 6, "MUXF7": 7, "$scopeinfo": 8,
              "FDX": 9}

@@ -1,4 +1,4 @@
-"""The tables of roots as Yosys reads them, which has its own way with reals, against whole numbers."""
+"""The tables of roots as Yosys computes them, from reals, against integer arithmetic."""
 
 import json
 from math import isqrt

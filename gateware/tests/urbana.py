@@ -75,7 +75,7 @@ def _ports(verilog):
 
 
 def check_constraints(xdc, _verilog, script):
-    """The input clock, the clock groups and the configuration are constrained; Vivado is told the part and the sources."""
+    """The input clock, the clock groups and the configuration are constrained; the script names the part and the sources."""
     problems = [f"not in the XDC: {line}" for line in _CONSTRAINTS if line not in xdc.splitlines()]
     for word in ("-part xc7s50csga324-1", "scanout.sv", "read_xdc glint_urbana.xdc", "write_bitstream"):
         if word not in script:

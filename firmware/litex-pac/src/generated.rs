@@ -238,7 +238,7 @@ pub mod identity {
             unsafe { Register::at(0xf000_0800) }
         }
 
-        /// `blocks`, 32 bits: Accelerators in this build, a bit each: 0 scan-out, 1 triangle engine.
+        /// `blocks`, 32 bits: Optional blocks of this build, a bit each: 0 `scanout`, 1 `triangle`, 2 `raymarch`.
         #[inline]
         #[must_use]
         pub const fn blocks(&self) -> Register<u32, ReadOnly> {
@@ -1477,7 +1477,7 @@ pub mod i2c {
             Self { _private: () }
         }
 
-        /// `command`, 11 bits: A write puts a command into the queue of 33; one that has no room, see `status`, is lost.
+        /// `command`, 11 bits: A write appends a command to the queue of 33. A full queue drops the command, see `room`.
         #[inline]
         #[must_use]
         pub const fn command(&self) -> Register<Command, ReadWrite> {
@@ -1485,7 +1485,7 @@ pub mod i2c {
             unsafe { Register::at(0xf000_2800) }
         }
 
-        /// `answer`, 9 bits: A read takes the next received byte out of the queue of 129; the master waits while that is full.
+        /// `answer`, 9 bits: A read removes the next byte from the queue of 129. The master waits while the queue is full.
         #[inline]
         #[must_use]
         pub const fn answer(&self) -> Register<Answer, ReadOnly> {
@@ -1501,7 +1501,7 @@ pub mod i2c {
             unsafe { Register::at(0xf000_2808) }
         }
 
-        /// `rounds`, 32 bits: Rounds: one transaction, its commands in the queue before the first of them, at a steady pace.
+        /// `rounds`, 32 bits: Rounds: one transaction, repeated at a steady pace. Its commands are queued before the first round.
         #[inline]
         #[must_use]
         pub const fn rounds(&self) -> Register<Rounds, ReadWrite> {
@@ -1557,7 +1557,7 @@ pub mod i2c {
     }
 
     impl Command {
-        /// `argument`, bits 7 to 0: Of `write` and `read`.
+        /// `argument`, bits 7 to 0: Byte to send (`write`), or bytes to receive less one (`read`).
         #[inline]
         #[must_use]
         pub const fn argument(self) -> u8 {
@@ -1571,7 +1571,7 @@ pub mod i2c {
             Self(self.0 & !0xff | value as u32 & 0xff)
         }
 
-        /// `operation`, bits 9 to 8: What to do.
+        /// `operation`, bits 9 to 8: Operation.
         #[inline]
         #[must_use]
         pub const fn operation(self) -> Operation {
@@ -1585,7 +1585,7 @@ pub mod i2c {
             Self(self.0 & !(0x3 << 8) | (value as u32 & 0x3) << 8)
         }
 
-        /// `more`, bit 10: A `read` acknowledges its last byte too: another one follows.
+        /// `more`, bit 10: A `read` acknowledges its last byte too: another `read` follows.
         #[inline]
         #[must_use]
         pub const fn more(self) -> bool {
@@ -1615,14 +1615,14 @@ pub mod i2c {
     }
 
     impl Answer {
-        /// `byte`, bits 7 to 0: The byte.
+        /// `byte`, bits 7 to 0: Received byte.
         #[inline]
         #[must_use]
         pub const fn byte(self) -> u8 {
             (self.0 & 0xff) as u8
         }
 
-        /// `valid`, bit 8: There is one.
+        /// `valid`, bit 8: `byte` is valid.
         #[inline]
         #[must_use]
         pub const fn valid(self) -> bool {
@@ -1645,7 +1645,7 @@ pub mod i2c {
     }
 
     impl Control {
-        /// `clear`, bit 0: Write 1 to let go of the wires, empty both queues and forget the error.
+        /// `clear`, bit 0: Write 1 to release the wires, empty both queues and clear the error.
         #[inline]
         #[must_use]
         pub const fn clear(self) -> bool {
@@ -1675,7 +1675,7 @@ pub mod i2c {
     }
 
     impl Rounds {
-        /// `period`, bits 23 to 0: Clock cycles from the start of a round to that of the next, less one.
+        /// `period`, bits 23 to 0: Clock cycles between the starts of two rounds, less one.
         #[inline]
         #[must_use]
         pub const fn period(self) -> u32 {
@@ -1689,7 +1689,7 @@ pub mod i2c {
             Self(self.0 & !0x00ff_ffff | value & 0x00ff_ffff)
         }
 
-        /// `batch`, bits 27 to 24: So many rounds, less one, are an interrupt.
+        /// `batch`, bits 27 to 24: Rounds per interrupt, less one.
         #[inline]
         #[must_use]
         pub const fn batch(self) -> u8 {
@@ -1703,7 +1703,7 @@ pub mod i2c {
             Self(self.0 & !(0xf << 24) | (value as u32 & 0xf) << 24)
         }
 
-        /// `repeats`, bit 31: What is in the queue is done again and again, first a period after this is written.
+        /// `repeats`, bit 31: Repeat the commands in the queue, first one period after this write.
         #[inline]
         #[must_use]
         pub const fn repeats(self) -> bool {
@@ -1747,28 +1747,28 @@ pub mod i2c {
             (self.0 >> 1) & 1 != 0
         }
 
-        /// `room`, bit 2: There is room for a command.
+        /// `room`, bit 2: The queue has room for a command.
         #[inline]
         #[must_use]
         pub const fn room(self) -> bool {
             (self.0 >> 2) & 1 != 0
         }
 
-        /// `busy`, bit 3: Between a start and the end of the stop, or commands wait.
+        /// `busy`, bit 3: A transaction runs, or commands are queued.
         #[inline]
         #[must_use]
         pub const fn busy(self) -> bool {
             (self.0 >> 3) & 1 != 0
         }
 
-        /// `failed`, bit 4: An error has ended the transaction; nothing more is done until `clear`.
+        /// `failed`, bit 4: An error has ended the transaction; commands wait for `clear`.
         #[inline]
         #[must_use]
         pub const fn failed(self) -> bool {
             (self.0 >> 4) & 1 != 0
         }
 
-        /// `error`, bits 10 to 8: The error.
+        /// `error`, bits 10 to 8: Error.
         #[inline]
         #[must_use]
         pub const fn error(self) -> Option<Error> {
@@ -1814,7 +1814,7 @@ pub mod i2c {
     }
 
     impl EvPending {
-        /// `ended`, bit 0: A stop has been made, with rounds the last one of a batch, or an error has ended the transaction.
+        /// `ended`, bit 0: End of a transaction, or of the last round of a batch, or an error.
         #[inline]
         #[must_use]
         pub const fn ended(self) -> bool {
@@ -1863,13 +1863,13 @@ pub mod i2c {
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     #[repr(u8)]
     pub enum Operation {
-        /// A start, or within a transaction a repeated one.
+        /// Start condition, or repeated start within a transaction.
         Start = 0,
-        /// Sends the byte `argument`.
+        /// Send the byte `argument`.
         Write = 1,
-        /// Receives `argument` + 1 bytes.
+        /// Receive `argument` + 1 bytes.
         Read = 2,
-        /// A stop.
+        /// Stop condition.
         Stop = 3,
     }
 
@@ -1904,10 +1904,10 @@ pub mod i2c {
         #[must_use]
         pub const fn text(self) -> &'static str {
             match self {
-                Self::Start => "a start, or within a transaction a repeated one",
-                Self::Write => "sends the byte `argument`",
-                Self::Read => "receives `argument` + 1 bytes",
-                Self::Stop => "a stop",
+                Self::Start => "start condition, or repeated start within a transaction",
+                Self::Write => "send the byte `argument`",
+                Self::Read => "receive `argument` + 1 bytes",
+                Self::Stop => "stop condition",
             }
         }
     }
@@ -1918,15 +1918,15 @@ pub mod i2c {
     pub enum Error {
         /// No error.
         None = 0,
-        /// The byte after a start was not acknowledged.
+        /// The address byte was not acknowledged.
         Address = 1,
         /// Another byte was not acknowledged.
         Byte = 2,
-        /// SCL was held low longer than a device may stretch it.
+        /// A device held SCL low beyond the stretching limit.
         Clock = 3,
-        /// SDA was low where it should have been free, and nine clocks did not free it.
+        /// A device held SDA low, and nine clocks did not release it.
         Data = 4,
-        /// A round was not over when the next one was due.
+        /// A round was still running when the next one was due.
         Late = 5,
     }
 
@@ -1967,11 +1967,11 @@ pub mod i2c {
         pub const fn text(self) -> &'static str {
             match self {
                 Self::None => "no error",
-                Self::Address => "the byte after a start was not acknowledged",
+                Self::Address => "the address byte was not acknowledged",
                 Self::Byte => "another byte was not acknowledged",
-                Self::Clock => "SCL was held low longer than a device may stretch it",
-                Self::Data => "SDA was low where it should have been free, and nine clocks did not free it",
-                Self::Late => "a round was not over when the next one was due",
+                Self::Clock => "a device held SCL low beyond the stretching limit",
+                Self::Data => "a device held SDA low, and nine clocks did not release it",
+                Self::Late => "a round was still running when the next one was due",
             }
         }
     }
@@ -2334,7 +2334,7 @@ pub mod scanout {
             unsafe { Register::at(0xf000_4800) }
         }
 
-        /// `caps`, 27 bits: What this block can do.
+        /// `caps`, 27 bits: Capabilities of this build.
         #[inline]
         #[must_use]
         pub const fn caps(&self) -> Register<Caps, ReadOnly> {
@@ -2382,7 +2382,7 @@ pub mod scanout {
             unsafe { Register::at(0xf000_4818) }
         }
 
-        /// `fb_next`, 32 bits: Byte address of the frame to show next, a multiple of 16 (the low four bits are ignored): (1280/scale) x (720/scale) pixels of RGB565, row by row. Taken over at vblank; the whole of the next frame comes from it.
+        /// `fb_next`, 32 bits: Byte address of the frame to show next, a multiple of 16 (the low four bits are ignored): (1280/scale) x (720/scale) pixels of RGB565, row by row. Latched at vblank for the whole next frame.
         #[inline]
         #[must_use]
         pub const fn fb_next(&self) -> Register<u32, ReadWrite> {
@@ -2390,7 +2390,7 @@ pub mod scanout {
             unsafe { Register::at(0xf000_481c) }
         }
 
-        /// `scale`, 3 bits: Each pixel of the frame is shown as a square of scale x scale: 4 for 320x180, 2 for 640x360, 1 for 1280x720. Taken over at vblank.
+        /// `scale`, 3 bits: Enlargement: a pixel of the frame is shown as a square of scale x scale pixels. 4 for 320x180, 2 for 640x360, 1 for 1280x720. Latched at vblank.
         #[inline]
         #[must_use]
         pub const fn scale(&self) -> Register<u8, ReadWrite> {
@@ -2398,7 +2398,7 @@ pub mod scanout {
             unsafe { Register::at(0xf000_4820) }
         }
 
-        /// `fb_current`, 32 bits: Byte address of the frame in force: being shown or, in the vertical blanking, about to be. A frame that is neither this nor `fb_next` is free to be drawn on.
+        /// `fb_current`, 32 bits: Byte address of the frame that is shown, in vertical blanking the next one. A frame buffer that is neither this nor `fb_next` is free for drawing.
         #[inline]
         #[must_use]
         pub const fn fb_current(&self) -> Register<u32, ReadOnly> {
@@ -2414,7 +2414,7 @@ pub mod scanout {
             unsafe { Register::at(0xf000_4828) }
         }
 
-        /// `underflow_count`, 32 bits: Source lines that had not come from memory when first needed, modulo 2^32. The line before is shown again (black if there is none in the frame).
+        /// `underflow_count`, 32 bits: Source lines that came too late from memory, modulo 2^32. The previous line is shown again, or black in the first line.
         #[inline]
         #[must_use]
         pub const fn underflow_count(&self) -> Register<u32, ReadOnly> {
@@ -2422,7 +2422,7 @@ pub mod scanout {
             unsafe { Register::at(0xf000_482c) }
         }
 
-        /// `cycles_busy`, 32 bits: Clock cycles in which a line was being fetched, modulo 2^32.
+        /// `cycles_busy`, 32 bits: Clock cycles of line fetches, modulo 2^32.
         #[inline]
         #[must_use]
         pub const fn cycles_busy(&self) -> Register<u32, ReadOnly> {
@@ -2430,7 +2430,7 @@ pub mod scanout {
             unsafe { Register::at(0xf000_4830) }
         }
 
-        /// `cycles_stalled`, 32 bits: Clock cycles in which memory did not take a command, modulo 2^32.
+        /// `cycles_stalled`, 32 bits: Clock cycles in which memory refused a command, modulo 2^32.
         #[inline]
         #[must_use]
         pub const fn cycles_stalled(&self) -> Register<u32, ReadOnly> {
@@ -2484,7 +2484,7 @@ pub mod scanout {
             ((self.0 >> 12) & 0xfff) as u16
         }
 
-        /// `scales`, bits 26 to 24: Bit k is set if the scale 2^k is supported.
+        /// `scales`, bits 26 to 24: Bit k: the scale 2^k is supported.
         #[inline]
         #[must_use]
         pub const fn scales(self) -> u8 {
@@ -2507,7 +2507,7 @@ pub mod scanout {
     }
 
     impl Control {
-        /// `enable`, bit 0: 1 shows the frame, 0 a black picture; the syncs run on. Taken over at vblank.
+        /// `enable`, bit 0: 1: show the frame. 0: black picture, syncs continue. Latched at vblank.
         #[inline]
         #[must_use]
         pub const fn enable(self) -> bool {
@@ -2537,28 +2537,28 @@ pub mod scanout {
     }
 
     impl Status {
-        /// `enabled`, bit 0: The frame is shown (`enable` as taken over at the last vblank).
+        /// `enabled`, bit 0: The frame is shown: `enable` as latched at the last vblank.
         #[inline]
         #[must_use]
         pub const fn enabled(self) -> bool {
             self.0 & 1 != 0
         }
 
-        /// `fetching`, bit 1: A source line is being read from memory.
+        /// `fetching`, bit 1: A source line is read from memory.
         #[inline]
         #[must_use]
         pub const fn fetching(self) -> bool {
             (self.0 >> 1) & 1 != 0
         }
 
-        /// `scale`, bits 6 to 4: The scale in force.
+        /// `scale`, bits 6 to 4: Scale, as latched at the last vblank.
         #[inline]
         #[must_use]
         pub const fn scale(self) -> u8 {
             ((self.0 >> 4) & 0x7) as u8
         }
 
-        /// `error`, bits 9 to 8: What went wrong, judged anew at each vblank.
+        /// `error`, bits 9 to 8: Error of the last frame, updated at each vblank.
         #[inline]
         #[must_use]
         pub const fn error(self) -> Option<Error> {
@@ -2604,7 +2604,7 @@ pub mod scanout {
     }
 
     impl EvPending {
-        /// `vblank`, bit 0: The vertical blanking has begun and `fb_next`, `scale` and `control` are in force.
+        /// `vblank`, bit 0: Start of vertical blanking: `fb_next`, `scale` and `control` are latched.
         #[inline]
         #[must_use]
         pub const fn vblank(self) -> bool {
@@ -2655,9 +2655,9 @@ pub mod scanout {
     pub enum Error {
         /// No error.
         None = 0,
-        /// `scale` was not 1, 2 or 4 at the last vblank; the scale before it stays in force.
+        /// `scale` was not 1, 2 or 4 at the last vblank; the previous scale stays.
         Scale = 1,
-        /// A line came late in the last frame (see `underflow_count`).
+        /// A line was late in the last frame, see `underflow_count`.
         Underflow = 2,
     }
 
@@ -2692,8 +2692,8 @@ pub mod scanout {
         pub const fn text(self) -> &'static str {
             match self {
                 Self::None => "no error",
-                Self::Scale => "`scale` was not 1, 2 or 4 at the last vblank; the scale before it stays in force",
-                Self::Underflow => "a line came late in the last frame (see `underflow_count`)",
+                Self::Scale => "`scale` was not 1, 2 or 4 at the last vblank; the previous scale stays",
+                Self::Underflow => "a line was late in the last frame, see `underflow_count`",
             }
         }
     }
@@ -2703,11 +2703,11 @@ pub mod scanout {
     pub struct Counters {
         /// Vertical blankings since reset, modulo 2^32.
         pub frame_count: u32,
-        /// Source lines that had not come from memory when first needed, modulo 2^32. The line before is shown again (black if there is none in the frame).
+        /// Source lines that came too late from memory, modulo 2^32. The previous line is shown again, or black in the first line.
         pub underflow_count: u32,
-        /// Clock cycles in which a line was being fetched, modulo 2^32.
+        /// Clock cycles of line fetches, modulo 2^32.
         pub cycles_busy: u32,
-        /// Clock cycles in which memory did not take a command, modulo 2^32.
+        /// Clock cycles in which memory refused a command, modulo 2^32.
         pub cycles_stalled: u32,
         /// Words of 16 bytes read from memory, modulo 2^32.
         pub items_in: u32,
@@ -2790,7 +2790,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5000) }
         }
 
-        /// `caps`, 14 bits: What this block can do.
+        /// `caps`, 14 bits: Capabilities of this build.
         #[inline]
         #[must_use]
         pub const fn caps(&self) -> Register<Caps, ReadOnly> {
@@ -2838,7 +2838,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5018) }
         }
 
-        /// `geometry`, 5 bits: Starts the geometry pass. All other registers of geometry have to hold while it runs.
+        /// `geometry`, 5 bits: Start of the geometry pass: descriptors and band lists of a mesh. The registers down to `depth_scale` must hold while it runs.
         #[inline]
         #[must_use]
         pub const fn geometry(&self) -> Register<Geometry, ReadWrite> {
@@ -2854,7 +2854,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5020) }
         }
 
-        /// `mesh_bytes`, 32 bits: Length of all its chunks, a multiple of 16.
+        /// `mesh_bytes`, 32 bits: Length of all chunks of the mesh in bytes, a multiple of 16.
         #[inline]
         #[must_use]
         pub const fn mesh_bytes(&self) -> Register<u32, ReadWrite> {
@@ -2862,7 +2862,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5024) }
         }
 
-        /// `geometry_descriptors`, 32 bits: Byte address, a multiple of 16, of the descriptors to make.
+        /// `geometry_descriptors`, 32 bits: Byte address, a multiple of 16, of the descriptors, written by the pass.
         #[inline]
         #[must_use]
         pub const fn geometry_descriptors(&self) -> Register<u32, ReadWrite> {
@@ -2870,7 +2870,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5028) }
         }
 
-        /// `descriptor_limit`, 20 bits: Room there, 48 or 96 bytes each, see `caps`.
+        /// `descriptor_limit`, 20 bits: Most descriptors, 48 or 96 bytes each, see `caps`.
         #[inline]
         #[must_use]
         pub const fn descriptor_limit(&self) -> Register<u32, ReadWrite> {
@@ -2878,7 +2878,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_502c) }
         }
 
-        /// `geometry_lists`, 32 bits: Byte address, a multiple of 16, of the band lists to make.
+        /// `geometry_lists`, 32 bits: Byte address, a multiple of 16, of the band lists, written by the pass.
         #[inline]
         #[must_use]
         pub const fn geometry_lists(&self) -> Register<u32, ReadWrite> {
@@ -2886,7 +2886,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5030) }
         }
 
-        /// `list_shift`, 5 bits: A band's list has room for 4 \<\< list_shift entries. Of both passes.
+        /// `list_shift`, 5 bits: Entries of a band list: at most 4 \<\< list_shift, in both passes.
         #[inline]
         #[must_use]
         pub const fn list_shift(&self) -> Register<u8, ReadWrite> {
@@ -2894,7 +2894,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5034) }
         }
 
-        /// `exceptions`, 32 bits: Byte address, a multiple of 16, of the list of exceptions to make.
+        /// `exceptions`, 32 bits: Byte address, a multiple of 16, of the list of exceptions, written by the pass.
         #[inline]
         #[must_use]
         pub const fn exceptions(&self) -> Register<u32, ReadWrite> {
@@ -2902,7 +2902,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5038) }
         }
 
-        /// `exception_limit`, 20 bits: Room there, 4 bytes each.
+        /// `exception_limit`, 20 bits: Most exceptions, 4 bytes each.
         #[inline]
         #[must_use]
         pub const fn exception_limit(&self) -> Register<u32, ReadWrite> {
@@ -3062,7 +3062,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5088) }
         }
 
-        /// `raster`, 8 bits: Starts the raster pass. All other registers of the raster have to hold while it runs.
+        /// `raster`, 8 bits: Start of the raster pass: a frame from descriptors and band lists. The registers down to `count_1` must hold while it runs.
         #[inline]
         #[must_use]
         pub const fn raster(&self) -> Register<Raster, ReadWrite> {
@@ -3070,7 +3070,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_508c) }
         }
 
-        /// `frame`, 32 bits: Byte address, a multiple of 16, of the frame to write, RGB565.
+        /// `frame`, 32 bits: Byte address, a multiple of 16, of the frame, RGB565, written by the pass.
         #[inline]
         #[must_use]
         pub const fn frame(&self) -> Register<u32, ReadWrite> {
@@ -3078,7 +3078,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5090) }
         }
 
-        /// `depth`, 32 bits: Byte address, a multiple of 16, of the depths to write, 32 bits each.
+        /// `depth`, 32 bits: Byte address, a multiple of 16, of the depth codes, 32 bits each, written by the pass.
         #[inline]
         #[must_use]
         pub const fn depth(&self) -> Register<u32, ReadWrite> {
@@ -3086,7 +3086,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5094) }
         }
 
-        /// `clear`, 16 bits: Colour where nothing is drawn, RGB565.
+        /// `clear`, 16 bits: Background colour, RGB565.
         #[inline]
         #[must_use]
         pub const fn clear(&self) -> Register<u16, ReadWrite> {
@@ -3150,7 +3150,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_50b4) }
         }
 
-        /// `unseen`, 32 bits: Triangles that were behind, or off one side of the picture.
+        /// `unseen`, 32 bits: Triangles behind the near plane or beyond one side of the picture.
         #[inline]
         #[must_use]
         pub const fn unseen(&self) -> Register<u32, ReadOnly> {
@@ -3158,7 +3158,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_50b8) }
         }
 
-        /// `culled`, 32 bits: Triangles left out by the setup: back faces, those without area or without a pixel's centre in their bounds.
+        /// `culled`, 32 bits: Triangles culled by the setup: back faces, triangles without area or without a pixel centre in their bounds.
         #[inline]
         #[must_use]
         pub const fn culled(&self) -> Register<u32, ReadOnly> {
@@ -3166,7 +3166,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_50bc) }
         }
 
-        /// `descriptor_count`, 32 bits: Descriptors made.
+        /// `descriptor_count`, 32 bits: Descriptors written.
         #[inline]
         #[must_use]
         pub const fn descriptor_count(&self) -> Register<u32, ReadOnly> {
@@ -3182,7 +3182,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_50c4) }
         }
 
-        /// `cycles_busy`, 32 bits: Clock cycles in which a pass ran, modulo 2^32.
+        /// `cycles_busy`, 32 bits: Clock cycles of both passes, modulo 2^32.
         #[inline]
         #[must_use]
         pub const fn cycles_busy(&self) -> Register<u32, ReadOnly> {
@@ -3190,7 +3190,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_50c8) }
         }
 
-        /// `cycles_stalled`, 32 bits: Clock cycles in which memory did not take a command, modulo 2^32.
+        /// `cycles_stalled`, 32 bits: Clock cycles in which memory refused a command, modulo 2^32.
         #[inline]
         #[must_use]
         pub const fn cycles_stalled(&self) -> Register<u32, ReadOnly> {
@@ -3198,7 +3198,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_50cc) }
         }
 
-        /// `stalled_reads`, 32 bits: Clock cycles in which memory did not take a read, modulo 2^32.
+        /// `stalled_reads`, 32 bits: Clock cycles in which memory refused a read, modulo 2^32.
         #[inline]
         #[must_use]
         pub const fn stalled_reads(&self) -> Register<u32, ReadOnly> {
@@ -3206,7 +3206,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_50d0) }
         }
 
-        /// `stalled_lists`, 32 bits: Clock cycles in which memory did not take a write of the geometry pass, modulo 2^32.
+        /// `stalled_lists`, 32 bits: Clock cycles in which memory refused a write of the geometry pass, modulo 2^32.
         #[inline]
         #[must_use]
         pub const fn stalled_lists(&self) -> Register<u32, ReadOnly> {
@@ -3214,7 +3214,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_50d4) }
         }
 
-        /// `stalled_frame`, 32 bits: Clock cycles in which memory did not take a write of the raster pass, modulo 2^32.
+        /// `stalled_frame`, 32 bits: Clock cycles in which memory refused a write of the raster pass, modulo 2^32.
         #[inline]
         #[must_use]
         pub const fn stalled_frame(&self) -> Register<u32, ReadOnly> {
@@ -3262,7 +3262,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_50ec) }
         }
 
-        /// `cycles_walking`, 32 bits: Clock cycles in which a triangle was walked over, modulo 2^32.
+        /// `cycles_walking`, 32 bits: Clock cycles in which the walker was at a group of pixels, modulo 2^32.
         #[inline]
         #[must_use]
         pub const fn cycles_walking(&self) -> Register<u32, ReadOnly> {
@@ -3270,7 +3270,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_50f0) }
         }
 
-        /// `cycles_empty`, 32 bits: Those of them without a pixel, modulo 2^32.
+        /// `cycles_empty`, 32 bits: Clock cycles in which the walker was at a group without a covered pixel, modulo 2^32.
         #[inline]
         #[must_use]
         pub const fn cycles_empty(&self) -> Register<u32, ReadOnly> {
@@ -3278,7 +3278,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_50f4) }
         }
 
-        /// `groups`, 32 bits: Groups of eight pixels of which some are covered, modulo 2^32.
+        /// `groups`, 32 bits: Groups of eight pixels with a covered pixel, modulo 2^32.
         #[inline]
         #[must_use]
         pub const fn groups(&self) -> Register<u32, ReadOnly> {
@@ -3286,7 +3286,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_50f8) }
         }
 
-        /// `pixels_covered`, 32 bits: Pixels covered by a triangle, each as often as it is, modulo 2^32.
+        /// `pixels_covered`, 32 bits: Pixels covered, for each triangle, modulo 2^32.
         #[inline]
         #[must_use]
         pub const fn pixels_covered(&self) -> Register<u32, ReadOnly> {
@@ -3294,7 +3294,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_50fc) }
         }
 
-        /// `pixels_drawn`, 32 bits: Pixels of which the depth was nearer, or as near, modulo 2^32.
+        /// `pixels_drawn`, 32 bits: Pixels that passed the depth test, modulo 2^32.
         #[inline]
         #[must_use]
         pub const fn pixels_drawn(&self) -> Register<u32, ReadOnly> {
@@ -3302,7 +3302,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5100) }
         }
 
-        /// `cycles_held`, 32 bits: Clock cycles in which a group waited for the one before it, modulo 2^32.
+        /// `cycles_held`, 32 bits: Clock cycles in which a group waited for an earlier group of the same pixels, modulo 2^32.
         #[inline]
         #[must_use]
         pub const fn cycles_held(&self) -> Register<u32, ReadOnly> {
@@ -3318,7 +3318,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5108) }
         }
 
-        /// `cycles_flush`, 32 bits: Clock cycles in which a drawn band waited for the flush of the one before it, modulo 2^32.
+        /// `cycles_flush`, 32 bits: Clock cycles in which a drawn band waited for the flush of the band before it, modulo 2^32.
         #[inline]
         #[must_use]
         pub const fn cycles_flush(&self) -> Register<u32, ReadOnly> {
@@ -3342,14 +3342,14 @@ pub mod triangle {
     }
 
     impl Caps {
-        /// `sizes`, bits 2 to 0: Bit k is set if `size` k is supported.
+        /// `sizes`, bits 2 to 0: Bit k: `size` k is supported.
         #[inline]
         #[must_use]
         pub const fn sizes(self) -> u8 {
             (self.0 & 0x7) as u8
         }
 
-        /// `gouraud`, bit 3: Smooth shading: colours can be interpolated between vertices. A descriptor has 96 bytes then, and 48 where it is not built.
+        /// `gouraud`, bit 3: Smooth shading: colours interpolated between vertices. A descriptor has 96 bytes with smooth shading, 48 without.
         #[inline]
         #[must_use]
         pub const fn gouraud(self) -> bool {
@@ -3379,7 +3379,7 @@ pub mod triangle {
     }
 
     impl Control {
-        /// `cancel`, bit 0: Write 1 to give up both passes. What is started after it waits until memory has answered what was asked and the band buffer is clear.
+        /// `cancel`, bit 0: Write 1 to cancel both passes. A pass started afterwards waits for outstanding reads and for a clear band buffer.
         #[inline]
         #[must_use]
         pub const fn cancel(self) -> bool {
@@ -3423,14 +3423,14 @@ pub mod triangle {
             (self.0 >> 1) & 1 != 0
         }
 
-        /// `geometry_error`, bits 6 to 4: How the geometry pass that was started last has ended.
+        /// `geometry_error`, bits 6 to 4: Result of the last geometry pass.
         #[inline]
         #[must_use]
         pub const fn geometry_error(self) -> Error {
             Error::from_bits(((self.0 >> 4) & 0x7) as u8)
         }
 
-        /// `raster_error`, bits 10 to 8: How the raster pass that was started last has ended.
+        /// `raster_error`, bits 10 to 8: Result of the last raster pass.
         #[inline]
         #[must_use]
         pub const fn raster_error(self) -> Error {
@@ -3483,7 +3483,7 @@ pub mod triangle {
     }
 
     impl EvPending {
-        /// `geometry`, bit 0: The geometry pass has ended, see `status`; what it made is in memory.
+        /// `geometry`, bit 0: The geometry pass has ended, see `status`; its descriptors and lists are in memory.
         #[inline]
         #[must_use]
         pub const fn geometry(self) -> bool {
@@ -3571,7 +3571,7 @@ pub mod triangle {
     }
 
     impl Geometry {
-        /// `start`, bit 0: Write 1 to make descriptors and lists of the mesh.
+        /// `start`, bit 0: Write 1 to start.
         #[inline]
         #[must_use]
         pub const fn start(self) -> bool {
@@ -3585,7 +3585,7 @@ pub mod triangle {
             Self(self.0 & !0x1 | value as u32 & 0x1)
         }
 
-        /// `cull`, bit 1: Back faces are left out.
+        /// `cull`, bit 1: Cull back faces.
         #[inline]
         #[must_use]
         pub const fn cull(self) -> bool {
@@ -3613,7 +3613,7 @@ pub mod triangle {
             Self(self.0 & !(0x3 << 2) | (value as u32 & 0x3) << 2)
         }
 
-        /// `smooth`, bit 4: Colours come from the vertices. Without effect where `caps` has no `gouraud`.
+        /// `smooth`, bit 4: Interpolate colours between vertices. No effect without `gouraud` in `caps`.
         #[inline]
         #[must_use]
         pub const fn smooth(self) -> bool {
@@ -3643,7 +3643,7 @@ pub mod triangle {
     }
 
     impl DepthScale {
-        /// `mantissa`, bits 16 to 0: km, in 2^16 to 2^17 - 1.
+        /// `mantissa`, bits 16 to 0: km, 2^16 to 2^17 - 1.
         #[inline]
         #[must_use]
         pub const fn mantissa(self) -> u32 {
@@ -3687,7 +3687,7 @@ pub mod triangle {
     }
 
     impl Raster {
-        /// `start`, bit 0: Write 1 to draw a frame from lists.
+        /// `start`, bit 0: Write 1 to start.
         #[inline]
         #[must_use]
         pub const fn start(self) -> bool {
@@ -3715,7 +3715,7 @@ pub mod triangle {
             Self(self.0 & !(0x3 << 1) | (value as u32 & 0x3) << 1)
         }
 
-        /// `first`, bit 3: There is a first set of lists.
+        /// `first`, bit 3: Draw the first set of lists.
         #[inline]
         #[must_use]
         pub const fn first(self) -> bool {
@@ -3729,7 +3729,7 @@ pub mod triangle {
             Self(self.0 & !(0x1 << 3) | (value as u32 & 0x1) << 3)
         }
 
-        /// `second`, bit 4: There is a second set, drawn after the first in each band.
+        /// `second`, bit 4: Draw the second set, in each band after the first.
         #[inline]
         #[must_use]
         pub const fn second(self) -> bool {
@@ -3743,7 +3743,7 @@ pub mod triangle {
             Self(self.0 & !(0x1 << 4) | (value as u32 & 0x1) << 4)
         }
 
-        /// `depth`, bit 5: Depths go to memory as well; the whole frame is written then.
+        /// `depth`, bit 5: Write depths too, and the whole frame.
         #[inline]
         #[must_use]
         pub const fn depth(self) -> bool {
@@ -3757,7 +3757,7 @@ pub mod triangle {
             Self(self.0 & !(0x1 << 5) | (value as u32 & 0x1) << 5)
         }
 
-        /// `slot`, bit 6: Which of two frame buffers `frame` is: what was drawn there is remembered.
+        /// `slot`, bit 6: Number of the frame buffer: the engine remembers the extents of the last frame in each slot.
         #[inline]
         #[must_use]
         pub const fn slot(self) -> bool {
@@ -3771,7 +3771,7 @@ pub mod triangle {
             Self(self.0 & !(0x1 << 6) | (value as u32 & 0x1) << 6)
         }
 
-        /// `whole`, bit 7: Nothing is known of what the frame buffer holds: all of it is written. To be set for a buffer's first frame, after a cancelled one, after another size or `clear`, and after anybody else has written there.
+        /// `whole`, bit 7: Write all of the frame buffer. Required for the first frame of a buffer, after a cancelled frame, after a change of size or `clear`, and after writes by the CPU.
         #[inline]
         #[must_use]
         pub const fn whole(self) -> bool {
@@ -3794,15 +3794,15 @@ pub mod triangle {
         None = 0,
         /// `size` was 3.
         Size = 1,
-        /// A region was not at a multiple of 16 bytes, or not wholly in main memory; nothing was touched.
+        /// A region was not aligned to 16 bytes or not within main memory; memory is unchanged.
         Address = 2,
-        /// Started while it was busy; the pass under way went on.
+        /// Started while the same pass was running; that pass continued.
         Busy = 3,
-        /// A chunk without vertices, or one beyond `mesh_bytes`; what came before it was drawn.
+        /// A chunk without vertices or beyond `mesh_bytes`; the chunks before it were drawn.
         Mesh = 4,
-        /// No room for all descriptors, list entries or exceptions; what had room was drawn.
+        /// No room for all descriptors, list entries or exceptions; the others were drawn.
         Full = 5,
-        /// A list was longer than it may be, or named a descriptor beyond the count, or what was no descriptor; the frame is wrong.
+        /// A band list was too long, or named a number that is no descriptor; the frame is wrong.
         List = 6,
         /// Ended by `cancel`.
         Cancelled = 7,
@@ -3849,11 +3849,11 @@ pub mod triangle {
             match self {
                 Self::None => "no error",
                 Self::Size => "`size` was 3",
-                Self::Address => "a region was not at a multiple of 16 bytes, or not wholly in main memory; nothing was touched",
-                Self::Busy => "started while it was busy; the pass under way went on",
-                Self::Mesh => "a chunk without vertices, or one beyond `mesh_bytes`; what came before it was drawn",
-                Self::Full => "no room for all descriptors, list entries or exceptions; what had room was drawn",
-                Self::List => "a list was longer than it may be, or named a descriptor beyond the count, or what was no descriptor; the frame is wrong",
+                Self::Address => "a region was not aligned to 16 bytes or not within main memory; memory is unchanged",
+                Self::Busy => "started while the same pass was running; that pass continued",
+                Self::Mesh => "a chunk without vertices or beyond `mesh_bytes`; the chunks before it were drawn",
+                Self::Full => "no room for all descriptors, list entries or exceptions; the others were drawn",
+                Self::List => "a band list was too long, or named a number that is no descriptor; the frame is wrong",
                 Self::Cancelled => "ended by `cancel`",
             }
         }
@@ -3911,15 +3911,15 @@ pub mod triangle {
     /// A reading of the free-running counters of `triangle`.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
     pub struct Counters {
-        /// Clock cycles in which a pass ran, modulo 2^32.
+        /// Clock cycles of both passes, modulo 2^32.
         pub cycles_busy: u32,
-        /// Clock cycles in which memory did not take a command, modulo 2^32.
+        /// Clock cycles in which memory refused a command, modulo 2^32.
         pub cycles_stalled: u32,
-        /// Clock cycles in which memory did not take a read, modulo 2^32.
+        /// Clock cycles in which memory refused a read, modulo 2^32.
         pub stalled_reads: u32,
-        /// Clock cycles in which memory did not take a write of the geometry pass, modulo 2^32.
+        /// Clock cycles in which memory refused a write of the geometry pass, modulo 2^32.
         pub stalled_lists: u32,
-        /// Clock cycles in which memory did not take a write of the raster pass, modulo 2^32.
+        /// Clock cycles in which memory refused a write of the raster pass, modulo 2^32.
         pub stalled_frame: u32,
         /// Words of 16 bytes read from memory, modulo 2^32.
         pub items_in: u32,
@@ -3931,21 +3931,21 @@ pub mod triangle {
         pub vertices: u32,
         /// Clock cycles of raster passes, modulo 2^32.
         pub cycles_raster: u32,
-        /// Clock cycles in which a triangle was walked over, modulo 2^32.
+        /// Clock cycles in which the walker was at a group of pixels, modulo 2^32.
         pub cycles_walking: u32,
-        /// Those of them without a pixel, modulo 2^32.
+        /// Clock cycles in which the walker was at a group without a covered pixel, modulo 2^32.
         pub cycles_empty: u32,
-        /// Groups of eight pixels of which some are covered, modulo 2^32.
+        /// Groups of eight pixels with a covered pixel, modulo 2^32.
         pub groups: u32,
-        /// Pixels covered by a triangle, each as often as it is, modulo 2^32.
+        /// Pixels covered, for each triangle, modulo 2^32.
         pub pixels_covered: u32,
-        /// Pixels of which the depth was nearer, or as near, modulo 2^32.
+        /// Pixels that passed the depth test, modulo 2^32.
         pub pixels_drawn: u32,
-        /// Clock cycles in which a group waited for the one before it, modulo 2^32.
+        /// Clock cycles in which a group waited for an earlier group of the same pixels, modulo 2^32.
         pub cycles_held: u32,
         /// Clock cycles in which the flush of a band waited for memory, modulo 2^32.
         pub cycles_memory: u32,
-        /// Clock cycles in which a drawn band waited for the flush of the one before it, modulo 2^32.
+        /// Clock cycles in which a drawn band waited for the flush of the band before it, modulo 2^32.
         pub cycles_flush: u32,
     }
 

@@ -1,11 +1,11 @@
 // One memory of the band buffer: 2^ROW_BITS rows of eight lanes, one block RAM a lane, so that each lane has a write enable. With
-// HALVES = 2 both halves of all lanes have one too: block RAM has them for nine bits each.
+// HALVES = 2 each half of a lane has a write enable: block RAM has one for nine bits.
 //
 //   read_row ─▶ register ─▶ RAM ─▶ register ─▶ read_data     3 clocks from `read_row` to its data
 //   write_*  ─▶ register ─▶ RAM                              a `read_row` one clock after `write_row` reads what was written
 //
-// One read and one write in every clock. A lane that is read and written in the same clock may give either value: the
-// users see to it that nobody looks at it then.
+// One read and one write in every clock. A lane that is read and written in the same clock may give either value: users must
+// not rely on it.
 
 `default_nettype none
 

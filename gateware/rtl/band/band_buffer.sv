@@ -1,5 +1,5 @@
 // The band buffer: colour and depth of a band, at most 15,360 pixels, in block RAM, shared by all renderers. While one band
-// is drawn the one before it is written to memory: in each line, what was drawn now and what was drawn there last.
+// is drawn, the previous band is flushed to memory: in each line the pixels drawn now and those drawn in the previous frame.
 //
 //                        ┌────────────┐  drawn  ┌─────────────────┐ flushed  ┌────────────┐
 //   groups ─▶ band_pipe ─┤            ├────────▶│ colour bank 0/1 │─────────▶│            │
@@ -10,38 +10,37 @@
 //        └──────────────▶│ band_extents │──────────────────────────────────────────┘
 //                        └──────────────┘
 //
-// A row is eight pixels, and its address is line * (W/8) + column: y in the band and x/8. Each pixel has, beside its colour, a bit that says
-// whether it has been written in this band; a bank is clear when no bit is set. Depth counts as 0 and colour as the clear
-// colour where the bit is not set, so that neither has to be stored, one depth memory serves both banks, and the clear
-// colour may change from band to band. The flush resets the bits behind itself: there is no clear pass. 25 RAMB36.
+// A row is eight pixels, and its address is line * (W/8) + column: y in the band and x/8. Beside its colour each pixel has a
+// written bit; a bank is clear when no bit is set. A pixel without it has depth 0 and the clear colour, so neither has to be
+// stored, one depth memory serves both banks, and the clear colour may change from band to band. The flush resets the bits
+// behind itself: there is no clear pass. 25 RAMB36.
 //
 // Groups: {row, line, column, mask, eight depth codes u18, eight colours RGB565}, lane 0 (the leftmost) in the lowest bits. Lane
-// i is written where mask[i] is set and code[i] is at least the stored one. With STEREO a group may be one eye's: `halves` 1
-// the left one's, 2 the right one's, of which that half of the colours is the luminance; nothing is compared then, and depth is
-// the left eye's. What both see is composed in the flush, see band_flush; all pixels are to be drawn for both then. One group a clock; see band_pipe for hazards.
+// i is written where mask[i] is set and code[i] is at least the stored one. With STEREO a group may belong to one eye: `halves` 1
+// is the left eye, 2 the right one, and that half of the colours is its luminance. Such a group is written without a depth test,
+// and the stored depth is that of the left eye. The flush composes both eyes, see band_flush; every pixel must then be drawn for
+// both. One group a clock; hazards: see band_pipe.
 //
-// Bands: an item of `band_*` says that the band is drawn and how it is to be flushed: address of its first 128-bit word, its
-// `lines` (at least 1) and `stride`, the rows of a line; clear colour. Groups taken up to and including the first clock of
-// `band_valid` belong to it; then no group is taken until the item has moved, which is when the last group is written and the
-// band before has gone to memory. So the banks have changed places.
+// Bands: an item of `band_*` ends the drawing of a band and says how to flush it: address of its first 128-bit word, its
+// `lines` (at least 1), `stride` (rows of a line) and clear colour. Groups taken up to and including the first clock of
+// `band_valid` belong to the band. Then no group is taken until the item has moved: the last group is written, the previous band
+// is in memory, and the banks have changed places.
 //
-// Of two frame buffers, `slot` 0 and 1, and `first_line`, the band's place in the picture, it is known which words of each line
-// the flush before may have left other than clear: from the first to the last that had been drawn in. Those and the ones that
-// have been drawn in now go to memory, from the first to the last of both together. With `whole` all words go: when it is not
-// known what the lines in the frame buffer hold, or it is not what was flushed there last with this clear colour and stride.
+// For two frame buffers, `slot` 0 and 1, the buffer remembers which words of each line of the picture (`first_line` on) the last
+// flush left other than clear: one extent a line. The union of that extent and of the words drawn now goes to memory. `whole`
+// sends all words. It is required when the lines in the frame buffer are unknown, or differ from the last flush to this slot
+// with the same clear colour and stride.
 //
 // `with_depth` is for debugging: depth goes to memory too, as 32-bit words from `depth_base` on, and all of the band as with
-// `whole`. The next band is drawn only after the flush, and takes three words a row.
+// `whole`. The next band is drawn only after this flush, which takes three words a row.
 //
-// `restart` (and reset) drops the band being drawn and stops the flush; words that have been read, at most 16, still come
-// out. The lines of the band that was being flushed, after reset all lines, are to be flushed with `whole` in this slot before
-// they are flushed without. Then both banks are cleared, 2,048 clocks in which `clearing` is high and no stream is taken, whatever memory
-// does. The renderers are to be restarted too: a group or band that is still offered afterwards counts.
+// `restart` (and reset) drops the band being drawn and stops the flush; words already read, at most 16, still come out. Then both
+// banks are cleared: 2,048 clocks in which `clearing` is high and no stream is taken, with or without memory's help. The next
+// flush of the lines that were being flushed (after reset of all lines) must be `whole` in this slot. The renderers must be
+// restarted too: a group or band offered afterwards counts.
 //
-// Streams: an item moves in a clock in which valid and ready are high; valid does not wait for ready, a payload stays as it
-// is until it has moved. Words for memory: see band_flush. `flushed`: all of all bands that have moved has been taken.
-// Counters run freely from reset: groups taken, clocks in which a group was held by a hazard, clocks in which the flush had
-// no place for a word because none was taken, clocks in which a drawn band waited for the flush of the one before.
+// Streams: an item moves in a clock in which valid and ready are high; valid does not wait for ready, and a payload holds
+// until it has moved. Words for memory: see band_flush. `flushed`: memory has taken all words of all bands.
 
 `default_nettype none
 

@@ -1,5 +1,5 @@
-// Finds out which words of a band have to go to memory: in each line those from the first to the last one that has been drawn
-// now or was drawn in the frame before in the same frame buffer. All others hold the clear colour there already.
+// Plans the flush of a band: in each line the words from the first to the last that was drawn now or in the last frame of the
+// same frame buffer. All other words already hold the clear colour in memory.
 //
 //               ┌───────────────┐
 //   groups ────▶│ now, bank 0/1 │──┬──────────────▶ union ─▶ + line's first row ─▶ skid_buffer ─▶ spans
@@ -8,19 +8,19 @@
 //                          │ last, slot 0/1├─────────┘
 //                          └───────────────┘
 //
-// `now` keeps a line's extent, its first and its last column (of eight pixels), in LUT memory, a memory for each bank: what a
-// group adds is read and written in one clock, so there is no hazard. `last` keeps those of all lines of both frame buffers in
-// a block RAM. An empty extent goes from the largest column down to 0, which makes it neutral: it is never asked about, and the
-// largest column, all ones, may not be drawn in.
+// `now` holds a line's extent, its first and its last column (of eight pixels), in LUT memory, one memory a bank. A group
+// updates its extent in one clock, so there is no hazard. `last` holds the extents of all lines of both frame buffers in a block
+// RAM. An empty extent goes from the largest column down to 0, the neutral element of the union; the largest column, all ones,
+// must not be drawn.
 //
 // `start` (one clock, not while `busy` or `sweep` is high) plans the band in the bank that is not drawn from the next clock on:
-// its `lines` (at least 1) from the picture's line `first_line` on, of `stride` columns each. A span comes out for every line
-// that is not empty, its first and its last row in the band buffer, in order. With `whole` nothing is known of the frame buffer,
-// and it is all of each line. `busy` falls when the last span has been taken. The lines' extents are then empty in `now`, and
-// are those of `last`. Latency 6 clocks from `start` to the first span, throughput a line a clock, empty or not.
+// its `lines` (at least 1) from the picture's line `first_line` on, of `stride` columns each. The output has a span for every
+// line that is not empty, its first and its last row in the band buffer, in order; with `whole`, all rows of every line. `busy`
+// falls when the last span has been taken. The lines' extents have then moved from `now` to `last`. Latency 6 clocks from
+// `start` to the first span, throughput a line a clock, empty or not.
 //
-// `sweep` empties `now`; it must last 2^LINE_BITS clocks at least. It and reset give up what is being planned: its lines' extents
-// in `last` are not known any more, as after reset those of all lines. The next band of such lines is to be `whole`.
+// `sweep` empties `now`; it must last 2^LINE_BITS clocks at least. Sweep and reset cancel the plan under way: the extents of its
+// lines in `last` are unknown then (after reset those of all lines), and the next band of such lines must be `whole`.
 
 `default_nettype none
 
@@ -76,7 +76,7 @@ module band_extents #(
 
     assign plan = planning && advance;
 
-    // What the groups add.
+    // Update by groups.
     logic                   adds;
     logic [LINE_BITS-1:0]   add_line;
     logic [COLUMN_BITS-1:0] add_column;
@@ -123,7 +123,7 @@ module band_extents #(
         if (rst || sweep) planning <= 1'b0;
     end
 
-    // What was there, and what is there now, which is written a clock after that has been read.
+    // The last extent and the new one, written a clock after the read.
     (* ram_style = "block", rw_addr_collision = "no", no_rw_check *)
     logic [EXTENT_BITS-1:0] last [0:2**PLACE_BITS-1];
     logic [PLACE_BITS-1:0]  from, to;

@@ -1,24 +1,24 @@
-// Reads spans of rows of a finished band out of its bank, gives out their words, and clears each row behind itself.
+// Flushes a finished band: reads spans of rows from its bank, sends their words, and clears each row behind itself.
 //
 //   span ─▶ row ─▶ ┄┄ band_bank's read ┄┄ ─▶ compose ─▶ fifo ─▶ out
 //            └──▶ clear_row, a clock later, ─▶ address ──┘
 //
-// One row is one 128-bit word: eight RGB565 pixels, the leftmost in the lowest bits; a pixel that nobody has drawn takes
-// the clear colour. With `compose` (STEREO only) a pixel is the luminances of two eyes, {right, left}: 1 makes the left one red,
-// the right one blue and the smaller of both green, 2 the left one red and the right one green and blue. The colour word of row r goes to `base` + r. With `with_depth`, when the colours of a span are out its rows
-// are read again: two words a row follow, four depths of 32 bits each, 0 where nobody has drawn, for `depth_base` + 2r and the
-// word after it. So neighbours in memory follow each other, and memory seldom turns to another bank.
+// One row is one 128-bit word: eight RGB565 pixels, the leftmost in the lowest bits, in the clear colour where a pixel is not
+// written. With `compose` (STEREO only) a pixel holds the luminances of two eyes, {right, left}: 1 makes the left one red, the
+// right one blue and the smaller of both green, 2 the left one red and the right one green and blue. The colour word of row r
+// goes to `base` + r. With `with_depth`, the rows of a span are read again after its colours: two words a row, four depths of 32
+// bits each, 0 where a pixel is not written, for `depth_base` + 2r and the word after it. Neighbours in memory follow each other,
+// so memory seldom turns to another bank.
 //
-// `start` takes these parameters and begins; it may come while `idle` is high, which falls until the last word has been
-// taken. The rows are those of the spans, an item {first, last} each, last >= first, in their order; `spans_busy`
-// is high until the last of them has been taken. Throughput one word a clock where spans are there in time and words are taken;
-// the first one comes 6 clocks after the first span was taken.
+// `start` (only while `idle`) takes these parameters and begins; `idle` is low until the last word has been taken. Spans are
+// items {first, last}, last >= first; `spans_busy` is high until the last one has been taken. Throughput one word a clock as far
+// as spans and memory keep up; the first word comes 6 clocks after the first span is taken.
 //
-// Out: a stream of {address, data}; valid does not wait for ready, and a word stays as it is until it has moved. There is a
-// place for a word before its row is read: `out_ready` may stay low as long as it likes.
+// Out: a stream of {address, data}; valid does not wait for ready, and a word holds until it has moved. A word has its place in
+// the FIFO before its row is read, so `out_ready` may stay low for any time.
 //
-// `restart`, and reset, leave the band and clear all 2^ROW_BITS rows of both banks, one a clock, while `sweeping` is high.
-// Nothing may be drawn then. Words that have been read are not waited for: they go whenever they are taken.
+// `restart` and reset leave the band and clear all 2^ROW_BITS rows of both banks, one a clock, while `sweeping` is high. Nothing
+// may be drawn then. Words already read go out in the meantime or later.
 
 `default_nettype none
 

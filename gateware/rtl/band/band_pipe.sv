@@ -3,12 +3,13 @@
 //   groups ─▶ issue ─▶ ┄┄┄┄┄┄┄┄ band_bank's read ┄┄┄┄┄┄┄┄ ─▶ compare ─▶ ┄┄ band_bank's write ┄┄
 //             read_row    reading[0]      reading[1]         write_*
 //
-// A lane is written where its mask is set and its code is at least the stored one, which counts as 0 where the pixel has
-// not been written in this band. A group that is for one half of the colour only, as one of two eyes sees it, is not compared. Latency 3 clocks from `read_row` to `write_*`; throughput one group a clock.
+// A lane is written where its mask is set and its code is at least the stored one, 0 for a pixel not yet written in this band. A
+// group for one half of the colour, the view of one eye, has no depth test. Latency 3 clocks from `read_row` to `write_*`;
+// throughput one group a clock.
 //
-// Hazard: a group may not read a lane that a group before it has still to write. One that shares a row and a lane with one
-// of the three groups before it is held until at least four clocks lie between them. Groups that share a row and no lane,
-// as neighbouring triangles do along their edge, pass without a stall: each lane is a memory of its own.
+// Hazard: a group must not read a lane before an earlier group has written it. A group that shares a row and a lane with one of
+// the three groups before it is held until at least four clocks lie between them. Groups that share a row and no lane, as
+// neighbouring triangles do along their edge, pass without a stall: each lane is a memory of its own.
 //
 // Stream contract on the input: valid/ready, an item moves in a clock in which both are high; `group_ready` comes from
 // registers and from `open`, which lets groups in. `empty`: all groups are written as far as reads through `read_row` see.

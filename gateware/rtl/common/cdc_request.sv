@@ -2,12 +2,12 @@
 //
 //   start ──▶ request (level, until done) ──▶ done ──▶ finished (one clock) ──▶ busy falls
 //
-// Payload travels beside it on plain registers: what the source sends must be stable from `start` until `finished`,
-// what the destination answers must be set at the latest in the clock of `done` and be stable until the next
-// `request`. Both have then been still for at least one receiving clock before they are used.
+// Payload travels beside it on plain registers. The source's payload must be stable from `start` until `finished`, the
+// destination's from the clock of `done` at the latest until the next `request`. Both are then stable for at least one receiving
+// clock before use.
 //
-// Levels, not toggles, because the two sides may be reset apart: a destination that forgets a request sees it again,
-// a source that forgets one takes it back. One request at a time; `start` is ignored while `busy`.
+// Levels, not toggles, because the two sides may be reset apart: a destination after reset sees the request again, a source after
+// reset withdraws it. One request at a time; `start` is ignored while `busy`.
 // Latency of a round trip: about 3 clocks of each side, plus the work.
 
 `default_nettype none

@@ -1,5 +1,5 @@
-// A clock that stands while `enable` is low, without a glitch: it is let through from the falling edge on. For simulation; an
-// FPGA has cells for this.
+// A clock that stops without a glitch while `enable` is low: the gate changes at the falling edge. For simulation; an FPGA has
+// cells for this.
 
 `default_nettype none
 

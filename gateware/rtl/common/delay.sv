@@ -1,4 +1,4 @@
-// Gives out what came CLOCKS clocks ago, of those in which `enable` is high.
+// Delays its input by CLOCKS clocks with `enable` high.
 
 `default_nettype none
 

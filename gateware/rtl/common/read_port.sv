@@ -2,15 +2,15 @@
 // out, in its own order.
 //
 // Memory side, the LiteDRAM native read port: commands by valid/ready, one word each; data comes in the commands' order,
-// some time later, and cannot be held back. It need not be: a client is only served while the DEPTH places of its FIFO
-// have room for all that it has asked for. A word a clock.
+// some time later, and cannot be held back. A client is therefore served only while the DEPTH places of its FIFO have room for
+// all words under way. A word a clock.
 //
 // Memory takes four clocks to turn to another bank, and a dozen from writes to reads and back. So a client is served in
-// bursts: until it asks no more or its FIFO is full, and then not before half of that is empty again; in the meantime it
-// is the others' turn.
+// bursts: until it has no request or its FIFO is full, and again when half of the FIFO is empty; the others have their turns in
+// between.
 //
 // Latency: 2 clocks from `ask` to the command, 3 from the memory's data to the client.
-// `drop`, held until `idle`, forgets everything: nothing is asked, what is still to come from memory is thrown away.
+// `drop`, held until `idle`, cancels everything: no commands go out, and words still to come from memory are discarded.
 //
 //   ask ──┐                    ┌──▶ command
 //   ask ──┼──▶ turn ──┬────────┘
@@ -50,7 +50,7 @@ module read_port #(
     localparam int unsigned OWNER_BITS  = $clog2(CLIENTS * DEPTH);
 
     // Whose turn it is, chosen a clock ahead: the last one's while it may go on, or that of the next that asks. No path leads
-    // from what a client asks through the choice back to it. A turn that its client does not use passes.
+    // from a client's request through the choice back to it. A turn that its client does not use passes.
     logic [CLIENT_BITS-1:0] turn, first, chosen, asker;
     logic [CLIENTS-1:0]     servable, taken;
     logic                   given, any, moves;

@@ -1,4 +1,4 @@
-// A wire from outside, without spikes: the output follows once the input has been another for LENGTH clocks in a row.
+// Synchronises an input pin and suppresses spikes: the output changes after the input has been different for LENGTH clocks.
 //
 // Latency 2 to 3 clocks for the crossing, and LENGTH. High after a reset.
 

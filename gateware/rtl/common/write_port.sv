@@ -1,11 +1,11 @@
 // Writes words of 16 bytes to memory through a native write port, in bursts.
 //
 // In: a stream of {address, data, strobe}, strobe bit k for byte k. Memory side, the LiteDRAM native write port: commands
-// by valid/ready, and the data of each in the same order, by a valid/ready of its own, some time after the command and
-// whether it is valid or not: it always is, as it waits in its FIFO since before the command went out.
+// by valid/ready, and the data of each in the same order some time later. Memory takes data without looking at valid; it is
+// always valid, as it is in its FIFO before the command goes out.
 //
-// A memory that turns from reads to writes and back takes a dozen clocks for it. So words gather until there are BURST of
-// them, and then go out together; with `hurry` they go out at once, which the last ones need.
+// Memory takes a dozen clocks to turn from reads to writes and back. So words gather until BURST of them go out together; with
+// `hurry`, needed for the last words, they go out at once.
 //
 //   in ──┬─▶ addresses ─▶ gate ─▶ command
 //        └─▶ words ─────────────▶ data

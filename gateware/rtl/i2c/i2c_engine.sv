@@ -1,11 +1,11 @@
-// An I2C master that works off a queue of commands: single master, fast mode, wires of open drain.
+// An I2C master that executes a queue of commands: single master, fast mode, open drain.
 //
 // A command is {more, operation, argument}:
 //
-//   START             (0)  a start, or between bytes a repeated one
-//   WRITE  byte       (1)  sends a byte and looks for its acknowledge
-//   READ   count - 1  (2)  receives 1 to 256 bytes and acknowledges all but the last; the last too with `more`
-//   STOP              (3)  a stop, after which the bus stays free for as long as two phases
+//   START             start condition, or repeated start within a transaction
+//   WRITE  byte       send a byte and check its acknowledge
+//   READ   count - 1  receive 1 to 256 bytes and acknowledge all but the last; the last too with `more`
+//   STOP              stop condition, after which the bus stays free for two phases
 //
 //             ┌──────┐   ┌────────────┐   ┌──────┐
 //   command ─▶│ fifo │──▶│ steps of a │──▶│ fifo │─▶ answer: bytes received
@@ -23,27 +23,27 @@
 // and while there is no room for a byte to receive, SCL is kept low. A bit takes 3 phases, and 7 clocks until SCL is
 // seen high; a start 3 phases and 1 more within a transaction, a stop 4.
 //
-// A start finds out whether SDA is free. Where it is not, a device hangs in the middle of a byte, and gets up to nine clocks; the start
-// comes in the first of them in which it has let go, and makes the device begin anew.
+// A start checks SDA. When SDA is low, a device hangs in the middle of a byte: it gets up to nine clocks, and the start follows in
+// the first one with a released SDA, which resets the device.
 //
-// Rounds: with `repeats` a command that is done goes back into its queue, and a transaction begins every `period` + 1 clocks, the first one
-// so long after `repeats` has come. Commands are put into the queue before that, from a start to a stop. `ended` tells of every
-// `batch` + 1 transactions then, and one that is not over when the next is due is late.
+// Rounds: with `repeats` a finished command goes back into the queue, and a transaction begins every `period` + 1 clocks, the first
+// one `period` + 1 clocks after `repeats` rises. The queue holds a transaction by then, from start to stop. `ended` pulses once
+// every `batch` + 1 transactions. A transaction still running when the next is due is an error.
 //
 //   command ──▶┌──────┐
 //          ┌──▶│ fifo │──▶ steps ──┐
 //          │   └──────┘            │
 //          └──── repeats ◀─────────┘
 //
-// What goes wrong ends everything: the wires are free, `failed` stays and commands wait until `rst`; `error` says what it was. After a byte
-// that was not acknowledged comes a stop first.
+// An error ends the transaction: the wires are released, `failed` and `error` hold, and commands wait until `rst`. After a missing
+// acknowledge a stop comes first.
 
 `default_nettype none
 
 module i2c_engine #(
     // Clocks of a phase: a third of an SCL period.
     parameter int unsigned PHASE        = 68,
-    // For how long SCL may be held low: 2^STRETCH_BITS clocks.
+    // Longest clock stretching: 2^STRETCH_BITS clocks.
     parameter int unsigned STRETCH_BITS = 21,
     parameter int unsigned COMMANDS     = 32,
     parameter int unsigned ANSWERS      = 128
@@ -62,9 +62,9 @@ module i2c_engine #(
     output logic        busy,
     output logic        failed,
     output logic [2:0]  error,
-    // One clock: a stop has been made, or the last one of a batch, or it has failed.
+    // One clock: a transaction, or the last one of a batch, has ended, or an error.
     output logic        ended,
-    // The wires as they are, and what is done to them: 0 pulls low, 1 lets go.
+    // State of the wires, and their drivers: 0 pulls low, 1 releases.
     output logic        scl,
     output logic        sda,
     input  wire         scl_in,
@@ -187,7 +187,7 @@ module i2c_engine #(
                         scl_out <= 1'b0;
                         state   <= LOW;
                         shift   <= {shift[7:0], sda};
-                        // Somebody else pulls SDA.
+                        // Another device pulls SDA low.
                         if (!ninth && command.operation == WRITE && sda != shift[8]) begin
                             error   <= DATA;
                             scl_out <= 1'b1;

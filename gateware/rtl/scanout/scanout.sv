@@ -5,12 +5,12 @@
 //                  ▲                                                ▲
 //                  └──────────── one source line at a time ◀── scanout_lines ◀── scanout_timing
 //
-// Once a frame, when the vertical blanking begins, the sys side takes over `frame_base`, `scale` and `enable`, counts
-// the frame and pulses `vblank`; the pix side asks for line 0 only after that. So a frame comes from one base as a
-// whole. The raster never stops and never waits: a line that is late is replaced by the one before it and counted.
+// Once a frame, when the vertical blanking begins, the sys side latches `frame_base`, `scale` and `enable`, counts the frame
+// and pulses `vblank`; the pix side requests line 0 only after that. So all lines of a frame come from one base. The raster never
+// waits: a late line is replaced by the previous one and counted.
 //
 // Throughput: one pixel a pix_clk, at most one memory word a sys_clk. Latency: 3 pix_clk from the raster to the video
-// outputs; a source line is asked for one to `scale` output lines before its first use.
+// outputs; a source line is requested one to `scale` output lines before its first use.
 // Crossings: three four-phase requests with stable payload (cdc_request), one level, and the line ring, whose slots are
 // written and read at different times by the protocol of scanout_lines.
 
@@ -31,7 +31,7 @@ module scanout #(
     input  wire                     sys_rst,
     input  wire                     pix_clk,
     input  wire                     pix_rst,
-    // Asked for by software; taken over at vblank. The base is in words of 16 bytes, the scale 4, 2 or 1.
+    // Requested by software, latched at vblank. The base is in words of 16 bytes, the scale 4, 2 or 1.
     input  wire                     enable,
     input  wire  [2:0]              scale,
     input  wire  [ADDRESS_BITS-1:0] frame_base,

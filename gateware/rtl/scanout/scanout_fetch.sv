@@ -1,11 +1,11 @@
 // Fetches one source line from memory into a slot of the line ring.
 //
 // Memory side, the LiteDRAM native read port: commands by valid/ready (payload stable while valid and not ready), one
-// word a clock at most; data comes in order, some time later, and cannot be held back. Nothing needs to be: before the
-// first command the whole slot is free, each word has its place in it, and a word is stored in the clock it comes.
+// word a clock at most; data comes in order, some time later, and cannot be held back. The whole slot is free before the
+// first command, so each word has its place and is stored in the clock it comes.
 //
 // Work side: `request` is a level with `line` and `slot`, held until `done` (one clock). Without `enable` a request is
-// done at once and reads nothing. A request that is withdrawn is finished silently.
+// done at once and reads nothing. A withdrawn request ends without `done`.
 // Latency: 3 clocks to the first command, 1 from the last word to `done`.
 
 `default_nettype none

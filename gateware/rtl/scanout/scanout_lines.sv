@@ -1,15 +1,15 @@
-// The line ring's keeper: which of the two slots is shown, and which source line is fetched into the other.
+// Control of the line ring: which of the two slots is shown, and which source line is fetched into the other.
 //
 // Decided once an output line, at the tick (the leading edge of hsync, when the last pixel has left):
 //
 //   1. the hidden slot holds the source line the next output line needs: the slots change places;
 //   2. it does not, and this is the line's first use: an underflow. The shown slot is shown again, or black where this
 //      frame has shown nothing yet. Later output lines of the same source line look again;
-//   3. the hidden slot is free: the source line after the needed one is asked for, whatever was missed. During the
-//      vertical blanking that is line 0, as soon as the frame's parameters have come (`frame_begun`).
+//   3. the hidden slot is free: the source line after the needed one is requested, also after an underflow. During the
+//      vertical blanking that is line 0, as soon as the frame's parameters are latched (`frame_begun`).
 //
-// A slot is written only while it is hidden, and a frame shows only lines that were asked for after its vblank, so
-// what is on the screen never mixes frames. A fetch that takes long delays fetches, never the raster.
+// A slot is written only while it is hidden, and a frame shows only lines requested after its vblank: the screen never mixes
+// frames. A slow fetch delays later fetches, never the raster.
 // `want_line`, `want_slot` are stable from `fetch` until `fetch_busy` falls.
 
 `default_nettype none

@@ -1,12 +1,12 @@
-// The raster: counters, syncs and the tick on which everything else is decided.
+// The video timing: counters, syncs and a tick a line.
 //
 // A line is active, front porch, sync, back porch; a frame likewise. Both syncs are active high, and vsync changes with
-// the leading edge of hsync, as CEA-861 draws it. Nothing can stop it: it has no input but clock and reset.
+// the leading edge of hsync, as in CEA-861. Its only inputs are clock and reset.
 //
 // `tick` is the first clock of hsync. `tick_line` is then the line that follows, 0 to V_ACTIVE - 1, or V_ACTIVE and
 // more in the vertical blanking; V_ACTIVE itself is the tick that begins the blanking.
-// One pixel a clock; the outputs are registers. Reset puts it at the end of the last active line, so that the first thing
-// to come is a vertical blanking.
+// One pixel a clock; the outputs are registers. Reset puts it at the end of the last active line: a vertical blanking comes
+// first.
 
 `default_nettype none
 

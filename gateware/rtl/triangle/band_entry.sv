@@ -17,9 +17,9 @@
 //   7      its high 8 bits      pass 5         depth
 //
 // Streams are valid/ready, and ready comes from registers. Latency 13 clocks, throughput a triangle in 8 clocks: while one is in
-// its passes the one before ends, or is held until there is room, and another one waits. A triangle without a row in the band is
-// taken and dropped. The band's first row `in_y0` and whether it is an odd one (`in_odd`) come with the triangle; `holds`
-// tells whether there are triangles of an even band, and of an odd one. The bands' `rows` hold while triangles are inside.
+// its passes the previous one ends, or is held until there is room, and another one waits. A triangle without a row in the band is
+// taken and dropped. The band's first row `in_y0` and its parity `in_odd` come with the triangle; `holds` is set for the parities
+// of the triangles inside. The bands' `rows` must hold while triangles are inside.
 // With SMOOTH, planes of light go the same way, each with a multiplier of its own.
 
 `default_nettype none

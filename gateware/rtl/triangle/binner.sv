@@ -1,5 +1,5 @@
-// Keeps what the setup makes of a frame in memory: each descriptor once, its number in the list of every band that it
-// touches, and the numbers of exceptional triangles in a list of their own.
+// Writes the results of the setup to memory: each descriptor once, its number to the list of every band that it touches, and
+// the numbers of exceptions to a list of their own.
 //
 // Layout in words of 16 bytes, entries being u32 (docs/formats.md "Band lists"):
 //   descriptors   descriptor_base + 3·number           3 words each; with SMOOTH 6, and 6·number
@@ -11,8 +11,8 @@
 // a list and back costs memory several clocks, so one write for four entries counts.
 //
 // Throughput 6 clocks a descriptor, with SMOOTH 9, and 2 more for each further band. `restart` (while idle) empties all
-// lists, which takes 64 clocks; `finish` (a level, when nothing more comes) has the lengths written and ends with `done`.
-// What has no room left is dropped and `full` is set: the frame is not whole then.
+// lists, which takes 64 clocks; `finish` (a level, after the last input) writes the lengths and ends with `done`.
+// Without room, items are dropped and `full` is set: the frame is incomplete.
 
 `default_nettype none
 

@@ -7,8 +7,8 @@
 //   in ─▶│ first 4 clocks: products of the area,  │─▶│ last 4 clocks: area,        │─▶ out
 //        │ minima and maxima, one in each clock   │  │ bounds, start; then verdict │
 //
-// All stands still while one that is to be drawn waits in phase 3 for `out`; a culled one waits for nothing. in_ready follows
-// out_ready in the same clock, so out_ready has to come from registers, as it does in `setup`.
+// Everything stops while a triangle that is not culled waits in phase 3 for `out`; a culled one never waits. in_ready follows
+// out_ready in the same clock, so out_ready must come from registers, as in `setup`.
 
 `default_nettype none
 

@@ -1,5 +1,5 @@
-// Gives out the descriptors whose numbers come in, and keeps those of late: a triangle is drawn in several bands, one after
-// the other, and so is read from memory once, most of the time.
+// A cache of descriptors: numbers in, descriptors out. A triangle is drawn in several bands, one after the other, and is mostly
+// read from memory once.
 //
 //                 ┌──────┐ miss                              ┌───────┐
 //   numbers ─────▶│ tags ├──────▶ addresses ─▶ memory ─words▶│       │
@@ -8,12 +8,12 @@
 //                                                            └───────┘
 //
 // Direct-mapped: a number's low bits choose the line. Tags change in the order of the numbers, in front, and lines in the same
-// order at the end, so what a hit finds in its line is what its tag said. An item that is no descriptor (`in_end`) passes in
-// its order.
+// order at the end, so a hit finds in its line the descriptor of its tag. An item that is no descriptor (`in_end`) passes in its
+// order.
 //
-// Latency 5 clocks for a hit, that of memory and 6 more for a miss. Throughput a hit in 4 clocks, a miss in 5, with SMOOTH in 8.
-// Descriptors must not change in memory while `forget` is low. A clock in which it is high, when nothing is inside, makes
-// what is kept be forgotten, a line a clock; numbers wait for it.
+// Latency 5 clocks for a hit, for a miss that of memory and 6 more. Throughput a hit in 4 clocks, a miss in 5, with SMOOTH in 8.
+// Descriptors must not change in memory while `forget` is low. A clock with `forget`, while the cache is empty of requests,
+// invalidates all lines, a line a clock; numbers wait for it.
 //
 // Streams: an item moves in a clock in which valid and ready are high; valid does not wait for ready, and a payload stays as
 // it is until it has moved. Memory: a client of read_port.

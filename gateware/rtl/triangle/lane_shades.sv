@@ -1,4 +1,4 @@
-// Eight pixels under smooth shading: the colours of a group beside `lanes`, and what that gives out as late as they come.
+// Eight pixels under smooth shading: the colours of a group beside `lanes`, and the outputs of `lanes` delayed to match.
 //
 //   stage   1         3                4                    6              10
 //           light ───────────────────────▶ lane_values ─────▶ ┌──────────────┐

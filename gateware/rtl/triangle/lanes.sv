@@ -12,10 +12,10 @@
 //   address  5 * line    * stride / 5 + group
 //
 // `stride`, the groups of a line, is 40, 80 or 160 and holds while groups are inside. The address in the band buffer comes
-// with the line and the group of which it is made.
+// with the line and the group it is computed from.
 //
-// Streams are valid/ready; ready passes through. Latency 4 clocks, throughput a group a clock. A group that covers
-// nothing does not come out. `early_depths`, the accumulators, are those of a group a clock before it comes out.
+// Streams are valid/ready; ready passes through. Latency 4 clocks, throughput a group a clock. A group without
+// a covered pixel is dropped. `early_depths` has the accumulators of a group a clock before its output.
 
 `default_nettype none
 

@@ -1,21 +1,21 @@
-// Reads the descriptors of a frame, band by band, in the order of their lists: in each band those of the geometry unit first,
-// then a second set that the firmware has made (clipped triangles), where there is one. Layout as binner writes it.
+// Reads the descriptors of a frame, band by band, in the order of their lists: in each band the geometry unit's set first, then
+// an optional second set by the firmware (clipped triangles). Layout as in binner.
 //
 //             words               entries   ┌──────────────────┐
 //   lengths ─────────▶ lists ────────┬─────▶│ descriptor_cache │──▶ out
 //                        └─▶ jobs ───┘      └──────────────────┘
 //
 // Each part runs ahead of the one behind it as far as its FIFO reaches, through the ends of lists and bands: lengths of 16 bands,
-// lists of 8 jobs (a list of a band each) or 128 entries, 10 descriptors (5 with SMOOTH). So memory's latency is hidden while
-// what has been read lasts. Three clients of a read_port: the lengths of the lists, the lists, the descriptors. Throughput a
-// descriptor in 5 clocks, with SMOOTH in 8; a list takes 4 clocks, if it is empty too.
+// lists of 8 jobs (a list of a band each) or 128 entries, 10 descriptors (5 with SMOOTH), which hides memory's latency. Three
+// clients of a read_port: the lengths of the lists, the lists, the descriptors. Throughput a descriptor in 5 clocks, with SMOOTH
+// in 8; a list takes at least 4 clocks.
 //
-// `list_error`: since `start` there was a list longer than lists may be, which was taken as empty, or an entry that is none of
-// the set's `counts` descriptors, for which something else was drawn.
+// `list_error`: since `start` there was a list above the largest length, which was read as empty, or an entry above the set's
+// `counts` descriptors, which was replaced by another one.
 //
-// `start` (one clock, not while a frame is read) begins with band 0. `forget`: descriptor_cache. An item of `out` is a
-// descriptor, or with `out_end` the end of a band. All is read after the end of `last_band`. Streams: an item moves in a clock in which valid and ready are high;
-// valid does not wait for ready, and a payload stays as it is until it has moved.
+// `start` (one clock, not while a frame is read) begins with band 0. `forget`: see descriptor_cache. An item of `out` is a
+// descriptor, or with `out_end` the end of a band; the end of `last_band` is the last one. Streams: an item moves in a clock in
+// which valid and ready are high; valid does not wait for ready, and a payload holds until it has moved.
 
 `default_nettype none
 
@@ -56,7 +56,7 @@ module list_reader #(
 
     assign lists = list_base;
 
-    // Lengths: a word for each list, since a word of the table has those of four bands, and the sets take turns.
+    // Lengths: a read for each list, since a word of the table has the lengths of four bands, and the sets take turns.
     logic       asks_lengths, length_set;
     logic [5:0] length_band;
 

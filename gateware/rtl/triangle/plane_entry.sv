@@ -1,5 +1,5 @@
-// Places a plane of light where `band_entry` places the triangle: what it has at the row `first` of the band is
-// start + step_y * offset, modulo 2^32.
+// Moves a plane of light to the row where `band_entry` places the triangle, `first` of the band: start + step_y * offset,
+// modulo 2^32.
 //
 // Driven by band_entry, in whose passes it goes along: the step's low 24 bits in pass 5, its high 8 bits in pass 7.
 
@@ -12,8 +12,8 @@ module plane_entry (
     input  wire         advance,
     input  wire  [9:0]  offset,
     input  wire         hold,      // its triangle is to be held
-    input  wire         result,    // what it has there is made
-    input  wire         give,      // what is held goes out
+    input  wire         result,    // the value is computed
+    input  wire         give,      // the held value goes out
     input  wire  [95:0] in_plane,  // {step_y, step_x, start}
     output logic [95:0] out_plane  // {step_y, step_x, value there}
 );

@@ -1,4 +1,4 @@
-// What passes between the parts of triangle_raster.
+// Types between the parts of triangle_raster.
 
 `default_nettype none
 

@@ -1,7 +1,7 @@
 // The reciprocal of docs/formats.md: y = 2^47/m for a mantissa m in [2^23, 2^24), from a table and two Newton steps.
 //
 // `out_y` comes with `out_valid` (one clock) 14 clocks after m, and stays until the next one; nothing stalls. Throughput an
-// m in 10 clocks: `in_ready` tells. One DSP48 makes the four products:
+// m in 10 clocks, by `in_ready`. One DSP48 makes the four products:
 //
 //   clock  0        1          4             7           10            13         14
 //          m ─▶ seed y0 ─▶ e0 = −m·y0 ─▶ y1 = y0 + y0·e0 ─▶ e1 = −m·y1 ─▶ y1·e1 ─▶ y = y1 + y1·e1

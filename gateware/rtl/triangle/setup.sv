@@ -6,9 +6,9 @@
 //            └▶ culled
 //
 // Throughput a drawn triangle in 11 clocks, a culled one in 4; latency at most 75 clocks. The stages 1 to 4 move together, in
-// the last clock of a beat, which lasts until there is room for what leaves stage 4; they move whether they hold a
-// triangle or not, so one alone gets through. A culled triangle leaves before them and waits for nothing but what is before
-// it. `culled` and `drawn` are high for one clock for each triangle, `drawn` when its descriptor is there.
+// the last clock of a beat, which lasts until there is room behind stage 4; empty stages move too, so a single triangle gets
+// through. A culled triangle leaves before them and waits only for triangles before it. `culled` and `drawn` are high for one
+// clock for each triangle, `drawn` with its descriptor.
 // The frame's constants (`width`, `height`, `cull_back`, `camera_n`, `smooth`) hold while `busy` and when a triangle comes.
 //
 // Edges 0 and 2 meet in vertex 0, so both take (px, py) from there. The third follows: E0 + E1 + E2 = 2A = a at every point,
@@ -47,7 +47,7 @@ module setup #(
     output triangle_pkg::descriptor_t out_descriptor,
     output logic [PLANES_BITS-1:0]    out_planes
 );
-    // What goes through all stages as it is.
+    // Passes through all stages unchanged.
     typedef struct packed {
         logic [7:0]  group_start, group_right, group_left;
         logic [9:0]  bottom, top;
@@ -142,7 +142,7 @@ module setup #(
         .out_valid(reciprocal_done), .out_y(y)
     );
 
-    // What is only passed on from stage to stage stays in flip-flops: shift registers would take LUTs.
+    // Values only passed on stay in flip-flops: shift registers would take LUTs.
     // Stage 2: E1 − bias = a − (E0 − bias) − (E2 − bias) − all biases, over 2^8, from the carry of the lowest 8 bits.
     (* keep *) passed_t passed_2;
     (* keep *) origin_t origin_2;

@@ -1,4 +1,4 @@
-// What passes between the parts of the triangle setup.
+// Types between the parts of the triangle setup.
 
 `default_nettype none
 

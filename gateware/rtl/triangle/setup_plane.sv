@@ -1,7 +1,7 @@
 // A plane's gradients and its accumulator at the start, from its normal: stages 3 and 4 of the triangle setup.
 //
-// Driven by the `count` and the `beat` of the setup. The normal is there at the end of a beat; the reciprocal holds
-// in the next one, what concerns vertex 0 in the one after that, at the end of which everything is there.
+// Driven by the `count` and the `beat` of the setup. The normal is valid at the end of a beat, the reciprocal holds in the next
+// beat, the inputs for vertex 0 in the one after, at the end of which all outputs are valid.
 
 `default_nettype none
 

@@ -1,4 +1,4 @@
-// One of the walker's accumulators: a value at the current place, and a snapshot of it to come back to.
+// One of the walker's accumulators: a value at the current place, and a snapshot of it to return to.
 //
 // In each clock with `advance` it moves from one of the two, or takes `load_value`; `keep` leaves the snapshot as it is.
 //
@@ -7,8 +7,8 @@
 //   else last     load_value
 //   else          snapshot + step_y
 //
-// The addition is what the walker's loop waits for, so the upper part is there for both carries, and what comes before is made for
-// LUTs of six inputs: one for `from`, one for the sum of a bit. Sums are modulo 2^WIDTH.
+// The addition is in the walker's critical loop: the upper part is computed for both carries, and the rest fits LUTs of six
+// inputs, one for `from`, one for the sum of a bit. Sums are modulo 2^WIDTH.
 
 `default_nettype none
 

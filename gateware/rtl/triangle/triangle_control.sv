@@ -1,19 +1,19 @@
-// Starts the passes of the triangle engine, if what they are asked for can be done, and says why not.
+// Starts the passes of the triangle engine after a check of their parameters, and reports their results.
 //
 //   ask ──▶ pending ──▶ regions, one a clock ──▶ start ──▶ busy ──▶ done ──▶ ended, error
 //                                     └── refused ─────────────────────────────▲
 //
-// A pass names regions of memory by the byte address of their first word of 16 bytes, in the CPU's 32-bit space, and by
-// numbers that say how long they are. A region that is not aligned, or not wholly in memory (2^ADDRESS_BITS words from
-// BASE on), is refused with ERROR_ADDRESS before anything has been read or written. `ended` (one clock) closes each ask:
-// refused, done, or cancelled; `error` then holds until the next ask of this pass.
+// The parameters of a pass name regions of memory: the byte address of their first word of 16 bytes, in the CPU's 32-bit space,
+// and their lengths. A region that is not aligned or not within memory (2^ADDRESS_BITS words from BASE on) ends the pass with
+// ERROR_ADDRESS before the first access to memory. `ended` (one clock) closes each ask: refused, done, or cancelled; `error` then
+// holds until the next ask of this pass.
 //
-// A pass is `active` from its ask until its error stands. Asked for meanwhile, it goes on; ERROR_BUSY then stays unless it ends
-// with an error of its own.
+// A pass is `active` from its ask until its error is valid. A second ask meanwhile does not stop it; the error is then ERROR_BUSY,
+// unless the pass ends with an error of its own.
 //
-// `cancel` (one clock, at any time) ends both passes, also those asked for in its clock; what is asked for after it begins when
-// the engine is `ready` again.
-// Latency 15 clocks from `ask` to `start`. The flags of a pass are kept from its `ask` on; all else has to hold until `ended`.
+// `cancel` (one clock, at any time) ends both passes, also those asked for in its clock. Later asks wait until the engine is
+// `ready`. Latency 15 clocks from `ask` to `start`. `kept` holds the flags of a pass from its `ask` on; all other parameters must
+// hold until `ended`.
 
 `default_nettype none
 
@@ -54,7 +54,7 @@ module triangle_control #(
                            ERROR_LIST = triangle_registers_pkg::ERROR_LIST,
                            ERROR_CANCELLED = triangle_registers_pkg::ERROR_CANCELLED;
 
-    // Words of a region: more than memory has are still told apart.
+    // Words of a region, also of one larger than memory.
     localparam int unsigned WORD_BITS  = ADDRESS_BITS + 2;
     // Lists of more entries than can be counted are of no use.
     localparam logic [4:0]  LAST_SHIFT = 5'(COUNT_BITS - 3);

@@ -5,14 +5,14 @@
 //              └───────────────┘                        └─────────────┘
 //                                firmware's lists ──────────▲
 //
-// Reads go through three native read ports of the memory: triangles, vertices, and what the raster reads. LiteDRAM lets a
-// port turn to another bank only when the bank before has done all its work, which takes four clocks; streams on ports of
-// their own do not turn for each other. Descriptors, lists, and the frame's words in even and in odd banks have write ports. `cancel` (one clock, at any
-// time) gives both frames up; `ready` says that the memory has answered everything and the band buffer is clear, so that
-// either unit may start. What the units' parameters and results mean stands in their own files.
+// Three native read ports of the memory serve triangles, vertices, and the raster unit. LiteDRAM lets a port turn to another
+// bank only when the previous bank is idle, four clocks later, so each stream has a port of its own. Write ports serve
+// descriptors, lists, and the frame's words in even and in odd banks. `cancel` (one clock, at any time) ends both passes;
+// `status.ready`: no read is under way and the band buffer is clear, so either unit may start. Parameters and results: see the
+// units. `events` has the growth of each counter in this clock.
 //
-// SMOOTH builds smooth shading, which a frame then has or not, by `smooth` of its geometry: light of the vertices, interpolated
-// over the depth and divided at each pixel (docs/formats.md, "Smooth shading"). Descriptors have twice the words then.
+// SMOOTH builds smooth shading, which `smooth` of the geometry's flags chooses for a frame: light of the vertices, interpolated
+// over the depth and divided at each pixel (docs/formats.md, "Smooth shading"). Descriptors then have twice the words.
 
 `default_nettype none
 

@@ -1,4 +1,4 @@
-// What travels between the parts of the triangle engine. Formats are those of docs/formats.md.
+// Types between the parts of the triangle engine. Formats: docs/formats.md.
 
 `default_nettype none
 
@@ -10,23 +10,23 @@ package triangle_pkg;
         logic [20:0] x;
     } screen_vertex_t;
 
-    // What the vertex stage makes of a vertex: behind the near plane, with no place; or beyond the guard band, where the
-    // place only says on which sides of the picture it is.
+    // A vertex after the vertex stage. Behind the near plane it has no place; beyond the guard band the place only shows the
+    // sides of the picture it is beyond.
     typedef struct packed {
         logic           behind;
         logic           beyond;
         screen_vertex_t place;
     } projected_t;
 
-    // What E' of an edge gains with a pixel down and with one to the right, s21.
+    // Steps of E' of an edge, a pixel down and a pixel to the right, s21.
     typedef struct packed {
         logic [20:0] y;
         logic [20:0] x;
     } steps_t;
 
     // A triangle after the setup, 384 bits, as it lies in memory: three words of 128, the lowest first.
-    // E' and depth are those of the first column of group_start in row top. A group is 8 columns. Edges are arrays of vectors:
-    // Yosys reads an array of structs as something narrower, and says nothing.
+    // E' and depth are at the first column of group_start in row top. A group is 8 columns. Edges are arrays of vectors: Yosys
+    // reads an array of structs as a narrower type, without a message.
     typedef struct packed {
         logic [15:0]      colour;       // RGB565, lit
         logic [7:0]       group_start;  // the group of the topmost vertex, cut to the bounds
@@ -57,7 +57,7 @@ package triangle_pkg;
         logic [31:0] start;
     } plane_t;
 
-    // What follows descriptor_t in memory: red in the lowest; without `smooth` the triangle is in one colour.
+    // Follows descriptor_t in memory, red in the lowest bits; without `smooth` the triangle has one colour.
     typedef struct packed {
         logic             smooth;
         logic [2:0][95:0] light; // a plane_t each

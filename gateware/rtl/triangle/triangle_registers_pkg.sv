@@ -82,7 +82,7 @@ package triangle_registers_pkg;
         logic [19:0] exception_count;
     } results_t;
 
-    // State of the engine. `done` is high for one clock, its errors count with it.
+    // State of the engine. `geometry_done` and `raster_done` are high for one clock; the errors are valid in that clock.
     typedef struct packed {
         logic ready;
         logic geometry_busy;
@@ -116,7 +116,7 @@ package triangle_registers_pkg;
         logic cycles_flush;
     } events_t;
 
-    // A raymarcher to the engine.
+    // Link from a raymarcher to the engine.
     typedef struct packed {
         logic enable;
         logic [1:0] compose;
@@ -131,7 +131,7 @@ package triangle_registers_pkg;
         logic [15:0] colour;
     } field_source_t;
 
-    // The engine to a raymarcher.
+    // Link from the engine to a raymarcher.
     typedef struct packed {
         logic start;
         logic open;

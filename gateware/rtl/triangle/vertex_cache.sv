@@ -8,11 +8,11 @@
 //    └─────────────────────────────────────────────────── side ─────────▶└──────────┘              ▲
 //                                                              └───────────────────────────────────┘
 // Direct mapped. Tags change in the order of the indices, at the front; vertices change in the same order, at the back,
-// where a record that missed takes the next vertex of `projected`. So a record that hit finds the vertex it was promised,
-// however late that one came, and there is no hazard. Within either memory there is none either: the tags are read and
+// where a record that missed takes the next vertex of `projected`. So a record that hit finds its vertex at any latency, and
+// there is no hazard. Within either memory there is none either: the tags are read and
 // replaced by one access, the old one first; and a record either reads its slot or writes it, on its way past one port.
 //
-// `clear` (one clock) forgets all vertices for the triangles that move in later: a chunk or a frame begins. Tags hold the
+// `clear` (one clock) invalidates all vertices for the triangles that move in later, at the start of a chunk or a frame. Tags hold the
 // number of the time between two clears, so only every 2^EPOCH_BITS − 1 clears, and after a reset, all are swept: 1 clock
 // a slot.
 // Latency 15 clocks without a miss. Throughput an index a clock, a triangle in 3, while there are no misses. Each stream

@@ -1,4 +1,4 @@
-// Walks over a triangle in groups of eight pixels, one group a clock, and gives out those where it may cover something.
+// Walks over a triangle in groups of eight pixels, one group a clock, and sends the groups that it may cover.
 //
 //        ┌──────┐     row by row, from group_start:
 //        │ seek │───▶ until no edge fails in the whole group,
