@@ -1,12 +1,10 @@
-//! The layout of packed types, as Verilator resolves them: which bits a member has.
+//! The layout of packed types, as Verilator resolves them: the bits of each member.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use serde::Deserialize;
 use thiserror::Error;
-
-use crate::{Bits, Record};
 
 /// A packed type: a vector, an enumeration, an array or a structure. Cheap to clone.
 #[derive(Clone, Debug, Deserialize)]
@@ -16,7 +14,7 @@ pub struct Layout {
     width: usize,
 }
 
-/// A type in the description that `gateware/tests/description.py` writes.
+/// A type in the description that `gateware/verilate/description.py` writes.
 #[derive(Debug, Deserialize)]
 #[serde(untagged)]
 enum Shape {
@@ -140,21 +138,6 @@ impl Layout {
     #[must_use]
     pub fn width(&self) -> usize {
         self.width
-    }
-
-    /// A record of this type, all zero.
-    #[must_use]
-    pub fn record(&self) -> Record {
-        self.record_of(Bits::default())
-    }
-
-    /// A record of this type with the given bits.
-    ///
-    /// # Panics
-    /// With bits above the type's width.
-    #[must_use]
-    pub fn record_of(&self, bits: Bits) -> Record {
-        Record::new(self.clone(), bits)
     }
 
     /// The type of a part.

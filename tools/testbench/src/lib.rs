@@ -1,4 +1,4 @@
-//! The gateware's modules, verilated, for tests in Rust: the bit-exact model and the RTL meet here.
+//! Verilated designs, their ports by name, and both ends of their streams.
 //!
 //! A [`Module`] is one instance of one module, with ports by name and a clock. A [`Source`] and a [`Sink`] speak its
 //! streams (valid/ready), stall at random, and hold both sides to the contract: a payload does not change while it is

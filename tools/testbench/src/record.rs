@@ -15,6 +15,23 @@ pub struct Record {
     bits: Bits,
 }
 
+impl Layout {
+    /// A record of this type, all zero.
+    #[must_use]
+    pub fn record(&self) -> Record {
+        self.record_of(Bits::default())
+    }
+
+    /// A record of this type with the given bits.
+    ///
+    /// # Panics
+    /// With bits above the type's width.
+    #[must_use]
+    pub fn record_of(&self, bits: Bits) -> Record {
+        Record::new(self.clone(), bits)
+    }
+}
+
 impl Record {
     pub(crate) fn new(layout: Layout, bits: Bits) -> Self {
         assert!(

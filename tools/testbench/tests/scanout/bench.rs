@@ -7,48 +7,7 @@ use rand_pcg::Pcg64Mcg;
 use crate::memory::Memory;
 use crate::monitor::Monitor;
 use crate::raster::{Clocks, Raster};
-
-/// What software asks for, and the hardware has in force.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Settings {
-    pub enable: bool,
-    pub scale: u64,
-    /// In memory words.
-    pub base: u64,
-}
-
-impl Settings {
-    const RESET: Self = Self {
-        enable: false,
-        scale: 4,
-        base: 0,
-    };
-
-    /// A frame that is shown.
-    pub const fn shown(scale: u64, base: u64) -> Self {
-        Self {
-            enable: true,
-            scale,
-            base,
-        }
-    }
-
-    /// Any settings.
-    pub fn random(random: &mut Pcg64Mcg) -> Self {
-        Self {
-            enable: random.random_range(0..8) != 0,
-            scale: 1 << random.random_range(0..3),
-            base: random.random_range(0..0x70_0000),
-        }
-    }
-}
-
-/// The error code of a frame.
-pub mod error {
-    pub const NONE: u64 = 0;
-    pub const SCALE: u64 = 1;
-    pub const UNDERFLOW: u64 = 2;
-}
+use crate::settings::{Settings, error};
 
 /// Free-running counters as the bench counts them.
 #[derive(Clone, Copy, Debug, Default)]

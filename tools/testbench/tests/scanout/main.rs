@@ -7,13 +7,15 @@ mod bench;
 mod memory;
 mod monitor;
 mod raster;
+mod settings;
 
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
-use bench::{Bench, Settings, error};
+use bench::Bench;
 use memory::Manners;
 use raster::{Clocks, Raster};
+use settings::{Settings, error};
 
 const SMALL: Raster = Raster::SMALL;
 

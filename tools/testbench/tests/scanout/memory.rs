@@ -6,8 +6,8 @@ use glint_testbench::{Bits, Module, Port};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
-use crate::bench::Settings;
 use crate::raster::{Raster, pixel_at};
+use crate::settings::Settings;
 
 /// Bytes of a memory word.
 pub const WORD: u64 = 16;

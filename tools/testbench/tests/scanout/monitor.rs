@@ -5,9 +5,9 @@
 
 use glint_testbench::{Module, Port};
 
-use crate::bench::Settings;
 use crate::memory::WORD;
 use crate::raster::{Raster, pixel_at, rgb888};
+use crate::settings::Settings;
 
 pub struct Monitor {
     raster: Raster,

@@ -1,0 +1,252 @@
+//! The band buffer between a source of groups and a memory.
+
+use glint_testbench::{Bits, Counters, Module, Port, Sink, Source, Stalls};
+use std::collections::VecDeque;
+
+use crate::pixels::{Band, Group, Left, PICTURE_LINES, Pixels, ROWS_OF_A_BANK, WORDS, Word};
+
+pub struct Bench {
+    pub module: Module,
+    pub group_source: Source,
+    pub band_source: Source,
+    pub words: Sink,
+    /// What `words` took.
+    pub written: Vec<Word>,
+    pub groups: VecDeque<Group>,
+    pub bands: VecDeque<Band>,
+    pub band_valid: Port,
+    pub restart: Port,
+    pub clearing: Port,
+    pub flushed: Port,
+    /// `band_valid` in the clock before: groups are not taken any more.
+    pub closed: bool,
+    pub drawn: Pixels,
+    pub left: Left,
+    /// The band that went to memory last.
+    pub flushed_last: Option<Band>,
+    pub expected: Vec<Word>,
+    /// Rows of a line.
+    pub stride: usize,
+    pub counters: Counters,
+}
+
+impl Bench {
+    /// A band buffer after reset, still clearing itself.
+    pub fn new(name: &str, seed: u64, group_stalls: f64, memory_stalls: f64) -> Self {
+        let mut module = Module::new(name, seed as u32);
+        let restart = module.port("restart");
+        module.set(restart, 0_u64);
+        Self {
+            group_source: Source::new(
+                &module,
+                "group",
+                &[
+                    "row", "line", "column", "mask", "halves", "codes", "colours",
+                ],
+                Stalls::new(seed, group_stalls),
+            ),
+            band_source: Source::new(
+                &module,
+                "band",
+                &[
+                    "base",
+                    "depth_base",
+                    "lines",
+                    "stride",
+                    "first_line",
+                    "slot",
+                    "whole",
+                    "with_depth",
+                    "clear",
+                    "compose",
+                ],
+                Stalls::new(seed + 100, group_stalls),
+            ),
+            words: Sink::new(
+                &module,
+                "word",
+                &["addr", "data"],
+                Stalls::new(seed + 200, memory_stalls),
+            ),
+            written: Vec::new(),
+            groups: VecDeque::new(),
+            bands: VecDeque::new(),
+            band_valid: module.port("band_valid"),
+            restart,
+            clearing: module.port("clearing"),
+            flushed: module.port("flushed"),
+            closed: false,
+            drawn: Pixels::clear(),
+            left: [(); 2].map(|()| vec![None; PICTURE_LINES]),
+            flushed_last: None,
+            expected: Vec::new(),
+            stride: 40,
+            counters: Counters::new(&module, "events"),
+            module,
+        }
+    }
+
+    /// As `new`, ready to draw.
+    pub fn ready(seed: u64, group_stalls: f64, memory_stalls: f64) -> Self {
+        Self::of("band_buffer", seed, group_stalls, memory_stalls)
+    }
+
+    /// As `ready`, one of the builds.
+    pub fn of(name: &str, seed: u64, group_stalls: f64, memory_stalls: f64) -> Self {
+        let mut bench = Self::new(name, seed, group_stalls, memory_stalls);
+        bench.run_until(ROWS_OF_A_BANK + 10, |bench| !bench.is(bench.clearing));
+        bench
+    }
+
+    pub fn is(&self, port: Port) -> bool {
+        self.module.is_high(port)
+    }
+
+    pub fn counter(&self, name: &str) -> u64 {
+        self.counters.get(name)
+    }
+
+    pub fn push_group(&mut self, group: Group) {
+        self.group_source.push(vec![
+            Bits::from(group.row as u64),
+            Bits::from((group.row / self.stride) as u64),
+            Bits::from((group.row % self.stride) as u64),
+            Bits::from(u64::from(group.mask)),
+            Bits::from(u64::from(group.halves)),
+            Bits::pack(18, group.codes),
+            Bits::pack(16, group.colours),
+        ]);
+        self.groups.push_back(group);
+    }
+
+    /// Ends a band, which is flushed whole where anything is unknown.
+    pub fn push_band(&mut self, mut band: Band) {
+        assert_eq!(band.stride, self.stride);
+        let waiting = self.bands.iter().filter(|other| other.slot == band.slot);
+        let mut known: Vec<_> = self.left[band.slot].iter().map(Option::is_some).collect();
+        waiting.for_each(|other| known[other.picture_lines()].fill(true));
+        band.whole |= known[band.picture_lines()].contains(&false);
+        self.band_source.push(vec![
+            Bits::from(u64::from(band.base)),
+            Bits::from(u64::from(band.depth_base)),
+            Bits::from(band.lines as u64),
+            Bits::from(band.stride as u64),
+            Bits::from(band.first_line as u64),
+            Bits::from(band.slot as u64),
+            Bits::from(u64::from(band.whole)),
+            Bits::from(u64::from(band.with_depth)),
+            Bits::from(u64::from(band.clear)),
+            Bits::from(u64::from(band.compose)),
+        ]);
+        self.bands.push_back(band);
+    }
+
+    pub fn clock(&mut self) {
+        let module = &mut self.module;
+        self.group_source.drive(module);
+        self.band_source.drive(module);
+        self.words.drive(module);
+        module.settle();
+        self.counters.sample(module);
+        self.group_source.sample(module);
+        self.band_source.sample(module);
+        self.words.sample(module);
+        self.written
+            .extend(self.words.take().into_iter().map(|item| {
+                let data = std::array::from_fn(|i| item[1].words()[i]);
+                (item[0].words()[0], data)
+            }));
+        if self.group_source.len() < self.groups.len() {
+            let group = self.groups.pop_front().expect("it was there");
+            let cycle = module.cycles();
+            assert!(
+                !self.closed,
+                "cycle {cycle}: a group was taken after its band's end"
+            );
+            self.drawn.draw(&group);
+        }
+        self.closed = module.is_high(self.band_valid);
+        if self.band_source.len() < self.bands.len() {
+            let band = self.bands.pop_front().expect("it was there");
+            self.expected
+                .extend(self.drawn.words(&band, &mut self.left));
+            self.flushed_last = Some(band);
+            self.drawn = Pixels::clear();
+            self.closed = false;
+        }
+        module.clock();
+    }
+
+    /// Clocks until something is so, and returns how often.
+    pub fn run_until(&mut self, limit: u64, done: impl Fn(&Self) -> bool) -> u64 {
+        for clocks in 0..limit {
+            self.module.settle();
+            if done(self) {
+                return clocks;
+            }
+            self.clock();
+        }
+        panic!("not done after {limit} clocks");
+    }
+
+    /// Draws groups and ends their band.
+    pub fn draw(&mut self, groups: impl IntoIterator<Item = Group>, band: Band) {
+        for group in groups {
+            self.push_group(group);
+        }
+        let limit = 200 * (self.groups.len() as u64 + 4 * ROWS_OF_A_BANK);
+        self.run_until(limit, |bench| bench.groups.is_empty());
+        self.push_band(band);
+    }
+
+    /// Waits until everything is in memory and compares it.
+    pub fn finish(&mut self) {
+        self.run_until(200 * 4 * ROWS_OF_A_BANK, |bench| {
+            bench.bands.is_empty() && bench.is(bench.flushed)
+        });
+        self.compare();
+    }
+
+    pub fn compare(&mut self) {
+        for (index, (found, expected)) in self.written.iter().zip(&self.expected).enumerate() {
+            assert_eq!(found, expected, "word {index} (address, data)");
+        }
+        assert_eq!(self.written.len(), self.expected.len(), "words");
+        self.written.clear();
+        self.expected.clear();
+    }
+}
+
+impl Bench {
+    /// Memory stops, the buffer is restarted and gets clear all the same; then memory goes on.
+    pub fn restart_with_dead_memory(&mut self) {
+        let alive = self.words.set_stalls(Stalls::new(1, 1.0));
+
+        // The renderers are restarted in the same clock.
+        self.module.set(self.restart, 1_u64);
+        self.clock();
+        self.module.set(self.restart, 0_u64);
+        let seen = self.written.len();
+        if let Some(band) = self.flushed_last {
+            self.left[band.slot][band.picture_lines()].fill(None);
+        }
+        self.group_source.clear();
+        self.groups.clear();
+        self.band_source.clear();
+        self.bands.clear();
+        self.drawn = Pixels::clear();
+        self.closed = false;
+
+        self.module.settle();
+        assert!(self.is(self.clearing));
+        let clocks = self.run_until(2 * ROWS_OF_A_BANK, |bench| !bench.is(bench.clearing));
+        assert!(clocks <= ROWS_OF_A_BANK + 8, "{clocks} clocks");
+
+        self.words.set_stalls(alive);
+        self.run_until(10_000, |bench| bench.is(bench.flushed));
+        let more = self.written.len() - seen;
+        assert!(more <= WORDS, "{more} words after the restart");
+        self.expected.truncate(self.written.len());
+        self.compare();
+    }
+}

@@ -1,0 +1,121 @@
+//! Groups of pixels, bands, and the picture that they add up to.
+
+use glint_model::raymarch::{Tint, compose};
+use std::ops::Range;
+
+pub const LANES: usize = 8;
+pub const ROWS_OF_A_BANK: u64 = 2048;
+/// Words that may be on their way: places of the FIFO, and the one at its end.
+pub const WORDS: usize = 16;
+pub const PICTURE_LINES: usize = 720;
+
+#[derive(Clone, Debug)]
+pub struct Group {
+    pub row: usize,
+    pub mask: u8,
+    /// Of the colours: 3 both, 1 and 2 what the left and the right eye see.
+    pub halves: u8,
+    pub codes: [u32; LANES],
+    pub colours: [u16; LANES],
+}
+
+#[derive(Clone, Copy, Debug)]
+pub struct Band {
+    pub base: u32,
+    pub depth_base: u32,
+    pub lines: usize,
+    pub stride: usize,
+    pub first_line: usize,
+    pub slot: usize,
+    pub whole: bool,
+    pub with_depth: bool,
+    pub clear: u16,
+    /// How what two eyes see becomes colours: 0 not at all, 1 red and blue, 2 red and cyan.
+    pub compose: u8,
+}
+
+impl Band {
+    /// Its lines in the picture.
+    pub fn picture_lines(&self) -> Range<usize> {
+        self.first_line..self.first_line + self.lines
+    }
+}
+
+pub type Word = (u32, [u32; 4]);
+
+/// Of each line in each frame buffer the columns from the first to the last that were drawn in last, where that is known.
+pub type Left = [Vec<Option<Range<usize>>>; 2];
+
+/// Depth and colour of the pixels that have been drawn, by row.
+pub struct Pixels(pub Vec<[Option<(u32, u16)>; LANES]>);
+
+impl Pixels {
+    pub fn clear() -> Self {
+        Self(vec![[None; LANES]; ROWS_OF_A_BANK as usize])
+    }
+
+    pub fn draw(&mut self, group: &Group) {
+        for lane in (0..LANES).filter(|lane| group.mask >> lane & 1 == 1) {
+            let pixel = &mut self.0[group.row][lane];
+            let (code, colour) = (group.codes[lane], group.colours[lane]);
+            if group.halves != 3 {
+                let (before, seen) = pixel.unwrap_or_default();
+                *pixel = Some(match group.halves {
+                    1 => (code, seen & 0xff00 | colour & 0x00ff),
+                    _ => (before, seen & 0x00ff | colour & 0xff00),
+                });
+            } else if group.codes[lane] >= pixel.map_or(0, |(code, _)| code) {
+                *pixel = Some((group.codes[lane], group.colours[lane]));
+            }
+        }
+    }
+
+    /// What goes to memory, in order.
+    pub fn words(&self, band: &Band, left: &mut Left) -> Vec<Word> {
+        let mut words = Vec::new();
+        for (line, picture_line) in band.picture_lines().enumerate() {
+            let rows = line * band.stride..(line + 1) * band.stride;
+            let drawn = |row: &usize| self.0[*row].iter().any(Option::is_some);
+            let now = match (rows.clone().find(drawn), rows.clone().rfind(drawn)) {
+                (Some(first), Some(last)) => first - rows.start..last + 1 - rows.start,
+                _ => 0..0,
+            };
+            let before = left[band.slot][picture_line].replace(now.clone());
+            let both = if band.whole || band.with_depth {
+                0..band.stride
+            } else {
+                match before.expect("a line of which nothing is known is flushed whole") {
+                    before if before.is_empty() => now,
+                    before if now.is_empty() => before,
+                    before => now.start.min(before.start)..now.end.max(before.end),
+                }
+            };
+            let span = both.map(|column| rows.start + column);
+            words.extend(span.clone().map(|row| self.colours(row, band)));
+            if band.with_depth {
+                words.extend(span.flat_map(|row| self.depths(row, band)));
+            }
+        }
+        words
+    }
+
+    pub fn colours(&self, row: usize, band: &Band) -> Word {
+        let seen = |(_, colour): (u32, u16)| {
+            let [left, right] = colour.to_le_bytes();
+            match band.compose {
+                0 => colour,
+                1 => compose(Tint::RedBlue, left, right),
+                _ => compose(Tint::RedCyan, left, right),
+            }
+        };
+        let colour = self.0[row].map(|pixel| u32::from(pixel.map_or(band.clear, seen)));
+        let pairs = [0, 1, 2, 3].map(|i| colour[2 * i] | colour[2 * i + 1] << 16);
+        (band.base + row as u32, pairs)
+    }
+
+    pub fn depths(&self, row: usize, band: &Band) -> [Word; 2] {
+        let codes = self.0[row].map(|pixel| pixel.map_or(0, |(code, _)| code));
+        let (halves, base) = (codes.as_chunks::<4>().0, band.depth_base + 2 * row as u32);
+        [(base, halves[0]), (base + 1, halves[1])]
+    }
+}

@@ -1,0 +1,331 @@
+//! `triangle_control` with the other side of its ports: software, and an engine.
+
+use glint_testbench::{Module, Port};
+
+use crate::passes::{
+    ADDRESS, BASE, BUSY, CANCELLED, FULL, Flags, GEOMETRY, LATENCY, LIST, MEMORY, MESH, NAMES,
+    NONE, Pass, RASTER, refusal,
+};
+
+/// What a pass has come to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum State {
+    Idle,
+    /// Asked for in this clock, with what becomes of it if nothing comes in between.
+    Asked(u64, u64),
+    /// Runs for so many clocks more.
+    Runs(u64),
+}
+
+/// Whether it may start: not from a cancel on until the engine is ready.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Recovery {
+    Since(u64),
+    Waits,
+}
+
+/// The controller, an engine behind it, and what both should do.
+pub struct Bench {
+    pub module: Module,
+    /// Bytes of a descriptor.
+    pub descriptor: u64,
+    pub passes: [Pass; 2],
+    pub list_shift: u64,
+    pub states: [State; 2],
+    /// What `error` should say, and the flags that should be kept.
+    pub errors: [u64; 2],
+    pub kept: [Option<Flags>; 2],
+    pub recovery: Recovery,
+    /// Clocks until the engine is ready again.
+    pub ready_in: u64,
+    /// How long passes run, and what they end with.
+    pub runs: [u64; 2],
+    pub ends: [u64; 2],
+    /// Asks that were taken, starts, ends.
+    pub counts: [[u64; 3]; 2],
+    pub clocks: u64,
+}
+
+/// What happens in a clock.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Events {
+    pub ask: [bool; 2],
+    pub cancel: bool,
+    /// With `cancel`: clocks until the engine is ready again.
+    pub recovers: u64,
+}
+
+impl Bench {
+    pub fn new(seed: u32) -> Self {
+        Self::of("triangle_control", 48, seed)
+    }
+
+    /// Of an engine that shades smoothly.
+    pub fn smooth(seed: u32) -> Self {
+        Self::of("triangle_control_smooth", 96, seed)
+    }
+
+    pub fn of(name: &str, descriptor: u64, seed: u32) -> Self {
+        let mut bench = Self {
+            module: Module::new(name, seed),
+            descriptor,
+            passes: Pass::good(),
+            list_shift: 9,
+            states: [State::Idle; 2],
+            errors: [NONE; 2],
+            kept: [None, None],
+            recovery: Recovery::Waits,
+            ready_in: 0,
+            runs: [20, 30],
+            ends: [NONE; 2],
+            counts: [[0; 3]; 2],
+            clocks: 0,
+        };
+        // A clock with `ready`, which it waits for.
+        bench.clock(Events::default());
+        bench
+    }
+
+    /// A region of a pass with counts from nothing to the most: it ends with memory, or a word beyond it.
+    pub fn lengths(&mut self, which: usize, count: &str, region: &str, item: u64) {
+        const MOST: u64 = (1 << 20) - 1;
+        let counts: &[u64] = if item == 1 {
+            &[
+                16,
+                0xf0,
+                1 << 24,
+                (1 << 25) - 16,
+                1 << 25,
+                1 << 26,
+                MEMORY - 16,
+                MEMORY,
+            ]
+        } else {
+            &[0, 1, 2, 3, 4, 5, 6, 7, 8, 255, 256, 1 << 19, MOST - 1, MOST]
+        };
+        self.passes = Pass::good();
+        for &count_value in counts {
+            self.passes[which].set(count, count_value);
+            let bytes = (count_value * item).next_multiple_of(16);
+            let asks = [which == GEOMETRY, which == RASTER];
+            let last = BASE + MEMORY - bytes.max(16);
+            for (address, expected) in [(last, NONE), (last + 16, ADDRESS)] {
+                self.passes[which].set(region, address);
+                let error = self.ask(asks)[which];
+                assert_eq!(error, expected, "{count} {count_value} at {address:#x}");
+            }
+        }
+    }
+
+    pub fn port(&self, which: usize, name: &str) -> Port {
+        self.module.port(&format!("{}_{name}", NAMES[which]))
+    }
+
+    pub fn set(&mut self, which: usize, name: &str, value: u64) {
+        let port = self.port(which, name);
+        self.module.set(port, value);
+    }
+
+    pub fn value(&self, which: usize, name: &str) -> u64 {
+        self.module.value(self.port(which, name))
+    }
+
+    pub fn set_flags(&mut self, which: usize, flags: &Flags) {
+        for (path, value) in flags.members(&format!("{}_flags", NAMES[which])) {
+            self.module.drive(&path, value);
+        }
+    }
+
+    /// Puts the parameters on the ports.
+    pub fn configure(&mut self) {
+        for path in ["geometry.list_shift", "raster.list_shift"] {
+            self.module.drive(path, self.list_shift);
+        }
+        for pass in self.passes.clone() {
+            for (name, value) in pass.ports {
+                let port = self.module.port(name);
+                self.module.set(port, value);
+            }
+        }
+        for which in [GEOMETRY, RASTER] {
+            let flags = self.passes[which].flags.clone();
+            self.set_flags(which, &flags);
+        }
+    }
+
+    pub fn is_active(&self, which: usize) -> bool {
+        self.states[which] != State::Idle
+    }
+
+    /// A clock: the engine's side of it first.
+    pub fn clock(&mut self, events: Events) {
+        let now = self.clocks;
+        let ready = self.ready_in == 0;
+        let port = self.module.port("engine.ready");
+        self.module.set(port, u64::from(ready));
+        let port = self.module.port("cancel");
+        self.module.set(port, u64::from(events.cancel));
+        for which in [GEOMETRY, RASTER] {
+            self.set(which, "ask", events.ask[which].into());
+        }
+        self.module.clock();
+        self.clocks += 1;
+        if ready && self.recovery == Recovery::Waits {
+            self.recovery = Recovery::Since(now);
+        }
+        self.ready_in = self.ready_in.saturating_sub(1);
+
+        for which in [GEOMETRY, RASTER] {
+            let name = NAMES[which];
+            let started = self.value(which, "start") == 1;
+            let told = self.value(which, "ended") == 1;
+            let mut expects_end = false;
+            if events.ask[which] {
+                if self.is_active(which) {
+                    self.errors[which] = BUSY;
+                } else {
+                    let refusal =
+                        refusal(which, &self.passes[which], self.list_shift, self.descriptor);
+                    self.states[which] = State::Asked(now, refusal);
+                    self.errors[which] = NONE;
+                    self.kept[which] = Some(self.passes[which].flags.clone());
+                    self.counts[which][0] += 1;
+                }
+            }
+            match self.states[which] {
+                _ if events.cancel => {
+                    if self.is_active(which) {
+                        self.errors[which] = CANCELLED;
+                        self.states[which] = State::Idle;
+                        expects_end = true;
+                    }
+                    assert!(!started, "{name} starts though cancelled");
+                }
+                State::Asked(since, refusal) => {
+                    // Both may be asked for at once, and a start waits for the engine.
+                    if let Recovery::Since(ready) = self.recovery {
+                        let waited = now - since.max(ready);
+                        assert!(waited <= 2 * LATENCY, "{name}: nothing for {waited} clocks");
+                    }
+                    if refusal != NONE {
+                        assert!(!started, "{name} starts, expected error {refusal}");
+                        if told {
+                            expects_end = true;
+                            self.errors[which] = refusal;
+                            self.states[which] = State::Idle;
+                        }
+                    } else if started {
+                        assert_ne!(
+                            self.recovery,
+                            Recovery::Waits,
+                            "{name} starts before `ready`"
+                        );
+                        self.counts[which][1] += 1;
+                        self.states[which] = State::Runs(self.runs[which]);
+                    }
+                }
+                State::Runs(0) => {
+                    assert!(!started, "{name} starts twice");
+                    expects_end = true;
+                    self.states[which] = State::Idle;
+                    if self.ends[which] != NONE {
+                        self.errors[which] = self.ends[which];
+                    }
+                }
+                State::Runs(left) => {
+                    assert!(!started, "{name} starts twice");
+                    self.states[which] = State::Runs(left - 1);
+                }
+                State::Idle => assert!(!started, "{name} starts unasked"),
+            }
+            assert_eq!(
+                told, expects_end,
+                "{name}: ended, in state {:?}",
+                self.states[which]
+            );
+            self.counts[which][2] += u64::from(told);
+        }
+        if events.cancel {
+            self.recovery = Recovery::Waits;
+            self.ready_in = events.recovers;
+        }
+        self.drive_engine();
+        for which in [GEOMETRY, RASTER] {
+            let name = NAMES[which];
+            let found = ["active", "error"].map(|port| self.value(which, port));
+            let active = u64::from(self.is_active(which));
+            assert_eq!(found, [active, self.errors[which]], "{name}: active, error");
+            if let Some(kept) = &self.kept[which] {
+                for (path, value) in kept.members(&format!("{name}_kept")) {
+                    assert_eq!(self.module.read(&path), value, "{path}");
+                }
+            }
+        }
+    }
+
+    /// What the engine says in the clock that comes.
+    pub fn drive_engine(&mut self) {
+        for which in [GEOMETRY, RASTER] {
+            // `busy` rises after the start and falls with `done`.
+            let done = self.states[which] == State::Runs(0);
+            let busy = matches!(self.states[which], State::Runs(left) if left > 0 && left < self.runs[which]);
+            let name = NAMES[which];
+            self.module.drive(&format!("engine.{name}_busy"), busy);
+            self.module.drive(&format!("engine.{name}_done"), done);
+            // What a pass has come to counts only with `done`.
+            let noise = self.clocks.is_multiple_of(3);
+            let says = |error| {
+                u64::from(if done {
+                    self.ends[which] == error
+                } else {
+                    noise
+                })
+            };
+            let ports: &[_] = match which {
+                GEOMETRY => &[
+                    ("engine.mesh_error", says(MESH)),
+                    ("engine.full", says(FULL)),
+                ],
+                _ => &[("engine.list_error", says(LIST))],
+            };
+            for &(port, value) in ports {
+                let port = self.module.port(port);
+                self.module.set(port, value);
+            }
+        }
+        self.module.settle();
+    }
+    /// Asks for passes and waits for their ends; returns the errors.
+    pub fn ask(&mut self, ask: [bool; 2]) -> [u64; 2] {
+        self.configure();
+        self.clock(Events {
+            ask,
+            ..Events::default()
+        });
+        self.finish();
+        self.errors
+    }
+
+    pub fn finish(&mut self) {
+        for _ in 0..1000 {
+            if !self.is_active(GEOMETRY) && !self.is_active(RASTER) {
+                // What has ended stays ended, and its error stays.
+                for _ in 0..3 {
+                    self.clock(Events::default());
+                }
+                for [asks, _, ends] in self.counts {
+                    assert_eq!(asks, ends);
+                }
+                return;
+            }
+            self.clock(Events::default());
+        }
+        panic!("no end: {:?}", self.states);
+    }
+
+    pub fn wait(&mut self, clocks: u64) {
+        for _ in 0..clocks {
+            self.clock(Events::default());
+        }
+    }
+}

@@ -1,0 +1,343 @@
+//! Requests to the triangle engine and their outcome: `triangle_control` before a simple engine.
+
+mod bench;
+mod passes;
+
+use rand::RngExt;
+use rand_pcg::Pcg64Mcg;
+
+use crate::bench::{Bench, Events};
+use crate::passes::{
+    ADDRESS, BASE, BUSY, CANCELLED, FULL, GEOMETRY, LATENCY, LIST, MEMORY, MESH, NAMES, NONE, Pass,
+    RASTER, refusal, regions,
+};
+
+/// Each region of both passes, at places that are right and wrong; alone, and with the other pass.
+#[test]
+fn regions_are_wholly_in_memory() {
+    let mut bench = Bench::new(1);
+    let mut cases = 0;
+    for which in [GEOMETRY, RASTER] {
+        for size in 0..3 {
+            bench.passes = Pass::good();
+            // All that there is, of the raster.
+            let flags = &mut bench.passes[which].flags;
+            flags.size = size;
+            flags.choose(&["cull", "first", "second", "depth", "slot", "whole"]);
+            for (port, bytes) in regions(
+                which,
+                &bench.passes[which],
+                bench.list_shift,
+                bench.descriptor,
+            ) {
+                let right = bench.passes[which].get(port);
+                let last = BASE + MEMORY - bytes.next_multiple_of(16);
+                for (address, expected) in [
+                    (right, NONE),
+                    (BASE, NONE),
+                    (last, NONE),
+                    (right + 1, ADDRESS),
+                    (right + 8, ADDRESS),
+                    (last - 8, ADDRESS),
+                    (last + 16, ADDRESS),
+                    (BASE + MEMORY - 16, if bytes <= 16 { NONE } else { ADDRESS }),
+                    (BASE - 16, ADDRESS),
+                    (BASE + MEMORY, ADDRESS),
+                    (right - BASE, ADDRESS),
+                    (right + MEMORY, ADDRESS),
+                    (right ^ 0x8000_0000, ADDRESS),
+                    (0, ADDRESS),
+                    (0xffff_fff0, ADDRESS),
+                ] {
+                    bench.passes[which].set(port, address);
+                    for both in [false, true] {
+                        let ask = [which == GEOMETRY || both, which == RASTER || both];
+                        let error = bench.ask(ask)[which];
+                        assert_eq!(
+                            error, expected,
+                            "{port} {address:#x}, size {size}, both {both}"
+                        );
+                        cases += 1;
+                    }
+                }
+                bench.passes[which].set(port, right);
+            }
+        }
+    }
+    println!("{cases} cases");
+}
+
+/// Counts and lengths from nothing to the largest that there is: the region ends with memory, or a word beyond it.
+#[test]
+fn lengths_are_counted_to_the_last_word() {
+    let mut bench = Bench::new(2);
+    for (which, count, region, item) in [
+        (
+            GEOMETRY,
+            "geometry.exception_limit",
+            "geometry.exceptions",
+            4,
+        ),
+        (GEOMETRY, "geometry.mesh_bytes", "geometry.mesh", 1),
+    ] {
+        bench.lengths(which, count, region, item);
+    }
+    for mut bench in [Bench::new(2), Bench::smooth(2)] {
+        for (which, count, region) in [
+            (
+                GEOMETRY,
+                "geometry.descriptor_limit",
+                "geometry.descriptors",
+            ),
+            (RASTER, "raster.count[0]", "raster.descriptors[0]"),
+            (RASTER, "raster.count[1]", "raster.descriptors[1]"),
+        ] {
+            bench.lengths(which, count, region, bench.descriptor);
+        }
+    }
+
+    // Longer than memory, wherever.
+    bench.passes = Pass::good();
+    bench.passes[GEOMETRY].set("geometry.mesh", BASE);
+    for bytes in [MEMORY + 16, 1 << 28, 1 << 29, 1 << 30, 1 << 31, 0xffff_fff0] {
+        bench.passes[GEOMETRY].set("geometry.mesh_bytes", bytes);
+        assert_eq!(
+            bench.ask([true, false])[GEOMETRY],
+            ADDRESS,
+            "a mesh of {bytes:#x}"
+        );
+    }
+    // Lists of every length, for every size.
+    for size in 0..4 {
+        for shift in 0..32 {
+            bench.passes = Pass::good();
+            bench.list_shift = shift;
+            for which in [GEOMETRY, RASTER] {
+                bench.passes[which].flags.size = size;
+                bench.passes[which].flags.choose(&["first", "second"]);
+            }
+            for port in ["raster.lists[0]", "raster.lists[1]"] {
+                bench.passes[RASTER].set(port, BASE);
+            }
+            bench.passes[GEOMETRY].set("geometry.lists", BASE);
+            let expected = [GEOMETRY, RASTER]
+                .map(|which| refusal(which, &bench.passes[which], shift, bench.descriptor));
+            assert_eq!(expected[GEOMETRY], expected[RASTER]);
+            assert_eq!(
+                bench.ask([true, true]),
+                expected,
+                "size {size}, shift {shift}"
+            );
+        }
+    }
+}
+
+/// What is not used may be anywhere.
+#[test]
+fn regions_without_use_are_not_looked_at() {
+    let mut bench = Bench::new(3);
+    for used in 0..8 {
+        let used: Vec<_> = (0..3)
+            .filter(|bit| used >> bit & 1 == 1)
+            .map(|bit| ["first", "second", "depth"][bit])
+            .collect();
+        for (wrong, flag) in [
+            ("raster.depth", "depth"),
+            ("raster.lists[0]", "first"),
+            ("raster.lists[1]", "second"),
+            ("raster.descriptors[0]", "first"),
+            ("raster.descriptors[1]", "second"),
+        ] {
+            bench.passes = Pass::good();
+            bench.passes[RASTER].flags.choose(&used);
+            bench.passes[RASTER].set(wrong, 4);
+            let expected = if used.contains(&flag) { ADDRESS } else { NONE };
+            assert_eq!(
+                bench.ask([false, true])[RASTER],
+                expected,
+                "{wrong}, flags {used:?}"
+            );
+        }
+    }
+}
+
+/// A pass alone starts in time, and ends as the engine says.
+#[test]
+fn passes_end_as_the_engine_says() {
+    let mut bench = Bench::new(4);
+    for [geometry, raster] in [
+        [NONE, NONE],
+        [MESH, LIST],
+        [FULL, LIST],
+        [NONE, LIST],
+        [FULL, NONE],
+    ] {
+        bench.ends = [geometry, raster];
+        for ask in [[true, false], [false, true], [true, true]] {
+            let starts = bench.counts.map(|counts| counts[1]);
+            let errors = bench.ask(ask);
+            for which in [GEOMETRY, RASTER] {
+                assert_eq!(
+                    bench.counts[which][1] - starts[which],
+                    u64::from(ask[which])
+                );
+                assert!(!ask[which] || errors[which] == bench.ends[which]);
+            }
+        }
+    }
+    for which in [GEOMETRY, RASTER] {
+        bench.clock(Events {
+            ask: [which == GEOMETRY, which == RASTER],
+            ..Events::default()
+        });
+        let start = bench.clocks;
+        while bench.value(which, "start") == 0 {
+            bench.clock(Events::default());
+        }
+        println!("{}: {} clocks", NAMES[which], bench.clocks - start);
+        assert!(bench.clocks - start <= LATENCY);
+        bench.finish();
+    }
+}
+
+/// Asked for again while it is pending, being checked, started, busy, done: the pass goes on and ends, once.
+#[test]
+fn asks_in_between_are_refused() {
+    let mut bench = Bench::new(5);
+    bench.runs = [12, 14];
+    for which in [GEOMETRY, RASTER] {
+        let mine = [which == GEOMETRY, which == RASTER];
+        for end in [NONE, [MESH, LIST][which]] {
+            for wrong in [false, true] {
+                for after in 0..40 {
+                    bench.passes = Pass::good();
+                    bench.ends = [end; 2];
+                    if wrong {
+                        bench.passes[which].set(["geometry.mesh", "raster.frame"][which], 0);
+                    }
+                    bench.configure();
+                    let ask = Events {
+                        ask: mine,
+                        ..Events::default()
+                    };
+                    bench.clock(ask);
+                    bench.wait(after);
+                    let was_active = bench.is_active(which);
+                    // The flags of a refused pass are ignored.
+                    let flags = bench.passes[which].flags.clone();
+                    let mut others = flags.clone();
+                    others.invert();
+                    bench.set_flags(which, if was_active { &others } else { &flags });
+                    bench.clock(ask);
+                    bench.set_flags(which, &flags);
+                    bench.finish();
+                    let own = if wrong { ADDRESS } else { end };
+                    let expected = if was_active && own == NONE { BUSY } else { own };
+                    assert_eq!(
+                        bench.errors[which], expected,
+                        "{} after {after}",
+                        NAMES[which]
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// Cancelled at any time, with one pass or both, and asked for again while the engine is not ready and later.
+#[test]
+fn what_is_asked_after_a_cancel_waits_for_the_engine() {
+    let mut bench = Bench::new(6);
+    bench.runs = [12, 14];
+    bench.configure();
+    for asks in [[true, false], [false, true], [true, true]] {
+        for after in 0..45 {
+            for recovers in [0, 1, 2, 40] {
+                for again in [0, 1, 20, 60] {
+                    bench.clock(Events {
+                        ask: asks,
+                        ..Events::default()
+                    });
+                    bench.wait(after);
+                    let active = [GEOMETRY, RASTER].map(|which| bench.is_active(which));
+                    let events = Events {
+                        cancel: true,
+                        recovers,
+                        ..Events::default()
+                    };
+                    bench.clock(events);
+                    for which in [GEOMETRY, RASTER] {
+                        assert!(!active[which] || bench.errors[which] == CANCELLED);
+                    }
+                    bench.wait(again);
+                    let starts = bench.counts.map(|counts| counts[1]);
+                    assert_eq!(bench.ask([true, true]), [NONE; 2]);
+                    assert_eq!(
+                        bench.counts.map(|counts| counts[1]),
+                        starts.map(|count| count + 1)
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// Anything at any time.
+#[test]
+fn random_sequences() {
+    let mut random = Pcg64Mcg::new(7);
+    for seed in 0..10 {
+        let mut bench = Bench::new(seed);
+        bench.configure();
+        for _ in 0..20_000 {
+            let mut events = Events::default();
+            let rate = [0.01, 0.05, 0.3][seed as usize % 3];
+            for which in [GEOMETRY, RASTER] {
+                events.ask[which] = random.random_bool(rate);
+                if events.ask[which] && !bench.is_active(which) {
+                    bench.passes[which] = some_pass(&mut random, which);
+                    bench.runs[which] = random.random_range(1..40);
+                    bench.ends[which] = if random.random() {
+                        NONE
+                    } else {
+                        [[MESH, FULL], [LIST, LIST]][which][random.random_range(0..2)]
+                    };
+                }
+            }
+            if !bench.is_active(GEOMETRY) && !bench.is_active(RASTER) {
+                bench.list_shift = random.random_range(0..20);
+            }
+            bench.configure();
+            events.cancel = random.random_bool(rate / 4.0);
+            events.recovers = random.random_range(0..60);
+            bench.clock(events);
+        }
+        bench.finish();
+        println!("{:?} asks, starts and ends", bench.counts);
+        assert!(bench.counts.iter().flatten().all(|&count| count > 20));
+    }
+}
+
+/// A valid pass, or one with an error.
+fn some_pass(random: &mut Pcg64Mcg, which: usize) -> Pass {
+    let mut pass = Pass::good()[which].clone();
+    pass.flags.size = random.random_range(0..4);
+    for (_, set) in &mut pass.flags.others {
+        *set = random.random();
+    }
+    if pass.flags.size == 3 && random.random_bool(0.9) {
+        pass.flags.size = 2;
+    }
+    if random.random_bool(0.5) {
+        let (name, value) = pass.ports[random.random_range(0..pass.ports.len())];
+        let value = match random.random_range(0..4) {
+            0 => value ^ 8,
+            1 => value ^ (1 << random.random_range(4..20)),
+            2 => value & 0xf_fff0,
+            _ => value,
+        };
+        let small = name.contains("count") || name.ends_with("limit");
+        pass.set(name, if small { value & 0xf_ffff } else { value });
+    }
+    pass
+}

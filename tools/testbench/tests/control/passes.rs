@@ -1,0 +1,193 @@
+//! The two passes of the engine: ports, regions of memory, refusals.
+
+pub const BASE: u64 = 0x4000_0000;
+pub const MEMORY: u64 = 128 << 20;
+/// Clocks from an ask to the start, of a pass alone.
+pub const LATENCY: u64 = 15;
+
+pub const NONE: u64 = 0;
+pub const SIZE: u64 = 1;
+pub const ADDRESS: u64 = 2;
+pub const BUSY: u64 = 3;
+pub const MESH: u64 = 4;
+pub const FULL: u64 = 5;
+pub const LIST: u64 = 6;
+pub const CANCELLED: u64 = 7;
+
+/// The two passes, in arrays of two.
+pub const GEOMETRY: usize = 0;
+pub const RASTER: usize = 1;
+pub const NAMES: [&str; 2] = ["geometry", "raster"];
+
+/// The size of a picture, and whether each of the other flags is set.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Flags {
+    pub size: u64,
+    pub others: Vec<(&'static str, bool)>,
+}
+
+impl Flags {
+    pub fn is_set(&self, name: &str) -> bool {
+        self.others.contains(&(name, true))
+    }
+
+    /// Sets the flags that are named and clears the others.
+    pub fn choose(&mut self, names: &[&str]) {
+        for (name, set) in &mut self.others {
+            *set = names.contains(name);
+        }
+    }
+
+    pub fn invert(&mut self) {
+        self.size ^= 3;
+        for (_, set) in &mut self.others {
+            *set = !*set;
+        }
+    }
+
+    /// The members of a port with these flags, and their values.
+    pub fn members(&self, port: &str) -> Vec<(String, u64)> {
+        let others = self.others.iter().map(|&(name, set)| (name, set.into()));
+        let all = [("size", self.size)].into_iter().chain(others);
+        all.map(|(name, value)| (format!("{port}.{name}"), value))
+            .collect()
+    }
+}
+
+/// A pass with its parameters: flags, and values of ports.
+#[derive(Clone, Debug)]
+pub struct Pass {
+    pub flags: Flags,
+    pub ports: Vec<(&'static str, u64)>,
+}
+
+impl Pass {
+    pub fn get(&self, name: &str) -> u64 {
+        self.ports.iter().find(|(port, _)| *port == name).unwrap().1
+    }
+
+    pub fn set(&mut self, name: &str, value: u64) {
+        let port = self.ports.iter_mut().find(|(port, _)| *port == name);
+        port.unwrap().1 = value;
+    }
+
+    /// Passes that can be done.
+    pub fn good() -> [Self; 2] {
+        let geometry = [
+            ("geometry.mesh", BASE + 0x10_0000),
+            ("geometry.mesh_bytes", 0x1000),
+            ("geometry.descriptors", BASE + 0x20_0000),
+            ("geometry.descriptor_limit", 1000),
+            ("geometry.lists", BASE + 0x40_0000),
+            ("geometry.exceptions", BASE + 0x60_0000),
+            ("geometry.exception_limit", 1000),
+        ];
+        let raster = [
+            ("raster.frame", BASE + 0x100_0000),
+            ("raster.depth", BASE + 0x200_0000),
+            ("raster.lists[0]", BASE + 0x40_0000),
+            ("raster.lists[1]", BASE + 0x60_0000),
+            ("raster.descriptors[0]", BASE + 0x20_0000),
+            ("raster.descriptors[1]", BASE + 0x30_0000),
+            ("raster.count[0]", 1000),
+            ("raster.count[1]", 1000),
+        ];
+        [
+            Self {
+                flags: Flags {
+                    size: 1,
+                    others: vec![("cull", true), ("smooth", false)],
+                },
+                ports: geometry.to_vec(),
+            },
+            Self {
+                flags: Flags {
+                    size: 0,
+                    others: vec![
+                        ("first", true),
+                        ("second", true),
+                        ("depth", true),
+                        ("slot", false),
+                        ("whole", false),
+                    ],
+                },
+                ports: raster.to_vec(),
+            },
+        ]
+    }
+
+    pub fn size(&self) -> usize {
+        self.flags.size as usize
+    }
+}
+
+/// The regions of a pass: the port with the address, and the bytes; only those that are looked at.
+pub fn regions(
+    which: usize,
+    pass: &Pass,
+    list_shift: u64,
+    descriptor: u64,
+) -> Vec<(&'static str, u64)> {
+    let size = pass.size();
+    let bands = [4, 15, 60, 60][size];
+    let lists = match list_shift {
+        // A table of lengths, then lists with space between them.
+        0..=17 => 16 * (16 + (bands << list_shift) + 128 * bands),
+        _ => 1 << 60,
+    };
+    let pixels = (320 * 180) << (2 * size);
+    let flag = |name| pass.flags.is_set(name);
+    match which {
+        GEOMETRY => vec![
+            ("geometry.mesh", pass.get("geometry.mesh_bytes") & !15),
+            (
+                "geometry.descriptors",
+                descriptor * pass.get("geometry.descriptor_limit"),
+            ),
+            ("geometry.lists", lists),
+            (
+                "geometry.exceptions",
+                4 * pass.get("geometry.exception_limit"),
+            ),
+        ],
+        _ => [
+            (true, "raster.frame", 2 * pixels),
+            (flag("depth"), "raster.depth", 4 * pixels),
+            (flag("first"), "raster.lists[0]", lists),
+            (flag("second"), "raster.lists[1]", lists),
+            (
+                flag("first"),
+                "raster.descriptors[0]",
+                descriptor * pass.get("raster.count[0]"),
+            ),
+            (
+                flag("second"),
+                "raster.descriptors[1]",
+                descriptor * pass.get("raster.count[1]"),
+            ),
+        ]
+        .into_iter()
+        .filter_map(|(used, name, bytes)| used.then_some((name, bytes)))
+        .collect(),
+    }
+}
+
+/// Why a pass is refused.
+pub fn refusal(which: usize, pass: &Pass, list_shift: u64, descriptor: u64) -> u64 {
+    let misplaced = |&(port, bytes): &(&str, u64)| {
+        let first = pass.get(port);
+        !first.is_multiple_of(16)
+            || !(BASE..BASE + MEMORY).contains(&first)
+            || bytes.next_multiple_of(16) > BASE + MEMORY - first
+    };
+    if pass.size() == 3 {
+        SIZE
+    } else if regions(which, pass, list_shift, descriptor)
+        .iter()
+        .any(misplaced)
+    {
+        ADDRESS
+    } else {
+        NONE
+    }
+}

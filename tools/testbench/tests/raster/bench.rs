@@ -1,0 +1,210 @@
+//! The raster pass of one band after the other, and the picture of its groups.
+
+use glint_model::descriptor::{Descriptor, band_rows};
+use glint_model::raster::draw;
+use glint_model::{FrameBuffer, Shading};
+use glint_testbench::{Bits, Module, Port, Sink, Source, Stalls};
+
+use crate::triangles::{LANES, Triangle};
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Pixel {
+    pub colour: u16,
+    pub depth: u32,
+}
+
+/// What drawing took.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Counts {
+    pub clocks: u64,
+    /// Clocks in which the walker was at a group.
+    pub walked: u64,
+    /// Those of them in which no group went to the lanes.
+    pub empty: u64,
+    /// Groups that came out.
+    pub groups: u64,
+    pub pixels: u64,
+    /// Triangles, counted in each band.
+    pub entries: u64,
+}
+
+pub struct Bench {
+    pub module: Module,
+    pub source: Source,
+    pub sink: Sink,
+    pub band: [Port; 3],
+    pub idle: Port,
+    pub walking: Port,
+    pub empty: Port,
+    pub counts: Counts,
+}
+
+impl Bench {
+    /// Of flat triangles, which are told by their colours.
+    pub fn new(seed: u32, source_stalls: f64, sink_stalls: f64) -> Self {
+        Self::of("triangle_raster", seed, source_stalls, sink_stalls)
+    }
+
+    /// Of flat and smooth ones.
+    pub fn smooth(seed: u32, source_stalls: f64, sink_stalls: f64) -> Self {
+        Self::of("triangle_raster_smooth", seed, source_stalls, sink_stalls)
+    }
+
+    pub fn of(name: &str, seed: u32, source_stalls: f64, sink_stalls: f64) -> Self {
+        let module = Module::new(name, seed);
+        let stalls = |offset, share| Stalls::new(u64::from(seed) + offset, share);
+        Self {
+            source: Source::new(
+                &module,
+                "triangle",
+                &["descriptor", "planes"],
+                stalls(1, source_stalls),
+            ),
+            sink: Sink::new(
+                &module,
+                "group",
+                &["row", "mask", "codes", "colours", "line", "column"],
+                stalls(2, sink_stalls),
+            ),
+            band: ["triangle_y0", "rows", "stride"].map(|name| module.port(name)),
+            idle: module.port("idle"),
+            walking: module.port("events.cycles_walking"),
+            empty: module.port("events.cycles_empty"),
+            module,
+            counts: Counts::default(),
+        }
+    }
+
+    /// The groups of a band, which ends when the rasterizer is idle.
+    pub fn band<'a>(
+        &mut self,
+        [y0, rows, stride]: [u32; 3],
+        triangles: impl Iterator<Item = &'a Triangle>,
+    ) -> Vec<Vec<Bits>> {
+        assert!(self.module.is_high(self.idle));
+        for (port, value) in self.band.into_iter().zip([y0, rows, stride]) {
+            self.module.set(port, u64::from(value));
+        }
+        for triangle in triangles {
+            let descriptor = Descriptor::new(&triangle.setup, triangle.colour);
+            let (first, planes) = descriptor.words(Shading::Smooth).split_at(12);
+            self.source
+                .push([first, planes].map(Bits::from_words).to_vec());
+            self.counts.entries += 1;
+        }
+        let start = self.module.cycles();
+        while !(self.source.is_empty() && self.module.is_high(self.idle)) {
+            let clocks = self.module.cycles() - start;
+            assert!(clocks < 2_000_000, "nothing after {clocks} clocks");
+            self.source.drive(&mut self.module);
+            self.sink.drive(&mut self.module);
+            self.module.settle();
+            self.source.sample(&self.module);
+            self.sink.sample(&self.module);
+            self.counts.walked += self.module.value(self.walking);
+            self.counts.empty += self.module.value(self.empty);
+            self.module.clock();
+        }
+        self.counts.clocks += self.module.cycles() - start;
+        self.sink.take()
+    }
+
+    /// Draws triangles, all bands that they touch, and compares with the model.
+    pub fn check(&mut self, name: &str, size: (u32, u32), triangles: &[Triangle]) -> Counts {
+        let (width, height) = size;
+        let blank = Pixel {
+            colour: 0,
+            depth: 0,
+        };
+        let mut picture = vec![blank; (width * height) as usize];
+        // The last triangle that came out at a pixel.
+        let mut last = vec![None; picture.len()];
+        let all_flat = triangles.iter().all(|t| t.setup.light.is_none());
+        self.counts = Counts::default();
+        let (stride, band_rows) = (width / LANES as u32, band_rows(width));
+        for y0 in (0..height).step_by(band_rows as usize) {
+            let rows = band_rows.min(height - y0);
+            let here = triangles.iter().filter(|triangle| {
+                let bounds = triangle.setup.bounds;
+                bounds.top < (y0 + rows) as i32 && bounds.bottom > y0 as i32
+            });
+            let mut previous = 0;
+            for group in self.band([y0, rows, stride], here) {
+                let row = group[0].number() as usize;
+                let mask = group[1].number();
+                let [line, column] = [group[4].number(), group[5].number()];
+                assert!(
+                    line < u64::from(rows) && column < u64::from(stride),
+                    "{name}: line {line}, column {column}"
+                );
+                assert_eq!(row as u64, line * u64::from(stride) + column, "{name}: row");
+                assert_ne!(mask, 0, "{name}: a group without a pixel");
+                self.counts.groups += 1;
+                for lane in (0..LANES).filter(|lane| mask >> lane & 1 == 1) {
+                    let colour = group[3].element(16, lane) as u16;
+                    let depth = group[2].element(18, lane) as u32;
+                    let corners = || triangles.get(usize::from(colour)).map(|t| t.corners);
+                    assert_ne!(depth, 0, "{name}: {:?}", corners());
+                    let at = (y0 * width) as usize + LANES * row + lane;
+                    if all_flat {
+                        assert!(colour >= previous, "{name}: out of order: {:?}", corners());
+                        previous = colour;
+                        assert_ne!(
+                            last[at],
+                            Some(colour),
+                            "{name}: {at} twice: {:?}",
+                            corners()
+                        );
+                        last[at] = Some(colour);
+                    }
+                    self.counts.pixels += 1;
+                    if depth >= picture[at].depth {
+                        picture[at] = Pixel { colour, depth };
+                    }
+                }
+            }
+        }
+        self.compare(name, size, triangles, &picture);
+        self.counts
+    }
+
+    pub fn compare(&self, name: &str, size: (u32, u32), triangles: &[Triangle], picture: &[Pixel]) {
+        let (mut colour, mut depth) = (vec![0; picture.len()], vec![0; picture.len()]);
+        let mut target = FrameBuffer {
+            width: size.0,
+            height: size.1,
+            colour: &mut colour,
+            depth: &mut depth,
+        };
+        let covered: u64 = triangles
+            .iter()
+            .map(|t| u64::from(draw(&t.setup, t.colour, &mut target).covered))
+            .sum();
+        for (at, &found) in picture.iter().enumerate() {
+            let expected = Pixel {
+                colour: colour[at],
+                depth: depth[at],
+            };
+            let (x, y) = (at as u32 % size.0, at as u32 / size.0);
+            let possible = || {
+                let there = |t: &&Triangle| {
+                    let bounds = t.setup.bounds;
+                    (bounds.left..bounds.right).contains(&(x as i32))
+                        && (bounds.top..bounds.bottom).contains(&(y as i32))
+                };
+                triangles
+                    .iter()
+                    .filter(there)
+                    .map(|t| (t.corners, t.colour, t.setup.light))
+                    .collect::<Vec<_>>()
+            };
+            assert_eq!(
+                found,
+                expected,
+                "{name} at {x}, {y}, one of {:#?}",
+                possible()
+            );
+        }
+        assert_eq!(self.counts.pixels, covered, "{name}: pixels in all");
+    }
+}

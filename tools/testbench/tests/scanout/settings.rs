@@ -1,0 +1,47 @@
+//! The registers of scan-out: settings and error codes.
+
+use rand::RngExt;
+use rand_pcg::Pcg64Mcg;
+
+/// Settings, as requested by software or in force.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Settings {
+    pub enable: bool,
+    pub scale: u64,
+    /// In memory words.
+    pub base: u64,
+}
+
+impl Settings {
+    /// After reset.
+    pub const RESET: Self = Self {
+        enable: false,
+        scale: 4,
+        base: 0,
+    };
+
+    /// A frame that is shown.
+    pub const fn shown(scale: u64, base: u64) -> Self {
+        Self {
+            enable: true,
+            scale,
+            base,
+        }
+    }
+
+    /// Any settings.
+    pub fn random(random: &mut Pcg64Mcg) -> Self {
+        Self {
+            enable: random.random_range(0..8) != 0,
+            scale: 1 << random.random_range(0..3),
+            base: random.random_range(0..0x70_0000),
+        }
+    }
+}
+
+/// The error code of a frame.
+pub mod error {
+    pub const NONE: u64 = 0;
+    pub const SCALE: u64 = 1;
+    pub const UNDERFLOW: u64 = 2;
+}
