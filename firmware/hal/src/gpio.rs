@@ -65,7 +65,7 @@ impl<T: Value> OutputPort<T> {
         Self { register }
     }
 
-    /// What all pins are driven to, pin 0 in bit 0.
+    /// Levels of all pins, pin 0 in bit 0.
     #[must_use]
     pub fn get(&self) -> T {
         self.register.read()

@@ -1,8 +1,7 @@
 //! Time since reset, from the uptime counter of `timer0`.
 //!
 //! The counter has 64 bits and counts clock cycles of the SoC; it never stops and never wraps. [`Clock`] is a copyable
-//! handle that anybody may hold, also an interrupt handler: a reading that another one disturbs is still a time
-//! between the two.
+//! handle, also for interrupt handlers: a reading that an interrupt handler's reading disturbs is still a time between the two.
 
 use core::future::poll_fn;
 use core::task::Poll;
@@ -54,7 +53,7 @@ impl Clock {
     /// Clock cycles since reset.
     #[must_use]
     pub fn cycles(self) -> u64 {
-        // SAFETY: `new` took the only handle and drops it, so that all that is left are readings of the uptime.
+        // SAFETY: `new` took the only handle and drops it; every other access reads the uptime.
         let timer = unsafe { Timer0::steal() };
         timer.uptime_latch().write(true);
         timer.uptime_cycles().read()
@@ -72,7 +71,7 @@ impl Clock {
         self.after_cycles(cycles(span))
     }
 
-    /// The point in time so many cycles from now.
+    /// The point in time `cycles` from now.
     #[must_use]
     pub fn after_cycles(self, cycles: u64) -> Deadline {
         Deadline {
@@ -98,15 +97,15 @@ impl Deadline {
 }
 
 impl DelayNs for Clock {
-    /// Waits at least `ns`, and a few dozen cycles more.
+    /// Waits at least `ns`, up to a few dozen cycles longer.
     fn delay_ns(&mut self, ns: u32) {
         let deadline = self.after(Duration::from_nanos(ns.into()));
         while !deadline.passed() {}
     }
 }
 
-/// Delays are over at the first look after them, which an interrupt of `timer0` asks for. There is one such interrupt: of several
-/// delays at once the last one has it, and the others wait for another look.
+/// A delay ends at the first poll after its time; an interrupt of `timer0` causes that poll. There is one such interrupt: of several
+/// delays at once the last one has it, and the others wait for another poll.
 impl embedded_hal_async::delay::DelayNs for Clock {
     async fn delay_ns(&mut self, ns: u32) {
         self.wait(cycles(Duration::from_nanos(ns.into()))).await;
@@ -124,7 +123,7 @@ impl embedded_hal_async::delay::DelayNs for Clock {
 impl Clock {
     async fn wait(self, cycles: u64) {
         let deadline = self.after_cycles(cycles);
-        // One that is too early makes somebody look in vain.
+        // An interrupt that is too early causes one poll more.
         alarm(u32::try_from(cycles).unwrap_or(u32::MAX));
         poll_fn(|_| {
             if deadline.passed() {
@@ -137,9 +136,9 @@ impl Clock {
     }
 }
 
-/// Asks for the interrupt of `timer0` in so many cycles, and a few more.
+/// Sets the interrupt of `timer0` to `cycles` from now, and a few more.
 fn alarm(cycles: u32) {
-    // SAFETY: nobody reads these registers, and whoever writes them last has the interrupt.
+    // SAFETY: these registers are written here only; the last write has the interrupt.
     let timer = unsafe { Timer0::steal() };
     timer.en().write(false);
     timer.load().write(cycles.saturating_add(1));
@@ -149,7 +148,7 @@ fn alarm(cycles: u32) {
 
 /// Clears the interrupt of `timer0`; its handler calls this.
 pub fn acknowledge() {
-    // SAFETY: nobody else writes the pending register.
+    // SAFETY: the pending register is written here only.
     let timer = unsafe { Timer0::steal() };
     timer
         .ev_pending()

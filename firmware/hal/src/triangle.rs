@@ -1,12 +1,12 @@
-//! The triangle engine: meshes in memory become frames in memory.
+//! The triangle engine: draws meshes in memory into frames in memory.
 //!
 //! A frame takes two passes. The geometry pass makes descriptors and band lists of a mesh, and a list of the triangles that
-//! need clipping. The raster pass draws a frame from such lists, and from a second set that the program may have made
-//! (docs/formats.md, "Descriptors and band lists"). The passes may run at the same time, for two frames.
+//! need clipping. The raster pass draws a frame from these lists, and from a second set that the program may write
+//! (docs/formats.md, "Descriptors and band lists"). Both passes may run at the same time, for two frames.
 //!
-//! The engine reads and writes memory by addresses and beside the CPU's data cache, so starting a pass is unsafe: see
-//! [`TriangleEngine::start_geometry`] and [`TriangleEngine::start_raster`]. What the CPU wrote before is seen by the engine; what the
-//! engine has written is seen after `litex_pac::cpu::flush_data_cache`.
+//! The engine accesses memory by address and beside the CPU's data cache, so starting a pass is unsafe: see
+//! [`TriangleEngine::start_geometry`] and [`TriangleEngine::start_raster`]. It sees earlier writes of the CPU; the CPU sees its writes
+//! after `litex_pac::cpu::flush_data_cache`.
 
 use core::fmt;
 use core::sync::atomic::{Ordering, compiler_fence};
@@ -68,12 +68,12 @@ impl fmt::Display for EngineError {
 
 impl core::error::Error for EngineError {}
 
-/// Where a geometry pass puts what it makes; every address is a multiple of 16.
+/// Output of a geometry pass in memory; every address is a multiple of 16.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lists {
-    /// Address of the descriptors, of as many bytes as the engine's [`shading`](TriangleEngine::shading) gives them.
+    /// Address of the descriptors; the [`shading`](TriangleEngine::shading) of the engine sets their length.
     pub descriptors: u32,
-    /// How many there is room for.
+    /// Room for descriptors.
     pub descriptor_limit: u32,
     /// Address of the band lists.
     pub lists: u32,
@@ -86,15 +86,15 @@ pub struct Geometry<'a> {
     pub mesh: &'a Mesh<'a>,
     /// The constants of the frame.
     pub frame: &'a MeshSetup,
-    /// Whether back faces are left out.
+    /// Leaves out back faces.
     pub cull: bool,
-    /// Where colours come from, as far as the engine can.
+    /// Source of the colours; `Flat` where the engine has no smooth shading.
     pub shading: Shading,
-    /// What it makes.
+    /// Its output.
     pub lists: Lists,
-    /// Address of the numbers of exceptions, 4 bytes each.
+    /// Address of the list of exceptions: triangle numbers of 4 bytes.
     pub exceptions: u32,
-    /// How many there is room for.
+    /// Room for exceptions.
     pub exception_limit: u32,
 }
 
@@ -109,7 +109,7 @@ pub struct Prepared {
 pub struct Set {
     /// Address of the descriptors.
     pub descriptors: u32,
-    /// How many there are.
+    /// Number of descriptors.
     pub count: u32,
     /// Address of the band lists.
     pub lists: u32,
@@ -122,24 +122,24 @@ pub struct Raster {
     pub size: Size,
     /// Address of the frame to write.
     pub frame: u32,
-    /// Which of the two frame buffers that is.
+    /// Number of its frame buffer.
     pub slot: bool,
-    /// Nothing is known of what the frame buffer holds.
+    /// The contents of the frame buffer are unknown: all of it is written.
     pub whole: bool,
-    /// Address of the depth codes to write, if they are wanted.
+    /// Address for depth codes, if requested.
     pub depth: Option<u32>,
-    /// The colour where nothing is drawn, RGB565.
+    /// Colour of the empty picture, RGB565.
     pub clear: u16,
     /// The sets, drawn in this order in each band.
     pub sets: [Option<Set>; 2],
 }
 
-/// What the last geometry pass has counted.
+/// Counts of a geometry pass.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Triangles of the mesh.
     pub triangles: u32,
-    /// Triangles that were behind, or off one side of the picture.
+    /// Triangles behind the near plane or beyond one side of the picture.
     pub unseen: u32,
     /// Triangles left out by the setup.
     pub culled: u32,
@@ -152,16 +152,16 @@ pub struct Counts {
 /// Result of the pass that was started last; `None` while it runs.
 pub type PassResult = Option<Result<(), EngineError>>;
 
-/// The engine, known to be there.
+/// The engine, present in this SoC.
 pub struct TriangleEngine {
     registers: triangle::Triangle,
 }
 
 impl TriangleEngine {
-    /// Takes the block if it is there. Its interrupt tells of the end of every pass.
+    /// Takes the block if it is present. The end of every pass raises its interrupt.
     ///
     /// # Errors
-    /// When something else answers, or nothing.
+    /// When the block is absent.
     pub fn probe(registers: triangle::Triangle) -> Result<Self, Absent> {
         Absent::check(registers.ident().read(), triangle::Triangle::IDENT)?;
         registers
@@ -180,8 +180,8 @@ impl TriangleEngine {
         }
     }
 
-    /// Writes down a geometry pass, which is the longer part of starting it, while none runs. `list_shift`: a list has room for
-    /// 4 << `list_shift` entries; that of both passes.
+    /// Writes the registers of a geometry pass, the longer part of starting it, while none runs. A band list has room for
+    /// 4 << `list_shift` entries, in both passes.
     ///
     /// # Errors
     /// [`Error::Size`] when the engine has no such size; no register is written then.
@@ -242,12 +242,12 @@ impl TriangleEngine {
         })
     }
 
-    /// Starts the geometry pass that was prepared last.
+    /// Starts the prepared geometry pass.
     ///
     /// # Safety
-    /// Until the pass has ended nobody writes its mesh, and nobody reads or writes what it makes; what is there is lost.
+    /// Until the pass has ended, its mesh must not be written and its output must not be accessed. The output is overwritten.
     pub unsafe fn start_geometry(&mut self, pass: Prepared) {
-        // What the CPU has written must be on its way to memory before the engine is started.
+        // Writes of the CPU must be on their way to memory before the engine starts.
         compiler_fence(Ordering::SeqCst);
         self.registers.geometry().write(pass.start);
     }
@@ -255,8 +255,8 @@ impl TriangleEngine {
     /// Starts a raster pass.
     ///
     /// # Safety
-    /// Until the pass has ended nobody writes the lists and descriptors, and nobody reads or writes the frame and the
-    /// depth codes, which are lost.
+    /// Until the pass has ended, lists and descriptors must not be written, and frame and depth codes must not be accessed. Both are
+    /// overwritten.
     pub unsafe fn start_raster(&mut self, pass: &Raster) {
         let registers = &self.registers;
         registers.frame().write(pass.frame);
@@ -286,29 +286,29 @@ impl TriangleEngine {
         );
     }
 
-    /// How the geometry pass that was started last has ended, if it has.
+    /// Result of the last geometry pass.
     #[must_use]
     pub fn geometry(&self) -> PassResult {
         let status = self.registers.status().read();
         (!status.geometry_busy()).then(|| EngineError::check(status.geometry_error()))
     }
 
-    /// How the raster pass that was started last has ended, if it has.
+    /// Result of the last raster pass.
     #[must_use]
     pub fn raster(&self) -> PassResult {
         let status = self.registers.status().read();
         (!status.raster_busy()).then(|| EngineError::check(status.raster_error()))
     }
 
-    /// Gives up what runs. What is started afterwards is drawn right; the frame that was given up is not, and the next one
-    /// in its buffer has to be whole.
+    /// Cancels the passes that run. Later passes are drawn correctly; the next frame in the buffer of a cancelled one must be whole
+    /// ([`Raster::whole`]).
     pub fn cancel(&mut self) {
         self.registers
             .control()
             .write(Control::default().with_cancel(true));
     }
 
-    /// What the geometry pass that has ended last has counted.
+    /// Counts of the last geometry pass.
     #[must_use]
     pub fn counts(&self) -> Counts {
         let registers = &self.registers;
@@ -330,7 +330,7 @@ impl TriangleEngine {
 
 /// Clears the engine's interrupt; its handler calls this.
 pub fn acknowledge() {
-    // SAFETY: nobody else writes the pending register, and both events are cleared: the passes' states are in `status`.
+    // SAFETY: the pending register is written here only. Both events are cleared: `status` has the states of the passes.
     let registers = unsafe { triangle::Triangle::steal() };
     registers
         .ev_pending()

@@ -1,8 +1,8 @@
-//! The UART, driven by interrupts: bytes wait in queues on both sides, so that nobody waits for the line.
+//! The UART, driven by interrupts, with a queue of bytes in each direction: calls do not wait for the line.
 //!
-//! A [`Uart`] is a `static`. [`Uart::start`] gives it the registers, [`Uart::on_interrupt`] is called for
-//! [`Interrupt::Uart`](litex_pac::Interrupt::Uart), and [`Uart::reader`] and [`Uart::writer`] are the two ends for the
-//! program. Bytes that arrive while the receive queue is full are dropped and counted ([`Uart::lost`]).
+//! A [`Uart`] is a `static`. [`Uart::start`] gives it the registers, [`Uart::on_interrupt`] handles
+//! [`Interrupt::Uart`](litex_pac::Interrupt::Uart). [`Uart::reader`] and [`Uart::writer`] are the program's two ends.
+//! Bytes that arrive while the receive queue is full are dropped and counted ([`Uart::lost`]).
 //!
 //! ```no_run
 //! # use core::time::Duration;
@@ -42,7 +42,7 @@ struct State<const RX: usize, const TX: usize> {
 }
 
 impl<const RX: usize, const TX: usize> Uart<RX, TX> {
-    /// A UART without registers: it receives nothing, and what is sent waits.
+    /// A UART without registers: it receives nothing, and bytes to send stay in the queue.
     #[must_use]
     pub const fn new() -> Self {
         let state = State {
@@ -56,24 +56,24 @@ impl<const RX: usize, const TX: usize> Uart<RX, TX> {
         }
     }
 
-    /// Starts sending and receiving. The interrupt itself is the caller's to enable.
+    /// Starts sending and receiving. The caller enables the interrupt.
     pub fn start(&self, registers: uart::Uart) {
         registers
             .ev_enable()
             .write(EvEnable::default().with_rx(true).with_tx(true));
         self.with(|state| {
             state.registers = Some(registers);
-            // What was there before now has raised its event before now.
+            // Bytes that were there before have raised their event already.
             state.serve();
         });
     }
 
-    /// Moves bytes between queues and hardware. To be called whenever the interrupt is pending.
+    /// Moves bytes between queues and hardware; the interrupt handler calls this.
     pub fn on_interrupt(&self) {
         self.with(State::serve);
     }
 
-    /// Moves what has been received to `buffer` and returns how many bytes that were, possibly 0.
+    /// Moves received bytes to `buffer` and returns their number, 0 if there are none.
     pub fn receive(&self, buffer: &mut [u8]) -> usize {
         self.with(|state| {
             let mut count = 0;
@@ -88,7 +88,7 @@ impl<const RX: usize, const TX: usize> Uart<RX, TX> {
         })
     }
 
-    /// Queues as much of `bytes` as there is room for and returns how many bytes that were, possibly 0.
+    /// Queues as many of `bytes` as fit and returns their number, possibly 0.
     pub fn send(&self, bytes: &[u8]) -> usize {
         self.with(|state| {
             let room = state.to_send.capacity() - state.to_send.len();
@@ -99,17 +99,17 @@ impl<const RX: usize, const TX: usize> Uart<RX, TX> {
         })
     }
 
-    /// Whether [`receive`](Self::receive) has something.
+    /// Whether received bytes are waiting.
     pub fn has_received(&self) -> bool {
         self.with(|state| !state.received.is_empty())
     }
 
-    /// Whether all that was queued has been sent.
+    /// Whether the transmit queue is empty.
     pub fn has_sent(&self) -> bool {
         self.with(|state| state.to_send.is_empty())
     }
 
-    /// Bytes dropped since the start because the receive queue was full; it saturates.
+    /// Bytes dropped since the start because the receive queue was full; saturates.
     pub fn lost(&self) -> u32 {
         self.with(|state| state.lost)
     }
@@ -132,8 +132,8 @@ impl<const RX: usize, const TX: usize> Uart<RX, TX> {
         }
     }
 
-    /// Sends what is queued without interrupts, for a program that is about to end. It gives up on a line that takes
-    /// nothing, and does nothing when the end came in the middle of one of the calls above.
+    /// Sends the transmit queue without interrupts, for a program that is about to end. It gives up when the line makes no
+    /// progress, and does nothing if the program ends within another call.
     pub fn drain(&self) {
         critical_section::with(|token| {
             let Ok(mut state) = self.state.borrow(token).try_borrow_mut() else {
@@ -147,7 +147,7 @@ impl<const RX: usize, const TX: usize> Uart<RX, TX> {
         });
     }
 
-    /// `action` is one of this file's and never calls back here, so the state is free.
+    // Every `action` is in this file and does not call `with`, so the state is never borrowed twice.
     fn with<R>(&self, action: impl FnOnce(&mut State<RX, TX>) -> R) -> R {
         critical_section::with(|token| action(&mut self.state.borrow_ref_mut(token)))
     }
@@ -166,7 +166,7 @@ impl<const RX: usize, const TX: usize> State<RX, TX> {
         };
         while !registers.rxempty().read() {
             let byte = registers.rxtx().read();
-            // Clearing the event is what takes the byte out of the hardware's queue.
+            // Clearing the event takes the byte out of the hardware's queue.
             registers
                 .ev_pending()
                 .write(EvPending::default().with_rx(true));
@@ -174,7 +174,7 @@ impl<const RX: usize, const TX: usize> State<RX, TX> {
                 self.lost = self.lost.saturating_add(1);
             }
         }
-        // Cleared before the hardware's queue is filled, so that room which appears later raises the event again.
+        // Cleared before the hardware's queue is filled, so that later room raises the event again.
         registers
             .ev_pending()
             .write(EvPending::default().with_tx(true));
@@ -194,13 +194,13 @@ impl<const RX: usize, const TX: usize> State<RX, TX> {
     }
 }
 
-/// Nothing could be received or sent for the whole time-out.
+/// No byte could be received or sent within the time-out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TimedOut;
 
 impl fmt::Display for TimedOut {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str("uart: the line was silent, or took nothing, for the whole time-out")
+        f.write_str("uart: timed out: no byte received or sent")
     }
 }
 
@@ -296,29 +296,29 @@ impl<const RX: usize, const TX: usize> WriteReady for Writer<'_, RX, TX> {
     }
 }
 
-/// How often a full line is looked at before it is given up: about 0.1 s, far longer than a byte at 115,200 baud.
+/// Polls of a full transmitter before giving up: about 0.1 s, far longer than a byte at 115,200 baud.
 const PATIENCE: u32 = 1_000_000;
 
-/// Writes straight to the hardware, without queues or interrupts: what a trap and a panic print with.
+/// Writes to the hardware without queues or interrupts: the output of traps and panics.
 pub struct Direct {
     registers: uart::Uart,
 }
 
 impl Direct {
-    /// Takes the UART away from whoever has it.
+    /// Another handle on the UART, beside its owner's.
     ///
     /// # Safety
-    /// Whoever has it must not rely on its output coming first or whole any more.
+    /// The output of the owner may be interrupted or incomplete from now on.
     #[must_use]
     pub const unsafe fn seize() -> Self {
-        // SAFETY: the caller answers for the other's output, and sending disturbs nothing else.
+        // SAFETY: the caller accepts that for the owner's output; sending has no other effect.
         let registers = unsafe { uart::Uart::steal() };
         Self { registers }
     }
 }
 
 impl fmt::Write for Direct {
-    /// Gives up on a line that takes nothing.
+    /// Gives up when the transmitter stays full.
     fn write_str(&mut self, text: &str) -> fmt::Result {
         for byte in text.bytes() {
             let mut patience = PATIENCE;
