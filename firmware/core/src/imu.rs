@@ -145,7 +145,9 @@ impl<E: Copy> Imu<E> {
 
     /// What the gyroscope is taken to read at rest, in °/s, rounded towards zero to 2^−32.
     pub fn bias(&self) -> [Q32_32; 3] {
-        self.tracker.bias().map(mpu6050::degrees_per_second)
+        self.tracker
+            .bias()
+            .map(|bias| mpu6050::degrees_per_second(bias.into()))
     }
 
     /// Begins a calibration of so many samples, in place of one that is going on.

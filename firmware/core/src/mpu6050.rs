@@ -28,10 +28,10 @@ const LSB_PER_10_DPS: i64 = 164;
 /// LSB of the gyroscope per °/s: 16.4.
 pub const GYRO_LSB_PER_DPS: Q32_32 = Q32_32::from_bits((LSB_PER_10_DPS << 32) / 10);
 
-/// A rate in 1/256 LSB as °/s, rounded towards zero to 2^−32.
+/// A rate in 1/256 LSB, below 2^32, as °/s, rounded towards zero to 2^−32.
 #[must_use]
-pub const fn degrees_per_second(rate: i32) -> Q32_32 {
-    Q32_32::from_bits(((rate as i64) << 24) * 10 / LSB_PER_10_DPS)
+pub const fn degrees_per_second(rate: i64) -> Q32_32 {
+    Q32_32::from_bits((rate << 24) * 10 / LSB_PER_10_DPS)
 }
 
 /// The time between two samples, in µs.

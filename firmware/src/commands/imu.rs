@@ -5,9 +5,8 @@ use core::task::Poll;
 use glint_core::calibration::Units;
 use glint_core::console::{ImuAction, ImuCommands};
 use glint_core::fixed::Q32_32;
-use glint_core::fixed::fixed::FixedI64;
-use glint_core::fixed::fixed::types::extra::U32;
 use glint_core::follow::Mounting;
+use glint_core::mpu6050::degrees_per_second;
 use glint_core::wire::Manifest;
 
 use super::replay;
@@ -122,11 +121,6 @@ pub fn poll(machine: &mut Machine, job: &mut SensorJob) -> JobResult {
     Poll::Pending
 }
 
-/// A rate in °/s from 1/256 LSB, of which 16.4 · 256 are 1 °/s. Rounds toward 0.
-fn degrees_per_second(bits: u32) -> Q32_32 {
-    FixedI64::<U32>::from_bits((i64::from(bits) << 24) * 10 / 164)
-}
-
 fn print_status(machine: &mut Machine) {
     let Machine { terminal, imu, .. } = machine;
     match imu.identity() {
@@ -170,7 +164,7 @@ fn print_calibration(machine: &mut Machine) {
         (None, Some(Err(error))) => terminal.print_entry("refused", &error),
         (None, Some(Ok(report))) => {
             terminal.print_entry("calibrated", &report.samples);
-            let deviation = Vector(report.deviation.map(degrees_per_second));
+            let deviation = Vector(report.deviation.map(|rate| degrees_per_second(rate.into())));
             terminal.print_entry("deviation", &deviation);
             let [x, y, z] = report.drift(Units::MPU_6050);
             terminal.print(format_args!("drift_per_hour {x:.2} {y:.2} {z:.2}\n"));
