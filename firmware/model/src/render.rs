@@ -100,6 +100,7 @@ pub fn trace_frame(
 }
 
 /// [`trace_frame`] without its type parameter: compiled once, with the optimisation of this crate.
+#[inline(never)]
 fn draw_frame(
     mesh: &Mesh,
     frame: MeshSetup,
@@ -119,7 +120,11 @@ fn draw_frame(
     let scratch = scratch
         .get_mut(..expected)
         .ok_or(RenderError::Scratch { expected, found })?;
-    target.colour.fill(options.clear);
+    // Filling with zeros is a `memset` of whole words.
+    match options.clear {
+        0 => target.colour.fill(0),
+        clear => target.colour.fill(clear),
+    }
     target.depth.fill(0);
 
     let mut renderer = Renderer {
