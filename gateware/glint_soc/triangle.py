@@ -54,7 +54,8 @@ class TriangleEngine(LiteXModule):
         self._caps = CSRStatus(name="caps", fields=[
             CSRField("sizes", size=3, offset=0, reset=0b111, description="Bit k: `size` k is supported."),
             CSRField("gouraud", offset=3, reset=int(smooth), description="Smooth shading: colours interpolated between "
-                     f"vertices. A descriptor has {DESCRIPTOR_BYTES['smooth']} bytes with smooth shading, {DESCRIPTOR_BYTES['flat']} without."),
+                     f"vertices. A descriptor has {DESCRIPTOR_BYTES['smooth']} bytes with smooth shading, "
+                     f"{DESCRIPTOR_BYTES['flat']} without."),
             CSRField("count_bits", size=6, offset=8, reset=_COUNT_BITS, description="Bits of a count of descriptors or entries."),
         ], description="Capabilities of this build.")
         self._control = CSRStorage(name="control", fields=[
@@ -82,11 +83,13 @@ class TriangleEngine(LiteXModule):
             CSRField("cull", offset=1, description="Cull back faces."),
             CSRField("size", size=SIZES.bits, offset=2, values=SIZES.values, description="Size of the picture."),
             CSRField("smooth", offset=4, description="Interpolate colours between vertices. No effect without `gouraud` in `caps`."),
-        ], description="Start of the geometry pass: descriptors and band lists of a mesh. The registers down to `depth_scale` must hold while it runs.")
+        ], description="Start of the geometry pass: descriptors and band lists of a mesh. The registers down to `depth_scale` must "
+            "hold while it runs.")
         address = "Byte address, a multiple of 16, of"
         self._mesh = CSRStorage(32, name="mesh", description=f"{address} the mesh's first chunk.")
         self._mesh_bytes = CSRStorage(32, name="mesh_bytes", description="Length of all chunks of the mesh in bytes, a multiple of 16.")
-        self._geometry_descriptors = CSRStorage(32, name="geometry_descriptors", description=f"{address} the descriptors, written by the pass.")
+        self._geometry_descriptors = CSRStorage(32, name="geometry_descriptors", description=f"{address} the descriptors, "
+                                                "written by the pass.")
         self._descriptor_limit = CSRStorage(_COUNT_BITS, name="descriptor_limit", description="Most descriptors, "
                                              f"{DESCRIPTOR_BYTES['flat']} or {DESCRIPTOR_BYTES['smooth']} bytes each, see `caps`.")
         self._geometry_lists = CSRStorage(32, name="geometry_lists", description=f"{address} the band lists, written by the pass.")
@@ -122,10 +125,12 @@ class TriangleEngine(LiteXModule):
             CSRField("first", offset=3, description="Draw the first set of lists."),
             CSRField("second", offset=4, description="Draw the second set, in each band after the first."),
             CSRField("depth", offset=5, description="Write depths too, and the whole frame."),
-            CSRField("slot", offset=6, description="Number of the frame buffer: the engine remembers the extents of the last frame in each slot."),
+            CSRField("slot", offset=6, description="Number of the frame buffer: the engine remembers the extents of the last frame in each "
+                     "slot."),
             CSRField("whole", offset=7, description="Write all of the frame buffer. Required for the first frame of a buffer, "
                      "after a cancelled frame, after a change of size or `clear`, and after writes by the CPU."),
-        ], description="Start of the raster pass: a frame from descriptors and band lists. The registers down to `count_1` must hold while it runs.")
+        ], description="Start of the raster pass: a frame from descriptors and band lists. The registers down to `count_1` must hold "
+            "while it runs.")
         self._frame = CSRStorage(32, name="frame", description=f"{address} the frame, RGB565, written by the pass.")
         self._depth = CSRStorage(32, name="depth", description=f"{address} the depth codes, 32 bits each, written by the pass.")
         self._clear = CSRStorage(16, name="clear", description="Background colour, RGB565.")
@@ -221,7 +226,8 @@ class TriangleEngine(LiteXModule):
         counts = ("descriptor_count", "exception_count")
         results = Struct("results_t", "Results of the geometry pass.", {
             name: register.status[:_COUNT_BITS] if name in counts else register.status for name, register in results.items()})
-        status = Struct("status_t", "State of the engine. `geometry_done` and `raster_done` are high for one clock; the errors are valid in that clock.", {
+        status = Struct("status_t", "State of the engine. `geometry_done` and `raster_done` are high for one clock; the errors "
+                        "are valid in that clock.", {
             name: Signal(name=f"engine_{name}") for name in (
                 "ready", "geometry_busy", "geometry_done", "mesh_error", "full", "raster_busy", "raster_done", "list_error")})
         field_source = Struct("field_source_t", "Link from a raymarcher to the engine.", {

@@ -99,16 +99,16 @@ module triangle_control #(
         endcase
         descriptor_words = (WORD_BITS'(count) + (WORD_BITS'(count) << 1)) << SMOOTH;
         case (region)
-            4'd0:    begin first = geometry.mesh;                 words = mesh_words; end
-            4'd1:    begin first = geometry.descriptors; words = descriptor_words; end
-            4'd2:    begin first = geometry.lists;       words = list_words; end
-            4'd3:    begin first = geometry.exceptions;           words = (WORD_BITS'(count) + WORD_BITS'(3)) >> 2; end
-            4'd4:    begin first = raster.frame;                words = frame_words; end
-            4'd5:    begin first = raster.depth;                words = frame_words << 1; used = raster_kept.depth; end
-            4'd6:    begin first = raster.lists[0];              words = list_words; used = raster_kept.first; end
-            4'd7:    begin first = raster.lists[1];              words = list_words; used = raster_kept.second; end
-            4'd8:    begin first = raster.descriptors[0];        words = descriptor_words; used = raster_kept.first; end
-            default: begin first = raster.descriptors[1];        words = descriptor_words; used = raster_kept.second; end
+            4'd0:    begin first = geometry.mesh;          words = mesh_words; end
+            4'd1:    begin first = geometry.descriptors;   words = descriptor_words; end
+            4'd2:    begin first = geometry.lists;         words = list_words; end
+            4'd3:    begin first = geometry.exceptions;    words = (WORD_BITS'(count) + WORD_BITS'(3)) >> 2; end
+            4'd4:    begin first = raster.frame;           words = frame_words; end
+            4'd5:    begin first = raster.depth;           words = frame_words << 1; used = raster_kept.depth; end
+            4'd6:    begin first = raster.lists[0];        words = list_words; used = raster_kept.first; end
+            4'd7:    begin first = raster.lists[1];        words = list_words; used = raster_kept.second; end
+            4'd8:    begin first = raster.descriptors[0];  words = descriptor_words; used = raster_kept.first; end
+            default: begin first = raster.descriptors[1];  words = descriptor_words; used = raster_kept.second; end
         endcase
     end
 
