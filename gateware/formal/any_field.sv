@@ -4,15 +4,15 @@
 
 module field_unit #(
     parameter int unsigned LEVELS = 4,
-    parameter bit          BOXES  = 1'b0,
+    parameter int unsigned FIELDS = 1,
     parameter bit          ROUND  = 1'b0,
     parameter bit          BLEND  = 1'b0
 ) (
     input  wire                     clk,
-    input  wire raymarch_pkg::solid_t  solid,
-    input  wire                     ball_write,
-    input  wire  [2:0]              ball_number,
-    input  wire raymarch_pkg::ball_t   ball,
+    input  wire raymarch_registers_pkg::solid_t solid,
+    input  wire                     sphere_write,
+    input  wire  [2:0]              sphere_number,
+    input  wire raymarch_registers_pkg::sphere_t sphere,
     input  wire  [2:0]              pass,
     input  wire  [2:0][21:0]        point,
     input  wire raymarch_pkg::nearest_t so_far,

@@ -31,9 +31,9 @@ module ring_lane_proof (
         ray.length       = in_length;
     end
 
-    ring_lane #(.LEVELS(0), .BOXES(1'b1), .STEREO(1'b0), .PLACES(PLACES)) dut (
+    ring_lane #(.LEVELS(0), .FIELDS(2), .STEREO(1'b0), .PLACES(PLACES)) dut (
         .clk, .rst, .origins('0), .bounds('0), .solid('0), .tuning({16'd1, 4'd7, 8'd2, 23'd1000}), .cones(1'b0),
-        .ball_write(1'b0), .ball_number('0), .ball('0), .in_valid, .in_ready, .in_ray(ray), .out_valid, .out_ready, .out_end, .evaluates, .waits
+        .sphere_write(1'b0), .sphere_number('0), .sphere('0), .in_valid, .in_ready, .in_ray(ray), .out_valid, .out_ready, .out_end, .evaluates, .waits
     );
 
     stream_checker #(.WIDTH(1), .GIVEN(1)) given (.clk, .rst, .valid(in_valid), .ready(in_ready), .data(1'b0));

@@ -1,6 +1,6 @@
-"""The SystemVerilog packages that follow from the shared constants and the blocks' descriptions."""
+"""The SystemVerilog that follows from the shared constants and the blocks' descriptions."""
 
-from . import constants
+from . import constants, fields
 from .register_map import OPTIONAL_BLOCKS, PINNED
 from .rtl import RTL
 from .virtual import VirtualSoC
@@ -21,6 +21,7 @@ def stale(soc):
     texts = {
         **{RTL / folder / f"{name}.sv": text for (folder, name), text in constants.packages().items()},
         **{RTL / package.block / f"{package.name}.sv": package.text() for package in packages},
+        **fields.files(),
     }
     return {path: text for path, text in texts.items() if not path.exists() or path.read_text() != text}
 

@@ -11,7 +11,7 @@ from migen import Cat, Signal
 class Struct:
     """A packed struct: its type in SystemVerilog, and the values of its members.
 
-    A member is a Migen value, a list of values of one width (a packed array, element 0 in the lowest bits), or a `Struct`.
+    A member is a Migen value, a `Struct`, or a list of members of one type (a packed array, element 0 in the lowest bits).
     `text` is the comment of the type.
     """
 
@@ -26,9 +26,7 @@ class Struct:
     def signals(self):
         """Returns a struct of the same type whose members are new signals."""
         return Struct(self.name, self.text, {
-            member: [Signal(len(element), name=f"{member}{i}") for i, element in enumerate(value)] if isinstance(value, list)
-            else value.signals() if isinstance(value, Struct) else Signal(len(value), name=member)
-            for member, value in self._members.items()})
+            member: _signals(member, value) for member, value in self._members.items()})
 
     @property
     def value(self):
@@ -42,9 +40,15 @@ class Struct:
         return "\n".join([*_comment(self.text), "    typedef struct packed {", *lines, f"    }} {self.name};"])
 
 
+def _signals(name, value):
+    if isinstance(value, list):
+        return [_signals(f"{name}{i}", element) for i, element in enumerate(value)]
+    return value.signals() if isinstance(value, Struct) else Signal(len(value), name=name)
+
+
 def _flat(value):
     if isinstance(value, list):
-        return Cat(*value)
+        return Cat(*(_flat(element) for element in value))
     return value.value if isinstance(value, Struct) else value
 
 
@@ -52,8 +56,10 @@ def _type(value):
     if isinstance(value, Struct):
         return value.name
     if isinstance(value, list):
-        width, = {len(element) for element in value}
-        return f"logic [{len(value) - 1}:0][{width - 1}:0]"
+        element, = {_type(element) for element in value}
+        # The dimension of the list stands before those of its elements.
+        name, *dimensions = element.split(" ")
+        return f"{name} {''.join([f'[{len(value) - 1}:0]', *dimensions])}"
     return "logic" if len(value) == 1 else f"logic [{len(value) - 1}:0]"
 
 

@@ -1,12 +1,16 @@
 """The raymarcher: distance fields, beside the triangles in the band buffer. The work is done by rtl/raymarch."""
 
 from dataclasses import asdict, dataclass
+from functools import reduce
+from operator import or_
 
 from litex.gen import LiteXModule
 from litex.soc.interconnect.csr import CSRField, CSRStatus, CSRStorage
 from litex.soc.interconnect.csr_eventmanager import EventManager, EventSourcePulse
-from migen import Case, Cat, If, Instance, Mux, ResetSignal, Signal
+from migen import Case, Cat, Constant, If, Instance, Mux, ResetSignal, Signal
 
+from .fields import FLAT_FIELDS, KIND_BITS, NAMES, has_octants, mask
+from .packed import Package, Struct
 from .rtl import add_sources
 
 IDENT = int.from_bytes(b"MARC", "big")
@@ -21,12 +25,12 @@ _ERRORS = [
 
 @dataclass(frozen=True)
 class Fields:
-    """What a raymarcher is built with: lanes (1, 2, 4), levels of the sponge (0 to 6), boxes, spheres, fillets, two eyes, cones before
-    the rays."""
+    """What a raymarcher is built with: lanes (1, 2, 4), levels of the sponge (0 to 6), flat fields by their names, of which the sponge
+    is one where it has levels, spheres, fillets, two eyes, cones before the rays."""
 
     lanes: int = 2
     levels: int = 6
-    boxes: bool = True
+    flat: tuple = NAMES
     round: bool = True
     blend: bool = True
     stereo: bool = True
@@ -34,14 +38,15 @@ class Fields:
 
     def parameters(self):
         """Returns those of the module by their names."""
-        return {name.upper(): int(value) for name, value in asdict(self).items()}
+        values = asdict(self)
+        return {"FIELDS": mask(values.pop("flat")), **{name.upper(): int(value) for name, value in values.items()}}
 
 
 BUILDS = {
     "all": Fields(),
-    "round": Fields(levels=4, blend=False, prepass=False),
-    "faces": Fields(levels=4, round=False, blend=False, prepass=False),
-    "sponge": Fields(lanes=4, levels=4, boxes=False, round=False, blend=False),
+    "round": Fields(levels=4, flat=("menger", "box"), blend=False, prepass=False),
+    "faces": Fields(levels=4, flat=("menger", "box"), round=False, blend=False, prepass=False),
+    "sponge": Fields(lanes=4, levels=4, flat=("menger",), round=False, blend=False),
 }
 """What there is to choose from: everything; less and less of it; and the sponge alone, by twice as many lanes."""
 
@@ -57,11 +62,12 @@ class Raymarcher(LiteXModule):
         self._caps = CSRStatus(name="caps", fields=[
             CSRField("lanes", size=3, offset=0, reset=fields.lanes, description="Evaluations of the field a clock."),
             CSRField("levels", size=3, offset=4, reset=fields.levels, description="The deepest sponge; 0: none."),
-            CSRField("boxes", offset=8, reset=int(fields.boxes), description="Boxes, cubes and planes."),
             CSRField("stereo", offset=9, reset=int(fields.stereo), description="Two eyes."),
             CSRField("round", offset=10, reset=int(fields.round), description="Spheres, alone and beside what has faces."),
             CSRField("blend", offset=11, reset=int(fields.blend), description="Fillets between both."),
             CSRField("prepass", offset=12, reset=int(fields.prepass), description="Cones before the rays."),
+            CSRField("flat", size=8, offset=16, reset=mask(fields.flat), description="Bit k is set if flat fields of the kind k "
+                     "of `solid` are built."),
         ], description="What this block can do.")
         self._control = CSRStorage(name="control", fields=[
             CSRField("enable", offset=0, description="Frames of the raster pass have the field, after their triangles."),
@@ -81,17 +87,19 @@ class Raymarcher(LiteXModule):
         self.ev.finalize()
 
         self._solid = CSRStorage(name="solid", fields=[
-            CSRField("is_box", offset=0, description="What has faces is a box; or else the sponge."),
             CSRField("levels", size=6, offset=1, description="Levels of the sponge that count, the first one in bit 0."),
             CSRField("has", size=3, offset=8, description="Axes along which the box has an end, x in bit 0."),
             CSRField("room", offset=11, description="The solid is what is outside of the box."),
             CSRField("repeated", offset=12, description="The box repeats itself every 64 units along each axis."),
             CSRField("is_round", offset=13, description="There are spheres."),
             CSRField("flat_too", offset=14, description="What has faces is there beside them."),
-            CSRField("balls_repeated", offset=15, description="The spheres repeat themselves every 64 units along each axis."),
-            CSRField("last_ball", size=3, offset=16, description="The last sphere's number; 0 where there is none."),
+            CSRField("spheres_repeated", offset=15, description="The spheres repeat themselves every 64 units along each axis."),
+            CSRField("last_sphere", size=3, offset=16, description="The last sphere's number; 0 where there is none."),
             CSRField("last_light", size=2, offset=20, description="The number of the last light on spheres."),
-        ], description="What there is.")
+            CSRField("kind", size=KIND_BITS, offset=22,
+                     values=[(str(number), flat.name, flat.text) for number, flat in enumerate(FLAT_FIELDS)],
+                     description="The flat field."),
+        ], description="The solid.")
         self._cube_half = CSRStorage(22, name="cube_half", description="Half the side of the cubes that a sponge leaves, u10.12.")
         box_half = [self._register(f"half_{axis}", 22, f"Half the side of the box along {axis}, u10.12.") for axis in "xyz"]
         self._tuning = CSRStorage(name="tuning", fields=[
@@ -134,11 +142,12 @@ class Raymarcher(LiteXModule):
 
         self._sphere = CSRStorage(name="sphere", fields=[
             CSRField("value", size=24, offset=0, description="A constant of spheres or their light."),
-            CSRField("entry", size=5, offset=24, description="0 to 2: a sphere's centre, x, y, z, s9.12. 3: its radius, u9.12. 4: the "
+            CSRField("entry", size=6, offset=24, description="0 to 2: a sphere's centre, x, y, z, s9.12. 3: its radius, u9.12. 4: the "
                      "inverse of the radius in bits 0 to 16, and its shift. 8 + n: the colour of sphere n, which takes these constants. "
                      "16 + 4i + 0, 1, 2: the direction to light i, s1.16. 16 + 4i + 3: its colour. 5: the ambient light's colour. 6: the "
-                     "width of the fillet, u5.12, 0 without one. 7: 1 over twice that, u1.16."),
-        ], description="Writing sets a constant of what is round.")
+                     "width of the fillet, u5.12, 0 without one. 7: 1 over twice that, u1.16. 32, 33: the colours "
+                     "of the faces 6 and 7 of a field that has eight."),
+        ], description="Writing sets a constant of spheres, their light, or faces.")
 
         counters = {
             "cycles_busy": "Clock cycles in which a field was drawn.",
@@ -165,11 +174,25 @@ class Raymarcher(LiteXModule):
         busy, was_busy = self._status.fields.busy, Signal()
         error = self._status.fields.error
         solid, tuning = self._solid.fields, self._tuning.fields
-        write_ball, number, ball, lights, blend = self._spheres(fields)
+        write_sphere, number, sphere, lights, (blend_width, blend_inverse) = self._spheres(fields, solid.last_light)
+        # Without levels the sponge is an empty field: what a frame of spheres alone asks for.
+        unknown = [solid.kind == number for number, flat in enumerate(FLAT_FIELDS) if number and flat.name not in fields.flat]
         not_built = Signal()
-        self.comb += not_built.eq((solid.is_box & int(not fields.boxes)) | (solid.is_round & int(not fields.round)) |
-                                  (solid.flat_too & (blend != 0) & int(not fields.blend)))
-        too_deep = ~solid.is_box & (solid.levels >> fields.levels != 0)
+        self.comb += not_built.eq(reduce(or_, unknown, Constant(0)) | (solid.is_round & int(not fields.round)) |
+                                  (solid.flat_too & ((blend_width | blend_inverse) != 0) & int(not fields.blend)))
+        too_deep = (solid.kind == 0) & (solid.levels >> fields.levels != 0)
+        constants = Struct("solid_t", "The solid: the fillet's width, u5.12, 0 without one, and 1 over twice that, u1.16; whether the flat "
+            "field is there beside spheres, whether there are any, whether they repeat themselves, and the last one's number; the "
+            "flat field, and its constants.", {
+            "blend_width": blend_width, "blend_inverse": blend_inverse,
+            **{name: getattr(solid, name) for name in ("flat_too", "is_round", "spheres_repeated", "last_sphere", "kind", "levels")},
+            "cube_half": self._cube_half.storage, "half": box_half,
+            **{name: getattr(solid, name) for name in ("has", "room", "repeated")}})
+        limits = Struct("tuning_t", "The tuning: distance and part of t below which a ray has hit, its most evaluations, its largest t.", {
+            **{name: getattr(tuning, name) for name in ("threshold", "footprint", "cap")}, "far_limit": self._far.storage})
+        colours = Struct("palette_t", "Colours, {blue, green, red}: the zenith, rays that were given up, and faces by their surface.", {
+            "zenith": palette[7], "undecided": palette[6], "faces": [*palette[:6], *self._octants(fields)]})
+        self.package = Package("raymarch", structs=[constants, sphere, lights, limits, colours])
         # The engine's clock runs while a pass does; the tables are written while it stands.
         lingers, working = Signal(5), Signal()
         self.comb += [
@@ -204,20 +227,19 @@ class Raymarcher(LiteXModule):
             i_origins        = Cat(*origins),
             i_outside        = Cat(*outside),
             i_bounds         = Cat(*bounds),
-            i_solid          = Cat(solid.repeated, solid.room, solid.has, *box_half, self._cube_half.storage, solid.levels,
-                                   solid.is_box, solid.last_ball, solid.balls_repeated, solid.is_round, solid.flat_too, blend),
-            i_ball_write     = write_ball,
-            i_ball_number    = number,
-            i_ball           = ball,
-            i_lights         = Cat(lights, solid.last_light),
-            i_tuning         = Cat(self._far.storage, tuning.cap, tuning.footprint, tuning.threshold),
+            i_solid          = constants.value,
+            i_sphere_write   = write_sphere,
+            i_sphere_number  = number,
+            i_sphere         = sphere.value,
+            i_lights         = lights.value,
+            i_tuning         = limits.value,
             i_prepass        = prepass,
             i_cone_offset    = Cat(*offset),
             i_cone_spread    = self._cone_spread.storage,
             i_depth_mantissa = self._depth_scale.fields.mantissa,
             i_depth_exponent = self._depth_scale.fields.exponent,
             i_fog_shift      = self._fog_shift.storage,
-            i_palette        = Cat(*palette),
+            i_palette        = colours.value,
             i_horizon        = self._horizon.storage,
             i_table_write    = self._table.re,
             i_table_entry    = self._table.fields.entry,
@@ -240,22 +262,36 @@ class Raymarcher(LiteXModule):
         )
         add_sources(platform, "raymarcher")
 
-    def _spheres(self, fields):
-        """What is kept of the constants that `sphere` is told: whether a sphere is written, its number, itself, the lights, the fillet."""
-        blend = [Signal(17), Signal(17)]
-        if not fields.round:
-            return Signal(), Signal(3), Signal(133), Signal(336), Cat(*blend)
+    def _spheres(self, fields, last_light):
+        """The constants that writes to `sphere` leave: whether a sphere is written, its number, the sphere, the lights, and width and
+        inverse of the fillet."""
         value, entry = self._sphere.fields.value, self._sphere.fields.entry
         centre, radius, inverse = [Signal(22) for _ in range(3)], Signal(21), Signal(22)
-        directions, colours, ambient = [Signal(18) for _ in range(12)], [Signal(24) for _ in range(4)], Signal(24)
-        width, over_width = blend
-        places = {**dict(enumerate([*centre, radius, inverse, ambient, width, over_width])),
-                  **{16 + 4*light + axis: directions[3*light + axis] for light in range(4) for axis in range(3)},
-                  **{19 + 4*light: colour for light, colour in enumerate(colours)}}
-        self.sync += If(self._sphere.re, Case(entry, {number: place.eq(value) for number, place in places.items()}))
+        directions, colours = [[Signal(18) for _ in range(3)] for _ in range(4)], [Signal(24) for _ in range(4)]
+        ambient, blend = Signal(24), [Signal(17), Signal(17)]
         write = Signal()
-        self.comb += write.eq(self._sphere.re & (entry[3:] == 0b01))
-        return write, entry[:3], Cat(*centre, radius, inverse, value), Cat(*directions, *colours, ambient), Cat(over_width, width)
+        if fields.round:
+            places = {**dict(enumerate([*centre, radius, inverse, ambient, *blend])),
+                      **{16 + 4*light + axis: part for light, direction in enumerate(directions) for axis, part in enumerate(direction)},
+                      **{19 + 4*light: colour for light, colour in enumerate(colours)}}
+            self.sync += If(self._sphere.re, Case(entry, {number: place.eq(value) for number, place in places.items()}))
+            self.comb += write.eq(self._sphere.re & (entry[3:] == 0b001))
+        sphere = Struct("sphere_t", "A sphere: its material, {blue, green, red}; the inverse of its radius and a shift (docs/formats.md, "
+                        "\"Light\"); its radius, and its centre.", {
+            "material": value, "shift": inverse[17:], "inverse": inverse[:17], "radius": radius, "centre": centre})
+        lights = Struct("lights_t", "The light on spheres: the last light's number, ambient light, and lights in their colours from "
+                        "their directions, s1.16.", {
+            "last_light": last_light, "ambient": ambient, "colours": colours, "directions": directions})
+        return write, entry[:3], sphere, lights, blend
+
+    def _octants(self, fields):
+        """The colours of the faces 6 and 7, which writes to `sphere` set; without registers where no field has such faces."""
+        if not has_octants(fields.flat):
+            return [Constant(0, 24)] * 2
+        colours = [Signal(24), Signal(24)]
+        self.sync += If(self._sphere.re, Case(self._sphere.fields.entry, {
+            32 + number: colour.eq(self._sphere.fields.value) for number, colour in enumerate(colours)}))
+        return colours
 
     def _register(self, name, size, description):
         """Adds a register and returns what is in it."""

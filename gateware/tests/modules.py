@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 
 from glint_soc import rtl
+from glint_soc.fields import NAMES, has_octants
 from glint_soc.raymarch import BUILDS
 
 
@@ -29,8 +30,9 @@ class Module:
 _SMALL_RASTER = {"H_ACTIVE": 160, "H_FRONT": 8, "H_SYNC": 4, "H_BACK": 12,
                  "V_ACTIVE": 24, "V_FRONT": 2, "V_SYNC": 2, "V_BACK": 4}
 _SMOOTH = {"SMOOTH": 1}
-# Every field there is.
-_ALL_FIELDS = {"LEVELS": 6, "BOXES": 1, "ROUND": 1, "BLEND": 1}
+# A lane and the ends of one with every field.
+_ALL_FIELDS = {name: BUILDS["all"].parameters()[name] for name in ("LEVELS", "FIELDS", "ROUND", "BLEND", "PREPASS")}
+_ALL_PAINT = {"ROUND": 1, "OCTANTS": int(has_octants(NAMES))}
 _PREPASS = {"PREPASS": 1}
 
 MODULES = [
@@ -51,13 +53,12 @@ MODULES = [
     Module(top="triangle_raster", variants={"triangle_raster_smooth": _SMOOTH}),
     Module(top="triangle_engine", variants={"triangle_engine_smooth": _SMOOTH, "triangle_engine_fields": {"FIELDS": 1}},
            measured=("triangle_engine_fields",)),
-    Module(top="field_menger", measured=("field_menger",)),
-    Module(top="field_box", measured=("field_box",)),
+    *(Module(top=f"field_{name}", measured=(f"field_{name}",)) for name in NAMES),
     Module(top="field_sphere", measured=("field_sphere",)),
     Module(top="ray_generator", variants={"ray_generator_all": {"ROUND": 1, **_PREPASS}}, measured=("ray_generator",)),
-    Module(top="ray_paint", variants={"ray_paint_round": {"ROUND": 1}}, measured=("ray_paint_round",)),
+    Module(top="ray_paint", variants={"ray_paint_all": _ALL_PAINT}),
     Module(top="round_light", measured=("round_light",)),
-    Module(top="ring_lane", variants={"ring_lane_all": {**_ALL_FIELDS, **_PREPASS}}),
+    Module(top="ring_lane", variants={"ring_lane_all": _ALL_FIELDS}),
     Module(top="raymarcher",
            variants={f"raymarcher_{name}": fields.parameters() for name, fields in BUILDS.items() if name != "all"},
            measured=("raymarcher_round", "raymarcher_faces")),

@@ -46,6 +46,14 @@ impl Field {
         }
     }
 
+    /// Whether its faces are perpendicular to the diagonals, and not to the axes.
+    pub const fn has_octants(&self) -> bool {
+        match self {
+            Self::Primitive(primitive) => primitive.has_octants(),
+            Self::Union(_) => false,
+        }
+    }
+
     /// Reads a field as it is typed, such as `menger:4`.
     ///
     /// # Errors

@@ -189,22 +189,42 @@ impl Lighting {
     /// Nothing else is rounded but the directions.
     pub fn shine_on(&self, faces: &[Rgb; 6]) -> [Rgb; 6] {
         core::array::from_fn(|face| {
-            core::array::from_fn(|channel| {
-                let sum: i32 = self
-                    .lights
-                    .iter()
-                    .map(|light| {
-                        let along = i32::from(light.direction[face / 2]);
-                        // As in a surface's code, the odd ones look along their axis.
-                        let facing = if face % 2 == 1 { along } else { -along };
-                        facing.max(0) * i32::from(light.colour[channel])
-                    })
-                    .sum();
-                let light = (i32::from(self.ambient[channel]) * ONE + sum).min(255 * ONE);
-                // Below 2^30.
-                let lit = i32::from(faces[face][channel]) * light;
-                ((lit + 255 * ONE / 2) / (255 * ONE)) as u8
+            self.lit(faces[face], |light| {
+                let along = i32::from(light.direction[face / 2]);
+                // As in a surface's code, the odd ones look along their axis.
+                if face % 2 == 1 { along } else { -along }
             })
+        })
+    }
+
+    /// The same of eight faces that are perpendicular to the diagonals, n·l rounded down: bit i of a face's number is set where its
+    /// normal points along axis i.
+    pub fn shine_on_octants(&self, faces: &[Rgb; 8]) -> [Rgb; 8] {
+        // 1/√3, 14 fraction bits.
+        const PART: i32 = 9_459;
+        core::array::from_fn(|face| {
+            self.lit(faces[face], |light| {
+                let along = |i: usize| {
+                    let part = i32::from(light.direction[i]);
+                    if face >> i & 1 == 1 { part } else { -part }
+                };
+                ((along(0) + along(1) + along(2)) * PART) >> 14
+            })
+        })
+    }
+
+    /// A colour in the light on a face, by the cosine of each light's angle to its normal, 14 fraction bits.
+    fn lit(&self, colour: Rgb, cosine: impl Fn(&Light) -> i32) -> Rgb {
+        core::array::from_fn(|channel| {
+            let sum: i32 = self
+                .lights
+                .iter()
+                .map(|light| cosine(light).max(0) * i32::from(light.colour[channel]))
+                .sum();
+            let light = (i32::from(self.ambient[channel]) * ONE + sum).min(255 * ONE);
+            // Below 2^30.
+            let lit = i32::from(colour[channel]) * light;
+            ((lit + 255 * ONE / 2) / (255 * ONE)) as u8
         })
     }
 }
@@ -258,6 +278,25 @@ impl Material {
             Self::Ivory => [[244, 238, 220]; 6],
             Self::Slate => [[104, 114, 128]; 6],
         }
+    }
+
+    /// The colours of eight faces that are perpendicular to the diagonals, in full light: bit i of a face's number is set where
+    /// its normal points along axis i.
+    pub const fn octants(self) -> [Rgb; 8] {
+        let mut colours = [self.faces()[0]; 8];
+        if let Self::Normal = self {
+            let mut face = 0;
+            while face < colours.len() {
+                let mut i = 0;
+                while i < 3 {
+                    // 1/√3 of the way from the middle to a face across the axis.
+                    colours[face][i] = if face >> i & 1 == 1 { 188 } else { 78 };
+                    i += 1;
+                }
+                face += 1;
+            }
+        }
+        colours
     }
 
     /// The colours of spheres in full light, by their numbers: one for all, or of all materials in turn, so that each is told

@@ -5,13 +5,13 @@
 
 use core::fmt;
 
-use glint_core::field::{FixedBox, FixedSpheres, FlatConstants, FlatSolid, Solid};
+use glint_core::field::{FixedSpheres, FlatConstants, Solid};
 use glint_core::stereo::Tint;
 use glint_model::raymarch::{Blend, FieldSetup, FieldStats, Lights, Palette};
 pub use litex_pac::raymarch::Counters;
 use litex_pac::raymarch::{
-    self, Control, DepthScale, EvEnable, EvPending, Solid as SolidRegister, Sphere, Stereo, Table,
-    Tuning,
+    self, Control, DepthScale, EvEnable, EvPending, Kind, Solid as SolidRegister, Sphere, Stereo,
+    Table, Tuning,
 };
 
 use crate::Absent;
@@ -23,8 +23,8 @@ pub struct Capabilities {
     pub lanes: u8,
     /// The deepest sponge; 0: none.
     pub levels: u8,
-    /// Boxes, cubes and planes.
-    pub boxes: bool,
+    /// Flat fields: bit k of a field of kind k.
+    pub flat: u8,
     /// Two eyes.
     pub stereo: bool,
     /// Spheres.
@@ -40,8 +40,8 @@ pub struct Capabilities {
 pub enum Missing {
     /// The sponge, or so many levels of it: there are these.
     Levels(u8),
-    /// Boxes, cubes and planes.
-    Boxes,
+    /// Flat fields of a kind.
+    Flat(Kind),
     /// Spheres.
     Round,
     /// Fillets between spheres and what has faces.
@@ -61,7 +61,7 @@ impl fmt::Display for Missing {
                     "raymarcher: this gateware has sponges of depth {levels} at most"
                 )
             }
-            Self::Boxes => f.write_str("raymarcher: this gateware has no boxes, cubes and planes"),
+            Self::Flat(kind) => write!(f, "raymarcher: this gateware has no {}", kind.text()),
             Self::Round => f.write_str("raymarcher: this gateware has no spheres"),
             Self::Blend => f.write_str("raymarcher: this gateware has no smooth unions"),
             Self::Stereo => f.write_str("raymarcher: this gateware has one eye"),
@@ -105,7 +105,7 @@ impl Raymarcher {
                 let capabilities = Capabilities {
                     lanes: caps.lanes(),
                     levels: caps.levels(),
-                    boxes: caps.boxes(),
+                    flat: caps.flat(),
                     stereo: caps.stereo(),
                     round: caps.round(),
                     blend: caps.blend(),
@@ -137,20 +137,22 @@ impl Raymarcher {
     pub fn check(&self, setup: &FieldSetup) -> Result<(), Missing> {
         let Capabilities {
             levels,
-            boxes,
+            flat,
             stereo,
             round,
             blend,
             prepass,
             ..
         } = self.capabilities;
-        if let Solid::Flat(flat) = &setup.solid {
-            let constants = flat.constants();
+        if let Solid::Flat(solid) = &setup.solid {
+            let constants = solid.constants();
             if u32::from(constants.levels) >> levels != 0 {
                 return Err(Missing::Levels(levels));
             }
-            if constants.kind == FixedBox::CODE && !boxes {
-                return Err(Missing::Boxes);
+            let kind = kind(&constants);
+            // Without levels there is no sponge.
+            if constants.kind != 0 && flat >> constants.kind & 1 == 0 {
+                return Err(Missing::Flat(kind));
             }
         }
         if setup.is_round() && !round {
@@ -201,8 +203,8 @@ impl Raymarcher {
                 self.set_spheres(spheres, &setup.blend(), &palette.lights);
                 solid
                     .with_is_round(true)
-                    .with_balls_repeated(spheres.repeated)
-                    .with_last_ball((spheres.count - 1) as u8)
+                    .with_spheres_repeated(spheres.repeated)
+                    .with_last_sphere((spheres.count - 1) as u8)
                     .with_last_light((palette.lights.count - 1) as u8)
             }
             None => solid,
@@ -264,6 +266,10 @@ impl Raymarcher {
         registers.colour_6().write(colour(palette.undecided));
         registers.colour_7().write(colour(palette.zenith));
         registers.horizon().write(colour(palette.horizon));
+        // The register `sphere` has the colours of the faces beyond six.
+        for (entry, &face) in (32..).zip(&palette.faces[6..]) {
+            self.set_constant(entry, colour(face));
+        }
         registers.cone_spread().write(spread as u16);
         registers.fog_shift().write(palette.fog_shift as u8);
         registers.depth_scale().write(
@@ -294,19 +300,21 @@ impl Raymarcher {
             register.write(half);
         }
         SolidRegister::default()
-            .with_is_box(constants.kind == FixedBox::CODE)
+            .with_kind(kind(constants))
             .with_levels(constants.levels)
             .with_has(constants.has)
             .with_room(constants.room)
             .with_repeated(constants.repeated)
     }
 
+    fn set_constant(&self, entry: u8, value: u32) {
+        let constant = Sphere::default().with_entry(entry).with_value(value);
+        self.registers.sphere().write(constant);
+    }
+
     /// Writes the constants of spheres, of what is between them and faces, and of the light on them.
     fn set_spheres(&self, spheres: &FixedSpheres, blend: &Blend, lights: &Lights) {
-        let write = |entry: u8, value: u32| {
-            let constant = Sphere::default().with_entry(entry).with_value(value);
-            self.registers.sphere().write(constant);
-        };
+        let write = |entry, value| self.set_constant(entry, value);
         let numbers = |x: [i32; 3]| x.map(|x| x as u32 & 0xFF_FFFF);
         for (number, (sphere, material)) in (0..).zip(
             spheres
@@ -360,6 +368,12 @@ impl Raymarcher {
     pub fn counters(&self) -> Counters {
         Counters::read(&self.registers)
     }
+}
+
+/// The kind of a flat field in the gateware's description, which has all of them.
+fn kind(constants: &FlatConstants) -> Kind {
+    let kind = Kind::ALL.get(usize::from(constants.kind)).copied();
+    kind.unwrap_or(Kind::Menger)
 }
 
 /// Red in bits 0 to 7, green, blue.

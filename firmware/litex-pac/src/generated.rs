@@ -2,7 +2,7 @@
 // fails when this file is not what the generator makes of the SoC.
 
 /// CRC-32 of the SoC's pinned register map. A SoC whose `identity.build_id` differs has other registers.
-pub const BUILD_ID: u32 = 0xdfdd_54bb;
+pub const BUILD_ID: u32 = 0x26c6_9045;
 
 /// The interrupt lines, numbered by their bit in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -4060,7 +4060,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5800) }
         }
 
-        /// `caps`, 13 bits: What this block can do.
+        /// `caps`, 24 bits: What this block can do.
         #[inline]
         #[must_use]
         pub const fn caps(&self) -> Register<Caps, ReadOnly> {
@@ -4108,7 +4108,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5818) }
         }
 
-        /// `solid`, 22 bits: What there is.
+        /// `solid`, 23 bits: The solid.
         #[inline]
         #[must_use]
         pub const fn solid(&self) -> Register<Solid, ReadWrite> {
@@ -4516,7 +4516,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_58e4) }
         }
 
-        /// `sphere`, 29 bits: Writing sets a constant of what is round.
+        /// `sphere`, 30 bits: Writing sets a constant of spheres, their light, or faces.
         #[inline]
         #[must_use]
         pub const fn sphere(&self) -> Register<Sphere, ReadWrite> {
@@ -4626,13 +4626,6 @@ pub mod raymarch {
             ((self.0 >> 4) & 0x7) as u8
         }
 
-        /// `boxes`, bit 8: Boxes, cubes and planes.
-        #[inline]
-        #[must_use]
-        pub const fn boxes(self) -> bool {
-            (self.0 >> 8) & 1 != 0
-        }
-
         /// `stereo`, bit 9: Two eyes.
         #[inline]
         #[must_use]
@@ -4659,6 +4652,13 @@ pub mod raymarch {
         #[must_use]
         pub const fn prepass(self) -> bool {
             (self.0 >> 12) & 1 != 0
+        }
+
+        /// `flat`, bits 23 to 16: Bit k is set if flat fields of the kind k of `solid` are built.
+        #[inline]
+        #[must_use]
+        pub const fn flat(self) -> u8 {
+            ((self.0 >> 16) & 0xff) as u8
         }
     }
 
@@ -4848,20 +4848,6 @@ pub mod raymarch {
     }
 
     impl Solid {
-        /// `is_box`, bit 0: What has faces is a box; or else the sponge.
-        #[inline]
-        #[must_use]
-        pub const fn is_box(self) -> bool {
-            self.0 & 1 != 0
-        }
-
-        /// This value with another `is_box`.
-        #[inline]
-        #[must_use]
-        pub const fn with_is_box(self, value: bool) -> Self {
-            Self(self.0 & !0x1 | value as u32 & 0x1)
-        }
-
         /// `levels`, bits 6 to 1: Levels of the sponge that count, the first one in bit 0.
         #[inline]
         #[must_use]
@@ -4946,31 +4932,31 @@ pub mod raymarch {
             Self(self.0 & !(0x1 << 14) | (value as u32 & 0x1) << 14)
         }
 
-        /// `balls_repeated`, bit 15: The spheres repeat themselves every 64 units along each axis.
+        /// `spheres_repeated`, bit 15: The spheres repeat themselves every 64 units along each axis.
         #[inline]
         #[must_use]
-        pub const fn balls_repeated(self) -> bool {
+        pub const fn spheres_repeated(self) -> bool {
             (self.0 >> 15) & 1 != 0
         }
 
-        /// This value with another `balls_repeated`.
+        /// This value with another `spheres_repeated`.
         #[inline]
         #[must_use]
-        pub const fn with_balls_repeated(self, value: bool) -> Self {
+        pub const fn with_spheres_repeated(self, value: bool) -> Self {
             Self(self.0 & !(0x1 << 15) | (value as u32 & 0x1) << 15)
         }
 
-        /// `last_ball`, bits 18 to 16: The last sphere's number; 0 where there is none.
+        /// `last_sphere`, bits 18 to 16: The last sphere's number; 0 where there is none.
         #[inline]
         #[must_use]
-        pub const fn last_ball(self) -> u8 {
+        pub const fn last_sphere(self) -> u8 {
             ((self.0 >> 16) & 0x7) as u8
         }
 
-        /// This value with another `last_ball`: the low 3 bits of `value`.
+        /// This value with another `last_sphere`: the low 3 bits of `value`.
         #[inline]
         #[must_use]
-        pub const fn with_last_ball(self, value: u8) -> Self {
+        pub const fn with_last_sphere(self, value: u8) -> Self {
             Self(self.0 & !(0x7 << 16) | (value as u32 & 0x7) << 16)
         }
 
@@ -4986,6 +4972,20 @@ pub mod raymarch {
         #[must_use]
         pub const fn with_last_light(self, value: u8) -> Self {
             Self(self.0 & !(0x3 << 20) | (value as u32 & 0x3) << 20)
+        }
+
+        /// `kind`, bit 22: The flat field.
+        #[inline]
+        #[must_use]
+        pub const fn kind(self) -> Kind {
+            Kind::from_bits(((self.0 >> 22) & 0x1) as u8)
+        }
+
+        /// This value with another `kind`.
+        #[inline]
+        #[must_use]
+        pub const fn with_kind(self, value: Kind) -> Self {
+            Self(self.0 & !(0x1 << 22) | (value as u32 & 0x1) << 22)
         }
     }
 
@@ -5164,18 +5164,18 @@ pub mod raymarch {
             Self(self.0 & !0x00ff_ffff | value & 0x00ff_ffff)
         }
 
-        /// `entry`, bits 28 to 24: 0 to 2: a sphere's centre, x, y, z, s9.12. 3: its radius, u9.12. 4: the inverse of the radius in bits 0 to 16, and its shift. 8 + n: the colour of sphere n, which takes these constants. 16 + 4i + 0, 1, 2: the direction to light i, s1.16. 16 + 4i + 3: its colour. 5: the ambient light's colour. 6: the width of the fillet, u5.12, 0 without one. 7: 1 over twice that, u1.16.
+        /// `entry`, bits 29 to 24: 0 to 2: a sphere's centre, x, y, z, s9.12. 3: its radius, u9.12. 4: the inverse of the radius in bits 0 to 16, and its shift. 8 + n: the colour of sphere n, which takes these constants. 16 + 4i + 0, 1, 2: the direction to light i, s1.16. 16 + 4i + 3: its colour. 5: the ambient light's colour. 6: the width of the fillet, u5.12, 0 without one. 7: 1 over twice that, u1.16. 32, 33: the colours of the faces 6 and 7 of a field that has eight.
         #[inline]
         #[must_use]
         pub const fn entry(self) -> u8 {
-            ((self.0 >> 24) & 0x1f) as u8
+            ((self.0 >> 24) & 0x3f) as u8
         }
 
-        /// This value with another `entry`: the low 5 bits of `value`.
+        /// This value with another `entry`: the low 6 bits of `value`.
         #[inline]
         #[must_use]
         pub const fn with_entry(self, value: u8) -> Self {
-            Self(self.0 & !(0x1f << 24) | (value as u32 & 0x1f) << 24)
+            Self(self.0 & !(0x3f << 24) | (value as u32 & 0x3f) << 24)
         }
     }
 
@@ -5277,6 +5277,49 @@ pub mod raymarch {
                 Self::Field => "the sponge, so many levels of it, boxes, spheres, or fillets are not built",
                 Self::Stereo => "two eyes are not built",
                 Self::Prepass => "cones are not built",
+            }
+        }
+    }
+
+    /// Values of `solid.kind`.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    #[repr(u8)]
+    pub enum Kind {
+        /// Sponges.
+        Menger = 0,
+        /// Boxes, cubes and planes.
+        Box = 1,
+    }
+
+    impl Kind {
+        /// Every value, in the order of the gateware's description.
+        pub const ALL: [Self; 2] = [Self::Menger, Self::Box];
+
+        /// The value of a field's `bits`; bits beyond the field are not looked at.
+        #[inline]
+        #[must_use]
+        pub const fn from_bits(bits: u8) -> Self {
+            match bits & 0x1 {
+                0 => Self::Menger,
+                _ => Self::Box,
+            }
+        }
+
+        /// Its name in the gateware's description.
+        #[must_use]
+        pub const fn name(self) -> &'static str {
+            match self {
+                Self::Menger => "menger",
+                Self::Box => "box",
+            }
+        }
+
+        /// Its text in the gateware's description.
+        #[must_use]
+        pub const fn text(self) -> &'static str {
+            match self {
+                Self::Menger => "sponges",
+                Self::Box => "boxes, cubes and planes",
             }
         }
     }

@@ -9,7 +9,7 @@
 
 module blend_unit (
     input  wire                         clk,
-    input  wire raymarch_pkg::solid_t      solid,
+    input  wire raymarch_registers_pkg::solid_t solid,
     input  wire signed [21:0]           flat_distance,
     input  wire [2:0]                   flat_surface,
     input  wire raymarch_pkg::nearest_t    known,

@@ -16,9 +16,9 @@
 module field_sphere (
     input  wire                     clk,
     input  wire                     repeated,
-    input  wire                     ball_write,
-    input  wire  [2:0]              ball_number,
-    input  wire raymarch_pkg::ball_t   ball,
+    input  wire                     sphere_write,
+    input  wire  [2:0]              sphere_number,
+    input  wire raymarch_registers_pkg::sphere_t sphere,
     input  wire  [2:0]              number,
     input  wire  [2:0][21:0]        point,
     output logic signed [21:0]      distance
@@ -33,9 +33,9 @@ module field_sphere (
     delay #(.WIDTH(3), .CLOCKS(17)) number_waits (.clk, .enable(1'b1), .in(number), .out(number_16));
 
     always_ff @(posedge clk) begin
-        if (ball_write) begin
-            centres[ball_number] <= ball.centre;
-            radii[ball_number]   <= ball.radius;
+        if (sphere_write) begin
+            centres[sphere_number] <= sphere.centre;
+            radii[sphere_number]   <= sphere.radius;
         end
         centre_0  <= centres[number];
         radius_17 <= radii[number_16];
@@ -155,7 +155,7 @@ module field_sphere (
         distance   <= !over[23] && over[22:21] != '0 ? {1'b0, {21{1'b1}}} : over[21:0];
     end
 
-    wire _unused = &{1'b0, ball.material, ball.shift, ball.inverse, any_8[13:0], any_3[0], by_8, square_9[36], square_10[7:0], root_15[36], root_15[16:0]};
+    wire _unused = &{1'b0, sphere.material, sphere.shift, sphere.inverse, any_8[13:0], any_3[0], by_8, square_9[36], square_10[7:0], root_15[36], root_15[16:0]};
 endmodule
 
 `default_nettype wire

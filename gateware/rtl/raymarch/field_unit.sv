@@ -1,6 +1,6 @@
 // The distance field of a lane: the fields that it is built with, side by side, and which of them is asked.
 //
-// Latency raymarch_pkg::field_clocks(LEVELS, BOXES, ROUND, BLEND), throughput a point a clock, no handshake; `solid` holds. A field that is not
+// Latency raymarch_pkg::field_clocks(LEVELS, FIELDS, ROUND, BLEND), throughput a point a clock, no handshake; `solid` holds. A field that is not
 // built costs nothing; one that is the only one costs no choice.
 //
 // Spheres are looked at one after the other: `pass` is the number of one, a clock before the point, `so_far` is the nearest one of
@@ -13,15 +13,15 @@
 module field_unit #(
     // Levels of the sponge; 0: none.
     parameter int unsigned LEVELS = 4,
-    parameter bit          BOXES  = 1'b0,
+    parameter int unsigned FIELDS = 1,
     parameter bit          ROUND  = 1'b0,
     parameter bit          BLEND  = 1'b0
 ) (
     input  wire                     clk,
-    input  wire raymarch_pkg::solid_t  solid,
-    input  wire                     ball_write,
-    input  wire  [2:0]              ball_number,
-    input  wire raymarch_pkg::ball_t   ball,
+    input  wire raymarch_registers_pkg::solid_t solid,
+    input  wire                     sphere_write,
+    input  wire  [2:0]              sphere_number,
+    input  wire raymarch_registers_pkg::sphere_t sphere,
     input  wire  [2:0]              pass,
     input  wire  [2:0][21:0]        point,
     input  wire raymarch_pkg::nearest_t so_far,
@@ -32,52 +32,17 @@ module field_unit #(
     output logic [7:0]              share,
     output raymarch_pkg::nearest_t     nearest
 );
-    localparam int unsigned FLAT_CLOCKS = raymarch_pkg::flat_clocks(LEVELS, BOXES);
-    localparam bit          FLAT        = LEVELS > 0 || BOXES;
+    localparam int unsigned FLAT_CLOCKS = fields_pkg::flat_clocks(LEVELS, FIELDS);
+    localparam bit          FLAT        = FIELDS != 0;
 
-    logic signed [21:0] menger_distance, box_distance, flat_distance;
-    logic [2:0]         menger_surface, box_surface, flat_surface;
+    logic signed [21:0] flat_distance;
+    logic [2:0]         flat_surface;
 
-    if (LEVELS > 0) begin : menger
-        field_menger #(.LEVELS(LEVELS)) field (
-            .clk, .levels(solid.levels[LEVELS-1:0]), .half(solid.cube_half), .point,
-            .distance(menger_distance), .surface(menger_surface)
-        );
-    end else begin : no_menger
-        assign menger_distance = '0;
-        assign menger_surface  = '0;
-    end
-
-    if (BOXES) begin : box
-        logic signed [21:0] early_distance;
-        logic [2:0]         early_surface;
-
-        field_box field (
-            .clk, .half(solid.box_half), .has(solid.box_has), .room(solid.room), .repeated(solid.repeated), .point,
-            .distance(early_distance), .surface(early_surface)
-        );
-
-        if (LEVELS > 0) begin : late
-            delay #(.WIDTH(25), .CLOCKS(3 * LEVELS)) wait_for_menger (
-                .clk, .enable(1'b1), .in({early_distance, early_surface}), .out({box_distance, box_surface})
-            );
-        end else begin : alone
-            assign box_distance = early_distance;
-            assign box_surface  = early_surface;
-        end
-    end else begin : no_box
-        assign box_distance = '0;
-        assign box_surface  = '0;
-    end
-
-    if (LEVELS > 0 && BOXES) begin : choice
-        always_ff @(posedge clk) begin
-            flat_distance <= solid.is_box ? box_distance : menger_distance;
-            flat_surface  <= solid.is_box ? box_surface : menger_surface;
-        end
-    end else begin : single
-        assign flat_distance = BOXES ? box_distance : menger_distance;
-        assign flat_surface  = BOXES ? box_surface : menger_surface;
+    if (FLAT) begin : flat
+        flat_fields #(.LEVELS(LEVELS), .FIELDS(FIELDS)) fields (.clk, .solid, .point, .distance(flat_distance), .surface(flat_surface));
+    end else begin : no_flat
+        assign flat_distance = '0;
+        assign flat_surface  = '0;
     end
 
     if (ROUND) begin : spheres
@@ -90,7 +55,7 @@ module field_unit #(
         raymarch_pkg::nearest_t so_far_18, known, nearest_both;
 
         field_sphere field (
-            .clk, .repeated(solid.balls_repeated), .ball_write, .ball_number, .ball, .number(pass), .point, .distance(distance_18)
+            .clk, .repeated(solid.spheres_repeated), .sphere_write, .sphere_number, .sphere, .number(pass), .point, .distance(distance_18)
         );
         delay #(.WIDTH(3), .CLOCKS(KNOWN)) number (.clk, .enable(1'b1), .in(pass), .out(pass_18));
         delay #(.WIDTH(raymarch_pkg::NEAREST_BITS), .CLOCKS(KNOWN - 1)) others (.clk, .enable(1'b1), .in(so_far), .out(so_far_18));
@@ -153,8 +118,7 @@ module field_unit #(
         assign nearest  = '0;
     end
 
-    wire _unused = &{1'b0, solid, menger_distance, menger_surface, box_distance, box_surface, flat_distance, flat_surface, ball_write,
-                     ball_number, ball, pass, so_far};
+    wire _unused = &{1'b0, solid, flat_distance, flat_surface, sphere_write, sphere_number, sphere, pass, so_far};
 endmodule
 
 `default_nettype wire

@@ -16,7 +16,9 @@
 `default_nettype none
 
 module ray_paint #(
-    parameter bit ROUND = 1'b0
+    parameter bit ROUND   = 1'b0,
+    // Faces may be octants: eight colours, or else six.
+    parameter bit OCTANTS = 1'b0
 ) (
     input  wire                     clk,
     input  wire                     rst,
@@ -28,8 +30,7 @@ module ray_paint #(
     input  wire  [16:0]             depth_mantissa,
     input  wire  signed [5:0]       depth_exponent,
     input  wire  [2:0]              fog_shift,
-    // {blue, green, red} of eight bits: the six faces, a ray that was given up, the zenith.
-    input  wire  [7:0][23:0]        palette,
+    input  wire raymarch_registers_pkg::palette_t palette,
     input  wire  [23:0]             horizon,
     input  wire                     table_write,
     input  wire  [8:0]              table_entry,
@@ -153,13 +154,29 @@ module ray_paint #(
         wire _unused = &{1'b0, in_end.round, in_colour, round};
     end
 
+    logic [23:0] plain_8;
+
+    if (OCTANTS) begin : eight_faces
+        always_comb
+            unique case (state_8)
+                raymarch_pkg::HIT:  plain_8 = palette.faces[surface_8];
+                raymarch_pkg::MISS: plain_8 = palette.zenith;
+                default:            plain_8 = palette.undecided;
+            endcase
+    end else begin : six_faces
+        logic [7:0][23:0] colours;
+
+        assign colours = {palette.zenith, palette.undecided, palette.faces[5:0]};
+        assign plain_8 = colours[state_8 == raymarch_pkg::HIT ? surface_8 : state_8 == raymarch_pkg::MISS ? 3'd7 : 3'd6];
+        wire _unused = &{1'b0, palette.faces[7:6]};
+    end
+
     assign fog_part = state_9 == raymarch_pkg::HIT ? fog_9 : ~height_9;
 
     always_ff @(posedge clk) begin
         if (enable) begin
             state_9  <= state_8;
-            colour_9 <= palette[state_8 == raymarch_pkg::HIT ? surface_8 : state_8 == raymarch_pkg::MISS ? 3'd7 : 3'd6];
-            if (lit_8) colour_9 <= lit_colour_8;
+            colour_9 <= lit_8 ? lit_colour_8 : plain_8;
 
             colour_10 <= colour_9;
             light_10  <= state_9 == raymarch_pkg::HIT ? {1'b0, light_9} + 9'(light_9[7]) : 9'd256;

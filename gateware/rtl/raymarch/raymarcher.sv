@@ -27,7 +27,7 @@
 module raymarcher #(
     parameter int unsigned LANES   = 2,
     parameter int unsigned LEVELS  = 6,
-    parameter bit          BOXES   = 1'b1,
+    parameter int unsigned FIELDS  = fields_pkg::ALL,
     parameter bit          ROUND   = 1'b1,
     parameter bit          BLEND   = 1'b1,
     parameter bit          STEREO  = 1'b1,
@@ -50,13 +50,13 @@ module raymarcher #(
     input  wire  [1:0][2:0][24:0]     origins,
     input  wire  [1:0][2:0][23:0]     outside,
     input  wire  [2:0][23:0]          bounds,
-    input  wire raymarch_pkg::solid_t    solid,
-    input  wire raymarch_pkg::tuning_t   tuning,
+    input  wire raymarch_registers_pkg::solid_t solid,
+    input  wire raymarch_registers_pkg::tuning_t tuning,
     // Spheres, with ROUND: written between frames.
-    input  wire                       ball_write,
-    input  wire  [2:0]                ball_number,
-    input  wire raymarch_pkg::ball_t     ball,
-    input  wire raymarch_pkg::lights_t   lights,
+    input  wire                       sphere_write,
+    input  wire  [2:0]                sphere_number,
+    input  wire raymarch_registers_pkg::sphere_t sphere,
+    input  wire raymarch_registers_pkg::lights_t lights,
     // Cones: whether there are any, and what their blocks are in D.
     input  wire                       prepass,
     input  wire  [2:0][31:0]          cone_offset,
@@ -65,7 +65,7 @@ module raymarcher #(
     input  wire  [16:0]               depth_mantissa,
     input  wire  signed [5:0]         depth_exponent,
     input  wire  [2:0]                fog_shift,
-    input  wire  [7:0][23:0]          palette,
+    input  wire raymarch_registers_pkg::palette_t palette,
     input  wire  [23:0]               horizon,
     input  wire                       table_write,
     input  wire  [8:0]                table_entry,
@@ -185,8 +185,8 @@ module raymarcher #(
     assign ray_ready  = lane_takes != '0;
 
     for (genvar i = 0; i < LANES; i++) begin : lanes
-        ring_lane #(.LEVELS(LEVELS), .BOXES(BOXES), .ROUND(ROUND), .BLEND(BLEND), .STEREO(STEREO), .PREPASS(PREPASS)) lane (
-            .clk, .rst(reset), .origins, .bounds, .solid, .tuning, .cones, .ball_write, .ball_number, .ball,
+        ring_lane #(.LEVELS(LEVELS), .FIELDS(FIELDS), .ROUND(ROUND), .BLEND(BLEND), .STEREO(STEREO), .PREPASS(PREPASS)) lane (
+            .clk, .rst(reset), .origins, .bounds, .solid, .tuning, .cones, .sphere_write, .sphere_number, .sphere,
             .in_valid(lane_valid[i]), .in_ready(lane_ready[i]), .in_ray(ray),
             .out_valid(end_valid[i]), .out_ready(end_taken[i]), .out_end(end_of[i]),
             .evaluates(evaluates[i]), .waits(waits[i])
@@ -231,7 +231,7 @@ module raymarcher #(
 
     if (ROUND) begin : light
         round_light #(.BLEND(BLEND), .STEREO(STEREO)) shine (
-            .clk, .rst(reset), .origins, .repeated(solid.balls_repeated), .lights, .palette(palette[5:0]), .ball_write, .ball_number, .ball,
+            .clk, .rst(reset), .origins, .repeated(solid.spheres_repeated), .lights, .palette(palette.faces[5:0]), .sphere_write, .sphere_number, .sphere,
             .in_valid(paint_valid), .in_ready(paint_ready), .in_end(paint_end),
             .out_valid(lit_valid), .out_ready(lit_ready), .out_end(lit_end), .out_colour(lit_colour)
         );
@@ -244,7 +244,7 @@ module raymarcher #(
     end
 
     /* verilator lint_off PINCONNECTEMPTY */
-    ray_paint #(.ROUND(ROUND)) paint (
+    ray_paint #(.ROUND(ROUND), .OCTANTS((FIELDS & fields_pkg::OCTANTS) != 0)) paint (
         .clk, .rst(reset), .stereo, .round(solid.is_round), .stride, .depth_mantissa, .depth_exponent, .fog_shift, .palette, .horizon,
         .table_write, .table_entry, .table_part,
         .in_valid(lit_valid), .in_ready(lit_ready), .in_end(lit_end), .in_colour(lit_colour),

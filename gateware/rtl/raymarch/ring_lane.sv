@@ -22,25 +22,25 @@
 
 module ring_lane #(
     parameter int unsigned LEVELS = 4,
-    parameter bit          BOXES  = 1'b0,
+    parameter int unsigned FIELDS = 1,
     parameter bit          ROUND  = 1'b0,
     parameter bit          BLEND  = 1'b0,
     parameter bit          STEREO = 1'b1,
     parameter bit          PREPASS = 1'b0,
     // More than there are slots, or some would stay empty.
-    parameter int unsigned PLACES = raymarch_pkg::field_clocks(LEVELS, BOXES, ROUND, BLEND) > 24 ? 64 : 32
+    parameter int unsigned PLACES = raymarch_pkg::field_clocks(LEVELS, FIELDS, ROUND, BLEND) > 24 ? 64 : 32
 ) (
     input  wire                      clk,
     input  wire                      rst,
     // Frame.
     input  wire  [1:0][2:0][24:0]    origins,
     input  wire  [2:0][23:0]         bounds,
-    input  wire raymarch_pkg::solid_t   solid,
-    input  wire raymarch_pkg::tuning_t  tuning,
+    input  wire raymarch_registers_pkg::solid_t solid,
+    input  wire raymarch_registers_pkg::tuning_t tuning,
     // Spheres, while no rays are inside.
-    input  wire                      ball_write,
-    input  wire  [2:0]               ball_number,
-    input  wire raymarch_pkg::ball_t    ball,
+    input  wire                      sphere_write,
+    input  wire  [2:0]               sphere_number,
+    input  wire raymarch_registers_pkg::sphere_t sphere,
     input  wire                      cones,
     // Rays.
     input  wire                      in_valid,
@@ -55,9 +55,10 @@ module ring_lane #(
     output logic                     waits
 );
     // The clock in which the distance is there, counted from the slot.
-    localparam int unsigned DISTANCE = 3 + raymarch_pkg::field_clocks(LEVELS, BOXES, ROUND, BLEND);
+    localparam int unsigned DISTANCE = 3 + raymarch_pkg::field_clocks(LEVELS, FIELDS, ROUND, BLEND);
     localparam int unsigned COUNT_BITS = $clog2(PLACES + 1);
     localparam int unsigned STEP_BITS  = ROUND ? 10 : 8;
+    localparam bit          OCTANTS   = (FIELDS & fields_pkg::OCTANTS) != 0;
     localparam int unsigned KEPT_BITS  = raymarch_pkg::end_bits(ROUND, BLEND);
 
     // What a ray takes round with it, beside t.
@@ -78,7 +79,7 @@ module ring_lane #(
     logic [STEP_BITS-1:0] steps;
 
     // After the last stage.
-    cargo_t            last_cargo;
+    cargo_t            early_cargo, last_cargo;
     logic [raymarch_pkg::T_BITS-1:0] last_t;
     logic [STEP_BITS-1:0] last_steps;
     raymarch_pkg::state_t            last_state;
@@ -156,8 +157,8 @@ module ring_lane #(
     logic [2:0]          pass_2;
     raymarch_pkg::nearest_t so_far_3, nearest;
 
-    field_unit #(.LEVELS(LEVELS), .BOXES(BOXES), .ROUND(ROUND), .BLEND(BLEND)) field (
-        .clk, .solid, .ball_write, .ball_number, .ball, .pass(pass_2), .point({point[2][21:0], point[1][21:0], point[0][21:0]}),
+    field_unit #(.LEVELS(LEVELS), .FIELDS(FIELDS), .ROUND(ROUND), .BLEND(BLEND)) field (
+        .clk, .solid, .sphere_write, .sphere_number, .sphere, .pass(pass_2), .point({point[2][21:0], point[1][21:0], point[0][21:0]}),
         .so_far(so_far_3), .distance, .round, .surface, .face, .share, .nearest
     );
 
@@ -177,7 +178,7 @@ module ring_lane #(
         delay #(.WIDTH(raymarch_pkg::NEAREST_BITS), .CLOCKS(2)) nearest_goes (.clk, .enable(1'b1), .in(nearest), .out(last_nearest));
 
         always_ff @(posedge clk) begin
-            is_last_early <= pass_early == solid.last_ball;
+            is_last_early <= pass_early == solid.last_sphere;
             is_last       <= is_last_early;
             is_last_2     <= is_last;
         end
@@ -204,7 +205,15 @@ module ring_lane #(
 
     delay #(.WIDTH(raymarch_pkg::T_BITS), .CLOCKS(DISTANCE - 1)) way (.clk, .enable(1'b1), .in(t), .out(t_early));
     delay #(.WIDTH(STEP_BITS), .CLOCKS(DISTANCE)) counted (.clk, .enable(1'b1), .in(steps), .out(steps_1));
-    delay #(.WIDTH(CARGO_BITS), .CLOCKS(DISTANCE + 2)) carried (.clk, .enable(1'b1), .in(cargo), .out(last_cargo));
+
+    // A slope against a face across a diagonal takes a clock more.
+    if (OCTANTS) begin : carried_early
+        delay #(.WIDTH(CARGO_BITS), .CLOCKS(DISTANCE + 1)) carried (.clk, .enable(1'b1), .in(cargo), .out(early_cargo));
+        always_ff @(posedge clk) last_cargo <= early_cargo;
+    end else begin : carried_late
+        delay #(.WIDTH(CARGO_BITS), .CLOCKS(DISTANCE + 2)) carried (.clk, .enable(1'b1), .in(cargo), .out(last_cargo));
+        assign early_cargo = '0;
+    end
 
     if (PREPASS) begin : prepass
         logic [raymarch_pkg::SPREAD_BITS-1:0] spread, last_spread, widens;
@@ -293,12 +302,42 @@ module ring_lane #(
         assign steps_end = last_steps;
     end
 
-    // How steeply the ray goes to the surface; all ones where it does not go there.
+    // How steeply the ray goes to the face: the part along the normal; all ones where it does not go there. Only the quotient of `gap`
+    // and `slope` matters.
     logic [10:0] part;
-    logic [9:0]  slope;
+    logic [9:0]  axis_slope, slope;
+    logic [11:0] face_gap;
 
-    assign part   = last_cargo.direction[last_surface[2:1]][17:7];
-    assign slope  = part[10] == last_surface[0] ? part[9:0] ^ {10{part[10]}} : '1;
+    assign part       = last_cargo.direction[last_surface[2:1]][17:7];
+    assign axis_slope = part[10] == last_surface[0] ? part[9:0] ^ {10{part[10]}} : '1;
+
+    // Of a face across a diagonal: three quarters of both, as the sum of three parts over four needs no division.
+    if (OCTANTS) begin : diagonals
+        logic [2:0][10:0]   towards;
+        logic signed [11:0] x_y;
+        logic signed [10:0] z;
+        logic signed [12:0] sum;
+        logic               is_diagonal;
+
+        always_comb
+            for (int i = 0; i < 3; i++) towards[i] = early_cargo.direction[i][17:7] ^ {11{surface_2[i]}};
+
+        always_ff @(posedge clk) begin
+            x_y <= 12'($signed(towards[0])) + 12'($signed(towards[1]));
+            z   <= $signed(towards[2]);
+        end
+
+        assign is_diagonal = fields_pkg::has_octants(solid.kind);
+        assign sum         = 13'(x_y) + 13'(z);
+        assign slope       = !is_diagonal ? axis_slope : sum[12] ? '1 : sum[11:2];
+        assign face_gap    = is_diagonal ? gap - {2'b0, gap[11:2]} : gap;
+        wire _unused = &{1'b0, sum[1:0], early_cargo.place, early_cargo.length};
+    end else begin : axes_alone
+        assign slope    = axis_slope;
+        assign face_gap = gap;
+        wire _unused = &{1'b0, early_cargo};
+    end
+
     assign height = last_cargo.direction[2][17] ? '0 : last_cargo.direction[2][16:9];
 
     always_comb begin
@@ -310,7 +349,7 @@ module ring_lane #(
 
     assign end_in = {
         face_end, share_end, last_cargo.direction, last_round, last_cargo.place, last_cargo.length, end_t, steps_end, last_state, last_surface,
-        last_round ? 12'd0 : gap, last_round ? 10'h3FF : slope
+        last_round ? 12'd0 : face_gap, last_round ? 10'h3FF : slope
     };
 
     delay #(.WIDTH(11), .CLOCKS(2)) blended (.clk, .enable(1'b1), .in({face, share}), .out({face_end, share_end}));

@@ -19,11 +19,11 @@ module round_light #(
     // Frame.
     input  wire  [1:0][2:0][24:0]    origins,
     input  wire                      repeated,
-    input  wire raymarch_pkg::lights_t  lights,
+    input  wire raymarch_registers_pkg::lights_t lights,
     input  wire  [5:0][23:0]         palette,
-    input  wire                      ball_write,
-    input  wire  [2:0]               ball_number,
-    input  wire raymarch_pkg::ball_t    ball,
+    input  wire                      sphere_write,
+    input  wire  [2:0]               sphere_number,
+    input  wire raymarch_registers_pkg::sphere_t sphere,
     // Ends.
     input  wire                      in_valid,
     output logic                     in_ready,
@@ -81,11 +81,11 @@ module round_light #(
     delay #(.WIDTH(3), .CLOCKS(7)) number_to_18 (.clk, .enable, .in(number_11), .out(number_18));
 
     always_ff @(posedge clk) begin
-        if (ball_write) begin
-            centres[ball_number]   <= ball.centre;
-            shifts[ball_number]    <= ball.shift;
-            inverses[ball_number]  <= ball.inverse;
-            materials[ball_number] <= ball.material;
+        if (sphere_write) begin
+            centres[sphere_number]   <= sphere.centre;
+            shifts[sphere_number]    <= sphere.shift;
+            inverses[sphere_number]  <= sphere.inverse;
+            materials[sphere_number] <= sphere.material;
         end
         if (enable) begin
             centre_3    <= centres[number_2];
@@ -280,7 +280,7 @@ module round_light #(
 
     assign out_end = raymarch_pkg::END_BITS'(kept);
 
-    wire _unused = &{1'b0, ball.radius, product_9[41], product_9[3:0], cosine_15[36:34], cosine_15[24:0]};
+    wire _unused = &{1'b0, sphere.radius, product_9[41], product_9[3:0], cosine_15[36:34], cosine_15[24:0]};
 endmodule
 
 `default_nettype wire

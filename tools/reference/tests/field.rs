@@ -4,7 +4,7 @@
 
 use glint_reference::camera::{Ray, Size, Vector};
 use glint_reference::field::metrics::{Outcome, accuracy, expected};
-use glint_reference::field::{Face, Field, Hit, Sphere, views};
+use glint_reference::field::{Face, Field, Hit, Plane, Sphere, views};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
@@ -28,6 +28,23 @@ fn ball(centre: Vector, radius: f64) -> Field {
 
 fn boxed(field: Field) -> Box<Field> {
     Box::new(field)
+}
+
+/// A box whose corners are cut by the diagonals.
+fn cut_box() -> Field {
+    let planes = (0..6).map(|face| {
+        let mut normal = [0.0; 3];
+        normal[face / 2] = if face % 2 == 0 { -2.0 } else { 2.0 };
+        Plane {
+            normal,
+            offset: 1.5,
+        }
+    });
+    let diagonals = (0..8).map(|signs| Plane {
+        normal: [0, 1, 2].map(|i| if signs >> i & 1 == 1 { 1.0 } else { -1.0 }),
+        offset: 1.25,
+    });
+    Field::Convex(planes.chain(diagonals).collect())
 }
 
 /// Each kind of field that has a geometry of its own, with the spacing of its faces or centres.
@@ -61,6 +78,7 @@ fn fields() -> Vec<(String, Field, f64)> {
         ("cubes".into(), cubes(0.1), 0.125),
         ("cubes close together".into(), cubes(0.35), 0.125),
         ("planes".into(), planes.clone(), 0.25),
+        ("a box with its corners cut".into(), cut_box(), 0.25),
         (
             "spheres between planes".into(),
             Field::Union(boxed(planes), boxed(spheres)),

@@ -1,7 +1,7 @@
 //! The raymarcher's frame constants, rays, ends and pixels on its ports.
 
 use crate::{Bits, Layout, Module, Record};
-use glint_core::field::{FixedBox, FlatSolid, Solid, Surface};
+use glint_core::field::{Solid, Surface};
 use glint_model::raymarch::{
     Cone, FieldSetup, Lights, Palette, Ray, RayResult, State, paint, rgb565,
 };
@@ -224,17 +224,17 @@ fn solid(mut solid: Record, setup: &FieldSetup) -> Record {
     solid.set("blend_inverse", blend.inverse);
     solid.set("blend_width", blend.width);
     if let Some(spheres) = setup.spheres() {
-        solid.set("last_ball", spheres.count as u64 - 1);
-        solid.set("balls_repeated", spheres.repeated);
+        solid.set("last_sphere", spheres.count as u64 - 1);
+        solid.set("spheres_repeated", spheres.repeated);
         solid.set("is_round", 1);
     }
     if let Solid::Flat(flat) = &setup.solid {
         let constants = flat.constants();
-        solid.set("is_box", constants.kind == FixedBox::CODE);
+        solid.set("kind", constants.kind);
         solid.set("levels", constants.levels);
         solid.set("cube_half", constants.cube_half);
-        solid.set_all("box_half", constants.half);
-        solid.set("box_has", constants.has);
+        solid.set_all("half", constants.half);
+        solid.set("has", constants.has);
         solid.set("repeated", constants.repeated);
         solid.set("room", constants.room);
     }
@@ -242,23 +242,23 @@ fn solid(mut solid: Record, setup: &FieldSetup) -> Record {
 }
 
 /// Writes the spheres, with their materials.
-fn set_balls(module: &mut Module, setup: &FieldSetup, lights: &Lights) {
+fn set_spheres(module: &mut Module, setup: &FieldSetup, lights: &Lights) {
     let Some(spheres) = setup.spheres() else {
         return;
     };
-    module.drive("ball_write", 1);
+    module.drive("sphere_write", 1);
     for (i, one) in spheres.list.iter().take(spheres.count).enumerate() {
-        let mut ball = module.record("ball");
-        ball.set_all("centre", one.centre);
-        ball.set("radius", one.radius);
-        ball.set("inverse", one.inverse);
-        ball.set("shift", one.shift);
-        ball.set("material", colour(lights.materials[i]));
-        module.drive("ball_number", i as u64);
-        module.drive_bits("ball", ball);
+        let mut sphere = module.record("sphere");
+        sphere.set_all("centre", one.centre);
+        sphere.set("radius", one.radius);
+        sphere.set("inverse", one.inverse);
+        sphere.set("shift", one.shift);
+        sphere.set("material", colour(lights.materials[i]));
+        module.drive("sphere_number", i as u64);
+        module.drive_bits("sphere", sphere);
         module.clock();
     }
-    module.drive("ball_write", 0);
+    module.drive("sphere_write", 0);
 }
 
 /// Sets the lights on spheres.
@@ -271,7 +271,7 @@ pub fn set_lights(module: &mut Module, setup: &FieldSetup, lights: &Lights) {
         record.set_all(&format!("directions[{i}]"), light.direction);
     }
     module.drive_bits("lights", record);
-    set_balls(module, setup, lights);
+    set_spheres(module, setup, lights);
 }
 
 /// Sets a port that has three numbers for each eye, the left one first.
@@ -294,7 +294,7 @@ pub fn set_lane(module: &mut Module, setup: &FieldSetup) {
     module.drive_all("bounds", setup.bounds);
     let solid = solid(module.record("solid"), setup);
     module.drive_bits("solid", solid);
-    set_balls(module, setup, &Palette::default().lights);
+    set_spheres(module, setup, &Palette::default().lights);
 }
 
 /// Sets a frame's constants for the generator, with bands of `band_lines` lines.
@@ -354,9 +354,11 @@ fn colour([r, g, b]: [u8; 3]) -> u64 {
 
 /// Sets a frame's constants for painting, and fills its tables.
 pub fn set_paint(module: &mut Module, setup: &FieldSetup, palette: &Palette) {
-    let rest = [palette.undecided, palette.zenith];
-    let colours = palette.faces.into_iter().chain(rest).map(colour);
-    module.drive_all("palette", colours);
+    let mut colours = module.record("palette");
+    colours.set("zenith", colour(palette.zenith));
+    colours.set("undecided", colour(palette.undecided));
+    colours.set_all("faces", palette.faces.map(colour));
+    module.drive_bits("palette", colours);
     module.drive("horizon", colour(palette.horizon));
     module.drive("stereo", setup.stereo.is_some());
     module.drive("depth_mantissa", setup.depth.mantissa);

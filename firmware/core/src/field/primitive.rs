@@ -55,6 +55,13 @@ macro_rules! primitives {
                 }
             }
 
+            /// Whether its faces are perpendicular to the diagonals.
+            pub const fn has_octants(&self) -> bool {
+                match self {
+                    $(Self::$kind(_) => <$shape>::OCTANTS,)*
+                }
+            }
+
             /// Whether a union can have it.
             pub const fn joins(&self) -> bool {
                 match self {
@@ -122,13 +129,6 @@ macro_rules! flat_solids {
             pub fn constants(&self) -> FlatConstants {
                 match self {
                     $(Self::$solid(solid) => solid.constants(),)*
-                }
-            }
-
-            /// The fields that need it, for errors.
-            pub const fn needed_for(&self) -> &'static str {
-                match self {
-                    $(Self::$solid(_) => $solid::NEEDED_FOR,)*
                 }
             }
         }

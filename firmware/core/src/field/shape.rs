@@ -23,6 +23,8 @@ pub trait Shape: Sized {
     const JOINS: bool = false;
     /// Whether it has spheres.
     const ROUND: bool = false;
+    /// Whether its faces are perpendicular to the diagonals, and not to the axes.
+    const OCTANTS: bool = false;
 
     /// Reads the numbers.
     ///
@@ -91,10 +93,8 @@ impl<S> Placed<S> {
 
 /// A flat solid of the engine: one module of gateware.
 pub trait FlatSolid {
-    /// Its number in the register `solid`, and its bit in `caps`.
+    /// Its number in `solid.kind`, and its bit in `caps.flat`.
     const CODE: u8;
-    /// The fields that need it, for errors.
-    const NEEDED_FOR: &'static str;
 
     /// The distance of a point, each coordinate s10.12.
     fn sample(&self, point: [i32; 3]) -> Sample;

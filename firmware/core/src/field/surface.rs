@@ -15,6 +15,11 @@ pub enum Surface {
         /// Whether its normal points along the axis, and not against it.
         positive: bool,
     },
+    /// A face that is perpendicular to a diagonal.
+    Octant {
+        /// Bit i is set where its normal points along axis i, and not against it.
+        signs: u8,
+    },
     /// A sphere's.
     Round {
         /// The sphere's number, from 0.
@@ -34,12 +39,13 @@ pub enum Surface {
 }
 
 impl Surface {
-    /// The face as the gateware has it: twice its axis, and 1 if it is positive.
+    /// The face as the gateware has it: twice its axis, and 1 if it is positive; or the signs of an octant.
     pub const fn face(self) -> Option<u8> {
         match self {
             Self::Face { axis, positive } | Self::Blended { axis, positive, .. } => {
                 Some(2 * axis + positive as u8)
             }
+            Self::Octant { signs } => Some(signs),
             Self::Round { .. } => None,
         }
     }
@@ -47,7 +53,7 @@ impl Surface {
     /// The sphere's number.
     pub const fn number(self) -> Option<u8> {
         match self {
-            Self::Face { .. } => None,
+            Self::Face { .. } | Self::Octant { .. } => None,
             Self::Round { number } | Self::Blended { number, .. } => Some(number),
         }
     }
@@ -55,7 +61,7 @@ impl Surface {
     /// The part of the sphere in it, 255 of a sphere alone.
     pub const fn share(self) -> u8 {
         match self {
-            Self::Face { .. } => 0,
+            Self::Face { .. } | Self::Octant { .. } => 0,
             Self::Round { .. } => 255,
             Self::Blended { share, .. } => share,
         }

@@ -52,9 +52,9 @@ fn probe(ident: u32, caps: u32) -> (Result<Raymarcher, Absent>, Rc<RefCell<Block
 }
 
 /// Two lanes, six levels, boxes and two eyes.
-const EVERYTHING: u32 = 2 | 6 << 4 | 0b1_1111 << 8;
+const EVERYTHING: u32 = 2 | 6 << 4 | 0b1111 << 9 | 0b11 << 16;
 /// Four lanes for sponges of depth 4.
-const SPONGES: u32 = 4 | 4 << 4;
+const SPONGES: u32 = 4 | 4 << 4 | 1 << 16;
 
 fn setup(field: &str, options: &FieldOptions) -> (FieldSetup, Palette) {
     let field = Field::parse(field).unwrap();
@@ -91,7 +91,7 @@ fn something_else_is_not_taken_for_the_raymarcher() {
     let capabilities = Capabilities {
         lanes: 2,
         levels: 6,
-        boxes: true,
+        flat: 0b11,
         stereo: true,
         round: true,
         blend: true,
@@ -109,9 +109,21 @@ fn what_is_not_built_is_refused_and_nothing_is_written() {
     block.borrow_mut().writes.clear();
     for (field, options, missing) in [
         ("menger:5", FieldOptions::default(), Missing::Levels(4)),
-        ("box:1,1,1", FieldOptions::default(), Missing::Boxes),
-        ("cubes:2,0.5", FieldOptions::default(), Missing::Boxes),
-        ("planes:1", FieldOptions::default(), Missing::Boxes),
+        (
+            "box:1,1,1",
+            FieldOptions::default(),
+            Missing::Flat(Kind::Box),
+        ),
+        (
+            "cubes:2,0.5",
+            FieldOptions::default(),
+            Missing::Flat(Kind::Box),
+        ),
+        (
+            "planes:1",
+            FieldOptions::default(),
+            Missing::Flat(Kind::Box),
+        ),
         ("menger:4", stereo("0.05,3"), Missing::Stereo),
         ("menger:4", cones(), Missing::Prepass),
     ] {
@@ -149,7 +161,7 @@ fn a_field_is_described_before_it_is_enabled() {
 
     let r = registers();
     let solid = r.solid().read();
-    assert!(!solid.is_box());
+    assert_eq!(solid.kind(), Kind::Menger);
     assert_eq!(solid.levels(), 0b111);
     assert_eq!(r.cube_half().read(), 3 << 11, "half of the third level's 3");
     let tuning = r.tuning().read();
@@ -222,7 +234,7 @@ fn a_box_says_where_it_ends() {
         let (setup, palette) = setup(field, &FieldOptions::default());
         raymarcher.set_field(&setup, &palette).unwrap();
         let solid = r.solid().read();
-        assert!(solid.is_box(), "{field}");
+        assert_eq!(solid.kind(), Kind::Box, "{field}");
         assert_eq!(
             (solid.has(), solid.room(), solid.repeated()),
             (has, room, repeated),

@@ -3,6 +3,7 @@
 use glint_core::appearance::Appearance;
 use glint_core::field::{FRACTION, Field};
 use glint_core::fixed::U4_28;
+use glint_core::light::{Background, Lighting, Material};
 use glint_core::stereo::Stereo;
 
 use super::palette::Palette;
@@ -44,6 +45,17 @@ pub const ROUND_TUNING: Tuning = Tuning {
     ..DEFAULT_TUNING
 };
 
+impl Tuning {
+    /// The default of a field.
+    const fn of(field: &Field) -> Self {
+        if field.is_round() {
+            ROUND_TUNING
+        } else {
+            DEFAULT_TUNING
+        }
+    }
+}
+
 /// How a field is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FieldOptions {
@@ -62,13 +74,9 @@ pub struct FieldOptions {
 impl FieldOptions {
     /// What is used unless told otherwise: as finely as suits the field.
     pub fn of(field: &Field) -> Self {
-        let tuning = if field.is_round() {
-            ROUND_TUNING
-        } else {
-            DEFAULT_TUNING
-        };
         Self {
-            tuning,
+            tuning: Tuning::of(field),
+            palette: Palette::of(field, Material::Normal, &Lighting::PLAIN, Background::White),
             ..Self::default()
         }
     }
@@ -82,7 +90,7 @@ impl FieldOptions {
             occlusion,
             ..
         } = appearance;
-        let palette = Palette::new(material, &appearance.lighting(), background);
+        let palette = Palette::of(field, material, &appearance.lighting(), background);
         Self {
             stereo,
             palette: if occlusion {
@@ -91,7 +99,8 @@ impl FieldOptions {
                 palette
             },
             fog,
-            ..Self::of(field)
+            tuning: Tuning::of(field),
+            ..Self::default()
         }
     }
 }

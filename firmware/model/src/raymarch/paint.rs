@@ -39,7 +39,7 @@ fn surface_colour(
 ) -> [u8; 3] {
     let face = surface
         .face()
-        .map_or([0; 3], |face| palette.faces[usize::from(face) % 6]);
+        .map_or([0; 3], |face| palette.faces[usize::from(face) % 8]);
     let Some(round) = lit(setup, palette, ray, outcome) else {
         return face;
     };

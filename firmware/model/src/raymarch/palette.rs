@@ -1,5 +1,6 @@
 //! The colours of a frame.
 
+use glint_core::field::Field;
 use glint_core::light::{Background, Lighting, Material};
 
 use super::lights::{Light, Lights};
@@ -8,8 +9,9 @@ use super::lights::{Light, Lights};
 /// luminance counts, so all channels of a colour are the same then.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Palette {
-    /// Of the faces, by [`Surface::face`](super::Surface::face), after their light.
-    pub faces: [[u8; 3]; 6],
+    /// Of the faces, by [`Surface::face`](glint_core::field::Surface::face), after their light: six across the axes, or eight across the
+    /// diagonals.
+    pub faces: [[u8; 3]; 8],
     /// Of what is round.
     pub lights: Lights,
     /// Of a ray that was given up.
@@ -38,7 +40,10 @@ impl Palette {
     pub fn new(material: Material, lighting: &Lighting, background: Background) -> Self {
         let [zenith, horizon] = background.colours();
         Self {
-            faces: lighting.shine_on(&material.faces()),
+            faces: {
+                let [a, b, c, d, e, f] = lighting.shine_on(&material.faces());
+                [a, b, c, d, e, f, [0; 3], [0; 3]]
+            },
             lights: Lights::new(material, lighting),
             undecided: [255, 0, 255],
             zenith,
@@ -46,6 +51,24 @@ impl Palette {
             fog: [0; 256],
             fog_shift: 3,
             occlusion: [255; 256],
+        }
+    }
+
+    /// The same for a field, whose faces may be across the diagonals.
+    pub fn of(
+        field: &Field,
+        material: Material,
+        lighting: &Lighting,
+        background: Background,
+    ) -> Self {
+        let palette = Self::new(material, lighting, background);
+        if field.has_octants() {
+            Self {
+                faces: lighting.shine_on_octants(&material.octants()),
+                ..palette
+            }
+        } else {
+            palette
         }
     }
 

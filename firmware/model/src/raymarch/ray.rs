@@ -200,7 +200,11 @@ impl FieldSetup {
             if let Some(state) = state {
                 let (t, gap, slope) = match state {
                     State::Hit(Surface::Face { axis, positive }) => {
-                        let (gap, slope) = self.approach(ray, sample.distance, axis, positive);
+                        let (gap, slope) = approach(ray, sample.distance, axis, positive);
+                        (t, gap, slope)
+                    }
+                    State::Hit(Surface::Octant { signs }) => {
+                        let (gap, slope) = approach_diagonal(ray, sample.distance, signs);
                         (t, gap, slope)
                     }
                     State::Hit(Surface::Round { .. } | Surface::Blended { .. }) => (next, 0, 0x3FF),
@@ -236,19 +240,6 @@ impl FieldSetup {
         })
     }
 
-    /// How far the plane of a face is, and how steeply the ray goes there.
-    fn approach(&self, ray: &Ray, distance: i32, axis: u8, positive: bool) -> (u32, u32) {
-        let part = ray.direction[usize::from(axis) % 3];
-        let comes = (part < 0) == positive;
-        let gap = distance.clamp(0, (1 << FRACTION) - 1);
-        let slope = if comes {
-            magnitude(part) >> 7 & 0x3FF
-        } else {
-            0x3FF
-        };
-        (gap as u32, slope)
-    }
-
     /// The point of a ray, s13.12.
     pub fn point(&self, ray: &Ray, t: u32) -> [i32; 3] {
         [0, 1, 2].map(|i: usize| {
@@ -261,4 +252,38 @@ impl FieldSetup {
     pub fn depth_of(&self, ray: &Ray, t: u32) -> u64 {
         u64::from(t) * u64::from(self.inverse(ray.length))
     }
+}
+
+/// The gap to the plane of a face, u0.12, and the slope of the ray against it.
+fn approach(ray: &Ray, distance: i32, axis: u8, positive: bool) -> (u32, u32) {
+    let part = ray.direction[usize::from(axis) % 3];
+    let comes = (part < 0) == positive;
+    let slope = if comes {
+        magnitude(part) >> 7 & 0x3FF
+    } else {
+        0x3FF
+    };
+    (gap(distance), slope)
+}
+
+/// The same of a face across a diagonal, three quarters of both: a third of the sum of three parts is the slope, and a quarter
+/// needs no division.
+fn approach_diagonal(ray: &Ray, distance: i32, signs: u8) -> (u32, u32) {
+    let towards = [0, 1, 2].map(|i: usize| {
+        let part = ray.direction[i] >> 7;
+        if signs >> i & 1 == 1 { !part } else { part }
+    });
+    let sum: i32 = towards.iter().sum();
+    let slope = if sum < 0 {
+        0x3FF
+    } else {
+        (sum >> 2) as u32 & 0x3FF
+    };
+    let gap = gap(distance);
+    (gap - (gap >> 2), slope)
+}
+
+/// A distance as an end has it: saturates.
+fn gap(distance: i32) -> u32 {
+    distance.clamp(0, (1 << FRACTION) - 1) as u32
 }

@@ -3,8 +3,8 @@
 //! What has faces across the axes is measured in the maximum norm, what is round in the Euclidean one. No distance changes by
 //! more than the Euclidean length of a step, so a sphere about a point with its distance as the radius is empty.
 
-use super::Field;
-use crate::camera::{Vector, length, subtract};
+use super::{Field, Plane};
+use crate::camera::{Vector, dot, length, subtract};
 
 impl Field {
     /// The signed distance of a point, in world units.
@@ -17,6 +17,10 @@ impl Field {
                 box_distance([0.5; 3], folded) * unit
             }
             Self::Box { half } => box_distance(*half, p),
+            Self::Convex(planes) => planes
+                .iter()
+                .map(|plane| plane.distance(p))
+                .fold(f64::NEG_INFINITY, f64::max),
             Self::Spheres(spheres) => spheres
                 .iter()
                 .map(|sphere| length(subtract(p, sphere.centre)) - sphere.radius)
@@ -27,6 +31,15 @@ impl Field {
             Self::Union(a, b) => a.distance(p).min(b.distance(p)),
             Self::SmoothUnion { k, a, b } => smooth_minimum(*k, a.distance(p), b.distance(p)),
         }
+    }
+}
+
+impl Plane {
+    /// The distance of a point in the maximum norm: a cube of half side r changes the product with the normal by r times the sum of
+    /// the normal's parts.
+    fn distance(&self, p: Vector) -> f64 {
+        let sum: f64 = self.normal.iter().map(|part| part.abs()).sum();
+        (dot(self.normal, p) - self.offset) / sum
     }
 }
 

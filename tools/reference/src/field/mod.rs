@@ -35,6 +35,15 @@ pub struct Sphere {
     pub radius: f64,
 }
 
+/// A plane, with the solid behind it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plane {
+    /// Out of the solid, of any length but 0.
+    pub normal: Vector,
+    /// The product of the normal with any point of the plane.
+    pub offset: f64,
+}
+
 /// A solid of the world. Lengths are in world units.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Field {
@@ -48,6 +57,8 @@ pub enum Field {
         /// Half of its sides.
         half: Vector,
     },
+    /// A convex solid: what is behind all of some planes.
+    Convex(Vec<Plane>),
     /// The union of balls.
     Spheres(Vec<Sphere>),
     /// Balls about all points whose coordinates are integer multiples of the period.
@@ -92,6 +103,11 @@ pub enum Face {
         /// Whether the outward normal points along the axis and not against it.
         positive: bool,
     },
+    /// A plane across a diagonal.
+    Diagonal {
+        /// Whether the outward normal points along each axis, and not against it.
+        positive: [bool; 3],
+    },
     /// A curved surface.
     Round,
     /// None: the ray starts within the solid.
@@ -99,6 +115,23 @@ pub enum Face {
 }
 
 impl Face {
+    /// The face with an outward normal along an axis or a diagonal.
+    pub fn of_normal(normal: Vector) -> Self {
+        let largest = normal
+            .iter()
+            .fold(0.0, |most: f64, part| most.max(part.abs()));
+        let mut axes = (0..3).filter(|&axis| normal[axis].abs() > largest / 2.0);
+        match (axes.next(), axes.next()) {
+            (Some(axis), None) => Self::Axis {
+                axis,
+                positive: normal[axis] > 0.0,
+            },
+            _ => Self::Diagonal {
+                positive: normal.map(|part| part > 0.0),
+            },
+        }
+    }
+
     /// The face across `axis` by which a ray of this direction enters.
     fn entered(axis: usize, direction: Vector) -> Self {
         Self::Axis {
@@ -175,6 +208,7 @@ impl Field {
         let hit = match self {
             Self::Menger { depth } => menger::hit(*depth, &ray, t_min),
             Self::Box { half } => solids::box_hit(*half, &ray, t_min),
+            Self::Convex(planes) => solids::convex_hit(planes, &ray, t_min),
             Self::Spheres(spheres) => solids::spheres_hit(spheres, &ray, t_min),
             Self::Lattice { period, radius } => grid::nearest(*period, &ray, t_min, t_max, |ray| {
                 solids::sphere_hit(*radius, ray, t_min)

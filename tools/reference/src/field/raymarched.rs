@@ -65,6 +65,11 @@ pub fn marched(setup: &FieldSetup, ray: &raymarch::Ray, end: &raymarch::RayResul
                     normal[axis] = if positive { 1.0 } else { -1.0 };
                     (Face::Axis { axis, positive }, normal)
                 }
+                Surface::Octant { signs } => {
+                    let sign = |i: usize| if signs >> i & 1 == 1 { 1.0 } else { -1.0 };
+                    let normal = [0, 1, 2].map(|i| sign(i) / 3.0_f64.sqrt());
+                    (Face::of_normal(normal), normal)
+                }
                 Surface::Round { .. } => {
                     let normal = setup.normal(ray, end).expect("it is round");
                     (Face::Round, normal.map(f64::from))

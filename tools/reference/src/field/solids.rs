@@ -1,6 +1,6 @@
 //! Where a ray enters boxes, balls and the room between two planes.
 
-use super::{Face, Hit, Sphere};
+use super::{Face, Hit, Plane, Sphere};
 use crate::camera::{Ray, Vector, add_scaled, dot, length, normalised, subtract};
 
 /// The part of a ray in a box about the origin.
@@ -46,6 +46,39 @@ pub(super) fn box_hit(half: Vector, ray: &Ray, t_min: f64) -> Option<Hit> {
         Some(Hit::entered(slabs.enter, slabs.axis, ray.direction))
     } else {
         (slabs.exit > t_min).then(|| Hit::inside(t_min))
+    }
+}
+
+/// Where a ray enters what is behind all of some planes (Cyrus and Beck 1978).
+pub(super) fn convex_hit(planes: &[Plane], ray: &Ray, t_min: f64) -> Option<Hit> {
+    let (mut enter, mut exit, mut normal) = (f64::NEG_INFINITY, f64::INFINITY, [0.0; 3]);
+    for plane in planes {
+        let above = dot(plane.normal, ray.origin) - plane.offset;
+        let speed = dot(plane.normal, ray.direction);
+        if speed == 0.0 {
+            if above >= 0.0 {
+                return None;
+            }
+            continue;
+        }
+        let t = -above / speed;
+        if speed > 0.0 {
+            exit = exit.min(t);
+        } else if t > enter {
+            (enter, normal) = (t, plane.normal);
+        }
+    }
+    if enter >= exit {
+        None
+    } else if enter >= t_min {
+        Some(Hit {
+            t: enter,
+            normal: normalised(normal),
+            face: Face::of_normal(normal),
+            member: 0,
+        })
+    } else {
+        (exit > t_min).then(|| Hit::inside(t_min))
     }
 }
 

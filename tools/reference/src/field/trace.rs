@@ -86,6 +86,10 @@ impl Field {
                 let positive = normal[axis] > 0.0;
                 (Face::Axis { axis, positive }, normal, 0)
             }
+            Self::Convex(_) => {
+                let normal = normalised(self.slope(p));
+                (Face::of_normal(normal), normal, 0)
+            }
             Self::Lattice { .. } => (Face::Round, normalised(self.slope(p)), 0),
             Self::Spheres(spheres) => {
                 let distance =

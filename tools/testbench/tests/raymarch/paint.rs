@@ -11,7 +11,7 @@ use glint_vectors::Random;
 fn palette(random: &mut Random) -> Palette {
     let mut colour = || [0; 3].map(|_| random.bits() as u8);
     let mut palette = Palette {
-        faces: [0; 6].map(|_| colour()),
+        faces: [0; 8].map(|_| colour()),
         undecided: colour(),
         zenith: colour(),
         horizon: colour(),

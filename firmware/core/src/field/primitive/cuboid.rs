@@ -135,7 +135,6 @@ pub struct FixedBox {
 
 impl FlatSolid for FixedBox {
     const CODE: u8 = 1;
-    const NEEDED_FOR: &'static str = "boxes, cubes and planes";
 
     /// The largest of |x| − half.
     #[inline]

@@ -65,7 +65,6 @@ pub struct FixedSponge {
 
 impl FlatSolid for FixedSponge {
     const CODE: u8 = 0;
-    const NEEDED_FOR: &'static str = "sponges";
 
     /// Each level mirrors space until one of its cubes is left, and the hole through it has become its outside.
     ///

@@ -1,0 +1,173 @@
+"""The flat fields of the raymarcher: one description each.
+
+From these follow `rtl/raymarch/fields_pkg.sv` (numbers, latency, kind of faces) and `rtl/raymarch/flat_fields.sv` (instances, delays,
+choice), which `gateware/tests/run.py --packages` writes; the values of `solid.kind` and the bits of `caps.flat`, and with them the PAC
+and the driver's checks; the builds, and the variants of tests and sizes. docs/adding-a-field.md has the steps.
+"""
+
+from dataclasses import dataclass, field
+
+from .rtl import RTL
+
+
+@dataclass(frozen=True)
+class FlatField:
+    """A field with faces. Its module is `field_` and its name.
+
+    `text` names the fields that need it, in the plural, for errors. `clocks` is the latency in SystemVerilog, of LEVELS. `ports` and
+    `parameters` are connected to members of `solid_t` and parameters beside `clk`, `point`, `distance` and `surface`. `octants` says
+    that its faces are perpendicular to the diagonals (±1, ±1, ±1): `surface` is {z, y, x}, 1 where the normal is positive. Otherwise
+    faces are perpendicular to the axes: `surface` is {axis, positive}.
+    """
+
+    name: str
+    text: str
+    clocks: str
+    ports: dict
+    parameters: dict = field(default_factory=dict)
+    octants: bool = False
+
+
+FLAT_FIELDS = (
+    FlatField("menger", "sponges", clocks="3 * LEVELS + 3", parameters={"LEVELS": "LEVELS"},
+              ports={"levels": "solid.levels[LEVELS-1:0]", "half": "solid.cube_half"}),
+    FlatField("box", "boxes, cubes and planes", clocks="3",
+              ports={port: f"solid.{port}" for port in ("half", "has", "room", "repeated")}),
+)
+"""All of them, by their numbers in `solid.kind`. 0 is the sponge, of which the build says how many levels."""
+
+NAMES = tuple(flat.name for flat in FLAT_FIELDS)
+
+KIND_BITS = max(1, (len(FLAT_FIELDS) - 1).bit_length())
+"""Bits of `solid.kind`."""
+
+_HEADER = "// Generated from gateware/glint_soc/fields.py by `gateware/tests/run.py --packages`. Do not edit."
+
+
+def mask(names):
+    """The parameter FIELDS of a build: bit k is field k."""
+    return sum(1 << NAMES.index(name) for name in names)
+
+
+def has_octants(names):
+    """Whether a build has fields with octants for faces."""
+    return any(flat.octants for flat in FLAT_FIELDS if flat.name in names)
+
+
+def files():
+    """The text of each generated file."""
+    return {RTL / "raymarch" / "fields_pkg.sv": _package(), RTL / "raymarch" / "flat_fields.sv": _module()}
+
+
+def _package():
+    clocks = "\n".join(
+        f"        if ((fields & {1 << number}) != 0 && {flat.clocks.replace('LEVELS', 'levels')} > flat_clocks) "
+        f"flat_clocks = {flat.clocks.replace('LEVELS', 'levels')};" for number, flat in enumerate(FLAT_FIELDS))
+    octants = [number for number, flat in enumerate(FLAT_FIELDS) if flat.octants]
+    is_octant = " || ".join(f"kind == {_number(number)}" for number in octants) or "1'b0 && kind == '0"
+    return f"""{_HEADER}
+// What the raymarcher needs to know of flat fields, by their numbers.
+
+`default_nettype none
+
+package fields_pkg;
+    // Each module uses some.
+    /* verilator lint_off UNUSEDPARAM */
+    localparam int unsigned KIND_BITS = {KIND_BITS};
+    // The bits of all fields, and of those whose faces are perpendicular to the diagonals.
+    localparam int unsigned ALL       = {mask(NAMES)};
+    localparam int unsigned OCTANTS   = {sum(1 << number for number in octants)};
+    /* verilator lint_on UNUSEDPARAM */
+
+    // Whether faces of a kind are perpendicular to the diagonals.
+    function automatic logic has_octants(input logic [KIND_BITS-1:0] kind);
+        has_octants = {is_octant};
+    endfunction
+
+    // Clocks from a point to its distance, of a choice between several fields.
+    function automatic int unsigned flat_clocks(input int unsigned levels, input int unsigned fields);
+        flat_clocks = 0;
+{clocks}
+        if ((fields & (fields - 1)) != 0) flat_clocks = flat_clocks + 1;
+    endfunction
+endpackage
+
+`default_nettype wire
+"""
+
+
+def _number(number):
+    return f"{KIND_BITS}'d{number}"
+
+
+def _instance(number, flat):
+    connections = "".join(f" .{port}({value})," for port, value in flat.ports.items())
+    parameters = ", ".join(f".{name}({value})" for name, value in flat.parameters.items())
+    return f"""
+    if ((FIELDS & {1 << number}) != 0) begin : {flat.name}
+        localparam int unsigned CLOCKS = {flat.clocks};
+        logic [24:0] early;
+
+        field_{flat.name} {f"#({parameters}) " if parameters else ""}field (
+            .clk, .point,{connections}
+            .distance(early[24:3]), .surface(early[2:0])
+        );
+        if (KNOWN > CLOCKS) begin : late
+            delay #(.WIDTH(25), .CLOCKS(KNOWN - CLOCKS)) waiting (.clk, .enable(1'b1), .in(early), .out(found[{number}]));
+        end else begin : in_time
+            assign found[{number}] = early;
+        end
+    end else begin : no_{flat.name}
+        assign found[{number}] = '0;
+    end
+"""
+
+
+def _module():
+    instances = "".join(_instance(number, flat) for number, flat in enumerate(FLAT_FIELDS))
+    choice = "\n".join(f"        if (solid.kind == {_number(number)}) chosen = chosen | found[{number}];" for number in range(len(FLAT_FIELDS)))
+    single = "\n".join(f"        chosen = chosen | found[{number}];" for number in range(len(FLAT_FIELDS)))
+    return f"""{_HEADER}
+// The flat fields that a lane is built with, side by side, and the choice of one of them by `solid.kind`.
+//
+// FIELDS has a bit for each field by its number. A field that is not built costs nothing; a single field needs no choice.
+// Latency fields_pkg::flat_clocks(LEVELS, FIELDS), throughput a point a clock, no handshake; `solid` holds.
+
+`default_nettype none
+
+module flat_fields #(
+    parameter int unsigned LEVELS = 4,
+    parameter int unsigned FIELDS = 1
+) (
+    input  wire                                clk,
+    input  wire raymarch_registers_pkg::solid_t solid,
+    input  wire  [2:0][21:0]                   point,
+    output logic signed [21:0]                 distance,
+    output logic [2:0]                         surface
+);
+    localparam bit          CHOICE = (FIELDS & (FIELDS - 1)) != 0;
+    localparam int unsigned KNOWN  = fields_pkg::flat_clocks(LEVELS, FIELDS) - (CHOICE ? 1 : 0);
+
+    // Distance and surface of each.
+    logic [{len(FLAT_FIELDS) - 1}:0][24:0] found;
+    logic [24:0] chosen;
+{instances}
+    if (CHOICE) begin : choice
+        always_comb begin
+            chosen = '0;
+{choice.replace("        if", "            if")}
+        end
+        always_ff @(posedge clk) {{distance, surface}} <= chosen;
+    end else begin : single
+        always_comb begin
+            chosen = '0;
+{single.replace("        chosen", "            chosen")}
+        end
+        assign {{distance, surface}} = chosen;
+    end
+
+    wire _unused = &{{1'b0, clk, point, solid}};
+endmodule
+
+`default_nettype wire
+"""

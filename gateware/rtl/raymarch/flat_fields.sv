@@ -1,0 +1,79 @@
+// Generated from gateware/glint_soc/fields.py by `gateware/tests/run.py --packages`. Do not edit.
+// The flat fields that a lane is built with, side by side, and the choice of one of them by `solid.kind`.
+//
+// FIELDS has a bit for each field by its number. A field that is not built costs nothing; a single field needs no choice.
+// Latency fields_pkg::flat_clocks(LEVELS, FIELDS), throughput a point a clock, no handshake; `solid` holds.
+
+`default_nettype none
+
+module flat_fields #(
+    parameter int unsigned LEVELS = 4,
+    parameter int unsigned FIELDS = 1
+) (
+    input  wire                                clk,
+    input  wire raymarch_registers_pkg::solid_t solid,
+    input  wire  [2:0][21:0]                   point,
+    output logic signed [21:0]                 distance,
+    output logic [2:0]                         surface
+);
+    localparam bit          CHOICE = (FIELDS & (FIELDS - 1)) != 0;
+    localparam int unsigned KNOWN  = fields_pkg::flat_clocks(LEVELS, FIELDS) - (CHOICE ? 1 : 0);
+
+    // Distance and surface of each.
+    logic [1:0][24:0] found;
+    logic [24:0] chosen;
+
+    if ((FIELDS & 1) != 0) begin : menger
+        localparam int unsigned CLOCKS = 3 * LEVELS + 3;
+        logic [24:0] early;
+
+        field_menger #(.LEVELS(LEVELS)) field (
+            .clk, .point, .levels(solid.levels[LEVELS-1:0]), .half(solid.cube_half),
+            .distance(early[24:3]), .surface(early[2:0])
+        );
+        if (KNOWN > CLOCKS) begin : late
+            delay #(.WIDTH(25), .CLOCKS(KNOWN - CLOCKS)) waiting (.clk, .enable(1'b1), .in(early), .out(found[0]));
+        end else begin : in_time
+            assign found[0] = early;
+        end
+    end else begin : no_menger
+        assign found[0] = '0;
+    end
+
+    if ((FIELDS & 2) != 0) begin : box
+        localparam int unsigned CLOCKS = 3;
+        logic [24:0] early;
+
+        field_box field (
+            .clk, .point, .half(solid.half), .has(solid.has), .room(solid.room), .repeated(solid.repeated),
+            .distance(early[24:3]), .surface(early[2:0])
+        );
+        if (KNOWN > CLOCKS) begin : late
+            delay #(.WIDTH(25), .CLOCKS(KNOWN - CLOCKS)) waiting (.clk, .enable(1'b1), .in(early), .out(found[1]));
+        end else begin : in_time
+            assign found[1] = early;
+        end
+    end else begin : no_box
+        assign found[1] = '0;
+    end
+
+    if (CHOICE) begin : choice
+        always_comb begin
+            chosen = '0;
+            if (solid.kind == 1'd0) chosen = chosen | found[0];
+            if (solid.kind == 1'd1) chosen = chosen | found[1];
+        end
+        always_ff @(posedge clk) {distance, surface} <= chosen;
+    end else begin : single
+        always_comb begin
+            chosen = '0;
+            chosen = chosen | found[0];
+            chosen = chosen | found[1];
+        end
+        assign {distance, surface} = chosen;
+    end
+
+    wire _unused = &{1'b0, clk, point, solid};
+endmodule
+
+`default_nettype wire

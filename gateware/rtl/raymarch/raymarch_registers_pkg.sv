@@ -1,0 +1,63 @@
+// Generated from gateware/glint_soc/raymarch.py by `gateware/tests/run.py --packages`. Do not edit.
+// Numbers and types of the block's ports. docs/registers.md describes the registers.
+
+`default_nettype none
+
+package raymarch_registers_pkg;
+    // Each module uses some.
+    /* verilator lint_off UNUSEDPARAM */
+    // The solid: the fillet's width, u5.12, 0 without one, and 1 over twice that, u1.16; whether the flat field is there
+    // beside spheres, whether there are any, whether they repeat themselves, and the last one's number; the flat field, and
+    // its constants.
+    typedef struct packed {
+        logic [16:0] blend_width;
+        logic [16:0] blend_inverse;
+        logic flat_too;
+        logic is_round;
+        logic spheres_repeated;
+        logic [2:0] last_sphere;
+        logic kind;
+        logic [5:0] levels;
+        logic [21:0] cube_half;
+        logic [2:0][21:0] half;
+        logic [2:0] has;
+        logic room;
+        logic repeated;
+    } solid_t;
+
+    // A sphere: its material, {blue, green, red}; the inverse of its radius and a shift (docs/formats.md, "Light"); its
+    // radius, and its centre.
+    typedef struct packed {
+        logic [23:0] material;
+        logic [4:0] shift;
+        logic [16:0] inverse;
+        logic [20:0] radius;
+        logic [2:0][21:0] centre;
+    } sphere_t;
+
+    // The light on spheres: the last light's number, ambient light, and lights in their colours from their directions, s1.16.
+    typedef struct packed {
+        logic [1:0] last_light;
+        logic [23:0] ambient;
+        logic [3:0][23:0] colours;
+        logic [3:0][2:0][17:0] directions;
+    } lights_t;
+
+    // The tuning: distance and part of t below which a ray has hit, its most evaluations, its largest t.
+    typedef struct packed {
+        logic [15:0] threshold;
+        logic [3:0] footprint;
+        logic [7:0] cap;
+        logic [22:0] far_limit;
+    } tuning_t;
+
+    // Colours, {blue, green, red}: the zenith, rays that were given up, and faces by their surface.
+    typedef struct packed {
+        logic [23:0] zenith;
+        logic [23:0] undecided;
+        logic [7:0][23:0] faces;
+    } palette_t;
+    /* verilator lint_on UNUSEDPARAM */
+endpackage
+
+`default_nettype wire
