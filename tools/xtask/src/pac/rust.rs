@@ -107,41 +107,37 @@ fn write_constants(out: &mut String, soc: &Soc) -> fmt::Result {
 }
 
 fn write_singletons(out: &mut String, soc: &Soc) -> fmt::Result {
-    writeln!(
+    let lines = |line: &dyn Fn(&str, String) -> String| -> String {
+        let peripherals = soc.peripherals.iter();
+        peripherals
+            .map(|Peripheral { name, .. }| line(name, camel(name)))
+            .collect()
+    };
+    let members =
+        lines(&|name, kind| format!("    /// `{name}`.\n    pub {name}: {name}::{kind},\n"));
+    let handles =
+        lines(&|name, kind| format!("                {name}: {name}::{kind}::steal(),\n"));
+    write!(
         out,
-        "/// All peripherals. [`Peripherals::take`] hands them out once."
-    )?;
-    writeln!(out, "pub struct Peripherals {{")?;
-    for Peripheral { name, .. } in &soc.peripherals {
-        writeln!(out, "    /// `{name}`.")?;
-        writeln!(out, "    pub {name}: {name}::{},", camel(name))?;
-    }
-    writeln!(out, "}}\n")?;
-    writeln!(out, "impl Peripherals {{")?;
-    writeln!(out, "    /// A second handle of every peripheral.")?;
-    writeln!(out, "    ///")?;
-    writeln!(out, "    /// # Safety")?;
-    writeln!(
-        out,
-        "    /// The holders of the handles must tolerate each other's changes to the registers."
-    )?;
-    writeln!(out, "    #[must_use]")?;
-    writeln!(out, "    pub const unsafe fn steal() -> Self {{")?;
-    writeln!(
-        out,
-        "        // SAFETY: the caller shares them as `steal` of each requires."
-    )?;
-    writeln!(out, "        unsafe {{")?;
-    writeln!(out, "            Self {{")?;
-    for Peripheral { name, .. } in &soc.peripherals {
-        writeln!(
-            out,
-            "                {name}: {name}::{}::steal(),",
-            camel(name)
-        )?;
-    }
-    writeln!(out, "            }}")?;
-    writeln!(out, "        }}")?;
-    writeln!(out, "    }}")?;
-    writeln!(out, "}}")
+        "\
+/// All peripherals. [`Peripherals::take`] hands them out once.
+pub struct Peripherals {{
+{members}}}
+
+impl Peripherals {{
+    /// A second handle of every peripheral.
+    ///
+    /// # Safety
+    /// The holders of the handles must tolerate each other's changes to the registers.
+    #[must_use]
+    pub const unsafe fn steal() -> Self {{
+        // SAFETY: the caller shares them as `steal` of each requires.
+        unsafe {{
+            Self {{
+{handles}            }}
+        }}
+    }}
+}}
+"
+    )
 }

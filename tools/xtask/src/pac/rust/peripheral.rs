@@ -26,52 +26,29 @@ pub fn write(out: &mut String, peripheral: &Peripheral) -> Result<()> {
         "    use crate::register::{{{}}};\n",
         imports(peripheral).join(", ")
     )?;
-    writeln!(out, "    /// Access to `{name}`.")?;
-    writeln!(out, "    pub struct {kind} {{")?;
-    writeln!(out, "        _private: (),")?;
-    writeln!(out, "    }}\n")?;
-    writeln!(out, "    impl {kind} {{")?;
-    writeln!(out, "        /// Address of the first register.")?;
-    writeln!(
+    write!(
         out,
-        "        pub const BASE: usize = {};\n",
-        hex(peripheral.base)
+        "    /// Access to `{name}`.
+    pub struct {kind} {{
+        _private: (),
+    }}
+
+    impl {kind} {{
+        /// Address of the first register.
+        pub const BASE: usize = {base};
+
+{constants}        /// Another handle, beside the one that [`Peripherals::take`](crate::Peripherals::take) hands out.
+        ///
+        /// # Safety
+        /// The holders of the handles must tolerate each other's changes to the registers.
+        #[must_use]
+        pub const unsafe fn steal() -> Self {{
+            Self {{ _private: () }}
+        }}
+",
+        base = hex(peripheral.base),
+        constants = constants(peripheral),
     )?;
-    if let Some(ident) = peripheral.registers.iter().find(|r| r.name == "ident") {
-        writeln!(
-            out,
-            "        /// Value of `ident` where the block is present."
-        )?;
-        // The reset value of a register of one word has 32 bits.
-        writeln!(
-            out,
-            "        pub const IDENT: u32 = {};\n",
-            hex(ident.reset as u32)
-        )?;
-    }
-    for constant in &peripheral.constants {
-        writeln!(out, "        /// {}", documented(&constant.text))?;
-        writeln!(
-            out,
-            "        pub const {}: u32 = {};\n",
-            constant.name.to_uppercase(),
-            decimal(constant.value)
-        )?;
-    }
-    writeln!(
-        out,
-        "        /// Another handle, beside the one that [`Peripherals::take`](crate::Peripherals::take) hands out."
-    )?;
-    writeln!(out, "        ///")?;
-    writeln!(out, "        /// # Safety")?;
-    writeln!(
-        out,
-        "        /// The holders of the handles must tolerate each other's changes to the registers."
-    )?;
-    writeln!(out, "        #[must_use]")?;
-    writeln!(out, "        pub const unsafe fn steal() -> Self {{")?;
-    writeln!(out, "            Self {{ _private: () }}")?;
-    writeln!(out, "        }}")?;
     for register in &peripheral.registers {
         write_accessor(out, peripheral.base, register)?;
     }
@@ -89,6 +66,33 @@ pub fn write(out: &mut String, peripheral: &Peripheral) -> Result<()> {
     counters::write(out, peripheral)?;
     writeln!(out, "}}")?;
     Ok(())
+}
+
+/// The block's identifier and its other constants.
+fn constants(peripheral: &Peripheral) -> String {
+    let ident = peripheral.registers.iter().find(|r| r.name == "ident");
+    let ident = ident.map(|register| {
+        (
+            "Value of `ident` where the block is present.".to_owned(),
+            "IDENT".to_owned(),
+            // The reset value of a register of one word has 32 bits.
+            hex(register.reset as u32),
+        )
+    });
+    let others = peripheral.constants.iter().map(|constant| {
+        (
+            documented(&constant.text),
+            constant.name.to_uppercase(),
+            decimal(constant.value),
+        )
+    });
+    ident
+        .into_iter()
+        .chain(others)
+        .map(|(text, name, value)| {
+            format!("        /// {text}\n        pub const {name}: u32 = {value};\n\n")
+        })
+        .collect()
 }
 
 /// The names of `crate::register` that the module of `peripheral` uses.
