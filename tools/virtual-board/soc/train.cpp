@@ -1,13 +1,15 @@
-// Runs the SoC from its reset to the BIOS's prompt, so that the compiler's profile knows what a SoC mostly does. See verilate in
-// tools/xtask/src/gateware.rs.
+// Runs the SoC from its reset to the BIOS's prompt, for the compiler's profile. See gateware/verilate/board.py.
 
-#include "glint_soc.h"
+#include "soc.h"
 
-// The BIOS has trained the memory, tested it and waits for a serial boot.
+// By then the BIOS has trained the memory, tested it and waits for a serial boot.
 constexpr uint64_t CYCLES = 1000000;
 
+extern "C" Soc *harness_new(uint32_t seed);
+extern "C" void harness_free(Soc *soc);
+
 int main() {
-    glint_soc *soc = glint_soc_new();
-    glint_soc_run(soc, CYCLES);
-    glint_soc_free(soc);
+    Soc *soc = harness_new(1);
+    soc_run(soc, CYCLES);
+    harness_free(soc);
 }

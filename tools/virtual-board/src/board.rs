@@ -75,7 +75,7 @@ impl<'a> Builder<'a> {
         }
         let mut soc = Soc::load(&path)?;
         if let Some(path) = self.trace
-            && !soc.trace(&path)
+            && !soc.trace(&path)?
         {
             return Err(Error::Trace { path });
         }

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use glint_testbench::LoadError;
+
 /// Error of a board.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
@@ -13,27 +15,9 @@ pub enum Error {
         /// Option of the command that builds it.
         option: &'static str,
     },
-    /// The library cannot be loaded.
-    #[error("the virtual board's library {} cannot be loaded; run `cargo xtask gateware`", .path.display())]
-    Library {
-        /// Its path.
-        path: PathBuf,
-        /// Error of the loader.
-        source: libloading::Error,
-    },
-    /// The library has another version of the interface.
-    #[error(
-        "the virtual board's library {} has interface {found}: expected {expected}; \
-         run `cargo xtask gateware`", .path.display()
-    )]
-    Interface {
-        /// Its path.
-        path: PathBuf,
-        /// Version of this crate.
-        expected: u32,
-        /// Version of the library.
-        found: u32,
-    },
+    /// The library cannot be used.
+    #[error("the virtual board's library {0}; run `cargo xtask gateware`")]
+    Library(#[from] LoadError),
     /// The library's SoC has another register map.
     #[error(
         "the virtual board's build id is {found:#010x}: expected {expected:#010x}; \

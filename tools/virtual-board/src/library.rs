@@ -1,24 +1,14 @@
-//! The shared library of the verilated SoC: `tools/virtual-board/soc/glint_soc.h` as safe Rust.
+//! The shared library of the verilated SoC: `tools/virtual-board/soc/soc.h` as safe Rust.
 
-use std::ffi::{CString, c_char, c_int};
+use std::ffi::{c_int, c_void};
 use std::path::Path;
-use std::ptr::NonNull;
 use std::slice;
 
-use libloading::Library;
+use glint_testbench::{Instance, LoadError};
 
 use crate::Error;
 
-/// Version of the C interface (`GLINT_SOC_ABI`) that this file implements.
-const ABI: u32 = 3;
-
-/// The library's opaque `glint_soc`.
-#[repr(C)]
-struct Opaque {
-    _private: [u8; 0],
-}
-
-type Handle = *mut Opaque;
+type Handle = *mut c_void;
 
 /// Declares the table of the library's functions, and its loading.
 macro_rules! functions {
@@ -31,11 +21,11 @@ macro_rules! functions {
             /// Looks up every function.
             ///
             /// # Safety
-            /// The library implements `glint_soc.h` and outlives the table.
-            unsafe fn load(library: &Library) -> Result<Self, libloading::Error> {
+            /// The instance implements `soc.h` and outlives the table.
+            unsafe fn load(instance: &Instance) -> Result<Self, LoadError> {
                 Ok(Self {
-                    // SAFETY: guaranteed by the caller; the types are those of glint_soc.h.
-                    $($name: *unsafe { library.get(concat!("glint_soc_", stringify!($name)).as_bytes())? },)*
+                    // SAFETY: guaranteed by the caller; the types are those of soc.h.
+                    $($name: unsafe { instance.symbol(concat!("soc_", stringify!($name)))? },)*
                 })
             }
         }
@@ -43,21 +33,14 @@ macro_rules! functions {
 }
 
 functions! {
-    abi: fn() -> u32;
     build_id: fn() -> u32;
     clock_hz: fn() -> u32;
-    new: fn() -> Handle;
-    free: fn(Handle);
-    trace: fn(Handle, *const c_char) -> c_int;
     run: fn(Handle, u64);
     run_bare: fn(Handle, u64);
     cycles: fn(Handle) -> u64;
     uart_write: fn(Handle, *const u8, usize);
     uart_queued: fn(Handle) -> usize;
     uart_read: fn(Handle, *mut u8, usize) -> usize;
-    set_buttons: fn(Handle, u8);
-    set_switches: fn(Handle, u16);
-    leds: fn(Handle) -> u16;
     i2c_drive: fn(Handle, u8);
     i2c_wires: fn(Handle) -> u8;
     i2c_released: fn(Handle) -> u8;
@@ -72,47 +55,31 @@ functions! {
 
 /// One verilated SoC.
 pub(crate) struct Soc {
-    handle: NonNull<Opaque>,
     functions: Functions,
-    // Last field: unloaded after everything that refers to it.
-    _library: Library,
+    buttons: usize,
+    switches: usize,
+    leds: usize,
+    // Last field: its library is unloaded after the table.
+    instance: Instance,
 }
-
-// SAFETY: an instance may move between threads as long as one uses it at a time (glint_soc.h).
-unsafe impl Send for Soc {}
 
 impl Soc {
     /// Loads the library and creates a SoC before its first clock edge.
     pub fn load(path: &Path) -> Result<Self, Error> {
-        let error = |source| Error::Library {
-            path: path.to_owned(),
-            source,
-        };
-        // SAFETY: the library's initializers are those of libstdc++ and Verilator, without conditions.
-        let library = unsafe { Library::new(path) }.map_err(error)?;
-        // SAFETY: `cargo xtask gateware` made it from glint_soc.h, and `_library` outlives the table.
-        let functions = unsafe { Functions::load(&library) }.map_err(error)?;
-        // SAFETY: without conditions.
-        let found = unsafe { (functions.abi)() };
-        if found != ABI {
-            return Err(Error::Interface {
-                path: path.to_owned(),
-                expected: ABI,
-                found,
-            });
-        }
-        // SAFETY: without conditions.
-        let handle =
-            NonNull::new(unsafe { (functions.new)() }).expect("glint_soc_new returns an instance");
+        let instance = Instance::load(path, 0)?;
+        // SAFETY: `cargo xtask gateware` made the library from soc.h, and the instance outlives the table.
+        let functions = unsafe { Functions::load(&instance) }?;
         Ok(Self {
-            handle,
             functions,
-            _library: library,
+            buttons: instance.find("buttons"),
+            switches: instance.find("switches"),
+            leds: instance.find("leds"),
+            instance,
         })
     }
 
     fn raw(&self) -> Handle {
-        self.handle.as_ptr()
+        self.instance.handle()
     }
 
     pub fn build_id(&self) -> u32 {
@@ -125,13 +92,9 @@ impl Soc {
         unsafe { (self.functions.clock_hz)() }
     }
 
-    /// Starts writing waveforms; returns whether the library can.
-    pub fn trace(&mut self, path: &Path) -> bool {
-        let Ok(path) = CString::new(path.as_os_str().as_encoded_bytes()) else {
-            return false;
-        };
-        // SAFETY: the handle is alive, and the path is read during the call only.
-        unsafe { (self.functions.trace)(self.raw(), path.as_ptr()) != 0 }
+    /// Starts writing waveforms. False for a library without waveforms.
+    pub fn trace(&mut self, path: &Path) -> Result<bool, Error> {
+        Ok(self.instance.write_waveforms(path)?)
     }
 
     pub fn run(&mut self, cycles: u64) {
@@ -176,18 +139,16 @@ impl Soc {
     }
 
     pub fn set_buttons(&mut self, pressed: u8) {
-        // SAFETY: the handle is alive and ours alone.
-        unsafe { (self.functions.set_buttons)(self.raw(), pressed) }
+        self.instance
+            .set_value(self.buttons, (pressed & 0xf).into());
     }
 
     pub fn set_switches(&mut self, on: u16) {
-        // SAFETY: the handle is alive and ours alone.
-        unsafe { (self.functions.set_switches)(self.raw(), on) }
+        self.instance.set_value(self.switches, on.into());
     }
 
     pub fn leds(&self) -> u16 {
-        // SAFETY: the handle is alive.
-        unsafe { (self.functions.leds)(self.raw()) }
+        self.instance.value(self.leds) as u16
     }
 
     pub fn i2c_drive(&mut self, released: u8) {
@@ -247,12 +208,5 @@ impl Soc {
     pub fn rom_write(&mut self, bytes: &[u8]) {
         // SAFETY: the handle is alive and ours alone; the library takes no more than fits.
         unsafe { (self.functions.rom_write)(self.raw(), bytes.as_ptr(), bytes.len()) }
-    }
-}
-
-impl Drop for Soc {
-    fn drop(&mut self) {
-        // SAFETY: the handle is alive, and not used afterwards.
-        unsafe { (self.functions.free)(self.raw()) }
     }
 }

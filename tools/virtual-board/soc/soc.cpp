@@ -1,23 +1,17 @@
-// The harness around the verilated SoC. See glint_soc.h for the contract.
+// The verilated SoC in its harness: clocks, the pins of its devices, and back doors to its memories. See soc.h for the contract.
 
-#include "glint_soc.h"
+#include "soc.h"
 
 #include <algorithm>
 #include <array>
 #include <cstring>
 #include <deque>
-#include <memory>
-#include <string>
 #include <vector>
 
-#include "Vglint.h"
-#include "Vglint___024root.h"
+#include "Vmodel___024root.h"
 #include "generated/mem.h"
 #include "generated/soc.h"
-#include "verilated.h"
-#if VM_TRACE_VCD
-#include "verilated_vcd_c.h"
-#endif
+#include "harness.h"
 
 // The BIOS, kept in the library so that it needs no file at run time.
 asm(".section .rodata\n"
@@ -48,16 +42,9 @@ constexpr size_t RUN_BYTES = WORD_BYTES << COLUMN_BITS;  // Contiguous bytes in 
 // Simulated time in units of 1 ps for waveforms.
 constexpr uint64_t HALF_PERIOD_PS = 500'000'000'000ull / CONFIG_CLOCK_FREQUENCY;
 
-// A context whose model runs in the caller's thread alone.
-struct Context : VerilatedContext {
-    Context() { threads(1); }
-};
-
 }  // namespace
 
-struct glint_soc {
-    Context context;
-    Vglint top{&context, "soc"};
+struct Soc : Harness {
     uint64_t cycles = 0;
     uint32_t pixel_phase = 0;
     std::deque<uint8_t> uart_in;
@@ -65,32 +52,13 @@ struct glint_soc {
     uint8_t i2c_released = 3;
     bool video_on = false;
     std::vector<uint32_t> video;
-#if VM_TRACE_VCD
-    std::unique_ptr<VerilatedVcdC> trace;
-#endif
 
-    glint_soc() {
+    explicit Soc(uint32_t seed) : Harness(seed, Registers::ZERO) {
+        step = HALF_PERIOD_PS;
         top.serial_source_ready = 1;
         top.i2c_scl_in = 1;
         top.i2c_sda_in = 1;
         rom_write(glint_bios, static_cast<size_t>(glint_bios_end - glint_bios));
-    }
-
-    ~glint_soc() {
-#if VM_TRACE_VCD
-        if (trace) trace->close();
-#endif
-        top.final();
-        // A model leaves the thread's context when it is destroyed, not its own: another board's would be wrong.
-        Verilated::threadContextp(&context);
-    }
-
-    void eval() {
-        top.eval();
-#if VM_TRACE_VCD
-        if (trace) trace->dump(context.time());
-#endif
-        context.timeInc(HALF_PERIOD_PS);
     }
 
     void cycle() {
@@ -219,37 +187,23 @@ struct glint_soc {
     }
 };
 
+#define INSTANCE Soc
+#include "interface.h"
+
 extern "C" {
 
-uint32_t glint_soc_abi(void) { return GLINT_SOC_ABI; }
-uint32_t glint_soc_build_id(void) { return BUILD_ID; }
-uint32_t glint_soc_clock_hz(void) { return CONFIG_CLOCK_FREQUENCY; }
+uint32_t soc_build_id(void) { return BUILD_ID; }
+uint32_t soc_clock_hz(void) { return CONFIG_CLOCK_FREQUENCY; }
 
-glint_soc *glint_soc_new(void) { return new glint_soc; }
-void glint_soc_free(glint_soc *soc) { delete soc; }
+void soc_run(Soc *soc, uint64_t cycles) { soc->run(cycles); }
+void soc_run_bare(Soc *soc, uint64_t cycles) { soc->run_bare(cycles); }
+uint64_t soc_cycles(const Soc *soc) { return soc->cycles; }
 
-int glint_soc_trace(glint_soc *soc, const char *path) {
-#if VM_TRACE_VCD
-    soc->context.traceEverOn(true);
-    soc->trace = std::make_unique<VerilatedVcdC>();
-    soc->top.trace(soc->trace.get(), 99);
-    soc->trace->open(path);
-    return soc->trace->isOpen();
-#else
-    (void)soc, (void)path;
-    return 0;
-#endif
-}
-
-void glint_soc_run(glint_soc *soc, uint64_t cycles) { soc->run(cycles); }
-void glint_soc_run_bare(glint_soc *soc, uint64_t cycles) { soc->run_bare(cycles); }
-uint64_t glint_soc_cycles(const glint_soc *soc) { return soc->cycles; }
-
-void glint_soc_uart_write(glint_soc *soc, const uint8_t *bytes, size_t length) {
+void soc_uart_write(Soc *soc, const uint8_t *bytes, size_t length) {
     soc->uart_in.insert(soc->uart_in.end(), bytes, bytes + length);
 }
-size_t glint_soc_uart_queued(const glint_soc *soc) { return soc->uart_in.size(); }
-size_t glint_soc_uart_read(glint_soc *soc, uint8_t *bytes, size_t capacity) {
+size_t soc_uart_queued(const Soc *soc) { return soc->uart_in.size(); }
+size_t soc_uart_read(Soc *soc, uint8_t *bytes, size_t capacity) {
     const size_t count = std::min(capacity, soc->uart_out.size());
     const auto end = soc->uart_out.begin() + static_cast<ptrdiff_t>(count);
     std::copy(soc->uart_out.begin(), end, bytes);
@@ -257,30 +211,26 @@ size_t glint_soc_uart_read(glint_soc *soc, uint8_t *bytes, size_t capacity) {
     return count;
 }
 
-void glint_soc_set_buttons(glint_soc *soc, uint8_t pressed) { soc->top.buttons = pressed & 0xf; }
-void glint_soc_set_switches(glint_soc *soc, uint16_t on) { soc->top.switches = on; }
-uint16_t glint_soc_leds(const glint_soc *soc) { return soc->top.leds; }
+void soc_i2c_drive(Soc *soc, uint8_t released) { soc->i2c_released = released & 3; }
+uint8_t soc_i2c_wires(const Soc *soc) { return soc->i2c_wires(); }
+uint8_t soc_i2c_released(const Soc *soc) { return soc->i2c_released_by_soc(); }
+uint64_t soc_run_to_i2c(Soc *soc, uint64_t cycles) { return soc->run_to_i2c(cycles); }
 
-void glint_soc_i2c_drive(glint_soc *soc, uint8_t released) { soc->i2c_released = released & 3; }
-uint8_t glint_soc_i2c_wires(const glint_soc *soc) { return soc->i2c_wires(); }
-uint8_t glint_soc_i2c_released(const glint_soc *soc) { return soc->i2c_released_by_soc(); }
-uint64_t glint_soc_run_to_i2c(glint_soc *soc, uint64_t cycles) { return soc->run_to_i2c(cycles); }
-
-void glint_soc_video_record(glint_soc *soc, int on) { soc->video_on = on != 0; }
-const uint32_t *glint_soc_video_samples(const glint_soc *soc, size_t *count) {
+void soc_video_record(Soc *soc, int on) { soc->video_on = on != 0; }
+const uint32_t *soc_video_samples(const Soc *soc, size_t *count) {
     *count = soc->video.size();
     return soc->video.data();
 }
-void glint_soc_video_clear(glint_soc *soc) { soc->video.clear(); }
+void soc_video_clear(Soc *soc) { soc->video.clear(); }
 
-void glint_soc_ddr_read(glint_soc *soc, uint32_t offset, uint8_t *bytes, size_t length) {
+void soc_ddr_read(Soc *soc, uint32_t offset, uint8_t *bytes, size_t length) {
     soc->settle();
     soc->for_each_run(offset, length, [bytes](const uint8_t *memory, size_t at, size_t count) {
         std::memcpy(bytes + at, memory, count);
     });
 }
 
-void glint_soc_ddr_write(glint_soc *soc, uint32_t offset, const uint8_t *bytes, size_t length) {
+void soc_ddr_write(Soc *soc, uint32_t offset, const uint8_t *bytes, size_t length) {
     soc->settle();
     while (soc->filling()) soc->cycle();
     soc->for_each_run(offset, length, [bytes](uint8_t *memory, size_t at, size_t count) {
@@ -289,6 +239,6 @@ void glint_soc_ddr_write(glint_soc *soc, uint32_t offset, const uint8_t *bytes, 
     soc->drop_caches();
 }
 
-void glint_soc_rom_write(glint_soc *soc, const uint8_t *bytes, size_t length) { soc->rom_write(bytes, length); }
+void soc_rom_write(Soc *soc, const uint8_t *bytes, size_t length) { soc->rom_write(bytes, length); }
 
 }  // extern "C"

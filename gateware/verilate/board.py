@@ -1,0 +1,71 @@
+"""The SoC of the virtual board as a shared library, which the crate `virtual-board` loads.
+
+The model is compiled twice: the counters of a first run of the BIOS tell the compiler the likely branches, and a model that is
+compiled with them needs a quarter less time for a cycle.
+"""
+
+import shutil
+from pathlib import Path
+
+from . import compiler
+from .programs import GATEWARE, digest, files_below, is_current, run
+
+TOP = "glint_virtual"
+
+_SOC = GATEWARE.parent / "tools" / "virtual-board" / "soc"
+_VERILATE = ["--no-timing", "--flatten", "--x-assign", "fast", "--x-initial", "fast", _SOC / "soc.vlt"]
+
+
+def build(folder, waveforms):
+    """Builds the library from the Verilog that LiteX left in `folder`, where it is not up to date: without waveforms
+    `libglint_soc.so`, or a slower one with them, `libglint_soc_trace.so`."""
+    objects = folder / ("verilated-trace" if waveforms else "verilated")
+    library = folder / ("libglint_soc_trace.so" if waveforms else "libglint_soc.so")
+    verilog = folder / "gateware" / f"{TOP}.v"
+    bios = folder / "software" / "bios" / "bios.bin"
+    sources = [verilog, "-f", verilog.with_suffix(".f")]
+
+    options = [*compiler.flags(objects, waveforms), "-O3"]
+    harness_options = [*options, f'-DGLINT_BIOS="{bios}"', f"-I{folder / 'software' / 'include'}", f"-I{_SOC}"]
+
+    # The model, which takes the time.
+    inputs = digest([verilog, *files_below(GATEWARE / "rtl", _SOC), *compiler.RECIPE, Path(__file__)], waveforms)
+    stamp = objects / "model.stamp"
+    if not is_current(stamp, inputs):
+        # Verilator names its output by its content: a file of an older build must not stay.
+        shutil.rmtree(objects, ignore_errors=True)
+        objects.mkdir(parents=True)
+        print("Verilator", flush=True)
+        trace = ["--trace-vcd"] if waveforms else []
+        compiler.verilate(TOP, sources, {}, objects, [*_VERILATE, *trace])
+        _compile_model(objects, options, harness_options, waveforms)
+        stamp.write_text(inputs)
+
+    # The harness around it.
+    inputs = digest([bios], inputs)
+    stamp = objects / "library.stamp"
+    if is_current(stamp, inputs, library):
+        return
+    compiler.compile_all("compile the harness", [_SOC / "soc.cpp"], objects, harness_options)
+    compiler.link(sorted(objects.glob("*.o")), objects / "library.so", library)
+    stamp.write_text(inputs)
+
+
+def _compile_model(objects, options, harness_options, waveforms):
+    sources = compiler.model_sources(objects, waveforms)
+    slow = [source for source in sources if "__Slow" in source.name]
+    hot = [source for source in sources if source not in slow]
+    compiler.compile_all("compile what runs once", slow, objects, options)
+    # Waveforms cost more than a profile gains.
+    if not waveforms:
+        harness = [_SOC / "soc.cpp", _SOC / "train.cpp"]
+        compiler.compile_all("compile the training", harness, objects, harness_options)
+        compiler.compile_all("compile with counters", hot, objects, [*options, "-fprofile-generate"])
+        print("train", flush=True)
+        program = objects / "train"
+        run(["g++", "-fprofile-generate", "-pthread", *sorted(objects.glob("*.o")), "-o", program])
+        run([program], cwd=objects)
+        compiler.object_of(harness[1], objects).unlink()
+        # Without partial training, code that the BIOS never reaches would be compiled for size.
+        options = [*options, "-fprofile-use", "-fprofile-partial-training"]
+    compiler.compile_all("compile what runs in each cycle", hot, objects, options)
