@@ -2,6 +2,7 @@
 
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;
+use glint_core::choice::switch_name;
 use glint_core::light::Hexadecimal;
 use glint_core::picture::Size;
 use glint_model::{FieldSubject, MeshSubject};
@@ -14,7 +15,7 @@ pub fn size_command(size: Size) -> String {
 /// The console commands of a mesh's options.
 pub fn mesh_commands(subject: &MeshSubject) -> [String; 2] {
     [
-        format!("cull {}", switch(subject.cull)),
+        format!("cull {}", switch_name(subject.cull)),
         format!("shading {}", subject.shading),
     ]
 }
@@ -54,19 +55,15 @@ pub fn field_commands(subject: &FieldSubject, with_mesh: bool) -> Vec<String> {
         format!("ambient {}", ambient.as_deref().unwrap_or("default")),
         format!("background {}", background.name()),
         format!("fog {fog}"),
-        format!("occlusion {}", switch(*occlusion)),
+        format!("occlusion {}", switch_name(*occlusion)),
         // Stereo and a mesh in a field exclude each other.
         "stereo off".to_owned(),
-        format!("mesh {}", switch(with_mesh)),
-        format!("prepass {}", switch(subject.prepass)),
+        format!("mesh {}", switch_name(with_mesh)),
+        format!("prepass {}", switch_name(subject.prepass)),
     ]);
     commands.extend(subject.stereo.map(|stereo| format!("stereo {stereo}")));
     commands.push(format!("field {}", subject.field));
     commands
-}
-
-fn switch(on: bool) -> &'static str {
-    if on { "on" } else { "off" }
 }
 
 #[cfg(test)]

@@ -240,7 +240,7 @@ fn bad_names_and_numbers() {
             &[
                 "render", "--field", "menger:2", "--light", "0,0,0", "--out", "out.png",
             ],
-            "error: --light: expected a light, found direction 0,0,0: expected one that is not 0",
+            "error: --light: expected a light, found direction 0,0,0: expected a non-zero direction",
         ),
         (
             &["render", "cube", "--out", "out.png", "--size", "320x200"],
