@@ -1,4 +1,4 @@
-//! The model in the program: a cube of edge length 1 with a colour a side.
+//! The built-in model: a cube of edge length 1 with one colour per side.
 
 /// Vertices and triangles.
 const VERTICES: usize = 8;
@@ -19,7 +19,7 @@ const SIDES: [(usize, u16, u16); 3] = [
     (2, 0xffff, 0xc2bf),
 ];
 
-/// The mesh, as an upload would carry it.
+/// The mesh in the format of an upload.
 pub static BYTES: Aligned = Aligned(bytes());
 
 /// Bytes at a multiple of 16.

@@ -1,29 +1,29 @@
-//! What is said of how a field looks, beside its shape.
+//! Appearance of a field.
 
 use heapless::Vec;
 
 use crate::fixed::U4_28;
 use crate::light::{Background, Light, Lighting, MAX_LIGHTS, Material, Rgb};
 
-/// How a field looks. By default each face is in the colour of its normal, in front of white.
+/// Appearance of a field. By default each face has the colour of its normal, on white.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Appearance {
-    /// What it is made of.
+    /// Material.
     pub material: Material,
-    /// What shines on it; without any, what shows the material best.
+    /// Lights; an empty list selects the material's own lights.
     pub lights: Vec<Light, MAX_LIGHTS>,
-    /// The light that comes from everywhere; unless told, what goes with the lights.
+    /// Ambient light; `None` selects the default of the lights.
     pub ambient: Option<Rgb>,
-    /// What is behind it.
+    /// Background.
     pub background: Background,
-    /// How dense the fog is: e^−z of something is left that is z/density world units away. 0 is none.
+    /// Density of the fog, per world unit: transmittance is exp(−distance · density). 0 is no fog.
     pub fog: U4_28,
-    /// Whether narrow places are darkened.
+    /// Whether ambient occlusion is on.
     pub occlusion: bool,
 }
 
 impl Appearance {
-    /// All of its light.
+    /// Ambient light and lights, with their defaults.
     pub fn lighting(&self) -> Lighting {
         let lighting = if self.lights.is_empty() {
             self.material.light()

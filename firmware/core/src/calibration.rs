@@ -1,7 +1,7 @@
-//! What a gyroscope reads at rest: its bias, measured while nothing moves, and followed while nothing moves later on.
+//! Bias of a gyroscope: calibrated at rest, then tracked at rest.
 //!
-//! [`Calibration`] takes the mean of many samples, and refuses when they say that something moved; [`RestBias`] learns slowly from then on,
-//! and only at rest.
+//! [`Calibration`] takes the mean of many samples and fails if the sensor moved. [`RestBias`] follows the bias slowly afterwards, only at
+//! rest.
 
 mod rest;
 
@@ -13,18 +13,18 @@ use crate::orientation::Sample;
 
 pub use rest::RestBias;
 
-/// Samples of a calibration unless told otherwise.
+/// Default number of samples of a calibration.
 pub const SAMPLES: u32 = 8_192;
-/// The numbers of samples that are accepted.
+/// Accepted numbers of samples, from least to most.
 pub const MOST_SAMPLES: [u32; 2] = [64, 65_536];
 
-/// The most a sample may differ from the first one, in °/s: ten times the noise, and what a still hand exceeds.
+/// Largest difference of a sample's rate from the first one, in °/s: ten times the noise. A still hand exceeds it.
 const MOST_RATE: u32 = 2;
-/// The most the means of both halves may differ, in 1/8 °/s.
+/// Largest difference between the means of both halves, in 1/8 °/s.
 const MOST_CHANGE: u32 = 1;
-/// The largest bias, in °/s: the data sheet's ±20 °/s at 25 °C and as much again over temperature.
+/// Largest bias, in °/s: the data sheet's ±20 °/s at 25 °C, doubled for temperature.
 const MOST_BIAS: u32 = 40;
-/// The most a sample's force may differ from the first one's along an axis, in 1/8 g.
+/// Largest difference of a sample's force from the first one along an axis, in 1/8 g.
 const MOST_FORCE: u32 = 1;
 
 /// LSB per °/s and per g.
@@ -43,9 +43,9 @@ impl Units {
         per_g: 4_096,
     };
 
-    /// So many °/s in LSB, rounded up, at least 1.
+    /// `dps` degrees per second in LSB, rounded up, at least 1.
     fn rate(self, dps: u32) -> u32 {
-        // At most 2^12 LSB per °/s make sense of 16 bits.
+        // With 16 bits a count, at most 2^12 LSB per °/s are sensible.
         let lsb = self.per_dps.to_bits().clamp(1 << 28, 1 << 44);
         ((i128::from(lsb) * i128::from(dps) + (1 << 32) - 1) >> 32) as u32
     }
@@ -62,30 +62,30 @@ fn fixed_i128(bits: i128) -> fixed::FixedI128<fixed::types::extra::U32> {
     fixed::FixedI128::from_bits(bits)
 }
 
-/// What a calibration has found.
+/// Result of a calibration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Report {
-    /// How many samples it is the mean of.
+    /// Number of samples.
     pub samples: u32,
     /// The mean of each axis in 1/256 LSB, to nearest.
     pub bias: [i32; 3],
     /// The standard deviation of a sample in 1/256 LSB, rounded down.
     pub deviation: [u32; 3],
-    /// The standard error of the mean in 2^−16 LSB, rounded down: what noise that has no memory leaves.
+    /// Standard error of the mean by white noise, in 2^−16 LSB, rounded down.
     pub error: [u32; 3],
 }
 
 impl Report {
-    /// By how much each axis is expected to drift because of [`Report::error`], in °/h. The bias itself wanders by some 5 to 10 °/h more.
+    /// Expected drift of each axis by [`Report::error`], in °/h. The bias itself wanders by another 5 to 10 °/h.
     pub fn drift(&self, units: Units) -> [Q32_32; 3] {
         self.error.map(|error| units.per_hour(error))
     }
 }
 
-/// Why there is no calibration.
+/// Reason why samples give no calibration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Refusal {
-    /// A rate that is not that of the first sample.
+pub enum SampleError {
+    /// The rate differs from the first sample.
     Turned {
         /// The sample, from 0.
         sample: u32,
@@ -93,10 +93,10 @@ pub enum Refusal {
         axis: usize,
         /// The difference in LSB.
         by: u32,
-        /// The most that is accepted, in LSB.
+        /// The accepted maximum in LSB.
         most: u32,
     },
-    /// A force that is not that of the first sample.
+    /// The force differs from the first sample.
     Pushed {
         /// The sample, from 0.
         sample: u32,
@@ -104,28 +104,28 @@ pub enum Refusal {
         axis: usize,
         /// The difference in LSB.
         by: u32,
-        /// The most that is accepted, in LSB.
+        /// The accepted maximum in LSB.
         most: u32,
     },
-    /// The mean of the second half is not that of the first.
+    /// The means of both halves differ.
     Changed {
         /// The axis, 0 for x.
         axis: usize,
         /// The difference in 1/256 LSB.
         by: u32,
-        /// The most that is accepted, in 1/256 LSB.
+        /// The accepted maximum in 1/256 LSB.
         most: u32,
     },
-    /// It turns steadily, or its bias is beyond the data sheet's.
+    /// The sensor turns steadily, or its bias exceeds the data sheet.
     TooLarge {
         /// The axis, 0 for x.
         axis: usize,
         /// The mean in LSB.
         mean: i32,
-        /// The most that is accepted, in LSB.
+        /// The accepted maximum in LSB.
         most: u32,
     },
-    /// All samples of all axes are the same, which noise would not leave so: the sensor does not measure.
+    /// All samples are equal in all axes. Without noise the sensor does not measure.
     Frozen,
 }
 
@@ -138,15 +138,25 @@ const fn axis_name(axis: usize) -> &'static str {
     }
 }
 
-impl fmt::Display for Refusal {
+impl fmt::Display for SampleError {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match *self {
-            Self::Turned { sample, axis, by, most } => write!(
+            Self::Turned {
+                sample,
+                axis,
+                by,
+                most,
+            } => write!(
                 f,
                 "gyroscope {} of sample {sample} is {by} LSB from the first: expected at most {most}, keep it still",
                 axis_name(axis)
             ),
-            Self::Pushed { sample, axis, by, most } => write!(
+            Self::Pushed {
+                sample,
+                axis,
+                by,
+                most,
+            } => write!(
                 f,
                 "accelerometer {} of sample {sample} is {by} LSB from the first: expected at most {most}, keep it still",
                 axis_name(axis)
@@ -158,17 +168,19 @@ impl fmt::Display for Refusal {
             ),
             Self::TooLarge { axis, mean, most } => write!(
                 f,
-                "gyroscope {}: the mean is {mean} LSB: expected within ±{most}, it turns or is broken",
+                "gyroscope {}: the mean is {mean} LSB: expected within ±{most}, the sensor turns or is broken",
                 axis_name(axis)
             ),
-            Self::Frozen => f.write_str("the gyroscope gives the same numbers all the time: expected some noise, it does not measure"),
+            Self::Frozen => f.write_str(
+                "gyroscope: all samples are equal: expected noise, the sensor does not measure",
+            ),
         }
     }
 }
 
-impl core::error::Error for Refusal {}
+impl core::error::Error for SampleError {}
 
-/// A calibration that is going on.
+/// A calibration in progress.
 #[derive(Clone, Copy, Debug)]
 pub struct Calibration {
     units: Units,
@@ -176,24 +188,24 @@ pub struct Calibration {
     count: u32,
     first: Sample,
     last_us: u32,
-    /// Of all samples; at most 2^31 in magnitude, and 2^46.
+    /// Sums over all samples; at most 2^31 in magnitude, and 2^46.
     sum: [i64; 3],
     squares: [u64; 3],
-    /// Of the first half.
+    /// Sums over the first half.
     half: [i64; 3],
 }
 
-/// How far a calibration is.
+/// Progress of a calibration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Progress {
-    /// So many samples were taken.
+    /// In progress, with this number of samples.
     Going(u32),
-    /// It is done.
+    /// Done.
     Done(Report),
 }
 
 impl Calibration {
-    /// Begins. A number of samples beyond [`MOST_SAMPLES`] counts as the nearest that is accepted.
+    /// Starts a calibration. The number of samples saturates to [`MOST_SAMPLES`].
     pub fn new(units: Units, samples: u32) -> Self {
         Self {
             units,
@@ -207,11 +219,11 @@ impl Calibration {
         }
     }
 
-    /// Takes a sample; one with the time of the one before is not fresh and does not count.
+    /// Takes a sample. A sample with the time of the one before is ignored.
     ///
     /// # Errors
-    /// It moves. Begin again.
-    pub fn on_sample(&mut self, sample: &Sample) -> Result<Progress, Refusal> {
+    /// The sensor moved. Start again.
+    pub fn on_sample(&mut self, sample: &Sample) -> Result<Progress, SampleError> {
         if self.count == 0 {
             self.first = *sample;
         } else if sample.t_us == self.last_us {
@@ -236,14 +248,14 @@ impl Calibration {
         report.map(Progress::Done)
     }
 
-    fn check(&self, sample: &Sample) -> Result<(), Refusal> {
+    fn check(&self, sample: &Sample) -> Result<(), SampleError> {
         let most = self.units.rate(MOST_RATE);
         let apart = |a: i16, b: i16| u32::from(a.abs_diff(b));
         for axis in 0..3 {
             let by = apart(sample.gyro[axis], self.first.gyro[axis]);
             if by > most {
                 let sample = self.count;
-                return Err(Refusal::Turned {
+                return Err(SampleError::Turned {
                     sample,
                     axis,
                     by,
@@ -256,7 +268,7 @@ impl Calibration {
             let by = apart(sample.accel[axis], self.first.accel[axis]);
             if by > most {
                 let sample = self.count;
-                return Err(Refusal::Pushed {
+                return Err(SampleError::Pushed {
                     sample,
                     axis,
                     by,
@@ -267,7 +279,7 @@ impl Calibration {
         Ok(())
     }
 
-    fn report(&self) -> Result<Report, Refusal> {
+    fn report(&self) -> Result<Report, SampleError> {
         let count = i64::from(self.count);
         let mean = |sum: i64, count: i64| ((sum * 256 + count / 2).div_euclid(count)) as i32;
         let bias = self.sum.map(|sum| mean(sum, count));
@@ -279,14 +291,14 @@ impl Calibration {
             let second = mean(self.sum[axis] - self.half[axis], count - early);
             let by = first.abs_diff(second);
             if by > changed {
-                return Err(Refusal::Changed {
+                return Err(SampleError::Changed {
                     axis,
                     by,
                     most: changed,
                 });
             }
             if bias.unsigned_abs() > largest * 256 {
-                return Err(Refusal::TooLarge {
+                return Err(SampleError::TooLarge {
                     axis,
                     mean: bias >> 8,
                     most: largest,
@@ -298,7 +310,7 @@ impl Calibration {
             u64::from(self.count) * self.squares[axis] - self.sum[axis].unsigned_abs().pow(2)
         });
         if spread == [0; 3] {
-            return Err(Refusal::Frozen);
+            return Err(SampleError::Frozen);
         }
         let n = u64::from(self.count);
         Ok(Report {

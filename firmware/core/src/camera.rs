@@ -1,32 +1,32 @@
-//! The one camera type, whatever drives it.
+//! The camera.
 //!
 //! A camera is an eye and an orthonormal basis: `u` to the right of the screen, `v` down, `n` forward into the
-//! scene, with u × v = n. The world is right-handed with z up. A [`View`] can only be made through checks, so
-//! that what follows may rely on its ranges.
+//! scene, with u × v = n. The world is right-handed with z up. Every [`View`] is checked, so that users of a view may
+//! rely on its ranges.
 
 use core::fmt;
 
 use crate::fixed::{Q2_23, Q32_32, Turns, U4_28};
 use crate::trig::sin_cos_q30;
 
-/// The half width of the image plane at distance 1 that cameras driven by angles have: 0.9.
+/// Half width of the image plane at distance 1 of cameras that are given by angles: 0.9.
 pub const DEFAULT_HALF_WIDTH: U4_28 = U4_28::lit("0.9");
-/// The near plane that cameras driven by angles have: 0.1.
+/// Near plane of cameras that are given by angles: 0.1.
 pub const DEFAULT_NEAR: U4_28 = U4_28::lit("0.1");
 
-/// The farthest an eye may be from the origin.
+/// Largest distance of an eye from the origin.
 pub const MAX_EYE: u32 = 32;
-/// The half widths that are accepted.
+/// Accepted half widths.
 pub const HALF_WIDTH: [U4_28; 2] = [U4_28::lit("0.05"), U4_28::lit("4")];
-/// The near planes that are accepted.
+/// Accepted near planes.
 pub const NEAR: [U4_28; 2] = [U4_28::lit("0.01"), U4_28::lit("2")];
-/// The radii of the spherical camera.
+/// Accepted radii of the spherical camera.
 pub const RADIUS: [Q32_32; 2] = [Q32_32::lit("2"), Q32_32::lit("5")];
 
 /// A vector in 2^−60.
 type Exact = [i64; 3];
 
-/// A camera that has been checked.
+/// A checked camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct View {
     eye: [Q32_32; 3],
@@ -38,9 +38,9 @@ pub struct View {
 }
 
 impl View {
-    /// Makes a camera of its numbers.
+    /// A camera of eye, basis, half width and near plane.
     ///
-    /// The basis must be orthonormal within 1e-4 (lengths and scalar products) with u × v = n; it is kept as it is. The
+    /// The basis must be orthonormal within 1e-4 (lengths and scalar products) with u × v = n; it is not normalised. The
     /// eye must be within 32 of the origin, `half_width` in [0.05, 4] and `near` in [0.01, 2].
     ///
     /// # Errors
@@ -79,7 +79,7 @@ impl View {
     /// for the sines of [`sin_cos_q30`]).
     ///
     /// # Errors
-    /// When `r` is outside [2, 5] or `phi` beyond half a turn.
+    /// `r` is outside [2, 5], or `phi` is beyond half a turn.
     pub fn spherical(r: Q32_32, theta: Turns, phi: Turns) -> Result<Self, ViewError> {
         if !(RADIUS[0]..=RADIUS[1]).contains(&r) {
             return Err(ViewError::Radius(r));
@@ -107,7 +107,7 @@ impl View {
     /// that makes it Glint's frame, u = P·R', v = −P·U', n = P·F: with all angles 0 the camera looks along +y.
     ///
     /// # Errors
-    /// When the eye is more than 32 from the origin.
+    /// The eye is more than 32 from the origin.
     pub fn look(
         eye: [Q32_32; 3],
         yaw: Turns,
@@ -133,7 +133,7 @@ impl View {
         })
     }
 
-    /// This camera with the half width and the near plane of another one.
+    /// This camera with half width and near plane of another one.
     #[must_use]
     pub const fn with_lens_of(self, other: &Self) -> Self {
         Self {
@@ -148,7 +148,7 @@ impl View {
         self.eye
     }
 
-    /// Whether the eye is at most so far from the origin.
+    /// Whether the eye is within `distance` of the origin.
     pub fn is_within(&self, distance: u32) -> bool {
         within(self.eye, distance)
     }
@@ -179,8 +179,8 @@ impl View {
     }
 }
 
-/// The numbers as the console's `view` takes them: eye, u, v, n, half width and near plane, each in the shortest decimals
-/// that read back as the same bits.
+/// The arguments of the console's `view`: eye, u, v, n, half width and near plane, each as the shortest decimal that reads
+/// back as the same bits.
 impl fmt::Display for View {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         self.eye.iter().try_for_each(|x| write!(f, "{x} "))?;
@@ -260,7 +260,7 @@ fn check_basis(u: [Q2_23; 3], v: [Q2_23; 3], n: [Q2_23; 3]) -> Result<(), ViewEr
             });
         }
     }
-    // The rows are orthonormal, so u × v is n or −n and the sign of one product tells.
+    // The rows are orthonormal, so u × v is n or −n, which the sign of one product decides.
     let cross = [[1, 2], [2, 0], [0, 1]].map(|[i, j]| {
         let (a, b) = (
             i64::from(u[i].to_bits()) * i64::from(v[j].to_bits()),
@@ -308,16 +308,16 @@ impl fmt::Display for Axis {
     }
 }
 
-/// Why numbers are not a camera.
+/// Reason why numbers are not a camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ViewError {
     /// The eye is too far from the origin.
     Eye([Q32_32; 3]),
     /// A row of the basis is not of length 1 within 1e-4.
     Length {
-        /// Which row.
+        /// The row.
         axis: Axis,
-        /// What it is.
+        /// Its components.
         row: [Q2_23; 3],
     },
     /// Two rows have a scalar product beyond 1e-4.

@@ -1,9 +1,9 @@
 //! The named fixed-point formats, angles, and decimals.
 //!
-//! `QI.F` is a two's complement number with I + F bits that matter, the sign among the I; `UI.F` has no sign.
-//! The types are those of the [`fixed`] crate: an alias may hold more integer bits than its name says, and
-//! whoever makes the value keeps the range. Their `FromStr` reads a decimal by integer arithmetic alone, rounds to
-//! nearest with ties to even, and refuses what does not fit; their `Display` prints the shortest decimal that
+//! `QI.F` is a two's complement number with I + F significant bits, the sign among the I; `UI.F` has no sign.
+//! The types are those of the [`fixed`] crate: an alias may hold more integer bits than its name says, and the creator of
+//! a value keeps its range. Their `FromStr` reads a decimal by integer arithmetic, rounds to nearest with ties to even,
+//! and refuses numbers out of range; their `Display` prints the shortest decimal that
 //! reads back as the same bits.
 
 pub use ::fixed;
@@ -16,12 +16,12 @@ pub type Q2_14 = FixedI16<U14>;
 pub type Q2_23 = FixedI32<U23>;
 /// Sines and cosines: 2^−30 in [−2, 2).
 pub type Q2_30 = FixedI32<U30>;
-/// The place of an eye: 2^−32.
+/// Position of an eye: 2^−32.
 pub type Q32_32 = FixedI64<U32>;
 /// The half width of a picture and the near plane: 2^−28 in [0, 16).
 pub type U4_28 = FixedU32<U28>;
 
-/// An angle, in units of 2^−32 turns; it wraps as angles do.
+/// An angle in units of 2^−32 turns, modulo one turn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Turns(pub u32);
 
@@ -35,7 +35,7 @@ impl Turns {
     pub const fn from_degrees(degrees: Q32_32) -> Self {
         let bits = degrees.to_bits();
         let nearest = bits.div_euclid(360) + (bits.rem_euclid(360) >= 180) as i64;
-        // Keeping the low word drops the whole turns.
+        // Truncation drops the whole turns.
         Self(nearest as u32)
     }
 

@@ -1,7 +1,7 @@
-//! Cameras that an attitude drives: free look, and round the model.
+//! Cameras that an attitude steers: free look, and orbit about the model.
 //!
-//! The camera's basis comes from the quaternion itself, by way of no angles, so it is nowhere singular: a small turn of the sensor is as
-//! small a turn of the picture, straight up and straight down too.
+//! The camera's basis is computed from the quaternion without angles and has no singularity: a small turn of the sensor is an equally small
+//! turn of the picture, at the zenith and the nadir too.
 
 use core::fmt;
 
@@ -59,7 +59,7 @@ impl Direction {
     }
 }
 
-/// How the sensor is mounted: which of its directions are the camera's.
+/// Mounting of the sensor: its directions along the camera's axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Mounting {
     forward: Direction,
@@ -77,25 +77,25 @@ impl Default for Mounting {
 }
 
 impl Mounting {
-    /// By the direction that looks into the scene and the one that points up on the screen, if they are perpendicular.
+    /// A mounting by the directions into the scene and up on the screen, if they are perpendicular.
     pub fn new(forward: Direction, up: Direction) -> Option<Self> {
         (forward.axis() != up.axis()).then_some(Self { forward, up })
     }
 }
 
-/// Forward and up, as a user gives them.
+/// Forward and up, in the console's form.
 impl fmt::Display for Mounting {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         write!(f, "{} {}", self.forward, self.up)
     }
 }
 
-/// The camera at `eye` that looks where the sensor does.
+/// The camera at `eye` in the direction of the sensor.
 ///
 /// The basis is orthonormal within 2^−21.
 ///
 /// # Errors
-/// When the eye is more than 32 from the origin.
+/// The eye is more than 32 from the origin.
 pub fn free_look(
     eye: [Q32_32; 3],
     attitude: Quaternion,
@@ -105,11 +105,11 @@ pub fn free_look(
     View::new_checked(eye, u, v, n, DEFAULT_HALF_WIDTH, DEFAULT_NEAR)
 }
 
-/// The camera at distance `r` from the origin that looks at it in the direction in which the sensor looks: yaw and pitch carry the eye
-/// round the model, roll turns the picture.
+/// The camera at distance `r` from the origin that faces it in the direction of the sensor: yaw and pitch move the eye about the model,
+/// roll turns the picture.
 ///
 /// # Errors
-/// When `r` is outside [2, 5].
+/// `r` is outside [2, 5].
 pub fn orbit(r: Q32_32, attitude: Quaternion, mounting: Mounting) -> Result<View, ViewError> {
     if !(RADIUS[0]..=RADIUS[1]).contains(&r) {
         return Err(ViewError::Radius(r));
@@ -138,20 +138,20 @@ fn basis(attitude: Quaternion, mounting: Mounting) -> [[Q2_23; 3]; 3] {
 
 /// A sensitivity of 1.
 pub const NATURAL: u16 = 256;
-/// The sensitivities that are accepted, in 1/256.
+/// Accepted sensitivities, in 1/256.
 pub const SENSITIVITY: [u16; 2] = [32, 2_048];
 
-/// Between the sensor's attitude and the camera's: where its middle is, and how far it goes.
+/// Steering: the camera's attitude from the sensor's, by centre and sensitivity.
 ///
-/// With a sensitivity of 1 the camera's attitude is the sensor's but for what recentring has turned, so it stays as true as that. With
-/// another one each turn is made longer or shorter, about the axis that it has; the horizon is then the user's to hold.
+/// With a sensitivity of 1 the camera's attitude is the sensor's times a constant rotation, and as accurate. Another sensitivity scales
+/// the angle of each turn about its own axis, and the horizon may drift.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Steering {
     sensitivity: u16,
-    /// The sensor's, when it was last seen.
+    /// The sensor's attitude at the last call.
     seen: Option<Quaternion>,
     camera: Quaternion,
-    /// What stands before the sensor's attitude to make it the camera's.
+    /// Left factor that turns the sensor's attitude into the camera's.
     offset: Quaternion,
 }
 
@@ -162,7 +162,7 @@ impl Default for Steering {
 }
 
 impl Steering {
-    /// Begins with a sensitivity in 1/256, of which those beyond [`SENSITIVITY`] count as the nearest.
+    /// Steering with a sensitivity in 1/256, which saturates to [`SENSITIVITY`].
     pub fn new(sensitivity: u16) -> Self {
         Self {
             sensitivity: sensitivity.clamp(SENSITIVITY[0], SENSITIVITY[1]),
@@ -195,21 +195,21 @@ impl Steering {
         self.camera
     }
 
-    /// Makes the direction in which the sensor is turned now the middle one; the horizon stays where it is.
+    /// Turns the camera's heading to the start for the present direction of the sensor. The horizon does not change.
     pub fn recentre(&mut self) {
         let back = Quaternion::about_axis(2, -self.camera.heading());
         self.camera = back.times(self.camera);
         self.offset = back.times(self.offset);
     }
 
-    /// Makes the sensor's whole attitude the middle, the horizon too.
+    /// Makes the sensor's present attitude the centre, with the horizon.
     pub fn level(&mut self) {
         self.offset = self.seen.unwrap_or(Quaternion::IDENTITY).inverse();
         self.camera = Quaternion::IDENTITY;
     }
 }
 
-/// A rotation about the same axis by another angle; the shorter way round is taken for the rotation.
+/// A rotation about the same axis by a scaled angle. The angle of `turn` is at most half a turn.
 fn scaled(turn: Quaternion, sensitivity: u16) -> Quaternion {
     let [w, x, y, z] = turn
         .canonical()

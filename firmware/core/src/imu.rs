@@ -1,6 +1,6 @@
-//! A sensor that turns the camera: its samples, its calibration, its attitude and what follows it, in one place.
+//! A sensor that steers the camera: samples, calibration, attitude and steering.
 //!
-//! [`Imu`] is the [`Sink`] of an MPU-6050's [`Stream`](crate::mpu6050::Stream). While the sensor fails the attitude is held.
+//! [`Imu`] is the [`Sink`] of an MPU-6050's [`Stream`](crate::mpu6050::Stream). During failures of the sensor the attitude is held.
 
 use core::fmt;
 
@@ -12,12 +12,12 @@ use crate::follow::{self, Mounting, Steering};
 use crate::mpu6050::{self, Error, Identity, Measurement, Sink};
 use crate::orientation::{Counts, Quaternion, Sample, Scale, TIME_CONSTANT, Tilt, Tracker};
 
-/// How the camera follows the sensor.
+/// How the sensor steers the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Follow {
-    /// It stays where it is and looks where the sensor looks.
+    /// The camera turns in place, in the direction of the sensor.
     Look,
-    /// It goes round the origin, which it looks at.
+    /// The camera orbits the origin and faces it.
     Orbit,
 }
 
@@ -26,28 +26,28 @@ choices!(Follow {
     Orbit: "orbit"
 });
 
-/// Why there is no calibration.
+/// Reason why a calibration failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CalibrationError<E> {
-    /// It moved, or does not measure.
-    Sensor(calibration::Refusal),
-    /// No samples came.
+    /// The sensor moved, or does not measure.
+    Samples(calibration::SampleError),
+    /// The sensor gave no samples.
     Failed(Error<E>),
-    /// There is no sensor, and none was ever found.
+    /// No sensor was found since start.
     Absent,
 }
 
 impl<E: fmt::Display> fmt::Display for CalibrationError<E> {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Self::Sensor(refusal) => refusal.fmt(f),
+            Self::Samples(error) => error.fmt(f),
             Self::Failed(error) => error.fmt(f),
             Self::Absent => f.write_str("no sensor was found: expected an MPU-6050 on the I2C bus"),
         }
     }
 }
 
-/// A calibration, from its beginning on.
+/// State of the calibration.
 #[derive(Clone, Copy, Debug)]
 enum Calibrating<E> {
     Never,
@@ -55,11 +55,11 @@ enum Calibrating<E> {
     Ended(Result<Report, CalibrationError<E>>),
 }
 
-/// A sensor and what follows it. `E` is what its bus fails with.
+/// Samples, attitude and calibration of a sensor, and the steering of the camera. `E` is the error of the sensor's bus.
 #[derive(Clone, Copy, Debug)]
 pub struct Imu<E> {
     identity: Option<Identity>,
-    /// What is wrong now, and how often something was.
+    /// The present error.
     error: Option<Error<E>>,
     errors: u32,
     samples: u32,
@@ -70,7 +70,7 @@ pub struct Imu<E> {
     mounting: Mounting,
     steering: Steering,
     follow: Option<Follow>,
-    /// Whether the attitude has changed since the camera was asked for.
+    /// Whether the attitude has changed since the last view.
     moved: bool,
 }
 
@@ -97,27 +97,27 @@ impl<E: Copy> Default for Imu<E> {
 }
 
 impl<E: Copy> Imu<E> {
-    /// The chip that was found last.
+    /// The last chip found.
     pub const fn identity(&self) -> Option<Identity> {
         self.identity
     }
 
-    /// What is wrong; nothing while samples come.
+    /// The present error; `None` while samples arrive.
     pub const fn error(&self) -> Option<Error<E>> {
         self.error
     }
 
-    /// How often something was wrong; it saturates.
+    /// Number of errors, saturating.
     pub const fn errors(&self) -> u32 {
         self.errors
     }
 
-    /// Whether samples come.
+    /// Whether samples arrive.
     pub const fn is_running(&self) -> bool {
         self.identity.is_some() && self.error.is_none()
     }
 
-    /// Samples so far, modulo 2^32.
+    /// Number of samples, modulo 2^32.
     pub const fn samples(&self) -> u32 {
         self.samples
     }
@@ -138,19 +138,19 @@ impl<E: Copy> Imu<E> {
         self.tracker.attitude()
     }
 
-    /// What happened to the attitude.
+    /// Counts of the attitude's samples.
     pub const fn counts(&self) -> Counts {
         self.tracker.counts()
     }
 
-    /// What the gyroscope is taken to read at rest, in °/s, rounded towards zero to 2^−32.
+    /// Bias of the gyroscope in °/s, rounded towards zero to 2^−32.
     pub fn bias(&self) -> [Q32_32; 3] {
         self.tracker
             .bias()
             .map(|bias| mpu6050::degrees_per_second(bias.into()))
     }
 
-    /// Begins a calibration of so many samples, in place of one that is going on.
+    /// Starts a calibration with this number of samples, in place of one in progress.
     pub fn calibrate(&mut self, samples: u32) {
         self.calibrating = match self.error {
             Some(error) => Calibrating::Ended(Err(CalibrationError::Failed(error))),
@@ -159,7 +159,7 @@ impl<E: Copy> Imu<E> {
         };
     }
 
-    /// How many samples a calibration has that is going on.
+    /// Samples of the calibration in progress.
     pub const fn calibrated_samples(&self) -> Option<u32> {
         match self.calibrating {
             Calibrating::Going(_, samples) => Some(samples),
@@ -167,7 +167,7 @@ impl<E: Copy> Imu<E> {
         }
     }
 
-    /// How the last calibration has ended.
+    /// Result of the last calibration.
     pub const fn calibration(&self) -> Option<Result<Report, CalibrationError<E>>> {
         match self.calibrating {
             Calibrating::Ended(result) => Some(result),
@@ -175,45 +175,45 @@ impl<E: Copy> Imu<E> {
         }
     }
 
-    /// How the camera follows.
+    /// How the sensor steers the camera.
     pub const fn follow(&self) -> Option<Follow> {
         self.follow
     }
 
-    /// Lets the camera follow, or no longer.
+    /// Sets how the sensor steers the camera; `None` stops it.
     pub const fn set_follow(&mut self, follow: Option<Follow>) {
         self.follow = follow;
         self.moved = true;
     }
 
-    /// How the sensor is mounted.
+    /// The sensor's directions for the camera.
     pub const fn mounting(&self) -> Mounting {
         self.mounting
     }
 
-    /// Says how the sensor is mounted.
+    /// Sets the sensor's directions for the camera.
     pub const fn set_mounting(&mut self, mounting: Mounting) {
         self.mounting = mounting;
         self.moved = true;
     }
 
-    /// How far the camera turns for the sensor, in 1/256.
+    /// Camera gain, in 1/256.
     pub const fn sensitivity(&self) -> u16 {
         self.steering.sensitivity()
     }
 
-    /// Says how far the camera turns for the sensor, in 1/256, within [`SENSITIVITY`](follow::SENSITIVITY).
+    /// Sets the camera gain in 1/256, which saturates to [`SENSITIVITY`](follow::SENSITIVITY).
     pub fn set_sensitivity(&mut self, sensitivity: u16) {
         self.steering.set_sensitivity(sensitivity);
     }
 
-    /// Makes the direction in which the sensor is turned the middle one.
+    /// Turns the camera's heading to the start, for the present direction of the sensor.
     pub fn recentre(&mut self) {
         self.steering.recentre();
         self.moved = true;
     }
 
-    /// Takes a sample for a calibration that is going on. Apart, because it is rare and long.
+    /// Takes a sample for the calibration in progress. Apart from the frequent code, because it is rare and long.
     #[cold]
     #[inline(never)]
     fn go_on_calibrating(&mut self, sample: &Sample) {
@@ -227,16 +227,16 @@ impl<E: Copy> Imu<E> {
                 self.tracker.follow_bias(resting);
                 self.calibrating = Calibrating::Ended(Ok(report));
             }
-            Err(refusal) => {
-                self.calibrating = Calibrating::Ended(Err(CalibrationError::Sensor(refusal)))
+            Err(error) => {
+                self.calibrating = Calibrating::Ended(Err(CalibrationError::Samples(error)))
             }
         }
     }
 
-    /// The camera that follows, at `eye` or at a distance of `radius`, if it has moved since it was asked for.
+    /// The steered camera at `eye` or at a distance of `radius`, if it has moved since the last call.
     ///
     /// # Errors
-    /// When eye or radius are out of range.
+    /// Eye or radius are out of range.
     pub fn view(&mut self, eye: [Q32_32; 3], radius: Q32_32) -> Option<Result<View, ViewError>> {
         let follow = self
             .follow
@@ -258,7 +258,7 @@ impl<E: Copy> Sink<E> for Imu<E> {
 
     fn on_sample(&mut self, time: u64, measurement: &Measurement) {
         let sample = Sample {
-            // Stamps may wrap.
+            // Time stamps wrap.
             t_us: time as u32,
             accel: measurement.accel,
             gyro: measurement.gyro,

@@ -1,8 +1,8 @@
 //! Light on distance fields.
 //!
-//! Faces that are perpendicular to the axes are six, so what lights make of a material are six colours a frame and no work a
-//! pixel. Spheres are lit pixel by pixel, in `glint-model` and in the gateware. There are no shadows: all that counts is the angle
-//! between a normal and the direction to a light.
+//! Faces perpendicular to the axes have six directions, so that lighting is six colours a frame and no work per pixel. Spheres are lit
+//! per pixel, in `glint-model` and in the gateware. There are no shadows: only the angle between a normal and the direction to a light
+//! counts.
 
 use core::fmt;
 
@@ -15,27 +15,27 @@ use crate::fixed::Q32_32;
 /// Red, green and blue, 8 bits each.
 pub type Rgb = [u8; 3];
 
-/// The most lights of a scene.
+/// Largest number of lights.
 pub const MAX_LIGHTS: usize = 4;
 
-/// How a light is typed.
+/// Text form of a light.
 pub const FORM: &str = "X,Y,Z[,RRGGBB]";
 
-/// 1 in the numbers of a direction, 2^14.
+/// 1 in the components of a direction, 2^14.
 const ONE: i32 = 1 << 14;
 
-/// A light that is infinitely far away.
+/// A light at infinite distance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Light {
-    /// The direction to it as it was given, of any length.
+    /// The given direction to the light, of any length.
     towards: [Q32_32; 3],
-    /// That of length 1: s1.14, to nearest.
+    /// The same of length 1: s1.14, to nearest.
     direction: [i16; 3],
     colour: Rgb,
 }
 
 impl Light {
-    /// A light in a direction of any length but 0.
+    /// A light in a direction of any length except 0.
     ///
     /// # Errors
     /// The direction is 0.
@@ -63,7 +63,7 @@ impl Light {
         })
     }
 
-    /// The direction to it, of length 1: s1.14.
+    /// The direction to the light, of length 1: s1.14.
     pub const fn direction(&self) -> [i16; 3] {
         self.direction
     }
@@ -73,11 +73,11 @@ impl Light {
         self.colour
     }
 
-    /// Reads a light as it is typed, such as `1,-2,3` or `0,0,1,ffc080`: the direction to it, of any length, and its
-    /// colour, which is white unless told.
+    /// Reads the text form, such as `1,-2,3` or `0,0,1,ffc080`: the direction to the light, of any length, and its colour,
+    /// white by default.
     ///
     /// # Errors
-    /// The text has not this form, or the direction is 0.
+    /// The text has another form, or the direction is 0.
     pub fn parse(text: &str) -> Result<Self, LightError<'_>> {
         let form = LightError::Form { text };
         let mut words = text.split(',');
@@ -97,7 +97,7 @@ impl Light {
     }
 }
 
-/// As it is typed.
+/// The text form.
 impl fmt::Display for Light {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let [x, y, z] = self.towards;
@@ -117,7 +117,7 @@ impl fmt::Display for Hexadecimal {
     }
 }
 
-/// Reads a colour as it is typed: six hexadecimal digits, two a channel.
+/// Reads a colour of six hexadecimal digits, two a channel.
 pub fn parse_rgb(text: &str) -> Option<Rgb> {
     let digits = text.len() == 6 && text.bytes().all(|byte| byte.is_ascii_hexdigit());
     let number = u32::from_str_radix(text, 16).ok().filter(|_| digits)?;
@@ -125,15 +125,15 @@ pub fn parse_rgb(text: &str) -> Option<Rgb> {
     Some([red, green, blue])
 }
 
-/// Why something is no light.
+/// Reason why a text is not a light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LightError<'a> {
-    /// It has another form.
+    /// The text has another form.
     Form {
-        /// What was typed.
+        /// The text.
         text: &'a str,
     },
-    /// Its direction is 0.
+    /// The direction is 0.
     Nowhere,
 }
 
@@ -151,23 +151,23 @@ impl core::error::Error for LightError<'_> {}
 /// All the light of a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Lighting {
-    /// What comes from everywhere.
+    /// Ambient light.
     pub ambient: Rgb,
-    /// What comes from somewhere.
+    /// Lights.
     pub lights: Vec<Light, MAX_LIGHTS>,
 }
 
 impl Lighting {
-    /// Colours as they are.
+    /// Colours without shading.
     pub const PLAIN: Self = Self {
         ambient: [0xFF; 3],
         lights: Vec::new(),
     };
 
-    /// What comes from everywhere where lights are set and nothing else is said.
+    /// Default ambient light of given lights.
     pub const AMBIENT: Rgb = [0x40; 3];
 
-    /// The sun, and the sky: every face has another brightness.
+    /// Sun and sky, which give every face another brightness.
     pub fn day() -> Self {
         let sun = Light {
             towards: [3, -5, 8].map(Q32_32::from_num),
@@ -229,10 +229,10 @@ impl Lighting {
     }
 }
 
-/// What a solid is made of.
+/// Material of a solid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Material {
-    /// Each face in the colour of its normal, and each sphere in that of another material.
+    /// Each face in the colour of its normal, and the spheres in the colours of the materials in turn.
     #[default]
     Normal,
     /// Reddish brown.
@@ -299,8 +299,7 @@ impl Material {
         colours
     }
 
-    /// The colours of spheres in full light, by their numbers: one for all, or of all materials in turn, so that each is told
-    /// from its neighbours.
+    /// Colours of spheres in full light, by number: one colour, or the materials' colours in turn, which separates neighbours.
     pub const fn spheres(self) -> [Rgb; MAX_SPHERES] {
         let mut colours = [self.faces()[0]; MAX_SPHERES];
         if let Self::Normal = self {
@@ -313,7 +312,7 @@ impl Material {
         colours
     }
 
-    /// The light that shows it best: a normal's colour tells the face already.
+    /// Default lighting. `Normal` needs no light to separate faces.
     pub fn light(self) -> Lighting {
         match self {
             Self::Normal => Lighting::PLAIN,
@@ -322,7 +321,7 @@ impl Material {
     }
 }
 
-/// What is behind everything.
+/// Background of a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Background {
     /// White.
@@ -338,7 +337,7 @@ choices!(Background {
 });
 
 impl Background {
-    /// Its colours above, and at the horizon and below.
+    /// Colours at the zenith, and at the horizon and below.
     pub const fn colours(self) -> [Rgb; 2] {
         match self {
             Self::White => [[0xFF; 3]; 2],

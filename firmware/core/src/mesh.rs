@@ -1,6 +1,6 @@
-//! Meshes as they lie in memory, in files and in uploads (docs/formats.md, "Mesh in memory").
+//! Meshes in memory, files and uploads (docs/formats.md, "Mesh in memory").
 //!
-//! [`Mesh::new_checked`] looks at every byte once; what it returns is a view that cannot fail.
+//! [`Mesh::new_checked`] checks every byte once and returns a view whose accessors do not fail.
 
 #[cfg(feature = "alloc")]
 mod encode;
@@ -13,16 +13,16 @@ pub use encode::{EncodeError, IndexedTriangle, encode};
 
 /// The first four bytes.
 pub const MAGIC: [u8; 4] = *b"GLM1";
-/// The largest mesh in bytes.
+/// Largest length of a mesh in bytes.
 pub const MAX_BYTES: u32 = 32 << 20;
-/// The most vertices a chunk can have.
+/// Largest number of vertices of a chunk.
 pub const MAX_CHUNK_VERTICES: u32 = u16::MAX as u32;
 /// The largest radius, u.14: √3·2, the far corner of the positions, rounded up.
 pub const MAX_RADIUS: u32 = 56_756;
 
 /// Bytes of every record but the header, which has two.
 const RECORD: usize = 16;
-/// Bytes of the header of the whole.
+/// Bytes of the mesh's header.
 const HEADER: usize = 2 * RECORD;
 
 /// A checked mesh.
@@ -40,10 +40,10 @@ impl<'a> Mesh<'a> {
     /// Checks every length, count, index and reserved field of a mesh, and that its radius holds all vertices.
     ///
     /// # Errors
-    /// The first thing that is wrong, with its place.
+    /// The first error, with its place.
     pub fn new_checked(bytes: &'a [u8]) -> Result<Self, MeshError> {
         let found = bytes.len();
-        // The cast keeps what matters of a length that is refused anyway.
+        // Truncation: a longer length is refused anyway.
         let wrong_length = |expected| MeshError {
             offset: 0,
             expected,
@@ -131,7 +131,7 @@ impl<'a> Mesh<'a> {
         })
     }
 
-    /// The whole mesh as it lies in memory, from its header on.
+    /// All bytes of the mesh, from its header on.
     pub const fn bytes(&self) -> &'a [u8] {
         self.bytes
     }
@@ -157,7 +157,7 @@ impl<'a> Mesh<'a> {
         self.radius
     }
 
-    /// All chunks as they lie in memory, from the header of the first on.
+    /// The bytes of all chunks, from the first header on.
     pub const fn records(&self) -> &'a [[u8; RECORD]] {
         self.records
     }
@@ -179,22 +179,22 @@ pub struct Chunk<'a> {
 }
 
 impl<'a> Chunk<'a> {
-    /// How many vertices there are, 1 to 65,535.
+    /// Number of vertices, 1 to 65,535.
     pub const fn vertex_count(&self) -> usize {
         self.vertices.len()
     }
 
-    /// How many triangles there are.
+    /// Number of triangles.
     pub const fn triangle_count(&self) -> usize {
         self.triangles.len()
     }
 
-    /// The vertex of a number, if there is one.
+    /// The vertex with this number.
     pub fn vertex(&self, index: usize) -> Option<Vertex> {
         self.vertices.get(index).map(Vertex::from_bytes)
     }
 
-    /// The triangle of a number, if there is one.
+    /// The triangle with this number.
     pub fn triangle(&self, index: usize) -> Option<Triangle> {
         self.triangles.get(index).map(Triangle::from_bytes)
     }
@@ -252,9 +252,9 @@ impl<'a> Chunk<'a> {
 /// A vertex.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Vertex {
-    /// Where it is, s2.14.
+    /// Position, s2.14.
     pub position: [i16; 3],
-    /// The normal there, s2.14.
+    /// Normal, s2.14.
     pub normal: [i16; 3],
     /// Its colour.
     pub colour: Rgb565,
@@ -274,7 +274,7 @@ impl Vertex {
 /// A triangle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Triangle {
-    /// Its vertices, by their number in the chunk; counter-clockwise seen from outside.
+    /// Numbers of the vertices in the chunk, counter-clockwise seen from outside.
     pub indices: [u16; 3],
     /// Its colour.
     pub colour: Rgb565,
@@ -296,7 +296,7 @@ impl Triangle {
     }
 }
 
-/// Walks over the chunks' extents.
+/// Iterates over the chunks' extents.
 #[derive(Clone)]
 struct Walk<'a> {
     rest: &'a [[u8; RECORD]],
@@ -368,12 +368,12 @@ impl<'a> Iterator for Chunks<'a> {
     type Item = Chunk<'a>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        // The walk fails only where the mesh ends.
+        // In a checked mesh the iteration fails only at the end.
         self.0.chunk().ok().map(|(_, chunk)| chunk)
     }
 }
 
-/// The first little-endian words of some bytes, 0 where there are none.
+/// The first little-endian words of `bytes`, and 0 beyond their end.
 fn words<const N: usize>(bytes: &[u8]) -> [u32; N] {
     let mut words = [0; N];
     for (word, bytes) in words.iter_mut().zip(bytes.as_chunks().0) {
@@ -414,31 +414,31 @@ fn expect_zeros<const N: usize>(offset: u32, reserved: [u32; N]) -> Result<(), M
     }
 }
 
-/// Why bytes are not a mesh.
+/// Reason why bytes are not a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MeshError {
-    /// Where, in bytes from the start.
+    /// Place in bytes from the start.
     pub offset: u32,
-    /// What should have been there.
+    /// The expected contents.
     pub expected: Expected,
-    /// What was.
+    /// The number found.
     pub found: u32,
 }
 
-/// What a mesh should have had: a count of something named.
+/// Expected contents: a count with its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Expected {
     /// The four bytes [`MAGIC`].
     Magic,
-    /// Just so many.
+    /// Exactly this number.
     Exactly(&'static str, u32),
-    /// So many or more.
+    /// At least this number.
     AtLeast(&'static str, u32),
-    /// So many or fewer.
+    /// At most this number.
     AtMost(&'static str, u32),
-    /// Fewer than so many.
+    /// Below this number.
     Below(&'static str, u32),
-    /// A multiple of so many.
+    /// A multiple of this number.
     MultipleOf(&'static str, u32),
 }
 

@@ -1,6 +1,6 @@
-//! The MPU-6050, and relatives with the same registers: from power-on to samples with the times that they were measured at.
+//! The MPU-6050, and chips with the same registers: from power-on to samples with time stamps.
 //!
-//! [`Mpu6050`] sets the chip up over any [`I2c`]; it does not wait by itself. [`Stream`] runs for ever: it finds the chip, wakes it,
+//! [`Mpu6050`] configures the chip over any [`I2c`] without delays of its own. [`Stream`] does not end: it finds the chip, wakes it,
 //! reads each sample once, and recovers from every error of the bus. The bus repeats one read at a steady pace ([`PeriodicI2c`]);
 //! [`Pace`] computes the times of the samples from the times of these reads.
 //!
@@ -37,12 +37,12 @@ pub const fn degrees_per_second(rate: i64) -> Q32_32 {
 /// The time between two samples, in µs.
 pub const PERIOD: u32 = 1_000;
 
-/// Looks that are told of at once.
+/// Reads per interrupt.
 const BATCH: u8 = 5;
 
-/// How long a reset takes, in ms.
+/// Time of a reset in ms.
 const RESET: u32 = 100;
-/// How long the gyroscope's oscillator takes until what it drives is in order, in ms.
+/// Settling time of the gyroscope's oscillator in ms.
 const START: u32 = 30;
 
 const SMPLRT_DIV: u8 = 0x19;
@@ -61,7 +61,7 @@ const DATA_RDY: u8 = 0x01;
 /// From SMPLRT_DIV on: every sample of 1 kHz, DLPF_CFG 2, ±2000 °/s, ±8 g.
 const CONFIGURATION: [u8; 4] = [0x00, 0x02, 0x18, 0x10];
 
-/// What WHO_AM_I says.
+/// Chip by its WHO_AM_I.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Identity {
     /// An MPU-6050 or MPU-6000.
@@ -77,7 +77,7 @@ pub enum Identity {
 }
 
 impl Identity {
-    /// All that are known, with what they say and how they are called.
+    /// Known chips with their WHO_AM_I and name.
     const ALL: [(u8, Self, &str); 5] = [
         (0x68, Self::Mpu6050, "MPU-6050"),
         (0x70, Self::Mpu6500, "MPU-6500"),
@@ -91,7 +91,7 @@ impl Identity {
         known.map(|(_, identity, _)| *identity)
     }
 
-    /// The temperature in 1/100 °C of what its register says, the register's part rounded towards 0.
+    /// Temperature in 1/100 °C from the chip's register; the register's part rounds towards 0.
     pub const fn temperature(self, raw: i16) -> i32 {
         let raw = raw as i32;
         match self {
@@ -112,7 +112,7 @@ impl fmt::Display for Identity {
     }
 }
 
-/// One sample, in counts: all of it measured at the same time.
+/// One sample in counts, measured at one time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Measurement {
     /// The force along each axis, 1/4096 g.
@@ -141,25 +141,25 @@ impl Measurement {
     }
 }
 
-/// What goes wrong.
+/// Error of the sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Error<E> {
     /// The bus.
     Bus(E),
     /// WHO_AM_I of an unknown chip.
     Identity(u8),
-    /// A register does not keep what is written to it.
+    /// A register does not keep the written value.
     Register {
-        /// Which one.
+        /// Its address.
         register: u8,
-        /// What was written.
+        /// The written value.
         expected: u8,
-        /// What it reads as.
+        /// The value read.
         found: u8,
     },
-    /// No sample comes.
+    /// No sample arrives.
     Silent,
-    /// All samples are the same, which noise would not leave so.
+    /// All samples are equal, without noise.
     Frozen,
 }
 
@@ -190,12 +190,8 @@ impl<E: fmt::Display> fmt::Display for Error<E> {
                 f,
                 "register {register:#04x} is {found:#04x}: expected {expected:#04x} as written"
             ),
-            Self::Silent => write!(
-                f,
-                "no sample comes: expected {} a second",
-                1_000_000 / PERIOD
-            ),
-            Self::Frozen => f.write_str("all samples are the same: expected some noise"),
+            Self::Silent => write!(f, "no samples: expected {} per second", 1_000_000 / PERIOD),
+            Self::Frozen => f.write_str("all samples are equal: expected noise"),
         }
     }
 }
@@ -207,7 +203,7 @@ pub struct Mpu6050<B> {
 }
 
 impl<B: I2c> Mpu6050<B> {
-    /// A chip that may be there; [`start`](Self::start) finds it.
+    /// A driver on a bus; [`start`](Self::start) finds the chip.
     pub const fn new(bus: B) -> Self {
         Self {
             bus,
@@ -215,11 +211,11 @@ impl<B: I2c> Mpu6050<B> {
         }
     }
 
-    /// Finds the chip at one of its addresses and, unless it is configured already and no `reset` is wanted, resets and configures it,
-    /// which takes 0.13 s.
+    /// Finds the chip at one of its addresses, then resets and configures it, which takes 0.13 s. Without `reset` a configured chip is
+    /// left as it is.
     ///
     /// # Errors
-    /// It is not there, not known, or does not do what it is told.
+    /// The chip is absent, unknown, or does not accept its configuration.
     pub async fn start(
         &mut self,
         reset: bool,
@@ -238,10 +234,10 @@ impl<B: I2c> Mpu6050<B> {
         Ok(identity)
     }
 
-    /// Checks that it is awake and configured, as it is no longer after its supply has failed.
+    /// Checks that the chip is awake and configured. A failure of its supply resets it.
     ///
     /// # Errors
-    /// It is not, or not there.
+    /// The chip is not configured, or absent.
     pub async fn check(&mut self) -> Result<(), Error<B::Error>> {
         self.expect(PWR_MGMT_1, [CLOCK_OF_X]).await?;
         self.expect(SMPLRT_DIV, CONFIGURATION).await?;
@@ -255,7 +251,7 @@ impl<B: I2c> Mpu6050<B> {
             let answer = self.bus.write_read(address, &[WHO_AM_I], &mut found).await;
             match answer {
                 Ok(()) => return Identity::of(found[0]).ok_or(Error::Identity(found[0])),
-                // There may be a chip at the other one.
+                // Try the other address.
                 Err(error)
                     if address == ADDRESSES[0]
                         && matches!(error.kind(), ErrorKind::NoAcknowledge(_)) => {}
@@ -265,13 +261,13 @@ impl<B: I2c> Mpu6050<B> {
         Err(Error::Identity(found[0]))
     }
 
-    /// Writes registers, the first of which is given.
+    /// Writes consecutive registers.
     async fn write(&mut self, register: u8, values: &[u8]) -> Result<(), Error<B::Error>> {
         let mut operations = [Operation::Write(&[register]), Operation::Write(values)];
         Ok(self.bus.transaction(self.address, &mut operations).await?)
     }
 
-    /// Compares registers, the first of which is given, with what they should be.
+    /// Compares consecutive registers with their expected values.
     async fn expect<const N: usize>(
         &mut self,
         register: u8,
@@ -294,12 +290,11 @@ impl<B: I2c> Mpu6050<B> {
     }
 }
 
-/// What a look reads: INT_STATUS, and the sample behind it.
+/// Contents of a read: INT_STATUS, then the sample.
 type Look = [u8; 1 + Measurement::BYTES];
 
 impl<B: PeriodicI2c> Mpu6050<B> {
-    /// Begins to look for samples, every `period` µs. A look is one burst, 0.43 ms at 400 kHz, within which the chip leaves its data as
-    /// they are.
+    /// Starts reads every `period` µs. A read is one burst of 0.43 ms at 400 kHz, during which the chip does not change its data.
     ///
     /// # Errors
     /// Those of the bus.
@@ -313,7 +308,7 @@ impl<B: PeriodicI2c> Mpu6050<B> {
         })?)
     }
 
-    /// The next look: when it began, in µs, and the sample that has been measured since the one before.
+    /// The next read: its start in µs, and the sample if it is new since the read before.
     ///
     /// # Errors
     /// Those of the bus.

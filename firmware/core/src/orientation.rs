@@ -1,7 +1,7 @@
 //! The attitude of a body from its gyroscope and accelerometer, by integer arithmetic alone.
 //!
-//! Conventions: the quaternion carries body to world, the world's z is up, a flat sensor at rest reads +1 g on its z. The
-//! first sample is where the attitude begins: at the identity, or where the accelerometer says down is, with yaw 0. Times are in µs. Formats and
+//! Conventions: the quaternion maps body to world, the world's z is up, a flat sensor at rest reads +1 g on its z. The
+//! attitude starts at the first sample: at the identity, or level by the accelerometer with yaw 0. Times are in µs. Formats and
 //! roundings are those of `docs/formats.md`, the errors those of `docs/report/imu.md`.
 
 mod gain;

@@ -1,8 +1,8 @@
 //! The length and the angle of a vector of two numbers, by CORDIC in vectoring mode (Volder, 1959).
 //!
 //! Each of 36 steps turns the vector towards the positive first axis by an angle whose tangent is a power of two, and
-//! adds up the angles. There is no singular place: the angle of a vector along an axis is exact, and that of a vector
-//! without length is 0.
+//! adds up the angles. There is no singularity: the angle of a vector along an axis is exact, and that of a vector of
+//! length 0 is 0.
 
 use crate::fixed::Turns;
 use crate::trig::PI_Q60;
@@ -11,7 +11,7 @@ use crate::trig::PI_Q60;
 const STEPS: usize = 36;
 /// atan(2^−i) for i = 0…35, in units of 2^−48 turns, to the nearest.
 static ANGLES: [u64; STEPS] = angles();
-/// What the steps shorten a vector by, ∏ cos(atan(2^−i)), with 32 fraction bits.
+/// Factor that undoes the lengthening by the steps, ∏ cos(atan(2^−i)), with 32 fraction bits.
 const SHORTENING: u64 = 0x9B74_EDA8;
 
 /// The bit that the larger of the two numbers has in front of the steps. They lengthen the vector, by at most
@@ -45,7 +45,7 @@ pub fn polar(x: i64, y: i64) -> (i64, Turns) {
             (x, y) = (x - turned, y + right);
             angle = angle.wrapping_sub(step);
         } else if i == 0 {
-            // Along the axis there is nothing to turn, and nothing is lengthened.
+            // A vector along the axis is neither turned nor lengthened.
             return ((x >> up) << down, Turns((angle >> 16) as u32));
         } else {
             // The lengths of the steps have to be those of SHORTENING; the last of them are too short to matter.

@@ -1,28 +1,28 @@
-//! Two eyes that look at one picture, each through glasses of its own colour.
+//! Stereo: two eyes in one anaglyph picture.
 //!
-//! They are named as people type them: half the distance between them, the distance at which both see the same, and
-//! the glasses, such as `0.05,3,red-cyan`.
+//! The text form is half the distance between the eyes, the distance of zero parallax, and the colours of the glasses, such
+//! as `0.05,3,red-cyan`.
 
 use core::fmt;
 
 use crate::choice::{Choice as _, choices};
 use crate::fixed::Q32_32;
 
-/// The half separations that are accepted.
+/// Accepted half separations.
 pub const HALF_SEPARATION: [Q32_32; 2] = [Q32_32::ZERO, Q32_32::ONE];
-/// The smallest distance at which both eyes may see the same; it is not below the half separation either.
+/// Smallest distance of zero parallax, which is also at least the half separation.
 const LEAST_PARALLAX: Q32_32 = Q32_32::lit("0.1");
 
-/// How they are typed.
+/// The text form.
 pub const FORM: &str = "E,ZERO[,red-blue|red-cyan]";
 
-/// Which colour an eye sees.
+/// Colours of the glasses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tint {
-    /// The left one red, the right one blue; green is the darker of both.
+    /// Left red, right blue; green is the darker of both.
     #[default]
     RedBlue,
-    /// The left one red, the right one green and blue.
+    /// Left red, right green and blue.
     RedCyan,
 }
 
@@ -34,19 +34,19 @@ choices!(Tint {
 /// Two eyes, beside each other along u.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stereo {
-    /// From the camera's eye to each of the two, in world units: 0 to 1.
+    /// Distance from the camera's eye to each of the two, in world units: 0 to 1.
     pub half_separation: Q32_32,
-    /// The distance along n at which both see the same place of the picture: at least the half separation, and 0.1.
+    /// Distance of zero parallax along n: at least the half separation, and 0.1.
     pub zero_parallax: Q32_32,
-    /// Their colours.
+    /// Colours of the glasses.
     pub tint: Tint,
 }
 
 impl Stereo {
-    /// Eyes whose numbers are in their ranges.
+    /// The same eyes, if their numbers are in range.
     ///
     /// # Errors
-    /// The first number that is not.
+    /// The first number out of range.
     pub fn checked(self) -> Result<Self, StereoError<'static>> {
         let Self {
             half_separation,
@@ -66,10 +66,10 @@ impl Stereo {
         Ok(self)
     }
 
-    /// Reads them as they are typed, such as `0.05,3`; the glasses are red and blue unless told.
+    /// Reads the text form, such as `0.05,3`. The default glasses are red and blue.
     ///
     /// # Errors
-    /// The text has not this form, or a number is out of its range.
+    /// The text has another form, or a number is out of range.
     pub fn parse(text: &str) -> Result<Self, StereoError<'_>> {
         let mut words = text.split(',');
         let mut number = || Q32_32::from_str(words.next()?).ok();
@@ -92,7 +92,7 @@ impl Stereo {
     }
 }
 
-/// As they are typed.
+/// The text form.
 impl fmt::Display for Stereo {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let Self {
@@ -104,17 +104,17 @@ impl fmt::Display for Stereo {
     }
 }
 
-/// Why something is no pair of eyes.
+/// Reason why a text is not a pair of eyes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StereoError<'a> {
-    /// It has another form.
+    /// The text has another form.
     Form {
-        /// What was typed.
+        /// The text.
         text: &'a str,
     },
     /// The half separation is out of range.
     HalfSeparation(Q32_32),
-    /// Both see the same too near.
+    /// The distance of zero parallax is too small.
     ZeroParallax {
         /// The distance.
         zero_parallax: Q32_32,

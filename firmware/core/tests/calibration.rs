@@ -1,6 +1,8 @@
 //! Calibration: what it finds, and what it refuses.
 
-use glint_core::calibration::{Calibration, Progress, Refusal, Report, RestBias, SAMPLES, Units};
+use glint_core::calibration::{
+    Calibration, Progress, Report, RestBias, SAMPLES, SampleError, Units,
+};
 use glint_core::orientation::Sample;
 
 struct Random(u64);
@@ -27,7 +29,7 @@ const BIAS: [f64; 3] = [73.8, -0.77, 18.4];
 fn calibrate(
     samples: u32,
     mut change: impl FnMut(u32, &mut Sample),
-) -> Result<(Report, [f64; 3]), Refusal> {
+) -> Result<(Report, [f64; 3]), SampleError> {
     let mut calibration = Calibration::new(Units::MPU_6050, samples);
     let mut random = Random(5);
     let mut sum = [0.0; 3];
@@ -88,7 +90,7 @@ fn whatever_moves_is_refused_with_its_reason() {
     assert!(
         matches!(
             turned,
-            Err(Refusal::Turned {
+            Err(SampleError::Turned {
                 sample: 700,
                 axis: 1,
                 by: 50..70,
@@ -101,7 +103,7 @@ fn whatever_moves_is_refused_with_its_reason() {
     assert!(
         matches!(
             tilted,
-            Err(Refusal::Pushed {
+            Err(SampleError::Pushed {
                 axis: 0,
                 most: 512,
                 ..
@@ -113,7 +115,7 @@ fn whatever_moves_is_refused_with_its_reason() {
     assert!(
         matches!(
             creeping,
-            Err(Refusal::Changed {
+            Err(SampleError::Changed {
                 axis: 2,
                 most: 544,
                 ..
@@ -127,7 +129,7 @@ fn whatever_moves_is_refused_with_its_reason() {
     assert!(
         matches!(
             spinning,
-            Err(Refusal::TooLarge {
+            Err(SampleError::TooLarge {
                 axis: 2,
                 mean: 915..922,
                 most: 656
@@ -136,9 +138,9 @@ fn whatever_moves_is_refused_with_its_reason() {
         "{spinning:?}"
     );
     let frozen = calibrate(1_000, |_, sample| sample.gyro = [1, 2, 3]);
-    assert_eq!(frozen, Err(Refusal::Frozen));
-    for refusal in [turned, tilted, creeping, spinning, frozen] {
-        let text = refusal.expect_err("refused").to_string();
+    assert_eq!(frozen, Err(SampleError::Frozen));
+    for error in [turned, tilted, creeping, spinning, frozen] {
+        let text = error.expect_err("refused").to_string();
         assert!(text.contains("expected") && !text.contains('\n'), "{text}");
     }
 }
@@ -171,7 +173,7 @@ fn stale_samples_do_not_count_and_extremes_fit() {
             });
         }
         assert!(
-            matches!(outcome, Err(Refusal::TooLarge { axis: 0, .. })),
+            matches!(outcome, Err(SampleError::TooLarge { axis: 0, .. })),
             "{outcome:?}"
         );
     }

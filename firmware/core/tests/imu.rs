@@ -62,8 +62,8 @@ fn a_calibration_ends_when_it_moves_fails_or_has_no_sensor() {
     imu.on_sample(1_000, &moving);
     assert!(matches!(
         imu.calibration(),
-        Some(Err(CalibrationError::Sensor(
-            calibration::Refusal::Turned { axis: 2, .. }
+        Some(Err(CalibrationError::Samples(
+            calibration::SampleError::Turned { axis: 2, .. }
         )))
     ));
     imu.calibrate(64);

@@ -355,13 +355,13 @@ fn every_fault_is_reported_and_recovered() {
             Some(Fault::Stalled),
             25,
             250,
-            "no sample comes: expected 1000 a second",
+            "no samples: expected 1000 per second",
         ),
         (
             Some(Fault::Frozen),
             110,
             250,
-            "all samples are the same: expected some noise",
+            "all samples are equal: expected noise",
         ),
         (
             Some(Fault::Identity(0x12)),

@@ -1,38 +1,38 @@
-//! The bias as it wanders, learnt at rest.
+//! Tracking of the bias at rest.
 
 use super::Units;
 use crate::orientation::{Gain, Sample};
 
-/// The time constant of the means that say whether it rests, in µs.
+/// Time constant of the means that detect rest, in µs.
 const NOTICE: u32 = 500_000;
-/// How long it must have rested before anything is learnt, in µs.
+/// Time of rest before tracking starts, in µs.
 const REST: u32 = 1_500_000;
-/// The time constant of learning, in µs.
+/// Time constant of tracking, in µs.
 const LEARN: u32 = 100_000_000;
-/// The most a rate may differ from its mean at rest, in °/s.
+/// Largest difference of a rate from its mean at rest, in °/s.
 const MOST_RATE: u32 = 1;
-/// The most the mean may differ from the bias at rest, in °/s: what temperature does to it between two rests.
+/// Largest difference between mean and bias at rest, in °/s: the change by temperature between two rests.
 const MOST_BIAS: u32 = 2;
-/// The most a force may differ from its mean at rest, in 1/16 g.
+/// Largest difference of a force from its mean at rest, in 1/16 g.
 const MOST_FORCE: u32 = 1;
 
-/// Follows the bias of a gyroscope while it rests. Numbers have 32 fraction bits of a LSB, so the smallest gain, 10^−5 at 1 kHz, still
-/// sees a difference of 2^−15 LSB.
+/// Tracks the bias of a gyroscope at rest. Numbers have 32 fraction bits of a LSB, so that the smallest gain, 10^−5 at 1 kHz, resolves a
+/// difference of 2^−15 LSB.
 #[derive(Clone, Copy, Debug)]
 pub struct RestBias {
-    /// The most that rates, forces and the bias may differ at rest, in LSB.
+    /// Largest differences of rates, forces and bias at rest, in LSB.
     most: [u32; 3],
     bias: [i64; 3],
     mean: [i64; 3],
     force: [i64; 3],
-    /// For how long it has rested, in µs; nothing before the first sample.
+    /// Time of rest in µs; `None` before the first sample.
     rested: Option<u32>,
     notice: Gain,
     learn: Gain,
 }
 
 impl RestBias {
-    /// Begins with a bias in 1/256 LSB.
+    /// Starts with a bias in 1/256 LSB.
     pub fn new(units: Units, bias: [i32; 3]) -> Self {
         Self {
             most: [
@@ -55,7 +55,7 @@ impl RestBias {
         self.bias.map(|x| ((x + (1 << 23)) >> 24) as i32)
     }
 
-    /// Whether it has rested long enough to learn from.
+    /// Whether the sensor has rested long enough to track the bias.
     pub fn is_at_rest(&self) -> bool {
         self.rested.is_some_and(|time| time >= REST)
     }
@@ -98,7 +98,7 @@ fn fraction(count: i16) -> i64 {
     i64::from(count) << 32
 }
 
-/// Whether numbers differ by less than so many LSB.
+/// Whether numbers differ by less than `most` LSB.
 #[inline(never)]
 fn near(a: i64, b: i64, most: u32) -> bool {
     (a - b).unsigned_abs() >> 32 < u64::from(most)

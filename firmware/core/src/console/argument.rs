@@ -27,11 +27,11 @@ pub trait WordArgument {
     /// The accepted texts.
     const KIND: Kind;
 
-    /// The value of a word. `None` refuses it.
+    /// The value of a word. `None` rejects it.
     fn parse(text: &str) -> Option<Self::Value<'_>>;
 
-    /// The reason why [`parse`](Self::parse) refuses a word.
-    fn refusal(_: &str) -> ValueError<'_> {
+    /// The reason why [`parse`](Self::parse) rejects a word.
+    fn error(_: &str) -> ValueError<'_> {
         ValueError::Kind
     }
 }
@@ -84,9 +84,9 @@ impl<'a> Reader<'a> {
     /// Keeps the error of the last word.
     #[cold]
     #[inline(never)]
-    fn refuse_word(&mut self, parameter: &'static Parameter, refusal: Refusal) {
+    fn reject_word(&mut self, parameter: &'static Parameter, error_of: ErrorOf) {
         let Self { syntax, word, .. } = *self;
-        match refusal(word.text) {
+        match error_of(word.text) {
             ValueError::Kind => {
                 self.error = Some(ParseError(ParseErrorKind::Word {
                     syntax,
@@ -94,14 +94,14 @@ impl<'a> Reader<'a> {
                     word,
                 }));
             }
-            error => self.refuse(error),
+            error => self.reject(error),
         }
     }
 
     /// Keeps an error about words that are accepted one by one.
     #[cold]
     #[inline(never)]
-    pub fn refuse(&mut self, error: ValueError<'a>) {
+    pub fn reject(&mut self, error: ValueError<'a>) {
         let syntax = self.syntax;
         self.error = Some(ParseError(ParseErrorKind::Value { syntax, error }));
     }
@@ -109,7 +109,7 @@ impl<'a> Reader<'a> {
     /// Ends the line.
     ///
     /// # Errors
-    /// An argument was refused, or the line goes on.
+    /// An argument was rejected, or the line goes on.
     pub fn end(mut self) -> Result<(), ParseError<'a>> {
         let syntax = self.syntax;
         if let Some(error) = self.error {
@@ -122,8 +122,8 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// [`WordArgument::refusal`].
-type Refusal = fn(&str) -> ValueError<'_>;
+/// [`WordArgument::error`].
+type ErrorOf = fn(&str) -> ValueError<'_>;
 
 impl Parameter {
     /// A parameter of type `T`.
@@ -145,7 +145,7 @@ impl<T: WordArgument> Argument for T {
     fn read<'a>(reader: &mut Reader<'a>, parameter: &'static Parameter) -> Option<Self::Value<'a>> {
         let value = T::parse(reader.word(parameter)?);
         if value.is_none() {
-            reader.refuse_word(parameter, T::refusal);
+            reader.reject_word(parameter, T::error);
         }
         value
     }
@@ -180,7 +180,7 @@ impl Argument for Flag {
         if reader.word(parameter)? == parameter.name {
             return Some(true);
         }
-        reader.refuse_word(parameter, |_| ValueError::Kind);
+        reader.reject_word(parameter, |_| ValueError::Kind);
         None
     }
 }
@@ -204,7 +204,7 @@ macro_rules! group {
                 match $build {
                     Ok(value) => Some(value),
                     Err(error) => {
-                        reader.refuse(error);
+                        reader.reject(error);
                         None
                     }
                 }
@@ -258,7 +258,7 @@ impl<K: Keyword, T: WordArgument> WordArgument for Or<K, T> {
         T::parse(text).map(Some)
     }
 
-    fn refusal(text: &str) -> ValueError<'_> {
-        T::refusal(text)
+    fn error(text: &str) -> ValueError<'_> {
+        T::error(text)
     }
 }

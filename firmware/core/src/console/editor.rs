@@ -8,23 +8,23 @@ use super::completion::complete;
 
 /// What the console writes before it reads a line.
 pub const PROMPT: &str = "glint> ";
-/// The longest line in bytes.
+/// Longest line in bytes.
 pub const LINE_MAX: usize = 640;
-/// How many lines are remembered.
+/// Lines of the history.
 pub const HISTORY: usize = 8;
 
 type Line = Vec<u8, LINE_MAX>;
 
-/// What a byte led to.
+/// Effect of a byte.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event<'a> {
     /// Nothing to do; the echo has been written.
     None,
-    /// A line was ended. It is ASCII, without control characters.
+    /// A complete line: ASCII without control characters.
     Line(&'a str),
-    /// A line was ended that was longer than [`LINE_MAX`]: answer with an error.
+    /// The end of a line longer than [`LINE_MAX`], to be answered with an error.
     Overlong,
-    /// Ctrl-C: the line was given up.
+    /// Ctrl-C: the line was cancelled.
     Interrupt,
 }
 
@@ -38,28 +38,28 @@ pub enum Event<'a> {
 /// | ↑, ↓, Ctrl-P, Ctrl-N | bring back an earlier or later line |
 /// | Ctrl-U, Ctrl-K, Ctrl-W | delete to the start, to the end, or the word before the cursor |
 /// | Tab | completes a command or a word of its arguments, or lists the candidates |
-/// | Ctrl-L | writes prompt and line again |
-/// | Ctrl-C | gives the line up |
+/// | Ctrl-L | redraws prompt and line |
+/// | Ctrl-C | cancels the line |
 ///
-/// A zero byte drops the line in silence: it ends the leftovers of a binary transfer. Other control characters, unknown
+/// A zero byte drops the line without an answer: it ends the remains of a binary transfer. Other control characters, unknown
 /// escape sequences and bytes beyond ASCII do nothing.
 #[derive(Debug)]
 pub struct LineEditor {
     line: Line,
-    /// Where the next character goes, at most the line's length.
+    /// Place of the next character, at most the line's length.
     cursor: usize,
-    /// The line is longer than there is room for.
+    /// The line exceeds its buffer.
     overlong: bool,
-    /// The line was handed out and is to be cleared.
+    /// The line was returned and is cleared by the next byte.
     ended: bool,
     /// The last byte was a carriage return, so that a line feed belongs to it.
     returned: bool,
     escape: Escape,
     /// Older lines last.
     history: Deque<Line, HISTORY>,
-    /// Which line of the history is shown, from 1; 0 is the one that was typed.
+    /// Number of the shown line of the history, from 1; 0 is the typed line.
     shown: usize,
-    /// What was typed before the history was looked at.
+    /// The typed line, while a line of the history is shown.
     typed: Line,
 }
 
@@ -79,7 +79,7 @@ enum Input {
     Key(Key),
 }
 
-/// What can be done to a line.
+/// An editing key.
 enum Key {
     Left,
     Right,
@@ -112,8 +112,8 @@ impl LineEditor {
         }
     }
 
-    /// Takes a byte. What the terminal shall show is written to `echo`, which is to send a carriage return with every line feed; its
-    /// errors are ignored, as nobody sees the echo then.
+    /// Takes a byte and writes the terminal's echo to `echo`, which sends a carriage return with every line feed. Errors of
+    /// `echo` are ignored: the line then has no reader.
     pub fn on_byte(&mut self, byte: u8, echo: &mut dyn Write) -> Event<'_> {
         if self.ended {
             self.clear();
@@ -129,7 +129,7 @@ impl LineEditor {
             b'\n' if returned => {}
             b'\r' | b'\n' => return self.end(echo),
             _ => {
-                // Nobody sees an echo that cannot be written.
+                // An echo that cannot be written has no reader.
                 let _ = match self.decode(byte) {
                     Input::Nothing => Ok(()),
                     Input::Character(byte) => self.insert(byte, echo),
@@ -140,7 +140,7 @@ impl LineEditor {
         Event::None
     }
 
-    /// Ends the line and remembers it.
+    /// Ends the line and adds it to the history.
     fn end(&mut self, echo: &mut dyn Write) -> Event<'_> {
         let _ = echo.write_str("\n");
         self.ended = true;
@@ -152,7 +152,7 @@ impl LineEditor {
             if self.history.is_full() {
                 self.history.pop_front();
             }
-            // There is room now.
+            // The history has room now.
             let _ = self.history.push_back(self.line.clone());
         }
         Event::Line(text(&self.line))
@@ -167,7 +167,7 @@ impl LineEditor {
         self.shown = 0;
     }
 
-    /// Tells characters from keys, some of which are sequences of bytes.
+    /// Decodes characters and keys, of which some are sequences of bytes.
     fn decode(&mut self, byte: u8) -> Input {
         let key = match (self.escape, byte) {
             (_, 0x1B) => {
@@ -182,7 +182,7 @@ impl LineEditor {
                 self.escape = Escape::Number(number.saturating_mul(10).saturating_add(byte - b'0'));
                 return Input::Nothing;
             }
-            // Further parameters tell which of Shift, Alt and Ctrl were held.
+            // Further parameters are the modifiers Shift, Alt and Ctrl.
             (Escape::Number(_), b' '..=b'?') => return Input::Nothing,
             (Escape::Number(number), last) => {
                 self.escape = Escape::No;
@@ -275,7 +275,7 @@ impl LineEditor {
         self.write_tail(echo)
     }
 
-    /// Inserts what all candidates have in common, or lists them.
+    /// Inserts the common beginning of all candidates, or lists them.
     fn complete(&mut self, echo: &mut dyn Write) -> fmt::Result {
         let (mut count, mut common) = (0, "");
         complete(self.before(), &mut |_, rest| {
@@ -321,7 +321,7 @@ impl LineEditor {
         }
     }
 
-    /// Deletes what lies between two places, one of which is the cursor's.
+    /// Deletes the text between two places, one of which is the cursor.
     fn delete(&mut self, start: usize, end: usize, echo: &mut dyn Write) -> fmt::Result {
         if start >= end {
             return Ok(());
@@ -331,14 +331,14 @@ impl LineEditor {
             place += 1;
             !(start + 1..=end).contains(&place)
         });
-        // What did not fit is lost, but what is left is a line again.
+        // The surplus text is lost, and the rest is a line again.
         self.overlong = false;
         self.move_to(start, echo)?;
         echo.write_str("\x1B[K")?;
         self.write_tail(echo)
     }
 
-    /// Shows a line of the history, counted from the last, or what was typed.
+    /// Shows a line of the history, counted from the last, or the typed line.
     fn show(&mut self, shown: usize, echo: &mut dyn Write) -> fmt::Result {
         if self.shown == 0 {
             self.typed.clone_from(&self.line);
@@ -357,7 +357,7 @@ impl LineEditor {
         Ok(())
     }
 
-    /// Writes what follows the cursor and goes back to it.
+    /// Writes the text after the cursor and moves back.
     fn write_tail(&self, echo: &mut dyn Write) -> fmt::Result {
         match self.line.get(self.cursor..) {
             Some(tail) if !tail.is_empty() => write!(echo, "{}\x1B[{}D", text(tail), tail.len()),

@@ -168,7 +168,7 @@ impl WordArgument for field::Field {
         Self::parse(text).ok()
     }
 
-    fn refusal(text: &str) -> ValueError<'_> {
+    fn error(text: &str) -> ValueError<'_> {
         Self::parse(text)
             .err()
             .map_or(ValueError::Kind, ValueError::Field)
@@ -195,7 +195,7 @@ impl WordArgument for stereo::Stereo {
         Self::parse(text).ok()
     }
 
-    fn refusal(text: &str) -> ValueError<'_> {
+    fn error(text: &str) -> ValueError<'_> {
         Self::parse(text)
             .err()
             .map_or(ValueError::Kind, ValueError::Stereo)
@@ -211,7 +211,7 @@ impl WordArgument for light::Light {
         Self::parse(text).ok()
     }
 
-    fn refusal(text: &str) -> ValueError<'_> {
+    fn error(text: &str) -> ValueError<'_> {
         Self::parse(text)
             .err()
             .map_or(ValueError::Kind, ValueError::Light)
@@ -233,7 +233,7 @@ impl WordArgument for Sensitivity {
             .then_some(gain)
     }
 
-    fn refusal(text: &str) -> ValueError<'_> {
+    fn error(text: &str) -> ValueError<'_> {
         <U4_28 as WordArgument>::parse(text).map_or(ValueError::Kind, |_| ValueError::Sensitivity)
     }
 }

@@ -1,4 +1,4 @@
-//! Writing meshes: for the host, which has a heap.
+//! Encoding of meshes, for hosts with a heap.
 
 use alloc::vec::Vec;
 use core::fmt;
@@ -8,7 +8,7 @@ use super::{HEADER, MAGIC, MAX_BYTES, MAX_CHUNK_VERTICES, RECORD, Rgb565, Vertex
 /// A triangle of an indexed mesh of any size.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct IndexedTriangle {
-    /// Its vertices, by their number in the whole mesh; counter-clockwise seen from outside.
+    /// Numbers of the vertices in the mesh, counter-clockwise seen from outside.
     pub indices: [u32; 3],
     /// Its colour.
     pub colour: Rgb565,
@@ -16,16 +16,16 @@ pub struct IndexedTriangle {
     pub normal: [i16; 3],
 }
 
-/// Writes an indexed mesh, cut into chunks where one would have too many vertices.
+/// Encodes an indexed mesh, cut into chunks of at most 65,535 vertices.
 ///
-/// Triangles keep their order. A vertex is repeated in every chunk that uses it; one that no triangle uses is left
-/// out, but a mesh without triangles keeps its first vertex, as a chunk has at least one.
+/// Triangles keep their order. A vertex is repeated in every chunk that uses it. A vertex without triangles is left
+/// out, except the first vertex of a mesh without triangles, as a chunk has at least one.
 ///
 /// # Errors
-/// When there is no vertex, an index has no vertex, or the result would be larger than [`MAX_BYTES`].
+/// The mesh has no vertex, an index has no vertex, or the result exceeds [`MAX_BYTES`].
 pub fn encode(vertices: &[Vertex], triangles: &[IndexedTriangle]) -> Result<Vec<u8>, EncodeError> {
     let mut writer = Writer::default();
-    // The chunk's number for each vertex that it has.
+    // Numbers in the chunk of the mesh's vertices.
     let mut local = alloc::vec![None; vertices.len()];
     let mut used: Vec<u32> = Vec::new();
     let mut records: Vec<[u8; RECORD]> = Vec::new();
@@ -68,7 +68,7 @@ pub fn encode(vertices: &[Vertex], triangles: &[IndexedTriangle]) -> Result<Vec<
     Ok(writer.finish())
 }
 
-/// A record of half words, zeros behind them.
+/// A record of half words, padded with zeros.
 fn record(halves: impl IntoIterator<Item = u16>) -> [u8; RECORD] {
     let mut record = [0; RECORD];
     for (bytes, half) in record.as_chunks_mut().0.iter_mut().zip(halves) {
@@ -77,7 +77,7 @@ fn record(halves: impl IntoIterator<Item = u16>) -> [u8; RECORD] {
     record
 }
 
-/// Chunks so far, and the sums for the header.
+/// Chunks, and the sums for the header.
 #[derive(Default)]
 struct Writer {
     records: Vec<[u8; RECORD]>,
@@ -143,21 +143,21 @@ impl Writer {
     }
 }
 
-/// Why a mesh cannot be written.
+/// Reason why a mesh cannot be encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EncodeError {
-    /// There is no vertex at all.
+    /// No vertex.
     NoVertex,
-    /// A triangle uses a vertex that is not there.
+    /// A triangle uses a missing vertex.
     Index {
-        /// Its number.
+        /// Number of the triangle.
         triangle: usize,
         /// The index.
         index: u32,
-        /// How many vertices there are.
+        /// Number of vertices.
         vertices: usize,
     },
-    /// The mesh would be larger than [`MAX_BYTES`].
+    /// The mesh exceeds [`MAX_BYTES`].
     TooLarge,
 }
 

@@ -1,29 +1,29 @@
-//! When samples were measured, told from when they were looked for.
+//! Time stamps of samples from the times of reads.
 
-/// A clock that runs along with a sensor's.
+/// A model of the sensor's clock.
 ///
-/// A sample that a look finds was measured after the look before. Looks whose period is no fraction of the samples' move across it, so
-/// every now and then one of the two is close to the sample; between them the clock says when, and it is moved by
-/// as little as they ask for.
+/// A new sample in a read was measured since the read before. The period of reads is no fraction of the samples' period, so that reads drift
+/// across the samples and their interval bounds the sample's time closely now and then. The clock predicts the time, and the smallest
+/// correction moves the prediction into the interval.
 #[derive(Clone, Copy, Debug)]
 pub struct Pace {
-    /// Of the samples, 2^−8 µs: what it is said to be, and what it seems to be.
+    /// Period of the samples in 2^−8 µs: nominal, and estimated.
     nominal: u32,
     period: u32,
-    /// When the look before was, in µs.
+    /// Time of the read before, in µs.
     looked: Option<u64>,
-    /// When the next sample is measured, 2^−8 µs.
+    /// Time of the next sample, 2^−8 µs.
     expected: Option<u64>,
-    /// Samples until corrections say something of the period, and not only of where the first one was.
+    /// Samples until corrections apply to the period too, not only to the phase.
     settling: u8,
 }
 
-/// By then looks have moved across the samples' times.
+/// Number of samples in which reads drift across a sample's period.
 const SETTLED: u8 = 32;
 
-/// What the period takes of the clock's error is 2^−5: it settles in some dozens of corrections.
+/// Part of the clock's error that corrects the period: 2^−5, which settles in some dozens of corrections.
 const SLOWNESS: u32 = 5;
-/// The period is off by at most 1/32 of it.
+/// Largest error of the nominal period: 1/32.
 const TOLERANCE: u32 = 5;
 
 impl Pace {
@@ -39,8 +39,8 @@ impl Pace {
         }
     }
 
-    /// Takes a look at a time in µs, later than the one before: when the sample was measured that it has found, if it has. A sample of
-    /// the first look may be old, and does not count.
+    /// Takes a read at a time in µs, later than the one before, and gives the time of its new sample. A sample of the first read may be old
+    /// and is ignored.
     pub fn on_look(&mut self, time: u64, found: bool) -> Option<u64> {
         let before = self.looked.replace(time)?;
         if !found {
@@ -52,7 +52,7 @@ impl Pace {
         if self.settling > 0 {
             self.settling -= 1;
         } else {
-            // A part of what it is off by, which is less than a period unless samples were lost.
+            // A part of the error, which is less than a period unless samples were lost.
             let most = i64::from(self.nominal);
             let off = (measured as i64 - expected as i64).clamp(-most, most) >> SLOWNESS;
             let tolerance = self.nominal >> TOLERANCE;

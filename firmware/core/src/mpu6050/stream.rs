@@ -1,4 +1,4 @@
-//! Samples for ever.
+//! The endless stream of samples.
 
 use core::convert::Infallible;
 
@@ -9,34 +9,34 @@ use super::pace::Pace;
 use super::{Error, Identity, Measurement, Mpu6050, PERIOD};
 use crate::i2c::PeriodicI2c;
 
-/// The time between two looks for a sample, in µs: a little more than one takes, and a little less than half a period, so that each
-/// sample is found and the looks move across the samples' times by 40 µs a sample.
+/// Time between two reads in µs: a little more than a read takes, and a little less than half a period, so that no sample is missed and
+/// reads drift by 40 µs a sample across the samples.
 const LOOK: u32 = 480;
-/// The same for a chip that stretches the clock: a little less than a period, which moves by as much.
+/// The same for a chip that stretches the clock: a little less than a period, with the same drift.
 const LONG_LOOK: u32 = 960;
 
-/// No sample for so long is a failure, in µs.
+/// Longest time without a sample, in µs.
 const SILENCE: u32 = 20_000;
-/// So many samples that are all the same are one.
+/// Number of equal samples that are an error.
 const FROZEN: u32 = 50;
-/// Between two attempts, in ms: where there is no sensor, it is all that it costs.
+/// Time between two attempts in ms. It bounds the cost of an absent sensor.
 const AGAIN: u32 = 30;
 
-/// Where samples go.
+/// Receiver of samples.
 pub trait Sink<E> {
-    /// The chip was found, and is set up.
+    /// The chip was found and configured.
     fn on_start(&mut self, identity: Identity);
-    /// A sample that was measured at a time in µs, later by the filter's delay; right within 0.1 ms, and the first hundred after a
-    /// start within 0.3 ms.
+    /// A sample with its time in µs, which includes the filter's delay. The error is at most 0.1 ms, and 0.3 ms for the first hundred
+    /// samples after a start.
     fn on_sample(&mut self, time: u64, measurement: &Measurement);
-    /// Something went wrong. It is tried again, and told again.
+    /// An attempt failed. The stream tries again.
     fn on_error(&mut self, error: Error<E>);
 }
 
-/// Reads a chip for ever.
+/// Reads a chip without end.
 ///
-/// Each sample is read once. After an error the chip is looked for every 30 ms; where it has kept its
-/// configuration samples go on at once, and otherwise it is reset and set up again.
+/// Each sample is read once. After an error the stream searches the chip every 30 ms. A chip that has kept its
+/// configuration continues at once, another one is reset and configured.
 pub struct Stream<B, D, S> {
     chip: Mpu6050<B>,
     delay: D,
@@ -53,13 +53,13 @@ impl<B: PeriodicI2c, D: DelayNs, S: Sink<B::Error>> Stream<B, D, S> {
         }
     }
 
-    /// Runs for ever.
+    /// Runs without end.
     pub async fn run(&mut self) -> ! {
         let mut reset = false;
         let mut look = LOOK;
         loop {
             let Err(error) = self.start_and_read(reset, look).await;
-            // One that answers and does not measure may be configured all the same.
+            // A chip that answers without measuring may be configured: reset it.
             reset = matches!(error, Error::Silent | Error::Frozen);
             let is_late = matches!(&error, Error::Bus(error) if error.kind() == ErrorKind::Overrun);
             look = if is_late { LONG_LOOK } else { LOOK };
@@ -78,7 +78,7 @@ impl<B: PeriodicI2c, D: DelayNs, S: Sink<B::Error>> Stream<B, D, S> {
         self.read_all(look).await
     }
 
-    /// Looks for samples every `look` µs.
+    /// Reads samples every `look` µs.
     async fn read_all(&mut self, look: u32) -> Result<Infallible, Error<B::Error>> {
         self.chip.begin_looks(look)?;
         let mut pace = Pace::new(PERIOD);

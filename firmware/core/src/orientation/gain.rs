@@ -1,4 +1,4 @@
-//! 1 − exp(−dt/τ): what a first-order filter takes of a new value after a time dt, however long it was.
+//! 1 − exp(−dt/τ): the gain of a first-order filter for a step dt of any length.
 
 /// The shortest time constant, in µs.
 pub const SHORTEST: u32 = 1_000;
@@ -9,12 +9,12 @@ pub struct Gain {
     time_constant: u32,
     /// 2^48 over the time constant.
     inverse: u64,
-    /// The last step and its gain, since most steps are alike.
+    /// The last step and its gain, as most steps are equal.
     last: (u32, u32),
 }
 
 impl Gain {
-    /// Of a time constant in µs; those below [`SHORTEST`] count as that.
+    /// The gains of a time constant in µs, which saturates to [`SHORTEST`].
     pub fn new(time_constant: u32) -> Self {
         let time_constant = time_constant.max(SHORTEST);
         Self {
@@ -29,8 +29,8 @@ impl Gain {
         self.time_constant
     }
 
-    /// The gain of a step in µs, of which those beyond 2^19 count as that: 32 fraction bits, within 4 units and 2^−16 of it where τ is at most 1000 s. A gain
-    /// that would round to 1 is 1 − 2^−32.
+    /// The gain of a step in µs, which saturates to 2^19. 32 fraction bits, with an error of at most 4 units plus 2^−16 of the gain for τ up to
+    /// 1000 s. A gain that would round to 1 is 1 − 2^−32.
     pub fn of(&mut self, step: u32) -> u32 {
         if step != self.last.0 {
             self.last = (step, self.fresh(step));
@@ -38,7 +38,7 @@ impl Gain {
         self.last.1
     }
 
-    /// The gain of a step that is not the last.
+    /// The gain of a new step.
     #[inline(never)]
     fn fresh(&self, step: u32) -> u32 {
         // The inverse is below 2^39.
@@ -50,7 +50,7 @@ impl Gain {
     }
 }
 
-/// 2^48 over a time constant, rounded down. Where it is below 16 s that takes a few short divisions, and no long one.
+/// 2^48 over a time constant, rounded down. Below 16 s this takes a few short divisions and no long one.
 fn inverse(time_constant: u32) -> u64 {
     if time_constant >= 1 << 24 {
         return (1 << 48) / u64::from(time_constant);
@@ -66,7 +66,7 @@ fn inverse(time_constant: u32) -> u64 {
     quotient
 }
 
-/// What the series is for: 1/16 with 32 fraction bits.
+/// Upper limit of the series' argument: 1/16 with 32 fraction bits.
 const SMALL: u32 = 1 << 28;
 
 /// 1 − exp(−x), both with 32 fraction bits.

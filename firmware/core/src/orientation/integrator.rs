@@ -1,16 +1,16 @@
-//! The attitude by integration of rates: exact for a constant rate, and without drift of its own.
+//! Attitude by integration of rates: exact for a constant rate, and without numerical drift.
 //!
-//! A step by the half angle vector h multiplies the attitude by exp h = (cos|h|, h·sin|h|/|h|), as q + q·(exp h − 1): what is
-//! added is small, so little is lost by rounding it. The series of 1 − cos|h| and of 1 − sin|h|/|h| in |h|² have no singular
-//! place, and need neither a root nor a division. Three rounding errors would add up over millions of steps, so none is made: the attitude
-//! has 62 fraction bits, of which the upper 30 are multiplied; the vector of exp h is rounded to 32 bits and the rest of it goes
-//! into the next step; and the length is corrected along with each step, by half of what its square lacks.
+//! A step by the half angle vector h multiplies the attitude by exp h = (cos|h|, h·sin|h|/|h|), as q + q·(exp h − 1): the
+//! addend is small, and so is its rounding error. The series of 1 − cos|h| and of 1 − sin|h|/|h| in |h|² have no singularity
+//! and need neither a root nor a division. Three rounding errors would accumulate over millions of steps and are avoided: the attitude
+//! has 62 fraction bits, of which the upper 30 are multiplied; the vector of exp h is rounded to 32 bits and its remainder goes
+//! into the next step; and each step corrects the length, by half of 1 − |q|².
 
 use super::quaternion::{Quaternion, dot, product};
 use super::rate::History;
 use super::scale::Scale;
 
-/// The longest step that is integrated, in µs.
+/// Longest integrated step, in µs.
 pub const LONGEST_STEP: u32 = 500_000;
 
 /// Integrates rates.
@@ -22,15 +22,15 @@ pub struct Integrator {
     attitude: [i64; 4],
     /// The same, to nearest.
     rounded: Quaternion,
-    /// What rounding has left of the last step's vector, 48 fraction bits.
+    /// Rounding remainder of the last step's vector, 48 fraction bits.
     rest: [i32; 3],
 }
 
-/// What a half angle is below that is one rotation, 0.25 rad with 48 fraction bits: then |h|² < 3/16.
+/// Upper limit of a half angle of one rotation, 0.25 rad with 48 fraction bits: then |h|² < 3/16.
 const LARGEST: i64 = 1 << 46;
 
 impl Integrator {
-    /// Begins at an attitude and a rate in 1/256 LSB.
+    /// Starts at an attitude and a rate in 1/256 LSB.
     pub fn new(scale: Scale, attitude: Quaternion, rate: [i32; 3]) -> Self {
         let mut integrator = Self {
             scale,
@@ -44,13 +44,13 @@ impl Integrator {
         integrator
     }
 
-    /// Goes on from another attitude.
+    /// Continues from another attitude.
     pub fn set_attitude(&mut self, attitude: Quaternion) {
         self.attitude = attitude.parts.map(|x| i64::from(x) << 32);
         self.rounded = attitude;
     }
 
-    /// Begins again at a rate, with the attitude as it is.
+    /// Restarts at a rate, with the present attitude.
     pub fn restart(&mut self, rate: [i32; 3]) {
         self.history.start(rate);
     }
@@ -58,8 +58,7 @@ impl Integrator {
     /// Takes the rate in 1/256 LSB that was measured `step` µs after the last one, and turns further by `correction`, half an
     /// angle about each of the body's axes in radians with 48 fraction bits, within ±8.
     ///
-    /// A rate beyond ±1.5·2^23 counts as that. No step takes no time, and one beyond [`LONGEST_STEP`] none that is known: they only
-    /// replace the last rate.
+    /// The rate saturates to ±1.5·2^23. A step of 0 or beyond [`LONGEST_STEP`] only replaces the last rate.
     pub fn advance(&mut self, rate: [i32; 3], step: u32, correction: [i64; 3]) {
         self.advance_order::<4>(rate, step, correction);
     }
@@ -90,7 +89,7 @@ impl Integrator {
         self.rounded
     }
 
-    /// The same where it lies.
+    /// A reference to the attitude.
     pub(super) const fn rounded(&self) -> &Quaternion {
         &self.rounded
     }
@@ -104,7 +103,7 @@ impl Integrator {
         }
     }
 
-    /// The same in as many equal parts as it takes.
+    /// The same in several equal parts.
     #[cold]
     #[inline(never)]
     fn turn_far(&mut self, half: &[i64; 3]) {

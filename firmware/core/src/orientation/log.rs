@@ -1,4 +1,4 @@
-//! A log of samples as a board replays it: a header, then a record for each sample, which becomes the attitude after it in the same place.
+//! The format of a log for replay on a board: a header, then a record for each sample, which the attitude after it replaces.
 //!
 //! All numbers are little-endian.
 //!
@@ -32,17 +32,17 @@ use crate::fixed::Q32_32;
 pub const HEADER_BYTES: usize = 48;
 /// Bytes of a record.
 pub const RECORD_BYTES: usize = 16;
-/// The largest bias in 1/256 LSB: no mean of counts is beyond it.
+/// Largest bias in 1/256 LSB: the largest mean of counts.
 pub const LARGEST_BIAS: u32 = 1 << 23;
 
 const MAGIC: [u8; 4] = *b"GIMU";
 const TILT: u32 = 1 << 0;
 const FOLLOW_BIAS: u32 = 1 << 1;
 
-/// A sample, or the attitude after it, as the words of its bytes.
+/// A sample, or the attitude after it, in words.
 pub type Record = [u32; 4];
 
-/// How a log is replayed.
+/// Parameters of a replay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Setup {
     units: Units,
@@ -52,36 +52,36 @@ pub struct Setup {
     bias: [i32; 3],
 }
 
-/// Why bytes are no log.
+/// Reason why bytes are not a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LogError {
-    /// There are fewer bytes than a header has.
+    /// Fewer bytes than a header.
     Short(usize),
-    /// It does not begin as a log does.
+    /// The magic number is wrong.
     Magic([u8; 4]),
-    /// It has no samples.
+    /// No samples.
     Empty,
-    /// Its length is not that of its number of samples.
+    /// The length does not match the number of samples.
     Length {
         /// The number of samples.
         samples: u32,
         /// The number of bytes.
         bytes: usize,
     },
-    /// LSB per °/s that are not accepted.
+    /// LSB per °/s out of range.
     PerDps(Q32_32),
-    /// LSB per g that are not accepted.
+    /// LSB per g out of range.
     PerG(u32),
-    /// Flags that mean nothing.
+    /// Unknown flags.
     Flags(u32),
-    /// A bias that no calibration gives.
+    /// A bias out of range.
     Bias {
         /// The axis, 0 for x.
         axis: usize,
-        /// In 1/256 LSB.
+        /// The bias in 1/256 LSB.
         bias: i32,
     },
-    /// Bytes of the header that are to be 0 are not.
+    /// Reserved bytes of the header are not 0.
     Reserved,
 }
 
@@ -134,10 +134,10 @@ const fn length(samples: u32) -> u64 {
 }
 
 impl Setup {
-    /// With what counts are worth, whether the accelerometer holds the tilt, and the bias in 1/256 LSB, which stays or is followed at rest.
+    /// Units of counts, correction of the tilt by the accelerometer, and the bias in 1/256 LSB, constant or tracked at rest.
     ///
     /// # Errors
-    /// When units or bias are out of range.
+    /// Units or bias are out of range.
     pub fn new(
         units: Units,
         tilt: bool,
@@ -162,7 +162,7 @@ impl Setup {
         })
     }
 
-    /// A tracker that waits for the first sample.
+    /// A tracker before the first sample.
     pub fn tracker(&self) -> Tracker {
         let tilt = self
             .tilt
@@ -175,7 +175,7 @@ impl Setup {
         tracker
     }
 
-    /// The header of a log of so many samples.
+    /// The header of a log with this number of samples.
     pub fn header(&self, samples: u32) -> [u8; HEADER_BYTES] {
         let mut flags = 0;
         if self.tilt {
@@ -242,10 +242,10 @@ impl Setup {
     }
 }
 
-/// Checks a log, and gives how it is replayed and the bytes of its records.
+/// Checks a log, and gives its parameters and the bytes of its records.
 ///
 /// # Errors
-/// The first thing that is not as it should be.
+/// The first error.
 pub fn open(bytes: &mut [u8]) -> Result<(Setup, &mut [[u8; RECORD_BYTES]]), LogError> {
     let all = bytes.len();
     let (header, records) = bytes
@@ -304,15 +304,15 @@ pub fn attitude_record(attitude: Quaternion) -> Record {
     attitude.parts.map(|part| part as u32)
 }
 
-/// The attitude of a record, if it is one: of length 1.
+/// The attitude of a record, if its length is 1.
 pub fn attitude(record: Record) -> Option<Quaternion> {
     Quaternion::exact(record.map(|part| part as i32))
 }
 
-/// Replays a log where it lies, and gives what happened to its samples.
+/// Replays a log in place, and gives the counts of its samples.
 ///
 /// # Errors
-/// When it is no log; then nothing has changed.
+/// The bytes are not a log. They are then unchanged.
 pub fn replay(bytes: &mut [u8]) -> Result<Counts, LogError> {
     let (setup, records) = open(bytes)?;
     let mut tracker = setup.tracker();

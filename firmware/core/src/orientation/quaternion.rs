@@ -1,10 +1,10 @@
-//! Quaternions of length 1, and what is read from them.
+//! Quaternions of length 1.
 
 use crate::fixed::{Q2_30, Turns, wide};
 use crate::polar::polar;
 use crate::trig::sin_cos_q30;
 
-/// An attitude: a Hamilton quaternion that carries what the body sees to the world, of length 1 within 2^−29.
+/// An attitude: a Hamilton quaternion that maps body to world, of length 1 within 2^−29.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Quaternion {
     /// w, x, y, z in 2^−30.
@@ -17,12 +17,12 @@ const ONE: i32 = 1 << 30;
 const POLE: i64 = 1 << 44;
 
 impl Quaternion {
-    /// Body and world have the same axes.
+    /// The axes of body and world coincide.
     pub const IDENTITY: Self = Self {
         parts: [ONE, 0, 0, 0],
     };
 
-    /// The quaternion in the direction of four numbers (w, x, y, z), which say an attitude if they have any length.
+    /// The quaternion in the direction of four numbers (w, x, y, z), unless all are 0.
     pub fn new(parts: [Q2_30; 4]) -> Option<Self> {
         let largest = parts.iter().map(|part| part.to_bits().unsigned_abs()).max();
         let up = largest?.checked_ilog2().map(|lead| 30 - lead.min(30))?;
@@ -40,14 +40,14 @@ impl Quaternion {
             .iter()
             .map(|&x| i64::from(x) * i64::from(x))
             .try_fold(0_i64, i64::checked_add)?;
-        // The square is off by twice as much.
+        // The square has twice the relative error.
         (square - (1 << 60))
             .unsigned_abs()
             .le(&(1 << 33))
             .then_some(Self { parts })
     }
 
-    /// The rotation by an angle about one of the axes: 0, 1, 2 for x, y, z (and what is beyond them is z).
+    /// The rotation by an angle about one of the axes: 0, 1, 2 for x, y, z (larger numbers are z).
     pub fn about_axis(axis: usize, angle: Turns) -> Self {
         // Half of an angle in (−½, ½] turns, so that small ones of either sign stay near the identity.
         let half = Turns((angle.0 as i32 >> 1) as u32);
@@ -74,7 +74,7 @@ impl Quaternion {
         ]
     }
 
-    /// The other way round: from the world to the body.
+    /// The inverse rotation, from world to body.
     #[must_use]
     pub const fn inverse(self) -> Self {
         let [w, x, y, z] = self.parts;
@@ -83,7 +83,7 @@ impl Quaternion {
         }
     }
 
-    /// First `other`, then this one. To nearest, and length 1 again.
+    /// The product: first `other`, then this rotation. Rounded to nearest and normalised.
     #[must_use]
     pub fn times(self, other: Self) -> Self {
         let products = product(&self.parts, other.parts);
@@ -110,7 +110,7 @@ impl Quaternion {
             .map(|column| column.map(|x| ((x + (1 << 29)) >> 30) as i32))
     }
 
-    /// The same with 60 fraction bits, exactly what the quaternion says.
+    /// The same with 60 fraction bits, exact.
     fn columns(self) -> [[i64; 3]; 3] {
         let [w, x, y, z] = self.parts.map(i64::from);
         // Each is at most 1 in magnitude, and twice the sum of two products at most 2.
@@ -145,11 +145,11 @@ impl Quaternion {
         ]
     }
 
-    /// Yaw, pitch and roll, intrinsic about z, then y, then x. An output only: nothing is computed from them.
+    /// Yaw, pitch and roll, intrinsic about z, then y, then x. For output only.
     ///
-    /// Yaw and roll are in [−½, ½) turns and pitch in [−¼, ¼]. With a quaternion that is off by ε, yaw and roll are
-    /// off by ε/cos(pitch), as angles are that turn about the same axis; their sum is off by ε. Where cos(pitch) < 2^−16 roll
-    /// is 0 and yaw is the whole of the rotation that is left: at the pole itself, yaw − roll of pitch +¼, yaw + roll of −¼.
+    /// Yaw and roll are in [−½, ½) turns and pitch in [−¼, ¼]. An error ε of the quaternion gives yaw and roll an
+    /// error of ε/cos(pitch), and their sum an error of ε. For cos(pitch) < 2^−16 roll is 0 and yaw is the whole remaining
+    /// rotation: at the poles yaw − roll for pitch +¼, yaw + roll for −¼.
     pub fn angles(self) -> Angles {
         let [[xx, xy, xz], [yx, yy, yz], [_, _, zz]] = self.columns();
         let (level, yaw) = polar(xx, xy);
@@ -167,14 +167,14 @@ impl Quaternion {
     }
 
     /// The angle of the turn about the world's z axis that is nearest to this attitude (its twist). It is continuous
-    /// everywhere but where the body is upside down, at both poles of the pitch too.
+    /// except for a body upside down, and at both poles of the pitch.
     pub fn heading(self) -> Turns {
         let [w, _, _, z] = self.parts.map(i64::from);
         let (_, half) = polar(w << 30, z << 30);
         Turns(half.0 << 1)
     }
 
-    /// One step of Newton towards length 1: it squares a relative error, so one within 2^−15 goes below the last place.
+    /// One Newton step towards length 1. It squares the relative error, so that an error within 2^−15 vanishes in the last place.
     #[must_use]
     fn renormalised(self) -> Self {
         let parts = self.parts.map(i64::from);
@@ -203,13 +203,13 @@ pub(super) fn dot([aw, ax, ay, az]: &[i32; 4], w: i32, x: i32, y: i32, z: i32) -
     wide(*aw, w) + wide(*ax, x) + wide(*ay, y) + wide(*az, z)
 }
 
-/// Yaw, pitch and roll; half a turn and more is negative.
+/// Yaw, pitch and roll. Half a turn and more is negative.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Angles {
     /// About the world's z axis.
     pub yaw: Turns,
-    /// About the y axis that yaw has turned; positive is nose down for a nose along x.
+    /// About the y axis after yaw. Positive is nose down for a nose along x.
     pub pitch: Turns,
-    /// About the x axis that yaw and pitch have turned.
+    /// About the x axis after yaw and pitch.
     pub roll: Turns,
 }

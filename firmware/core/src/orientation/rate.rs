@@ -1,4 +1,4 @@
-//! From samples of the angular rate to the rotation of the step between two of them.
+//! Rotation of a step between two samples of the angular rate.
 //!
 //! A step of length h goes from the sample before the last, ω₂, to the last, ω₃. What it turns by is a vector φ, of which the
 //! first two terms of Magnus' expansion are taken:
@@ -25,17 +25,17 @@
 use super::scale::{Factor, Scale};
 use crate::fixed::wide;
 
-/// The longest step between samples through which a cubic is laid, in µs; longer ones are straight lines.
+/// Longest step that is integrated by a cubic, in µs; longer steps are integrated linearly.
 pub const LONGEST_CURVE: u32 = 1 << 15;
-/// The most a step may be longer than the one before it for a cubic; what is older would weigh more than what is new.
+/// Largest ratio of a step to the one before it for a cubic, beyond which old samples would outweigh new ones.
 pub const MOST_STRETCH: u32 = 3;
 /// The largest rate, in 1/256 LSB: all counts, and a bias of half of them. Then all numbers below have 32 bits.
 pub const LARGEST_RATE: i32 = 3 << 22;
 
-/// The samples before the last, as far as a step needs them.
+/// Samples before the last that a step needs.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct History {
-    /// How many steps there are to look back on: 0, 1, 2.
+    /// Number of earlier steps: 0, 1, 2.
     steps: u8,
     axes: [Axis; 3],
     /// h₁ and h₂ in µs.
@@ -53,7 +53,7 @@ struct Axis {
     second: i32,
 }
 
-/// What the times of samples make of a cubic, with 15 fraction bits unless told otherwise.
+/// Weights of a cubic from the times of samples, with 15 fraction bits by default.
 #[derive(Clone, Copy)]
 struct Weights {
     /// g with 15 fraction bits, and 15 zeros behind them.
@@ -73,7 +73,7 @@ const FOUR_THIRDS: i32 = (4 << 15) / 3 + 1;
 const NINE_FIFTHS: i32 = (9 << 15) / 5;
 
 impl Weights {
-    /// Of equal steps.
+    /// Weights of equal steps.
     const EVEN: Self = Self {
         stretch: 1 << 30,
         stretch_squared: 1 << 15,
@@ -82,7 +82,7 @@ impl Weights {
         far: FOUR_THIRDS,
     };
 
-    /// Of nothing to look back on: a straight line.
+    /// Weights without earlier steps: a straight line.
     const STRAIGHT: Self = Self {
         stretch: 0,
         stretch_squared: 0,
@@ -91,7 +91,7 @@ impl Weights {
         far: 0,
     };
 
-    /// Of h and so many steps to look back on, h₁ and h₂.
+    /// Weights of h and of earlier steps h₁ and h₂.
     #[inline(never)]
     fn of<const ORDER: u32>(steps: u8, step: u32, [h1, h2]: [u32; 2]) -> Self {
         if steps == 0 {
@@ -134,7 +134,7 @@ const fn upper(a: i32, b: u32) -> i32 {
     ((a as i64 * b as i64) >> 32) as i32
 }
 
-/// A number that others are divided by: the division that takes long is made once.
+/// A divisor: the slow division is done once.
 struct Divisor {
     number: u32,
     /// 2^32 − 1 over it, rounded down.
@@ -159,7 +159,7 @@ impl Divisor {
     }
 }
 
-/// A rate that the formats hold.
+/// A rate, saturated to the formats.
 fn within(rate: i32) -> i32 {
     rate.clamp(-LARGEST_RATE, LARGEST_RATE)
 }
@@ -187,7 +187,7 @@ impl Axis {
             difference: e1,
             second,
         };
-        // No motion within the range is cut by this.
+        // Motion within the range is not clipped.
         (
             mean.clamp(-MOST_MEAN, MOST_MEAN),
             end.clamp(-MOST_CHANGE, MOST_CHANGE),
@@ -196,7 +196,7 @@ impl Axis {
 }
 
 impl History {
-    /// Begins at a sample.
+    /// Starts at a sample.
     pub fn start(&mut self, rate: [i32; 3]) {
         let axis = |last| Axis {
             last,
@@ -210,8 +210,8 @@ impl History {
 
     /// Takes a sample, `step` µs (at least 1) after the last one, and gives half of φ as a rotation vector, 48 fraction bits.
     ///
-    /// A rate beyond ±[`LARGEST_RATE`] counts as that. `ORDER` is that of the method: 1 takes the newest sample alone, 2 the mean of two,
-    /// 3 the parabola through three with e₁ for E, 4 (and more) the cubic. The first steps have less to look back on and
+    /// The rate saturates to ±[`LARGEST_RATE`]. `ORDER` is that of the method: 1 takes the newest sample alone, 2 the mean of two,
+    /// 3 the parabola through three with e₁ for E, 4 (and more) the cubic. The first steps have fewer earlier samples and
     /// leave an error in h³ once.
     pub fn advance<const ORDER: u32>(
         &mut self,

@@ -1,4 +1,4 @@
-//! What a count of the gyroscope is worth.
+//! Scale of the gyroscope's counts.
 
 use crate::fixed::Q32_32;
 use crate::mpu6050::GYRO_LSB_PER_DPS;
@@ -10,14 +10,14 @@ pub struct Scale {
     per_microsecond: u64,
 }
 
-/// The LSB per °/s that are accepted. Below them a step of [`super::rate::LONGEST_CURVE`] would leave its formats.
+/// Accepted LSB per °/s. Below them a step of [`super::rate::LONGEST_CURVE`] would overflow its formats.
 pub const LSB_PER_DPS: [Q32_32; 2] = [Q32_32::lit("8"), Q32_32::lit("4096")];
 
 impl Scale {
     /// An MPU-6050 at ±2000 °/s: 16.4 LSB per °/s.
     pub const MPU_6050: Self = Self::of(GYRO_LSB_PER_DPS);
 
-    /// So many LSB per °/s, if they are within [`LSB_PER_DPS`].
+    /// A scale of LSB per °/s within [`LSB_PER_DPS`].
     pub fn new(lsb_per_dps: Q32_32) -> Option<Self> {
         (LSB_PER_DPS[0]..=LSB_PER_DPS[1])
             .contains(&lsb_per_dps)
@@ -32,7 +32,7 @@ impl Scale {
         }
     }
 
-    /// What rates over a step in µs, at most 2^20, are multiplied by.
+    /// The factor of rates over a step in µs, at most 2^20.
     pub(super) fn factor(self, step: u32) -> Factor {
         Factor(self.per_microsecond * u64::from(step))
     }

@@ -1,31 +1,31 @@
-//! Which way is up, by the accelerometer.
+//! Tilt correction by the accelerometer.
 //!
-//! What an accelerometer reads is gravity and whatever moves it. In the axes of the world, where gravity stands still, the acceleration of
-//! something that comes back to where it was is 0 in the mean, so a low pass there is what rejects it: the attitude turns by
+//! An accelerometer reads gravity plus acceleration. In the axes of the world gravity is constant, and the acceleration of a body that
+//! returns to its place has mean 0, so that a low pass in these axes rejects it: the attitude turns by
 //!
 //! ```text
 //! (1 − exp(−dt/τ))·(a × up)/g
 //! ```
 //!
-//! with `a` and `up` in the body's axes, and carries along what it has turned so far. The reading is not made of length 1, and not
-//! left out where its length is a little wrong: either would weigh accelerations unequally and so bend their mean. Left out is what
-//! no motion of a hand or a walk makes: a reading beyond 3 g, or at the end of the sensor's range.
+//! with `a` and `up` in the body's axes. A reading is neither normalised nor rejected for a slightly wrong length: both would weigh
+//! accelerations unequally and bias their mean. Readings beyond the motion of a hand or a walk are rejected: above 3 g, or at the end
+//! of the sensor's range.
 
 use super::gain::Gain;
 use super::quaternion::{Angles, Quaternion};
 use crate::fixed::{Turns, wide};
 use crate::polar::polar;
 
-/// τ unless told otherwise, in µs.
+/// Default τ in µs.
 pub const TIME_CONSTANT: u32 = 3_000_000;
-/// The LSB per g that are accepted.
+/// Accepted LSB per g.
 pub const LSB_PER_G: [u32; 2] = [1_024, 32_767];
-/// How old an attitude counts as that one reading has made, in µs.
+/// Nominal age of an attitude from one reading, in µs.
 pub const FRESH: u32 = 20_000;
-/// How old an attitude counts as after the gyroscope was at its end, or said nothing for long, in µs: what it is off by gives way to the
-/// accelerometer in the time that it takes to get ten times as old, and a short stop at the end of the range does not throw it over.
+/// Nominal age of an attitude after saturation of the gyroscope or a gap, in µs. The accelerometer corrects the error within ten times this
+/// age, and a short saturation does not upset the attitude.
 pub const DOUBTFUL: u32 = 100_000;
-/// The most that is gravity and motion, in g.
+/// Largest accepted reading, in g.
 const MOST: u32 = 3;
 
 /// Corrects the tilt.
@@ -33,16 +33,16 @@ const MOST: u32 = 3;
 pub struct Tilt {
     /// 2^32 LSB over those of 1 g.
     inverse: u32,
-    /// The square of the largest reading that counts, in LSB².
+    /// Square of the largest accepted reading, in LSB².
     largest: u32,
     time_constant: u32,
-    /// For how long readings have been taken, in µs; a running mean until that is the time constant.
+    /// Time of readings so far, in µs: the time constant of a running mean, up to τ.
     age: u32,
     gain: Gain,
 }
 
 impl Tilt {
-    /// For an accelerometer with so many LSB per g, which count as within [`LSB_PER_G`], and a time constant in µs.
+    /// The correction for an accelerometer with `lsb_per_g`, which saturates to [`LSB_PER_G`], and a time constant in µs.
     pub fn new(lsb_per_g: u32, time_constant: u32) -> Self {
         let one = lsb_per_g.clamp(LSB_PER_G[0], LSB_PER_G[1]);
         Self {
@@ -54,12 +54,12 @@ impl Tilt {
         }
     }
 
-    /// Whether the accelerometer has been listened to for as long as the time constant.
+    /// Whether readings span the time constant.
     pub fn is_settled(&self) -> bool {
         self.age >= self.time_constant
     }
 
-    /// Says that the attitude may be off by anything: the next readings count for more.
+    /// Marks the attitude as uncertain: the next readings get more weight.
     #[cold]
     #[inline(never)]
     pub fn doubt(&mut self) {
@@ -67,8 +67,8 @@ impl Tilt {
         self.gain = Gain::new(self.age.min(self.time_constant));
     }
 
-    /// Corrects a step in µs (at most 2^19) by what was read at its end: to half an angle about each of the body's axes, in radians with 48 fraction bits,
-    /// at most 3 is added. Says whether the reading was taken.
+    /// Corrects a step in µs (at most 2^19) by the reading at its end: adds at most 3 to half an angle about each of the body's axes, in radians
+    /// with 48 fraction bits. Returns whether the reading was accepted.
     #[inline]
     pub fn correct(
         &mut self,
@@ -88,7 +88,7 @@ impl Tilt {
         // Half the gain over g, for 2^−14 LSB, with 57 fraction bits: the inverse is at most 2^22.
         let factor = ((u64::from(self.gain.of(step)) * u64::from(self.inverse)) >> 22) as u32;
         let up = attitude.up();
-        // What is wanted of the products are upper words.
+        // Only the upper words of the products are used.
         let a = a.map(|x| x << 16);
         // LSB with 14 fraction bits, rounded down: at most 2^30.
         let error = [0, 1, 2].map(|i| {
@@ -108,21 +108,21 @@ impl Tilt {
         true
     }
 
-    /// Makes the time constant longer by a step, as long as it is not what it is to be.
+    /// Lengthens the time constant by a step, up to τ.
     #[inline(never)]
     fn grow(&mut self, step: u32) {
         self.age = self.age.saturating_add(step).min(self.time_constant);
         self.gain = Gain::new(self.age);
     }
 
-    /// The attitude with yaw 0 in which a reading points upwards; without a direction the identity.
+    /// The attitude with yaw 0 in which a reading points upwards. A reading of 0 gives the identity.
     #[cold]
     #[inline(never)]
     pub fn align(reading: [i16; 3]) -> Quaternion {
         let [x, y, z] = reading.map(|x| i64::from(x) << 40);
         let (level, roll) = polar(z, y);
         let (_, pitch) = polar(level, -x);
-        // Nose up or down there is no roll, and polar says 0.
+        // Nose up or down the roll is undefined, and polar gives 0.
         Quaternion::from_angles(Angles {
             yaw: Turns(0),
             pitch,
@@ -131,9 +131,9 @@ impl Tilt {
     }
 }
 
-/// |a × up| falls again where the error is more than a right angle. There it is made twice as long as `a`, about the angle of the
-/// error in radians, so that upside down is no place to stay; where it has no direction, that of an axis across `up` will do. `square` is
-/// that of `a`, at most (2^16 − 1)².
+/// |a × up| decreases for errors beyond a right angle. There its length becomes twice that of `a`, about the angle of the error in
+/// radians, so that upside down is not a fixed point. Without a direction any axis across `up` is used. `square` is that of `a`, at most
+/// (2^16 − 1)².
 #[cold]
 #[inline(never)]
 fn lengthened(error: [i32; 3], up: [i32; 3], square: u32) -> [i32; 3] {

@@ -1,4 +1,4 @@
-//! Samples in, attitude out.
+//! Attitude from samples.
 
 use core::mem;
 
@@ -9,31 +9,31 @@ use super::scale::Scale;
 use super::tilt::{Tilt, is_end};
 use crate::calibration::RestBias;
 
-/// What became of a sample.
+/// Effect of a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// It is the first: the attitude begins here.
+    /// First sample: the attitude starts.
     First,
-    /// The attitude has gone on to it.
+    /// The attitude was integrated to the sample.
     Step,
-    /// It is not later than the one before, and was ignored.
+    /// Not later than the sample before, and ignored.
     Stale,
-    /// It came more than [`LONGEST_STEP`] after the one before: the attitude was held, and goes on from here.
+    /// More than [`LONGEST_STEP`] after the sample before: the attitude was held and continues from here.
     Gap,
 }
 
-/// What happened to the attitude so far.
+/// Counts of samples by their effect.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Samples that moved it.
+    /// Integrated samples.
     pub steps: u64,
-    /// Samples that were ignored because of their time.
+    /// Samples ignored for their time.
     pub stale: u64,
-    /// Times that it was held because no sample came.
+    /// Gaps, for which the attitude was held.
     pub gaps: u64,
-    /// Samples at an end of the gyroscope's range: the body turned faster than it can say.
+    /// Samples at an end of the gyroscope's range.
     pub saturated: u64,
-    /// Samples whose accelerometer was left out.
+    /// Samples with a rejected accelerometer.
     pub rejected: u64,
 }
 
@@ -45,17 +45,17 @@ const LARGEST_BIAS: i32 = 1 << 30;
 pub struct Tracker {
     integrator: Integrator,
     tilt: Option<Tilt>,
-    /// Half an angle that the last reading asks for, 48 fraction bits; the next step makes it.
+    /// Half an angle of the last reading's correction, 48 fraction bits, for the next step.
     correction: [i64; 3],
     bias: [i32; 3],
     resting: Option<RestBias>,
-    /// When the last sample was taken; nothing before the first.
+    /// Time of the last sample; `None` before the first.
     last: Option<u32>,
     counts: Counts,
 }
 
 impl Tracker {
-    /// Waits for its first sample. Without `tilt` the accelerometer is left out.
+    /// A tracker before its first sample. Without `tilt` the accelerometer is ignored.
     pub fn new(scale: Scale, tilt: Option<Tilt>) -> Self {
         Self {
             integrator: Integrator::new(scale, Quaternion::IDENTITY, [0; 3]),
@@ -68,19 +68,19 @@ impl Tracker {
         }
     }
 
-    /// Sets what the gyroscope reads at rest, in 1/256 LSB; it stays so. Beyond ±2^30 it counts as that, which leaves no rate anyway.
+    /// Sets a constant bias of the gyroscope, in 1/256 LSB. It saturates to ±2^30, beyond every rate.
     pub fn set_bias(&mut self, bias: [i32; 3]) {
         self.bias = bias.map(|bias| bias.clamp(-LARGEST_BIAS, LARGEST_BIAS));
         self.resting = None;
     }
 
-    /// Follows what the gyroscope reads at rest from now on.
+    /// Tracks the bias of the gyroscope from now on.
     pub fn follow_bias(&mut self, resting: RestBias) {
         self.set_bias(resting.bias());
         self.resting = Some(resting);
     }
 
-    /// What the gyroscope is taken to read at rest, in 1/256 LSB.
+    /// Bias of the gyroscope in 1/256 LSB.
     pub const fn bias(&self) -> [i32; 3] {
         self.bias
     }
@@ -90,19 +90,19 @@ impl Tracker {
         self.integrator.attitude()
     }
 
-    /// What happened so far.
+    /// Counts of samples so far.
     pub const fn counts(&self) -> Counts {
         self.counts
     }
 
-    /// Whether the tilt is as well known as it ever is; without an accelerometer it never is.
+    /// Whether the tilt correction has settled; never without an accelerometer.
     pub fn is_settled(&self) -> bool {
         self.tilt.is_some_and(|tilt| tilt.is_settled())
     }
 
     /// Takes a sample.
-    // What is done for every sample is kept together, and small: on the soft core most of the time goes into what its instruction cache does
-    // not hold. What is rare is elsewhere.
+    // The code of every sample is kept together and small: on the soft core most of the time goes into misses of the instruction cache. Rare
+    // code is elsewhere.
     #[inline(never)]
     pub fn on_sample(&mut self, sample: &Sample) -> Outcome {
         let rate = [0, 1, 2].map(|i| (i32::from(sample.gyro[i]) << 8) - self.bias[i]);
@@ -119,7 +119,7 @@ impl Tracker {
             *half += mem::take(correction);
         }
         self.integrator.turn(&half);
-        // A reading is compared with the attitude that it was made in: of the one before a fast turn would make a tilt.
+        // A reading is compared with the attitude at its time: with the attitude before, a fast turn would give a tilt.
         if let Some(tilt) = &mut self.tilt
             && !tilt.correct(
                 self.integrator.rounded(),
@@ -133,7 +133,7 @@ impl Tracker {
         self.counts.steps += 1;
         if let Some(resting) = &mut self.resting {
             resting.on_sample(sample, step);
-            // A mean of counts and of what it began with.
+            // A mean of counts and of the first bias.
             self.bias = resting.bias();
         }
         if sample.gyro.into_iter().any(|count| is_end(count.into())) {
@@ -155,11 +155,11 @@ impl Tracker {
         Outcome::First
     }
 
-    /// A sample that makes no step: it is not later than the one before, or much.
+    /// A sample without a step: not later than the one before, or much later.
     #[cold]
     #[inline(never)]
     fn hold(&mut self, t_us: u32, step: u32, rate: [i32; 3]) -> Outcome {
-        // More than half of the range of stamps is a time before the last one.
+        // More than half of the range of stamps means an earlier time.
         if step == 0 || step > u32::MAX / 2 {
             self.counts.stale += 1;
             return Outcome::Stale;
@@ -170,7 +170,7 @@ impl Tracker {
         Outcome::Gap
     }
 
-    /// After something has happened that no sample tells: the last rate says nothing of those before, and the tilt may have changed.
+    /// After a gap or saturation: the last rate is unrelated to those before, and the tilt may have changed.
     #[cold]
     #[inline(never)]
     fn doubt(&mut self, rate: [i32; 3]) {

@@ -3,28 +3,28 @@
 use super::frame::{Message, write};
 use super::state::{Failure, State, Timing};
 
-/// How often the last word is said, as nobody answers it.
+/// Repetitions of the last message, which has no answer.
 const COPIES: u8 = 3;
-/// A failed transfer ends in the middle of what the other side says, so the line must be quiet for longer.
+/// Factor of the quiet time after a failure, which interrupts the other side's messages.
 const FAILED_QUIET_FACTOR: u64 = 10;
 
-/// The outcome of a transfer, what is still to be said, and the wait for a quiet line.
+/// Outcome of a transfer, its last message, and the wait for a quiet line.
 pub struct Ending {
     outcome: State,
-    farewell: Option<(u8, Message<'static>)>,
+    last_message: Option<(u8, Message<'static>)>,
     copies: u8,
     quiet_ms: u64,
-    /// When something was last said or heard.
+    /// Time of the last message in either direction.
     last_ms: u64,
-    /// When the wait is over in any case.
+    /// Latest end of the wait.
     deadline_ms: u64,
 }
 
 impl Ending {
-    /// Ends with `farewell` (its session and message), if there is something to say.
+    /// Ends with `last_message` (session and message), if any.
     pub fn new(
         outcome: State,
-        farewell: Option<(u8, Message<'static>)>,
+        last_message: Option<(u8, Message<'static>)>,
         timing: Timing,
         now_ms: u64,
     ) -> Self {
@@ -35,7 +35,7 @@ impl Ending {
         };
         Self {
             outcome,
-            farewell,
+            last_message,
             copies: COPIES,
             quiet_ms: timing.quiet_ms.saturating_mul(factor),
             last_ms: now_ms,
@@ -43,12 +43,12 @@ impl Ending {
         }
     }
 
-    /// The end of a transfer that failed with nobody to be told.
+    /// The end of a failed transfer without a message.
     pub fn failed(failure: Failure, timing: Timing, now_ms: u64) -> Self {
         Self::new(State::Failed(failure), None, timing, now_ms)
     }
 
-    /// Swallows bytes unless they are the caller's; returns how many.
+    /// Drops bytes that are not the caller's; returns their number.
     pub fn on_bytes(&mut self, now_ms: u64, bytes: &[u8]) -> usize {
         if self.quiet_ms == 0 {
             return 0;
@@ -59,16 +59,16 @@ impl Ending {
         bytes.len()
     }
 
-    /// Writes a frame, if there is one left, and tells the state: the outcome when the end is over.
+    /// Writes the next frame, if any, and returns the state: the outcome after the end.
     pub fn poll(&mut self, now_ms: u64, out: &mut [u8]) -> (usize, State) {
-        if let Some((session, message)) = self.farewell {
+        if let Some((session, message)) = self.last_message {
             let length = write(session, message, out);
             if length > 0 {
                 self.copies = self.copies.saturating_sub(1);
                 self.last_ms = now_ms;
             }
             if self.copies == 0 {
-                self.farewell = None;
+                self.last_message = None;
             }
             return (length, State::Running);
         }

@@ -1,4 +1,4 @@
-//! Frames: what they say, and how they are bytes.
+//! Frames: messages and their bytes.
 //!
 //! A frame's first byte has its kind in bits 3–0 and the session in bits 7–4; numbers are little-endian; a CRC-16 over all
 //! of it ends it.
@@ -10,26 +10,26 @@ use super::state::Reason;
 
 /// Bytes of a data frame besides its data, as sent: the kind, the number, the block, the CRC-16, the COBS code and two zeros.
 pub const OVERHEAD: usize = 10;
-/// The longest frame as sent; `poll` needs so much room.
+/// Longest frame as sent: the room that `poll` needs.
 pub const MAX_FRAME: usize = OVERHEAD + (MAX_BLOCKS * BLOCK) as usize;
 
 /// CCITT polynomial, starting from all ones, so that leading zeros count.
 static CRC_16: crc::Crc<u16> = crc::Crc::<u16>::new(&crc::CRC_16_IBM_3740);
 
-/// What one side says to the other.
+/// A message of one side to the other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Message<'a> {
-    /// From the sender: what is to come.
+    /// From the sender: length and CRC-32 of the transfer.
     Open(Manifest),
     /// From the sender: some blocks.
     Data(Data<'a>),
-    /// From the receiver: what is there.
+    /// From the receiver: the received blocks.
     Acknowledge(Acknowledge),
-    /// From the receiver: all is there, and has the right CRC-32 or not.
+    /// From the receiver: all blocks received, and whether the CRC-32 is right.
     Complete { verified: bool },
     /// From the sender: the verdict is known.
     Close,
-    /// From either: the transfer is given up.
+    /// From either: cancelled.
     Abort(Reason),
 }
 
@@ -47,11 +47,11 @@ pub struct Data<'a> {
 /// The contents of an acknowledgement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Acknowledge {
-    /// The data frame that came last; 0 before the first.
+    /// The last data frame received; 0 before the first.
     pub number: u8,
-    /// All blocks before this one are there, and this one is not.
+    /// The first missing block.
     pub next: u32,
-    /// Bit i: block `next` + i is there.
+    /// Bit i: block `next` + i was received.
     pub map: u128,
 }
 
@@ -62,7 +62,7 @@ const COMPLETE: u8 = 4;
 const CLOSE: u8 = 5;
 const ABORT: u8 = 6;
 
-/// Writes a frame and returns its length; 0 when there is no room for it.
+/// Writes a frame and returns its length; 0 without room for it.
 pub fn write(session: u8, message: Message, out: &mut [u8]) -> usize {
     write_body(session, message, out).unwrap_or(0)
 }
@@ -131,7 +131,7 @@ impl Body<'_> {
 /// Cuts a byte stream at its zeros.
 pub struct Reader {
     buffer: [u8; MAX_FRAME],
-    /// Bytes of the frame so far; more than the buffer has when it is too long to be one.
+    /// Bytes of the frame so far; more than the buffer's length means too long for a frame.
     length: usize,
 }
 
@@ -143,7 +143,7 @@ impl Reader {
         }
     }
 
-    /// Takes bytes up to the next zero; returns how many, and the frame when one is complete and valid.
+    /// Takes bytes up to the next zero; returns their number, and the frame if it is complete and valid.
     pub fn take(&mut self, bytes: &[u8]) -> (usize, Option<(u8, Message<'_>)>) {
         let zero = bytes.iter().position(|&byte| byte == 0);
         let part = bytes.get(..zero.unwrap_or(bytes.len())).unwrap_or_default();

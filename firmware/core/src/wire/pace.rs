@@ -1,26 +1,26 @@
-//! How long frames are, and how long to wait for an answer.
+//! Length of frames, and timeouts of answers.
 
 use super::format::{BLOCK, MAX_BLOCKS};
 use super::frame::OVERHEAD;
 
-/// How many sent bytes are remembered.
+/// Number of sent bytes in the statistics.
 const MEMORY: u32 = 8_192;
 /// A lost frame, in the units of `FrameSize::lost`.
 const FRAME: u32 = 256;
 
-/// The best length of a frame, from how often frames are lost.
+/// The best length of a frame, from the rate of lost frames.
 ///
-/// A frame of n data bytes and h others on a line that hits one byte in 1/p brings n/(n + h)·(1 − p)^(n + h) of
-/// what the line could carry; the maximum is at about n = √(h/p).
+/// A frame of n data bytes and h others, on a line that damages a byte with probability p, uses n/(n + h)·(1 − p)^(n + h)
+/// of the line's capacity. The maximum is at about n = √(h/p).
 pub struct FrameSize {
     /// Lost frames, in 1/256.
     lost: u32,
-    /// Sent bytes whose fate is known.
+    /// Sent bytes with a known fate.
     bytes: u32,
 }
 
 impl FrameSize {
-    /// Before anything is known: as if one byte in 410 were hit, which is good for 4 blocks.
+    /// The initial estimate: one damaged byte in 410, which gives 4 blocks.
     pub const fn new() -> Self {
         Self {
             lost: FRAME,
@@ -28,11 +28,11 @@ impl FrameSize {
         }
     }
 
-    /// Remembers the fate of so many sent bytes, and of so many frames that were lost.
+    /// Records the fate of sent bytes, and the number of lost frames.
     pub fn record(&mut self, bytes: u32, lost: u32) {
         self.bytes = self.bytes.saturating_add(bytes);
         self.lost = self.lost.saturating_add(lost.saturating_mul(FRAME));
-        // Old news fades.
+        // Old statistics fade.
         while self.bytes > MEMORY {
             self.bytes /= 2;
             self.lost /= 2;
@@ -47,18 +47,18 @@ impl FrameSize {
     }
 }
 
-/// How long to wait for an answer before asking again.
+/// Timeout of an answer.
 ///
-/// A little longer every time it was in vain: asking again soon is right on a bad line, which is nobody else's, and
-/// the number of questions to a side that is slow grows only with the square root of the time.
+/// Each timeout is a little longer than the one before: a short one suits a bad line, which has no other users, and the
+/// number of requests to a slow side grows only with the square root of the time.
 pub struct Patience {
     since_ms: Option<u64>,
     tries: u64,
 }
 
-/// The first wait in milliseconds.
+/// First timeout in milliseconds.
 const FIRST_WAIT: u64 = 15;
-/// By how much each wait is longer than the one before.
+/// Growth of each timeout in milliseconds.
 const LONGER: u64 = 2;
 
 impl Patience {
@@ -69,17 +69,17 @@ impl Patience {
         }
     }
 
-    /// Whether something is waited for.
+    /// Whether an answer is pending.
     pub const fn is_waiting(&self) -> bool {
         self.since_ms.is_some()
     }
 
-    /// Begins to wait, or begins anew.
+    /// Starts or restarts the timeout.
     pub const fn begin(&mut self, now_ms: u64) {
         self.since_ms = Some(now_ms);
     }
 
-    /// An answer came; there may be more to wait for.
+    /// An answer arrived; others may be pending.
     pub const fn answered(&mut self, now_ms: u64) {
         *self = Self {
             since_ms: Some(now_ms),
@@ -87,7 +87,7 @@ impl Patience {
         };
     }
 
-    /// Whether the wait was in vain; then a new one begins.
+    /// Whether the timeout has passed; then a new one starts.
     pub fn is_over(&mut self, now_ms: u64) -> bool {
         let wait = FIRST_WAIT + LONGER * self.tries;
         let over = self

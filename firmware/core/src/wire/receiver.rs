@@ -1,4 +1,4 @@
-//! The side that wants the data.
+//! The receiving side.
 
 use super::ending::Ending;
 use super::format::{BLOCK, CRC_32, MAX_LENGTH, Manifest, WINDOW};
@@ -8,14 +8,14 @@ use super::state::{Failure, Reason, State, Timing};
 
 /// Receives one transfer into a buffer.
 ///
-/// The buffer is written as blocks come, in any order, so it must not be in use before the state is [`State::Done`].
+/// Blocks are written to the buffer in any order. Its contents are valid once the state is [`State::Done`].
 pub struct Receiver<'a> {
     reader: Reader,
     transfer: Transfer<'a>,
 }
 
 impl<'a> Receiver<'a> {
-    /// Waits for a transfer that fits into the buffer and, if one was announced, is that one.
+    /// Waits for a transfer that fits into the buffer and matches the announced one, if any.
     pub fn new(
         buffer: &'a mut [u8],
         announced: Option<Manifest>,
@@ -38,13 +38,13 @@ impl<'a> Receiver<'a> {
         }
     }
 
-    /// Takes bytes that came and returns how many of them belong to the transfer: less than all only after its end.
+    /// Processes received bytes; returns the number that belongs to the transfer, which is less than all only after its end.
     pub fn on_bytes(&mut self, now_ms: u64, bytes: &[u8]) -> usize {
         feed(&mut self.reader, &mut self.transfer, now_ms, bytes)
     }
 
-    /// Writes the next frame, if there is one to send, and returns its length. It also keeps the time, so it is
-    /// to be called now and then. `out` needs [`MAX_FRAME`] bytes; nothing is written into less.
+    /// Writes the next frame, if any, and returns its length. Call it regularly, as it also checks the time. `out` needs
+    /// [`MAX_FRAME`] bytes; a shorter one stays empty.
     pub fn poll(&mut self, now_ms: u64, out: &mut [u8]) -> usize {
         if out.len() < MAX_FRAME {
             0
@@ -53,17 +53,17 @@ impl<'a> Receiver<'a> {
         }
     }
 
-    /// Gives the transfer up and tells the sender.
+    /// Cancels the transfer and notifies the sender.
     pub fn abort(&mut self, now_ms: u64) {
         self.transfer.abort(Reason::Cancelled, now_ms);
     }
 
-    /// Where the transfer is, as of the last `poll`.
+    /// State of the transfer at the last `poll`.
     pub fn state(&self) -> State {
         self.transfer.state
     }
 
-    /// Bytes that have arrived without a gap, and bytes in all (0 while that is unknown).
+    /// Bytes received without a gap, and the total (0 while unknown).
     pub fn progress(&self) -> (u32, u32) {
         self.transfer.opened.as_ref().map_or((0, 0), |opened| {
             let length = opened.manifest.length;
@@ -82,33 +82,33 @@ impl<'a> Receiver<'a> {
     }
 }
 
-/// All but the reader, which lends out its frames.
+/// The state apart from the reader, whose frames are borrowed.
 struct Transfer<'a> {
     buffer: &'a mut [u8],
     announced: Option<Manifest>,
     timing: Timing,
     opened: Option<Opened>,
-    /// When the last valid frame came.
+    /// Time of the last valid frame.
     valid_ms: u64,
-    /// A frame wants an answer.
+    /// Whether a frame needs an answer.
     reply: bool,
     ending: Option<Ending>,
     state: State,
 }
 
-/// What an `Open` has begun.
+/// A transfer after its `Open`.
 struct Opened {
     session: u8,
     manifest: Manifest,
-    /// The first block that is not there.
+    /// The first missing block.
     next: u32,
-    /// Bit i: block `next` + i is there.
+    /// Bit i: block `next` + i was received.
     map: u128,
-    /// The data frame that came last.
+    /// The last data frame.
     number: u8,
     /// Over the blocks before `next`.
     digest: crc::Digest<'static, u32>,
-    /// Once all is there: whether its CRC-32 is right.
+    /// After the last block: whether the CRC-32 is right.
     verdict: Option<bool>,
 }
 
@@ -177,7 +177,7 @@ impl Transfer<'_> {
             return length;
         }
         if now_ms.saturating_sub(self.valid_ms) > self.timing.silence_ms {
-            // The sender may have known the verdict and gone.
+            // The sender may know the verdict and have ended.
             let outcome = match self.opened.as_ref().and_then(|opened| opened.verdict) {
                 Some(true) => State::Done,
                 Some(false) => State::Failed(Failure::Corrupt),
@@ -196,13 +196,13 @@ impl Transfer<'_> {
 
     fn abort(&mut self, reason: Reason, now_ms: u64) {
         if self.ending.is_none() {
-            // Before an `Open` there is nobody to be told.
-            let farewell = self
+            // Before an `Open` no sender is known.
+            let last_message = self
                 .opened
                 .as_ref()
                 .map(|opened| (opened.session, Message::Abort(reason)));
             let outcome = State::Failed(Failure::Aborted(reason));
-            self.ending = Some(Ending::new(outcome, farewell, self.timing, now_ms));
+            self.ending = Some(Ending::new(outcome, last_message, self.timing, now_ms));
         }
     }
 }
@@ -222,7 +222,7 @@ impl Opened {
         opened
     }
 
-    /// Stores the blocks of a frame that are new and lie in the window.
+    /// Stores the new blocks of a frame within the window.
     fn store(
         &mut self,
         Data {
@@ -249,7 +249,7 @@ impl Opened {
             return;
         }
         self.number = number;
-        // What lies before `next` is in the digest already and stays as it is.
+        // Blocks before `next` are in the digest and must not change.
         let first = block.max(self.next);
         let new = bytes
             .get(((first - block) * BLOCK) as usize..)
@@ -266,7 +266,7 @@ impl Opened {
         self.advance(buffer);
     }
 
-    /// Moves `next` over the blocks that are there, and the digest with it.
+    /// Moves `next` over the received blocks, and the digest with it.
     fn advance(&mut self, buffer: &[u8]) {
         let blocks = self.map.trailing_ones();
         let from = self.next * BLOCK;
@@ -278,7 +278,7 @@ impl Opened {
         self.judge();
     }
 
-    /// Comes to the verdict when all is there.
+    /// Decides the verdict after the last block.
     fn judge(&mut self) {
         if self.next >= self.manifest.blocks() && self.verdict.is_none() {
             self.verdict = Some(self.digest.clone().finalize() == self.manifest.crc32);

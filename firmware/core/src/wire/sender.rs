@@ -1,4 +1,4 @@
-//! The side that has the data.
+//! The sending side.
 
 use super::ending::Ending;
 use super::format::{BLOCK, MAX_LENGTH, Manifest};
@@ -8,9 +8,9 @@ use super::peer::{Peer, feed};
 use super::state::{Failure, Reason, State, Timing};
 use super::window::Window;
 
-/// How often a transfer starts again when its CRC-32 is wrong at the end.
+/// Restarts of a transfer after a wrong CRC-32 of the whole.
 const RESTARTS: u8 = 3;
-/// A transfer is stuck when nothing new gets through for so many times the silence.
+/// Longest time without a new block, in multiples of the longest silence.
 const STALL_FACTOR: u64 = 4;
 
 /// Sends one transfer from a slice.
@@ -20,7 +20,7 @@ pub struct Sender<'a> {
 }
 
 impl<'a> Sender<'a> {
-    /// Starts to send `data`. `session` (modulo 16) tells this transfer from what is left of the one before: count it up.
+    /// Starts to send `data`. `session` (modulo 16) separates this transfer from remains of the one before: increment it.
     pub fn new(data: &'a [u8], session: u8, timing: Timing, now_ms: u64) -> Self {
         let mut transfer = Transfer {
             data,
@@ -47,13 +47,13 @@ impl<'a> Sender<'a> {
         }
     }
 
-    /// Takes bytes that came and returns how many of them belong to the transfer: less than all only after its end.
+    /// Processes received bytes; returns the number that belongs to the transfer, which is less than all only after its end.
     pub fn on_bytes(&mut self, now_ms: u64, bytes: &[u8]) -> usize {
         feed(&mut self.reader, &mut self.transfer, now_ms, bytes)
     }
 
-    /// Writes the next frame, if there is one to send, and returns its length. It also keeps the time, so it is
-    /// to be called whenever the line takes more. `out` needs [`MAX_FRAME`] bytes; nothing is written into less.
+    /// Writes the next frame, if any, and returns its length. Call it whenever the line takes more, as it also checks the
+    /// time. `out` needs [`MAX_FRAME`] bytes; a shorter one stays empty.
     pub fn poll(&mut self, now_ms: u64, out: &mut [u8]) -> usize {
         if out.len() < MAX_FRAME {
             0
@@ -62,18 +62,18 @@ impl<'a> Sender<'a> {
         }
     }
 
-    /// Gives the transfer up and tells the receiver.
+    /// Cancels the transfer and notifies the receiver.
     pub fn abort(&mut self, now_ms: u64) {
         self.transfer
             .fail(Failure::Aborted(Reason::Cancelled), now_ms);
     }
 
-    /// Where the transfer is, as of the last `poll`.
+    /// State of the transfer at the last `poll`.
     pub fn state(&self) -> State {
         self.transfer.state
     }
 
-    /// Bytes that are known to have arrived without a gap, and bytes in all.
+    /// Bytes acknowledged without a gap, and the total.
     pub fn progress(&self) -> (u32, u32) {
         let length = self.transfer.manifest.length;
         (
@@ -82,13 +82,13 @@ impl<'a> Sender<'a> {
         )
     }
 
-    /// Data bytes that frames have at present, at most 240: less on a line that damages more.
+    /// Present number of data bytes a frame, at most 240, and fewer on a bad line.
     pub fn frame_bytes(&self) -> u32 {
         self.transfer.frame_size.blocks() * BLOCK
     }
 }
 
-/// All but the reader, which lends out its frames.
+/// The state apart from the reader, whose frames are borrowed.
 struct Transfer<'a> {
     data: &'a [u8],
     manifest: Manifest,
@@ -99,11 +99,11 @@ struct Transfer<'a> {
     frame_size: FrameSize,
     /// Until an acknowledgement comes.
     patience: Patience,
-    /// When the last valid frame came.
+    /// Time of the last valid frame.
     valid_ms: u64,
-    /// When `farthest` last grew.
+    /// Time of the last growth of `farthest`.
     progress_ms: u64,
-    /// The most blocks that have been acknowledged without a gap.
+    /// Largest number of blocks acknowledged without a gap.
     farthest: u32,
     /// The receiver has answered.
     opened: bool,
@@ -122,7 +122,7 @@ impl Peer for Transfer<'_> {
                     return;
                 }
             }
-            // Only believable once everything has been sent.
+            // Valid only after the last block was sent.
             Message::Complete { verified } if self.window.end == self.manifest.blocks() => {
                 if verified {
                     let close = Some((self.session, Message::Close));
@@ -150,7 +150,7 @@ impl Peer for Transfer<'_> {
 }
 
 impl Transfer<'_> {
-    /// Takes an acknowledgement as the truth, unless it cannot be.
+    /// Takes over an acknowledgement, unless it is impossible.
     fn acknowledged(&mut self, acknowledge: Acknowledge, now_ms: u64) -> bool {
         let blocks = self.frame_size.blocks();
         let Some(fate) = self.window.update(acknowledge) else {
@@ -192,12 +192,12 @@ impl Transfer<'_> {
                 return length;
             }
         }
-        // All that may be on its way is.
+        // The window is full.
         if self.patience.is_waiting() && !self.patience.is_over(now_ms) {
             return 0;
         }
         if sending {
-            // One block is enough to be told which others are missing, and gets through soonest.
+            // One block is enough to learn which others are missing, and a short frame is the safest.
             self.window.forget_first();
             return self.send_data(1, now_ms, out);
         }
@@ -206,7 +206,7 @@ impl Transfer<'_> {
         write(self.session, Message::Open(self.manifest), out)
     }
 
-    /// Sends up to `most` of the first blocks that are to be sent.
+    /// Sends up to `most` of the first blocks to send.
     fn send_data(&mut self, most: u32, now_ms: u64, out: &mut [u8]) -> usize {
         let Some(run) = self.window.take(most, self.manifest.blocks()) else {
             return 0;
@@ -228,7 +228,7 @@ impl Transfer<'_> {
         )
     }
 
-    /// Starts again from the beginning, as the receiver found the whole damaged.
+    /// Starts again from the beginning after a wrong CRC-32 of the whole.
     fn restart(&mut self, now_ms: u64) {
         let Some(restarts) = self.restarts.checked_sub(1) else {
             return self.fail(Failure::Corrupt, now_ms);
@@ -249,10 +249,10 @@ impl Transfer<'_> {
                 Failure::Corrupt => Reason::Corrupt,
                 _ => Reason::NoAnswer,
             };
-            let farewell = Some((self.session, Message::Abort(reason)));
+            let last_message = Some((self.session, Message::Abort(reason)));
             self.ending = Some(Ending::new(
                 State::Failed(failure),
-                farewell,
+                last_message,
                 self.timing,
                 now_ms,
             ));

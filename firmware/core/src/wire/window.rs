@@ -1,30 +1,30 @@
-//! What the sender knows of the blocks on their way.
+//! The sender's state of blocks in flight.
 
 use super::format::WINDOW;
 use super::frame::Acknowledge;
 
-/// Numbers of data frames are modulo 256; with no more than this on their way, older and newer stay apart.
+/// Maximum number of data frames in flight: their numbers are modulo 256, and half of them separates older from newer.
 const MAX_FRAMES: u8 = 120;
 
-/// Which blocks have been sent and have arrived.
+/// Sent and acknowledged blocks.
 pub struct Window {
     /// The first block that has not arrived.
     pub next: u32,
-    /// Past the last block that has ever been sent.
+    /// The end of the blocks sent so far.
     pub end: u32,
     /// Bit i: block `next` + i has arrived.
     arrived: u128,
-    /// Bit i: block `next` + i has been sent and not been found lost.
+    /// Bit i: block `next` + i was sent and is not known as lost.
     sent: u128,
-    /// The data frame that carried a block last, by its number modulo the window.
+    /// The last data frame of a block, by the block's number modulo the window.
     carriers: [u8; WINDOW as usize],
     /// The last data frame that was sent.
     number: u8,
-    /// The last data frame that is known to have arrived.
+    /// The last acknowledged data frame.
     heard: u8,
 }
 
-/// What an acknowledgement says about blocks that were on their way.
+/// Fate of blocks in flight by an acknowledgement.
 pub struct Fate {
     pub arrived: u32,
     pub lost: u32,
@@ -51,7 +51,7 @@ impl Window {
         }
     }
 
-    /// Takes over what has arrived; nothing, if it cannot be true.
+    /// Takes over an acknowledgement. `None` for an impossible one.
     pub fn update(&mut self, Acknowledge { number, next, map }: Acknowledge) -> Option<Fate> {
         let past = next.checked_add(u128::BITS - map.leading_zeros())?;
         let unheard = self.number.wrapping_sub(self.heard);
@@ -64,7 +64,7 @@ impl Window {
         let left_behind = shift.min(WINDOW) - (self.arrived & low_bits(shift)).count_ones();
         let arrived = left_behind + (map & !moved(self.arrived)).count_ones();
 
-        // An acknowledgement that takes something back says that the one before was damaged.
+        // An acknowledgement that withdraws a block shows that the one before was damaged.
         let back = self.next.saturating_sub(next);
         self.sent = moved(self.sent).checked_shl(back).unwrap_or(0);
         self.arrived = map;
@@ -92,12 +92,12 @@ impl Window {
         Some(fate)
     }
 
-    /// Whether as many data frames are on their way as their numbers allow.
+    /// Whether the maximum number of data frames is in flight.
     pub const fn is_full(&self) -> bool {
         self.number.wrapping_sub(self.heard) >= MAX_FRAMES
     }
 
-    /// Takes the first block that is on its way for lost.
+    /// Marks the first block in flight as lost.
     pub const fn forget_first(&mut self) {
         let on_the_way = self.sent & !self.arrived;
         let first = on_the_way & on_the_way.wrapping_neg();
@@ -117,7 +117,7 @@ impl Window {
             .min(most)
             .min(WINDOW - first)
             .min(total - block);
-        // When all numbers are taken, a probe repeats the last one, which is never taken for lost.
+        // Without a free number a probe repeats the last one, which is never marked as lost.
         if !self.is_full() {
             self.number = self.number.wrapping_add(1);
         }
@@ -152,7 +152,7 @@ const fn low_bits(count: u32) -> u128 {
     }
 }
 
-/// Whether one number was given before another, modulo 256.
+/// Whether one number precedes another, modulo 256.
 const fn is_before(number: u8, other: u8) -> bool {
     (number.wrapping_sub(other) as i8) < 0
 }

@@ -1,6 +1,8 @@
 //! Measurements of tests and the report.
 
-use glint_core::calibration::{Calibration, Progress, Refusal, Report, RestBias, SAMPLES, Units};
+use glint_core::calibration::{
+    Calibration, Progress, Report, RestBias, SAMPLES, SampleError, Units,
+};
 use glint_core::fixed::Q32_32;
 use glint_core::orientation::{Scale, TIME_CONSTANT, Tilt, Tracker};
 
@@ -132,7 +134,7 @@ pub fn filter_inclination(filter: Filter, sensor: Sensor, motion: Motion, second
 ///
 /// # Panics
 /// When the samples end before the calibration.
-pub fn calibrated(sensor: Sensor, motion: Motion) -> Result<Report, Refusal> {
+pub fn calibrated(sensor: Sensor, motion: Motion) -> Result<Report, SampleError> {
     let mut calibration = Calibration::new(Units::MPU_6050, SAMPLES);
     for sample in sensor.samples(motion, u64::from(SAMPLES) + 1, 3) {
         if let Progress::Done(report) = calibration.on_sample(&sample)? {
