@@ -1,6 +1,6 @@
 //! Interrupts.
 
-use glint_hal::{display, i2c, interrupt, raymarch, timer, triangle};
+use glint_hal::{i2c, interrupt, raymarch, scanout, timer, triangle};
 use litex_pac::{Interrupt, cpu};
 
 use crate::sensor;
@@ -45,7 +45,7 @@ fn handle() {
     let start = cpu::cycles_low();
     let unexpected = interrupt::dispatch(cpu::interrupts_pending(), |interrupt| match interrupt {
         Interrupt::Uart => UART.on_interrupt(),
-        Interrupt::Scanout => display::acknowledge_vblank(),
+        Interrupt::Scanout => scanout::acknowledge_vblank(),
         Interrupt::Triangle => triangle::acknowledge(),
         Interrupt::Raymarch => raymarch::acknowledge(),
         Interrupt::I2c => {

@@ -2,7 +2,7 @@
 
 use glint_core::mesh::Mesh;
 use glint_core::picture::Backend;
-use glint_hal::display::Display;
+use glint_hal::scanout::Display;
 use glint_model::{Frame, FrameBuffer, FrameStats, RenderError};
 use litex_pac::cpu;
 

@@ -7,7 +7,7 @@
 //! | [`i2c`] | `i2c`, by a queue of commands | [`I2c`](embedded_hal::i2c::I2c), blocking, and [`I2c`](embedded_hal_async::i2c::I2c) |
 //! | [`gpio`] | `buttons`, `switches`, `leds` | [`InputPin`](embedded_hal::digital::InputPin), [`StatefulOutputPin`](embedded_hal::digital::StatefulOutputPin) |
 //! | [`interrupt`] | the CPU's interrupt lines | |
-//! | [`display`] | `scanout` and its two frames | |
+//! | [`scanout`] | `scanout` and its two frames | |
 //! | [`triangle`] | `triangle`, the engine that draws meshes | |
 //! | [`raymarch`] | `raymarch`, which draws distance fields into its frames | |
 //!
@@ -19,11 +19,11 @@
 extern crate std;
 
 mod absent;
-pub mod display;
 pub mod gpio;
 pub mod i2c;
 pub mod interrupt;
 pub mod raymarch;
+pub mod scanout;
 pub mod timer;
 pub mod triangle;
 pub mod uart;

@@ -170,7 +170,7 @@ impl TriangleEngine {
         Ok(Self { registers })
     }
 
-    /// Best shading that the gateware is built with. It sets the length of a descriptor (`glint_model::descriptor::words`).
+    /// Best shading that the gateware is built with. It sets the length of a descriptor (`glint_model::triangle::descriptor::words`).
     #[must_use]
     pub fn shading(&self) -> Shading {
         if self.registers.caps().read().gouraud() {

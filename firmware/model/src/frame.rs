@@ -15,13 +15,10 @@ use crate::depth::DepthScale;
 use crate::error::RenderError;
 use crate::frame_buffer::FrameBuffer;
 use crate::mesh_in_field;
-use crate::mesh_setup::MeshSetup;
 use crate::raymarch::{
     FieldOptions, FieldSetup, FieldStats, Palette, Ray, RayResult, render_field,
 };
-use crate::render::{Stats, trace_frame};
-use crate::triangle::Options;
-use crate::vertex::Projected;
+use crate::triangle::{MeshSetup, Options, Projected, Stats, trace_frame};
 
 /// Triangles between two calls of `progress` in [`Frame::draw`].
 const TRIANGLES_A_CALL: u32 = 32;

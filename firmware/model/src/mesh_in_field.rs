@@ -5,8 +5,8 @@ use glint_core::field::Field;
 
 use crate::depth::DepthScale;
 use crate::error::RenderError;
-use crate::mesh_setup::MeshSetup;
 use crate::raymarch::{FieldOptions, FieldSetup};
+use crate::triangle::MeshSetup;
 
 /// Zero low bits of km, so that K times the 40.5 field units of a world unit has 17 bits too.
 const EVEN_BITS: u32 = 7;

@@ -1,148 +1,25 @@
-//! One triangle between vertex stage and walker: facing, bounds, light, and the fan of a clipped one.
+//! The triangle engine's twin: from a mesh to pixels.
+//!
+//! Vertices go through [`vertex`], triangles through [`setup`] and [`raster`], those beyond the guard band or the near plane
+//! through [`clip`]. [`render`] draws a mesh; [`descriptor`] has the records that the engine keeps in memory.
 
-use glint_core::colour::Shading;
-use glint_core::mesh::{Chunk, Rgb565, Triangle};
+pub mod clip;
+pub mod descriptor;
+mod exceptions;
+mod facing;
+mod mesh_setup;
+mod primitive;
+pub mod quotient;
+pub mod raster;
+pub mod reciprocal;
+mod render;
+mod rounding;
+pub mod setup;
+pub mod shade;
+pub mod vertex;
 
-use crate::clip::{clip, off_picture};
-use crate::facing::Facing;
-use crate::mesh_setup::MeshSetup;
-use crate::setup::{Bounds, Oriented, Setup};
-use crate::shade::{Light, Lit, intensity, lit};
-use crate::vertex::{CameraVertex, ScreenVertex, snap, transform};
-
-/// How a mesh is drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Options {
-    /// Cull back faces.
-    pub cull: bool,
-    /// Colour of pixels without a triangle, RGB565.
-    pub clear: u16,
-    /// Source of colours.
-    pub shading: Shading,
-}
-
-impl Default for Options {
-    /// Back faces culled, on black, flat.
-    fn default() -> Self {
-        Self {
-            cull: true,
-            clear: 0,
-            shading: Shading::Flat,
-        }
-    }
-}
-
-/// A screen triangle that reaches the walker.
-pub struct Placed {
-    /// Vertices in clockwise order, and the visible side.
-    pub oriented: Oriented,
-    /// Pixels that it may cover.
-    pub bounds: Bounds,
-    /// Colour after flat shading.
-    pub colour: Rgb565,
-    /// Light of its vertices under smooth shading, which replaces `colour`.
-    pub lit: Option<[Lit; 3]>,
-}
-
-impl Placed {
-    /// `None` for a culled back face, and for a triangle that covers no pixel's centre.
-    pub fn new(
-        frame: &MeshSetup,
-        cull: bool,
-        triangle: &Triangle,
-        vertices: [&ScreenVertex; 3],
-        light: Option<&[Light; 3]>,
-    ) -> Option<Self> {
-        let oriented = Oriented::new(vertices.map(|v| *v))?;
-        let facing = oriented.facing;
-        if cull && facing == Facing::Back {
-            return None;
-        }
-        let bounds = Bounds::new(&oriented.vertices, frame.width, frame.height)?;
-        let intensity = intensity(triangle.normal, &frame.n, facing);
-        Some(Self {
-            oriented,
-            bounds,
-            colour: lit(triangle.colour, intensity),
-            lit: light.map(|light| facing.order(light.map(|light| light.to(facing)))),
-        })
-    }
-
-    /// Edge functions and planes.
-    pub fn setup(&self) -> Setup {
-        match &self.lit {
-            None => Setup::new(&self.oriented, self.bounds),
-            Some(lit) => Setup::smooth(&self.oriented, self.bounds, lit),
-        }
-    }
-}
-
-/// The light of a triangle's vertices.
-///
-/// Not inlined: flat triangles leave the instruction cache to other code.
-#[inline(never)]
-pub fn vertex_light(frame: &MeshSetup, indices: [u16; 3], chunk: &Chunk) -> [Light; 3] {
-    indices.map(|i| {
-        // A checked mesh has all vertices of its indices.
-        chunk.vertex(usize::from(i)).map_or(Light::default(), |v| {
-            Light::new(v.colour, v.normal, &frame.n)
-        })
-    })
-}
-
-/// A vertex of a clipped triangle.
-pub struct Corner {
-    /// Position on the screen.
-    pub place: ScreenVertex,
-    /// Light; black under flat shading.
-    pub light: Light,
-}
-
-/// The light of three vertices of a clipped triangle under smooth shading.
-pub fn lit_corners(shading: Shading, corners: [&Corner; 3]) -> Option<[Light; 3]> {
-    (shading == Shading::Smooth).then(|| corners.map(|corner| corner.light))
-}
-
-/// Clips a triangle and emits the remaining polygon as a fan.
-pub fn clip_fan(
-    frame: &MeshSetup,
-    shading: Shading,
-    triangle: &Triangle,
-    chunk: &Chunk,
-    emit: &mut dyn FnMut([&Corner; 3]),
-) {
-    let [Some(a), Some(b), Some(c)] = triangle.indices.map(|i| chunk.vertex(usize::from(i))) else {
-        return;
-    };
-    // The smallest position comes first, so that the order of the triangle's indices does not matter.
-    let [p, q, r] = [&a, &b, &c].map(|vertex| vertex.position);
-    let vertices = if p <= q && p <= r {
-        [a, b, c]
-    } else if q <= r {
-        [b, c, a]
-    } else {
-        [c, a, b]
-    };
-    let corners = vertices.map(|vertex| CameraVertex {
-        light: match shading {
-            Shading::Flat => Light::default(),
-            Shading::Smooth => Light::new(vertex.colour, vertex.normal, &frame.n),
-        },
-        ..transform(frame, vertex.position)
-    });
-    if off_picture(frame, &corners) {
-        return;
-    }
-    let polygon = clip(frame, corners);
-    let mut left = polygon.vertices().iter().map(|vertex| Corner {
-        place: snap(frame, vertex),
-        light: vertex.light,
-    });
-    let (Some(first), Some(mut last)) = (left.next(), left.next()) else {
-        return;
-    };
-    for corner in left {
-        emit([&first, &last, &corner]);
-        last = corner;
-    }
-}
+pub use exceptions::clip_exceptions;
+pub use mesh_setup::MeshSetup;
+pub use primitive::Options;
+pub use render::{DrawnTriangle, Stats, render, trace, trace_frame};
+pub use vertex::{Projected, ScreenVertex};

@@ -1,7 +1,7 @@
 //! What crosses the near plane or leaves the guard band.
 
-use glint_model::clip::clip;
-use glint_model::vertex::{CameraVertex, project, transform};
+use glint_model::triangle::clip::clip;
+use glint_model::triangle::vertex::{CameraVertex, project, transform};
 use glint_model::{MeshSetup, Projected, SIZES};
 use glint_vectors::{Camera, Model, Picture, Random, math::world};
 

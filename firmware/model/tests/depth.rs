@@ -1,8 +1,8 @@
 //! Depth codes of screen triangles.
 
 use glint_core::colour::Rgb565;
-use glint_model::raster::draw;
-use glint_model::reciprocal::Reciprocal;
+use glint_model::triangle::raster::draw;
+use glint_model::triangle::reciprocal::Reciprocal;
 use glint_model::{SIZES, ScreenVertex};
 use glint_vectors::triangles::{SIZE, at, random_triangle, set_up};
 use glint_vectors::{Picture, Random};

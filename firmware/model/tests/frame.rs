@@ -6,7 +6,7 @@ use glint_core::colour::{Rgb565, Shading};
 use glint_core::field::Field;
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
-use glint_model::descriptor::{
+use glint_model::triangle::descriptor::{
     Descriptor, Full, LENGTHS, ListWriter, band_rows, list_shift, list_word, words,
 };
 use glint_model::{

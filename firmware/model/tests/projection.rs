@@ -1,7 +1,7 @@
 //! Snapped places and depths against a projection in f64.
 
-use glint_model::reciprocal::Reciprocal;
-use glint_model::vertex::{project, transform};
+use glint_model::triangle::reciprocal::Reciprocal;
+use glint_model::triangle::vertex::{project, transform};
 use glint_model::{MeshSetup, Projected, SIZES, ScreenVertex};
 use glint_vectors::{Camera, Random, math::world};
 

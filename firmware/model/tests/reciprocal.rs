@@ -1,6 +1,6 @@
 //! The reciprocal over all of its mantissas.
 
-use glint_model::reciprocal::{Reciprocal, SEED, recip};
+use glint_model::triangle::reciprocal::{Reciprocal, SEED, recip};
 
 #[test]
 fn every_mantissa() {

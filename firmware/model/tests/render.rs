@@ -3,7 +3,7 @@
 use glint_core::camera::View;
 use glint_core::fixed::Q32_32;
 use glint_core::mesh::Mesh;
-use glint_model::setup::{Facing, Oriented};
+use glint_model::triangle::setup::{Facing, Oriented};
 use glint_model::{Buffer, FrameBuffer, MeshSetup, Options, Projected, RenderError, SIZES, render};
 use glint_vectors::{Camera, Model, Picture, Random, picture::CLEAR};
 

@@ -1,12 +1,12 @@
 //! Smooth shading: what is exact about it. `tools/reference` has its errors.
 
 use glint_core::colour::Rgb565;
-use glint_model::clip::clip;
-use glint_model::quotient::{INVERSE, colour};
-use glint_model::raster::draw;
-use glint_model::setup::{Bounds, Facing, Oriented, Setup};
-use glint_model::shade::{Light, Lit, intensity, lit};
-use glint_model::vertex::{CameraVertex, transform};
+use glint_model::triangle::clip::clip;
+use glint_model::triangle::quotient::{INVERSE, colour};
+use glint_model::triangle::raster::draw;
+use glint_model::triangle::setup::{Bounds, Facing, Oriented, Setup};
+use glint_model::triangle::shade::{Light, Lit, intensity, lit};
+use glint_model::triangle::vertex::{CameraVertex, transform};
 use glint_model::{MeshSetup, SIZES};
 use glint_vectors::triangles::{SIZE, random_triangle};
 use glint_vectors::{Camera, Picture, Random};

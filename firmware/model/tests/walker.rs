@@ -1,9 +1,9 @@
 //! The walker and the setup on screen triangles: what is covered.
 
 use glint_core::colour::Rgb565;
-use glint_model::raster::{Coverage, draw};
-use glint_model::setup::{Oriented, Setup};
-use glint_model::vertex::GUARD;
+use glint_model::triangle::raster::{Coverage, draw};
+use glint_model::triangle::setup::{Oriented, Setup};
+use glint_model::triangle::vertex::GUARD;
 use glint_model::{SIZES, ScreenVertex};
 use glint_vectors::triangles::{SIZE, at, random_triangle, set_up};
 use glint_vectors::{Picture, Random};

@@ -5,7 +5,7 @@ use core::mem;
 use glint_core::colour::Shading;
 use glint_hal::triangle::{Lists, Set};
 use glint_model::Stats;
-use glint_model::descriptor;
+use glint_model::triangle::descriptor;
 
 /// Descriptors of a set, in their short form, and exceptions: the CPU draws a frame with more.
 const DESCRIPTORS: usize = 1 << 16;

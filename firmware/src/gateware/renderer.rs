@@ -6,7 +6,7 @@ use glint_hal::raymarch::{self, Raymarcher};
 use glint_hal::triangle::{
     Counters, EngineError, Error, Geometry, Prepared, Raster, Set, TriangleEngine,
 };
-use glint_model::descriptor::{ListWriter, list_shift};
+use glint_model::triangle::descriptor::{ListWriter, list_shift};
 use glint_model::{
     Frame, FrameConstants, FrameStats, MeshSubject, Options, Stats, Subject, clip_exceptions,
 };

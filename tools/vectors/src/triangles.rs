@@ -1,7 +1,7 @@
 //! Triangles on the screen.
 
-use glint_model::setup::{Bounds, Oriented, Setup};
-use glint_model::vertex::GUARD;
+use glint_model::triangle::setup::{Bounds, Oriented, Setup};
+use glint_model::triangle::vertex::GUARD;
 use glint_model::{SIZES, ScreenVertex};
 
 use crate::random::Random;

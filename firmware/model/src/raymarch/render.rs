@@ -9,7 +9,7 @@ use super::ray::{Ray, RayResult, State};
 use super::setup::FieldSetup;
 use crate::error::RenderError;
 use crate::frame_buffer::FrameBuffer;
-use crate::reciprocal::Reciprocal;
+use crate::triangle::reciprocal::Reciprocal;
 
 /// What drawing a frame of a field took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -240,7 +240,7 @@ fn run_model(mesh: &[u8]) {
         colour: &mut colour,
         depth: &mut depth,
     };
-    let rendered = glint_model::render(
+    let rendered = glint_model::triangle::render(
         &mesh_view,
         &view,
         &mut target,

@@ -1,7 +1,7 @@
 //! The raymarcher itself, verilated: what a picture takes of it.
 
-use glint_model::descriptor::band_rows;
 use glint_model::raymarch::{FieldSetup, Palette, Rays};
+use glint_model::triangle::descriptor::band_rows;
 use glint_testbench::raymarch::{Pixel, Place, pixel, set_blocks, set_lane, set_paint, set_rays};
 use glint_testbench::{Module, Port};
 

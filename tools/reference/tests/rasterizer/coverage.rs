@@ -2,7 +2,7 @@
 //! and against the unsnapped triangle by the classes of the conformance tests.
 
 use glint_reference::camera::{Camera, Size};
-use glint_reference::surface::{Class, ProjectedTriangle};
+use glint_reference::triangle::surface::{Class, ProjectedTriangle};
 
 use crate::cameras::view;
 use crate::renderer::{Renderer, exact};

@@ -1,7 +1,7 @@
 //! Triangles that share edges cover every pixel exactly once.
 
 use glint_reference::camera::Camera;
-use glint_reference::surface::{Class, ProjectedTriangle};
+use glint_reference::triangle::surface::{Class, ProjectedTriangle};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 

@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use glint_reference::camera::{Camera, Size, Vector};
-use glint_reference::exact::{ExactTriangle, SnappedVertex};
-use glint_reference::surface::{Class, ProjectedTriangle};
+use glint_reference::triangle::exact::{ExactTriangle, SnappedVertex};
+use glint_reference::triangle::surface::{Class, ProjectedTriangle};
 use serde::{Deserialize, Serialize};
 
 use crate::cameras::view;

@@ -4,7 +4,7 @@ use glint_core::camera::View;
 use glint_core::mesh::Mesh;
 use glint_model::{DrawnTriangle, FrameBuffer, Options, Projected, ScreenVertex, Stats, trace};
 use glint_reference::camera::Size;
-use glint_reference::exact::{ExactTriangle, SnappedVertex};
+use glint_reference::triangle::exact::{ExactTriangle, SnappedVertex};
 
 use crate::scenes::Scene;
 

@@ -2,7 +2,7 @@
 
 use glint_core::camera::View;
 use glint_core::mesh::Rgb565;
-use glint_model::setup::Facing;
+use glint_model::triangle::setup::Facing;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 

@@ -1,6 +1,6 @@
 //! Smooth shading against the exact quotient in f64.
 
-use glint_reference::smooth::scenes;
+use glint_reference::triangle::smooth::scenes;
 
 #[test]
 fn light_is_within_its_bound_of_the_exact_quotient() {

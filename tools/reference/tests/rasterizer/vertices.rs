@@ -3,7 +3,7 @@
 use std::fmt;
 
 use glint_core::mesh::MAX_RADIUS;
-use glint_model::vertex::{project, transform};
+use glint_model::triangle::vertex::{project, transform};
 use glint_model::{MeshSetup, Projected, ScreenVertex};
 use glint_reference::camera::{Camera, Size, Vector};
 use rand::{RngExt, SeedableRng};

@@ -1,7 +1,7 @@
 //! Whole scenes: the visible surface and its depth, in all pixels that snapping cannot change.
 
 use glint_reference::camera::Camera;
-use glint_reference::surface::{Tolerance, Visible, visible_surfaces};
+use glint_reference::triangle::surface::{Tolerance, Visible, visible_surfaces};
 
 use crate::cameras::{cross, dot, minus, view};
 use crate::coverage::snap_limit;

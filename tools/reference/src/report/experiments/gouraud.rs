@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::report::provenance::Provenance;
 use crate::report::workspace;
-use crate::smooth::{Measured, scenes};
+use crate::triangle::smooth::{Measured, scenes};
 
 /// A scene: a line of `gouraud.csv`. Errors are in steps of a channel.
 #[derive(Serialize, Deserialize)]

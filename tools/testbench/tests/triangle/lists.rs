@@ -1,6 +1,6 @@
 //! The band lists, as the binner leaves them in memory.
 
-use glint_model::descriptor::{band_rows, list_word};
+use glint_model::triangle::descriptor::{band_rows, list_word};
 use glint_testbench::{Bits, Layout, Memory, Module, Sink, Source, Stalls};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;

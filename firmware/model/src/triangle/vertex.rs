@@ -1,9 +1,9 @@
 //! The vertex stage: from a position in the mesh to a position on the screen.
 
-use crate::mesh_setup::MeshSetup;
-use crate::reciprocal::Reciprocal;
-use crate::rounding::nearest;
-use crate::shade::Light;
+use crate::triangle::mesh_setup::MeshSetup;
+use crate::triangle::reciprocal::Reciprocal;
+use crate::triangle::rounding::nearest;
+use crate::triangle::shade::Light;
 
 /// The guard band: 2047 pixels from the top left corner to every side, s12.8.
 pub const GUARD: i32 = 2047 << 8;

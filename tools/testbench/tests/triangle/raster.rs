@@ -8,12 +8,12 @@ use glint_core::camera::View;
 use glint_core::colour::Rgb565;
 use glint_core::fixed::U4_28;
 use glint_core::mesh::Mesh;
-use glint_model::shade::Lit;
-use glint_model::vertex::GUARD;
+use glint_model::triangle::shade::Lit;
+use glint_model::triangle::vertex::GUARD;
 use glint_model::{FrameBuffer, Options, Projected, ScreenVertex, trace};
 
-use crate::bench::Bench;
-use crate::triangles::{LARGE, MIDDLE, Random, SMALL, Triangle, corner, numbered, pixels};
+use crate::raster::bench::Bench;
+use crate::raster::triangles::{LARGE, MIDDLE, Random, SMALL, Triangle, corner, numbered, pixels};
 
 #[test]
 fn random_triangles() {

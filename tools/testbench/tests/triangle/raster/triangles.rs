@@ -2,9 +2,9 @@
 
 use glint_core::colour::Rgb565;
 use glint_model::ScreenVertex;
-use glint_model::setup::{Bounds, Oriented, Setup};
-use glint_model::shade::Lit;
-use glint_model::vertex::GUARD;
+use glint_model::triangle::setup::{Bounds, Oriented, Setup};
+use glint_model::triangle::shade::Lit;
+use glint_model::triangle::vertex::GUARD;
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 

@@ -1,10 +1,10 @@
 //! Triangle setup: facing, bounds, edge functions and the planes of depth and light.
 
-pub use crate::facing::Facing;
-use crate::reciprocal::Reciprocal;
-use crate::rounding::nearest;
-use crate::shade::Lit;
-use crate::vertex::ScreenVertex;
+pub use crate::triangle::facing::Facing;
+use crate::triangle::reciprocal::Reciprocal;
+use crate::triangle::rounding::nearest;
+use crate::triangle::shade::Lit;
+use crate::triangle::vertex::ScreenVertex;
 
 /// A triangle with a positive area, its vertices clockwise on the screen (y points down).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -244,7 +244,7 @@ fn narrow(vertices: &[ScreenVertex; 3]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::gradient;
-    use crate::reciprocal::Reciprocal;
+    use crate::triangle::reciprocal::Reciprocal;
 
     #[test]
     fn gradients_equal_the_product_in_128_bits() {

@@ -6,8 +6,8 @@ mod passes;
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
-use crate::bench::{Bench, Events};
-use crate::passes::{
+use crate::control::bench::{Bench, Events};
+use crate::control::passes::{
     ADDRESS, BASE, BUSY, CANCELLED, FULL, GEOMETRY, LATENCY, LIST, MEMORY, MESH, NAMES, NONE, Pass,
     RASTER, refusal, regions,
 };

@@ -10,8 +10,8 @@ use core::ops::{Add, BitOr, Sub};
 use glint_core::colour::Rgb565;
 
 use crate::frame_buffer::FrameBuffer;
-use crate::quotient;
-use crate::setup::{Edge, Plane, Setup};
+use crate::triangle::quotient;
+use crate::triangle::setup::{Edge, Plane, Setup};
 
 /// Counts of one triangle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -2,7 +2,7 @@
 
 use glint_testbench::{Module, Port};
 
-use crate::passes::{
+use crate::control::passes::{
     ADDRESS, BASE, BUSY, CANCELLED, FULL, Flags, GEOMETRY, LATENCY, LIST, MEMORY, MESH, NAMES,
     NONE, Pass, RASTER, refusal,
 };

@@ -2,8 +2,8 @@
 
 use glint_core::camera::View;
 use glint_core::mesh::Mesh;
-use glint_model::descriptor::{Descriptor, band_rows, list_word, words};
-use glint_model::setup::{Bounds, Oriented, Setup};
+use glint_model::triangle::descriptor::{Descriptor, band_rows, list_word, words};
+use glint_model::triangle::setup::{Bounds, Oriented, Setup};
 use glint_model::{
     DrawnTriangle, FrameBuffer, MeshSetup, Options, Projected, Shading, Stats, trace,
 };

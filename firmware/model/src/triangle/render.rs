@@ -5,13 +5,13 @@ use glint_core::colour::Shading;
 use glint_core::mesh::{Chunk, Mesh, Rgb565, Triangle};
 
 use crate::error::RenderError;
-use crate::facing::Facing;
 use crate::frame_buffer::FrameBuffer;
-use crate::mesh_setup::MeshSetup;
-use crate::raster;
-use crate::shade::{Light, Lit};
-use crate::triangle::{Options, Placed, clip_fan, lit_corners, vertex_light};
-use crate::vertex::{Projected, ScreenVertex, project, transform};
+use crate::triangle::facing::Facing;
+use crate::triangle::mesh_setup::MeshSetup;
+use crate::triangle::primitive::{Options, Placed, clip_fan, lit_corners, vertex_light};
+use crate::triangle::raster;
+use crate::triangle::shade::{Light, Lit};
+use crate::triangle::vertex::{Projected, ScreenVertex, project, transform};
 
 /// Counts of a mesh's frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -4,10 +4,10 @@
 use glint_core::camera::View;
 use glint_core::colour::Rgb565;
 use glint_core::mesh::{IndexedTriangle, Mesh, Vertex, encode};
-use glint_model::setup::{Bounds, Facing, Oriented, Setup};
-use glint_model::shade::Lit;
+use glint_model::triangle::setup::{Bounds, Facing, Oriented, Setup};
+use glint_model::triangle::shade::Lit;
 use glint_model::{
-    DrawnTriangle, FrameBuffer, Options, Projected, ScreenVertex, Shading, raster, trace,
+    DrawnTriangle, FrameBuffer, Options, Projected, ScreenVertex, Shading, trace, triangle::raster,
 };
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;

@@ -2,8 +2,8 @@
 
 use glint_core::colour::Rgb565;
 
-use crate::facing::Facing;
-use crate::rounding::nearest;
+use crate::triangle::facing::Facing;
+use crate::triangle::rounding::nearest;
 
 /// clamp(−N·n, 0, 1) of a normal N (s2.14) and the forward direction n (s2.23), u1.8; a back face negates N.
 pub fn intensity(normal: [i16; 3], n: &[i32; 3], facing: Facing) -> u32 {

@@ -1,6 +1,6 @@
 //! The vertex stage against the model's.
 
-use glint_model::vertex::{project, transform};
+use glint_model::triangle::vertex::{project, transform};
 use glint_model::{MeshSetup, Projected, SIZES, ScreenVertex};
 use glint_testbench::{Bits, Layout, Module, Record, Sink, Source, Stalls};
 use glint_vectors::{Camera, Random};

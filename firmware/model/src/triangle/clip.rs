@@ -3,8 +3,8 @@
 //! Clipping works on camera coordinates, before the division. An intersection is rounded from the exact one and does not depend
 //! on the direction of its edge: both triangles at an edge meet at the same vertex.
 
-use crate::mesh_setup::MeshSetup;
-use crate::vertex::CameraVertex;
+use crate::triangle::mesh_setup::MeshSetup;
+use crate::triangle::vertex::CameraVertex;
 
 /// Every plane replaces each run of outside vertices by two, and at most every second vertex is one:
 /// 3 → 4 → 6 → 9 → 13 → 19. (A convex polygon reaches 8, but rounding may bend one.)

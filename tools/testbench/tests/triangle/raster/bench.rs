@@ -1,11 +1,11 @@
 //! The raster pass of one band after the other, and the picture of its groups.
 
-use glint_model::descriptor::{Descriptor, band_rows};
-use glint_model::raster::draw;
+use glint_model::triangle::descriptor::{Descriptor, band_rows};
+use glint_model::triangle::raster::draw;
 use glint_model::{FrameBuffer, Shading};
 use glint_testbench::{Bits, Module, Port, Sink, Source, Stalls};
 
-use crate::triangles::{LANES, Triangle};
+use crate::raster::triangles::{LANES, Triangle};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pixel {

@@ -2,9 +2,9 @@
 
 use glint_core::mesh::{Mesh, Rgb565};
 
-use crate::mesh_setup::MeshSetup;
-use crate::setup::Setup;
-use crate::triangle::{Options, Placed, clip_fan, lit_corners};
+use crate::triangle::mesh_setup::MeshSetup;
+use crate::triangle::primitive::{Options, Placed, clip_fan, lit_corners};
+use crate::triangle::setup::Setup;
 
 /// Clips the exceptions of the gateware, by their `numbers` in the mesh, and emits setup and colour of every part that
 /// remains. Returns the number of triangles with such a part.

@@ -1,10 +1,10 @@
 //! Triangle setup, culling and shading against the model's.
 
 use glint_core::colour::Rgb565;
-use glint_model::descriptor::Descriptor;
-use glint_model::reciprocal::recip;
-use glint_model::setup::{Bounds, Facing, Oriented, Setup};
-use glint_model::shade::{Light, Lit, intensity, lit};
+use glint_model::triangle::descriptor::Descriptor;
+use glint_model::triangle::reciprocal::recip;
+use glint_model::triangle::setup::{Bounds, Facing, Oriented, Setup};
+use glint_model::triangle::shade::{Light, Lit, intensity, lit};
 use glint_model::{SIZES, ScreenVertex, Shading};
 use glint_testbench::{Bits, Layout, Module, Port, Record, Sink, Source, Stalls};
 use rand::RngExt;

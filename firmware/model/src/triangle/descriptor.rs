@@ -4,7 +4,7 @@ use glint_core::colour::{Rgb565, Shading};
 use glint_core::machine::{self, LIST_GAP_WORDS, LIST_TABLE_WORDS};
 use glint_core::picture::Size;
 
-use crate::setup::{Plane, Setup};
+use crate::triangle::setup::{Plane, Setup};
 
 /// Columns of a group: the pixels that the raster pass draws in one clock.
 pub const GROUP: i32 = machine::GROUP as i32;

@@ -5,7 +5,7 @@ use glint_core::fixed::{Q2_23, Q32_32};
 
 use crate::depth::DepthScale;
 use crate::error::{MAX_EYE, RenderError, SIZES};
-use crate::rounding::nearest;
+use crate::triangle::rounding::nearest;
 
 /// The frame constants of the vertex stage (formats.md, "Frame constants").
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
