@@ -46,6 +46,14 @@ impl Field {
         }
     }
 
+    /// Whether it has no end along some axis.
+    pub fn is_endless(&self) -> bool {
+        match self {
+            Self::Primitive(primitive) => primitive.placed().extent.is_none(),
+            Self::Union(_) => false,
+        }
+    }
+
     /// Whether its faces are perpendicular to the diagonals, and not to the axes.
     pub const fn has_octants(&self) -> bool {
         match self {

@@ -154,7 +154,10 @@ module ray_paint #(
         wire _unused = &{1'b0, in_end.round, in_colour, round};
     end
 
-    logic [23:0] plain_8;
+    logic [7:0][23:0] six_colours;
+    logic [23:0]      plain_8;
+
+    assign six_colours = {palette.zenith, palette.undecided, palette.faces[5:0]};
 
     if (OCTANTS) begin : eight_faces
         always_comb
@@ -163,11 +166,9 @@ module ray_paint #(
                 raymarch_pkg::MISS: plain_8 = palette.zenith;
                 default:            plain_8 = palette.undecided;
             endcase
+        wire _unused = &{1'b0, six_colours};
     end else begin : six_faces
-        logic [7:0][23:0] colours;
-
-        assign colours = {palette.zenith, palette.undecided, palette.faces[5:0]};
-        assign plain_8 = colours[state_8 == raymarch_pkg::HIT ? surface_8 : state_8 == raymarch_pkg::MISS ? 3'd7 : 3'd6];
+        assign plain_8 = six_colours[state_8 == raymarch_pkg::HIT ? surface_8 : state_8 == raymarch_pkg::MISS ? 3'd7 : 3'd6];
         wire _unused = &{1'b0, palette.faces[7:6]};
     end
 

@@ -307,20 +307,20 @@ module ring_lane #(
     logic [10:0] part;
     logic [9:0]  axis_slope, slope;
     logic [11:0] face_gap;
+    logic [2:0][10:0] towards;
 
     assign part       = last_cargo.direction[last_surface[2:1]][17:7];
     assign axis_slope = part[10] == last_surface[0] ? part[9:0] ^ {10{part[10]}} : '1;
 
+    always_comb
+        for (int i = 0; i < 3; i++) towards[i] = early_cargo.direction[i][17:7] ^ {11{surface_2[i]}};
+
     // Of a face across a diagonal: three quarters of both, as the sum of three parts over four needs no division.
     if (OCTANTS) begin : diagonals
-        logic [2:0][10:0]   towards;
         logic signed [11:0] x_y;
         logic signed [10:0] z;
         logic signed [12:0] sum;
         logic               is_diagonal;
-
-        always_comb
-            for (int i = 0; i < 3; i++) towards[i] = early_cargo.direction[i][17:7] ^ {11{surface_2[i]}};
 
         always_ff @(posedge clk) begin
             x_y <= 12'($signed(towards[0])) + 12'($signed(towards[1]));
@@ -335,7 +335,7 @@ module ring_lane #(
     end else begin : axes_alone
         assign slope    = axis_slope;
         assign face_gap = gap;
-        wire _unused = &{1'b0, early_cargo};
+        wire _unused = &{1'b0, early_cargo, towards};
     end
 
     assign height = last_cargo.direction[2][17] ? '0 : last_cargo.direction[2][16:9];

@@ -1,6 +1,6 @@
 //! The model's round fields against the exact hits of the same rays. `--nocapture` shows the measured figures.
 
-use glint_core::field::{CentredSphere, Field as Scene};
+use glint_core::field::{CentredSphere, Field as Scene, Primitive};
 use glint_core::fixed::Q32_32;
 use glint_core::light::{Light, Lighting, Material};
 use glint_model::raymarch::{FieldOptions, Lights, Palette, paint};
@@ -24,6 +24,35 @@ fn round_fields_are_where_they_are() {
         // There may be faces only.
         let normal = found.normal.map_or(0.0, |normal| normal.p99);
         assert!(normal <= angle, "{normal}");
+    }
+}
+
+/// A field of each kind. Those without end have small faces and spheres at the horizon, and rays along their faces.
+#[test]
+fn every_kind_of_field_is_where_it_is() {
+    for scene in Primitive::EXAMPLES {
+        let camera = Camera::looking_at(
+            [2.1875, 1.6875, 1.3125],
+            [0.015625, 0.0, 0.03125],
+            0.9,
+            0.01,
+        );
+        let subject = Subject::new("aside", scene, &camera, (320, 180));
+        if subject.parsed.is_endless() {
+            continue;
+        }
+        let picture = subject.picture(&FieldOptions::of(&subject.parsed));
+        let found = Measured::new(&subject.expected, &picture);
+        println!("{scene}: {found:?}");
+        let found = found.accuracy;
+        let depth = found.depth.expect("a hit");
+        assert!(found.iou >= 0.999 && found.undecided == 0, "{scene}");
+        assert!(found.wrong_faces <= 0.01, "{scene}");
+        assert!(depth.median <= 3e-4 && depth.p99 <= 3e-3, "{scene}");
+        assert!(
+            found.normal.is_none_or(|normal| normal.p99 <= 0.3),
+            "{scene}"
+        );
     }
 }
 

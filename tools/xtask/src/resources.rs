@@ -46,7 +46,7 @@ pub fn resources(options: &Options) -> Result<()> {
     let start = Instant::now();
     let budget = Budget::read()?;
     bootstrap::bootstrap()?;
-    let sizes = measure(selection(&options.blocks))?;
+    let sizes = measure(selection(&options.blocks)?)?;
     let excesses = budget.excesses(&sizes);
     if options.json {
         println!("{:#}", table::json(&sizes, &excesses));
@@ -85,14 +85,16 @@ fn within(excesses: &[Excess]) -> Result<()> {
 }
 
 /// Blocks to measure, without repeats, the slowest first.
-fn selection(blocks: &[String]) -> VecDeque<String> {
+fn selection(blocks: &[String]) -> Result<VecDeque<String>> {
     let mut names = VecDeque::new();
-    let wanted: Vec<&str> = if blocks.is_empty() {
-        [&[SOC], &BUILDS[..], &OWN[..]].concat()
+    let wanted = if blocks.is_empty() {
+        let named = [&[SOC], &BUILDS[..], &OWN[..]].concat();
+        let named = named.into_iter().map(String::from);
+        named.chain(blocks::fields()?).collect()
     } else {
-        blocks.iter().map(String::as_str).collect()
+        blocks.to_vec()
     };
-    for block in wanted {
+    for block in wanted.iter().map(String::as_str) {
         let parts = if block == FLAT {
             &FLAT_PARTS[..]
         } else {
@@ -104,7 +106,7 @@ fn selection(blocks: &[String]) -> VecDeque<String> {
             }
         }
     }
-    names
+    Ok(names)
 }
 
 /// Measures blocks in parallel, and adds the flat build if all its parts are present.
@@ -184,9 +186,13 @@ mod tests {
     #[test]
     fn measures_each_block_once_and_the_flat_build_by_its_parts() {
         let select = |blocks: &[&str]| {
-            selection(&blocks.iter().map(|b| (*b).to_owned()).collect::<Vec<_>>())
+            let blocks: Vec<_> = blocks.iter().map(|b| (*b).to_owned()).collect();
+            selection(&blocks).expect("the folder of the raymarcher")
         };
-        assert_eq!(select(&[]).len(), OWN.len() + BUILDS.len() + 1);
+        assert_eq!(
+            select(&[]).len(),
+            OWN.len() + BUILDS.len() + blocks::fields().unwrap().len() + 1
+        );
         assert_eq!(select(&[])[0], SOC);
         assert_eq!(select(&["scanout"]), ["scanout"]);
         assert_eq!(

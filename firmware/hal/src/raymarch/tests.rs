@@ -161,7 +161,7 @@ fn a_field_is_described_before_it_is_enabled() {
 
     let r = registers();
     let solid = r.solid().read();
-    assert_eq!(solid.kind(), Kind::Menger);
+    assert_eq!(solid, solid.with_kind(Kind::Menger));
     assert_eq!(solid.levels(), 0b111);
     assert_eq!(r.cube_half().read(), 3 << 11, "half of the third level's 3");
     let tuning = r.tuning().read();
@@ -234,7 +234,7 @@ fn a_box_says_where_it_ends() {
         let (setup, palette) = setup(field, &FieldOptions::default());
         raymarcher.set_field(&setup, &palette).unwrap();
         let solid = r.solid().read();
-        assert_eq!(solid.kind(), Kind::Box, "{field}");
+        assert_eq!(solid, solid.with_kind(Kind::Box), "{field}");
         assert_eq!(
             (solid.has(), solid.room(), solid.repeated()),
             (has, room, repeated),

@@ -38,7 +38,7 @@ pub const DEFAULT_TUNING: Tuning = Tuning {
     far: FARTHEST,
 };
 
-/// What suits round fields: the silhouette of a sphere, and the normal beside it, show where a ray has ended.
+/// For round fields and oblique faces: silhouettes, and the normals of spheres, show where a ray has ended.
 pub const ROUND_TUNING: Tuning = Tuning {
     threshold: 4,
     footprint: 15,
@@ -48,7 +48,7 @@ pub const ROUND_TUNING: Tuning = Tuning {
 impl Tuning {
     /// The default of a field.
     const fn of(field: &Field) -> Self {
-        if field.is_round() {
+        if field.is_round() || field.has_octants() {
             ROUND_TUNING
         } else {
             DEFAULT_TUNING

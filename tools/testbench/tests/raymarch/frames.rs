@@ -5,7 +5,7 @@ use glint_model::raymarch::{FieldSetup, FieldStats, Palette, Rays, State};
 use glint_testbench::{Module, Sink, Stalls};
 
 use crate::scenes::{
-    FIELDS, ROUND, SPONGES, UNIONS, band_lines, lights, setup, setup_with, tunnel,
+    FIELDS, ROUND, SPONGES, UNIONS, band_lines, further_kinds, lights, setup, setup_with, tunnel,
 };
 use glint_testbench::raymarch::{
     Pixel, Place, pixel, set_blocks, set_lane, set_lights, set_paint, set_rays,
@@ -192,11 +192,18 @@ fn frames_of_all_fields_with_stalls() {
     let mut random = Random(9);
     let mut bench = Bench::new("raymarcher", 2, 1);
     for _ in 0..4 {
-        let mut setup = setup(&mut random, &FIELDS);
-        // A ray at the limit costs as much as 20.
-        setup.tuning.cap = setup.tuning.cap.min(40);
-        bench.draw(&mut random, &setup, &Palette::default(), false);
+        draw_in_short(&mut bench, &mut random, &FIELDS);
     }
+    for text in further_kinds() {
+        draw_in_short(&mut bench, &mut random, &[text]);
+    }
+}
+
+/// Draws one of some fields. A ray at the limit costs as much as 20.
+fn draw_in_short(bench: &mut Bench, random: &mut Random, fields: &[&str]) {
+    let mut setup = setup(random, fields);
+    setup.tuning.cap = setup.tuning.cap.min(40);
+    bench.draw(random, &setup, &Palette::default(), false);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use glint_core::field::Primitive;
 use glint_model::raymarch::FieldSetup;
 use glint_testbench::{Bits, Layout, Module, Sink, Source, Stalls};
 
@@ -150,7 +151,7 @@ fn benches(name: &str) -> Vec<Bench> {
         .collect()
 }
 
-fn random_rays(name: &str, fields: &[&str]) {
+fn random_rays(name: &str, fields: &[impl AsRef<str>]) {
     let mut random = Random(3);
     let mut benches = benches(name);
     for frame in 0..rays() / RAYS {
@@ -180,6 +181,11 @@ fn random_cones_and_rays_in_all_fields() {
 #[test]
 fn random_rays_in_sponges() {
     random_rays("ring_lane", &SPONGES);
+}
+
+#[test]
+fn random_rays_in_an_example_of_each_kind() {
+    random_rays("ring_lane_all", &Primitive::EXAMPLES);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Fields and cameras: those that somebody would look at, and those at the limits.
 
 use glint_core::camera::View;
-use glint_core::field::Field;
+use glint_core::field::{Field, Primitive};
 use glint_core::fixed::Q32_32;
 use glint_model::SIZES;
 use glint_model::raymarch::{FieldOptions, FieldSetup, Light, Lights, Stereo, Tint};
@@ -50,13 +50,24 @@ pub const FIELDS: [&str; 12] = [
     "planes:0.01",
 ];
 
-/// What there is where a lane knows all fields.
-pub fn every_field() -> Vec<&'static str> {
+/// An example of each kind of which no list above has a field.
+pub fn further_kinds() -> Vec<&'static str> {
+    let listed = [&FIELDS[..], &ROUND].concat();
+    let kind = |text: &&str| text.split(':').next().map(str::to_owned);
+    let is_new = |text: &&str| !listed.iter().any(|other| kind(other) == kind(text));
+    Primitive::EXAMPLES.into_iter().filter(is_new).collect()
+}
+
+/// Fields of all kinds: those above, an example of each kind, and random ones with the ends of their ranges.
+pub fn every_field() -> Vec<String> {
     let boxes = [
         "union:box:1,0.5,0.25+moving:0.25,1",
         "smooth:0.2,box:1,0.5,0.25+moving:0.25,1",
     ];
-    [&FIELDS[..], &ROUND, &UNIONS, &boxes].concat()
+    let mut random = Random(17);
+    let fixed = [&FIELDS[..], &ROUND, &UNIONS, &boxes, &Primitive::EXAMPLES].concat();
+    let drawn = (0..60).map(|_| Field::draw(|| random.bits() as u32).to_string());
+    fixed.into_iter().map(String::from).chain(drawn).collect()
 }
 
 /// A camera somewhere in a field or beside it, that looks anywhere.
@@ -86,13 +97,13 @@ pub fn camera(random: &mut Random) -> View {
 }
 
 /// The constants of a frame: how finely it is marched is random too, and how many eyes look.
-pub fn setup(random: &mut Random, fields: &[&str]) -> FieldSetup {
+pub fn setup(random: &mut Random, fields: &[impl AsRef<str>]) -> FieldSetup {
     setup_with(random, fields, false)
 }
 
 /// The same with cones before the rays, or without.
-pub fn setup_with(random: &mut Random, fields: &[&str], prepass: bool) -> FieldSetup {
-    let field = Field::parse(fields[random.bits() as usize % fields.len()]).unwrap();
+pub fn setup_with(random: &mut Random, fields: &[impl AsRef<str>], prepass: bool) -> FieldSetup {
+    let field = Field::parse(fields[random.bits() as usize % fields.len()].as_ref()).unwrap();
     let mut options = FieldOptions {
         prepass,
         ..FieldOptions::of(&field)

@@ -9,7 +9,7 @@ use glint::{convert, generate};
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;
 use glint_core::colour::Shading;
-use glint_core::field::{Field, Menger};
+use glint_core::field::{Field, Menger, Primitive};
 use glint_core::fixed::{Q32_32, U4_28};
 use glint_core::light::{Background, Light, Material};
 use glint_core::mesh::Mesh;
@@ -39,6 +39,14 @@ const FIELDS: [&str; 13] = [
     "sphere:1",
     "smooth:0.3,menger:1+sphere:1.2",
 ];
+
+/// Those, and an example of each kind that they lack.
+fn fields() -> Vec<&'static str> {
+    let kind = |text: &&str| text.split(':').next().map(str::to_owned);
+    let is_new = |text: &&str| !FIELDS.iter().any(|other| kind(other) == kind(text));
+    let further = Primitive::EXAMPLES.into_iter().filter(is_new);
+    FIELDS.into_iter().chain(further).collect()
+}
 
 fn looking(eye: [f64; 3], target: [f64; 3], half_width: f64, near: f64) -> View {
     Camera::looking(eye, target, half_width, near).rounded()
@@ -159,8 +167,10 @@ fn the_soc_draws_every_field() {
     let mut board = board();
     let mut console = Console::new(&mut board).patience(PATIENCE_MS);
     console.greet().unwrap();
-    for (number, text) in FIELDS.iter().enumerate() {
+    for (number, text) in fields().into_iter().enumerate() {
         let field = Field::parse(text).unwrap();
+        // Where the list has no field of a kind, its example is always drawn.
+        let is_further = number >= FIELDS.len();
         for (side, view) in views().iter().enumerate() {
             // Both pairs of colours are seen in turns.
             for stereo in [None, eyes()[1 + (number + side) % 2]] {
@@ -170,7 +180,8 @@ fn the_soc_draws_every_field() {
                     let drawn = if all() {
                         !prepass || once
                     } else {
-                        in_turn && number % 4 == 0 && prepass == (number / 4 % 2 == 1)
+                        is_further && once && stereo.is_none() && !prepass
+                            || in_turn && number % 4 == 0 && prepass == (number / 4 % 2 == 1)
                     };
                     if drawn {
                         let subject = FieldSubject {

@@ -1,5 +1,11 @@
 //! Names of the measured blocks.
 
+use std::fs;
+
+use anyhow::{Context, Result};
+
+use crate::paths;
+
 /// The own blocks, the slowest to measure first.
 pub const OWN: [&str; 7] = [
     "ring_lane",
@@ -13,7 +19,7 @@ pub const OWN: [&str; 7] = [
 
 /// Engines made of own blocks, in several builds, and parts of the raymarcher. The tables show them; measuring them in every test
 /// would take too long.
-pub const BUILDS: [&str; 13] = [
+pub const BUILDS: [&str; 10] = [
     "triangle_engine_smooth",
     "raymarcher",
     "triangle_engine",
@@ -24,10 +30,26 @@ pub const BUILDS: [&str; 13] = [
     "ray_generator",
     "ray_paint",
     "round_light",
-    "field_sphere",
-    "field_menger",
-    "field_box",
 ];
+
+/// The modules of the raymarcher's fields: the files `field_*.sv`, but for the unit that has them all.
+///
+/// # Errors
+/// The folder cannot be read.
+pub fn fields() -> Result<Vec<String>> {
+    let folder = paths::root().join("gateware/rtl/raymarch");
+    let files = fs::read_dir(&folder).with_context(|| format!("reading {}", folder.display()))?;
+    let mut names = Vec::new();
+    for file in files {
+        let path = file?.path();
+        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        if name.starts_with("field_") && name != "field_unit" {
+            names.push(name.into_owned());
+        }
+    }
+    names.sort();
+    Ok(names)
+}
 
 /// Parts of the smallest engine that draws flat triangles.
 pub const FLAT_PARTS: [&str; 3] = ["vertex_stage", "setup", "triangle_raster"];
