@@ -33,6 +33,7 @@ FLAT_FIELDS = (
               ports={"levels": "solid.levels[LEVELS-1:0]", "half": "solid.cube_half"}),
     FlatField("box", "boxes, cubes and planes", clocks="3",
               ports={port: f"solid.{port}" for port in ("half", "has", "room", "repeated")}),
+    FlatField("octahedron", "octahedra", clocks="5", ports={"size": "solid.half[0]"}, octants=True),
 )
 """All of them, by their numbers in `solid.kind`. 0 is the sponge, of which the build says how many levels."""
 

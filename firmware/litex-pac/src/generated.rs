@@ -2,7 +2,7 @@
 // fails when this file is not what the generator makes of the SoC.
 
 /// CRC-32 of the SoC's pinned register map. A SoC whose `identity.build_id` differs has other registers.
-pub const BUILD_ID: u32 = 0x26c6_9045;
+pub const BUILD_ID: u32 = 0x6316_96c2;
 
 /// The interrupt lines, numbered by their bit in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -4108,7 +4108,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5818) }
         }
 
-        /// `solid`, 23 bits: The solid.
+        /// `solid`, 24 bits: The solid.
         #[inline]
         #[must_use]
         pub const fn solid(&self) -> Register<Solid, ReadWrite> {
@@ -4974,18 +4974,18 @@ pub mod raymarch {
             Self(self.0 & !(0x3 << 20) | (value as u32 & 0x3) << 20)
         }
 
-        /// `kind`, bit 22: The flat field.
+        /// `kind`, bits 23 to 22: The flat field.
         #[inline]
         #[must_use]
-        pub const fn kind(self) -> Kind {
-            Kind::from_bits(((self.0 >> 22) & 0x1) as u8)
+        pub const fn kind(self) -> Option<Kind> {
+            Kind::from_bits(((self.0 >> 22) & 0x3) as u8)
         }
 
         /// This value with another `kind`.
         #[inline]
         #[must_use]
         pub const fn with_kind(self, value: Kind) -> Self {
-            Self(self.0 & !(0x1 << 22) | (value as u32 & 0x1) << 22)
+            Self(self.0 & !(0x3 << 22) | (value as u32 & 0x3) << 22)
         }
     }
 
@@ -5289,20 +5289,24 @@ pub mod raymarch {
         Menger = 0,
         /// Boxes, cubes and planes.
         Box = 1,
+        /// Octahedra.
+        Octahedron = 2,
     }
 
     impl Kind {
         /// Every value, in the order of the gateware's description.
-        pub const ALL: [Self; 2] = [Self::Menger, Self::Box];
+        pub const ALL: [Self; 3] = [Self::Menger, Self::Box, Self::Octahedron];
 
-        /// The value of a field's `bits`; bits beyond the field are not looked at.
+        /// The value of a field's `bits`; `None` where the gateware has no name for them.
         #[inline]
         #[must_use]
-        pub const fn from_bits(bits: u8) -> Self {
-            match bits & 0x1 {
+        pub const fn from_bits(bits: u8) -> Option<Self> {
+            Some(match bits {
                 0 => Self::Menger,
-                _ => Self::Box,
-            }
+                1 => Self::Box,
+                2 => Self::Octahedron,
+                _ => return None,
+            })
         }
 
         /// Its name in the gateware's description.
@@ -5311,6 +5315,7 @@ pub mod raymarch {
             match self {
                 Self::Menger => "menger",
                 Self::Box => "box",
+                Self::Octahedron => "octahedron",
             }
         }
 
@@ -5320,6 +5325,7 @@ pub mod raymarch {
             match self {
                 Self::Menger => "sponges",
                 Self::Box => "boxes, cubes and planes",
+                Self::Octahedron => "octahedra",
             }
         }
     }

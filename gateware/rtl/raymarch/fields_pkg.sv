@@ -6,15 +6,15 @@
 package fields_pkg;
     // Each module uses some.
     /* verilator lint_off UNUSEDPARAM */
-    localparam int unsigned KIND_BITS = 1;
+    localparam int unsigned KIND_BITS = 2;
     // The bits of all fields, and of those whose faces are perpendicular to the diagonals.
-    localparam int unsigned ALL       = 3;
-    localparam int unsigned OCTANTS   = 0;
+    localparam int unsigned ALL       = 7;
+    localparam int unsigned OCTANTS   = 4;
     /* verilator lint_on UNUSEDPARAM */
 
     // Whether faces of a kind are perpendicular to the diagonals.
     function automatic logic has_octants(input logic [KIND_BITS-1:0] kind);
-        has_octants = 1'b0 && kind == '0;
+        has_octants = kind == 2'd2;
     endfunction
 
     // Clocks from a point to its distance, of a choice between several fields.
@@ -22,6 +22,7 @@ package fields_pkg;
         flat_clocks = 0;
         if ((fields & 1) != 0 && 3 * levels + 3 > flat_clocks) flat_clocks = 3 * levels + 3;
         if ((fields & 2) != 0 && 3 > flat_clocks) flat_clocks = 3;
+        if ((fields & 4) != 0 && 5 > flat_clocks) flat_clocks = 5;
         if ((fields & (fields - 1)) != 0) flat_clocks = flat_clocks + 1;
     endfunction
 endpackage

@@ -20,7 +20,7 @@ module flat_fields #(
     localparam int unsigned KNOWN  = fields_pkg::flat_clocks(LEVELS, FIELDS) - (CHOICE ? 1 : 0);
 
     // Distance and surface of each.
-    logic [1:0][24:0] found;
+    logic [2:0][24:0] found;
     logic [24:0] chosen;
 
     if ((FIELDS & 1) != 0) begin : menger
@@ -57,11 +57,29 @@ module flat_fields #(
         assign found[1] = '0;
     end
 
+    if ((FIELDS & 4) != 0) begin : octahedron
+        localparam int unsigned CLOCKS = 5;
+        logic [24:0] early;
+
+        field_octahedron field (
+            .clk, .point, .size(solid.half[0]),
+            .distance(early[24:3]), .surface(early[2:0])
+        );
+        if (KNOWN > CLOCKS) begin : late
+            delay #(.WIDTH(25), .CLOCKS(KNOWN - CLOCKS)) waiting (.clk, .enable(1'b1), .in(early), .out(found[2]));
+        end else begin : in_time
+            assign found[2] = early;
+        end
+    end else begin : no_octahedron
+        assign found[2] = '0;
+    end
+
     if (CHOICE) begin : choice
         always_comb begin
             chosen = '0;
-            if (solid.kind == 1'd0) chosen = chosen | found[0];
-            if (solid.kind == 1'd1) chosen = chosen | found[1];
+            if (solid.kind == 2'd0) chosen = chosen | found[0];
+            if (solid.kind == 2'd1) chosen = chosen | found[1];
+            if (solid.kind == 2'd2) chosen = chosen | found[2];
         end
         always_ff @(posedge clk) {distance, surface} <= chosen;
     end else begin : single
@@ -69,6 +87,7 @@ module flat_fields #(
             chosen = '0;
             chosen = chosen | found[0];
             chosen = chosen | found[1];
+            chosen = chosen | found[2];
         end
         assign {distance, surface} = chosen;
     end

@@ -16,7 +16,7 @@ package raymarch_registers_pkg;
         logic is_round;
         logic spheres_repeated;
         logic [2:0] last_sphere;
-        logic kind;
+        logic [1:0] kind;
         logic [5:0] levels;
         logic [21:0] cube_half;
         logic [2:0][21:0] half;

@@ -6,6 +6,7 @@ use core::fmt;
 mod cuboid;
 mod fixed_sphere;
 mod menger;
+mod octahedron;
 mod sphere;
 
 use super::argument::{Arguments, Random, Words};
@@ -16,6 +17,7 @@ use super::surface::Sample;
 pub use cuboid::{Cubes, Cuboid, FixedBox, Planes};
 pub use fixed_sphere::{FixedSphere, FixedSpheres};
 pub use menger::{FixedSponge, MAX_DEPTH, Menger};
+pub use octahedron::{FixedOctahedron, Octahedron};
 pub use sphere::{CentredSphere, Lattice, MovingSphere, Sphere, Spheres};
 
 /// The kinds of fields, in the order of the help.
@@ -101,6 +103,7 @@ primitives! {
     Box(Cuboid),
     Cubes(Cubes),
     Planes(Planes),
+    Octahedron(Octahedron),
     Sphere(CentredSphere),
     Spheres(Spheres),
     Lattice(Lattice),
@@ -150,6 +153,7 @@ macro_rules! flat_solids {
 flat_solids! {
     FixedSponge,
     FixedBox,
+    FixedOctahedron,
 }
 
 /// A solid in field units.

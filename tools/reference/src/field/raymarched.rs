@@ -2,14 +2,14 @@
 
 use glint_core::camera::View;
 use glint_core::field::{
-    CentredSphere, Cubes, Cuboid, Field as Scene, Lattice, Menger, MovingSphere, Planes, Primitive,
-    Surface,
+    CentredSphere, Cubes, Cuboid, Field as Scene, Lattice, Menger, MovingSphere, Octahedron,
+    Planes, Primitive, Surface,
 };
 use glint_core::fixed::Q32_32;
 use glint_model::raymarch::{self, FieldOptions, FieldSetup, State};
 
 use super::metrics::{self, Accuracy, Expected, Outcome, Quantiles, accuracy};
-use super::{Face, Field, Sphere, views};
+use super::{Face, Field, Plane, Sphere, views};
 use crate::camera::{Camera, Size, length};
 
 /// What a ray of the model comes to.
@@ -170,6 +170,14 @@ impl Field {
                 half: number(half),
             },
             Primitive::Planes(Planes { half }) => Self::Planes { half: number(half) },
+            Primitive::Octahedron(Octahedron { size }) => Self::Convex(
+                (0..8)
+                    .map(|signs| Plane {
+                        normal: [0, 1, 2].map(|i| if signs >> i & 1 == 1 { 1.0 } else { -1.0 }),
+                        offset: number(size),
+                    })
+                    .collect(),
+            ),
             Primitive::Sphere(CentredSphere { radius }) => Self::Spheres(vec![Sphere {
                 centre: [0.0; 3],
                 radius: number(radius),

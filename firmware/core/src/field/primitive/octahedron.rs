@@ -1,0 +1,74 @@
+//! `octahedron:S`: the solid |x| + |y| + |z| ≤ S.
+
+use core::fmt;
+
+use crate::field::argument::Arguments;
+use crate::field::error::FieldError;
+use crate::field::limits::{MAX_EXTENT, SMALLEST};
+use crate::field::shape::{FlatConstants, FlatSolid, Placed, SCALE, Shape};
+use crate::field::surface::{Sample, Surface, magnitude, units};
+use crate::fixed::Q32_32;
+
+/// A regular octahedron about the origin, its corners on the axes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Octahedron {
+    /// From the origin to a corner, in world units.
+    pub size: Q32_32,
+}
+
+impl Shape for Octahedron {
+    type Solid = FixedOctahedron;
+
+    const NAME: &'static str = "octahedron";
+    const FORM: &'static str = "octahedron:S";
+    const ABOUT: &'static str =
+        "a regular octahedron about the origin, by the distance of its corners";
+    const EXAMPLE: &'static str = "octahedron:1";
+    const OCTANTS: bool = true;
+
+    fn read<'a>(numbers: &mut impl Arguments<'a>) -> Result<Self, FieldError<'a>> {
+        let size = numbers.number("size", [SMALLEST, MAX_EXTENT])?;
+        Ok(Self { size })
+    }
+
+    fn write(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{}", self.size)
+    }
+
+    fn placed(&self) -> Placed<FixedOctahedron> {
+        let size = units(self.size, SCALE) as i32;
+        Placed::bounded(FixedOctahedron { size }, [self.size; 3])
+    }
+}
+
+/// The octahedron in field units.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FixedOctahedron {
+    /// From the origin to a corner, u10.12.
+    size: i32,
+}
+
+impl FlatSolid for FixedOctahedron {
+    const CODE: u8 = 2;
+
+    /// A cube of half side r changes |x| + |y| + |z| by 3r at most. 85/256 is below 1/3; rounded down.
+    #[inline]
+    fn sample(&self, point: [i32; 3]) -> Sample {
+        let sum: u32 = point.map(magnitude).iter().sum();
+        let positive = |i: usize| u8::from(point[i] >= 0) << i;
+        Sample {
+            distance: ((sum as i32 - self.size) * 85) >> 8,
+            surface: Surface::Octant {
+                signs: positive(0) | positive(1) | positive(2),
+            },
+        }
+    }
+
+    fn constants(&self) -> FlatConstants {
+        FlatConstants {
+            kind: Self::CODE,
+            half: [self.size as u32, 0, 0],
+            ..FlatConstants::default()
+        }
+    }
+}
