@@ -1,6 +1,6 @@
 //! Solids repeated in all three axes.
 
-use super::Hit;
+use super::surface::Hit;
 use crate::camera::Ray;
 
 /// The first hit of a ray with copies of a solid about all points whose coordinates are integer multiples of the period.

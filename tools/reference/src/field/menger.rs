@@ -3,8 +3,8 @@
 //! A cell of the last level has a number in each axis, 0 to 3^depth − 1. Its digits in base 3 say where the cells around it
 //! lie in those of the level above: one with two or three digits 1 at its level is a hole.
 
-use super::Hit;
 use super::solids::Slabs;
+use super::surface::Hit;
 use crate::camera::Ray;
 
 /// Where a ray enters the sponge.
@@ -78,7 +78,7 @@ fn hole(cell: [i64; 3], count: i64) -> Option<i64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::field::Face;
+    use crate::field::surface::Face;
 
     #[test]
     fn the_cells_are_as_many_as_the_sponge_has() {

@@ -1,6 +1,6 @@
 //! Where a ray enters boxes, balls and the room between two planes.
 
-use super::{Face, Hit, Plane, Sphere};
+use super::surface::{Face, Hit, Plane, Sphere};
 use crate::camera::{Ray, Vector, add_scaled, dot, length, normalised, subtract};
 
 /// The part of a ray in a box about the origin.
