@@ -260,7 +260,7 @@ fn rays_along_the_axes_end_at_the_walls() {
             let direction = direction.map(|x| f64::from(x) / f64::from(1 << 17));
             let exact = sponge.hit(eye, direction, 0.0, 100.0);
             let context = || format!("{eye:?}, {axis}, {side}: {end:?}, {exact:?}");
-            match (raymarched::marched(&setup, &ray, &end).outcome, exact) {
+            match (raymarched::rendered_ray(&setup, &ray, &end).outcome, exact) {
                 (Outcome::Hit { .. }, _) if end.steps > 64 && [0, 1023].contains(&end.slope) => {
                     beside += 1;
                 }

@@ -14,7 +14,7 @@ use crate::camera::{Camera, Size, length};
 
 /// What a ray of the model comes to.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Marched {
+pub struct RenderedRay {
     /// With the depth along n in world units for its parameter, as it follows from t.
     pub outcome: Outcome,
     /// The same depth by its code, for a hit.
@@ -25,7 +25,7 @@ pub struct Marched {
     pub cones: u64,
 }
 
-impl Marched {
+impl RenderedRay {
     /// [`Self::outcome`] with the depth of the code.
     pub fn by_code(&self) -> Outcome {
         match (self.outcome, self.coded) {
@@ -38,13 +38,13 @@ impl Marched {
 /// The picture of one eye, row by row; eye 0 is the left or the only one.
 ///
 /// With a prepass what its cones take counts as of the rays before which they are marched: the first one of a row of blocks.
-pub fn picture(setup: &FieldSetup, eye: usize) -> Vec<Marched> {
+pub fn picture(setup: &FieldSetup, eye: usize) -> Vec<RenderedRay> {
     let mut rays = raymarch::Rays::new(setup);
     let mut cones = 0;
     pixels(setup)
         .map(|(x, y)| {
             let ray = rays.ray(eye, x, y);
-            let mut end = marched(setup, &ray, &setup.march(&ray));
+            let mut end = rendered_ray(setup, &ray, &setup.march(&ray));
             end.cones = rays.evaluations() - cones;
             cones = rays.evaluations();
             end
@@ -53,7 +53,11 @@ pub fn picture(setup: &FieldSetup, eye: usize) -> Vec<Marched> {
 }
 
 /// The end of one ray.
-pub fn marched(setup: &FieldSetup, ray: &raymarch::Ray, end: &raymarch::RayResult) -> Marched {
+pub fn rendered_ray(
+    setup: &FieldSetup,
+    ray: &raymarch::Ray,
+    end: &raymarch::RayResult,
+) -> RenderedRay {
     let (outcome, coded) = match end.state {
         State::Miss => (Outcome::Miss, None),
         State::Undecided => (Outcome::Undecided, None),
@@ -98,7 +102,7 @@ pub fn marched(setup: &FieldSetup, ray: &raymarch::Ray, end: &raymarch::RayResul
             (hit, coded.map(|depth| depth.to_num()))
         }
     };
-    Marched {
+    RenderedRay {
         outcome,
         coded,
         steps: end.steps * setup.passes(),
@@ -259,7 +263,7 @@ impl Subject {
     }
 
     /// The model's picture.
-    pub fn picture(&self, options: &FieldOptions) -> Vec<Marched> {
+    pub fn picture(&self, options: &FieldOptions) -> Vec<RenderedRay> {
         picture(&self.setup(options), 0)
     }
 }
@@ -335,11 +339,11 @@ pub struct Measured {
 
 impl Measured {
     /// Of a picture, or of several after each other.
-    pub fn new(expected: &[Expected], found: &[Marched]) -> Self {
-        let outcomes = |of: fn(&Marched) -> Outcome| found.iter().map(of).collect::<Vec<_>>();
+    pub fn new(expected: &[Expected], found: &[RenderedRay]) -> Self {
+        let outcomes = |of: fn(&RenderedRay) -> Outcome| found.iter().map(of).collect::<Vec<_>>();
         Self {
             accuracy: accuracy(expected, &outcomes(|ray| ray.outcome)),
-            coded: accuracy(expected, &outcomes(Marched::by_code)).depth,
+            coded: accuracy(expected, &outcomes(RenderedRay::by_code)).depth,
             evaluations: found
                 .iter()
                 .map(|ray| u64::from(ray.steps) + ray.cones)

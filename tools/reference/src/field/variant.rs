@@ -2,7 +2,7 @@
 
 use super::distance::euclidean;
 use super::metrics::Outcome;
-use super::raymarched::Marched;
+use super::raymarched::RenderedRay;
 use super::{Face, Field};
 use crate::camera::{Ray, Vector, length};
 
@@ -48,7 +48,7 @@ impl Method {
     /// Marches to the sponge of a depth from a parameter of the ray on, its depth.
     ///
     /// The normal at the end is by the largest slope of the distance in the maximum norm.
-    pub fn march(&self, depth: u32, ray: &Ray, start: f64) -> Marched {
+    pub fn march(&self, depth: u32, ray: &Ray, start: f64) -> RenderedRay {
         let sponge = Field::Menger { depth };
         let speed = self.rays.of(ray.direction);
         let distance = |p| match self.distance {
@@ -85,7 +85,7 @@ impl Method {
                 break Outcome::Undecided;
             }
         };
-        Marched {
+        RenderedRay {
             outcome,
             coded: None,
             steps,

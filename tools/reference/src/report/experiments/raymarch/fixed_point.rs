@@ -5,7 +5,7 @@
 use glint_model::raymarch::{DEFAULT_TUNING, FieldOptions, FieldSetup, Ray, Tuning};
 
 use crate::field::metrics::Outcome;
-use crate::field::raymarched::{Marched, Subject};
+use crate::field::raymarched::{RenderedRay, Subject};
 use crate::field::{Face, Field};
 
 /// Fraction bits of the model's field units.
@@ -80,14 +80,14 @@ impl FixedPoint {
     }
 
     /// The picture, row by row.
-    pub fn picture(&self) -> Vec<Marched> {
+    pub fn picture(&self) -> Vec<RenderedRay> {
         let (width, height) = (self.setup.width, self.setup.height);
         (0..width * height)
             .map(|i| self.march(&self.setup.ray(0, i % width, i / width)))
             .collect()
     }
 
-    fn march(&self, ray: &Ray) -> Marched {
+    fn march(&self, ray: &Ray) -> RenderedRay {
         let mut t = self.start(ray);
         let mut steps = 0;
         let outcome = loop {
@@ -117,7 +117,7 @@ impl FixedPoint {
             }
             t = next;
         };
-        Marched {
+        RenderedRay {
             outcome,
             coded: None,
             steps,

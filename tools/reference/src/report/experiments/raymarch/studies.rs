@@ -212,11 +212,11 @@ fn normals(views: &Views) -> Vec<Trial> {
                     picture
                         .into_iter()
                         .zip(pixels(subject))
-                        .map(|(mut marched, (_, _, ray))| {
-                            if let Outcome::Hit { t, face, .. } = &mut marched.outcome {
+                        .map(|(mut rendered, (_, _, ray))| {
+                            if let Outcome::Hit { t, face, .. } = &mut rendered.outcome {
                                 *face = taps.face(&subject.field, ray.at(*t), step);
                             }
-                            marched
+                            rendered
                         })
                         .collect()
                 }),

@@ -10,7 +10,7 @@ use super::requirements::{SMALL, missed};
 use crate::camera::{Ray, Size};
 use crate::field::Field;
 use crate::field::metrics::{Expected, Outcome};
-use crate::field::raymarched::{self, Marched, Measured, Subject};
+use crate::field::raymarched::{self, Measured, RenderedRay, Subject};
 use crate::field::variant::{Method, entry};
 use crate::field::verilated::Raymarcher;
 
@@ -82,13 +82,13 @@ impl<'a> Views<'a> {
         family: &str,
         config: String,
         added: u32,
-        draw: impl Fn(&Subject) -> Vec<Marched>,
+        draw: impl Fn(&Subject) -> Vec<RenderedRay>,
     ) -> Trial {
         self.bar.set_message(format!("{family}, {config}"));
-        let found: Vec<Marched> = self.subjects.iter().flat_map(draw).collect();
+        let found: Vec<RenderedRay> = self.subjects.iter().flat_map(draw).collect();
         let measured = Measured::new(&self.expected, &found);
         let accuracy = measured.accuracy;
-        let hit = |ray: &&Marched| matches!(ray.outcome, Outcome::Hit { .. });
+        let hit = |ray: &&RenderedRay| matches!(ray.outcome, Outcome::Hit { .. });
         let hits = found.iter().filter(hit).count();
         Trial {
             family: family.to_owned(),
