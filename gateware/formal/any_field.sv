@@ -1,4 +1,4 @@
-// In place of field_unit: any distance to any surface. What holds with it holds for all fields.
+// Replaces field_unit by one with any distance to any surface. Properties proven with it hold for all fields.
 
 `default_nettype none
 

@@ -1,4 +1,4 @@
-// In place of multiply_add: any sum at all. What holds with it holds for all numbers.
+// Replaces multiply_add by one with any result. Properties proven with it hold for all numbers.
 
 `default_nettype none
 

@@ -1,4 +1,5 @@
-// In place of stepper: any edge functions and depths at all, which stay while the walker stands; a group's number is a real one.
+// Replaces stepper by one with any edge functions and depths, constant while the walker stalls. The number of a group
+// is the real one.
 
 `default_nettype none
 

@@ -1,6 +1,6 @@
-// Placing triangles, with any traffic on both sides. Triangles are numbered, and carry their number in every field. Those with a row
-// in their band come out, each once, in their order, with all fields and results their own; the others leave no trace. Nothing
-// stands still, and `holds` tells in which bands there is something inside.
+// Proof of the placement of triangles, with any traffic on both sides. Triangles are numbered and carry their number
+// in every field. Triangles with a row in their band come out once each, in order, with all their fields and results;
+// the others leave no trace. No triangle waits without limit, and `holds` says in which bands triangles are inside.
 
 `default_nettype none
 
@@ -8,7 +8,7 @@ module band_entry_proof (
     input wire clk,
     input wire in_valid,
     input wire in_odd,
-    // It has a row in its band.
+    // The triangle has a row in its band.
     input wire in_kept,
     input wire out_ready
 );
@@ -26,7 +26,7 @@ module band_entry_proof (
     triangle_pkg::descriptor_t descriptor;
     raster_pkg::placed_t       placed;
 
-    // Dropped triangles have a number that never comes.
+    // Dropped triangles carry a number that is never expected.
     assign number = in_kept ? kept : '1;
 
     always_comb begin
@@ -66,7 +66,7 @@ module band_entry_proof (
     stream_checker #(.WIDTH(2), .GIVEN(1)) given (
         .clk, .rst, .valid(in_valid), .ready(in_ready), .data({in_kept, in_odd})
     );
-    // All of the triangle is loaded at once.
+    // All fields of the triangle are loaded at once.
     stream_checker #(.WIDTH(17)) shown (
         .clk, .rst, .valid(out_valid), .ready(out_ready), .data({out_odd, placed.colour})
     );

@@ -19,7 +19,7 @@ module band_extents_proof (
     input wire       span_ready,
     input wire       restart
 );
-    // Clocks that may pass without a span that is to come, or without an end when none is.
+    // Most clocks without an expected span, or without the end after the last span.
     localparam int unsigned WITHIN = 10;
 
     logic rst = 1'b1;
@@ -40,12 +40,12 @@ module band_extents_proof (
         .clk, .rst(rst || sweep), .valid(span_valid), .ready(span_ready), .data({span_first, span_last})
     );
 
-    // Columns of lines: being drawn, drawn last, and to come out.
+    // Columns of each line: drawn in this band, drawn in the last band, and still expected.
     logic [3:0][2:0]      marked, to_come;
     logic [1:0][3:0][2:0] left;
     logic [1:0][3:0]      known;
     logic [2:0]           all;
-    // The band that is planned, and the sweep.
+    // The planned band, and the progress of the sweep.
     logic [1:0]           band_line, swept;
     logic                 band_slot, all_known;
 
@@ -55,7 +55,7 @@ module band_extents_proof (
         hull = columns == 3'b101 ? 3'b111 : columns;
     endfunction
 
-    // The next line to come out.
+    // The line of the next span.
     logic       comes;
     logic [1:0] next_line;
     logic [3:0] next_row;
@@ -79,7 +79,7 @@ module band_extents_proof (
     end
 
     logic [3:0] without_span, without_end;
-    // The band is not whole; something is left of what was there, and something else is there now.
+    // Covered: a line that had drawn columns before and has others now, in a band that is not `whole`.
     logic       united;
 
     always_ff @(posedge clk) begin

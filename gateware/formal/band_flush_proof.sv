@@ -10,7 +10,7 @@
 module band_flush_proof (
     input wire       clk,
     input wire       start,
-    // The rows to flush, as spans at any time, in pieces or not.
+    // The rows to flush, given as spans at any time, whole or in pieces.
     input wire [3:0] rows,
     input wire       gives,
     input wire       in_pieces,
@@ -20,7 +20,7 @@ module band_flush_proof (
     input wire       out_ready
 );
     localparam logic [15:0] BACKGROUND = 16'h8421;
-    // Clocks that may pass without a word while memory takes all words.
+    // Most clocks without a word while memory takes all words.
     localparam int unsigned WITHIN = 10;
 
     (* anyconst *) logic [5:0] base, depth_base;
@@ -50,7 +50,7 @@ module band_flush_proof (
         depth_of = 18'(of_row) + 1'b1;
     endfunction
 
-    // The bank. Its rows are drawn anew, by the test, when a flush starts.
+    // Model of the bank. A flush starts with all rows drawn.
     logic [3:0] drawn;
     logic [1:0] from_row, latched_row, read_row, to_row;
     logic       latched_drawn, read_drawn, to_clear;
@@ -79,7 +79,7 @@ module band_flush_proof (
         first_of = of_rows[0] ? 2'd0 : of_rows[1] ? 2'd1 : of_rows[2] ? 2'd2 : 2'd3;
     endfunction
 
-    // Spans: rows that have not been given, and whether there may be more.
+    // Spans: rows not yet given, and whether more spans may follow.
     logic [3:0] to_give;
     logic       offered, pieces, lingering;
 
@@ -109,7 +109,7 @@ module band_flush_proof (
         end
     end
 
-    // Pending: rows whose colours and whose depths have not come, and the half of the next depths.
+    // Expected words: rows whose colours or depths are missing, and the half of the next depth word.
     logic [5:0] flush_base, flush_depth_base, expected_addr;
     logic [3:0] flush_rows, colour_rows, depth_rows;
     logic [1:0] colour_row, depth_row;
@@ -119,7 +119,7 @@ module band_flush_proof (
     assign colour_row = first_of(colour_rows);
     assign depth_row  = first_of(depth_rows);
     assign none_left  = colour_rows == '0 && depth_rows == '0;
-    // Depths are never 0, and their upper half-words always are; those of colours are as the lower ones.
+    // Tells depth words from colour words: the halves of a depth differ, those of two colours are equal.
     assign is_depth   = out_data[31:16] != out_data[15:0];
 
     logic [127:0] expected;
@@ -168,7 +168,7 @@ module band_flush_proof (
         .clk, .rst, .valid(out_valid), .ready(out_ready), .data({out_addr, out_data})
     );
 
-    // The clearing takes two clocks to be seen in the bank.
+    // A cleared row shows in the bank two clocks later.
     logic [1:0] settled;
     logic       fresh;
     always_ff @(posedge clk) begin
@@ -194,7 +194,7 @@ module band_flush_proof (
         ends:              assert (without_end < 4'd4);
         sweep_ends:        assert (sweep_clocks < 4'd5);
         all_swept:         assert (!(fresh && settled == 2'd2) || drawn == '0);
-        // Of the rows that were flushed, and of no others.
+        // Exactly the flushed rows are cleared.
         cleared_behind:    assert (!(flushing && idle) || dropped || drawn == ~flush_rows);
         flushed:           cover (flushing && idle && !dropped && flush_rows == 4'b1001);
         deep:              cover (flushing && idle && !dropped && flush_depth && flush_rows == 4'b0100);

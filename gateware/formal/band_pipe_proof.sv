@@ -12,10 +12,10 @@ module band_pipe_proof (
     input wire            group_row,
     input wire [7:0]      group_mask,
     input wire [8*18-1:0] group_codes,
-    // In the colours, to tell groups of equal depth apart.
+    // Tag in the colours, which distinguishes groups of equal depth.
     input wire [1:0]      group_tag
 );
-    // Clocks that a group may be held.
+    // Most clocks for which a group is held.
     localparam int unsigned WITHIN = 4;
 
     logic rst = 1'b1;
@@ -35,7 +35,7 @@ module band_pipe_proof (
         .read_row, .stored, .stored_written, .write_row, .write_lanes, .write_halves(), .write_codes, .write_colours, .empty, .held()
     );
 
-    // The followed pixel in the memory; the other ones may hold anything, and their groups do not matter.
+    // The followed pixel in the memory. The other pixels hold any value, and their groups do not matter.
     logic        from_row, to_row, to_lane, latched_written, read_written, written;
     logic [17:0] to_store, latched, read, code;
     logic        latched_here, read_here;
@@ -75,7 +75,7 @@ module band_pipe_proof (
         end
     end
 
-    // The same pixel without latency.
+    // The same pixel in a memory without latency.
     logic        taken, drawn;
     logic [17:0] nearest, given;
     logic [1:0]  nearest_tag;
@@ -84,7 +84,7 @@ module band_pipe_proof (
     assign given = group_codes[18*lane +: 18];
     assign taken = group_valid && group_ready;
 
-    // Memory is a clock behind `empty`.
+    // The memory is one clock behind `empty`.
     logic was_empty, was_held;
 
     always_ff @(posedge clk) begin

@@ -1,10 +1,11 @@
-// The contract of a buffer between two streams, with any traffic on both sides: the skid buffer, or a FIFO of DEPTH places.
+// Proof of the contract of a buffer between two streams, with any traffic on both sides: the skid buffer, or a FIFO
+// of DEPTH places.
 
 `default_nettype none
 
 module buffer_proof #(
     parameter int unsigned WIDTH = 4,
-    // 0: the skid buffer.
+    // Depth of the FIFO; 0 selects the skid buffer.
     parameter int unsigned DEPTH = 0
 ) (
     input wire             clk,

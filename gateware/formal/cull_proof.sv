@@ -1,6 +1,6 @@
-// Culled triangles do not block: for any triangles in any order, one waits for the stage no
-// longer than 3 clocks in which the output is not held up, each leaves once, culled or drawn, and no stretch of 8 such
-// clocks passes without one that leaves while there are some.
+// Proof that culled triangles do not block, for any triangles in any order. Count the clocks in which the output is
+// not held: a triangle waits at most 3 of them for the stage, each triangle leaves once, culled or drawn, and at
+// least one leaves in any 8 of them while triangles are inside.
 
 `default_nettype none
 
@@ -29,7 +29,7 @@ module cull_proof (
     stream_checker #(.WIDTH(16), .GIVEN(1)) given (
         .clk, .rst, .valid(in_valid), .ready(in_ready), .data(in_colour)
     );
-    // All of the triangle is loaded at once.
+    // All fields of the triangle are loaded at once.
     stream_checker #(.WIDTH(16)) shown (
         .clk, .rst, .valid(out_valid), .ready(out_ready), .data(out_triangle.colour)
     );

@@ -1,11 +1,11 @@
-"""How each property is shown to be able to fail: a textual change of a module, and the property that has to notice it."""
+"""Mutations: textual changes of modules, each with the property that must detect it."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
 class Mutation:
-    """In `source`, `old` (which is there once) becomes `new`; then `fails`, a path within the proof, does not hold."""
+    """Replaces the only `old` in `source` by `new`; the property `fails`, a path within the proof, must then fail."""
 
     source: str
     old: str
@@ -91,11 +91,11 @@ MUTATIONS = {
         _flush("depth_words_base <= depth_base;", "depth_words_base <= base;", "in_their_places"),
         _flush("{clear_row, 1'b1}", "{clear_row, 1'b0}", "in_their_places"),
         _flush("address   <= address_2;", "address   <= address_1;", "in_their_places"),
-        # A span that begins where the one before has ended.
+        # Begins a span where the previous span ended.
         _flush("row       <= span_first;", "row       <= row + 1'b1;", "in_their_places"),
-        # More words than there are places.
+        # Admits more words than the FIFO has places.
         _flush("in_span && places != '0;", "in_span;", "words_in_order"),
-        # A row that is cleared before its depth has been read.
+        # Clears a row before its depth is read.
         _flush("clears <= part == last_part;", "clears <= 1'b1;", "words_in_order"),
         _flush("{18{written[lane]}}", "18'b0", "words_in_order"),
         _flush("&& row == last_row;", "&& row == '1;", "none_made_up"),
@@ -103,15 +103,15 @@ MUTATIONS = {
         _flush("COLOUR:     if (part_ends && depth_too)", "COLOUR: if (depth_too)", "colour_first"),
         _flush("if (taken && !issue) ", "if (out_valid && !issue) ", "all_taken"),
         _flush("last_row  <= span_last;", "last_row  <= span_first;", "none_left_out"),
-        # An end while a span is in work, or before the last one has come.
+        # Ends during a span, or before the last span has come.
         _flush("if (!in_span && !spans_busy)", "if (!spans_busy)", "none_left_out"),
         _flush("if (!in_span && !spans_busy)", "if (!in_span && !span_valid)", "none_left_out"),
         _flush("(!in_span || span_ends);", "span_ends;", "no_standstill"),
         _flush("places <= places + 1'b1;", "places <= places;", "ends"),
         _flush("if (row == '1) state", "if (row == '1 && idle) state", "sweep_ends"),
-        # A restart that waits for the words to be taken.
+        # Restart waits until memory has taken the words.
         _flush("SWEEP: begin", "SWEEP: if (places == COUNT_BITS'(WORDS)) begin", "sweep_ends"),
-        # A restart that begins where the flush was.
+        # Restart begins at the row of the flush.
         _flush("state  <= SWEEP;\n            row    <= '0;", "state  <= SWEEP;", "all_swept"),
         _flush("clears <= part == last_part;", "clears <= part == last_part && row != last_row;", "cleared_behind"),
         _flush("clear_row <= row;", "clear_row <= row + 1'b1;", "cleared_behind"),
@@ -149,12 +149,12 @@ MUTATIONS = {
         Mutation("skid_buffer.sv", "if (!out_valid || out_ready)", "if (1'b1)", "spans.valid_stays"),
         Mutation("skid_buffer.sv", "if (!out_valid || out_ready)", "if (!out_valid || out_ready || in_valid)",
                  "spans.payload_stable"),
-        # The last extent is lost, or is that of another frame buffer.
+        # Loses the last extent, or takes it from the other frame buffer.
         _extents("united(earlier, now_3);", "now_3;", "in_order"),
         _extents("to       <= from;", "to       <= {1'b0, from[PLACE_BITS-2:0]};", "in_order"),
-        # Lines that are overtaken while spans are not taken.
+        # Overtakes lines while spans are not taken.
         _extents("        if (advance) begin", "        if (1'b1) begin", "none_left_out"),
-        # The new extent stays for the next band, or only its last group counts.
+        # Keeps the new extent for the next band, or only its last group.
         _extents("empties ? EMPTY : united", "united", "in_order"),
         _extents("united(kept[bank], {add_column, add_column})", "{add_column, add_column}", "in_order"),
         _extents("if (valid[4]) line_row", "line_row", "in_order"),
@@ -189,7 +189,7 @@ MUTATIONS = {
         _setup("drawn <= beat && valid[4];", "drawn <= beat;", "counted"),
         _setup("cull_busy || valid != '0 || out_valid", "cull_busy || valid[3:1] != '0 || out_valid", "busy_while_inside"),
         _setup("valid <= {valid[3:1], first_valid};", "valid <= {1'b0, valid[2:1], first_valid};", "busy_while_inside"),
-        # Triangles that wait for those behind them, or for the consumer.
+        # Triangles wait for later triangles, or for the consumer.
         _setup("end else if (enable) begin", "end else if (enable && first_valid) begin", "no_standstill"),
         _setup("end else if (enable) begin", "end else if (enable && out_ready) begin", "taken_in_time"),
     ],
@@ -197,7 +197,7 @@ MUTATIONS = {
         _entry("if (next_free) begin", "if (1'b1) begin", "shown.valid_stays"),
         _entry("            out_triangle <= placed;\n        end", "        end\n        out_triangle <= placed;", "shown.payload_stable"),
         _entry("            if (pass == ROWS_KNOWN && count == '0) busy <= 1'b0;\n", "", "nothing_made_up"),
-        # The held triangle is overwritten by the next one.
+        # The next triangle overwrites the held one.
         _entry("pass != STALLS || !held_valid || !out_valid;", "1'b1;", "in_order"),
         _entry("if (pass == LAST) begin", "if (busy) begin", "in_order"),
         _entry("k == 2 ? ending[2] :", "k == 2 ? ending[1] :", "in_order"),

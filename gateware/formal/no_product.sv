@@ -1,4 +1,4 @@
-// Replaces multiply_add where all products are 0: the addend comes out and identifies its triangle.
+// Replaces multiply_add by one whose products are 0. The sum is the addend, which identifies its triangle.
 
 `default_nettype none
 

@@ -1,5 +1,5 @@
-// Replaces the arithmetic parts of the setup: each passes on one of its operands, which identifies the triangle.
-// In place of cull: a triangle is culled or goes on as its colour says, with its number in all that goes along.
+// Replaces the arithmetic parts of the setup. Each part passes on one of its operands, which identifies the triangle.
+// The replacement of cull takes the decision and the triangle's number from the colour.
 
 `default_nettype none
 

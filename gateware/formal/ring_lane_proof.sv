@@ -11,7 +11,8 @@ module ring_lane_proof (
     input wire [9:0] in_length,
     input wire       out_ready
 );
-    // Clocks in which ends are taken that may pass until a ray's end is: two rounds of 9 slots, through the fifo, after another one.
+    // Most clocks with a ready consumer until a ray's end is taken: two rounds of 9 slots, then the FIFO behind
+    // another end.
     localparam int unsigned PLACES = 2, WITHIN = 22;
 
     logic rst = 1'b1;
@@ -24,7 +25,7 @@ module ring_lane_proof (
     (* anyconst *) logic [10:0] followed;
     (* anyconst *) logic [9:0]  length;
 
-    // Rays are numbered by their column.
+    // The column numbers the rays.
     always_comb begin
         ray = '0;
         ray.place.column = came;

@@ -29,7 +29,7 @@ _PROGRAMS = Path(sys.executable).parent
 _AT_A_TIME = 2
 
 
-# Modules that stand in for those of gateware/rtl, in the proofs that name them.
+# Replacements of modules in gateware/rtl, used by the proofs that name them.
 _STAND_INS = ("any_field", "any_product", "any_stepper", "no_product", "plain_setup")
 _PROPERTIES = [path for path in sorted(FORMAL.glob("*.sv")) if path.stem not in _STAND_INS]
 
@@ -71,7 +71,7 @@ PROOFS = [
     Proof("cull", "cull_proof", 20, ("any_product",)),
 ]
 
-# State as bit vectors, the only form that Bitwuzla takes.
+# State as bit vectors, the only form that Bitwuzla accepts.
 _SBY = """[options]
 mode {mode}
 depth {depth}
@@ -95,7 +95,7 @@ def check(proof, mode, folder, sources=None, only=None):
     sources = sources or proof.sources
     folder.parent.mkdir(parents=True, exist_ok=True)
     shutil.rmtree(folder, ignore_errors=True)
-    # Yosys sees relative paths only; SymbiYosys copies the sources to where it runs.
+    # Relative paths: Yosys accepts no others, and SymbiYosys copies the sources to its work folder.
     config = folder.with_suffix(".sby")
     config.write_text(_SBY.format(
         mode=mode, depth=proof.depth, top=proof.top,
@@ -122,7 +122,7 @@ def prove(proofs):
 def _fails(proof):
     start = time.monotonic()
     folder = _BUILD / proof.name.replace(" ", "_")
-    # The covers show that the assumptions leave something to be proven.
+    # The covers show that the assumptions are not contradictory.
     verdicts = [(mode, *check(proof, mode, folder / mode)) for mode in ("bmc", "cover")]
     bad = [f"{mode}: {verdict}: {', '.join(found)}" for mode, verdict, found in verdicts if verdict != "PASS"]
     outcome = f"{len(proof.properties())} properties, {proof.depth} clocks"

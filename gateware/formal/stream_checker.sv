@@ -1,4 +1,4 @@
-// Watches one stream: an item that is valid and not taken must be valid again in the next clock, unchanged.
+// Checks one stream: an item that is valid and not taken stays valid and unchanged in the next clock.
 //
 // GIVEN = 1 assumes it, for a stream that comes from outside the module under proof; GIVEN = 0 asserts it.
 

@@ -19,7 +19,7 @@ module walker_proof (
 );
     localparam int unsigned BITS = 3;
 
-    // All of the triangles' edges fail nowhere.
+    // No edge of the triangles fails anywhere.
     (* anyconst *) logic solid;
 
     logic rst = 1'b1;
@@ -29,7 +29,7 @@ module walker_proof (
     raster_pkg::placed_t    placed;
     raster_pkg::candidate_t group;
 
-    // The triangle that is walked over: its number, its groups (bit 4·line + column), and which of them have come.
+    // The current triangle: its number, its groups (bit 4·line + column), and the groups that have come out.
     logic [BITS-1:0] came = '0, number;
     logic            some = 1'b0;
     logic [7:0]      bounds, gone, group_bit;
@@ -90,7 +90,7 @@ module walker_proof (
             within_bounds:   assert (group.line[5:1] == '0 && group.group[7:2] == '0 && (group_bit & bounds) != '0);
             none_twice:      assert ((group_bit & gone) == '0);
         end
-        // Of a line's three groups two may fail on the way to the first one, and be tried again from there.
+        // Up to two of a line's three groups may fail before the first group, and are tried again after it.
         left_in_time:  assert (!walking || walked < 5'd10);
         none_left_out: assert (!solid || !some || !(taken || idle) || (gone | (goes ? group_bit : '0)) == bounds);
         busy_while_it_walks: assert (idle || some);

@@ -13,7 +13,7 @@ module write_port_proof (
     input wire wdata_ready
 );
     localparam int unsigned DEPTH = 4, NUMBER_BITS = 5;
-    // Clocks until a word is in a memory that takes all words: through both FIFOs, all places full.
+    // Most clocks until a word is in a memory that takes all words: through both FIFOs with all places full.
     localparam int unsigned WITHIN = 8;
 
     logic rst = 1'b1;
@@ -36,7 +36,7 @@ module write_port_proof (
         .clk, .rst, .valid(cmd_valid), .ready(cmd_ready), .data(cmd_addr)
     );
 
-    // Clocks in which memory took all words and should have got more.
+    // Clocks in which memory took all words and the port owed more.
     logic [3:0] unmoved, refused;
 
     always_ff @(posedge clk) begin

@@ -1,4 +1,4 @@
-// A module on its own: nothing beside the common interface.
+// Harness of a single module: the common interface without additions.
 
 #define INSTANCE Harness
 #include "interface.h"

@@ -1,16 +1,16 @@
-//! What a port carries.
+//! Bits of a port.
 
 use std::fmt;
 
-/// The 32-bit words of the widest port.
+/// 32-bit words of the widest port.
 const WORDS: usize = 16;
 
-/// Up to 512 bits, those of a narrower port in the lowest.
+/// Up to 512 bits; a narrower port uses the lowest.
 #[derive(Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub struct Bits([u32; WORDS]);
 
 impl Bits {
-    /// From 32-bit words, the lowest first; those that are not there are 0.
+    /// From 32-bit words, the lowest first; missing words are 0.
     ///
     /// # Panics
     /// With more than 512 bits.
@@ -24,7 +24,7 @@ impl Bits {
         bits
     }
 
-    /// From bytes, the lowest first, at most 64; the others are 0.
+    /// From at most 64 bytes, the lowest first; missing bytes are 0.
     #[must_use]
     pub fn from_bytes(bytes: &[u8]) -> Self {
         let mut bits = Self::default();
@@ -57,7 +57,7 @@ impl Bits {
     #[must_use]
     pub(crate) fn field(&self, low: usize, width: usize) -> u64 {
         assert!(width <= 64 && low + width <= 32 * WORDS);
-        // 64 bits from anywhere are in three words.
+        // 64 bits at any offset touch at most three words.
         let word = |i: usize| u128::from(self.0.get(low / 32 + i).copied().unwrap_or(0));
         let three = word(0) | word(1) << 32 | word(2) << 64;
         (three >> (low % 32)) as u64 & ((1_u128 << width) - 1) as u64
@@ -72,7 +72,7 @@ impl Bits {
         Self::default().with_words(0, self, low, width)
     }
 
-    /// With the `width` bits from `low` on replaced by the lowest of `bits`.
+    /// Replaces the `width` bits from `low` on by the lowest ones of `bits`.
     ///
     /// # Panics
     /// When they are not within 512 bits.
@@ -81,7 +81,7 @@ impl Bits {
         self.with_words(low, &bits, 0, width)
     }
 
-    /// With `width` bits from `low` on replaced by those of `source` from `from` on.
+    /// Replaces the `width` bits from `low` on by those of `source` from `from` on.
     fn with_words(mut self, low: usize, source: &Self, from: usize, width: usize) -> Self {
         let mut done = 0;
         while done < width {
@@ -93,7 +93,7 @@ impl Bits {
         self
     }
 
-    /// All bits as a number.
+    /// All bits as a number of at most 64 bits.
     ///
     /// # Panics
     /// When it does not fit 64 bits.
@@ -103,7 +103,7 @@ impl Bits {
         self.field(0, 64)
     }
 
-    /// The element `index` of those of [`pack`](Self::pack).
+    /// The element `index` of a value made by [`pack`](Self::pack).
     ///
     /// # Panics
     /// Beyond 512 bits, or for a `width` above 64.
@@ -112,7 +112,7 @@ impl Bits {
         self.field(width * index, width)
     }
 
-    /// Fields of the same `width`, the first in the lowest bits.
+    /// Concatenates fields of the same `width`, the first in the lowest bits.
     ///
     /// # Panics
     /// With more than 512 bits, or a value that does not fit.
@@ -135,8 +135,7 @@ impl Bits {
         (self.field(low, width) << unused) as i64 >> unused
     }
 
-    /// With the `width` bits from `low` on replaced by the lowest of `value`; a negative number is cut to its two's
-    /// complement.
+    /// Replaces the `width` bits from `low` on by `value`, in two's complement where it is negative.
     ///
     /// # Panics
     /// When the field is not within 512 bits, or `value` does not fit, signed or unsigned.
@@ -153,7 +152,7 @@ impl Bits {
     }
 }
 
-/// Whether so many bits hold a number, signed or unsigned.
+/// Whether `width` bits hold a number, signed or unsigned.
 pub(crate) fn holds(width: usize, value: i128) -> bool {
     width > 126 || value >= -(1 << (width - 1)) && value < 1 << width
 }

@@ -1,8 +1,8 @@
-//! Counters that a module reports as events: one packed struct with the growth of each counter in a clock.
+//! Counters of a module's events: one packed struct with each counter's increment per clock.
 
 use crate::{Bits, Module, Port};
 
-/// Sums of the members of a port, by their names.
+/// Sums of a port's members, by name.
 pub struct Counters {
     events: Port,
     /// Name and part of each member, and its sum.
@@ -10,7 +10,7 @@ pub struct Counters {
 }
 
 impl Counters {
-    /// Counters of the struct on the port `name`, from 0 on.
+    /// Counters of the struct on the port `name`, starting at 0.
     ///
     /// # Panics
     /// When there is no such port.
@@ -27,7 +27,7 @@ impl Counters {
         }
     }
 
-    /// Counts a clock, between [`Module::settle`] and [`Module::clock`].
+    /// Adds the increments of a clock; call between [`Module::settle`] and [`Module::clock`].
     pub fn sample(&mut self, module: &Module) {
         let events = module.get(self.events);
         if events == Bits::default() {

@@ -1,4 +1,4 @@
-//! The layout of packed types, as Verilator resolves them: the bits of each member.
+//! Layout of packed types as resolved by Verilator: the bits of each member.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -14,19 +14,19 @@ pub struct Layout {
     width: usize,
 }
 
-/// A type in the description that `gateware/verilate/description.py` writes.
+/// A type as described by `gateware/verilate/description.py`.
 #[derive(Debug, Deserialize)]
 #[serde(untagged)]
 enum Shape {
     Array {
         count: usize,
-        /// The index of the element in the lowest bits.
+        /// Index of the element in the lowest bits.
         lowest: usize,
         element: Layout,
     },
     Structure {
         name: String,
-        /// The member in the highest bits first.
+        /// Members, the highest bits first.
         members: Vec<(String, Layout)>,
     },
     Enumeration {
@@ -54,14 +54,14 @@ impl From<Shape> for Layout {
     }
 }
 
-/// A part of a type: its bits from `low` on.
+/// Part of a type: its bits from `low` on.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Part<'a> {
     pub low: usize,
     pub layout: &'a Layout,
 }
 
-/// A path that names no part, or a value that its part does not hold.
+/// A path without a part, or a value outside the part's range.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum LayoutError {
@@ -94,12 +94,12 @@ pub enum LayoutError {
     Leaf {
         /// The whole path.
         path: String,
-        /// What follows the part that ends the path.
+        /// Text after the part that ends the path.
         rest: String,
         /// The type of that part.
         found: String,
     },
-    /// A value that a part does not hold.
+    /// A value outside the part's range.
     #[error("{path}: {value} does not fit {width} bits")]
     Value {
         /// The path.
@@ -118,10 +118,10 @@ pub enum LayoutError {
         name: String,
         /// The type of the part.
         found: String,
-        /// The values of that type, none if it is no enumeration.
+        /// Values of that type; empty if it is not an enumeration.
         values: Vec<String>,
     },
-    /// A list that is not as long as its array.
+    /// A list whose length differs from its array's.
     #[error("{path}: {found} values for {found_in}")]
     Length {
         /// The path.
@@ -153,8 +153,8 @@ impl Layout {
         matches!(*self.shape, Shape::Vector { signed: true, .. })
     }
 
-    /// Finds a part: names of members, each behind a `.`, and indices in `[]`, as in `place.line` or `[1].half[2]`. An empty
-    /// path is the whole.
+    /// Finds a part by its path: names of members, each after a `.`, and indices in `[]`, as in `place.line` or
+    /// `[1].half[2]`. The empty path is the whole type.
     pub(crate) fn find(&self, path: &str) -> Result<Part<'_>, LayoutError> {
         let mut part = Part {
             low: 0,
@@ -167,7 +167,7 @@ impl Layout {
         Ok(part)
     }
 
-    /// The names of a structure's members, the highest first; none of another type.
+    /// Names of a structure's members, the highest first; empty for another type.
     pub(crate) fn member_names(&self) -> Vec<String> {
         match &*self.shape {
             Shape::Structure { members, .. } => {
@@ -177,7 +177,7 @@ impl Layout {
         }
     }
 
-    /// The elements of an array, the lowest index first.
+    /// Elements of an array, the lowest index first.
     pub(crate) fn elements(&self) -> Option<(usize, &Self)> {
         match &*self.shape {
             Shape::Array { count, element, .. } => Some((*count, element)),
@@ -185,7 +185,7 @@ impl Layout {
         }
     }
 
-    /// The names of an enumeration and their values.
+    /// Names and values of an enumeration.
     pub(crate) fn values(&self) -> Option<&BTreeMap<String, u64>> {
         match &*self.shape {
             Shape::Enumeration { values, .. } => Some(values),
@@ -193,7 +193,7 @@ impl Layout {
         }
     }
 
-    /// The type in words.
+    /// Description of the type, for messages.
     pub(crate) fn describe(&self) -> String {
         match &*self.shape {
             Shape::Array { count, element, .. } => {
@@ -206,7 +206,7 @@ impl Layout {
 }
 
 impl Part<'_> {
-    /// Goes on to the member or element that `rest` of `path` begins with, and returns what follows it.
+    /// Steps into the member or element at the start of `rest`; returns the remaining path.
     fn enter<'p>(&mut self, path: &str, rest: &'p str) -> Result<&'p str, LayoutError> {
         match (&*self.layout.shape, rest.strip_prefix('[')) {
             (

@@ -13,14 +13,14 @@ use thiserror::Error;
 
 use crate::{Bits, Layout};
 
-/// The version of the C interface that this file is written for.
+/// Version of the C interface that this file implements.
 const VERSION: u32 = 1;
 
-/// A library that cannot be used.
+/// Error of loading a library.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum LoadError {
-    /// The file is missing, is no library, or lacks a function.
+    /// The file is missing, is not a library, or lacks a function.
     #[error("{}: {source}", path.display())]
     Library {
         /// The file.
@@ -33,12 +33,12 @@ pub enum LoadError {
     Version {
         /// The file.
         path: PathBuf,
-        /// The version that this crate needs.
+        /// Expected version.
         expected: u32,
         /// The library's version.
         found: u32,
     },
-    /// The library's description of its ports is not understood.
+    /// The library's description of its ports cannot be parsed.
     #[error("{}: the description of the ports: {source}", path.display())]
     Description {
         /// The file.
@@ -101,7 +101,7 @@ pub struct Instance {
     free: unsafe extern "C" fn(*mut c_void),
     eval: unsafe extern "C" fn(*mut c_void),
     path: PathBuf,
-    // Last, so that it is unloaded after everything that lives in it.
+    // Last field: its library is unloaded after everything that lives in it.
     library: Library,
 }
 
@@ -118,9 +118,9 @@ impl Instance {
             path: path.to_owned(),
             source,
         };
-        // SAFETY: the library's initializers are those of libstdc++ and Verilator, without conditions.
+        // SAFETY: the initializers of libstdc++ and Verilator have no preconditions.
         let library = unsafe { Library::new(path) }.map_err(error)?;
-        // SAFETY: names and types are those of interface.h, and the version says that they are of this one.
+        // SAFETY: names and types match interface.h, and the version check confirms that the library implements it.
         let (description, handle, free, eval, port) = unsafe {
             let version: unsafe extern "C" fn() -> u32 =
                 *library.get(b"harness_version").map_err(error)?;
@@ -153,7 +153,7 @@ impl Instance {
         let ports = (0..)
             .zip(&description.ports)
             .map(|(number, described)| {
-                // SAFETY: the handle is an instance's, and the number that of one of its ports.
+                // SAFETY: the handle belongs to an instance, and the number to one of its ports.
                 let address = unsafe { port(handle.as_ptr(), number) };
                 let address = NonNull::new(address.cast()).expect("every port has an address");
                 Slot::new(address, described)
@@ -170,13 +170,13 @@ impl Instance {
         })
     }
 
-    /// The instance for functions of [`symbol`](Self::symbol).
+    /// The instance handle, for functions from [`symbol`](Self::symbol).
     #[must_use]
     pub fn handle(&self) -> *mut c_void {
         self.handle.as_ptr()
     }
 
-    /// A function that a library has beside the common interface.
+    /// Looks up a function of the library outside the common interface.
     ///
     /// # Errors
     /// When it has none of that name.
@@ -184,7 +184,7 @@ impl Instance {
     /// # Safety
     /// `T` must be the function's type, and the function must not be called after the instance has been dropped.
     pub unsafe fn symbol<T: Copy>(&self, name: &str) -> Result<T, LoadError> {
-        // SAFETY: the caller vouches for the type.
+        // SAFETY: guaranteed by the caller.
         let symbol = unsafe { self.library.get::<T>(name.as_bytes()) };
         symbol
             .map(|symbol| *symbol)
@@ -202,7 +202,7 @@ impl Instance {
         &self.description.ports[port]
     }
 
-    /// The number of the port of a name.
+    /// Number of the port `name`.
     ///
     /// # Panics
     /// When there is none; lists the names.
@@ -238,7 +238,7 @@ impl Instance {
     pub fn set_value(&mut self, port: usize, value: u64) {
         let Slot { width, .. } = self.ports[port];
         self.check_input(port, width >= 64 || value >> width == 0, value);
-        // Arrays of fixed lengths: a copy of any length is a call.
+        // Fixed lengths: copying a variable length would be a function call.
         let bytes = value.to_le_bytes();
         match self.bytes_mut(port) {
             [byte] => *byte = bytes[0],
@@ -280,9 +280,9 @@ impl Instance {
         assert!(fits, "{value:?} in the {width} bits of {}", name());
     }
 
-    /// Lets the design follow its inputs, clocks among them.
+    /// Evaluates the design for its current inputs, clocks among them.
     pub fn eval(&mut self) {
-        // SAFETY: the handle is an instance's.
+        // SAFETY: the handle belongs to an instance.
         unsafe { (self.eval)(self.handle.as_ptr()) }
     }
 
@@ -294,7 +294,8 @@ impl Instance {
         let Ok(path) = CString::new(path.as_os_str().as_encoded_bytes()) else {
             return Ok(false);
         };
-        // SAFETY: the type is that of interface.h; the handle is an instance's, and the path is read during the call only.
+        // SAFETY: the type is that of interface.h. The handle belongs to an instance, and the path is read during the
+        // call only.
         unsafe {
             let start: unsafe extern "C" fn(*mut c_void, *const c_char) -> c_int =
                 self.symbol("harness_waveforms")?;
@@ -305,22 +306,22 @@ impl Instance {
     /// The bytes of a port, little-endian.
     fn bytes(&self, port: usize) -> &[u8] {
         let Slot { address, bytes, .. } = self.ports[port];
-        // SAFETY: the address is that of as many bytes, which live as long as the instance and are written to through
-        // `&mut self` only.
+        // SAFETY: the address is valid for this many bytes as long as the instance lives, and writes need `&mut
+        // self`.
         unsafe { slice::from_raw_parts(address.as_ptr(), bytes) }
     }
 
     /// The bytes of a port, little-endian, to be changed.
     fn bytes_mut(&mut self, port: usize) -> &mut [u8] {
         let Slot { address, bytes, .. } = self.ports[port];
-        // SAFETY: as in `bytes`, and nothing else looks at the instance.
+        // SAFETY: as in `bytes`; `&mut self` excludes other access.
         unsafe { slice::from_raw_parts_mut(address.as_ptr(), bytes) }
     }
 }
 
 impl Drop for Instance {
     fn drop(&mut self) {
-        // SAFETY: the handle is an instance's, and is not used again.
+        // SAFETY: the handle belongs to an instance, and is not used again.
         unsafe { (self.free)(self.handle.as_ptr()) }
     }
 }

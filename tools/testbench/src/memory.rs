@@ -1,16 +1,16 @@
-//! The memory as a module sees it: LiteDRAM's native ports, 16 bytes a word.
+//! Model of the memory behind LiteDRAM's native ports, 16 bytes a word.
 
 use std::collections::VecDeque;
 
 use crate::{Bits, Module, Port, Stalls};
 
-/// What is in memory, by word.
+/// Contents of the memory, by word.
 pub struct Memory {
     words: Vec<[u8; 16]>,
 }
 
 impl Memory {
-    /// So many words of 0xa5, which nobody wrote.
+    /// A memory of `words` words, filled with 0xa5.
     #[must_use]
     pub fn new(words: usize) -> Self {
         Self {
@@ -68,20 +68,20 @@ impl Memory {
     }
 }
 
-/// Clocks from a command to its data, unless told.
+/// Default latency, in clocks from a command to its data.
 const LATENCY: u64 = 12;
 
-/// The memory's side of a read port: the structs `NAME_read_request` and `NAME_read_answer`. Data comes when it comes, whether the
-/// module waits for it or not.
+/// The memory's side of a read port: the structs `NAME_read_request` and `NAME_read_answer`. Data cannot be held back
+/// by the module.
 pub struct ReadPort {
     cmd: [Port; 3],
     rdata: [Port; 2],
-    /// Words on their way: the cycle from which on they come, and where they are.
+    /// Words under way: the cycle from which each may come, and its address.
     queue: VecDeque<(u64, u32)>,
     stalls: Stalls,
-    /// Clocks from a command to its data, at least.
+    /// Least clocks from a command to its data.
     pub latency: u64,
-    /// Words given so far.
+    /// Count of delivered words.
     pub given: u64,
 }
 
@@ -105,7 +105,7 @@ impl ReadPort {
         }
     }
 
-    /// Gives a word that is due, and takes a command or not.
+    /// Drives the port: a due word if any, and ready or a stall.
     pub fn drive(&mut self, module: &mut Module, memory: &Memory) {
         let stalled = self.stalls.next_stalled();
         module.set(self.cmd[1], u64::from(!stalled));
@@ -121,7 +121,7 @@ impl ReadPort {
         }
     }
 
-    /// Takes the command that is there.
+    /// Accepts a valid command.
     pub fn sample(&mut self, module: &Module) {
         if module.is_high(self.cmd[0]) && module.is_high(self.cmd[1]) {
             let address = module.value(self.cmd[2]) as u32;
@@ -131,8 +131,8 @@ impl ReadPort {
     }
 }
 
-/// The memory's side of a write port: the structs `NAME_write_request` and `NAME_write_answer`. The memory takes the data of a
-/// command at any time after it, and they must be there.
+/// The memory's side of a write port: the structs `NAME_write_request` and `NAME_write_answer`. The memory takes the
+/// data of a command in any later clock, without looking at valid.
 pub struct WritePort {
     cmd: [Port; 3],
     wdata: [Port; 4],
@@ -140,7 +140,7 @@ pub struct WritePort {
     owed: VecDeque<u32>,
     takes: bool,
     stalls: Stalls,
-    /// Words written so far.
+    /// Count of written words.
     pub written: u64,
 }
 
@@ -169,7 +169,7 @@ impl WritePort {
         }
     }
 
-    /// Takes a command or not, and data or not.
+    /// Drives the port: ready for a command and for data, or stalls.
     pub fn drive(&mut self, module: &mut Module) {
         let stalled = self.stalls.next_stalled();
         module.set(self.cmd[1], u64::from(!stalled));
@@ -177,7 +177,7 @@ impl WritePort {
         module.set(self.wdata[1], u64::from(self.takes));
     }
 
-    /// Writes what is there.
+    /// Accepts a valid command and the data of the oldest one.
     ///
     /// # Panics
     /// When the data of a command are missing, or the address is beyond the memory.

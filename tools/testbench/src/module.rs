@@ -5,27 +5,27 @@ use std::path::Path;
 use crate::library::Instance;
 use crate::{Bits, Layout, Record};
 
-/// A port of a [`Module`], or a part of one.
+/// A port of a [`Module`], or part of one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Port {
     index: usize,
     pub(crate) low: usize,
     pub(crate) width: usize,
-    /// Neither below nor above it has the port other bits.
+    /// Whether the bits of the port below and above the part do not exist.
     whole: bool,
 }
 
 /// One instance of a module, with a clock `clk` and a reset `rst`.
 pub struct Module {
     instance: Instance,
-    /// The port `clk`; a module with other clocks has none, and its bench drives them.
+    /// The port `clk`; `None` for a module with other clocks, which its bench drives.
     clock: Option<Port>,
     cycles: u64,
 }
 
 impl Module {
-    /// The module `name`, or a variant of one, just out of reset, with all inputs low. Registers without a reset start with
-    /// noise that follows from `seed`.
+    /// Loads the module `name`, or a variant of it, and resets it with all inputs low. Registers without a reset
+    /// start with noise from `seed`.
     ///
     /// # Panics
     /// When it has not been built.
@@ -42,8 +42,8 @@ impl Module {
         module
     }
 
-    /// The module `name` before its first evaluation, with all inputs low, for a bench that drives clocks and resets:
-    /// [`settle`](Self::settle) then evaluates the module as its ports are.
+    /// Loads the module `name` before its first evaluation, with all inputs low. For a bench that drives clocks and
+    /// resets: the first [`settle`](Self::settle) evaluates the module.
     ///
     /// # Panics
     /// When it has not been built.
@@ -69,7 +69,7 @@ impl Module {
         }
     }
 
-    /// A port, or a part of one: `busy`, `status.busy`, `origins[2]`. See [`Record`] for paths.
+    /// A port, or part of one: `busy`, `status.busy`, `origins[2]`. See [`Record`] for paths.
     ///
     /// # Panics
     /// When there is none; lists the names.
@@ -116,7 +116,8 @@ impl Module {
         self.part(path).1.record()
     }
 
-    /// Drives an input, or a part of one, with a number: `stereo`, `solid.levels`, `origins[0][2]`. See [`Record`] for paths.
+    /// Drives an input, or part of one, with a number: `stereo`, `solid.levels`, `origins[0][2]`. See [`Record`] for
+    /// paths.
     ///
     /// # Panics
     /// When there is no such part, or the number does not fit.
@@ -132,7 +133,7 @@ impl Module {
         self.change(path, |record| record.set_all("", values));
     }
 
-    /// Drives an input, or a part of one, with bits, such as those of a record.
+    /// Drives an input, or part of one, with bits, such as those of a record.
     ///
     /// # Panics
     /// When there is no such part, or the bits do not fit.
@@ -140,7 +141,7 @@ impl Module {
         self.set(self.port(path), bits);
     }
 
-    /// The number on a port or a part of one, as unsigned.
+    /// Reads a port or part of one as an unsigned number.
     ///
     /// # Panics
     /// When there is no such part, or one of more than 64 bits.
@@ -149,7 +150,7 @@ impl Module {
         self.value(self.port(path))
     }
 
-    /// A port or a part of one as a record of its type.
+    /// Reads a port or part of one as a record of its type.
     ///
     /// # Panics
     /// When there is no such part.
@@ -197,7 +198,7 @@ impl Module {
         }
     }
 
-    /// The bits of a port, as of the last [`settle`](Self::settle) or [`clock`](Self::clock).
+    /// Bits of a port after the last [`settle`](Self::settle) or [`clock`](Self::clock).
     #[must_use]
     pub fn get(&self, port: Port) -> Bits {
         let bits = self.instance.bits(port.index);
@@ -207,7 +208,7 @@ impl Module {
         bits.slice(port.low, port.width)
     }
 
-    /// A port of at most 64 bits.
+    /// Value of a port of at most 64 bits.
     ///
     /// # Panics
     /// When it is wider.
@@ -225,12 +226,12 @@ impl Module {
         self.value(port) != 0
     }
 
-    /// Lets the outputs follow the inputs, without a clock edge.
+    /// Evaluates the module for its inputs, without a clock edge.
     pub fn settle(&mut self) {
         self.eval_with_clock(0);
     }
 
-    /// One clock edge, which takes the inputs as they are. Outputs are those after it.
+    /// One clock edge: takes the current inputs and updates the outputs.
     pub fn clock(&mut self) {
         self.eval_with_clock(0);
         self.eval_with_clock(1);
@@ -245,14 +246,14 @@ impl Module {
         self.instance.eval();
     }
 
-    /// Clock edges so far.
+    /// Number of clock edges.
     #[must_use]
     pub fn cycles(&self) -> u64 {
         self.cycles
     }
 }
 
-/// A path's port and the rest of it.
+/// Splits a path into port and rest.
 fn split(path: &str) -> (&str, &str) {
     path.split_at(path.find(['.', '[']).unwrap_or(path.len()))
 }

@@ -1,4 +1,4 @@
-//! The raymarcher's frame constants, rays, ends and pixels on its ports.
+//! The raymarcher's ports: frame constants, rays, ends and pixels.
 
 use crate::{Bits, Layout, Module, Record};
 use glint_core::field::{Solid, Surface};
@@ -9,9 +9,9 @@ use glint_model::raymarch::{
 /// A pixel's place: parity of its band, line in it, column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Place {
-    /// The parity of its band.
+    /// Parity of the band.
     pub odd: bool,
-    /// The line in its band.
+    /// Line in the band.
     pub line: u32,
     /// The column.
     pub column: u32,
@@ -47,7 +47,7 @@ impl Place {
     }
 }
 
-/// A `ray_t` at its beginning.
+/// A `ray_t` before its first step.
 pub fn ray(layout: &Layout, place: Place, ray: &Ray) -> Bits {
     ray_record(layout, place, ray).bits()
 }
@@ -67,7 +67,7 @@ fn ray_record(layout: &Layout, place: Place, ray: &Ray) -> Record {
     record
 }
 
-/// How a ray ends, as `state_t` names it.
+/// Name of a ray's result in `state_t`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Kind {
     /// Far limit reached.
@@ -98,13 +98,13 @@ impl Kind {
     }
 }
 
-/// The end of a ray or cone. A member without a meaning is 0: surface and slope without a hit, t of an undecided ray, a face behind a
-/// sphere, the direction without a sphere.
+/// End of a ray or cone. An unused member is 0: surface and slope without a hit, t of an undecided ray, a face behind
+/// a sphere, the direction without a sphere.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct End {
     /// The result.
     pub state: Kind,
-    /// A sphere was hit.
+    /// Whether the surface is a sphere.
     pub round: bool,
     /// Number of the sphere, or axis and sign of the face.
     pub surface: u64,
@@ -122,12 +122,12 @@ pub struct End {
     pub gap: u64,
     /// Slope of the ray towards the face.
     pub slope: u64,
-    /// Direction, of a hit sphere.
+    /// Direction of a ray that hits a sphere.
     pub direction: [i32; 3],
 }
 
 impl End {
-    /// The end of a ray by the model.
+    /// End of a ray in the model.
     #[must_use]
     pub fn expected(ray: &Ray, outcome: &RayResult) -> Self {
         let (state, surface, t) = match outcome.state {
@@ -156,7 +156,7 @@ impl End {
         }
     }
 
-    /// The end of a cone: only how far it has come counts, and what that took.
+    /// Expected end of a cone: distance and evaluations only.
     pub fn expected_of_cone(cone: &Cone, (t, steps): (u32, u32)) -> Self {
         Self {
             t: t.into(),
@@ -193,7 +193,7 @@ impl End {
             gap: record.get("gap"),
             surface: if_hit("surface"),
             round,
-            // A face is not visible beside a whole sphere.
+            // A face beside a whole sphere has no share.
             face: if round && share != 255 {
                 record.get("face")
             } else {
@@ -241,7 +241,7 @@ fn solid(mut solid: Record, setup: &FieldSetup) -> Record {
     solid
 }
 
-/// Writes the spheres, with their materials.
+/// Writes the tables of spheres and their materials.
 fn set_spheres(module: &mut Module, setup: &FieldSetup, lights: &Lights) {
     let Some(spheres) = setup.spheres() else {
         return;
@@ -274,13 +274,13 @@ pub fn set_lights(module: &mut Module, setup: &FieldSetup, lights: &Lights) {
     set_spheres(module, setup, lights);
 }
 
-/// Sets a port that has three numbers for each eye, the left one first.
+/// Drives a port with three numbers per eye, the left eye first.
 fn drive_eyes(module: &mut Module, name: &str, [left, right]: [[impl Into<i128>; 3]; 2]) {
     module.drive_all(&format!("{name}[0]"), left);
     module.drive_all(&format!("{name}[1]"), right);
 }
 
-/// Sets a frame's constants for a lane.
+/// Drives a frame's constants for a lane.
 pub fn set_lane(module: &mut Module, setup: &FieldSetup) {
     let tuning = &setup.tuning;
     let record = module
@@ -297,7 +297,7 @@ pub fn set_lane(module: &mut Module, setup: &FieldSetup) {
     set_spheres(module, setup, &Palette::default().lights);
 }
 
-/// Sets a frame's constants for the generator, with bands of `band_lines` lines.
+/// Drives a frame's constants for the generator, with bands of `band_lines` lines.
 pub fn set_generator(module: &mut Module, setup: &FieldSetup, band_lines: u32) {
     for (name, value) in [
         ("last_column", setup.width - 1),
@@ -309,7 +309,7 @@ pub fn set_generator(module: &mut Module, setup: &FieldSetup, band_lines: u32) {
     set_rays(module, setup);
 }
 
-/// Sets the constants that rays start from.
+/// Drives the constants of the rays' starts.
 pub fn set_rays(module: &mut Module, setup: &FieldSetup) {
     let eyes = setup.eyes;
     module.drive("stereo", setup.stereo.is_some());
@@ -321,7 +321,7 @@ pub fn set_rays(module: &mut Module, setup: &FieldSetup) {
     drive_eyes(module, "origins", eyes.map(|eye| eye.origin));
 }
 
-/// Sets the size of a block of pixels in D.
+/// Drives the step of D per block of pixels.
 pub fn set_blocks(module: &mut Module, setup: &FieldSetup, offset: &str, spread: &str) {
     let cones = setup.cones.map(|cones| (cones.offset, cones.spread));
     let (middle, widest) = cones.unwrap_or_default();
@@ -352,7 +352,7 @@ fn colour([r, g, b]: [u8; 3]) -> u64 {
     u64::from(b) << 16 | u64::from(g) << 8 | u64::from(r)
 }
 
-/// Sets a frame's constants for painting, and fills its tables.
+/// Drives a frame's constants for painting, and fills its tables.
 pub fn set_paint(module: &mut Module, setup: &FieldSetup, palette: &Palette) {
     let mut colours = module.record("palette");
     colours.set("zenith", colour(palette.zenith));
@@ -376,7 +376,7 @@ pub fn set_paint(module: &mut Module, setup: &FieldSetup, palette: &Palette) {
     module.set(write, 0);
 }
 
-/// A pixel on its way to the band buffer.
+/// A pixel for the band buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pixel {
     /// The eye.
@@ -395,7 +395,7 @@ pub struct Pixel {
     pub colour: u64,
 }
 
-/// What painting makes of an end.
+/// Expected pixel of an end.
 pub fn pixel(
     setup: &FieldSetup,
     palette: &Palette,

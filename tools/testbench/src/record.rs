@@ -6,7 +6,7 @@ use crate::Bits;
 use crate::bits::holds;
 use crate::layout::{Layout, LayoutError, Part};
 
-/// A value of a packed type, whose members have names: `place.line`, `half[2]`, `[1][0]`, and `""` for the whole.
+/// A value of a packed type with named members. Paths are `place.line`, `half[2]`, `[1][0]`, and `""` for the whole.
 ///
 /// Every method that takes a path panics with a [`LayoutError`] when the type has no such part, and lists its parts.
 #[derive(Clone)]
@@ -54,7 +54,7 @@ impl Record {
         self.bits
     }
 
-    /// With a number in a part: two's complement, or unsigned.
+    /// Returns the record with a part set to a number, in two's complement or unsigned.
     ///
     /// # Panics
     /// When there is no such part, or the number does not fit.
@@ -64,7 +64,7 @@ impl Record {
         self
     }
 
-    /// With the numbers of an array, the lowest index first.
+    /// Returns the record with an array set to numbers, the lowest index first.
     ///
     /// # Panics
     /// When there is no such array, or one of another length, or a number does not fit.
@@ -74,7 +74,7 @@ impl Record {
         self
     }
 
-    /// Sets a part to a number: two's complement, or unsigned.
+    /// Sets a part to a number, in two's complement or unsigned.
     ///
     /// # Panics
     /// When there is no such part, or the number does not fit.
@@ -111,7 +111,7 @@ impl Record {
         result.unwrap_or_else(|error| panic!("{error}"));
     }
 
-    /// The number in a part of at most 64 bits, as unsigned.
+    /// The part as an unsigned number of at most 64 bits.
     ///
     /// # Panics
     /// When there is no such part, or a wider one.
@@ -121,7 +121,7 @@ impl Record {
         self.bits.field(part.low, part.layout.width())
     }
 
-    /// The number in a part of at most 64 bits, as two's complement.
+    /// The part as a two's complement number of at most 64 bits.
     ///
     /// # Panics
     /// When there is no such part, or a wider one.
@@ -142,7 +142,7 @@ impl Record {
         self.bits.field(part.low, 1) != 0
     }
 
-    /// The name of an enumeration's value, or `None` for a number that has none.
+    /// Name of an enumeration's value; `None` for a number without a name.
     ///
     /// # Panics
     /// When there is no such part, or it is no enumeration.
@@ -169,7 +169,7 @@ impl Record {
         }
     }
 
-    /// As [`set`](Self::set).
+    /// Fallible [`set`](Self::set).
     ///
     /// # Errors
     /// Where that panics.
@@ -187,7 +187,7 @@ impl Record {
         Ok(())
     }
 
-    /// As [`set_all`](Self::set_all).
+    /// Fallible [`set_all`](Self::set_all).
     ///
     /// # Errors
     /// Where that panics.
@@ -216,7 +216,7 @@ impl Record {
         Ok(())
     }
 
-    /// As [`set_name`](Self::set_name).
+    /// Fallible [`set_name`](Self::set_name).
     ///
     /// # Errors
     /// Where that panics.
@@ -233,7 +233,7 @@ impl Record {
         self.try_set(path, value.into())
     }
 
-    /// As [`set_bits`](Self::set_bits).
+    /// Fallible [`set_bits`](Self::set_bits).
     ///
     /// # Errors
     /// Where that panics.
@@ -257,7 +257,7 @@ impl Record {
     }
 }
 
-/// Whether a part holds a number. What is not declared as signed holds signed and unsigned ones.
+/// Whether a part holds a number. A part not declared signed accepts signed and unsigned numbers.
 fn fits(value: i128, width: usize, signed: bool) -> bool {
     holds(width, value) && !(signed && value >= 1 << (width - 1).min(126))
 }

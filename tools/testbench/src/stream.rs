@@ -9,17 +9,17 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::{Bits, Module, Port};
 
-/// When an end of a stream does not take part: a share of the cycles, in runs of random length.
+/// Random stalls of a stream's end: a share of the cycles, in runs of random length.
 pub struct Stalls {
     random: Pcg64Mcg,
     share: f64,
-    /// Cycles until it is decided anew.
+    /// Cycles until the next decision.
     left: u32,
     stalled: bool,
 }
 
 impl Stalls {
-    /// The longest run without a new decision.
+    /// Longest run without a new decision.
     const RUN: u32 = 8;
 
     /// Stalls in a `share` of the cycles: 0 never, 1 always.
@@ -33,7 +33,7 @@ impl Stalls {
         }
     }
 
-    /// Whether the next cycle is stalled.
+    /// Whether the next cycle stalls.
     pub fn next_stalled(&mut self) -> bool {
         if self.left == 0 {
             self.left = self.random.random_range(1..=Self::RUN);
@@ -68,12 +68,12 @@ impl Ports {
     }
 }
 
-/// Gives a module items, one `Bits` for each port of the payload.
+/// Sends items to a module, one `Bits` for each port of the payload.
 pub struct Source {
     ports: Ports,
     items: VecDeque<Vec<Bits>>,
     stalls: Stalls,
-    /// An item that has been shown stays until it is taken.
+    /// Whether an item is shown; it then stays until it is taken.
     shown: bool,
 }
 
@@ -89,19 +89,19 @@ impl Source {
         }
     }
 
-    /// Adds an item to be given.
+    /// Queues an item.
     pub fn push(&mut self, item: Vec<Bits>) {
         assert_eq!(item.len(), self.ports.payload.len(), "{}", self.ports.name);
         self.items.push_back(item);
     }
 
-    /// Drops what has not been taken, even the item that is shown: its giver has been reset.
+    /// Drops all items not taken, also the shown one, for a reset of the sender.
     pub fn clear(&mut self) {
         self.items.clear();
         self.shown = false;
     }
 
-    /// Items that have not been taken.
+    /// Number of items not taken.
     #[must_use]
     pub fn len(&self) -> usize {
         self.items.len()
@@ -113,7 +113,7 @@ impl Source {
         self.items.is_empty()
     }
 
-    /// Shows the next item, or zeros while there is none.
+    /// Drives the next item, or zeros without one.
     pub fn drive(&mut self, module: &mut Module) {
         let stalled = self.stalls.next_stalled();
         self.shown |= !stalled && !self.items.is_empty();
@@ -126,7 +126,7 @@ impl Source {
         }
     }
 
-    /// Sees whether the item is taken.
+    /// Records whether the item is taken.
     pub fn sample(&mut self, module: &Module) {
         if self.ports.moves(module) {
             self.items.pop_front();
@@ -140,7 +140,7 @@ pub struct Sink {
     ports: Ports,
     items: Vec<Vec<Bits>>,
     stalls: Stalls,
-    /// What was valid and not taken: it must be there again.
+    /// Payload that was valid and not taken, and must be unchanged.
     waiting: Option<Vec<Bits>>,
 }
 
@@ -156,29 +156,29 @@ impl Sink {
         }
     }
 
-    /// What was taken so far.
+    /// Items taken so far.
     #[must_use]
     pub fn items(&self) -> &[Vec<Bits>] {
         &self.items
     }
 
-    /// Takes out what was taken so far.
+    /// Removes and returns the items taken so far.
     pub fn take(&mut self) -> Vec<Vec<Bits>> {
         std::mem::take(&mut self.items)
     }
 
-    /// Stalls in another way from now on, and returns how it did.
+    /// Replaces the stalls, and returns the previous ones.
     pub fn set_stalls(&mut self, stalls: Stalls) -> Stalls {
         std::mem::replace(&mut self.stalls, stalls)
     }
 
-    /// Is ready, or stalls.
+    /// Drives ready, or stalls.
     pub fn drive(&mut self, module: &mut Module) {
         let ready = !self.stalls.next_stalled();
         module.set(self.ports.ready, u64::from(ready));
     }
 
-    /// Takes an item that is there.
+    /// Takes a valid item.
     ///
     /// # Panics
     /// When a payload has changed, or has gone, that was not taken.

@@ -1,4 +1,4 @@
-//! The parts that streams are made of.
+//! The buffers of `rtl/common`: skid buffer and FIFO.
 
 use glint_testbench::{Bits, Module, Sink, Source, Stalls};
 
@@ -12,7 +12,7 @@ fn passes_all_in_order(name: &str, source_stalls: f64, sink_stalls: f64) -> u64 
         source.push(vec![Bits::from(number * 7 % 256)]);
     }
     while sink.items().len() < COUNT as usize {
-        assert!(module.cycles() < 100 * COUNT, "{name} stands still");
+        assert!(module.cycles() < 100 * COUNT, "{name} stalls");
         source.drive(&mut module);
         sink.drive(&mut module);
         module.settle();
@@ -50,7 +50,7 @@ fn the_fifo_keeps_order_and_passes_an_item_a_clock() {
     }
 }
 
-/// Items that a buffer takes while nobody takes any from it.
+/// Items that a buffer accepts while its output is blocked.
 fn capacity(name: &str) -> usize {
     const MORE_THAN_FITS: usize = 50;
     let mut module = Module::new(name, 1);

@@ -1,11 +1,11 @@
-//! The I2C engine with a virtual MPU-6050 on its wires, or with wires that the test moves.
+//! The I2C engine with a virtual MPU-6050 on its wires, or with wires that the test drives.
 
 use glint_testbench::{Bits, Module, Port};
 use virtual_mpu6050::{Chip, Fault, Imperfections, Source, State, Wires};
 
-/// Of the gateware for a clock of 81.25 MHz.
+/// Clocks of a phase at 81.25 MHz, as in the SoC.
 const PHASE: u64 = 68;
-/// For how long this build lets SCL be held, in clocks.
+/// Longest clock stretching of this build, in clocks.
 const PATIENCE: u64 = 1 << 15;
 
 const START: u32 = 0;
@@ -26,12 +26,12 @@ enum Failure {
     Late,
 }
 
-/// A command in the queue's form.
+/// A command, packed as in the queue.
 fn command(operation: u32, argument: u32) -> u32 {
     operation << 8 | argument
 }
 
-/// From a start to a stop: `sent` is written; then `received` bytes are read.
+/// A transaction: start, write of `sent`, read of `received` bytes, stop.
 fn transfer(sent: &[u32], received: u32) -> Vec<u32> {
     let mut commands = vec![command(START, 0), command(WRITE, WRITES)];
     commands.extend(sent.iter().map(|&byte| command(WRITE, byte)));
@@ -50,7 +50,7 @@ struct Bench {
     module: Module,
     device: Wires,
     ports: Ports,
-    /// Whether answers are taken.
+    /// Takes the received bytes.
     listens: bool,
     answers: Vec<u8>,
     ended: u32,
@@ -103,7 +103,7 @@ impl Bench {
         bench
     }
 
-    /// The wires have to be high before the engine looks at them.
+    /// Lets the wires rise before the engine samples them.
     fn reset(&mut self) {
         self.module.set(self.ports.rst, 1);
         for _ in 0..10 {
@@ -112,7 +112,7 @@ impl Bench {
         self.module.set(self.ports.rst, 0);
     }
 
-    /// A clock, with the wires as both sides make them.
+    /// Advances one clock. The wires are the AND of both sides.
     fn clock(&mut self) {
         let [scl_in, scl_out, sda_in, sda_out] = self.ports.wires;
         let now = self.module.cycles() * 160 / 13;
@@ -131,7 +131,7 @@ impl Bench {
         self.ended += u32::from(self.module.is_high(self.ports.ended));
     }
 
-    /// Puts commands into the queue, as it has room.
+    /// Queues commands as the queue has room.
     fn push(&mut self, commands: &[u32]) {
         let [valid, ready, data] = self.ports.command;
         for &command in commands {
@@ -146,7 +146,7 @@ impl Bench {
         }
     }
 
-    /// Clocks until it is no longer busy; how many.
+    /// Runs until the engine is idle; returns the number of clocks.
     fn finish(&mut self) -> u64 {
         const LONG: u64 = 4_000_000;
         let start = self.module.cycles();
@@ -172,16 +172,16 @@ impl Bench {
         all.into_iter().find(|&failure| failure as u64 == error)
     }
 
-    /// Runs a transfer to its end and returns how it has ended.
+    /// Runs a transfer to its end and returns its failure.
     fn run(&mut self, commands: &[u32]) -> Option<Failure> {
         let ended = self.ended;
         self.push(commands);
         self.finish();
-        assert_eq!(self.ended, ended + 1, "an end is told once");
+        assert_eq!(self.ended, ended + 1, "one event for each end");
         self.failure()
     }
 
-    /// Begins rounds of `commands` every `period` clocks, and tells of so many at once.
+    /// Starts rounds of `commands` every `period` clocks, with an event per `batch` rounds.
     fn repeat(&mut self, commands: &[u32], period: u64, batch: u64) {
         let [repeats, clocks, rounds] = self.ports.rounds;
         self.module.set(clocks, period - 1);
@@ -190,7 +190,7 @@ impl Bench {
         self.push(commands);
     }
 
-    /// Clocks so often; when SDA was pulled low under a high SCL.
+    /// Runs for `clocks` and returns the times of start conditions.
     fn starts(&mut self, clocks: u64) -> Vec<u64> {
         let [_, scl_out, _, sda_out] = self.ports.wires;
         let mut starts = Vec::new();
@@ -245,7 +245,7 @@ fn rounds_begin_at_their_times() {
     let begin = bench.module.cycles();
     bench.repeat(&transfer(&[0x3a], 15), PERIOD, 3);
     let starts = bench.starts(10 * PERIOD);
-    // The second start of each round is under a low SCL at first.
+    // The repeated start of each round comes while SCL is low.
     let first: Vec<u64> = starts.iter().map(|at| at - begin).step_by(2).collect();
     assert_eq!(first.len(), 9, "{starts:?}");
     assert!(
@@ -262,7 +262,7 @@ fn rounds_begin_at_their_times() {
     assert_eq!(bench.log().matches(round).count(), 9, "{}", bench.log());
     let violations = &bench.device.violations;
     assert!(violations.is_empty(), "{violations:#?}");
-    // Nothing is left of them after a reset.
+    // A reset clears the queue of the rounds.
     bench.module.set(bench.ports.rounds[0], 0);
     bench.reset();
     bench.answers.clear();
@@ -272,12 +272,12 @@ fn rounds_begin_at_their_times() {
 
 #[test]
 fn a_round_that_is_not_over_in_time_is_an_error() {
-    // It takes 34,883 clocks.
+    // The transfer takes 34,883 clocks, more than the period.
     let mut bench = Bench::new(None);
     bench.repeat(&transfer(&[0x3a], 15), 34_000, 1);
     bench.starts(3 * 34_000);
     assert_eq!((bench.failure(), bench.ended), (Some(Failure::Late), 1));
-    // Nobody takes the answers: of nine rounds of 15 bytes 129 have room.
+    // No received byte is taken: of nine rounds of 15 bytes the queue has room for 129 bytes.
     let mut bench = Bench::new(None);
     bench.listens = false;
     bench.repeat(&transfer(&[0x3a], 15), 39_000, 1);
@@ -315,7 +315,7 @@ fn reads_in_a_row_are_one_and_wait_for_room() {
         stop,
     ]);
     bench.push(&commands);
-    // More than 129 bytes have no room: SCL waits low for as long as it takes.
+    // The queue holds 129 bytes. SCL stays low until there is room, without a time-out.
     for _ in 0..3 * PATIENCE {
         bench.clock();
     }
@@ -355,7 +355,7 @@ fn what_is_not_acknowledged_ends_the_transaction() {
     ];
     assert_eq!(bench.run(&other), Some(Failure::Address));
     assert_eq!(bench.log(), "S d2- P");
-    // Until it is cleared nothing is done.
+    // No command runs before the error is cleared.
     bench.push(&transfer(&[0x19], 0));
     for _ in 0..20 * PHASE {
         bench.clock();
@@ -385,7 +385,7 @@ fn a_clock_may_be_stretched_for_a_while() {
         (PATIENCE..PATIENCE + 50 * PHASE).contains(&took),
         "{took} clocks"
     );
-    // SCL low from the beginning is the same.
+    // The error is the same with SCL low from the beginning.
     bench.reset();
     assert_eq!(bench.run(&transfer(&[0x19], 0)), Some(Failure::Clock));
     bench.device.set_fault(None);
@@ -408,7 +408,7 @@ fn a_stuck_device_is_clocked_free() {
 
 #[test]
 fn a_device_left_in_a_byte_is_freed_wherever_it_is() {
-    // A master that forgets what it does, at every point of a read of zeros and of a write.
+    // Resets the master at every clock of a read of zeros and of a write.
     for commands in [transfer(&[0x00], 3), transfer(&[0x19, 0x00], 0)] {
         let mut length = 0;
         for clocks in (100..).step_by(97) {
@@ -431,7 +431,7 @@ fn a_device_left_in_a_byte_is_freed_wherever_it_is() {
 }
 
 #[test]
-fn somebody_else_on_sda_is_noticed() {
+fn another_device_on_sda_is_detected() {
     let mut bench = Bench::new(None);
     bench.push(&transfer(&[0x75], 0));
     while bench.log() != "S" {

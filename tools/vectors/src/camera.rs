@@ -6,7 +6,7 @@ use glint_core::fixed::{Q2_23, Q32_32, U4_28};
 use crate::math::{cross, dot, normalised};
 use crate::random::Random;
 
-/// A camera before it is rounded.
+/// A camera before rounding.
 #[derive(Clone, Copy, Debug)]
 pub struct Camera {
     /// Position.
@@ -24,7 +24,7 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// Looks from `eye` so that the direction `towards` is at (a, b) on the image plane at distance 1.
+    /// Camera at `eye`, with the direction `towards` at (a, b) on the image plane at distance 1.
     pub fn aimed(
         random: &mut Random,
         eye: [f64; 3],
@@ -39,7 +39,7 @@ impl Camera {
         };
         let world = frame(normalised(towards), random.direction());
         let camera = frame(normalised([a, b, 1.0]), [0.6, -0.64, 0.48]);
-        // The rotation that takes one frame to the other, applied to the camera's axes.
+        // Rotates the camera's axes by the rotation from one frame to the other.
         let [u, v, n] = [0, 1, 2]
             .map(|axis| [0, 1, 2].map(|i| (0..3).map(|k| world[k][i] * camera[k][axis]).sum()));
         Self {
@@ -52,7 +52,7 @@ impl Camera {
         }
     }
 
-    /// Somewhere within 1 of the origin, looking anywhere.
+    /// Random camera within 1 of the origin, with any direction.
     pub fn inside(random: &mut Random) -> Self {
         let eye = [0; 3].map(|_| random.real(-1.0, 1.0));
         let (half_width, near) = (random.logarithmic(0.05, 4.0), random.logarithmic(0.01, 0.5));
@@ -60,7 +60,7 @@ impl Camera {
         Self::aimed(random, eye, towards, [0.0; 2], half_width, near)
     }
 
-    /// Looks from `eye` at `target`, with v as near to −z as can be.
+    /// Camera at `eye` that looks at `target`, with v as near to −z as possible.
     #[must_use]
     pub fn looking(eye: [f64; 3], target: [f64; 3], half_width: f64, near: f64) -> Self {
         let n = normalised([0, 1, 2].map(|i| target[i] - eye[i]));
@@ -75,7 +75,7 @@ impl Camera {
         }
     }
 
-    /// The camera in the formats of the engine.
+    /// The camera in the engine's formats.
     ///
     /// # Panics
     /// When it is not one that the engine takes.

@@ -1,4 +1,4 @@
-//! Meshes of single triangles, few or many, as they lie in memory.
+//! Meshes of single triangles, in the format in memory.
 
 use glint_core::camera::View;
 use rand::RngExt;
@@ -6,13 +6,13 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::camera::Camera;
 
-/// A unit in the mesh's coordinates.
+/// One unit in mesh coordinates.
 pub const ONE: i32 = 1 << 14;
 
 /// A triangle: its corners in 2^-14, its colour.
 pub type Triangle = ([[i16; 3]; 3], u16);
 
-/// The mesh of these triangles, each with vertices of its own, in chunks of at most `most` vertices.
+/// Mesh of these triangles, each with its own vertices, in chunks of at most `most` vertices.
 #[must_use]
 pub fn mesh(triangles: &[Triangle], most: usize) -> Vec<u8> {
     let mut body = Vec::new();
@@ -23,14 +23,14 @@ pub fn mesh(triangles: &[Triangle], most: usize) -> Vec<u8> {
     };
     let mut vertices = 0;
     for chunk in &chunks {
-        // A chunk has a vertex, even an unused one.
+        // A chunk has at least one vertex, even an unused one.
         let count = (3 * chunk.len()).max(1);
         vertices += count;
         for word in [count as u32, chunk.len() as u32, 0, 0] {
             body.extend(word.to_le_bytes());
         }
         let corners = chunk.iter().flat_map(|(corners, _)| *corners);
-        // Any colours and normals, of any length: they count only when shading is smooth.
+        // Any colours and normals, of any length: they matter only in smooth shading.
         let mut random = Pcg64Mcg::new(count as u128);
         for corner in corners.chain(std::iter::repeat([0; 3])).take(count) {
             corner.iter().for_each(|c| body.extend(c.to_le_bytes()));
@@ -46,7 +46,7 @@ pub fn mesh(triangles: &[Triangle], most: usize) -> Vec<u8> {
                 body.extend((3 * number + index).to_le_bytes());
             }
             body.extend(colour.to_le_bytes());
-            // Any normal does: it only dims the colour.
+            // Any normal works: it only dims the colour.
             let normal = corners[0];
             normal.iter().for_each(|c| body.extend(c.to_le_bytes()));
             body.extend([0; 2]);

@@ -1,4 +1,4 @@
-//! Models made of formulas.
+//! Models from formulas.
 
 use glint_core::colour::Rgb565;
 use glint_core::mesh::{IndexedTriangle, Vertex, encode};
@@ -29,7 +29,7 @@ impl Model {
         }
     }
 
-    /// Triangles all over a cube: cameras inside it see them cross the near plane and the guard band.
+    /// Random triangles in a cube: seen from inside, they cross the near plane and the guard band.
     pub fn random(random: &mut Random, triangles: usize, reach: i64) -> Self {
         let mut corner = || [0; 3].map(|_| random.integer(-reach, reach - 1) as i16);
         Self::soup(
@@ -99,7 +99,7 @@ impl Model {
         }
     }
 
-    /// The same triangles, each starting with another vertex.
+    /// The same triangles with rotated vertices.
     #[must_use]
     pub fn rotated(&self, turns: usize) -> Self {
         let mut model = self.clone();
@@ -110,7 +110,7 @@ impl Model {
         model
     }
 
-    /// The same triangles, seen from behind.
+    /// The same triangles with reversed orientation.
     #[must_use]
     pub fn flipped(&self) -> Self {
         let mut model = self.clone();
@@ -118,7 +118,7 @@ impl Model {
         model
     }
 
-    /// The bytes of the mesh; each triangle has a colour of its own and its geometric normal.
+    /// The mesh's bytes; each triangle has its own colour and its geometric normal.
     ///
     /// # Panics
     /// With more vertices than a chunk holds.

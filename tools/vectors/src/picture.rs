@@ -1,4 +1,4 @@
-//! Pictures of the model.
+//! Pictures drawn by the model.
 
 use glint_core::camera::View;
 use glint_core::mesh::Mesh;
@@ -17,9 +17,9 @@ pub struct Picture {
     pub colour: Vec<u16>,
     /// Depth codes, line by line.
     pub depth: Vec<u32>,
-    /// Counts of the renderer.
+    /// Statistics of the renderer.
     pub stats: Stats,
-    /// Triangles that were set up.
+    /// Number of triangles that were set up.
     pub drawn: Vec<DrawnTriangle>,
 }
 
@@ -41,7 +41,7 @@ impl Picture {
         }
     }
 
-    /// The picture as the renderer takes it.
+    /// Borrows the picture for the renderer.
     pub fn target(&mut self) -> FrameBuffer<'_> {
         FrameBuffer {
             width: self.width,
@@ -51,7 +51,7 @@ impl Picture {
         }
     }
 
-    /// A rendered mesh.
+    /// Renders a mesh.
     ///
     /// # Panics
     /// When the bytes are no mesh, or the counts of the renderer disagree.
@@ -61,7 +61,7 @@ impl Picture {
         let mut scratch =
             vec![Projected::Behind; mesh.chunks().map(|c| c.vertex_count()).max().unwrap()];
         let mut picture = Self::blank(size);
-        // What is not drawn must be cleared.
+        // Pixels without a triangle are clear.
         picture.colour.fill(0xDEAD);
         picture.depth.fill(0xDEAD);
         let mut drawn = Vec::new();
@@ -96,13 +96,13 @@ impl Picture {
         Self::of_bytes(&model.encoded(), view, size, cull)
     }
 
-    /// Pixels that were drawn.
+    /// Whether each pixel is drawn, line by line.
     #[must_use]
     pub fn coverage(&self) -> Vec<bool> {
         self.depth.iter().map(|&code| code != 0).collect()
     }
 
-    /// The count of pixels that were drawn.
+    /// Number of drawn pixels.
     #[must_use]
     pub fn covered(&self) -> usize {
         self.depth.iter().filter(|&&code| code != 0).count()

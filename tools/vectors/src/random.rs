@@ -1,4 +1,4 @@
-//! Random numbers that are the same on every machine.
+//! Random numbers, equal on every machine.
 
 use crate::math::{dot, normalised};
 
@@ -21,22 +21,22 @@ impl Random {
         self.bits() & 1 == 0
     }
 
-    /// A number in `low`…`high`, both included.
+    /// A number in `low`…`high`, inclusive.
     pub fn integer(&mut self, low: i64, high: i64) -> i64 {
         low + (self.bits() % (high - low + 1) as u64) as i64
     }
 
-    /// A number in `low`…`high` without `high`.
+    /// A number in `low`…`high`, exclusive of `high`.
     pub fn real(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * (self.bits() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// A number in `low`…`high` without `high`, evenly in the logarithm.
+    /// A number in `low`…`high`, exclusive of `high`, with a uniform logarithm.
     pub fn logarithmic(&mut self, low: f64, high: f64) -> f64 {
         self.real(low.ln(), high.ln()).exp()
     }
 
-    /// A unit vector, evenly on the sphere.
+    /// A unit vector, uniform on the sphere.
     pub fn direction(&mut self) -> [f64; 3] {
         loop {
             let v = [0; 3].map(|_| self.real(-1.0, 1.0));

@@ -1,4 +1,4 @@
-//! Scenes that both the engine and the whole SoC draw.
+//! Scenes for the tests of the engine and of the whole SoC.
 
 use glint_core::camera::View;
 use glint_core::fixed::{Q32_32, Turns};
@@ -10,7 +10,7 @@ use crate::meshes::{self, Triangle, ahead, at};
 /// A mesh, a camera, and whether back faces are culled.
 pub type Scene = (&'static str, Vec<u8>, View, bool);
 
-/// From near the middle of a model, with a wide angle.
+/// A wide-angle view from near the middle of a model.
 #[must_use]
 pub fn inside() -> View {
     let camera = Camera {
@@ -24,7 +24,7 @@ pub fn inside() -> View {
     camera.rounded()
 }
 
-/// Front faces, seen from the front, at the distance y + 2: around a centre, from angle to angle.
+/// Front faces around a centre, between two angles, seen from the front at the distance y + 2.
 fn fan(y: f64, radius: f64, parts: usize) -> Vec<Triangle> {
     let rim = |part: usize| {
         let (sin, cos) = (std::f64::consts::TAU * part as f64 / parts as f64).sin_cos();
@@ -40,7 +40,7 @@ fn fan(y: f64, radius: f64, parts: usize) -> Vec<Triangle> {
         .collect()
 }
 
-/// All scenes. `generated` makes the mesh of a model by its name, such as `icosphere:6`.
+/// All scenes. `generated` makes the mesh of a named model, such as `icosphere:6`.
 #[must_use]
 pub fn scenes(generated: impl Fn(&str) -> Vec<u8>) -> Vec<Scene> {
     let mut random = Pcg64Mcg::new(1);
@@ -85,7 +85,7 @@ pub fn scenes(generated: impl Fn(&str) -> Vec<u8>) -> Vec<Scene> {
             0x07e0,
         ),
     ];
-    // Pixel centres at 320x180 and corners of pixels at the other sizes, with 128 pixels a unit.
+    // Pixel centres at 320x180 and pixel corners at the other sizes, with 128 pixels a unit.
     let centre = |x: i32, z: i32| {
         at(
             f64::from(2 * x + 1) / 256.0,

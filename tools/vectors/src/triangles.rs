@@ -11,7 +11,7 @@ pub const SIZE: (u32, u32) = SIZES[0];
 /// A depth.
 pub const FLAT: u32 = 1000 * 64;
 
-/// A vertex at a place in 1/256 pixels, at the depth [`FLAT`].
+/// A vertex at a place in 1/256 pixel, at the depth [`FLAT`].
 #[must_use]
 pub fn at([x, y]: [i64; 2]) -> ScreenVertex {
     ScreenVertex {
@@ -21,7 +21,7 @@ pub fn at([x, y]: [i64; 2]) -> ScreenVertex {
     }
 }
 
-/// The setup of a triangle, where it has an area and touches the picture.
+/// Sets up a triangle; `None` without an area or off the picture.
 #[must_use]
 pub fn set_up(
     vertices: [ScreenVertex; 3],

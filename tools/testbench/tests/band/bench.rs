@@ -1,4 +1,4 @@
-//! The band buffer between a source of groups and a memory.
+//! Bench of the band buffer: a source of groups and a memory around the module.
 
 use glint_testbench::{Bits, Counters, Module, Port, Sink, Source, Stalls};
 use std::collections::VecDeque;
@@ -18,20 +18,20 @@ pub struct Bench {
     pub restart: Port,
     pub clearing: Port,
     pub flushed: Port,
-    /// `band_valid` in the clock before: groups are not taken any more.
+    /// `band_valid` in the previous clock: no group is taken.
     pub closed: bool,
     pub drawn: Pixels,
     pub left: Left,
-    /// The band that went to memory last.
+    /// Band whose flush came last.
     pub flushed_last: Option<Band>,
     pub expected: Vec<Word>,
-    /// Rows of a line.
+    /// Rows per line.
     pub stride: usize,
     pub counters: Counters,
 }
 
 impl Bench {
-    /// A band buffer after reset, still clearing itself.
+    /// A band buffer after reset, still clearing its banks.
     pub fn new(name: &str, seed: u64, group_stalls: f64, memory_stalls: f64) -> Self {
         let mut module = Module::new(name, seed as u32);
         let restart = module.port("restart");
@@ -86,12 +86,12 @@ impl Bench {
         }
     }
 
-    /// As `new`, ready to draw.
+    /// As [`new`](Self::new), after the clearing.
     pub fn ready(seed: u64, group_stalls: f64, memory_stalls: f64) -> Self {
         Self::of("band_buffer", seed, group_stalls, memory_stalls)
     }
 
-    /// As `ready`, one of the builds.
+    /// As [`ready`](Self::ready), for the module variant `name`.
     pub fn of(name: &str, seed: u64, group_stalls: f64, memory_stalls: f64) -> Self {
         let mut bench = Self::new(name, seed, group_stalls, memory_stalls);
         bench.run_until(ROWS_OF_A_BANK + 10, |bench| !bench.is(bench.clearing));
@@ -119,7 +119,7 @@ impl Bench {
         self.groups.push_back(group);
     }
 
-    /// Ends a band, which is flushed whole where anything is unknown.
+    /// Ends a band. The flush is whole where the content of the frame buffer is unknown.
     pub fn push_band(&mut self, mut band: Band) {
         assert_eq!(band.stride, self.stride);
         let waiting = self.bands.iter().filter(|other| other.slot == band.slot);
@@ -177,7 +177,7 @@ impl Bench {
         module.clock();
     }
 
-    /// Clocks until something is so, and returns how often.
+    /// Clocks the module until `done`; returns the number of clocks.
     pub fn run_until(&mut self, limit: u64, done: impl Fn(&Self) -> bool) -> u64 {
         for clocks in 0..limit {
             self.module.settle();
@@ -189,7 +189,7 @@ impl Bench {
         panic!("not done after {limit} clocks");
     }
 
-    /// Draws groups and ends their band.
+    /// Draws groups and ends the band.
     pub fn draw(&mut self, groups: impl IntoIterator<Item = Group>, band: Band) {
         for group in groups {
             self.push_group(group);
@@ -199,7 +199,7 @@ impl Bench {
         self.push_band(band);
     }
 
-    /// Waits until everything is in memory and compares it.
+    /// Waits until all words are in memory and compares them with the expected ones.
     pub fn finish(&mut self) {
         self.run_until(200 * 4 * ROWS_OF_A_BANK, |bench| {
             bench.bands.is_empty() && bench.is(bench.flushed)
@@ -218,11 +218,11 @@ impl Bench {
 }
 
 impl Bench {
-    /// Memory stops, the buffer is restarted and gets clear all the same; then memory goes on.
+    /// Restarts the buffer while memory takes no words: it clears its banks all the same. Then memory resumes.
     pub fn restart_with_dead_memory(&mut self) {
         let alive = self.words.set_stalls(Stalls::new(1, 1.0));
 
-        // The renderers are restarted in the same clock.
+        // The restart drops the renderers' groups and bands too.
         self.module.set(self.restart, 1_u64);
         self.clock();
         self.module.set(self.restart, 0_u64);

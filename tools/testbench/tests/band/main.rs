@@ -9,7 +9,7 @@ use rand_pcg::Pcg64Mcg;
 use crate::bench::Bench;
 use crate::pixels::{Band, Group, LANES, PICTURE_LINES};
 
-/// Groups of a few rows and few depths, so that they meet often.
+/// A group among few rows and few depths, so that groups often overlap.
 fn random_group(random: &mut Pcg64Mcg, rows: usize) -> Group {
     Group {
         row: random.random_range(0..rows),
@@ -29,7 +29,7 @@ fn random_group(random: &mut Pcg64Mcg, rows: usize) -> Group {
     }
 }
 
-/// A band somewhere in one of few places of the picture: most were there before.
+/// A band at one of few positions of the picture, so that most bands repeat a position.
 fn random_band(random: &mut Pcg64Mcg, [lines, stride]: [usize; 2]) -> Band {
     Band {
         base: random.random_range(0..1 << 22),
@@ -45,7 +45,7 @@ fn random_band(random: &mut Pcg64Mcg, [lines, stride]: [usize; 2]) -> Band {
     }
 }
 
-/// A group that covers a whole row.
+/// A group that covers its row.
 fn full_group(row: usize, code: u32) -> Group {
     Group {
         row,
@@ -56,7 +56,7 @@ fn full_group(row: usize, code: u32) -> Group {
     }
 }
 
-/// A band of which nothing is known.
+/// A band whose last flush is unknown.
 fn plain_band([lines, stride]: [usize; 2]) -> Band {
     Band {
         base: 0x12_3456,
@@ -79,11 +79,12 @@ fn random_groups_in_many_bands_with_stalls() {
         println!("seed {seed}, stalls {group_stalls} and {memory_stalls}");
         let mut random = Pcg64Mcg::new(u128::from(seed));
         let mut bench = Bench::ready(seed, group_stalls, memory_stalls);
-        // The same in all bands: groups that are taken just before a band ends belong to it, whoever they were meant for.
+        // Streams of the same kind of groups for all bands. A group taken just before the end of a band belongs to
+        // that band.
         let shape @ [lines, stride] = [random.random_range(1..20), random.random_range(1..6)];
         bench.stride = stride;
         for _ in 0..60 {
-            // Often few, so that lines are empty and extents differ.
+            // Often few groups, so that lines are empty and extents differ.
             let most = [4, 20, 200][random.random_range(0..3)];
             let groups: Vec<_> = (0..random.random_range(0..most))
                 .map(|_| random_group(&mut random, lines * stride))
@@ -95,9 +96,9 @@ fn random_groups_in_many_bands_with_stalls() {
     }
 }
 
-/// What two eyes see, pixel by pixel in any order, in turns with bands of groups for both.
+/// Bands with pixels for single eyes, in any order, alternate with bands of groups for both eyes.
 #[test]
-fn what_two_eyes_see_is_composed() {
+fn luminances_of_two_eyes_are_composed() {
     for (seed, stalls) in [(1, 0.0), (2, 0.4)] {
         let mut random = Pcg64Mcg::new(u128::from(seed));
         let mut bench = Bench::of("band_buffer_stereo", seed, stalls, stalls);
@@ -110,7 +111,7 @@ fn what_two_eyes_see_is_composed() {
                 .map(|_| random_group(&mut random, lines * stride))
                 .collect();
             if band.compose != 0 {
-                // Each pixel that is drawn is drawn for both.
+                // Each drawn pixel is drawn for both eyes.
                 groups = groups
                     .into_iter()
                     .flat_map(|group| {
@@ -124,7 +125,7 @@ fn what_two_eyes_see_is_composed() {
                 groups.sort_by_cached_key(|_| order(&mut random));
             }
             bench.draw(groups, band);
-            // Those of the next band are of another kind.
+            // The next band has groups of another kind.
             bench.run_until(100_000, |bench| bench.bands.is_empty());
         }
         bench.finish();
@@ -140,7 +141,7 @@ fn whole_bands_leave_nothing_to_the_next() {
         bench.draw(groups, plain_band(shape));
     }
     bench.stride = 160;
-    // Both banks, without a group.
+    // Flushes both banks without a group.
     for clear in [1, 2, 3] {
         let band = Band {
             clear,
@@ -152,9 +153,9 @@ fn whole_bands_leave_nothing_to_the_next() {
     bench.finish();
 }
 
-/// Extents at all four corners of the largest bands, and of the picture.
+/// Tests extents at all four corners of the largest bands, and of the picture.
 #[test]
-fn only_what_was_drawn_now_or_last_is_flushed() {
+fn only_pixels_drawn_now_or_last_are_flushed() {
     let mut bench = Bench::ready(11, 0.0, 0.1);
     for shape @ [lines, stride] in [[45, 40], [24, 80], [12, 160]] {
         bench.stride = stride;
@@ -170,7 +171,7 @@ fn only_what_was_drawn_now_or_last_is_flushed() {
             bench.draw([], *band);
         }
         let last = lines * stride - 1;
-        // A row in the first line and one in the last; nothing.
+        // Rows in the first and in the last line; no row.
         for rows in [
             [0, last],
             [stride - 1, last + 1 - stride],
@@ -217,7 +218,7 @@ fn one_group_a_clock_where_rows_or_lanes_differ() {
     const COUNT: usize = 1920;
     let mut bench = Bench::ready(7, 0.0, 0.0);
     let rows = (0..COUNT).map(|i| full_group(i, 1));
-    // Neighbouring triangles: the same row, other lanes.
+    // Groups of neighbouring triangles: the same row, other lanes.
     let lanes = (0..COUNT).map(|i| Group {
         mask: 0x0f << (i % 2 * 4),
         ..full_group(i / 2, 2)
@@ -233,7 +234,7 @@ fn one_group_a_clock_where_rows_or_lanes_differ() {
 
 #[test]
 fn a_group_waits_for_the_lanes_it_shares() {
-    // Groups of other rows between two of the same row, and the clocks the second one is held.
+    // Number of groups between two of the same row, and the clocks for which the second group is held.
     for (between, held) in [(0, 3), (1, 2), (2, 1), (3, 0)] {
         let mut bench = Bench::ready(8, 0.0, 0.0);
         let others = (0..between).map(|i| full_group(100 + i, 5));
@@ -264,7 +265,7 @@ fn the_flush_keeps_up_with_memory_and_overlaps_with_drawing() {
         let clocks = bench.module.cycles() - start;
         assert!(clocks <= words + 16, "{clocks} clocks for {words} words");
     }
-    // Six bands of as many groups as words.
+    // Six bands with as many groups as words.
     let start = bench.module.cycles();
     for _ in 0..6 {
         let band = Band {
@@ -283,7 +284,7 @@ fn the_flush_keeps_up_with_memory_and_overlaps_with_drawing() {
     assert!(memory == 0 && flush < 6 * 24, "{memory} and {flush} clocks");
 }
 
-/// No clock is lost between lines, and an empty line takes one.
+/// Flushing loses no clock between lines, and an empty line takes one clock.
 #[test]
 fn a_line_takes_a_clock_for_each_word_and_one_at_least() {
     let mut bench = Bench::ready(12, 0.0, 0.0);
@@ -293,7 +294,7 @@ fn a_line_takes_a_clock_for_each_word_and_one_at_least() {
     };
     bench.draw([], band);
     bench.finish();
-    // Words in every so many lines, and the clocks they take when the lines before were the same.
+    // Words in every n-th line, n, and the clocks of a flush after an equal frame.
     for (words, every, clocks) in [(1, 1, 45), (2, 1, 90), (5, 3, 75), (1, 3, 45), (1, 45, 45)] {
         for same in [false, true] {
             let rows = (0..45)
@@ -329,13 +330,12 @@ fn a_restart_ends_whatever_goes_on() {
         println!("seed {seed}");
         let mut random = Pcg64Mcg::new(u128::from(seed));
         let mut bench = Bench::ready(seed, 0.2, 0.3);
-        // One band on its way to memory, one being drawn.
-        // Few rows: what is drawn last is what is cleared first.
+        // One band is flushed while the next is drawn. With few rows, the rows drawn last are cleared first.
         let lines = random.random_range(if seed % 2 == 0 { 1..4 } else { 10..40 });
         let stride = random.random_range(1..10);
         let (shape, rows) = ([lines, stride], lines * stride);
         bench.stride = stride;
-        // What is known of these lines stays so.
+        // The extents of these lines stay known.
         bench.draw(
             (0..rows / 2).map(|row| full_group(row, 9)),
             Band {
@@ -354,7 +354,7 @@ fn a_restart_ends_whatever_goes_on() {
         for _ in 0..random.random_range(0..400) {
             bench.clock();
         }
-        // Sometimes with a band's end waiting.
+        // In half of the rounds the end of a band is pending.
         if random.random() {
             bench.push_band(random_band(&mut random, shape));
             bench.clock();

@@ -1,11 +1,11 @@
-//! Groups of pixels, bands, and the picture that they add up to.
+//! Groups of pixels, bands, and their picture.
 
 use glint_model::raymarch::{Tint, compose};
 use std::ops::Range;
 
 pub const LANES: usize = 8;
 pub const ROWS_OF_A_BANK: u64 = 2048;
-/// Words that may be on their way: places of the FIFO, and the one at its end.
+/// Most words under way: places of the FIFO.
 pub const WORDS: usize = 16;
 pub const PICTURE_LINES: usize = 720;
 
@@ -13,7 +13,7 @@ pub const PICTURE_LINES: usize = 720;
 pub struct Group {
     pub row: usize,
     pub mask: u8,
-    /// Of the colours: 3 both, 1 and 2 what the left and the right eye see.
+    /// Eyes of the group: 1 left, 2 right, 3 both.
     pub halves: u8,
     pub codes: [u32; LANES],
     pub colours: [u16; LANES],
@@ -30,12 +30,12 @@ pub struct Band {
     pub whole: bool,
     pub with_depth: bool,
     pub clear: u16,
-    /// How what two eyes see becomes colours: 0 not at all, 1 red and blue, 2 red and cyan.
+    /// Composition of the eyes' luminances: 0 none, 1 red and blue, 2 red and cyan.
     pub compose: u8,
 }
 
 impl Band {
-    /// Its lines in the picture.
+    /// Lines of the picture that the band covers.
     pub fn picture_lines(&self) -> Range<usize> {
         self.first_line..self.first_line + self.lines
     }
@@ -43,10 +43,10 @@ impl Band {
 
 pub type Word = (u32, [u32; 4]);
 
-/// Of each line in each frame buffer the columns from the first to the last that were drawn in last, where that is known.
+/// First and last column drawn by the last flush, of each line in each frame buffer, where known.
 pub type Left = [Vec<Option<Range<usize>>>; 2];
 
-/// Depth and colour of the pixels that have been drawn, by row.
+/// Depth and colour of the drawn pixels, by row.
 pub struct Pixels(pub Vec<[Option<(u32, u16)>; LANES]>);
 
 impl Pixels {
@@ -70,7 +70,7 @@ impl Pixels {
         }
     }
 
-    /// What goes to memory, in order.
+    /// Words of the flush, in order.
     pub fn words(&self, band: &Band, left: &mut Left) -> Vec<Word> {
         let mut words = Vec::new();
         for (line, picture_line) in band.picture_lines().enumerate() {

@@ -1,4 +1,4 @@
-//! Whole frames of the raymarcher: every pixel once, as the model has it, in the band that is open.
+//! Whole frames of the raymarcher: every pixel comes once, equal to the model's, while its band is open.
 
 use glint_model::SIZES;
 use glint_model::raymarch::{FieldSetup, FieldStats, Palette, Rays, State};
@@ -29,7 +29,7 @@ struct Bench {
     counted: [u64; 8],
 }
 
-/// What a frame took: clocks, and evaluations by the model.
+/// Cost of a frame: counters of the module, statistics of the model.
 struct Taken {
     counters: [u64; 8],
     stats: FieldStats,
@@ -77,7 +77,7 @@ impl Bench {
         self.port("size", u64::from(setup.width / 640));
     }
 
-    /// Draws a frame. `hurry`: bands are open at once, and nothing stalls.
+    /// Draws a frame. With `hurry`, bands open at once and no stream stalls.
     fn draw(
         &mut self,
         random: &mut Random,
@@ -119,7 +119,7 @@ impl Bench {
                 }
             }
             if !hurry {
-                // Somebody else draws here first.
+                // The triangles of the band come first.
                 for _ in 0..random.integer(0, 3000) {
                     self.module.clock();
                 }
@@ -129,7 +129,7 @@ impl Bench {
             loop {
                 assert!(
                     self.module.cycles() - begun < 40_000_000,
-                    "the raymarcher stands still in {setup:?}"
+                    "the raymarcher stalls in {setup:?}"
                 );
                 sink.drive(&mut self.module);
                 self.module.settle();
@@ -164,7 +164,7 @@ impl Bench {
         stats.evaluations += rays.evaluations();
         let busy = self.module.port("busy");
         assert!(!self.module.is_high(busy), "busy after the last band");
-        // Counters are some clocks late.
+        // Counters lag by some clocks.
         for _ in 0..4 {
             self.module.clock();
         }
@@ -234,7 +234,7 @@ fn frames_of_round_fields_in_all_lights() {
     }
 }
 
-/// What light costs: a sphere that fills much of the picture.
+/// Cost of lights: a sphere that fills most of the picture.
 #[test]
 fn round_pixels_take_a_clock_a_light() {
     let mut random = Random(13);
@@ -265,14 +265,14 @@ fn sponges_keep_the_lanes_busy() {
         let setup = setup(&mut random, &SPONGES);
         let taken = bench.draw(&mut random, &setup, &Palette::default(), true);
         println!("frame {frame}: {}", taken.busy(&bench));
-        // With fewer evaluations a ray than there are lanes, it is the rays that are too few.
+        // With fewer than 8 evaluations a ray the generator limits the speed, not the lanes.
         let share = taken.stats.evaluations as f64 / (taken.counters[0] * bench.lanes) as f64;
         assert!(share >= 0.98 || taken.stats.evaluations < 8 * u64::from(taken.stats.rays));
     }
 }
 
-/// In the sponge's largest tunnel, where rays take the most evaluations, without a prepass and with one: at 320 × 180, or with
-/// `GLINT_RTL_FIELDS=all` at 1280 × 720.
+/// In the sponge's largest tunnel, where rays take the most evaluations, without and with a prepass: at 320 × 180, or
+/// with `GLINT_RTL_FIELDS=all` at 1280 × 720.
 #[test]
 fn cones_take_evaluations_off_the_rays_of_a_tunnel() {
     let all = std::env::var("GLINT_RTL_FIELDS").is_ok_and(|fields| fields == "all");

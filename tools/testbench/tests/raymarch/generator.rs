@@ -1,4 +1,4 @@
-//! The ray generator: all rays of a frame, as the model has them, in their order.
+//! The ray generator: all rays of a frame equal the model's, in order.
 
 use glint_model::raymarch::FieldSetup;
 use glint_testbench::{Bits, Layout, Module, Sink, Stalls};
@@ -7,10 +7,10 @@ use crate::scenes::{FIELDS, ROUND, band_lines, every_field, setup, setup_with};
 use glint_testbench::raymarch::{Place, cone, ray, set_blocks, set_generator};
 use glint_vectors::Random;
 
-/// As it is built for all fields, and cones.
+/// Module variant with all fields and cones.
 const GENERATOR: &str = "ray_generator_all";
 
-/// The type of a ray.
+/// Layout of a ray.
 fn ray_type(module: &Module) -> Layout {
     module.packed_type("raymarch_pkg::ray_t").clone()
 }
@@ -37,7 +37,7 @@ fn expected(layout: &Layout, setup: &FieldSetup, lines: u32) -> Vec<Bits> {
         .collect()
 }
 
-/// All cones, in the order of their numbers.
+/// All cones, ordered by number.
 fn expected_cones(layout: &Layout, setup: &FieldSetup) -> Vec<Bits> {
     let cones = setup.cones.expect("cones");
     let eyes = if setup.stereo.is_some() { 2 } else { 1 };
@@ -57,7 +57,7 @@ fn expected_cones(layout: &Layout, setup: &FieldSetup) -> Vec<Bits> {
         .collect()
 }
 
-/// Runs a frame, all of it or its beginning, and returns the clocks until its last ray.
+/// Runs the first `lines` lines of a frame and returns the clocks until the last ray.
 fn check(module: &mut Module, setup: &FieldSetup, lines: u32, stalls: Stalls) -> u64 {
     set_generator(module, setup, band_lines(setup.width));
     module.drive("round", setup.is_round());
@@ -69,7 +69,7 @@ fn check(module: &mut Module, setup: &FieldSetup, lines: u32, stalls: Stalls) ->
     clocks
 }
 
-/// Starts the generator and takes what it gives out until all of it has come. Returns the clocks.
+/// Starts the generator and takes its rays until all expected ones have come. Returns the clocks.
 fn run(module: &mut Module, setup: &FieldSetup, expected: &[Bits], stalls: Stalls) -> u64 {
     let mut sink = Sink::new(module, "out", &["ray"], stalls);
     let start = module.port("start");
@@ -80,7 +80,7 @@ fn run(module: &mut Module, setup: &FieldSetup, expected: &[Bits], stalls: Stall
     while sink.items().len() < expected.len() {
         assert!(
             module.cycles() - begun < 1000 + 100 * expected.len() as u64,
-            "the generator stands still"
+            "the generator stalls"
         );
         sink.drive(module);
         module.settle();
@@ -94,7 +94,7 @@ fn run(module: &mut Module, setup: &FieldSetup, expected: &[Bits], stalls: Stall
     clocks
 }
 
-/// After the last ray it is idle; before that it has to be stopped.
+/// Ends a frame: the generator is idle after the last ray, and needs a reset before.
 fn end(module: &mut Module, whole: bool) {
     let [rst, busy] = ["rst", "busy"].map(|name| module.port(name));
     module.settle();

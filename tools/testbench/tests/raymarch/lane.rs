@@ -1,4 +1,4 @@
-//! A lane on its own: every ray that goes in comes out, as the model says, whatever the other side does.
+//! A single lane: every ray comes out once, with the model's result, under any back-pressure.
 
 use std::collections::HashMap;
 
@@ -10,21 +10,21 @@ use crate::scenes::{SPONGES, every_field, setup, setup_with};
 use glint_testbench::raymarch::{End, Place, cone, ray, set_lane};
 use glint_vectors::Random;
 
-/// Rays or cones of a frame.
+/// Number of rays or cones in a frame.
 const RAYS: usize = 2_000;
 
-/// A ray or a cone that is sent, how it ends, and its evaluations.
+/// A ray or cone, its expected end, and its evaluations.
 struct Sent {
     item: Bits,
     end: End,
     steps: u32,
 }
 
-/// Random rays of a frame.
+/// Random rays of a frame, by place.
 fn some_rays(random: &mut Random, layout: &Layout, setup: &FieldSetup) -> HashMap<Place, Sent> {
     let eyes = if setup.stereo.is_some() { 2 } else { 1 };
     let mut all = HashMap::new();
-    // Lines of several bands have the same place.
+    // A place repeats after a few bands: keep one ray for each place.
     while all.len() < RAYS {
         let x = random.integer(0, i64::from(setup.width) - 1) as u32;
         let y = random.integer(0, i64::from(setup.height) - 1) as u32;
@@ -46,7 +46,7 @@ fn some_rays(random: &mut Random, layout: &Layout, setup: &FieldSetup) -> HashMa
     all
 }
 
-/// Random cones of a frame.
+/// Random cones of a frame, by place.
 fn some_cones(random: &mut Random, layout: &Layout, setup: &FieldSetup) -> HashMap<Place, Sent> {
     let cones = setup.cones.expect("cones");
     let eyes = if setup.stereo.is_some() { 2 } else { 1 };
@@ -72,7 +72,7 @@ struct Bench {
     module: Module,
     source: Source,
     sink: Sink,
-    /// Clocks in which the field was asked, and those in which a ray had to wait for a place.
+    /// Clocks with an evaluation, and clocks in which a ray waited for a slot.
     evaluated: u64,
     waited: u64,
 }
@@ -90,12 +90,12 @@ impl Bench {
         }
     }
 
-    /// The type of a ray.
+    /// Layout of a ray.
     fn ray(&self) -> Layout {
         self.module.packed_type("raymarch_pkg::ray_t").clone()
     }
 
-    /// Sends rays or cones of a frame through the lane.
+    /// Sends rays or cones of a frame through the lane and compares their ends.
     fn check(&mut self, setup: &FieldSetup, cones: bool, mut expected: HashMap<Place, Sent>) {
         set_lane(&mut self.module, setup);
         self.module.drive("cones", cones);
@@ -111,7 +111,7 @@ impl Bench {
             let cycles = self.module.cycles() - start;
             assert!(
                 cycles < 100_000 + 100 * evaluations,
-                "the lane stands still in {setup:?}"
+                "the lane stalls in {setup:?}"
             );
             self.source.drive(&mut self.module);
             self.sink.drive(&mut self.module);
@@ -137,12 +137,12 @@ impl Bench {
     }
 }
 
-/// Rays of each test: 150,000, or `GLINT_RTL_RAYS`.
+/// Rays per test: `GLINT_RTL_RAYS`, or 150,000.
 fn rays() -> usize {
     std::env::var("GLINT_RTL_RAYS").map_or(150_000, |text| text.parse().unwrap())
 }
 
-/// Lanes that stall now and then.
+/// Lanes with different shares of stalls.
 fn benches(name: &str) -> Vec<Bench> {
     let shares = [(0.0, 0.0), (0.5, 0.5), (0.0, 0.95), (0.9, 0.0)];
     (1..)
@@ -162,7 +162,7 @@ fn random_rays(name: &str, fields: &[impl AsRef<str>]) {
     }
 }
 
-/// Frames by turns with cones and with rays.
+/// Frames with cones and with rays alternate.
 #[test]
 fn random_cones_and_rays_in_all_fields() {
     let mut random = Random(4);

@@ -1,4 +1,4 @@
-//! The raymarcher's parts against the model's.
+//! The raymarcher's modules against the model.
 
 mod frames;
 mod generator;

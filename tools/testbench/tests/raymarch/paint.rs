@@ -1,4 +1,4 @@
-//! What the ends of rays look like.
+//! Colours and depths of the ends of rays.
 
 use glint_core::field::Surface;
 use glint_model::raymarch::{FieldSetup, Palette, Ray, RayResult, State};
@@ -23,7 +23,7 @@ fn palette(random: &mut Random) -> Palette {
     palette
 }
 
-/// An end that a ray can have, or could: t may be anything but 0.
+/// A random end, also ones that no ray of the scene reaches; t is not 0.
 fn ending(random: &mut Random, setup: &FieldSetup, start: &Ray) -> RayResult {
     if random.coin() {
         return setup.march(start);

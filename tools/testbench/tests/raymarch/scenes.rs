@@ -1,4 +1,4 @@
-//! Fields and cameras: those that somebody would look at, and those at the limits.
+//! Test scenes: fields and cameras, typical ones and ones at the limits.
 
 use glint_core::camera::View;
 use glint_core::field::{Field, Primitive};
@@ -8,10 +8,10 @@ use glint_model::raymarch::{FieldOptions, FieldSetup, Light, Lights, Stereo, Tin
 
 use glint_vectors::{Camera, Random};
 
-/// What is built without anything but the sponge.
+/// Fields of a build with the sponge alone.
 pub const SPONGES: [&str; 4] = ["menger:4", "menger:3", "menger:2", "menger:1"];
 
-/// What there is only where a lane knows spheres.
+/// Fields of a build with spheres.
 pub const ROUND: [&str; 8] = [
     "sphere:1",
     "sphere:12",
@@ -23,7 +23,7 @@ pub const ROUND: [&str; 8] = [
     "spheres:0,0,0,0.5;1,0,0,0.5;0,1,0,0.5;0,0,1,0.5;-1,0,0,0.5;0,-1,0,0.5;0,0,-1,0.5;8,-8,8,3.5",
 ];
 
-/// What has faces and is round too.
+/// Unions of a flat and a round field.
 pub const UNIONS: [&str; 7] = [
     "union:menger:4+sphere:0.75",
     "union:menger:2+moving:0.25,1,-75",
@@ -34,7 +34,7 @@ pub const UNIONS: [&str; 7] = [
     "smooth:0.01,menger:1+moving:1,0.5,30",
 ];
 
-/// Every field without anything round.
+/// Every flat field.
 pub const FIELDS: [&str; 12] = [
     "menger:4",
     "menger:6",
@@ -70,7 +70,7 @@ pub fn every_field() -> Vec<String> {
     fixed.into_iter().map(String::from).chain(drawn).collect()
 }
 
-/// A camera somewhere in a field or beside it, that looks anywhere.
+/// A random camera in a field or beside it, with any direction.
 pub fn camera(random: &mut Random) -> View {
     let distance = match random.bits() % 4 {
         0 => random.real(0.0, 1.0),
@@ -81,7 +81,7 @@ pub fn camera(random: &mut Random) -> View {
     let eye = random.direction().map(|x| x * distance);
     let towards = match random.bits() % 4 {
         0 => random.direction(),
-        // Along an axis, but for a little.
+        // Nearly along an axis.
         1 => {
             let axis = (random.bits() % 3) as usize;
             let little = random.logarithmic(1e-7, 1e-1);
@@ -126,7 +126,7 @@ pub fn setup_with(random: &mut Random, fields: &[impl AsRef<str>], prepass: bool
     FieldSetup::new(&field, &camera(random), size, &options).unwrap()
 }
 
-/// Lights from anywhere, and materials.
+/// Random lights and materials.
 pub fn lights(random: &mut Random) -> Lights {
     let mut colour = || [0; 3].map(|_| random.bits() as u8);
     let materials = [0; 8].map(|_| colour());
@@ -143,7 +143,7 @@ pub fn lights(random: &mut Random) -> Lights {
     }
 }
 
-/// In the largest tunnel of the sponge: the report's view.
+/// View along the largest tunnel of the sponge, as in the report.
 pub fn tunnel(size: (u32, u32), prepass: bool) -> FieldSetup {
     let (eye, target) = ([0.0625, -0.8125, 0.09375], [-0.125, 0.9375, 0.03125]);
     let view = Camera::looking(eye, target, 0.9, 0.01).rounded();
@@ -155,7 +155,7 @@ pub fn tunnel(size: (u32, u32), prepass: bool) -> FieldSetup {
     FieldSetup::new(&sponge, &view, size, &options).unwrap()
 }
 
-/// Lines of a band, by the picture's width.
+/// Lines of a band for a picture's width.
 pub fn band_lines(width: u32) -> u32 {
     match width {
         320 => 45,

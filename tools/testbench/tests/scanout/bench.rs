@@ -1,4 +1,4 @@
-//! The surroundings of the scan-out module: two clocks, memory, software and a monitor.
+//! Bench of the scan-out module: two clocks, memory, software and a monitor.
 
 use glint_testbench::{Module, Port};
 use rand::{RngExt, SeedableRng};
@@ -9,7 +9,7 @@ use crate::monitor::Monitor;
 use crate::raster::{Clocks, Raster};
 use crate::settings::{Settings, error};
 
-/// Free-running counters as the bench counts them.
+/// Expected values of the free-running counters.
 #[derive(Clone, Copy, Debug, Default)]
 struct Counted {
     vblanks: u32,
@@ -31,7 +31,7 @@ struct Ports {
 }
 
 impl Ports {
-    /// Outputs that the bench knows in every cycle.
+    /// Outputs compared in every cycle.
     const REGISTERS: [&str; 8] = [
         "enabled",
         "scale_current",
@@ -63,9 +63,9 @@ pub struct Bench {
     pub random: Pcg64Mcg,
     pub memory: Memory,
     pub monitor: Monitor,
-    /// What software wants; drives the inputs from the next edge of `sys_clk` on.
+    /// Settings requested by software; they drive the inputs from the next edge of `sys_clk` on.
     pub asked: Settings,
-    /// Called at each cycle of `sys_clk`: software that changes its mind.
+    /// Called in each cycle of `sys_clk`; may change the requested settings.
     pub software: Option<fn(&mut Pcg64Mcg, &mut Settings)>,
     ports: Ports,
     raster: Raster,
@@ -76,20 +76,20 @@ pub struct Bench {
     cycles: u64,
     vblanks: u64,
     driven: Settings,
-    /// As taken over at the last vertical blanking.
+    /// Settings latched at the last vertical blanking.
     in_force: Settings,
-    /// The frame of the fetch under way.
+    /// Settings of the frame that the fetch belongs to.
     fetched_from: Settings,
     was_fetching: bool,
     counted: Counted,
     expected_error: u64,
     late_before: u64,
-    /// Time of the last pixel of the picture, until the vertical blanking that follows.
+    /// Time of the picture's last pixel, until the vertical blanking that follows.
     active_end: Option<u64>,
 }
 
 impl Bench {
-    /// A module out of both resets.
+    /// The module `name` after both resets.
     pub fn new(name: &str, raster: Raster, clocks: Clocks, seed: u64) -> Self {
         let module = Module::load(name, seed as u32);
         let mut random = Pcg64Mcg::seed_from_u64(seed);
@@ -102,7 +102,7 @@ impl Bench {
             software: None,
             raster,
             clocks,
-            // A period is the other clock's frequency.
+            // The unit of time is chosen so that each period equals the frequency of the other clock.
             next_sys: 1 + random.random_range(0..clocks.pix),
             next_pix: 1 + random.random_range(0..clocks.sys),
             random,
@@ -130,7 +130,7 @@ impl Bench {
         bench
     }
 
-    /// A module with the small raster.
+    /// The module with the small raster.
     pub fn small(clocks: Clocks, seed: u64) -> Self {
         Self::new("scanout_small", Raster::SMALL, clocks, seed)
     }
@@ -142,7 +142,7 @@ impl Bench {
         }
     }
 
-    /// Runs for as long as so many lines take.
+    /// Runs for the time of `count` lines.
     pub fn run_lines(&mut self, count: u64) {
         self.run_cycles(self.clocks.sys_cycles(count * self.raster.h_total()));
     }
@@ -163,10 +163,10 @@ impl Bench {
         }
     }
 
-    /// Puts the side of memory and registers into reset, or ends it.
+    /// Asserts or releases the reset of the sys side (memory and registers).
     pub fn reset_sys(&mut self, on: bool) {
         self.module.set_value(self.ports.sys_rst, u64::from(on));
-        // A vblank that falls into the reset is served after it.
+        // A vertical blanking during the reset is reported after the reset.
         self.active_end = None;
         if on {
             self.asked = Settings::RESET;
@@ -183,7 +183,7 @@ impl Bench {
         }
     }
 
-    /// Puts the side of the video into reset, or ends it.
+    /// Asserts or releases the reset of the pix side (video).
     pub fn reset_pix(&mut self, on: bool) {
         self.module.set_value(self.ports.pix_rst, u64::from(on));
         if on {
@@ -192,7 +192,7 @@ impl Bench {
         }
     }
 
-    /// Whether a source line is being fetched.
+    /// Whether a fetch of a source line is under way.
     pub fn is_fetching(&self) -> bool {
         self.module.is_high(self.ports.fetching)
     }
@@ -201,7 +201,7 @@ impl Bench {
         self.module.is_high(self.ports.sys_rst)
     }
 
-    /// The next edge of either clock, or of both.
+    /// Advances to the next edge of either clock, or of both.
     fn edge(&mut self) {
         self.now = self.next_sys.min(self.next_pix);
         let (sys, pix) = (self.now == self.next_sys, self.now == self.next_pix);

@@ -1,4 +1,4 @@
-//! The memory that scan-out reads from, with a chosen behaviour.
+//! Model of the memory that scan-out reads, with configurable timing.
 
 use std::collections::VecDeque;
 
@@ -9,22 +9,22 @@ use rand_pcg::Pcg64Mcg;
 use crate::raster::{Raster, pixel_at};
 use crate::settings::Settings;
 
-/// Bytes of a memory word.
+/// Bytes per memory word.
 pub const WORD: u64 = 16;
 
-/// How memory behaves: the share of cycles in which it takes a command and delivers a word, and the latency in cycles.
+/// Timing of the memory: shares of cycles in which it takes a command and delivers a word, and the latency in cycles.
 #[derive(Clone, Copy, Debug)]
 pub struct Manners {
     pub ready: f64,
     pub deliver: f64,
     pub latency: [u64; 2],
-    /// The chance in a cycle that memory pauses altogether, and for how many cycles at most.
+    /// Probability of a pause per cycle, and its longest length in cycles.
     pub pause: f64,
     pub pause_cycles: u64,
 }
 
 impl Manners {
-    /// Always ready, after 8 cycles.
+    /// No stalls, latency 8 cycles.
     pub const PROMPT: Self = Self {
         ready: 1.0,
         deliver: 1.0,
@@ -32,14 +32,14 @@ impl Manners {
         pause: 0.0,
         pause_cycles: 0,
     };
-    /// Shared with others that are mostly idle.
+    /// Shared with mostly idle masters.
     pub const SHARED: Self = Self {
         ready: 0.8,
         deliver: 0.9,
         latency: [2, 20],
         ..Self::PROMPT
     };
-    /// Shared with others that are busy.
+    /// Shared with busy masters.
     pub const BUSY: Self = Self {
         ready: 0.5,
         deliver: 0.7,
@@ -48,21 +48,21 @@ impl Manners {
     };
 }
 
-/// Whether an event of a probability happens.
+/// Draws an event of probability `share`.
 pub fn chance(random: &mut Pcg64Mcg, share: f64) -> bool {
     share >= 1.0 || share > 0.0 && random.random_bool(share)
 }
 
-/// The memory's side of the read port.
+/// The memory behind the read port.
 pub struct Memory {
     pub manners: Manners,
-    /// Takes and delivers nothing.
+    /// Blocks commands and data.
     pub stopped: bool,
     cmd: [Port; 3],
     rdata: [Port; 2],
-    /// Addresses in words, and when their data are due.
+    /// Word address of each command, and the cycle from which its data are due.
     commands: VecDeque<(u64, u64)>,
-    /// Address of a command that was not taken.
+    /// Address of the command that waits.
     held: Option<u64>,
     paused_until: u64,
 }
@@ -80,20 +80,21 @@ impl Memory {
         }
     }
 
-    /// Forgets all commands: the other side has been reset.
+    /// Drops all commands, after a reset of the module.
     pub fn reset(&mut self, module: &mut Module) {
         self.commands.clear();
         self.held = None;
         self.rest(module);
     }
 
-    /// Neither takes nor delivers.
+    /// Drives an idle port.
     pub fn rest(&self, module: &mut Module) {
         module.set_value(self.rdata[0], 0);
         module.set_value(self.cmd[1], 0);
     }
 
-    /// Takes the command of this cycle, which must be one for the frame `from`. Returns whether a command waits.
+    /// Takes the command of this cycle and checks that its address belongs to the frame `from`. Returns whether a
+    /// command waits.
     pub fn sample(
         &mut self,
         module: &Module,
@@ -135,12 +136,12 @@ impl Memory {
         false
     }
 
-    /// Whether a word is delivered in this cycle.
+    /// Whether the memory delivers a word in this cycle.
     pub fn delivers(&self, module: &Module) -> bool {
         module.is_high(self.rdata[0])
     }
 
-    /// Delivers a word or noise, and is ready for a command or not.
+    /// Drives the port: a due word or noise, and ready.
     pub fn drive(&mut self, module: &mut Module, random: &mut Pcg64Mcg, cycle: u64) {
         let manners = self.manners;
         if cycle >= self.paused_until && chance(random, manners.pause) {

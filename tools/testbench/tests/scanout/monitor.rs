@@ -1,4 +1,4 @@
-//! The monitor: it knows the video timing and the rules of the picture, and nothing of the module.
+//! The monitor: checks video timing and picture from the outputs alone.
 //!
 //! At each pixel clock it checks the syncs against a position counted from the first edge of vsync, and at the end of each line that
 //! the line is the right one, or, where memory was late, the one before it.
@@ -15,21 +15,21 @@ pub struct Monitor {
     vsync: Port,
     de: Port,
     rgb: [Port; 3],
-    /// Pixel clocks since the leading edge of vsync.
+    /// Pixel clocks since the leading edge of vsync; `None` before the first one.
     position: Option<u64>,
     vsync_before: bool,
     line: Vec<u32>,
-    /// A reset fell into this line.
+    /// Skips the check of this line, which a reset disturbed.
     pub line_unchecked: bool,
-    /// The source line that this frame showed last.
+    /// Last source line shown in this frame.
     pub line_shown: Option<u64>,
-    /// Lines may be late.
+    /// Accepts late lines.
     pub may_be_late: bool,
-    /// Frames whose last line was shown.
+    /// Frames shown to their last line.
     pub frames: u64,
-    /// Source lines that came late.
+    /// Count of late source lines.
     pub late: u64,
-    /// Lines of the picture in which a late source line was caught up.
+    /// Output lines in which a late source line first appeared.
     pub late_again: u64,
 }
 
@@ -53,14 +53,14 @@ impl Monitor {
         }
     }
 
-    /// Waits for vsync again.
+    /// Waits for the next vsync.
     pub fn reset(&mut self) {
         self.position = None;
         self.line.clear();
         self.vsync_before = true;
     }
 
-    /// Checks a pixel clock. Returns whether it was the last one of a frame's picture.
+    /// Checks one pixel clock. Returns whether it ended the picture of a frame.
     pub fn watch(&mut self, module: &Module, in_force: &Settings) -> bool {
         let vsync = module.is_high(self.vsync);
         let position = match self.position {

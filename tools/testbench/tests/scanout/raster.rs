@@ -1,6 +1,6 @@
-//! The video timing, and the picture that memory holds.
+//! Video timings, clocks, and the picture in memory.
 
-/// Active pixels, front porch, sync and back porch of a line, and the same of a frame in lines.
+/// A video timing: active pixels, front porch, sync and back porch of a line, and the same of a frame in lines.
 #[derive(Clone, Copy, Debug)]
 pub struct Raster {
     pub h_active: u64,
@@ -14,7 +14,7 @@ pub struct Raster {
 }
 
 impl Raster {
-    /// CEA-861, 1280×720 at 60 Hz: that of the module `scanout`.
+    /// CEA-861 1280×720 at 60 Hz, of the module `scanout`.
     pub const CEA: Self = Self {
         h_active: 1280,
         h_front: 110,
@@ -26,7 +26,7 @@ impl Raster {
         v_back: 20,
     };
 
-    /// That of the module `scanout_small`: as much time for a memory word, in a two-hundredth of the frame.
+    /// Small timing of the module `scanout_small`: the same time per memory word in a 200th of the frame.
     pub const SMALL: Self = Self {
         h_active: 160,
         h_front: 8,
@@ -53,13 +53,13 @@ impl Raster {
         self.h_total() * self.v_total()
     }
 
-    /// Lines from vertical blanking to line 9 of the picture, from its first line on.
+    /// Lines from the start of vertical blanking to line 9 of the picture.
     pub const fn lines_to_picture(&self) -> u64 {
         self.v_front + self.v_sync + self.v_back + 9
     }
 }
 
-/// Frequencies of `sys_clk` and `pix_clk` in any common unit: only their ratio and phase count.
+/// Frequencies of `sys_clk` and `pix_clk` in a common unit; only ratio and phase matter.
 #[derive(Clone, Copy, Debug)]
 pub struct Clocks {
     pub sys: u64,
@@ -78,13 +78,13 @@ impl Clocks {
         pix: 7425,
     };
 
-    /// Cycles of `sys_clk` in as many of `pix_clk`.
+    /// Cycles of `sys_clk` in `pixels` cycles of `pix_clk`.
     pub const fn sys_cycles(&self, pixels: u64) -> u64 {
         pixels * self.sys / self.pix
     }
 }
 
-/// The RGB565 pixel at a byte address: a hash of the address, so that no two lines of any frames are alike.
+/// The RGB565 pixel at a byte address: a hash, so that all lines of all frames differ.
 pub fn pixel_at(address: u64) -> u16 {
     let z = address
         .wrapping_mul(0x9E37_79B9_7F4A_7C15)
@@ -94,7 +94,7 @@ pub fn pixel_at(address: u64) -> u16 {
     (z ^ z >> 31) as u16
 }
 
-/// RGB565 in 24 bits: each channel repeats its bits, the first eight bits of value/31 or value/63 in binary.
+/// RGB888 of an RGB565 pixel, by bit replication.
 pub fn rgb888(pixel: u16) -> u32 {
     let (r, g, b) = (
         u32::from(pixel >> 11),

@@ -1,9 +1,9 @@
-//! The registers of scan-out: settings and error codes.
+//! Settings and error codes of the scan-out registers.
 
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
-/// Settings, as requested by software or in force.
+/// Settings, requested or latched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
     pub enable: bool,
@@ -20,7 +20,7 @@ impl Settings {
         base: 0,
     };
 
-    /// A frame that is shown.
+    /// Settings of an enabled frame.
     pub const fn shown(scale: u64, base: u64) -> Self {
         Self {
             enable: true,
@@ -39,7 +39,7 @@ impl Settings {
     }
 }
 
-/// The error code of a frame.
+/// Error codes of a frame.
 pub mod error {
     pub const NONE: u64 = 0;
     pub const SCALE: u64 = 1;

@@ -1,5 +1,5 @@
-//! The whole SoC draws with its raymarcher what glint-model draws: every field from three sides, for one eye and for two,
-//! colours and depths, and what was counted.
+//! The whole SoC with its raymarcher against glint-model: colours, depths and statistics of every field, from three
+//! sides, for one eye and for two.
 
 use glint::board::{Board, SimulatedBoard, built_firmware};
 use glint::console::Console;
@@ -20,7 +20,7 @@ use glint_core::wire::Manifest;
 use crate::{Told, read, send};
 use glint_vectors::Camera;
 
-/// The board's time after which a silent firmware has failed.
+/// Longest silence of the firmware, in board time.
 const PATIENCE_MS: u64 = 4000;
 
 /// Every kind of field.
@@ -52,8 +52,8 @@ fn looking(eye: [f64; 3], target: [f64; 3], half_width: f64, near: f64) -> View 
     Camera::looking(eye, target, half_width, near).rounded()
 }
 
-/// From outside, from near by and in the hole of the sponge. Downwards, where rays end soon: towards a horizon they take ten times
-/// the evaluations, of which each is simulated.
+/// Cameras outside, near by and in the hole of the sponge. They look down, where rays end soon: near a horizon they
+/// take ten times the evaluations, each of which is simulated.
 fn views() -> [View; 3] {
     [
         looking([2.2, 1.7, 1.3], [0.0; 3], 0.9, 0.1),
@@ -62,7 +62,7 @@ fn views() -> [View; 3] {
     ]
 }
 
-/// One eye, and two in either pair of colours.
+/// One eye, and two eyes with either tint.
 fn eyes() -> [Option<Stereo>; 3] {
     let stereo = |tint| Stereo {
         half_separation: Q32_32::lit("0.03"),
@@ -80,7 +80,7 @@ fn board() -> SimulatedBoard {
     SimulatedBoard::fast(&built_firmware(None).unwrap()).unwrap()
 }
 
-/// Draws a field on the board, with or without its depths in memory, and compares it with the model's.
+/// Draws a field on the board, with or without writing depths to memory, and compares it with the model's.
 fn compare(
     console: &mut Console<SimulatedBoard>,
     subject: FieldSubject,
@@ -103,7 +103,7 @@ fn compare(
     compare_picture(console, &told, &name, &image, with_depth);
 }
 
-/// The commands of a frame whose mesh is loaded. Sent in one write they lead to one frame.
+/// Console commands of a frame whose mesh is loaded. One write with all of them draws one frame.
 fn lines(frame: &Frame, with_depth: bool) -> Vec<String> {
     let mut lines = vec![
         render::size_command(frame.size),
@@ -155,13 +155,14 @@ fn compare_picture(
     }
 }
 
-/// Whether everything is to be drawn that there is time for.
+/// Whether to draw all combinations, which takes long.
 fn all() -> bool {
     std::env::var("GLINT_RTL_FIELDS").is_ok_and(|which| which == "all")
 }
 
-/// Every fourth one from one side for one eye or for two, without cones or with them, in turns: with `GLINT_RTL_FIELDS=all` all of
-/// them from all sides for both, and once more with cones from one side.
+/// Every fourth combination, with one side for each number of eyes, and cones in every second. With
+/// `GLINT_RTL_FIELDS=all`: all fields from all sides with both numbers of eyes, and once more with cones from one
+/// side.
 #[test]
 fn the_soc_draws_every_field() {
     let mut board = board();
@@ -172,7 +173,7 @@ fn the_soc_draws_every_field() {
         // Where the list has no field of a kind, its example is always drawn.
         let is_further = number >= FIELDS.len();
         for (side, view) in views().iter().enumerate() {
-            // Both pairs of colours are seen in turns.
+            // The tints alternate.
             for stereo in [None, eyes()[1 + (number + side) % 2]] {
                 let once = side == number % 3;
                 let in_turn = once && stereo.is_some() == ((number / 4 + side) % 2 == 0);
@@ -232,7 +233,7 @@ fn the_soc_draws_large_fields_and_goes_back_to_meshes() {
     }
 }
 
-/// Puts a mesh where an upload goes. The command that takes it from there is to be sent.
+/// Copies a mesh into the staging memory; returns the `load` command that takes it from there.
 fn load(console: &mut Console<SimulatedBoard>, mesh: &[u8]) -> String {
     let Manifest { length, crc32 } = Manifest::of(mesh);
     let staging = send(console, &["info".to_owned()]).address("staging");
@@ -241,8 +242,8 @@ fn load(console: &mut Console<SimulatedBoard>, mesh: &[u8]) -> String {
     format!("load {length} {crc32:08x}")
 }
 
-/// A mesh that looks out of a field and into which the field looks, with triangles that need clipping, and light, fog, sky and cones
-/// of the field. From more sides, in another size and back to back with `GLINT_RTL_FIELDS=all`.
+/// A mesh that intersects a field, with triangles that need clipping, and with light, fog, sky and cones of the
+/// field. With `GLINT_RTL_FIELDS=all` from more sides, in another size, and back to back.
 #[test]
 fn the_soc_draws_a_mesh_in_a_field() {
     let mut board = board();
@@ -321,7 +322,7 @@ fn the_soc_draws_a_mesh_in_a_field() {
     if !all() {
         return;
     }
-    // One after the other, without waiting for the screen.
+    // Back to back, without waiting for the screen.
     let told = send(
         &mut console,
         &["bench field".to_owned(), "info scene".to_owned()],

@@ -25,43 +25,43 @@ use glint_vectors::meshes;
 use glint_vectors::scenes::Scene;
 use rand_pcg::Pcg64Mcg;
 
-/// The mesh of a generated model.
+/// Bytes of a generated model's mesh.
 fn generated(name: &str) -> Vec<u8> {
     let model = generate::named(name).expect("a model");
     let converted = convert::convert(&model, convert::Options::default());
     converted.expect("a mesh").0
 }
 
-/// The board's time after which a silent firmware has failed.
+/// Longest silence of the firmware, in board time.
 const PATIENCE_MS: u64 = 2000;
 
-/// Three frames of the video.
+/// Longest wait for a picture: three frames of the video.
 const MOST_WAIT_MS: u64 = 50;
 
-/// A board whose monitor is always on.
+/// A board whose pictures are compared with an expected sequence.
 struct Watched {
     board: SimulatedBoard,
-    /// Pixels of the picture to one of the frame, along a side.
+    /// Pixels of the picture per pixel of the frame, along a side.
     scale: usize,
-    /// What is to be seen, in this order; first there is nothing, which is black.
+    /// Expected frames, in order; the first one is black.
     expected: Vec<(String, Vec<u16>)>,
-    /// How many of them were seen.
+    /// Number of expected frames that were seen.
     seen: usize,
-    /// Pictures that were looked at.
+    /// Number of compared pictures.
     pictures: u64,
 }
 
 impl Watched {
-    /// This is to be seen next.
+    /// Appends a frame to the expected ones.
     fn expect(&mut self, name: &str, frame: Vec<u16>) {
         match self.expected.last_mut() {
-            // They cannot be told apart.
+            // Equal frames in a row look like one.
             Some((last, old)) if *old == frame => name.clone_into(last),
             _ => self.expected.push((name.to_owned(), frame)),
         }
     }
 
-    /// The picture is the one before, or the next one, and never a part of each.
+    /// Compares the last picture: it equals the previous frame or the next one, never a mix.
     fn look(&mut self) {
         let Some(picture) = self.board.inner().monitor().take_picture() else {
             return;
@@ -84,12 +84,12 @@ impl Watched {
         self.seen += at;
     }
 
-    /// Runs until all that is expected was seen.
+    /// Runs until all expected frames were seen.
     fn see(&mut self) {
         self.run_until(|board| board.seen == board.expected.len());
     }
 
-    /// Runs until the picture is whole that is being shown.
+    /// Runs until the current picture is complete.
     fn wait_for_picture(&mut self) {
         let before = self.pictures;
         self.run_until(|board| board.pictures > before);
@@ -113,7 +113,7 @@ impl Board for Watched {
     }
 
     fn read(&mut self, bytes: &mut Vec<u8>, wait_ms: u64) -> Result<(), BoardError> {
-        // Often enough to see every picture.
+        // Polls often enough to see every picture.
         let (before, end) = (bytes.len(), self.now_ms() + wait_ms);
         while bytes.len() == before && self.now_ms() < end {
             self.board.read(bytes, 1)?;
@@ -131,7 +131,7 @@ impl Board for Watched {
     }
 }
 
-/// What the firmware tells of the last frame, and of the machine.
+/// Replies of the firmware: statistics of the last frame, counters of the machine.
 struct Told {
     lines: Vec<String>,
 }
@@ -160,7 +160,7 @@ impl Told {
     }
 }
 
-/// Sends lines at once, so that nothing is drawn between them, and collects all replies.
+/// Sends all lines in one write, so that no frame is drawn between them, and collects the replies.
 fn send<B: Board>(console: &mut Console<B>, lines: &[String]) -> Told {
     let text: String = lines.iter().map(|line| format!("{line}\r")).collect();
     console.board().write(text.as_bytes()).unwrap();
@@ -177,10 +177,11 @@ fn read<B: Board>(console: &mut Console<B>, address: u32, length: usize) -> Vec<
     bytes
 }
 
-/// The most bytes of a mesh: the firmware takes some 20 cycles for each when it is loaded, a second of ours for 10 kB.
+/// Largest mesh to upload, in bytes: loading costs the firmware about 20 cycles a byte, one second of simulation for
+/// 10 kB.
 const SMALL: usize = 256 << 10;
 
-/// The scenes whose meshes are small, or the others, and one that has what a large one may have: two chunks.
+/// The scenes with small meshes, or the others; the latter include a mesh of two chunks.
 fn scenes(small: bool) -> Vec<Scene> {
     let mut scenes = glint_vectors::scenes::scenes(generated);
     scenes.retain(|(_, mesh, ..)| (mesh.len() <= SMALL) == small);
@@ -208,11 +209,11 @@ fn draw(size: Size, scenes: Vec<Scene>) {
         &["backend gateware".to_owned(), "info".to_owned()],
     );
     console.board().board.inner().monitor().turn_on();
-    // Frames of the video when the last scene was drawn.
+    // Count of video frames when the last scene was drawn.
     let mut drawn = u32::MAX;
 
     for (name, mesh, view, cull) in scenes {
-        // Without its depth only the part of a frame is written that can differ.
+        // Without depth only the changed part of a frame is written.
         let others = if name == "a sphere" {
             ["2,60,100", "3,200,60"].map(view::spherical).to_vec()
         } else {
@@ -234,7 +235,7 @@ fn draw(size: Size, scenes: Vec<Scene>) {
                 render::view_command(&view),
             ];
             if number == 0 {
-                // With the bytes in place already, `load` finds their CRC-32 right and skips the transfer.
+                // The bytes are in place, so `load` finds their CRC-32 correct and skips the transfer.
                 let Manifest { length, crc32 } = Manifest::of(&mesh);
                 let memory = console.board().memory().unwrap();
                 memory.write_memory(told.address("staging"), &mesh).unwrap();
@@ -243,7 +244,7 @@ fn draw(size: Size, scenes: Vec<Scene>) {
             lines.push("info".to_owned());
             console.board().expect(&name, image.colour);
             told = send(&mut console, &lines);
-            // `render` would take back what is not on the screen yet.
+            // `render` would replace a frame before it is shown.
             while told.number("video_frames") == drawn {
                 console.board().wait_for_picture();
                 told = send(&mut console, &["info".to_owned()]);

@@ -1,4 +1,4 @@
-//! Requests to the triangle engine and their outcome: `triangle_control` before a simple engine.
+//! Requests to the triangle engine and their results: `triangle_control` before a simple engine.
 
 mod bench;
 mod passes;
@@ -12,7 +12,7 @@ use crate::control::passes::{
     RASTER, refusal, regions,
 };
 
-/// Each region of both passes, at places that are right and wrong; alone, and with the other pass.
+/// Each region of both passes, at valid and invalid addresses; with the pass alone, and with the other pass.
 #[test]
 fn regions_are_wholly_in_memory() {
     let mut bench = Bench::new(1);
@@ -20,7 +20,7 @@ fn regions_are_wholly_in_memory() {
     for which in [GEOMETRY, RASTER] {
         for size in 0..3 {
             bench.passes = Pass::good();
-            // All that there is, of the raster.
+            // Enables all regions of the raster pass.
             let flags = &mut bench.passes[which].flags;
             flags.size = size;
             flags.choose(&["cull", "first", "second", "depth", "slot", "whole"]);
@@ -67,7 +67,7 @@ fn regions_are_wholly_in_memory() {
     println!("{cases} cases");
 }
 
-/// Counts and lengths from nothing to the largest that there is: the region ends with memory, or a word beyond it.
+/// Counts and lengths from 0 to the largest: the region ends with memory, or one word beyond.
 #[test]
 fn lengths_are_counted_to_the_last_word() {
     let mut bench = Bench::new(2);
@@ -96,7 +96,7 @@ fn lengths_are_counted_to_the_last_word() {
         }
     }
 
-    // Longer than memory, wherever.
+    // Regions longer than memory, at any address.
     bench.passes = Pass::good();
     bench.passes[GEOMETRY].set("geometry.mesh", BASE);
     for bytes in [MEMORY + 16, 1 << 28, 1 << 29, 1 << 30, 1 << 31, 0xffff_fff0] {
@@ -107,7 +107,7 @@ fn lengths_are_counted_to_the_last_word() {
             "a mesh of {bytes:#x}"
         );
     }
-    // Lists of every length, for every size.
+    // Every list length with every size.
     for size in 0..4 {
         for shift in 0..32 {
             bench.passes = Pass::good();
@@ -132,9 +132,9 @@ fn lengths_are_counted_to_the_last_word() {
     }
 }
 
-/// What is not used may be anywhere.
+/// Addresses of unused regions may have any value.
 #[test]
-fn regions_without_use_are_not_looked_at() {
+fn unused_regions_are_not_checked() {
     let mut bench = Bench::new(3);
     for used in 0..8 {
         let used: Vec<_> = (0..3)
@@ -161,7 +161,7 @@ fn regions_without_use_are_not_looked_at() {
     }
 }
 
-/// A pass alone starts in time, and ends as the engine says.
+/// A single pass starts after the stated latency and ends with the engine's result.
 #[test]
 fn passes_end_as_the_engine_says() {
     let mut bench = Bench::new(4);
@@ -200,7 +200,7 @@ fn passes_end_as_the_engine_says() {
     }
 }
 
-/// Asked for again while it is pending, being checked, started, busy, done: the pass goes on and ends, once.
+/// A second ask while a pass is pending, checked, started, busy or done: the pass continues and ends once.
 #[test]
 fn asks_in_between_are_refused() {
     let mut bench = Bench::new(5);
@@ -223,7 +223,7 @@ fn asks_in_between_are_refused() {
                     bench.clock(ask);
                     bench.wait(after);
                     let was_active = bench.is_active(which);
-                    // The flags of a refused pass are ignored.
+                    // The flags of a refused ask are ignored.
                     let flags = bench.passes[which].flags.clone();
                     let mut others = flags.clone();
                     others.invert();
@@ -244,9 +244,9 @@ fn asks_in_between_are_refused() {
     }
 }
 
-/// Cancelled at any time, with one pass or both, and asked for again while the engine is not ready and later.
+/// Cancels one pass or both at any time, and asks again before and after the engine is ready.
 #[test]
-fn what_is_asked_after_a_cancel_waits_for_the_engine() {
+fn asks_after_a_cancel_wait_for_the_engine() {
     let mut bench = Bench::new(6);
     bench.runs = [12, 14];
     bench.configure();
@@ -282,7 +282,7 @@ fn what_is_asked_after_a_cancel_waits_for_the_engine() {
     }
 }
 
-/// Anything at any time.
+/// Random events in every clock.
 #[test]
 fn random_sequences() {
     let mut random = Pcg64Mcg::new(7);

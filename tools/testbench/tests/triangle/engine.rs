@@ -1,5 +1,5 @@
-//! The triangle engine makes of a mesh in memory what glint-model makes of it: the same pixels, the same depths. The
-//! clipper is the model's, as it is on the board.
+//! The triangle engine against glint-model: the same pixels and depths from a mesh in memory. Clipping is done by the
+//! model, as by the firmware on the board.
 
 mod bench;
 
@@ -12,14 +12,14 @@ use glint_vectors::scenes::{inside, scenes};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
-/// The mesh of a generated model.
+/// Bytes of a generated model's mesh.
 fn generated(name: &str) -> Vec<u8> {
     let model = generate::named(name).expect("a model");
     let converted = convert::convert(&model, convert::Options::default());
     converted.expect("a mesh").0
 }
 
-/// Draws every scene at one size, with its depth and without, in one frame buffer or the other.
+/// Draws every scene at one size, with and without depth, in either frame buffer.
 fn all_scenes(size: (u32, u32), stalls: f64) {
     let mut bench = Bench::new(size.0, stalls);
     let mut random = Pcg64Mcg::new(size.0.into());
@@ -53,13 +53,13 @@ fn scenes_at_1280x720() {
     all_scenes(SIZES[2], 0.0);
 }
 
-/// Smooth frames and flat ones in turns, with stalls and without.
+/// Smooth and flat frames in turns, with stalls and without.
 #[test]
 fn scenes_with_smooth_shading() {
     for stalls in [0.0, 0.4] {
         let mut bench = Bench::smooth(5, stalls);
         for (name, mesh, view, cull) in scenes(generated) {
-            // Large meshes have nothing new but their time.
+            // Large meshes only take longer.
             if mesh.len() > 1 << 20 {
                 continue;
             }
@@ -78,7 +78,7 @@ fn scenes_with_smooth_shading() {
     }
 }
 
-/// The same frame whatever the stalls. `GLINT_RTL_LISTS` says how many lists, 25 unless told.
+/// The frame does not depend on stalls. `GLINT_RTL_LISTS` is the number of lists, 25 by default.
 #[test]
 fn random_lists_with_random_stalls() {
     let lists = std::env::var("GLINT_RTL_LISTS").map_or(25, |text| text.parse().unwrap());
@@ -91,7 +91,7 @@ fn random_lists_with_random_stalls() {
         } else {
             Bench::new(seed, stalls)
         };
-        // Depths take three times as long.
+        // Writing depths triples the time.
         bench.with_depth = seed % 5 == 0;
         let count = random.random_range(1..200);
         let size = [0.01, 0.1, 0.5, 2.0][random.random_range(0..4)];
@@ -112,7 +112,7 @@ fn random_lists_with_random_stalls() {
     }
 }
 
-/// A frame buffer holds the frame that was drawn last, whatever was there before: only what can differ is written.
+/// A frame buffer holds the last frame whatever it held before, although only words that can differ are written.
 #[test]
 fn frames_after_each_other() {
     for seed in 0..4_u32 {
@@ -130,7 +130,7 @@ fn frames_after_each_other() {
                 5 => bench.scribble(),
                 _ => {}
             }
-            // Few triangles: most lines are empty, and others than in the frame before.
+            // Few triangles: most lines are empty, and the others change from frame to frame.
             let count = random.random_range(0..8);
             let extent = [0.02, 0.3, 1.0][random.random_range(0..3)];
             let mesh = meshes::mesh(&meshes::random(&mut random, count, extent), 65_535);
@@ -156,7 +156,7 @@ fn nothing_new_is_not_written() {
     let mut bench = Bench::new(11, 0.0);
     bench.with_depth = false;
     let nothing = meshes::mesh(&[], 100);
-    // In a picture of 1280x720 from -2 to 2 it covers 160 pixels, at most 21 words, in 90 lines.
+    // At 1280x720 from -2 to 2 the square covers 160 pixels, at most 21 words, in 90 lines.
     let square = |x: f64| {
         let [left, right, top, bottom] = [x, x + 0.5, -0.14, 0.14];
         let corner = |x, z| at(x, 0.0, z);
@@ -196,7 +196,7 @@ fn nothing_new_is_not_written() {
     }
 }
 
-/// Its clock may stand still when a pass has ended: nothing comes afterwards, the last lengths of lists neither.
+/// The engine's clock may stop when a pass has ended: no write follows, not even of the last list lengths.
 #[test]
 fn all_is_in_memory_when_a_pass_has_ended() {
     for (stalls, mesh) in [0.0, 0.3, 0.6, 0.9].into_iter().flat_map(|stalls| {
@@ -228,7 +228,7 @@ fn all_is_in_memory_when_a_pass_has_ended() {
     }
 }
 
-/// Whatever happens to a frame, the next one is right.
+/// A cancelled frame does not change the next one.
 #[test]
 fn a_cancelled_frame_leaves_a_working_engine() {
     let mesh = generated("icosphere:4");
@@ -263,11 +263,11 @@ fn a_cancelled_frame_leaves_a_working_engine() {
 }
 
 #[test]
-fn bad_meshes_and_full_lists_are_told() {
+fn bad_meshes_and_full_lists_are_reported() {
     let mesh = generated("icosphere:4");
     let expected = expected(&mesh, &inside(), SIZES[0], false);
     let mut bench = Bench::new(8, 0.3);
-    // A chunk's header is behind the mesh's, which has 32 bytes: vertices, then triangles.
+    // The chunk header follows the mesh header of 32 bytes, then come vertices and triangles.
     let damaged = |at: usize, value: u32| {
         let mut mesh = mesh.clone();
         mesh[at..at + 4].copy_from_slice(&value.to_le_bytes());
@@ -302,9 +302,10 @@ fn bad_meshes_and_full_lists_are_told() {
     }
 }
 
-/// Descriptors and lists of random bits: the frame ends, keeps to its place, is said to be wrong, and the next one is right.
+/// Descriptors and lists of random bits: the frame ends with an error, writes only its own memory, and the next frame
+/// is correct.
 #[test]
-fn whatever_lies_in_memory_a_frame_ends() {
+fn frames_end_with_random_memory() {
     let mesh = generated("icosphere:4");
     let mut bench = Bench::new(13, 0.1);
     bench.with_depth = false;
@@ -314,7 +315,7 @@ fn whatever_lies_in_memory_a_frame_ends() {
         let expected = expected(&mesh, &inside(), size, false);
         let mut descriptors: Vec<u8> = (0..48 * 300).map(|_| random.random()).collect();
         if seed % 4 > 0 {
-            // Groups within the picture, which alone are drawn: the bits from 344 on.
+            // Keeps the groups within the picture, as only these are drawn: the bits from 344 on.
             let last = (size.0 / 8 - 1) as u8;
             for descriptor in descriptors.as_chunks_mut::<48>().0 {
                 let mut groups: [u8; 3] = std::array::from_fn(|_| random.random_range(0..=last));
@@ -326,15 +327,16 @@ fn whatever_lies_in_memory_a_frame_ends() {
         let lengths = std::array::from_fn(|_| random.random_range(0..=longest));
         let list: Vec<_> = (0..40).map(|_| random.random_range(0..300)).collect();
         let name = format!("seed {seed}");
-        bench.draw_whatever(&name, &expected, &descriptors, lengths, &list);
+        bench.draw_raw(&name, &expected, &descriptors, lengths, &list);
         let wrong = bench.read("status.list_error");
         assert_eq!(wrong, u64::from(matches!(seed % 4, 0 | 3)), "{name}");
         bench.draw(&format!("after {name}"), &mesh, &expected);
     }
 }
 
-/// Pixels drawn a clock on a sphere that fills 96 % of the picture's height, memory without stalls, after the same frame: of a
-/// frame alone, from the first fetch to the last word written, and of frames whose passes overlap, where the longer one counts.
+/// Pixels drawn per clock on a sphere that fills 96 % of the picture's height, without memory stalls, after the same
+/// frame. Counted for a single frame, from the first fetch to the last word written, and for frames with overlapping
+/// passes, where the longer pass counts.
 #[test]
 fn a_sphere_is_drawn_fast() {
     for (name, size, smooth, alone, overlapped, most_read) in [
@@ -377,12 +379,12 @@ fn a_sphere_is_drawn_fast() {
             rates[0] >= alone && rates[1] >= overlapped,
             "{name}: {rates:?}"
         );
-        // Descriptors are not read in every band: without their cache it would be 1,066 and 11,888 words.
+        // Descriptors are cached across bands: without the cache 1,066 and 11,888 words would be read.
         assert!(clocks.read < most_read, "{name}: {} words", clocks.read);
     }
 }
 
-/// What is drawn next is read ahead: a memory that answers 64 clocks later costs a frame hardly more than these, once.
+/// Reads are issued ahead: 64 clocks more memory latency cost a frame hardly more than 64 clocks, once.
 #[test]
 fn latency_of_memory_is_hidden() {
     for (name, size) in [("icosphere:6", SIZES[0]), ("icosphere:12", SIZES[2])] {
@@ -403,7 +405,7 @@ fn latency_of_memory_is_hidden() {
     }
 }
 
-/// Bands without a triangle take a few clocks each.
+/// An empty band takes a few clocks.
 #[test]
 fn empty_bands_are_passed_fast() {
     let nothing = meshes::mesh(&[], 100);

@@ -1,4 +1,4 @@
-//! The band lists, as the binner leaves them in memory.
+//! The band lists in memory, as written by the binner.
 
 use glint_model::triangle::descriptor::{band_rows, list_word};
 use glint_testbench::{Bits, Layout, Memory, Module, Sink, Source, Stalls};
@@ -44,7 +44,7 @@ impl Bench {
         bench
     }
 
-    /// The type of a descriptor.
+    /// Layout of a descriptor.
     fn descriptor(&self) -> Layout {
         self.module.record("in_descriptor").layout().clone()
     }
@@ -78,7 +78,7 @@ impl Bench {
         self.module.clock();
     }
 
-    /// Takes all in and writes the lengths.
+    /// Waits until all inputs are taken, then writes the lengths.
     fn finish(&mut self) {
         let start = self.module.cycles();
         let all_in = |bench: &Self| bench.descriptors.is_empty() && bench.exceptions.is_empty();
@@ -102,7 +102,7 @@ impl Bench {
     }
 }
 
-/// Descriptors with random rows, and noise elsewhere: first and past-the-last row, and the bits.
+/// Descriptors with random rows and random other bits: first row, row past the last, bits.
 fn descriptors(
     random: &mut Pcg64Mcg,
     layout: &Layout,
@@ -128,7 +128,7 @@ fn every_band_lists_what_touches_it() {
         for stalls in [0.0, 0.6] {
             let mut random = Pcg64Mcg::new(size as u128 + 1);
             let mut bench = Bench::new(size, 1000, stalls);
-            // A second frame finds the first one's lists empty.
+            // The second frame starts with empty lists.
             for count in [90, 50] {
                 let given = descriptors(&mut random, &bench.descriptor(), count, height);
                 let exceptions: Vec<u32> = (0..30).map(|_| random.random()).collect();
@@ -175,14 +175,14 @@ fn every_band_lists_what_touches_it() {
 }
 
 #[test]
-fn what_has_no_room_is_told() {
+fn full_lists_are_reported() {
     let one_row = |random: &mut Pcg64Mcg, layout: &Layout| {
         let mut given = descriptors(random, layout, 1, 720);
         let record = layout.record_of(given.remove(0).2);
         record.with("top", 5).with("bottom", 6).bits()
     };
     let mut random = Pcg64Mcg::new(1);
-    // As many as a list has room for, and one more.
+    // As many entries as a list holds, and one more.
     let room = 4 << LIST_SHIFT;
     for (count, limit, full) in [
         (room, 1000, 0),

@@ -1,4 +1,4 @@
-//! The triangle engine's modules against the model: alone, together, and behind their registers.
+//! The triangle engine's modules against the model: each alone, together, and behind their registers.
 
 mod control;
 mod engine;

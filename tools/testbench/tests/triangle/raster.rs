@@ -1,4 +1,4 @@
-//! The rasterizer: band by band, its groups make the picture that glint-model draws.
+//! The rasterizer against glint-model: its groups, band by band, make the model's picture.
 
 mod bench;
 mod triangles;
@@ -28,7 +28,7 @@ fn random_triangles() {
     }
 }
 
-/// Smooth triangles and flat ones among each other, at depths that a frame can have.
+/// Smooth and flat triangles mixed, at all depths of a frame.
 #[test]
 fn random_triangles_smooth() {
     for (seed, source_stalls, sink_stalls) in [(4, 0.0, 0.0), (5, 0.5, 0.2), (6, 0.1, 0.7)] {
@@ -50,7 +50,7 @@ fn random_triangles_smooth() {
     }
 }
 
-/// Light from none to all over every range of depths, each triangle alone; and light that is the same everywhere.
+/// Light from 0 to the largest over every range of depths, each triangle alone; and constant light.
 #[test]
 fn extreme_light() {
     let (near, far) = (((1 << 18) - 4) * 64, 228 * 64);
@@ -86,7 +86,7 @@ fn extreme_light() {
     }
 }
 
-/// No farther than a frame can have.
+/// Clamps the depth to the farthest of a frame.
 fn visible(corner: ScreenVertex) -> ScreenVertex {
     ScreenVertex {
         w: corner.w.max(228 * 64),
@@ -94,7 +94,7 @@ fn visible(corner: ScreenVertex) -> ScreenVertex {
     }
 }
 
-/// Each alone, so that no other one hides it.
+/// Each triangle alone, so that no other one hides it.
 #[test]
 fn difficult_triangles() {
     let far = f64::from(GUARD) / 256.0;
@@ -198,7 +198,7 @@ fn difficult_triangles() {
     ];
     let mut bench = Bench::new(11, 0.3, 0.3);
     for (name, corners) in shapes {
-        // All ways round, and upside down.
+        // All orientations, and mirrored vertically.
         let [a, b, c] = corners;
         let flipped = [a, b, c].map(|v| ScreenVertex {
             x: 256 * 320 - v.x,
@@ -211,7 +211,7 @@ fn difficult_triangles() {
     assert!(numbered(SMALL, shapes.map(|(_, corners)| corners)).len() >= 20);
 }
 
-/// Depths at both ends of their range, with gradients that wrap on the way.
+/// Depths at both ends of the range, with gradients that wrap on the way.
 #[test]
 fn extreme_depths() {
     let near = ((1 << 18) - 4) * 64;
@@ -240,7 +240,7 @@ fn extreme_depths() {
     }
 }
 
-/// Triangles around a point cover each pixel within their outline once.
+/// Triangles around a point cover each pixel of their outline once.
 #[test]
 fn a_fan_covers_once() {
     let mut random = Random::new(5);
@@ -260,7 +260,7 @@ fn a_fan_covers_once() {
         let fan = (0..24).map(|i| [middle, rim[(i + 1) % 24], rim[i]]);
         let triangles = numbered(SMALL, fan);
         let counts = bench.check("fan", SMALL, &triangles);
-        // As many as pixels covered by any: those of the polygon cut otherwise.
+        // The number of covered pixels equals that of another partition of the polygon.
         let strip = (1..23).map(|i| [rim[0], rim[i + 1], rim[i]]);
         let other = bench.check("other fan", SMALL, &numbered(SMALL, strip));
         assert_eq!(counts.pixels, other.pixels);
@@ -282,7 +282,7 @@ fn whole_pictures() {
         let counts = bench.check("all of it", size, &triangles);
         assert_eq!(counts.pixels, u64::from(size.0 * size.1));
         println!("{size:?}: {counts:?}");
-        // Hardly more than the groups that there are.
+        // The walker visits few groups beyond the covered ones.
         assert!(counts.walked < counts.pixels / 8 * 11 / 10);
 
         let mut random = Random::new(6);
@@ -297,7 +297,7 @@ fn whole_pictures() {
     }
 }
 
-/// A triangle that is in no row of the band passes without a trace, and the next one is drawn.
+/// A triangle without a row in the band is dropped, and the next one is drawn.
 #[test]
 fn triangles_outside_of_the_band() {
     let mut bench = Bench::new(15, 0.0, 0.0);
@@ -324,7 +324,7 @@ fn mesh(name: &str) -> Vec<u8> {
         .0
 }
 
-/// A camera in which the mesh's sphere has 96 % of the height.
+/// A camera in which the mesh's sphere fills 96 % of the height.
 fn filling(mesh: &Mesh) -> View {
     let camera = view::spherical("3,30,60").unwrap();
     let radius = f64::from(mesh.radius()) / 16384.0;
@@ -340,7 +340,7 @@ fn filling(mesh: &Mesh) -> View {
     .unwrap()
 }
 
-/// How many pixels a clock the walker reaches on a body of small triangles.
+/// Measures the pixels per clock of the walker on a body of small triangles.
 #[test]
 fn a_sphere_is_walked_efficiently() {
     for (frequency, size, least) in [(6, SMALL, 3.3), (12, LARGE, 4.5)] {

@@ -1,4 +1,4 @@
-//! Triangle setup, culling and shading against the model's.
+//! Triangle setup, culling and shading against the model.
 
 use glint_core::colour::Rgb565;
 use glint_model::triangle::descriptor::Descriptor;
@@ -15,7 +15,7 @@ const GUARD: i32 = 2047 << 8;
 /// The largest w, u18.6.
 const NEAREST: u32 = ((1 << 18) - 1) << 6;
 
-/// What holds for a frame.
+/// Constants of a frame.
 #[derive(Clone, Copy, Debug)]
 struct Frame {
     size: (u32, u32),
@@ -32,7 +32,7 @@ struct Input {
     light: [Light; 3],
 }
 
-/// The types of a triangle's parts.
+/// Layouts of a triangle's parts.
 struct Types {
     vertices: Layout,
     vertex: Layout,
@@ -51,7 +51,7 @@ impl Types {
         }
     }
 
-    /// A vertex on the screen.
+    /// Packs a vertex on the screen.
     fn vertex(&self, vertex: ScreenVertex) -> Record {
         let record = self.vertex.record();
         record
@@ -60,7 +60,7 @@ impl Types {
             .with("w", vertex.w)
     }
 
-    /// The light of a vertex: of the one side that gets any.
+    /// Packs the light of a vertex, which belongs to one side.
     fn light(&self, light: Light) -> Record {
         let back = light.back != Lit::default();
         let Lit([r, g, b]) = if back { light.back } else { light.front };
@@ -71,7 +71,7 @@ impl Types {
             .with("blue", b / 2)
     }
 
-    /// The payload of the input stream.
+    /// Payload of the input stream.
     fn item(&self, input: &Input, ability: Shading) -> Vec<Bits> {
         let mut vertices = self.vertices.record();
         let mut lights = self.lights.record();
@@ -87,7 +87,7 @@ impl Types {
     }
 }
 
-/// The descriptor of a triangle, its first part and what follows; `None` when it is culled.
+/// The two payloads of the expected descriptor; `None` for a culled triangle.
 fn expected(frame: &Frame, input: &Input) -> Option<[Bits; 2]> {
     let oriented = Oriented::new(input.vertices)?;
     if frame.cull && oriented.facing == Facing::Back {
@@ -147,7 +147,7 @@ impl Bench {
         }
     }
 
-    /// Sends triangles of one frame through the setup and returns the clocks it took.
+    /// Sends the triangles of a frame through the setup, compares the descriptors and returns the clocks.
     fn check(&mut self, frame: &Frame, inputs: &[Input]) -> u64 {
         self.module.drive("width", frame.size.0);
         self.module.drive("height", frame.size.1);
@@ -165,7 +165,7 @@ impl Bench {
         loop {
             let cycles = self.module.cycles() - start;
             let limit = 1000 + 500 * inputs.len() as u64;
-            assert!(cycles < limit, "the setup stands still in {frame:?}");
+            assert!(cycles < limit, "the setup stalls in {frame:?}");
             let all_taken = self.source.is_empty();
             self.source.drive(&mut self.module);
             self.sink.drive(&mut self.module);
@@ -183,7 +183,7 @@ impl Bench {
         for input in inputs {
             if let Some(expected) = expected(frame, input) {
                 let mut descriptor = found.next().map(|item| [item[0], item[1]]);
-                // Planes of a flat triangle mean nothing.
+                // The planes of a flat triangle are unused.
                 if let (Some([_, planes]), Shading::Flat) = (&mut descriptor, frame.shading) {
                     let smooth = planes_type.record_of(*planes).get("smooth");
                     *planes = planes_type.record().with("smooth", smooth).bits();
@@ -201,7 +201,7 @@ impl Bench {
     }
 }
 
-/// A triangle of one of the kinds that are hard.
+/// A random triangle of a difficult kind.
 fn triangle(random: &mut Pcg64Mcg, (width, height): (u32, u32)) -> Input {
     let [w, h] = [width, height].map(|size| (size << 8) as i32);
     let mut places = [[0; 2]; 3];
@@ -215,17 +215,17 @@ fn triangle(random: &mut Pcg64Mcg, (width, height): (u32, u32)) -> Input {
             // Anywhere in the guard band, or at its ends.
             0 | 1 => [0; 2].map(|_| random.random_range(-GUARD..=GUARD)),
             2 => [0; 2].map(|_| [-GUARD, GUARD, 0, 128][random.random_range(0..4)]),
-            // As large as the picture, about.
+            // About as large as the picture.
             3 => [w, h]
                 .map(|size| [0, size][random.random_range(0..2)] + random.random_range(-600..600)),
-            // Small, tiny, and on centres or pixel corners.
+            // Small, tiny, and on pixel centres or pixel corners.
             4 | 5 => centre.map(|x| x + random.random_range(-3000..3000)),
             6 => centre.map(|x| x + random.random_range(-100..100)),
             7 => centre.map(|x| (x & !255) + 128 * random.random_range(-8..8)),
             _ => centre.map(|x| x + random.random_range(-60_000..60_000)),
         };
     }
-    // Slivers: the last vertex close to the line through the others.
+    // Slivers: the last vertex near the line through the others.
     if kind == 8 {
         let (t, [a, b, last]) = (random.random_range(0..=256), &mut places);
         for i in 0..2 {
@@ -261,7 +261,7 @@ fn triangle(random: &mut Pcg64Mcg, (width, height): (u32, u32)) -> Input {
     }
 }
 
-/// The light of a vertex that is turned to one side, or edge on.
+/// Light of a vertex that faces either side, or is seen edge on.
 fn light(random: &mut Pcg64Mcg) -> Light {
     let colour = [0, u16::MAX, random.random()][random.random_range(0..3)];
     let intensity = [0, 1, 256, random.random_range(0..=256)][random.random_range(0..4)];
@@ -342,7 +342,7 @@ fn input(places: [[i32; 2]; 3], w: [u32; 3]) -> Input {
     }
 }
 
-/// Every order of the vertices of triangles at the ends of what there is, in every size, with every facing.
+/// Every order of extreme vertices, in every size, with every facing.
 #[test]
 fn corners_of_the_guard_band_and_of_the_picture() {
     corners(Shading::Flat);
@@ -391,7 +391,7 @@ fn corners(shading: Shading) {
     }
 }
 
-/// All vertices off the same side of the picture: the bounds are empty, so the setup needs no test of its own.
+/// With all vertices off the same side of the picture the bounds are empty, so the setup needs no separate test.
 #[test]
 fn off_the_picture_is_without_a_centre() {
     let mut random = Pcg64Mcg::new(5);

@@ -1,11 +1,11 @@
-//! The vertex stage against the model's.
+//! The vertex stage against the model.
 
 use glint_model::triangle::vertex::{project, transform};
 use glint_model::{MeshSetup, Projected, SIZES, ScreenVertex};
 use glint_testbench::{Bits, Layout, Module, Record, Sink, Source, Stalls};
 use glint_vectors::{Camera, Random};
 
-/// What comes out of the stage: saturated to s12.8.
+/// Expected output of the stage, saturated to s12.8.
 fn expected(layout: &Layout, frame: &MeshSetup, position: [i16; 3]) -> Record {
     let projected = project(frame, &transform(frame, position));
     let ScreenVertex { x, y, w } = projected.place().copied().unwrap_or_default();
@@ -36,7 +36,7 @@ fn set_frame(module: &mut Module, frame: &MeshSetup) {
 
 struct Bench {
     module: Module,
-    /// The type of a vertex that comes out.
+    /// Layout of an output vertex.
     vertex: Layout,
     source: Source,
     sink: Sink,
@@ -54,7 +54,7 @@ impl Bench {
         }
     }
 
-    /// Sends vertices of one frame through the stage and returns the clocks it took.
+    /// Sends the vertices of a frame through the stage, compares the results and returns the clocks.
     fn check(&mut self, frame: &MeshSetup, positions: &[[i16; 3]]) -> u64 {
         set_frame(&mut self.module, frame);
         for position in positions {
@@ -65,7 +65,7 @@ impl Bench {
             let cycles = self.module.cycles() - start;
             assert!(
                 cycles < 1000 + 200 * positions.len() as u64,
-                "the stage stands still"
+                "the stage stalls"
             );
             self.source.drive(&mut self.module);
             self.sink.drive(&mut self.module);
@@ -82,7 +82,7 @@ impl Bench {
     }
 }
 
-/// A camera somewhere within 8 that looks at a point of the mesh, or anywhere.
+/// A camera at a distance up to 8 that looks at a point of the mesh, or in any direction.
 fn camera(random: &mut Random, round: u32) -> Camera {
     let half_width = match round % 8 {
         0 => 0.05,
@@ -124,7 +124,7 @@ fn random_cameras_and_vertices() {
         .zip(shares)
         .map(|(seed, (source, sink))| Bench::new(seed, source, sink))
         .collect();
-    // Behind, beyond the guard band, and visible.
+    // Counts of vertices behind, beyond the guard band, and visible.
     let mut seen = [0; 3];
     for round in 0..600 {
         let (width, height) = SIZES[round as usize % 3];
@@ -146,7 +146,7 @@ fn random_cameras_and_vertices() {
     assert!(seen.iter().all(|&count| count > 2000));
 }
 
-/// A frame whose near plane, depth scale or translation puts a vertex on an edge of what may be.
+/// Frames whose near plane, depth scale or translation puts a vertex at a limit.
 #[test]
 fn edges() {
     let mut random = Random(2);
@@ -185,7 +185,7 @@ fn edges() {
         }
         frame.depth = depth;
 
-        // x or y near the end of the guard band, on either side: the translation moves it there.
+        // x or y near either end of the guard band, by choice of the translation.
         let axis = random.integer(0, 1) as usize;
         let side = if random.coin() { 1 } else { -1 };
         let centre = [width, height][axis] as i64 / 2;
@@ -206,7 +206,7 @@ fn edges() {
             guard_edges += u32::from(edge.abs() <= 2);
             bench.check(&frame, &[at]);
         }
-        // As far out as it goes: X' and the place saturate.
+        // Largest translations: X' and the place saturate.
         for far in [(1 << 42) - 1, -(1 << 42), 1 << 41] {
             frame.translation[axis] = far;
             bench.check(&frame, &[at]);
@@ -218,8 +218,8 @@ fn edges() {
     assert!(near_planes > 100 && guard_edges > 1000 && full_depths > 100);
 }
 
-/// The vertex at the origin is the translation itself: mantissas of Z at both ends of each seed of the reciprocal, and X' on
-/// both sides of every limit of its rounding.
+/// The camera's coordinates of the vertex at the origin are the translation. Its values cover mantissas of Z at both
+/// ends of each seed of the reciprocal, and X' on both sides of every rounding limit.
 #[test]
 fn mantissas_and_shifts() {
     let mut random = Random(4);
@@ -229,13 +229,13 @@ fn mantissas_and_shifts() {
     for round in 0..3072 {
         let (width, height) = SIZES[round as usize % 3];
         let mut frame = MeshSetup::new(&view, width, height, RADIUS).unwrap();
-        // 0.01, the nearest that a near plane can be.
+        // 0.01, the smallest distance of a near plane.
         frame.near = 1_374_389_535;
         let seed = round / 4 % 256;
         let mantissa =
             (1 << 23) + (seed << 15) + [0, 1, (1 << 15) - 1, 1 << 14][round as usize % 4];
         let lead = random.integer(30, 40);
-        // What the mantissa cuts off is all zeros, all ones, or anything.
+        // The bits below the mantissa are all zeros, all ones, or random.
         let below = (1 << (lead - 23)) - 1;
         let z = mantissa << (lead - 23)
             | [0, below, random.bits() as i64 & below][round as usize / 1024];

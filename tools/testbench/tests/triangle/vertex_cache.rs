@@ -1,4 +1,4 @@
-//! The vertex cache between a memory and its vertex stage, which are the test's own.
+//! The vertex cache between a model of the memory and a model of the vertex stage.
 
 use std::collections::VecDeque;
 
@@ -10,18 +10,18 @@ const SLOTS: usize = 512;
 
 type Triangle = [u16; 3];
 
-/// Some 68 bits for a vertex of a chunk.
+/// 68 bits that identify a vertex of a chunk.
 fn vertex(chunk: u32, index: u16) -> Bits {
     let mixed = (u64::from(chunk) << 16 | u64::from(index)).wrapping_mul(0x9E37_79B9_7F4A_7C15);
     Bits::from_words(&[mixed as u32, (mixed >> 32) as u32, mixed as u32 >> 7 & 15])
 }
 
-/// Some 96 bits for a triangle of a chunk.
+/// 96 bits that identify a triangle of a chunk.
 fn side(chunk: u32, number: usize) -> Bits {
     Bits::from_words(&[number as u32, chunk, !(number as u32)])
 }
 
-/// What must be fetched: a direct-mapped cache of the slots, emptied by each chunk.
+/// Expected fetches: those of a direct-mapped cache that each chunk starts empty.
 fn fetches(triangles: &[Triangle]) -> Vec<u16> {
     let mut slots = [None; SLOTS];
     let all = triangles.as_flattened().iter();
@@ -36,9 +36,9 @@ struct Bench {
     fetches: Sink,
     projected: Source,
     out: Sink,
-    /// Vertices on their way through memory, and when they come.
+    /// Vertices under way, each with the clock in which it arrives.
     on_the_way: VecDeque<(u64, Bits)>,
-    /// Chunks of the vertices to be fetched, each with its index.
+    /// Expected fetches: chunk and index.
     expected_fetches: VecDeque<(u32, u16)>,
     latency: u64,
     /// Clocks between two projected vertices.
@@ -94,7 +94,7 @@ impl Bench {
         }
     }
 
-    /// Sends chunks through, and clears between them as soon as the last triangle has moved in. Returns the clocks.
+    /// Sends chunks through, with a clear as soon as the last triangle of a chunk has moved in. Returns the clocks.
     fn check(&mut self, first: u32, chunks: &[Vec<Triangle>]) -> u64 {
         let start = self.module.cycles();
         let total: usize = chunks.iter().map(Vec::len).sum();
@@ -111,12 +111,12 @@ impl Bench {
                     .push(vec![Bits::pack(16, *triangle), side(chunk, number)]);
             }
             while !self.triangles.is_empty() {
-                assert!(self.module.cycles() < limit, "the cache stands still");
+                assert!(self.module.cycles() < limit, "the cache stalls");
                 self.clock();
             }
         }
         while self.out.items().len() < total {
-            assert!(self.module.cycles() < limit, "the cache stands still");
+            assert!(self.module.cycles() < limit, "the cache stalls");
             self.clock();
         }
         let clocks = self.module.cycles() - start;
@@ -141,7 +141,7 @@ impl Bench {
     }
 }
 
-/// Triangles of a walk along a strip, of one slot's vertices, or of wild ones.
+/// Triangles along a strip, of one slot's vertices, or random ones.
 fn triangles(random: &mut Pcg64Mcg, count: usize) -> Vec<Triangle> {
     let kind = random.random_range(0..4);
     let base: u16 = random.random();
@@ -181,11 +181,11 @@ fn triangles_come_in_order_with_their_own_vertices() {
     }
 }
 
-/// A chunk finds nothing of the ones before it, however often the numbers that tell them apart begin anew.
+/// A chunk hits no vertex of earlier chunks, also after the epochs wrap.
 #[test]
 fn every_chunk_begins_empty() {
     let mut bench = Bench::new(20, [0.0; 4], 5, 1);
-    // One vertex in each chunk but the first, which leaves many behind for whoever comes by.
+    // The first chunk fills the cache; each later one has few vertices and must not hit the leftovers.
     let mut chunks = vec![(0..512).map(|i| [i, i, i]).collect::<Vec<Triangle>>()];
     chunks.extend((1..400).map(|chunk| vec![[chunk * 37 % 512; 3], [chunk * 41 % 512; 3]]));
     bench.check(1, &chunks);
@@ -210,7 +210,7 @@ fn a_triangle_in_three_clocks_when_all_is_there() {
 fn the_latency_of_memory_is_hidden() {
     let mut bench = Bench::new(40, [0.0; 4], 150, 6);
     let apart: Vec<Triangle> = (0..300).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-    // The first time comes after a sweep.
+    // The first epoch follows a sweep.
     bench.check(1, &[vec![[0; 3]]]);
     let clocks = bench.check(2, &[apart]);
     assert!(clocks <= 18 * 300 + 200, "{clocks} clocks for 900 misses");

@@ -1,4 +1,4 @@
-//! `triangle_control` with the other side of its ports: software, and an engine.
+//! Bench of `triangle_control`: software on one side, an engine on the other.
 
 use glint_testbench::{Module, Port};
 
@@ -7,46 +7,46 @@ use crate::control::passes::{
     NONE, Pass, RASTER, refusal,
 };
 
-/// What a pass has come to.
+/// State of a pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
     Idle,
-    /// Asked for in this clock, with what becomes of it if nothing comes in between.
+    /// Asked for in this clock: the clocks it will run, and its result.
     Asked(u64, u64),
-    /// Runs for so many clocks more.
+    /// Runs for this many more clocks.
     Runs(u64),
 }
 
-/// Whether it may start: not from a cancel on until the engine is ready.
+/// Readiness of the engine for a start: not from a cancel until the engine is ready.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Recovery {
     Since(u64),
     Waits,
 }
 
-/// The controller, an engine behind it, and what both should do.
+/// The controller with an engine behind it, and the expected behaviour of both.
 pub struct Bench {
     pub module: Module,
-    /// Bytes of a descriptor.
+    /// Bytes per descriptor.
     pub descriptor: u64,
     pub passes: [Pass; 2],
     pub list_shift: u64,
     pub states: [State; 2],
-    /// What `error` should say, and the flags that should be kept.
+    /// Expected `error` and `kept` of each pass.
     pub errors: [u64; 2],
     pub kept: [Option<Flags>; 2],
     pub recovery: Recovery,
     /// Clocks until the engine is ready again.
     pub ready_in: u64,
-    /// How long passes run, and what they end with.
+    /// Length and result of the engine's passes.
     pub runs: [u64; 2],
     pub ends: [u64; 2],
-    /// Asks that were taken, starts, ends.
+    /// Accepted asks, starts and ends of each pass.
     pub counts: [[u64; 3]; 2],
     pub clocks: u64,
 }
 
-/// What happens in a clock.
+/// Inputs in a clock.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Events {
     pub ask: [bool; 2],
@@ -60,7 +60,7 @@ impl Bench {
         Self::of("triangle_control", 48, seed)
     }
 
-    /// Of an engine that shades smoothly.
+    /// The variant with smooth shading.
     pub fn smooth(seed: u32) -> Self {
         Self::of("triangle_control_smooth", 96, seed)
     }
@@ -81,12 +81,12 @@ impl Bench {
             counts: [[0; 3]; 2],
             clocks: 0,
         };
-        // A clock with `ready`, which it waits for.
+        // One clock with `ready`, which starts depend on.
         bench.clock(Events::default());
         bench
     }
 
-    /// A region of a pass with counts from nothing to the most: it ends with memory, or a word beyond it.
+    /// Sets counts from 0 to the largest, for a region that ends with memory, or one word beyond.
     pub fn lengths(&mut self, which: usize, count: &str, region: &str, item: u64) {
         const MOST: u64 = (1 << 20) - 1;
         let counts: &[u64] = if item == 1 {
@@ -136,7 +136,7 @@ impl Bench {
         }
     }
 
-    /// Puts the parameters on the ports.
+    /// Drives the parameters of both passes.
     pub fn configure(&mut self) {
         for path in ["geometry.list_shift", "raster.list_shift"] {
             self.module.drive(path, self.list_shift);
@@ -157,7 +157,7 @@ impl Bench {
         self.states[which] != State::Idle
     }
 
-    /// A clock: the engine's side of it first.
+    /// Advances one clock, the engine first.
     pub fn clock(&mut self, events: Events) {
         let now = self.clocks;
         let ready = self.ready_in == 0;
@@ -202,7 +202,7 @@ impl Bench {
                     assert!(!started, "{name} starts though cancelled");
                 }
                 State::Asked(since, refusal) => {
-                    // Both may be asked for at once, and a start waits for the engine.
+                    // Both passes may be asked for in one clock, and their starts wait for the engine.
                     if let Recovery::Since(ready) = self.recovery {
                         let waited = now - since.max(ready);
                         assert!(waited <= 2 * LATENCY, "{name}: nothing for {waited} clocks");
@@ -263,7 +263,7 @@ impl Bench {
         }
     }
 
-    /// What the engine says in the clock that comes.
+    /// Drives the engine's outputs for the coming clock.
     pub fn drive_engine(&mut self) {
         for which in [GEOMETRY, RASTER] {
             // `busy` rises after the start and falls with `done`.
@@ -272,7 +272,7 @@ impl Bench {
             let name = NAMES[which];
             self.module.drive(&format!("engine.{name}_busy"), busy);
             self.module.drive(&format!("engine.{name}_done"), done);
-            // What a pass has come to counts only with `done`.
+            // Results are valid only with `done`.
             let noise = self.clocks.is_multiple_of(3);
             let says = |error| {
                 u64::from(if done {
@@ -295,7 +295,7 @@ impl Bench {
         }
         self.module.settle();
     }
-    /// Asks for passes and waits for their ends; returns the errors.
+    /// Asks for passes and waits for their ends; returns their errors.
     pub fn ask(&mut self, ask: [bool; 2]) -> [u64; 2] {
         self.configure();
         self.clock(Events {
@@ -309,7 +309,7 @@ impl Bench {
     pub fn finish(&mut self) {
         for _ in 0..1000 {
             if !self.is_active(GEOMETRY) && !self.is_active(RASTER) {
-                // What has ended stays ended, and its error stays.
+                // After the end a pass stays idle and its error holds.
                 for _ in 0..3 {
                     self.clock(Events::default());
                 }

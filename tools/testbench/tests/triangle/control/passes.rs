@@ -1,8 +1,8 @@
-//! The two passes of the engine: ports, regions of memory, refusals.
+//! The two passes of the engine: parameters, regions of memory, refusals.
 
 pub const BASE: u64 = 0x4000_0000;
 pub const MEMORY: u64 = 128 << 20;
-/// Clocks from an ask to the start, of a pass alone.
+/// Clocks from the ask for a single pass to its start.
 pub const LATENCY: u64 = 15;
 
 pub const NONE: u64 = 0;
@@ -14,12 +14,12 @@ pub const FULL: u64 = 5;
 pub const LIST: u64 = 6;
 pub const CANCELLED: u64 = 7;
 
-/// The two passes, in arrays of two.
+/// Indices of the two passes.
 pub const GEOMETRY: usize = 0;
 pub const RASTER: usize = 1;
 pub const NAMES: [&str; 2] = ["geometry", "raster"];
 
-/// The size of a picture, and whether each of the other flags is set.
+/// Flags of a pass: size of the picture, and the switches by name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Flags {
     pub size: u64,
@@ -31,7 +31,7 @@ impl Flags {
         self.others.contains(&(name, true))
     }
 
-    /// Sets the flags that are named and clears the others.
+    /// Sets the named switches and clears the others.
     pub fn choose(&mut self, names: &[&str]) {
         for (name, set) in &mut self.others {
             *set = names.contains(name);
@@ -54,7 +54,7 @@ impl Flags {
     }
 }
 
-/// A pass with its parameters: flags, and values of ports.
+/// Parameters of a pass: flags and port values.
 #[derive(Clone, Debug)]
 pub struct Pass {
     pub flags: Flags,
@@ -71,7 +71,7 @@ impl Pass {
         port.unwrap().1 = value;
     }
 
-    /// Passes that can be done.
+    /// Two passes with valid parameters.
     pub fn good() -> [Self; 2] {
         let geometry = [
             ("geometry.mesh", BASE + 0x10_0000),
@@ -121,7 +121,7 @@ impl Pass {
     }
 }
 
-/// The regions of a pass: the port with the address, and the bytes; only those that are looked at.
+/// The regions of a pass that are checked: the port with the address, and the length in bytes.
 pub fn regions(
     which: usize,
     pass: &Pass,
@@ -131,7 +131,7 @@ pub fn regions(
     let size = pass.size();
     let bands = [4, 15, 60, 60][size];
     let lists = match list_shift {
-        // A table of lengths, then lists with space between them.
+        // A table of lengths, then lists with gaps between them.
         0..=17 => 16 * (16 + (bands << list_shift) + 128 * bands),
         _ => 1 << 60,
     };
@@ -172,7 +172,7 @@ pub fn regions(
     }
 }
 
-/// Why a pass is refused.
+/// Expected error code of a pass.
 pub fn refusal(which: usize, pass: &Pass, list_shift: u64, descriptor: u64) -> u64 {
     let misplaced = |&(port, bytes): &(&str, u64)| {
         let first = pass.get(port);

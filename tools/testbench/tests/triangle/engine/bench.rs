@@ -1,4 +1,4 @@
-//! The triangle engine with a memory around it, and what it should make of it.
+//! Bench of the triangle engine: a memory around the module, and the expected frames.
 
 use glint_core::camera::View;
 use glint_core::mesh::Mesh;
@@ -11,7 +11,7 @@ use glint_testbench::{Bits, Counters, Memory, Module, ReadPort, Stalls, WritePor
 
 pub const SIZES: [(u32, u32); 3] = glint_model::SIZES;
 
-// Where things are in memory, by words of 16 bytes. Set 0 is the engine's, set 1 that of the clipper.
+// Memory map, in words of 16 bytes. Set 0 belongs to the engine, set 1 to the clipper.
 const FRAMES: [u32; 2] = [0, 0x6_0000];
 const DEPTH: u32 = 0x2_0000;
 const LISTS: [u32; 2] = [0x8_0000, 0xc_0000];
@@ -19,15 +19,15 @@ const DESCRIPTORS: [u32; 2] = [0x10_0000, 0x14_0000];
 const EXCEPTIONS: u32 = 0x18_0000;
 const MESH: u32 = 0x1c_0000;
 const WORDS: usize = 0x20_0000;
-/// Words of a list, as a power of two.
+/// Words per list, as a power of two.
 const LIST_SHIFT: u32 = 11;
-/// Words behind a picture that nobody may touch: more than a bank of the band buffer has.
+/// Words behind a picture that must not change: more than a bank of the band buffer holds.
 const BEHIND: usize = 4096;
-/// The most exceptions, and the most descriptors of three words.
+/// Limit of exceptions, and of descriptors in units of three words.
 const LIMIT: u32 = 80_000;
 pub const CLEAR: u16 = 0x1234;
 
-/// What the model draws.
+/// A frame drawn by the model.
 pub struct Expected {
     pub size: (u32, u32),
     options: Options,
@@ -43,7 +43,7 @@ pub fn expected(mesh: &[u8], view: &View, size: (u32, u32), cull: bool) -> Expec
     expected_on(CLEAR, mesh, view, size, cull)
 }
 
-/// Draws with the model, on another colour.
+/// Draws with the model, with the clear colour `clear`.
 pub fn expected_on(clear: u16, mesh: &[u8], view: &View, size: (u32, u32), cull: bool) -> Expected {
     let options = Options {
         cull,
@@ -53,7 +53,7 @@ pub fn expected_on(clear: u16, mesh: &[u8], view: &View, size: (u32, u32), cull:
     expected_with(options, mesh, view, size)
 }
 
-/// Draws with the model, smoothly.
+/// Draws with the model, with smooth shading.
 pub fn expected_smooth(mesh: &[u8], view: &View, size: (u32, u32), cull: bool) -> Expected {
     let options = Options {
         cull,
@@ -100,7 +100,7 @@ fn expected_with(options: Options, mesh: &[u8], view: &View, size: (u32, u32)) -
     }
 }
 
-/// Lists and descriptors of the clipped triangles, as the firmware leaves them.
+/// Writes lists and descriptors of the clipped triangles, as the firmware does.
 fn write_clipped(memory: &mut Memory, expected: &Expected, ability: Shading) {
     let (width, height) = expected.size;
     let rows = band_rows(width);
@@ -138,15 +138,16 @@ pub struct Bench {
     memory: Memory,
     pub reads: [ReadPort; 3],
     writes: [WritePort; 4],
-    /// Whether depths are written and compared as well.
+    /// Writes and compares depths too.
     pub with_depth: bool,
-    /// The frame buffer that is drawn in.
+    /// Frame buffer to draw in.
     pub slot: usize,
-    /// Size and clear colour of what is in the frame buffers, where it is not the engine that knows that it is nothing whole.
+    /// Size and clear colour of the last frame in each frame buffer, or `None` before the first one, which the engine writes
+    /// whole without a request.
     left: [Option<((u32, u32), u16)>; 2],
 }
 
-/// Clocks of the two passes, the words that the raster pass read, and those of the frame and its depth that were written.
+/// Clocks of the two passes, words read by the raster pass, and words written of the frame and its depths.
 pub struct Clocks {
     pub geometry: u64,
     pub raster: u64,
@@ -155,12 +156,12 @@ pub struct Clocks {
 }
 
 impl Bench {
-    /// Stalls in a share of the clocks on every side of the memory.
+    /// A bench with the module for flat shading, and stalls in a share of the clocks on every side of the memory.
     pub fn new(seed: u32, stalls: f64) -> Self {
         Self::of(Shading::Flat, seed, stalls)
     }
 
-    /// The same with gateware that shades smoothly too.
+    /// As [`new`](Self::new), with smooth shading built.
     pub fn smooth(seed: u32, stalls: f64) -> Self {
         Self::of(Shading::Smooth, seed, stalls)
     }
@@ -197,7 +198,7 @@ impl Bench {
         self.module.read(path)
     }
 
-    /// The sum of an event so far.
+    /// The count of an event.
     pub fn count(&self, event: &str) -> u64 {
         self.counters.get(event)
     }
@@ -220,7 +221,7 @@ impl Bench {
         self.module.clock();
     }
 
-    /// Clocks until a port is high.
+    /// Runs until a port is high; returns the number of clocks.
     pub fn wait_for(&mut self, port: &str) -> u64 {
         let (port, start) = (self.module.port(port), self.module.cycles());
         while !self.module.is_high(port) {
@@ -237,12 +238,12 @@ impl Bench {
         self.module.cycles() - start
     }
 
-    /// Words written so far.
+    /// Words written by all ports.
     pub fn written(&self) -> u64 {
         self.writes.iter().map(|write| write.written).sum()
     }
 
-    /// Words of frames and depths written so far.
+    /// Words of frames and depths written.
     fn frame_words(&self) -> u64 {
         self.writes[2].written + self.writes[3].written
     }
@@ -253,7 +254,7 @@ impl Bench {
         self.set(port, 0);
     }
 
-    /// Gives the engine a mesh, the frame's constants and the places of everything.
+    /// Sets the engine's parameters: mesh, frame constants, memory map.
     pub fn configure(&mut self, mesh: &[u8], expected: &Expected) {
         self.memory.write(MESH, mesh);
         let frame = &expected.frame;
@@ -267,7 +268,7 @@ impl Bench {
         let options = &expected.options;
         let bytes = |word: u32| u64::from(word) * 16;
         for (path, value) in [
-            // The mesh begins with a header of two words.
+            // The mesh header has two words.
             ("geometry.mesh", bytes(MESH + 2)),
             (
                 "geometry.mesh_bytes",
@@ -358,12 +359,12 @@ impl Bench {
         }
     }
 
-    /// Draws whatever these descriptors and lists are: the list of each band has so many entries, of which there are
-    /// `lists`, for all bands the same.
+    /// Draws from raw descriptors and lists: the list of each band has the same number of entries, taken from
+    /// `lists`, in every band.
     ///
     /// # Panics
     /// When that does not end, or anything is written behind the picture.
-    pub fn draw_whatever(
+    pub fn draw_raw(
         &mut self,
         name: &str,
         expected: &Expected,
@@ -399,14 +400,14 @@ impl Bench {
         }
     }
 
-    /// Writes a picture's worth of something else into the frame buffer.
+    /// Overwrites the frame buffer.
     pub fn scribble(&mut self) {
         self.memory
             .write(FRAMES[self.slot], &[0x99; 1280 * 720 * 2]);
         self.left[self.slot] = Some(((0, 0), 0));
     }
 
-    /// The frame in memory is the one expected.
+    /// Compares the frame in memory with the expected one.
     fn compare(&self, name: &str, expected: &Expected) {
         for i in 0..expected.colour.len() as u32 {
             let (x, y) = (i % expected.size.0, i / expected.size.0);

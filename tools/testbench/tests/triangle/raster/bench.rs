@@ -1,4 +1,4 @@
-//! The raster pass of one band after the other, and the picture of its groups.
+//! Bench of the raster pass: draws one band after the other and assembles the picture from the groups.
 
 use glint_model::triangle::descriptor::{Descriptor, band_rows};
 use glint_model::triangle::raster::draw;
@@ -17,11 +17,11 @@ pub struct Pixel {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Counts {
     pub clocks: u64,
-    /// Clocks in which the walker was at a group.
+    /// Clocks spent on a group by the walker.
     pub walked: u64,
-    /// Those of them in which no group went to the lanes.
+    /// Of these, clocks without a group for the lanes.
     pub empty: u64,
-    /// Groups that came out.
+    /// Groups at the output.
     pub groups: u64,
     pub pixels: u64,
     /// Triangles, counted in each band.
@@ -40,12 +40,12 @@ pub struct Bench {
 }
 
 impl Bench {
-    /// Of flat triangles, which are told by their colours.
+    /// The variant for flat triangles, which are identified by their colours.
     pub fn new(seed: u32, source_stalls: f64, sink_stalls: f64) -> Self {
         Self::of("triangle_raster", seed, source_stalls, sink_stalls)
     }
 
-    /// Of flat and smooth ones.
+    /// The variant for flat and smooth triangles.
     pub fn smooth(seed: u32, source_stalls: f64, sink_stalls: f64) -> Self {
         Self::of("triangle_raster_smooth", seed, source_stalls, sink_stalls)
     }
@@ -75,7 +75,7 @@ impl Bench {
         }
     }
 
-    /// The groups of a band, which ends when the rasterizer is idle.
+    /// The groups of a band. The band ends when the rasterizer is idle.
     pub fn band<'a>(
         &mut self,
         [y0, rows, stride]: [u32; 3],
@@ -109,7 +109,7 @@ impl Bench {
         self.sink.take()
     }
 
-    /// Draws triangles, all bands that they touch, and compares with the model.
+    /// Draws triangles in all bands they touch, and compares with the model.
     pub fn check(&mut self, name: &str, size: (u32, u32), triangles: &[Triangle]) -> Counts {
         let (width, height) = size;
         let blank = Pixel {
@@ -117,7 +117,7 @@ impl Bench {
             depth: 0,
         };
         let mut picture = vec![blank; (width * height) as usize];
-        // The last triangle that came out at a pixel.
+        // The last triangle drawn at each pixel.
         let mut last = vec![None; picture.len()];
         let all_flat = triangles.iter().all(|t| t.setup.light.is_none());
         self.counts = Counts::default();

@@ -1,4 +1,4 @@
-//! Triangles on the screen, numbered by their colours.
+//! Triangles on the screen, numbered by colour.
 
 use glint_core::colour::Rgb565;
 use glint_model::ScreenVertex;
@@ -15,7 +15,7 @@ pub const LANES: usize = 8;
 
 pub type Corners = [ScreenVertex; 3];
 
-/// A triangle to be drawn. If it is flat its colour is its number.
+/// A triangle to draw. The colour of a flat one is its number.
 pub struct Triangle {
     pub corners: Corners,
     pub setup: Setup,
@@ -23,7 +23,7 @@ pub struct Triangle {
 }
 
 impl Triangle {
-    /// `None` if there is nothing to be drawn.
+    /// Sets up a triangle; `None` if it has no area or misses the picture.
     pub fn new(corners: Corners, (width, height): (u32, u32), number: usize) -> Option<Self> {
         let oriented = Oriented::new(corners)?;
         let bounds = Bounds::new(&oriented.vertices, width, height)?;
@@ -34,7 +34,7 @@ impl Triangle {
         })
     }
 
-    /// The same with light.
+    /// The same triangle with light.
     pub fn with_light(mut self, lit: &[Lit; 3]) -> Self {
         let oriented = Oriented::new(self.corners).unwrap();
         self.setup = Setup::smooth(&oriented, self.setup.bounds, lit);
@@ -42,7 +42,7 @@ impl Triangle {
     }
 }
 
-/// Numbers the triangles that there is something of.
+/// Numbers the triangles that cover part of the picture.
 pub fn numbered(size: (u32, u32), all: impl IntoIterator<Item = Corners>) -> Vec<Triangle> {
     let mut triangles = Vec::new();
     for corners in all {
@@ -51,7 +51,7 @@ pub fn numbered(size: (u32, u32), all: impl IntoIterator<Item = Corners>) -> Vec
     triangles
 }
 
-/// Places in 1/256 pixel.
+/// A vertex; the place is in 1/256 pixel.
 pub fn corner([x, y]: [i32; 2], w: u32) -> ScreenVertex {
     ScreenVertex { x, y, w }
 }
@@ -97,7 +97,7 @@ impl Random {
         corner([0; 2].map(|_| self.within(-reach, reach)), self.depth())
     }
 
-    /// Up to `reach` pixels from a place, in steps of `step`/256.
+    /// A random vertex up to `reach` pixels from a place, in steps of `step`/256.
     pub fn near(&mut self, [x, y]: [i32; 2], reach: i32, step: i32) -> ScreenVertex {
         let reach = 256 * reach / step;
         let mut around = |c: i32| 256 * c + step * self.within(-reach, reach);
@@ -105,7 +105,7 @@ impl Random {
         corner(place, self.depth())
     }
 
-    /// Of all sizes and shapes.
+    /// A random triangle, of any size and shape.
     pub fn triangle(&mut self, (width, height): (u32, u32)) -> Corners {
         let (w, h) = (width as i32, height as i32);
         let place = [self.within(0, w), self.within(0, h)];
@@ -116,7 +116,7 @@ impl Random {
             3 | 4 => [0; 3].map(|_| self.near(place, 20, 1)),
             5 => [0; 3].map(|_| self.near(place, 2, 1)),
             6 => [0; 3].map(|_| self.near(place, 1, 16)),
-            // Corners on pixel centres and edges, horizontal and vertical edges.
+            // Vertices on pixel centres and edges; horizontal and vertical edges.
             7 => [0; 3].map(|_| self.near(place, 12, 128)),
             8 => {
                 let wide = [place[0] / 8 * 8, place[1]];
