@@ -62,7 +62,7 @@ class I2CMaster(LiteXModule):
             CSRField("failed", offset=4, description="An error has ended the transaction; commands wait for `clear`."),
             CSRField("error", size=ERRORS.bits, offset=8, values=ERRORS.values, description="Error."),
         ], description="State.")
-        # The engine's queues have a register behind them.
+        # One entry more than the FIFO's places: the output register.
         self.constants = {
             "command_places": (COMMANDS + 1, "Places in the queue of commands."),
             "answer_places": (ANSWERS + 1, "Places in the queue of received bytes."),

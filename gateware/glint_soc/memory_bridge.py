@@ -36,7 +36,7 @@ class MemoryBridge(LiteXModule):
         beat = address[:2]
         self.comb += address.eq(bus.adr - base_address // (_BUS_BITS // 8))
 
-        # Data of writes, from the command's acceptance to the moment the controller asks for them.
+        # Data of writes, from the command's acceptance until the controller requests them.
         self.writes = writes = stream.SyncFIFO([("data", _BUS_BITS), ("sel", _BUS_BITS // 8), ("beat", 2)], depth=8)
         # Both words of a line: the controller sends them without back-pressure.
         self.reads = reads = stream.SyncFIFO([("data", _PORT_BITS)], depth=2)
@@ -53,10 +53,10 @@ class MemoryBridge(LiteXModule):
             bus.dat_r.eq(Array(reads.source.data[_BUS_BITS * word:][:_BUS_BITS] for word in range(_WORDS))[beat]),
         ]
 
-        # The second half of the line, kept because the bus may have gone when it is asked for.
+        # Second half of the line, kept because the bus access may have ended when it arrives.
         second = Signal.like(port.cmd.addr)
 
-        # Words asked for and not yet taken out of `reads`.
+        # Requested words not yet taken out of `reads`.
         owed = Signal(max=3)
         asked = Signal()
         taken = Signal()
@@ -99,7 +99,7 @@ class MemoryBridge(LiteXModule):
         fsm.act("SERVE",
             bus.ack.eq(bus.cyc & bus.stb & ~bus.we & reads.source.valid),
             If(bus.ack,
-                # The burst's last word, or the last one that was asked for: what else it wants is asked for anew.
+                # Last word of the burst, or last requested word: further words need a new request.
                 reads.source.ready.eq(~more | (beat == _WORDS - 1)),
                 If(~more | ((beat == _WORDS - 1) & (owed == 1)),
                     NextState("DROP"),

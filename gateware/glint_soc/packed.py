@@ -31,7 +31,7 @@ class Struct:
     @property
     def value(self):
         """All members as one value for a port of this type, an input or an output."""
-        # SystemVerilog's first member is the highest, Migen's the lowest.
+        # SystemVerilog lists the highest member first, Migen the lowest.
         return Cat(*(_flat(value) for value in reversed(self._members.values())))
 
     def typedef(self):
@@ -57,7 +57,7 @@ def _type(value):
         return value.name
     if isinstance(value, list):
         element, = {_type(element) for element in value}
-        # The dimension of the list stands before those of its elements.
+        # The dimension of the array comes before the dimensions of its elements.
         name, *dimensions = element.split(" ")
         return f"{name} {''.join([f'[{len(value) - 1}:0]', *dimensions])}"
     return "logic" if len(value) == 1 else f"logic [{len(value) - 1}:0]"

@@ -41,7 +41,7 @@ PINNED = {
 
 BOARD_SPECIFIC = ("ddrphy", "uart_phy")
 
-# Blocks that a build may leave out, with their bit in the register `identity_blocks`.
+# Optional blocks, with their bit in the register `identity_blocks`.
 OPTIONAL_BLOCKS = {"scanout": 0, "triangle": 1, "raymarch": 2}
 
 CSR_MAP = {name: location.window for name, location in PINNED.items()}

@@ -13,7 +13,7 @@ RTL = Path(__file__).resolve().parent.parent / "rtl"
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.S)
 _DEFINITION = re.compile(r"^\s*(module|package)\s+(\w+)", re.M)
 _PACKAGE_USE = re.compile(r"\b(\w+)::")
-# A module, then its parameters or the instance and its ports; not the label of a block.
+# Matches a module name before parameters or an instance with ports, but no block label.
 _INSTANCE = re.compile(r"(?<!: )\b(\w+)\s+(?:#\s*\(|\w+\s*\()")
 
 
@@ -56,7 +56,7 @@ def sources(*tops, others=()):
         uses = {*_PACKAGE_USE.findall(text), *_INSTANCE.findall(text)} & library.keys()
         for use in sorted(uses - {name}):
             visit(use)
-        # Reinsert behind its dependencies.
+        # Reinserts the file behind its dependencies.
         del found[path]
         found[path] = None
 

@@ -13,7 +13,7 @@ from .rtl import add_sources
 
 IDENT = int.from_bytes(b"TRIA", "big")
 
-# A group of one pixel, or of its half for one eye.
+# Group of the raymarcher: one pixel, or one eye's half of it.
 _FIELD_GROUP = [("halves", 2), ("row", 11), ("line", 6), ("column", 8), ("mask", 8), ("code", 18), ("colour", 16)]
 
 _ADDRESS_BITS = 23
@@ -77,7 +77,7 @@ class TriangleEngine(LiteXModule):
             "memory.")
         self.ev.finalize()
 
-        # Geometry: parameters that hold while it runs.
+        # Parameters of the geometry pass, constant while it runs.
         self._geometry = CSRStorage(name="geometry", fields=[
             CSRField("start", offset=0, pulse=True, description="Write 1 to start."),
             CSRField("cull", offset=1, description="Cull back faces."),
@@ -118,7 +118,7 @@ class TriangleEngine(LiteXModule):
             CSRField("exponent", size=4, offset=17, description="ke, two's complement."),
         ], description="Depth scale K = km * 2^ke.")
 
-        # Raster: parameters that hold while it runs.
+        # Parameters of the raster pass, constant while it runs.
         self._raster = CSRStorage(name="raster", fields=[
             CSRField("start", offset=0, pulse=True, description="Write 1 to start."),
             CSRField("size", size=SIZES.bits, offset=1, values=SIZES.values, description="Size of the picture."),
@@ -176,7 +176,7 @@ class TriangleEngine(LiteXModule):
 
         # # #
 
-        # The engine needs its clock only at these times.
+        # Gated clock: the engine runs while `working` and shortly after.
         self.clk = Signal()
         self.clock_enable = Signal()
         recovering, linger = Signal(), Signal(5)

@@ -14,7 +14,7 @@ _io = [
     ("switches", 0, Pins("G1 F2 F1 E2 E1 D2 D1 C2 B2 A4 A5 A6 C7 A7 B7 A8"), _BANK_35),
     ("leds", 0, Pins("C13 C14 D14 D15 D16 F18 E17 D17 C17 B18 A17 B17 C18 D18 E18 G17"), IOStandard("LVCMOS33")),
 
-    # Seen from the FPGA. The vendor's file names these pins from the side of the USB bridge.
+    # Directions as seen from the FPGA. The vendor's file names these pins as seen from the USB bridge.
     ("serial", 0,
         Subsignal("rx", Pins("B16")),
         Subsignal("tx", Pins("A16")),

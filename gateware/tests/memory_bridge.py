@@ -126,7 +126,7 @@ def master(bus, memory, rng, errors, counts):
                                   f"expected {expected[word + n]:#010x}, got {found:#010x}")
                     return
         if kind == "given up" and stop == 0:
-            # It left after the command was sent, perhaps.
+            # The access may have left after the command was sent.
             yield bus.adr.eq(BASE // 4 + word)
             yield bus.cti.eq(wishbone.CTI_BURST_INCREMENTING)
             for _ in range(rng.randint(1, 12)):

@@ -85,7 +85,7 @@ module band_buffer #(
 );
     localparam int unsigned ROW_BITS = 11;
 
-    // Which bank is drawn; the other one is flushed.
+    // The bank that is drawn; the other one is flushed.
     logic drawn, closing, swap;
 
     // The draw side.
@@ -153,7 +153,7 @@ module band_buffer #(
     for (genvar bank = 0; bank < 2; bank++) begin : banks
         logic                    flushes;
         logic [8*PIXEL_BITS-1:0] store;
-        // While the banks are cleared, groups that were still on their way are not written.
+        // Groups still under way are not written while the banks are cleared.
         assign flushes = clearing || drawn != 1'(bank);
 
         for (genvar lane = 0; lane < 8; lane++) begin : lanes

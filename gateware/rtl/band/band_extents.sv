@@ -33,9 +33,9 @@ module band_extents #(
     input  wire                     clk,
     input  wire                     rst,
     input  wire                     sweep,
-    // The bank that is drawn.
+    // Bank that is drawn.
     input  wire                     drawn,
-    // Groups that have a pixel.
+    // Groups with at least one pixel.
     input  wire                     group_valid,
     input  wire  [LINE_BITS-1:0]    group_line,
     input  wire  [COLUMN_BITS-1:0]  group_column,
@@ -123,14 +123,14 @@ module band_extents #(
         if (rst || sweep) planning <= 1'b0;
     end
 
-    // The last extent and the new one, written a clock after the read.
+    // The last extent and the new one are written a clock after the read.
     (* ram_style = "block", rw_addr_collision = "no", no_rw_check *)
     logic [EXTENT_BITS-1:0] last [0:2**PLACE_BITS-1];
     logic [PLACE_BITS-1:0]  from, to;
     logic [EXTENT_BITS-1:0] to_store, latched, earlier, now_1, now_2, now_3, united_4;
     logic                   to_write;
     logic [4:1]             valid;
-    // Of the line in the last stage.
+    // Line in the last stage.
     logic [ROW_BITS-1:0]    line_row;
 
     always_ff @(posedge clk) begin

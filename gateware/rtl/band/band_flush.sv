@@ -25,7 +25,7 @@
 module band_flush #(
     parameter int unsigned ADDRESS_BITS = 23,
     parameter int unsigned ROW_BITS     = 11,
-    // Words on their way, a power of two. A place is free again 7 clocks after its row was asked for.
+    // Most words under way, a power of two. A place is free again 7 clocks after the request of its row.
     parameter int unsigned WORDS        = 16,
     parameter bit          STEREO       = 1'b0
 ) (
@@ -49,7 +49,7 @@ module band_flush #(
     input  wire  [ROW_BITS-1:0]     span_first,
     input  wire  [ROW_BITS-1:0]     span_last,
     input  wire                     spans_busy,
-    // Bank: what is there belongs to the `row` of 3 clocks before. `clears`: `clear_row` is to be marked as not written.
+    // Bank port: its data belong to the `row` of 3 clocks before. `clears` marks `clear_row` as not written.
     output logic [ROW_BITS-1:0]     row,
     input  wire  [8*16-1:0]         colours,
     input  wire  [8*18-1:0]         codes,
@@ -64,7 +64,7 @@ module band_flush #(
 );
     localparam int unsigned COUNT_BITS = $clog2(WORDS + 1);
 
-    // The words of a row.
+    // Words of the current row.
     typedef enum logic [1:0] {COLOUR, DEPTH_LEFT, DEPTH_RIGHT} part_t;
 
     typedef enum logic [1:0] {IDLE, FLUSH, SWEEP} state_t;
@@ -75,7 +75,7 @@ module band_flush #(
     logic [15:0]           background;
     logic [1:0]            composing;
     logic [ADDRESS_BITS-1:0] colour_base, depth_words_base;
-    // Words that may still be asked for.
+    // Words that may still be requested.
     logic [COUNT_BITS-1:0] places;
 
     assign idle        = state == IDLE && places == COUNT_BITS'(WORDS);
@@ -88,7 +88,7 @@ module band_flush #(
     assign span_ends   = issue && part_ends && part == last_part;
     assign span_ready  = state == FLUSH && (!in_span || span_ends);
 
-    // Rows, and their clearing a clock behind: the read is then under way.
+    // Rows, and their clearing a clock later, when the read is under way.
     always_ff @(posedge clk) begin
         clears    <= 1'b0;
         clear_row <= row;
@@ -137,13 +137,13 @@ module band_flush #(
         end
     end
 
-    // The way through the bank.
+    // Pipeline parallel to the bank's read.
     logic  asked_0, asked_1, asked_2;
     part_t part_0, part_1, part_2;
     logic [ADDRESS_BITS-1:0] address_1, address_2, address;
 
     always_ff @(posedge clk) begin
-        // Here `clear_row` is the row that was asked for.
+        // Here `clear_row` is the requested row.
         case (part_0)
             COLOUR:     address_1 <= colour_base + ADDRESS_BITS'(clear_row);
             DEPTH_LEFT: address_1 <= depth_words_base + ADDRESS_BITS'({clear_row, 1'b0});
@@ -202,7 +202,7 @@ module band_flush #(
         endcase
     end
 
-    // There is a place: `word_ready` is always high when a word comes.
+    // A place is reserved, so `word_ready` is high whenever a word comes.
     fifo #(.WIDTH(ADDRESS_BITS + 128), .DEPTH(WORDS)) words (
         .clk, .rst,
         .in_valid(word_valid), .in_ready(word_ready), .in_data({address, word}),

@@ -30,7 +30,7 @@ module band_pipe #(
     input  wire  [1:0]          group_halves,
     input  wire  [8*18-1:0]     group_codes,
     input  wire  [8*16-1:0]     group_colours,
-    // Memories. `stored` and `stored_written` belong to the `read_row` of 3 clocks before.
+    // Memory ports. `stored` and `stored_written` belong to the `read_row` of 3 clocks before.
     output logic [ROW_BITS-1:0] read_row,
     input  wire  [8*18-1:0]     stored,
     input  wire  [7:0]          stored_written,
@@ -54,7 +54,7 @@ module band_pipe #(
     group_t     issued, reading_0, reading_1, comparing;
     logic       issued_valid, issue;
     logic [2:0] occupied;
-    // Clocks that the issued group still has to wait.
+    // Remaining clocks of the issued group's wait.
     logic [1:0] hold;
 
     assign held        = issued_valid && hold != '0;
@@ -63,7 +63,7 @@ module band_pipe #(
     assign read_row    = issued.row;
     assign empty       = !issued_valid && occupied == '0;
 
-    // Found while a group comes in, so that `group_ready` does not wait for a comparison. A place without a group has no mask.
+    // Compared at the input, so that `group_ready` does not wait for a comparison. An empty place has no mask.
     logic conflict_issued, conflict_0, conflict_1;
     assign conflict_issued = issued_valid && group_row == issued.row && (group_mask & issued.mask) != '0;
     assign conflict_0      = group_row == reading_0.row && (group_mask & reading_0.mask) != '0;

@@ -8,7 +8,7 @@ module clock_gate (
     input  wire  enable,
     output logic gated
 );
-    // Open from the start, so that the first edge finds the reset.
+    // Open initially, so that the first edge sees the reset.
     logic open = 1'b1;
 
     always_ff @(negedge clk) open <= enable;

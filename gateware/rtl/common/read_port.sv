@@ -46,11 +46,11 @@ module read_port #(
 );
     localparam int unsigned CLIENT_BITS = CLIENTS > 1 ? $clog2(CLIENTS) : 1;
     localparam int unsigned ROOM_BITS   = $clog2(DEPTH + 1);
-    // All that can be on its way at once.
+    // Most words under way.
     localparam int unsigned OWNER_BITS  = $clog2(CLIENTS * DEPTH);
 
-    // Whose turn it is, chosen a clock ahead: the last one's while it may go on, or that of the next that asks. No path leads
-    // from a client's request through the choice back to it. A turn that its client does not use passes.
+    // The client of the next command, chosen a clock ahead: the same client while it may continue, otherwise the next
+    // one with a request. The choice does not depend on requests in the same clock. A turn without a request passes.
     logic [CLIENT_BITS-1:0] turn, first, chosen, asker;
     logic [CLIENTS-1:0]     servable, taken;
     logic                   given, any, moves;
@@ -86,7 +86,7 @@ module read_port #(
         end
     end
 
-    // The owners of the words that are on their way, in order.
+    // Owner of each word under way, in order.
     (* ram_style = "distributed" *) logic [CLIENT_BITS-1:0] owners [0:2**OWNER_BITS-1];
     logic [OWNER_BITS:0]    asked, answered;
     logic [CLIENT_BITS-1:0] owner;
@@ -117,7 +117,7 @@ module read_port #(
     end
 
     for (genvar i = 0; i < CLIENTS; i++) begin : client
-        // Places of the FIFO that are neither full nor promised.
+        // Free places of the FIFO that are not reserved.
         logic [ROOM_BITS-1:0] room;
         logic                 has_turn, asks, bursting;
 
@@ -138,7 +138,7 @@ module read_port #(
             end
         end
 
-        // The places are there: `in_ready` is always high when something comes.
+        // The places are reserved, so `in_ready` is high whenever a word comes.
         /* verilator lint_off PINCONNECTEMPTY */
         fifo #(.WIDTH(128), .DEPTH(DEPTH)) words (
             .clk       (clk),

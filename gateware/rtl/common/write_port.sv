@@ -45,7 +45,7 @@ module write_port #(
     assign move     = in_valid && in_ready;
     assign in_ready = room;
 
-    // Addresses leave before their data: where there is room for data there is room for them.
+    // Addresses leave before their data: room for data implies room for addresses.
     /* verilator lint_off PINCONNECTEMPTY */
     fifo #(.WIDTH(ADDRESS_BITS), .DEPTH(DEPTH)) addresses (
         .clk       (clk),

@@ -62,7 +62,7 @@ module i2c_engine #(
     output logic        busy,
     output logic        failed,
     output logic [2:0]  error,
-    // One clock: a transaction, or the last one of a batch, has ended, or an error.
+    // High for one clock at the end of a transaction or of a batch, or at an error.
     output logic        ended,
     // State of the wires, and their drivers: 0 pulls low, 1 releases.
     output logic        scl,
@@ -80,7 +80,8 @@ module i2c_engine #(
     localparam int unsigned PHASE_BITS = $clog2(PHASE);
     localparam logic [3:0]  LAST_CLOCK = 4'd8;
 
-    // IDLE: the bus is free. HELD: within a transaction. FALL: the start itself. RISE: the stop itself. FREE: after it.
+    // States: IDLE, the bus is free; HELD, within a transaction; FALL, start condition; RISE, stop condition; FREE,
+    // bus free time after a stop.
     typedef enum logic [3:0] {IDLE, HELD, SET, HIGH, LOW, FALL, RISE, FREE, FAILED} state_t;
     state_t state;
 
@@ -89,7 +90,7 @@ module i2c_engine #(
     logic                  pending, taken, room, received;
     logic [1:0]            operation;
     logic [7:0]            bytes;
-    // Sent from the top, received at the bottom: a byte and its acknowledge.
+    // Shift register, sent from the top and filled from the bottom: a byte and its acknowledge.
     logic [8:0]            shift;
     logic [3:0]            clocks;
     // The next byte is an address.

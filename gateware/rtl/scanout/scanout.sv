@@ -31,7 +31,7 @@ module scanout #(
     input  wire                     sys_rst,
     input  wire                     pix_clk,
     input  wire                     pix_rst,
-    // Requested by software, latched at vblank. The base is in words of 16 bytes, the scale 4, 2 or 1.
+    // Settings requested by software, latched at vblank. The base is in words of 16 bytes, the scale is 4, 2 or 1.
     input  wire                     enable,
     input  wire  [2:0]              scale,
     input  wire  [ADDRESS_BITS-1:0] frame_base,
@@ -91,7 +91,7 @@ module scanout #(
 
     /* verilator lint_on PINCONNECTEMPTY */
 
-    // As a level, so that a reset of the sys side blacks the screen at once.
+    // A level, so that a reset of the sys side blacks the screen at once.
     logic pix_enabled;
     cdc_level cross_enabled (.clk(pix_clk), .level(enabled), .synced(pix_enabled));
 

@@ -33,7 +33,7 @@ module scanout_fetch #(
     input  wire                     cmd_ready,
     output logic [ADDRESS_BITS-1:0] cmd_addr,
     input  wire                     rdata_valid,
-    // Line ring, to be written with the memory's data.
+    // Write port of the line ring.
     output logic                    store,
     output logic                    store_slot,
     output logic [WORD_BITS-1:0]    store_word
@@ -41,7 +41,7 @@ module scanout_fetch #(
     localparam int unsigned OFFSET_BITS = Y_BITS + WORD_BITS;
     localparam logic [WORD_BITS-1:0] FULL_LINE = WORD_BITS'(LINE_WORDS);
 
-    // As shifts and adds, two for 160 words: synthesis would spend a DSP48 on `*`.
+    // Shifts and adds, two for 160 words: synthesis would spend a DSP48 on `*`.
     function automatic logic [OFFSET_BITS-1:0] times_line_words(input logic [Y_BITS-1:0] factor);
         times_line_words = '0;
         for (int i = 0; i < WORD_BITS; i++)

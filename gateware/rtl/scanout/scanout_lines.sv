@@ -25,7 +25,7 @@ module scanout_lines #(
     // Raster.
     input  wire               tick,
     input  wire  [Y_BITS-1:0] tick_line,
-    // Frame: vblank has begun; its parameters are there.
+    // Vertical blanking has begun, and the frame's parameters are latched.
     output logic              vblank,
     input  wire               frame_begun,
     // Fetches.
@@ -51,11 +51,11 @@ module scanout_lines #(
         next_exists = next < (Y_BITS'(V_ACTIVE) >> shift);
     end
 
-    // Of the hidden slot: a fetch into it was asked for in this frame.
+    // A fetch into the hidden slot was requested in this frame.
     logic frame_open, hidden_asked, hidden_ready;
     assign hidden_ready = hidden_asked && !fetch_busy && fetch_line == needed && in_picture;
 
-    // Step 3 comes a clock after steps 1 and 2, so that it sees their outcome.
+    // Step 3 runs a clock after steps 1 and 2 and uses their results.
     logic              decide;
     logic [Y_BITS-1:0] decide_line;
     logic              decide_exists;

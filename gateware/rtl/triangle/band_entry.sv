@@ -42,20 +42,20 @@ module band_entry #(
     input  wire                            out_ready,
     output logic                           out_odd,
     output raster_pkg::placed_t            out_triangle,
-    // Their starts are the values at the row, in lane 0.
+    // Starts of the edges: values at the row, in lane 0.
     output logic [PLANES_BITS-1:0]         out_planes
 );
     localparam logic [31:0] HALF_A_CODE = 32'd1 << 13;
     localparam logic [2:0]  STALLS = 3'd3, ROWS_KNOWN = 3'd4, LAST = 3'd7;
 
-    // The triangle in its passes, then in its three `ending` clocks, then held.
+    // Three stages: the triangle in its passes, then in its three `ending` clocks, then held.
     triangle_pkg::descriptor_t triangle;
     logic [9:0]  y0;
     logic        busy, odd, held_valid, held_odd, advance, next_free;
     logic [2:0]  pass;
     logic [3:1]  ending;
 
-    // The first result of a triangle takes the place of that of the one before.
+    // The first result of a triangle replaces the first result of the previous one.
     assign advance   = pass != STALLS || !held_valid || !out_valid;
     assign next_free = !out_valid || out_ready;
     assign in_ready  = !busy || pass == LAST;
@@ -65,7 +65,7 @@ module band_entry #(
                         || out_valid && out_odd == 1'(b);
     end
 
-    // Rows, from the band's first one.
+    // Rows relative to the band's first one.
     logic [10:0] above, below;
     logic [9:0]  offset;
     logic [5:0]  first, past, count;
@@ -80,7 +80,7 @@ module band_entry #(
         count <= past > first ? past - first : '0;
     end
 
-    // The step_x that is in use.
+    // The step_x that the passes use.
     logic [2:0][20:0] step_x, step_y;
     logic [20:0]      step;
     logic             rises, falls;
@@ -97,7 +97,7 @@ module band_entry #(
         slope = falls ? 20'(-step) : step[19:0];
     end
 
-    // Operands of a pass, its `c` a clock later; its `sum` and `beside` are there two more clocks later.
+    // Operands of a pass, `c` a clock later; `sum` and `beside` follow two more clocks later.
     logic signed [24:0] a;
     logic signed [17:0] b, b_beside;
     logic signed [47:0] c, sum;
@@ -140,7 +140,7 @@ module band_entry #(
     logic [2:0]          all_rises, all_falls;
 
     for (genvar k = 0; k < 3; k++) begin : edges
-        // The pass that has the edge's step_x in use, and the clocks that have its sums.
+        // Pass that uses the edge's step_x, and the clocks with its sums.
         localparam logic [2:0] LANE_0 = k == 2 ? 3'd7 : 3'd3 + 3'(k);
         localparam logic [2:0] STEP   = k == 2 ? 3'd6 : 3'd2 + 3'(k);
         logic at_lane_0, at_lane_7;
@@ -165,7 +165,7 @@ module band_entry #(
         assign step_y[k] = steps.y;
     end
 
-    // What is held: the results stay where they came, the rest is taken from the triangle after its last pass.
+    // Held triangle: the results stay in their registers, the other fields are copied after the last pass.
     always_ff @(posedge clk) begin
         if (pass == LAST) begin
             held_odd            <= odd;

@@ -29,7 +29,7 @@ module binner #(
     output logic                    done,
     output logic                    idle,
     output logic                    full,
-    // 45, 24 or 12 rows a band: 0, 1, 2.
+    // Rows per band by size code: 45, 24, 12.
     input  wire  [1:0]              size,
     input  wire  [ADDRESS_BITS-1:0] descriptor_base,
     input  wire  [COUNT_BITS-1:0]   descriptor_limit,
@@ -52,7 +52,7 @@ module binner #(
     output logic [ADDRESS_BITS-1:0] write_addr,
     output logic [127:0]            write_data,
     output logic [15:0]             write_strobe,
-    // A word of a descriptor, or else of a list.
+    // Memory word of a descriptor or of a list.
     output logic                    write_descriptor
 );
     localparam int unsigned BANDS       = 64;
@@ -60,7 +60,7 @@ module binner #(
     localparam int unsigned DESCRIPTOR_WORDS = 3 << SMOOTH;
     localparam int unsigned WORD_BITS        = $clog2(DESCRIPTOR_WORDS);
 
-    // v/3 for 8 bits: 171/512 is near enough.
+    // v/3 for 8 bits: 171/512 is exact in this range.
     function automatic logic [6:0] third(input logic [7:0] v);
         logic [15:0] product;
         product = (16'(v) << 7) + (16'(v) << 5) + (16'(v) << 3) + (16'(v) << 1) + 16'(v);
@@ -75,7 +75,7 @@ module binner #(
         endcase
     endfunction
 
-    // Entry `lane` of a word, alone.
+    // Entry in lane `lane` of an otherwise empty word.
     function automatic logic [15:0] entry_strobe(input logic [1:0] lane);
         entry_strobe = 16'hf << {lane, 2'b00};
     endfunction
@@ -83,7 +83,7 @@ module binner #(
     typedef enum logic [3:0] {CLEAR, IDLE, LOCATE, WORD, LOOK, ENTRY, LENGTHS, LENGTHS_WORD, DONE} state_t;
     state_t state;
 
-    // The lengths of the lists, and the first three entries of the word that each ends with.
+    // Length of each list, and the first three entries of its incomplete last word.
     (* ram_style = "distributed" *) logic [COUNT_BITS-1:0]   lengths [0:BANDS-1];
     (* ram_style = "distributed" *) logic [3*COUNT_BITS-1:0] ends [0:BANDS-1];
     logic [BAND_BITS-1:0]    band, last_band;
@@ -127,7 +127,7 @@ module binner #(
         endcase
     end
 
-    // What is there follows `band` a clock later.
+    // The data follow `band` a clock later.
     logic [ADDRESS_BITS-1:0] first_list, list_word;
     logic [127:0]            list_data;
 
@@ -191,7 +191,7 @@ module binner #(
                 word            <= word + 1'b1;
                 if (word == WORD_BITS'(DESCRIPTOR_WORDS - 1)) state <= ENTRY;
             end
-            // One clock for the next list's length and place.
+            // One clock to read the next list's length and entries.
             LOOK: state <= ENTRY;
             ENTRY: if (free || !word_ends) begin
                 if (word_ends) begin

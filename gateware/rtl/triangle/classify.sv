@@ -19,7 +19,7 @@ module classify #(
     input  wire  [10:0]              width,
     input  wire  [9:0]               height,
     output logic                     idle,
-    // One clock for each triangle that is in no other place.
+    // High for one clock for each triangle that is dropped.
     output logic                     unseen,
     output logic [31:0]              count,
     input  wire                      in_valid,
@@ -34,7 +34,7 @@ module classify #(
     input  wire                      exception_ready,
     output logic [31:0]              exception_number
 );
-    // Which sides of the picture a vertex is off: left, right, above, below. Of the whole pixels of its place.
+    // Sides of the picture beyond which a vertex lies: left, right, above, below. Compares whole pixels.
     function automatic logic [3:0] off_sides(input logic [12:0] x, input logic [12:0] y);
         off_sides = {x[12], !x[12] && x[11:0] >= 12'(width), y[12], !y[12] && y[11:0] >= 12'(height)};
     endfunction
@@ -46,7 +46,7 @@ module classify #(
     logic [2:0]           behind, beyond;
     logic                 is_unseen, is_exceptional;
 
-    // First what is known of each vertex, then what follows of all.
+    // First stage: each vertex. Second stage: the triangle.
     assign idle           = !held && !known;
     assign next_free      = !known || moves;
     assign in_ready       = !held || next_free;

@@ -33,16 +33,16 @@ module cull #(
     output logic                   out_valid,
     input  wire                    out_ready,
     output setup_pkg::oriented_t              out_triangle,
-    // L of its vertices for the side that is seen.
+    // Light L of the vertices for the visible side.
     output logic [2:0][LIT_BITS-1:0] out_lit
 );
-    // What is known of a triangle from the beginning.
+    // Inputs of a triangle, and the differences of its coordinates.
     typedef struct packed {
         triangle_pkg::screen_vertex_t v0, v1, v2;
         logic [15:0]          colour;
         logic [2:0][15:0]     normal;
         logic [20:0]          x10, x20, y01, y20;
-        // Vertex 2 is above vertex 1; both are at the same height.
+        // `y_21`: vertex 2 is above vertex 1. `y_same`: both vertices have the same height.
         logic                 y_21, y_same;
     } triangle_t;
 
@@ -90,7 +90,7 @@ module cull #(
         end
     end
 
-    // 2A = x10·y20 + x20·y01, the highest four bits of y20 and y01 first. It is there in phase 2 of the last clocks.
+    // 2A = x10·y20 + x20·y01, the highest four bits of y20 and y01 first. Valid in phase 2 of the last clocks.
     logic signed [24:0] a;
     logic signed [17:0] b;
     logic signed [43:0] c, area;
@@ -109,7 +109,8 @@ module cull #(
 
     multiply_add #(.BITS(44)) dsp (.clk, .enable(advance), .a, .b, .c, .p(area));
 
-    // Left, right, top, bottom: chosen in phases 0 to 3, rounded up to a centre a clock later, cut to the picture after that.
+    // Left, right, top, bottom: selected in phases 0 to 3, rounded up to a centre one clock later, clamped to the
+    // picture after that.
     logic [20:0] extreme;
     logic [12:0] pixel;
     logic [10:0] size, cut, left, right;
@@ -133,7 +134,7 @@ module cull #(
         cut     = pixel[12] ? '0 : pixel[11:0] > {1'b0, size} ? size : pixel[10:0];
     end
 
-    // The verdict and what follows of the facing, registered for phase 3.
+    // The verdict and the values that depend on the facing, registered for phase 3.
     logic        front, no_area, no_column, no_row;
     logic [39:0] flipped_area;
     logic [9:0]  group_top;
@@ -144,7 +145,7 @@ module cull #(
     assign right_last = right - 1'b1;
 
     always_comb begin
-        // Among equals the lowest number, after the swap of a front face.
+        // The lowest number among equals, after the swap of a front face.
         if ((last.y01[20] || last.y01 == '0) && !last.y20[20]) topmost = 2'd0;
         else if (last.y_same)                                  topmost = area[43] ? 2'd2 : 2'd1;
         else                                                   topmost = last.y_21 ? 2'd2 : 2'd1;
@@ -179,7 +180,7 @@ module cull #(
     assign drop   = no_area || no_row || no_column || cull_back && !front;
     assign culled = in_ready && last_valid && drop;
 
-    // A front face swaps its vertices 1 and 2. Where a sign turns with it: −v is ~v + 1.
+    // A front face swaps its vertices 1 and 2. A change of sign uses −v = ~v + 1.
     setup_pkg::oriented_t oriented;
 
     always_comb begin
@@ -212,9 +213,9 @@ module cull #(
         if (rst) out_valid <= 1'b0;
     end
 
-    // With the vertices' turn, and dark where it is the other side that has the light.
+    // Light in the order of the swapped vertices, and 0 where it belongs to the other side.
     if (SMOOTH) begin : light
-        // Vectors: Yosys knows no arrays in here.
+        // Vectors, as Yosys does not support arrays here.
         logic [3*LIGHT_BITS-1:0] first_light, last_light;
         logic [3*LIT_BITS-1:0]   lit;
 

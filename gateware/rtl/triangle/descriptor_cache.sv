@@ -31,7 +31,7 @@ module descriptor_cache #(
     input  wire                       clk,
     input  wire                       rst,
     input  wire                       forget,
-    // Where the descriptors of the two sets are.
+    // Base address of each set's descriptors.
     input  wire  [2*ADDRESS_BITS-1:0] base,
     input  wire                       in_valid,
     output logic                      in_ready,
@@ -54,10 +54,10 @@ module descriptor_cache #(
     localparam int unsigned WORDS     = 3 << SMOOTH;
     localparam int unsigned WORD_BITS = $clog2(WORDS + 1);
     localparam int unsigned MARKS     = 16;
-    // Set and the number's high bits, and that there is something.
+    // Tag: set, high bits of the number, and a valid bit.
     localparam int unsigned TAG_BITS  = COUNT_BITS - LINE_BITS + 2;
 
-    // In front: an item waits a clock for the tag of its line, and then for its place among the marks and the addresses.
+    // Front: an item waits one clock for the tag of its line, then for room in the FIFOs of marks and addresses.
     (* ram_style = "distributed" *) logic [TAG_BITS-1:0] tags [0:2**LINE_BITS-1];
     logic                    looked, is_end, set, hit, passes, asks;
     logic [COUNT_BITS-1:0]   number;
@@ -103,7 +103,7 @@ module descriptor_cache #(
         end
     end
 
-    // Addresses of a descriptor.
+    // Addresses of a descriptor's words.
     logic [WORD_BITS-1:0] word;
 
     assign words_asked = !ask_valid || ask_ready && word == WORD_BITS'(WORDS - 1);
@@ -128,7 +128,7 @@ module descriptor_cache #(
         .out_valid(marked), .out_ready(out_valid && out_ready), .out_data({out_end, mark_hit, mark_line})
     );
 
-    // At the end: the words of a miss are gathered, and its line is written when it goes out; that of a hit is read.
+    // Back: the words of a miss are gathered and written to its line when it leaves; a hit reads its line.
     (* ram_style = "block", rw_addr_collision = "no", no_rw_check *)
     logic [128*WORDS-1:0]    lines [0:2**LINE_BITS-1];
     logic [128*WORDS-1:0]    cached, descriptor;

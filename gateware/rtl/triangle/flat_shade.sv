@@ -46,7 +46,7 @@ module flat_shade (
         endcase
     end
 
-    // Below 0, or 1 and more, or a fraction.
+    // Intensity: 0 where the sum is negative, 1 where it is at least 1, otherwise its fraction.
     always_ff @(posedge clk) begin
         if (enable && count == 4'd5) intensity <= p[43] ? '0 : p[42:37] != '0 ? 9'h100 : {1'b0, p[36:29]};
         if (enable && count == 4'd9) green_blue <= {p[26:21], p[12:8]};

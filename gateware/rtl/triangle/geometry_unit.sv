@@ -33,7 +33,7 @@ module geometry_unit #(
     input  wire triangle_registers_pkg::geometry_flags_t flags,
     input  wire triangle_registers_pkg::geometry_t parameters,
     input  wire triangle_registers_pkg::view_t view,
-    // Memory: the clients of the mesh and of the vertices.
+    // Read clients of the mesh and of the vertices.
     output logic [1:0]               ask_valid,
     input  wire  [1:0]               ask_ready,
     output logic [2*ADDRESS_BITS-1:0] ask_addr,
@@ -73,7 +73,7 @@ module geometry_unit #(
         done <= 1'b0;
         case (state)
             IDLE:    if (start) state <= PREPARE;
-            // The lists are emptied.
+            // The lists are being emptied.
             PREPARE: if (lists_idle) state <= BEGIN;
             BEGIN:   state <= WALK;
             WALK:    if (!walk_busy && drained && lists_idle) state <= FINISH;
@@ -91,7 +91,7 @@ module geometry_unit #(
     logic                    triangle_valid, triangle_ready, chunk;
     logic [127:0]            triangle;
     logic [ADDRESS_BITS-1:0] vertex_base, mesh_first;
-    // The word behind the mesh.
+    // First word behind the mesh.
     logic [ADDRESS_BITS:0]   mesh_past;
 
     assign mesh_first = parameters.mesh[4 +: ADDRESS_BITS];
@@ -235,7 +235,7 @@ module geometry_unit #(
         .wdata_strobe(lists_write_request.wdata_strobe)
     );
 
-    // Triangles between the walk and their end.
+    // Count of triangles between the walk and their end.
     logic [FLIGHT_BITS-1:0] flight;
     logic                   came, was_unseen, was_culled, was_kept, was_exception;
 

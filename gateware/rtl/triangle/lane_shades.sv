@@ -52,7 +52,7 @@ module lane_shades #(
 
     always_ff @(posedge clk) if (enable) smooth <= smooth_9;
 
-    // A group's light waits for its depths: before the lanes it has two numbers, behind them eight.
+    // Light waits for the depths of its group: as accumulator and step before the lanes, as eight values behind them.
     logic [2:0][7:0][31:0] lights;
 
     for (genvar k = 0; k < 3; k++) begin : channels
@@ -63,7 +63,7 @@ module lane_shades #(
     end
 
     for (genvar pair = 0; pair < 4; pair++) begin : pairs
-        // Vectors: Yosys knows no arrays in here.
+        // Vectors, as Yosys does not support arrays here.
         logic [2*96-1:0] pair_lights;
         logic [2*16-1:0] colours;
 

@@ -47,7 +47,7 @@ module lanes (
         if (rst) valid <= '0;
     end
 
-    // Lanes beside the best one in which an edge passes.
+    // Number of lanes beside the best one in which an edge passes.
     logic [2:0]      rises_1, rises_2, rises_3;
     logic [2:0]      all_1, all_2, all_3;
     logic [2:0][2:0] count_3;
@@ -116,7 +116,7 @@ module lanes (
         end
     end
 
-    // The place and the colour.
+    // Place and colour, delayed to match.
     typedef struct packed {
         logic [5:0]  line;
         logic [7:0]  column;

@@ -30,14 +30,14 @@ module list_reader #(
     input  wire                       start,
     input  wire                       forget,
     input  wire  [5:0]                last_band,
-    // Set 0 is the geometry unit's, set 1 the firmware's.
+    // Set 0 comes from the geometry unit, set 1 from the firmware.
     input  wire  [1:0]                present,
     input  wire  [2*ADDRESS_BITS-1:0] list_base,
     input  wire  [2*ADDRESS_BITS-1:0] descriptor_base,
     input  wire  [2*COUNT_BITS-1:0]   counts,
     input  wire  [4:0]                list_shift,
     output logic                      list_error,
-    // Memory: the clients of the lengths, the lists, the descriptors.
+    // Read clients of the lengths, the lists, the descriptors.
     output logic [2:0]                ask_valid,
     input  wire  [2:0]                ask_ready,
     output logic [3*ADDRESS_BITS-1:0] ask_addr,
@@ -56,7 +56,7 @@ module list_reader #(
 
     assign lists = list_base;
 
-    // Lengths: a read for each list, since a word of the table has the lengths of four bands, and the sets take turns.
+    // Lengths: one read per list, since a word of the table has the lengths of four bands and the sets alternate.
     logic       asks_lengths, length_set;
     logic [5:0] length_band;
 
@@ -78,7 +78,7 @@ module list_reader #(
         if (rst) asks_lengths <= 1'b0;
     end
 
-    // Lists: a job is the length of a list, 0 where there is none; its words follow in time.
+    // Lists: a job is the length of a list, 0 for an absent one; the list's words follow later.
     typedef enum logic [2:0] {IDLE, LENGTH, CHECK, JOB, WORDS} list_state_t;
     list_state_t list_state;
 
@@ -145,7 +145,7 @@ module list_reader #(
         .out_valid(next_valid), .out_ready(next_ready), .out_data(next_length)
     );
 
-    // Triangles: entries are taken out of the words of the list; after both lists of a band comes its end.
+    // Triangles: entries are taken from the words of the list; the end of the band follows both lists.
     logic                    job_valid, set, left, last_entry, entry_taken, end_taken;
     logic                    item_valid, item_ready, item_free, item_end, item_set;
     logic [COUNT_BITS-1:0]   entries_after;

@@ -21,7 +21,7 @@ module mesh_walk #(
     input  wire                     drained,
     output logic                    busy,
     output logic                    error,
-    // The chunk of the triangles that are out. `chunk` is high for one clock when it changes.
+    // Chunk of the emitted triangles. `chunk` is high for one clock when the chunk changes.
     output logic                    chunk,
     output logic [ADDRESS_BITS-1:0] vertex_base,
     // Memory.
@@ -31,12 +31,12 @@ module mesh_walk #(
     input  wire                     data_valid,
     output logic                    data_ready,
     input  wire  [127:0]            data,
-    // Triangles, as they are in memory.
+    // Triangles in their memory format.
     output logic                    out_valid,
     input  wire                     out_ready,
     output logic [127:0]            out_triangle
 );
-    // Sums of addresses and counts, which may be wild, do not wrap.
+    // Addresses and counts may have any value; their sums must not wrap.
     localparam int unsigned SUM_BITS = 34;
 
     typedef enum logic [2:0] {IDLE, ASK, HEADER, LOCATE, SUM, CHECK, TRIANGLES, DRAIN} state_t;

@@ -21,7 +21,7 @@ module multiply_add #(
 );
     logic signed [24:0] factor_a;
     logic signed [17:0] factor_b;
-    // 43 bits are all; p may be narrower.
+    // A product has at most 43 bits; p may be narrower.
     localparam int unsigned PRODUCT_BITS = BITS < 43 ? BITS : 43;
     logic signed [PRODUCT_BITS-1:0] product;
 

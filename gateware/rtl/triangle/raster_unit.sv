@@ -41,7 +41,7 @@ module raster_unit #(
     output logic                      list_error,
     input  wire triangle_registers_pkg::raster_flags_t flags,
     input  wire triangle_registers_pkg::raster_t parameters,
-    // The raymarcher, groups of one pixel.
+    // Pixels of the raymarcher, in groups of one pixel.
     input  wire triangle_registers_pkg::field_source_t field_source,
     output triangle_registers_pkg::field_sink_t field_sink,
     // Memory.
@@ -57,7 +57,7 @@ module raster_unit #(
     input  wire triangle_registers_pkg::write_answer_t odd_write_answer,
     output triangle_registers_pkg::events_t events
 );
-    // Bands of a picture, lines of a band, groups of a line, words of a band.
+    // By size: bands of a picture, lines of a band, groups of a line, words of a band.
     logic [5:0]  last_band, rows;
     logic [7:0]  stride;
     logic [10:0] words;
@@ -71,11 +71,11 @@ module raster_unit #(
     logic [9:0]              first_row;
     logic [ADDRESS_BITS-1:0] base, band_depth_base;
     logic                    clearing, flushed, in_memory, band_ready, begins, drawn, has_field;
-    // The band whose triangles are read: the drawn one, or the next.
+    // The band whose triangles are read: the band being drawn, or the next one.
     logic [9:0]              read_row;
     logic                    read_odd;
 
-    // The frame buffers that hold a whole frame: not the one that is being drawn.
+    // Frame buffers that hold a whole frame; the frame buffer being drawn does not count.
     logic [1:0] known;
     logic       all_words;
 
@@ -137,7 +137,7 @@ module raster_unit #(
     assign stray = descriptor.group_left > descriptor.group_start || descriptor.group_start > descriptor.group_right
                 || descriptor.group_right >= stride;
 
-    // The end of the band that is read waits until that band is drawn.
+    // The end of the band waits until the band is drawn.
     assign triangle_valid = item_valid && !band_ends && !stray;
     assign item_ready     = band_ends ? read_odd == band[0] : stray || triangle_ready;
     assign drawn          = read_odd != band[0] && raster_idle;
@@ -167,7 +167,7 @@ module raster_unit #(
         .out_planes(planes)
     );
 
-    // In each band first the triangles, then the field.
+    // Each band is drawn in two steps: triangles, then the field.
     logic            group_valid, group_ready;
     logic            drawn_valid, drawn_ready;
     logic [10:0]     drawn_row;

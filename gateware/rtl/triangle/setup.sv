@@ -19,7 +19,7 @@
 `default_nettype none
 
 module setup #(
-    // The last clock of a beat. Fewer than 11 clocks are for proofs of the control.
+    // Last clock of a beat; smaller only in proofs of the control.
     parameter bit [3:0] LAST = 4'd10,
     parameter bit SMOOTH = 1'b0,
     localparam int unsigned LIGHT_BITS  = SMOOTH ? 41 : 1,
@@ -54,7 +54,7 @@ module setup #(
         logic [20:0] y20, x02, y01, x10;
     } passed_t;
 
-    // The vertex and the start's centre from it, for the depth.
+    // Vertex 0, and the start's centre relative to it, for the depth.
     typedef struct packed {
         logic [23:0] w0;
         logic [20:0] px, py;
@@ -90,8 +90,8 @@ module setup #(
         end
     end
 
-    // Stage 1.
-    // 1 on an edge that is neither top nor left, of step_x and the sign of step_y. Both steps are 0 on no edge.
+    // Stage 1. Bias: 1 on an edge that is neither top nor left, from step_x and the sign of step_y. Both steps are 0
+    // without an edge.
     function automatic logic bias(input logic [20:0] step_x, input logic right_to_left);
         bias = step_x[20] || step_x == '0 && right_to_left;
     endfunction
@@ -117,7 +117,8 @@ module setup #(
             bias_0      <= bias(first.y01, first.x10[20]);
             bias_2      <= bias(first.y20, first.x02[20]);
         end
-        // Steady from the second clock on. The steps of the three edges add up to 0: these are those of edge 1, negated.
+        // The steps of the three edges add up to 0, so these sums are the negated steps of edge 1. Constant from the
+        // second clock on.
         sum_x <= t.y01 + t.y20;
         sum_y <= t.x10 + t.x02;
     end
@@ -135,7 +136,7 @@ module setup #(
     flat_shade shade (
         .clk, .enable, .count, .camera_n, .front(t.front), .normal(t.normal), .colour(t.colour), .lit
     );
-    // From clock 3 of stage 1 to clock 6 of stage 2, or sooner where the beat is longer.
+    // Reciprocal of the area, from clock 3 of stage 1 to clock 6 of stage 2, or earlier in a longer beat.
     normalise normalised (.clk, .enable(1'b1), .in(t.area), .m, .lead);
     reciprocal reciprocal_of_area (
         .clk, .rst, .in_valid(count == 4'd3), .in_ready(reciprocal_ready), .in_m(m),
@@ -160,7 +161,7 @@ module setup #(
     assign low_sum = {3'b0, area_low} - {3'b0, e0_2[7:0]} - {3'b0, e2_2[7:0]} - {9'b0, biases};
 
     always_ff @(posedge clk) begin
-        // −e is ~e + 1; the two ones come with the carry.
+        // −e = ~e + 1; both ones enter as carries.
         carry <= low_sum[10:8] + 3'd2;
         unique case (count)
             4'd0:    addend <= ~e0_2[41:8];
@@ -231,9 +232,9 @@ module setup #(
         .px(origin_4.px), .py(origin_4.py), .value(origin_4.w0), .step_x, .step_y, .start(depth_start)
     );
 
-    // The planes of light. Their normals are made in stage 2, where that of the depth waits for 1/a.
+    // Planes of light. Stage 2 computes their normals while the depth waits for 1/a.
     if (SMOOTH) begin : light
-        // Vectors: Yosys knows no arrays in here.
+        // Vectors, as Yosys does not support arrays here.
         logic [3*LIT_BITS-1:0] lit_1;
         logic [3*24-1:0]       p0;
         logic [3*25-1:0]       p10, p20;

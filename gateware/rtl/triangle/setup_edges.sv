@@ -27,7 +27,7 @@ module setup_edges (
     logic        [20:0] step;
     logic        [16:0] low;
 
-    // Clock 4·k + 2·high + term. The sum follows two clocks later.
+    // Operands by clock, 4·k + 2·high + term. The sum follows two clocks later.
     always_comb begin
         a    = 25'($signed(count[0] ? px : py));
         step = count[2] ? (count[0] ? y20 : x02) : (count[0] ? y01 : x10);

@@ -21,13 +21,13 @@ module setup_light (
 );
     logic        [1:0]  channel;
     logic        [39:0] vertex;
-    // With half a code: w of vertex 0, and of the one that follows.
+    // With half a code added: w of vertex 0, and w of the next vertex.
     logic        [24:0] w0, w;
     logic signed [24:0] a;
     logic signed [17:0] b;
     logic signed [43:0] p;
 
-    // Clock 3·vertex + channel; the product follows three clocks later.
+    // Operands by clock, 3·vertex + channel. The product follows three clocks later.
     always_comb begin
         unique case (count)
             4'd0, 4'd1, 4'd2: {vertex, a} = {lit[0], w0};
@@ -56,7 +56,7 @@ module setup_light (
 
     logic [2:0][23:0] p0_1;
     logic [2:0][24:0] p10_1;
-    // What vertex 0 has of the channel that comes.
+    // Value of vertex 0 in the next channel.
     logic [23:0]      first;
     logic [24:0]      difference, p20_red;
 

@@ -23,7 +23,7 @@ module setup_normal (
     logic signed [45:0] c, p;
     logic        [20:0] factor;
 
-    // Clock 4·y + 2·low + term. The sum follows two clocks later.
+    // Operands by clock, 4·y + 2·low + term. The sum follows two clocks later.
     always_comb begin
         a      = $signed(count[2] ^ count[0] ? w20 : w10);
         factor = count[2] ? (count[0] ? x02 : x10) : (count[0] ? y01 : y20);

@@ -15,7 +15,7 @@ module setup_plane (
     // Stage 3.
     input  wire  [23:0] y,
     input  wire  [5:0]  lead,
-    // Stage 4: the start's centre from vertex 0, and the value there, u18.6.
+    // Stage 4: the start's centre relative to vertex 0, and the value at vertex 0, u18.6.
     input  wire  [20:0] px,
     input  wire  [20:0] py,
     input  wire  [23:0] value,

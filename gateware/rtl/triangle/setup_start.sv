@@ -24,7 +24,7 @@ module setup_start (
     logic        [8:0]  low;
     logic        [16:0] middle;
 
-    // Clock 2·piece + term. The sum follows two clocks later.
+    // Operands by clock, 2·piece + term. The sum follows two clocks later.
     always_comb begin
         a        = 25'($signed(count[0] ? py : px));
         gradient = count[0] ? gy : gx;

@@ -40,7 +40,7 @@ module stepper #(
     assign from     = extend ? current : !seek && last ? load_value : snapshot;
     assign step     = sideways ? step_x ^ {WIDTH{left}} : last ? '0 : step_y;
 
-    // A bit below makes the carry in.
+    // The bit below the sum gives the carry in.
     assign {carry, low, below_low}       = {1'b0, from[LOW-1:0], negate} + {1'b0, step[LOW-1:0], negate};
     assign high                          = from[WIDTH-1:LOW] + step[WIDTH-1:LOW];
     assign {high_with_carry, below_high} = {from[WIDTH-1:LOW], 1'b1} + {step[WIDTH-1:LOW], 1'b1};

@@ -54,9 +54,9 @@ module triangle_control #(
                            ERROR_LIST = triangle_registers_pkg::ERROR_LIST,
                            ERROR_CANCELLED = triangle_registers_pkg::ERROR_CANCELLED;
 
-    // Words of a region, also of one larger than memory.
+    // Bits of a region's length in words, also of one larger than memory.
     localparam int unsigned WORD_BITS  = ADDRESS_BITS + 2;
-    // Lists of more entries than can be counted are of no use.
+    // Largest list shift: longer lists would exceed the entry counter.
     localparam logic [4:0]  LAST_SHIFT = 5'(COUNT_BITS - 3);
 
     typedef enum logic [2:0] {IDLE, CHECK, SETTLE, JUDGE, START} state_t;
@@ -76,7 +76,7 @@ module triangle_control #(
 
     assign bands = band_pkg::bands(size);
 
-    // Lengths, for the one region that is looked at.
+    // Lengths of the region under check.
     logic [31:0]          first;
     logic [WORD_BITS-1:0] words, mesh_words, list_words, frame_words, descriptor_words;
     logic [COUNT_BITS-1:0] count;
@@ -140,7 +140,7 @@ module triangle_control #(
 
         if (engine.ready) recovering <= 1'b0;
 
-        // Asked while the same pass is asked for or busy: refused, and the pass goes on.
+        // Asked for while the same pass is pending or busy: refused, and the pass continues.
         if (geometry_ask) begin
             if (geometry_active) begin
                 geometry_error <= ERROR_BUSY;
@@ -170,7 +170,7 @@ module triangle_control #(
                 region <= region + 1'b1;
                 if (region == (rastering ? LAST_RASTER : LAST_GEOMETRY)) state <= SETTLE;
             end
-            // The last region's end.
+            // End of the last region.
             SETTLE: state <= JUDGE;
             JUDGE: begin
                 if (size == 2'd3 || misplaced) begin

@@ -41,8 +41,8 @@ package triangle_pkg;
         logic [2:0][33:0] start;        // E' of each edge, s34
     } descriptor_t;
 
-    // Smooth shading. Where it is not built, one bit that is 0 stands for each of these.
-    // The light of a vertex: whether it goes to back faces, and L of each channel, in 2^-13, 2^-14 and 2^-13.
+    // Light of a vertex with smooth shading: whether it goes to back faces, and L of each channel, in 2^-13, 2^-14
+    // and 2^-13. Builds without smooth shading replace each of the following types by one bit, 0.
     typedef struct packed {
         logic        back;
         logic [12:0] red;
@@ -50,7 +50,7 @@ package triangle_pkg;
         logic [12:0] blue;
     } light_t;
 
-    // An accumulator at a place, as that of the depth.
+    // A plane of light: an accumulator and its steps, as for the depth.
     typedef struct packed {
         logic [31:0] step_y;
         logic [31:0] step_x;

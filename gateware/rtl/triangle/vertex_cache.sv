@@ -29,7 +29,7 @@ module vertex_cache #(
     input  wire                          clk,
     input  wire                          rst,
     input  wire                          clear,
-    // No triangle is inside.
+    // High while no triangle is inside.
     output logic                         idle,
     input  wire                          in_valid,
     output logic                         in_ready,
@@ -53,7 +53,7 @@ module vertex_cache #(
     localparam int unsigned PLACES     = 16; // of vertices that are waiting for the rest of their triangle
     localparam int unsigned TRIANGLES  = 32; // more than RECORDS and PLACES can be parts of
 
-    // Front: a triangle's indices go to the tags one by one, as long as there is room for their records.
+    // Front: the indices of a triangle go to the tags one by one while there is room for their records.
     logic [2:0][15:0]        indices;
     logic [1:0]              to_look;
     logic [$clog2(RECORDS):0] records;
@@ -63,7 +63,7 @@ module vertex_cache #(
     assign in_ready = (to_look == 2'd0 || to_look == 2'd1 && look) && side_room && !clearing;
     assign taken    = in_valid && in_ready;
 
-    // Epoch 0 is no time at all.
+    // Epoch 0 is reserved: a slot with it never hits.
     logic [EPOCH_BITS-1:0] epoch;
     logic                  sweeping;
     logic [SLOT_BITS-1:0]  sweep;
@@ -104,7 +104,7 @@ module vertex_cache #(
         end
     end
 
-    // The tags: three clocks from an index to its record.
+    // Tags: three clocks from an index to its record.
     (* ram_style = "block" *) logic [ENTRY_BITS-1:0] tags [0:SLOTS-1];
     logic                       replace;
     logic [SLOT_BITS-1:0]       slot;
@@ -138,7 +138,7 @@ module vertex_cache #(
         end
     end
 
-    // An index in the one FIFO has a record in the other, so `records` keeps both from being full.
+    // Each index in one FIFO has a record in the other, so `records` limits both.
     logic                 record_valid, record_missed, fetch_room, record_room;
     logic [SLOT_BITS-1:0] record_slot;
 
@@ -216,7 +216,7 @@ module vertex_cache #(
         end
     end
 
-    // Never full, and a triangle's side is there long before its vertices.
+    // Never full, and the triangle's other fields arrive long before its vertices.
     logic unused;
     assign unused = fetch_room && record_room && vertex_room && side_valid;
 endmodule

@@ -18,7 +18,7 @@ module vertex_light (
     input  wire              give,
     output logic [40:0]      out_light // {to back faces, red u13, green u14, blue u13}
 );
-    // More than the vertices that are in vertex_stage.
+    // More places than vertices fit in vertex_stage.
     localparam int unsigned PLACES = 16;
 
     // since[k]: the vertex came k + 1 clocks ago.
@@ -52,7 +52,7 @@ module vertex_light (
 
     multiply_add #(.BITS(44)) dsp (.clk, .enable(1'b1), .a, .b, .c, .p);
 
-    // −v is ~v + 1, and the one gets up to the half if nothing is below.
+    // −v = ~v + 1; the 1 carries into the half only if all lower bits are 0.
     assign carry = !back && whole;
 
     always_ff @(posedge clk) begin
@@ -74,7 +74,7 @@ module vertex_light (
         if (rst) since <= '0;
     end
 
-    // Never full, and never empty when it is asked.
+    // Never full, and never empty at `give`.
     logic room, valid;
 
     fifo #(.WIDTH(41), .DEPTH(PLACES)) finished (

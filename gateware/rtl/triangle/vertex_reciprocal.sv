@@ -21,7 +21,7 @@ module vertex_reciprocal (
         for (int i = 0; i < 256; i++) seeds[i] = 10'(((1 << 20) + 513 + 2 * i) / (2 * (513 + 2 * i)));
     end
 
-    // −m is there from 10 and, once more, from 16 on; y0 from 10; y1 from 17 and from 23.
+    // −m is valid from 10 and again from 16 on; y0 from 10; y1 from 17 and from 23.
     logic signed [24:0] minus_m, minus_m_later;
     logic        [9:0]  y0;
     logic        [16:0] y1, y1_later;

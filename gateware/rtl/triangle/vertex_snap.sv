@@ -19,7 +19,7 @@ module vertex_snap (
     input  wire  [9:0]        centre_y,
     input  wire  [16:0]       depth_mantissa,
     input  wire  signed [3:0] depth_exponent,
-    // A vertex: what is known of Z in clock 7, in clock 8, and the mantissas from 25 on.
+    // Per vertex: leading zeros of Z in clock 7, `behind` in clock 8, mantissas from 25 on.
     input  wire  [3:0]        zeros,
     input  wire               behind,
     input  wire signed [24:0] x,

@@ -53,7 +53,8 @@ module vertex_transform (
         endcase
     end
 
-    // Two clocks after the first of three products it is added to the translation, the others to the sum.
+    // Two clocks after the first of three products the accumulator adds it to the translation, then the others to the
+    // sum.
     logic               first;
     logic signed [43:0] translation, addend_planar, addend_deep, sum, deep;
 
@@ -68,7 +69,8 @@ module vertex_transform (
     multiply_add #(.BITS(44)) multiply_deep (
         .clk(clk), .enable(1'b1), .a(row_deep), .b(18'(factor)), .c(addend_deep), .p(deep));
 
-    // Z < near in two halves, with room above for Z only. What is not behind has its highest one among bits 30 to 40.
+    // Z < near in two halves. Bits above 38 exist in Z only, see `far`. The highest set bit of a visible Z is among
+    // bits 30 to 40.
     logic        negative, far, high_less, high_equal, low_less;
     logic [40:6] z;
 
@@ -96,7 +98,7 @@ module vertex_transform (
         endcase
     end
 
-    // Up to the top, first by fours.
+    // Shifts the highest set bit to the top, first by fours.
     logic [26:0] risen;
     logic [1:0]  rest;
 

@@ -45,7 +45,7 @@ module walker #(
     output logic                     out_valid,
     input  wire                      out_ready,
     output raster_pkg::candidate_t   out_group,
-    // A clock after its group: {smooth, blue, green, red}, each {step_x, accumulator at lane 0}.
+    // Light of the group, a clock later: {smooth, blue, green, red}, each {step_x, accumulator at lane 0}.
     output logic [VALUES_BITS-1:0]   out_light
 );
     // The triangle.
@@ -63,11 +63,11 @@ module walker #(
     logic [5:0]       line, rows_below;
     logic             active, last_row;
 
-    // What the walker may do here. Seeking stops for good once a row's first group is found; `resume` is that there is
-    // something to the right of the snapshot.
+    // Directions of the walk that are open in this row. Seeking ends once the row's first group is found. `resume`:
+    // columns remain to the right of the snapshot.
     logic seek_left, seek_right, extend_left, extend_right, resume;
 
-    // The decision: of sign bits and the above.
+    // Decision, from sign bits and the directions above.
     logic [2:0]        best_fails, beside_fails;
     logic              fails, go_right, go_left, open_left, open_right;
     logic              extend, seek, left, leave;
@@ -94,7 +94,7 @@ module walker #(
     assign walking  = active && out_ready;
     assign in_ready = leave && out_ready;
 
-    // While it seeks, the snapshot follows.
+    // The snapshot follows while the walker seeks.
     logic keep;
 
     assign keep = extend || resume;
@@ -127,7 +127,7 @@ module walker #(
         .current(depth), .next(next_depth)
     );
 
-    // Nothing is decided by the light: it goes the same way a clock later.
+    // Light does not affect the decision: it follows the same moves a clock later.
     if (SMOOTH) begin : light
         logic [PLANES_BITS-1:0] planes;
         logic                   was_keep, was_extend, was_seek, was_left, was_last;
@@ -205,7 +205,7 @@ module walker #(
                 rows_below   <= in_triangle.rows - 1'b1;
                 last_row     <= !in_valid || in_triangle.rows == 6'd1;
             end
-            // Nothing to do: stay, ready to load.
+            // Without work the walker stays, ready to load.
             if (leave && !in_valid) begin
                 seek_left    <= 1'b0;
                 seek_right   <= 1'b0;

@@ -15,7 +15,7 @@
 #include "verilated_vcd_c.h"
 #endif
 
-// Registers without a reset.
+// Initial values of registers without a reset.
 enum class Registers { ZERO, NOISE };
 
 struct Harness {
@@ -35,14 +35,14 @@ struct Harness {
         if (trace) trace->close();
 #endif
         top.final();
-        // A model leaves the thread's context when it is destroyed, not its own: that of another instance would be wrong.
+        // The destructor of a model uses the thread's context, which may be another instance's.
         Verilated::threadContextp(&context);
     }
 
     Harness(const Harness &) = delete;
     Harness &operator=(const Harness &) = delete;
 
-    // A model in the caller's thread alone. Noise follows from the seed.
+    // Single-threaded model, with noise from the seed.
     void prepare(uint32_t seed, Registers registers) {
         context.threads(1);
         context.randReset(registers == Registers::NOISE ? 2 : 0);

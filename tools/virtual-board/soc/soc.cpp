@@ -13,7 +13,7 @@
 #include "generated/soc.h"
 #include "harness.h"
 
-// The BIOS, kept in the library so that it needs no file at run time.
+// The BIOS, embedded in the library so that no file is needed at run time.
 asm(".section .rodata\n"
     ".balign 4\n"
     "glint_bios:\n"
@@ -29,7 +29,7 @@ namespace {
 constexpr uint32_t PIXEL_TICKS = 297;
 constexpr uint32_t PIXEL_PERIOD = 325;
 
-// Longer than any store takes to reach memory: an instruction fill and a refresh may come before it.
+// Longer than a store takes to reach memory, with an instruction fill and a refresh before it.
 constexpr uint64_t SETTLE_CYCLES = 1000;
 
 // LiteDRAM maps addresses ROW_BANK_COL: above the 16 bytes of a word come 7 bits of column, 3 of bank, 13 of row.
@@ -62,7 +62,7 @@ struct Soc : Harness {
     }
 
     void cycle() {
-        // The rising edge of sys_clk takes what the pins show now.
+        // The rising edge of sys_clk samples the current pins.
         const bool sent = top.serial_source_valid;
         const uint8_t sent_byte = top.serial_source_data;
         const bool taken = top.serial_sink_valid && top.serial_sink_ready;
@@ -171,12 +171,12 @@ struct Soc : Harness {
     // Empties both caches of the CPU. Called when no line is being filled, or old data would arrive in a line
     // afterwards.
     void drop_caches() {
-        // The lowest bit of a tag says that it is valid.
+        // The lowest bit of a tag is its valid bit.
         for (auto &tag : top.rootp->glint_virtual__DOT__VexRiscv__DOT__dataCache_1__DOT__ways_0_tags.m_storage) tag = 0;
         for (auto &tag : top.rootp->glint_virtual__DOT__VexRiscv__DOT__IBusCachedPlugin_cache__DOT__ways_0_tags.m_storage) tag = 0;
     }
 
-    // Lets stores that the CPU has made arrive in memory.
+    // Waits until all stores of the CPU have reached memory.
     void settle() {
         if (cycles > 0) run(SETTLE_CYCLES);
     }

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
 
-/// A picture that is no enlarged RGB565 frame.
+/// Error: a picture that is no enlarged RGB565 frame.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PictureError {
     /// The sides of the picture are not multiples of the scale.

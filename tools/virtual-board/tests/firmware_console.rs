@@ -13,7 +13,7 @@ const TIMES: [&str; 3] = ["cycles ", "video_frames ", "uptime_ms "];
 /// Counters of the triangle engine whose values do not depend on time.
 const COUNTS: [&str; 4] = ["vertices", "cycles_walking", "cycles_empty", "groups"];
 
-/// The names of the triangle engine's counters on the console, apart from those of pixels, which the statistics have in any case.
+/// Console names of the triangle engine's counters, except those of pixels, which the statistics always have.
 fn counters() -> Vec<&'static str> {
     let all = Counters::default();
     let names = all.iter().map(|(name, _)| match name {

@@ -8,7 +8,7 @@ use litex_pac::BUILD_ID;
 #[test]
 fn gateware_of_another_build_is_reported_and_the_console_works() {
     let mut image = image();
-    // A program built for other gateware.
+    // A program built for another gateware.
     patch(&mut image, address(&["GLINT_BUILD_ID"]), &[!BUILD_ID]);
     let (mut board, said) = started(&image);
     let (found, expected) = (
@@ -27,7 +27,7 @@ fn gateware_of_another_build_is_reported_and_the_console_works() {
         )),
         "{info}"
     );
-    // Commands without other registers work; the others fail.
+    // Commands that use no changed register work; the others fail.
     assert!(command(&mut board, "render").contains("triangles_drawn 6\r\n"));
     assert!(command(&mut board, "leds 1").contains("error: "));
     assert_eq!(board.leds(), 0);
