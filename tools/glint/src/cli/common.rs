@@ -4,6 +4,7 @@ use anyhow::Context;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use glint::board::{Board, BoardName, SerialBoard, SimulatedBoard, built_firmware};
 use glint::console::Console;
+use glint::transfer::Route;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 use std::io::Write;
@@ -46,7 +47,20 @@ impl LineArguments {
     }
 }
 
-/// Parses one of `all` by its name.
+/// Options of a command that transfers data to and from a board, and prints a result.
+#[derive(clap::Args)]
+pub struct TransferArguments {
+    /// Route of the data to and from a board [default: memory on the virtual board, serial on a port].
+    #[arg(long, value_enum)]
+    pub transfer: Option<Route>,
+    #[command(flatten)]
+    pub line: LineArguments,
+    /// Print the result as JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// A parser of names: returns the value of `all` with that name.
 pub fn named<T: Copy + Send + Sync + 'static, const N: usize>(
     all: [T; N],
     name: fn(T) -> &'static str,

@@ -1,6 +1,6 @@
 //! `glint render`.
 
-use super::common::{LineArguments, advance, bar, named, print_json, say, spinner, write_file};
+use super::common::{TransferArguments, advance, bar, named, print_json, say, spinner, write_file};
 use super::convert::load;
 use super::field::FieldArguments;
 use anyhow::Context;
@@ -75,14 +75,8 @@ pub struct RenderArguments {
     /// The source of a board's picture: its memory, or the virtual board's monitor.
     #[arg(long, value_enum, default_value_t = Capture::Frame)]
     capture: Capture,
-    /// The route of mesh and picture [default: memory on the virtual board, serial on a port].
-    #[arg(long, value_enum)]
-    transfer: Option<Route>,
     #[command(flatten)]
-    line: LineArguments,
-    /// Print the result as JSON.
-    #[arg(long)]
-    json: bool,
+    transfer: TransferArguments,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -163,7 +157,7 @@ impl RenderArguments {
             let json = serde_json::to_string_pretty(&totals)? + "\n";
             write_file(path, json.as_bytes())?;
         }
-        if self.json {
+        if self.transfer.json {
             let outcome = Outcome {
                 model: self.model.as_deref(),
                 field: self.field.name(),
@@ -209,14 +203,16 @@ impl RenderArguments {
                 Ok(rendered)
             }
             ModelOrBoard::Board(BoardName::Virtual) => {
-                let mut board = self.line.virtual_board()?;
+                let mut board = self.transfer.line.virtual_board()?;
                 let mut rendered = self.render_on(&mut board, &BoardName::Virtual, frame)?;
                 if self.capture == Capture::Monitor {
                     rendered.image.colour = from_monitor(&mut board, frame.size)?;
                 }
                 Ok(rendered)
             }
-            ModelOrBoard::Board(name) => self.render_on(&mut *self.line.board(name)?, name, frame),
+            ModelOrBoard::Board(name) => {
+                self.render_on(&mut *self.transfer.line.board(name)?, name, frame)
+            }
         }
     }
 
@@ -228,7 +224,7 @@ impl RenderArguments {
     ) -> anyhow::Result<Rendered> {
         let mut renderer = BoardRenderer::new(Console::new(board))
             .with_backend(self.backend)
-            .with_route(self.transfer.unwrap_or(Route::of(name)));
+            .with_route(self.transfer.transfer.unwrap_or(Route::of(name)));
         let bar = bar("mesh and frames");
         let rendered = self.render_by(&mut renderer, frame, &mut advance(&bar))?;
         bar.finish_and_clear();

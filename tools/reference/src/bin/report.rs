@@ -29,9 +29,7 @@ enum Page {
         #[arg(long)]
         quick: bool,
         #[command(flatten)]
-        output: Output,
-        #[command(flatten)]
-        cycles: Source,
+        bench: Bench,
     },
     /// The triangle engine on the whole SoC, beside its requirements
     Triangle {
@@ -62,13 +60,11 @@ enum Page {
     },
     /// Attitudes from gyroscope and accelerometer against f64 and the truth
     Imu {
-        /// Shorten long motions to a tenth and leave out those of a day (half a minute instead of ten)
+        /// Shorten long motions to a tenth and leave out motions of a day (half a minute instead of ten)
         #[arg(long)]
         quick: bool,
         #[command(flatten)]
-        output: Output,
-        #[command(flatten)]
-        cycles: Source,
+        bench: Bench,
     },
     /// Rebuild all pages and diagrams from their CSV files, without measuring
     Pages {
@@ -76,6 +72,15 @@ enum Page {
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
     },
+}
+
+/// Options of a page with cycles of kernels on the soft core.
+#[derive(Args)]
+struct Bench {
+    #[command(flatten)]
+    output: Output,
+    #[command(flatten)]
+    cycles: Source,
 }
 
 #[derive(Args)]
@@ -115,11 +120,7 @@ impl Output {
 
 fn main() -> Result<()> {
     match Arguments::parse().page {
-        Page::Sine {
-            quick,
-            output,
-            cycles,
-        } => measure_sine(quick, &output, &cycles),
+        Page::Sine { quick, bench } => measure_sine(quick, &bench),
         Page::Triangle {
             quick,
             only,
@@ -127,11 +128,7 @@ fn main() -> Result<()> {
         } => measure_triangle(quick, only.as_deref(), &output),
         Page::Raymarch { quick, output } => measure_raymarch(quick, &output),
         Page::Gouraud { quick, output } => measure_gouraud(quick, &output),
-        Page::Imu {
-            quick,
-            output,
-            cycles,
-        } => measure_imu(quick, &output, &cycles),
+        Page::Imu { quick, bench } => measure_imu(quick, &bench),
         Page::Pages { out } => {
             let folder = out.unwrap_or_else(|| workspace::path("docs/report"));
             PAGES
@@ -141,15 +138,16 @@ fn main() -> Result<()> {
     }
 }
 
-/// Rebuilds a page and says so.
+/// Rebuilds a page and prints its path.
 fn written(name: &str, folder: &Path, rebuild: pages::Rebuild) -> Result<()> {
     rebuild(folder).with_context(|| format!("the page {name}.md"))?;
     eprintln!("wrote {name}.md to {}", folder.display());
     Ok(())
 }
 
-fn measure_sine(quick: bool, output: &Output, source: &Source) -> Result<()> {
-    let cycles = source.measure("sine").unwrap_or_else(|reason| {
+fn measure_sine(quick: bool, bench: &Bench) -> Result<()> {
+    let output = &bench.output;
+    let cycles = bench.cycles.measure("sine").unwrap_or_else(|reason| {
         eprintln!("no cycles: {reason:#}");
         Cycles::new()
     });
@@ -196,7 +194,8 @@ fn measure_gouraud(quick: bool, output: &Output) -> Result<()> {
     written("gouraud", &folder, pages::gouraud::rebuild)
 }
 
-fn measure_imu(quick: bool, output: &Output, source: &Source) -> Result<()> {
+fn measure_imu(quick: bool, bench: &Bench) -> Result<()> {
+    let (output, source) = (&bench.output, &bench.cycles);
     let part = if quick { 0.1 } else { 1.0 };
     let folder = output.folder(quick)?;
     let file = |name: &str| folder.join(name);

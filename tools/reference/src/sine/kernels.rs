@@ -17,13 +17,13 @@ use super::truth::{Image, OCTANT, SinCos, TURN};
 pub struct Kernel {
     /// Name of the kernel, as in the firmware's `bench sine`.
     pub name: &'static str,
-    /// Its line in the work-precision diagram.
+    /// Line of the kernel in the work-precision diagram.
     pub family: &'static str,
-    /// Variant.
+    /// Variant of the kernel.
     pub config: &'static str,
     /// Number format of the outputs.
     pub format: &'static str,
-    /// Unit in the last place of that format, for floats of numbers just below 1.
+    /// Unit in the last place of the outputs' format; for floats that of numbers just below 1.
     pub ulp: f64,
     /// Description of the inputs.
     pub inputs: &'static str,
@@ -86,24 +86,9 @@ pub fn kernels() -> Vec<Kernel> {
                 q30::<3>,
             )
         },
-        phases(
-            ["sin_cos_q30_order2", GLINT, "order 2", "Q2.30"],
-            30,
-            SOME_PHASES,
-            q30::<2>,
-        ),
-        phases(
-            ["sin_cos_q30_order1", GLINT, "order 1", "Q2.30"],
-            30,
-            SOME_PHASES,
-            q30::<1>,
-        ),
-        phases(
-            ["sin_cos_q30_order0", GLINT, "order 0", "Q2.30"],
-            30,
-            SOME_PHASES,
-            q30::<0>,
-        ),
+        lower_order::<2>("sin_cos_q30_order2", "order 2"),
+        lower_order::<1>("sin_cos_q30_order1", "order 1"),
+        lower_order::<0>("sin_cos_q30_order0", "order 0"),
         phases(
             ["idsp", "idsp", "cossin", "Q1.31"],
             31,
@@ -159,6 +144,12 @@ fn q14(angle: u32) -> (i32, i32) {
 fn q30<const ORDER: u32>(angle: u32) -> (i32, i32) {
     let (sin, cos) = trig::sin_cos_q30_order::<ORDER>(Turns(angle));
     (sin.to_bits(), cos.to_bits())
+}
+
+/// Glint's Q2.30 kernel with a Taylor series of a lower `ORDER`, over a part of the phases.
+fn lower_order<const ORDER: u32>(name: &'static str, config: &'static str) -> Kernel {
+    let labels = [name, GLINT, config, "Q2.30"];
+    phases(labels, 30, SOME_PHASES, q30::<ORDER>)
 }
 
 fn cordic_sin_cos<T: CordicNumber + Fixed<Bits = i32>>(angle: i32) -> (i32, i32) {

@@ -1,7 +1,7 @@
 //! `glint imu replay`.
 
 use super::source::read_log;
-use crate::cli::common::{LineArguments, advance, bar, count_bar, print_json, say, spinner};
+use crate::cli::common::{TransferArguments, advance, bar, count_bar, print_json, say, spinner};
 use anyhow::Context;
 use clap::Args;
 use glint::board::{Board, ModelOrBoard};
@@ -56,17 +56,11 @@ pub struct ReplayArguments {
     /// Track the bias whenever the sensor is at rest.
     #[arg(long)]
     follow_bias: bool,
-    /// Transfer of log and attitudes [default: memory for the virtual board, serial for a port].
-    #[arg(long, value_enum)]
-    transfer: Option<Route>,
     #[command(flatten)]
-    line: LineArguments,
-    /// Print the summary as JSON.
-    #[arg(long)]
-    json: bool,
+    transfer: TransferArguments,
 }
 
-/// The summary.
+/// The summary of a replay.
 #[derive(Serialize)]
 struct Summary<'a> {
     log: &'a Path,
@@ -158,7 +152,7 @@ impl ReplayArguments {
                 Ok(replayed)
             }
             ModelOrBoard::Board(name) => {
-                let mut board = self.line.board(name)?;
+                let mut board = self.transfer.line.board(name)?;
                 self.on_board(&prepared, &mut *board, Route::of(name))
             }
         }
@@ -185,7 +179,7 @@ impl ReplayArguments {
             }
             advance(bar)(done, all);
         };
-        let route = self.transfer.unwrap_or(route);
+        let route = self.transfer.transfer.unwrap_or(route);
         let replayed = replay::on_board(prepared, &mut Console::new(board), route, &mut progress)?;
         bars.iter().for_each(ProgressBar::finish_and_clear);
         Ok(replayed)
@@ -266,7 +260,7 @@ impl ReplayArguments {
                 .unwrap_or(Quaternion::IDENTITY)
                 .into(),
         };
-        if self.json {
+        if self.transfer.json {
             return print_json(&summary);
         }
         say(format_args!(

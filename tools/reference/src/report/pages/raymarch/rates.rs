@@ -10,7 +10,7 @@ struct View<'a> {
     poses: Vec<&'a Row>,
     /// The slowest pose, drawn back to back.
     slowest: &'a Row,
-    /// Cycles of a frame of it.
+    /// Cycles a frame of the slowest pose.
     cycles: f64,
 }
 
@@ -40,14 +40,20 @@ impl<'a> View<'a> {
     }
 }
 
-/// The first columns of a case.
-fn columns(case: &Case) -> [String; 4] {
-    [
+/// A table's row: field, eyes, size and prepass of a case, then the other `cells`.
+fn row<const CELLS: usize, const COLUMNS: usize>(
+    case: &Case,
+    cells: [String; CELLS],
+) -> [String; COLUMNS] {
+    const { assert!(COLUMNS == 4 + CELLS) };
+    let case = [
         case.field.to_owned(),
         case.eyes().to_string(),
         format!("{}×{}", case.size.0, case.size.1),
         if case.prepass { "yes" } else { "" }.to_owned(),
-    ]
+    ];
+    let mut all = case.into_iter().chain(cells);
+    std::array::from_fn(|_| all.next().expect("as many cells as columns"))
 }
 
 /// Required and measured frames a second of each case.
@@ -70,17 +76,13 @@ pub fn requirements(rows: &[Row]) -> String {
         let clock = CLOCKS[case.clock];
         let rate = clock / views.iter().map(|view| view.cycles).fold(0.0, f64::max);
         let measured = format_args!("{rate:.2} frames a second at {} MHz", clock / 1e6).to_string();
-        let [field, eyes, size, prepass] = columns(case);
-        table.row([
-            field,
-            eyes,
-            size,
-            prepass,
+        let cells = [
             case.build.lanes.to_string(),
             bold(measured, rate < case.at_least),
             case.at_least.to_string(),
             optional(case.aim),
-        ]);
+        ];
+        table.row(row(case, cells));
     }
     table.finish()
 }
@@ -104,12 +106,7 @@ pub fn views(rows: &[Row]) -> String {
     for case in &CASES {
         for view in View::of(case, rows) {
             let evaluations = view.slowest.evaluations as f64;
-            let [field, eyes, size, prepass] = columns(case);
-            table.row([
-                field,
-                eyes,
-                size,
-                prepass,
+            let cells = [
                 view.name.to_owned(),
                 view.poses.len().to_string(),
                 format!("{:.0}, {}", view.mean_alone(), view.slowest.cycles_alone),
@@ -121,7 +118,8 @@ pub fn views(rows: &[Row]) -> String {
                     "{:.3}",
                     evaluations / view.cycles / f64::from(case.build.lanes)
                 ),
-            ]);
+            ];
+            table.row(row(case, cells));
         }
     }
     table.finish()
