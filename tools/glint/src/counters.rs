@@ -15,7 +15,7 @@ pub struct Counters(Vec<(String, u64)>);
 pub struct MissingCounter(String, String);
 
 impl Counters {
-    /// Whether there are none.
+    /// Whether there are no counters.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }

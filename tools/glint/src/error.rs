@@ -46,9 +46,9 @@ impl fmt::Display for Place {
 pub struct FormatError {
     /// Place of the violation.
     pub place: Place,
-    /// What the format requires there.
+    /// The requirement of the format at this place.
     pub expected: String,
-    /// What the input has there.
+    /// The content of the input at this place.
     pub found: String,
 }
 

@@ -44,11 +44,11 @@ impl Corner {
 /// One polygon: a range of corners, counter-clockwise seen from outside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Face {
-    /// Its first corner in [`Polygons::corners`].
+    /// Index of the first corner in [`Polygons::corners`].
     pub first: u32,
-    /// Number of its corners, at least 3.
+    /// Number of corners, at least 3.
     pub count: u32,
-    /// Its colour, if any.
+    /// Colour of the face, if any.
     pub colour: Option<Rgb8>,
 }
 

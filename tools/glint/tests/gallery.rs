@@ -74,11 +74,11 @@ fn the_commands_produce_their_pictures() {
         let stats: serde_json::Value = serde_json::from_slice(&stats).expect("JSON");
         assert_eq!(
             stats["undecided"], 0,
-            "{command:?}: rays that were given up show"
+            "{command:?}: undecided rays are visible"
         );
         assert!(
             pixels(&made) == pixels(&shown),
-            "{}: `GLINT_UPDATE=1 cargo test -p glint --test gallery` makes it anew",
+            "{}: `GLINT_UPDATE=1 cargo test -p glint --test gallery` replaces the picture",
             shown.display()
         );
         bytes += std::fs::metadata(&shown).expect("a file").len();

@@ -52,7 +52,7 @@ pub struct State {
 }
 
 impl Default for State {
-    /// At rest, flat, at 25 °C.
+    /// A body at rest, level, at 25 °C.
     fn default() -> Self {
         Self {
             rate: [0.0; 3],
@@ -102,7 +102,7 @@ pub enum Source {
 pub struct Imperfections {
     /// Bias of the gyroscope at 25 °C in °/s.
     pub bias: [f64; 3],
-    /// Its temperature coefficient in °/s per °C.
+    /// Temperature coefficient of the gyroscope's bias, in °/s per °C.
     pub drift: [f64; 3],
     /// Scale factor of the gyroscope.
     pub scale: [f64; 3],
@@ -146,19 +146,19 @@ impl Imperfections {
 /// Faults of the chip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// Missing: no acknowledge.
+    /// Missing chip: no byte is acknowledged.
     Absent,
-    /// Acknowledges its address only.
+    /// Acknowledge of the address, but of no byte after it.
     NoAcknowledge,
-    /// Holds SDA low until the given number of clocks; 0 is for ever.
+    /// SDA held low until the master has sent the given number of clocks; 0: forever.
     StuckData(u32),
-    /// Stretches the clock by the given ns after each byte.
+    /// Clock stretched by the given ns after each byte.
     Stretched(u64),
-    /// The data registers are frozen, but new data are still announced.
+    /// Frozen data registers, while INT_STATUS still announces new data.
     Frozen,
     /// No new measurements.
     Stalled,
-    /// Value of WHO_AM_I.
+    /// Another value of WHO_AM_I.
     Identity(u8),
 }
 
@@ -174,9 +174,9 @@ pub struct Chip {
     now: u64,
     /// Time of the next sample; `None` in sleep mode.
     next: Option<u64>,
-    /// Time of the first answer after a reset.
+    /// Time from which the chip answers after a reset, in ns.
     answers: u64,
-    /// Between start and stop the data registers do not change.
+    /// Whether a transfer is between start and stop: the data registers do not change then.
     is_addressed: bool,
     /// I2C address: [`ADDRESS`], or one more with AD0 high.
     pub address: u8,
@@ -224,7 +224,7 @@ impl Chip {
         self.answers = self.now + RESET_TIME;
     }
 
-    /// Whether it acknowledges an address.
+    /// Whether the chip acknowledges `address`.
     #[must_use]
     pub fn answers(&self, address: u8) -> bool {
         address == self.address && self.fault != Some(Fault::Absent) && self.now >= self.answers

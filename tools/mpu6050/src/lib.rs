@@ -10,7 +10,8 @@
 //!
 //! # Limits
 //! The low-pass filter delays, and limits the noise, but does not attenuate. There is no FIFO, no auxiliary bus, no self-test,
-//! no cycle mode and no interrupt pin; their registers store what is written. Data are valid right after wake-up.
+//! no cycle mode and no interrupt pin; the registers of these functions only store the written values. Data are valid right
+//! after wake-up.
 
 #![forbid(unsafe_code)]
 

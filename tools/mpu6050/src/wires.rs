@@ -16,9 +16,9 @@ const FREE: u64 = 1_300;
 enum Phase {
     /// Not addressed: waits for the next start.
     Idle,
-    /// Receives a byte: bits so far, their number, and the byte's meaning.
+    /// Byte from the master: received bits, their number, and the byte's meaning.
     In { bits: u8, count: u8, what: Byte },
-    /// Sends a byte, and the number of bits sent.
+    /// Byte to the master, and the number of bits sent.
     Out { byte: u8, count: u8 },
 }
 
@@ -53,7 +53,7 @@ pub struct Wires {
     /// Last state of both wires, and whether the chip pulls SDA.
     wires: (bool, bool),
     pulls: bool,
-    /// End of clock stretching.
+    /// End of clock stretching, in ns.
     holds: u64,
     /// Clocks counted by a stuck chip.
     clocks: u32,

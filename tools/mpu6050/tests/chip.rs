@@ -58,7 +58,7 @@ fn it_wakes_up_as_in_the_register_map() {
     let mut bus = still();
     assert_eq!((read(&mut bus, 0x75), read(&mut bus, 0x6b)), (0x68, 0x40));
     bus.delay_ms(20);
-    assert!(!burst(&mut bus).0, "asleep it measures nothing");
+    assert!(!burst(&mut bus).0, "a sleeping chip measures nothing");
     wake(&mut bus);
     bus.delay_ms(2);
     let (fresh, counts) = burst(&mut bus);
@@ -166,7 +166,7 @@ fn errors_match_the_imperfections() {
     for (rate, expected) in rates.into_iter().zip([206.0, 4.5, 0.0]) {
         assert!((rate - expected).abs() < 0.02, "{rates:?}");
     }
-    // 0.005 °/s/√Hz through 98 Hz, and the rounding of counts.
+    // Noise of 0.005 °/s/√Hz in a bandwidth of 98 Hz, plus the rounding of counts.
     assert!((0.055..0.075).contains(&deviation), "{deviation}");
     assert!((2018.0..2022.0).contains(&count), "{count}");
     bus.advance(20_000 * MILLISECOND);

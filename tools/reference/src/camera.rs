@@ -59,9 +59,9 @@ impl Ray {
 /// One of the two eyes of a stereo picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// At eye − offset·u.
+    /// The left eye, at eye − offset·u.
     Left,
-    /// At eye + offset·u.
+    /// The right eye, at eye + offset·u.
     Right,
 }
 
@@ -79,11 +79,11 @@ pub struct Stereo {
 pub struct Camera {
     /// The centre of projection, in world units.
     pub eye: Vector,
-    /// To the right on the screen.
+    /// Direction to the right on the screen.
     pub u: Vector,
-    /// Down the screen.
+    /// Direction down the screen.
     pub v: Vector,
-    /// Forward, into the scene.
+    /// Direction forward, into the scene.
     pub n: Vector,
     /// Half the width of the picture in the plane at distance 1.
     pub half_width: f64,
@@ -117,7 +117,7 @@ pub struct Size {
 impl Camera {
     /// A camera at `eye` that looks at `target`, with +z up.
     ///
-    /// `half_width` and `near` are the fields of these names. For a line of sight parallel to z, u and v are NaN.
+    /// `half_width` and `near` become the fields of the same names. For a line of sight parallel to z, u and v are NaN.
     pub fn looking_at(eye: Vector, target: Vector, half_width: f64, near: f64) -> Self {
         let n = normalised(subtract(target, eye));
         let u = normalised(cross(n, [0.0, 0.0, 1.0]));
@@ -243,7 +243,7 @@ impl Camera {
     /// K of the depth codes, code = K/z: (2^18 − 4)·max(near, −eye·n − radius·(1 + 2^-13)), truncated to 17 significant bits.
     /// The factor on the radius covers a length of n slightly above 1.
     ///
-    /// `radius` is the scene's about the origin, in world units.
+    /// `radius` is the radius of the scene about the origin, in world units.
     pub fn depth_scale(&self, radius: f64) -> f64 {
         let nearest = (-dot(self.eye, self.n) - radius * (1.0 + 1.0 / 8192.0)).max(self.near);
         let full = f64::from((1 << 18) - 4) * nearest;

@@ -129,7 +129,7 @@ fn orders_are_those_of_the_methods() {
     let observed = (slow / fast).log2();
     println!("plain cubic, coning: order {observed:.2}");
     assert!((observed - 4.0).abs() < 0.4, "{observed}");
-    // Rates are not the rates of angles.
+    // Body rates are not the derivatives of yaw, pitch and roll.
     assert!(method_error(Method::Angles, Motion::Tumble(700.0), 20.0, 1000.0) > 10.0);
 }
 

@@ -19,7 +19,7 @@ pub const TARGET: &str = "riscv32im-unknown-none-elf";
 /// features. The ELF file is in the same folder.
 ///
 /// # Errors
-/// It does not compile, or exceeds the SoC's memory.
+/// The firmware does not compile, or exceeds the SoC's memory.
 pub fn build(features: &[&str]) -> Result<PathBuf> {
     let name = [&["glint"], features].concat().join("-");
     let built = paths::target().join("firmware-build");
@@ -35,7 +35,7 @@ pub fn build(features: &[&str]) -> Result<PathBuf> {
     ]);
     cargo.arg("--features").arg(features.join(","));
     if features.contains(&"peers") {
-        // Generic kernels are instantiated in the program's crate, and need its optimization level.
+        // Generic kernels are instantiated in the program's crate, which therefore gets their optimization level.
         for package in ["glint-firmware", "\"*\""] {
             cargo
                 .arg("--config")
@@ -79,14 +79,14 @@ fn image(elf: &[u8]) -> Result<(Vec<u8>, String)> {
     );
     ensure!(
         file.entry() == base,
-        "its entry is {:#010x}, expected {base:#010x}, where the BIOS jumps to",
+        "the entry point is {:#010x}, expected {base:#010x}, where the BIOS jumps to",
         file.entry()
     );
     let symbol = |name: &str| {
         let found = file.symbols().find(|symbol| symbol.name() == Ok(name));
         found
             .map(|symbol| symbol.address())
-            .with_context(|| format!("it has no symbol {name}"))
+            .with_context(|| format!("no symbol {name}"))
     };
     let windows_end = symbol("_mesh_b")? + symbol("_mesh_size")?;
     ensure!(

@@ -18,7 +18,7 @@ use crate::{paths, run};
 pub enum Board {
     /// The verilated SoC.
     Virtual,
-    /// The RealDigital Urbana, up to Verilog, constraints and a Vivado script.
+    /// The RealDigital Urbana: Verilog, constraints and a Vivado script.
     Urbana,
 }
 
@@ -65,12 +65,12 @@ impl Fields {
 /// Builds the gateware of `board`, if out of date.
 ///
 /// # Errors
-/// A tool is missing or fails; then its output is printed.
+/// A tool is missing or fails. The output of a failed tool is printed.
 pub fn build(board: Board) -> Result<()> {
     build_with(board, &[])
 }
 
-/// Builds `board` with options of `glint_soc`; replaces the build without.
+/// Builds `board` with options of `glint_soc`; replaces the build without options.
 ///
 /// # Errors
 /// As [`build`].
@@ -138,7 +138,7 @@ fn generate(board: Board, folder: &Path, options: &[&str]) -> Result<()> {
             .env("PYTHONPATH", gateware)
             .env("PYTHONDONTWRITEBYTECODE", "1"),
     )
-    .context("the gateware generator: `cargo xtask bootstrap` installs what it needs")?;
+    .context("the gateware generator: `cargo xtask bootstrap` installs its packages")?;
     fs::write(&stamp, inputs).with_context(|| format!("writing {}", stamp.display()))
 }
 

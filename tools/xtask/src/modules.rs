@@ -2,15 +2,14 @@
 //!
 //! Three rules: no circle of modules in a crate, no `#[path]`, no hand-written source file above [`files::MOST_LINES`] lines.
 //!
-//! **Circles.** An arrow from module A to module B counts when A names an item that B defines. The definer counts, not the module
-//! that re-exports the item. These do not count:
+//! **Circles.** An arrow from module A to module B counts when A names an item that B defines. B is the module that defines the
+//! item, not one that re-exports it. These do not count:
 //! - a re-export (`pub use child::X`) of an item from below;
 //! - the name of a module alone (`mod child;`, `use crate::child;`);
 //! - code under `#[cfg(test)]`.
 //!
 //! A module is a file: an inline module belongs to the file around it. Libraries, binaries, tests and examples are checked, each as
-//! a crate of its own. Methods are not names: a call of one makes no arrow, the path to its type does. `use path::*` makes arrows
-//! for the names that are then used.
+//! a crate of its own. A method call makes no arrow; the path to a type does. `use path::*` makes arrows for the used names.
 //!
 //! `cargo modules dependencies --acyclic` does the same with rust-analyzer, which takes minutes to compile. `syn` is compiled for the
 //! derives in any case, and names are enough here.
@@ -67,7 +66,8 @@ pub fn check() -> Result<()> {
     Ok(())
 }
 
-/// The circles of one crate as chains, `a → b (name) → a (name)`: each name in brackets is what the arrow before it takes.
+/// The circles of one crate as chains, `a → b (name) → a (name)`: the name in brackets is the item that the arrow before it
+/// uses.
 fn circles(tree: &Crate) -> Vec<String> {
     let arrows = arrows::arrows(tree);
     circles::circles(&arrows)

@@ -1,8 +1,8 @@
 //! `cargo xtask pac`: writes the register access crate and the register map's page from the SoC's own description.
 //!
-//! LiteX describes a SoC twice and each time in part: `soc.svd` has fields and interrupts, `csr.json` has access
+//! LiteX exports a SoC in two incomplete files: `soc.svd` has fields and interrupts, `csr.json` has access
 //! rights, constants and memories. `description.json` (`gateware/glint_soc/description.py`) has the rest: enumerated values, counters,
-//! the blocks' constants. [`soc::Soc`] joins the three and refuses what does not agree; [`rust`] and [`markdown`] print the
+//! the blocks' constants. [`soc::Soc`] joins the three and refuses contradictions; [`rust`] and [`markdown`] print the
 //! result. The output does not depend on the time, the machine or the order in which LiteX collects the parts: the same SoC
 //! gives the same bytes.
 
@@ -21,10 +21,10 @@ use crate::paths;
 use soc::Soc;
 
 /// Generates `firmware/litex-pac/src/generated.rs`, `firmware/core/src/machine.rs` and `docs/registers.md` from the virtual board's SoC.
-/// With `check` nothing is written: the files must already be what would be generated.
+/// With `check` nothing is written: the files must equal the generated text.
 ///
 /// # Errors
-/// When the SoC has not been built, its two descriptions disagree, or (with `check`) a file is stale.
+/// When the SoC has not been built, its descriptions disagree, or (with `check`) a file is stale.
 pub fn generate(check: bool) -> Result<()> {
     let built = paths::target().join("gateware/virtual");
     let soc = Soc::read(
@@ -43,9 +43,7 @@ pub fn generate(check: bool) -> Result<()> {
         if check {
             let committed = read(&absolute)?;
             if let Some(difference) = first_difference(&committed, text) {
-                bail!(
-                    "{path} is stale: {difference}; run `cargo xtask pac` and commit what it writes"
-                );
+                bail!("{path} is stale: {difference}; run `cargo xtask pac` and commit the files");
             }
         } else {
             fs::write(&absolute, text)
@@ -65,7 +63,7 @@ fn read(path: &Path) -> Result<String> {
     })
 }
 
-/// Where `have` first departs from `want`, or nothing when they are equal.
+/// The first difference of `have` from `want`; `None` when they are equal.
 fn first_difference(have: &str, want: &str) -> Option<String> {
     if have == want {
         return None;

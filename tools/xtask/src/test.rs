@@ -13,7 +13,7 @@ use crate::{bootstrap, firmware, pac, paths, resources, run};
 
 /// Sets up, builds and tests everything. A failed check does not stop the others; a failed build does.
 ///
-/// The gateware's own checks run beside cargo's, because most of either keep one core busy. The Rust tests wait for the
+/// The gateware's own checks run beside cargo's, because most checks keep one core busy. The Rust tests wait for the
 /// gateware tests, which build their models.
 ///
 /// # Errors

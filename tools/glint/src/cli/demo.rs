@@ -221,7 +221,7 @@ impl DemoArguments {
         Ok(cycles / u64::from(self.orbit.max(1)))
     }
 
-    /// Moves towards the sponge and around it; returns the mean cycles of a frame.
+    /// Animates a camera that moves towards the sponge and around it; returns the mean cycles of a frame.
     fn sponge(
         &self,
         renderer: &mut BoardRenderer<SimulatedBoard>,

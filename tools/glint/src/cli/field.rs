@@ -45,12 +45,12 @@ pub struct FieldArguments {
 }
 
 impl FieldArguments {
-    /// The text of the field, if there is one.
+    /// The text of the field, if given.
     pub fn name(&self) -> Option<&str> {
         self.field.as_deref()
     }
 
-    /// The field, if there is one.
+    /// The field, if given.
     pub fn field(&self) -> Result<Option<Field>, InputError> {
         let parse = |text| {
             let text = field::with_files(text)?;

@@ -7,7 +7,7 @@ use glint_core::mesh::{Mesh, Rgb565};
 /// Parses a GLM. Positions and normals are converted exactly, colours by bit replication; chunks are joined.
 ///
 /// # Errors
-/// [`Mesh::new_checked`] rejects it, or it has no triangles.
+/// [`Mesh::new_checked`] rejects the mesh, or the mesh has no triangles.
 pub fn parse(bytes: &[u8]) -> Result<Polygons, FormatError> {
     let mesh = check(bytes)?;
     let world = |q: [i16; 3]| q.map(|c| f64::from(c) / 16384.0);
@@ -39,7 +39,7 @@ pub fn parse(bytes: &[u8]) -> Result<Polygons, FormatError> {
 /// Checks a GLM.
 ///
 /// # Errors
-/// [`Mesh::new_checked`] rejects it.
+/// [`Mesh::new_checked`] rejects the mesh.
 pub fn check(bytes: &[u8]) -> Result<Mesh<'_>, FormatError> {
     Mesh::new_checked(bytes).map_err(|error| {
         let found = match error.expected {

@@ -57,7 +57,7 @@ impl Format {
 /// Reads a whole file.
 ///
 /// # Errors
-/// It cannot be read, or is larger than [`MAX_FILE`].
+/// The file cannot be read, or is larger than [`MAX_FILE`].
 pub fn read_file(path: &Path) -> Result<Vec<u8>, InputError> {
     let mut bytes = Vec::new();
     File::open(path)

@@ -11,9 +11,9 @@ pub struct Lines<'a> {
 /// One line, without its end.
 #[derive(Clone, Copy, Debug)]
 pub struct Line<'a> {
-    /// Counted from 1.
+    /// Number of the line, counted from 1.
     pub number: usize,
-    /// Its bytes; not always UTF-8.
+    /// Bytes of the line; not always UTF-8.
     pub text: &'a [u8],
 }
 
@@ -65,7 +65,7 @@ impl<'a> Lines<'a> {
 }
 
 impl<'a> Line<'a> {
-    /// Its words, separated by white space.
+    /// Words of the line, separated by white space.
     pub fn words(self) -> impl Iterator<Item = &'a [u8]> {
         self.text
             .split(u8::is_ascii_whitespace)
@@ -86,7 +86,7 @@ pub fn any_number(word: &[u8]) -> Option<f64> {
 /// Parses a coordinate: a number within [`MAX_COORDINATE`].
 ///
 /// # Errors
-/// Not a number, not finite, or too large.
+/// The word is not a number, not finite, or too large.
 pub fn coordinate(word: &[u8], place: Place) -> Result<f64, FormatError> {
     any_number(word).and_then(checked).ok_or_else(|| {
         FormatError::new(
@@ -105,7 +105,7 @@ pub fn checked(value: f64) -> Option<f64> {
 /// Checks a coordinate of a binary file.
 ///
 /// # Errors
-/// Not finite, or too large.
+/// The value is not finite, or too large.
 pub fn checked_at(value: f64, offset: usize) -> Result<f64, FormatError> {
     checked(value).ok_or_else(|| {
         FormatError::new(

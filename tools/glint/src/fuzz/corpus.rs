@@ -1,4 +1,4 @@
-//! Seeds: small, valid, with every feature of their format.
+//! Seeds of the fuzz targets: small valid inputs with every feature of the format.
 
 use super::mutate::MAX_INPUT;
 use super::targets::Target;

@@ -36,7 +36,7 @@ pub enum Target {
 pub enum Verdict {
     /// Accepted to the end.
     Accepted,
-    /// Rejected somewhere.
+    /// Rejected before the end.
     Rejected,
 }
 
@@ -53,7 +53,7 @@ impl Target {
         Self::Replay,
     ];
 
-    /// Meaningful words of its format.
+    /// Words with a meaning in the target's format.
     pub fn words(self) -> &'static [&'static str] {
         match self {
             Self::Upload | Self::Glm | Self::Replay => &[],

@@ -7,7 +7,7 @@ use crate::formats::text::{Line, Lines};
 /// One sample of a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Entry {
-    /// Its line, counted from 1.
+    /// Line of the sample in the file, counted from 1.
     pub line: usize,
     /// Time of the sample in µs.
     pub t_us: u64,

@@ -199,7 +199,7 @@ pub fn on_board<B: Board + ?Sized>(
 
 /// Console command.
 const COMMAND: &str = "replay";
-/// Session number of the transfer; any will do, because a board's receiver lives for one transfer.
+/// Session number of the transfer: the same for every transfer, because a board's receiver lives for one transfer.
 const SESSION: u8 = 1;
 
 /// Stage of a replay.

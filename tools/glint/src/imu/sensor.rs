@@ -149,7 +149,7 @@ pub fn calibrate<B: Board + ?Sized>(
     })
 }
 
-/// Three numbers.
+/// Three numbers, parsed from text with single spaces.
 struct Triple([f64; 3]);
 
 impl std::str::FromStr for Triple {

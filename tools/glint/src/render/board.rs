@@ -72,7 +72,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         if let Some(backend) = self.backend {
             self.console.command(&format!("backend {backend}"))?;
         }
-        // The board draws every change at once: the subject, which takes the longest, comes last.
+        // The board draws after every change: the subject, which takes the longest, comes last.
         self.console.command(&size_command(frame.size))?;
         self.console.command(&view_command(&frame.view))?;
         if let Some(mesh) = frame.subject.mesh_part() {

@@ -13,28 +13,30 @@ use crate::camera::{Vector, cross, dot};
 pub enum Filter {
     /// The accelerometer is ignored.
     None,
-    /// Pitch and roll of the attitude and of the reading, mixed by an exact gain with this time constant.
+    /// Complementary filter: mixes pitch and roll of the attitude with those of the reading, by the exact gain for this time
+    /// constant.
     Complementary(f64),
-    /// Mahony's: the normalised reading against the attitude's up, as a rate and in a bias.
+    /// Mahony's filter: the deviation of the normalised reading from the attitude's up direction corrects the rate and the
+    /// bias.
     Mahony {
         /// Proportional gain in 1/s.
         proportional: f64,
         /// Integral gain in 1/s².
         integral: f64,
     },
-    /// A second-order low pass of readings in the world's axes by the gyroscope alone, then the attitude that turns their mean
-    /// upwards: Laidig and Seel's VQF without its bias estimate.
+    /// Laidig and Seel's VQF without its bias estimate: a second-order low pass of the readings, rotated to world axes by the
+    /// gyroscope's attitude, and the rotation that turns the filtered reading upwards.
     LowPass(f64),
-    /// The firmware's, with this time constant.
+    /// The firmware's filter, with this time constant.
     Tilt(f64),
-    /// The firmware's, with readings outside a range ignored.
+    /// The firmware's filter, which ignores readings outside a range.
     Gated {
         /// Time constant.
         tau: f64,
         /// Lowest and highest strength in g.
         range: [f64; 2],
     },
-    /// The firmware's with the gain dt/τ.
+    /// The firmware's filter with the gain dt/τ.
     Explicit(f64),
 }
 
@@ -188,7 +190,7 @@ impl Estimator {
                 let [x, y, z] = force;
                 let [yaw, pitch, roll] = self.integrator.attitude().angles();
                 let mixed = |angle: f64, read: f64| {
-                    // The shorter way round.
+                    // Wrapped to ±π.
                     let difference = (read - angle + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0;
                     angle + gain * difference
                 };
@@ -213,7 +215,7 @@ impl Estimator {
         }
     }
 
-    /// The exact gain, at first that of a running mean.
+    /// The exact gain of a step; during the first τ close to the gain of a running mean.
     fn aged_gain(&mut self, tau: f64, step: f64) -> f64 {
         if self.age < tau {
             self.age = (self.age + step).min(tau);
@@ -222,7 +224,7 @@ impl Estimator {
     }
 }
 
-/// A second-order Butterworth low pass by the bilinear transform; a mean over its first τ.
+/// A second-order Butterworth low pass by the bilinear transform; a running mean during the first τ.
 #[derive(Clone, Copy, Debug, Default)]
 struct Butterworth {
     age: f64,
@@ -243,7 +245,7 @@ impl Butterworth {
             self.sum += x;
             self.count += 1.0;
             let mean = self.sum / self.count;
-            // The state of a constant mean.
+            // The state after a constant input of `mean`.
             self.state = [(1.0 - b0) * mean, (b0 - a[1]) * mean];
             return mean;
         }

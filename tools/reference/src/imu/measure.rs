@@ -1,4 +1,4 @@
-//! Measurements of tests and the report.
+//! Measurements shared by the tests and the report.
 
 use glint_core::calibration::{
     Calibration, Progress, Report, RestBias, SAMPLES, SampleError, Units,
@@ -38,7 +38,7 @@ fn bias(sensor: &Sensor) -> [f64; 3] {
 /// Largest errors of the firmware.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Largest {
-    /// Against the same method in f64 on the same counts, in degrees.
+    /// Angle to the attitude by the same method in f64 on the same counts, in degrees.
     pub angle: f64,
     /// Error of the quaternion's length.
     pub norm: f64,
@@ -130,7 +130,7 @@ pub fn filter_inclination(filter: Filter, sensor: Sensor, motion: Motion, second
 /// Calibrates the firmware by samples of a motion.
 ///
 /// # Errors
-/// As the firmware's calibration.
+/// Errors of the firmware's calibration.
 ///
 /// # Panics
 /// When the samples end before the calibration.
@@ -141,7 +141,7 @@ pub fn calibrated(sensor: Sensor, motion: Motion) -> Result<Report, SampleError>
             return Ok(report);
         }
     }
-    unreachable!("a calibration takes as many samples as it was told");
+    unreachable!("a calibration ends after the requested number of samples");
 }
 
 /// Drift of yaw at rest after a calibration, in °/h, with the bias kept or tracked.

@@ -11,13 +11,13 @@ pub enum Method {
     Angles,
     /// q + q·ω·dt/2, normalised, with the newest sample.
     FirstOrder,
-    /// The exponential, with the newest sample.
+    /// Quaternion exponential of the newest sample.
     Newest,
-    /// The exponential, with the mean of two samples.
+    /// Quaternion exponential of the mean of two samples.
     Trapezoid,
-    /// The trapezoid, with the coning of a rate that is linear between two samples.
+    /// The trapezoid plus the coning term of a rate that is linear between two samples.
     Coning,
-    /// The parabola through three samples, with its coning.
+    /// The parabola through three samples, with its coning term.
     Parabola,
     /// The cubic through four samples, as the firmware integrates it.
     Cubic,
@@ -136,7 +136,7 @@ impl Integrator {
 
     /// The rotation vector of a step.
     fn turn(&mut self, rate: Vector, step: f64) -> Vector {
-        // The firmware's times are whole microseconds, so smaller differences are equal.
+        // The firmware's times are whole microseconds, so steps that differ by less are equal.
         let within = |longest: f64| step <= longest + 1e-9;
         let curved = within(f64::from(LONGEST_CURVE) * 1e-6)
             && (self.steps == 0 || within(f64::from(MOST_STRETCH) * self.ages[0]));

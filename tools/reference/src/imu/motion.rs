@@ -141,8 +141,8 @@ impl Motion {
         }
     }
 
-    /// The attitude after `seconds` from [`Self::attitude`] at 0, or from the identity: in closed form, or with 16 times
-    /// `rate` steps a second.
+    /// The attitude after `seconds`: [`Self::attitude`] for motions in closed form, otherwise integrated from the identity with
+    /// 16 · `rate` steps a second.
     pub fn attitude_after(self, seconds: f64, rate: f64) -> Quaternion {
         self.attitude(seconds).unwrap_or_else(|| {
             let step = 1.0 / (16.0 * rate);

@@ -4,7 +4,7 @@ use glint_core::orientation;
 
 use crate::camera::{Vector, cross, dot};
 
-/// w, x, y, z.
+/// A quaternion w, x, y, z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quaternion(pub [f64; 4]);
 
@@ -41,7 +41,7 @@ impl Quaternion {
         about(2, yaw).times(about(1, pitch)).times(about(0, roll))
     }
 
-    /// First `other`, then this one.
+    /// The product: the rotation by `other`, then by this quaternion.
     #[must_use]
     pub fn times(self, other: Self) -> Self {
         let ([aw, ax, ay, az], [bw, bx, by, bz]) = (self.0, other.0);
@@ -65,7 +65,7 @@ impl Quaternion {
         self.0.iter().map(|x| x * x).sum::<f64>().sqrt()
     }
 
-    /// Scaled to length 1.
+    /// This quaternion scaled to length 1.
     #[must_use]
     pub fn normalised(self) -> Self {
         let norm = self.norm();

@@ -20,13 +20,13 @@ pub struct Sensor {
     pub noise: f64,
     /// Standard deviation of a sample of the accelerometer, in g.
     pub accel_noise: f64,
-    /// Scale error of the gyroscope, as a part of the rate.
+    /// Scale error of the gyroscope, as a fraction of the rate.
     pub scale_error: f64,
     /// Samples a second.
     pub rate: f64,
-    /// Largest jitter of a sample's time, as a part of the period.
+    /// Largest jitter of a sample's time, as a fraction of the period.
     pub jitter: f64,
-    /// Part of lost samples.
+    /// Fraction of lost samples.
     pub lost: f64,
 }
 

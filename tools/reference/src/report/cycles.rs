@@ -26,7 +26,7 @@ pub type Cycles = BTreeMap<String, Figures>;
 /// Reads the lines `bench NAME min MIN median MEDIAN max MAX cycles` of a console's output.
 ///
 /// # Errors
-/// When a line of this beginning is malformed, or no line is found.
+/// When a line that starts with `bench` is malformed, or there is no such line.
 pub fn parse(console: &str) -> Result<Cycles> {
     let mut cycles = Cycles::new();
     for line in console.lines() {
@@ -92,7 +92,7 @@ impl Source {
     /// The figures of `bench KERNELS`.
     ///
     /// # Errors
-    /// When the transcript cannot be read, or as in a run on the virtual board.
+    /// When the transcript cannot be read, or the run on the virtual board fails.
     pub fn measure(&self, kernels: &str) -> Result<Cycles> {
         if let Some(path) = &self.transcript {
             let text = std::fs::read_to_string(path)

@@ -21,7 +21,7 @@ impl BackToBack {
     /// Draws the shown scene back to back; `kernel` is its name in `bench`.
     ///
     /// # Errors
-    /// When the console reports an error or its reply has no such line.
+    /// When the console reports an error or its reply has no line of this kernel.
     pub fn measure(renderer: &mut BoardRenderer<SimulatedBoard>, kernel: &str) -> Result<Self> {
         let command = format!("bench {kernel}");
         let lines = renderer.console().command(&command)?;

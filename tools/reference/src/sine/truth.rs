@@ -18,13 +18,13 @@ pub struct SinCos {
 }
 
 impl SinCos {
-    /// Of an angle in radians, by the standard library.
+    /// Sine and cosine of an angle in radians, by the standard library.
     pub fn of_radians(angle: f64) -> Self {
         let (sin, cos) = angle.sin_cos();
         Self { sin, cos }
     }
 
-    /// Of a phase in the first octant, 0 to [`OCTANT`].
+    /// Sine and cosine of a phase in the first octant, 0 to [`OCTANT`].
     pub fn of_octant(phase: u32) -> Self {
         Self::of_radians(f64::from(phase) * (2.0 * PI / TURN))
     }
@@ -40,7 +40,8 @@ pub struct Image {
 impl Image {
     /// The images of an octant phase.
     ///
-    /// Over all phases from 0 to [`OCTANT`] they are all 2^32 angles, each once: shared borders of octants come once.
+    /// Over all phases from 0 to [`OCTANT`] the images are all 2^32 angles, each once: a border that two octants share counts
+    /// once.
     pub fn all(phase: u32) -> impl Iterator<Item = Self> {
         (0..8)
             .map(|i| Self {

@@ -2,7 +2,7 @@
 //!
 //! The rule is that of Direct3D and Vulkan: a pixel is covered when its centre lies inside the triangle, or on an
 //! edge that is a *top* edge (exactly horizontal, the triangle below it) or a *left* edge (not horizontal, the triangle
-//! to its right). It is applied by the position of the opposite vertex, so the winding does not matter.
+//! to its right). The position of the opposite vertex tells top and left, so the winding does not matter.
 
 /// Steps of the snapped grid in one pixel.
 pub const SUBPIXELS: i64 = 256;

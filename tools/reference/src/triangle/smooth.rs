@@ -75,9 +75,9 @@ impl Interpolated {
 pub struct Measured {
     /// Triangles on the screen.
     pub triangles: u64,
-    /// Triangles made by the clipper among them.
+    /// Triangles on the screen made by the clipper.
     pub clipped: u64,
-    /// Back faces among them.
+    /// Back faces on the screen.
     pub back: u64,
     /// Covered pixels, counted for each triangle.
     pub pixels: u64,

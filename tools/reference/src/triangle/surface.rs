@@ -113,7 +113,8 @@ impl ProjectedTriangle {
     }
 }
 
-/// Length in pixels below which an edge has no reliable direction. Leaving it out extends a polygon only where it is as narrow.
+/// Length in pixels below which an edge has no reliable direction. Without such an edge a polygon extends only where the
+/// polygon is as narrow.
 const SHORTEST_EDGE: f64 = 1e-6;
 
 /// The edges of a convex polygon, their normals pointing inwards. A front face runs counter-clockwise in the world and, y

@@ -118,7 +118,7 @@ fn counts(renderer: &mut Renderer, case: &Case) -> Vec<u32> {
     counts
 }
 
-/// Compares counts with the outline: one inside, none outside, at most one between.
+/// Compares counts with the outline: one inside, none outside, at most one within the tolerance of the outline.
 fn check_against_outline(case: &Case, outline: usize, whole: &Scene, counts: &[u32]) -> u64 {
     let camera = Camera::from(&view(&case.camera));
     let outline = ProjectedTriangle::new(&camera, case.size, whole.corners(outline));

@@ -1,4 +1,4 @@
-//! The named list of hard cases, each through all of the coverage checks.
+//! Named hard cases, each through all coverage checks.
 
 use glint_reference::camera::{Camera, Vector};
 use rand::{RngExt, SeedableRng};

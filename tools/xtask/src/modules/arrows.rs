@@ -1,4 +1,4 @@
-//! The arrows of a crate: which module names whose items.
+//! The arrows of a crate: for each module the items of other modules that it names.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
@@ -35,7 +35,7 @@ pub fn arrows(tree: &Crate) -> Arrows {
 struct Collector<'a> {
     tree: &'a Crate,
     module: Id,
-    /// Names of variables and parameters of the current item: no paths.
+    /// Variables and parameters of the current item; their names are not paths.
     bindings: HashSet<String>,
     /// Imports of the blocks around the current place.
     blocks: Vec<HashMap<String, Segments>>,
@@ -142,7 +142,8 @@ impl<'ast> Visit<'ast> for Collector<'_> {
         }
     }
 
-    /// An import names its item at once. A re-export from below does not: it lends a name, and uses nothing.
+    /// Adds the arrow of an import. A re-export from a child module makes none, because the re-exporting module does not use
+    /// the item.
     fn visit_item_use(&mut self, item: &'ast ItemUse) {
         for import in tree::imports(&item.tree) {
             for target in self.tree.resolve(self.module, &import.path) {

@@ -5,7 +5,7 @@ use std::collections::{BTreeSet, HashMap, VecDeque};
 use super::arrows::Arrows;
 use super::tree::Id;
 
-/// For each module that lies on a circle a shortest one through it; each circle once, from its lowest id.
+/// A shortest circle through each module that lies on one; each circle once, from its lowest module id.
 pub fn circles(arrows: &Arrows) -> Vec<Vec<Id>> {
     let modules: BTreeSet<Id> = arrows.keys().map(|(from, _)| *from).collect();
     let circles: BTreeSet<Vec<Id>> = modules

@@ -11,7 +11,7 @@ pub const MOST_LINES: usize = 500;
 /// Endings of source files.
 const ENDINGS: [&str; 5] = ["rs", "py", "sv", "cpp", "h"];
 
-/// Folders with no source of this project; hidden ones are passed over too.
+/// Folders without source of this project; hidden folders are skipped too.
 const OTHER_FOLDERS: [&str; 2] = ["target", "out"];
 
 /// Hand-written source files below `folder` with more than [`MOST_LINES`] lines, as `FILE: N lines`, in order of their names.
@@ -51,7 +51,7 @@ fn walk(root: &Path, folder: &Path, found: &mut Vec<String>) -> Result<()> {
     Ok(())
 }
 
-/// The number of lines, if it is too high for a file written by hand.
+/// The number of lines of a hand-written file above [`MOST_LINES`]; `None` for shorter and for generated files.
 fn excess(text: &str) -> Option<usize> {
     let lines = text.lines().count();
     (lines > MOST_LINES && !is_generated(text)).then_some(lines)

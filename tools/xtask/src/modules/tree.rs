@@ -27,7 +27,7 @@ pub struct Crate {
 pub struct Module {
     /// Path below the root, `a::b`; the root is `crate`.
     pub name: String,
-    /// The module whose file holds this one: itself, unless inline.
+    /// The module whose file contains this module: for a module in its own file, the module itself.
     pub file_module: Id,
     /// Its items, without those under `#[cfg(test)]`.
     pub items: Vec<Item>,
@@ -59,7 +59,7 @@ pub enum Definition {
 pub struct Import {
     /// The imported path.
     pub path: Segments,
-    /// The name that it gets in this scope; none for a glob and for `_`.
+    /// Name of the item in this scope; none for a glob and for `_`.
     pub name: Option<String>,
     /// `path::*`.
     pub glob: bool,
@@ -216,7 +216,7 @@ impl Crate {
         self.resolve_guarded(from, path, &mut HashSet::new())
     }
 
-    /// Where the macro `name` comes from by order of text: an ancestor of `from` that defines it before its `mod`.
+    /// The nearest module, from `from` upwards, that defines the macro `name`: macros are visible in text order.
     pub fn textual_macro(&self, from: Id, name: &str) -> Option<Definition> {
         let mut next = Some(from);
         while let Some(id) = next {
@@ -229,7 +229,7 @@ impl Crate {
         None
     }
 
-    /// [`Self::resolve`]; `seen` ends imports that import each other.
+    /// As [`Self::resolve`]; `seen` ends a cycle of imports.
     fn resolve_guarded<'a>(
         &'a self,
         from: Id,
@@ -283,7 +283,7 @@ impl Crate {
             })
             .collect();
         if modules.is_empty() {
-            // A type: what follows is a variant or an associated item.
+            // A type: the next segment is a variant or an associated item.
             return found;
         }
         // A function may have a module's name; only the module has names below.
@@ -431,7 +431,7 @@ pub fn attributes(item: &Item) -> &[Attribute] {
     }
 }
 
-/// Whether the attributes hold an item back from every build but a test's: `#[cfg(test)]`, `#[cfg(all(test, ...))]`.
+/// Whether the attributes restrict an item to test builds: `#[cfg(test)]`, `#[cfg(all(test, ...))]`.
 pub fn only_in_tests(attributes: &[Attribute]) -> bool {
     attributes.iter().any(|attribute| match &attribute.meta {
         Meta::List(list) if list.path.is_ident("cfg") => {

@@ -1,11 +1,11 @@
-//! The SoC's `description.json`: what LiteX's own exports leave out.
+//! The SoC's `description.json`: enumerated values, counters and constants, which LiteX's own exports lack.
 
 use std::collections::BTreeMap;
 
 use anyhow::{Context, Result, ensure};
 use serde::Deserialize;
 
-/// What LiteX's exports leave out.
+/// The contents of `description.json`.
 #[derive(Deserialize)]
 pub struct Description {
     blocks: BTreeMap<String, Block>,
@@ -16,7 +16,7 @@ pub struct Description {
 /// Numbers that gateware, firmware and host share: `gateware/glint_soc/constants.py`.
 #[derive(Debug, Deserialize)]
 pub struct Machine {
-    /// By code.
+    /// Picture sizes, by their code.
     pub sizes: Vec<Size>,
     pub group: u32,
     pub list_table_words: u32,
@@ -33,10 +33,10 @@ pub struct Size {
     pub band_lines: u32,
 }
 
-/// A block's registers, and the numbers that stand beside them.
+/// A block's registers, counters and constants.
 #[derive(Deserialize)]
 pub struct Block {
-    /// In the order of their addresses.
+    /// Registers in the order of their addresses.
     pub registers: Vec<Register>,
     /// Names of the registers that are free-running counters, in the order in which they are shown.
     pub counters: Vec<String>,
@@ -49,7 +49,7 @@ pub struct Register {
     pub name: String,
     /// Width in bits.
     pub width: u32,
-    /// By lowest bit. Empty where the register is one plain number.
+    /// Fields by lowest bit; empty for a register that is one plain number.
     pub fields: Vec<Field>,
 }
 
@@ -83,7 +83,7 @@ impl Description {
     /// Reads the text of `description.json`.
     ///
     /// # Errors
-    /// When it is not of the form that `gateware/glint_soc/description.py` writes.
+    /// When the text is not of the form that `gateware/glint_soc/description.py` writes.
     pub fn read(text: &str) -> Result<Self> {
         serde_json::from_str(text).context("description.json is not of the expected form")
     }
@@ -91,7 +91,7 @@ impl Description {
     /// Takes out the block `name`.
     ///
     /// # Errors
-    /// When there is none, or it contradicts itself.
+    /// When the description has no such block, or the block contradicts itself.
     pub fn take(&mut self, name: &str) -> Result<Block> {
         let block = self.blocks.remove(name).with_context(|| {
             format!("soc.svd has the peripheral `{name}`, description.json has not")
@@ -115,7 +115,7 @@ impl Description {
         Ok(block)
     }
 
-    /// The shared numbers, when all blocks are taken.
+    /// The shared numbers, after all blocks have been taken out.
     ///
     /// # Errors
     /// When a block is left; names the first one.

@@ -1,4 +1,4 @@
-//! The SoC as its three descriptions tell it: LiteX's two joined by address, Glint's own by name.
+//! The SoC, joined from three descriptions: LiteX's two by address, Glint's own by name.
 
 use std::collections::BTreeMap;
 
@@ -11,18 +11,18 @@ use super::description::{self, Block, Constant, Description, Machine, NamedValue
 /// Name of the constant that carries the CRC-32 of the pinned register map.
 const BUILD_ID: &str = "build_id";
 
-/// Everything the generated files are made of, sorted by address or name.
+/// Contents of the generated files, sorted by address or name.
 #[derive(Debug)]
 pub struct Soc {
     /// CRC-32 of the pinned register map.
     pub build_id: u32,
     /// By base address.
     pub peripherals: Vec<Peripheral>,
-    /// By base address, `csr` itself left out.
+    /// Memories by base address, without `csr`.
     pub memories: Vec<Memory>,
     /// Numbers that gateware, firmware and host share.
     pub machine: Machine,
-    /// By name: the numbers among the constants that firmware may rely on.
+    /// Numeric constants that firmware may rely on, by name.
     pub constants: Vec<(String, u32)>,
 }
 
@@ -34,7 +34,7 @@ pub struct Peripheral {
     /// First paragraph of the gateware's own description; may be empty.
     pub description: String,
     pub interrupt: Option<u32>,
-    /// By offset.
+    /// Registers by offset.
     pub registers: Vec<Register>,
     /// Names of the registers that are free-running counters, in the order in which they are shown.
     pub counters: Vec<String>,
@@ -61,11 +61,11 @@ pub struct Register {
     /// Width in bits.
     pub width: u32,
     pub description: String,
-    /// By lowest bit. Empty where the register is one plain number.
+    /// Fields by lowest bit; empty for a register that is one plain number.
     pub fields: Vec<Field>,
 }
 
-/// Whether the bus may write a register. LiteX has none that cannot be read.
+/// Whether the bus may write a register. LiteX has no write-only registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Access {
     ReadOnly,
@@ -95,7 +95,7 @@ impl Soc {
     /// Joins the texts of `soc.svd`, `csr.json` and `description.json`.
     ///
     /// # Errors
-    /// When one cannot be read or two disagree; the message names the register and what each of them says.
+    /// When a text cannot be parsed or two texts disagree; the error names the register and both statements.
     pub fn read(svd: &str, csr_json: &str, description_json: &str) -> Result<Self> {
         let document = Document::parse(svd).context("soc.svd is not XML")?;
         let csr: Value = serde_json::from_str(csr_json).context("csr.json is not JSON")?;
@@ -231,7 +231,7 @@ fn join_fields(
     Ok(())
 }
 
-/// A register as csr.json knows it.
+/// A register of csr.json.
 struct Declared {
     /// `peripheral_register`.
     name: String,
@@ -392,8 +392,8 @@ fn memories(csr: &Value) -> Result<Vec<Memory>> {
     Ok(memories)
 }
 
-/// The constants that are numbers. Interrupt numbers are told by the peripherals, and what steers only the BIOS's
-/// memory test differs between boards.
+/// The numeric constants, without interrupt numbers, which the peripherals state, and without the settings of the BIOS's memory
+/// test, which differ between boards.
 fn constants(csr: &Value) -> Result<BTreeMap<String, u32>> {
     let mut constants = BTreeMap::new();
     for (name, value) in object(csr, "constants")? {
@@ -449,7 +449,8 @@ fn first_paragraph(text: &str) -> String {
     flowed(text.trim().split("\n\n").next())
 }
 
-/// LiteX names an edge for every process event, and always the falling one; a field without a description is `None`.
+/// The description of a field without LiteX's sentence on the trigger, which names a falling edge for every event. LiteX writes
+/// `None` for a missing description.
 fn field_description(text: &str) -> String {
     let text = text
         .split(" This Event is triggered")
@@ -462,8 +463,8 @@ fn field_description(text: &str) -> String {
     }
 }
 
-/// What a register is: for an event manager's in general words, because LiteX's speak of its last event only; for one
-/// of several words without the note which of its words this one is.
+/// The description of a register. Registers of an event manager get general words, because LiteX's describe the last event
+/// only; a register of several words loses LiteX's note on the bits of this word.
 fn register_description(name: &str, text: &str) -> String {
     match (name, text.strip_prefix("Bits ")) {
         ("ev_status", _) => "Level of each event's trigger.".to_owned(),

@@ -56,7 +56,7 @@ impl Budget {
     /// Reads the budget file.
     ///
     /// # Errors
-    /// It cannot be read, or names an unknown block or resource.
+    /// The file cannot be read, or names an unknown block or resource.
     pub fn read() -> Result<Self> {
         let path = "gateware/budget.toml";
         fs::read_to_string(paths::root().join(path))

@@ -24,7 +24,7 @@ pub enum Resource {
 }
 
 impl Resource {
-    /// All of them.
+    /// All limited resources.
     pub const ALL: [Self; 6] = [
         Self::Lut,
         Self::Ff,
@@ -81,7 +81,7 @@ impl Size {
     /// Parses a line of JSON.
     ///
     /// # Errors
-    /// It is not a size.
+    /// The line is not a size.
     pub fn parse(line: &str) -> Result<Self> {
         serde_json::from_str(line).with_context(|| format!("not a size: `{line}`"))
     }

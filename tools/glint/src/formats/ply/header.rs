@@ -115,9 +115,9 @@ pub enum Kind {
     Scalar(Scalar),
     /// A list.
     List {
-        /// Type of its length.
+        /// Type of the list's length.
         count: Scalar,
-        /// Type of its items.
+        /// Type of the list's items.
         item: Scalar,
     },
 }
@@ -125,7 +125,7 @@ pub enum Kind {
 /// A property of an element.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Property {
-    /// Its name.
+    /// Name of the property.
     pub name: Vec<u8>,
     /// Type of its values.
     pub kind: Kind,
@@ -134,13 +134,13 @@ pub struct Property {
 /// An element: the type of a table of instances.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Element {
-    /// Its name.
+    /// Name of the element.
     pub name: Vec<u8>,
     /// Number of instances.
     pub count: u32,
     /// Properties of each instance.
     pub properties: Vec<Property>,
-    /// Place of its declaration.
+    /// Place of the element's declaration.
     pub place: Place,
 }
 

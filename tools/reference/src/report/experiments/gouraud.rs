@@ -102,7 +102,7 @@ pub struct Cost {
     pub path: u32,
 }
 
-/// What Yosys counts in a module.
+/// Yosys's cell counts of a module.
 #[derive(Deserialize)]
 struct Cells {
     logic: u32,

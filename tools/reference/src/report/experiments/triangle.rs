@@ -145,15 +145,15 @@ pub struct Row {
     pub pixels: u64,
     /// A frame alone: from the first register write to the end seen by the firmware.
     pub cycles_alone: u64,
-    /// Its geometry pass.
+    /// Geometry pass of a frame alone.
     pub cycles_geometry: u64,
-    /// Its raster pass.
+    /// Raster pass of a frame alone.
     pub cycles_raster: u64,
-    /// A frame of many back to back.
+    /// A frame among many drawn back to back.
     pub cycles_frame: f64,
-    /// Its geometry pass, which shares memory with the raster pass of another frame.
+    /// Geometry pass of a frame back to back, which shares memory with the raster pass of another frame.
     pub cycles_geometry_together: f64,
-    /// Its raster pass, which shares memory with the geometry pass of another frame.
+    /// Raster pass of a frame back to back, which shares memory with the geometry pass of another frame.
     pub cycles_raster_together: f64,
     /// The same frame on the soft core.
     pub cycles_cpu: Option<u64>,
@@ -167,11 +167,11 @@ pub struct Row {
     pub other: f64,
     /// Part of the geometry pass alone: waits for a write to memory.
     pub geometry_writes: f64,
-    /// The figure that is required.
+    /// Measured value of the required figure.
     pub measured: f64,
-    /// Its unit.
+    /// Unit of the figure.
     pub unit: String,
-    /// Its limit.
+    /// Required limit of the figure.
     pub at_least: f64,
     /// The goal beyond the limit.
     pub aim: Option<f64>,

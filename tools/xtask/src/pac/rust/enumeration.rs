@@ -25,7 +25,7 @@ impl Enumeration<'_> {
         self.values.len() as u64 == 1 << self.width
     }
 
-    /// Whether `field` holds one of its values.
+    /// Whether `field` holds a value of this enumeration.
     pub fn is_of(&self, field: &Field) -> bool {
         !field.values.is_empty() && self.width == field.width && self.values == field.values
     }

@@ -276,7 +276,7 @@ fn write_setter(out: &mut String, field: &Field, enumeration: Option<&Enumeratio
     writeln!(out, "        }}")
 }
 
-/// What a setter says about bits that its field has no room for.
+/// The part of a setter's rustdoc that states which bits of the argument are used.
 fn kept(width: u32) -> String {
     match width {
         1 | 8 | 16 | 32 => String::new(),

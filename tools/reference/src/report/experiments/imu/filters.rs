@@ -15,13 +15,13 @@ pub struct FilterErrors {
     pub filter: String,
     /// Whether Glint uses it.
     pub shipped: bool,
-    /// At rest.
+    /// Error at rest.
     pub rest: f64,
-    /// Hand motion, mostly sideways.
+    /// Error of a hand motion, mostly sideways.
     pub hand: f64,
-    /// Hand motion, mostly up and down.
+    /// Error of a hand motion, mostly up and down.
     pub nod: f64,
-    /// A walk.
+    /// Error of a walk.
     pub walk: f64,
     /// Commit of the measurement.
     pub commit: String,

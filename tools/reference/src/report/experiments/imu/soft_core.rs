@@ -1,4 +1,4 @@
-//! The attitude on the soft core: cycles of a sample, and its bits beside the host's.
+//! The attitude on the soft core: cycles of a sample, and its comparison with the host's, bit for bit.
 
 use anyhow::{Context, Result};
 use glint::board::{SimulatedBoard, built_firmware};
@@ -22,12 +22,12 @@ const KERNELS: [(&str, &str, u64, u64); 4] = [
     ("cubic_tilt_jitter", "with tilt, uneven steps", 2_000, 1_200),
 ];
 
-/// A kernel of the firmware: a line of `imu-cycles.csv`. Cycles of a sample.
+/// A kernel of the firmware: a line of `imu-cycles.csv`. All figures are cycles a sample.
 #[derive(Serialize, Deserialize)]
 pub struct Kernel {
-    /// Integrated samples.
+    /// Kind of the integrated samples.
     pub what: String,
-    /// Its limit.
+    /// Required limit.
     pub at_least: u64,
     /// The goal beyond the limit.
     pub aim: u64,

@@ -1,4 +1,4 @@
-//! StiffCase and extreme cases of the attitude.
+//! Stiff and extreme cases of the attitude.
 
 use glint_core::calibration::{RestBias, Units};
 use glint_core::orientation::{Gain, Sample};
@@ -17,7 +17,7 @@ pub struct StiffCase {
     pub case: String,
     /// Result of other methods.
     pub other: String,
-    /// Result of Glint's.
+    /// Result of Glint's method.
     pub glint: String,
     /// Outcome in words.
     pub outcome: String,

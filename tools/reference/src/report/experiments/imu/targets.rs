@@ -14,9 +14,9 @@ use crate::report::provenance::Provenance;
 pub struct Target {
     /// The measured error.
     pub what: String,
-    /// Its unit.
+    /// Unit of the error.
     pub unit: String,
-    /// Its limit.
+    /// Required limit of the error.
     pub at_least: f64,
     /// The goal beyond the limit.
     pub aim: f64,

@@ -1,6 +1,6 @@
 //! The sponge's march in integers with any number of fraction bits, for the study of word lengths.
 //!
-//! The gateware and its model have 12. Directions keep their 17 bits, which are taken from the model.
+//! The gateware and its model have 12 fraction bits. Directions always have the 17 bits of the model.
 
 use glint_model::raymarch::{DEFAULT_TUNING, FieldOptions, FieldSetup, Ray, Tuning};
 
@@ -125,7 +125,7 @@ impl FixedPoint {
         }
     }
 
-    /// t at the near plane or at the cube around the sponge.
+    /// t at the start of a ray: at the near plane or at the cube around the sponge.
     fn start(&self, ray: &Ray) -> u32 {
         let near = ((u64::from(self.near) * u64::from(ray.length + 1)) >> 10) as u32;
         let farthest = farthest(self.fraction);

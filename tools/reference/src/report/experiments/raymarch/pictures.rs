@@ -31,25 +31,25 @@ pub struct Row {
     pub undecided: usize,
     /// Median error of the depth from t.
     pub depth_median: Option<f64>,
-    /// 99th percentile of that error.
+    /// 99th percentile of the error of the depth from t.
     pub depth_p99: Option<f64>,
     /// Largest error of the depth from t.
     pub depth_max: Option<f64>,
     /// Median error of the depth from the code.
     pub code_median: Option<f64>,
-    /// 99th percentile of that error.
+    /// 99th percentile of the error of the depth from the code.
     pub code_p99: Option<f64>,
     /// Largest error of the depth from the code.
     pub code_max: Option<f64>,
-    /// Part of wrong faces among common hits.
+    /// Fraction of wrong faces among common hits.
     pub wrong_faces: f64,
     /// 99th percentile of the angle between normals of round surfaces, in degrees.
     pub normal_p99: Option<f64>,
-    /// Part of the pixels beside an edge, where tiny differences decide.
+    /// Fraction of pixels beside an edge, whose result depends on tiny differences.
     pub unstable: f64,
     /// Mean evaluations a ray, those of cones included.
     pub evaluations: f64,
-    /// Part of them by cones.
+    /// Fraction of the evaluations that cones take.
     pub evaluations_cones: f64,
     /// Evaluations of the slowest ray.
     pub evaluations_max: u32,

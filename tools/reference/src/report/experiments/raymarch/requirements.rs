@@ -1,4 +1,5 @@
-//! Requirements on pictures of fields, and goals beyond them. Of each pair the first is the requirement.
+//! Requirements on pictures of fields, and goals beyond them. The first number of each pair is the requirement, the second the
+//! goal.
 
 use crate::field::metrics::Accuracy;
 
@@ -13,7 +14,7 @@ pub const IOU: [f64; 2] = [0.999, 0.9999];
 pub const MEDIAN: [f64; 2] = [3e-4, 2e-4];
 /// Largest 99th percentile of the depth's error, in world units.
 pub const P99: [f64; 2] = [3e-3, 5e-4];
-/// Largest part of wrong faces among common hits.
+/// Largest fraction of wrong faces among common hits.
 pub const FACES: [f64; 2] = [0.01, 0.003];
 /// Largest 99th percentile of the angle between normals of round surfaces, in degrees.
 pub const NORMALS: f64 = 0.3;

@@ -1,4 +1,4 @@
-//! Studies: what errors and cycles of the march depend on.
+//! Studies: the effect of each parameter on the march's errors and cycles.
 
 use anyhow::Result;
 use glint_model::raymarch::{Cones, DEFAULT_TUNING, FieldOptions, Tuning};

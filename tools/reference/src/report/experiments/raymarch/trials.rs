@@ -33,7 +33,7 @@ pub struct Trial {
     pub depth_p99: Option<f64>,
     /// Largest error of the depth.
     pub depth_max: Option<f64>,
-    /// Part of wrong faces among common hits.
+    /// Fraction of wrong faces among common hits.
     pub wrong_faces: f64,
     /// Mean evaluations a ray.
     pub evaluations: f64,
