@@ -9,7 +9,7 @@ use std::time::Instant;
 use anyhow::{Result, bail};
 
 use crate::gateware::{self, Board};
-use crate::{bootstrap, firmware, pac, paths, resources, run};
+use crate::{bootstrap, firmware, modules, pac, paths, resources, run};
 
 /// Sets up, builds and tests everything. A failed check does not stop the others; a failed build does.
 ///
@@ -37,6 +37,7 @@ pub fn test() -> Result<()> {
         firmware::build(&[])?;
         firmware::build(&["peers"])?;
         results.add(pac::generate(true).map(|()| 1));
+        results.add(modules::check().map(|()| 1));
         results.add(cargo("formatting", &["fmt", "--all", "--check"]));
         results.add(cargo(
             "clippy",
