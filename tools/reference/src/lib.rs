@@ -2,7 +2,7 @@
 //!
 //! - [`errors`]: RMS and maximum of errors.
 //! - [`camera`]: the camera in f64.
-//! - [`field`]: hits of rays on distance fields, and the errors of pictures of fields.
+//! - [`raymarch`]: hits of rays on distance fields, and the errors of pictures of fields.
 //! - [`imu`]: attitudes from a gyroscope and an accelerometer, for motions of known truth.
 //! - [`report`]: the measurements and pages of docs/report.
 //! - [`sine`]: exhaustive error tables of sine and cosine, beside other libraries.
@@ -12,8 +12,8 @@
 
 pub mod camera;
 pub mod errors;
-pub mod field;
 pub mod imu;
+pub mod raymarch;
 pub mod report;
 pub mod sine;
 pub mod triangle;

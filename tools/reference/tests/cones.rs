@@ -6,7 +6,7 @@ use glint_core::fixed::Q32_32;
 use glint_model::SIZES;
 use glint_model::raymarch::{Cones, FieldOptions, FieldSetup, Rays, Stereo, Tint};
 use glint_reference::camera::Camera;
-use glint_reference::field::{Field, views};
+use glint_reference::raymarch::{Field, views};
 
 /// Truncation of a point, and of the position of a face, in field units.
 const STEPS: f64 = 2.0 / 4096.0;

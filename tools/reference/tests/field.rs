@@ -3,8 +3,8 @@
 //! All rays come from fixed seeds, and a failure names the ray. `--nocapture` shows the measured figures.
 
 use glint_reference::camera::{Ray, Size, Vector};
-use glint_reference::field::metrics::{Outcome, accuracy, expected};
-use glint_reference::field::{Face, Field, Hit, Plane, Sphere, views};
+use glint_reference::raymarch::metrics::{Outcome, accuracy, expected};
+use glint_reference::raymarch::{Face, Field, Hit, Plane, Sphere, views};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 

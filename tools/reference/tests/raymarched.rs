@@ -4,9 +4,9 @@ use glint_core::field::Field as Scene;
 use glint_core::fixed::Q32_32;
 use glint_model::raymarch::{FieldOptions, FieldSetup, Ray, State, Stereo, Tint};
 use glint_reference::camera::{Camera, Vector};
-use glint_reference::field::metrics::{Accuracy, Outcome};
-use glint_reference::field::raymarched::{self, Measured, Subject};
-use glint_reference::field::{Field, views};
+use glint_reference::raymarch::metrics::{Accuracy, Outcome};
+use glint_reference::raymarch::raymarched::{self, Measured, Subject};
+use glint_reference::raymarch::{Field, views};
 
 const SIZE: (u32, u32) = (320, 180);
 

@@ -5,7 +5,7 @@ use glint_core::fixed::Q32_32;
 use glint_core::light::{Light, Lighting, Material};
 use glint_model::raymarch::{FieldOptions, Lights, Palette, paint};
 use glint_reference::camera::Camera;
-use glint_reference::field::raymarched::{Measured, Subject, rounds};
+use glint_reference::raymarch::raymarched::{Measured, Subject, rounds};
 
 /// Those that go on to the horizon have spheres there that are smaller than a pixel; of the others it is asked that normals
 /// be within 0.3° and depths within 3e-3.

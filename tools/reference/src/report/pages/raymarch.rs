@@ -9,7 +9,7 @@ use anyhow::Result;
 use glint_model::raymarch::{DEFAULT_TUNING, ROUND_TUNING};
 
 use super::template::{fill, made, write};
-use crate::field::verilated::Raymarcher;
+use crate::raymarch::verilated::Raymarcher;
 use crate::report::experiments::raymarch::pictures::Row;
 use crate::report::experiments::raymarch::requirements::{
     FACES, IOU, LARGE_COST, MEDIAN, NORMALS, P99, SMALL_COST,

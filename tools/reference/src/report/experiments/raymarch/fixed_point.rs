@@ -4,9 +4,9 @@
 
 use glint_model::raymarch::{DEFAULT_TUNING, FieldOptions, FieldSetup, Ray, Tuning};
 
-use crate::field::metrics::Outcome;
-use crate::field::raymarched::{RenderedRay, Subject};
-use crate::field::{Face, Field};
+use crate::raymarch::metrics::Outcome;
+use crate::raymarch::raymarched::{RenderedRay, Subject};
+use crate::raymarch::{Face, Field};
 
 /// Fraction bits of the model's field units.
 pub const MODEL_FRACTION: u32 = 12;
@@ -235,7 +235,7 @@ fn largest([x, y, z]: [i32; 3]) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::field::raymarched::sponges;
+    use crate::raymarch::raymarched::sponges;
 
     #[test]
     fn with_the_models_fraction_bits_the_picture_is_the_models() {

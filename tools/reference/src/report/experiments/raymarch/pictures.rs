@@ -4,8 +4,8 @@ use glint_model::raymarch::{FieldOptions, FieldSetup};
 use serde::{Deserialize, Serialize};
 
 use super::requirements::{LARGE, LARGE_COST, SMALL, SMALL_COST, missed};
-use crate::field::Field;
-use crate::field::raymarched::{self, Measured, Subject};
+use crate::raymarch::Field;
+use crate::raymarch::raymarched::{self, Measured, Subject};
 use crate::report::provenance::Provenance;
 
 /// A picture: a line of `raymarch.csv`. Depths are in world units along n.

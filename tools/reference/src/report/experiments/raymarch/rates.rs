@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use virtual_board::{Start, VirtualBoard};
 
 use crate::camera::{Camera, Vector};
-use crate::field::views;
+use crate::raymarch::views;
 use crate::report::progress;
 use crate::report::provenance::Provenance;
 use crate::report::soc::{self, BackToBack};

@@ -1,7 +1,7 @@
 //! Requirements on pictures of fields, and goals beyond them. The first number of each pair is the requirement, the second the
 //! goal.
 
-use crate::field::metrics::Accuracy;
+use crate::raymarch::metrics::Accuracy;
 
 /// Pictures of most measurements.
 pub const SMALL: (u32, u32) = (320, 180);

@@ -6,9 +6,9 @@ use glint_model::raymarch::{Cones, DEFAULT_TUNING, FieldOptions, Tuning};
 use super::fixed_point::{FixedPoint, MODEL_FRACTION};
 use super::requirements::SMALL;
 use super::trials::{Trial, Views, pixels};
-use crate::field::metrics::Outcome;
-use crate::field::raymarched;
-use crate::field::variant::{Method, Norm, Taps};
+use crate::raymarch::metrics::Outcome;
+use crate::raymarch::raymarched;
+use crate::raymarch::variant::{Method, Norm, Taps};
 use crate::report::provenance::Provenance;
 use crate::report::{progress, soc};
 

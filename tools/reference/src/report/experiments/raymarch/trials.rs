@@ -8,11 +8,11 @@ use serde::{Deserialize, Serialize};
 
 use super::requirements::{SMALL, missed};
 use crate::camera::{Ray, Size};
-use crate::field::Field;
-use crate::field::metrics::{Expected, Outcome};
-use crate::field::raymarched::{self, Measured, RenderedRay, Subject};
-use crate::field::variant::{Method, entry};
-use crate::field::verilated::Raymarcher;
+use crate::raymarch::Field;
+use crate::raymarch::metrics::{Expected, Outcome};
+use crate::raymarch::raymarched::{self, Measured, RenderedRay, Subject};
+use crate::raymarch::variant::{Method, entry};
+use crate::raymarch::verilated::Raymarcher;
 
 /// A configuration: a line of a study's CSV.
 #[derive(Serialize, Deserialize)]

@@ -88,7 +88,7 @@ pub(super) fn euclidean(depth: u32, p: Vector) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::field::Sphere;
+    use crate::raymarch::Sphere;
 
     #[test]
     fn the_fold_gives_the_known_euclidean_distances() {

@@ -78,7 +78,7 @@ fn hole(cell: [i64; 3], count: i64) -> Option<i64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::field::surface::Face;
+    use crate::raymarch::surface::Face;
 
     #[test]
     fn the_cells_are_as_many_as_the_sponge_has() {

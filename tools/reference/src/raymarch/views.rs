@@ -53,7 +53,7 @@ pub fn path() -> Vec<Vector> {
 mod tests {
     use super::*;
     use crate::camera::{Size, dot};
-    use crate::field::Field;
+    use crate::raymarch::Field;
     use glint_core::camera::View;
     use glint_core::fixed::{Q32_32, Turns};
 
