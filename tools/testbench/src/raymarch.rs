@@ -395,6 +395,25 @@ pub struct Pixel {
     pub colour: u64,
 }
 
+impl Pixel {
+    /// Names of the numbers that [`from`](Self::from) takes: the members of a stream of pixels.
+    pub const PAYLOAD: [&str; 7] = ["eye", "row", "line", "column", "mask", "code", "colour"];
+}
+
+impl From<[u64; 7]> for Pixel {
+    fn from([eye, row, line, column, mask, code, colour]: [u64; 7]) -> Self {
+        Self {
+            eye,
+            row,
+            line,
+            column,
+            mask,
+            code,
+            colour,
+        }
+    }
+}
+
 /// Expected pixel of an end.
 pub fn pixel(
     setup: &FieldSetup,

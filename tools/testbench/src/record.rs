@@ -175,15 +175,7 @@ impl Record {
     /// Where that panics.
     pub fn try_set(&mut self, path: &str, value: i128) -> Result<(), LayoutError> {
         let part = self.layout.find(path)?;
-        let (low, width) = (part.low, part.layout.width());
-        if !fits(value, width, part.layout.is_signed()) {
-            return Err(LayoutError::Value {
-                path: path.to_owned(),
-                value: value.to_string(),
-                width,
-            });
-        }
-        self.bits = self.bits.with(low, width, value);
+        self.bits = with_number(self.bits, path, part.low, part.layout, value)?;
         Ok(())
     }
 
@@ -201,17 +193,9 @@ impl Record {
                 found: values.len(),
                 found_in: part.layout.describe(),
             })?;
-        let (width, signed) = (element.width(), element.is_signed());
-        let lows = (part.low..).step_by(width);
+        let lows = (part.low..).step_by(element.width());
         for (low, &value) in lows.zip(values) {
-            if !fits(value, width, signed) {
-                return Err(LayoutError::Value {
-                    path: path.to_owned(),
-                    value: value.to_string(),
-                    width,
-                });
-            }
-            self.bits = self.bits.with(low, width, value);
+            self.bits = with_number(self.bits, path, low, element, value)?;
         }
         Ok(())
     }
@@ -255,6 +239,25 @@ impl Record {
         let part = self.layout.find(path);
         part.unwrap_or_else(|error| panic!("{error}"))
     }
+}
+
+/// `bits` with the part of type `layout` at `low` set to a number.
+fn with_number(
+    bits: Bits,
+    path: &str,
+    low: usize,
+    layout: &Layout,
+    value: i128,
+) -> Result<Bits, LayoutError> {
+    let width = layout.width();
+    if !fits(value, width, layout.is_signed()) {
+        return Err(LayoutError::Value {
+            path: path.to_owned(),
+            value: value.to_string(),
+            width,
+        });
+    }
+    Ok(bits.with(low, width, value))
 }
 
 /// Whether a part holds a number. A part not declared signed accepts signed and unsigned numbers.

@@ -1,6 +1,7 @@
 //! Both ends of a stream: valid, ready, and a payload of some ports.
 //!
-//! In every cycle: `drive` all ends, [`Module::settle`], `sample` all ends, [`Module::clock`].
+//! In every cycle: `drive` all ends, [`Module::settle`], `sample` all ends, [`Module::clock`]. [`step`] does this for
+//! a module with streams alone.
 
 use std::collections::VecDeque;
 
@@ -8,6 +9,21 @@ use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
 use crate::{Bits, Module, Port};
+
+/// One cycle of a module: [`exchange`], then the clock edge.
+pub fn step(module: &mut Module, sources: &mut [&mut Source], sinks: &mut [&mut Sink]) {
+    exchange(module, sources, sinks);
+    module.clock();
+}
+
+/// Drives and samples both ends of streams. The outputs are settled; the clock edge is left to the caller.
+pub fn exchange(module: &mut Module, sources: &mut [&mut Source], sinks: &mut [&mut Sink]) {
+    sources.iter_mut().for_each(|source| source.drive(module));
+    sinks.iter_mut().for_each(|sink| sink.drive(module));
+    module.settle();
+    sources.iter_mut().for_each(|source| source.sample(module));
+    sinks.iter_mut().for_each(|sink| sink.sample(module));
+}
 
 /// Random stalls of a stream's end: a share of the cycles, in runs of random length.
 pub struct Stalls {

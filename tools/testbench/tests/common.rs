@@ -1,6 +1,6 @@
 //! The buffers of `rtl/common`: skid buffer and FIFO.
 
-use glint_testbench::{Bits, Module, Sink, Source, Stalls};
+use glint_testbench::{Bits, Module, Sink, Source, Stalls, step};
 
 /// Sends numbers through a buffer with stalls on both sides and expects them in order.
 fn passes_all_in_order(name: &str, source_stalls: f64, sink_stalls: f64) -> u64 {
@@ -13,12 +13,7 @@ fn passes_all_in_order(name: &str, source_stalls: f64, sink_stalls: f64) -> u64 
     }
     while sink.items().len() < COUNT as usize {
         assert!(module.cycles() < 100 * COUNT, "{name} stalls");
-        source.drive(&mut module);
-        sink.drive(&mut module);
-        module.settle();
-        source.sample(&module);
-        sink.sample(&module);
-        module.clock();
+        step(&mut module, &mut [&mut source], &mut [&mut sink]);
     }
     for (number, item) in (0..).zip(sink.items()) {
         assert_eq!(
@@ -60,12 +55,7 @@ fn capacity(name: &str) -> usize {
         source.push(vec![Bits::from(1)]);
     }
     for _ in 0..2 * MORE_THAN_FITS {
-        source.drive(&mut module);
-        sink.drive(&mut module);
-        module.settle();
-        source.sample(&module);
-        sink.sample(&module);
-        module.clock();
+        step(&mut module, &mut [&mut source], &mut [&mut sink]);
     }
     MORE_THAN_FITS - source.len()
 }

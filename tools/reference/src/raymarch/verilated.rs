@@ -5,13 +5,10 @@ use glint_model::triangle::descriptor::band_rows;
 use glint_testbench::raymarch::{Pixel, Place, pixel, set_blocks, set_lane, set_paint, set_rays};
 use glint_testbench::{Module, Port};
 
-/// What a group of pixels consists of, in the order of [`Pixel`].
-const GROUP: [&str; 7] = ["eye", "row", "line", "column", "mask", "code", "colour"];
-
 /// The raymarcher for every field, alone: bands are open at once, and every pixel is taken as it comes.
 pub struct Raymarcher {
     module: Module,
-    group: [Port; GROUP.len()],
+    group: [Port; Pixel::PAYLOAD.len()],
     /// What was counted before.
     counted: Taken,
 }
@@ -36,7 +33,7 @@ impl Raymarcher {
     #[must_use]
     pub fn new() -> Self {
         let mut module = Module::new("raymarcher", 1);
-        let group = GROUP.map(|name| module.port(&format!("group_{name}")));
+        let group = Pixel::PAYLOAD.map(|name| module.port(&format!("group_{name}")));
         module.drive("group_ready", 1);
         Self {
             module,
@@ -110,17 +107,7 @@ impl Raymarcher {
     }
 
     fn pixel(&self) -> Pixel {
-        let [eye, row, line, column, mask, code, colour] =
-            self.group.map(|port| self.module.value(port));
-        Pixel {
-            eye,
-            row,
-            line,
-            column,
-            mask,
-            code,
-            colour,
-        }
+        Pixel::from(self.group.map(|port| self.module.value(port)))
     }
 
     fn pulse(&mut self, name: &str) {

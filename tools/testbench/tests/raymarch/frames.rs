@@ -88,12 +88,11 @@ impl Bench {
         self.set(setup, palette);
         let lines = band_lines(setup.width);
         let eyes: u32 = if setup.stereo.is_some() { 2 } else { 1 };
-        let payload = ["eye", "row", "line", "column", "mask", "code", "colour"];
         let share = if hurry { 0.0 } else { 0.3 };
         let mut sink = Sink::new(
             &self.module,
             "group",
-            &payload,
+            &Pixel::PAYLOAD,
             Stalls::new(random.bits(), share),
         );
         let done = self.module.port("band_done");
@@ -140,18 +139,9 @@ impl Bench {
                 self.module.clock();
             }
             for item in sink.take() {
-                let [eye, row, line, column, mask, code, colour] =
-                    std::array::from_fn(|i| item[i].number());
-                let found = Pixel {
-                    eye,
-                    row,
-                    line,
-                    column,
-                    mask,
-                    code,
-                    colour,
-                };
-                let place = (eye, line, 8 * column + u64::from(mask.trailing_zeros()));
+                let found = Pixel::from(std::array::from_fn(|i| item[i].number()));
+                let column = 8 * found.column + u64::from(found.mask.trailing_zeros());
+                let place = (found.eye, found.line, column);
                 let wanted = expected
                     .remove(&place)
                     .unwrap_or_else(|| panic!("{found:?} came twice, or is of another band"));

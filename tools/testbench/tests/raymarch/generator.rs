@@ -1,7 +1,7 @@
 //! The ray generator: all rays of a frame equal the model's, in order.
 
 use glint_model::raymarch::FieldSetup;
-use glint_testbench::{Bits, Layout, Module, Sink, Stalls};
+use glint_testbench::{Bits, Layout, Module, Sink, Stalls, step};
 
 use crate::scenes::{FIELDS, ROUND, band_lines, every_field, setup, setup_with};
 use glint_testbench::raymarch::{Place, cone, ray, set_blocks, set_generator};
@@ -82,10 +82,7 @@ fn run(module: &mut Module, setup: &FieldSetup, expected: &[Bits], stalls: Stall
             module.cycles() - begun < 1000 + 100 * expected.len() as u64,
             "the generator stalls"
         );
-        sink.drive(module);
-        module.settle();
-        sink.sample(module);
-        module.clock();
+        step(module, &mut [], &mut [&mut sink]);
     }
     let clocks = module.cycles() - begun;
     for (number, (item, wanted)) in sink.take().iter().zip(expected).enumerate() {

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glint_core::field::Primitive;
 use glint_model::raymarch::FieldSetup;
-use glint_testbench::{Bits, Layout, Module, Sink, Source, Stalls};
+use glint_testbench::{Bits, Layout, Module, Sink, Source, Stalls, step};
 
 use crate::scenes::{SPONGES, every_field, setup, setup_with};
 use glint_testbench::raymarch::{End, Place, cone, ray, set_lane};
@@ -113,12 +113,11 @@ impl Bench {
                 cycles < 100_000 + 100 * evaluations,
                 "the lane stalls in {setup:?}"
             );
-            self.source.drive(&mut self.module);
-            self.sink.drive(&mut self.module);
-            self.module.settle();
-            self.source.sample(&self.module);
-            self.sink.sample(&self.module);
-            self.module.clock();
+            step(
+                &mut self.module,
+                &mut [&mut self.source],
+                &mut [&mut self.sink],
+            );
             self.evaluated += u64::from(self.module.is_high(evaluates));
             self.waited += u64::from(self.module.is_high(waits));
         }

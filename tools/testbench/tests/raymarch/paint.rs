@@ -2,7 +2,7 @@
 
 use glint_core::field::Surface;
 use glint_model::raymarch::{FieldSetup, Palette, Ray, RayResult, State};
-use glint_testbench::{Module, Sink, Source, Stalls};
+use glint_testbench::{Module, Sink, Source, Stalls, step};
 
 use crate::scenes::{FIELDS, band_lines, setup};
 use glint_testbench::raymarch::{Pixel, Place, end, pixel, set_paint};
@@ -62,8 +62,12 @@ fn ends_of_random_rays() {
         module.drive("stride", setup.width / 8);
         let share = [0.0, 0.5][frame as usize % 2];
         let mut source = Source::new(&module, "in", &["end"], Stalls::new(frame, share));
-        let payload = ["eye", "row", "line", "column", "mask", "code", "colour"];
-        let mut sink = Sink::new(&module, "out", &payload, Stalls::new(frame + 100, share));
+        let mut sink = Sink::new(
+            &module,
+            "out",
+            &Pixel::PAYLOAD,
+            Stalls::new(frame + 100, share),
+        );
         let expected: Vec<_> = (0..COUNT)
             .map(|_| {
                 let column = random.integer(0, i64::from(setup.width) - 1) as u32;
@@ -87,27 +91,12 @@ fn ends_of_random_rays() {
         let begun = module.cycles();
         while sink.items().len() < COUNT {
             assert!(module.cycles() - begun < 20 * COUNT as u64, "standstill");
-            source.drive(&mut module);
-            sink.drive(&mut module);
-            module.settle();
-            source.sample(&module);
-            sink.sample(&module);
-            module.clock();
+            step(&mut module, &mut [&mut source], &mut [&mut sink]);
         }
         let clocks = module.cycles() - begun;
         assert!(share > 0.0 || clocks < COUNT as u64 + 40, "{clocks} clocks");
         for (item, (wanted, start, outcome)) in sink.take().iter().zip(&expected) {
-            let [eye, row, line, column, mask, code, colour] =
-                std::array::from_fn(|i| item[i].number());
-            let found = Pixel {
-                eye,
-                row,
-                line,
-                column,
-                mask,
-                code,
-                colour,
-            };
+            let found = Pixel::from(std::array::from_fn(|i| item[i].number()));
             assert_eq!(found, *wanted, "{outcome:?} of {start:?} in {setup:?}");
         }
     }

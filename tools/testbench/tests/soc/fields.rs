@@ -17,7 +17,7 @@ use glint_core::picture::Size;
 use glint_core::stereo::{Stereo, Tint};
 use glint_core::wire::Manifest;
 
-use crate::{Told, read, send};
+use crate::{Told, compare_triangles, read, send};
 use glint_vectors::Camera;
 
 /// Longest silence of the firmware, in board time.
@@ -295,23 +295,12 @@ fn the_soc_draws_a_mesh_in_a_field() {
         let lines = [vec![cull], lines(frame, true)].concat();
         let told = send(&mut console, &lines);
         compare_rays(&told, &name, &stats);
-        let counts = ["in", "culled", "clipped", "drawn"]
-            .map(|key| told.number(&format!("triangles_{key}")));
         let triangles = stats.triangles();
         assert!(
             number > 0 || triangles.triangles_clipped > 0,
             "nothing was clipped"
         );
-        let expected = [
-            triangles.triangles_in,
-            triangles.triangles_culled,
-            triangles.triangles_clipped,
-            triangles.triangles_drawn,
-        ];
-        assert_eq!(
-            counts, expected,
-            "{name}: triangles in, culled, clipped, drawn"
-        );
+        compare_triangles(&told, &name, &stats);
         assert_eq!(
             u64::from(told.number("pixels_covered")),
             triangles.pixels_covered,

@@ -15,7 +15,7 @@ mod fields;
 
 use glint::board::{Board, BoardError, Memory, SimulatedBoard, built_firmware};
 use glint::console::{Console, value};
-use glint::render::{self, Frame, MeshSubject, Rendered, Subject};
+use glint::render::{self, Frame, MeshSubject, Rendered, Stats, Subject};
 use glint::{convert, generate, view};
 use glint_core::colour::Shading;
 use glint_core::mesh::Mesh;
@@ -160,6 +160,23 @@ impl Told {
     }
 }
 
+/// Compares the counts of triangles with the model's.
+fn compare_triangles(told: &Told, name: &str, stats: &Stats) {
+    let counts =
+        ["in", "culled", "clipped", "drawn"].map(|key| told.number(&format!("triangles_{key}")));
+    let triangles = stats.triangles();
+    let expected = [
+        triangles.triangles_in,
+        triangles.triangles_culled,
+        triangles.triangles_clipped,
+        triangles.triangles_drawn,
+    ];
+    assert_eq!(
+        counts, expected,
+        "{name}: triangles in, culled, clipped, drawn"
+    );
+}
+
 /// Sends all lines in one write, so that no frame is drawn between them, and collects the replies.
 fn send<B: Board>(console: &mut Console<B>, lines: &[String]) -> Told {
     let text: String = lines.iter().map(|line| format!("{line}\r")).collect();
@@ -259,19 +276,7 @@ fn draw(size: Size, scenes: Vec<Scene>) {
                 "{name}: {:#?}",
                 told.lines
             );
-            let counts = ["in", "culled", "clipped", "drawn"]
-                .map(|key| told.number(&format!("triangles_{key}")));
-            let triangles = stats.triangles();
-            let expected = [
-                triangles.triangles_in,
-                triangles.triangles_culled,
-                triangles.triangles_clipped,
-                triangles.triangles_drawn,
-            ];
-            assert_eq!(
-                counts, expected,
-                "{name}: triangles in, culled, clipped, drawn"
-            );
+            compare_triangles(&told, &name, &stats);
             let place = |at: usize| (at as u32 % size.width(), at as u32 / size.width());
             let bytes = read(&mut console, told.address("frame"), 2 * image.depth.len());
             let (_, colour) = console.board().expected.last().unwrap();

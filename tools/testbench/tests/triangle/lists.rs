@@ -1,7 +1,7 @@
 //! The band lists in memory, as written by the binner.
 
 use glint_model::triangle::descriptor::{band_rows, list_word};
-use glint_testbench::{Bits, Layout, Memory, Module, Sink, Source, Stalls};
+use glint_testbench::{Bits, Layout, Memory, Module, Sink, Source, Stalls, exchange};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
@@ -64,13 +64,11 @@ impl Bench {
     }
 
     fn clock(&mut self) {
-        self.descriptors.drive(&mut self.module);
-        self.exceptions.drive(&mut self.module);
-        self.writes.drive(&mut self.module);
-        self.module.settle();
-        self.descriptors.sample(&self.module);
-        self.exceptions.sample(&self.module);
-        self.writes.sample(&self.module);
+        exchange(
+            &mut self.module,
+            &mut [&mut self.descriptors, &mut self.exceptions],
+            &mut [&mut self.writes],
+        );
         for item in self.writes.take() {
             self.memory
                 .store(item[0].number() as u32, item[1], item[2].number() as u16);

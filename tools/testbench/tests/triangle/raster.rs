@@ -67,16 +67,7 @@ fn extreme_light() {
             [dark; 3],
             [any; 3],
         ] {
-            for shape in [
-                pixels([[-2000.0, -1500.0], [2000.0, 60.0], [-1900.0, 2000.0]]),
-                pixels([[100.2, 50.1], [103.3, 50.4], [101.1, 53.7]]),
-                pixels([[5.0, 5.0], [5.3, 5.0], [300.0, 170.0]]),
-            ] {
-                let mut corners = shape;
-                corners
-                    .iter_mut()
-                    .zip(depths)
-                    .for_each(|(corner, w)| corner.w = w);
+            for corners in shapes_at(depths) {
                 let triangles = numbered(SMALL, [corners]);
                 let lit: Vec<Triangle> =
                     triangles.into_iter().map(|t| t.with_light(&lit)).collect();
@@ -84,6 +75,22 @@ fn extreme_light() {
             }
         }
     }
+}
+
+/// A huge, a small and a narrow triangle with these depths.
+fn shapes_at(depths: [u32; 3]) -> [[ScreenVertex; 3]; 3] {
+    let shapes = [
+        [[-2000.0, -1500.0], [2000.0, 60.0], [-1900.0, 2000.0]],
+        [[100.2, 50.1], [103.3, 50.4], [101.1, 53.7]],
+        [[5.0, 5.0], [5.3, 5.0], [300.0, 170.0]],
+    ];
+    shapes.map(|shape| {
+        let mut corners = pixels(shape);
+        for (corner, w) in corners.iter_mut().zip(depths) {
+            corner.w = w;
+        }
+        corners
+    })
 }
 
 /// Clamps the depth to the farthest of a frame.
@@ -225,16 +232,7 @@ fn extreme_depths() {
         [near; 3],
     ];
     for depths in triangles {
-        for shape in [
-            pixels([[-2000.0, -1500.0], [2000.0, 60.0], [-1900.0, 2000.0]]),
-            pixels([[100.2, 50.1], [103.3, 50.4], [101.1, 53.7]]),
-            pixels([[5.0, 5.0], [5.3, 5.0], [300.0, 170.0]]),
-        ] {
-            let mut corners = shape;
-            corners
-                .iter_mut()
-                .zip(depths)
-                .for_each(|(corner, w)| corner.w = w);
+        for corners in shapes_at(depths) {
             bench.check("depths", SMALL, &numbered(SMALL, [corners]));
         }
     }

@@ -6,7 +6,7 @@ use glint_model::triangle::reciprocal::recip;
 use glint_model::triangle::setup::{Bounds, Facing, Oriented, Setup};
 use glint_model::triangle::shade::{Light, Lit, intensity, lit};
 use glint_model::{SIZES, ScreenVertex, Shading};
-use glint_testbench::{Bits, Layout, Module, Port, Record, Sink, Source, Stalls};
+use glint_testbench::{Bits, Layout, Module, Port, Record, Sink, Source, Stalls, exchange};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
@@ -167,13 +167,13 @@ impl Bench {
             let limit = 1000 + 500 * inputs.len() as u64;
             assert!(cycles < limit, "the setup stalls in {frame:?}");
             let all_taken = self.source.is_empty();
-            self.source.drive(&mut self.module);
-            self.sink.drive(&mut self.module);
-            self.module.settle();
+            exchange(
+                &mut self.module,
+                &mut [&mut self.source],
+                &mut [&mut self.sink],
+            );
             culled += usize::from(self.module.is_high(self.culled));
             drawn += usize::from(self.module.is_high(self.drawn));
-            self.source.sample(&self.module);
-            self.sink.sample(&self.module);
             if all_taken && !self.module.is_high(self.busy) {
                 break;
             }

@@ -2,7 +2,7 @@
 
 use glint_model::triangle::vertex::{project, transform};
 use glint_model::{MeshSetup, Projected, SIZES, ScreenVertex};
-use glint_testbench::{Bits, Layout, Module, Record, Sink, Source, Stalls};
+use glint_testbench::{Bits, Layout, Module, Record, Sink, Source, Stalls, step};
 use glint_vectors::{Camera, Random};
 
 /// Expected output of the stage, saturated to s12.8.
@@ -67,12 +67,11 @@ impl Bench {
                 cycles < 1000 + 200 * positions.len() as u64,
                 "the stage stalls"
             );
-            self.source.drive(&mut self.module);
-            self.sink.drive(&mut self.module);
-            self.module.settle();
-            self.source.sample(&self.module);
-            self.sink.sample(&self.module);
-            self.module.clock();
+            step(
+                &mut self.module,
+                &mut [&mut self.source],
+                &mut [&mut self.sink],
+            );
         }
         for (&position, item) in positions.iter().zip(self.sink.take()) {
             let expected = expected(&self.vertex, frame, position);

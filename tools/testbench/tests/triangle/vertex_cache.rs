@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use glint_testbench::{Bits, Module, Port, Sink, Source, Stalls};
+use glint_testbench::{Bits, Module, Port, Sink, Source, Stalls, step};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
@@ -74,16 +74,11 @@ impl Bench {
             self.on_the_way.pop_front();
             self.projected.push(vec![vertex]);
         }
-        self.triangles.drive(&mut self.module);
-        self.fetches.drive(&mut self.module);
-        self.projected.drive(&mut self.module);
-        self.out.drive(&mut self.module);
-        self.module.settle();
-        self.triangles.sample(&self.module);
-        self.fetches.sample(&self.module);
-        self.projected.sample(&self.module);
-        self.out.sample(&self.module);
-        self.module.clock();
+        step(
+            &mut self.module,
+            &mut [&mut self.triangles, &mut self.projected],
+            &mut [&mut self.fetches, &mut self.out],
+        );
         for item in self.fetches.take() {
             let expected = self.expected_fetches.pop_front();
             let (chunk, index) = expected.expect("a fetch of a vertex that is there");

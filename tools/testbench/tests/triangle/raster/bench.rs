@@ -3,7 +3,7 @@
 use glint_model::triangle::descriptor::{Descriptor, band_rows};
 use glint_model::triangle::raster::draw;
 use glint_model::{FrameBuffer, Shading};
-use glint_testbench::{Bits, Module, Port, Sink, Source, Stalls};
+use glint_testbench::{Bits, Module, Port, Sink, Source, Stalls, exchange};
 
 use crate::raster::triangles::{LANES, Triangle};
 
@@ -96,11 +96,11 @@ impl Bench {
         while !(self.source.is_empty() && self.module.is_high(self.idle)) {
             let clocks = self.module.cycles() - start;
             assert!(clocks < 2_000_000, "nothing after {clocks} clocks");
-            self.source.drive(&mut self.module);
-            self.sink.drive(&mut self.module);
-            self.module.settle();
-            self.source.sample(&self.module);
-            self.sink.sample(&self.module);
+            exchange(
+                &mut self.module,
+                &mut [&mut self.source],
+                &mut [&mut self.sink],
+            );
             self.counts.walked += self.module.value(self.walking);
             self.counts.empty += self.module.value(self.empty);
             self.module.clock();
