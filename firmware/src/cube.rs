@@ -1,18 +1,18 @@
 //! The built-in model: a cube of edge length 1 with one colour per side.
 
-/// Vertices and triangles.
+/// Numbers of vertices and triangles.
 const VERTICES: usize = 8;
 const TRIANGLES: usize = 12;
-/// Bytes of a record (docs/formats.md, "Mesh in memory"); the header has two.
+/// Bytes of a record (docs/formats.md, "Mesh in memory"); the header takes two records.
 const RECORD: usize = 16;
-/// 1 in Q2.14.
+/// 1.0 in Q2.14.
 const ONE: i16 = 1 << 14;
 /// √3/2, the distance of a corner from the centre, in u.14 and rounded up.
 const RADIUS: u32 = 14_189;
 /// 1/√3 in Q2.14, the size of a corner normal's components.
 const DIAGONAL: i16 = 9_459;
 
-/// Axis, colour towards plus and colour towards minus of three pairs of sides.
+/// Axis, colour of the positive side and colour of the negative side, for three pairs of sides.
 const SIDES: [(usize, u16, u16); 3] = [
     (0, 0xf9c7, 0x0733),
     (1, 0xfe60, 0x2b9f),
@@ -22,7 +22,7 @@ const SIDES: [(usize, u16, u16); 3] = [
 /// The mesh in the format of an upload.
 pub static BYTES: Aligned = Aligned(bytes());
 
-/// Bytes at a multiple of 16.
+/// Bytes aligned to 16.
 #[repr(align(16))]
 pub struct Aligned([u8; LENGTH]);
 
@@ -73,7 +73,7 @@ const fn bytes() -> [u8; LENGTH] {
     writer.bytes
 }
 
-/// Corner `index`: bit k says whether coordinate k is `+size` or `−size`.
+/// Corner `index`: bit k selects the sign of coordinate k, `+size` or `−size`.
 const fn corner_at(index: usize, size: i16) -> [i16; 3] {
     let mut position = [-size; 3];
     let mut axis = 0;
@@ -114,7 +114,7 @@ impl Writer {
             1 << ((axis + 1) % 3),
             1 << ((axis + 2) % 3),
         );
-        // Seen from plus, the axes b and c turn counter-clockwise; from minus, clockwise.
+        // Seen from the positive side, the axes b and c turn counter-clockwise; from the negative side, clockwise.
         let (b, c) = if plus { (b, c) } else { (c, b) };
         let mut normal = [0; 3];
         normal[axis] = if plus { ONE } else { -ONE };

@@ -17,15 +17,15 @@ use crate::sensor::{CalibrationError, SensorError};
 /// Reason why a command failed. `Display` is the text after `error: `.
 #[derive(Debug)]
 pub enum CommandError<'l> {
-    /// Not a command.
+    /// The line is not a command.
     Parse(ParseError<'l>),
     /// The line is longer than [`LINE_MAX`].
     Overlong,
     /// The camera is out of range.
     View(ViewError),
-    /// `info` has no such entry.
+    /// The name is not an entry of `info`.
     Key(&'l str),
-    /// No model and no field has this name.
+    /// The name is not a model or a named field.
     Scene(&'l str),
     /// No mesh was uploaded.
     NoUpload,
@@ -37,11 +37,11 @@ pub enum CommandError<'l> {
     MeshInStereo,
     /// The list of lights is full.
     Lights,
-    /// No field is shown to measure.
+    /// `bench field` needs a shown field.
     NoField,
-    /// A field is shown in place of the triangles to measure.
+    /// `bench triangle` needs triangles, but a field is shown.
     FieldShown,
-    /// The engine could not draw.
+    /// The engine cannot draw the frame.
     Engine(Fallback),
     /// An upload is longer than its memory.
     TooLong {
@@ -75,9 +75,9 @@ pub enum CommandError<'l> {
     Sensor(SensorError),
     /// The upload is not a log.
     Log(LogError),
-    /// No log has been replayed to its end since the last upload.
+    /// No log has been completely replayed since the last upload.
     NoReplay,
-    /// Devices are not accessed on gateware of another build.
+    /// Devices are unavailable because the build ids of firmware and gateware differ.
     Mismatch,
 }
 

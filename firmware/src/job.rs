@@ -1,4 +1,4 @@
-//! Replies of commands, and the jobs that some replies wait for.
+//! Replies of commands, and jobs: work that continues after a command.
 
 use core::task::Poll;
 
@@ -13,7 +13,7 @@ pub type Outcome<'l> = Result<Reply, CommandError<'l>>;
 /// The result of a job, once it has ended.
 pub type JobResult = Poll<Result<(), CommandError<'static>>>;
 
-/// The reply of a command that has not failed.
+/// The reply of a successful command.
 pub enum Reply {
     /// The command is done.
     Done,
@@ -21,7 +21,7 @@ pub enum Reply {
     After(Job),
 }
 
-/// Work that goes on after a command has returned.
+/// Work that continues after a command has returned.
 pub enum Job {
     /// Draw the scene, then print the frame's statistics.
     Render,
@@ -80,7 +80,7 @@ impl Orbit {
             return Poll::Ready(Ok(()));
         }
         self.frame += 1;
-        // The product has 64 bits. The quotient is at most one turn, which wraps to 0.
+        // The product fits 64 bits. The quotient is at most one turn, which wraps to 0.
         let turned = Turns(((u64::from(self.frame) << 32) / u64::from(self.frames)) as u32);
         let sphere = Sphere {
             theta: self.start.theta.wrapping_add(turned),

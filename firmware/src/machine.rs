@@ -32,7 +32,7 @@ impl Identity {
     }
 }
 
-/// Devices that are accessed only on a gateware whose build id matches.
+/// Devices that are accessed only on gateware with a matching build id.
 pub struct Devices {
     /// The four buttons.
     pub buttons: InputPort<u8>,

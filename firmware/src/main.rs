@@ -34,7 +34,7 @@ mod main_loop;
 mod memory;
 #[allow(unsafe_code)] // A mesh that outlives the borrow of its buffer.
 mod models;
-#[allow(unsafe_code)] // The trap handler's symbol, and the UART of a program that has ended.
+#[allow(unsafe_code)] // The trap handler's symbol, and the UART after a panic.
 mod panic;
 mod renderer;
 mod replay;

@@ -22,7 +22,7 @@ use crate::machine::Machine;
 use crate::sensor::{self, Inbox};
 use crate::terminal::Input;
 
-/// Idle time before redrawing. A series of commands gives one frame, and the delay is not visible.
+/// Idle time before redrawing, too short to be visible. A series of commands then causes a single frame.
 const QUIET: Duration = Duration::from_millis(2);
 
 /// Button 2 calibrates the sensor.
@@ -106,8 +106,8 @@ impl MainLoop {
         }
     }
 
-    /// Whether a line is executed now. A line waits for the end of a job and of a frame that the engine draws. It ends
-    /// an orbit, a job of the sensor, and a replay.
+    /// Whether a line can be executed now. A line waits for the end of a job and of a frame drawn by the engine, and ends an orbit, a job of
+    /// the sensor, or a replay.
     fn takes_input(&self) -> bool {
         matches!(
             self.job,
@@ -179,7 +179,7 @@ impl MainLoop {
         }
     }
 
-    /// Continues the job, and ends its reply when it has ended.
+    /// Continues the job, and ends the reply at the end of the job.
     fn poll_job(&mut self) {
         let machine = &mut self.machine;
         let Some(job) = &mut self.job else { return };
@@ -243,7 +243,7 @@ impl MainLoop {
             ..
         } = &mut self.machine;
         self.beat = clock.after(HEARTBEAT);
-        // The stream gives up a transfer whose interrupt is missing.
+        // The stream cancels a transfer whose interrupt is missing.
         sensor::advance(cpu::cycles_low());
         if let Some(devices) = devices.as_ref().filter(|_| *heartbeat) {
             let Ok(()) = devices.leds.pin(0).toggle();

@@ -12,9 +12,9 @@ use crate::models::Buffer;
 
 /// All windows, each lent once.
 pub struct Memory {
-    /// Two frame buffers: RGB565, one number a pixel.
+    /// Two frame buffers: RGB565, one number per pixel.
     pub frames: [&'static mut [u16]; 2],
-    /// Depth codes, one a pixel.
+    /// Depth codes, one per pixel.
     pub depth: &'static mut [u32],
     /// Projected vertices of the CPU backend.
     pub scratch: Scratch,
@@ -46,8 +46,8 @@ unsafe extern "C" {
 macro_rules! window {
     ($start:ident, $size:ident, $element:ty) => {{
         let bytes = (&raw const $size).addr();
-        // SAFETY: memory.x keeps this window for this use alone and asserts that it is aligned and overlaps nothing;
-        // every bit pattern is an element; the caller lends it once.
+        // SAFETY: memory.x reserves this window for this use and asserts alignment and no overlap; every bit pattern is a valid element;
+        // the caller lends the window once.
         unsafe { slice::from_raw_parts_mut((&raw mut $start).cast::<$element>(), bytes / size_of::<$element>()) }
     }};
 }
@@ -80,10 +80,10 @@ impl Memory {
     }
 }
 
-/// Copies the fast code of memory.x to the SRAM. None of it may run before. Every SoC has this SRAM, because its BIOS uses it.
+/// Copies the fast code of memory.x to the SRAM; fast code must not run earlier. Every SoC has this SRAM for the BIOS.
 pub fn load_fast_code() {
     let size = (&raw const _fast_size).addr();
-    // SAFETY: memory.x keeps this SRAM for the fast code alone, and the program holds its image; both are whole words without
+    // SAFETY: memory.x reserves this SRAM for the fast code, and the program contains the image; both consist of whole words without
     // another user.
     unsafe {
         ptr::copy_nonoverlapping(&raw const _fast_loaded, &raw mut _fast, size);
@@ -91,14 +91,14 @@ pub fn load_fast_code() {
     cpu::flush_instruction_cache();
 }
 
-/// Memory for projected vertices. Only the first ones are initialised, because not every bit pattern is a vertex.
+/// Memory for projected vertices. The first `ready` vertices are initialised, because not every bit pattern is a vertex.
 pub struct Scratch {
     memory: &'static mut [MaybeUninit<Projected>],
     ready: usize,
 }
 
 impl Scratch {
-    /// Memory for at least `count` vertices, or all if it is smaller.
+    /// Memory for at least `count` vertices, or the whole memory if smaller.
     pub fn vertices(&mut self, count: usize) -> &mut [Projected] {
         let count = count.min(self.memory.len());
         if let Some(fresh) = self.memory.get_mut(self.ready..count) {

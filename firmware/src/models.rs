@@ -23,7 +23,7 @@ impl Buffer {
 /// A model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Model {
-    /// The cube in the program, shown before any upload.
+    /// The built-in cube, shown before an upload.
     Cube,
     /// The last upload.
     Uploaded,
@@ -99,7 +99,7 @@ impl Models {
         matches!(model, Model::Cube) || self.uploaded.is_some()
     }
 
-    /// Shows a model and returns true if it exists.
+    /// Shows a model if the model exists; returns whether it does.
     pub const fn show(&mut self, model: Model) -> bool {
         let exists = self.has(model);
         if exists {
@@ -119,8 +119,8 @@ impl Models {
     /// [`MeshError`] for an invalid mesh; then nothing changes.
     pub fn accept(&mut self, length: usize) -> Result<(), MeshError> {
         let staged = self.buffers[1].memory.get(..length).unwrap_or_default();
-        // SAFETY: the memory is 'static. The mesh is stored as `uploaded`, and its buffer becomes the first below. Only `staging`
-        // lends a buffer for writing, always the second, and the two change places only here, where the old mesh is dropped.
+        // SAFETY: the memory is 'static. The mesh is stored as `uploaded`, and its buffer becomes the first buffer below. Only `staging` lends a
+        // buffer for writing, always the second one. Only this function swaps the buffers, and drops the old mesh.
         let staged: &'static [u8] = unsafe { slice::from_raw_parts(staged.as_ptr(), staged.len()) };
         self.uploaded = Some(Mesh::new_checked(staged)?);
         self.buffers.swap(0, 1);

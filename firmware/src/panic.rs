@@ -48,9 +48,9 @@ fn panic(info: &PanicInfo) -> ! {
 pub fn report(reason: core::fmt::Arguments) -> ! {
     riscv::interrupt::disable();
     UART.drain();
-    // SAFETY: the interrupted program does not continue.
+    // SAFETY: the interrupted program never continues, so its output cannot be disturbed.
     let (mut console, peripherals) = unsafe { (Direct::seize(), Peripherals::steal()) };
-    // An error means that the line takes no text.
+    // An error means that the line accepts no text.
     let _ = write!(
         console,
         "\r\n{reason}\r\nGlint {}, build id {:#010x}: halted, press Enter to restart\r\n",

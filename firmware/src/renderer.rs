@@ -14,11 +14,11 @@ use crate::scene::{Drawn, RenderedBy, Scene};
 pub struct Renderer {
     /// Two frame buffers, one of which is shown.
     pub display: Display,
-    /// Depth codes of the last frame that has any, one a pixel.
+    /// Depth codes of the last frame with depth codes, one per pixel.
     pub depth: &'static mut [u32],
     /// Memory for projected vertices.
     pub scratch: Scratch,
-    /// The renderer of the gateware, where the SoC has a triangle engine.
+    /// The renderer of the gateware, if the SoC has a triangle engine.
     pub gateware: Option<GatewareRenderer>,
 }
 
@@ -74,7 +74,7 @@ impl Renderer {
         }
     }
 
-    /// Draws by the gateware. `Err` is a frame for the CPU, with the reason unless the backend is the CPU or there is no engine.
+    /// Draws by the gateware. `Err` is a frame for the CPU, with a reason unless the backend is the CPU or the SoC has no engine.
     fn draw_by_gateware(
         &mut self,
         frame: &Frame,

@@ -6,7 +6,7 @@ use glint_core::orientation::log::{self, HEADER_BYTES, RECORD_BYTES, Record};
 use glint_core::orientation::{Counts, Tracker};
 use litex_pac::cpu;
 
-/// Samples of one turn of the main loop: some milliseconds.
+/// Samples per turn of the main loop: a few milliseconds of work.
 const SLICE: usize = 256;
 
 /// A log in the staging memory and the progress of its replay.
@@ -14,7 +14,7 @@ pub struct Replay {
     tracker: Tracker,
     samples: usize,
     done: usize,
-    /// Samples done at the last report.
+    /// Processed samples at the last report.
     reported: usize,
     /// Cycles of the tracker, with interrupts during its work.
     cycles: u64,
@@ -47,12 +47,12 @@ impl Replay {
         self.tracker.counts()
     }
 
-    /// Samples done since the last report.
+    /// Processed samples since the last report.
     pub const fn unreported(&self) -> usize {
         self.done - self.reported
     }
 
-    /// Samples done so far, to report.
+    /// Processed samples so far, marked as reported.
     pub const fn report(&mut self) -> usize {
         self.reported = self.done;
         self.done
@@ -76,7 +76,7 @@ impl Replay {
     /// Replays the next slice of the log in the staging memory.
     pub fn advance(&mut self, staging: &mut [u8]) {
         let records = staging.get_mut(self.range()).unwrap_or_default();
-        // The memory is aligned, header and records are whole words, and this core has their byte order.
+        // The memory is aligned, header and records are whole words, and this core is little-endian like the log.
         let records = bytemuck::try_cast_slice_mut::<u8, Record>(records).unwrap_or_default();
         let end = self.samples.min(self.done + SLICE);
         let records = records.get_mut(self.done..end).unwrap_or_default();
@@ -89,7 +89,7 @@ impl Replay {
 // The linker script places this function beside the tracker.
 #[inline(never)]
 pub fn track(tracker: &mut Tracker, records: &mut [Record]) -> u64 {
-    // Cycles of two readings of the counter.
+    // Cycles of two consecutive readings of the counter.
     let start = cpu::cycles_low();
     let own = cpu::cycles_low().wrapping_sub(start);
     let mut all = 0;

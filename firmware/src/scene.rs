@@ -25,7 +25,7 @@ pub struct Sphere {
 }
 
 impl Sphere {
-    /// Where the machine starts: far enough to see all of a model, from above and in front.
+    /// The camera at start: shows the whole model from above and in front.
     const START: Self = Self {
         r: Q32_32::lit("2.5"),
         // 40° and 65°.
@@ -38,7 +38,7 @@ impl Sphere {
     }
 }
 
-/// The last frame.
+/// Statistics of the last frame.
 #[derive(Clone, Copy)]
 pub struct Drawn {
     /// Clock cycles, without the wait for a free frame buffer.
@@ -54,7 +54,7 @@ pub struct Drawn {
 /// The renderer of a frame.
 #[derive(Clone, Copy)]
 pub enum RenderedBy {
-    /// The CPU, with the reason if the gateware was asked first.
+    /// The CPU, with the reason if the gateware could not draw the frame.
     Cpu(Option<Fallback>),
     /// The gateware, with the triangle engine's counters.
     Gateware(Counters),
@@ -82,7 +82,7 @@ impl Scene {
     /// The scene at start, drawn by `backend`.
     ///
     /// # Errors
-    /// [`ViewError`] for the first camera.
+    /// [`ViewError`] for the camera at start.
     pub fn new(backend: Backend) -> Result<Self, ViewError> {
         let sphere = Sphere::START;
         Ok(Self {
@@ -169,7 +169,7 @@ impl Scene {
 
     /// Sets two eyes or one for a field.
     pub fn set_stereo(&mut self, stereo: Option<Stereo>) {
-        // A mesh has no stereo.
+        // Stereo is not available for a mesh.
         self.changed |= self.field.is_some() && self.stereo != stereo;
         self.stereo = stereo;
     }
@@ -204,7 +204,7 @@ impl Scene {
     /// Sets position and basis from a spherical camera.
     ///
     /// # Errors
-    /// [`ViewError`] for a camera out of range; then nothing changes.
+    /// [`ViewError`] for a camera out of range; the scene is then unchanged.
     pub fn set_sphere(&mut self, sphere: Sphere) -> Result<(), ViewError> {
         self.move_view(sphere.view()?);
         self.sphere = sphere;

@@ -1,4 +1,4 @@
-//! The machine's tests of itself.
+//! Self-tests of the machine.
 
 use glint_core::mpu6050::Error;
 use glint_hal::i2c;
@@ -6,7 +6,7 @@ use litex_pac::cpu;
 
 use crate::machine::Machine;
 
-/// Bytes of memory that are tested: four times the data cache.
+/// Bytes of tested memory: four times the data cache.
 const TESTED: usize = 16 << 10;
 
 /// Runs all tests and returns the name of each test and whether it passed.

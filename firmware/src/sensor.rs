@@ -33,7 +33,7 @@ enum Event {
 /// Capacity of the queue: the samples of a long frame.
 const QUEUE: usize = 256;
 
-/// The sensor's stream, which does not end.
+/// The endless stream of the sensor.
 struct Stream(Pin<&'static mut dyn Future<Output = ()>>);
 
 // SAFETY: there is one core, and a critical section excludes interrupts.
@@ -75,7 +75,7 @@ impl Sink<i2c::BusError> for Inbox {
 /// # Safety
 /// The caller does not return.
 pub unsafe fn start(stream: Pin<&mut dyn Future<Output = ()>>) {
-    // SAFETY: the future lives in a function that does not return, so it is never dropped.
+    // SAFETY: the future is a local variable of a function that does not return, so the future is never dropped.
     let stream = unsafe {
         mem::transmute::<Pin<&mut dyn Future<Output = ()>>, Pin<&'static mut dyn Future<Output = ()>>>(
             stream,
@@ -86,7 +86,7 @@ pub unsafe fn start(stream: Pin<&mut dyn Future<Output = ()>>) {
     advance(cpu::cycles_low());
 }
 
-/// Polls the stream. Interrupts call this after a transfer or a pause; the cycles since `start` count as the stream's.
+/// Polls the stream, for interrupts after a transfer or a pause; the cycles since `start` are added to the cycles of the stream.
 pub fn advance(start: u32) {
     critical_section::with(|token| {
         if let Some(stream) = &mut *STREAM.borrow_ref_mut(token) {

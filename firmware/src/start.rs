@@ -22,7 +22,7 @@ use crate::models::Models;
 use crate::renderer::Renderer;
 use crate::scene::Scene;
 
-/// Build id of the gateware that the firmware was built for. Tools find it by its symbol.
+/// Build id of the gateware that the firmware was built for. Tools find this value by its symbol.
 #[unsafe(no_mangle)]
 static GLINT_BUILD_ID: u32 = BUILD_ID;
 
@@ -30,7 +30,7 @@ static GLINT_BUILD_ID: u32 = BUILD_ID;
 pub enum StartError {
     /// The machine was started before.
     Started,
-    /// The timer does not run.
+    /// The uptime counter does not advance.
     Clock(Stopped),
     /// The built-in model is not a mesh.
     Cube(MeshError),
@@ -55,18 +55,18 @@ impl fmt::Display for StartError {
 /// id only the console is started.
 ///
 /// # Errors
-/// Timer, built-in model or camera fail.
+/// The timer, the built-in model or the camera at start fails.
 pub fn machine() -> Result<Machine, StartError> {
     // SAFETY: the UART has no owner yet.
     let mut banner = unsafe { Direct::seize() };
-    // An error means that the line takes no text.
+    // An error means that the line accepts no text.
     let _ = write!(banner, "\r\nGlint {}\r\n", env!("CARGO_PKG_VERSION"));
 
     memory::load_fast_code();
     let peripherals = Peripherals::take().ok_or(StartError::Started)?;
     let memory = Memory::take().ok_or(StartError::Started)?;
     let identity = Identity {
-        // SAFETY: the pointer is that of a static. Volatile, because tools change the value in the program's file.
+        // SAFETY: the pointer refers to a static. The read is volatile, because tools change the value in the program's file.
         firmware: unsafe { (&raw const GLINT_BUILD_ID).read_volatile() },
         gateware: peripherals.identity.build_id().read(),
         blocks: peripherals.identity.blocks().read(),

@@ -17,7 +17,7 @@ const SEND_QUEUE: usize = 4 << 10;
 /// The UART of the SoC.
 pub type ConsoleUart = Uart<RECEIVE_QUEUE, SEND_QUEUE>;
 
-/// Longest wait for a line that takes no text. The text is then dropped.
+/// Longest wait for a line that accepts no text. The text is then dropped.
 const SEND_TIMEOUT: Duration = Duration::from_millis(500);
 
 /// Input from the user.
@@ -26,7 +26,7 @@ const SEND_TIMEOUT: Duration = Duration::from_millis(500);
     reason = "one input exists at a time, and there is no heap"
 )]
 pub enum Input {
-    /// A whole line.
+    /// A complete line.
     Line(String<LINE_MAX>),
     /// A line longer than [`LINE_MAX`].
     Overlong,
@@ -34,7 +34,7 @@ pub enum Input {
     Interrupt,
 }
 
-/// The line editor between the UART and the commands.
+/// The line editor, between the UART and the commands.
 pub struct Terminal {
     uart: &'static ConsoleUart,
     editor: LineEditor,
@@ -62,7 +62,7 @@ impl Terminal {
         while self.waiting.is_none() && self.uart.receive(&mut byte) > 0 {
             self.waiting = match self.editor.on_byte(byte[0], &mut self.output) {
                 Event::None => None,
-                // The editor keeps to the capacity.
+                // The editor limits lines to the capacity.
                 Event::Line(line) => Some(Input::Line(String::try_from(line).unwrap_or_default())),
                 Event::Overlong => Some(Input::Overlong),
                 Event::Interrupt => Some(Input::Interrupt),
@@ -85,7 +85,7 @@ impl Terminal {
         self.print(format_args!("{PROMPT}"));
     }
 
-    /// Prints text, which is lost if the line takes none.
+    /// Prints text, which is lost if the line accepts no text.
     pub fn print(&mut self, text: fmt::Arguments) {
         let _ = fmt::Write::write_fmt(&mut self.output, text);
     }

@@ -27,7 +27,7 @@ pub fn receive(
     run(uart, clock, receiver)
 }
 
-/// The sender of downloads. Each transfer has another session number than the one before.
+/// The sender of downloads. Each transfer has a session number different from the previous transfer.
 pub struct Downloads {
     uart: &'static ConsoleUart,
     clock: Clock,
@@ -60,7 +60,7 @@ impl Downloads {
 fn run(uart: &ConsoleUart, clock: Clock, mut party: impl Party) -> Result<(), Failure> {
     let mut received = [0; 256];
     let mut frame = [0; MAX_FRAME];
-    // The part of the frame for which the UART's queue has no room yet.
+    // The part of the frame that does not fit into the UART's queue yet.
     let mut unsent = 0..0;
     loop {
         let now = clock.milliseconds();

@@ -15,7 +15,7 @@ pub use rest::RestBias;
 
 /// Default number of samples of a calibration.
 pub const SAMPLES: u32 = 8_192;
-/// Accepted numbers of samples, from least to most.
+/// Accepted numbers of samples of a calibration.
 pub const MOST_SAMPLES: [u32; 2] = [64, 65_536];
 
 /// Largest difference of a sample's rate from the first one, in °/s: ten times the noise. A still hand exceeds it.
@@ -30,9 +30,9 @@ const MOST_FORCE: u32 = 1;
 /// LSB per °/s and per g.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Units {
-    /// Of the gyroscope.
+    /// LSB of the gyroscope per °/s.
     pub per_dps: Q32_32,
-    /// Of the accelerometer.
+    /// LSB of the accelerometer per g.
     pub per_g: u32,
 }
 
@@ -45,7 +45,7 @@ impl Units {
 
     /// `dps` degrees per second in LSB, rounded up, at least 1.
     fn rate(self, dps: u32) -> u32 {
-        // With 16 bits a count, at most 2^12 LSB per °/s are sensible.
+        // The scale of a 16-bit count is at most 2^12 LSB per °/s.
         let lsb = self.per_dps.to_bits().clamp(1 << 28, 1 << 44);
         ((i128::from(lsb) * i128::from(dps) + (1 << 32) - 1) >> 32) as u32
     }
@@ -57,7 +57,7 @@ impl Units {
     }
 }
 
-/// A number in 2^−32.
+/// A number with 32 fraction bits.
 fn fixed_i128(bits: i128) -> fixed::FixedI128<fixed::types::extra::U32> {
     fixed::FixedI128::from_bits(bits)
 }
@@ -188,7 +188,7 @@ pub struct Calibration {
     count: u32,
     first: Sample,
     last_us: u32,
-    /// Sums over all samples; at most 2^31 in magnitude, and 2^46.
+    /// Sums of counts (at most 2^31 in magnitude) and of their squares (at most 2^46) over all samples.
     sum: [i64; 3],
     squares: [u64; 3],
     /// Sums over the first half.
@@ -219,7 +219,7 @@ impl Calibration {
         }
     }
 
-    /// Takes a sample. A sample with the time of the one before is ignored.
+    /// Takes a sample. A sample with the time of the previous sample is ignored.
     ///
     /// # Errors
     /// The sensor moved. Start again.
@@ -305,7 +305,7 @@ impl Calibration {
                 });
             }
         }
-        // n²·variance: at most 2^62, and never negative by Cauchy and Schwarz.
+        // n²·variance: at most 2^62, and at least 0 by the Cauchy–Schwarz inequality.
         let spread = [0, 1, 2].map(|axis| {
             u64::from(self.count) * self.squares[axis] - self.sum[axis].unsigned_abs().pow(2)
         });

@@ -9,9 +9,9 @@ use core::fmt;
 use crate::fixed::{Q2_23, Q32_32, Turns, U4_28};
 use crate::trig::sin_cos_q30;
 
-/// Half width of the image plane at distance 1 of cameras that are given by angles: 0.9.
+/// Half width of the image plane at distance 1, for cameras given by angles: 0.9.
 pub const DEFAULT_HALF_WIDTH: U4_28 = U4_28::lit("0.9");
-/// Near plane of cameras that are given by angles: 0.1.
+/// Distance of the near plane, for cameras given by angles: 0.1.
 pub const DEFAULT_NEAR: U4_28 = U4_28::lit("0.1");
 
 /// Largest distance of an eye from the origin.
@@ -23,7 +23,7 @@ pub const NEAR: [U4_28; 2] = [U4_28::lit("0.01"), U4_28::lit("2")];
 /// Accepted radii of the spherical camera.
 pub const RADIUS: [Q32_32; 2] = [Q32_32::lit("2"), Q32_32::lit("5")];
 
-/// A vector in 2^−60.
+/// A vector in units of 2^−60.
 type Exact = [i64; 3];
 
 /// A checked camera.
@@ -44,7 +44,7 @@ impl View {
     /// eye must be within 32 of the origin, `half_width` in [0.05, 4] and `near` in [0.01, 2].
     ///
     /// # Errors
-    /// The first condition that does not hold.
+    /// The first violated condition.
     pub fn new_checked(
         eye: [Q32_32; 3],
         u: [Q2_23; 3],
@@ -133,7 +133,7 @@ impl View {
         })
     }
 
-    /// This camera with half width and near plane of another one.
+    /// This camera with the half width and near plane of another camera.
     #[must_use]
     pub const fn with_lens_of(self, other: &Self) -> Self {
         Self {
@@ -192,23 +192,23 @@ impl fmt::Display for View {
     }
 }
 
-/// Sine and cosine in 2^−30; the products of two are below 2^61.
+/// Sine and cosine in units of 2^−30; a product of two is below 2^61.
 fn sines(angle: Turns) -> (i64, i64) {
     let (sin, cos) = sin_cos_q30(angle);
     (sin.to_bits().into(), cos.to_bits().into())
 }
 
-/// 2^−60 to 2^−30, nearest.
+/// Converts units of 2^−60 to 2^−30, to nearest.
 const fn narrow(x: i64) -> i64 {
     (x + (1 << 29)) >> 30
 }
 
-/// 2^−60 to 2^−23, nearest. The value is at most 1 and a rounding error.
+/// Converts units of 2^−60 to 2^−23, to nearest. The value is at most 1 plus a rounding error.
 fn rounded(x: Exact) -> [Q2_23; 3] {
     x.map(|x| Q2_23::from_bits(((x + (1 << 36)) >> 37) as i32))
 }
 
-/// r·x with x in 2^−60, nearest. |r| ≤ 5 and |x| ≤ 1, so the result fits.
+/// r·x with x in units of 2^−60, to nearest. |r| ≤ 5 and |x| ≤ 1, so the result fits.
 fn scaled(r: Q32_32, x: i64) -> Q32_32 {
     Q32_32::from_bits(((i128::from(r.to_bits()) * i128::from(x) + (1 << 59)) >> 60) as i64)
 }
@@ -220,7 +220,7 @@ fn within(place: [Q32_32; 3], distance: u32) -> bool {
         .map(|x| u128::from(x.to_bits().unsigned_abs()).pow(2))
         .iter()
         .sum();
-    // Below 2^64.
+    // The sum of squares is below 2^64.
     squared <= limit * limit
 }
 
@@ -234,13 +234,13 @@ fn check_eye(eye: [Q32_32; 3]) -> Result<(), ViewError> {
 
 fn check_basis(u: [Q2_23; 3], v: [Q2_23; 3], n: [Q2_23; 3]) -> Result<(), ViewError> {
     const ONE: i64 = 1 << 46;
-    // 1e-4 and its square, in 2^−46.
+    // 1e-4 and its square, in units of 2^−46.
     const TOLERANCE: i64 = ONE / 10_000;
     const SQUARE: i64 = ONE / 100_000_000;
 
     let rows = [(Axis::U, u), (Axis::V, v), (Axis::N, n)];
     for (axis, row) in rows {
-        // Within ±2 the sums below cannot overflow.
+        // Components within ±2 keep the sums below from overflow.
         let squared = row
             .iter()
             .all(|x| x.unsigned_abs() < 2)
@@ -275,14 +275,14 @@ fn check_basis(u: [Q2_23; 3], v: [Q2_23; 3], n: [Q2_23; 3]) -> Result<(), ViewEr
     }
 }
 
-/// The scalar product in 2^−46; exact for numbers within ±2.
+/// The scalar product in units of 2^−46; exact for components within ±2.
 fn dot(a: [Q2_23; 3], b: [Q2_23; 3]) -> i64 {
     core::iter::zip(a, b)
         .map(|(a, b)| i64::from(a.to_bits()) * i64::from(b.to_bits()))
         .sum()
 }
 
-/// 2^−46 to 2^−23, rounded down.
+/// Converts units of 2^−46 to 2^−23, rounded down.
 const fn narrow_product(x: i64) -> i32 {
     (x >> 23) as i32
 }
@@ -308,12 +308,12 @@ impl fmt::Display for Axis {
     }
 }
 
-/// Reason why numbers are not a camera.
+/// Reason why numbers do not describe a camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ViewError {
     /// The eye is too far from the origin.
     Eye([Q32_32; 3]),
-    /// A row of the basis is not of length 1 within 1e-4.
+    /// The length of a row of the basis differs from 1 by more than 1e-4.
     Length {
         /// The row.
         axis: Axis,
@@ -322,9 +322,9 @@ pub enum ViewError {
     },
     /// Two rows have a scalar product beyond 1e-4.
     NotPerpendicular {
-        /// One row.
+        /// The first row.
         a: Axis,
-        /// The other.
+        /// The second row.
         b: Axis,
         /// Their scalar product.
         product: Q2_23,

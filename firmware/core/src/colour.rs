@@ -2,7 +2,7 @@
 
 use crate::choice::choices;
 
-/// A colour as the frame buffer holds it: red in bits 15–11, green in 10–5, blue in 4–0.
+/// A colour in the format of the frame buffer: red in bits 15–11, green in 10–5, blue in 4–0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Rgb565(pub u16);
 
@@ -37,10 +37,10 @@ impl Rgb565 {
 /// The source of a triangle's colours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shading {
-    /// From its own colour and normal.
+    /// The triangle's own colour and normal.
     #[default]
     Flat,
-    /// From those of its vertices, interpolated.
+    /// The colours and normals of the vertices, interpolated.
     Smooth,
 }
 

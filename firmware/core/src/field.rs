@@ -1,9 +1,9 @@
-//! Distance fields: scenes that are given by the distance of every point from a solid, instead of a mesh.
+//! Distance fields: scenes defined by the distance of every point from a solid, instead of a mesh.
 //!
-//! A field is typed as a kind, a colon and its numbers in world units, such as `menger:4` or `cubes:2,0.5`; [`Field::parse`]
+//! The text form is a kind, a colon and numbers in world units, such as `menger:4` or `cubes:2,0.5`; [`Field::parse`]
 //! checks the numbers. Each kind is one module here: its name, its numbers and their ranges ([`Shape`]), and the solid in the
-//! engine's arithmetic, bit for bit as the gateware evaluates it ([`FlatSolid`], [`FixedSpheres`]). Its only other mention
-//! is in the lists of `primitive` (docs/adding-a-field.md).
+//! engine's arithmetic, bit for bit as the gateware evaluates it ([`FlatSolid`], [`FixedSpheres`]). A kind is registered in
+//! the lists of `primitive` (docs/adding-a-field.md).
 
 use core::fmt;
 
@@ -33,12 +33,12 @@ pub use union::Union;
 pub enum Field {
     /// A field of one kind.
     Primitive(Primitive),
-    /// A flat field and a round one.
+    /// A union of a flat field and a round field.
     Union(Union),
 }
 
 impl Field {
-    /// Whether it has spheres: then distances are in the Euclidean norm.
+    /// Whether the field has spheres: its distances are then in the Euclidean norm.
     pub const fn is_round(&self) -> bool {
         match self {
             Self::Primitive(primitive) => primitive.is_round(),
@@ -46,7 +46,7 @@ impl Field {
         }
     }
 
-    /// Whether it has no end along some axis.
+    /// Whether the field is unbounded along an axis.
     pub fn is_endless(&self) -> bool {
         match self {
             Self::Primitive(primitive) => primitive.placed().extent.is_none(),
@@ -54,7 +54,7 @@ impl Field {
         }
     }
 
-    /// Whether its faces are perpendicular to the diagonals, and not to the axes.
+    /// Whether the faces are perpendicular to the diagonals instead of the axes.
     pub const fn has_octants(&self) -> bool {
         match self {
             Self::Primitive(primitive) => primitive.has_octants(),
@@ -62,10 +62,10 @@ impl Field {
         }
     }
 
-    /// Reads a field as it is typed, such as `menger:4`.
+    /// Reads the text form of a field, such as `menger:4`.
     ///
     /// # Errors
-    /// The kind is unknown, a number is missing, not a number or out of its range, or there is one too many.
+    /// The kind is unknown, or a number is missing, malformed, out of its range, or surplus.
     pub fn parse(text: &str) -> Result<Self, FieldError<'_>> {
         let (kind, numbers) = text.split_once(':').unwrap_or((text, ""));
         match kind {
@@ -80,7 +80,7 @@ impl Field {
         }
     }
 
-    /// Draws a field of any kind at random, its numbers from their ranges.
+    /// Chooses a field at random: its kind, and its numbers from their ranges.
     pub fn draw(mut random: impl FnMut() -> u32) -> Self {
         let mut numbers = Random::new(&mut random);
         let primitive = Primitive::draw(&mut numbers);
@@ -100,7 +100,7 @@ impl<P: Into<Primitive>> From<P> for Field {
     }
 }
 
-/// As it is typed.
+/// Writes the text form.
 impl fmt::Display for Field {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
@@ -110,7 +110,7 @@ impl fmt::Display for Field {
     }
 }
 
-/// The kinds of fields as they are typed, with their descriptions.
+/// The text forms of all kinds of fields, with their descriptions.
 pub const KINDS: [(&str, &str); Primitive::NAMES.len() + Union::KINDS.len()] = {
     let mut kinds = [("", ""); Primitive::NAMES.len() + Union::KINDS.len()];
     let mut i = 0;

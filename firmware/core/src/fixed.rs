@@ -1,6 +1,6 @@
 //! The named fixed-point formats, angles, and decimals.
 //!
-//! `QI.F` is a two's complement number with I + F significant bits, the sign among the I; `UI.F` has no sign.
+//! `QI.F` is a two's complement number with I integer bits, which include the sign, and F fraction bits; `UI.F` has no sign.
 //! The types are those of the [`fixed`] crate: an alias may hold more integer bits than its name says, and the creator of
 //! a value keeps its range. Their `FromStr` reads a decimal by integer arithmetic, rounds to nearest with ties to even,
 //! and refuses numbers out of range; their `Display` prints the shortest decimal that
@@ -31,7 +31,7 @@ impl Turns {
     /// Half a turn, 180°.
     pub const HALF: Self = Self(1 << 31);
 
-    /// The angle nearest to a number of degrees, whole turns dropped.
+    /// The angle nearest to a number of degrees, modulo one turn.
     pub const fn from_degrees(degrees: Q32_32) -> Self {
         let bits = degrees.to_bits();
         let nearest = bits.div_euclid(360) + (bits.rem_euclid(360) >= 180) as i64;
@@ -49,7 +49,7 @@ impl Turns {
         Q32_32::from_bits(self.0 as i32 as i64 * 360)
     }
 
-    /// The sum of two angles, whole turns dropped.
+    /// The sum of two angles, modulo one turn.
     #[must_use]
     pub const fn wrapping_add(self, other: Self) -> Self {
         Self(self.0.wrapping_add(other.0))

@@ -1,4 +1,4 @@
-//! Cameras that an attitude steers: free look, and orbit about the model.
+//! Cameras steered by an attitude: free look, and orbit about the model.
 //!
 //! The camera's basis is computed from the quaternion without angles and has no singularity: a small turn of the sensor is an equally small
 //! turn of the picture, at the zenith and the nadir too.
@@ -53,7 +53,7 @@ impl Direction {
         let axis = axes[self.axis()];
         match self {
             Self::X | Self::Y | Self::Z => axis,
-            // At most 2^30 and a bit.
+            // The sum is at most 2^30 plus a rounding error.
             Self::MinusX | Self::MinusY | Self::MinusZ => axis.map(|x| -x),
         }
     }
@@ -77,13 +77,13 @@ impl Default for Mounting {
 }
 
 impl Mounting {
-    /// A mounting by the directions into the scene and up on the screen, if they are perpendicular.
+    /// A mounting from the sensor's directions into the scene and up on the screen; `None` unless they are perpendicular.
     pub fn new(forward: Direction, up: Direction) -> Option<Self> {
         (forward.axis() != up.axis()).then_some(Self { forward, up })
     }
 }
 
-/// Forward and up, in the console's form.
+/// The directions forward and up, as the console accepts them.
 impl fmt::Display for Mounting {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         write!(f, "{} {}", self.forward, self.up)
@@ -121,7 +121,7 @@ pub fn orbit(r: Q32_32, attitude: Quaternion, mounting: Mounting) -> Result<View
     free_look(eye, attitude, mounting)
 }
 
-/// u, v, n.
+/// The rows u, v and n.
 fn basis(attitude: Quaternion, mounting: Mounting) -> [[Q2_23; 3]; 3] {
     let axes = attitude.axes();
     let n = mounting.forward.of(&axes);
@@ -141,10 +141,10 @@ pub const NATURAL: u16 = 256;
 /// Accepted sensitivities, in 1/256.
 pub const SENSITIVITY: [u16; 2] = [32, 2_048];
 
-/// Steering: the camera's attitude from the sensor's, by centre and sensitivity.
+/// Steering: computes the camera's attitude from the sensor's attitude, by centre and sensitivity.
 ///
-/// With a sensitivity of 1 the camera's attitude is the sensor's times a constant rotation, and as accurate. Another sensitivity scales
-/// the angle of each turn about its own axis, and the horizon may drift.
+/// With a sensitivity of 1 the camera's attitude is the sensor's attitude times a constant rotation, with the same accuracy. Another
+/// sensitivity scales the angle of each turn about its own axis, and the horizon may drift.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Steering {
     sensitivity: u16,
@@ -182,7 +182,7 @@ impl Steering {
         self.sensitivity = sensitivity.clamp(SENSITIVITY[0], SENSITIVITY[1]);
     }
 
-    /// The camera's attitude for the sensor's.
+    /// The camera's attitude for an attitude of the sensor.
     pub fn follow(&mut self, attitude: Quaternion) -> Quaternion {
         match self.seen.replace(attitude) {
             Some(seen) if self.sensitivity != NATURAL => {
@@ -202,7 +202,7 @@ impl Steering {
         self.offset = back.times(self.offset);
     }
 
-    /// Makes the sensor's present attitude the centre, with the horizon.
+    /// Makes the sensor's present attitude the centre, including the horizon.
     pub fn level(&mut self) {
         self.offset = self.seen.unwrap_or(Quaternion::IDENTITY).inverse();
         self.camera = Quaternion::IDENTITY;
@@ -221,7 +221,7 @@ fn scaled(turn: Quaternion, sensitivity: u16) -> Quaternion {
         return Quaternion::IDENTITY;
     }
     let (_, half) = polar(w << 30, sine << 30);
-    // At most a quarter of a turn times 8.
+    // The product is at most a quarter of a turn times 8.
     let half = Turns(((u64::from(half.0) * u64::from(sensitivity)) >> 8) as u32);
     let (sin, cos) = sin_cos_q30(half);
     let along = |x: i64| Q2_30::from_bits((i64::from(sin.to_bits()) * x / sine) as i32);

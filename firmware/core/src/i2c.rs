@@ -1,8 +1,8 @@
-//! I2C reads at a steady pace: the interface between a bus that repeats a transaction by itself and the drivers of sensors.
+//! Periodic I2C reads: the interface between a bus that repeats a transaction and the drivers of sensors.
 
 use embedded_hal_async::i2c::I2c;
 
-/// A register read that the bus repeats.
+/// A periodic register read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PeriodicRead {
     /// Address of the device.
@@ -13,21 +13,21 @@ pub struct PeriodicRead {
     pub length: u8,
     /// Time from the start of a read to the start of the next, in µs.
     pub period: u32,
-    /// Reads an interrupt, 1 to 16.
+    /// Reads per interrupt, 1 to 16.
     pub batch: u8,
 }
 
-/// A bus that repeats a read by itself, until another transaction or an error ends that.
+/// A bus that repeats a read until another transaction or an error ends the repetition.
 pub trait PeriodicI2c: I2c {
     /// Begins the repetition; the first read starts one period from now.
     ///
     /// # Errors
-    /// When the bus cannot do it.
+    /// The bus does not support this read.
     fn begin(&mut self, read: PeriodicRead) -> Result<(), Self::Error>;
 
     /// Waits for the bytes of the next read, fills `bytes` with them, and returns the time at which the read started, in µs.
     ///
     /// # Errors
-    /// When the bus reports an error, nothing is repeated, or earlier reads were not taken in time and the queue is full.
+    /// The bus reports an error, no read is repeated, or the queue overflowed because reads were not taken in time.
     fn next(&mut self, bytes: &mut [u8]) -> impl Future<Output = Result<u64, Self::Error>>;
 }

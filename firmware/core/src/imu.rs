@@ -1,4 +1,4 @@
-//! A sensor that steers the camera: samples, calibration, attitude and steering.
+//! Sensor that steers the camera: samples, calibration, attitude and steering.
 //!
 //! [`Imu`] is the [`Sink`] of an MPU-6050's [`Stream`](crate::mpu6050::Stream). During failures of the sensor the attitude is held.
 
@@ -159,7 +159,7 @@ impl<E: Copy> Imu<E> {
         };
     }
 
-    /// Samples of the calibration in progress.
+    /// Number of samples taken by the calibration in progress.
     pub const fn calibrated_samples(&self) -> Option<u32> {
         match self.calibrating {
             Calibrating::Going(_, samples) => Some(samples),
@@ -213,7 +213,7 @@ impl<E: Copy> Imu<E> {
         self.moved = true;
     }
 
-    /// Takes a sample for the calibration in progress. Apart from the frequent code, because it is rare and long.
+    /// Takes a sample for the calibration in progress. A separate function, because this code is long and rarely runs.
     #[cold]
     #[inline(never)]
     fn go_on_calibrating(&mut self, sample: &Sample) {
@@ -233,10 +233,10 @@ impl<E: Copy> Imu<E> {
         }
     }
 
-    /// The steered camera at `eye` or at a distance of `radius`, if it has moved since the last call.
+    /// The steered camera at `eye` or at a distance of `radius`; `None` if the attitude has not changed since the last call.
     ///
     /// # Errors
-    /// Eye or radius are out of range.
+    /// Eye or radius is out of range.
     pub fn view(&mut self, eye: [Q32_32; 3], radius: Q32_32) -> Option<Result<View, ViewError>> {
         let follow = self
             .follow
@@ -258,7 +258,7 @@ impl<E: Copy> Sink<E> for Imu<E> {
 
     fn on_sample(&mut self, time: u64, measurement: &Measurement) {
         let sample = Sample {
-            // Time stamps wrap.
+            // Time stamps wrap modulo 2^32.
             t_us: time as u32,
             accel: measurement.accel,
             gyro: measurement.gyro,

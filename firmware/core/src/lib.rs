@@ -1,4 +1,5 @@
-//! Cameras, sines, attitudes and their sensor, fields and lights, mesh and wire formats and the console's grammar: what the firmware and the host share.
+//! Code shared by firmware and host: cameras, sines, attitudes and their sensor, fields and lights, mesh and wire formats, and the
+//! console's grammar.
 //!
 //! Everything here is integer arithmetic without allocation, and no input makes it panic.
 #![no_std]

@@ -1,8 +1,8 @@
 //! Light on distance fields.
 //!
-//! Faces perpendicular to the axes have six directions, so that lighting is six colours a frame and no work per pixel. Spheres are lit
-//! per pixel, in `glint-model` and in the gateware. There are no shadows: only the angle between a normal and the direction to a light
-//! counts.
+//! Faces perpendicular to the axes have six directions, so lighting takes six colours a frame and no work per pixel. Spheres are lit
+//! per pixel, in `glint-model` and in the gateware. Light depends only on the angle between a normal and the direction to a light,
+//! without shadows.
 
 use core::fmt;
 
@@ -21,15 +21,15 @@ pub const MAX_LIGHTS: usize = 4;
 /// Text form of a light.
 pub const FORM: &str = "X,Y,Z[,RRGGBB]";
 
-/// 1 in the components of a direction, 2^14.
+/// 1.0 in the units of a direction: 2^14.
 const ONE: i32 = 1 << 14;
 
 /// A light at infinite distance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Light {
-    /// The given direction to the light, of any length.
+    /// Direction to the light as entered, of any length.
     towards: [Q32_32; 3],
-    /// The same of length 1: s1.14, to nearest.
+    /// Direction to the light of length 1: s1.14, to nearest.
     direction: [i16; 3],
     colour: Rgb,
 }
@@ -45,7 +45,7 @@ impl Light {
         let Some(lead) = largest.checked_ilog2() else {
             return Err(LightError::Nowhere);
         };
-        // The largest has 31 bits, so the squares together have at most 64.
+        // The largest component has 31 bits, so the sum of squares has at most 64.
         let scaled = magnitudes.map(|x| {
             if lead < 30 {
                 x << (30 - lead)
@@ -68,7 +68,7 @@ impl Light {
         self.direction
     }
 
-    /// Its colour.
+    /// The light's colour.
     pub const fn colour(&self) -> Rgb {
         self.colour
     }
@@ -117,7 +117,7 @@ impl fmt::Display for Hexadecimal {
     }
 }
 
-/// Reads a colour of six hexadecimal digits, two a channel.
+/// Reads a colour of six hexadecimal digits, two per channel.
 pub fn parse_rgb(text: &str) -> Option<Rgb> {
     let digits = text.len() == 6 && text.bytes().all(|byte| byte.is_ascii_hexdigit());
     let number = u32::from_str_radix(text, 16).ok().filter(|_| digits)?;
@@ -148,7 +148,7 @@ impl fmt::Display for LightError<'_> {
 
 impl core::error::Error for LightError<'_> {}
 
-/// All the light of a scene.
+/// The lighting of a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Lighting {
     /// Ambient light.
@@ -164,10 +164,10 @@ impl Lighting {
         lights: Vec::new(),
     };
 
-    /// Default ambient light of given lights.
+    /// Default ambient light for the given lights.
     pub const AMBIENT: Rgb = [0x40; 3];
 
-    /// Sun and sky, which give every face another brightness.
+    /// Sun and sky, which give each face a different brightness.
     pub fn day() -> Self {
         let sun = Light {
             towards: [3, -5, 8].map(Q32_32::from_num),
@@ -185,19 +185,19 @@ impl Lighting {
         }
     }
 
-    /// What it makes of six faces: each channel is c·min(1, ambient + Σ max(0, n·l)·light), where 1 is 255, to nearest.
-    /// Nothing else is rounded but the directions.
+    /// Lit colours of six faces: each channel is c·min(1, ambient + Σ max(0, n·l)·light), where 1 is 255, to nearest. Only the
+    /// result and the directions are rounded.
     pub fn shine_on(&self, faces: &[Rgb; 6]) -> [Rgb; 6] {
         core::array::from_fn(|face| {
             self.lit(faces[face], |light| {
                 let along = i32::from(light.direction[face / 2]);
-                // As in a surface's code, the odd ones look along their axis.
+                // As in the code of a surface, normals of odd faces point along their axis.
                 if face % 2 == 1 { along } else { -along }
             })
         })
     }
 
-    /// The same of eight faces that are perpendicular to the diagonals, n·l rounded down: bit i of a face's number is set where its
+    /// Lit colours of the eight faces perpendicular to the diagonals, with n·l rounded down: bit i of a face's number is set if its
     /// normal points along axis i.
     pub fn shine_on_octants(&self, faces: &[Rgb; 8]) -> [Rgb; 8] {
         // 1/√3, 14 fraction bits.
@@ -213,7 +213,7 @@ impl Lighting {
         })
     }
 
-    /// A colour in the light on a face, by the cosine of each light's angle to its normal, 14 fraction bits.
+    /// The lit colour of a face, from the cosine between its normal and the direction to each light, 14 fraction bits.
     fn lit(&self, colour: Rgb, cosine: impl Fn(&Light) -> i32) -> Rgb {
         core::array::from_fn(|channel| {
             let sum: i32 = self
@@ -232,7 +232,7 @@ impl Lighting {
 /// Material of a solid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Material {
-    /// Each face in the colour of its normal, and the spheres in the colours of the materials in turn.
+    /// Colours each face by its normal, and the spheres with the colours of the materials in turn.
     #[default]
     Normal,
     /// Reddish brown.
@@ -260,7 +260,7 @@ choices!(Material {
 });
 
 impl Material {
-    /// The colours of its faces in full light, in the order −x, x, −y, y, −z, z.
+    /// The colours of the faces in full light, in the order −x, x, −y, y, −z, z.
     pub const fn faces(self) -> [Rgb; 6] {
         match self {
             Self::Normal => [
@@ -280,8 +280,8 @@ impl Material {
         }
     }
 
-    /// The colours of eight faces that are perpendicular to the diagonals, in full light: bit i of a face's number is set where
-    /// its normal points along axis i.
+    /// The colours of the eight faces perpendicular to the diagonals, in full light: bit i of a face's number is set if its normal
+    /// points along axis i.
     pub const fn octants(self) -> [Rgb; 8] {
         let mut colours = [self.faces()[0]; 8];
         if let Self::Normal = self {
@@ -289,7 +289,7 @@ impl Material {
             while face < colours.len() {
                 let mut i = 0;
                 while i < 3 {
-                    // 1/√3 of the way from the middle to a face across the axis.
+                    // The channel differs from its middle value by 1/√3 of a face's difference.
                     colours[face][i] = if face >> i & 1 == 1 { 188 } else { 78 };
                     i += 1;
                 }
@@ -299,7 +299,7 @@ impl Material {
         colours
     }
 
-    /// Colours of spheres in full light, by number: one colour, or the materials' colours in turn, which separates neighbours.
+    /// Colours of spheres in full light, by number: one colour, or the materials' colours in turn to distinguish neighbours.
     pub const fn spheres(self) -> [Rgb; MAX_SPHERES] {
         let mut colours = [self.faces()[0]; MAX_SPHERES];
         if let Self::Normal = self {

@@ -17,10 +17,10 @@ pub const MAGIC: [u8; 4] = *b"GLM1";
 pub const MAX_BYTES: u32 = 32 << 20;
 /// Largest number of vertices of a chunk.
 pub const MAX_CHUNK_VERTICES: u32 = u16::MAX as u32;
-/// The largest radius, u.14: √3·2, the far corner of the positions, rounded up.
+/// The largest radius, u.14: 2·√3, the distance of the farthest position, rounded up.
 pub const MAX_RADIUS: u32 = 56_756;
 
-/// Bytes of every record but the header, which has two.
+/// Bytes of a record; the header takes two records.
 const RECORD: usize = 16;
 /// Bytes of the mesh's header.
 const HEADER: usize = 2 * RECORD;
@@ -29,7 +29,7 @@ const HEADER: usize = 2 * RECORD;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Mesh<'a> {
     bytes: &'a [u8],
-    /// Everything after the header.
+    /// The bytes after the header.
     records: &'a [[u8; RECORD]],
     vertices: u32,
     triangles: u32,
@@ -43,7 +43,7 @@ impl<'a> Mesh<'a> {
     /// The first error, with its place.
     pub fn new_checked(bytes: &'a [u8]) -> Result<Self, MeshError> {
         let found = bytes.len();
-        // Truncation: a longer length is refused anyway.
+        // Truncation is harmless: the comparison with the length below rejects longer inputs.
         let wrong_length = |expected| MeshError {
             offset: 0,
             expected,
@@ -274,7 +274,7 @@ impl Vertex {
 /// A triangle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Triangle {
-    /// Numbers of the vertices in the chunk, counter-clockwise seen from outside.
+    /// Indices of the vertices in the chunk, counter-clockwise seen from outside.
     pub indices: [u16; 3],
     /// Its colour.
     pub colour: Rgb565,
@@ -300,7 +300,7 @@ impl Triangle {
 #[derive(Clone)]
 struct Walk<'a> {
     rest: &'a [[u8; RECORD]],
-    /// Of `rest`, in bytes from the start of the mesh.
+    /// Place of `rest` in bytes from the start of the mesh.
     offset: u32,
 }
 
@@ -373,7 +373,7 @@ impl<'a> Iterator for Chunks<'a> {
     }
 }
 
-/// The first little-endian words of `bytes`, and 0 beyond their end.
+/// The first little-endian words of `bytes`, 0 beyond the end.
 fn words<const N: usize>(bytes: &[u8]) -> [u32; N] {
     let mut words = [0; N];
     for (word, bytes) in words.iter_mut().zip(bytes.as_chunks().0) {
@@ -425,7 +425,7 @@ pub struct MeshError {
     pub found: u32,
 }
 
-/// Expected contents: a count with its name.
+/// Expected contents; each variant holds a count and its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Expected {
     /// The four bytes [`MAGIC`].

@@ -23,7 +23,7 @@ pub use stream::{Sink, Stream};
 /// The chip's address with AD0 low, and high.
 pub const ADDRESSES: [u8; 2] = [0x68, 0x69];
 
-/// LSB of the gyroscope at 10 °/s, with the range that [`Mpu6050`] sets up.
+/// LSB of the gyroscope at 10 °/s, at the range configured by [`Mpu6050`].
 const LSB_PER_10_DPS: i64 = 164;
 /// LSB of the gyroscope per °/s: 16.4.
 pub const GYRO_LSB_PER_DPS: Q32_32 = Q32_32::from_bits((LSB_PER_10_DPS << 32) / 10);
@@ -51,14 +51,14 @@ const INT_STATUS: u8 = 0x3a;
 const PWR_MGMT_1: u8 = 0x6b;
 const WHO_AM_I: u8 = 0x75;
 
-/// DEVICE_RESET.
+/// Bit DEVICE_RESET of PWR_MGMT_1.
 const DEVICE_RESET: u8 = 0x80;
-/// Awake, by the clock of the gyroscope about x.
+/// PWR_MGMT_1 of an awake chip, clocked by the gyroscope about x.
 const CLOCK_OF_X: u8 = 0x01;
-/// DATA_RDY, of INT_ENABLE and INT_STATUS.
+/// Bit DATA_RDY of INT_ENABLE and INT_STATUS.
 const DATA_RDY: u8 = 0x01;
 
-/// From SMPLRT_DIV on: every sample of 1 kHz, DLPF_CFG 2, ±2000 °/s, ±8 g.
+/// Contents of the registers from SMPLRT_DIV on: 1 kHz, DLPF_CFG 2, ±2000 °/s, ±8 g.
 const CONFIGURATION: [u8; 4] = [0x00, 0x02, 0x18, 0x10];
 
 /// Chip by its WHO_AM_I.
@@ -91,7 +91,7 @@ impl Identity {
         known.map(|(_, identity, _)| *identity)
     }
 
-    /// Temperature in 1/100 °C from the chip's register; the register's part rounds towards 0.
+    /// Temperature in 1/100 °C from the chip's register; the quotient rounds towards 0.
     pub const fn temperature(self, raw: i16) -> i32 {
         let raw = raw as i32;
         match self {
@@ -144,13 +144,13 @@ impl Measurement {
 /// Error of the sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Error<E> {
-    /// The bus.
+    /// Error of the bus.
     Bus(E),
     /// WHO_AM_I of an unknown chip.
     Identity(u8),
     /// A register does not keep the written value.
     Register {
-        /// Its address.
+        /// Address of the register.
         register: u8,
         /// The written value.
         expected: u8,
@@ -211,8 +211,8 @@ impl<B: I2c> Mpu6050<B> {
         }
     }
 
-    /// Finds the chip at one of its addresses, then resets and configures it, which takes 0.13 s. Without `reset` a configured chip is
-    /// left as it is.
+    /// Finds the chip at one of its addresses, then resets and configures it, which takes 0.13 s. Without `reset` a configured chip
+    /// keeps its state.
     ///
     /// # Errors
     /// The chip is absent, unknown, or does not accept its configuration.
@@ -308,7 +308,7 @@ impl<B: PeriodicI2c> Mpu6050<B> {
         })?)
     }
 
-    /// The next read: its start in µs, and the sample if it is new since the read before.
+    /// The next read: its start in µs, and the sample unless the previous read returned it.
     ///
     /// # Errors
     /// Those of the bus.

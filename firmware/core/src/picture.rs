@@ -5,7 +5,7 @@ use core::fmt;
 use crate::choice::choices;
 use crate::machine::{PICTURES, Picture};
 
-/// The size of a picture, by its code in registers.
+/// The size of a picture; the discriminant is the code in registers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Size {
     /// 320×180.
@@ -21,7 +21,7 @@ impl Size {
     /// All sizes, the smallest first.
     pub const ALL: [Self; 3] = [Self::W320, Self::W640, Self::W1280];
 
-    /// The size of this width and height, if there is one.
+    /// The size with this width and height; `None` for other pictures.
     pub fn of(width: u32, height: u32) -> Option<Self> {
         Self::ALL
             .into_iter()

@@ -19,7 +19,7 @@ pub const FORM: &str = "E,ZERO[,red-blue|red-cyan]";
 /// Colours of the glasses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tint {
-    /// Left red, right blue; green is the darker of both.
+    /// Left red, right blue; green is the minimum of both.
     #[default]
     RedBlue,
     /// Left red, right green and blue.
@@ -31,19 +31,19 @@ choices!(Tint {
     RedCyan: "red-cyan"
 });
 
-/// Two eyes, beside each other along u.
+/// Two eyes, side by side along u.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stereo {
-    /// Distance from the camera's eye to each of the two, in world units: 0 to 1.
+    /// Half separation: the distance from the camera to each eye, in world units, 0 to 1.
     pub half_separation: Q32_32,
-    /// Distance of zero parallax along n: at least the half separation, and 0.1.
+    /// Distance of zero parallax along n: at least the half separation, and at least 0.1.
     pub zero_parallax: Q32_32,
     /// Colours of the glasses.
     pub tint: Tint,
 }
 
 impl Stereo {
-    /// The same eyes, if their numbers are in range.
+    /// Checks the ranges of both distances.
     ///
     /// # Errors
     /// The first number out of range.
@@ -118,7 +118,7 @@ pub enum StereoError<'a> {
     ZeroParallax {
         /// The distance.
         zero_parallax: Q32_32,
-        /// The smallest with this half separation.
+        /// The smallest accepted distance at this half separation.
         least: Q32_32,
     },
 }

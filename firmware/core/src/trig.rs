@@ -1,6 +1,6 @@
 //! Sine and cosine together, from one table.
 //!
-//! An octant of the circle is cut at 64 equal steps; `NODES` holds both functions there (512 bytes) and a Taylor
+//! An octant of the circle has 64 equal steps; `NODES` holds both functions at the ends of the steps (512 bytes), and a Taylor
 //! polynomial about the nearest node does the rest. With e = d − d³/6 and h = d²/2, where d is the distance to
 //! the node in radians, at most π/512:
 //!
@@ -11,7 +11,7 @@
 //! The angles of an octant are mirrored and signs are set afterwards, so the symmetries hold bit for bit:
 //! sin(−x) = −sin x, cos(−x) = cos x, sin(x + ¼) = cos x, and quarter turns are exact.
 //!
-//! The order of the polynomial is the knob between error and time, see [`sin_cos_q30_order`].
+//! The order of the polynomial trades error for time, see [`sin_cos_q30_order`].
 
 use crate::fixed::{Q2_14, Q2_30, Turns};
 
@@ -23,22 +23,22 @@ const STEP: u32 = (1 << 29) / STEPS;
 /// sin(k·π/256) and 1 − cos(k·π/256) for k = 1…64 in u0.32, to the nearest.
 static NODES: [[u32; 2]; STEPS as usize] = nodes();
 
-/// Sine and cosine in Q2.14: at most 0.51 ULP (2^−14) off, over all 2^16 phases of 16 bits and in between.
+/// Sine and cosine in Q2.14: error at most 0.51 ULP (2^−14), over all phases.
 pub fn sin_cos_q14(angle: Turns) -> (Q2_14, Q2_14) {
     // The magnitudes are rounded before the signs are set, so that rounding keeps the symmetries.
     let (sin, cos) = unfold(angle, |phase| {
         octant::<2>(phase).map(|x| (x + (1 << 15)) >> 16)
     });
-    // At most 2^14 in magnitude.
+    // The value is at most 2^14 in magnitude.
     (Q2_14::from_bits(sin as i16), Q2_14::from_bits(cos as i16))
 }
 
-/// Sine and cosine in Q2.30: at most 0.68 ULP (2^−30) off, over all 2^32 phases.
+/// Sine and cosine in Q2.30: error at most 0.68 ULP (2^−30), over all 2^32 phases.
 pub fn sin_cos_q30(angle: Turns) -> (Q2_30, Q2_30) {
     sin_cos_q30_order::<3>(angle)
 }
 
-/// Sine and cosine in Q2.30 with a Taylor polynomial of order 0 to 3 (a higher one is taken as 3).
+/// Sine and cosine in Q2.30 with a Taylor polynomial of order 0 to 3 (higher orders saturate to 3).
 ///
 /// The remainder is at most d^(n + 1)/(n + 1)! with d = π/512: 6.1e-3, 1.9e-5, 3.9e-8 and 5.9e-11.
 pub fn sin_cos_q30_order<const ORDER: u32>(angle: Turns) -> (Q2_30, Q2_30) {
@@ -46,7 +46,7 @@ pub fn sin_cos_q30_order<const ORDER: u32>(angle: Turns) -> (Q2_30, Q2_30) {
     (Q2_30::from_bits(sin), Q2_30::from_bits(cos))
 }
 
-/// Carries an octant's sine and cosine, given for phases 0…2^29, to the full circle.
+/// Extends sine and cosine of an octant, phases 0…2^29, to the full circle.
 fn unfold(angle: Turns, octant: impl Fn(u32) -> [i32; 2]) -> (i32, i32) {
     let number = angle.0 >> 29;
     let offset = angle.0 & ((1 << 29) - 1);
@@ -92,18 +92,18 @@ fn octant<const ORDER: u32>(phase: u32) -> [i32; 2] {
     } else {
         mul_high(d.unsigned_abs() as i32, d.unsigned_abs()) as u32
     };
-    // d·h is d³/2 in 51 fraction bits; a third of it, 13 bits down, is d³/6 in 38.
+    // d·h is d³/2 with 51 fraction bits; a third of d·h, shifted by 13 bits, is d³/6 with 38.
     let e = if ORDER < 3 {
         d
     } else {
         d - mul_high(mul_high(d, h), (1 << 19) / 3)
     };
 
-    // What the polynomial adds to the node, 38 fraction bits; c·x is written as x − versine·x.
+    // Addends of the polynomial to the node's values, 38 fraction bits; c·x is computed as x − versine·x.
     let sin = e - mul_high(e, versine) - (mul_high(h as i32, s) >> 7);
     let cos = -mul_high(e, s) - ((h as i32 - mul_high(h as i32, versine)) >> 7);
-    // Floors nest, so this is the exact sum (node·2^6 + polynomial), rounded once to the nearest 2^−30. A sine of this
-    // octant lies in [0, 0.71], so the unsigned sum does not wrap.
+    // Nested floors equal one floor: the exact sum (node·2^6 + polynomial) is rounded once, to the nearest 2^−30. Sines of the octant
+    // lie in [0, 0.71], so the unsigned sum does not wrap.
     let sin = s.wrapping_add_signed((sin + 128) >> 6) >> 2;
     let cos = (1 << 30) + ((((cos + 128) >> 6) - versine as i32) >> 2);
     [sin as i32, cos]
@@ -119,7 +119,7 @@ const TAU_Q28: i64 = (((PI_Q60 >> 30) + 1) >> 1) as i64;
 /// π with 60 fraction bits.
 pub(crate) const PI_Q60: u128 = 0x3243_F6A8_885A_308D;
 
-/// The table, by the Taylor series of sin x and 1 − cos x with 60 fraction bits.
+/// Computes the table by the Taylor series of sin x and 1 − cos x, with 60 fraction bits.
 const fn nodes() -> [[u32; 2]; STEPS as usize] {
     let mut table = [[0; 2]; STEPS as usize];
     let mut k = 0;

@@ -19,13 +19,13 @@
 //! * An acknowledgement lists the received blocks and the last data frame. As a line does not reorder, missing blocks of earlier
 //!   frames are lost and are sent again at once; a time-out is needed only for the loss of the newest frame or its
 //!   acknowledgement.
-//! * The newest acknowledgement is valid. If a damaged one passes its CRC, the next one corrects it. The CRC-32 over the
-//!   whole detects damaged data, and the transfer starts again.
+//! * The newest acknowledgement is valid. If a damaged acknowledgement passes its CRC, the next one corrects the sender's state. The
+//!   CRC-32 of the transfer detects damaged data, and the transfer starts again.
 //! * The receiver decides when the transfer is complete. It repeats its verdict until the sender has closed, so both
-//!   know the end; if every `Close` is lost, the receiver ends after a timeout.
+//!   sides reach the end; if every `Close` is lost, the receiver ends after a timeout.
 //!
-//! A side with a console behind its line drops bytes after the end, until the line is quiet ([`Timing::quiet_ms`]). For
-//! the other side the bytes after the last zero are text.
+//! A side with a console on the same line drops bytes after the end, until the line is quiet ([`Timing::quiet_ms`]). The other side
+//! treats the bytes after the last zero as text.
 
 mod ending;
 mod format;

@@ -1,4 +1,4 @@
-//! Calibration: what it finds, and what it refuses.
+//! Calibration: results, and rejected samples.
 
 use glint_core::calibration::{
     Calibration, Progress, Report, RestBias, SAMPLES, SampleError, Units,
@@ -14,7 +14,7 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// About normal, with variance 1: twelve uniform numbers.
+    /// Approximately normal with variance 1: the sum of twelve uniform numbers.
     fn normal(&mut self) -> f64 {
         (0..12)
             .map(|_| (self.next() >> 11) as f64 / 2f64.powi(53))
@@ -25,7 +25,7 @@ impl Random {
 
 const BIAS: [f64; 3] = [73.8, -0.77, 18.4];
 
-/// A sensor at rest with noise of 0.1 °/s, and with what `change` makes of it.
+/// A sensor at rest with noise of 0.1 °/s; `change` modifies its samples.
 fn calibrate(
     samples: u32,
     mut change: impl FnMut(u32, &mut Sample),
@@ -71,7 +71,7 @@ fn the_mean_is_kept_to_a_256th() {
         );
         let error = f64::from(report.error[axis]) / 65_536.0;
         assert!((error - deviation / f64::from(SAMPLES).sqrt()).abs() < 1e-3 * error + 2e-5);
-        // What it says it may be off by, it is.
+        // The actual error agrees with the reported standard error.
         assert!((mean[axis] - BIAS[axis]).abs() < 4.0 * error);
     }
     // 1.67 LSB of noise at 16.4 LSB per °/s, over the root of 8192.
@@ -154,7 +154,7 @@ fn stale_samples_do_not_count_and_extremes_fit() {
     };
     assert_eq!(calibration.on_sample(&sample), Ok(Progress::Going(1)));
     assert_eq!(calibration.on_sample(&sample), Ok(Progress::Going(1)));
-    // The largest number of the largest rates.
+    // The largest number of samples with the largest rates.
     for units in [
         Units::MPU_6050,
         Units {
@@ -179,7 +179,7 @@ fn stale_samples_do_not_count_and_extremes_fit() {
     }
 }
 
-/// Follows a bias for so many seconds at 1 kHz; the gyroscope reads what `rate` says in LSB, and noise.
+/// Tracks a bias for `seconds` at 1 kHz; the gyroscope reads `rate` in LSB plus noise.
 fn followed(seconds: u32, start: [i32; 3], mut rate: impl FnMut(u32) -> [f64; 3]) -> RestBias {
     let mut resting = RestBias::new(Units::MPU_6050, start);
     let mut random = Random(9);
@@ -200,7 +200,7 @@ fn followed(seconds: u32, start: [i32; 3], mut rate: impl FnMut(u32) -> [f64; 3]
 
 #[test]
 fn a_bias_that_wanders_is_followed_at_rest() {
-    // Half a °/s of change, followed for three time constants.
+    // A change of 0.5 °/s, tracked for three time constants.
     let resting = followed(300, [0; 3], |_| [8.2, -8.2, 0.0]);
     assert!(resting.is_at_rest());
     let bias = resting.bias().map(|x| f64::from(x) / 256.0);
@@ -214,7 +214,7 @@ fn a_bias_that_wanders_is_followed_at_rest() {
 
 #[test]
 fn motion_is_not_learnt() {
-    // 1500 °/s to and fro, as the test list has it; a slow sway; and a turn that is steady but too fast for a bias.
+    // An oscillation of 1500 °/s, a slow sway, and a steady turn that is too fast for a bias.
     let square = |i: u32, period: u32| if i % period < period / 2 { 1.0 } else { -1.0 };
     for rate in [
         Box::new(move |i| [0.0, 0.0, 24_600.0 * square(i, 1_000)])
@@ -230,7 +230,7 @@ fn motion_is_not_learnt() {
 
 #[test]
 fn at_rest_the_bias_does_not_cycle() {
-    // Without noise, as far as a LSB can say: it creeps there and stays.
+    // Without noise the bias converges to the resolution of a LSB and stays.
     let mut resting = RestBias::new(Units::MPU_6050, [256, -256, 128]);
     let mut seen = Vec::new();
     for i in 0..3_000_000 {

@@ -1,4 +1,4 @@
-//! Cameras against f64 and against what makes a camera.
+//! Cameras against f64, and the conditions on their bases.
 
 use std::f64::consts::TAU;
 
@@ -26,7 +26,7 @@ fn basis(view: &View) -> [Vector; 3] {
     [view.u(), view.v(), view.n()].map(|row| row.map(Q2_23::to_num))
 }
 
-/// How far a basis is from orthonormal and right-handed: the largest of |a·a − 1|, |a·b| and |u × v − n|.
+/// Deviation of a basis from orthonormal and right-handed: the largest of |a·a − 1|, |a·b| and |u × v − n|.
 fn deviation(view: &View) -> f64 {
     let [u, v, n] = basis(view);
     [
@@ -47,14 +47,14 @@ fn radians(angle: u32) -> f64 {
     f64::from(angle) / 2f64.powi(32) * TAU
 }
 
-/// Angles that meet the axes, the diagonals and their neighbours, and many others.
+/// Angles at the axes, the diagonals and their neighbours, and random angles.
 fn angles(count: u32) -> impl Iterator<Item = u32> + Clone {
     let edges = (0..8_u32)
         .flat_map(|octant| [u32::MAX, 0, 1].map(|offset| (octant << 29).wrapping_add(offset)));
     edges.chain((0..count).map(|k| k.wrapping_mul(2_654_435_769).wrapping_add(k >> 3)))
 }
 
-/// Checks a view against what it should be and returns its deviation.
+/// Checks a view against the expected vectors and returns its deviation.
 #[track_caller]
 fn check(view: &View, expected: [Vector; 3]) -> f64 {
     for (row, expected) in basis(view).into_iter().zip(expected) {
@@ -178,7 +178,7 @@ fn known_places_are_exact() {
     );
 }
 
-/// A good camera to spoil.
+/// A valid camera, for tests that change one number.
 fn numbers() -> ([Q32_32; 3], [[Q2_23; 3]; 3], U4_28, U4_28) {
     let view = View::look(
         [Q32_32::ONE; 3],

@@ -1,4 +1,4 @@
-//! Fields as they are typed.
+//! Fields in text form.
 
 use glint_core::field::{Field, FieldError, KINDS, MAX_SPHERES, Primitive, Sphere, Spheres};
 use glint_core::fixed::Q32_32;

@@ -4,7 +4,7 @@ use glint_core::fixed::fixed::traits::Fixed;
 use glint_core::fixed::{Q2_14, Q2_23, Q2_30, Q32_32, Turns, U4_28};
 use proptest::prelude::*;
 
-/// Whether a number's decimal reads back as the same bits, and one with a digit less does not.
+/// Whether the decimal of a number reads back as the same bits, and no shorter decimal does.
 #[track_caller]
 fn assert_shortest<T: Fixed + std::str::FromStr>(x: T) {
     let decimal = x.to_string();
@@ -19,7 +19,7 @@ fn assert_shortest<T: Fixed + std::str::FromStr>(x: T) {
             shorter.parse::<T>().is_ok_and(|back| back != x),
             "{decimal}"
         );
-        // Rounded up in its last digit instead.
+        // The shorter decimal rounded up in its last digit.
         let above = format!(
             "{:.digits$}",
             x.to_num::<f64>() + 0.5 * 0.1_f64.powi(digits as i32) * x.to_num::<f64>().signum()

@@ -1,4 +1,4 @@
-//! Cameras that an attitude drives: where they look, and that they never jump.
+//! Cameras steered by an attitude: direction and continuity.
 
 use glint_core::camera::{View, ViewError};
 use glint_core::choice::Choice;
@@ -21,7 +21,7 @@ fn basis(view: &View) -> [[f64; 3]; 3] {
     [view.u(), view.v(), view.n()].map(|row| row.map(Q2_23::to_num))
 }
 
-/// The largest difference of any number of two cameras, eye and basis.
+/// The largest difference between corresponding numbers of two cameras, over eye and basis.
 fn apart(a: &View, b: &View) -> f64 {
     let eyes = [a, b].map(|view| view.eye().map(Q32_32::to_num::<f64>));
     let rows = [basis(a), basis(b)];
@@ -37,13 +37,13 @@ fn free_look_is_look_where_the_angles_are_the_same() {
     let zero = View::look(ORIGIN, Turns(0), Turns(0), Turns(0)).expect("near");
     assert_eq!(level, zero);
     for yaw in [-170.0, -30.0, 15.5, 90.0] {
-        // To the left by the right-handed rule about up; `look` has it to the right.
+        // A positive rotation about up turns left; the yaw of `look` turns right.
         let seen = free_look(ORIGIN, attitude(yaw, 0.0, 0.0), mounting).expect("near");
         let look = View::look(ORIGIN, degrees(-yaw), Turns(0), Turns(0)).expect("near");
         assert!(apart(&seen, &look) < 3e-7);
     }
     for angle in [-80.0, 25.0, 60.0] {
-        // About x, which is to the right: upwards where `look` has it downwards.
+        // A positive rotation about x, the right axis, looks up; the pitch of `look` looks down.
         let seen = free_look(ORIGIN, attitude(0.0, 0.0, angle), mounting).expect("near");
         let look = View::look(ORIGIN, Turns(0), degrees(-angle), Turns(0)).expect("near");
         assert!(apart(&seen, &look) < 3e-7);
@@ -78,8 +78,8 @@ fn every_mounting_is_right_handed_and_orthonormal() {
     assert_eq!(Direction::from_word("--x"), None);
 }
 
-/// Over the top, down to the bottom, and across both while turning: a step of a hundredth of a degree moves no number by more than
-/// a little over a hundredth of a degree of an arc.
+/// Paths over the zenith and the nadir, straight and while turning: a step of 0.01° changes no number by more than slightly over an arc
+/// of 0.01°.
 #[test]
 fn the_camera_never_jumps() {
     let step = 0.01_f64;
@@ -139,7 +139,7 @@ fn recentring_takes_the_heading_and_leaves_the_horizon() {
     for (a, b) in up(camera).iter().zip(up(tilted)) {
         assert!((a - b).abs() < 16, "{a} {b}");
     }
-    // Straight up there is a heading as anywhere.
+    // The heading is defined for a view straight up too.
     let mut steering = Steering::default();
     steering.follow(attitude(0.0, 90.0, 40.0));
     steering.recentre();
@@ -164,7 +164,7 @@ fn sensitivity_scales_a_turn() {
         let expected = 20.0 * f64::from(sensitivity) / 256.0;
         assert!((yaw - expected).abs() < 1e-4, "{sensitivity}: {yaw}");
     }
-    // Back to the natural one the camera stays.
+    // A return to sensitivity 1 leaves the camera where it is.
     let mut steering = Steering::new(512);
     steering.follow(Quaternion::IDENTITY);
     let before = steering.follow(attitude(10.0, 0.0, 0.0));

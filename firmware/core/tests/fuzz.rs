@@ -1,4 +1,4 @@
-//! Mutations of good inputs against everything that reads what others wrote.
+//! Mutations of valid inputs against every parser of external data.
 //!
 //! A fixed seed makes a run repeatable. `GLINT_FUZZ_INPUTS` sets how many inputs each target gets, 20,000 by default; the
 //! dev profile's overflow checks make an overflow a panic.
@@ -149,7 +149,7 @@ fn logs() {
     let mut passed = 0;
     fuzz(&corpus, |bytes, random| {
         let mut bytes = bytes.to_vec();
-        // Few mutations leave the length as it should be.
+        // Few mutations keep a valid length.
         if let (Some(rest), true) = (bytes.len().checked_sub(HEADER_BYTES), random.below(2) == 0) {
             let samples = rest / RECORD_BYTES;
             bytes[4..8].copy_from_slice(&(samples as u32).to_le_bytes());
@@ -199,7 +199,7 @@ fn console() {
     assert!(parsed > 0);
 }
 
-/// A clean transfer: what the sender says, and what it hears.
+/// A transfer without errors: the bytes in both directions.
 fn transfer(data: &[u8], session: u8) -> [Vec<u8>; 2] {
     let mut buffer = vec![0; data.len()];
     let mut sender = Sender::new(data, session, Timing::HOST, 0);

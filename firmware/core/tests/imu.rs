@@ -1,4 +1,4 @@
-//! A sensor's samples to a camera.
+//! A camera steered by the samples of a sensor.
 
 use glint_core::calibration;
 use glint_core::fixed::Q32_32;
@@ -40,7 +40,7 @@ fn a_calibrated_sensor_at_rest_stays_where_it_is() {
     let bias = imu.bias().map(|bias| bias.to_num::<f64>() * 16.4);
     assert!((bias[2] - 30.0).abs() < 0.01, "{bias:?}");
     assert_eq!(imu.temperature(), Some(3_500));
-    // The tilt that the bias has made goes back.
+    // The tilt caused by the bias decays.
     for index in 8_192..40_000 {
         imu.on_sample(index * 1_000, &rest(index));
     }
@@ -91,7 +91,7 @@ fn the_camera_follows_and_can_be_recentred() {
     assert_eq!(imu.view(EYE, RADIUS), None);
     imu.set_follow(Some(Follow::Look));
     assert_eq!(imu.view(EYE, RADIUS), None, "nothing was measured yet");
-    // A quarter of a turn to the left in a second.
+    // Turn by 90° to the left in a second.
     let turning = Measurement {
         gyro: [0, 0, 1_476],
         ..rest(0)
@@ -118,7 +118,7 @@ fn the_camera_follows_and_can_be_recentred() {
     let (n, eye) = forward(&mut imu);
     near(n, [0.0, 1.0, 0.0]);
     near(eye, [0.0, -2.5, 0.0]);
-    // Mounted the other way round, and turned half as far.
+    // Opposite mounting, and half the sensitivity.
     imu.set_mounting(Mounting::new(Direction::MinusY, Direction::Z).expect("perpendicular"));
     near(forward(&mut imu).0, [0.0, -1.0, 0.0]);
     imu.set_mounting(Mounting::default());
@@ -128,7 +128,7 @@ fn the_camera_follows_and_can_be_recentred() {
     }
     let half = std::f64::consts::FRAC_1_SQRT_2;
     near(forward(&mut imu).0, [-half, half, 0.0]);
-    // Held while the sensor fails.
+    // The attitude is held while the sensor fails.
     imu.on_error(Error::Bus("gone"));
     assert_eq!(imu.view(EYE, RADIUS), None);
     imu.set_follow(None);

@@ -1,4 +1,4 @@
-//! Lights as they are typed, and what they make of faces.
+//! Lights in text form, and the lit colours of faces.
 
 use glint_core::appearance::Appearance;
 use glint_core::fixed::Q32_32;
@@ -7,7 +7,7 @@ use glint_core::light::{
 };
 use proptest::prelude::*;
 
-/// The same in f64.
+/// The lit colours in f64.
 fn shone(ambient: Rgb, lights: &[([f64; 3], Rgb)], faces: &[Rgb; 6]) -> [[f64; 3]; 6] {
     core::array::from_fn(|face| {
         core::array::from_fn(|channel| {
@@ -27,7 +27,7 @@ fn shone(ambient: Rgb, lights: &[([f64; 3], Rgb)], faces: &[Rgb; 6]) -> [[f64; 3
 }
 
 fn lights() -> impl Strategy<Value = Vec<([i64; 3], Rgb)>> {
-    // Of all lengths.
+    // Directions of all lengths.
     let number = (any::<i64>(), 0..63_u32).prop_map(|(x, shift)| x >> shift);
     let direction = [number.clone(), number.clone(), number]
         .prop_filter("a direction", |direction| *direction != [0; 3]);
@@ -59,13 +59,13 @@ proptest! {
         let exact = shone(ambient, &exact, &material.faces());
         for (found, exact) in lighting.shine_on(&material.faces()).iter().zip(exact) {
             for (found, exact) in found.iter().zip(exact) {
-                // Half a step, and 2^-15 of 255 for each direction.
+                // Half a step, plus 2^-15 of 255 per direction.
                 prop_assert!((f64::from(*found) - exact).abs() < 0.54, "{found} {exact}");
             }
         }
     }
 
-    /// What is printed of a light is the same light.
+    /// The printed text of a light reads back as the same light.
     #[test]
     fn lights_come_back_bit_for_bit(
         direction in [any::<i64>(), any::<i64>(), any::<i64>()],
@@ -94,14 +94,14 @@ fn plain_light_leaves_colours_as_they_are() {
     }
 }
 
-/// Otherwise edges would not be seen.
+/// Faces of equal colour would hide the edge between them.
 #[test]
 fn every_face_of_a_material_looks_different() {
     for material in Material::ALL {
         let faces = material.light().shine_on(&material.faces());
         for (i, face) in faces.iter().enumerate() {
             let other = faces.iter().skip(i + 1).position(|other| other == face);
-            // Of two sides that are turned away from all lights only the ambient one is seen.
+            // Faces turned away from all lights show only the ambient light.
             assert!(
                 other.is_none_or(|_| *face == faces[4]),
                 "{}",

@@ -1,4 +1,4 @@
-//! Meshes: what is written is read, and what is wrong is named.
+//! Meshes: encoding, decoding and error messages.
 
 use glint_core::mesh::{
     EncodeError, Expected, IndexedTriangle, MAX_RADIUS, Mesh, MeshError, Rgb565, Vertex, encode,
@@ -22,7 +22,7 @@ fn triangle(indices: [u32; 3]) -> IndexedTriangle {
     }
 }
 
-/// A tetrahedron, 6 records and the header.
+/// A tetrahedron: 6 records and the header.
 fn small() -> Vec<u8> {
     let vertices: Vec<Vertex> = (0..4).map(vertex).collect();
     encode(&vertices, &[triangle([0, 1, 2]), triangle([0, 2, 3])]).expect("a good mesh")
@@ -372,7 +372,7 @@ fn a_mesh_that_is_cut_off_is_refused_at_every_length() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 2_000, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Whatever passes can be walked to its end, and its counts are true.
+    /// An accepted mesh can be iterated to its end, and its counts are right.
     #[test]
     fn no_bytes_upset_the_reader(changes in proptest::collection::vec((0..144_usize, any::<u8>()), 0..4), noise in any::<Vec<u8>>()) {
         let mut bytes = small();

@@ -1,4 +1,4 @@
-//! The driver against a virtual MPU-6050 on a bus of its own: what it makes of samples, of relatives and of faults.
+//! The driver against a virtual MPU-6050: samples, compatible chips and faults.
 
 use std::cell::RefCell;
 use std::future::poll_fn;
@@ -15,7 +15,7 @@ use virtual_mpu6050::{Bus, Chip, Fault, Imperfections, Source, State};
 const MILLISECOND: u64 = 1_000_000;
 const SECOND: u64 = 1_000 * MILLISECOND;
 
-/// The bus's clock; a delay lets time pass, and the test look in.
+/// The clock of the bus; a delay advances the clock and calls the test's hook.
 struct Clock(Bus);
 
 impl DelayNs for Clock {
@@ -33,11 +33,11 @@ impl DelayNs for Clock {
     }
 }
 
-/// What goes wrong.
+/// Faults of the bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Trouble {
     Bus(virtual_mpu6050::Error),
-    /// A round was not over when the next one was due.
+    /// A read was not over when the next read was due.
     Late,
 }
 
@@ -50,7 +50,7 @@ impl embedded_hal_async::i2c::Error for Trouble {
     }
 }
 
-/// A bus that repeats a read by its clock.
+/// A bus that repeats a read at a steady pace.
 struct Master {
     bus: Bus,
     read: Option<PeriodicRead>,
@@ -105,7 +105,7 @@ impl PeriodicI2c for Master {
     }
 }
 
-/// What came, each with the time on the bus.
+/// Received events, each with the time on the bus.
 #[derive(Default)]
 struct Record {
     starts: Vec<(u64, Identity)>,
@@ -130,7 +130,7 @@ impl Sink<Trouble> for Recorder {
     }
 }
 
-/// Turns faster and faster: a count of x is 61 µs.
+/// A steadily increasing rate: a count of x is 61 µs.
 fn ramp(time: f64) -> State {
     State {
         rate: [1_000.0 * time - 1_900.0, 0.0, 0.0],
@@ -142,10 +142,10 @@ fn chip(motion: fn(f64) -> State, imperfections: Imperfections) -> Chip {
     Chip::new(Source::Motion(Box::new(motion)), imperfections, 7)
 }
 
-/// What is done with the chip at a time in ns.
+/// An action on the chip at a time in ns.
 type Action<'a> = (u64, &'a dyn Fn(&mut Chip));
 
-/// Runs a stream for so long; at each time in the plan something is done with the chip.
+/// Runs a stream for a given time and executes the planned actions on the chip.
 fn run(chip: Chip, end: u64, plan: &[Action]) -> (Record, Bus) {
     let bus = Bus::new(chip);
     let record = Rc::new(RefCell::new(Record::default()));
@@ -168,7 +168,7 @@ fn run(chip: Chip, end: u64, plan: &[Action]) -> (Record, Bus) {
         }
     }
     drop(stream);
-    let record = Rc::into_inner(record).expect("nobody else has it");
+    let record = Rc::into_inner(record).expect("no other reference remains");
     (record.into_inner(), bus)
 }
 
@@ -216,7 +216,7 @@ fn counts_are_those_of_the_registers() {
             .map(|(.., sample)| f64::from(pick(sample)));
         all.sum::<f64>() / record.samples.len() as f64
     };
-    // Bias, drift by 11.53 °C, and scale of the specimen.
+    // Bias, drift over 11.53 °C, and scale of the modelled chip.
     let rate = [
         -4.5 + 1.8448 + 10.1,
         1.25 - 1.153 - 19.8,
@@ -274,7 +274,7 @@ fn still(_: f64) -> State {
     State::default()
 }
 
-/// Recovers from a fault between 1 s and 1.3 s within a time in ms, having told of it.
+/// Checks that the stream reports a fault between 1 s and 1.3 s and recovers within a time in ms.
 fn recovers(begin: impl Fn(&mut Chip), within: u64) -> Record {
     let (from, to) = (SECOND, 1_300 * MILLISECOND);
     let end = |chip: &mut Chip| chip.fault = None;
@@ -316,14 +316,14 @@ fn it_comes_back_from_faults_of_the_bus() {
 
 #[test]
 fn a_chip_that_lost_its_configuration_is_set_up_again() {
-    // Unplugged, and plugged in again.
+    // The sensor is unplugged and plugged in again.
     let unplug = |chip: &mut Chip| {
         chip.reset();
         chip.fault = Some(Fault::Absent);
     };
     let record = recovers(unplug, 250);
     assert_eq!(record.starts.len(), 2);
-    // Its supply fails for a moment, and it answers again before anybody has noticed.
+    // The supply fails for a moment, and the chip answers again before the next read.
     let (record, _) = run(
         chip(still, Imperfections::TYPICAL),
         2 * SECOND,
@@ -364,7 +364,7 @@ fn a_slow_chip_is_read_all_the_same() {
     let fault = |chip: &mut Chip| chip.fault = Some(Fault::Stretched(10_000));
     let plan: [Action; 1] = [(SECOND, &fault)];
     let (record, _) = run(chip(still, Imperfections::TYPICAL), 2 * SECOND, &plan);
-    // It takes longer than the time between two looks, so that is twice as long from then on.
+    // A read takes longer than the period of reads, so the stream doubles the period.
     assert_eq!(record.errors.len(), 1, "{:?}", record.errors);
     assert_eq!(record.errors[0].1, Error::Bus(Trouble::Late));
     let missing = 2_000 - 130 - record.samples.len();

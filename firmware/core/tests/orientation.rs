@@ -1,4 +1,4 @@
-//! Attitudes against closed forms: exact where they should be, of length 1 always, and without a panic.
+//! Attitudes against closed forms: accuracy, length 1, and freedom from panics.
 
 use glint_core::fixed::{Q2_30, Q32_32, Turns};
 use glint_core::orientation::{
@@ -54,7 +54,7 @@ impl Random {
 
 #[test]
 fn a_constant_rate_is_exact() {
-    // A tenth of the time is enough to show what a whole one would; the soak of a day is run by the report.
+    // A tenth of a day is enough here; the report runs the soak of a day.
     for (rate, step, seconds, most) in [
         ([1, 0, 0], 1_000, 3_600_u32, 1e-5),
         ([0, -1, 1], 1_000, 3_600, 1e-5),
@@ -156,7 +156,7 @@ fn gains_are_exact_for_steps_of_any_length() {
             );
         }
     }
-    // With more bits, where the step is not short.
+    // A higher precision is needed unless the step is short.
     for ratio in [0.1, 0.3, 1.0, 3.0, 10.0] {
         let time_constant = 50_000;
         let step = (f64::from(time_constant) * ratio) as u32;
@@ -196,7 +196,7 @@ fn angles_are_those_of_f64_and_the_way_back() {
         assert!(excess(quaternion) <= 2e-9);
         let got = quaternion.angles();
         let level = degrees(angles.pitch).to_radians().cos();
-        // Yaw and roll turn about one axis at the pole, so each has the error of the quaternion over that.
+        // At the pole yaw and roll turn about the same axis, so the error of each is the error of the quaternion over cos(pitch).
         let most = 6e-7 / level + 1e-7;
         for (got, want, most) in [
             (got.yaw, angles.yaw, most),
@@ -211,7 +211,7 @@ fn angles_are_those_of_f64_and_the_way_back() {
     println!("yaw and roll within {largest:.1e}°/cos(pitch)");
 }
 
-/// Pitch through ±90°: the quaternion goes on evenly, and what is said of it is what the documents say.
+/// Pitch through ±90°: the quaternion is continuous, and the angles follow the documented convention.
 #[test]
 fn the_pole_is_defined() {
     for sign in [1, -1_i64] {
@@ -229,13 +229,13 @@ fn the_pole_is_defined() {
             let got = quaternion.angles();
             let from_pole = (90_000 - thousandth).abs() as f64 / 1_000.0;
             let most = 3e-7 / from_pole.to_radians().sin().max(1e-9);
-            // Beyond the pole the same attitude has a pitch before it, and yaw and roll half a turn away.
+            // Beyond the pole the pitch decreases again, and yaw and roll differ by half a turn.
             let beyond = thousandth > 90_000;
             let [yaw, roll] = [20.0, 30.0].map(|angle| if beyond { angle - 180.0 } else { angle });
             let said = [degrees(got.yaw), degrees(got.roll)];
             assert!((degrees(got.pitch).abs() - 90.0 + from_pole).abs() < 5e-7);
             if from_pole == 0.0 {
-                // What is left of both: yaw − roll above, yaw + roll below.
+                // At the poles yaw is the remaining rotation: yaw − roll at pitch +90°, yaw + roll at −90°.
                 let whole = 20.0 - 30.0 * sign as f64;
                 assert!((said[0] - whole).abs() < 1e-6 && said[1] == 0.0, "{said:?}");
             } else {
@@ -297,7 +297,7 @@ fn upright(accel: [i16; 3]) -> f64 {
         .map(|(a, z)| a * f64::from(z) / 2f64.powi(30))
         .sum::<f64>()
         / length;
-    // Near the pole a yaw says little.
+    // Near the pole the yaw is ill-conditioned.
     let yaw = degrees(attitude.angles().yaw).abs();
     assert!(yaw * a[1].hypot(a[2]) <= 6e-7 * length, "{accel:?} {yaw}");
     1.0 - cosine
@@ -363,7 +363,7 @@ fn what_becomes_of_samples() {
     );
 }
 
-/// Upside down in the estimate, level in truth: however far off, the tilt comes back, and it does so in a bounded time.
+/// The estimate starts upside down on a level body: any tilt error is corrected in a bounded time.
 #[test]
 fn tilt_comes_back_after_saturation() {
     for axis in [0, 1] {
@@ -375,12 +375,12 @@ fn tilt_comes_back_after_saturation() {
             tracker.on_sample(&rest(t_us));
         }
         assert!(tracker.is_settled());
-        // The sensor says the end of its range and turns further than that: back to where it was.
+        // A rate beyond the sensor's range saturates; the tilt then recovers.
         for _ in 0..90 {
             t_us += 1_000;
             let mut gyro = [0; 3];
             gyro[axis] = i16::MAX;
-            // Free fall meanwhile: the accelerometer says nothing.
+            // In free fall the accelerometer gives no direction.
             tracker.on_sample(&Sample {
                 t_us,
                 accel: [0; 3],
@@ -431,7 +431,7 @@ fn knocks_are_left_out() {
     assert_eq!(tracker.attitude(), Quaternion::IDENTITY);
 }
 
-/// A soak of a day at rest without noise: nothing moves at all.
+/// A soak of a day at rest without noise: the attitude stays constant.
 #[test]
 fn at_rest_nothing_cycles() {
     let mut tracker = tracker();

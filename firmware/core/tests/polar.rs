@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use glint_core::fixed::Turns;
 use glint_core::polar::polar;
 
-/// The difference of an angle and a number of turns, in units of 2^−32 turns.
+/// The difference between an angle and a number of turns, in units of 2^−32 turns.
 fn apart(angle: Turns, turns: f64) -> f64 {
     let difference = f64::from(angle.0) - turns * 2f64.powi(32);
     let turn = 2f64.powi(32);
@@ -25,7 +25,7 @@ fn angles_and_lengths_are_within_a_unit() {
     for x in numbers().step_by(3) {
         for y in numbers() {
             let (length, angle) = polar(x, y);
-            // The parts of f64 that are lost are 2^-53 of a vector of 2^32 and more.
+            // The rounding of f64 is 2^-53 of a length of at least 2^32.
             let (fx, fy) = (x as f64, y as f64);
             if fx.hypot(fy) < 2f64.powi(32) {
                 continue;
@@ -53,7 +53,7 @@ fn axes_are_exact() {
         }
     }
     assert_eq!(polar(0, 0), (0, Turns(0)));
-    // Beyond the range they count as its ends.
+    // Components beyond the range saturate.
     assert_eq!(polar(i64::MIN, i64::MIN).1, Turns(5 << 29));
     assert_eq!(polar(i64::MAX, i64::MAX).1, Turns(1 << 29));
 }

@@ -1,11 +1,11 @@
-//! Sine and cosine against f64, whose own error (2^-53) is nothing here.
+//! Sine and cosine against f64, whose error of 2^-53 is negligible.
 
 use std::f64::consts::TAU;
 
 use glint_core::fixed::Turns;
 use glint_core::trig::{sin_cos_q14, sin_cos_q30, sin_cos_q30_order};
 
-/// The errors of a kernel over some phases, in units of its last place.
+/// The errors of a kernel over a set of phases, in units of its last place.
 #[derive(Default)]
 struct Errors {
     max: f64,
@@ -66,7 +66,7 @@ fn q30_order<const ORDER: u32>(angle: Turns) -> [i32; 2] {
     [sin.to_bits(), cos.to_bits()]
 }
 
-/// Phases that meet every node and both ends of every step, and a dense walk that shares no factor with the steps.
+/// All nodes, both ends of every step, and dense phases at a distance that shares no factor with the steps.
 fn dense() -> impl Iterator<Item = u32> {
     let edges = (0..1024_u32).flat_map(|half_step| {
         let phase = half_step << 22;

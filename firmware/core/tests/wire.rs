@@ -10,7 +10,7 @@ use proptest::prelude::*;
 /// Microseconds a byte takes at 115200 baud, 8N1.
 const BYTE_US: f64 = 1e7 / 115_200.0;
 
-/// How often a byte is hit, in 1/10000.
+/// Probability of damage to a byte, in 1/10000.
 #[derive(Clone, Copy, Default)]
 struct Faults {
     drop: u64,
@@ -56,7 +56,7 @@ impl Line {
         self.random >> 32 & 0xFFFF_FFFF < per_10000 * (1 << 32) / 10_000
     }
 
-    /// Whether the driver's buffer has room for a frame.
+    /// Whether the line's buffer has room for a frame.
     fn takes_more(&self, now_us: f64) -> bool {
         self.free_at_us - now_us < 512.0 * BYTE_US
     }
@@ -81,27 +81,27 @@ impl Line {
     }
 }
 
-/// What became of a transfer.
+/// Outcome of a transfer.
 #[derive(Debug)]
 struct Outcome {
     sender: State,
     receiver: State,
-    /// What the receiver says it has received, if anything.
+    /// Data received, if the transfer succeeded.
     received: Option<Vec<u8>>,
     seconds: f64,
-    /// Data bytes a frame had at the end.
+    /// Data bytes per frame at the end.
     frame_bytes: u32,
 }
 
 impl Outcome {
-    /// Data bytes over what the line could have carried in the time.
+    /// Data bytes over the capacity of the line in the same time.
     fn efficiency(&self) -> f64 {
         let bytes = self.received.as_ref().map_or(0, Vec::len);
         bytes as f64 * BYTE_US / 1e6 / self.seconds
     }
 }
 
-/// A transfer between a host that sends and a console that receives.
+/// A transfer from a host to a console.
 struct Scene {
     faults: Faults,
     seed: u64,
@@ -135,7 +135,7 @@ impl Scene {
         let mut receiver = Receiver::new(&mut buffer, self.announced, Timing::CONSOLE, 0);
         let mut there = Line::new(self.faults, self.seed, self.latency_us);
         let mut back = Line::new(self.faults, self.seed + 1_000, self.latency_us);
-        // What a console has written before, and the rest of the command's line.
+        // Earlier output of the console, and the rest of the command's line.
         back.send(0.0, b"glint> load 1234 deadbeef\r\nready\r\n");
         there.send(0.0, b"\n");
         let mut frame = [0; MAX_FRAME];
@@ -180,13 +180,13 @@ impl Scene {
             sender: sender.state(),
             receiver: receiver.state(),
             received: receiver.received().map(<[u8]>::to_vec),
-            seconds: finished_ms.expect("the sender comes to an end within an hour") as f64 / 1e3,
+            seconds: finished_ms.expect("the sender ends within an hour") as f64 / 1e3,
             frame_bytes,
         }
     }
 }
 
-/// Bytes of every value, zeros and long runs without one among them.
+/// Bytes of every value, with zeros and long runs without a zero.
 fn some_data(length: usize) -> Vec<u8> {
     (0..length as u32)
         .map(|i| (i.wrapping_mul(2_654_435_769) >> (i >> 10 & 15)) as u8)
@@ -202,7 +202,7 @@ fn assert_arrives(scene: &Scene, data: &[u8]) -> Outcome {
     );
     assert!(
         outcome.received.as_deref() == Some(data),
-        "what was received is not what was sent"
+        "received data differs from the sent data"
     );
     outcome
 }

@@ -1,13 +1,13 @@
-//! Blocks that a SoC may lack.
+//! Optional blocks of the SoC.
 
 use core::fmt;
 
-/// A block that this SoC does not have.
+/// Error: this SoC lacks a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Absent {
     /// `ident` where the block is present: four letters of ASCII.
     pub expected: u32,
-    /// `ident` as read; 0 where the block was left out.
+    /// `ident` as read; 0 if the SoC lacks the block.
     pub found: u32,
 }
 

@@ -1,6 +1,6 @@
 //! Buttons and switches as input pins, LEDs as output pins.
 //!
-//! A port is all pins of a register; [`InputPort::pin`] and [`OutputPort::pin`] give single ones. Pins of one output
+//! A port is all pins of a register; [`InputPort::pin`] and [`OutputPort::pin`] give single pins. Pins of one output
 //! port share its register and may be used in different contexts: each change is a critical section.
 
 use core::convert::Infallible;
@@ -26,7 +26,7 @@ impl<T: Value> InputPort<T> {
         self.register.read()
     }
 
-    /// Pin `index`; low where the register has no such bit.
+    /// Pin `index`; low if the register has no such bit.
     #[must_use]
     pub const fn pin(&self, index: u8) -> Input<'_, T> {
         Input { port: self, index }
@@ -76,7 +76,7 @@ impl<T: Value> OutputPort<T> {
         critical_section::with(|_| self.register.write(value));
     }
 
-    /// Pin `index`; without effect where the register has no such bit.
+    /// Pin `index`; without effect if the register has no such bit.
     #[must_use]
     pub const fn pin(&self, index: u8) -> Output<'_, T> {
         Output { port: self, index }
@@ -142,7 +142,7 @@ mod tests {
 
     use super::*;
 
-    /// Switches 0 and 15 are on; LEDs keep what is written.
+    /// Switches 0 and 15 are on; the LED register keeps the written value.
     struct Board {
         leds: u32,
     }
@@ -165,7 +165,7 @@ mod tests {
     #[test]
     fn inputs() {
         bus::connect(Board { leds: 0 });
-        // SAFETY: the registers are a model's.
+        // SAFETY: a model is behind the registers.
         let port = InputPort::new(unsafe { Peripherals::steal() }.switches.in_());
         assert_eq!(port.read(), 0x8001);
         assert!(port.pin(15).is_high().unwrap() && port.pin(14).is_low().unwrap());
@@ -175,7 +175,7 @@ mod tests {
     #[test]
     fn outputs() {
         bus::connect(Board { leds: 0b100 });
-        // SAFETY: the registers are a model's.
+        // SAFETY: a model is behind the registers.
         let port = OutputPort::new(unsafe { Peripherals::steal() }.leds.out());
         let (mut first, mut third) = (port.pin(0), port.pin(2));
         first.set_high().unwrap();

@@ -1,17 +1,17 @@
-//! The I2C master `i2c`, which works off a queue of commands by itself.
+//! The I2C master `i2c`, which executes a queue of commands.
 //!
 //! Single master, 7-bit addresses, 400 kHz, clock stretching. A transaction is put into the queue, and an interrupt reports its end:
 //! [`embedded_hal_async::i2c::I2c`] yields the CPU meanwhile, [`embedded_hal::i2c::I2c`] polls. A device that was
-//! interrupted in the middle of a byte may hold SDA low; each start clocks it free where necessary.
+//! interrupted in the middle of a byte may hold SDA low; if so, each start first releases SDA by clocks.
 //!
-//! Periodic reads ([`PeriodicI2c`], the register `rounds`) are one transaction at a steady pace, which the master keeps by itself. It
-//! raises an interrupt after each batch of them.
+//! Periodic reads ([`PeriodicI2c`], the register `rounds`) are one transaction that the master repeats at a steady pace, with an
+//! interrupt after each batch of reads.
 //!
 //! A future that is dropped before its transaction has ended may leave the bus within a byte; the next transaction clears the
 //! master and begins with a start.
 //!
 //! # Limits
-//! Single master only: a wire that should be high and is low is an error, not arbitration.
+//! Single master only: a wire that is low instead of high is an error, not arbitration.
 
 use core::fmt;
 use core::future::{Future, poll_fn};
@@ -27,15 +27,15 @@ use litex_pac::i2c::{
 
 use crate::timer::{Clock, Deadline, cycles, microseconds};
 
-/// Longest time without progress. The master itself gives up a device that stretches the clock for more than 25.8 ms, and the 33
-/// bytes of a full queue take 1 ms.
+/// Longest time without progress. The master reports a device that stretches the clock for more than 25.8 ms, and the 33 bytes
+/// of a full queue take 1 ms.
 const WAIT: Duration = Duration::from_millis(100);
 const WAIT_CYCLES: u64 = cycles(WAIT);
 
-/// Most bytes that one command receives.
+/// Largest number of bytes received by one command.
 const MOST_RECEIVED: usize = 256;
 
-/// Most bytes of a periodic read.
+/// Largest number of bytes of a periodic read.
 const MOST_IN_READ: usize = 32;
 
 /// The I2C master.
@@ -48,12 +48,12 @@ pub struct I2c {
 /// Periodic reads under way.
 #[derive(Clone, Copy)]
 struct Periodic {
-    /// Start of the read that is taken next, and time between two starts, in clock cycles.
+    /// Start of the next read to be taken, and time between two starts, in clock cycles.
     next: u64,
     period: u64,
 }
 
-/// Why a transaction has failed.
+/// Reason why a transaction failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BusError {
     /// The address has more than 7 bits.
@@ -62,15 +62,15 @@ pub enum BusError {
     NoAcknowledge(NoAcknowledgeSource),
     /// SCL was held low longer than a device may stretch it.
     ClockStuck,
-    /// SDA was low where it should have been free, and nine clocks did not free it.
+    /// SDA was low instead of free, and nine clocks did not release SDA.
     DataStuck,
     /// No progress for 100 ms.
     Timeout,
-    /// A periodic read was not over when the next one was due: the device stretches the clock, or the queue of received bytes is full.
+    /// A periodic read was not over when the next read was due: the device stretches the clock, or the receive queue is full.
     Late,
-    /// Periodic reads beyond the master's limits, or none have begun.
+    /// Periodic reads exceed the master's limits or have not begun.
     Reads,
-    /// The master reports an error that its description does not name.
+    /// The master reports an undocumented error code.
     Unknown,
 }
 
@@ -85,13 +85,13 @@ impl fmt::Display for BusError {
             Self::ClockStuck => {
                 f.write_str("i2c: SCL is held low longer than a device may stretch it")
             }
-            Self::DataStuck => f.write_str("i2c: SDA is held low and nine clocks did not free it"),
+            Self::DataStuck => f.write_str("i2c: SDA is held low: nine clocks did not release it"),
             Self::Timeout => write!(
                 f,
                 "i2c: timed out: no progress for {} ms",
                 WAIT.as_millis()
             ),
-            Self::Late => f.write_str("i2c: a periodic read was not over when the next one was due"),
+            Self::Late => f.write_str("i2c: a periodic read was not over when the next read was due"),
             Self::Reads => f.write_str(
                 "i2c: periodic reads: expected 1 to 32 bytes, batch 1 to 16, period below 2^24 cycles",
             ),
@@ -114,7 +114,7 @@ impl embedded_hal::i2c::Error for BusError {
 }
 
 impl I2c {
-    /// A master on `registers`; both wires are let go. The end of each transaction is an interrupt.
+    /// A master on `registers`, with both wires released. The end of each transaction is an interrupt.
     #[must_use]
     pub fn new(registers: i2c::I2c, clock: Clock) -> Self {
         let mut master = Self {
@@ -138,7 +138,7 @@ impl I2c {
             .write(Control::default().with_clear(true));
     }
 
-    /// The status, or the error that has ended the transaction.
+    /// The status, or the error that ended the transaction.
     fn status(&self) -> Result<Status, BusError> {
         let status = self.registers.status().read();
         if !status.failed() {
@@ -156,7 +156,7 @@ impl I2c {
 
     /// Runs a transaction to its end.
     async fn transact(&mut self, mut transfer: Transfer<'_, '_>) -> Result<(), BusError> {
-        // The remains of a transaction whose future was dropped.
+        // Clears the remains of a transaction whose future was dropped.
         if self.periodic.is_some() || !matches!(self.status(), Ok(status) if !status.busy()) {
             self.clear();
         }
@@ -168,7 +168,7 @@ impl I2c {
         result
     }
 
-    /// Takes the bytes of a periodic read, behind those that have been received.
+    /// Takes the bytes of a periodic read, after all bytes received earlier.
     fn take(
         &self,
         bytes: &mut [u8],
@@ -178,7 +178,7 @@ impl I2c {
         while let Some(slot) = bytes.get_mut(*received) {
             let answer = self.registers.answer().read();
             if !answer.valid() {
-                // What was received before an error has been taken.
+                // All bytes received before the error were taken.
                 return match (self.status(), &deadline) {
                     (Err(error), _) => Poll::Ready(Err(error)),
                     (_, Some(deadline)) if deadline.passed() => Poll::Ready(Err(BusError::Timeout)),
@@ -194,8 +194,8 @@ impl I2c {
         Poll::Ready(Ok(()))
     }
 
-    /// Fills the queue of commands and empties the queue of received bytes. One function for both: it runs in interrupts, where code
-    /// has to come from memory, so less code is faster.
+    /// Fills the command queue and empties the receive queue. Interrupt code is not in the cache, so one small function for both queues is
+    /// faster.
     fn serve(
         &self,
         transfer: &mut Transfer,
@@ -251,25 +251,25 @@ impl I2c {
 /// Next part of a transaction.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Stage {
-    /// Operations, or a start before them.
+    /// Operations, or the start before an operation.
     Operations,
     /// The address after a start.
     Address,
-    /// Nothing: the stop is in the queue.
+    /// No further command: the stop is in the queue.
     Over,
 }
 
-/// A transaction under way: its commands go into one queue, its bytes come out of the other.
+/// A transaction in progress: commands go into the command queue, received bytes come from the receive queue.
 struct Transfer<'o, 'b> {
     address: u8,
     operations: &'o mut [Operation<'b>],
     stage: Stage,
-    /// Whether what was started last reads.
+    /// Whether the last start was a read.
     reads: Option<bool>,
-    /// The operation whose commands come next, and how many of its bytes have theirs.
+    /// The operation of the next command, and the number of its bytes with a queued command.
     operation: usize,
     sent: usize,
-    /// The operation whose bytes come next, and how many it has.
+    /// The operation of the next received byte, and the number of its received bytes.
     receiver: usize,
     received: usize,
 }
@@ -288,7 +288,7 @@ impl<'o, 'b> Transfer<'o, 'b> {
         }
     }
 
-    /// The next command; none after the stop.
+    /// The next command; `None` after the stop.
     fn next_command(&mut self) -> Option<Command> {
         match self.stage {
             Stage::Over => return None,
@@ -308,7 +308,7 @@ impl<'o, 'b> Transfer<'o, 'b> {
                 Operation::Read(buffer) => (true, buffer.len()),
                 Operation::Write(bytes) => (false, bytes.len()),
             };
-            // A device cannot be asked for nothing: after its address it sends.
+            // A read of 0 bytes is impossible: a device sends after its read address.
             let is_nothing = reads && length == 0;
             if self.reads != Some(reads) && !is_nothing {
                 self.reads = Some(reads);
@@ -329,7 +329,7 @@ impl<'o, 'b> Transfer<'o, 'b> {
             self.sent += count;
             let command = Command::default()
                 .with_operation(Action::Read)
-                // 1 to 256 bytes.
+                // The command receives 1 to 256 bytes.
                 .with_argument((count - 1) as u8)
                 .with_more(self.sent < length || self.reads_on());
             return Some(command);
@@ -346,7 +346,7 @@ impl<'o, 'b> Transfer<'o, 'b> {
         .any(|has_bytes| has_bytes)
     }
 
-    /// Place of the next bytes; `None` when all are there.
+    /// Place of the next received bytes; `None` after the last byte.
     fn slots(&mut self) -> Option<&mut [u8]> {
         loop {
             let length = match self.operations.get(self.receiver)? {
@@ -372,9 +372,9 @@ fn write(byte: u8) -> Command {
         .with_argument(byte)
 }
 
-/// Clears the master's interrupt; its handler calls this.
+/// Clears the master's interrupt, for the interrupt handler.
 pub fn acknowledge() {
-    // SAFETY: the pending register is written here only.
+    // SAFETY: only this function writes the pending register.
     let registers = unsafe { i2c::I2c::steal() };
     registers
         .ev_pending()
@@ -430,7 +430,7 @@ impl PeriodicI2c for I2c {
             next: self.clock.cycles() + period,
             period,
         });
-        // The commands are in the queue before the first read is due.
+        // The commands are queued before the first read is due.
         let mut room = [0; MOST_IN_READ];
         let mut operations = [
             Operation::Write(&[read.register]),
@@ -461,7 +461,7 @@ impl PeriodicI2c for I2c {
     }
 }
 
-/// Polls a future that needs no other task.
+/// Polls a future to its end, without other tasks.
 fn block_on<T>(future: impl Future<Output = T>) -> T {
     let mut future = pin!(future);
     let mut context = Context::from_waker(Waker::noop());

@@ -27,7 +27,7 @@ pub fn dispatch(pending: u32, mut handle: impl FnMut(Interrupt)) -> u32 {
 pub unsafe fn enable(interrupt: Interrupt) {
     use litex_pac::cpu;
     critical_section::with(|_| {
-        // SAFETY: the caller answers for the handler; the critical section makes the change whole.
+        // SAFETY: the caller guarantees the handler; the critical section makes the change atomic.
         unsafe { cpu::set_interrupt_mask(cpu::interrupt_mask() | interrupt.bit()) }
     });
 }
@@ -37,7 +37,7 @@ pub unsafe fn enable(interrupt: Interrupt) {
 pub fn disable(lines: u32) {
     use litex_pac::cpu;
     critical_section::with(|_| {
-        // SAFETY: no line is enabled; the critical section makes the change whole.
+        // SAFETY: no line is enabled; the critical section makes the change atomic.
         unsafe { cpu::set_interrupt_mask(cpu::interrupt_mask() & !lines) }
     });
 }

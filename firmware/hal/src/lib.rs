@@ -11,7 +11,7 @@
 //! | [`triangle`] | `triangle`, the engine that draws meshes | |
 //! | [`raymarch`] | `raymarch`, which draws distance fields into its frames | |
 //!
-//! Drivers reach registers through `litex-pac` only. On a host that has a modelled bus, so the tests run the same drivers.
+//! Drivers access registers only through `litex-pac`. On a host a model replaces the bus, so tests run the same drivers.
 
 #![no_std]
 

@@ -1,8 +1,8 @@
 //! Two frames in memory and the scan-out that shows one of them while the other is drawn.
 //!
-//! [`Display`] owns the memory of both. [`Display::back`] lends the frame that is not on the screen, and
+//! [`Display`] owns the memory of both frames. [`Display::back`] lends the frame that is not on the screen, and
 //! [`Display::show`] flips: scan-out takes the frame over at the next vertical blanking. Until then no frame is free and `back`
-//! returns `None`. So no picture is shown half drawn, and no call waits: the interrupt of the vertical blanking
+//! returns `None`. Therefore no incomplete picture is shown, and no call waits: the interrupt of the vertical blanking
 //! ([`acknowledge_vblank`]) reports when a frame may be free again.
 //!
 //! The CPU's data cache writes through, so a drawn frame is in memory; scan-out only reads.
@@ -41,16 +41,16 @@ impl From<Size> for Scale {
     }
 }
 
-/// The scan-out block, known to be there.
+/// The scan-out block, present in this SoC.
 pub struct Scanout {
     registers: scanout::Scanout,
 }
 
 impl Scanout {
-    /// Takes the block if it is there. It shows black until a [`Display`] shows a frame.
+    /// Takes the block if present. The screen is black until a [`Display`] shows a frame.
     ///
     /// # Errors
-    /// When the block is absent.
+    /// The block is absent.
     pub fn probe(registers: scanout::Scanout) -> Result<Self, Absent> {
         Absent::check(registers.ident().read(), scanout::Scanout::IDENT)?;
         registers
@@ -59,8 +59,8 @@ impl Scanout {
         Ok(Self { registers })
     }
 
-    /// Keeps `shown` on the screen instead of `next`, if `next` is not shown yet; returns whether it did. Does nothing if the two
-    /// have different scales: one of them would be shown with the other's.
+    /// Keeps `shown` on the screen instead of `next` if `next` is not shown yet; returns whether `shown` was kept. Two frames with
+    /// different scales are not exchanged: a frame would be shown with the wrong scale.
     fn withdraw(&self, next: u32, shown: u32) -> bool {
         let registers = &self.registers;
         if registers.fb_next().read() != next
@@ -78,9 +78,9 @@ impl Scanout {
         withdrawn
     }
 
-    /// Whether the frame at `address` is shown or will be; it must not be drawn on then.
+    /// Whether the frame at `address` is shown or waits to be shown, and must not be drawn on.
     fn holds(&self, address: u32) -> bool {
-        // In this order: a frame that becomes current between the two reads was found as the next one.
+        // `next` is read first: a frame that becomes current between the two reads is then found as the next frame.
         self.registers.fb_next().read() == address || self.registers.fb_current().read() == address
     }
 
@@ -90,8 +90,8 @@ impl Scanout {
         if self.registers.scale().read() != scale as u8
             || self.registers.control().read() == disabled
         {
-            // A vertical blanking may come between any two of these writes. It then finds the picture switched off, and
-            // never a frame with another frame's scale.
+            // A vertical blanking may come between any two of these writes. The picture is then switched off, so that no frame is shown with the
+            // scale of another frame.
             self.registers.control().write(disabled);
             self.registers.scale().write(scale as u8);
             self.registers.fb_next().write(address);
@@ -104,9 +104,9 @@ impl Scanout {
     }
 }
 
-/// Clears the vertical blanking's interrupt; its handler calls this.
+/// Clears the interrupt of the vertical blanking, for the interrupt handler.
 pub fn acknowledge_vblank() {
-    // SAFETY: the pending register is written here only, and its one event is cleared as a whole.
+    // SAFETY: only this function writes the pending register, and clears its only event.
     let registers = unsafe { scanout::Scanout::steal() };
     registers
         .ev_pending()
@@ -121,7 +121,7 @@ pub struct Display {
 }
 
 impl Display {
-    /// A display of two frames, each large enough for 1280×720 pixels of RGB565 and at a multiple of 16 bytes.
+    /// A display of two frames, each with room for 1280×720 pixels of RGB565 and aligned to 16 bytes.
     #[must_use]
     pub fn new(scanout: Option<Scanout>, frames: [&'static mut [u16]; 2]) -> Self {
         let [front, back] = frames;
@@ -142,8 +142,8 @@ impl Display {
         (!held).then_some(&mut *self.back)
     }
 
-    /// Takes back the frame of the last [`show`](Self::show) if it is not on the screen yet, so that there is a frame to draw on: for
-    /// a picture that is out of date before it is seen.
+    /// Takes back the frame of the last [`show`](Self::show) if it is not on the screen yet, to replace an outdated picture before it is
+    /// shown.
     pub fn withdraw(&mut self) {
         let withdrawn = self
             .scanout
@@ -154,7 +154,7 @@ impl Display {
         }
     }
 
-    /// The frame shown last, or still to be taken over.
+    /// The frame of the last [`show`](Self::show), on the screen or waiting for the vertical blanking.
     #[must_use]
     pub fn front(&self) -> &[u16] {
         self.front
@@ -163,20 +163,20 @@ impl Display {
     /// Shows the frame that [`back`](Self::back) lent, from the next vertical blanking on.
     pub fn show(&mut self, scale: Scale) {
         core::mem::swap(&mut self.front, &mut self.back);
-        // The drawn pixels must be on their way to memory before scan-out gets the address.
+        // The writes of the pixels must precede the write of the address.
         compiler_fence(Ordering::SeqCst);
         if let Some(scanout) = &self.scanout {
             scanout.show(address(self.front), scale);
         }
     }
 
-    /// Whether the SoC has scan-out.
+    /// Whether the SoC has a scan-out block.
     #[must_use]
     pub const fn is_visible(&self) -> bool {
         self.scanout.is_some()
     }
 
-    /// Counters of scan-out; all 0 where it is absent.
+    /// Counters of scan-out; all 0 if the block is absent.
     #[must_use]
     pub fn counters(&self) -> Counters {
         let scanout = self.scanout.as_ref();
@@ -186,7 +186,7 @@ impl Display {
     }
 }
 
-/// A frame's address as scan-out sees it: the CPU's own, which has 32 bits.
+/// Address of a frame for scan-out: the 32-bit address of the CPU.
 fn address(frame: &[u16]) -> u32 {
     frame.as_ptr().addr() as u32
 }
@@ -204,7 +204,7 @@ mod tests {
 
     const IDENT: u32 = scanout::Scanout::IDENT;
 
-    /// The registers by offset, with a vertical blanking before the write that `blank_before` counts down to.
+    /// The registers by offset. `blank_before` counts writes down to a vertical blanking.
     #[derive(Default)]
     struct Video {
         ident: u32,
@@ -262,7 +262,7 @@ mod tests {
             ..Video::default()
         }));
         bus::connect(Registers(video.clone()));
-        // SAFETY: the registers are a model's.
+        // SAFETY: a model is behind the registers.
         (
             Scanout::probe(unsafe { Peripherals::steal() }.scanout),
             video,
@@ -283,7 +283,7 @@ mod tests {
         video.borrow_mut().blank();
         assert_eq!(display.front()[0], 1);
         display.show(Scale::Four);
-        // The second is awaited, the first still on the screen.
+        // The second frame waits, the first frame is still on the screen.
         assert!(display.back().is_none());
         video.borrow_mut().blank();
         assert_eq!(display.back().unwrap()[0], 1);
@@ -292,7 +292,7 @@ mod tests {
 
     #[test]
     fn a_frame_is_withdrawn_before_it_is_seen() {
-        // A vertical blanking in the last moment, or none.
+        // A vertical blanking at the last moment, or none.
         for blanking in [Some(0), None] {
             let (scanout, video) = probe(IDENT);
             let mut display = Display::new(Some(scanout.unwrap()), frames());
@@ -315,7 +315,7 @@ mod tests {
             assert_eq!(display.front()[0], if seen_first { 1 } else { 2 });
             assert_eq!(video.borrow().current[1], address(display.front()));
         }
-        // Another scale is waited for.
+        // A frame with another scale waits.
         let (scanout, video) = probe(IDENT);
         let mut display = Display::new(Some(scanout.unwrap()), frames());
         display.show(Scale::Four);

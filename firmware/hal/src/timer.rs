@@ -1,7 +1,7 @@
 //! Time since reset, from the uptime counter of `timer0`.
 //!
-//! The counter has 64 bits and counts clock cycles of the SoC; it never stops and never wraps. [`Clock`] is a copyable
-//! handle, also for interrupt handlers: a reading that an interrupt handler's reading disturbs is still a time between the two.
+//! The counter has 64 bits and counts clock cycles of the SoC without stop or wrap. [`Clock`] is a copyable handle, also for interrupt
+//! handlers: a reading that is interrupted by another reading still gives a time between start and end of the reading.
 
 use core::future::poll_fn;
 use core::task::Poll;
@@ -11,7 +11,7 @@ use embedded_hal::delay::DelayNs;
 use litex_pac::constants::CONFIG_CLOCK_FREQUENCY;
 use litex_pac::timer0::{EvEnable, EvPending, Timer0};
 
-/// Clock cycles of the SoC a second.
+/// Clock cycles of the SoC per second.
 pub const FREQUENCY: u32 = CONFIG_CLOCK_FREQUENCY;
 
 /// Clock cycles in 4 µs: a whole number.
@@ -24,23 +24,23 @@ pub struct Clock {
     _running: (),
 }
 
-/// The uptime counter stands still: the SoC has none.
+/// The uptime counter stands still, because the SoC has no such counter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stopped;
 
 impl core::fmt::Display for Stopped {
     fn fmt(&self, f: &mut core::fmt::Formatter) -> core::fmt::Result {
-        f.write_str("timer0: expected an uptime that advances, found that it stands still")
+        f.write_str("timer0: expected an advancing uptime counter, found a constant value")
     }
 }
 
 impl core::error::Error for Stopped {}
 
 impl Clock {
-    /// The clock on `timer0`, of which only the uptime is used.
+    /// The clock on `timer0`; only the uptime counter is used.
     ///
     /// # Errors
-    /// When two readings are equal.
+    /// Two readings of the counter are equal.
     pub fn new(_timer: Timer0) -> Result<Self, Stopped> {
         let clock = Self { _running: () };
         if clock.cycles() == clock.cycles() {
@@ -53,7 +53,7 @@ impl Clock {
     /// Clock cycles since reset.
     #[must_use]
     pub fn cycles(self) -> u64 {
-        // SAFETY: `new` took the only handle and drops it; every other access reads the uptime.
+        // SAFETY: `new` took the only handle and dropped it; every other access reads the uptime.
         let timer = unsafe { Timer0::steal() };
         timer.uptime_latch().write(true);
         timer.uptime_cycles().read()
@@ -89,7 +89,7 @@ pub struct Deadline {
 }
 
 impl Deadline {
-    /// Whether it has passed.
+    /// Whether this point in time has passed.
     #[must_use]
     pub fn passed(&self) -> bool {
         self.clock.cycles() >= self.cycles
@@ -97,15 +97,15 @@ impl Deadline {
 }
 
 impl DelayNs for Clock {
-    /// Waits at least `ns`, up to a few dozen cycles longer.
+    /// Waits at least `ns`, and at most a few dozen cycles longer.
     fn delay_ns(&mut self, ns: u32) {
         let deadline = self.after(Duration::from_nanos(ns.into()));
         while !deadline.passed() {}
     }
 }
 
-/// A delay ends at the first poll after its time; an interrupt of `timer0` causes that poll. There is one such interrupt: of several
-/// delays at once the last one has it, and the others wait for another poll.
+/// A delay ends at the first poll after its time; an interrupt of `timer0` causes this poll. `timer0` has a single interrupt: of several
+/// simultaneous delays only the last one gets the interrupt, and the others wait for another poll.
 impl embedded_hal_async::delay::DelayNs for Clock {
     async fn delay_ns(&mut self, ns: u32) {
         self.wait(cycles(Duration::from_nanos(ns.into()))).await;
@@ -123,7 +123,7 @@ impl embedded_hal_async::delay::DelayNs for Clock {
 impl Clock {
     async fn wait(self, cycles: u64) {
         let deadline = self.after_cycles(cycles);
-        // An interrupt that is too early causes one poll more.
+        // An early interrupt only causes one additional poll.
         alarm(u32::try_from(cycles).unwrap_or(u32::MAX));
         poll_fn(|_| {
             if deadline.passed() {
@@ -136,9 +136,9 @@ impl Clock {
     }
 }
 
-/// Sets the interrupt of `timer0` to `cycles` from now, and a few more.
+/// Sets the interrupt of `timer0` to slightly more than `cycles` from now.
 fn alarm(cycles: u32) {
-    // SAFETY: these registers are written here only; the last write has the interrupt.
+    // SAFETY: only this function writes these registers; the last write sets the interrupt.
     let timer = unsafe { Timer0::steal() };
     timer.en().write(false);
     timer.load().write(cycles.saturating_add(1));
@@ -146,9 +146,9 @@ fn alarm(cycles: u32) {
     timer.ev_enable().write(EvEnable::default().with_zero(true));
 }
 
-/// Clears the interrupt of `timer0`; its handler calls this.
+/// Clears the interrupt of `timer0`, for the interrupt handler.
 pub fn acknowledge() {
-    // SAFETY: the pending register is written here only.
+    // SAFETY: only this function writes the pending register.
     let timer = unsafe { Timer0::steal() };
     timer
         .ev_pending()
@@ -163,11 +163,11 @@ pub const fn microseconds(cycles: u64) -> u64 {
     ((cycles as u128 * INVERSE) >> 64) as u64
 }
 
-/// A span in clock cycles, rounded up to the next cycle; it saturates.
+/// A span in clock cycles, rounded up, saturating.
 #[must_use]
 pub const fn cycles(span: Duration) -> u64 {
     let frequency = FREQUENCY as u64;
-    // Below a second in nanoseconds times 2^27: no overflow.
+    // The product of less than 10^9 ns and 2^27 cannot overflow.
     let part = (span.subsec_nanos() as u64 * frequency).div_ceil(1_000_000_000);
     span.as_secs()
         .saturating_mul(frequency)
@@ -196,7 +196,7 @@ pub(crate) mod tests {
             }
         }
 
-        /// The word at `address`, if it is one of the uptime's.
+        /// The word at `address`, if part of the uptime counter.
         pub fn read(&self, address: usize) -> Option<u32> {
             match address - Timer0::BASE {
                 0x24 => Some((self.latched >> 32) as u32),
@@ -223,16 +223,16 @@ pub(crate) mod tests {
         }
     }
 
-    /// The clock of a bus that this thread has connected.
+    /// A clock on the bus that this thread has connected.
     pub fn clock() -> Clock {
-        // SAFETY: the registers are a model's.
+        // SAFETY: a model is behind the registers.
         Clock::new(unsafe { Timer0::steal() }).unwrap()
     }
 
     #[test]
     fn a_clock_without_a_counter_is_refused() {
         bus::connect(Uptime::new(0));
-        // SAFETY: the registers are a model's.
+        // SAFETY: a model is behind the registers.
         assert!(Clock::new(unsafe { Timer0::steal() }).is_err());
     }
 
@@ -251,7 +251,7 @@ pub(crate) mod tests {
         assert_eq!(clock.cycles(), 5 << 32);
     }
 
-    /// The uptime, and what was written to `load` last.
+    /// The uptime, and the last value written to `load`.
     struct Alarm(Uptime, std::rc::Rc<core::cell::Cell<u32>>);
 
     impl Bus for Alarm {
@@ -283,7 +283,7 @@ pub(crate) mod tests {
         while delay.as_mut().poll(&mut context).is_pending() {
             looks += 1;
         }
-        // 8125 cycles, of which each look takes 1000.
+        // 8125 cycles; each reading of the clock takes 1000.
         assert_eq!((looks, asked.get()), (9, 8_126));
     }
 

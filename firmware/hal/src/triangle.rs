@@ -1,12 +1,12 @@
 //! The triangle engine: draws meshes in memory into frames in memory.
 //!
-//! A frame takes two passes. The geometry pass makes descriptors and band lists of a mesh, and a list of the triangles that
+//! A frame takes two passes. The geometry pass writes descriptors and band lists of a mesh, and a list of the triangles that
 //! need clipping. The raster pass draws a frame from these lists, and from a second set that the program may write
 //! (docs/formats.md, "Descriptors and band lists"). Both passes may run at the same time, for two frames.
 //!
-//! The engine accesses memory by address and beside the CPU's data cache, so starting a pass is unsafe: see
-//! [`TriangleEngine::start_geometry`] and [`TriangleEngine::start_raster`]. It sees earlier writes of the CPU; the CPU sees its writes
-//! after `litex_pac::cpu::flush_data_cache`.
+//! The engine accesses memory by address and bypasses the CPU's data cache, so starting a pass is unsafe: see
+//! [`TriangleEngine::start_geometry`] and [`TriangleEngine::start_raster`]. The engine sees earlier writes of the CPU; the CPU sees writes
+//! of the engine after `litex_pac::cpu::flush_data_cache`.
 
 use core::fmt;
 use core::sync::atomic::{Ordering, compiler_fence};
@@ -23,14 +23,14 @@ pub use litex_pac::triangle::{Counters, Error};
 
 use crate::Absent;
 
-/// Why a pass has failed, or was not started.
+/// Reason why a pass failed or was not started.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EngineError {
-    /// An error code of the register `status`, or the program's own reason of the same kind.
+    /// An error code of the register `status`, also used by the driver's own checks.
     Status(Error),
     /// No progress for longer than [`TIMEOUT`].
     Timeout,
-    /// Smooth shading, which this gateware is built without.
+    /// This gateware is built without smooth shading.
     Shading,
     /// The eye is farther from the origin than the engine's number formats allow.
     Eye,
@@ -86,11 +86,11 @@ pub struct Geometry<'a> {
     pub mesh: &'a Mesh<'a>,
     /// The constants of the frame.
     pub frame: &'a MeshSetup,
-    /// Leaves out back faces.
+    /// Culls back faces.
     pub cull: bool,
-    /// Source of the colours; `Flat` where the engine has no smooth shading.
+    /// Source of the colours; `Flat` if the engine has no smooth shading.
     pub shading: Shading,
-    /// Its output.
+    /// Output of the pass.
     pub lists: Lists,
     /// Address of the list of exceptions: triangle numbers of 4 bytes.
     pub exceptions: u32,
@@ -98,7 +98,7 @@ pub struct Geometry<'a> {
     pub exception_limit: u32,
 }
 
-/// A geometry pass whose registers are written.
+/// A geometry pass with its registers written.
 #[must_use]
 pub struct Prepared {
     start: GeometryStart,
@@ -122,9 +122,9 @@ pub struct Raster {
     pub size: Size,
     /// Address of the frame to write.
     pub frame: u32,
-    /// Number of its frame buffer.
+    /// Number of the frame buffer.
     pub slot: bool,
-    /// The contents of the frame buffer are unknown: all of it is written.
+    /// Writes the whole frame buffer, because its contents are unknown.
     pub whole: bool,
     /// Address for depth codes, if requested.
     pub depth: Option<u32>,
@@ -149,7 +149,7 @@ pub struct Counts {
     pub exceptions: u32,
 }
 
-/// Result of the pass that was started last; `None` while it runs.
+/// Result of the last started pass; `None` while the pass runs.
 pub type PassResult = Option<Result<(), EngineError>>;
 
 /// The engine, present in this SoC.
@@ -158,10 +158,10 @@ pub struct TriangleEngine {
 }
 
 impl TriangleEngine {
-    /// Takes the block if it is present. The end of every pass raises its interrupt.
+    /// Takes the block if present. The end of every pass raises an interrupt.
     ///
     /// # Errors
-    /// When the block is absent.
+    /// The block is absent.
     pub fn probe(registers: triangle::Triangle) -> Result<Self, Absent> {
         Absent::check(registers.ident().read(), triangle::Triangle::IDENT)?;
         registers
@@ -170,7 +170,7 @@ impl TriangleEngine {
         Ok(Self { registers })
     }
 
-    /// Best shading that the gateware is built with. It sets the length of a descriptor (`glint_model::triangle::descriptor::words`).
+    /// Best shading of this gateware, which determines the length of a descriptor (`glint_model::triangle::descriptor::words`).
     #[must_use]
     pub fn shading(&self) -> Shading {
         if self.registers.caps().read().gouraud() {
@@ -180,11 +180,11 @@ impl TriangleEngine {
         }
     }
 
-    /// Writes the registers of a geometry pass, the longer part of starting it, while none runs. A band list has room for
+    /// Writes the registers of a geometry pass while no geometry pass runs, so that the start itself is short. A band list has room for
     /// 4 << `list_shift` entries, in both passes.
     ///
     /// # Errors
-    /// [`Error::Size`] when the engine has no such size; no register is written then.
+    /// [`Error::Size`] if the engine lacks this picture size; no register is then written.
     pub fn prepare_geometry(
         &mut self,
         pass: &Geometry,
@@ -208,7 +208,7 @@ impl TriangleEngine {
         registers.exception_limit().write(pass.exception_limit);
 
         registers.scale_shift().write(frame.scale_shift as u8);
-        // One write after the other: a loop over registers has to keep their addresses in a table.
+        // Single writes instead of a loop, which would need a table of addresses.
         let [u, v, n] = [frame.u, frame.v, frame.n].map(|row| row.map(|value| value as u32));
         registers.row_u0().write(u[0]);
         registers.row_u1().write(u[1]);
@@ -247,7 +247,7 @@ impl TriangleEngine {
     /// # Safety
     /// Until the pass has ended, its mesh must not be written and its output must not be accessed. The output is overwritten.
     pub unsafe fn start_geometry(&mut self, pass: Prepared) {
-        // Writes of the CPU must be on their way to memory before the engine starts.
+        // Writes of the CPU to memory must precede the start of the engine.
         compiler_fence(Ordering::SeqCst);
         self.registers.geometry().write(pass.start);
     }
@@ -300,8 +300,7 @@ impl TriangleEngine {
         (!status.raster_busy()).then(|| EngineError::check(status.raster_error()))
     }
 
-    /// Cancels the passes that run. Later passes are drawn correctly; the next frame in the buffer of a cancelled one must be whole
-    /// ([`Raster::whole`]).
+    /// Cancels the running passes. The next frame in the buffer of a cancelled raster pass must be written whole ([`Raster::whole`]).
     pub fn cancel(&mut self) {
         self.registers
             .control()
@@ -321,23 +320,23 @@ impl TriangleEngine {
         }
     }
 
-    /// The counters.
+    /// The free-running counters of the engine.
     #[must_use]
     pub fn counters(&self) -> Counters {
         Counters::read(&self.registers)
     }
 }
 
-/// Clears the engine's interrupt; its handler calls this.
+/// Clears the engine's interrupt, for the interrupt handler.
 pub fn acknowledge() {
-    // SAFETY: the pending register is written here only. Both events are cleared: `status` has the states of the passes.
+    // SAFETY: only this function writes the pending register. Both events may be cleared, because `status` keeps the states of the passes.
     let registers = unsafe { triangle::Triangle::steal() };
     registers
         .ev_pending()
         .write(EvPending::default().with_geometry(true).with_raster(true));
 }
 
-/// The value of a picture's size in the registers.
+/// Register value of a picture size.
 const fn code(size: Size) -> triangle::Size {
     match size {
         Size::W320 => triangle::Size::W320,

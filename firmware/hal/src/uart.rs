@@ -1,7 +1,7 @@
 //! The UART, driven by interrupts, with a queue of bytes in each direction: calls do not wait for the line.
 //!
 //! A [`Uart`] is a `static`. [`Uart::start`] gives it the registers, [`Uart::on_interrupt`] handles
-//! [`Interrupt::Uart`](litex_pac::Interrupt::Uart). [`Uart::reader`] and [`Uart::writer`] are the program's two ends.
+//! [`Interrupt::Uart`](litex_pac::Interrupt::Uart). The program reads through [`Uart::reader`] and writes through [`Uart::writer`].
 //! Bytes that arrive while the receive queue is full are dropped and counted ([`Uart::lost`]).
 //!
 //! ```no_run
@@ -42,7 +42,7 @@ struct State<const RX: usize, const TX: usize> {
 }
 
 impl<const RX: usize, const TX: usize> Uart<RX, TX> {
-    /// A UART without registers: it receives nothing, and bytes to send stay in the queue.
+    /// A UART without registers: receives no bytes, and keeps bytes to send in the queue.
     #[must_use]
     pub const fn new() -> Self {
         let state = State {
@@ -63,12 +63,12 @@ impl<const RX: usize, const TX: usize> Uart<RX, TX> {
             .write(EvEnable::default().with_rx(true).with_tx(true));
         self.with(|state| {
             state.registers = Some(registers);
-            // Bytes that were there before have raised their event already.
+            // Bytes received before this point have already raised their event.
             state.serve();
         });
     }
 
-    /// Moves bytes between queues and hardware; the interrupt handler calls this.
+    /// Moves bytes between queues and hardware, for the interrupt handler.
     pub fn on_interrupt(&self) {
         self.with(State::serve);
     }
@@ -132,8 +132,8 @@ impl<const RX: usize, const TX: usize> Uart<RX, TX> {
         }
     }
 
-    /// Sends the transmit queue without interrupts, for a program that is about to end. It gives up when the line makes no
-    /// progress, and does nothing if the program ends within another call.
+    /// Sends the transmit queue without interrupts, before the program ends. Stops when the line makes no progress, and does nothing if the
+    /// program ends within another call.
     pub fn drain(&self) {
         critical_section::with(|token| {
             let Ok(mut state) = self.state.borrow(token).try_borrow_mut() else {
@@ -147,7 +147,7 @@ impl<const RX: usize, const TX: usize> Uart<RX, TX> {
         });
     }
 
-    // Every `action` is in this file and does not call `with`, so the state is never borrowed twice.
+    // No `action` calls `with` (all are in this file), so the state is never borrowed twice.
     fn with<R>(&self, action: impl FnOnce(&mut State<RX, TX>) -> R) -> R {
         critical_section::with(|token| action(&mut self.state.borrow_ref_mut(token)))
     }
@@ -166,7 +166,7 @@ impl<const RX: usize, const TX: usize> State<RX, TX> {
         };
         while !registers.rxempty().read() {
             let byte = registers.rxtx().read();
-            // Clearing the event takes the byte out of the hardware's queue.
+            // Clearing the event removes the byte from the hardware's queue.
             registers
                 .ev_pending()
                 .write(EvPending::default().with_rx(true));
@@ -174,7 +174,7 @@ impl<const RX: usize, const TX: usize> State<RX, TX> {
                 self.lost = self.lost.saturating_add(1);
             }
         }
-        // Cleared before the hardware's queue is filled, so that later room raises the event again.
+        // The event is cleared before the hardware's queue is filled, so that later room raises the event again.
         registers
             .ev_pending()
             .write(EvPending::default().with_tx(true));
@@ -305,20 +305,20 @@ pub struct Direct {
 }
 
 impl Direct {
-    /// Another handle on the UART, beside its owner's.
+    /// A second handle on the UART, beside the owner's handle.
     ///
     /// # Safety
     /// The output of the owner may be interrupted or incomplete from now on.
     #[must_use]
     pub const unsafe fn seize() -> Self {
-        // SAFETY: the caller accepts that for the owner's output; sending has no other effect.
+        // SAFETY: the caller accepts interrupted output of the owner; sending has no other effect.
         let registers = unsafe { uart::Uart::steal() };
         Self { registers }
     }
 }
 
 impl fmt::Write for Direct {
-    /// Gives up when the transmitter stays full.
+    /// Writes text; fails if the transmitter stays full.
     fn write_str(&mut self, text: &str) -> fmt::Result {
         for byte in text.bytes() {
             let mut patience = PATIENCE;

@@ -14,20 +14,20 @@ mod board {
     /// Reads the word at `address`.
     ///
     /// # Safety
-    /// A register must be there.
+    /// `address` must be that of a register.
     #[inline]
     pub unsafe fn read(address: usize) -> u32 {
-        // SAFETY: the caller vouches for the address, which is a word's.
+        // SAFETY: the caller guarantees the address of a register, which is aligned to a word.
         unsafe { ptr::read_volatile(ptr::with_exposed_provenance(address)) }
     }
 
     /// Writes the word at `address`.
     ///
     /// # Safety
-    /// A register that may be written must be there.
+    /// `address` must be that of a writable register.
     #[inline]
     pub unsafe fn write(address: usize, value: u32) {
-        // SAFETY: the caller vouches for the address, which is a word's.
+        // SAFETY: the caller guarantees the address of a register, which is aligned to a word.
         unsafe { ptr::write_volatile(ptr::with_exposed_provenance_mut(address), value) }
     }
 }
@@ -46,7 +46,7 @@ mod host {
         fn write(&mut self, address: usize, value: u32);
     }
 
-    /// An empty bus: reads are 0, as in the window of a block that was left out.
+    /// An empty bus: reads give 0, as in the window of an absent block.
     struct Empty;
 
     impl Bus for Empty {
@@ -69,7 +69,7 @@ mod host {
     /// Reads the word at `address`.
     ///
     /// # Safety
-    /// None on a host; `unsafe` for the signature of the board's function.
+    /// No condition on a host; `unsafe` matches the signature of the board's function.
     pub unsafe fn read(address: usize) -> u32 {
         BUS.with_borrow_mut(|bus| bus.read(address))
     }
@@ -77,7 +77,7 @@ mod host {
     /// Writes the word at `address`.
     ///
     /// # Safety
-    /// None on a host; `unsafe` for the signature of the board's function.
+    /// No condition on a host; `unsafe` matches the signature of the board's function.
     pub unsafe fn write(address: usize, value: u32) {
         BUS.with_borrow_mut(|bus| bus.write(address, value));
     }

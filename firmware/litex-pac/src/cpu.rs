@@ -1,4 +1,4 @@
-//! Registers and instructions of the CPU (VexRiscv `full`), which the description of the SoC does not contain.
+//! Registers and instructions of the CPU (VexRiscv `full`), which are not part of the SoC's description.
 
 use core::arch::asm;
 use core::sync::atomic::{Ordering, compiler_fence};
@@ -13,13 +13,13 @@ pub fn interrupt_mask() -> u32 {
     mask
 }
 
-/// Enables the interrupt lines of `mask`, and no others.
+/// Enables exactly the interrupt lines of `mask`.
 ///
 /// # Safety
 /// No critical section may rely on the old mask, and the handlers of the enabled lines must be ready.
 #[inline]
 pub unsafe fn set_interrupt_mask(mask: u32) {
-    // SAFETY: writes a register that VexRiscv has; the caller answers for the enabled lines.
+    // SAFETY: writes a register that VexRiscv has; the caller guarantees handlers for the enabled lines.
     unsafe { asm!("csrw 0xbc0, {}", in(reg) mask, options(nostack)) };
 }
 
@@ -33,12 +33,12 @@ pub fn interrupts_pending() -> u32 {
     pending
 }
 
-/// Empties the data cache, so that reads see what another master wrote to memory. The cache writes through: everything that the
-/// CPU wrote is in memory already.
+/// Empties the data cache, so that reads see memory written by other bus masters. The cache writes through, so memory already
+/// holds all data written by the CPU.
 #[inline]
 pub fn flush_data_cache() {
     compiler_fence(Ordering::SeqCst);
-    // SAFETY: VexRiscv's own instruction for this; it changes no memory.
+    // SAFETY: the VexRiscv instruction to flush the data cache changes no memory.
     unsafe { asm!(".word 0x500f", options(nostack)) };
     compiler_fence(Ordering::SeqCst);
 }

@@ -1,4 +1,4 @@
-//! Numbers of the interrupt lines, as the RISC-V crates see them.
+//! Interrupt lines for the traits of the RISC-V crates.
 
 use riscv_types::result::{Error, Result};
 use riscv_types::{ExternalInterruptNumber, InterruptNumber};
@@ -6,7 +6,7 @@ use riscv_types::{ExternalInterruptNumber, InterruptNumber};
 use crate::Interrupt;
 
 impl Interrupt {
-    /// Its bit in the CPU's mask and pending registers.
+    /// Bit of the line in the CPU's mask and pending registers.
     #[must_use]
     pub const fn bit(self) -> u32 {
         1 << self as u8
@@ -28,7 +28,7 @@ unsafe impl InterruptNumber for Interrupt {
     }
 }
 
-// SAFETY: VexRiscv has one core interrupt for all of them; its mask and pending registers tell them apart.
+// SAFETY: VexRiscv has one core interrupt for all lines; the mask and pending registers distinguish the lines.
 unsafe impl ExternalInterruptNumber for Interrupt {}
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Access to the registers of Glint's SoC, and the only crate that touches them.
+//! Access to the registers of Glint's SoC. No other crate accesses registers.
 //!
 //! The modules of the peripherals are generated from the SoC's own description (`cargo xtask pac`, docs/pac.md). The module `cpu`,
 //! on the board only, is written by hand, because the CPU's registers are not part of that description.
@@ -22,10 +22,10 @@
 //! }
 //! ```
 //!
-//! A host has no such bus: [`bus::connect`] puts a model behind the same addresses, so that tests run the same drivers.
+//! A host has no such bus: [`bus::connect`] connects a model at the same addresses, so that tests run the same drivers.
 //!
 //! # Limits
-//! A register of two words is read word by word. That is consistent for a counter ([`register::WideRegister::read`]) only.
+//! A register of two words is read word by word. The result is consistent for counters only ([`register::WideRegister::read`]).
 
 #![no_std]
 

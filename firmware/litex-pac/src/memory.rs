@@ -3,8 +3,8 @@
 /// A memory on the bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Memory {
-    /// Address of its first byte.
+    /// Address of the first byte.
     pub base: u32,
-    /// Its size in bytes.
+    /// Size in bytes.
     pub size: u32,
 }

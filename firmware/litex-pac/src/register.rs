@@ -4,17 +4,17 @@ use core::marker::PhantomData;
 
 use crate::bus;
 
-/// A register that the bus can only read.
+/// Access mode: read only.
 pub struct ReadOnly;
 
-/// A register that the bus can read and write.
+/// Access mode: read and write.
 pub struct ReadWrite;
 
 /// The value of a register of one word.
 pub trait Value: Copy {
-    /// From the 32 bits of the register; bits beyond the value are ignored.
+    /// Converts from the 32 bits of the register; bits beyond the value are ignored.
     fn from_bits(bits: u32) -> Self;
-    /// The 32 bits of the register; bits beyond the value are 0.
+    /// Converts to the 32 bits of the register; bits beyond the value are 0.
     fn bits(self) -> u32;
 }
 
@@ -54,7 +54,7 @@ impl<T: Value, A> Register<T, A> {
     /// The register at `address`.
     ///
     /// # Safety
-    /// The bus must have a register there that allows `A`, and reading it must have no effect on memory.
+    /// `address` must be that of a register that allows `A`; reading the register must not affect memory.
     #[must_use]
     pub const unsafe fn at(address: usize) -> Self {
         Self {
@@ -63,30 +63,30 @@ impl<T: Value, A> Register<T, A> {
         }
     }
 
-    /// Its address on the bus.
+    /// Address of the register on the bus.
     #[must_use]
     pub const fn address(&self) -> usize {
         self.address
     }
 
-    /// Reads it.
+    /// Reads the register.
     #[inline]
     #[must_use]
     pub fn read(&self) -> T {
-        // SAFETY: `at` vouches for the address.
+        // SAFETY: the contract of `at` covers the address.
         T::from_bits(unsafe { bus::read(self.address) })
     }
 }
 
 impl<T: Value> Register<T, ReadWrite> {
-    /// Writes it.
+    /// Writes the register.
     #[inline]
     pub fn write(&self, value: T) {
-        // SAFETY: `at` vouches for the address and for writing.
+        // SAFETY: the contract of `at` covers the address and write access.
         unsafe { bus::write(self.address, value.bits()) }
     }
 
-    /// Reads it, and writes the changed value. An interrupt may come between the two.
+    /// Reads the register and writes the changed value; not atomic with respect to interrupts.
     #[inline]
     pub fn modify(&self, change: impl FnOnce(T) -> T) {
         self.write(change(self.read()));
@@ -103,7 +103,7 @@ impl<A> WideRegister<A> {
     /// The register whose high word is at `address`.
     ///
     /// # Safety
-    /// The bus must have a register of two words there that allows `A`, and reading it must have no effect on memory.
+    /// `address` must be that of a register of two words that allows `A`; reading the register must not affect memory.
     #[must_use]
     pub const unsafe fn at(address: usize) -> Self {
         Self {
@@ -112,11 +112,11 @@ impl<A> WideRegister<A> {
         }
     }
 
-    /// Reads it, again while its high word changes: consistent for a counter that carries between the two words.
+    /// Reads the register, and repeats the reading while the high word changes: consistent for a counter.
     #[inline]
     #[must_use]
     pub fn read(&self) -> u64 {
-        // SAFETY: `at` vouches for both words.
+        // SAFETY: the contract of `at` covers both words.
         let word = |offset| unsafe { bus::read(self.address + offset) };
         let mut high = word(0);
         loop {
@@ -157,7 +157,7 @@ mod tests {
     #[test]
     fn a_wide_counter_is_consistent() {
         bus::connect(Carrying(0xffff_ffff));
-        // SAFETY: the model above answers there.
+        // SAFETY: the model above answers at this address.
         let counter = unsafe { WideRegister::<ReadOnly>::at(0x100) };
         assert_eq!(counter.read(), 0x1_0000_0002);
     }
@@ -172,7 +172,7 @@ mod tests {
     #[test]
     fn modify_reads_then_writes() {
         bus::connect(Carrying(40));
-        // SAFETY: the model above answers there.
+        // SAFETY: the model above answers at this address.
         let register = unsafe { Register::<u16, ReadWrite>::at(4) };
         register.modify(|value| value + 2);
         assert_eq!(register.read(), 42);

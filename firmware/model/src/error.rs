@@ -1,4 +1,4 @@
-//! The limits of a frame, and the errors of a frame beyond them.
+//! Limits of a frame, and the errors beyond these limits.
 
 use core::fmt;
 
@@ -18,7 +18,7 @@ pub const SIZES: [(u32, u32); 3] = {
 /// The largest distance of the eye from the origin for a mesh, in world units: the widths of the translation follow from it.
 pub const MAX_EYE: u32 = 8;
 
-/// A buffer of a frame buffer.
+/// One of the buffers of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Buffer {
     /// The picture.

@@ -1,7 +1,7 @@
 //! A frame: the description of one picture, its constants, and its drawing by the model.
 //!
 //! The CPU backend, the gateware's driver and the host share these types. [`Frame`] is the description, [`FrameConstants`]
-//! are the numbers computed from it once, and [`Frame::draw`] draws it in integers, bit for bit as the gateware does.
+//! are computed from the description once, and [`Frame::draw`] draws the picture in integers, bit for bit as the gateware does.
 
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;
@@ -111,8 +111,8 @@ impl FieldSubject<'_> {
 
 /// Numbers computed once a frame.
 ///
-/// They take some 1,500 bytes, most of them tables of a field's palette: a program with little time keeps one value and
-/// [updates](Self::update) it, instead of moving new ones.
+/// The constants take about 1,500 bytes, mostly tables of a field's palette. To save time keep one value and
+/// [update](Self::update) it instead of moving new values.
 #[derive(Clone, Debug, Default)]
 pub struct FrameConstants {
     mesh: Option<MeshSetup>,
@@ -129,12 +129,12 @@ pub struct FieldConstants {
 }
 
 impl FrameConstants {
-    /// Those of the mesh.
+    /// Constants of the mesh.
     pub const fn mesh(&self) -> Option<&MeshSetup> {
         self.mesh.as_ref()
     }
 
-    /// Those of the field.
+    /// Constants of the field.
     pub const fn field(&self) -> Option<&FieldConstants> {
         self.field.as_ref()
     }
@@ -151,7 +151,7 @@ impl FrameConstants {
     /// Computes the constants of another frame.
     ///
     /// # Errors
-    /// [`RenderError::Eye`] or [`RenderError::Stereo`]; then the constants are those of no frame.
+    /// [`RenderError::Eye`] or [`RenderError::Stereo`]; the constants are then invalid for drawing.
     pub fn update(&mut self, frame: &Frame) -> Result<(), RenderError> {
         (self.mesh, self.field) = (None, None);
         let (view, [width, height]) = (&frame.view, frame.size.pixels());
@@ -186,14 +186,14 @@ impl FrameConstants {
 /// Counts of a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrameStats {
-    /// Those of the mesh, if there is one.
+    /// Counts of the mesh, if any.
     pub mesh: Option<Stats>,
-    /// Those of the field, if there is one.
+    /// Counts of the field, if any.
     pub field: Option<FieldStats>,
 }
 
 impl<'a> Frame<'a> {
-    /// A frame on black.
+    /// A frame with a black background.
     pub const fn new(subject: Subject<'a>, view: View, size: Size) -> Self {
         Self {
             subject,
@@ -213,16 +213,16 @@ impl<'a> Frame<'a> {
         Ok(constants)
     }
 
-    /// Vertices that the scratch memory of [`draw`](Self::draw) needs room for.
+    /// Number of vertices in the scratch memory of [`draw`](Self::draw).
     pub fn scratch_vertices(&self) -> usize {
         let mesh = self.subject.mesh_part();
         mesh.map_or(0, |subject| subject.mesh.largest_chunk())
     }
 
-    /// Draws the frame from its constants, and calls `progress` at short intervals.
+    /// Draws the frame from the constants, and calls `progress` at short intervals.
     ///
     /// # Errors
-    /// [`RenderError`] for a buffer of another size than the picture or the scratch memory needs.
+    /// [`RenderError`] for a buffer or scratch memory of the wrong size.
     pub fn draw(
         &self,
         constants: &FrameConstants,

@@ -1,4 +1,4 @@
-//! The memory that a frame is drawn in.
+//! The memory of a frame.
 
 use crate::error::{Buffer, RenderError, SIZES};
 
@@ -9,9 +9,9 @@ pub struct FrameBuffer<'a> {
     pub width: u32,
     /// Height in pixels; width and height are one of the [`SIZES`].
     pub height: u32,
-    /// RGB565, one number a pixel.
+    /// RGB565, one number per pixel.
     pub colour: &'a mut [u16],
-    /// Depth codes, one a pixel: u18, larger is nearer, 0 is clear.
+    /// Depth codes, one per pixel: u18, larger is nearer, 0 is clear.
     pub depth: &'a mut [u32],
 }
 

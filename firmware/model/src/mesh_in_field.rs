@@ -8,7 +8,7 @@ use crate::error::RenderError;
 use crate::raymarch::{FieldOptions, FieldSetup};
 use crate::triangle::MeshSetup;
 
-/// Zero low bits of km, so that K times the 40.5 field units of a world unit has 17 bits too.
+/// Zero low bits of km, so that K times 40.5, the field units per world unit, fits 17 bits too.
 const EVEN_BITS: u32 = 7;
 
 /// The constants of a mesh with the given radius (u.14) and of a field, with one scale of depth codes.
@@ -36,7 +36,7 @@ pub fn constants(
     Ok((frame, setup))
 }
 
-/// The smaller K, truncated to 10 bits: no depth code of either overflows.
+/// The smaller K, truncated to 10 bits: no depth code of mesh or field overflows.
 fn shared(a: DepthScale, b: DepthScale) -> DepthScale {
     let smaller = if (a.exponent, a.mantissa) < (b.exponent, b.mantissa) {
         a

@@ -1,14 +1,13 @@
 //! The raymarcher: frames of a distance field (formats.md, "Distance fields").
 //!
-//! A ray's direction is scaled so that its largest component is just below 1. Distances in the maximum norm say how large a
-//! cube about a point is empty, and such a ray leaves this cube exactly at its side: so a step is the whole distance, up to
-//! √3 times what a Euclidean distance and a unit vector would allow.
+//! A ray's direction is scaled so that its largest component is just below 1. A distance in the maximum norm is the half side of an
+//! empty cube about a point, and such a ray leaves the cube exactly at its side. Therefore a step is the whole distance, up to √3
+//! times a step with a Euclidean distance and a unit vector.
 //!
-//! What is round is measured in the Euclidean norm, and then the rays are scaled so too: with spheres their Euclidean length is just
-//! below 1.
+//! Fields with spheres use the Euclidean norm for distances and for the length of rays, which is just below 1.
 //!
-//! [`FieldSetup`] makes the constants of a frame, [`Ray`] is where a pixel's ray begins, [`FieldSetup::raymarch`] how it ends,
-//! [`paint()`] what it shows. [`Rays`] begin farther on after a [`Cone`] for each block of pixels.
+//! [`FieldSetup`] computes the constants of a frame, [`Ray`] is the start of a pixel's ray, [`FieldSetup::raymarch`] finds its end, and
+//! [`paint()`] its colour. After a [`Cone`] for each block of pixels, [`Rays`] start nearer to the surface.
 
 mod blend;
 mod cone;

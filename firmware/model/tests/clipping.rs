@@ -1,4 +1,4 @@
-//! What crosses the near plane or leaves the guard band.
+//! Triangles that cross the near plane or leave the guard band.
 
 use glint_model::triangle::clip::clip;
 use glint_model::triangle::vertex::{CameraVertex, project, transform};
@@ -7,7 +7,7 @@ use glint_vectors::{Camera, Model, Picture, Random, math::world};
 
 const SIZE: (u32, u32) = SIZES[0];
 
-/// A radius for vertices anywhere.
+/// A radius that holds all positions.
 const RADIUS: u32 = 56_756;
 
 fn random_frame(random: &mut Random) -> MeshSetup {
@@ -19,7 +19,7 @@ fn random_vertex(random: &mut Random, frame: &MeshSetup) -> CameraVertex {
     transform(frame, [0; 3].map(|_| random.integer(-32768, 32767) as i16))
 }
 
-/// Vertices inside stay as they are, to the bit, and the others are gone.
+/// Vertices inside are kept bit for bit, vertices outside are removed.
 #[test]
 fn what_is_inside_is_never_cut() {
     let mut random = Random(10);
@@ -60,7 +60,7 @@ fn what_is_inside_is_never_cut() {
     );
 }
 
-/// Two triangles at an edge see it in opposite directions, and cut it at the same vertices.
+/// Two triangles with a common edge traverse the edge in opposite directions and cut it at the same vertices.
 #[test]
 fn neighbours_cut_their_edge_alike() {
     let mut random = Random(11);
@@ -68,7 +68,7 @@ fn neighbours_cut_their_edge_alike() {
     for _ in 0..100_000 {
         let frame = random_frame(&mut random);
         let [a, b, c, d] = [0; 4].map(|_| random_vertex(&mut random, &frame));
-        // The edge alone, twice, is a triangle without area; what is left of it is what both neighbours must have.
+        // A degenerate triangle of the edge alone: both neighbours must contain its remaining vertices.
         let edge = clip(&frame, [a, b, b]);
         let (left, right) = (clip(&frame, [a, b, c]), clip(&frame, [b, a, d]));
         for end in edge.vertices() {
@@ -82,7 +82,7 @@ fn neighbours_cut_their_edge_alike() {
     assert!(cuts > 10_000, "{cuts}");
 }
 
-/// Triangles across the near plane and beyond the guard band look the same whichever vertex they name first.
+/// The picture of a clipped triangle does not depend on its first vertex.
 #[test]
 fn clipping_does_not_depend_on_the_first_vertex() {
     let mut random = Random(2);
@@ -104,7 +104,7 @@ fn clipping_does_not_depend_on_the_first_vertex() {
                     .collect::<Vec<_>>()
             };
             let (mine, theirs) = (exceptions(&pictures[0]), exceptions(other));
-            // Not their colours: the test makes normals in f64, whose rounding depends on the order.
+            // Colours are not compared: the test computes normals in f64, whose rounding depends on the order.
             assert_eq!(mine.len(), theirs.len());
             assert!(
                 mine.iter()
@@ -116,8 +116,7 @@ fn clipping_does_not_depend_on_the_first_vertex() {
     assert!(clipped > 200, "{clipped}");
 }
 
-/// From inside a closed mesh, whatever the near plane and the guard band cut, no pixel is missed, and away from the near
-/// plane none is drawn twice by neighbours.
+/// Inside a closed mesh clipping leaves no pixel uncovered, and away from the near plane neighbours cover no pixel twice.
 #[test]
 fn from_inside_every_pixel_is_covered() {
     let mut random = Random(3);
@@ -142,11 +141,11 @@ fn from_inside_every_pixel_is_covered() {
     }
     println!("{clipped} triangles clipped, {twice} of {pixels} pixels covered twice");
     assert!(clipped > 200);
-    // Rounding bends a cut edge by half a subpixel; nothing else may overlap.
+    // Rounding bends a cut edge by half a subpixel; no other overlap is allowed.
     assert!(twice < pixels as u64 / 100_000, "{twice}");
 }
 
-/// The cuts are where they should be: a plane square across the near plane ends at its horizon, and its depths are right.
+/// Position of cuts: the picture of a square across the near plane ends at the right lines, with the right depths.
 #[test]
 fn the_near_plane_cuts_where_it_is() {
     // The floor z = −0.25 from an eye above it, looking along it.
@@ -183,7 +182,7 @@ fn the_near_plane_cuts_where_it_is() {
                 );
                 let z = 0.25 * scale / (y - h / 2.0);
                 let across = (x - w / 2.0) / scale * z;
-                // Half a subpixel from the border either is right.
+                // Within half a subpixel of the border both results are right.
                 let rows_off = (y - h / 2.0 - 0.25 * scale / near)
                     .abs()
                     .min((y - h / 2.0 - 0.125 * scale).abs());
@@ -196,7 +195,7 @@ fn the_near_plane_cuts_where_it_is() {
                 if let Some(found) = frame.depth.distance(code) {
                     let (found, slope) =
                         (found.to_num::<f64>(), 0.25 * scale / (y - h / 2.0).powi(2));
-                    // A code, and half a subpixel along the slope.
+                    // Tolerance: one code, plus half a subpixel along the slope.
                     let tolerance = z / f64::from(code) + slope / 256.0;
                     assert!((found - z).abs() <= tolerance, "{found} for {z}");
                     seen += 1;
@@ -207,7 +206,7 @@ fn the_near_plane_cuts_where_it_is() {
     }
 }
 
-/// A vertex in the eye itself, on the near plane, and triangles seen edge on.
+/// A vertex at the eye, a vertex on the near plane, and triangles seen edge-on.
 #[test]
 fn apex_at_the_eye() {
     let camera = |near| Camera {
@@ -223,7 +222,7 @@ fn apex_at_the_eye() {
         [8000, 16000, -6000],
         [0, 16000, 7000],
     ];
-    // A pyramid with its tip in the eye covers what its base covers, but for slivers of half a subpixel.
+    // A pyramid with its tip at the eye covers the same pixels as its base, except for slivers of half a subpixel.
     let base = Picture::of(&Model::soup(&[far]), &camera(0.01).rounded(), SIZE, false);
     let tip = [0, 0, 0];
     let sides: Vec<_> = (0..3).map(|i| [tip, far[i], far[(i + 1) % 3]]).collect();
@@ -231,7 +230,7 @@ fn apex_at_the_eye() {
     assert_eq!(edge_on.stats.clipped, 3);
     assert!(edge_on.covered() < 20, "{}", edge_on.covered());
     assert!(base.covered() > 2000);
-    // Exactly on the near plane is not behind.
+    // A vertex exactly on the near plane is not behind.
     let on = [[-8000, 8192, -6000], [8000, 8192, -6000], [0, 8192, 7000]];
     let [at, beyond] = [0.5, 0.500_01]
         .map(|near| Picture::of(&Model::soup(&[on]), &camera(near).rounded(), SIZE, false));
@@ -240,7 +239,7 @@ fn apex_at_the_eye() {
         (beyond.stats.drawn, beyond.stats.clipped, beyond.covered()),
         (0, 0, 0)
     );
-    // The nearest depth there is gives the largest code.
+    // The smallest possible depth gives the largest code.
     assert!(
         at.depth
             .iter()
@@ -248,7 +247,7 @@ fn apex_at_the_eye() {
     );
 }
 
-/// Triangles that reach far over the guard band cover what they cover without it.
+/// Triangles far beyond the guard band cover the same pixels as without clipping.
 #[test]
 fn the_guard_band_cuts_nothing_visible() {
     let mut random = Random(4);

@@ -7,8 +7,8 @@ use glint_model::{SIZES, ScreenVertex};
 use glint_vectors::triangles::{SIZE, at, random_triangle, set_up};
 use glint_vectors::{Picture, Random};
 
-/// The stored code against the exact plane through the three (x, y, w), at every covered pixel; returns the largest error in
-/// codes, which has half a code from the last rounding.
+/// Compares the stored code with the exact plane through the three (x, y, w) at every covered pixel; returns the largest error in
+/// codes, half a code of which is the final rounding.
 fn depth_error(vertices: [ScreenVertex; 3], size: (u32, u32)) -> f64 {
     let mut picture = Picture::blank(size);
     let Some((triangle, setup)) = set_up(vertices, size) else {
@@ -23,7 +23,7 @@ fn depth_error(vertices: [ScreenVertex; 3], size: (u32, u32)) -> f64 {
         [0, 1, 2].map(|k| v1[k] - v0[k]),
         [0, 1, 2].map(|k| v2[k] - v0[k]),
     );
-    // Steps 6 to 8 as they are written.
+    // Steps 6 to 8 of docs/formats.md, literally.
     let Reciprocal { y, lead } = Reciprocal::of(triangle.doubled_area);
     let gradient =
         |n: i128| ((n * i128::from(y) + (1 << (lead + 7))) >> (lead + 8)).rem_euclid(1 << 40);
@@ -62,7 +62,7 @@ fn depth_error(vertices: [ScreenVertex; 3], size: (u32, u32)) -> f64 {
 #[test]
 fn depth_against_the_exact_plane() {
     let mut random = Random(6);
-    // The depths a frame can have: up to (2^18 − 4) codes.
+    // All possible depths of a frame: up to (2^18 − 4) codes.
     let mut steep = |mut triangle: [ScreenVertex; 3]| {
         for vertex in &mut triangle {
             vertex.w = match random.integer(0, 3) {

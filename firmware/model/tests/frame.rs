@@ -100,7 +100,7 @@ fn a_frame_beyond_the_limits_has_no_constants() {
     assert!(constants.mesh().is_none() && constants.field().is_none());
 }
 
-/// Every triangle stands in the lists of its bands, and only there.
+/// Every triangle is in the lists of exactly its bands.
 #[test]
 fn lists_name_the_triangles_of_their_bands() {
     const DESCRIPTORS: usize = 64;

@@ -1,4 +1,4 @@
-//! A mesh in a field: depth codes that mean the same, and what is in front of what.
+//! A mesh in a field: common scale of depth codes, and occlusion.
 
 use glint_core::camera::View;
 use glint_core::field::{Field, Menger};
@@ -10,7 +10,7 @@ use glint_vectors::{Camera, Model, Picture, Random};
 
 const SIZE: (u32, u32) = (320, 180);
 
-/// The mesh alone, the field alone, and the field over the mesh, all by the same constants.
+/// Pictures of the mesh, the field, and the field over the mesh, with the same constants.
 fn draw(mesh: &Mesh, field: &str, view: &View) -> [Picture; 3] {
     let field = Field::parse(field).unwrap();
     let options = FieldOptions::default();
@@ -37,7 +37,7 @@ fn draw(mesh: &Mesh, field: &str, view: &View) -> [Picture; 3] {
     pictures
 }
 
-/// A camera outside that looks at the middle, or nearly.
+/// A camera outside that looks approximately at the centre.
 fn outside(random: &mut Random) -> View {
     let distance = random.real(1.5, 6.0);
     let eye = random.direction().map(|x| x * distance);
@@ -80,14 +80,14 @@ fn faces_of_both_in_one_plane_have_the_same_depth() {
 fn what_is_nearer_is_seen() {
     let bytes = Model::sphere(1.2, 12).encoded();
     let mesh = Mesh::new_checked(&bytes).unwrap();
-    // Its corners look out of the sphere, which looks out of its faces.
+    // The cube's corners extend beyond the sphere, and the sphere beyond the cube's faces.
     let mut random = Random(2);
     let mut seen = [0; 3];
     for view in [0; 3].map(|_| outside(&mut random)) {
         let [mesh, field, both] = draw(&mesh, "box:1,1,1", &view);
         for i in 0..both.depth.len() {
             let (a, b) = (mesh.depth[i], field.depth[i]);
-            // Of equals the field, which is drawn later; and its background where there is nothing.
+            // At equal depths the field wins, because it is drawn later; elsewhere its background is shown.
             let (which, expected) = if b >= a { (1, &field) } else { (0, &mesh) };
             assert_eq!(both.colour[i], expected.colour[i], "pixel {i}");
             seen[if a.max(b) == 0 { 2 } else { which }] += 1;
@@ -96,11 +96,11 @@ fn what_is_nearer_is_seen() {
     assert!(seen.iter().all(|&pixels| pixels > 500), "{seen:?}");
 }
 
-/// Whatever the lens: the constants are in the ranges of both.
+/// The constants are in the ranges of mesh and field for every half width.
 #[test]
 fn shared_constants_keep_their_ranges() {
     let mut random = Random(3);
-    // 40.5 units, and a power of two, lose nothing of the 17 bits.
+    // The factors 40.5 and a power of two keep all 17 bits.
     const EXACT: f64 = 1e-12;
     let fields = [
         ("menger:4", EXACT),

@@ -1,4 +1,4 @@
-//! Snapped places and depths against a projection in f64.
+//! Snapped positions and depths against a projection in f64.
 
 use glint_model::triangle::reciprocal::Reciprocal;
 use glint_model::triangle::vertex::{project, transform};
@@ -31,7 +31,7 @@ impl Worst {
     }
 }
 
-/// A camera somewhere within 8, with a point of the mesh somewhere in its guard band.
+/// A random camera within 8 of the origin, with a point of the mesh in its guard band.
 fn aimed(
     random: &mut Random,
     (width, height): (u32, u32),
@@ -45,7 +45,7 @@ fn aimed(
         let eye = random.direction().map(|x| x * distance);
         let towards = [0, 1, 2].map(|i| world(point)[i] - eye[i]);
         let length = glint_vectors::math::dot(towards, towards).sqrt();
-        // In pixels, half of the time on the screen.
+        // Position in pixels, half of the time on the screen.
         let (x, y) = if random.coin() {
             (
                 random.real(0.0, width.into()),
@@ -109,12 +109,12 @@ fn places_against_f64() {
             same.count, same.screen, same.guard, unrounded.screen, unrounded.guard
         );
         assert!(same.count > 20_000);
-        // Off the screen a wide camera multiplies the rounding of its own numbers.
+        // Off the screen a wide camera amplifies the rounding of its basis.
         assert!(same.guard <= bound && unrounded.screen <= bound);
     }
 }
 
-/// w against K/z, and K against the nearest depth: the code of what is nearest is as large as can be.
+/// w against K/z, and K against the nearest depth, whose code must be the largest possible.
 #[test]
 fn depths_against_f64() {
     let mut random = Random(2);
@@ -148,7 +148,7 @@ fn depths_against_f64() {
     assert!(worst <= 4.5);
 }
 
-/// The far corners of what a camera may be: no overflow, and right places.
+/// Extremes of the accepted cameras: no overflow, and right positions.
 #[test]
 fn extremes() {
     let mut random = Random(3);
@@ -210,7 +210,7 @@ fn extremes() {
                                 Projected::Visible(_) => assert!(z > near - 1e-6 && !outside),
                                 Projected::BeyondGuard(place) => {
                                     assert!(z > near - 1e-6 && !inside);
-                                    // Saturated or not, it is on the right side.
+                                    // Saturated positions are on the right side too.
                                     let side = |place: i32, x: f64| {
                                         x.abs() < 2046.9
                                             || f64::from(place) * x >= 256.0 * 2046.0 * x.abs()
@@ -297,13 +297,13 @@ fn steps_as_written() {
     }
 }
 
-/// The scale is as large as the rows' 25 bits allow, for a basis as long as it may be.
+/// The scale is the largest that fits the rows' 25 bits, for the longest accepted basis.
 #[test]
 fn rows_fill_their_width() {
     let mut random = Random(5);
     for round in 0..20_000 {
         let (width, height) = SIZES[round % 3];
-        // Often where the shift changes: s a little below a power of two.
+        // Often near a change of the shift: s slightly below a power of two.
         let power = f64::from(width) / 2.0 / 2f64.powi(random.integer(5, 14) as i32);
         let half_width = match power * (1.0 + random.real(0.0, 3e-4)) {
             near_power if round % 2 == 0 && (0.05..4.0).contains(&near_power) => near_power,

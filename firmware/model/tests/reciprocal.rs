@@ -69,7 +69,7 @@ fn of_integers() {
     assert_eq!(Reciprocal::of(0), Reciprocal::of(1));
 }
 
-/// Numbers that are no mantissas give nonsense, but no panic.
+/// Numbers outside the range of mantissas give meaningless results without a panic.
 #[test]
 fn other_numbers_do_not_panic() {
     for m in (0..=u32::MAX).step_by(65_521).chain([0, u32::MAX]) {

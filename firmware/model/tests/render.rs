@@ -24,14 +24,14 @@ fn a_sphere_is_a_disc_without_holes() {
             picture.stats.triangles_in
         );
         assert_eq!(picture.stats.clipped, 0);
-        // Front faces do not overlap on a convex body: every covered pixel is drawn, once.
+        // Front faces of a convex body do not overlap: every covered pixel is drawn exactly once.
         assert_eq!(picture.stats.pixels_drawn, picture.covered() as u64);
         assert_eq!(picture.stats.pixels_covered, picture.stats.pixels_drawn);
         for row in picture.coverage().chunks(size.0 as usize) {
             let span: Vec<usize> = (0..row.len()).filter(|&i| row[i]).collect();
             assert!(span.windows(2).all(|pair| pair[1] == pair[0] + 1), "a hole");
         }
-        // The disc of tangents from the eye, seen by 24 rings.
+        // The disc of tangents from the eye, approximated by 24 rings.
         let distance: f64 = (9.0f64 + 0.09 + 0.04).sqrt();
         let radius = f64::from(size.0) / 2.0 / 0.9 * 0.5 / (distance * distance - 0.25).sqrt();
         let disc = std::f64::consts::PI * radius * radius;
@@ -50,7 +50,7 @@ fn a_sphere_is_a_disc_without_holes() {
     }
 }
 
-/// Culling takes what would be behind; without it, the outline is the same and the picture too, as far as the depths decide.
+/// Culling removes only hidden faces: without culling outline and picture are the same, except at equal depths.
 #[test]
 fn culling_and_windings() {
     let sphere = Model::sphere(0.5, 12);
@@ -65,7 +65,7 @@ fn culling_and_windings() {
     assert_eq!(culled.colour, both.colour);
     assert!(culled.drawn.iter().all(|t| t.facing == Facing::Front));
 
-    // Turned inside out with its normals, the far side shows, and shading negates them.
+    // A mesh turned inside out shows its far side, and shading negates its normals.
     let inverted = Picture::of(&sphere.flipped(), &view, SIZE, true);
     assert_eq!(inverted.coverage(), culled.coverage());
     assert!(
@@ -91,7 +91,7 @@ fn culling_and_windings() {
     );
 }
 
-/// Where depths are equal the later triangle wins.
+/// At equal depths the later triangle wins.
 #[test]
 fn ties_go_to_the_later() {
     let triangle = [[0, -8000, -8000], [0, 8000, -8000], [0, 0, 8000]];
@@ -325,7 +325,7 @@ fn an_eye_too_far_for_a_mesh_is_refused() {
     );
 }
 
-/// Anything a checked mesh may hold, from anywhere a camera may be: no overflow, no panic, and every drawn triangle in its widths.
+/// Random checked meshes and cameras: no overflow, no panic, and every drawn triangle within its bit widths.
 #[test]
 fn anything_goes() {
     let mut random = Random(6);

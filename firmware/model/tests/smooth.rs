@@ -1,4 +1,4 @@
-//! Smooth shading: what is exact about it. `tools/reference` has its errors.
+//! Exact properties of smooth shading. `tools/reference` measures its errors.
 
 use glint_core::colour::Rgb565;
 use glint_model::triangle::clip::clip;
@@ -15,7 +15,7 @@ fn any_colour(random: &mut Random) -> Rgb565 {
     Rgb565(random.bits() as u16)
 }
 
-/// Light that is the same everywhere comes out as it is, at all depths and on every shape.
+/// A constant light gives exactly its colour, at all depths and on every shape.
 #[test]
 fn equal_light_is_a_flat_colour() {
     let mut random = Random(1);
@@ -49,7 +49,7 @@ fn equal_light_is_a_flat_colour() {
     assert!(covered > 100_000, "{covered}");
 }
 
-/// Any accumulators give some colour, and the table is monotonous and fits 17 bits.
+/// All accumulators give a colour without a panic, and the table is monotonic and fits 17 bits.
 #[test]
 fn quotients_of_anything() {
     assert!(INVERSE.is_sorted_by(|a, b| a > b));
@@ -61,7 +61,7 @@ fn quotients_of_anything() {
             colour(light, ((random.bits() & 0xFFFF_FFFF) >> shift) as u32);
         }
     }
-    // The largest light, and what is just below none, at either end of the depths.
+    // The largest light, and a light slightly below 0, at both ends of the depths.
     for codes in [228u32, (1 << 18) - 4] {
         let depth = (codes << 14) + (1 << 13);
         let most = (u64::from(depth) * 63 / 64) as u32;
@@ -71,7 +71,7 @@ fn quotients_of_anything() {
     }
 }
 
-/// A vertex gives to each side what flat shading with its normal would, and to one of both nothing.
+/// The light of a vertex equals flat shading with its normal for each side, and is 0 for one side.
 #[test]
 fn light_is_that_of_flat_shading() {
     let mut random = Random(3);
@@ -103,8 +103,8 @@ fn random_frame(random: &mut Random) -> MeshSetup {
     MeshSetup::new(&Camera::inside(random).rounded(), width, height, 56_756).unwrap()
 }
 
-/// The clipper's light is between that of the ends, nearest to the part of the edge at which it cuts, and the same for
-/// both neighbours at an edge.
+/// The light at a cut lies between the lights of the ends, is the nearest to linear interpolation, and is the same for both neighbours
+/// of an edge.
 #[test]
 fn cut_edges_have_light_in_between() {
     let mut random = Random(4);

@@ -1,4 +1,4 @@
-//! The walker and the setup on screen triangles: what is covered.
+//! Coverage of screen triangles by setup and walker.
 
 use glint_core::colour::Rgb565;
 use glint_model::triangle::raster::{Coverage, draw};
@@ -40,7 +40,7 @@ fn by_edges(vertices: [ScreenVertex; 3], (width, height): (u32, u32)) -> Vec<boo
                 let (right, down) = (i - i64::from(setup.start_column), j - top);
                 edge.start + right * i64::from(edge.step_x) + down * i64::from(edge.step_y) >= 0
             });
-            // The steps are exact: the same as the function itself.
+            // The steps are exact and equal the function itself.
             assert_eq!(inside, directly(&oriented, i, j));
             covered[(j * i64::from(width) + i) as usize] = inside;
         }
@@ -74,7 +74,7 @@ fn the_walker_finds_what_the_edges_cover() {
     println!(
         "{wide} of 400 triangles needed 64-bit edge functions; {tested} pixels tested for {covered} covered"
     );
-    assert!(wide >= 5, "both accumulators must be met: {wide}");
+    assert!(wide >= 5, "both accumulators must be used: {wide}");
 }
 
 #[test]
@@ -97,7 +97,7 @@ fn both_accumulators_walk_alike() {
     }
 }
 
-/// Work is in proportion to what is covered and to the extents, not to the bounding box.
+/// The work is proportional to covered pixels and extents, not to the bounding box.
 #[test]
 fn the_walker_does_not_look_through_the_box() {
     let mut random = Random(3);
@@ -116,7 +116,7 @@ fn the_walker_does_not_look_through_the_box() {
     }
 }
 
-/// How often each pixel is covered by some triangles.
+/// Number of triangles that cover each pixel.
 fn counts(triangles: &[[ScreenVertex; 3]]) -> Vec<u32> {
     let mut counts = vec![0; (SIZE.0 * SIZE.1) as usize];
     for &triangle in triangles {
@@ -127,8 +127,7 @@ fn counts(triangles: &[[ScreenVertex; 3]]) -> Vec<u32> {
     counts
 }
 
-/// Fans about a point with a ring around them that reaches beyond the picture: every pixel exactly once, whatever the winding and
-/// the first vertex.
+/// Fans about a point, with a ring beyond the picture: every pixel is covered exactly once, for every winding and first vertex.
 #[test]
 fn fans_cover_every_pixel_once() {
     let mut random = Random(4);
@@ -165,7 +164,7 @@ fn fans_cover_every_pixel_once() {
     }
 }
 
-/// A grid whose inner vertices are shaken: exactly the rectangle, exactly once.
+/// A grid with randomly moved inner vertices covers exactly the rectangle, exactly once.
 #[test]
 fn shaken_grids_cover_their_rectangle_once() {
     let mut random = Random(5);
@@ -239,7 +238,7 @@ fn top_left_torture_on_the_half_pixel_grid() {
                         );
                     }
                 }
-                // Flipped and rotated: the same.
+                // The flipped and the rotated triangle give the same result.
                 assert_eq!(covered, alone([b, a, c].map(at), SIZE).0);
                 assert_eq!(covered, alone([b, c, a].map(at), SIZE).0);
                 tried += 1;

@@ -13,12 +13,12 @@ use crate::replay;
 /// The time between two samples, in µs.
 const STEP: u32 = 5_000;
 
-/// Samples in a row, which give one mean.
+/// Consecutive samples of one mean.
 const RUN: u32 = 64;
 /// Number of means.
 const RUNS: usize = 16;
 
-/// Measures each method, as `cargo xtask report imu` calls them.
+/// Measures each method, with the names of `cargo xtask report imu`.
 pub fn attitude(report: Report) {
     let angles = RefCell::new([0_u32; 3]);
     measure(report, "angles", rate, |rate: [i32; 3]| {
@@ -53,7 +53,7 @@ pub fn attitude(report: Report) {
     measure(report, "parabola", rate, |rate| {
         parabola.borrow_mut().advance_order::<3>(rate, STEP, [0; 3]);
     });
-    // The shipped method, with the code and the memory that `replay` uses.
+    // The shipped method, with the code and the memory of `replay`.
     let tilt = || Some(Tilt::new(Units::MPU_6050.per_g, TIME_CONSTANT));
     for (name, jitter, tilt) in [
         ("cubic", 0, None),
@@ -92,7 +92,7 @@ fn rate(phase: u32) -> [i32; 3] {
 
 /// q + ½·q·ω·dt, normalised by one Newton step. 30 fraction bits.
 fn first_order(q: &mut [i32; 4], rate: [i32; 3]) {
-    // Half an angle of 2^−8 LSB over 2^20 µs: 2^50·π/360/16.4/256/10^6 of 2^−30 rad.
+    // Half angle of 2^−8 LSB over 2^20 µs: 2^50·π/360/16.4/256/10^6 of 2^−30 rad.
     const HALF: i64 = 2_340;
     let [x, y, z] = rate.map(|rate| (i64::from(rate) * i64::from(STEP) * HALF) >> 20);
     let [w0, x0, y0, z0] = q.map(i64::from);

@@ -4,8 +4,8 @@
 //! disabled. The cycles of the measurement itself are measured in the same way and subtracted.
 //!
 //! The instruction cache is direct-mapped, and a miss costs more than a kernel. Measuring code that shares cache lines
-//! with the kernel would measure their conflict. It therefore exists at two places, and the place with fewer misses is
-//! used.
+//! with the kernel would measure their conflict. The measuring code therefore exists at two places, and the place with fewer misses
+//! is used.
 
 use core::arch::asm;
 use core::hint::black_box;
@@ -15,22 +15,22 @@ use litex_pac::cpu;
 /// Inputs of each kernel.
 const INPUTS: usize = 256;
 
-/// Inputs that select the place of the measuring code.
+/// Number of inputs that select the place of the measuring code.
 const TRIALS: usize = 16;
 
 /// Clock cycles of a kernel, over all inputs.
 #[derive(Clone, Copy)]
 pub struct Cycles {
-    /// The smallest number.
+    /// Smallest number of cycles.
     pub min: u32,
-    /// The median.
+    /// Median of the cycles.
     pub median: u32,
-    /// The largest number.
+    /// Largest number of cycles.
     pub max: u32,
 }
 
 impl Cycles {
-    /// The figures of measurements, which are sorted in place. Without measurements they are 0.
+    /// Figures of measurements; sorts the measurements in place. All figures are 0 without measurements.
     pub fn of(cycles: &mut [u32]) -> Self {
         cycles.sort_unstable();
         let at = |index: usize| cycles.get(index).copied().unwrap_or(0);
@@ -42,10 +42,10 @@ impl Cycles {
     }
 }
 
-/// Takes the name of a kernel and its cycles.
+/// Receiver of a kernel's name and cycles.
 pub type Report<'a> = &'a mut dyn FnMut(&str, Cycles);
 
-/// Measures `kernel` for the inputs that `input` makes of phases all around the circle.
+/// Measures `kernel` for inputs that `input` computes from phases all around the circle.
 pub fn measure<I: Copy, O>(
     report: Report,
     name: &str,
@@ -79,7 +79,7 @@ pub fn measure<I: Copy, O>(
     report(name, Cycles::of(&mut cycles));
 }
 
-/// Clock cycles of a call and of reading the counter. Each `PLACE` has its own code, half a cache away from the other.
+/// Clock cycles of a call and of reading the counter. Both values of `PLACE` have their own code, half a cache apart.
 #[inline(never)]
 #[allow(unsafe_code)]
 fn timed<const PLACE: usize, K: Fn(I) -> O, I, O>(kernel: &K, input: I) -> u32 {

@@ -1,4 +1,4 @@
-//! Sines of other crates, for comparison.
+//! Sines of third-party crates, for comparison.
 
 use core::f32::consts::TAU;
 
@@ -6,9 +6,9 @@ use micromath::F32Ext;
 
 use super::measure::{Report, measure};
 
-/// Measures the sine and cosine of other crates, each in its own formats.
+/// Measures the sine and cosine of third-party crates, each in its own formats.
 pub fn sine(report: Report) {
-    // The phase in radians, in ±π.
+    // The phase in radians, within ±π.
     let radians = |phase: u32| phase.cast_signed() as f32 * (TAU / 4_294_967_296.0);
     measure(report, "micromath", radians, |angle: f32| {
         (angle.sin(), angle.cos())

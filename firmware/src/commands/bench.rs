@@ -15,7 +15,7 @@ const KERNELS: &[&str] = &["sine", "attitude", "triangle", "field"];
 /// Frames that the engine draws back to back.
 const FRAMES: u32 = 8;
 
-/// Measures the kernels of a name, or all kernels that this machine has.
+/// Measures the named kernels, or all kernels of this machine.
 ///
 /// # Errors
 /// The name is unknown, or the machine or its scene lacks the kernel.
@@ -63,7 +63,7 @@ fn frames<'l>(machine: &mut Machine) -> Result<(), CommandError<'l>> {
         renderer,
         ..
     } = machine;
-    // A pending flip has to happen first.
+    // Waits for a pending flip.
     let rendered = loop {
         if let Some(rendered) = renderer.repeat(models.mesh(), scene, FRAMES) {
             break rendered.map_err(CommandError::Engine)?;

@@ -75,7 +75,7 @@ impl<'l> ImuCommands<'l> for Machine {
     }
 }
 
-/// Continues a job.
+/// Continues a job of the sensor.
 pub fn poll(machine: &mut Machine, job: &mut SensorJob) -> JobResult {
     let Machine {
         terminal,

@@ -13,7 +13,7 @@ use crate::selftest;
 
 impl<'l> MachineCommands<'l> for Machine {
     fn help(&mut self, command: Option<&'l str>) -> Outcome<'l> {
-        // An error means that the line takes no text, so no reader is lost.
+        // An error means that the line accepts no text, so the text has no reader.
         let _ = write_help(self.terminal.output(), command);
         Ok(Reply::Done)
     }
@@ -106,7 +106,7 @@ impl<'l> MachineCommands<'l> for Machine {
         Ok(Reply::Done)
     }
 
-    // Tests find this function in the program and place a trap in it.
+    // Tests find this function by its symbol and place a trap in its code.
     #[inline(never)]
     fn reboot(&mut self) -> Outcome<'l> {
         self.terminal.print(format_args!("ok\n"));
@@ -121,7 +121,7 @@ impl<'l> MachineCommands<'l> for Machine {
     }
 }
 
-/// The devices, where they may be accessed.
+/// The devices, if the build ids match.
 fn devices<'l>(machine: &mut Machine) -> Result<&mut Devices, CommandError<'l>> {
     machine.devices.as_mut().ok_or(CommandError::Mismatch)
 }

@@ -7,7 +7,7 @@ use crate::error::CommandError;
 use crate::machine::Machine;
 use crate::transfer;
 
-/// Receives the upload of a command into the staging memory, unless the memory holds it already.
+/// Receives the upload of a command into the staging memory, unless the memory already holds the announced data.
 ///
 /// # Errors
 /// The upload is too long, or the transfer fails.
@@ -35,7 +35,7 @@ pub fn receive<'m>(
     };
     // The upload overwrites the attitudes of a replay.
     *replay = None;
-    // The memory may have been written behind the cache: by a tool's back door, or by a transfer that was cut off near
+    // The memory may hold the data already: from a tool's direct write, which bypasses the cache, or from a transfer interrupted near
     // its end.
     cpu::flush_data_cache();
     if crc32(staging) != manifest.crc32 {

@@ -7,12 +7,12 @@ use glint_hal::triangle::{Lists, Set};
 use glint_model::Stats;
 use glint_model::triangle::descriptor;
 
-/// Descriptors of a set, in their short form, and exceptions: the CPU draws a frame with more.
+/// Largest number of short descriptors of a set and of exceptions; the CPU draws frames with more.
 const DESCRIPTORS: usize = 1 << 16;
-/// Words of a set's descriptors. The long form has room for half as many.
+/// Words of a set's descriptors, with room for half as many long descriptors.
 const DESCRIPTOR_WORDS: usize = DESCRIPTORS * descriptor::words(Shading::Flat);
 
-/// Memory of one frame: two sets of descriptors and lists, and the exceptions between them.
+/// Memory of one frame: two sets of descriptors and lists, and the exceptions.
 pub struct Buffers {
     descriptors: &'static mut [u32],
     lists: &'static mut [u32],
@@ -22,14 +22,14 @@ pub struct Buffers {
     pub clipped_descriptors: &'static mut [u32],
     /// Lists of clipped triangles.
     pub clipped_lists: &'static mut [u32],
-    /// The sets that geometry pass and clipper have made.
+    /// The sets written by geometry pass and clipper.
     pub sets: [Option<Set>; 2],
     /// Counts of geometry pass and clipper.
     pub stats: Stats,
 }
 
 impl Buffers {
-    /// Splits the memory of a frame off `memory`; `None` if that is too small.
+    /// Splits the memory of a frame off `memory`; `None` if `memory` is too small.
     pub fn split_off(memory: &mut &'static mut [u32]) -> Option<Self> {
         let mut piece = |length| {
             let (piece, rest) = mem::take(memory).split_at_mut_checked(length)?;
@@ -47,7 +47,7 @@ impl Buffers {
         })
     }
 
-    /// The output of a geometry pass with this capability of shading.
+    /// The output of a geometry pass on gateware with this best shading.
     pub fn lists(&self, capability: Shading) -> Lists {
         Lists {
             descriptors: address(self.descriptors),

@@ -11,7 +11,7 @@ use glint_model::RenderError;
 pub enum Fallback {
     /// An error of the triangle engine.
     Triangle(EngineError),
-    /// A feature that the raymarcher is built without.
+    /// A feature absent in this raymarcher.
     Field(Missing),
     /// No raymarcher in this build of the gateware.
     NoRaymarcher,
@@ -43,9 +43,7 @@ impl fmt::Display for Fallback {
         match self {
             Self::Triangle(error) => error.fmt(f),
             Self::Field(missing) => missing.fmt(f),
-            Self::NoRaymarcher => {
-                f.write_str("distance fields: this gateware has no engine for them")
-            }
+            Self::NoRaymarcher => f.write_str("distance fields: this gateware has no raymarcher"),
         }
     }
 }

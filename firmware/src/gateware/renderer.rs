@@ -26,15 +26,15 @@ pub struct Output<'a> {
 
 /// A frame drawn by the gateware.
 pub struct Rendered {
-    /// Clock cycles from the first register written to the end seen.
+    /// Clock cycles from the first register write to the detected end.
     pub cycles: u64,
-    /// Counts; of a benchmark's mesh, triangles of the last frame and no pixels.
+    /// Counts; for the mesh of a benchmark only triangles of the last frame.
     pub stats: FrameStats,
-    /// Differences of the engine's counters.
+    /// Differences of the engine's counters over the frame.
     pub counters: Counters,
 }
 
-/// The pass that runs.
+/// The running pass.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Stage {
     Idle,
@@ -60,14 +60,14 @@ pub struct GatewareRenderer {
     /// The size of the picture that the engine drew last into each frame buffer; `None` after other writes.
     drawn_sizes: [Option<Size>; 2],
     stage: Stage,
-    /// Of the frame that is drawn, and, in a benchmark, of the next one.
+    /// Constants of the frame being drawn, and, in a benchmark, of the next frame.
     constants: [FrameConstants; 2],
     watchdog: Watchdog,
     start: Start,
 }
 
 impl GatewareRenderer {
-    /// A renderer into two frame buffers, of which the first lies at `first_frame_buffer`; `None` if `memory` is too small.
+    /// A renderer into two frame buffers, the first at `first_frame_buffer`; `None` if `memory` is too small.
     pub fn new(
         engine: TriangleEngine,
         raymarcher: Option<Raymarcher>,
@@ -91,12 +91,12 @@ impl GatewareRenderer {
         })
     }
 
-    /// Whether a frame has been started and not ended.
+    /// Whether a frame is in progress.
     pub fn is_busy(&self) -> bool {
         self.stage != Stage::Idle
     }
 
-    /// Whether a pass has ended that [`advance`](Self::advance) waits for.
+    /// Whether the pass awaited by [`advance`](Self::advance) has ended.
     pub fn is_ready(&self) -> bool {
         match self.stage {
             Stage::Idle => false,
@@ -105,7 +105,7 @@ impl GatewareRenderer {
         }
     }
 
-    /// Marks a frame buffer as written by others: the next frame in it is flushed whole.
+    /// Marks a frame buffer as written by the CPU: the next frame in this buffer is written whole.
     pub fn invalidate(&mut self, colour: &[u16]) {
         let slot = usize::from(self.slot(colour));
         if let Some(size) = self.drawn_sizes.get_mut(slot) {
@@ -113,10 +113,10 @@ impl GatewareRenderer {
         }
     }
 
-    /// Starts a frame or continues it; `frame` and `output` stay the same until this returns a result.
+    /// Starts or continues a frame; `frame` and `output` must stay the same until this returns a result.
     ///
     /// # Errors
-    /// The frame cannot be drawn by the gateware, which is idle again.
+    /// The gateware cannot draw the frame; the gateware is then idle.
     pub fn advance(
         &mut self,
         frame: &Frame,
@@ -189,7 +189,7 @@ impl GatewareRenderer {
         let field = field.map(|field| field.since(&self.start.raymarcher));
         let field_pixels = field.map_or(0, |field| field.items_out);
         let mesh = frame.subject.mesh_part().map(|_| Stats {
-            // The walker tests a group of eight pixels a clock.
+            // The walker tests a group of eight pixels per clock.
             pixels_tested: 8 * u64::from(counters.cycles_walking),
             pixels_covered: counters.pixels_covered.wrapping_sub(field_pixels).into(),
             pixels_drawn: counters.pixels_drawn.into(),
@@ -205,7 +205,7 @@ impl GatewareRenderer {
         }
     }
 
-    /// Computes the constants of a frame that the engine can draw, into one of two places.
+    /// Computes the constants of a frame into one of two places, if the engine can draw the frame.
     pub(super) fn update_constants(&mut self, frame: &Frame, place: usize) -> Result<(), Fallback> {
         if let Some(mesh) = frame.subject.mesh_part()
             && mesh.shading == Shading::Smooth
@@ -216,8 +216,8 @@ impl GatewareRenderer {
         Ok(self.constants[place].update(frame)?)
     }
 
-    /// Writes the raymarcher's registers for a field, or switches it off. Its tables are not compared if they are known to be
-    /// there.
+    /// Writes the raymarcher's registers for a field, or switches the raymarcher off. Tables are not compared if the raymarcher is known to
+    /// hold the right tables.
     pub(super) fn set_field(&mut self, place: usize, has_tables: bool) -> Result<(), Fallback> {
         match (&mut self.raymarcher, self.constants[place].field()) {
             (Some(raymarcher), Some(field)) if has_tables => {
@@ -239,7 +239,7 @@ impl GatewareRenderer {
         both.is_some_and(|(raymarcher, field)| raymarcher.has_tables(&field.palette))
     }
 
-    /// Writes the registers of a geometry pass into one of the buffers, from the constants of the same number.
+    /// Writes the registers of a geometry pass into the buffers at `place`, from the constants at `place`.
     pub(super) fn prepare_geometry(
         &mut self,
         subject: &MeshSubject,
@@ -261,7 +261,7 @@ impl GatewareRenderer {
     }
 
     pub(super) fn start_geometry(&mut self, pass: Prepared) {
-        // SAFETY: the buffers are this renderer's own, free of the pass before, and read after the end of this one; the mesh
+        // SAFETY: the buffers belong to this renderer, are not used by an earlier pass, and are read after the end of this pass; the mesh
         // stays while the renderer is busy.
         unsafe { self.engine.start_geometry(pass) };
     }
@@ -284,8 +284,7 @@ impl GatewareRenderer {
             sets,
         };
         *drawn_size = Some(frame.size);
-        // SAFETY: the lists are this renderer's own and stay until the end of the pass; colours and depth codes are lent to it
-        // until then.
+        // SAFETY: the lists belong to this renderer and stay until the end of the pass; colours and depth codes are lent until then.
         unsafe { self.engine.start_raster(&pass) };
     }
 
@@ -327,7 +326,7 @@ impl GatewareRenderer {
         Ok(())
     }
 
-    /// Gives the frame up after a time without progress.
+    /// Cancels the frame after a time without progress.
     pub(super) fn check_progress(&mut self, output: &Output) -> Result<(), Fallback> {
         if self.watchdog.is_stuck(&self.engine.counters()) {
             return Err(self.give_up(output, EngineError::Timeout));
@@ -335,7 +334,7 @@ impl GatewareRenderer {
         Ok(())
     }
 
-    /// Cancels the passes that run.
+    /// Cancels the running passes.
     pub(super) fn give_up(&mut self, output: &Output, error: EngineError) -> Fallback {
         self.engine.cancel();
         self.stage = Stage::Idle;

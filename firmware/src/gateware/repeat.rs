@@ -1,4 +1,4 @@
-//! Benchmark: one frame drawn again and again, back to back.
+//! Benchmark: one frame drawn repeatedly, back to back.
 
 use glint_hal::triangle::{PassResult, TriangleEngine};
 use glint_model::{Frame, MeshSubject};
@@ -6,7 +6,7 @@ use glint_model::{Frame, MeshSubject};
 use super::fallback::Fallback;
 use super::renderer::{GatewareRenderer, Output, Rendered};
 
-/// Queries of a pass's end between two checks of its progress.
+/// Queries of a pass's end between two checks of progress.
 const POLLS: u32 = 100;
 
 impl GatewareRenderer {
@@ -41,13 +41,13 @@ impl GatewareRenderer {
         let (mut now, mut next) = (0, 1);
         for number in 0..=count {
             self.start_geometry(prepared);
-            // The next frame's, while the engine works.
+            // Computes the constants of the next frame while the engine works.
             self.update_constants(frame, next)?;
             self.wait(TriangleEngine::geometry, output)?;
             if let Err(error) = self.clip(mesh, now) {
                 return Err(self.give_up(output, error));
             }
-            // The raster pass still reads the next frame's buffers, which the geometry pass writes only once it is started.
+            // The raster pass still reads the buffers of the next frame; the prepared geometry pass writes these buffers only after its start.
             prepared = self.prepare_geometry(mesh, next)?;
             if number > 0 {
                 self.wait(TriangleEngine::raster, output)?;
@@ -68,7 +68,7 @@ impl GatewareRenderer {
         Ok(self.rendered(frame, now))
     }
 
-    /// The constants of the next frame are computed during the raster pass, which uses the registers.
+    /// The constants of the next frame are computed during the raster pass, which uses the registers of the raymarcher.
     fn repeat_field(
         &mut self,
         frame: &Frame,

@@ -16,8 +16,8 @@ const MOST_BIAS: u32 = 2;
 /// Largest difference of a force from its mean at rest, in 1/16 g.
 const MOST_FORCE: u32 = 1;
 
-/// Tracks the bias of a gyroscope at rest. Numbers have 32 fraction bits of a LSB, so that the smallest gain, 10^−5 at 1 kHz, resolves a
-/// difference of 2^−15 LSB.
+/// Tracks the bias of a gyroscope at rest. Numbers are in LSB with 32 fraction bits: the smallest gain, 10^−5 at 1 kHz,
+/// then resolves a difference of 2^−15 LSB.
 #[derive(Clone, Copy, Debug)]
 pub struct RestBias {
     /// Largest differences of rates, forces and bias at rest, in LSB.
@@ -60,7 +60,7 @@ impl RestBias {
         self.rested.is_some_and(|time| time >= REST)
     }
 
-    /// Takes a sample that was measured `step` µs (at most 2^19) after the last one.
+    /// Takes a sample that was measured `step` µs (at most 2^19) after the previous sample.
     #[inline(never)]
     pub fn on_sample(&mut self, sample: &Sample, step: u32) {
         let Some(rested) = self.rested else {
@@ -104,7 +104,8 @@ fn near(a: i64, b: i64, most: u32) -> bool {
     (a - b).unsigned_abs() >> 32 < u64::from(most)
 }
 
-/// Moves a mean towards a count: the mean has 32 fraction bits of a LSB and at most 2^48, so the product of 31 bits of the gain fits. To nearest.
+/// Moves a mean towards a count, to nearest. The mean has 32 fraction bits and is below 2^48, so its product with the 31-bit gain
+/// fits.
 #[inline(never)]
 fn approach(mean: &mut i64, count: i16, gain: u32) {
     let difference = fraction(count) - *mean;

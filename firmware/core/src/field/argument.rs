@@ -4,31 +4,31 @@ use super::error::FieldError;
 use super::limits::MAX_SPHERES;
 use crate::fixed::{Q32_32, Turns};
 
-/// A source of a field's numbers. Each kind asks it for its numbers by name and range, so its parser, its errors and its random
-/// tests state the ranges once.
+/// A source of a field's numbers. Each kind of field requests its numbers by name and range, so that parser, errors and random
+/// tests share one statement of the ranges.
 pub trait Arguments<'a> {
-    /// The next number, within the range and both of its ends.
+    /// The next number, from a range that includes both ends.
     ///
     /// # Errors
     /// The number is missing, not a number, or out of range.
     fn number(&mut self, name: &'static str, range: [Q32_32; 2]) -> Result<Q32_32, FieldError<'a>>;
 
-    /// The next number, which is an integer.
+    /// The next number, an integer.
     ///
     /// # Errors
     /// As [`number`](Self::number).
     fn integer(&mut self, name: &'static str, range: [u8; 2]) -> Result<u8, FieldError<'a>>;
 
-    /// An angle in degrees, 0 where the numbers end.
+    /// An optional angle in degrees; 0 if it is missing.
     ///
     /// # Errors
     /// The word is not a number.
     fn angle(&mut self, name: &'static str) -> Result<Turns, FieldError<'a>>;
 
-    /// Goes to the next group of numbers, of those with a semicolon between them. `false` after the last one.
+    /// Moves to the next group of numbers; semicolons separate groups. `false` after the last group.
     ///
     /// # Errors
-    /// The group before it has a number too many.
+    /// The group before the semicolon has a surplus number.
     fn group(&mut self) -> Result<bool, FieldError<'a>>;
 }
 
@@ -45,11 +45,11 @@ pub(in crate::field) fn check(
     }
 }
 
-/// The numbers after a kind's name, with commas between them.
+/// The numbers after a kind's name, separated by commas.
 pub(in crate::field) struct Words<'a> {
     kind: &'a str,
     words: core::str::Split<'a, char>,
-    /// Groups that have not been opened.
+    /// Groups not read yet.
     rest: Option<&'a str>,
     in_group: bool,
 }
@@ -79,7 +79,7 @@ impl<'a> Words<'a> {
             .ok_or(FieldError::Missing { kind, name })
     }
 
-    /// Checks that no number is left.
+    /// Checks that all numbers were read.
     pub fn end(&mut self) -> Result<(), FieldError<'a>> {
         let kind = self.kind;
         self.word()
@@ -131,7 +131,7 @@ impl<'a> Arguments<'a> for Words<'a> {
     }
 }
 
-/// Random numbers: each is an end of its range or anything between. For tests and test vectors.
+/// Random numbers for tests and test vectors: each is an end of its range or a value between the ends.
 #[derive(Debug)]
 pub struct Random<F> {
     bits: F,
@@ -139,13 +139,13 @@ pub struct Random<F> {
 }
 
 impl<F: FnMut() -> u32> Random<F> {
-    /// Draws by a source of 32 random bits.
+    /// Takes random numbers from a source of 32 random bits.
     pub fn new(mut bits: F) -> Self {
         let groups = 1 + bits() % MAX_SPHERES as u32;
         Self { bits, groups }
     }
 
-    /// One of several things.
+    /// A random element of a list.
     pub(in crate::field) fn choose(&mut self, count: usize) -> usize {
         (self.bits)() as usize % count.max(1)
     }

@@ -1,11 +1,11 @@
-//! What a field that is typed can be wrong in.
+//! Errors of the text form of a field.
 
 use core::fmt;
 
 use super::limits::MAX_SPHERES;
 use crate::fixed::Q32_32;
 
-/// Why a text names no field.
+/// Reason why a text is not a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FieldError<'a> {
     /// No kind has this name.
@@ -22,11 +22,11 @@ pub enum FieldError<'a> {
         /// Name of the number.
         name: &'static str,
     },
-    /// There is a number too many.
+    /// A number is surplus.
     Extra {
         /// The kind.
         kind: &'a str,
-        /// The first word that is not expected.
+        /// The first surplus word.
         word: &'a str,
     },
     /// A word is not a number.
@@ -36,7 +36,7 @@ pub enum FieldError<'a> {
         /// The word.
         word: &'a str,
     },
-    /// The kinds on either side of a union cannot be its members.
+    /// The two kinds of a union cannot be its members.
     Union,
     /// No sphere, or more than [`MAX_SPHERES`].
     Spheres,

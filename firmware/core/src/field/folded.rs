@@ -2,9 +2,10 @@
 
 use super::surface::Surface;
 
-/// A coordinate on its way through the folds: its value, and the direction in the world in which it grows.
+/// A coordinate during folding: its value, and the direction in the world in which it increases.
 ///
-/// A coordinate k stands for k + 1/2, the middle of the interval that was cut to k: so −x is exactly `!k`, and a mirror takes no carry.
+/// A coordinate k represents k + 1/2, the middle of the interval that is truncated to k. Therefore −x is exactly `!k`, and a mirror
+/// needs no carry.
 #[derive(Clone, Copy)]
 pub(in crate::field) struct Folded {
     pub value: i32,
@@ -35,7 +36,7 @@ impl Folded {
         }
     }
 
-    /// Another value on the same way.
+    /// Another value with the same direction.
     pub fn with(self, value: i32) -> Self {
         Self { value, ..self }
     }
@@ -47,7 +48,7 @@ impl Folded {
         }
     }
 
-    /// The face across its axis.
+    /// The face perpendicular to the coordinate's axis.
     pub const fn face(self) -> Surface {
         Surface::Face {
             axis: self.axis,
@@ -56,7 +57,7 @@ impl Folded {
     }
 }
 
-/// Which of three numbers is the largest; of equals the second, then the first.
+/// Index of the largest of three numbers; among equals the second comes first, then the first.
 pub(in crate::field) fn largest([x, y, z]: [i32; 3]) -> usize {
     if z > x && z > y {
         2

@@ -1,5 +1,5 @@
-//! The two lists that every kind of field is in: [`Primitive`] as it is typed, and, of those with faces, [`Flat`] as the engine
-//! evaluates it.
+//! The two lists of kinds of fields: [`Primitive`] for all kinds in text form, [`Flat`] for kinds with faces as the engine
+//! evaluates them.
 
 use core::fmt;
 
@@ -37,12 +37,12 @@ macro_rules! primitives {
             /// The names of all kinds.
             pub const NAMES: [&str; [$(stringify!($kind)),*].len()] = [$(<$shape>::NAME),*];
 
-            /// A field of each kind, as it is typed, in the order of [`NAMES`](Self::NAMES).
+            /// An example of each kind in text form, in the order of [`NAMES`](Self::NAMES).
             pub const EXAMPLES: [&str; Self::NAMES.len()] = [$(<$shape>::EXAMPLE),*];
 
             pub(super) const FORMS: [(&str, &str); Self::NAMES.len()] = [$((<$shape>::FORM, <$shape>::ABOUT)),*];
 
-            /// Reads the numbers of a kind; `None` where no kind has this name.
+            /// Reads the numbers of a kind; `None` for an unknown name.
             fn read<'a>(kind: &str, numbers: &mut impl Arguments<'a>) -> Option<Result<Self, FieldError<'a>>> {
                 match kind {
                     $(<$shape>::NAME => Some(<$shape>::read(numbers).map(Self::$kind)),)*
@@ -50,28 +50,28 @@ macro_rules! primitives {
                 }
             }
 
-            /// Whether it has spheres.
+            /// Whether the field has spheres.
             pub const fn is_round(&self) -> bool {
                 match self {
                     $(Self::$kind(_) => <$shape>::ROUND,)*
                 }
             }
 
-            /// Whether its faces are perpendicular to the diagonals.
+            /// Whether the faces are perpendicular to the diagonals.
             pub const fn has_octants(&self) -> bool {
                 match self {
                     $(Self::$kind(_) => <$shape>::OCTANTS,)*
                 }
             }
 
-            /// Whether a union can have it.
+            /// Whether the kind can be a member of a union.
             pub const fn joins(&self) -> bool {
                 match self {
                     $(Self::$kind(_) => <$shape>::JOINS,)*
                 }
             }
 
-            /// Its solid in field units.
+            /// The field's solid in field units.
             pub fn placed(&self) -> Placed<Solid> {
                 match self {
                     $(Self::$kind(shape) => shape.placed().map(Into::into),)*
@@ -128,7 +128,7 @@ macro_rules! flat_solids {
                 }
             }
 
-            /// The constants that the gateware needs.
+            /// The solid's constants for the gateware.
             pub fn constants(&self) -> FlatConstants {
                 match self {
                     $(Self::$solid(solid) => solid.constants(),)*
@@ -175,7 +175,7 @@ impl Solid {
         }
     }
 
-    /// Its spheres.
+    /// The solid's spheres.
     pub const fn spheres(&self) -> Option<&FixedSpheres> {
         match self {
             Self::Flat(_) => None,
@@ -183,7 +183,7 @@ impl Solid {
         }
     }
 
-    /// Whether it repeats itself every 64 units along each axis.
+    /// Whether the solid is periodic with 64 units along each axis.
     pub fn is_repeated(&self) -> bool {
         match self {
             Self::Flat(flat) => flat.constants().repeated,
@@ -199,7 +199,7 @@ impl From<FixedSpheres> for Solid {
 }
 
 impl Primitive {
-    /// Reads a field as it is typed; `None` where no kind has this name.
+    /// Reads the text form of a field; `None` for an unknown kind.
     pub(super) fn parse(text: &str) -> Option<Result<Self, FieldError<'_>>> {
         let (kind, numbers) = text.split_once(':').unwrap_or((text, ""));
         let mut words = Words::new(kind, numbers);
@@ -207,7 +207,7 @@ impl Primitive {
         Some(primitive.and_then(|primitive| words.end().map(|()| primitive)))
     }
 
-    /// Draws a field of any kind at random, its numbers from their ranges.
+    /// Chooses a field at random: its kind, and its numbers from their ranges.
     pub(super) fn draw<F: FnMut() -> u32>(numbers: &mut Random<F>) -> Self {
         loop {
             let kind = Self::NAMES[numbers.choose(Self::NAMES.len())];

@@ -1,4 +1,4 @@
-//! What a kind of field defines: its name, its numbers, and the solid that the engine evaluates.
+//! The definition of a kind of field: its name, its numbers, and the solid that the engine evaluates.
 
 use core::fmt;
 
@@ -7,9 +7,9 @@ use super::error::FieldError;
 use super::surface::Sample;
 use crate::fixed::Q32_32;
 
-/// A kind of field as it is typed.
+/// A kind of field with its text form.
 pub trait Shape: Sized {
-    /// Its solid in field units.
+    /// The solid type in field units.
     type Solid;
     /// The word before the colon.
     const NAME: &'static str;
@@ -17,13 +17,13 @@ pub trait Shape: Sized {
     const FORM: &'static str;
     /// Description, for help.
     const ABOUT: &'static str;
-    /// A field of this kind for tests of pictures.
+    /// An example of this kind, for tests of pictures.
     const EXAMPLE: &'static str;
-    /// Whether a union can have it: as its first member where it is flat, as its second where it is round.
+    /// Whether the kind can be a member of a union: the first member if flat, the second if round.
     const JOINS: bool = false;
-    /// Whether it has spheres.
+    /// Whether the kind has spheres.
     const ROUND: bool = false;
-    /// Whether its faces are perpendicular to the diagonals, and not to the axes.
+    /// Whether the faces are perpendicular to the diagonals instead of the axes.
     const OCTANTS: bool = false;
 
     /// Reads the numbers.
@@ -32,7 +32,7 @@ pub trait Shape: Sized {
     /// Those of the numbers.
     fn read<'a>(numbers: &mut impl Arguments<'a>) -> Result<Self, FieldError<'a>>;
 
-    /// Writes the numbers as they are typed.
+    /// Writes the numbers in text form.
     ///
     /// # Errors
     /// Those of the formatter.
@@ -42,28 +42,28 @@ pub trait Shape: Sized {
     fn placed(&self) -> Placed<Self::Solid>;
 }
 
-/// A solid in field units, and its place in the world.
+/// A solid in field units, with its scale and bounding box in the world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Placed<S> {
     /// The solid.
     pub solid: S,
-    /// Field units in a world unit: 2 to 256.
+    /// Field units per world unit: 2 to 256.
     pub scale: Q32_32,
-    /// Half the sides of the box about the origin that holds it, in world units; none where it has no end.
+    /// Half the sides of the bounding box about the origin, in world units; `None` for an unbounded solid.
     pub extent: Option<[Q32_32; 3]>,
 }
 
-/// Field units in a world unit of a field without a period: S of the sponge's levels is then 27, 9, 3, 1.
+/// Field units per world unit for a field without a period: S of the sponge's levels is then 27, 9, 3, 1.
 pub const SCALE: Q32_32 = Q32_32::lit("40.5");
 
-/// Field units in a world unit of a field with a period, given in world units: 64 to the period.
+/// Field units per world unit for a field with the given period in world units: a period is 64 field units.
 pub fn scale_of(period: Q32_32) -> Q32_32 {
     const PERIOD: Q32_32 = Q32_32::lit("64");
     Q32_32::from_bits(((PERIOD.to_bits() << 16) / (period.to_bits() >> 8).max(1)) << 8)
 }
 
 impl<S> Placed<S> {
-    /// A solid without a period, in a box.
+    /// A solid without a period, in a bounding box.
     pub const fn bounded(solid: S, extent: [Q32_32; 3]) -> Self {
         Self {
             solid,
@@ -72,7 +72,7 @@ impl<S> Placed<S> {
         }
     }
 
-    /// A solid without a period and without end.
+    /// An unbounded solid without a period.
     pub const fn endless(solid: S) -> Self {
         Self {
             solid,
@@ -81,7 +81,7 @@ impl<S> Placed<S> {
         }
     }
 
-    /// The same place of another type of solid.
+    /// Another type of solid with the same scale and bounding box.
     pub fn map<T>(self, into: impl FnOnce(S) -> T) -> Placed<T> {
         Placed {
             solid: into(self.solid),
@@ -93,30 +93,30 @@ impl<S> Placed<S> {
 
 /// A flat solid of the engine: one module of gateware.
 pub trait FlatSolid {
-    /// Its number in `solid.kind`, and its bit in `caps.flat`.
+    /// The solid's number in `solid.kind`, and its bit in `caps.flat`.
     const CODE: u8;
 
     /// The distance of a point, each coordinate s10.12.
     fn sample(&self, point: [i32; 3]) -> Sample;
 
-    /// The constants that the gateware needs.
+    /// The solid's constants for the gateware.
     fn constants(&self) -> FlatConstants;
 }
 
-/// The constants of a flat solid by the names of their registers; 0 where a solid has no such constant.
+/// The constants of a flat solid by the names of their registers; 0 for a constant that the solid lacks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FlatConstants {
     /// [`FlatSolid::CODE`].
     pub kind: u8,
-    /// Levels of the sponge that count, the first one in bit 0.
+    /// Evaluated levels of the sponge, the first level in bit 0.
     pub levels: u8,
-    /// Axes along which the box has an end, x in bit 0.
+    /// Axes along which the box is bounded, x in bit 0.
     pub has: u8,
     /// The solid is outside the box.
     pub room: bool,
-    /// The solid repeats itself every 64 units along each axis.
+    /// The solid is periodic with 64 units along each axis.
     pub repeated: bool,
-    /// Half the side of the cubes that a sponge leaves, u10.12.
+    /// Half the side of a sponge's smallest cubes, u10.12.
     pub cube_half: u32,
     /// Half the sides of a box along x, y and z, or other lengths of a solid, u10.12.
     pub half: [u32; 3],

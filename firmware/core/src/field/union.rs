@@ -1,4 +1,4 @@
-//! `union:A+B` and `smooth:K,A+B`: a flat field and a round one, sharp or with a fillet between them.
+//! `union:A+B` and `smooth:K,A+B`: the union of a flat and a round field, sharp or with a fillet.
 
 use core::fmt;
 
@@ -19,7 +19,7 @@ pub struct Union {
 }
 
 impl Union {
-    /// Name and numbers of both kinds of union, and their descriptions.
+    /// Names, numbers and descriptions of both kinds of union.
     pub(super) const KINDS: [(&str, &str); 2] = [
         (
             "union:A+B",
@@ -31,10 +31,10 @@ impl Union {
         ),
     ];
 
-    /// A union of members that can join, with a fillet of the given width, or none at 0.
+    /// A union of two members with a fillet of the given width; 0 is no fillet.
     ///
     /// # Errors
-    /// The members are not a flat field and a round one that can join, or the width is out of range.
+    /// The members are not a flat and a round kind that unions accept, or the width is out of range.
     pub fn new(
         flat: Primitive,
         round: Primitive,
@@ -60,7 +60,7 @@ impl Union {
         &self.round
     }
 
-    /// Width of the fillet between them in world units: the difference of both distances up to which it reaches. 0: none.
+    /// Width of the fillet in world units: the largest difference of both distances within the fillet. 0 is no fillet.
     pub const fn blend(&self) -> Q32_32 {
         self.blend
     }
@@ -83,7 +83,7 @@ impl Union {
         Self::new(member(flat)?, member(round)?, blend)
     }
 
-    /// Draws the members, and a fillet or none.
+    /// Chooses the members and the fillet at random.
     pub(super) fn draw(
         flat: Primitive,
         round: Primitive,

@@ -8,7 +8,7 @@ use super::{HEADER, MAGIC, MAX_BYTES, MAX_CHUNK_VERTICES, RECORD, Rgb565, Vertex
 /// A triangle of an indexed mesh of any size.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct IndexedTriangle {
-    /// Numbers of the vertices in the mesh, counter-clockwise seen from outside.
+    /// Indices of the vertices in the mesh, counter-clockwise seen from outside.
     pub indices: [u32; 3],
     /// Its colour.
     pub colour: Rgb565,
@@ -25,7 +25,7 @@ pub struct IndexedTriangle {
 /// The mesh has no vertex, an index has no vertex, or the result exceeds [`MAX_BYTES`].
 pub fn encode(vertices: &[Vertex], triangles: &[IndexedTriangle]) -> Result<Vec<u8>, EncodeError> {
     let mut writer = Writer::default();
-    // Numbers in the chunk of the mesh's vertices.
+    // Index in the chunk for each vertex of the mesh.
     let mut local = alloc::vec![None; vertices.len()];
     let mut used: Vec<u32> = Vec::new();
     let mut records: Vec<[u8; RECORD]> = Vec::new();
@@ -49,7 +49,7 @@ pub fn encode(vertices: &[Vertex], triangles: &[IndexedTriangle]) -> Result<Vec<
             })?;
             *index = *place.get_or_insert_with(|| {
                 used.push(global);
-                // At most 65,534, by the check above.
+                // The check above limits the index to 65,534.
                 (used.len() - 1) as u16
             });
         }
@@ -77,7 +77,7 @@ fn record(halves: impl IntoIterator<Item = u16>) -> [u8; RECORD] {
     record
 }
 
-/// Chunks, and the sums for the header.
+/// Encoded chunks, and their sums for the header.
 #[derive(Default)]
 struct Writer {
     records: Vec<[u8; RECORD]>,

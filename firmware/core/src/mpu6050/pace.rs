@@ -2,19 +2,19 @@
 
 /// A model of the sensor's clock.
 ///
-/// A new sample in a read was measured since the read before. The period of reads is no fraction of the samples' period, so that reads drift
-/// across the samples and their interval bounds the sample's time closely now and then. The clock predicts the time, and the smallest
-/// correction moves the prediction into the interval.
+/// A new sample was measured between the previous read and the present read. The periods of reads and samples have no common
+/// multiple, so reads drift across the samples, and from time to time this interval bounds the sample's time closely. The clock
+/// predicts the time; the smallest correction moves the prediction into the interval.
 #[derive(Clone, Copy, Debug)]
 pub struct Pace {
-    /// Period of the samples in 2^−8 µs: nominal, and estimated.
+    /// Nominal and estimated period of the samples, in 2^−8 µs.
     nominal: u32,
     period: u32,
-    /// Time of the read before, in µs.
+    /// Time of the previous read, in µs.
     looked: Option<u64>,
     /// Time of the next sample, 2^−8 µs.
     expected: Option<u64>,
-    /// Samples until corrections apply to the period too, not only to the phase.
+    /// Samples until corrections also apply to the period.
     settling: u8,
 }
 
@@ -27,7 +27,7 @@ const SLOWNESS: u32 = 5;
 const TOLERANCE: u32 = 5;
 
 impl Pace {
-    /// For samples with a period in µs, at most 2^20.
+    /// A clock for samples with a nominal period in µs, at most 2^20.
     #[must_use]
     pub const fn new(period: u32) -> Self {
         Self {
@@ -39,8 +39,8 @@ impl Pace {
         }
     }
 
-    /// Takes a read at a time in µs, later than the one before, and gives the time of its new sample. A sample of the first read may be old
-    /// and is ignored.
+    /// Takes the time of a read in µs, later than the previous read, and gives the time of its new sample. The sample of the first read
+    /// may be old and is ignored.
     pub fn on_look(&mut self, time: u64, found: bool) -> Option<u64> {
         let before = self.looked.replace(time)?;
         if !found {
@@ -52,7 +52,7 @@ impl Pace {
         if self.settling > 0 {
             self.settling -= 1;
         } else {
-            // A part of the error, which is less than a period unless samples were lost.
+            // Corrects a part of the error. The error is less than a period unless samples were lost.
             let most = i64::from(self.nominal);
             let off = (measured as i64 - expected as i64).clamp(-most, most) >> SLOWNESS;
             let tolerance = self.nominal >> TOLERANCE;

@@ -9,25 +9,25 @@ use super::pace::Pace;
 use super::{Error, Identity, Measurement, Mpu6050, PERIOD};
 use crate::i2c::PeriodicI2c;
 
-/// Time between two reads in µs: a little more than a read takes, and a little less than half a period, so that no sample is missed and
-/// reads drift by 40 µs a sample across the samples.
+/// Time between two reads in µs: slightly longer than a read, and slightly less than half a sample period, so that no sample is
+/// missed and reads drift by 40 µs per sample.
 const LOOK: u32 = 480;
-/// The same for a chip that stretches the clock: a little less than a period, with the same drift.
+/// Time between two reads in µs for a chip that stretches the clock: slightly less than a sample period, with the same drift.
 const LONG_LOOK: u32 = 960;
 
 /// Longest time without a sample, in µs.
 const SILENCE: u32 = 20_000;
-/// Number of equal samples that are an error.
+/// Number of equal samples in a row that count as an error.
 const FROZEN: u32 = 50;
-/// Time between two attempts in ms. It bounds the cost of an absent sensor.
+/// Time between two attempts to find the chip, in ms. This pause bounds the cost of an absent sensor.
 const AGAIN: u32 = 30;
 
 /// Receiver of samples.
 pub trait Sink<E> {
     /// The chip was found and configured.
     fn on_start(&mut self, identity: Identity);
-    /// A sample with its time in µs, which includes the filter's delay. The error is at most 0.1 ms, and 0.3 ms for the first hundred
-    /// samples after a start.
+    /// Takes a sample and its time in µs, which includes the filter's delay. The error of the time is at most 0.1 ms, and 0.3 ms for the
+    /// first hundred samples after a start.
     fn on_sample(&mut self, time: u64, measurement: &Measurement);
     /// An attempt failed. The stream tries again.
     fn on_error(&mut self, error: Error<E>);
@@ -35,8 +35,8 @@ pub trait Sink<E> {
 
 /// Reads a chip without end.
 ///
-/// Each sample is read once. After an error the stream searches the chip every 30 ms. A chip that has kept its
-/// configuration continues at once, another one is reset and configured.
+/// Each sample is read once. After an error the stream searches for the chip every 30 ms. A chip that kept its configuration
+/// continues at once; any other chip is reset and configured.
 pub struct Stream<B, D, S> {
     chip: Mpu6050<B>,
     delay: D,
@@ -44,7 +44,7 @@ pub struct Stream<B, D, S> {
 }
 
 impl<B: PeriodicI2c, D: DelayNs, S: Sink<B::Error>> Stream<B, D, S> {
-    /// From a bus to a sink.
+    /// A stream from a bus to a sink.
     pub const fn new(bus: B, delay: D, sink: S) -> Self {
         Self {
             chip: Mpu6050::new(bus),
@@ -78,7 +78,7 @@ impl<B: PeriodicI2c, D: DelayNs, S: Sink<B::Error>> Stream<B, D, S> {
         self.read_all(look).await
     }
 
-    /// Reads samples every `look` µs.
+    /// Reads the chip every `look` µs.
     async fn read_all(&mut self, look: u32) -> Result<Infallible, Error<B::Error>> {
         self.chip.begin_looks(look)?;
         let mut pace = Pace::new(PERIOD);

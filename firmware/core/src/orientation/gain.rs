@@ -14,7 +14,7 @@ pub struct Gain {
 }
 
 impl Gain {
-    /// The gains of a time constant in µs, which saturates to [`SHORTEST`].
+    /// The gains of a time constant in µs of at least [`SHORTEST`]; shorter values saturate.
     pub fn new(time_constant: u32) -> Self {
         let time_constant = time_constant.max(SHORTEST);
         Self {
@@ -29,8 +29,8 @@ impl Gain {
         self.time_constant
     }
 
-    /// The gain of a step in µs, which saturates to 2^19. 32 fraction bits, with an error of at most 4 units plus 2^−16 of the gain for τ up to
-    /// 1000 s. A gain that would round to 1 is 1 − 2^−32.
+    /// The gain of a step in µs; steps saturate to 2^19. The gain has 32 fraction bits; its error is at most 4 units plus 2^−16 of the gain
+    /// for τ up to 1000 s. A gain that would round to 1 is 1 − 2^−32.
     pub fn of(&mut self, step: u32) -> u32 {
         if step != self.last.0 {
             self.last = (step, self.fresh(step));
@@ -50,14 +50,14 @@ impl Gain {
     }
 }
 
-/// 2^48 over a time constant, rounded down. Below 16 s this takes a few short divisions and no long one.
+/// 2^48 over a time constant, rounded down. Below 16 s a few 32-bit divisions replace the slow 64-bit division.
 fn inverse(time_constant: u32) -> u64 {
     if time_constant >= 1 << 24 {
         return (1 << 48) / u64::from(time_constant);
     }
     let mut quotient = u64::from((1 << 31) / time_constant);
     let mut rest = (1 << 31) % time_constant;
-    // Digit by digit: the rest is below 2^24.
+    // Long division by digits of 8, 8 and 1 bits: the remainder is below 2^24.
     for bits in [8, 8, 1] {
         let number = rest << bits;
         quotient = quotient << bits | u64::from(number / time_constant);
@@ -73,7 +73,7 @@ const SMALL: u32 = 1 << 28;
 #[cold]
 #[inline(never)]
 fn approach(x: u64) -> u32 {
-    // Below 1/16 the series has five terms; beyond, as often as x was halved, 1 − (1 − y)² = 2y − y² doubles it.
+    // x is halved until it is below 1/16, where a series of five terms suffices; each 1 − (1 − y)² = 2y − y² then doubles the argument.
     let halvings = x.checked_ilog2().map_or(0, |lead| lead.saturating_sub(27));
     if halvings > 9 {
         return u32::MAX;
@@ -85,18 +85,18 @@ fn approach(x: u64) -> u32 {
     y.min(u32::MAX.into()) as u32
 }
 
-/// 1 − exp(−x) for x < 1/16: x·(1 − x/2·(1 − x/3·(1 − x/4·(1 − x/5)))), of which the next term is below 2^−33.
+/// 1 − exp(−x) for x < 1/16: x·(1 − x/2·(1 − x/3·(1 − x/4·(1 − x/5)))). The first omitted term is below 2^−33.
 fn series(x: u32) -> u32 {
     let times = |a: u32, b: u32| ((u64::from(a) * u64::from(b)) >> 32) as u32;
     let part = |n: u32| times(x, ((1 << 32) / u64::from(n)) as u32);
-    // What the brackets lack of 1, rounded down.
+    // 1 minus the outer bracket, rounded down.
     let less = |part: u32, lack: u32| {
         part - ((u64::from(part) * u64::from(lack) + u64::from(u32::MAX)) >> 32) as u32
     };
     let lack = less(part(4), part(5));
     let lack = less(part(3), lack);
     let lack = less(part(2), lack);
-    // x·(1 − lack), to nearest.
+    // x·(1 − lack) is rounded to nearest.
     let taken = u64::from(x) * u64::from(lack);
     x - ((taken + (1 << 31) - 1) >> 32) as u32
 }

@@ -18,15 +18,15 @@ pub const LONGEST_STEP: u32 = 500_000;
 pub struct Integrator {
     scale: Scale,
     history: History,
-    /// 62 fraction bits.
+    /// The attitude with 62 fraction bits.
     attitude: [i64; 4],
-    /// The same, to nearest.
+    /// The attitude rounded to 30 fraction bits, to nearest.
     rounded: Quaternion,
     /// Rounding remainder of the last step's vector, 48 fraction bits.
     rest: [i32; 3],
 }
 
-/// Upper limit of a half angle of one rotation, 0.25 rad with 48 fraction bits: then |h|² < 3/16.
+/// Largest component of the half angle of one rotation, 0.25 rad with 48 fraction bits, which bounds |h|² by 3/16.
 const LARGEST: i64 = 1 << 46;
 
 impl Integrator {
@@ -55,16 +55,16 @@ impl Integrator {
         self.history.start(rate);
     }
 
-    /// Takes the rate in 1/256 LSB that was measured `step` µs after the last one, and turns further by `correction`, half an
-    /// angle about each of the body's axes in radians with 48 fraction bits, within ±8.
+    /// Integrates a rate in 1/256 LSB that was measured `step` µs after the previous rate. `correction` is an additional rotation: half
+    /// an angle about each of the body's axes in radians with 48 fraction bits, within ±8.
     ///
     /// The rate saturates to ±1.5·2^23. A step of 0 or beyond [`LONGEST_STEP`] only replaces the last rate.
     pub fn advance(&mut self, rate: [i32; 3], step: u32, correction: [i64; 3]) {
         self.advance_order::<4>(rate, step, correction);
     }
 
-    /// The same by a method of order 1 to 4 (a higher one is taken as 4): the newest sample alone, the mean of two, a parabola through
-    /// three, the cubic through four.
+    /// Integrates a rate as [`Self::advance`] does, by a method of order 1 to 4 (higher orders saturate to 4): the newest sample, the mean
+    /// of two samples, a parabola through three, or a cubic through four.
     pub fn advance_order<const ORDER: u32>(
         &mut self,
         rate: [i32; 3],
@@ -78,8 +78,8 @@ impl Integrator {
         self.turn(&[0, 1, 2].map(|i| half[i] + correction[i]));
     }
 
-    /// Takes the rate in 1/256 LSB that was measured `step` µs after the last one, at least 1 and at most [`LONGEST_STEP`], and gives half an
-    /// angle about each of the body's axes to turn by, in radians with 48 fraction bits.
+    /// Takes a rate in 1/256 LSB that was measured `step` µs (1 to [`LONGEST_STEP`]) after the previous rate, and gives the rotation as half
+    /// an angle about each of the body's axes, in radians with 48 fraction bits.
     pub(super) fn half_angle<const ORDER: u32>(&mut self, rate: [i32; 3], step: u32) -> [i64; 3] {
         self.history.advance::<ORDER>(rate, step, self.scale)
     }
@@ -94,7 +94,7 @@ impl Integrator {
         &self.rounded
     }
 
-    /// Turns by a half angle vector of any length. 48 fraction bits, within ±2^57.
+    /// Turns by a half angle vector of any length, 48 fraction bits, components within ±2^57.
     pub(super) fn turn(&mut self, half: &[i64; 3]) {
         if half.iter().all(|x| (-LARGEST..LARGEST).contains(x)) {
             self.turn_part(half);
@@ -103,7 +103,7 @@ impl Integrator {
         }
     }
 
-    /// The same in several equal parts.
+    /// Turns by a half angle vector in several equal parts.
     #[cold]
     #[inline(never)]
     fn turn_far(&mut self, half: &[i64; 3]) {
@@ -118,7 +118,7 @@ impl Integrator {
     #[inline(never)]
     fn turn_part(&mut self, half: &[i64; 3]) {
         let half = [0, 1, 2].map(|i| half[i] + i64::from(self.rest[i]));
-        // 32 fraction bits, rounded down; each square is below 2^28 and a bit.
+        // |h|² with 32 fraction bits, rounded down; each square is below 2^29.
         let short = half.map(|x| (x >> 16) as i32);
         let square = short
             .map(|x| ((i64::from(x) * i64::from(x)) >> 32) as u32)
@@ -126,11 +126,11 @@ impl Integrator {
             .sum();
         let (versine, lack) = series(square);
         let q = &self.rounded.parts;
-        // 1 − |q|² with 60 fraction bits; half of it with 32, rounded down.
+        // 1 − |q|² with 60 fraction bits, and its half with 32, rounded down.
         let excess = (1 << 60) - dot(q, q[0], q[1], q[2], q[3]);
         let mut change = [(excess >> 29) as i32 - versine as i32, 0, 0, 0];
         for i in 0..3 {
-            // h·sin|h|/|h| with 48 fraction bits, and half a unit of 32.
+            // h·sin|h|/|h| with 48 fraction bits, plus half a unit of 32 fraction bits for rounding.
             let exact = half[i] - ((i64::from(short[i]) * i64::from(lack)) >> 16) + (1 << 15);
             self.rest[i] = i32::from(exact as u16) - (1 << 15);
             change[i + 1] = (exact >> 16) as i32;
@@ -144,8 +144,8 @@ impl Integrator {
     }
 }
 
-/// 1 − cos x and 1 − sin(x)/x of x², each with 32 fraction bits: within 2 units for x² up to 3/16. The remainders of the series,
-/// x¹²/12! and x¹⁰/11!, are 9e-14 and 6e-12 there.
+/// 1 − cos x and 1 − sin(x)/x as functions of x², each with 32 fraction bits and within 2 units for x² up to 3/16. The remainders of
+/// the series, x¹²/12! and x¹⁰/11!, are then 9e-14 and 6e-12.
 fn series(square: u32) -> (u32, u32) {
     const fn one_over(n: u64) -> u32 {
         (((1 << 32) + n / 2) / n) as u32

@@ -1,4 +1,4 @@
-//! The format of a log for replay on a board: a header, then a record for each sample, which the attitude after it replaces.
+//! The format of a log for replay on a board: a header, then a record per sample. Replay replaces each sample by the attitude after it.
 //!
 //! All numbers are little-endian.
 //!
@@ -134,10 +134,10 @@ const fn length(samples: u32) -> u64 {
 }
 
 impl Setup {
-    /// Units of counts, correction of the tilt by the accelerometer, and the bias in 1/256 LSB, constant or tracked at rest.
+    /// Parameters from the units of counts, the tilt correction, and the bias in 1/256 LSB, constant or tracked at rest.
     ///
     /// # Errors
-    /// Units or bias are out of range.
+    /// The units or the bias are out of range.
     pub fn new(
         units: Units,
         tilt: bool,
@@ -264,7 +264,7 @@ pub fn open(bytes: &mut [u8]) -> Result<(Setup, &mut [[u8; RECORD_BYTES]]), LogE
     Ok((setup, records.as_chunks_mut().0))
 }
 
-/// The record of some bytes.
+/// The record stored in `bytes`.
 pub fn from_bytes(bytes: &[u8; RECORD_BYTES]) -> Record {
     let mut words = bytes
         .as_chunks()
@@ -304,7 +304,7 @@ pub fn attitude_record(attitude: Quaternion) -> Record {
     attitude.parts.map(|part| part as u32)
 }
 
-/// The attitude of a record, if its length is 1.
+/// The attitude of a record; `None` unless its length is 1.
 pub fn attitude(record: Record) -> Option<Quaternion> {
     Quaternion::exact(record.map(|part| part as i32))
 }
@@ -312,7 +312,7 @@ pub fn attitude(record: Record) -> Option<Quaternion> {
 /// Replays a log in place, and gives the counts of its samples.
 ///
 /// # Errors
-/// The bytes are not a log. They are then unchanged.
+/// The bytes are not a log; they stay unchanged.
 pub fn replay(bytes: &mut [u8]) -> Result<Counts, LogError> {
     let (setup, records) = open(bytes)?;
     let mut tracker = setup.tracker();

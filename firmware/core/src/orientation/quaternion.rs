@@ -7,13 +7,13 @@ use crate::trig::sin_cos_q30;
 /// An attitude: a Hamilton quaternion that maps body to world, of length 1 within 2^−29.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Quaternion {
-    /// w, x, y, z in 2^−30.
+    /// The components w, x, y, z in units of 2^−30.
     pub(super) parts: [i32; 4],
 }
 
-/// 1 in the numbers of a quaternion.
+/// 1.0 in the units of a component.
 const ONE: i32 = 1 << 30;
-/// The cosine of the pitch below which there is a yaw and no roll: 2^−16, within 0.00088° of the pole. 60 fraction bits.
+/// The cosine of the pitch below which roll is defined as 0: 2^−16, within 0.00088° of the pole; 60 fraction bits.
 const POLE: i64 = 1 << 44;
 
 impl Quaternion {
@@ -26,21 +26,21 @@ impl Quaternion {
     pub fn new(parts: [Q2_30; 4]) -> Option<Self> {
         let largest = parts.iter().map(|part| part.to_bits().unsigned_abs()).max();
         let up = largest?.checked_ilog2().map(|lead| 30 - lead.min(30))?;
-        // The largest has 30 bits, so the squares together have at most 62.
+        // The largest component has 30 bits, so the sum of squares has at most 62.
         let wide = parts.map(|part| (i64::from(part.to_bits()) << up) >> 1);
         let length = wide.iter().map(|x| (x * x) as u64).sum::<u64>().isqrt() as i64;
         let parts = wide.map(|x| ((x << 30) / length) as i32);
         Some(Self { parts }.renormalised())
     }
 
-    /// The quaternion of exactly these numbers (w, x, y, z in 2^−30), if their length is 1 within 2^−28.
+    /// The quaternion with exactly these components (w, x, y, z in 2^−30); `None` unless the length is 1 within 2^−28.
     pub(super) fn exact(parts: [i32; 4]) -> Option<Self> {
-        // At most 2^62 each and 2^64 together, and above i64 only where they are far too long.
+        // Each square is at most 2^62, so the sum fits u64; a sum beyond i64 is far too long.
         let square = parts
             .iter()
             .map(|&x| i64::from(x) * i64::from(x))
             .try_fold(0_i64, i64::checked_add)?;
-        // The square has twice the relative error.
+        // The relative error of the squared length is twice that of the length.
         (square - (1 << 60))
             .unsigned_abs()
             .le(&(1 << 33))
@@ -49,7 +49,7 @@ impl Quaternion {
 
     /// The rotation by an angle about one of the axes: 0, 1, 2 for x, y, z (larger numbers are z).
     pub fn about_axis(axis: usize, angle: Turns) -> Self {
-        // Half of an angle in (−½, ½] turns, so that small ones of either sign stay near the identity.
+        // Half of an angle in (−½, ½] turns: small angles of both signs stay near the identity.
         let half = Turns((angle.0 as i32 >> 1) as u32);
         let (sin, cos) = sin_cos_q30(half);
         let mut parts = [cos.to_bits(), 0, 0, 0];
@@ -57,13 +57,13 @@ impl Quaternion {
         Self { parts }.renormalised()
     }
 
-    /// The attitude of three angles, as [`Quaternion::angles`] gives them.
+    /// The attitude with these angles: the inverse of [`Quaternion::angles`].
     pub fn from_angles(angles: Angles) -> Self {
         let pitched = Self::about_axis(2, angles.yaw).times(Self::about_axis(1, angles.pitch));
         pitched.times(Self::about_axis(0, angles.roll))
     }
 
-    /// The numbers w, x, y, z.
+    /// The components w, x, y, z.
     pub const fn parts(self) -> [Q2_30; 4] {
         let [w, x, y, z] = self.parts;
         [
@@ -83,7 +83,7 @@ impl Quaternion {
         }
     }
 
-    /// The product: first `other`, then this rotation. Rounded to nearest and normalised.
+    /// The product: `other` followed by this rotation, rounded to nearest and normalised.
     #[must_use]
     pub fn times(self, other: Self) -> Self {
         let products = product(&self.parts, other.parts);
@@ -91,7 +91,7 @@ impl Quaternion {
         Self { parts }.renormalised()
     }
 
-    /// The same attitude with w at least 0; of w = 0 there are two.
+    /// The quaternion of the same attitude with w ≥ 0. An attitude with w = 0 has two such quaternions.
     #[must_use]
     pub fn canonical(self) -> Self {
         if self.parts[0] < 0 {
@@ -110,7 +110,7 @@ impl Quaternion {
             .map(|column| column.map(|x| ((x + (1 << 29)) >> 30) as i32))
     }
 
-    /// The same with 60 fraction bits, exact.
+    /// The rotation's matrix with 60 fraction bits, exact.
     fn columns(self) -> [[i64; 3]; 3] {
         let [w, x, y, z] = self.parts.map(i64::from);
         // Each is at most 1 in magnitude, and twice the sum of two products at most 2.
@@ -137,7 +137,7 @@ impl Quaternion {
     /// The body's direction of the world's z axis, which is up: 30 fraction bits, rounded down.
     pub(super) fn up(&self) -> [i32; 3] {
         let [w, x, y, z] = self.parts;
-        // At most 1 in magnitude but for the error of the length.
+        // At most 1 in magnitude, apart from the error of the length.
         [
             ((wide(x, z) - wide(w, y)) >> 29) as i32,
             ((wide(y, z) + wide(w, x)) >> 29) as i32,
@@ -179,14 +179,14 @@ impl Quaternion {
     fn renormalised(self) -> Self {
         let parts = self.parts.map(i64::from);
         let excess = (1 << 60) - parts.iter().map(|x| x * x).sum::<i64>();
-        // |excess| < 2^46 for such an error, so the products stay below 2^62.
+        // |excess| is below 2^46 within this error, so the products stay below 2^62.
         let parts = parts.map(|x| (x + ((x * (excess >> 29) + (1 << 31)) >> 32)) as i32);
         Self { parts }
     }
 }
 
-/// The product of two quaternions in the product of their units. Both are at most 1 long but for their errors, so by
-/// Cauchy and Schwarz no partial sum exceeds the product of the units.
+/// The product of two quaternions, in the product of their units. Both lengths are at most 1 apart from their errors, so by the
+/// Cauchy–Schwarz inequality no partial sum exceeds the product of the units.
 pub(super) fn product(a: &[i32; 4], [w, x, y, z]: [i32; 4]) -> [i64; 4] {
     [
         dot(a, w, -x, -y, -z),
@@ -196,20 +196,20 @@ pub(super) fn product(a: &[i32; 4], [w, x, y, z]: [i32; 4]) -> [i64; 4] {
     ]
 }
 
-/// The sum of four products, none of whose partial sums has more than 64 bits. A call is smaller than four products, and the soft core's
-/// instruction cache is small too.
+/// The sum of four products; partial sums fit 64 bits. One function instead of inline code saves space in the soft core's small
+/// instruction cache.
 #[inline(never)]
 pub(super) fn dot([aw, ax, ay, az]: &[i32; 4], w: i32, x: i32, y: i32, z: i32) -> i64 {
     wide(*aw, w) + wide(*ax, x) + wide(*ay, y) + wide(*az, z)
 }
 
-/// Yaw, pitch and roll. Half a turn and more is negative.
+/// Yaw, pitch and roll. Angles of half a turn or more count as negative.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Angles {
-    /// About the world's z axis.
+    /// Rotation about the world's z axis.
     pub yaw: Turns,
-    /// About the y axis after yaw. Positive is nose down for a nose along x.
+    /// Rotation about the y axis after yaw. Positive is nose down for a nose along x.
     pub pitch: Turns,
-    /// About the x axis after yaw and pitch.
+    /// Rotation about the x axis after yaw and pitch.
     pub roll: Turns,
 }

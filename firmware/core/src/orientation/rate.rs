@@ -1,7 +1,7 @@
 //! Rotation of a step between two samples of the angular rate.
 //!
-//! A step of length h goes from the sample before the last, ω₂, to the last, ω₃. What it turns by is a vector φ, of which the
-//! first two terms of Magnus' expansion are taken:
+//! A step of length h goes from the last sample but one, ω₂, to the last sample, ω₃. Its rotation vector φ is approximated by the
+//! first two terms of the Magnus expansion:
 //!
 //! ```text
 //! φ = ∫ω dt + ½∫∫ ω(s) × ω(t) ds dt (s < t) = h·A + h²/12·A × E
@@ -17,54 +17,54 @@
 //! E = e₁ + 9/5·T
 //! ```
 //!
-//! and with equal steps A is the Adams–Moulton formula (9ω₃ + 19ω₂ − 5ω₁ + ω₀)/24. For the cubic itself E would be e₁ − T/10. What
-//! A leaves out, −19/720·h⁴·d⁴ω/dt⁴, adds up while the body turns: integrated by parts in the world's axes it is a term that stays small and
-//! 19/720·h⁴·ω × d³ω/dt³ that does not, and since h³·d³ω/dt³ is about 6·T, 19/10·T more in E cancels that. With 9/5 coning at
-//! 20 samples a turn drifts by a ninth of what it does with −1/10.
+//! and with equal steps A is the Adams–Moulton formula (9ω₃ + 19ω₂ − 5ω₁ + ω₀)/24. For the cubic itself E would be e₁ − T/10. The
+//! error of A, −19/720·h⁴·d⁴ω/dt⁴, accumulates while the body turns: integration by parts in the world's axes gives a bounded term
+//! and the growing term 19/720·h⁴·ω × d³ω/dt³. As h³·d³ω/dt³ is about 6·T, an additional 19/10·T in E cancels the growing term. The
+//! factor 9/5 reduces the drift of coning at 20 samples a turn to a ninth of the drift with −1/10.
 
 use super::scale::{Factor, Scale};
 use crate::fixed::wide;
 
-/// Longest step that is integrated by a cubic, in µs; longer steps are integrated linearly.
+/// Longest step integrated by a cubic, in µs; longer steps are integrated linearly.
 pub const LONGEST_CURVE: u32 = 1 << 15;
-/// Largest ratio of a step to the one before it for a cubic, beyond which old samples would outweigh new ones.
+/// Largest ratio of a step to the previous step for a cubic; beyond this ratio old samples would outweigh new ones.
 pub const MOST_STRETCH: u32 = 3;
-/// The largest rate, in 1/256 LSB: all counts, and a bias of half of them. Then all numbers below have 32 bits.
+/// The largest rate, in 1/256 LSB: the largest count plus half of it as bias. This limit keeps all numbers below within 32 bits.
 pub const LARGEST_RATE: i32 = 3 << 22;
 
-/// Samples before the last that a step needs.
+/// The earlier samples that a step needs.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct History {
     /// Number of earlier steps: 0, 1, 2.
     steps: u8,
     axes: [Axis; 3],
-    /// h₁ and h₂ in µs.
+    /// The earlier steps h₁ and h₂ in µs.
     ages: [u32; 2],
 }
 
-/// The same along an axis, in 1/256 LSB.
+/// The earlier rates along an axis, in 1/256 LSB.
 #[derive(Clone, Copy, Debug, Default)]
 struct Axis {
-    /// ω₂.
+    /// The last rate, ω₂.
     last: i32,
-    /// e₂.
+    /// The last difference, e₂.
     difference: i32,
-    /// S of the step before.
+    /// The divided difference S of the previous step.
     second: i32,
 }
 
 /// Weights of a cubic from the times of samples, with 15 fraction bits by default.
 #[derive(Clone, Copy)]
 struct Weights {
-    /// g with 15 fraction bits, and 15 zeros behind them.
+    /// g in 2^−30, rounded to 15 fraction bits.
     stretch: u32,
-    /// g².
+    /// g², the factor of the previous S in D.
     stretch_squared: i32,
-    /// h/(h + h₁) with 15 fraction bits, and 17 zeros behind them.
+    /// h/(h + h₁) in 2^−32, rounded to 15 fraction bits.
     half: u32,
-    /// 9/5·h/(h + h₁ + h₂).
+    /// The factor 9/5·h/(h + h₁ + h₂) of D in E.
     near: i32,
-    /// 4/3·(h + 2·h₁)/(h + h₁ + h₂).
+    /// The factor 4/3·(h + 2·h₁)/(h + h₁ + h₂) of D in A.
     far: i32,
 }
 
@@ -73,7 +73,7 @@ const FOUR_THIRDS: i32 = (4 << 15) / 3 + 1;
 const NINE_FIFTHS: i32 = (9 << 15) / 5;
 
 impl Weights {
-    /// Weights of equal steps.
+    /// Weights for equal steps.
     const EVEN: Self = Self {
         stretch: 1 << 30,
         stretch_squared: 1 << 15,
@@ -82,7 +82,7 @@ impl Weights {
         far: FOUR_THIRDS,
     };
 
-    /// Weights without earlier steps: a straight line.
+    /// Weights for a step without earlier steps: linear interpolation.
     const STRAIGHT: Self = Self {
         stretch: 0,
         stretch_squared: 0,
@@ -91,7 +91,7 @@ impl Weights {
         far: 0,
     };
 
-    /// Weights of h and of earlier steps h₁ and h₂.
+    /// Weights for a step h and earlier steps h₁ and h₂.
     #[inline(never)]
     fn of<const ORDER: u32>(steps: u8, step: u32, [h1, h2]: [u32; 2]) -> Self {
         if steps == 0 {
@@ -101,7 +101,7 @@ impl Weights {
             return Self::EVEN;
         }
         let g = Divisor::new(h1).ratio(step);
-        // Without S of the step before there is no D.
+        // D needs S of the previous step.
         let (mut near, mut far) = (0, 0);
         if steps == 2 && ORDER >= 4 {
             let all = Divisor::new(step + h1 + h2);
@@ -109,7 +109,7 @@ impl Weights {
             far = narrow(wide(all.ratio(step + 2 * h1), FOUR_THIRDS));
         }
         Self {
-            // At most 3, and at most 3/4.
+            // g is at most 3, so h/(h + h₁) is at most 3/4.
             stretch: (g as u32) << 15,
             stretch_squared: narrow(wide(g, g)),
             half: (Divisor::new(step + h1).ratio(step) as u32) << 17,
@@ -119,12 +119,12 @@ impl Weights {
     }
 }
 
-/// x·2^−15, to nearest, of what has 31 bits then.
+/// x·2^−15 to nearest, for a result within 31 bits.
 const fn narrow(x: i64) -> i32 {
     half_up((x >> 14) as i32)
 }
 
-/// Half of a number, to nearest.
+/// x/2, to nearest.
 const fn half_up(x: i32) -> i32 {
     (x + 1) >> 1
 }
@@ -134,10 +134,10 @@ const fn upper(a: i32, b: u32) -> i32 {
     ((a as i64 * b as i64) >> 32) as i32
 }
 
-/// A divisor: the slow division is done once.
+/// A divisor with its reciprocal, so that the slow division runs once.
 struct Divisor {
     number: u32,
-    /// 2^32 − 1 over it, rounded down.
+    /// (2^32 − 1)/divisor, rounded down.
     inverse: u32,
 }
 
@@ -149,10 +149,10 @@ impl Divisor {
         }
     }
 
-    /// a over it with 15 fraction bits, to nearest. The numbers stay in 32 bits: a < 2^17, and the ratio is at most 3.
+    /// a/divisor with 15 fraction bits, to nearest. All numbers fit 32 bits: a < 2^17, and the ratio is at most 3.
     const fn ratio(&self, a: u32) -> i32 {
         let number = (a << 15) + self.number / 2;
-        // Short of the quotient by less than 1 before it is rounded down.
+        // Below the quotient by less than 1 before rounding down.
         let below = ((number as u64 * self.inverse as u64) >> 32) as u32;
         let rest = number - below * self.number;
         (below + (rest >= self.number) as u32) as i32
@@ -164,7 +164,7 @@ fn within(rate: i32) -> i32 {
     rate.clamp(-LARGEST_RATE, LARGEST_RATE)
 }
 
-/// A with twelve fraction bits and E with eight.
+/// A with 12 fraction bits and E with 8.
 type Ends = (i32, i32);
 
 impl Axis {
@@ -177,7 +177,7 @@ impl Axis {
         let before = half_up(upper(self.difference << 3, weights.stretch));
         let second = half_up(upper((e1 - before) << 1, weights.half));
         let third = second - narrow(wide(weights.stretch_squared, self.second));
-        // A twelfth of 16 makes twelve fraction bits of eight.
+        // The factor 16/12 is the division by 12 and the change from 8 to 12 fraction bits.
         let curve = wide(second, EIGHT_THIRDS) + wide(third, weights.far);
         let curve = ((curve + (1 << 14)) >> 15) as i32;
         let mean = ((rate + self.last) << 3) - curve;
@@ -208,11 +208,11 @@ impl History {
         };
     }
 
-    /// Takes a sample, `step` µs (at least 1) after the last one, and gives half of φ as a rotation vector, 48 fraction bits.
+    /// Takes a sample, `step` µs (at least 1) after the previous sample, and gives φ/2 as a rotation vector, 48 fraction bits.
     ///
-    /// The rate saturates to ±[`LARGEST_RATE`]. `ORDER` is that of the method: 1 takes the newest sample alone, 2 the mean of two,
-    /// 3 the parabola through three with e₁ for E, 4 (and more) the cubic. The first steps have fewer earlier samples and
-    /// leave an error in h³ once.
+    /// The rate saturates to ±[`LARGEST_RATE`]. `ORDER` is the order of the method: 1 takes the newest sample, 2 the mean of two
+    /// samples, 3 the parabola through three with e₁ for E, 4 or more the cubic. The first steps have fewer earlier samples and
+    /// together leave an error of order h³.
     pub fn advance<const ORDER: u32>(
         &mut self,
         rate: [i32; 3],
@@ -244,10 +244,10 @@ impl History {
     }
 }
 
-/// Half of φ along an axis, of A there and of A and E along the two next ones.
+/// φ/2 along an axis, from A along this axis and from A and E along the two next axes.
 #[inline(always)]
 fn turned(mean: i32, (mj, ej): Ends, (mk, ek): Ends, coning: u32, factor: Factor) -> i64 {
-    // LSB² with 20 fraction bits, at most 2^55.
+    // The cross product in LSB² with 20 fraction bits, at most 2^55.
     let cross = ((wide(mj, ek) - wide(mk, ej)) >> 25) as i32;
     let coning = (i64::from(cross) * i64::from(coning) + (1 << 31)) >> 32;
     factor.half_angle(mean + coning as i32)

@@ -7,9 +7,9 @@
 //! (1 − exp(−dt/τ))·(a × up)/g
 //! ```
 //!
-//! with `a` and `up` in the body's axes. A reading is neither normalised nor rejected for a slightly wrong length: both would weigh
-//! accelerations unequally and bias their mean. Readings beyond the motion of a hand or a walk are rejected: above 3 g, or at the end
-//! of the sensor's range.
+//! with `a` and `up` in the body's axes. Readings are not normalised, and a slightly wrong length does not reject a reading: both would
+//! weight accelerations unequally and bias their mean. Readings above 3 g, which hand and walk do not reach, and readings at the end
+//! of the sensor's range are rejected.
 
 use super::gain::Gain;
 use super::quaternion::{Angles, Quaternion};
@@ -22,8 +22,8 @@ pub const TIME_CONSTANT: u32 = 3_000_000;
 pub const LSB_PER_G: [u32; 2] = [1_024, 32_767];
 /// Nominal age of an attitude from one reading, in µs.
 pub const FRESH: u32 = 20_000;
-/// Nominal age of an attitude after saturation of the gyroscope or a gap, in µs. The accelerometer corrects the error within ten times this
-/// age, and a short saturation does not upset the attitude.
+/// Nominal age of an attitude after saturation of the gyroscope or a gap, in µs. The accelerometer corrects the error within ten times
+/// this age, and a short saturation changes the attitude little.
 pub const DOUBTFUL: u32 = 100_000;
 /// Largest accepted reading, in g.
 const MOST: u32 = 3;
@@ -31,18 +31,18 @@ const MOST: u32 = 3;
 /// Corrects the tilt.
 #[derive(Clone, Copy, Debug)]
 pub struct Tilt {
-    /// 2^32 LSB over those of 1 g.
+    /// 2^32 over the LSB of 1 g.
     inverse: u32,
     /// Square of the largest accepted reading, in LSB².
     largest: u32,
     time_constant: u32,
-    /// Time of readings so far, in µs: the time constant of a running mean, up to τ.
+    /// Total time of the readings in µs, up to τ: the time constant of a running mean.
     age: u32,
     gain: Gain,
 }
 
 impl Tilt {
-    /// The correction for an accelerometer with `lsb_per_g`, which saturates to [`LSB_PER_G`], and a time constant in µs.
+    /// The correction for an accelerometer with `lsb_per_g` (saturates to [`LSB_PER_G`]) and a time constant in µs.
     pub fn new(lsb_per_g: u32, time_constant: u32) -> Self {
         let one = lsb_per_g.clamp(LSB_PER_G[0], LSB_PER_G[1]);
         Self {
@@ -59,7 +59,7 @@ impl Tilt {
         self.age >= self.time_constant
     }
 
-    /// Marks the attitude as uncertain: the next readings get more weight.
+    /// Marks the attitude as uncertain, so that the next readings get more weight.
     #[cold]
     #[inline(never)]
     pub fn doubt(&mut self) {
@@ -67,8 +67,8 @@ impl Tilt {
         self.gain = Gain::new(self.age.min(self.time_constant));
     }
 
-    /// Corrects a step in µs (at most 2^19) by the reading at its end: adds at most 3 to half an angle about each of the body's axes, in radians
-    /// with 48 fraction bits. Returns whether the reading was accepted.
+    /// Corrects a step in µs (at most 2^19) by the reading at its end: adds at most 3 rad to the half angle about each of the body's axes,
+    /// 48 fraction bits. Returns whether the reading was accepted.
     #[inline]
     pub fn correct(
         &mut self,
@@ -85,17 +85,17 @@ impl Tilt {
         if self.gain.time_constant() < self.time_constant {
             self.grow(step);
         }
-        // Half the gain over g, for 2^−14 LSB, with 57 fraction bits: the inverse is at most 2^22.
+        // Half the gain per g, for 2^−14 LSB, with 57 fraction bits; the inverse of g is at most 2^22.
         let factor = ((u64::from(self.gain.of(step)) * u64::from(self.inverse)) >> 22) as u32;
         let up = attitude.up();
-        // Only the upper words of the products are used.
+        // The sum uses only the upper words of the products.
         let a = a.map(|x| x << 16);
-        // LSB with 14 fraction bits, rounded down: at most 2^30.
+        // Components in LSB with 14 fraction bits, rounded down: at most 2^30.
         let error = [0, 1, 2].map(|i| {
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
             ((wide(a[j], up[k]) - wide(a[k], up[j])) >> 32) as i32
         });
-        // At most √3·2^61.
+        // The sum is at most √3·2^61.
         let upright = wide(a[0], up[0]) + wide(a[1], up[1]) + wide(a[2], up[2]);
         let error = if upright < 0 {
             lengthened(error, up, square)
@@ -115,14 +115,14 @@ impl Tilt {
         self.gain = Gain::new(self.age);
     }
 
-    /// The attitude with yaw 0 in which a reading points upwards. A reading of 0 gives the identity.
+    /// The attitude with yaw 0 for which the reading points upwards. A reading of 0 gives the identity.
     #[cold]
     #[inline(never)]
     pub fn align(reading: [i16; 3]) -> Quaternion {
         let [x, y, z] = reading.map(|x| i64::from(x) << 40);
         let (level, roll) = polar(z, y);
         let (_, pitch) = polar(level, -x);
-        // Nose up or down the roll is undefined, and polar gives 0.
+        // With the nose straight up or down the roll is undefined, and `polar` gives 0.
         Quaternion::from_angles(Angles {
             yaw: Turns(0),
             pitch,
@@ -131,19 +131,20 @@ impl Tilt {
     }
 }
 
-/// |a × up| decreases for errors beyond a right angle. There its length becomes twice that of `a`, about the angle of the error in
-/// radians, so that upside down is not a fixed point. Without a direction any axis across `up` is used. `square` is that of `a`, at most
-/// (2^16 − 1)².
+/// |a × up| decreases for errors beyond a right angle. For these errors the length is set to 2·|a|, about the angle of the error in
+/// radians, so that upside down is not a fixed point. A zero vector is replaced by an axis perpendicular to `up`. `square` is |a|², at
+/// most (2^16 − 1)².
 #[cold]
 #[inline(never)]
 fn lengthened(error: [i32; 3], up: [i32; 3], square: u32) -> [i32; 3] {
-    // Below 2^31.
+    // The length is below 2^31.
     let length = i64::from(square.isqrt()) << 15;
     let error = error.map(i64::from);
-    // At most 2^62.
+    // The sum of squares is at most 2^62.
     let now = error.iter().map(|x| x * x).sum::<i64>().isqrt();
     if now > 1 << 14 {
-        // At most 2^30 times 2^31, and the quotient at most the length, as no part is longer than the whole, but for the root's rounding.
+        // The product is at most 2^30·2^31. A component is at most the length, so the quotient is at most the length, apart from the rounding of
+        // the root.
         let most = i64::from(i32::MAX);
         return error.map(|x| (x * length / now).clamp(-most, most) as i32);
     }
@@ -153,7 +154,7 @@ fn lengthened(error: [i32; 3], up: [i32; 3], square: u32) -> [i32; 3] {
     across
 }
 
-/// At an end of the range of a count.
+/// Whether a count is at an end of its range.
 pub(super) const fn is_end(count: i32) -> bool {
     count ^ (count >> 31) == i16::MAX as i32
 }

@@ -16,9 +16,9 @@ pub enum Outcome {
     First,
     /// The attitude was integrated to the sample.
     Step,
-    /// Not later than the sample before, and ignored.
+    /// Ignored, because the sample is not later than the previous sample.
     Stale,
-    /// More than [`LONGEST_STEP`] after the sample before: the attitude was held and continues from here.
+    /// The attitude was held over a gap of more than [`LONGEST_STEP`] and continues from this sample.
     Gap,
 }
 
@@ -37,7 +37,7 @@ pub struct Counts {
     pub rejected: u64,
 }
 
-/// The largest bias, in 1/256 LSB: counts have 24 bits, so the difference has 32.
+/// The largest bias, in 1/256 LSB: counts have 24 bits, so the difference fits 32 bits.
 const LARGEST_BIAS: i32 = 1 << 30;
 
 /// The attitude of a body.
@@ -45,7 +45,7 @@ const LARGEST_BIAS: i32 = 1 << 30;
 pub struct Tracker {
     integrator: Integrator,
     tilt: Option<Tilt>,
-    /// Half an angle of the last reading's correction, 48 fraction bits, for the next step.
+    /// Half angle of the correction by the last reading, 48 fraction bits, applied in the next step.
     correction: [i64; 3],
     bias: [i32; 3],
     resting: Option<RestBias>,
@@ -68,7 +68,7 @@ impl Tracker {
         }
     }
 
-    /// Sets a constant bias of the gyroscope, in 1/256 LSB. It saturates to ±2^30, beyond every rate.
+    /// Sets a constant bias of the gyroscope, in 1/256 LSB. The bias saturates to ±2^30, beyond every rate.
     pub fn set_bias(&mut self, bias: [i32; 3]) {
         self.bias = bias.map(|bias| bias.clamp(-LARGEST_BIAS, LARGEST_BIAS));
         self.resting = None;
@@ -101,8 +101,6 @@ impl Tracker {
     }
 
     /// Takes a sample.
-    // The code of every sample is kept together and small: on the soft core most of the time goes into misses of the instruction cache. Rare
-    // code is elsewhere.
     #[inline(never)]
     pub fn on_sample(&mut self, sample: &Sample) -> Outcome {
         let rate = [0, 1, 2].map(|i| (i32::from(sample.gyro[i]) << 8) - self.bias[i]);
@@ -119,7 +117,7 @@ impl Tracker {
             *half += mem::take(correction);
         }
         self.integrator.turn(&half);
-        // A reading is compared with the attitude at its time: with the attitude before, a fast turn would give a tilt.
+        // The attitude after the step is the attitude at the time of the reading. With the attitude before the step a fast turn would cause a tilt.
         if let Some(tilt) = &mut self.tilt
             && !tilt.correct(
                 self.integrator.rounded(),
@@ -133,7 +131,7 @@ impl Tracker {
         self.counts.steps += 1;
         if let Some(resting) = &mut self.resting {
             resting.on_sample(sample, step);
-            // A mean of counts and of the first bias.
+            // The bias is a mean of counts and of the first bias, so the sum fits.
             self.bias = resting.bias();
         }
         if sample.gyro.into_iter().any(|count| is_end(count.into())) {
@@ -155,11 +153,11 @@ impl Tracker {
         Outcome::First
     }
 
-    /// A sample without a step: not later than the one before, or much later.
+    /// A sample that is not integrated: not later than the previous sample, or after a gap.
     #[cold]
     #[inline(never)]
     fn hold(&mut self, t_us: u32, step: u32, rate: [i32; 3]) -> Outcome {
-        // More than half of the range of stamps means an earlier time.
+        // A difference of more than half of the range of stamps means an earlier time.
         if step == 0 || step > u32::MAX / 2 {
             self.counts.stale += 1;
             return Outcome::Stale;
@@ -170,7 +168,7 @@ impl Tracker {
         Outcome::Gap
     }
 
-    /// After a gap or saturation: the last rate is unrelated to those before, and the tilt may have changed.
+    /// Restarts after a gap or saturation: the last rate is unrelated to earlier rates, and the tilt may have changed.
     #[cold]
     #[inline(never)]
     fn doubt(&mut self, rate: [i32; 3]) {

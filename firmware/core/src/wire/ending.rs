@@ -3,7 +3,7 @@
 use super::frame::{Message, write};
 use super::state::{Failure, State, Timing};
 
-/// Repetitions of the last message, which has no answer.
+/// Repetitions of the last message, because no side acknowledges this message.
 const COPIES: u8 = 3;
 /// Factor of the quiet time after a failure, which interrupts the other side's messages.
 const FAILED_QUIET_FACTOR: u64 = 10;
@@ -21,7 +21,7 @@ pub struct Ending {
 }
 
 impl Ending {
-    /// Ends with `last_message` (session and message), if any.
+    /// An ending that repeats `last_message` (session and message), if any.
     pub fn new(
         outcome: State,
         last_message: Option<(u8, Message<'static>)>,
@@ -48,7 +48,7 @@ impl Ending {
         Self::new(State::Failed(failure), None, timing, now_ms)
     }
 
-    /// Drops bytes that are not the caller's; returns their number.
+    /// Drops the remains of the transfer from received bytes; returns the number of dropped bytes.
     pub fn on_bytes(&mut self, now_ms: u64, bytes: &[u8]) -> usize {
         if self.quiet_ms == 0 {
             return 0;

@@ -21,7 +21,7 @@ pub fn crc32(data: &[u8]) -> u32 {
 /// Length and CRC-32 of a transfer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Manifest {
-    /// Its length in bytes, at most [`MAX_LENGTH`].
+    /// Length in bytes, at most [`MAX_LENGTH`].
     pub length: u32,
     /// The [`crc32`] of all bytes.
     pub crc32: u32,

@@ -1,7 +1,7 @@
 //! Frames: messages and their bytes.
 //!
-//! A frame's first byte has its kind in bits 3–0 and the session in bits 7–4; numbers are little-endian; a CRC-16 over all
-//! of it ends it.
+//! The first byte of a frame holds the kind in bits 3–0 and the session in bits 7–4. Numbers are little-endian. A CRC-16 of all
+//! earlier bytes ends the frame.
 
 use cobs::{CobsEncoder, DestBufTooSmallError, decode_in_place};
 
@@ -10,46 +10,46 @@ use super::state::Reason;
 
 /// Bytes of a data frame besides its data, as sent: the kind, the number, the block, the CRC-16, the COBS code and two zeros.
 pub const OVERHEAD: usize = 10;
-/// Longest frame as sent: the room that `poll` needs.
+/// Longest encoded frame: the room that `poll` needs.
 pub const MAX_FRAME: usize = OVERHEAD + (MAX_BLOCKS * BLOCK) as usize;
 
 /// CCITT polynomial, starting from all ones, so that leading zeros count.
 static CRC_16: crc::Crc<u16> = crc::Crc::<u16>::new(&crc::CRC_16_IBM_3740);
 
-/// A message of one side to the other.
+/// A message between sender and receiver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Message<'a> {
-    /// From the sender: length and CRC-32 of the transfer.
+    /// Message from the sender: length and CRC-32 of the transfer.
     Open(Manifest),
-    /// From the sender: some blocks.
+    /// Message from the sender: data blocks.
     Data(Data<'a>),
-    /// From the receiver: the received blocks.
+    /// Message from the receiver: map of the received blocks.
     Acknowledge(Acknowledge),
-    /// From the receiver: all blocks received, and whether the CRC-32 is right.
+    /// Message from the receiver: all blocks have arrived; the flag states whether the CRC-32 is right.
     Complete { verified: bool },
-    /// From the sender: the verdict is known.
+    /// Message from the sender: the verdict has arrived.
     Close,
-    /// From either: cancelled.
+    /// Message from either side: the transfer is cancelled.
     Abort(Reason),
 }
 
 /// The contents of a data frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Data<'a> {
-    /// Counts data frames, modulo 256.
+    /// Number of the data frame, modulo 256.
     pub number: u8,
-    /// The first block.
+    /// Number of the first block.
     pub block: u32,
-    /// Whole blocks, but for the end of the transfer.
+    /// Data of whole blocks; the last block of the transfer may be short.
     pub bytes: &'a [u8],
 }
 
 /// The contents of an acknowledgement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Acknowledge {
-    /// The last data frame received; 0 before the first.
+    /// Number of the last data frame received; 0 before the first.
     pub number: u8,
-    /// The first missing block.
+    /// Number of the first missing block.
     pub next: u32,
     /// Bit i: block `next` + i was received.
     pub map: u128,
@@ -97,7 +97,7 @@ fn write_body(
         Message::Acknowledge(Acknowledge { number, next, map }) => {
             let [low, middle, high, _] = next.to_le_bytes();
             body.push(&[head(ACKNOWLEDGE), number, low, middle, high])?;
-            // The bytes of the map between the zeros on both sides, after how many zeros come first.
+            // The map without leading and trailing zero bytes, and the number of leading zero bytes.
             let first = map.trailing_zeros() / 8;
             let past = (u128::BITS - map.leading_zeros()).div_ceil(8);
             if let Some(bytes) = map.to_le_bytes().get(first as usize..past as usize) {
@@ -128,10 +128,10 @@ impl Body<'_> {
     }
 }
 
-/// Cuts a byte stream at its zeros.
+/// Splits a byte stream into frames at zero bytes.
 pub struct Reader {
     buffer: [u8; MAX_FRAME],
-    /// Bytes of the frame so far; more than the buffer's length means too long for a frame.
+    /// Bytes of the frame so far; a count above the buffer's length marks a frame that is too long.
     length: usize,
 }
 
@@ -143,7 +143,7 @@ impl Reader {
         }
     }
 
-    /// Takes bytes up to the next zero; returns their number, and the frame if it is complete and valid.
+    /// Takes bytes up to the next zero; returns the number of taken bytes, and the frame if complete and valid.
     pub fn take(&mut self, bytes: &[u8]) -> (usize, Option<(u8, Message<'_>)>) {
         let zero = bytes.iter().position(|&byte| byte == 0);
         let part = bytes.get(..zero.unwrap_or(bytes.len())).unwrap_or_default();

@@ -5,12 +5,12 @@ use super::frame::OVERHEAD;
 
 /// Number of sent bytes in the statistics.
 const MEMORY: u32 = 8_192;
-/// A lost frame, in the units of `FrameSize::lost`.
+/// One lost frame in the units of `FrameSize::lost`.
 const FRAME: u32 = 256;
 
 /// The best length of a frame, from the rate of lost frames.
 ///
-/// A frame of n data bytes and h others, on a line that damages a byte with probability p, uses n/(n + h)·(1 − p)^(n + h)
+/// A frame of n data bytes and h further bytes, on a line that damages a byte with probability p, uses n/(n + h)·(1 − p)^(n + h)
 /// of the line's capacity. The maximum is at about n = √(h/p).
 pub struct FrameSize {
     /// Lost frames, in 1/256.
@@ -32,16 +32,16 @@ impl FrameSize {
     pub fn record(&mut self, bytes: u32, lost: u32) {
         self.bytes = self.bytes.saturating_add(bytes);
         self.lost = self.lost.saturating_add(lost.saturating_mul(FRAME));
-        // Old statistics fade.
+        // Older statistics get less weight.
         while self.bytes > MEMORY {
             self.bytes /= 2;
             self.lost /= 2;
         }
     }
 
-    /// Blocks a frame should have, 1 to [`MAX_BLOCKS`].
+    /// Best number of blocks per frame, 1 to [`MAX_BLOCKS`].
     pub fn blocks(&self) -> u32 {
-        // At most 10·8192·256, which fits.
+        // The product is at most 10·8192·256.
         let squared = OVERHEAD as u32 * self.bytes * FRAME / self.lost.max(1);
         ((squared.isqrt() + BLOCK / 2) / BLOCK).clamp(1, MAX_BLOCKS)
     }
@@ -49,8 +49,8 @@ impl FrameSize {
 
 /// Timeout of an answer.
 ///
-/// Each timeout is a little longer than the one before: a short one suits a bad line, which has no other users, and the
-/// number of requests to a slow side grows only with the square root of the time.
+/// Each timeout is slightly longer than the previous one: short first timeouts suit a bad line, and the number of requests to a slow
+/// side grows only with the square root of the time.
 pub struct Patience {
     since_ms: Option<u64>,
     tries: u64,
@@ -79,7 +79,7 @@ impl Patience {
         self.since_ms = Some(now_ms);
     }
 
-    /// An answer arrived; others may be pending.
+    /// Records an answer; further answers may be pending.
     pub const fn answered(&mut self, now_ms: u64) {
         *self = Self {
             since_ms: Some(now_ms),
@@ -87,7 +87,7 @@ impl Patience {
         };
     }
 
-    /// Whether the timeout has passed; then a new one starts.
+    /// Whether the timeout has passed; if so, a new timeout starts.
     pub fn is_over(&mut self, now_ms: u64) -> bool {
         let wait = FIRST_WAIT + LONGER * self.tries;
         let over = self

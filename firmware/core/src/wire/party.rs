@@ -6,9 +6,9 @@ use super::state::State;
 
 /// Either side of a transfer, for code that connects it to a line.
 ///
-/// Each method calls the one of [`Sender`] or [`Receiver`] with its name.
+/// Each method calls the method of [`Sender`] or [`Receiver`] with the same name.
 pub trait Party {
-    /// Processes received bytes; returns the number that belongs to the transfer.
+    /// Processes received bytes; returns the number of bytes that belong to the transfer.
     fn on_bytes(&mut self, now_ms: u64, bytes: &[u8]) -> usize;
     /// Writes the next frame, if any, and returns its length.
     fn poll(&mut self, now_ms: u64, out: &mut [u8]) -> usize;

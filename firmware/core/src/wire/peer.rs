@@ -3,7 +3,7 @@
 use super::ending::Ending;
 use super::frame::{Message, Reader};
 
-/// Reactions of a side to received frames.
+/// Reactions of a sender or receiver to received frames.
 pub trait Peer {
     /// Processes a valid frame.
     fn on_message(&mut self, now_ms: u64, session: u8, message: Message);
@@ -11,7 +11,7 @@ pub trait Peer {
     fn ending(&mut self) -> Option<&mut Ending>;
 }
 
-/// Passes the frames in `bytes` to a side; returns the number of bytes that belongs to the transfer.
+/// Passes the frames in `bytes` to a sender or receiver; returns the number of bytes that belong to the transfer.
 pub fn feed(reader: &mut Reader, peer: &mut impl Peer, now_ms: u64, bytes: &[u8]) -> usize {
     let mut taken = 0;
     while let Some(rest) = bytes.get(taken..).filter(|rest| !rest.is_empty()) {

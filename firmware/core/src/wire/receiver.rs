@@ -1,4 +1,4 @@
-//! The receiving side.
+//! The receiver of a transfer.
 
 use super::ending::Ending;
 use super::format::{BLOCK, CRC_32, MAX_LENGTH, Manifest, WINDOW};
@@ -38,13 +38,13 @@ impl<'a> Receiver<'a> {
         }
     }
 
-    /// Processes received bytes; returns the number that belongs to the transfer, which is less than all only after its end.
+    /// Processes received bytes; returns the number of bytes that belong to the transfer: all of them until the transfer ends.
     pub fn on_bytes(&mut self, now_ms: u64, bytes: &[u8]) -> usize {
         feed(&mut self.reader, &mut self.transfer, now_ms, bytes)
     }
 
-    /// Writes the next frame, if any, and returns its length. Call it regularly, as it also checks the time. `out` needs
-    /// [`MAX_FRAME`] bytes; a shorter one stays empty.
+    /// Writes the next frame, if any, and returns its length. Call this regularly, because timeouts are checked here. `out` needs
+    /// [`MAX_FRAME`] bytes; a shorter buffer stays empty.
     pub fn poll(&mut self, now_ms: u64, out: &mut [u8]) -> usize {
         if out.len() < MAX_FRAME {
             0
@@ -82,7 +82,7 @@ impl<'a> Receiver<'a> {
     }
 }
 
-/// The state apart from the reader, whose frames are borrowed.
+/// The state without the reader, because received frames borrow the reader.
 struct Transfer<'a> {
     buffer: &'a mut [u8],
     announced: Option<Manifest>,
@@ -104,11 +104,11 @@ struct Opened {
     next: u32,
     /// Bit i: block `next` + i was received.
     map: u128,
-    /// The last data frame.
+    /// Number of the last data frame.
     number: u8,
-    /// Over the blocks before `next`.
+    /// CRC-32 of the blocks before `next`.
     digest: crc::Digest<'static, u32>,
-    /// After the last block: whether the CRC-32 is right.
+    /// Whether the CRC-32 is right; `None` before the last block.
     verdict: Option<bool>,
 }
 
@@ -141,7 +141,7 @@ impl Peer for Transfer<'_> {
                     now_ms,
                 ));
             }
-            // A receiver's own messages are echoes.
+            // Messages of a receiver are echoes of the own frames.
             _ => return,
         }
         self.valid_ms = now_ms;
@@ -177,7 +177,7 @@ impl Transfer<'_> {
             return length;
         }
         if now_ms.saturating_sub(self.valid_ms) > self.timing.silence_ms {
-            // The sender may know the verdict and have ended.
+            // The sender may have received the verdict and ended.
             let outcome = match self.opened.as_ref().and_then(|opened| opened.verdict) {
                 Some(true) => State::Done,
                 Some(false) => State::Failed(Failure::Corrupt),
@@ -196,7 +196,7 @@ impl Transfer<'_> {
 
     fn abort(&mut self, reason: Reason, now_ms: u64) {
         if self.ending.is_none() {
-            // Before an `Open` no sender is known.
+            // The session is unknown before an `Open`.
             let last_message = self
                 .opened
                 .as_ref()
@@ -249,7 +249,7 @@ impl Opened {
             return;
         }
         self.number = number;
-        // Blocks before `next` are in the digest and must not change.
+        // Blocks before `next` are part of the CRC-32 and must not change.
         let first = block.max(self.next);
         let new = bytes
             .get(((first - block) * BLOCK) as usize..)
@@ -261,12 +261,12 @@ impl Opened {
             return;
         }
         room.copy_from_slice(new);
-        // 1 to 15 blocks, all within the map's bits.
+        // The frame has 1 to 15 blocks, all within the bits of the map.
         self.map |= ((1 << (past - first)) - 1) << (first - self.next);
         self.advance(buffer);
     }
 
-    /// Moves `next` over the received blocks, and the digest with it.
+    /// Advances `next` and the CRC-32 over the received blocks.
     fn advance(&mut self, buffer: &[u8]) {
         let blocks = self.map.trailing_ones();
         let from = self.next * BLOCK;

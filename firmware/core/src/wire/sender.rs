@@ -1,4 +1,4 @@
-//! The sending side.
+//! The sender of a transfer.
 
 use super::ending::Ending;
 use super::format::{BLOCK, MAX_LENGTH, Manifest};
@@ -8,7 +8,7 @@ use super::peer::{Peer, feed};
 use super::state::{Failure, Reason, State, Timing};
 use super::window::Window;
 
-/// Restarts of a transfer after a wrong CRC-32 of the whole.
+/// Number of restarts of a transfer after a wrong CRC-32.
 const RESTARTS: u8 = 3;
 /// Longest time without a new block, in multiples of the longest silence.
 const STALL_FACTOR: u64 = 4;
@@ -20,7 +20,8 @@ pub struct Sender<'a> {
 }
 
 impl<'a> Sender<'a> {
-    /// Starts to send `data`. `session` (modulo 16) separates this transfer from remains of the one before: increment it.
+    /// Starts to send `data`. `session` (modulo 16) separates this transfer from the remains of the previous transfer: increment the
+    /// number for each transfer.
     pub fn new(data: &'a [u8], session: u8, timing: Timing, now_ms: u64) -> Self {
         let mut transfer = Transfer {
             data,
@@ -47,13 +48,13 @@ impl<'a> Sender<'a> {
         }
     }
 
-    /// Processes received bytes; returns the number that belongs to the transfer, which is less than all only after its end.
+    /// Processes received bytes; returns the number of bytes that belong to the transfer: all of them until the transfer ends.
     pub fn on_bytes(&mut self, now_ms: u64, bytes: &[u8]) -> usize {
         feed(&mut self.reader, &mut self.transfer, now_ms, bytes)
     }
 
-    /// Writes the next frame, if any, and returns its length. Call it whenever the line takes more, as it also checks the
-    /// time. `out` needs [`MAX_FRAME`] bytes; a shorter one stays empty.
+    /// Writes the next frame, if any, and returns its length. Call this whenever the line accepts bytes, because timeouts are checked
+    /// here. `out` needs [`MAX_FRAME`] bytes; a shorter buffer stays empty.
     pub fn poll(&mut self, now_ms: u64, out: &mut [u8]) -> usize {
         if out.len() < MAX_FRAME {
             0
@@ -82,13 +83,13 @@ impl<'a> Sender<'a> {
         )
     }
 
-    /// Present number of data bytes a frame, at most 240, and fewer on a bad line.
+    /// Present number of data bytes per frame: at most 240, fewer on a bad line.
     pub fn frame_bytes(&self) -> u32 {
         self.transfer.frame_size.blocks() * BLOCK
     }
 }
 
-/// The state apart from the reader, whose frames are borrowed.
+/// The state without the reader, because received frames borrow the reader.
 struct Transfer<'a> {
     data: &'a [u8],
     manifest: Manifest,
@@ -97,7 +98,7 @@ struct Transfer<'a> {
     restarts: u8,
     window: Window,
     frame_size: FrameSize,
-    /// Until an acknowledgement comes.
+    /// Timeout of the next acknowledgement.
     patience: Patience,
     /// Time of the last valid frame.
     valid_ms: u64,
@@ -105,7 +106,7 @@ struct Transfer<'a> {
     progress_ms: u64,
     /// Largest number of blocks acknowledged without a gap.
     farthest: u32,
-    /// The receiver has answered.
+    /// Whether the receiver has answered.
     opened: bool,
     ending: Option<Ending>,
     state: State,
@@ -122,7 +123,7 @@ impl Peer for Transfer<'_> {
                     return;
                 }
             }
-            // Valid only after the last block was sent.
+            // A verdict is valid only after the last block was sent.
             Message::Complete { verified } if self.window.end == self.manifest.blocks() => {
                 if verified {
                     let close = Some((self.session, Message::Close));
@@ -138,7 +139,7 @@ impl Peer for Transfer<'_> {
                     now_ms,
                 ));
             }
-            // A sender's own messages are echoes.
+            // Messages of a sender are echoes of the own frames.
             _ => return,
         }
         self.valid_ms = now_ms;
@@ -150,7 +151,7 @@ impl Peer for Transfer<'_> {
 }
 
 impl Transfer<'_> {
-    /// Takes over an acknowledgement, unless it is impossible.
+    /// Applies an acknowledgement; ignores an impossible one.
     fn acknowledged(&mut self, acknowledge: Acknowledge, now_ms: u64) -> bool {
         let blocks = self.frame_size.blocks();
         let Some(fate) = self.window.update(acknowledge) else {
@@ -197,11 +198,11 @@ impl Transfer<'_> {
             return 0;
         }
         if sending {
-            // One block is enough to learn which others are missing, and a short frame is the safest.
+            // One block is enough to request the map of missing blocks, and a short frame is the least likely to be damaged.
             self.window.forget_first();
             return self.send_data(1, now_ms, out);
         }
-        // An `Open` asks for an answer at the start, and at the end for the verdict.
+        // An `Open` requests an answer at the start, and the verdict at the end.
         self.patience.begin(now_ms);
         write(self.session, Message::Open(self.manifest), out)
     }
@@ -228,7 +229,7 @@ impl Transfer<'_> {
         )
     }
 
-    /// Starts again from the beginning after a wrong CRC-32 of the whole.
+    /// Restarts the transfer after a wrong CRC-32.
     fn restart(&mut self, now_ms: u64) {
         let Some(restarts) = self.restarts.checked_sub(1) else {
             return self.fail(Failure::Corrupt, now_ms);
@@ -265,7 +266,7 @@ mod tests {
     use super::*;
     use crate::wire::Receiver;
 
-    /// Lets a sender whose manifest is wrong, which is what damage that no CRC-16 finds amounts to, talk to a receiver.
+    /// Runs a transfer whose manifest has a wrong CRC-32, which simulates damage that no CRC-16 detects.
     fn talk(sender: &mut Sender, receiver: &mut Receiver, mend_in_session: u8) {
         let mut frame = [0; MAX_FRAME];
         for now_ms in 0..10_000 {

@@ -3,35 +3,35 @@
 use super::format::WINDOW;
 use super::frame::Acknowledge;
 
-/// Maximum number of data frames in flight: their numbers are modulo 256, and half of them separates older from newer.
+/// Maximum number of data frames in flight: half of the 256 frame numbers, so that older and newer numbers can be told apart.
 const MAX_FRAMES: u8 = 120;
 
 /// Sent and acknowledged blocks.
 pub struct Window {
-    /// The first block that has not arrived.
+    /// Number of the first block that has not arrived.
     pub next: u32,
     /// The end of the blocks sent so far.
     pub end: u32,
     /// Bit i: block `next` + i has arrived.
     arrived: u128,
-    /// Bit i: block `next` + i was sent and is not known as lost.
+    /// Bit i: block `next` + i was sent and not reported lost.
     sent: u128,
     /// The last data frame of a block, by the block's number modulo the window.
     carriers: [u8; WINDOW as usize],
-    /// The last data frame that was sent.
+    /// Number of the last data frame sent.
     number: u8,
-    /// The last acknowledged data frame.
+    /// Number of the last acknowledged data frame.
     heard: u8,
 }
 
-/// Fate of blocks in flight by an acknowledgement.
+/// Result of an acknowledgement for the blocks in flight.
 pub struct Fate {
     pub arrived: u32,
     pub lost: u32,
     pub lost_frames: u32,
 }
 
-/// Blocks to put into a frame.
+/// Run of blocks for a data frame.
 pub struct Run {
     pub number: u8,
     pub block: u32,
@@ -51,7 +51,7 @@ impl Window {
         }
     }
 
-    /// Takes over an acknowledgement. `None` for an impossible one.
+    /// Applies an acknowledgement; `None` for an impossible one.
     pub fn update(&mut self, Acknowledge { number, next, map }: Acknowledge) -> Option<Fate> {
         let past = next.checked_add(u128::BITS - map.leading_zeros())?;
         let unheard = self.number.wrapping_sub(self.heard);
@@ -64,7 +64,7 @@ impl Window {
         let left_behind = shift.min(WINDOW) - (self.arrived & low_bits(shift)).count_ones();
         let arrived = left_behind + (map & !moved(self.arrived)).count_ones();
 
-        // An acknowledgement that withdraws a block shows that the one before was damaged.
+        // An acknowledgement that withdraws a block proves that the previous acknowledgement was damaged.
         let back = self.next.saturating_sub(next);
         self.sent = moved(self.sent).checked_shl(back).unwrap_or(0);
         self.arrived = map;
@@ -104,7 +104,7 @@ impl Window {
         self.sent &= !first;
     }
 
-    /// The next run of up to `most` blocks to send, of `total`; it counts as sent.
+    /// Takes the next run of up to `most` blocks to send, of `total`, and marks the run as sent.
     pub fn take(&mut self, most: u32, total: u32) -> Option<Run> {
         let settled = self.sent | self.arrived;
         let first = settled.trailing_ones();
@@ -117,7 +117,7 @@ impl Window {
             .min(most)
             .min(WINDOW - first)
             .min(total - block);
-        // Without a free number a probe repeats the last one, which is never marked as lost.
+        // Without a free frame number a probe repeats the last number, which is never marked as lost.
         if !self.is_full() {
             self.number = self.number.wrapping_add(1);
         }
@@ -168,7 +168,7 @@ mod tests {
             window.take(4, 100);
         }
         let says = |number, next, map| Acknowledge { number, next, map };
-        // Frames 1 and 3 came.
+        // Frames 1 and 3 have arrived.
         let fate = window.update(says(3, 4, 0b1111_0000)).expect("possible");
         assert_eq!((fate.arrived, fate.lost, fate.lost_frames), (8, 4, 1));
         assert_eq!(
@@ -177,11 +177,11 @@ mod tests {
                 .map(|run| (run.number, run.block, run.blocks)),
             Some((4, 4, 4))
         );
-        // What was never sent cannot have come.
+        // An acknowledgement of an unsent block is impossible.
         assert!(window.update(says(4, 13, 0)).is_none());
         assert!(window.update(says(4, 12, 1)).is_none());
         assert!(window.update(says(5, 12, 0)).is_none());
-        // A damaged one that was possible is taken back by the next.
+        // The next acknowledgement corrects a damaged acknowledgement that was possible.
         assert!(window.update(says(4, 12, 0)).is_some());
         assert!(window.update(says(4, 4, 0b1111_0000)).is_some());
         assert_eq!(

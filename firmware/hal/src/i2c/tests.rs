@@ -11,30 +11,30 @@ use litex_pac::bus::{self, Bus};
 use super::*;
 use crate::timer::tests::{Uptime, clock};
 
-/// Places in each queue.
+/// Capacity of each queue.
 const PLACES: usize = i2c::I2c::COMMAND_PLACES as usize;
 
-/// The master's registers, with a device that gives what it is asked for. Each look at the status lets it do a command.
+/// A model of the master's registers with a device. Each read of the status executes one command.
 struct Master {
-    /// What the device answers to.
+    /// Address of the device.
     address: u8,
-    /// Bytes that it acknowledges after its address.
+    /// Bytes that the device acknowledges after its address.
     acknowledged: usize,
     next: u8,
     commands: VecDeque<Command>,
     answers: VecDeque<u8>,
-    /// S, P and the bytes, sent or received (<), acknowledged (+) or not (-).
+    /// Trace of the bus: S, P, and bytes, sent or received (<), acknowledged (+) or not (-).
     log: Vec<String>,
     /// The next byte is an address.
     addressing: bool,
     transaction: bool,
     error: Error,
-    /// The error that comes with the next start.
+    /// Error reported at the next start.
     breaks: Error,
-    /// Nothing is done.
+    /// The model executes no command.
     hangs: bool,
     overfull: bool,
-    /// The register of rounds, and what is repeated.
+    /// The register `rounds`, and the repeated commands.
     repeats: u32,
     round: Vec<Command>,
     uptime: Uptime,
@@ -61,7 +61,7 @@ impl Master {
         }
     }
 
-    /// Does a round.
+    /// Executes one periodic read.
     fn repeat(&mut self) {
         if self.round.is_empty() {
             self.round = self.commands.drain(..).collect();
@@ -175,7 +175,7 @@ impl Bus for Registers {
 fn bus_with(master: Master) -> (I2c, Rc<RefCell<Master>>) {
     let master = Rc::new(RefCell::new(master));
     bus::connect(Registers(master.clone()));
-    // SAFETY: the registers are a model's.
+    // SAFETY: a model is behind the registers.
     let registers = unsafe { Peripherals::steal() }.i2c;
     (I2c::new(registers, clock()), master)
 }
@@ -275,7 +275,7 @@ fn the_remains_of_a_dropped_transaction_are_cleared() {
     }
     master.borrow_mut().hangs = false;
     i2c.read(0x68, &mut buffer).unwrap();
-    // The start was under way already.
+    // The start was already in progress.
     assert_eq!(log(&master), "S S d1+ <a0+ <a1+ <a2+ <a3- P");
 }
 
@@ -306,7 +306,7 @@ fn periodic_reads_are_taken_one_by_one_with_their_times() {
     let (mut i2c, master) = bus_with(Master::new());
     i2c.begin(READ).unwrap();
     let begun = master.borrow().uptime.now;
-    // 39,000 clock cycles, five rounds an interrupt.
+    // 39,000 clock cycles, five reads per interrupt.
     assert_eq!(master.borrow().repeats, 1 << 31 | 4 << 24 | 38_999);
     assert!(look(&mut i2c).is_none());
     for _ in 0..2 {
@@ -320,7 +320,7 @@ fn periodic_reads_are_taken_one_by_one_with_their_times() {
     assert!(look(&mut i2c).is_none());
     let round = "S d0+ 3a+ S d1+";
     assert_eq!(log(&master).matches(round).count(), 2);
-    // Another transaction ends them.
+    // Another transaction ends the periodic reads.
     i2c.write(0x68, &[1, 2]).unwrap();
     assert_eq!(master.borrow().repeats, 0);
     assert_eq!(look(&mut i2c).unwrap().0, Err(BusError::Reads));
@@ -335,7 +335,7 @@ fn an_error_of_periodic_reads_comes_behind_the_received_bytes() {
     assert!(look(&mut i2c).unwrap().0.is_ok());
     assert_eq!(look(&mut i2c).unwrap().0, Err(BusError::Late));
     assert_eq!(master.borrow().repeats, 0);
-    // A master that does nothing.
+    // A master that makes no progress.
     i2c.begin(READ).unwrap();
     let mut bytes = [0; 3];
     assert_eq!(block_on(i2c.next(&mut bytes)), Err(BusError::Timeout));

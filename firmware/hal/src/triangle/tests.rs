@@ -12,7 +12,7 @@ use super::*;
 
 const IDENT: u32 = triangle::Triangle::IDENT;
 
-/// Registers that keep what is written, and the addresses in the order of their writes.
+/// Registers that keep written values, and the addresses in the order of writes.
 #[derive(Default)]
 struct Block {
     values: BTreeMap<usize, u32>,
@@ -34,7 +34,7 @@ impl Bus for Registers {
 }
 
 fn registers() -> triangle::Triangle {
-    // SAFETY: the registers are a model's.
+    // SAFETY: a model is behind the registers.
     unsafe { Peripherals::steal() }.triangle
 }
 
@@ -46,7 +46,7 @@ fn probe(ident: u32) -> (Result<TriangleEngine, Absent>, Rc<RefCell<Block>>) {
     (TriangleEngine::probe(registers()), block)
 }
 
-/// A chunk of a triangle, behind a header.
+/// A mesh of one chunk with one triangle.
 fn mesh() -> Vec<u8> {
     let mut bytes = b"GLM1".to_vec();
     let mut put = |words: &[u32]| bytes.extend(words.iter().flat_map(|word| word.to_le_bytes()));
@@ -106,11 +106,11 @@ fn a_geometry_pass_is_described_before_it_is_started() {
 
     let r = registers();
     assert!(!r.geometry().read().start(), "not yet");
-    // SAFETY: nothing is behind the registers.
+    // SAFETY: the model has no engine that accesses memory.
     unsafe { engine.start_geometry(prepared) };
     let wide = |low: u32, high: u16| {
         let bits = u64::from(high) << 32 | u64::from(low);
-        // 44 bits with a sign.
+        // A signed number of 44 bits.
         (bits << 20).cast_signed() >> 20
     };
     let translation = [
@@ -178,7 +178,7 @@ fn a_raster_pass_is_described_before_it_is_started() {
             true,
         ),
     ] {
-        // SAFETY: nothing is behind the registers.
+        // SAFETY: the model has no engine that accesses memory.
         unsafe { engine.start_raster(&pass) };
         let start = r.raster().read();
         assert!(start.start() && start.slot() && !start.whole());

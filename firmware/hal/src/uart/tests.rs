@@ -45,7 +45,7 @@ impl Line {
         assert!(self.to_cpu.len() <= DEPTH);
     }
 
-    /// The other side takes `count` bytes.
+    /// The other end of the line takes `count` bytes.
     fn take(&mut self, count: usize) {
         if self.from_cpu.len() == DEPTH && count > 0 {
             self.pending |= TX;
@@ -109,7 +109,7 @@ fn started() -> (&'static Small, Rc<RefCell<Line>>) {
     let line = Line::new();
     bus::connect(Wire(line.clone()));
     let uart = Box::leak(Box::new(Small::new()));
-    // SAFETY: the registers are a model's.
+    // SAFETY: a model is behind the registers.
     uart.start(unsafe { Peripherals::steal() }.uart);
     (uart, line)
 }
@@ -120,7 +120,7 @@ fn receives_what_came_before_and_after_the_start() {
     line.borrow_mut().arrive(b"early");
     bus::connect(Wire(line.clone()));
     let uart = Small::new();
-    // SAFETY: the registers are a model's.
+    // SAFETY: a model is behind the registers.
     uart.start(unsafe { Peripherals::steal() }.uart);
     let mut buffer = [0; 8];
     assert_eq!(
@@ -171,7 +171,7 @@ fn a_writer_waits_only_so_long() {
     let (uart, line) = started();
     let mut writer = uart.writer(clock(), Duration::from_millis(1));
     assert_eq!(writer.flush(), Ok(()));
-    // The hardware holds 16, the queue 32.
+    // The hardware holds 16 bytes, the queue 32.
     assert_eq!(writer.write_all(&[1; 48]), Ok(()));
     assert_eq!(writer.write_ready(), Ok(false));
     assert_eq!(writer.write(b"x"), Err(TimedOut));
@@ -201,11 +201,11 @@ fn the_end_drains_the_queue_and_speaks_directly() {
     assert_eq!(uart.send(&[b'.'; 20]), 20);
     line.borrow_mut().take(10);
     uart.drain();
-    // SAFETY: the registers are a model's.
+    // SAFETY: a model is behind the registers.
     let mut direct = unsafe { Direct::seize() };
     write!(direct, "!").unwrap();
     line.borrow_mut().take(DEPTH);
     assert_eq!(line.borrow().sent, b"....................!");
-    // A line that takes nothing is given up.
+    // Sending stops if the line takes no bytes.
     assert!(write!(direct, "{:20}", "").is_err());
 }

@@ -1,13 +1,13 @@
 //! The clipper, for triangles that cross the near plane or leave the guard band.
 //!
-//! Clipping works on camera coordinates, before the division. An intersection is rounded from the exact one and does not depend
-//! on the direction of its edge: both triangles at an edge meet at the same vertex.
+//! Clipping works on camera coordinates, before the division. An intersection is the rounded exact value and does not depend on the
+//! direction of the edge, so both triangles at an edge get the same vertex.
 
 use crate::triangle::mesh_setup::MeshSetup;
 use crate::triangle::vertex::CameraVertex;
 
-/// Every plane replaces each run of outside vertices by two, and at most every second vertex is one:
-/// 3 → 4 → 6 → 9 → 13 → 19. (A convex polygon reaches 8, but rounding may bend one.)
+/// Every plane replaces each run of outside vertices by two vertices, and at most every second vertex is a run:
+/// 3 → 4 → 6 → 9 → 13 → 19. (A convex polygon reaches 8, but rounding may make a polygon concave.)
 const MAX_VERTICES: usize = 19;
 
 /// A clipped triangle.
@@ -57,7 +57,7 @@ impl Plane {
     /// All planes, in the order of clipping.
     pub const ALL: [Self; 5] = [Self::Near, Self::Left, Self::Right, Self::Top, Self::Bottom];
 
-    /// The exact distance of a vertex inwards, up to a positive factor of the plane; negative is outside.
+    /// The exact signed distance of a vertex, times a positive factor of the plane; negative is outside.
     pub fn distance(self, frame: &MeshSetup, vertex: &CameraVertex) -> i64 {
         let [width, height] = [frame.width, frame.height].map(i64::from);
         match self {
@@ -69,7 +69,7 @@ impl Plane {
         }
     }
 
-    /// Writes the part of `polygon` inside the plane to `left`. Returns false, without writing, for a polygon wholly inside.
+    /// Writes the part of `polygon` inside the plane to `left`. Returns false without writing if the whole polygon is inside.
     fn cut(self, frame: &MeshSetup, polygon: &Polygon, left: &mut Polygon) -> bool {
         let vertices = polygon.vertices();
         let Some(mut from) = vertices.last() else {
@@ -132,9 +132,9 @@ fn half_pixels(frame: &MeshSetup, x: i64) -> i64 {
     x << (24 - frame.scale_shift)
 }
 
-/// Whether a triangle is wholly off one side of the picture, behind the eye or not: the side's plane contains the eye.
+/// Whether a triangle is wholly off one side of the picture. The plane of a side contains the eye, so vertices behind the eye count too.
 ///
-/// A fast test: clipping such a triangle leaves nothing that covers a pixel.
+/// This fast test replaces clipping, which would leave no covered pixel.
 pub fn off_picture(frame: &MeshSetup, triangle: &[CameraVertex; 3]) -> bool {
     let off = |x: fn(&CameraVertex) -> i64, size: u32| {
         let places = triangle
@@ -159,7 +159,7 @@ pub fn clip(frame: &MeshSetup, triangle: [CameraVertex; 3]) -> Polygon {
 
 /// x·part/whole to nearest, ties up, for part ≤ whole < 2^61 and whole > 0.
 ///
-/// Long division: the product may have 100 bits, but the quotient has no more than x.
+/// Long division: the product may have 100 bits, but the quotient is at most x.
 fn portion(x: i64, part: u64, whole: u64) -> i64 {
     let size = x.unsigned_abs();
     let (mut quotient, mut rest) = (0i64, 0u64);
@@ -193,7 +193,7 @@ mod tests {
             state >> (64 - bits)
         };
         for round in 0..200_000u32 {
-            // Small numbers meet many ties.
+            // Small numbers have many ties.
             let (wide, long) = if round % 2 == 0 { (4, 5) } else { (61, 44) };
             let whole = random(wide) + 1;
             let part = random(wide) % (whole + 1);

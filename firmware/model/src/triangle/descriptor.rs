@@ -9,7 +9,7 @@ use crate::triangle::setup::{Plane, Setup};
 /// Columns of a group: the pixels that the raster pass draws in one clock.
 pub const GROUP: i32 = machine::GROUP as i32;
 
-/// A triangle after its setup. The light follows the words that gateware without smooth shading reads.
+/// A triangle after its setup. The words of the light follow the words read by gateware without smooth shading.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Descriptor {
     words: [u32; SMOOTH_WORDS],
@@ -20,7 +20,7 @@ const FLAT_WORDS: usize = machine::FLAT_DESCRIPTOR_BYTES as usize / 4;
 /// Words of 32 bits of a descriptor for gateware with smooth shading.
 const SMOOTH_WORDS: usize = machine::SMOOTH_DESCRIPTOR_BYTES as usize / 4;
 
-/// Words of 32 bits of a descriptor, a multiple of four, for gateware with this capability of shading.
+/// Number of 32-bit words of a descriptor, a multiple of four, for gateware with this best shading.
 pub const fn words(capability: Shading) -> usize {
     match capability {
         Shading::Flat => FLAT_WORDS,
@@ -29,10 +29,10 @@ pub const fn words(capability: Shading) -> usize {
 }
 
 impl Descriptor {
-    /// Packs a triangle; `colour` is that of a flat one.
+    /// Packs a triangle; `colour` is its colour under flat shading.
     pub fn new(setup: &Setup, colour: Rgb565) -> Self {
         let bounds = setup.bounds;
-        // Bounds are in the picture, so divisions need not look at signs.
+        // The bounds are in the picture and not negative, so unsigned divisions suffice.
         let group_start = setup.start_column / GROUP;
         let back = setup.start_column - GROUP * group_start;
         let mut bits = Packer::default();
@@ -57,13 +57,13 @@ impl Descriptor {
         Self { words: bits.words }
     }
 
-    /// The words for gateware with this capability of shading, the lowest bits first.
+    /// The words for gateware with this best shading, the lowest bits first.
     pub fn words(&self, capability: Shading) -> &[u32] {
         self.words.get(..words(capability)).unwrap_or_default()
     }
 }
 
-/// Packs bit fields one behind the other.
+/// Packs consecutive bit fields.
 #[derive(Default)]
 struct Packer {
     words: [u32; SMOOTH_WORDS],
@@ -71,7 +71,7 @@ struct Packer {
 }
 
 impl Packer {
-    /// Appends the lowest `width` bits of a value that fits them.
+    /// Appends the lowest `width` bits of a value that fits.
     fn put(&mut self, value: i64, width: usize) {
         for i in 0..width {
             let at = self.used + i;
@@ -93,8 +93,8 @@ impl Packer {
     }
 }
 
-/// The start of a band's list in words of 16 bytes from the start of its set. A list has room for 4 << `shift` entries; a row
-/// of a memory bank lies between two lists, so that neighbours are in different banks.
+/// The start of a band's list in words of 16 bytes from the start of its set. A list has room for 4 << `shift` entries; a gap of a
+/// row of a memory bank separates lists, so that neighbouring lists are in different banks.
 pub const fn list_word(band: u32, shift: u32) -> u32 {
     LIST_TABLE_WORDS + (band << shift) + LIST_GAP_WORDS * band
 }
@@ -121,7 +121,7 @@ pub const LENGTHS: usize = 4 * LIST_TABLE_WORDS as usize;
 /// Words of 32 bits of all lists of a set, with the table of their lengths: 4 MiB.
 pub const LIST_SET_WORDS: usize = 1 << 20;
 
-/// The `shift` of [`list_word`] for a picture of this width: the largest with which the lists of all its bands fit a set.
+/// The `shift` of [`list_word`] for a picture of this width: the largest value for which the lists of all bands fit a set.
 pub const fn list_shift(width: u32) -> u32 {
     let room = LIST_SET_WORDS as u32 / 4 - LIST_TABLE_WORDS;
     (room / size(width).bands() - LIST_GAP_WORDS).ilog2()
@@ -139,12 +139,12 @@ pub struct ListWriter<'a> {
     is_full: bool,
 }
 
-/// Descriptors or list entries without room.
+/// Error: no room for a descriptor or a list entry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Full;
 
 impl<'a> ListWriter<'a> {
-    /// An empty set in two regions of memory, for a picture of this width and gateware with this capability of shading.
+    /// An empty set in two regions of memory, for a picture of this width and gateware with this best shading.
     pub const fn new(
         descriptors: &'a mut [u32],
         lists: &'a mut [u32],
@@ -163,7 +163,7 @@ impl<'a> ListWriter<'a> {
         }
     }
 
-    /// Appends a triangle to the lists of all bands that its bounds meet; `colour` is that of a flat one.
+    /// Appends a triangle to the lists of all bands within its bounds; `colour` is its colour under flat shading.
     pub fn put(&mut self, setup: &Setup, colour: Rgb565) {
         let descriptor = Descriptor::new(setup, colour);
         let words = descriptor.words(self.capability);
@@ -174,7 +174,7 @@ impl<'a> ListWriter<'a> {
         };
         to.copy_from_slice(words);
         let (rows, shift) = (self.band_rows, self.list_shift);
-        // Bounds are in the picture and not empty.
+        // The bounds are in the picture and not empty.
         let (top, bottom) = (setup.bounds.top as u32, setup.bounds.bottom as u32);
         for band in top / rows..=(bottom - 1) / rows {
             let Some(length) = self.lengths.get_mut(band as usize) else {

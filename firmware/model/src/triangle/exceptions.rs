@@ -6,10 +6,10 @@ use crate::triangle::mesh_setup::MeshSetup;
 use crate::triangle::primitive::{Options, Placed, clip_fan, lit_corners};
 use crate::triangle::setup::Setup;
 
-/// Clips the exceptions of the gateware, by their `numbers` in the mesh, and emits setup and colour of every part that
-/// remains. Returns the number of triangles with such a part.
+/// Clips the exceptions of the gateware, given by their `numbers` in the mesh, and emits setup and colour of every remaining part.
+/// Returns the number of triangles with a remaining part.
 ///
-/// Ascending numbers, as the gateware writes them, are the fastest. Numbers beyond the mesh are ignored.
+/// Ascending numbers, the order of the gateware, are processed fastest. Numbers beyond the mesh are ignored.
 pub fn clip_exceptions(
     mesh: &Mesh,
     frame: &MeshSetup,

@@ -23,7 +23,7 @@ pub struct MeshSetup {
     pub v: [i32; 3],
     /// The forward axis, s2.23.
     pub n: [i32; 3],
-    /// −C·u and −C·v with 14 + f fraction bits, −C·n with 37; each s44.
+    /// The translation: −C·u and −C·v with 14 + f fraction bits, −C·n with 37; each s44.
     pub translation: [i64; 3],
     /// The near plane's distance, 37 fraction bits.
     pub near: i64,
@@ -79,7 +79,7 @@ struct Scale {
 impl Scale {
     /// The largest f with ceil(s·2^f)·(1 + 2^−12) < 2^24, and its scale.
     ///
-    /// s is in [40, 12800], so f is in 10…18. A number of the basis is at most 1 + 10^−4, and 2^−12 is more.
+    /// s is in [40, 12800], so f is in 10…18. A component of the basis is at most 1 + 10^−4, which is below 1 + 2^−12.
     fn new(width: u32, view: &View) -> (u32, Self) {
         let half_width = i64::from(view.half_width().to_bits());
         let numerator = |shift| i64::from(width / 2) << (28 + shift);

@@ -1,4 +1,4 @@
-//! One triangle between vertex stage and walker: facing, bounds, light, and the fan of a clipped one.
+//! One triangle between vertex stage and walker: facing, bounds, light, and the fan of a clipped triangle.
 
 use glint_core::colour::Shading;
 use glint_core::mesh::{Chunk, Rgb565, Triangle};
@@ -36,16 +36,16 @@ impl Default for Options {
 pub struct Placed {
     /// Vertices in clockwise order, and the visible side.
     pub oriented: Oriented,
-    /// Pixels that it may cover.
+    /// Bounds of the covered pixels.
     pub bounds: Bounds,
     /// Colour after flat shading.
     pub colour: Rgb565,
-    /// Light of its vertices under smooth shading, which replaces `colour`.
+    /// Light of the vertices under smooth shading, which replaces `colour`.
     pub lit: Option<[Lit; 3]>,
 }
 
 impl Placed {
-    /// `None` for a culled back face, and for a triangle that covers no pixel's centre.
+    /// Prepares a triangle; `None` for a culled back face, and for a triangle without a pixel centre in its bounds.
     pub fn new(
         frame: &MeshSetup,
         cull: bool,
@@ -79,11 +79,11 @@ impl Placed {
 
 /// The light of a triangle's vertices.
 ///
-/// Not inlined: flat triangles leave the instruction cache to other code.
+/// Not inlined, so that flat triangles do not load this code into the instruction cache.
 #[inline(never)]
 pub fn vertex_light(frame: &MeshSetup, indices: [u16; 3], chunk: &Chunk) -> [Light; 3] {
     indices.map(|i| {
-        // A checked mesh has all vertices of its indices.
+        // All indices of a checked mesh are valid.
         chunk.vertex(usize::from(i)).map_or(Light::default(), |v| {
             Light::new(v.colour, v.normal, &frame.n)
         })
@@ -114,7 +114,7 @@ pub fn clip_fan(
     let [Some(a), Some(b), Some(c)] = triangle.indices.map(|i| chunk.vertex(usize::from(i))) else {
         return;
     };
-    // The smallest position comes first, so that the order of the triangle's indices does not matter.
+    // The fan starts at the smallest position, so that the order of the triangle's indices does not matter.
     let [p, q, r] = [&a, &b, &c].map(|vertex| vertex.position);
     let vertices = if p <= q && p <= r {
         [a, b, c]

@@ -18,12 +18,12 @@ const fn inverses() -> [u32; 1024] {
     table
 }
 
-/// The bits of red, green and blue.
+/// Bits per channel: red, green and blue.
 const CHANNEL_BITS: [u32; 3] = [5, 6, 5];
 
-/// The colour of a pixel with these accumulators of light, and of depth plus half a code.
+/// The colour of a pixel from the accumulators of light and of depth plus half a code.
 ///
-/// The depth of a covered pixel is at least 2^7 codes. Below that the colour is meaningless.
+/// The depth of a covered pixel is at least 2^7 codes; smaller depths give a meaningless colour.
 pub fn colour(light: [u32; 3], depth: u32) -> Rgb565 {
     let shift = depth.leading_zeros().min(11);
     let inverse = INVERSE[((depth << shift) >> 21 & 0x3FF) as usize];

@@ -1,9 +1,8 @@
 //! The walker: finds the pixels of a triangle row by row, tests their depth and writes them.
 //!
 //! A triangle is convex, so each row has one span. The span starts where all edges of the left side pass and ends where an
-//! edge of the right side fails. From one row to the next both ends move along their edges, and the walker follows them pixel
-//! by pixel. Horizontal edges need no test: the bounds hold the
-//! rows at or below a top edge and above a bottom edge.
+//! edge of the right side fails. From row to row the walker follows both ends along their edges, pixel by pixel. Horizontal edges
+//! need no test, because the bounds contain only rows at or below a top edge and above a bottom edge.
 
 use core::ops::{Add, BitOr, Sub};
 
@@ -24,7 +23,7 @@ pub struct Coverage {
     pub drawn: u32,
 }
 
-/// Draws a triangle; `colour` is that of a flat one.
+/// Draws a triangle; `colour` is its colour under flat shading.
 pub fn draw(setup: &Setup, colour: Rgb565, target: &mut FrameBuffer) -> Coverage {
     match &setup.light {
         None => draw_with(setup, colour, target),
@@ -32,7 +31,7 @@ pub fn draw(setup: &Setup, colour: Rgb565, target: &mut FrameBuffer) -> Coverage
     }
 }
 
-/// Not inlined: flat triangles leave the instruction cache to other code.
+/// Not inlined, so that flat triangles do not load this code into the instruction cache.
 #[inline(never)]
 fn draw_smooth(setup: &Setup, light: &[Plane; 3], target: &mut FrameBuffer) -> Coverage {
     draw_with(setup, light.map(Accumulation::new), target)
@@ -184,7 +183,7 @@ fn fill(
 ) -> u32 {
     let start = row as usize * target.width as usize;
     let span = start + from as usize..start + to as usize + 1;
-    // The bounds are in the picture, so both spans exist.
+    // The bounds are in the picture, so both slices exist.
     let colours = target.colour.get_mut(span.clone()).unwrap_or_default();
     let depths = target.depth.get_mut(span).unwrap_or_default();
     let mut drawn = 0;
@@ -203,16 +202,16 @@ fn fill(
 
 /// One end of a row's span: the outermost column that passes the one or two edges of its side.
 ///
-/// Outwards, E' of these edges falls by |dy| a pixel. On a side with one edge the other is 0 everywhere, which passes.
+/// Outwards, E' of these edges decreases by |dy| per pixel. On a side with one edge the second E' is 0 everywhere, which passes.
 struct End<A> {
     value: [A; 2],
     inwards: [A; 2],
     down: [A; 2],
     column: i32,
     outwards: i32,
-    /// The outermost column in the bounds.
+    /// Outermost column of the bounds.
     outermost: i32,
-    /// The column beside the innermost: no column passes.
+    /// Column inside of the innermost column: if the end is there, no column passes.
     nowhere: i32,
 }
 
@@ -241,7 +240,7 @@ impl<A: Accumulator> End<A> {
         for (((value, inwards), down), edge) in
             slots.zip(setup.edges.iter().filter(|edge| on_this_side(edge)))
         {
-            // A narrow triangle's values fit.
+            // The values of a narrow setup fit 32 bits.
             *value = A::try_from(edge.start).unwrap_or_default();
             *inwards = A::from(edge.step_x.abs());
             *down = A::from(edge.step_y);
@@ -276,7 +275,7 @@ impl<A: Accumulator> End<A> {
     }
 }
 
-/// The bitwise or is negative if one of the values is.
+/// The bitwise or is negative if a value is negative.
 fn passes<A: Accumulator>([a, b]: [A; 2]) -> bool {
     a | b >= A::default()
 }

@@ -19,8 +19,8 @@ const fn seeds() -> [u16; 256] {
 
 /// 2^47/m for a mantissa m in [2^23, 2^24), in [2^23, 2^24).
 ///
-/// The error is at most one unit: 2^47/2^23 saturates to 2^24 − 1, all others are within 0.51. It never rises as m rises.
-/// Any other m gives a meaningless number.
+/// The error is at most one unit: 2^47/2^23 saturates to 2^24 − 1, all other results are within 0.51. The result never increases with m.
+/// An m outside the range gives a meaningless number.
 pub const fn recip(m: u32) -> u32 {
     let y0 = SEED[(m >> 15 & 0xFF) as usize] as u32;
     let y1 = (y0 << 7).wrapping_add_signed((y0 as i32).wrapping_mul(residue(m, y0)) >> 18);
@@ -42,7 +42,7 @@ const fn residue(m: u32, y: u32) -> i32 {
 pub struct Reciprocal {
     /// The mantissa, u24 in [2^23, 2^24).
     pub y: u32,
-    /// floor(log2 v).
+    /// Exponent floor(log2 v).
     pub lead: u32,
 }
 

@@ -1,4 +1,4 @@
-//! All triangles of a mesh, in the order of the gateware.
+//! Drawing of all triangles of a mesh, in the order of the gateware.
 
 use glint_core::camera::View;
 use glint_core::colour::Shading;
@@ -33,7 +33,7 @@ pub struct Stats {
     pub pixels_drawn: u64,
 }
 
-/// A triangle that reached the walker, or a part of a clipped one.
+/// A triangle that reached the walker, or a part of a clipped triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DrawnTriangle {
     /// Number of the triangle in the mesh, across all chunks.
@@ -46,17 +46,17 @@ pub struct DrawnTriangle {
     pub colour: Rgb565,
     /// Light of the vertices under smooth shading, which replaces `colour`.
     pub lit: Option<[Lit; 3]>,
-    /// Made by the clipper.
+    /// Whether the triangle was made by the clipper.
     pub clipped: bool,
 }
 
 /// Draws a mesh.
 ///
 /// `scratch` has room for the vertices of the largest chunk. Its contents and those of the frame buffer are overwritten.
-/// Triangles are drawn by index, then the clipped ones by index; where depths are equal the later one wins.
+/// Unclipped triangles are drawn by index, then clipped triangles by index; of equal depths the later triangle wins.
 ///
 /// # Errors
-/// [`RenderError`]; then the frame buffer is unchanged.
+/// [`RenderError`]; the frame buffer is then unchanged.
 pub fn render(
     mesh: &Mesh,
     view: &View,
@@ -70,7 +70,7 @@ pub fn render(
 /// Draws a mesh as [`render`] does, and calls `show` before each triangle.
 ///
 /// # Errors
-/// [`RenderError`]; then the frame buffer is unchanged.
+/// [`RenderError`]; the frame buffer is then unchanged.
 pub fn trace(
     mesh: &Mesh,
     view: &View,
@@ -87,7 +87,7 @@ pub fn trace(
 /// Draws a mesh as [`trace`] does, from its frame constants.
 ///
 /// # Errors
-/// [`RenderError`], also if the frame buffer differs in size from the constants; then the frame buffer is unchanged.
+/// [`RenderError`], also if the frame buffer differs in size from the constants; the frame buffer is then unchanged.
 pub fn trace_frame(
     mesh: &Mesh,
     frame: MeshSetup,
@@ -99,7 +99,7 @@ pub fn trace_frame(
     draw_frame(mesh, frame, target, scratch, options, &mut show)
 }
 
-/// [`trace_frame`] without its type parameter: compiled once, with the optimisation of this crate.
+/// [`trace_frame`] without the type parameter, compiled once with the optimisation of this crate.
 #[inline(never)]
 fn draw_frame(
     mesh: &Mesh,
@@ -120,7 +120,7 @@ fn draw_frame(
     let scratch = scratch
         .get_mut(..expected)
         .ok_or(RenderError::Scratch { expected, found })?;
-    // Filling with zeros is a `memset` of whole words.
+    // Zeros are filled by a `memset` of whole words.
     match options.clear {
         0 => target.colour.fill(0),
         clear => target.colour.fill(clear),
@@ -144,7 +144,7 @@ fn draw_frame(
 
 /// The path of a triangle after the vertex stage.
 enum Path<'a> {
-    /// Not drawn: wholly off one side of the picture, or behind.
+    /// Not drawn: wholly off one side of the picture, or behind the near plane.
     Unseen,
     /// To the setup.
     Regular([&'a ScreenVertex; 3]),
@@ -161,7 +161,7 @@ struct Renderer<'a, 'b> {
 }
 
 impl Renderer<'_, '_> {
-    /// Draws the triangles that need no clipping, and counts the others.
+    /// Draws the triangles that need no clipping, and counts the remaining triangles.
     fn regular(&mut self, mesh: &Mesh, scratch: &mut [Projected]) {
         let mut index = 0;
         for chunk in mesh.chunks() {
@@ -195,7 +195,7 @@ impl Renderer<'_, '_> {
         let several_chunks = mesh.chunks().nth(1).is_some();
         let mut index = 0;
         for chunk in mesh.chunks() {
-            // A single chunk is still in the scratch.
+            // The vertices of a single chunk are still in the scratch memory.
             if several_chunks {
                 self.project(&chunk, scratch);
             }
@@ -238,7 +238,7 @@ impl Renderer<'_, '_> {
 
     /// Whether all vertices are off the same side of the picture.
     fn off_screen(&self, [a, b, c]: [&ScreenVertex; 3]) -> bool {
-        // A bitwise and is negative when all are.
+        // The bitwise and is negative if all values are negative.
         let off = |[a, b, c]: [i32; 3], size: u32| {
             let last = (size << 8) as i32 - 1;
             a & b & c < 0 || (last - a) & (last - b) & (last - c) < 0
@@ -246,7 +246,7 @@ impl Renderer<'_, '_> {
         off([a.x, b.x, c.x], self.frame.width) || off([a.y, b.y, c.y], self.frame.height)
     }
 
-    /// Clips a triangle and draws its parts. Returns whether one reached the walker.
+    /// Clips a triangle and draws its parts. Returns whether a part reached the walker.
     fn clip(&mut self, index: u32, triangle: &Triangle, chunk: &Chunk) -> bool {
         let (frame, shading) = (self.frame, self.options.shading);
         let mut any = false;
@@ -263,7 +263,7 @@ impl Renderer<'_, '_> {
         any
     }
 
-    /// Setup, shading and walk of one screen triangle. Returns whether it reached the walker.
+    /// Setup, shading and walk of one screen triangle. Returns whether the triangle reached the walker.
     fn draw(
         &mut self,
         index: u32,

@@ -2,6 +2,6 @@
 
 /// x·2^−shift rounded to nearest, ties up. `shift` is in 1…31, and x has room for half a unit of the result.
 pub const fn nearest(x: i64, shift: u32) -> i64 {
-    // The mask changes nothing; with it, a 32-bit processor need not care for larger shifts.
+    // The mask keeps the value and tells the compiler that the shift is below 32, which is faster on a 32-bit processor.
     (x + (1u32 << (shift - 1)) as i64) >> (shift & 31)
 }

@@ -9,7 +9,7 @@ use crate::triangle::vertex::ScreenVertex;
 /// A triangle with a positive area, its vertices clockwise on the screen (y points down).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Oriented {
-    /// The vertices; those of a front face have 1 and 2 swapped.
+    /// The vertices, with 1 and 2 swapped for a front face.
     pub vertices: [ScreenVertex; 3],
     /// a = |2A| > 0, u40 with 16 fraction bits: a triangle is at most half of a square that holds it.
     pub doubled_area: u64,
@@ -18,9 +18,9 @@ pub struct Oriented {
 }
 
 impl Oriented {
-    /// Steps 1 to 3; `None` for a triangle without area.
+    /// Steps 1 to 3 of the setup (docs/formats.md); `None` for a triangle without area.
     ///
-    /// A difference of two places is s21 (at most 4095 pixels), a product below 2^40.
+    /// A difference of two positions is s21 (at most 4095 pixels), a product is below 2^40.
     pub fn new(vertices: [ScreenVertex; 3]) -> Option<Self> {
         let [v0, v1, v2] = vertices;
         match cross(v0, v1, v2) {
@@ -62,7 +62,7 @@ pub struct Bounds {
 impl Bounds {
     /// The pixels of the picture with centres c in min ≤ c < max; `None` without any.
     ///
-    /// The far sides are open: the top-left rule moves a point a little to the right and less down.
+    /// The upper limits are exclusive: the top-left rule moves a point slightly to the right and, even less, down.
     pub fn new(vertices: &[ScreenVertex; 3], width: u32, height: u32) -> Option<Self> {
         let (left, right) = columns(vertices.map(|v| v.x), width);
         let (top, bottom) = columns(vertices.map(|v| v.y), height);
@@ -127,8 +127,8 @@ pub struct Plane {
 impl Plane {
     /// Steps 6 to 8 for the values at the vertices, u18.6.
     ///
-    /// A difference of values is below 2^24 and one of places below 2^20, so N < 2^45. Inlined, because a flat triangle has one
-    /// plane only.
+    /// A difference of values is below 2^24 and a difference of positions below 2^20, so N < 2^45. Inlined, because a flat triangle has
+    /// a single plane.
     #[inline(always)]
     fn new(triangle: &Oriented, [w0, w1, w2]: [u32; 3], [i, j]: [i32; 2]) -> Self {
         let [v0, v1, v2] = triangle.vertices;
@@ -145,7 +145,7 @@ impl Plane {
         let reciprocal = Reciprocal::of(triangle.doubled_area);
         let gx = gradient(w10 * y20 - w20 * y10, reciprocal);
         let gy = gradient(w20 * x10 - w10 * x20, reciprocal);
-        // Modulo 2^64 here, so that bits 8 to 39 are right.
+        // The sum is modulo 2^64, which keeps bits 8 to 39 right.
         let (px, py) = (
             i64::from(256 * i + 128 - v0.x),
             i64::from(256 * j + 128 - v0.y),
@@ -161,7 +161,7 @@ impl Plane {
 
 /// nearest(N·y·2^−(lead + 8)) for |N| < 2^45, exact: at most 2^62.
 ///
-/// The product has 69 bits: N is split in two parts, and the low one is shifted out first.
+/// The product has 69 bits: N is split in two parts, and the product with the low part is shifted first.
 const fn gradient(numerator: i64, Reciprocal { y, lead }: Reciprocal) -> i64 {
     let shift = lead + 8;
     let high = (numerator >> 24) * y as i64;
@@ -178,13 +178,13 @@ const fn gradient(numerator: i64, Reciprocal { y, lead }: Reciprocal) -> i64 {
 pub struct Setup {
     /// Bounding rows and columns.
     pub bounds: Bounds,
-    /// The column of the start pixel, in the bounds and near the topmost vertex. Its row is the first of the bounds.
+    /// The column of the start pixel, in the bounds and near the topmost vertex. The row of the start pixel is the first row of the bounds.
     pub start_column: i32,
     /// The edges 0→1, 1→2 and 2→0.
     pub edges: [Edge; 3],
-    /// The depth.
+    /// Plane of the depth.
     pub depth: Plane,
-    /// Red, green and blue times the depth, under smooth shading.
+    /// Planes of red, green and blue times the depth, under smooth shading.
     pub light: Option<[Plane; 3]>,
     /// Whether E' fits 32 bits everywhere in the bounds and one pixel around them.
     pub narrow: bool,
@@ -217,9 +217,9 @@ impl Setup {
         }
     }
 
-    /// Steps 4 to 9, for a triangle with the light of its vertices in their order.
+    /// Steps 4 to 9, for a triangle with the light of its vertices in the order of the vertices.
     ///
-    /// Not inlined: flat triangles leave the instruction cache to other code.
+    /// Not inlined, so that flat triangles do not load this code into the instruction cache.
     #[inline(never)]
     pub fn smooth(triangle: &Oriented, bounds: Bounds, lit: &[Lit; 3]) -> Self {
         let setup = Self::new(triangle, bounds);
@@ -234,8 +234,8 @@ impl Setup {
     }
 }
 
-/// E is the doubled area of the triangle of an edge and the pixel: at most the area of the bounding box with a pixel around
-/// it. E' = E/256 fits 32 bits if that area is below 2^39.
+/// E is the doubled area of the triangle formed by an edge and the pixel: at most the area of the bounding box enlarged by a pixel on
+/// each side. E' = E/256 fits 32 bits if this area is below 2^39.
 fn narrow(vertices: &[ScreenVertex; 3]) -> bool {
     let extent = |[a, b, c]: [i32; 3]| i64::from(a.max(b).max(c) - a.min(b).min(c) + 2 * 256);
     extent(vertices.map(|v| v.x)) * extent(vertices.map(|v| v.y)) < 1 << 39

@@ -5,9 +5,9 @@ use glint_core::colour::Rgb565;
 use crate::triangle::facing::Facing;
 use crate::triangle::rounding::nearest;
 
-/// clamp(−N·n, 0, 1) of a normal N (s2.14) and the forward direction n (s2.23), u1.8; a back face negates N.
+/// Intensity clamp(−N·n, 0, 1) of a normal N (s2.14) and the forward direction n (s2.23), u1.8; a back face negates N.
 pub fn intensity(normal: [i16; 3], n: &[i32; 3], facing: Facing) -> u32 {
-    // Below 2^41.
+    // The scalar product is below 2^41.
     let product: i64 = core::iter::zip(normal, n)
         .map(|(a, &b)| i64::from(a) * i64::from(b))
         .sum();
@@ -39,7 +39,7 @@ impl Lit {
 
     /// P: each channel times w (u18.6) and half a code, to nearest, u18.6.
     pub fn weighted(self, w: u32) -> [u32; 3] {
-        // 24 by 14 bits.
+        // Product of 24 by 14 bits.
         self.0
             .map(|x| nearest(i64::from(x) * i64::from(w + 32), 14) as u32)
     }
@@ -48,9 +48,9 @@ impl Lit {
 /// The light of a vertex, for front faces and for back faces.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Light {
-    /// For front faces.
+    /// Light for front faces.
     pub front: Lit,
-    /// For back faces.
+    /// Light for back faces.
     pub back: Lit,
 }
 
@@ -64,7 +64,7 @@ impl Light {
         }
     }
 
-    /// The light for a triangle with this visible side.
+    /// The light for this visible side of a triangle.
     pub const fn to(self, facing: Facing) -> Lit {
         match facing {
             Facing::Front => self.front,

@@ -8,12 +8,12 @@ use crate::triangle::shade::Light;
 /// The guard band: 2047 pixels from the top left corner to every side, s12.8.
 pub const GUARD: i32 = 2047 << 8;
 
-/// A vertex before the division.
+/// A vertex before the perspective division.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CameraVertex {
     /// D·u in pixels at distance 1, s44 with 14 + f fraction bits.
     pub x: i64,
-    /// D·v, as `x`.
+    /// D·v, in the format of `x`.
     pub y: i64,
     /// D·n in world units, s44 with 37 fraction bits.
     pub z: i64,
@@ -26,7 +26,7 @@ pub struct CameraVertex {
 pub struct ScreenVertex {
     /// Pixels from the left, 8 fraction bits; s12.8 inside the guard band.
     pub x: i32,
-    /// Pixels from the top, as `x`.
+    /// Pixels from the top, in the format of `x`.
     pub y: i32,
     /// Depth code before rounding, u18.6; larger is nearer.
     pub w: u32,
@@ -39,12 +39,12 @@ pub enum Projected {
     Visible(ScreenVertex),
     /// Nearer than the near plane, or behind the eye.
     Behind,
-    /// Beyond the near plane, but outside the guard band. The position is saturated: only its side of the picture counts.
+    /// Beyond the near plane, but outside the guard band. The position is saturated, so only the side of the picture is meaningful.
     BeyondGuard(ScreenVertex),
 }
 
 impl Projected {
-    /// Position on the screen, inside the guard band or not; `None` behind the near plane.
+    /// Position on the screen, inside or outside the guard band; `None` for a vertex behind the near plane.
     pub const fn place(&self) -> Option<&ScreenVertex> {
         match self {
             Self::Visible(place) | Self::BeyondGuard(place) => Some(place),
@@ -91,18 +91,18 @@ pub fn project(frame: &MeshSetup, vertex: &CameraVertex) -> Projected {
     }
 }
 
-/// Steps 4 to 8, for a vertex that is not behind.
+/// Steps 4 to 8, for a vertex beyond the near plane.
 ///
 /// A position more than 4096 pixels from the centre saturates at 4096 pixels or more: it stays outside the guard band.
 ///
-/// Inlined, so that the loop over vertices is one piece of code: its parts never meet in a direct-mapped instruction cache.
+/// Inlined, so that the code of the loop over vertices is contiguous and does not conflict in the direct-mapped instruction cache.
 #[inline(always)]
 pub fn snap(frame: &MeshSetup, vertex: &CameraVertex) -> ScreenVertex {
     let Reciprocal { y, lead } = Reciprocal::of(vertex.z as u64);
     // Z is at least near, so lead ≥ 30 (and ≤ 40); with f in 10…18 the shift is in 6…24.
     let shift = frame.scale_shift + lead - 34;
     let divide = |x: i64, size: u32| {
-        // s14.11 times u24.
+        // Product of s14.11 and u24.
         let normalised = nearest(x, shift).clamp(-1 << 24, (1 << 24) - 1);
         (128 * size) as i32 + nearest(normalised * i64::from(y), 27) as i32
     };
@@ -115,7 +115,7 @@ pub fn snap(frame: &MeshSetup, vertex: &CameraVertex) -> ScreenVertex {
 
 /// Step 8: w = K/Z. A mesh within its radius never saturates.
 fn depth(frame: &MeshSetup, y: u32, lead: u32) -> u32 {
-    // 17 by 24 bits; the exponent is in −5…5, so the shift is in 6…26.
+    // Product of 17 by 24 bits; the exponent is in −5…5, so the shift is in 6…26.
     let product = u64::from(frame.depth.mantissa) * u64::from(y);
     let shift = (lead as i32 - 19 - frame.depth.exponent) as u32;
     nearest(product as i64, shift).min(((1 << 18) - 1) * 64) as u32

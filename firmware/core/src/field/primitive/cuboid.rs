@@ -1,4 +1,4 @@
-//! `box:X,Y,Z`, `cubes:PERIOD,HALF` and `planes:HALF`: boxes, alone or repeated, from outside or from within.
+//! `box:X,Y,Z`, `cubes:PERIOD,HALF` and `planes:HALF`: boxes, single or periodic, solid or as rooms.
 
 use core::fmt;
 
@@ -17,19 +17,19 @@ pub struct Cuboid {
     pub half: [Q32_32; 3],
 }
 
-/// Cubes at all multiples of the period, in all of space.
+/// Cubes at all multiples of the period along each axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cubes {
-    /// From centre to centre.
+    /// Distance between neighbouring centres.
     pub period: Q32_32,
     /// Half of a cube's side, below half the period.
     pub half: Q32_32,
 }
 
-/// A floor and a ceiling, which recede to the horizon.
+/// An infinite floor and ceiling.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Planes {
-    /// The height of the ceiling above the origin, and the depth of the floor below it.
+    /// The distance of ceiling and floor from the origin.
     pub half: Q32_32,
 }
 
@@ -122,10 +122,10 @@ impl Shape for Planes {
     }
 }
 
-/// Boxes, or the room inside one.
+/// A box, a lattice of boxes, or the room inside a box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FixedBox {
-    /// Half of each side; `None` where the box has no end.
+    /// Half of each side; `None` along axes without an end.
     half: [Option<i32>; 3],
     /// Whether the solid is outside the box.
     room: bool,
@@ -136,10 +136,10 @@ pub struct FixedBox {
 impl FlatSolid for FixedBox {
     const CODE: u8 = 1;
 
-    /// The largest of |x| − half.
+    /// The maximum of |x| − half over the axes.
     #[inline]
     fn sample(&self, point: [i32; 3]) -> Sample {
-        // 64 units are 2^18: the middle of the cell in which the point lies is where the lowest 18 bits are 0.
+        // 64 units are 2^18: the lowest 18 bits of a coordinate, as a signed number, are relative to the centre of its cell.
         let wrap = |x: i32| {
             if self.repeated {
                 cropped(x, 6 + FRACTION)
@@ -148,7 +148,7 @@ impl FlatSolid for FixedBox {
             }
         };
         let p = Folded::of(point.map(wrap)).map(|x| x.negated_if(x.value < 0));
-        // Beyond all points: below −2^21 and no larger in magnitude than 23 bits hold.
+        // Less than every distance to a face: below −2^21, within 23 bits.
         let nowhere = -1 << (10 + FRACTION);
         let outside =
             [0, 1, 2].map(|i: usize| self.half[i].map_or(nowhere, |half| p[i].value - half));

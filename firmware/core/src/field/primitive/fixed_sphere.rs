@@ -1,4 +1,4 @@
-//! Distances to spheres: a square root by a table, rounded down so that a step never passes a surface.
+//! Distances to spheres, by a table of square roots, rounded down so that a step never passes a surface.
 
 use crate::field::limits::MAX_SPHERES;
 use crate::field::surface::{Sample, Surface, magnitude};
@@ -6,13 +6,13 @@ use crate::field::surface::{Sample, Surface, magnitude};
 /// A sphere in field units, 12 fraction bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FixedSphere {
-    /// Its centre, s9.12.
+    /// The centre, s9.12.
     pub centre: [i32; 3],
-    /// Its radius, u9.12, above 2^6.
+    /// The radius, u9.12, above 2^6.
     pub radius: i32,
     /// Reciprocal of the radius: 2^37 over the radius shifted to 21 bits, 17 bits, nearest, saturated.
     pub inverse: u32,
-    /// Right shift, 6 to 20, that leaves 17 bits of a product with the radius and a number of 16 fraction bits.
+    /// Right shift, 6 to 20, to 17 bits, of the product of the radius and a number with 16 fraction bits.
     pub shift: u32,
 }
 
@@ -31,14 +31,14 @@ impl FixedSphere {
     }
 }
 
-/// Several spheres: one evaluation takes a pass for each of them.
+/// Several spheres; an evaluation takes one pass per sphere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FixedSpheres {
     /// The first `count` entries are valid.
     pub list: [FixedSphere; MAX_SPHERES],
-    /// 1 to 8.
+    /// Number of spheres, 1 to 8.
     pub count: usize,
-    /// Whether they repeat themselves every 64 units along each axis. Then there is one, about the origin.
+    /// Whether the solid is periodic with 64 units along each axis; it then has one sphere, about the origin.
     pub repeated: bool,
 }
 
@@ -46,14 +46,14 @@ pub struct FixedSpheres {
 const MOST: i32 = (1 << 21) - 1;
 
 impl FixedSpheres {
-    /// The nearest sphere; of equals, the first.
+    /// The nearest sphere; the first of equals.
     pub fn sample(&self, point: [i32; 3]) -> Sample {
         let mut nearest = Sample {
             distance: MOST,
             surface: Surface::Round { number: 0 },
         };
         for (number, sphere) in (0..).zip(self.list.iter().take(self.count)) {
-            // Below 2^23 before.
+            // The unsaturated distance is below 2^23.
             let distance = length(self.from(sphere, point)) - sphere.radius;
             if distance < nearest.distance {
                 nearest = Sample {
@@ -65,23 +65,23 @@ impl FixedSpheres {
         nearest
     }
 
-    /// A point as seen from a sphere's centre, s11.12.
+    /// A point relative to a sphere's centre, s11.12.
     pub fn from(&self, sphere: &FixedSphere, point: [i32; 3]) -> [i32; 3] {
-        // 64 units are 2^18: the middle of the cell in which the point lies is where the lowest 18 bits are 0.
+        // 64 units are 2^18: the lowest 18 bits of a coordinate, as a signed number, are relative to the centre of its cell.
         let beyond = if self.repeated { 14 } else { 9 };
         [0, 1, 2].map(|i: usize| (point[i] - sphere.centre[i]) << beyond >> beyond)
     }
 }
 
-/// √x of every x from 1 to 4 in steps of 1/128, by the step's number from 128 on, and how far the next one is: 18 fraction bits,
-/// rounded down. The line between two is below the root by a part of 2^−19 at most.
+/// √x for x from 1 to 4 in steps of 1/128, indexed by 128·x, and the difference to the next entry; 18 fraction bits, rounded
+/// down. Linear interpolation between entries is below the root by at most 2^−19 of it.
 const ROOTS: [(u32, u32); 512] = roots();
 
 const fn roots() -> [(u32, u32); 512] {
     let mut table = [(0, 0); 512];
     let mut i = 0;
     while i < table.len() {
-        // Squares begin at 1: entries below are unused.
+        // Entries for x below 1 are unused.
         let from = if i < 128 { 128 } else { i as u64 };
         let root = (from << 29).isqrt() as u32;
         table[i] = (root, ((from + 1) << 29).isqrt() as u32 - root);
@@ -90,13 +90,13 @@ const fn roots() -> [(u32, u32); 512] {
     table
 }
 
-/// The length of a vector whose parts have at most 23 bits: not more than it is, and less by 3 and a part of 2^−15 at most.
+/// The length of a vector with components of at most 23 bits, rounded down; the error is at most 3 plus 2^−15 of the length.
 fn length(q: [i32; 3]) -> i32 {
     let parts = q.map(magnitude);
     let Some(lead) = (parts[0] | parts[1] | parts[2]).checked_ilog2() else {
         return 0;
     };
-    // 17 bits of each, so that the largest fills them.
+    // Components scaled so that the largest has 17 bits.
     let square: u64 = parts
         .map(|part| u64::from((part << (21 - lead)) >> 5).pow(2))
         .iter()

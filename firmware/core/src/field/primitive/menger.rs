@@ -9,10 +9,10 @@ use crate::field::shape::{FlatConstants, FlatSolid, Placed, Shape};
 use crate::field::surface::{FRACTION, Sample};
 use crate::fixed::Q32_32;
 
-/// The deepest sponge.
+/// The largest number of levels.
 pub const MAX_DEPTH: u8 = 6;
 
-/// The Menger sponge that fills [−1, 1]³.
+/// The Menger sponge in [−1, 1]³.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Menger {
     /// Number of levels of holes, 1 to [`MAX_DEPTH`].
@@ -38,7 +38,7 @@ impl Shape for Menger {
     }
 
     fn placed(&self) -> Placed<FixedSponge> {
-        // 81/3^i, each an even number of 2^−12.
+        // 81/3^i, each an even multiple of 2^−12.
         let one = 1 << FRACTION;
         let [third, ninth] = [3, 9].map(|parts| (one / 2 + parts / 2) / parts * 2);
         let levels = [27 * one, 9 * one, 3 * one, one, third, ninth];
@@ -52,25 +52,25 @@ impl Shape for Menger {
     }
 }
 
-/// The sponge of half side 40.5 field units.
+/// The sponge with half side 40.5 field units.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FixedSponge {
-    /// S of every level: 27, 9, 3, 1, 1/3, 1/9, each an even number of 2^−12.
+    /// S of each level: 27, 9, 3, 1, 1/3, 1/9, each an even multiple of 2^−12.
     levels: [i32; MAX_DEPTH as usize],
-    /// Number of levels that count.
+    /// Number of evaluated levels.
     depth: u8,
-    /// Half the side of the cubes that are left: half of the last S.
+    /// Half the side of the smallest cubes: half of the last S.
     half: i32,
 }
 
 impl FlatSolid for FixedSponge {
     const CODE: u8 = 0;
 
-    /// Each level mirrors space until one of its cubes is left, and the hole through it has become its outside.
+    /// Each level mirrors space onto one of its cubes, and its holes onto the outside of this cube.
     ///
-    /// S − |x| is above S/2 where a coordinate lies in the middle third. A point is in a hole where two coordinates do; so the
-    /// largest is mirrored at S/2, by which the hole falls outside of the cube |x| ≤ S/2 and everything else stays as
-    /// it was. Mirrors and permutations keep the maximum norm.
+    /// S − |x| is above S/2 for a coordinate in the middle third. A point is in a hole if two coordinates are in the middle third:
+    /// mirroring the largest at S/2 moves the hole out of the cube |x| ≤ S/2 and keeps all other points inside. Mirrors and
+    /// permutations keep the maximum norm.
     #[inline]
     fn sample(&self, point: [i32; 3]) -> Sample {
         let mut p = Folded::of(point);

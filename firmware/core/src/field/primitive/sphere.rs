@@ -1,5 +1,5 @@
-//! `sphere:R`, `spheres:X,Y,Z,R;...`, `lattice:PERIOD,R` and `moving:R,ORBIT[,DEGREES]`: spheres, alone, several, repeated or on
-//! an orbit.
+//! `sphere:R`, `spheres:X,Y,Z,R;...`, `lattice:PERIOD,R` and `moving:R,ORBIT[,DEGREES]`: one sphere,
+//! several spheres, a lattice of spheres, or a sphere on an orbit.
 
 use core::fmt;
 
@@ -40,7 +40,7 @@ pub struct CentredSphere {
     pub radius: Q32_32,
 }
 
-/// One sphere to [`MAX_SPHERES`].
+/// Up to [`MAX_SPHERES`] spheres.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Spheres {
     list: [Sphere; MAX_SPHERES],
@@ -48,10 +48,10 @@ pub struct Spheres {
 }
 
 impl Spheres {
-    /// Several spheres, [`MAX_SPHERES`] at most.
+    /// A field of 1 to [`MAX_SPHERES`] spheres.
     ///
     /// # Errors
-    /// Their number, or the first number of a sphere that is not in its range.
+    /// The number of spheres, or the first number of a sphere, is out of range.
     pub fn new(spheres: &[Sphere]) -> Result<Self, FieldError<'static>> {
         let mut list = [Sphere::default(); MAX_SPHERES];
         let count = spheres.len();
@@ -64,29 +64,29 @@ impl Spheres {
         Ok(Self { list, count })
     }
 
-    /// Each of them.
+    /// The spheres in order.
     pub fn iter(&self) -> impl Iterator<Item = &Sphere> {
         self.list.iter().take(self.count)
     }
 }
 
-/// Spheres at all multiples of the period, in all of space.
+/// Spheres at all multiples of the period along each axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lattice {
-    /// From centre to centre, in world units.
+    /// Distance between neighbouring centres, in world units.
     pub period: Q32_32,
     /// Radius of each sphere, below half the period.
     pub radius: Q32_32,
 }
 
-/// A sphere that circles about the z axis at height 0.
+/// A sphere on an orbit about the z axis, at height 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MovingSphere {
     /// Radius, in world units.
     pub radius: Q32_32,
-    /// From the origin to its centre, in world units.
+    /// Distance from the origin to the centre, in world units.
     pub orbit: Q32_32,
-    /// Its place on the orbit, from the x axis towards the y axis.
+    /// Angle on the orbit, from the x axis towards the y axis.
     pub angle: Turns,
 }
 
@@ -221,11 +221,11 @@ impl Shape for MovingSphere {
 
     fn placed(&self) -> Placed<FixedSpheres> {
         let (sine, cosine) = sin_cos_q30(self.angle);
-        // At most 12, with 20 and 30 fraction bits.
+        // The distance is at most 12 with 20 fraction bits; the sine and cosine have 30 fraction bits.
         let along = |part: Q2_30| {
             Q32_32::from_bits(((self.orbit.to_bits() >> 12) * i64::from(part.to_bits())) >> 18)
         };
-        // The same box in every frame of a turn.
+        // The bounding box holds the whole orbit, so the scale is the same in every frame.
         let reach = self.orbit + self.radius;
         Placed {
             extent: Some([reach, reach, self.radius]),
