@@ -117,6 +117,19 @@ fn thresholds(views: &Views) -> Vec<Trial> {
     trials.collect()
 }
 
+/// A family of five thresholds: `change` makes the method of the family from Glint's in f64.
+fn by_threshold(
+    views: &Views,
+    family: &str,
+    exact_entry: bool,
+    change: impl Fn(Method) -> Method,
+) -> [Trial; 5] {
+    [6, 12, 24, 48, 96].map(|threshold| {
+        let method = change(in_f64(threshold));
+        views.variant(family, format!("{threshold}"), &method, exact_entry)
+    })
+}
+
 fn norms(views: &Views) -> Vec<Trial> {
     let families = [
         ("maximum norm, its rays", Norm::Maximum, Norm::Maximum),
@@ -130,13 +143,10 @@ fn norms(views: &Views) -> Vec<Trial> {
     let mut trials: Vec<_> = families
         .into_iter()
         .flat_map(|(family, distance, rays)| {
-            [6, 12, 24, 48, 96].map(|threshold| {
-                let method = Method {
-                    distance,
-                    rays,
-                    ..in_f64(threshold)
-                };
-                views.variant(family, format!("{threshold}"), &method, false)
+            by_threshold(views, family, false, |method| Method {
+                distance,
+                rays,
+                ..method
             })
         })
         .collect();
@@ -156,13 +166,10 @@ fn ends(views: &Views) -> Vec<Trial> {
     let trials = families
         .into_iter()
         .flat_map(|(family, relax, correct, exact_entry)| {
-            [6, 12, 24, 48, 96].map(|threshold| {
-                let method = Method {
-                    relax,
-                    correct,
-                    ..in_f64(threshold)
-                };
-                views.variant(family, format!("{threshold}"), &method, exact_entry)
+            by_threshold(views, family, exact_entry, |method| Method {
+                relax,
+                correct,
+                ..method
             })
         });
     trials.collect()
