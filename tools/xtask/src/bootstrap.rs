@@ -73,7 +73,7 @@ fn debian_packages() -> Result<()> {
     .with_context(|| format!("Debian packages: run: {by_hand}"))
 }
 
-/// A package counts as present if its program works, whatever installed it.
+/// Whether a package is present: its program works, installed as this package or otherwise.
 fn is_present(package: &str) -> bool {
     match package {
         "gcc-riscv64-unknown-elf" => {

@@ -1,4 +1,4 @@
-//! The virtual board in this process. Reads run it.
+//! The virtual board in this process. A read advances the board's time.
 
 use super::error::BoardError;
 use super::line::{Board, Memory};

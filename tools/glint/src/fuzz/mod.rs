@@ -32,7 +32,7 @@ impl Inputs {
     pub fn input(&self, number: u64) -> Vec<u8> {
         let mut random = Random::new(self.seed, number);
         let mut input = mutate(&self.corpus, self.target.words(), &mut random);
-        // A checksum rejects nearly every mutation, so half of the inputs get theirs corrected.
+        // A checksum rejects nearly every mutation, so half of the inputs get a correct checksum.
         if random.below(2) == 0 {
             self.target.repair(&mut input);
         }

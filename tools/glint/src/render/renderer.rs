@@ -1,4 +1,4 @@
-//! The renderer of frames, whatever stands behind it.
+//! The interface of the renderers: the model and boards.
 
 use super::stats::Stats;
 use crate::board::BoardError;

@@ -64,7 +64,7 @@ const HAND: [&[Wave]; 3] = [
 ];
 const NOD: [&[Wave]; 3] = [&[[0.2, 0.7, 0.0]], &[[1.3, 0.5, 0.0]], &[[0.15, 2.0, 0.0]]];
 const WALK: [&[Wave]; 3] = [&[[0.3, 0.1, 0.0]], &[[0.05, 2.0, 0.4]], &[[0.07, 1.0, 0.0]]];
-/// From the wrist to the sensor, in m.
+/// Vector from the wrist to the sensor, in m.
 const ARM: Vector = [0.1, 0.0, 0.0];
 
 impl Motion {

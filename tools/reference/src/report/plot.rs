@@ -42,7 +42,7 @@ pub struct Point {
     pub error: f64,
     /// Position on the vertical axis; without it the point is a dashed line at its error.
     pub cost: Option<f64>,
-    /// Whether Glint uses it: ringed.
+    /// Whether Glint uses the configuration; its point has a ring.
     pub shipped: bool,
 }
 

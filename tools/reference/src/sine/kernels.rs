@@ -29,7 +29,7 @@ pub struct Kernel {
     pub inputs: &'static str,
     /// Whether the inputs are phases, whose symmetries can be checked bit for bit.
     pub by_phase: bool,
-    /// Whether Glint uses it.
+    /// Whether Glint uses the kernel.
     pub shipped: bool,
     steps: u64,
     run: Box<Run>,

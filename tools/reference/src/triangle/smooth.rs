@@ -246,7 +246,7 @@ fn soup(random: &mut Pcg64Mcg, triangles: &[[[f64; 3]; 3]]) -> Vec<u8> {
                 random.random_range(-0.7..0.7),
             ]
             .map(quantised),
-            // One in two is white or black, for the steepest light.
+            // Half of the colours are white or black, for the steepest light.
             colour: Rgb565(
                 [0, 0xFFFF, random.random(), random.random()][random.random_range(0..4)],
             ),

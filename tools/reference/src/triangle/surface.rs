@@ -143,9 +143,9 @@ fn centre(column: u32, row: u32) -> Vector {
 pub enum Visible {
     /// No surface, for any snapping of the vertices.
     Background,
-    /// This triangle, for any snapping of the vertices.
+    /// A triangle, for any snapping of the vertices.
     Surface {
-        /// Its index in the scene's list of triangles.
+        /// Index of the triangle in the scene's list.
         triangle: usize,
         /// 1/z at the pixel's centre, z in world units.
         inverse_depth: f64,

@@ -66,9 +66,9 @@ impl Differences {
 struct Subject {
     name: String,
     exact: ProjectedTriangle,
-    /// Its corners' positions in f64, in pixels; undefined behind the eye.
+    /// Positions of the triangle's corners in f64, in pixels; undefined behind the eye.
     places: [[f64; 2]; 3],
-    /// Its corners as the model snapped them, in the order of `places`; `None` when it was clipped.
+    /// The triangle's corners as the model snapped them, in the order of `places`; `None` when it was clipped.
     snapped: Option<[SnappedVertex; 3]>,
     covered: Vec<bool>,
 }
@@ -230,7 +230,8 @@ impl Tally {
     fn add(&mut self, subject: &Subject, comparison: &Comparison) {
         let covered = subject.covered.iter().filter(|&&covered| covered).count();
         let projected = &comparison.projected;
-        // Both draw by the rules from vertices within a step, so only pixels that close to an edge can differ.
+        // Both rasterizers follow one rule and their vertices differ by a step at most, so only pixels within a step of an edge
+        // can differ.
         for &[column, row] in projected.pixels() {
             let class = subject.exact.classify(column, row, 2.0 / 256.0);
             assert_eq!(

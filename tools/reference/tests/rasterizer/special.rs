@@ -57,7 +57,7 @@ fn covered(renderer: &mut Renderer, case: &Case) -> usize {
 fn triangles_without_area_draw_nothing() {
     let point = [0.1, 0.2, 0.3];
     let triangles = [
-        // A point, a line with a return, a straight line, and a plane seen edge-on.
+        // Triangles without area: a point, a line there and back, three points of a line, and a triangle seen edge-on.
         [point; 3],
         [[-0.5, 0.0, 0.0], [0.5, 0.0, 0.25], [-0.5, 0.0, 0.0]],
         [[-0.5, 0.0, 0.0], [0.0, 0.0, 0.0], [0.5, 0.0, 0.0]],
@@ -72,7 +72,7 @@ fn slivers_a_thousand_times_longer_than_wide() {
     for i in (1..40).step_by(3) {
         let along = [0.9, 0.0, 0.02 * f64::from(i) - 0.4];
         let back = along.map(|x: f64| -x);
-        // One to forty steps of Q2.14 wide, at either end and in the middle.
+        // The third corner is one to forty steps of Q2.14 off the long edge, at its middle or at one of its ends.
         for (place, depth) in [(0.0, 0.0), (0.9, 1.0), (-0.9, -1.0)] {
             let off = [place, depth, place * along[2] / 0.9 + f64::from(i) * STEP];
             triangles.push([along, back, off]);

@@ -117,7 +117,7 @@ fn snapped_vertices_are_within_two_steps_of_the_projection_at_1280x720() {
     assert!(worst.vertices > 20_000, "{worst}");
 }
 
-/// The vertices that the trace shows are those that the vertex stage makes, in some order, clipped triangles apart.
+/// The trace of an unclipped triangle has the vertices of the vertex stage, in any order.
 #[test]
 fn drawn_triangles_have_the_snapped_vertices() {
     let mut renderer = Renderer::default();

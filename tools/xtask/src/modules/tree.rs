@@ -29,7 +29,7 @@ pub struct Module {
     pub name: String,
     /// The module whose file contains this module: for a module in its own file, the module itself.
     pub file_module: Id,
-    /// Its items, without those under `#[cfg(test)]`.
+    /// Items of the module, without those under `#[cfg(test)]`.
     pub items: Vec<Item>,
     parent: Option<Id>,
     names: HashMap<String, Vec<Name>>,

@@ -35,7 +35,7 @@ pub fn parse(file: &[u8]) -> Result<Polygons, FormatError> {
 fn read_body(header: &Header, mut source: impl Source) -> Result<Polygons, FormatError> {
     let mut polygons = Polygons::default();
     for element in &header.elements {
-        // An element without properties has no bytes, whatever its count.
+        // An element without properties has no bytes at any count.
         if element.properties.is_empty() {
             continue;
         }

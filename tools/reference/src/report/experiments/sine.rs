@@ -25,7 +25,7 @@ pub struct Row {
     pub config: String,
     /// Number format of the outputs.
     pub word_length: String,
-    /// Whether Glint uses it.
+    /// Whether Glint uses the kernel.
     pub shipped: bool,
     /// Measured inputs.
     pub inputs: String,

@@ -1,4 +1,4 @@
-//! Names, numbers and texts as Rust writes them.
+//! Names, numbers and texts in Rust's notation.
 
 /// Words that cannot name a function.
 const KEYWORDS: [&str; 5] = ["in", "loop", "mod", "type", "use"];

@@ -13,7 +13,7 @@ use crate::report::provenance::Provenance;
 pub struct FilterErrors {
     /// Name and parameters of the filter.
     pub filter: String,
-    /// Whether Glint uses it.
+    /// Whether Glint uses the filter.
     pub shipped: bool,
     /// Error at rest.
     pub rest: f64,

@@ -18,7 +18,7 @@ pub struct Trial {
     pub motion: String,
     /// Name of the method.
     pub method: String,
-    /// Whether Glint uses it.
+    /// Whether Glint uses the method.
     pub shipped: bool,
     /// Samples a second.
     pub rate: f64,

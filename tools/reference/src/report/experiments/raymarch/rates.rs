@@ -44,7 +44,7 @@ pub struct Case {
     pub prepass: bool,
     /// Width and height in pixels.
     pub size: (u32, u32),
-    /// The build that draws it.
+    /// The build of the SoC that draws the field.
     pub build: Build,
     cameras: fn() -> Vec<(&'static str, Camera)>,
     /// Rotations of each camera.

@@ -21,7 +21,7 @@ pub struct Trial {
     pub family: String,
     /// Value of the varied parameter.
     pub config: String,
-    /// Whether Glint uses it.
+    /// Whether Glint uses the configuration.
     pub shipped: bool,
     /// Intersection over union of the masks.
     pub iou: f64,
