@@ -6,7 +6,7 @@
 //!
 //! Fields with spheres use the Euclidean norm for distances and for the length of rays, which is just below 1.
 //!
-//! [`FieldSetup`] computes the constants of a frame, [`Ray`] is the start of a pixel's ray, [`FieldSetup::raymarch`] finds its end, and
+//! [`FieldSetup`] computes the constants of a frame, [`Ray`] is the start of a pixel's ray, [`FieldSetup::march`] finds its end, and
 //! [`paint()`] its colour. After a [`Cone`] for each block of pixels, [`Rays`] start nearer to the surface.
 
 mod blend;

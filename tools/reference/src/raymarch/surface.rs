@@ -77,7 +77,7 @@ pub struct Hit {
     pub normal: Vector,
     /// What was hit.
     pub face: Face,
-    /// The number of the ball in [`Field::Spheres`], or of the outermost union's member; otherwise, and inside, 0.
+    /// Number of the sphere in `Field::Spheres`, or of the member of the outermost union. 0 for other fields, and inside.
     pub member: usize,
 }
 
