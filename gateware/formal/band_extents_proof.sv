@@ -1,9 +1,9 @@
-// What has to go to memory, small: bands of one to four lines with one to three columns, in two frame buffers of four lines, any
-// groups, any bands, any traffic.
+// Proof of the planned words, at a small size: bands of one to four lines with one to three columns, in two frame buffers of
+// four lines, any groups, any bands, any traffic.
 //
-// Beside the module each column that is drawn is marked, in this band and, for each line of a frame buffer, in the last one there.
-// What must come of a line is from the first to the last column of both together. Nothing is known of a line at first, and of
-// those of a band that was given up: a band with one of them is whole.
+// The proof marks each drawn column, of this band and, for each line of a frame buffer, of the last band there. The expected
+// span of a line goes from the first to the last column of both. After reset, and after a cancelled band, the last columns
+// of the lines are unknown: a band with such a line is `whole`.
 
 `default_nettype none
 

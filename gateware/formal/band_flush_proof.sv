@@ -1,8 +1,9 @@
-// The flush of the band buffer, small: any of four rows in any spans, four words in flight, any back-pressure, any restart.
+// Proof of the flush of the band buffer, at a small size: any of four rows in any spans, four words in flight, any
+// back-pressure, any restart.
 //
-// The bank's row r holds r in every colour and r + 1 in every depth, and all of it is drawn. So the words that must come
-// are known: the colours of the rows in the spans, in their order, each once, and of each row both halves of the depths after the
-// colours; and those rows are clear afterwards, the others are not. The bank has band_bank's latencies and loses a row when it
+// The bank's row r holds r in every colour and r + 1 in every depth, and all rows are drawn. So the expected words are
+// known: the colours of the rows in the spans, in order, each once, then both halves of each row's depths. Afterwards these
+// rows are clear, the others are not. The bank has band_bank's latencies and loses a row when it
 // is cleared.
 
 `default_nettype none

@@ -1,7 +1,8 @@
-// The read-modify-write hazard of the band buffer: the result equals that of a memory without latency.
+// Proof of the read-modify-write hazard of the band buffer: the result equals that of a memory without latency.
 //
-// Two rows, any groups at any time, on a depth memory and its marks with band_bank's latencies. One pixel, any lane of any
-// row, is followed beside them: each group that is taken acts on it at once. When the pipe is empty both must agree.
+// Two rows, any groups at any time, on a depth memory and its marks with band_bank's latencies. The proof follows one pixel,
+// any lane of any row: each accepted group updates the followed copy at once. When the pipe is empty, copy and memory must
+// agree.
 
 `default_nettype none
 

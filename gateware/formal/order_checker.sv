@@ -1,8 +1,8 @@
-// Watches a buffer: what comes out is what came in, in its order, each item once, and it comes out in time.
+// Checks a buffer: items come out in order, unchanged, each once, and in time.
 //
-// The items are numbered: item n is given as n, and the n-th to come out must be n. A buffer never looks at what it
-// carries, so what holds for the numbers holds for any payload, as long as no two items that can be in the buffer at
-// once have the same number. The buffer must show an item within WITHIN clocks while it has one, and must take one
+// Items are numbered: item n carries n, and the n-th output must be n. A buffer does not depend on its payload, so the proof
+// holds for any payload, as long as no two items in the buffer have the same number. The buffer must show an item within
+// WITHIN clocks while it has one, and must take one
 // within WITHIN clocks while items are taken from it.
 
 `default_nettype none

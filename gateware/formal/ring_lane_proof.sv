@@ -1,7 +1,7 @@
-// A lane of the raymarcher with two places for ends, any rays, any field, and anybody who takes ends or not.
+// Proof of a lane of the raymarcher with two places for ends, any rays, any field, and any back-pressure.
 //
-// One ray, any of them, is followed by its column; what a lane does with a ray does not depend on its place. The field may say
-// anything, so rays take as many rounds as they may: `cap`, here two.
+// The proof follows any one ray by its column; a lane's results do not depend on the place. The field returns any distance,
+// so rays take up to `cap` rounds, here two.
 
 `default_nettype none
 

@@ -36,7 +36,7 @@ _PROPERTIES = [path for path in sorted(FORMAL.glob("*.sv")) if path.stem not in 
 
 @dataclass(frozen=True)
 class Proof:
-    """A top module with properties, the clocks after reset for which they are proven, and the modules that stand in for others."""
+    """A top module with properties, the proven clocks after reset, and the replacement modules."""
 
     name: str
     top: str
@@ -50,7 +50,7 @@ class Proof:
         return rtl.sources(self.top, others=(*_PROPERTIES, *(FORMAL / f"{name}.sv" for name in self.stand_ins)))
 
     def properties(self):
-        """The labels of the assertions."""
+        """Labels of the assertions."""
         return [label for source in self.sources for label in re.findall(r"(\w+):\s*assert\b", source.read_text())]
 
 
@@ -133,7 +133,7 @@ def _fails(proof):
 
 
 def mutate(proofs):
-    """Runs the mutations of proofs and returns the number of them, and of properties, that went unnoticed."""
+    """Runs the mutations of proofs; returns the number of undetected mutations and of properties without a mutation."""
     failures = 0
     for proof in proofs:
         noticed = set()

@@ -1,6 +1,6 @@
 // Checks one stream: an item that is valid and not taken stays valid and unchanged in the next clock.
 //
-// GIVEN = 1 assumes it, for a stream that comes from outside the module under proof; GIVEN = 0 asserts it.
+// GIVEN = 1 assumes this, for an input stream of the module under proof; GIVEN = 0 asserts it for an output stream.
 
 `default_nettype none
 

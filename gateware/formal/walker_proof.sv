@@ -1,8 +1,9 @@
-// Walking over triangles, with any edge functions and any traffic on both sides. Triangles are numbered in their colour; bounds are up
+// Proof of the walk over triangles, with any edge functions and any traffic on both sides. Triangles are numbered in their
+// colour; bounds are up
 // to three groups wide and two lines high.
 //
-// Groups are those of triangles that were taken, in their order, within their lines and bounds, none twice. Where
-// edges fail nowhere, every group of the bounds has to come. A triangle is left in time.
+// Groups belong to accepted triangles, in order, within their lines and bounds, none twice. Where no edge fails, every group
+// of the bounds comes out. The walk over a triangle ends in time.
 
 `default_nettype none
 

@@ -1,7 +1,7 @@
-// The write port, small: four places, bursts of two, any traffic and any memory.
+// Proof of the write port, at a small size: four places, bursts of two, any traffic and any memory.
 //
-// The words are numbered: word n has address n and data n. Whatever the port carries it never looks at, so what holds for the
-// numbers holds for any address and data. Memory takes the data of a command when it likes and does not look whether they are there.
+// The words are numbered: word n has address n and data n. The port does not depend on its payload, so the proof holds for
+// any address and data. Memory takes the data of a command at any time, without looking at valid.
 
 `default_nettype none
 

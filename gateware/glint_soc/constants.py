@@ -37,7 +37,7 @@ class Size:
 
 
 SIZES = (Size(320, 180, 45), Size(640, 360, 24), Size(1280, 720, 12))
-"""By code. Each is twice as wide and high as the one before; the last one is the screen."""
+"""Sizes by code. Each doubles the width and height of the previous one; the last one is the screen."""
 
 GROUP = 8
 """Neighbouring pixels of a line in one 128-bit word: a row of the band buffer."""
@@ -55,7 +55,7 @@ DESCRIPTOR_BYTES = {"flat": 48, "smooth": 96}
 """Bytes of a descriptor, without and with smooth shading."""
 
 CONES = (160, 90)
-"""Cones across and down, of an eye that looks alone at a size above the first; half of each otherwise."""
+"""Cones across and down for one eye at a size above the first; half of each otherwise."""
 
 for _size, _code in zip(SIZES, range(3)):
     if _size.width * _size.band_lines > BAND_PIXELS or _size.height % _size.band_lines or \

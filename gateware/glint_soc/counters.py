@@ -1,7 +1,7 @@
 """Free-running counters of a block: one line of the description each.
 
 The RTL reports events, in one packed struct `events_t` with a member of each counter's name: how much the counter grows in
-this clock. A module sets the members of what it counts itself and leaves the others 0; its parent ORs the structs of its parts.
+this clock. A module sets the members it counts and leaves the others 0; its parent ORs the structs of its parts.
 """
 
 from litex.soc.interconnect.csr import CSRStatus

@@ -1,4 +1,4 @@
-"""The SystemVerilog that follows from the shared constants and the blocks' descriptions."""
+"""SystemVerilog packages generated from the shared constants and the blocks' descriptions."""
 
 from . import constants, fields
 from .register_map import OPTIONAL_BLOCKS, PINNED
@@ -6,7 +6,7 @@ from .rtl import RTL
 from .virtual import VirtualSoC
 
 WRITER = ".venv/bin/python gateware/tests/run.py --packages"
-"""The command that writes them."""
+"""Command that writes the packages."""
 
 
 def full_soc():

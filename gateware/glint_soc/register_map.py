@@ -1,4 +1,4 @@
-"""Where every peripheral lives, and the identity computed from it.
+"""Addresses of all peripherals, and the build id computed from them.
 
 Addresses and interrupt numbers are pinned here, so that they are the same in every build: a block left out of a
 build leaves its window empty (it reads as 0) and moves nothing else.
@@ -13,7 +13,7 @@ from litex.soc.interconnect.csr import CSRStatus
 
 @dataclass(frozen=True)
 class Location:
-    """A peripheral's place: its window of `CSR_PAGING` bytes and its interrupt, if it has one."""
+    """Location of a peripheral: its window of `CSR_PAGING` bytes and its optional interrupt."""
 
     window: int
     irq: int | None = None

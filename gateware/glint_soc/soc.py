@@ -76,7 +76,7 @@ class GlintSoC(SoCCore):
         self.leds = GPIOOut(platform.request("leds"))
 
     def add_dram(self, phy):
-        """Adds the DDR3 controller over the board's PHY, then what reads and writes memory through it."""
+        """Adds the DDR3 controller over the board's PHY, then the blocks that access memory."""
         module = MT41K64M16(self.sys_clk_freq, "1:4")
         # Fewer turns between reads and writes, a dozen clocks each, than with LiteDRAM's runs of 32 reads and 16
         # writes. A port changes bank only when its commands are done, so fewer queued commands shorten the wait.

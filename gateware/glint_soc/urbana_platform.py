@@ -1,4 +1,4 @@
-"""The RealDigital Urbana (XC7S50-1CSGA324): its pins and how a bitstream gets onto it."""
+"""The RealDigital Urbana (XC7S50-1CSGA324): pins and programming."""
 
 from litex.build.generic_platform import IOStandard, Misc, Pins, Subsignal
 from litex.build.openfpgaloader import OpenFPGALoader

@@ -83,7 +83,7 @@ class CRG(LiteXModule):
 
 
 class VirtualSoC(GlintSoC):
-    """The SoC as the virtual board runs it."""
+    """SoC of the virtual board."""
 
     def __init__(self, build_id, blocks, smooth=False, fields=None):
         platform = Platform()

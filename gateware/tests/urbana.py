@@ -1,4 +1,4 @@
-"""The Urbana's generated files against facts that were written down apart from the platform file."""
+"""The Urbana's generated files against facts recorded independently of the platform file."""
 
 import csv
 import math
@@ -106,14 +106,14 @@ def check_clocks(_xdc, verilog, _script):
 
 
 def check_complete(_xdc, _verilog, _script):
-    """Each module of the design exists, the FPGA's own cells among them, and has the ports it is connected by."""
+    """Each instantiated module exists, the FPGA's primitives included, and has the connected ports."""
     run_yosys("read_verilog -lib +/xilinx/cells_sim.v +/xilinx/cells_xtra.v; hierarchy -check -top glint_urbana",
               synthesis_sources(_GATEWARE), folder=_GATEWARE) # where its memory images are
     return []
 
 
 def synthesis_sources(folder):
-    """The Verilog that the Vivado script in `folder` reads, such that Yosys takes it as well."""
+    """The Verilog of the Vivado script in `folder`, in a form that Yosys accepts."""
     verilog, script = folder / "glint_urbana.v", folder / "glint_urbana.tcl"
     for path in (verilog, script):
         if not path.exists():

@@ -1,4 +1,4 @@
-"""A module on its own as a shared library, which `glint_testbench::Module` loads."""
+"""Build of a single module as a shared library for `glint_testbench::Module`."""
 
 import shutil
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Calls of Verilator and other programs, and what a build depends on."""
+"""Calls of Verilator and other programs, and the inputs of builds."""
 
 import hashlib
 import os
@@ -40,7 +40,7 @@ def files_below(*roots):
 
 
 def digest(files, *recipe):
-    """A text that changes with the files of a build, and with how it is made."""
+    """Fingerprint of a build: its files and its options."""
     total = hashlib.sha256(repr(recipe).encode())
     for path in files:
         total.update(path.read_bytes())
@@ -48,5 +48,5 @@ def digest(files, *recipe):
 
 
 def is_current(stamp, inputs, *products):
-    """Whether the last build left `inputs` in its stamp, and its products."""
+    """Whether the products exist and the stamp of the last build equals `inputs`."""
     return all(product.exists() for product in products) and stamp.exists() and stamp.read_text() == inputs

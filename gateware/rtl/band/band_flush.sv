@@ -14,10 +14,11 @@
 // items {first, last}, last >= first; `spans_busy` is high until the last one has been taken. Throughput one word a clock as far
 // as spans and memory keep up; the first word comes 6 clocks after the first span is taken.
 //
-// Out: a stream of {address, data}; valid does not wait for ready, and a word holds until it has moved. A word has its place in
-// the FIFO before its row is read, so `out_ready` may stay low for any time.
+// Out: a stream of {address, data}; valid does not wait for ready, and a word holds until it has moved. A place in the FIFO
+// is reserved before a row is read, so `out_ready` may stay low for any time.
 //
-// `restart` and reset leave the band and clear all 2^ROW_BITS rows of both banks, one a clock, while `sweeping` is high. Nothing
+// `restart` and reset abandon the band and clear all 2^ROW_BITS rows of both banks, one a clock, while `sweeping` is high.
+// Nothing
 // may be drawn then. Words already read go out in the meantime or later.
 
 `default_nettype none

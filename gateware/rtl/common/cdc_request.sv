@@ -2,7 +2,7 @@
 //
 //   start ──▶ request (level, until done) ──▶ done ──▶ finished (one clock) ──▶ busy falls
 //
-// Payload travels beside it on plain registers. The source's payload must be stable from `start` until `finished`, the
+// The payload crosses in plain registers. The source's payload must be stable from `start` until `finished`, the
 // destination's from the clock of `done` at the latest until the next `request`. Both are then stable for at least one receiving
 // clock before use.
 //

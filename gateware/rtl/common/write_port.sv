@@ -1,8 +1,8 @@
 // Writes words of 16 bytes to memory through a native write port, in bursts.
 //
 // In: a stream of {address, data, strobe}, strobe bit k for byte k. Memory side, the LiteDRAM native write port: commands
-// by valid/ready, and the data of each in the same order some time later. Memory takes data without looking at valid; it is
-// always valid, as it is in its FIFO before the command goes out.
+// by valid/ready, and the data of each in the same order some time later. Memory takes data without looking at valid; data
+// are always valid, since they enter their FIFO before the command goes out.
 //
 // Memory takes a dozen clocks to turn from reads to writes and back. So words gather until BURST of them go out together; with
 // `hurry`, needed for the last words, they go out at once.
@@ -10,7 +10,7 @@
 //   in ──┬─▶ addresses ─▶ gate ─▶ command
 //        └─▶ words ─────────────▶ data
 //
-// Latency 3 clocks to the command in a burst, throughput a word a clock. `idle` when memory has taken all that came in.
+// Latency 3 clocks to the command in a burst, throughput a word a clock. `idle`: memory has taken all words.
 
 `default_nettype none
 

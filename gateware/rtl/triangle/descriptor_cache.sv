@@ -7,9 +7,8 @@
 //                    └─────────────▶ marks ─────────────────▶│       │
 //                                                            └───────┘
 //
-// Direct-mapped: a number's low bits choose the line. Tags change in the order of the numbers, in front, and lines in the same
-// order at the end, so a hit finds in its line the descriptor of its tag. An item that is no descriptor (`in_end`) passes in its
-// order.
+// Direct-mapped: a number's low bits choose the line. Tags change at the front in the order of the numbers, and lines at the
+// back in the same order, so a hit finds the descriptor of its tag. An item without a descriptor (`in_end`) passes in order.
 //
 // Latency 5 clocks for a hit, for a miss that of memory and 6 more. Throughput a hit in 4 clocks, a miss in 5, with SMOOTH in 8.
 // Descriptors must not change in memory while `forget` is low. A clock with `forget`, while the cache is empty of requests,

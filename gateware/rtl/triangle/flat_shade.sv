@@ -1,7 +1,7 @@
 // Flat shading with the light at the camera: intensity = clamp(nearest(∓N·n·2^8), 0, 1) and colour·intensity to nearest.
 //
 // Three products for N·n, one for blue and green side by side, one for red. Driven by the `count` of the setup's beat:
-// inputs hold during a beat, the colour is there in clock 10.
+// inputs hold during a beat; the colour is valid in clock 10.
 
 `default_nettype none
 

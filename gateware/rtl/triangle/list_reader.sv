@@ -10,8 +10,8 @@
 // clients of a read_port: the lengths of the lists, the lists, the descriptors. Throughput a descriptor in 5 clocks, with SMOOTH
 // in 8; a list takes at least 4 clocks.
 //
-// `list_error`: since `start` there was a list above the largest length, which was read as empty, or an entry above the set's
-// `counts` descriptors, which was replaced by another one.
+// `list_error`: since `start` a list exceeded the largest length and was read as empty, or an entry exceeded the set's
+// `counts` descriptors and was replaced by another one.
 //
 // `start` (one clock, not while a frame is read) begins with band 0. `forget`: see descriptor_cache. An item of `out` is a
 // descriptor, or with `out_end` the end of a band; the end of `last_band` is the last one. Streams: an item moves in a clock in

@@ -1,11 +1,11 @@
-// p = a·b + c, made to be one DSP48: signed, 25 by 18 bits, with registers on both sides of the multiplier.
+// p = a·b + c, mapped to one DSP48: signed, 25 by 18 bits, with registers on both sides of the multiplier.
 //
 //   a, b ─▶│a, b│─▶ × ─▶│product│─▶ + ─▶│p│
 //                                   ▲
 //                                   c
 //
-// Latency 3 clocks in which `enable` is high, 1 from `c`. Throughput one product a clock. `c` may be made of `p`: then it
-// accumulates. A wide factor goes through in pieces of 17 bits without a sign, and one with the sign.
+// Latency 3 clocks in which `enable` is high, 1 from `c`. Throughput one product a clock. `c` may depend on `p`, to
+// accumulate. A wide factor goes through in pieces of 17 bits without a sign, and one with the sign.
 
 `default_nettype none
 

@@ -6,8 +6,8 @@
 //   clock  0        1          4             7           10            13         14
 //          m ─▶ seed y0 ─▶ e0 = −m·y0 ─▶ y1 = y0 + y0·e0 ─▶ e1 = −m·y1 ─▶ y1·e1 ─▶ y = y1 + y1·e1
 //
-// −m·y is made as ~m·y + y, so that no adder stands before the multiplier. The powers of two that e is short of are 0 in
-// the bits that are kept.
+// −m·y is made as ~m·y + y, so that no adder stands before the multiplier. The residues e are differences from powers of
+// two, which are 0 in the kept bits.
 
 `default_nettype none
 

@@ -1,8 +1,8 @@
 // Edge functions 0 and 2 of the triangle setup at the start, biased, with 8 fraction bits: E − bias.
 //
-// Both edges have vertex 0 on them, so (px, py) is the start pixel's centre from vertex 0. An edge takes four products, those
-// of the 17 low bits of its steps first. Driven by the `count` of the setup's beat: inputs hold during a beat, E0 is there
-// from clock 7 and E2 in clock 10.
+// Both edges pass through vertex 0, so (px, py) is the start pixel's centre from vertex 0. An edge takes four products, those
+// of the 17 low bits of its steps first. Driven by the `count` of the setup's beat: inputs hold during a beat; E0 is valid
+// from clock 7, E2 in clock 10.
 
 `default_nettype none
 

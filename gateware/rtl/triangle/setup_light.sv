@@ -1,8 +1,10 @@
-// P of a triangle's vertices (docs/formats.md, "Smooth shading"): nearest((w + 1/2)·L) of each channel, as a plane through
-// them wants it: that of vertex 0, and how much more the others have. Stage 1 of the triangle setup.
+// P of a triangle's vertices (docs/formats.md, "Smooth shading"): nearest((w + 1/2)·L) of each channel, in the form that a
+// plane needs: the value at vertex 0, and the differences of the other vertices from it. Stage 1 of the triangle setup.
 //
-// Nine products, of a vertex's channels one after the other. Driven by the `count` and the `beat` of the setup: inputs hold during
-// a beat, and the results belong to the next one; the blue of `p20` is there from its clock 1 on, all else from the beginning.
+// Nine products, one channel of a vertex after the other. Driven by the `count` and the `beat` of the setup: inputs hold
+// during
+// a beat, and the results belong to the next one; the blue of `p20` is valid from clock 1 of that beat on, all others from
+// clock 0.
 
 `default_nettype none
 

@@ -1,7 +1,7 @@
 // The plane's normal in the triangle setup: Nx = w10·y20 + w20·y01 and Ny = w20·x10 + w10·x02, s46.
 //
-// Four products each, those of the four high bits first. Driven by the `count` of the setup's beat: inputs hold during a beat,
-// Nx is there from clock 7 and Ny in clock 10.
+// Four products each, those of the four high bits first. Driven by the `count` of the setup's beat: inputs hold during a
+// beat; Nx is valid from clock 7, Ny in clock 10.
 
 `default_nettype none
 

@@ -2,7 +2,7 @@
 // from there.
 //
 // Two products each of 17, 17 and 6 bits of the gradients from the low end, of which bits 8 to 39 are right. Driven by the
-// `count` of the setup's beat: inputs hold during a beat, the result is there from clock 9.
+// `count` of the setup's beat: inputs hold during a beat; the result is valid from clock 9.
 
 `default_nettype none
 

@@ -10,8 +10,8 @@ package triangle_pkg;
         logic [20:0] x;
     } screen_vertex_t;
 
-    // A vertex after the vertex stage. Behind the near plane it has no place; beyond the guard band the place only shows the
-    // sides of the picture it is beyond.
+    // A vertex after the vertex stage. A vertex behind the near plane has no place. Beyond the guard band the place is
+    // saturated and only says which sides of the picture the vertex is beyond.
     typedef struct packed {
         logic           behind;
         logic           beyond;

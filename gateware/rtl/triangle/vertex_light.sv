@@ -1,8 +1,8 @@
 // The light of a vertex (docs/formats.md, "Smooth shading"): L of each channel, and which side of a triangle gets it.
 //
-// Three products for N·n, one for green and blue side by side, one for red: a vertex in 6 clocks, as in `vertex_stage`, with which
-// it goes along: `take` is high for one clock when a vertex moves in there. Its light is there long before its place, and waits:
-// `give` takes it. Latency 17 clocks.
+// Three products for N·n, one for green and blue side by side, one for red: a vertex in 6 clocks, in step with
+// `vertex_stage`: `take` is high for one clock when a vertex enters that stage. The light waits in a FIFO for the vertex's
+// place; `give` takes it out. Latency 17 clocks.
 //
 //   clocks after `take`   1…3: N·n in     6: there     7, 8: |N·n| rounded     9: intensity     10, 11: colour in     13, 14: L
 

@@ -1,6 +1,6 @@
 // Step 5 of the vertex stage, the reciprocal of docs/formats.md, every 6 clocks: up to three vertices share one multiplier.
 //
-// Clocks are those of a vertex in `vertex_stage`; products are there three clocks after their factors.
+// Clocks are those of a vertex in `vertex_stage`; products follow three clocks after their factors.
 //
 //   9    m comes                 10, 13    −m·y0 and y0·e0'
 //   25   y is there, until 30    17, 20    −m·y1 and y1·e1'
@@ -30,7 +30,7 @@ module vertex_reciprocal (
     logic signed [36:0] c, p;
     logic        [24:0] sum;
 
-    // The powers of two that the residues e are short of are 0 in the bits that are kept.
+    // The residues e are differences from powers of two, which are 0 in the kept bits.
     assign e = p[25:8];
 
     logic unused;

@@ -1,6 +1,7 @@
 // The vertex stage (docs/formats.md, steps 1 to 8): a position of the mesh in, a place on the screen out, in order.
 //
-// A vertex in 6 clocks; latency 39 clocks, plus up to 5 until its turn. Four multipliers work through a schedule of 6
+// A vertex in 6 clocks; latency 39 clocks, plus up to 5 until its slot in the schedule. Four multipliers work through a
+// schedule of 6
 // clocks that never stands still: `half` is 0, 0, 0, 1, 1, 1 and `element` 0, 1, 2, 0, 1, 2 in clocks 1 to 6 of a vertex
 // (clock 0 is the one in which it moves in) and in all that are multiples of 6 later. A vertex moves in only if there is
 // a place for it in the FIFO at the end, so nothing needs to stop.
@@ -9,8 +10,8 @@
 //     in ─▶ transform ─▶ lead ──────▶ m ─▶ reciprocal ──▶ y ─▶ snap ───▶ FIFO ─▶ out
 //                  └──▶ X, Y ─▶ normalise ──────────▶ X', Y' ─┘
 //
-// The frame's constants hold from its first vertex in to its last vertex out. A vertex that is behind is 0 otherwise;
-// one beyond the guard band has its x and y saturated to s12.8.
+// The frame's constants hold from its first vertex in to its last vertex out. The other fields of a vertex behind the near
+// plane are 0; beyond the guard band x and y are saturated to s12.8.
 
 `default_nettype none
 

@@ -1,6 +1,6 @@
 // Steps 1 to 4 of the vertex stage: into the camera's frame, behind or not, and the mantissa of Z.
 //
-// Clocks are those of a vertex in `vertex_stage`, where `half` and `element` are explained.
+// Clocks are those of a vertex in `vertex_stage`, which explains `half` and `element`.
 //
 //   1…3    n·P, one product a clock     1…6   U·P, then V·P
 //   6      Z is there                   6, 9  X, Y are there (`planar`)

@@ -1,31 +1,34 @@
 // Walks over a triangle in groups of eight pixels, one group a clock, and sends the groups that it may cover.
 //
 //        ┌──────┐     row by row, from group_start:
-//        │ seek │───▶ until no edge fails in the whole group,
+//        │ seek │───▶ until no edge fails in the whole group
 //        └──────┘
 //   ◀─2─┤first├─1'─▶  then to the left while lane -1 is inside (1, 2, …), then from the snapshot of the first group
 //          │          to the right while lane 8 is inside (1', …), then down from the snapshot.
 //          ▼
 //
-// It is complete. Take the columns a row covers: those where all edges with step_x > 0 have E' >= 0, from column a on, and
-// all with step_x < 0, up to column b; a horizontal edge passes everywhere or nowhere.
-//  * An edge that fails at both ends of a group fails in all of it. If it rises, a is further right; if it falls, b is
-//    further left. Then the covered columns lie on that side. If edges disagree, if the way back leads where an edge has
-//    failed before, or out of the bounds, or if a horizontal edge fails, the row is empty: seeking never leaves a row that
-//    has something, and never ends in a group without it:
-//  * in a group g0…g7 where no edge fails everywhere a <= g7 and b >= g0; so if the row covers anything (a <= b), the group
-//    has some of it, max(a, g0)…min(b, g7). If it does not, this group comes out with nothing covered, and the row is done.
-//  * The covered columns are in one piece, so they go on to the left only if lane -1 is covered, and to the right only if
-//    lane 8 is. In a group where no edge fails everywhere, the edges that rise decide about lane -1 and those that fall about
-//    lane 8: the others are larger there than at their best lane here. A group that follows another one has no edge that fails.
-// A group comes out at most once: seeking passes only groups that do not come out, and both ways lead away from the first.
-// A row begins at the first group of the row above, or where that row was found empty; any place within the bounds is right.
+// The walk is complete. The covered columns of a row reach from a to b: edges with step_x > 0 have E' >= 0 from column a on,
+// edges with step_x < 0 up to column b; a horizontal edge passes everywhere or nowhere.
+//  * An edge that fails at both ends of a group fails in all of it. A failing edge that rises puts a further right, one that
+//    falls puts b further left; the covered columns lie on that side. If edges disagree, if the direction returns to a place
+//    where an edge has failed, or leaves the bounds, or if a horizontal edge fails, the row is empty. So seeking never
+//    leaves a row with coverage, and never ends in a group without coverage:
+//  * in a group g0…g7 where no edge fails everywhere, a <= g7 and b >= g0. So in a row with coverage (a <= b) the group
+//    covers max(a, g0)…min(b, g7). In an empty row the group comes out without coverage, and the row is done.
+//  * The covered columns are contiguous, so they continue to the left only if lane -1 is covered, and to the right only if
+//    lane 8 is. In a group where no edge fails everywhere, the rising edges decide lane -1 and the falling edges lane 8: the
+//    other edges are larger there than at their best lane in this group. A group that follows another one has no edge that
+//    fails.
+// A group comes out at most once: seeking visits only groups that do not come out, and both directions lead away from the
+// first group. A row begins at the first group of the row above, or at the last group tried in an empty row; any start
+// within the bounds is correct.
 //
-// It stays within group_left…group_right and the rows: edge functions are at most a pixel beside the picture, in their 34 bits.
+// The walk stays within group_left…group_right and the rows, so edge functions are evaluated at most a pixel beside the
+// picture and fit 34 bits.
 //
-// Both streams are valid/ready; ready passes through to the input, and nothing else does. Throughput one group a clock,
-// covered or not; the next triangle's first group follows the last one without a gap. `walking` is high in the clocks that
-// are spent on a group.
+// Both streams are valid/ready; only ready passes through combinationally, to the input. Throughput one group a clock,
+// covered or not; the next triangle's first group follows the last one without a gap. `walking` is high in the clocks spent
+// on a group.
 
 `default_nettype none
 
