@@ -162,6 +162,14 @@ fn last_place(fraction_bits: u32) -> f64 {
     (-f64::from(fraction_bits)).exp2()
 }
 
+/// Sine and cosine from fixed point with the unit `ulp`.
+fn scaled((sin, cos): (i32, i32), ulp: f64) -> SinCos {
+    SinCos {
+        sin: f64::from(sin) * ulp,
+        cos: f64::from(cos) * ulp,
+    }
+}
+
 /// A kernel of phases. A step is a phase of the first octant, evaluated at its images in all octants. Images with the same output
 /// bits, apart from signs and order, have the same error and are only counted; others are measured singly.
 fn phases(
@@ -171,10 +179,7 @@ fn phases(
     evaluate: impl Fn(u32) -> (i32, i32) + Sync + 'static,
 ) -> Kernel {
     let ulp = last_place(fraction_bits);
-    let real = move |(sin, cos): (i32, i32)| SinCos {
-        sin: f64::from(sin) * ulp,
-        cos: f64::from(cos) * ulp,
-    };
+    let real = move |fixed_point| scaled(fixed_point, ulp);
     let spacing = u64::from(spacing);
     Kernel {
         name,
@@ -233,11 +238,7 @@ fn radians(
         run: Box::new(move |range, stride, statistics| {
             for step in range {
                 let bits = (step * stride * spacing) as i64 - last;
-                let (sin, cos) = evaluate(bits as i32);
-                let got = SinCos {
-                    sin: f64::from(sin) * ulp,
-                    cos: f64::from(cos) * ulp,
-                };
+                let got = scaled(evaluate(bits as i32), ulp);
                 let truth = SinCos::of_radians(bits as f64 * ulp);
                 statistics.add(bits as u64, truth, got, 1.0);
             }
