@@ -29,7 +29,7 @@ impl<'l> Executor<'l> for Machine {
 ///
 /// # Errors
 /// The line is not a command, or the command fails.
-// Apart from the main loop, which would grow by some KiB.
+// Not inlined, because the main loop would grow by several KiB.
 #[inline(never)]
 pub fn execute<'l>(
     machine: &mut Machine,

@@ -1,19 +1,15 @@
 //! Calibration: results, and rejected samples.
 
+mod random;
+
 use glint_core::calibration::{
     Calibration, Progress, Report, RestBias, SAMPLES, SampleError, Units,
 };
 use glint_core::orientation::Sample;
 
-struct Random(u64);
+use random::Random;
 
 impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z ^ (z >> 31)
-    }
-
     /// Approximately normal with variance 1: the sum of twelve uniform numbers.
     fn normal(&mut self) -> f64 {
         (0..12)

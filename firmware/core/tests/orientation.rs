@@ -1,10 +1,14 @@
 //! Attitudes against closed forms: accuracy, length 1, and freedom from panics.
 
+mod random;
+
 use glint_core::fixed::{Q2_30, Q32_32, Turns};
 use glint_core::orientation::{
     Angles, Gain, Integrator, LONGEST_STEP, Outcome, Quaternion, Sample, Scale, TIME_CONSTANT,
     Tilt, Tracker,
 };
+
+use random::Random;
 
 type Parts = [f64; 4];
 
@@ -40,16 +44,6 @@ fn spun(rate: [f64; 3], seconds: f64) -> Parts {
     // The sine of many turns keeps 1e-16 of each.
     let scale = half.sin() / half;
     [half.cos(), x * scale, y * scale, z * scale]
-}
-
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z ^ (z >> 31)
-    }
 }
 
 #[test]

@@ -316,52 +316,48 @@ fn an_awful_line_is_slow_and_right_or_given_up() {
     assert_eq!(outcome.received, None);
 }
 
+/// Runs a transfer that must fail on both sides with these causes.
+fn assert_ends(scene: Scene, sender: Failure, receiver: Failure) {
+    let outcome = scene.run(&some_data(50_000));
+    assert_eq!(outcome.sender, State::Failed(sender));
+    assert_eq!(outcome.receiver, State::Failed(receiver));
+    assert_eq!(outcome.received, None);
+}
+
 #[test]
 fn a_sender_that_gives_up_is_heard() {
-    let outcome = Scene {
-        sender_aborts_at_ms: 500,
-        ..Scene::default()
-    }
-    .run(&some_data(50_000));
-    assert_eq!(
-        outcome.sender,
-        State::Failed(Failure::Aborted(Reason::Cancelled))
+    assert_ends(
+        Scene {
+            sender_aborts_at_ms: 500,
+            ..Scene::default()
+        },
+        Failure::Aborted(Reason::Cancelled),
+        Failure::AbortedByPeer(Reason::Cancelled),
     );
-    assert_eq!(
-        outcome.receiver,
-        State::Failed(Failure::AbortedByPeer(Reason::Cancelled))
-    );
-    assert_eq!(outcome.received, None);
 }
 
 #[test]
 fn a_receiver_that_gives_up_is_heard() {
-    let outcome = Scene {
-        receiver_aborts_at_ms: 500,
-        ..Scene::default()
-    }
-    .run(&some_data(50_000));
-    assert_eq!(
-        outcome.sender,
-        State::Failed(Failure::AbortedByPeer(Reason::Cancelled))
+    assert_ends(
+        Scene {
+            receiver_aborts_at_ms: 500,
+            ..Scene::default()
+        },
+        Failure::AbortedByPeer(Reason::Cancelled),
+        Failure::Aborted(Reason::Cancelled),
     );
-    assert_eq!(
-        outcome.receiver,
-        State::Failed(Failure::Aborted(Reason::Cancelled))
-    );
-    assert_eq!(outcome.received, None);
 }
 
 #[test]
 fn a_cut_line_ends_both_sides() {
-    let outcome = Scene {
-        cut_at_ms: 500,
-        ..Scene::default()
-    }
-    .run(&some_data(50_000));
-    assert_eq!(outcome.sender, State::Failed(Failure::Silence(5_000)));
-    assert_eq!(outcome.receiver, State::Failed(Failure::Silence(2_000)));
-    assert_eq!(outcome.received, None);
+    assert_ends(
+        Scene {
+            cut_at_ms: 500,
+            ..Scene::default()
+        },
+        Failure::Silence(5_000),
+        Failure::Silence(2_000),
+    );
 }
 
 #[test]

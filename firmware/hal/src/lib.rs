@@ -23,6 +23,8 @@ pub mod gpio;
 pub mod i2c;
 pub mod interrupt;
 pub mod raymarch;
+#[cfg(test)]
+mod recording;
 pub mod scanout;
 pub mod timer;
 pub mod triangle;

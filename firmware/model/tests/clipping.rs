@@ -145,6 +145,18 @@ fn from_inside_every_pixel_is_covered() {
     assert!(twice < pixels as u64 / 100_000, "{twice}");
 }
 
+/// A camera at the origin that looks along y.
+fn level_camera(near: f64) -> Camera {
+    Camera {
+        eye: [0.0; 3],
+        u: [1.0, 0.0, 0.0],
+        v: [0.0, 0.0, -1.0],
+        n: [0.0, 1.0, 0.0],
+        half_width: 0.9,
+        near,
+    }
+}
+
 /// Position of cuts: the picture of a square across the near plane ends at the right lines, with the right depths.
 #[test]
 fn the_near_plane_cuts_where_it_is() {
@@ -160,15 +172,7 @@ fn the_near_plane_cuts_where_it_is() {
     };
     for near in [0.01, 0.1, 0.5, 1.0] {
         for size in SIZES {
-            let camera = Camera {
-                eye: [0.0; 3],
-                u: [1.0, 0.0, 0.0],
-                v: [0.0, 0.0, -1.0],
-                n: [0.0, 1.0, 0.0],
-                half_width: 0.9,
-                near,
-            };
-            let view = camera.rounded();
+            let view = level_camera(near).rounded();
             let picture = Picture::of(&floor, &view, size, true);
             assert_eq!(picture.stats.clipped, 2);
             let frame = MeshSetup::new(&view, size.0, size.1, 56_756).unwrap();
@@ -209,31 +213,39 @@ fn the_near_plane_cuts_where_it_is() {
 /// A vertex at the eye, a vertex on the near plane, and triangles seen edge-on.
 #[test]
 fn apex_at_the_eye() {
-    let camera = |near| Camera {
-        eye: [0.0; 3],
-        u: [1.0, 0.0, 0.0],
-        v: [0.0, 0.0, -1.0],
-        n: [0.0, 1.0, 0.0],
-        half_width: 0.9,
-        near,
-    };
     let far = [
         [-8000, 16000, -6000],
         [8000, 16000, -6000],
         [0, 16000, 7000],
     ];
     // A pyramid with its tip at the eye covers the same pixels as its base, except for slivers of half a subpixel.
-    let base = Picture::of(&Model::soup(&[far]), &camera(0.01).rounded(), SIZE, false);
+    let base = Picture::of(
+        &Model::soup(&[far]),
+        &level_camera(0.01).rounded(),
+        SIZE,
+        false,
+    );
     let tip = [0, 0, 0];
     let sides: Vec<_> = (0..3).map(|i| [tip, far[i], far[(i + 1) % 3]]).collect();
-    let edge_on = Picture::of(&Model::soup(&sides), &camera(0.01).rounded(), SIZE, false);
+    let edge_on = Picture::of(
+        &Model::soup(&sides),
+        &level_camera(0.01).rounded(),
+        SIZE,
+        false,
+    );
     assert_eq!(edge_on.stats.clipped, 3);
     assert!(edge_on.covered() < 20, "{}", edge_on.covered());
     assert!(base.covered() > 2000);
     // A vertex exactly on the near plane is not behind.
     let on = [[-8000, 8192, -6000], [8000, 8192, -6000], [0, 8192, 7000]];
-    let [at, beyond] = [0.5, 0.500_01]
-        .map(|near| Picture::of(&Model::soup(&[on]), &camera(near).rounded(), SIZE, false));
+    let [at, beyond] = [0.5, 0.500_01].map(|near| {
+        Picture::of(
+            &Model::soup(&[on]),
+            &level_camera(near).rounded(),
+            SIZE,
+            false,
+        )
+    });
     assert_eq!((at.stats.drawn, at.stats.clipped), (1, 0));
     assert_eq!(
         (beyond.stats.drawn, beyond.stats.clipped, beyond.covered()),

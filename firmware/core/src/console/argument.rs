@@ -7,22 +7,22 @@ use super::syntax::{Kind, Parameter, Shape, Syntax};
 use super::words::{Word, Words};
 use crate::choice::Choice;
 
-/// The type of an argument.
+/// The type of an argument, of one or several words.
 pub trait Argument {
-    /// The value that the words of the argument state.
+    /// The value of the argument's words.
     type Value<'a>;
     /// Whether the line may end before the argument.
     const OPTIONAL: bool = false;
     /// The words of the argument.
     const SHAPE: Shape;
 
-    /// Takes the argument's words and gives their value. `None` is an error, which the reader keeps.
+    /// Takes the argument's words and returns their value. `None` is an error, kept in the reader.
     fn read<'a>(reader: &mut Reader<'a>, parameter: &'static Parameter) -> Option<Self::Value<'a>>;
 }
 
 /// The type of an argument of one word.
 pub trait WordArgument {
-    /// The value that the word states.
+    /// The value of the word.
     type Value<'a>;
     /// The accepted texts.
     const KIND: Kind;
@@ -38,8 +38,8 @@ pub trait WordArgument {
 
 /// The words of a line after the command's name, and the first error.
 ///
-/// The reader keeps the error, so that the many small functions that read arguments return plain options, which is less
-/// code than results with the error.
+/// The reader keeps the error, so that the many small functions that read arguments return plain options, which is smaller code than
+/// results.
 pub struct Reader<'a> {
     syntax: &'static Syntax,
     words: Words<'a>,
@@ -58,7 +58,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Reads the value of one parameter. `None` is an error.
+    /// Reads the value of one parameter. `None` is an error, kept in the reader.
     pub fn read<T: Argument>(&mut self, parameter: &'static Parameter) -> Option<T::Value<'a>> {
         T::read(self, parameter)
     }
@@ -98,7 +98,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Keeps an error about words that are accepted one by one.
+    /// Keeps an error of a value whose words are accepted one by one.
     #[cold]
     #[inline(never)]
     pub fn reject(&mut self, error: ValueError<'a>) {
@@ -109,7 +109,7 @@ impl<'a> Reader<'a> {
     /// Ends the line.
     ///
     /// # Errors
-    /// An argument was rejected, or the line goes on.
+    /// An argument was rejected, or the line has surplus words.
     pub fn end(mut self) -> Result<(), ParseError<'a>> {
         let syntax = self.syntax;
         if let Some(error) = self.error {
@@ -122,7 +122,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// [`WordArgument::error`].
+/// The function [`WordArgument::error`] of the type.
 type ErrorOf = fn(&str) -> ValueError<'_>;
 
 impl Parameter {
@@ -140,7 +140,7 @@ impl<T: WordArgument> Argument for T {
     type Value<'a> = T::Value<'a>;
     const SHAPE: Shape = Shape::Word(&T::KIND);
 
-    // Commands share this code.
+    // One copy of this code serves all commands.
     #[inline(never)]
     fn read<'a>(reader: &mut Reader<'a>, parameter: &'static Parameter) -> Option<Self::Value<'a>> {
         let value = T::parse(reader.word(parameter)?);
@@ -151,7 +151,7 @@ impl<T: WordArgument> Argument for T {
     }
 }
 
-/// An argument that may be left out, with all words that follow it.
+/// An optional argument: the line may end before it.
 impl<T: Argument> Argument for Option<T> {
     type Value<'a> = Option<T::Value<'a>>;
     const OPTIONAL: bool = true;
@@ -165,7 +165,7 @@ impl<T: Argument> Argument for Option<T> {
     }
 }
 
-/// The parameter's own name, or nothing: whether it is there.
+/// An optional keyword, the parameter's own name: the value is whether the keyword is present.
 pub struct Flag;
 
 impl Argument for Flag {
@@ -214,7 +214,7 @@ macro_rules! group {
 }
 pub(super) use group;
 
-/// One of the names of a type's values.
+/// A name of one of a type's values.
 impl<T: Choice> WordArgument for T {
     type Value<'a> = T;
     const KIND: Kind = Kind::Words(T::WORDS);
@@ -244,7 +244,7 @@ impl Keyword for Default {
     const WORD: &'static str = "default";
 }
 
-/// A keyword, which is `None`, or a value.
+/// A keyword, read as `None`, or a value.
 pub struct Or<K, T>(PhantomData<(K, T)>);
 
 impl<K: Keyword, T: WordArgument> WordArgument for Or<K, T> {

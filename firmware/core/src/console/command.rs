@@ -81,7 +81,7 @@ commands! {
     }
 }
 
-/// Reads the arguments of a command. `None` is an error, which the reader keeps.
+/// Reads the arguments of a command. `None` is an error, kept in the reader.
 type Read = for<'a> fn(&mut Reader<'a>) -> Option<Command<'a>>;
 
 /// A command in the table.
@@ -107,7 +107,7 @@ impl<'a> Command<'a> {
     ///
     /// # Errors
     /// The line is not a command.
-    // Apart from the main loop, which would grow by some KiB.
+    // Not inlined, because the main loop would grow by several KiB.
     #[inline(never)]
     pub fn parse(line: &'a str) -> Result<Option<Self>, ParseError<'a>> {
         let mut words = Words::new(line);
@@ -137,10 +137,10 @@ pub(super) fn syntaxes() -> impl Iterator<Item = &'static Syntax> {
     COMMANDS.iter().map(|entry| &entry.syntax)
 }
 
-/// Writes the help of one command, or the list of all without a known name.
+/// Writes the help of one command, or the list of all commands for no or an unknown name.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn write_help(out: &mut dyn fmt::Write, command: Option<&str>) -> fmt::Result {
     match command.and_then(find) {
         Some(syntax) => {

@@ -1,11 +1,10 @@
-//! Completion of command names and of words that an argument is chosen from.
+//! Completion of command names and of words of arguments.
 
 use super::command::{find, syntaxes};
 use super::syntax::{Kind, Parameter, Shape};
 use super::words::{Word, Words};
 
-/// Calls `offer` with each word that can stand at the end of `line` and begins with the line's last word, and with the
-/// part of it that the line lacks.
+/// Calls `offer` with each candidate for the last word of `line`, and with the missing part of the candidate.
 pub fn complete(line: &str, offer: &mut dyn FnMut(&'static str, &'static str)) {
     let words = Words::new(line);
     // A blank at the end begins a new word.

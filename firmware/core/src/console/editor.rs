@@ -6,7 +6,7 @@ use heapless::{Deque, Vec};
 
 use super::completion::complete;
 
-/// What the console writes before it reads a line.
+/// The prompt.
 pub const PROMPT: &str = "glint> ";
 /// Longest line in bytes.
 pub const LINE_MAX: usize = 640;
@@ -18,11 +18,11 @@ type Line = Vec<u8, LINE_MAX>;
 /// Effect of a byte.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event<'a> {
-    /// Nothing to do; the echo has been written.
+    /// No effect except the written echo.
     None,
     /// A complete line: ASCII without control characters.
     Line(&'a str),
-    /// The end of a line longer than [`LINE_MAX`], to be answered with an error.
+    /// The end of a line longer than [`LINE_MAX`]; the caller answers with an error.
     Overlong,
     /// Ctrl-C: the line was cancelled.
     Interrupt,
@@ -41,21 +41,21 @@ pub enum Event<'a> {
 /// | Ctrl-L | redraws prompt and line |
 /// | Ctrl-C | cancels the line |
 ///
-/// A zero byte drops the line without an answer: it ends the remains of a binary transfer. Other control characters, unknown
-/// escape sequences and bytes beyond ASCII do nothing.
+/// A zero byte drops the line without an answer, because a zero byte ends the remains of a binary transfer. Other control characters,
+/// unknown escape sequences and bytes beyond ASCII are ignored.
 #[derive(Debug)]
 pub struct LineEditor {
     line: Line,
-    /// Place of the next character, at most the line's length.
+    /// Cursor: the place of the next character, at most the line's length.
     cursor: usize,
-    /// The line exceeds its buffer.
+    /// Whether the line exceeds its buffer.
     overlong: bool,
-    /// The line was returned and is cleared by the next byte.
+    /// Whether the line was returned; the next byte then clears the line.
     ended: bool,
-    /// The last byte was a carriage return, so that a line feed belongs to it.
+    /// Whether the last byte was a carriage return, so that a line feed is part of the same line end.
     returned: bool,
     escape: Escape,
-    /// Older lines last.
+    /// The history, newest line last.
     history: Deque<Line, HISTORY>,
     /// Number of the shown line of the history, from 1; 0 is the typed line.
     shown: usize,
@@ -63,7 +63,7 @@ pub struct LineEditor {
     typed: Line,
 }
 
-/// Within an escape sequence.
+/// State within an escape sequence.
 #[derive(Clone, Copy, Debug)]
 enum Escape {
     No,
@@ -97,7 +97,7 @@ enum Key {
 }
 
 impl LineEditor {
-    /// An empty line and no history.
+    /// An editor with an empty line and an empty history.
     pub const fn new() -> Self {
         Self {
             line: Vec::new(),
@@ -112,8 +112,8 @@ impl LineEditor {
         }
     }
 
-    /// Takes a byte and writes the terminal's echo to `echo`, which sends a carriage return with every line feed. Errors of
-    /// `echo` are ignored: the line then has no reader.
+    /// Takes a byte and writes the echo for the terminal to `echo`, which must send a carriage return with every line feed. Errors of `echo`
+    /// are ignored, because the echo then has no reader.
     pub fn on_byte(&mut self, byte: u8, echo: &mut dyn Write) -> Event<'_> {
         if self.ended {
             self.clear();
@@ -152,7 +152,7 @@ impl LineEditor {
             if self.history.is_full() {
                 self.history.pop_front();
             }
-            // The history has room now.
+            // The removal above makes room in the history.
             let _ = self.history.push_back(self.line.clone());
         }
         Event::Line(text(&self.line))
@@ -167,7 +167,7 @@ impl LineEditor {
         self.shown = 0;
     }
 
-    /// Decodes characters and keys, of which some are sequences of bytes.
+    /// Decodes characters and keys; some keys are sequences of bytes.
     fn decode(&mut self, byte: u8) -> Input {
         let key = match (self.escape, byte) {
             (_, 0x1B) => {
@@ -228,7 +228,7 @@ impl LineEditor {
         for place in self.line.iter_mut().skip(self.cursor) {
             core::mem::swap(place, &mut carried);
         }
-        // There is room.
+        // The check above ensures room in the line.
         let _ = self.line.push(carried);
         self.cursor += 1;
         echo.write_char(byte.into())?;
@@ -321,7 +321,7 @@ impl LineEditor {
         }
     }
 
-    /// Deletes the text between two places, one of which is the cursor.
+    /// Deletes the text between two places; one of the places is the cursor.
     fn delete(&mut self, start: usize, end: usize, echo: &mut dyn Write) -> fmt::Result {
         if start >= end {
             return Ok(());
@@ -331,7 +331,7 @@ impl LineEditor {
             place += 1;
             !(start + 1..=end).contains(&place)
         });
-        // The surplus text is lost, and the rest is a line again.
+        // The surplus text is lost, and the remaining text is a valid line.
         self.overlong = false;
         self.move_to(start, echo)?;
         echo.write_str("\x1B[K")?;
@@ -372,7 +372,7 @@ impl Default for LineEditor {
     }
 }
 
-/// A line's bytes are ASCII.
+/// All bytes of a line are ASCII.
 fn text(bytes: &[u8]) -> &str {
     core::str::from_utf8(bytes).unwrap_or_default()
 }

@@ -30,24 +30,24 @@ pub(super) enum ParseErrorKind<'a> {
         parameter: &'static Parameter,
         word: Word<'a>,
     },
-    /// The line goes on after the last parameter.
+    /// The line has surplus words after the last parameter.
     Surplus {
         syntax: &'static Syntax,
         word: Word<'a>,
     },
-    /// The words are accepted one by one, their value is not.
+    /// The words are valid one by one, but not in combination.
     Value {
         syntax: &'static Syntax,
         error: ValueError<'a>,
     },
 }
 
-/// Reason why the words of an argument have no value.
+/// Reason why the words of an argument are rejected.
 #[derive(Clone, Copy, Debug)]
 pub enum ValueError<'a> {
-    /// The word is not of the parameter's kind.
+    /// The word is not of the parameter's type.
     Kind,
-    /// The picture cannot have this width and height.
+    /// The width and height are not a picture size.
     Size([u32; 2]),
     /// A number of samples follows an action without samples.
     Samples {
@@ -60,7 +60,7 @@ pub enum ValueError<'a> {
     Mounting,
     /// The gain is outside [`SENSITIVITY`].
     Sensitivity,
-    /// The numbers are not a camera.
+    /// The numbers do not describe a camera.
     View(ViewError),
     /// The word is not a field.
     Field(FieldError<'a>),

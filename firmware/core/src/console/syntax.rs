@@ -40,7 +40,7 @@ const fn assert_optional_last(parameters: &[Parameter]) {
 pub enum Shape {
     /// One word.
     Word(&'static Kind),
-    /// One word, which is the parameter's own name.
+    /// A keyword: the parameter's own name.
     Flag,
     /// Parameters of a value that takes several words.
     Group(&'static [Parameter]),
@@ -48,17 +48,17 @@ pub enum Shape {
 
 /// The accepted texts of a word.
 pub enum Kind {
-    /// One of some words.
+    /// One of a list of words.
     Words(&'static [&'static str]),
-    /// A text as described.
+    /// A text with this description.
     Text(&'static (dyn Display + Sync)),
-    /// A keyword, or a word of another kind.
+    /// A keyword, or a word of the other kind.
     Either(&'static str, &'static Kind),
     /// The name of a command.
     Command,
 }
 
-/// Longest list of words that stands in a usage line; a longer one is replaced by the parameter's name.
+/// Longest list of words in a usage line; a longer list is replaced by the parameter's name.
 const USAGE_WORDS: usize = 3;
 
 /// The usage line: name and parameters.
@@ -91,7 +91,7 @@ fn write_usage(f: &mut fmt::Formatter, parameters: &[Parameter], lead: &str) -> 
 }
 
 impl Syntax {
-    /// A command. Only the last parameter may be optional; the compiler refuses a table with another one.
+    /// A command. Only the last parameter may be optional, which is checked at compile time.
     pub const fn new(
         name: &'static str,
         summary: &'static str,

@@ -1,4 +1,4 @@
-//! The macro that turns the table of commands into a grammar and its execution.
+//! Macro that generates the grammar and the execution of commands from their table.
 
 /// States every command once, grouped by subject:
 ///
@@ -11,8 +11,8 @@
 /// }
 /// ```
 ///
-/// A `Type` is an [`Argument`](super::argument::Argument). From the table follow the enumeration `Command`, the list
-/// `COMMANDS` for parser, help and completion, and a trait for each subject with one method for each command.
+/// A `Type` is an [`Argument`](super::argument::Argument). The macro generates the enumeration `Command`, the list `COMMANDS` for
+/// parser, help and completion, and a trait per subject with one method per command.
 macro_rules! commands {
     ($(
         $(#[$doc:meta])*
@@ -20,7 +20,7 @@ macro_rules! commands {
             $($name:ident $variant:ident($($argument:ident: $type:ty),* $(,)?): $summary:literal;)+
         }
     )+) => {
-        /// A command with its arguments, checked as far as possible without the machine.
+        /// A command with its arguments, checked except for the state of the machine.
         #[derive(Clone, Copy, Debug, PartialEq)]
         #[expect(
             clippy::large_enum_variant,

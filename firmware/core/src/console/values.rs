@@ -1,6 +1,6 @@
-//! The arguments that commands share: numbers, angles, colours, fields and values of several words.
+//! Types of arguments: numbers, angles, colours, fields and values of several words.
 //!
-//! Parsers of numbers and fields are not inlined: commands share them, and less code boots faster.
+//! Parsers of numbers and fields are not inlined: one copy for all commands is less code, which loads faster.
 
 use core::fmt::{self, Display};
 
@@ -226,7 +226,7 @@ impl WordArgument for Sensitivity {
     const KIND: Kind = U4_28::KIND;
 
     fn parse(text: &str) -> Option<u16> {
-        // 28 fraction bits: the upper 12 bits are units of 1/256.
+        // The number has 28 fraction bits: its upper 12 bits are in units of 1/256.
         let gain = (<U4_28 as WordArgument>::parse(text)?.to_bits() >> 20) as u16;
         (SENSITIVITY[0]..=SENSITIVITY[1])
             .contains(&gain)
@@ -268,12 +268,12 @@ group! {
         => follow::Mounting::new(forward, up).ok_or(ValueError::Mounting)
 }
 
-/// What the sensor is asked for.
+/// An action of the sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ImuAction {
     /// Measure the bias with this number of samples.
     Calibrate(u32),
-    /// Print this number of samples, or samples until the next command.
+    /// Print this number of samples; without a number, until the next command.
     Stream(Option<u32>),
     /// Steer the camera, or stop steering it.
     Follow(Option<Follow>),

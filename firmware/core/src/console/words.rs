@@ -5,13 +5,13 @@ use core::fmt::{self, Write as _};
 /// A word and its place in the line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Word<'a> {
-    /// The word, without blanks.
+    /// Text of the word, without blanks.
     pub text: &'a str,
-    /// Column of its first byte, from 1.
+    /// Column of the first byte, from 1.
     pub column: usize,
 }
 
-/// The word, shortened, with other characters than visible ASCII as `?`, and its column.
+/// Writes the word and its column, shortened and with `?` for characters other than visible ASCII.
 impl fmt::Display for Word<'_> {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         const LONGEST: usize = 24;
@@ -42,7 +42,7 @@ impl<'a> Words<'a> {
 impl<'a> Iterator for Words<'a> {
     type Item = Word<'a>;
 
-    // Called in many places: one copy is less code.
+    // Not inlined, because many callers share one copy.
     #[inline(never)]
     fn next(&mut self) -> Option<Self::Item> {
         let rest = self.line.get(self.offset..)?;

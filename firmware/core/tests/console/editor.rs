@@ -58,7 +58,7 @@ impl Screen {
     }
 }
 
-/// The lines that some bytes make, or what else comes of them, with what is shown.
+/// Lines and other events produced by bytes, with the text on the screen.
 fn type_in(bytes: &[u8]) -> (Vec<String>, Screen) {
     let (mut editor, mut screen, mut events) = (LineEditor::new(), Screen::default(), Vec::new());
     for &byte in bytes {

@@ -21,7 +21,7 @@ fn the_help_lists_every_command_and_how_it_is_used() {
     {
         let usage = help(Some(name));
         assert!(usage.starts_with(name), "{usage}");
-        // The syntax is taken up to its first argument, and an error shows the same usage.
+        // The usage of an error message equals the usage in the help.
         let first = usage.lines().next().unwrap_or_default();
         if let Some(required) = first
             .split_once(' ')

@@ -1,5 +1,4 @@
 use std::cell::RefCell;
-use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::vec::Vec;
 
@@ -9,32 +8,11 @@ use glint_core::fixed::{Q32_32, Turns, U4_28};
 use glint_core::stereo::Stereo;
 use glint_model::raymarch::FieldOptions;
 use litex_pac::Peripherals;
-use litex_pac::bus::{self, Bus};
 
 use super::*;
+use crate::recording::{self, Block};
 
 const IDENT: u32 = raymarch::Raymarch::IDENT;
-
-/// Registers that keep what is written, and all writes in their order.
-#[derive(Default)]
-struct Block {
-    values: BTreeMap<usize, u32>,
-    writes: Vec<(usize, u32)>,
-}
-
-struct Registers(Rc<RefCell<Block>>);
-
-impl Bus for Registers {
-    fn read(&mut self, address: usize) -> u32 {
-        self.0.borrow().values.get(&address).copied().unwrap_or(0)
-    }
-
-    fn write(&mut self, address: usize, value: u32) {
-        let mut block = self.0.borrow_mut();
-        block.values.insert(address, value);
-        block.writes.push((address, value));
-    }
-}
 
 fn registers() -> raymarch::Raymarch {
     // SAFETY: the registers are a model's.
@@ -43,11 +21,8 @@ fn registers() -> raymarch::Raymarch {
 
 /// A block that calls itself `ident` and has been built with `caps`.
 fn probe(ident: u32, caps: u32) -> (Result<Raymarcher, Absent>, Rc<RefCell<Block>>) {
-    let block = Rc::new(RefCell::new(Block::default()));
     let r = registers();
-    let values = [(r.ident().address(), ident), (r.caps().address(), caps)];
-    block.borrow_mut().values.extend(values);
-    bus::connect(Registers(block.clone()));
+    let block = recording::connect([(r.ident().address(), ident), (r.caps().address(), caps)]);
     (Raymarcher::probe(registers()), block)
 }
 

@@ -1,37 +1,15 @@
 use std::cell::RefCell;
-use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::vec::Vec;
 
 use glint_core::camera::View;
 use glint_core::fixed::{Q32_32, Turns};
 use litex_pac::Peripherals;
-use litex_pac::bus::{self, Bus};
 
 use super::*;
+use crate::recording::{self, Block};
 
 const IDENT: u32 = triangle::Triangle::IDENT;
-
-/// Registers that keep written values, and the addresses in the order of writes.
-#[derive(Default)]
-struct Block {
-    values: BTreeMap<usize, u32>,
-    writes: Vec<usize>,
-}
-
-struct Registers(Rc<RefCell<Block>>);
-
-impl Bus for Registers {
-    fn read(&mut self, address: usize) -> u32 {
-        self.0.borrow().values.get(&address).copied().unwrap_or(0)
-    }
-
-    fn write(&mut self, address: usize, value: u32) {
-        let mut block = self.0.borrow_mut();
-        block.values.insert(address, value);
-        block.writes.push(address);
-    }
-}
 
 fn registers() -> triangle::Triangle {
     // SAFETY: a model is behind the registers.
@@ -39,10 +17,7 @@ fn registers() -> triangle::Triangle {
 }
 
 fn probe(ident: u32) -> (Result<TriangleEngine, Absent>, Rc<RefCell<Block>>) {
-    let block = Rc::new(RefCell::new(Block::default()));
-    let address = registers().ident().address();
-    block.borrow_mut().values.insert(address, ident);
-    bus::connect(Registers(block.clone()));
+    let block = recording::connect([(registers().ident().address(), ident)]);
     (TriangleEngine::probe(registers()), block)
 }
 
@@ -144,7 +119,10 @@ fn a_geometry_pass_is_described_before_it_is_started() {
     let start = r.geometry().read();
     assert!(start.start() && start.cull() && start.smooth());
     assert_eq!(start.size(), Some(triangle::Size::W640));
-    assert_eq!(block.borrow().writes.last(), Some(&r.geometry().address()));
+    assert_eq!(
+        block.borrow().writes.last().map(|write| write.0),
+        Some(r.geometry().address())
+    );
 }
 
 #[test]
@@ -187,7 +165,10 @@ fn a_raster_pass_is_described_before_it_is_started() {
             [!second, second, depth]
         );
         assert_eq!(start.size(), Some(triangle::Size::W1280));
-        assert_eq!(block.borrow().writes.last(), Some(&r.raster().address()));
+        assert_eq!(
+            block.borrow().writes.last().map(|write| write.0),
+            Some(r.raster().address())
+        );
     }
     assert_eq!([r.count_0().read(), r.count_1().read()], [10, 26]);
     assert_eq!(

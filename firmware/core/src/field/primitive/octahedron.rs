@@ -9,10 +9,10 @@ use crate::field::shape::{FlatConstants, FlatSolid, Placed, SCALE, Shape};
 use crate::field::surface::{Sample, Surface, magnitude, units};
 use crate::fixed::Q32_32;
 
-/// A regular octahedron about the origin, its corners on the axes.
+/// A regular octahedron about the origin, with corners on the axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Octahedron {
-    /// From the origin to a corner, in world units.
+    /// Distance from the origin to a corner, in world units.
     pub size: Q32_32,
 }
 
@@ -44,7 +44,7 @@ impl Shape for Octahedron {
 /// The octahedron in field units.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FixedOctahedron {
-    /// From the origin to a corner, u10.12.
+    /// Distance from the origin to a corner, u10.12.
     size: i32,
 }
 
