@@ -343,7 +343,7 @@ fn every_fault_is_reported_and_recovered() {
             Some(Fault::StuckData(0)),
             10,
             100,
-            "i2c: SDA is held low and nine clocks did not free it",
+            "i2c: SDA is held low: nine clocks did not release it",
         ),
         (
             Some(Fault::Stretched(u64::MAX)),
