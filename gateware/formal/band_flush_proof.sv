@@ -3,8 +3,7 @@
 //
 // The bank's row r holds r in every colour and r + 1 in every depth, and all rows are drawn. So the expected words are
 // known: the colours of the rows in the spans, in order, each once, then both halves of each row's depths. Afterwards these
-// rows are clear, the others are not. The bank has band_bank's latencies and loses a row when it
-// is cleared.
+// rows are clear, the others are not. The bank has band_bank's latencies and a cleared row loses its pixels.
 
 `default_nettype none
 

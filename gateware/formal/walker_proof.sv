@@ -20,7 +20,7 @@ module walker_proof (
 );
     localparam int unsigned BITS = 3;
 
-    // No edge of the triangles fails anywhere.
+    // Set: no edge of any triangle fails in any group.
     (* anyconst *) logic solid;
 
     logic rst = 1'b1;

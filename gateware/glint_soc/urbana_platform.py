@@ -20,7 +20,8 @@ _io = [
         Subsignal("tx", Pins("A16")),
         IOStandard("LVCMOS33")),
 
-    # PMOD B, pins 2 and 3: an external MPU-6050. Its module has pull-ups; these keep the bus idle without it.
+    # PMOD B, pins 2 and 3: an external MPU-6050. Its module has pull-ups; the FPGA's pull-ups keep the bus idle without the
+    # module.
     ("i2c", 0,
         Subsignal("sda", Pins("G18")),
         Subsignal("scl", Pins("K14")),

@@ -1,5 +1,5 @@
 // The band buffer: colour and depth of a band, at most 15,360 pixels, in block RAM, shared by all renderers. While one band
-// is drawn, the previous band is flushed to memory: in each line the pixels drawn now and those drawn in the previous frame.
+// is drawn, the previous band is flushed to memory: in each line the pixels drawn in this frame or in the previous one.
 //
 //                        ┌────────────┐  drawn  ┌─────────────────┐ flushed  ┌────────────┐
 //   groups ─▶ band_pipe ─┤            ├────────▶│ colour bank 0/1 │─────────▶│            │
@@ -11,8 +11,9 @@
 //                        └──────────────┘
 //
 // A row is eight pixels, and its address is line * (W/8) + column: y in the band and x/8. Beside its colour each pixel has a
-// written bit; a bank is clear when no bit is set. A pixel without it has depth 0 and the clear colour, so neither has to be
-// stored, one depth memory serves both banks, and the clear colour may change from band to band. The flush resets the bits
+// written bit; a bank is clear when no bit is set. A pixel without the bit has depth 0 and the clear colour, and neither is
+// stored. So one depth memory serves both banks, and the clear colour may change from band to band. The flush resets the
+// bits
 // behind itself: there is no clear pass. 25 RAMB36.
 //
 // Groups: {row, line, column, mask, eight depth codes u18, eight colours RGB565}, lane 0 (the leftmost) in the lowest bits. Lane

@@ -1,7 +1,7 @@
 // First in, first out: DEPTH places in LUTRAM, or with BLOCK in block RAM, and one in the output register, DEPTH + 1 in all.
 //
 // Latency 2 clocks, throughput one item a clock. Stream contract on both sides: an item moves in a clock in which valid
-// and ready are high; valid does not wait for ready, and a payload stays as it is until it has moved. `in_ready` and
+// and ready are high; valid does not wait for ready, and a payload holds until it has moved. `in_ready` and
 // `out_valid` come from registers alone. DEPTH is a power of two.
 //
 //            ┌──────────────┐    ┌──────────┐

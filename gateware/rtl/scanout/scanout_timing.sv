@@ -5,7 +5,8 @@
 //
 // `tick` is the first clock of hsync. `tick_line` is then the line that follows, 0 to V_ACTIVE - 1, or V_ACTIVE and
 // more in the vertical blanking; V_ACTIVE itself is the tick that begins the blanking.
-// One pixel a clock; the outputs are registers. Reset puts it at the end of the last active line: a vertical blanking comes
+// One pixel a clock; the outputs are registers. Reset sets the counters to the end of the last active line: a vertical
+// blanking comes
 // first.
 
 `default_nettype none

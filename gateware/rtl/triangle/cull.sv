@@ -213,7 +213,7 @@ module cull #(
         if (rst) out_valid <= 1'b0;
     end
 
-    // Light in the order of the swapped vertices, and 0 where it belongs to the other side.
+    // Light in the order of the swapped vertices; 0 for light of the other side.
     if (SMOOTH) begin : light
         // Vectors, as Yosys does not support arrays here.
         logic [3*LIGHT_BITS-1:0] first_light, last_light;

@@ -1,8 +1,9 @@
-// Eight pixels of a triangle: which of them it covers, and their depth codes (docs/formats.md, "Pixels").
+// Eight pixels of a triangle: coverage and depth codes (docs/formats.md, "Pixels").
 //
-// Coverage by counting: from an edge's best lane, where E' is at least 0, it falls by |step_x| a lane. So it passes in that
-// lane and in the next min(7, floor(E' / |step_x|)), which three steps of a restoring division give; where it rises
-// these are counted from lane 7, else from lane 0. Where E' is 2^23 or more it passes everywhere: 7 * 2^20 is less.
+// Coverage by counting: from an edge's best lane, where E' is at least 0, E' falls by |step_x| a lane. So the edge passes in
+// that lane and in the next min(7, floor(E' / |step_x|)) lanes, a quotient from three steps of a restoring division. A
+// rising edge counts from lane 7, a falling one from lane 0. From E' = 2^23 on, which exceeds 7 * 2^20, the edge passes in
+// all lanes.
 //
 // Depth by `lane_values`.
 //

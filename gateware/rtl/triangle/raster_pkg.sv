@@ -3,8 +3,9 @@
 `default_nettype none
 
 package raster_pkg;
-    // A triangle at the row where it enters the band, in its start group. An edge function is linear, so in a group of eight
-    // lanes it is largest at one end: lane 7 where it rises to the right, else lane 0. The lane beside the other end shows
+    // A triangle at the row where it enters the band, in its start group. An edge function is linear, so within a group of
+    // eight lanes its maximum is at one end: lane 7 where it rises to the right, else lane 0. The lane beside the other end
+    // shows
     // whether the edge passes anywhere in the next group: lane -1 where it rises, else lane 8.
     typedef struct packed {
         logic [2:0][33:0] best;         // E' at the lane where it is largest

@@ -9,8 +9,9 @@
 // first triangles of the next band prepared. `restart` (any time) cancels the frame; the next start must wait until the unit is
 // `ready` and read_port is idle.
 //
-// With FIELDS, a frame with `field_source.enable` has the field of a raymarcher beside the unit. `start` begins it; when the
-// triangles of a band are drawn, `open` admits its pixels until it says `done`, and `next` hands the band over. `compose` maps the
+// With FIELDS, a frame with `field_source.enable` has the field of a raymarcher beside the unit. `start` begins the field;
+// when the triangles of a band are drawn, `open` admits the field's pixels until `done`, and `next` hands the band over.
+// `compose` maps the
 // luminances of two eyes to colours, see band_flush.
 //
 // `slot` is the number of the frame buffer. Only words that can differ from the last frame in the same slot are written. `whole`

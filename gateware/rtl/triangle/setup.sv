@@ -7,14 +7,15 @@
 //
 // Throughput a drawn triangle in 11 clocks, a culled one in 4; latency at most 75 clocks. The stages 1 to 4 move together, in
 // the last clock of a beat, which lasts until there is room behind stage 4; empty stages move too, so a single triangle gets
-// through. A culled triangle leaves before them and waits only for triangles before it. `culled` and `drawn` are high for one
+// through. A culled triangle leaves before stage 1 and waits only for earlier triangles. `culled` and `drawn` are high for
+// one
 // clock for each triangle, `drawn` with its descriptor.
 // The frame's constants (`width`, `height`, `cull_back`, `camera_n`, `smooth`) hold while `busy` and when a triangle comes.
 //
 // Edges 0 and 2 meet in vertex 0, so both take (px, py) from there. The third follows: E0 + E1 + E2 = 2A = a at every point,
 // since the three differences of vertices add up to 0, so the sum does not depend on the point, and at vertex 0 it is E1.
 //
-// With SMOOTH, light goes along, in planes of its own: stage 1 makes P of it, stage 2 the planes' normals.
+// With SMOOTH, each channel of light has a plane: stage 1 makes P of it, stage 2 the planes' normals.
 
 `default_nettype none
 

@@ -1,6 +1,7 @@
-// One of the walker's accumulators: a value at the current place, and a snapshot of it to return to.
+// One of the walker's accumulators: the value at the current place, and a snapshot of the value at an earlier place.
 //
-// In each clock with `advance` it moves from one of the two, or takes `load_value`; `keep` leaves the snapshot as it is.
+// In each clock with `advance` the value steps from the current place or from the snapshot, or becomes `load_value`; `keep`
+// preserves the snapshot.
 //
 //   extend        current + step_x, with `left` - step_x
 //   else seek     snapshot + step_x, with `left` - step_x

@@ -13,7 +13,8 @@
 // Streams are valid/ready with a register between any two readies. Latency 19 clocks from a descriptor to its first group.
 // Throughput: a group of the walk a clock, at most a triangle in 8 clocks. `triangle_y0`, the band's first row, comes with each
 // triangle, and so does `triangle_odd`, the parity of its band. Triangles of the next band are accepted and prepared, but wait
-// until `odd`, the parity of the band that is drawn, matches theirs. `idle` is low from the clock after a descriptor of the drawn
+// until `odd`, the parity of the band that is drawn, equals the parity of their band. `idle` is low from the clock after a
+// descriptor of the drawn
 // band is taken until its last group is taken. `rows` of a band and `stride` (groups of a line: 40, 80 or 160) must hold while
 // triangles are inside.
 

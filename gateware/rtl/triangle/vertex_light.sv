@@ -1,4 +1,4 @@
-// The light of a vertex (docs/formats.md, "Smooth shading"): L of each channel, and which side of a triangle gets it.
+// The light of a vertex (docs/formats.md, "Smooth shading"): L of each channel, and the side of a triangle that L belongs to.
 //
 // Three products for N·n, one for green and blue side by side, one for red: a vertex in 6 clocks, in step with
 // `vertex_stage`: `take` is high for one clock when a vertex enters that stage. The light waits in a FIFO for the vertex's

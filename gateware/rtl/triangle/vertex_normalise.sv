@@ -1,11 +1,11 @@
 // Step 6 of the vertex stage: X' = nearest(X·2^−sh) in 25 bits, saturated, and Y' the same by the same shifter.
 //
-// Clocks are those of a vertex in `vertex_stage`.
+// Clock numbers count from the vertex's entry into `vertex_stage`.
 //
-//   6, 9     X, Y come                  8      sh − 6 is there, until 13
+//   6, 9     X, Y arrive                  8        sh − 6 is valid, until 13
 //   8, 11    shift by 16 and 8          9, 12  by 4 and 2
 //   10, 13   by 1, round                11, 14 saturate
-//   24…29    X', Y' are there, when the reciprocal comes
+//   24…29    X', Y' are valid, with the reciprocal
 
 `default_nettype none
 

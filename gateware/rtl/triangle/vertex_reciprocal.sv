@@ -1,9 +1,9 @@
 // Step 5 of the vertex stage, the reciprocal of docs/formats.md, every 6 clocks: up to three vertices share one multiplier.
 //
-// Clocks are those of a vertex in `vertex_stage`; products follow three clocks after their factors.
+// Clock numbers count from the vertex's entry into `vertex_stage`; products follow three clocks after their factors.
 //
 //   9    m comes                 10, 13    −m·y0 and y0·e0'
-//   25   y is there, until 30    17, 20    −m·y1 and y1·e1'
+//   25   y is valid, until 30    17, 20    −m·y1 and y1·e1'
 
 `default_nettype none
 

@@ -1,6 +1,6 @@
 // Steps 7 and 8 of the vertex stage: the place on the screen, the guard band, and w.
 //
-// Clocks are those of a vertex in `vertex_stage`; products follow three clocks after their factors.
+// Clock numbers count from the vertex's entry into `vertex_stage`; products follow three clocks after their factors.
 //
 //   25, 26, 27   X', Y' and km times the low 17 bits of y
 //   28, 29, 30   the same factors times the high 7 bits, plus the high part of the first product

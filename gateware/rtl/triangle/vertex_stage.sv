@@ -2,9 +2,9 @@
 //
 // A vertex in 6 clocks; latency 39 clocks, plus up to 5 until its slot in the schedule. Four multipliers work through a
 // schedule of 6
-// clocks that never stands still: `half` is 0, 0, 0, 1, 1, 1 and `element` 0, 1, 2, 0, 1, 2 in clocks 1 to 6 of a vertex
-// (clock 0 is the one in which it moves in) and in all that are multiples of 6 later. A vertex moves in only if there is
-// a place for it in the FIFO at the end, so nothing needs to stop.
+// clocks that never stands still: `half` is 0, 0, 0, 1, 1, 1 and `element` 0, 1, 2, 0, 1, 2 in clocks 1 to 6 of a vertex,
+// and again every 6 clocks; clock 0 is the vertex's entry. A vertex moves in only if the FIFO at the end has a place for
+// it, so the schedule never stops.
 //
 //   clock  1         7            9                  25             37
 //     in ─▶ transform ─▶ lead ──────▶ m ─▶ reciprocal ──▶ y ─▶ snap ───▶ FIFO ─▶ out

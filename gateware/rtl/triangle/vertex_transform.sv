@@ -1,9 +1,9 @@
 // Steps 1 to 4 of the vertex stage: into the camera's frame, behind or not, and the mantissa of Z.
 //
-// Clocks are those of a vertex in `vertex_stage`, which explains `half` and `element`.
+// Clock numbers count from the vertex's entry into `vertex_stage`, which explains `half` and `element`.
 //
 //   1…3    n·P, one product a clock     1…6   U·P, then V·P
-//   6      Z is there                   6, 9  X, Y are there (`planar`)
+//   6      Z is valid                   6, 9   X, Y are valid (`planar`)
 //   7      `zeros`, halves of Z < near
 //   8      `behind`
 //   9      `mantissa`
@@ -53,8 +53,8 @@ module vertex_transform (
         endcase
     end
 
-    // Two clocks after the first of three products the accumulator adds it to the translation, then the others to the
-    // sum.
+    // Two clocks after the first of three products the accumulator adds the translation and this product, then the other
+    // products.
     logic               first;
     logic signed [43:0] translation, addend_planar, addend_deep, sum, deep;
 

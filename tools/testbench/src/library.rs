@@ -79,7 +79,7 @@ impl Slot {
         let width = described.layout.width();
         Self {
             address,
-            // As Verilator stores it.
+            // Verilator's storage: the smallest integer type, or whole words.
             bytes: match width {
                 0..=8 => 1,
                 9..=16 => 2,

@@ -28,7 +28,7 @@ impl Module {
     /// start with noise from `seed`.
     ///
     /// # Panics
-    /// When it has not been built.
+    /// When the module has not been built.
     #[must_use]
     pub fn new(name: &str, seed: u32) -> Self {
         let mut module = Self::load(name, seed);
@@ -46,7 +46,7 @@ impl Module {
     /// resets: the first [`settle`](Self::settle) evaluates the module.
     ///
     /// # Panics
-    /// When it has not been built.
+    /// When the module has not been built.
     #[must_use]
     pub fn load(name: &str, seed: u32) -> Self {
         let folder = Path::new(concat!(
@@ -169,7 +169,7 @@ impl Module {
     /// Drives an input with the lowest bits of a value.
     ///
     /// # Panics
-    /// When it is an output, or the value does not fit.
+    /// When the port is an output, or the value does not fit.
     pub fn set(&mut self, port: Port, value: impl Into<Bits>) {
         let mut value = value.into();
         let Port {
@@ -189,7 +189,7 @@ impl Module {
     /// Drives an input of at most 64 bits.
     ///
     /// # Panics
-    /// When it is an output, or the value does not fit.
+    /// When the port is an output, or the value does not fit.
     pub fn set_value(&mut self, port: Port, value: u64) {
         if port.whole {
             self.instance.set_value(port.index, value);
@@ -211,7 +211,7 @@ impl Module {
     /// Value of a port of at most 64 bits.
     ///
     /// # Panics
-    /// When it is wider.
+    /// When the port is wider.
     #[must_use]
     pub fn value(&self, port: Port) -> u64 {
         if port.whole {

@@ -6,7 +6,7 @@ use glint_model::raymarch::{
     Cone, FieldSetup, Lights, Palette, Ray, RayResult, State, paint, rgb565,
 };
 
-/// A pixel's place: parity of its band, line in it, column.
+/// A pixel's place: parity of the band, line in the band, column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Place {
     /// Parity of the band.

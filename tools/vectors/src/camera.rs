@@ -78,7 +78,7 @@ impl Camera {
     /// The camera in the engine's formats.
     ///
     /// # Panics
-    /// When it is not one that the engine takes.
+    /// When the engine's formats cannot represent the camera.
     #[must_use]
     pub fn rounded(&self) -> View {
         let basis = |row: [f64; 3]| row.map(|x| Q2_23::from_num(x));

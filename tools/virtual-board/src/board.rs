@@ -273,7 +273,7 @@ impl VirtualBoard {
         self.soc.leds()
     }
 
-    /// Connects a sensor to the I2C bus; it replaces the present one, and [`i2c_drive`](Self::i2c_drive).
+    /// Connects a sensor to the I2C bus; the sensor replaces the present one, and [`i2c_drive`](Self::i2c_drive).
     pub fn plug(&mut self, sensor: Wires) {
         self.sensor = Some(sensor);
     }
@@ -330,7 +330,7 @@ impl VirtualBoard {
         })
     }
 
-    /// Reads DDR3 from `address`, an address of the CPU. On a board that has run it first runs about a thousand cycles, so that
+    /// Reads DDR3 from `address`, an address of the CPU. A board that has run first runs another thousand cycles, so that
     /// stores of the CPU arrive.
     ///
     /// # Errors
@@ -342,8 +342,8 @@ impl VirtualBoard {
         Ok(())
     }
 
-    /// Writes DDR3 from `address`, an address of the CPU, and invalidates the CPU's caches. On a board that has run it first
-    /// runs about a thousand cycles, so that stores of the CPU do not arrive later.
+    /// Writes DDR3 from `address`, an address of the CPU, and invalidates the CPU's caches. A board that has run first runs
+    /// another thousand cycles, so that earlier stores of the CPU do not arrive later.
     ///
     /// # Errors
     /// [`Error::Address`] if the range is not within main RAM.

@@ -68,7 +68,7 @@ impl fmt::Display for Pins {
 /// A timing error: a tick whose control pins violate CEA-861.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TimingError {
-    /// Whole frames before it.
+    /// Whole frames before the error.
     pub frame: u64,
     /// Line, 0 being the first of vsync.
     pub line: usize,
@@ -130,19 +130,19 @@ impl Monitor {
         self.on = false;
     }
 
-    /// Whether it is on.
+    /// Whether the monitor is on.
     #[must_use]
     pub fn is_on(&self) -> bool {
         self.on
     }
 
-    /// Whole frames since it was turned on.
+    /// Whole frames since the monitor was turned on.
     #[must_use]
     pub fn frames(&self) -> u64 {
         self.frames
     }
 
-    /// Timing errors since it was turned on.
+    /// Timing errors since the monitor was turned on.
     #[must_use]
     pub fn error_count(&self) -> u64 {
         self.error_count

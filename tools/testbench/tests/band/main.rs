@@ -1,4 +1,4 @@
-//! The band buffer: its pixels are those of a plain depth test, and each flush writes every changed word of the band, in order.
+//! The band buffer: pixels equal those of a plain depth test, and each flush writes every changed word of the band, in order.
 
 mod bench;
 mod pixels;

@@ -50,7 +50,7 @@ pub const FIELDS: [&str; 12] = [
     "planes:0.01",
 ];
 
-/// An example of each kind of which no list above has a field.
+/// An example of each kind of field that is in no list above.
 pub fn further_kinds() -> Vec<&'static str> {
     let listed = [&FIELDS[..], &ROUND].concat();
     let kind = |text: &&str| text.split(':').next().map(str::to_owned);
@@ -58,7 +58,7 @@ pub fn further_kinds() -> Vec<&'static str> {
     Primitive::EXAMPLES.into_iter().filter(is_new).collect()
 }
 
-/// Fields of all kinds: those above, an example of each kind, and random ones with the ends of their ranges.
+/// Fields of all kinds: the lists above, an example of each kind, and random fields with values at the ends of their ranges.
 pub fn every_field() -> Vec<String> {
     let boxes = [
         "union:box:1,0.5,0.25+moving:0.25,1",
@@ -96,7 +96,7 @@ pub fn camera(random: &mut Random) -> View {
     Camera::aimed(random, eye, towards, [0.0; 2], half_width, near).rounded()
 }
 
-/// The constants of a frame: how finely it is marched is random too, and how many eyes look.
+/// Random constants of a frame, with random tuning and one or two eyes.
 pub fn setup(random: &mut Random, fields: &[impl AsRef<str>]) -> FieldSetup {
     setup_with(random, fields, false)
 }

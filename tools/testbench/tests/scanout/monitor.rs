@@ -1,7 +1,7 @@
 //! The monitor: checks video timing and picture from the outputs alone.
 //!
-//! At each pixel clock it checks the syncs against a position counted from the first edge of vsync, and at the end of each line that
-//! the line is the right one, or, where memory was late, the one before it.
+//! At each pixel clock it checks the syncs against a position counted from the first edge of vsync, and at the end of each
+//! line that the line is the expected one, or the previous line where memory was late.
 
 use glint_testbench::{Module, Port};
 

@@ -40,7 +40,7 @@ const FIELDS: [&str; 13] = [
     "smooth:0.3,menger:1+sphere:1.2",
 ];
 
-/// Those, and an example of each kind that they lack.
+/// All fields: the representative ones, and an example of each other kind.
 fn fields() -> Vec<&'static str> {
     let kind = |text: &&str| text.split(':').next().map(str::to_owned);
     let is_new = |text: &&str| !FIELDS.iter().any(|other| kind(other) == kind(text));

@@ -3,8 +3,8 @@
 //!
 //! Needs what `cargo xtask gateware` and `cargo xtask firmware` build; `cargo xtask test` sees to it.
 //!
-//! A board draws one frame while the monitor takes in the one before, so that a scene costs one frame of the video, which
-//! is most of the time that this takes:
+//! A board draws one frame while the monitor takes in the one before, so that a scene costs one frame of the video, the
+//! largest part of the test's time:
 //!
 //! ```text
 //! video   |      nothing      |   scene 0   |   scene 1   |   scene 2 ...

@@ -363,7 +363,7 @@ impl Bench {
     /// `lists`, in every band.
     ///
     /// # Panics
-    /// When that does not end, or anything is written behind the picture.
+    /// When the frame does not end, or a word behind the picture changes.
     pub fn draw_raw(
         &mut self,
         name: &str,
