@@ -186,7 +186,7 @@ fn fingerprint(roots: &[PathBuf], salt: &str) -> Result<String> {
     Ok(format!("{:016x}\n", hasher.finish()))
 }
 
-/// All files below `root` in a fixed order, or `root` itself if it is a file; without Python's caches.
+/// All files below the folder `root` in a fixed order, without Python's caches; for a file `root` alone.
 fn files(root: &Path) -> Result<Vec<PathBuf>> {
     if !root.is_dir() {
         return Ok(vec![root.to_owned()]);

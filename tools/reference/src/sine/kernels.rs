@@ -133,7 +133,7 @@ const SHORT_PHASES: Inputs = (1 << 16, "all 2^16 phases of 16 bits");
 const ALL_PHASES: Inputs = (1, "all 2^32 phases");
 const SOME_PHASES: Inputs = (15, "every 15th phase of an octant, in all octants");
 const ALL_RADIANS: Inputs = (1, "all radians in [−π, π]");
-/// For a format with over 10^9 inputs and a slow kernel.
+/// Inputs of a slow kernel whose format has over 10^9 inputs.
 const SOME_RADIANS: Inputs = (17, "every 17th of the radians in [−π, π]");
 
 fn q14(angle: u32) -> (i32, i32) {

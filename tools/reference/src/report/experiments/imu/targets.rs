@@ -22,7 +22,7 @@ pub struct Target {
     pub aim: f64,
     /// The measured figure.
     pub measured: f64,
-    /// `aim`, `at least` or `missed`.
+    /// Outcome: `aim`, `at least` or `missed`.
     pub reached: String,
     /// Commit of the measurement.
     pub commit: String,
@@ -93,13 +93,13 @@ pub fn measure(part: f64) -> Vec<Target> {
     let hand = against_f64(Sensor::real(200.0), Motion::Hand, 190.0, true);
     norm = norm.max(hand.norm);
     add(
-        "the same with the accelerometer: hand motion, 190 s at 200 Hz".into(),
+        "firmware with the accelerometer against f64 on the same counts: hand motion, 190 s at 200 Hz".into(),
         "°",
         [0.01, 0.001],
         hand.angle,
     );
     add(
-        "error of the quaternion's length in all of these".into(),
+        "largest error of the quaternion's length in the rows above".into(),
         "",
         [1e-8, 2e-9],
         norm,
