@@ -24,7 +24,7 @@ pub struct Renderer {
 
 impl Renderer {
     /// Draws the frame of `scene` with `mesh`, and shows it from the next vertical blanking on. Returns `None` while the
-    /// gateware draws, and while the frame buffer is still on the screen; `mesh` and `scene` stay the same meanwhile. A frame by
+    /// gateware draws, and while the frame buffer is still on the screen; `mesh` and `scene` must not change meanwhile. A frame by
     /// the CPU takes long and calls `progress` at short intervals.
     pub fn draw(
         &mut self,

@@ -18,7 +18,7 @@ pub const SAMPLES: u32 = 8_192;
 /// Accepted numbers of samples of a calibration.
 pub const MOST_SAMPLES: [u32; 2] = [64, 65_536];
 
-/// Largest difference of a sample's rate from the first one, in °/s: ten times the noise. A still hand exceeds it.
+/// Largest difference of a sample's rate from the first one, in °/s: ten times the noise. Even a hand held still exceeds this limit.
 const MOST_RATE: u32 = 2;
 /// Largest difference between the means of both halves, in 1/8 °/s.
 const MOST_CHANGE: u32 = 1;

@@ -317,7 +317,7 @@ pub enum ViewError {
     Length {
         /// The row.
         axis: Axis,
-        /// Its components.
+        /// Components of the row.
         row: [Q2_23; 3],
     },
     /// Two rows have a scalar product beyond 1e-4.

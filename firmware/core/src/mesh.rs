@@ -256,7 +256,7 @@ pub struct Vertex {
     pub position: [i16; 3],
     /// Normal, s2.14.
     pub normal: [i16; 3],
-    /// Its colour.
+    /// Colour in RGB565.
     pub colour: Rgb565,
 }
 
@@ -276,7 +276,7 @@ impl Vertex {
 pub struct Triangle {
     /// Indices of the vertices in the chunk, counter-clockwise seen from outside.
     pub indices: [u16; 3],
-    /// Its colour.
+    /// Colour in RGB565.
     pub colour: Rgb565,
     /// The normal of its face, s2.14.
     pub normal: [i16; 3],

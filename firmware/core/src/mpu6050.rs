@@ -297,7 +297,7 @@ impl<B: PeriodicI2c> Mpu6050<B> {
     /// Starts reads every `period` µs. A read is one burst of 0.43 ms at 400 kHz, during which the chip does not change its data.
     ///
     /// # Errors
-    /// Those of the bus.
+    /// Errors of the bus.
     pub fn begin_looks(&mut self, period: u32) -> Result<(), Error<B::Error>> {
         Ok(self.bus.begin(PeriodicRead {
             address: self.address,
@@ -311,7 +311,7 @@ impl<B: PeriodicI2c> Mpu6050<B> {
     /// The next read: its start in µs, and the sample unless the previous read returned it.
     ///
     /// # Errors
-    /// Those of the bus.
+    /// Errors of the bus.
     pub async fn look(&mut self) -> Result<(u64, Option<Measurement>), Error<B::Error>> {
         let mut bytes = Look::default();
         let time = self.bus.next(&mut bytes).await?;

@@ -1,7 +1,7 @@
 //! Uploads and downloads over a byte stream that may lose, change or repeat bytes (docs/formats.md, "Transfers").
 //!
 //! [`Sender`] and [`Receiver`] are state machines without clock or transport: bytes go in, bytes come out, and the caller
-//! gives the time in milliseconds. They are the same on both sides of the line and in both directions.
+//! gives the time in milliseconds. Firmware and host use the same code in both directions.
 //!
 //! ```text
 //! sender                                     receiver

@@ -80,9 +80,9 @@ fn a_calibration_ends_when_it_moves_fails_or_has_no_sensor() {
     assert_eq!((imu.errors(), imu.is_running()), (1, false));
     imu.on_start(Identity::Mpu6050);
     assert!(imu.is_running());
-    let mut nobody = TestImu::default();
-    nobody.calibrate(64);
-    assert_eq!(nobody.calibration(), Some(Err(CalibrationError::Absent)));
+    let mut absent = TestImu::default();
+    absent.calibrate(64);
+    assert_eq!(absent.calibration(), Some(Err(CalibrationError::Absent)));
 }
 
 #[test]

@@ -325,27 +325,19 @@ fn assert_ends(scene: Scene, sender: Failure, receiver: Failure) {
 }
 
 #[test]
-fn a_sender_that_gives_up_is_heard() {
-    assert_ends(
-        Scene {
-            sender_aborts_at_ms: 500,
-            ..Scene::default()
-        },
-        Failure::Aborted(Reason::Cancelled),
-        Failure::AbortedByPeer(Reason::Cancelled),
-    );
-}
-
-#[test]
-fn a_receiver_that_gives_up_is_heard() {
-    assert_ends(
-        Scene {
-            receiver_aborts_at_ms: 500,
-            ..Scene::default()
-        },
-        Failure::AbortedByPeer(Reason::Cancelled),
-        Failure::Aborted(Reason::Cancelled),
-    );
+fn a_side_that_gives_up_is_heard() {
+    let cancelled = Failure::Aborted(Reason::Cancelled);
+    let by_peer = Failure::AbortedByPeer(Reason::Cancelled);
+    let by_sender = Scene {
+        sender_aborts_at_ms: 500,
+        ..Scene::default()
+    };
+    assert_ends(by_sender, cancelled, by_peer);
+    let by_receiver = Scene {
+        receiver_aborts_at_ms: 500,
+        ..Scene::default()
+    };
+    assert_ends(by_receiver, by_peer, cancelled);
 }
 
 #[test]

@@ -5,7 +5,7 @@ use core::fmt;
 /// Error: this SoC lacks a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Absent {
-    /// `ident` where the block is present: four letters of ASCII.
+    /// `ident` of a present block: four letters of ASCII.
     pub expected: u32,
     /// `ident` as read; 0 if the SoC lacks the block.
     pub found: u32,

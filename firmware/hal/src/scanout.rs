@@ -211,7 +211,7 @@ mod tests {
         control: u32,
         next: u32,
         scale: u32,
-        /// Control, frame and scale in force.
+        /// Active control, frame and scale.
         current: [u32; 3],
         blank_before: Option<u32>,
     }
@@ -230,7 +230,7 @@ mod tests {
             match address - scanout::Scanout::BASE {
                 0x00 => video.ident,
                 0x08 => video.control,
-                // The scale in force.
+                // The active scale.
                 0x0c => video.current[2] << 4,
                 0x1c => video.next,
                 0x20 => video.scale,

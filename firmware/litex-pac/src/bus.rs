@@ -1,4 +1,4 @@
-//! The bus behind the registers: the CPU's own on the board, a model of it on a host.
+//! The bus behind the registers: the CPU's bus on the board, a model on a host.
 
 #[cfg(target_os = "none")]
 pub(crate) use board::{read, write};

@@ -103,12 +103,12 @@ fn clipping_does_not_depend_on_the_first_vertex() {
                     .copied()
                     .collect::<Vec<_>>()
             };
-            let (mine, theirs) = (exceptions(&pictures[0]), exceptions(other));
+            let (mine, others) = (exceptions(&pictures[0]), exceptions(other));
             // Colours are not compared: the test computes normals in f64, whose rounding depends on the order.
-            assert_eq!(mine.len(), theirs.len());
+            assert_eq!(mine.len(), others.len());
             assert!(
                 mine.iter()
-                    .zip(&theirs)
+                    .zip(&others)
                     .all(|(a, b)| a.vertices == b.vertices && a.facing == b.facing)
             );
         }

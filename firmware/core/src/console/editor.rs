@@ -140,7 +140,7 @@ impl LineEditor {
         Event::None
     }
 
-    /// Ends the line and adds it to the history.
+    /// Ends the line and adds the line to the history.
     fn end(&mut self, echo: &mut dyn Write) -> Event<'_> {
         let _ = echo.write_str("\n");
         self.ended = true;

@@ -29,13 +29,13 @@ pub trait Shape: Sized {
     /// Reads the numbers.
     ///
     /// # Errors
-    /// Those of the numbers.
+    /// Errors of the numbers.
     fn read<'a>(numbers: &mut impl Arguments<'a>) -> Result<Self, FieldError<'a>>;
 
     /// Writes the numbers in text form.
     ///
     /// # Errors
-    /// Those of the formatter.
+    /// Errors of the formatter.
     fn write(&self, f: &mut fmt::Formatter) -> fmt::Result;
 
     /// The solid in field units.

@@ -10,7 +10,7 @@ use super::{HEADER, MAGIC, MAX_BYTES, MAX_CHUNK_VERTICES, RECORD, Rgb565, Vertex
 pub struct IndexedTriangle {
     /// Indices of the vertices in the mesh, counter-clockwise seen from outside.
     pub indices: [u32; 3],
-    /// Its colour.
+    /// Colour of the triangle.
     pub colour: Rgb565,
     /// The normal of its face, s2.14.
     pub normal: [i16; 3],

@@ -174,7 +174,7 @@ impl Quaternion {
         Turns(half.0 << 1)
     }
 
-    /// One Newton step towards length 1. It squares the relative error, so that an error within 2^−15 vanishes in the last place.
+    /// One Newton step towards length 1. The step squares the relative error, so that an error within 2^−15 vanishes in the last place.
     #[must_use]
     fn renormalised(self) -> Self {
         let parts = self.parts.map(i64::from);

@@ -287,7 +287,7 @@ const READ: PeriodicRead = PeriodicRead {
     batch: 5,
 };
 
-/// The next periodic read, if it is over.
+/// The next periodic read; `None` if the read is not over.
 fn look(i2c: &mut I2c) -> Option<(Result<u64, BusError>, [u8; 3])> {
     let mut bytes = [0; 3];
     let found = {

@@ -129,7 +129,7 @@ pub struct FixedBox {
     half: [Option<i32>; 3],
     /// Whether the solid is outside the box.
     room: bool,
-    /// Whether it repeats itself every 64 units along each axis.
+    /// Whether the solid is periodic with 64 units along each axis.
     repeated: bool,
 }
 
