@@ -7,11 +7,11 @@
 
 module plane_entry (
     input  wire         clk,
-    input  wire         take,      // the plane comes
+    input  wire         take,      // a plane enters
     input  wire  [2:0]  pass,
     input  wire         advance,
     input  wire  [9:0]  offset,
-    input  wire         hold,      // its triangle is to be held
+    input  wire         hold,      // the triangle moves to the held stage
     input  wire         result,    // the value is computed
     input  wire         give,      // the held value goes out
     input  wire  [95:0] in_plane,  // {step_y, step_x, start}

@@ -50,8 +50,8 @@ module vertex_cache #(
     localparam int unsigned TAG_BITS   = 16 - SLOT_BITS;
     localparam int unsigned ENTRY_BITS = EPOCH_BITS + TAG_BITS;
     localparam int unsigned RECORDS    = 64;
-    localparam int unsigned PLACES     = 16; // of vertices that are waiting for the rest of their triangle
-    localparam int unsigned TRIANGLES  = 32; // more than RECORDS and PLACES can be parts of
+    localparam int unsigned PLACES     = 16; // for vertices whose triangle is incomplete
+    localparam int unsigned TRIANGLES  = 32; // more than the triangles of all RECORDS and PLACES
 
     // Front: the indices of a triangle go to the tags one by one while there is room for their records.
     logic [2:0][15:0]        indices;

@@ -43,7 +43,7 @@ module vertex_stage (
 
     logic                    half, turn;
     logic [1:0]              element;
-    logic [$clog2(PLACES):0] held;     // vertices between the two sides
+    logic [$clog2(PLACES):0] held;     // vertices inside the stage
     logic [6:0]              ages;     // bit k: a vertex is in its clocks 6·k + 1 to 6·k + 6
     logic [2:0][15:0]        position;
 

@@ -24,7 +24,7 @@ module vertex_transform (
     input  wire  [38:0]        near_z,
     // A vertex.
     input  wire  [2:0][15:0]   position,
-    output logic signed [38:0] planar, // without the five bits that step 6 cuts in any case
+    output logic signed [38:0] planar, // without the lowest five bits, which step 6 discards
     output logic [3:0]         zeros,
     output logic               behind,
     output logic [23:0]        mantissa

@@ -17,7 +17,7 @@ use glint_core::picture::Size;
 use glint_core::stereo::{Stereo, Tint};
 use glint_core::wire::Manifest;
 
-use crate::{Told, compare_triangles, read, send};
+use crate::{Replies, compare_triangles, read, send};
 use glint_vectors::Camera;
 
 /// Longest silence of the firmware, in board time.
@@ -98,9 +98,9 @@ fn compare(
     let name = format!("{field}, {stereo:?}, {view} at {size}{cones}");
     let frame = Frame::new(Subject::Field(subject), *view, size);
     let Rendered { image, stats } = on_model(&frame).unwrap();
-    let told = send(console, &lines(&frame, with_depth));
-    compare_rays(&told, &name, &stats);
-    compare_picture(console, &told, &name, &image, with_depth);
+    let replies = send(console, &lines(&frame, with_depth));
+    compare_rays(&replies, &name, &stats);
+    compare_picture(console, &replies, &name, &image, with_depth);
 }
 
 /// Console commands of a frame whose mesh is loaded. One write with all of them draws one frame.
@@ -118,36 +118,36 @@ fn lines(frame: &Frame, with_depth: bool) -> Vec<String> {
     lines
 }
 
-fn compare_rays(told: &Told, name: &str, stats: &Stats) {
+fn compare_rays(replies: &Replies, name: &str, stats: &Stats) {
     assert_eq!(
-        told.text("backend"),
+        replies.text("backend"),
         "gateware",
         "{name}: {:#?}",
-        told.lines
+        replies.lines
     );
     let rays = stats.rays.as_ref().unwrap();
-    let counted = ["rays", "hits", "misses", "undecided"].map(|key| told.number(key));
+    let counted = ["rays", "hits", "misses", "undecided"].map(|key| replies.number(key));
     let expected = [rays.rays, rays.hits, rays.misses, rays.undecided];
     assert_eq!(counted, expected, "{name}: rays, hits, misses, undecided");
-    let evaluations = u64::from(told.number("evaluations"));
+    let evaluations = u64::from(replies.number("evaluations"));
     assert_eq!(evaluations, rays.evaluations, "{name}: evaluations");
 }
 
 fn compare_picture(
     console: &mut Console<SimulatedBoard>,
-    told: &Told,
+    replies: &Replies,
     name: &str,
     image: &Image,
     with_depth: bool,
 ) {
     let place = |at: usize| (at as u32 % image.width, at as u32 / image.width);
-    let bytes = read(console, told.address("frame"), 2 * image.colour.len());
+    let bytes = read(console, replies.address("frame"), 2 * image.colour.len());
     for (at, (found, &wanted)) in bytes.chunks_exact(2).zip(&image.colour).enumerate() {
         let found = u16::from_le_bytes([found[0], found[1]]);
         assert_eq!(found, wanted, "{name}: the colour at {:?}", place(at));
     }
     if with_depth {
-        let bytes = read(console, told.address("depth"), 4 * image.depth.len());
+        let bytes = read(console, replies.address("depth"), 4 * image.depth.len());
         for (at, (found, &wanted)) in bytes.chunks_exact(4).zip(&image.depth).enumerate() {
             let found = u32::from_le_bytes([found[0], found[1], found[2], found[3]]);
             assert_eq!(found, wanted, "{name}: the depth at {:?}", place(at));
@@ -223,13 +223,13 @@ fn the_soc_draws_large_fields_and_goes_back_to_meshes() {
         let frame = Frame::new(Subject::mesh(mesh), view, size);
         let Rendered { image, .. } = on_model(&frame).unwrap();
         let load = load(&mut console, &cube);
-        let told = send(
+        let replies = send(
             &mut console,
             &[load, "render".to_owned(), "info".to_owned()],
         );
-        assert_eq!(told.text("backend"), "gateware", "{:#?}", told.lines);
+        assert_eq!(replies.text("backend"), "gateware", "{:#?}", replies.lines);
         let name = format!("the cube at {size}");
-        compare_picture(&mut console, &told, &name, &image, false);
+        compare_picture(&mut console, &replies, &name, &image, false);
     }
 }
 
@@ -293,29 +293,29 @@ fn the_soc_draws_a_mesh_in_a_field() {
         let cull = frame.subject.mesh_part().is_some_and(|mesh| mesh.cull);
         let cull = format!("cull {}", if cull { "on" } else { "off" });
         let lines = [vec![cull], lines(frame, true)].concat();
-        let told = send(&mut console, &lines);
-        compare_rays(&told, &name, &stats);
+        let replies = send(&mut console, &lines);
+        compare_rays(&replies, &name, &stats);
         let triangles = stats.triangles();
         assert!(
             number > 0 || triangles.triangles_clipped > 0,
             "nothing was clipped"
         );
-        compare_triangles(&told, &name, &stats);
+        compare_triangles(&replies, &name, &stats);
         assert_eq!(
-            u64::from(told.number("pixels_covered")),
+            u64::from(replies.number("pixels_covered")),
             triangles.pixels_covered,
             "{name}"
         );
-        compare_picture(&mut console, &told, &name, &image, true);
+        compare_picture(&mut console, &replies, &name, &image, true);
     }
     if !all() {
         return;
     }
     // Back to back, without waiting for the screen.
-    let told = send(
+    let replies = send(
         &mut console,
         &["bench field".to_owned(), "info scene".to_owned()],
     );
-    assert!(told.text("bench").starts_with("field frames 8 cycles "));
-    assert_eq!(told.text("scene"), "box:0.75,0.75,0.75 with model");
+    assert!(replies.text("bench").starts_with("field frames 8 cycles "));
+    assert_eq!(replies.text("scene"), "box:0.75,0.75,0.75 with model");
 }

@@ -132,11 +132,11 @@ impl Board for Watched {
 }
 
 /// Replies of the firmware: statistics of the last frame, counters of the machine.
-struct Told {
+struct Replies {
     lines: Vec<String>,
 }
 
-impl Told {
+impl Replies {
     fn text(&self, key: &str) -> String {
         let line = |line: &String| line.starts_with(&format!("{key} "));
         let lines: Vec<String> = self
@@ -161,9 +161,9 @@ impl Told {
 }
 
 /// Compares the counts of triangles with the model's.
-fn compare_triangles(told: &Told, name: &str, stats: &Stats) {
+fn compare_triangles(replies: &Replies, name: &str, stats: &Stats) {
     let counts =
-        ["in", "culled", "clipped", "drawn"].map(|key| told.number(&format!("triangles_{key}")));
+        ["in", "culled", "clipped", "drawn"].map(|key| replies.number(&format!("triangles_{key}")));
     let triangles = stats.triangles();
     let expected = [
         triangles.triangles_in,
@@ -178,11 +178,11 @@ fn compare_triangles(told: &Told, name: &str, stats: &Stats) {
 }
 
 /// Sends all lines in one write, so that no frame is drawn between them, and collects the replies.
-fn send<B: Board>(console: &mut Console<B>, lines: &[String]) -> Told {
+fn send<B: Board>(console: &mut Console<B>, lines: &[String]) -> Replies {
     let text: String = lines.iter().map(|line| format!("{line}\r")).collect();
     console.board().write(text.as_bytes()).unwrap();
     let replies = lines.iter().map(|line| console.reply(line).unwrap());
-    Told {
+    Replies {
         lines: replies.flatten().collect(),
     }
 }
@@ -221,7 +221,7 @@ fn draw(size: Size, scenes: Vec<Scene>) {
     };
     let mut console = Console::new(&mut board).patience(PATIENCE_MS);
     console.greet().unwrap();
-    let mut told = send(
+    let mut replies = send(
         &mut console,
         &["backend gateware".to_owned(), "info".to_owned()],
     );
@@ -255,43 +255,53 @@ fn draw(size: Size, scenes: Vec<Scene>) {
                 // The bytes are in place, so `load` finds their CRC-32 correct and skips the transfer.
                 let Manifest { length, crc32 } = Manifest::of(&mesh);
                 let memory = console.board().memory().unwrap();
-                memory.write_memory(told.address("staging"), &mesh).unwrap();
+                memory
+                    .write_memory(replies.address("staging"), &mesh)
+                    .unwrap();
                 lines.push(format!("load {length} {crc32:08x}"));
             }
             lines.push("info".to_owned());
             console.board().expect(&name, image.colour);
-            told = send(&mut console, &lines);
+            replies = send(&mut console, &lines);
             // `render` would replace a frame before it is shown.
-            while told.number("video_frames") == drawn {
+            while replies.number("video_frames") == drawn {
                 console.board().wait_for_picture();
-                told = send(&mut console, &["info".to_owned()]);
+                replies = send(&mut console, &["info".to_owned()]);
             }
             let render = format!("render{}", if with_depth { " depth" } else { "" });
-            told = send(&mut console, &[render, "info".to_owned()]);
-            drawn = told.number("video_frames");
+            replies = send(&mut console, &[render, "info".to_owned()]);
+            drawn = replies.number("video_frames");
 
             assert_eq!(
-                told.text("backend"),
+                replies.text("backend"),
                 "gateware",
                 "{name}: {:#?}",
-                told.lines
+                replies.lines
             );
-            compare_triangles(&told, &name, &stats);
+            compare_triangles(&replies, &name, &stats);
             let place = |at: usize| (at as u32 % size.width(), at as u32 / size.width());
-            let bytes = read(&mut console, told.address("frame"), 2 * image.depth.len());
+            let bytes = read(
+                &mut console,
+                replies.address("frame"),
+                2 * image.depth.len(),
+            );
             let (_, colour) = console.board().expected.last().unwrap();
             for (at, (found, &wanted)) in bytes.chunks_exact(2).zip(colour).enumerate() {
                 let found = u16::from_le_bytes([found[0], found[1]]);
                 assert_eq!(found, wanted, "{name}: the colour at {:?}", place(at));
             }
             if with_depth {
-                let bytes = read(&mut console, told.address("depth"), 4 * image.depth.len());
+                let bytes = read(
+                    &mut console,
+                    replies.address("depth"),
+                    4 * image.depth.len(),
+                );
                 for (at, (found, &wanted)) in bytes.chunks_exact(4).zip(&image.depth).enumerate() {
                     let found = u32::from_le_bytes([found[0], found[1], found[2], found[3]]);
                     assert_eq!(found, wanted, "{name}: the depth at {:?}", place(at));
                 }
             }
-            assert_eq!(told.number("video_underflows"), 0, "{name}: late lines");
+            assert_eq!(replies.number("video_underflows"), 0, "{name}: late lines");
         }
     }
     let board = console.board();
