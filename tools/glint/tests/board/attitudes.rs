@@ -150,7 +150,7 @@ fn a_bad_log_is_refused_and_no_attitudes_are_left() {
     );
     let refused = console.command("replay").unwrap_err().to_string();
     assert!(
-        refused.contains("expected an upload of a log before"),
+        refused.contains("expected an upload of a log first"),
         "{refused}"
     );
 }
