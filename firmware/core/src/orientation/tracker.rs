@@ -101,6 +101,8 @@ impl Tracker {
     }
 
     /// Takes a sample.
+    // On the soft core most of the time is spent on misses of the instruction cache, so the code of every sample is small and
+    // contiguous, and rare code is in separate functions.
     #[inline(never)]
     pub fn on_sample(&mut self, sample: &Sample) -> Outcome {
         let rate = [0, 1, 2].map(|i| (i32::from(sample.gyro[i]) << 8) - self.bias[i]);
