@@ -73,8 +73,8 @@ impl Light {
         self.colour
     }
 
-    /// Reads the text form, such as `1,-2,3` or `0,0,1,ffc080`: the direction to the light, of any length, and its colour,
-    /// white by default.
+    /// Parses the text form, such as `1,-2,3` or `0,0,1,ffc080`: the direction to the light, of any length, and the
+    /// colour, white by default.
     ///
     /// # Errors
     /// The text has another form, or the direction is 0.
@@ -105,7 +105,7 @@ impl fmt::Display for Light {
     }
 }
 
-/// A colour as [`parse_rgb`] reads it.
+/// Displays a colour in the form that [`parse_rgb`] reads.
 #[derive(Clone, Copy, Debug)]
 pub struct Hexadecimal(pub Rgb);
 

@@ -1,7 +1,8 @@
 //! The raymarcher: distance fields in the frames of the triangle engine's raster pass.
 //!
-//! [`Raymarcher::set_field`] writes down what is to be drawn; every raster pass that is started afterwards draws it, until
-//! [`Raymarcher::clear_field`]. Neither may be called while a raster pass runs. It reaches no memory.
+//! [`Raymarcher::set_field`] writes a field's frame constants. Every raster pass that starts afterwards draws the
+//! field, until [`Raymarcher::clear_field`]. Neither may be called during a raster pass. The raymarcher does not access
+//! memory.
 
 use core::fmt;
 
@@ -16,39 +17,39 @@ use litex_pac::raymarch::{
 
 use crate::Absent;
 
-/// What a raymarcher has been built with.
+/// Build options of a raymarcher.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Capabilities {
-    /// Evaluations of the field a clock.
+    /// Lanes: evaluations of the field per clock.
     pub lanes: u8,
-    /// The deepest sponge; 0: none.
+    /// Largest depth of a sponge; 0 without sponges.
     pub levels: u8,
-    /// Flat fields: bit k of a field of kind k.
+    /// Flat fields: bit k for the field of kind k.
     pub flat: u8,
     /// Two eyes.
     pub stereo: bool,
     /// Spheres.
     pub round: bool,
-    /// Fillets between spheres and what has faces.
+    /// Fillets between spheres and flat fields.
     pub blend: bool,
-    /// Cones before the rays.
+    /// Prepass.
     pub prepass: bool,
 }
 
-/// What a frame asks for and the gateware is built without.
+/// A feature that a frame needs and this build lacks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Missing {
-    /// The sponge, or so many levels of it: there are these.
+    /// Sponges, or sponges deeper than the contained number of levels.
     Levels(u8),
-    /// Flat fields of a kind.
+    /// Flat fields of this kind.
     Flat(Kind),
     /// Spheres.
     Round,
-    /// Fillets between spheres and what has faces.
+    /// Fillets between spheres and flat fields.
     Blend,
     /// Two eyes.
     Stereo,
-    /// Cones before the rays.
+    /// Prepass.
     Prepass,
 }
 
@@ -72,7 +73,7 @@ impl fmt::Display for Missing {
 
 impl core::error::Error for Missing {}
 
-/// The counts of the rays among the counters.
+/// The ray statistics of the block's counters.
 #[must_use]
 pub fn ray_counts(counters: &Counters) -> FieldStats {
     FieldStats {
@@ -84,19 +85,19 @@ pub fn ray_counts(counters: &Counters) -> FieldStats {
     }
 }
 
-/// The raymarcher, known to be there.
+/// Driver of the raymarcher, whose presence has been checked.
 pub struct Raymarcher {
     registers: raymarch::Raymarch,
     capabilities: Capabilities,
-    /// What its tables hold: fog and light.
+    /// The contents of the tables of fog and light.
     tables: Option<[[u8; 256]; 2]>,
 }
 
 impl Raymarcher {
-    /// Takes the block if it is there. Its interrupt stays silent: the end of the raster pass is the end of its frame.
+    /// Takes the block if present. Its interrupt stays disabled: the frame ends with the raster pass.
     ///
     /// # Errors
-    /// When something else answers, or nothing.
+    /// [`Absent`] if another block answers, or none.
     pub fn probe(registers: raymarch::Raymarch) -> Result<Self, Absent> {
         match registers.ident().read() {
             raymarch::Raymarch::IDENT => {
@@ -124,16 +125,16 @@ impl Raymarcher {
         }
     }
 
-    /// What it has been built with.
+    /// The build options.
     #[must_use]
     pub const fn capabilities(&self) -> Capabilities {
         self.capabilities
     }
 
-    /// Whether it can draw a frame.
+    /// Checks that this build can draw a frame.
     ///
     /// # Errors
-    /// What is missing.
+    /// The missing feature.
     pub fn check(&self, setup: &FieldSetup) -> Result<(), Missing> {
         let Capabilities {
             levels,
@@ -150,7 +151,7 @@ impl Raymarcher {
                 return Err(Missing::Levels(levels));
             }
             let kind = kind(&constants);
-            // Without levels there is no sponge.
+            // The check of the levels above covers the sponge, kind 0.
             if constants.kind != 0 && flat >> constants.kind & 1 == 0 {
                 return Err(Missing::Flat(kind));
             }
@@ -170,10 +171,11 @@ impl Raymarcher {
         Ok(())
     }
 
-    /// Has the field drawn in every raster pass from now on, after its triangles. The pass's size has to be that of the setup.
+    /// Enables the field in every following raster pass, after the triangles. The size of the pass must equal that of
+    /// the setup.
     ///
     /// # Errors
-    /// What is missing; then nothing has changed.
+    /// The missing feature; all registers are then unchanged.
     pub fn set_field(&mut self, setup: &FieldSetup, palette: &Palette) -> Result<(), Missing> {
         self.check(setup)?;
         if !self.has_tables(palette) {
@@ -182,7 +184,8 @@ impl Raymarcher {
         self.set_field_with_tables_held(setup, palette)
     }
 
-    /// The same where the raymarcher [has the palette's tables](Self::has_tables), which are not looked at.
+    /// As [`set_field`](Self::set_field), for a palette whose tables the raymarcher [holds](Self::has_tables). The
+    /// palette's tables are not read.
     ///
     /// # Errors
     /// As [`set_field`](Self::set_field).
@@ -224,7 +227,7 @@ impl Raymarcher {
             .cones
             .map(|cones| (cones.offset, cones.spread))
             .unwrap_or_default();
-        // One write after the other: a loop over registers has to keep their addresses in a table.
+        // Individual writes: a loop would need a table of the registers' addresses.
         registers.far().write(setup.tuning.far);
         registers.near().write(setup.near);
         registers.origin_left_x().write(origins[0][0]);
@@ -266,7 +269,7 @@ impl Raymarcher {
         registers.colour_6().write(colour(palette.undecided));
         registers.colour_7().write(colour(palette.zenith));
         registers.horizon().write(colour(palette.horizon));
-        // The register `sphere` has the colours of the faces beyond six.
+        // The colours of faces 6 and 7 are entries of the register `sphere`.
         for (entry, &face) in (32..).zip(&palette.faces[6..]) {
             self.set_constant(entry, colour(face));
         }
@@ -291,7 +294,7 @@ impl Raymarcher {
         Ok(())
     }
 
-    /// Writes the lengths of a flat solid. Returns its bits of the register `solid`.
+    /// Writes the lengths of a flat solid. Returns the fields of the register `solid` for the solid.
     fn set_flat(&self, constants: &FlatConstants) -> SolidRegister {
         let registers = &self.registers;
         registers.cube_half().write(constants.cube_half);
@@ -312,7 +315,7 @@ impl Raymarcher {
         self.registers.sphere().write(constant);
     }
 
-    /// Writes the constants of spheres, of what is between them and faces, and of the light on them.
+    /// Writes the constants of spheres, of the fillet, and of the light on spheres.
     fn set_spheres(&self, spheres: &FixedSpheres, blend: &Blend, lights: &Lights) {
         let write = |entry, value| self.set_constant(entry, value);
         let numbers = |x: [i32; 3]| x.map(|x| x as u32 & 0xFF_FFFF);
@@ -341,7 +344,7 @@ impl Raymarcher {
         }
     }
 
-    /// Whether the tables are a palette's. To find out takes longer than to write a frame's registers.
+    /// Whether the tables hold those of a palette. The comparison takes longer than writing a frame's registers.
     #[must_use]
     pub fn has_tables(&self, palette: &Palette) -> bool {
         let held = self.tables.as_ref();
@@ -358,7 +361,7 @@ impl Raymarcher {
         self.tables = Some(tables);
     }
 
-    /// Has no field drawn any more.
+    /// Disables the field in following raster passes.
     pub fn clear_field(&mut self) {
         self.registers.control().write(Control::default());
     }
@@ -370,20 +373,20 @@ impl Raymarcher {
     }
 }
 
-/// The kind of a flat field in the gateware's description, which has all of them.
+/// The kind of a flat field as a value of the register; the register's description has all kinds.
 fn kind(constants: &FlatConstants) -> Kind {
     let kind = Kind::ALL.get(usize::from(constants.kind)).copied();
     kind.unwrap_or(Kind::Menger)
 }
 
-/// Red in bits 0 to 7, green, blue.
+/// A colour in the register format: red in bits 0 to 7, then green, then blue.
 const fn colour([r, g, b]: [u8; 3]) -> u32 {
     u32::from_le_bytes([r, g, b, 0])
 }
 
 /// Clears the raymarcher's interrupt; its handler calls this.
 pub fn acknowledge() {
-    // SAFETY: the pending register is written here only.
+    // SAFETY: only this function writes the pending register.
     let registers = unsafe { raymarch::Raymarch::steal() };
     registers
         .ev_pending()

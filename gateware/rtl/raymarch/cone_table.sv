@@ -1,9 +1,10 @@
-// What the cones of a picture have cleared: the depth up to which the rays of each block of pixels are free (docs/formats.md, "Cones").
+// Table of the cones of a picture: the depth up to which all rays of a block of pixels are free (docs/formats.md,
+// "Cones").
 //
 //   end of a cone: t, length ─▶ t·inverse ─▶ depth ─▶ 2^14 places ─▶ near plane of a block
 //
-// A write takes 6 clocks, one a clock. A read takes 2 clocks in which `enable` is high, one a clock; it does not see a write under way.
-// With ROUND, and while `round` is high, the inverses are those of Euclidean lengths.
+// A write takes 6 clocks, one a clock. A read takes 2 clocks in which `enable` is high, one a clock; a read does not
+// return a write in flight. With ROUND, and while `round` is high, the inverses are those of Euclidean lengths.
 
 `default_nettype none
 
@@ -17,7 +18,7 @@ module cone_table #(
     input  wire  [13:0] in_number,
     input  wire  [9:0]  in_length,
     input  wire  [22:0] in_t,
-    // Looks.
+    // Reads.
     input  wire         enable,
     input  wire  [13:0] number,
     output logic [22:0] cleared

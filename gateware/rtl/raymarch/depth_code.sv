@@ -1,9 +1,9 @@
-// The depth code of a depth: K over it, to nearest, 1 to 2^18 - 1 (docs/formats.md, "Ends").
+// Depth code of a depth: K/depth, to nearest, 1 to 2^18 - 1 (docs/formats.md, "Ends").
 //
 //   depth ─▶ normalise ─▶ m ─▶ seed ─▶ two Newton steps, four products ─▶ 1/m ─▶ times K, shift, round ─▶ code
 //
-// The depth is a u19.21 that is not 0; K = mantissa·2^exponent. Latency 23 clocks in which `enable` is high, throughput a depth a clock:
-// the reciprocal is that of `reciprocal`, with a multiplier for each of its products.
+// The depth is a u19.21 other than 0; K = mantissa·2^exponent. Latency 23 clocks in which `enable` is high, throughput
+// one depth a clock: the reciprocal is that of `reciprocal`, with a separate multiplier for each product.
 
 `default_nettype none
 
@@ -63,7 +63,7 @@ module depth_code (
 
     assign sum = {1'b0, y1_16, 7'b0} + 25'($signed(step_16[36:25]));
 
-    // 20: K·y, to be divided by 2^(22 + shift). Where that is less than 22 the code is larger than there are.
+    // 20: K·y, to be divided by 2^(22 + shift). A divisor below 2^22 gives a code above the largest one.
     logic signed [42:0] product_20;
     logic [5:0]         lead_19;
     logic signed [7:0]  shift_20;

@@ -1,9 +1,10 @@
-// The distance to a box, in the maximum norm: alone or every 64 units, from outside or within (docs/formats.md, "Fields").
+// Distance to a box, in the maximum norm: single or repeated every 64 units, from outside or inside (docs/formats.md,
+// "Fields").
 //
 //   point ─▶ |x| - half of each coordinate ─▶ largest ─▶ distance, surface
 //
-// Latency 3 clocks, throughput a point a clock, no handshake. A side that is not in `has` is beyond all points. With `room` the
-// solid is what is outside of the box. The parameters hold.
+// Latency 3 clocks, throughput one point a clock, no handshake. Along an axis outside of `has` the box is unbounded.
+// With `room` the solid is the space outside of the box. The parameters hold.
 
 `default_nettype none
 

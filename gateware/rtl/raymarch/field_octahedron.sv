@@ -1,11 +1,11 @@
-// The distance to an octahedron about the origin, |x| + |y| + |z| <= size, in the maximum norm.
+// Distance to an octahedron about the origin, |x| + |y| + |z| <= size, in the maximum norm.
 //
 //   point ─▶ |x|, |y|, |z| ─▶ |x| + |y|, |z| - size ─▶ sum ─▶ * 5 ─▶ * 17 ─▶ / 256 ─▶ distance
 //
-// A cube of half side r changes the sum by 3r at most: the distance is 85/256 of the sum, rounded down, which is below a third and needs
-// no multiplier. `surface` is {z, y, x}: 1 where the normal of the face is positive.
+// A cube of half side r changes the sum by 3r at most: the distance is 85/256 of the sum, rounded down, a lower bound
+// of a third without a multiplier. `surface` is {z, y, x}: 1 where the normal of the face is positive.
 //
-// Latency 5 clocks, throughput a point a clock, no handshake. `size` holds.
+// Latency 5 clocks, throughput one point a clock, no handshake. `size` holds.
 
 `default_nettype none
 

@@ -1,15 +1,16 @@
-// The distance to one of up to eight spheres, in the Euclidean norm, rounded down (docs/formats.md, "Fields").
+// Distance to one of up to eight spheres, in the Euclidean norm, rounded down (docs/formats.md, "Fields").
 //
 //   point - centre ─▶ |x|, |y|, |z| ─▶ shift ─▶ three squares, one sum ─▶ root ─▶ shift back ─▶ - radius ─▶ distance
 //                                        │                                            ▲
 //                                        └──────────── how far ───────────────────────┘
 //
-// The parts are shifted so that the largest fills 17 bits, and the root is on a line between two entries of a table: the length is
-// less than it is by 3 and a part of 2^-15 at most (12 fraction bits), and never more. Distances of 2^21 and
-// more are 2^21 - 1. With `repeated` there is a sphere every 64 units; its centre is 0 then.
+// The shift makes the largest component fill 17 bits. The root is a linear interpolation between two entries of a
+// table. The length is never above the exact one, and below it by at most 3 plus a part of 2^-15 (12 fraction bits).
+// Distances of 2^21 and more saturate at 2^21 - 1. With `repeated` the sphere repeats every 64 units; its centre is
+// then 0.
 //
-// Latency 18 clocks, throughput a point a clock, no handshake. `number` comes a clock before its point. Spheres are written one a
-// clock, not while points are inside; `repeated` holds.
+// Latency 18 clocks, throughput one point a clock, no handshake. `number` comes one clock before its point. Spheres are
+// written one a clock, while the pipeline is empty; `repeated` holds.
 
 `default_nettype none
 
@@ -41,7 +42,8 @@ module field_sphere (
         radius_17 <= radii[number_16];
     end
 
-    // 1: from the centre. 2: magnitudes, and all bits that any of them has. 3, 4: the highest of these at the top, but for one.
+    // 1: from the centre. 2: magnitudes, and their bitwise OR. 3, 4: shifted left until the highest bit of the OR is
+    // one of the top two bits.
     logic [2:0][22:0] apart_1;
     logic [2:0][21:0] size_2, by_8, shifted_8;
     logic [2:0][17:0] by_2;
@@ -83,7 +85,7 @@ module field_sphere (
         for (int i = 0; i < 3; i++) begin
             logic [22:0] apart;
             apart = minus(point[i], centre_0[i]);
-            // 64 units are 2^18: as seen from the middle of its cell.
+            // 64 units are 2^18: relative to the middle of the point's cell.
             apart_1[i] <= repeated ? {{5{apart[17]}}, apart[17:0]} : apart;
             size_2[i]  <= magnitude(apart_1[i]);
             by_8[i]    <= shifted_8[i];
@@ -119,7 +121,7 @@ module field_sphere (
         .clk, .enable(1'b1), .a({8'b0, part_z_6}), .b({1'b0, part_z_6}), .c(x_y_8), .p(square_9)
     );
 
-    // 10: a quarter of it where it is too large. 12: what the table says. 15: the root, 2^18 to 2^19.
+    // 10: a quarter of the sum where it is too large. 12: entry of the table. 15: root, 2^18 to 2^19.
     logic [17:0]        base_12, base_14;
     logic [9:0]         slope_12;
     logic [16:0]        rest_12;

@@ -1,6 +1,6 @@
-// What is below 1/m for every m that begins with ten given bits: 2^10/(i + 1), u8.9 (docs/formats.md, "Rays"). Two of them at a time.
+// Lower bound of 1/m by the first ten bits i of m: 2^10/(i + 1), u8.9 (docs/formats.md, "Rays"). Two ports.
 //
-// Latency 2 clocks in which `enable` is high, throughput an answer a clock at each port.
+// Latency 2 clocks in which `enable` is high, throughput one result a clock at each port.
 
 `default_nettype none
 
@@ -18,7 +18,7 @@ module inverse_table (
 
     initial begin
         for (int i = 0; i < 1024; i++) inverses[i] = 17'(((1 << 19) - 2) / (i + 1));
-        // What is more than there are bits.
+        // Saturated to 17 bits.
         for (int i = 0; i < 3; i++) inverses[i] = '1;
     end
 

@@ -1,21 +1,22 @@
-// A level of the Menger sponge: space is mirrored until one of its 3x3x3 cubes is left (docs/formats.md, "Fields").
+// One level of the Menger sponge: mirrors space until a single cube of the 3x3x3 remains (docs/formats.md, "Fields").
 //
 //         ┌───┬───┬───┐
 //         │   │   │   │     1  S - |x| of each coordinate: above S/2 in the middle third
-//         ├───┼───┼───┤     2  which is the largest?
-//         │   │   │   │     3  that one is mirrored at S/2: where two lie in the middle, a hole, the point is now
-//         ├───┼───┼───┤        outside of |x| <= S/2, which is the next level's cube
+//         ├───┼───┼───┤     2  the largest of them
+//         │   │   │   │     3  its coordinate is mirrored at S/2: a point in a hole (two coordinates in the
+//         ├───┼───┼───┤        middle third) moves outside of |x| <= S/2, the next level's cube
 //         │   │   │   │
 //         └───┴───┴───┘ 3S wide
 //
-// A coordinate k stands for k + 1/2, so that -x is ~k. Each carries the direction in the world in which it grows, {axis, positive}.
-// Latency 3 clocks, throughput a point a clock, no handshake. With `enable` low points pass as they are; it holds.
+// A coordinate k represents k + 1/2, so that -x is ~k. Each coordinate carries its direction of growth in the world,
+// {axis, positive}. Latency 3 clocks, throughput one point a clock, no handshake. While `enable` is low, points pass
+// unchanged; `enable` holds.
 
 `default_nettype none
 
 module menger_level #(
     parameter int unsigned BITS = 22,
-    // Even.
+    // An even number.
     parameter int          S    = 27 << 12
 ) (
     input  wire                         clk,

@@ -1,6 +1,6 @@
-// What fog hides and what light is left, 256 entries of 8 bits each, in one block RAM.
+// Shares of fog and light, 256 entries of 8 bits each, in one block RAM.
 //
-// Latency 2 clocks in which `enable` is high, throughput a pair a clock. A write takes the place of a look at the fog.
+// Latency 2 clocks in which `enable` is high, throughput one pair a clock. A write replaces a read of the fog.
 
 `default_nettype none
 

@@ -3,22 +3,24 @@
 //   columns, lines ─▶ D = first + x·across + y·down ─▶ largest part ─▶ its inverse ─▶ direction = D·inverse
 //                                                          │                             │
 //                                 near·largest part ◀──────┘     inverses of its parts ◀─┘
-//                                        └─▶ start: the largest of it and of outside·inverses: where the ray comes to the box,
-//                                            and what is left there, times the inverses once more
+//                                        └─▶ start: the largest of the near plane and of outside·inverses, the entries into the box;
+//                                            the remaining distance is multiplied by the inverses a second time
 //
-// D grows by additions of 32 bits, so it is exactly what the formula says. Rays of the bands follow each other, in a band its lines
-// from the top, in a line the columns from the left; with `stereo` each line comes for the left eye and then for the right one.
+// D is the sum of 32-bit additions, exactly the formula. Rays come by band, in a band by line from the top, in a line
+// by column from the left; with `stereo` each line comes first for the left eye and then for the right eye.
 //
-// With ROUND, and while `round` is high, it is the Euclidean length that counts: the sum of three squares takes the place of the largest
-// part, and a second table that of the first one.
+// With ROUND, and while `round` is high, rays are scaled by their Euclidean length: the sum of three squares replaces
+// the largest component, and a second table the first one.
 //
-// While `cones` is high there are cones instead, in the middle of blocks of 2^`block` pixels each way, in the same order, numbered:
-// columns and lines are those of blocks then, `offset` and `spread` say what a block is in D, and rays begin at the near plane. With
-// `prepass`, and without `cones`, the near plane of a block is what its cone has cleared: it is asked for by number, and comes 2 clocks
-// later. `fine`: there are 160 blocks in a line and not 80.
+// While `cones` is high, the module generates cones instead: through the middle of blocks of 2^`block` pixels each way,
+// in the same order, with numbers. Columns and lines are then those of blocks, `offset` and `spread` are a block's
+// middle and radius in D, and cones start at the near plane. With `prepass`, and without `cones`, the near plane of a
+// block is the depth at the end of its cone: requested by `number`, returned 2 clocks later. `fine`: 160 blocks in a
+// line instead of 80.
 //
-// `start` (one clock, not while `busy`) begins the frame; parameters hold until it has ended. Latency 25 clocks, 28 with ROUND,
-// throughput a ray a clock. Out: a stream, valid/ready, a ray stays until it has moved. `rst` ends the frame.
+// `start` (one clock, not while `busy`) begins the frame; parameters hold until it has ended. Latency 25 clocks, 28
+// with ROUND, throughput one ray a clock. Output: a valid/ready stream; a ray stays until its transfer. `rst` ends the
+// frame.
 
 `default_nettype none
 
@@ -41,7 +43,7 @@ module ray_generator #(
     input  wire  [2:0][31:0]          across,
     input  wire  [2:0][31:0]          down,
     input  wire  [22:0]               near_limit,
-    // Of both eyes: where they are, and how far outside of the box along each axis.
+    // Of both eyes: positions, and distances outside of the box along each axis.
     input  wire  [1:0][2:0][24:0]     origins,
     input  wire  [1:0][2:0][23:0]     outside,
     // Cones.
@@ -59,7 +61,7 @@ module ray_generator #(
     input  wire                       out_ready,
     output raymarch_pkg::ray_t           out_ray
 );
-    // Clocks until the sum of the squares is as far as the largest part, and those until a ray leaves.
+    // Clocks by which the sum of the squares is later than the largest component; clocks until a ray leaves.
     localparam int unsigned SUM  = ROUND ? 3 : 0;
     localparam int unsigned LAST = SUM + 23;
 
@@ -69,7 +71,7 @@ module ray_generator #(
     logic [5:0]    band;
     logic [2:0][31:0] d, row, next_row, step_across, step_down;
 
-    // They hold from the clock after `start`.
+    // Stable from the clock after `start`.
     if (PREPASS) begin : steps_of_blocks
         always_ff @(posedge clk)
             for (int i = 0; i < 3; i++) begin
@@ -126,7 +128,7 @@ module ray_generator #(
         end
     end
 
-    // 0: what is looked at. 1: the first bits of each part; 2: the largest, or more; 4: its inverse.
+    // 0: high bits of D. 1: first bits of each component. 2: largest component, rounded up for a cone. 4: its inverse.
     raymarch_pkg::place_t place_now;
     logic [9:0]  part_x, part_y, part_z, largest_2, longest_2, length_10, length_18;
     logic [16:0] largest_inverse_4, inverse_4;
@@ -154,7 +156,7 @@ module ray_generator #(
         end
     end
 
-    // A cone's length is that of its middle, and by `margin` more.
+    // The length of a cone is that of its middle ray plus `margin`.
     logic [7:0] margin;
 
     function automatic logic [9:0] longer(input logic [9:0] length, input logic [7:0] more);
@@ -167,7 +169,7 @@ module ray_generator #(
 
     delay #(.WIDTH(75), .CLOCKS(4)) wait_for_inverse (.clk, .enable, .in(d_0), .out(d_4));
 
-    // With the squares: the index of either table, its inverse, and the length by it.
+    // With ROUND: the index of either table, its inverse, and the length computed from both.
     logic [10:0] part_10, part_18;
 
     if (ROUND) begin : by_squares
@@ -182,7 +184,7 @@ module ray_generator #(
         delay #(.WIDTH(17), .CLOCKS(1)) y_waits (.clk, .enable, .in(y_now), .out(y_late));
         delay #(.WIDTH(17), .CLOCKS(2)) z_waits (.clk, .enable, .in(z_now), .out(z_late));
 
-        // More than what is cut off: the sum is not less than |D|^2, 34 fraction bits.
+        // The constant covers the truncated bits: the sum is at least |D|^2, 34 fraction bits.
         multiply_add #(.BITS(37)) x_squared (
             .clk, .enable, .a({8'b0, x_now}), .b({1'b0, x_now}), .c(37'd1 << 19), .p(x_square)
         );
@@ -200,7 +202,7 @@ module ray_generator #(
 
         assign inverse_4 = round ? round_inverse_4 : largest_inverse_4;
 
-        // The length again, or less: inverse·square.
+        // A lower bound of the length: inverse·square.
         delay #(.WIDTH(10), .CLOCKS(4)) length_waits (.clk, .enable, .in(length_3), .out(length_7));
         delay #(.WIDTH(10), .CLOCKS(2)) length_goes_on (.clk, .enable, .in(length_7), .out(length_9));
         delay #(.WIDTH(10), .CLOCKS(1)) length_is_there (.clk, .enable, .in(length_9), .out(length_10));
@@ -220,7 +222,7 @@ module ray_generator #(
         wire _unused = round;
     end
 
-    // 7: the direction. 9: the inverses of its parts.
+    // 7: direction. 9: inverses of its components.
     logic [2:0][17:0] direction_7;
     logic [2:0][9:0]  index_7;
     logic [2:0][16:0] inverse_9;
@@ -241,7 +243,7 @@ module ray_generator #(
     delay #(.WIDTH(10), .CLOCKS(8)) length_stays (.clk, .enable, .in(length_10), .out(length_18));
     delay #(.WIDTH(11), .CLOCKS(8)) part_stays (.clk, .enable, .in(part_10), .out(part_18));
 
-    // 10 to 21: where the ray comes to the box, along each axis.
+    // 10 to 21: entry of the ray into the box, along each axis.
     for (genvar i = 0; i < 3; i++) begin : axes
         logic signed [42:0] scaled;
         logic               backwards_9, negative_9;
@@ -255,7 +257,8 @@ module ray_generator #(
         delay #(.WIDTH(1), .CLOCKS(2)) sign (.clk, .enable, .in(direction_7[i][17]), .out(backwards_9));
         assign negative_9 = STEREO && place_9.eye ? origins[1][i][24] : origins[0][i][24];
 
-        // 12: outside·inverse, 13: saturated. 16: t·(|d| + 1). 17: what is left. 20: left·inverse. 21: where.
+        // 12: outside·inverse. 13: saturated. 16: t·(|d| + 1). 17: remaining distance. 20: remaining·inverse. 21:
+        // entry.
         logic [16:0]        part_7, part_13, inverse_17;
         logic [23:0]        outside_9, outside_16, left_17;
         logic signed [41:0] product_12, gone_16, product_20;
@@ -282,7 +285,7 @@ module ray_generator #(
         multiply_add #(.BITS(42)) rest (
             .clk, .enable, .a({1'b0, left_17}), .b({1'b0, inverse_17}), .c('0), .p(product_20)
         );
-        // Below 2^32: no more is left than there was, and its inverse is below 2^17.
+        // Below 2^32: the remaining distance is at most the whole one, and its inverse is below 2^17.
         assign sum = 34'(t_20) + 34'(product_20[41:9]);
 
         always_ff @(posedge clk) begin
@@ -296,13 +299,13 @@ module ray_generator #(
         wire _unused = &{1'b0, scaled[42:34], scaled[15:0], product_12[8:0], gone_16[16:0], product_20[8:0]};
     end
 
-    // 21: the near plane. Its product comes with those of the box.
+    // 21: the near plane, in the same clock as the entries into the box.
     multiply_add #(.BITS(34)) at_near (
         .clk, .enable, .a({2'b0, near_18}), .b({7'b0, part_18}), .c('0), .p(near_product)
     );
     assign near_21 = near_product[32:10];
 
-    // 22, 23: the largest of the four.
+    // 22, 23: largest of the four.
     logic [22:0] farther_22, later_22, start_23;
 
     always_ff @(posedge clk) begin
@@ -313,14 +316,14 @@ module ray_generator #(
         end
     end
 
-    // What is cleared before a ray, and how wide a cone gets.
+    // Near plane of a ray from its cone, and spread of a cone.
     logic [22:0] near_18;
     logic [raymarch_pkg::SPREAD_BITS-1:0] spread_23;
 
     if (PREPASS) begin : with_prepass
         localparam int unsigned CONES_ACROSS = picture_pkg::CONES_ACROSS;
 
-        // The lines of a block that have come, and the number of its first one in a row of blocks.
+        // Line within a row of blocks, and number of the row's first block.
         logic [3:0]         line;
         logic [13:0]        row_number, number_1, counted;
         logic signed [42:0] spread_7;
@@ -348,7 +351,7 @@ module ray_generator #(
             place_now = place;
             if (cones) {place_now.odd, place_now.line, place_now.column} = {1'b0, 3'b0, counted};
         end
-        // Of squares, (|D| + s)^2 - |D|^2 is at most 2 s + s^2, of which s is at most 2^-4.
+        // For squares: (|D| + s)^2 - |D|^2 is at most 2 s + s^2, with s at most 2^-4.
         always_ff @(posedge clk) begin
             if (!cones)     margin <= '0;
             else if (round) margin <= {1'b0, spread[13:7]} + {6'b0, spread[13:12]} + 8'd2;
@@ -384,7 +387,7 @@ module ray_generator #(
         .out_valid, .out_ready, .out_data(out_ray)
     );
 
-    // Of the origins only the signs count.
+    // Only the signs of the origins are used.
     wire _unused = &{1'b0, origins, d[0][31], d[0][5:0], d[1][31], d[1][5:0], d[2][31], d[2][5:0], near_product[33], near_product[9:0]};
 endmodule
 

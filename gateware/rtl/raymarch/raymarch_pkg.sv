@@ -1,21 +1,21 @@
-// What the parts of the raymarcher have in common (docs/formats.md, "Distance fields").
+// Shared constants and types of the raymarcher (docs/formats.md, "Distance fields").
 
 `default_nettype none
 
 package raymarch_pkg;
-    // Each module uses some.
+    // Each module uses a part of the constants.
     /* verilator lint_off UNUSEDPARAM */
-    // t, u11.12; a coordinate of a point as fields see it, s10.12, and before that, s13.12; a direction, s1.17.
+    // t, u11.12; coordinates of a point: s10.12 as input of fields, s13.12 before; direction, s1.17.
     localparam int unsigned T_BITS         = 23;
     localparam int unsigned POINT_BITS     = 22;
     localparam int unsigned WIDE_BITS      = 25;
     localparam int unsigned DIRECTION_BITS = 18;
-    // How much wider a cone gets with each step of t, u0.16.
+    // Growth of a cone's radius per unit of t, u0.16.
     localparam int unsigned SPREAD_BITS    = 16;
-    // The evaluations after which a cone ends at the latest.
+    // Largest number of evaluations of a cone.
     localparam int unsigned CONE_STEPS     = 192;
 
-    // A pixel: its band's parity, its line in the band, its column, and the eye: 0 the left one, or the only one.
+    // Place of a pixel: parity of its band, line in the band, column, and eye: 0 for the left or only one.
     typedef struct packed {
         logic        odd;
         logic        eye;
@@ -25,7 +25,8 @@ package raymarch_pkg;
 
     localparam int unsigned PLACE_BITS = 19;
 
-    // A ray at its beginning, or a cone: then its number is in the low bits of its place, and `spread` is not 0.
+    // A ray before its first step, or a cone. A cone has its number in the low bits of `place`, and a `spread` other
+    // than 0.
     typedef struct packed {
         logic [SPREAD_BITS-1:0]    spread;
         place_t                    place;
@@ -36,9 +37,10 @@ package raymarch_pkg;
 
     typedef enum logic [1:0] {MISS = 2'd0, HIT = 2'd1, UNDECIDED = 2'd2} state_t;
 
-    // Its end. `surface` is {axis, positive}, or a sphere's number; `gap` and `slope` say how far the face is from `t` and how steeply the
-    // ray goes there; only a sphere's light wants to know the direction. Between a face and a sphere, `face` is the former's {axis,
-    // positive} and `share` is the latter's part, u0.8. Of a miss, `t` is the sine above the horizon in 8 bits, 0 below it.
+    // End of a ray. `surface` is {axis, positive}, or the number of a sphere; `gap` is the distance from `t` to the
+    // face, and `slope` the component of the direction along the face's inward normal. Only the light on spheres uses
+    // `direction`. On a fillet, `face` is the face's {axis, positive} and `share` is the sphere's weight, u0.8. For a
+    // miss, `t` is the sine of the elevation in 8 bits, 0 below the horizon.
     typedef struct packed {
         logic [2:0]        face;
         logic [7:0]        share;
@@ -57,7 +59,7 @@ package raymarch_pkg;
     localparam int unsigned ROUND_END_BITS = FLAT_END_BITS + 1 + 3 * DIRECTION_BITS;
     localparam int unsigned END_BITS       = ROUND_END_BITS + 8 + 3;
 
-    // The nearest sphere of those that have been looked at: its distance and its number.
+    // Nearest sphere of the passes so far: distance and number.
     typedef struct packed {
         logic signed [POINT_BITS-1:0] distance;
         logic [2:0]                   number;
@@ -65,12 +67,12 @@ package raymarch_pkg;
 
     localparam int unsigned NEAREST_BITS = POINT_BITS + 3;
 
-    // The bits of an end that there are in a lane with spheres and fillets or without.
+    // Number of bits of an end in a lane, with or without spheres and fillets.
     function automatic int unsigned end_bits(input bit round, input bit blend);
         end_bits = blend ? END_BITS : round ? ROUND_END_BITS : FLAT_END_BITS;
     endfunction
 
-    // Clocks from a point to its distance: levels of the sponge, flat fields by their bits, spheres and fillets or none.
+    // Clocks from a point to its distance: by levels of the sponge, flat fields as a bit mask, spheres, fillets.
     function automatic int unsigned field_clocks(input int unsigned levels, input int unsigned fields, input bit round, input bit blend);
         field_clocks = fields_pkg::flat_clocks(levels, fields);
         if (round && field_clocks < 19) field_clocks = 19;

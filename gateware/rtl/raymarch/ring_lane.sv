@@ -1,22 +1,25 @@
-// A lane of the raymarcher: rays go round a ring, one evaluation of the field in every round, one a clock in all.
+// Lane of the raymarcher: rays circulate in a ring pipeline, one evaluation of the field per round, one evaluation a
+// clock in total.
 //
 //   rays ──▶ slot ─▶ o + t·d ─▶ field_unit ─▶ distance small? ─▶ far? given up? ─┐
 //             ▲                                                                   ├─▶ fifo ─▶ ends
 //             └───────────────────── t + distance ◀───────────────────────────────┘
 //
-// The ring has raymarch_pkg::field_clocks + 6 slots and never stalls; p = o + t·d is made anew in each round, so nothing drifts. A
-// slot whose ray has ended takes the next one in the same clock. A ray is let in only while there is a place for its end in the
-// fifo: PLACES, of which those in the ring count as taken. `evaluates` is high in clocks in which a slot that is occupied
-// passes the field, `waits` where one was empty though a ray was offered.
+// The ring has raymarch_pkg::field_clocks + 6 slots and never stalls. p = o + t·d is recomputed in each round, so no
+// error accumulates. A slot whose ray has ended takes the next ray in the same clock. A ray enters only if the fifo has
+// a free place for its end: the fifo has PLACES, and each ray in the ring reserves one. `evaluates` is high in clocks
+// in which an occupied slot passes the field, `waits` in clocks in which a ray was offered to an empty slot while no
+// place was free.
 //
-// With ROUND there may be spheres. A ray goes round once for each of them and stays where it is until the last one; it takes the
-// nearest one with it. Its end has its direction, and it may take four times as many steps as `tuning` says.
+// With ROUND a field may have spheres. A ray then makes one round per sphere without a change of t until the last
+// round, and carries the nearest sphere along. Its end has its direction, and its step limit is four times that of
+// `tuning`.
 //
-// While `cones` is high, which holds while rays are inside, the rays are cones: they go on by the distance less their width, which is t
-// times their spread, and end where it is near to that.
+// While `cones` is high, which holds while rays are in the ring, the rays are cones: a cone steps by the distance less
+// its radius, which is t times its spread, and ends where the distance is close to the radius.
 //
-// Streams are valid/ready, each item moves in a clock in which both are high, payloads stay until then; ready depends on
-// registers alone. Parameters hold while rays are inside. `restart` throws all rays away.
+// Streams are valid/ready: each item moves in a clock in which both are high, payloads stay until then, and ready
+// depends on registers alone. Parameters hold while rays are in the ring. `restart` discards all rays.
 
 `default_nettype none
 
@@ -27,7 +30,7 @@ module ring_lane #(
     parameter bit          BLEND  = 1'b0,
     parameter bit          STEREO = 1'b1,
     parameter bit          PREPASS = 1'b0,
-    // More than there are slots, or some would stay empty.
+    // More than the number of slots: fewer places would leave slots empty.
     parameter int unsigned PLACES = raymarch_pkg::field_clocks(LEVELS, FIELDS, ROUND, BLEND) > 24 ? 64 : 32
 ) (
     input  wire                      clk,
@@ -37,7 +40,7 @@ module ring_lane #(
     input  wire  [2:0][23:0]         bounds,
     input  wire raymarch_registers_pkg::solid_t solid,
     input  wire raymarch_registers_pkg::tuning_t tuning,
-    // Spheres, while no rays are inside.
+    // Writes of spheres, while the ring is empty.
     input  wire                      sphere_write,
     input  wire  [2:0]               sphere_number,
     input  wire raymarch_registers_pkg::sphere_t sphere,
@@ -54,14 +57,14 @@ module ring_lane #(
     output logic                     evaluates,
     output logic                     waits
 );
-    // The clock in which the distance is there, counted from the slot.
+    // Stage of the distance, counted from the slot.
     localparam int unsigned DISTANCE = 3 + raymarch_pkg::field_clocks(LEVELS, FIELDS, ROUND, BLEND);
     localparam int unsigned COUNT_BITS = $clog2(PLACES + 1);
     localparam int unsigned STEP_BITS  = ROUND ? 10 : 8;
     localparam bit          OCTANTS   = (FIELDS & fields_pkg::OCTANTS) != 0;
     localparam int unsigned KEPT_BITS  = raymarch_pkg::end_bits(ROUND, BLEND);
 
-    // What a ray takes round with it, beside t.
+    // Data that circulates with a ray, beside t.
     typedef struct packed {
         raymarch_pkg::place_t                         place;
         logic [9:0]                     length;
@@ -78,7 +81,7 @@ module ring_lane #(
     logic [raymarch_pkg::T_BITS-1:0] t;
     logic [STEP_BITS-1:0] steps;
 
-    // After the last stage.
+    // Last stage.
     cargo_t            early_cargo, last_cargo;
     logic [raymarch_pkg::T_BITS-1:0] last_t;
     logic [STEP_BITS-1:0] last_steps;
@@ -108,7 +111,7 @@ module ring_lane #(
         end
     end
 
-    // The point. Its origin comes when the product is there.
+    // The point. Its origin is selected in the clock of the product.
     logic                  eye_2;
     logic [2:0]            backwards;
     logic [2:0][raymarch_pkg::WIDE_BITS-1:0] point;
@@ -136,7 +139,7 @@ module ring_lane #(
         wire _unused = &{1'b0, sum[16:0]};
     end
 
-    // A ray that is outside of the box and goes away from it.
+    // A ray outside of the box that moves away from it.
     logic [2:0] leaves;
     logic       gone, gone_late;
 
@@ -152,7 +155,8 @@ module ring_lane #(
     logic [2:0]         surface, face, face_end;
     logic [7:0]         share, share_end;
 
-    // The sphere whose turn it is, and the nearest one before it: with the slot, and with the distance.
+    // The sphere of the current pass, and the nearest one of the passes before: aligned with the slot, and with the
+    // distance.
     logic                round, is_last_early, is_last, is_last_2;
     logic [2:0]          pass_2;
     raymarch_pkg::nearest_t so_far_3, nearest;
@@ -183,7 +187,7 @@ module ring_lane #(
             is_last_2     <= is_last;
         end
 
-        // Of the next pass; 0 after the last one.
+        // Number of the next pass; 0 after the last pass.
         logic [2:0] next_pass;
         always_ff @(posedge clk) begin
             next_pass <= is_last ? '0 : pass_1 + 1'b1;
@@ -195,7 +199,7 @@ module ring_lane #(
         assign {is_last_early, is_last, is_last_2} = '1;
     end
 
-    // With the distance come the t it was taken at, less the width of a cone, and what is near enough.
+    // Aligned with the distance: t of the evaluation, t less the radius of a cone, and the threshold.
     logic [raymarch_pkg::T_BITS-1:0] t_early, t_1;
     logic [raymarch_pkg::T_BITS:0]   from_early, from_1;
     logic [15:0]       footprint;
@@ -206,7 +210,7 @@ module ring_lane #(
     delay #(.WIDTH(raymarch_pkg::T_BITS), .CLOCKS(DISTANCE - 1)) way (.clk, .enable(1'b1), .in(t), .out(t_early));
     delay #(.WIDTH(STEP_BITS), .CLOCKS(DISTANCE)) counted (.clk, .enable(1'b1), .in(steps), .out(steps_1));
 
-    // A slope against a face across a diagonal takes a clock more.
+    // The slope against a face perpendicular to a diagonal takes one more clock.
     if (OCTANTS) begin : carried_early
         delay #(.WIDTH(CARGO_BITS), .CLOCKS(DISTANCE + 1)) carried (.clk, .enable(1'b1), .in(cargo), .out(early_cargo));
         always_ff @(posedge clk) last_cargo <= early_cargo;
@@ -224,7 +228,7 @@ module ring_lane #(
 
         assign widens = cones ? spread : 16'd1 << (5'd16 - {1'b0, tuning.footprint});
 
-        // Points are cut by less than a step along each axis: in all by less than two.
+        // Each coordinate is truncated by less than one step, the point by less than two.
         multiply_add #(.BITS(43)) widening (
             .clk, .enable(1'b1), .a({2'b0, t}), .b({2'b0, widens}), .c({26'b0, ROUND && cones && solid.is_round, 16'b0}), .p(product)
         );
@@ -247,7 +251,7 @@ module ring_lane #(
         threshold <= {1'b0, tuning.threshold} + {1'b0, footprint};
     end
 
-    // Is it near? Then: is it too far, or has it taken too long?
+    // 2: is the distance below the threshold? Then: is t beyond the far limit, or the step limit reached?
     logic            near_2, gone_2, late_2;
     logic [raymarch_pkg::T_BITS:0] next_2;
     logic [raymarch_pkg::T_BITS-1:0] t_2, taken_t;
@@ -258,7 +262,7 @@ module ring_lane #(
 
     assign beyond = gone_2 || next_2 > {1'b0, tuning.far_limit};
 
-    // The evaluation under way counts. Beside what is round a ray creeps for longer, and has to come as near as others.
+    // The current evaluation counts. Scenes with spheres have a larger step limit, and a threshold that does not grow.
     logic [1:0] patience;
     logic       late_1;
 
@@ -295,15 +299,15 @@ module ring_lane #(
     logic [7:0]      height, steps_end;
     logic [raymarch_pkg::T_BITS-1:0] end_t;
 
-    // Saturates.
+    // Saturated.
     if (ROUND) begin : many_steps
         assign steps_end = last_steps[STEP_BITS-1:8] != '0 ? '1 : last_steps[7:0];
     end else begin : few_steps
         assign steps_end = last_steps;
     end
 
-    // How steeply the ray goes to the face: the part along the normal; all ones where it does not go there. Only the quotient of `gap`
-    // and `slope` matters.
+    // Slope of the ray towards the face: the direction's component along the inward normal; all ones for a ray that
+    // does not approach the face. Only the quotient of `gap` and `slope` matters.
     logic [10:0] part;
     logic [9:0]  axis_slope, slope;
     logic [11:0] face_gap;
@@ -315,7 +319,8 @@ module ring_lane #(
     always_comb
         for (int i = 0; i < 3; i++) towards[i] = early_cargo.direction[i][17:7] ^ {11{surface_2[i]}};
 
-    // Of a face across a diagonal: three quarters of both, as the sum of three parts over four needs no division.
+    // For a face perpendicular to a diagonal, gap and slope are three quarters of their value: the sum of three
+    // components over four needs no division.
     if (OCTANTS) begin : diagonals
         logic signed [11:0] x_y;
         logic signed [10:0] z;
@@ -354,7 +359,7 @@ module ring_lane #(
 
     delay #(.WIDTH(11), .CLOCKS(2)) blended (.clk, .enable(1'b1), .in({face, share}), .out({face_end, share_end}));
 
-    // There is a place: `end_ready` is always high when a ray ends.
+    // `end_ready` is always high when a ray ends, because each ray has a reserved place.
     logic [KEPT_BITS-1:0] kept;
 
     fifo #(.WIDTH(KEPT_BITS), .DEPTH(PLACES)) ends (

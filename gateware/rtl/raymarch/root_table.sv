@@ -1,7 +1,8 @@
-// sqrt(x) of x from 1 to 4 in steps of 1/128, and how far the next one is: 18 fraction bits, rounded down (docs/formats.md, "Fields").
+// sqrt(x) for x from 1 to 4 in steps of 1/128, and the difference to the next entry: 18 fraction bits, rounded down
+// (docs/formats.md, "Fields").
 //
-// `index` is the step's number, from 128 on; what is less counts as 128. `root` is without its leading bit, which is 1. Latency 2
-// clocks, throughput an answer a clock.
+// `index` is 128·x; indices below 128 read as 128. `root` omits its leading bit, which is 1. Latency 2 clocks,
+// throughput one result a clock.
 
 `default_nettype none
 
@@ -15,7 +16,7 @@ module root_table (
     logic [27:0] entries [0:511];
     logic [27:0] latched;
 
-    // The 18 bits behind the point, and to the next one; what is below 1 is nothing at all. As in round_inverse, reals are exact enough.
+    // {18 fraction bits of the root, difference to the next entry}. Reals are exact enough, as in round_inverse.
     initial begin
         for (int i = 0; i < 512; i++)
             entries[i] = {

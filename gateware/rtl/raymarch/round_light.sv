@@ -1,12 +1,13 @@
-// The light on what is round: a colour for each ray that has ended there (docs/formats.md, "Light").
+// Light on spheres: a colour for each ray that ends on a sphere or fillet (docs/formats.md, "Light").
 //
 //   end ─▶ o + t·d ─▶ - centre ─▶ · light ─▶ / radius ─▶ times its colour, summed ─▶ times the material ─▶ end, colour
 //                                   └──────────── once for each light ────────────┘
 //
-// All ends pass in their order; of those that are not round the colour means nothing. A round one takes a clock for each light, any
-// other one clock. With BLEND the colour is that between the face's, of `palette`, and this one, by the sphere's share. Latency 24
-// clocks, 28 with BLEND, and those of its lights but the first. Out: without the direction. Streams are valid/ready.
-// Spheres are written, and parameters change, while nothing is inside.
+// All ends pass in order; the colour of other ends is undefined. An end on a sphere or fillet takes one clock per
+// light, any other end one clock. With BLEND the colour is interpolated between that of the face, from `palette`, and
+// that of the sphere, by `share`. Latency 24 clocks, 28 with BLEND, plus one clock for each light but the first. The
+// output has no direction. Streams are valid/ready. Spheres are written, and parameters change, while the pipeline is
+// empty.
 
 `default_nettype none
 
@@ -28,7 +29,7 @@ module round_light #(
     input  wire                      in_valid,
     output logic                     in_ready,
     input  wire raymarch_pkg::end_t     in_end,
-    // Ends with their light.
+    // Ends with their colours.
     output logic                     out_valid,
     input  wire                      out_ready,
     output raymarch_pkg::end_t          out_end,
@@ -42,7 +43,7 @@ module round_light #(
     (* ram_style = "distributed" *) logic [16:0] inverses [0:7];
     (* ram_style = "distributed" *) logic [23:0] materials [0:7];
 
-    // 0: an end, as often as there are lights for it.
+    // 0: an end, repeated for each light.
     logic            enable, held_valid, last_0;
     raymarch_pkg::end_t held;
     logic [1:0]      light_0;
@@ -68,7 +69,7 @@ module round_light #(
         end
     end
 
-    // The sphere's constants, each in its clock.
+    // Constants of the sphere, each in the clock of its use.
     logic [2:0]       number_2, number_8, number_11, number_18;
     logic [2:0][21:0] centre_3;
     logic [4:0]       shift_9;
@@ -95,7 +96,7 @@ module round_light #(
         end
     end
 
-    // 3: the point. 4: as seen from the centre, and the light's direction.
+    // 3: point. 4: relative to the centre, and direction of the light.
     logic              eye_2;
     logic [1:0]        light_3, light_14;
     logic              first_17;
@@ -143,7 +144,7 @@ module round_light #(
         wire _unused = &{1'b0, sum[raymarch_pkg::WIDE_BITS+16:40], sum[16:0]};
     end
 
-    // 9: their product. 11: shifted to 17 bits, or to what is more. 12: no more than 17.
+    // 9: their product. 11: shifted to 17 bits or more. 12: saturated at 17 bits.
     logic [22:0]        apart_y_5, apart_z_6;
     logic [17:0]        towards_y_5, towards_z_6;
     logic signed [42:0] x_7, x_y_8, product_9;
@@ -165,7 +166,7 @@ module round_light #(
 
     always_ff @(posedge clk) begin
         if (enable) begin
-            // The shift is 6 to 20. A light from behind is none.
+            // The shift is 6 to 20. A light behind the surface contributes 0.
             unique case (shift_9[4:2])
                 3'd1:    by_fours <= product_9[40:4];
                 3'd2:    by_fours <= 37'(product_9[40:8]);
@@ -180,7 +181,7 @@ module round_light #(
         end
     end
 
-    // 15: the cosine in 256ths. 18: the sum. 19: no more than 255.
+    // 15: cosine in 256ths. 18: sum. 19: saturated at 255.
     logic signed [36:0] cosine_15;
     logic [8:0]         share_15;
     logic [23:0]        colour_15;
@@ -221,7 +222,7 @@ module round_light #(
         wire _unused = &{1'b0, sum_18[7:0], coloured[25:16], coloured[7:0]};
     end
 
-    // 22: the face's colour. 23: the way from there. 26: as much of it as is the sphere's.
+    // 22: colour of the face. 23: difference to the sphere's colour. 26: their mixture by the sphere's weight.
     if (BLEND) begin : between
         logic [2:0]      face_21;
         logic [7:0]      share_22;

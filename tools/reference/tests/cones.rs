@@ -11,7 +11,7 @@ use glint_reference::raymarch::{Field, views};
 /// Truncation of a point, and of the position of a face, in field units.
 const STEPS: f64 = 2.0 / 4096.0;
 
-/// Rays of a picture with a prepass, compared with those without.
+/// Comparison of a picture's rays with and without a prepass.
 #[derive(Debug, Default)]
 struct Seen {
     hits: usize,
@@ -19,13 +19,13 @@ struct Seen {
     helped: usize,
     /// Largest distance of a start behind the surface, in field units.
     behind: f64,
-    /// Rays with another end.
+    /// Rays with a different end.
     changed: usize,
-    /// Evaluations a ray, without and with.
+    /// Mean number of evaluations per ray, without and with a prepass.
     cost: [f64; 2],
 }
 
-/// Compares a pixel of each `stride` in both directions.
+/// Compares one pixel in every `stride` by `stride` pixels.
 fn see(scene: &str, setup: &FieldSetup, stride: u32) -> Seen {
     let field = Field::of(&Scene::parse(scene).expect("a field"));
     let size = (setup.width, setup.height);
@@ -94,7 +94,7 @@ fn no_ray_of_the_views_starts_behind_a_surface() {
     }
 }
 
-/// Cameras anywhere and of any width, with one eye and with two, in every field: 39 frames, or `GLINT_CONES`.
+/// Random cameras of any width, with one and two eyes, in every field: 39 frames, or the number in `GLINT_CONES`.
 #[test]
 fn no_ray_of_random_cameras_starts_behind_a_surface() {
     let mut state = 7_u64;

@@ -1,6 +1,6 @@
-//! The references of distance fields against each other: hits from each solid's geometry and by sphere tracing.
+//! The references of distance fields against each other: geometric hits against sphere tracing.
 //!
-//! All rays come from fixed seeds, and a failure names the ray. `--nocapture` shows the measured figures.
+//! All rays come from fixed seeds, and a failure prints the ray. `--nocapture` shows the measured figures.
 
 use glint_reference::camera::{Ray, Size, Vector};
 use glint_reference::raymarch::metrics::{Outcome, accuracy, expected};
@@ -11,15 +11,14 @@ use rand_pcg::Pcg64Mcg;
 /// Rays of each kind for each field.
 const RAYS: usize = 10_000;
 
-/// Both hits of a ray may be so far from each other, in world units; at a small angle to the surface, farther by what the trace
-/// leaves to it.
+/// Largest difference of both hits of a ray, in world units. At a small angle to the surface the trace's remaining
+/// distance is added.
 const TOLERANCE: f64 = 1e-6;
 
-/// How near to the surface a trace ends, in world units.
+/// Distance from the surface at which a trace ends, in world units.
 const TRACE: f64 = 1e-9;
 
-/// Where both may see different things: where one of them sees what the other does when the ray is moved by this much, in
-/// world units.
+/// Tolerance at edges, in world units: results may differ if a ray moved by this much gives the other result.
 const BESIDE: f64 = 1e-6;
 
 fn ball(centre: Vector, radius: f64) -> Field {
@@ -30,7 +29,7 @@ fn boxed(field: Field) -> Box<Field> {
     Box::new(field)
 }
 
-/// A box whose corners are cut by the diagonals.
+/// A box with corners cut off by diagonal planes.
 fn cut_box() -> Field {
     let planes = (0..6).map(|face| {
         let mut normal = [0.0; 3];
@@ -47,7 +46,7 @@ fn cut_box() -> Field {
     Field::Convex(planes.chain(diagonals).collect())
 }
 
-/// Each kind of field that has a geometry of its own, with the spacing of its faces or centres.
+/// Each kind of field with a geometric hit, and the spacing of its faces or centres.
 fn fields() -> Vec<(String, Field, f64)> {
     let mut random = Pcg64Mcg::new(2);
     let mut fields: Vec<_> = (1..=6)
@@ -93,18 +92,18 @@ fn fields() -> Vec<(String, Field, f64)> {
     fields
 }
 
-/// How a ray is drawn.
+/// Distribution of random rays.
 #[derive(Clone, Copy, Debug)]
 enum Kind {
-    /// From anywhere to anywhere about the origin.
+    /// Any origin and any direction, near the field's origin.
     Any,
-    /// From anywhere along an axis.
+    /// Any origin, direction along an axis.
     Parallel,
-    /// From anywhere across one axis.
+    /// Any origin, direction perpendicular to an axis.
     InPlane,
-    /// From just beside multiples of the spacing, along an axis or nearly so.
+    /// Origin close to multiples of the spacing, direction along an axis or nearly so.
     Beside,
-    /// From the large tunnel of the sponge along y.
+    /// Origin in the large tunnel of the sponge along y.
     Tunnel,
 }
 
@@ -120,7 +119,7 @@ fn draw(random: &mut Pcg64Mcg, kind: Kind, spacing: f64) -> Ray {
     let mut numbers = |reach: f64| [0; 3].map(|_| random.random_range(-reach..reach));
     let mut origin = numbers(3.0);
     let mut direction = numbers(2.0);
-    // A trace takes too many steps where it stays much nearer to a wall.
+    // Closer to a wall a trace would need too many steps.
     let offset = numbers(1e-3).map(|c| c + 1e-4f64.copysign(c));
     let axis = random.random_range(0..3);
     match kind {
@@ -134,7 +133,7 @@ fn draw(random: &mut Pcg64Mcg, kind: Kind, spacing: f64) -> Ray {
         Kind::Beside => {
             let tilt = [0.0, 1e-3, 0.1][random.random_range(0..3)];
             for i in 0..3 {
-                // From the corner of the sponge, of which the origin is the middle of a cell.
+                // Relative to the corner of the sponge, because the origin is the middle of a cell.
                 origin[i] = ((origin[i] + 1.0) / spacing).round() * spacing - 1.0 + offset[i];
                 if i != axis {
                     direction[i] *= tilt;
@@ -154,17 +153,17 @@ fn dot(a: Vector, b: Vector) -> f64 {
     (0..3).map(|i| a[i] * b[i]).sum()
 }
 
-/// Where the hits of all rays begin, in lengths of their directions.
+/// Smallest parameter of all hits, in lengths of the direction.
 const NEAR: f64 = 0.01;
 
-/// Where they end.
+/// Largest parameter of all hits.
 const FAR: f64 = 20.0;
 
 fn hit(field: &Field, ray: &Ray) -> Option<Hit> {
     field.hit(ray.origin, ray.direction, NEAR, FAR)
 }
 
-/// How far apart two hits are, in world units, and how far they may be.
+/// Distance of two hits, and its tolerance, in world units.
 fn apart(ray: &Ray, a: &Hit, b: &Hit) -> (f64, f64) {
     let speed = length(ray.direction);
     let cosine = dot(ray.direction, a.normal).abs() / speed;
@@ -280,7 +279,7 @@ fn smooth_unions() -> Vec<(&'static str, Field)> {
     ]
 }
 
-/// The first place where a field's distance is not positive, from `from` on, by small steps and then by halving.
+/// The first zero of a field's distance after `from`, by small steps and bisection.
 fn bisected(field: &Field, ray: &Ray, from: f64, to: f64) -> Option<f64> {
     let step = 1e-3 / length(ray.direction);
     let solid = |t| field.distance(ray.at(t)) <= 0.0;

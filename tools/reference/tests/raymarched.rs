@@ -10,11 +10,11 @@ use glint_reference::raymarch::{Field, views};
 
 const SIZE: (u32, u32) = (320, 180);
 
-/// A picture beside what it should be.
+/// A compared picture.
 struct Seen {
     name: String,
     found: Accuracy,
-    /// Evaluations a ray.
+    /// Mean number of evaluations per ray.
     cost: f64,
 }
 
@@ -37,21 +37,21 @@ fn see(name: &str, scene: &str, camera: &Camera) -> Seen {
 }
 
 impl Seen {
-    /// At most that many pixels with a hit where there is none, or the other way round.
+    /// Checks that at most `most` pixels have a false hit or a false miss.
     fn masked(self, most: usize) -> Self {
         let wrong = self.found.false_hit + self.found.false_miss;
         assert!(wrong <= most, "{}: {wrong} hits and misses", self.name);
         self
     }
 
-    /// At most that many rays given up.
+    /// Checks that at most `most` rays are undecided.
     fn decided(self, most: usize) -> Self {
         let given_up = self.found.undecided;
         assert!(given_up <= most, "{}: {given_up} undecided", self.name);
         self
     }
 
-    /// Depths within that of the right ones, one half of them and 99 in 100.
+    /// Checks the median and the 99th percentile of the depth errors.
     fn near(self, median: f64, p99: f64) -> Self {
         let depth = self.found.depth.expect("something to see");
         assert!(
@@ -62,21 +62,21 @@ impl Seen {
         self
     }
 
-    /// At most such a part of the faces wrong.
+    /// Checks that at most the share `most` of the faces is wrong.
     fn faced(self, most: f64) -> Self {
         let wrong = self.found.wrong_faces;
         assert!(wrong <= most, "{}: {wrong} wrong faces", self.name);
         self
     }
 
-    /// At most so many evaluations a ray.
+    /// Checks that a ray takes at most `most` evaluations on average.
     fn cheap(self, most: f64) -> Self {
         assert!(self.cost <= most, "{}: {}", self.name, self.cost);
         self
     }
 }
 
-/// A camera at `eye` that looks at `target`, with the views' lens.
+/// A camera at `eye` that looks at `target`, with the half width of the views.
 fn at(eye: Vector, target: Vector) -> Camera {
     views::camera(eye, target)
 }
@@ -95,7 +95,7 @@ fn the_deepest_sponge_is_where_it_is_and_its_smallest_faces_are_not_all_right() 
     for (name, eye, target) in views::views() {
         let seen = see(name, "menger:6", &at(eye, target));
         assert!(seen.found.iou >= 0.999, "{name}");
-        // A cell has 456 steps of a coordinate, the threshold 28 and more.
+        // A cell has 456 steps of a coordinate; the threshold is 28 steps or more.
         seen.near(2e-4, 1.6e-2).faced(0.07).decided(0).cheap(15.0);
     }
 }
@@ -121,7 +121,7 @@ fn other_fields_are_where_they_are() {
         .near(2e-3, 1.1e-2)
         .faced(0.0)
         .cheap(13.0);
-    // Towards the horizon rays run along faces: some are given up, and some end beside a face that they would have passed.
+    // Towards the horizon rays run along faces: some are undecided, and some end at a face that the exact ray passes.
     see("cubes:2,0.5")
         .masked(30)
         .decided(240)
@@ -162,7 +162,7 @@ fn a_camera_in_the_plane_of_a_face_sees_what_is_before_it() {
         .near(2e-6, 7e-3)
         .faced(0.01)
         .cheap(3.3);
-    // Half of the rays go into the face, the others away from it.
+    // Half of the rays go into the face, the other half away from it.
     let on = at([0.9375, -1.0, 0.9375], [-0.5, -1.5, 0.5]);
     see("on the front", "menger:4", &on)
         .masked(20)
@@ -173,7 +173,8 @@ fn a_camera_in_the_plane_of_a_face_sees_what_is_before_it() {
 
 #[test]
 fn a_camera_just_beside_a_face_sees_it() {
-    // 0.03 of a cell before it; those of deeper sponges are within the nearest near plane.
+    // At 0.03 of a cell from the face. The corresponding eye at a deeper sponge would be within the smallest near
+    // plane.
     let eye = [0.75, -1.0 - 0.03 * 2.0 / 3.0, 0.75];
     see("macro", "menger:1", &at(eye, [0.75, 0.0, 0.765_625]))
         .masked(0)
@@ -188,7 +189,7 @@ fn a_camera_just_beside_a_face_sees_it() {
         .near(2e-4, 4e-3)
         .faced(1e-3)
         .cheap(2.5);
-    // Level with the ceiling, to the horizon. A third of the rays are in it at the near plane.
+    // Level with the ceiling, to the horizon. A third of the rays are inside the ceiling at the near plane.
     let under = at([0.0, 0.0, 0.998_046_875], [4.0, 3.0, 0.998_046_875]);
     see("grazing", "planes:1", &under)
         .masked(30)
@@ -223,15 +224,16 @@ fn lenses_may_be_long_and_wide() {
 fn a_camera_may_be_far_away() {
     let mut camera = at([0.0, -30.0, 0.0], [0.125, 0.0, 0.0625]);
     camera.half_width = 0.05;
-    // It looks along all walls at once: most of what it sees is in the depths of tunnels, as wide there as the threshold is
-    // a few times over; rays that would pass through end at a wall.
+    // The view is along all walls at once and shows mostly the depths of tunnels, which are only a few thresholds wide
+    // there. Rays that should pass through end at a wall.
     let seen = see("far away", "menger:4", &camera);
     assert!(seen.found.iou >= 0.98);
     seen.decided(0).near(1e-4, 0.9).faced(0.13).cheap(16.0);
 }
 
-/// Rays that no pixel has, exactly along an axis. Steps beside a wall are as long as it is away, and the threshold doubles with
-/// every 64 of them: a ray less than an eighth of a cell beside a wall ends there. Nothing else is wrong.
+/// Rays exactly along an axis, which no pixel has. A step beside a wall is as long as the distance to the wall, and the
+/// threshold doubles every 64 steps. A ray within an eighth of a cell of a wall therefore ends there. No other error
+/// occurs.
 #[test]
 fn rays_along_the_axes_end_at_the_walls() {
     let sponge = Field::Menger { depth: 4 };
@@ -320,7 +322,7 @@ fn a_surface_at_the_end_of_a_ray_is_seen_and_none_behind_it() {
     for (x, y) in pixels() {
         let ray = free.ray(0, x, y);
         let (end, found) = (free.march(&ray), short.march(&ray));
-        // A hit is as far as its last step would be.
+        // The far limit applies to the end of a hit's last step, t + gap.
         let reach = end.t + end.gap;
         if reach <= options.tuning.far {
             assert_eq!(found, end, "{x} {y}");

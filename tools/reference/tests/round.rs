@@ -7,8 +7,8 @@ use glint_model::raymarch::{FieldOptions, Lights, Palette, paint};
 use glint_reference::camera::Camera;
 use glint_reference::raymarch::raymarched::{Measured, Subject, rounds};
 
-/// Those that go on to the horizon have spheres there that are smaller than a pixel; of the others it is asked that normals
-/// be within 0.3° and depths within 3e-3.
+/// Bounded fields must have normals within 0.3° and depths within 3e-3. Lattices have larger tolerances, because their
+/// spheres at the horizon are smaller than a pixel.
 #[test]
 fn round_fields_are_where_they_are() {
     for subject in rounds((320, 180)) {
@@ -21,13 +21,14 @@ fn round_fields_are_where_they_are() {
         let horizon = subject.scene.starts_with("lattice");
         let (most, angle) = if horizon { (6e-3, 0.7) } else { (3e-3, 0.3) };
         assert!(depth.median <= 3e-4 && depth.p99 <= most);
-        // There may be faces only.
+        // Some views show only faces, which have no round normals.
         let normal = found.normal.map_or(0.0, |normal| normal.p99);
         assert!(normal <= angle, "{normal}");
     }
 }
 
-/// A field of each kind. Those without end have small faces and spheres at the horizon, and rays along their faces.
+/// Each kind of bounded field. Unbounded fields are skipped: they have small faces and spheres at the horizon, and rays
+/// along faces.
 #[test]
 fn every_kind_of_field_is_where_it_is() {
     for scene in Primitive::EXAMPLES {
@@ -56,7 +57,7 @@ fn every_kind_of_field_is_where_it_is() {
     }
 }
 
-/// The channels of what is seen, against max(0, n·l) of the exact normals.
+/// Channels of a lit sphere against max(0, n·l) of the exact normals.
 #[test]
 fn spheres_are_lit_as_they_should_be() {
     let light = |text| Light::parse(text).expect("a light");

@@ -1,4 +1,4 @@
-//! The numbers of a field: read from text, or drawn at random from the same ranges.
+//! The numbers of a field: parsed from text, or drawn at random from the same ranges.
 
 use super::error::FieldError;
 use super::limits::MAX_SPHERES;
@@ -10,7 +10,7 @@ pub trait Arguments<'a> {
     /// The next number, from a range that includes both ends.
     ///
     /// # Errors
-    /// The number is missing, not a number, or out of range.
+    /// The number is missing, malformed or out of range.
     fn number(&mut self, name: &'static str, range: [Q32_32; 2]) -> Result<Q32_32, FieldError<'a>>;
 
     /// The next number, an integer.

@@ -8,11 +8,11 @@ use crate::fixed::Q32_32;
 /// Reason why a text is not a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FieldError<'a> {
-    /// No kind has this name.
+    /// The name of the kind is unknown.
     Kind {
         /// The word before the colon.
         kind: &'a str,
-        /// All kinds, with their descriptions.
+        /// All kinds: text form and description.
         kinds: &'static [(&'static str, &'static str)],
     },
     /// A number is missing.
@@ -38,7 +38,7 @@ pub enum FieldError<'a> {
     },
     /// The two kinds of a union cannot be its members.
     Union,
-    /// No sphere, or more than [`MAX_SPHERES`].
+    /// The number of spheres is 0 or above [`MAX_SPHERES`].
     Spheres,
     /// A number is out of its range.
     Range {

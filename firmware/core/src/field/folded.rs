@@ -1,4 +1,4 @@
-//! Coordinates under mirrors and exchanges, which keep the maximum norm and the direction of the nearest face.
+//! Coordinates under mirrors and exchanges, which preserve the maximum norm and the direction of the nearest face.
 
 use super::surface::Surface;
 
@@ -23,7 +23,7 @@ impl Folded {
         })
     }
 
-    /// −x, or x.
+    /// −x if `negate`, otherwise x.
     pub fn negated_if(self, negate: bool) -> Self {
         if negate {
             Self {

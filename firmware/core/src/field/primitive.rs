@@ -120,7 +120,7 @@ macro_rules! flat_solids {
         }
 
         impl Flat {
-            /// The distance of a point, each coordinate s10.12.
+            /// Distance and nearest surface at a point; coordinates s10.12.
             #[inline]
             pub fn sample(&self, point: [i32; 3]) -> Sample {
                 match self {
@@ -166,7 +166,7 @@ pub enum Solid {
 }
 
 impl Solid {
-    /// The distance of a point, each coordinate s10.12.
+    /// Distance and nearest surface at a point; coordinates s10.12.
     #[inline]
     pub fn sample(&self, point: [i32; 3]) -> Sample {
         match self {

@@ -13,9 +13,9 @@ pub trait Shape: Sized {
     type Solid;
     /// The word before the colon.
     const NAME: &'static str;
-    /// Name and numbers, for help.
+    /// Text form with the names of the numbers, for the help.
     const FORM: &'static str;
-    /// Description, for help.
+    /// Description, for the help.
     const ABOUT: &'static str;
     /// An example of this kind, for tests of pictures.
     const EXAMPLE: &'static str;
@@ -26,7 +26,7 @@ pub trait Shape: Sized {
     /// Whether the faces are perpendicular to the diagonals instead of the axes.
     const OCTANTS: bool = false;
 
-    /// Reads the numbers.
+    /// Parses the numbers.
     ///
     /// # Errors
     /// Errors of the numbers.
@@ -91,12 +91,12 @@ impl<S> Placed<S> {
     }
 }
 
-/// A flat solid of the engine: one module of gateware.
+/// A flat solid of the engine, evaluated by one module of the gateware.
 pub trait FlatSolid {
     /// The solid's number in `solid.kind`, and its bit in `caps.flat`.
     const CODE: u8;
 
-    /// The distance of a point, each coordinate s10.12.
+    /// Distance and nearest surface at a point; coordinates s10.12.
     fn sample(&self, point: [i32; 3]) -> Sample;
 
     /// The solid's constants for the gateware.
@@ -112,7 +112,7 @@ pub struct FlatConstants {
     pub levels: u8,
     /// Axes along which the box is bounded, x in bit 0.
     pub has: u8,
-    /// The solid is outside the box.
+    /// Whether the solid is outside the box.
     pub room: bool,
     /// The solid is periodic with 64 units along each axis.
     pub repeated: bool,

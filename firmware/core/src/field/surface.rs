@@ -8,14 +8,14 @@ pub const FRACTION: u32 = 12;
 /// The nearest surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Surface {
-    /// A face that is perpendicular to an axis.
+    /// A face perpendicular to an axis.
     Face {
         /// Axis of the normal: 0, 1, 2 for x, y, z.
         axis: u8,
         /// Whether the normal points along the axis, not against it.
         positive: bool,
     },
-    /// A face that is perpendicular to a diagonal.
+    /// A face perpendicular to a diagonal.
     Octant {
         /// Bit i is set if the normal points along axis i.
         signs: u8,
@@ -27,11 +27,11 @@ pub enum Surface {
     },
     /// A surface of a union with a fillet: a face, a sphere, or the fillet between them.
     Blended {
-        /// The face's axis.
+        /// Axis of the face.
         axis: u8,
         /// Whether the face's normal points along the axis.
         positive: bool,
-        /// The sphere.
+        /// Number of the sphere.
         number: u8,
         /// Weight of the sphere, u0.8: 0 is the face alone.
         share: u8,
@@ -50,7 +50,7 @@ impl Surface {
         }
     }
 
-    /// The sphere's number.
+    /// Number of the sphere, if any.
     pub const fn number(self) -> Option<u8> {
         match self {
             Self::Face { .. } | Self::Octant { .. } => None,
@@ -68,13 +68,13 @@ impl Surface {
     }
 }
 
-/// A distance and the surface at which it ends.
+/// A distance and the nearest surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sample {
     /// Distance, s10.12: in the maximum norm for flat fields (the cube of this half side about the point holds no surface), in the
     /// Euclidean norm for round fields.
     pub distance: i32,
-    /// The surface.
+    /// The nearest surface.
     pub surface: Surface,
 }
 

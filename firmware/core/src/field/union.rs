@@ -7,10 +7,10 @@ use super::error::FieldError;
 use super::primitive::Primitive;
 use crate::fixed::Q32_32;
 
-/// Width of a fillet.
+/// Range of the fillet's width, in world units.
 const BLEND: [Q32_32; 2] = [Q32_32::lit("0.01"), Q32_32::lit("0.5")];
 
-/// The union of a flat field and a round one.
+/// The union of a flat field and a round field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Union {
     flat: Primitive,
@@ -65,12 +65,12 @@ impl Union {
         self.blend
     }
 
-    /// Reads the members after `union:`.
+    /// Parses the members after `union:`.
     pub(super) fn parse_sharp(text: &str) -> Result<Self, FieldError<'_>> {
         Self::parse(text, Q32_32::ZERO)
     }
 
-    /// Reads the width and the members after `smooth:`.
+    /// Parses the width and the members after `smooth:`.
     pub(super) fn parse_smooth(text: &str) -> Result<Self, FieldError<'_>> {
         let (blend, members) = text.split_once(',').ok_or(FieldError::Union)?;
         let blend = Words::new("smooth", blend).number("k", BLEND)?;

@@ -15,11 +15,11 @@ use crate::recording::{self, Block};
 const IDENT: u32 = raymarch::Raymarch::IDENT;
 
 fn registers() -> raymarch::Raymarch {
-    // SAFETY: the registers are a model's.
+    // SAFETY: the registers belong to a model.
     unsafe { Peripherals::steal() }.raymarch
 }
 
-/// A block that calls itself `ident` and has been built with `caps`.
+/// Probes a block with the given identification and capabilities.
 fn probe(ident: u32, caps: u32) -> (Result<Raymarcher, Absent>, Rc<RefCell<Block>>) {
     let r = registers();
     let block = recording::connect([(r.ident().address(), ident), (r.caps().address(), caps)]);
@@ -249,7 +249,7 @@ fn tables_are_written_where_they_change() {
     let (raymarcher, block) = probe(IDENT, EVERYTHING);
     let mut raymarcher = raymarcher.unwrap();
     let address = registers().table().address();
-    // Entry and part of each write.
+    // Entry and share of each write to `table`.
     let mut written = |options: &FieldOptions| {
         block.borrow_mut().writes.clear();
         let (setup, palette) = setup("menger:4", options);

@@ -1,31 +1,32 @@
-//! Unions of what has faces and what is round, sharp or with a fillet between them.
+//! Unions of a flat and a round solid, sharp or with a fillet.
 //!
-//! A fillet is the quadratic smooth minimum of both distances a and b (I. Quilez, "smooth minimum"): min(a, b) − h²/4k with
-//! h = max(k − |a − b|, 0). Its slope is a mean of both slopes, with the weight h/2k on the farther one's: so it grows no faster
-//! than they do, and the weight is what light needs too.
+//! A fillet is the quadratic smooth minimum of both distances a and b (I. Quilez, "smooth minimum"): min(a, b) − h²/4k
+//! with h = max(k − |a − b|, 0). Its gradient is the weighted mean of both gradients, with the weight h/2k for the
+//! larger distance. The blended distance therefore changes no faster than either, and the same weight blends the two
+//! colours.
 
 use glint_core::field::{FixedSpheres, Sample, Surface};
 
-/// Spheres beside a solid that has faces.
+/// Spheres in union with a flat solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Beside {
     /// The spheres.
     pub spheres: FixedSpheres,
-    /// What is between both.
+    /// The fillet between both.
     pub blend: Blend,
 }
 
 /// A fillet.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Blend {
-    /// k, u5.12; 0 where there is none.
+    /// Width k, u5.12; 0 for a sharp union.
     pub width: u32,
     /// 1/2k, u1.16, to nearest.
     pub inverse: u32,
 }
 
 impl Blend {
-    /// A fillet whose width, 12 fraction bits, is 0 or 2^10 to 2^17 − 1.
+    /// A fillet of a width of 0, or 2^10 to 2^17 − 1, 12 fraction bits.
     pub fn new(width: u32) -> Self {
         Self {
             width,
@@ -33,7 +34,8 @@ impl Blend {
         }
     }
 
-    /// What is nearest of a face and a sphere; of equals, the face.
+    /// The union of a face and a sphere: the nearer one, or the fillet. A sharp union prefers the face at equal
+    /// distances.
     pub fn union(&self, flat: Sample, round: Sample) -> Sample {
         let is_round = round.distance < flat.distance;
         let nearer = if is_round { round } else { flat };
@@ -44,11 +46,11 @@ impl Blend {
         };
         let apart = flat.distance.abs_diff(round.distance);
         let h = i64::from(self.width.saturating_sub(apart));
-        // 16 fraction bits, of 28; at most a little above a half.
+        // 28 fraction bits, shifted to 16; at most slightly above a half.
         let weight = (h * i64::from(self.inverse)) >> 12;
         let share = if is_round { (1 << 16) - weight } else { weight };
         Sample {
-            // A half and 16 fraction bits, rounded down.
+            // Half of h·weight, with 16 fraction bits in the weight, rounded down.
             distance: nearer.distance + ((-h * weight) >> 17) as i32,
             surface: Surface::Blended {
                 axis,

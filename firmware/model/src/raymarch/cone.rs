@@ -1,8 +1,9 @@
-//! The prepass: one cone before the rays of each block of pixels says where they may begin.
+//! The prepass: one cone for each block of pixels, marched before the rays, gives the start of the block's rays.
 //!
-//! A cone is the ray through the middle of a block. Points of the block's rays at the same depth along n differ from its point by at
-//! most t·spread in the norm of its rays, so it goes on by the distance less t·spread, and all of them are free up to there. What it
-//! comes to is a depth, which takes the place of the near plane for its block.
+//! A cone is the ray through the middle of a block, with a radius. Points of the block's rays at the same depth along n
+//! differ from the cone's point by at most t·spread in the norm of its rays. A cone therefore steps by the distance
+//! less t·spread, and all rays of its block are free up to its end. The end's depth replaces the near plane for the
+//! block.
 
 use glint_core::field::{FRACTION, cropped, magnitude};
 
@@ -14,23 +15,23 @@ use super::setup::FieldSetup;
 /// Fraction bits of a depth in the table.
 const DEPTH_FRACTION: u32 = 7;
 
-/// The points after which a cone ends at the latest: all rays wait for the last cone.
+/// Largest number of evaluations of a cone. All rays wait for the last cone.
 const MOST_STEPS: u32 = 192;
 
-/// The most blocks in a row of a picture: of 4 pixels, 1280 wide.
+/// Largest number of blocks in a row of a picture: 1280 pixels in blocks of 4.
 const ROW: usize = 320;
 
-/// A cone at its beginning.
+/// A cone before its first step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cone {
-    /// The ray in its middle.
+    /// The ray through the middle of the block.
     pub ray: Ray,
-    /// What it is wider by with each step of t, u0.16, rounded up.
+    /// Growth of the radius per unit of t, u0.16, rounded up.
     pub spread: u32,
 }
 
 impl FieldSetup {
-    /// The cone of a block, by its place among blocks.
+    /// The cone of the block in the given column and row of blocks.
     pub fn cone(&self, cones: &Cones, eye: usize, column: u32, row: u32) -> Cone {
         let direction = [0, 1, 2].map(|i: usize| {
             let across = self.steps[0][i].wrapping_mul((column << cones.block) as i32);
@@ -52,16 +53,17 @@ impl FieldSetup {
         };
         Cone {
             ray,
-            // 18 and 9 fraction bits; one for what was cut, and one for directions, which are rounded to 17 bits.
+            // 18 and 9 fraction bits. Rounded up by one for the truncation and one for directions, which are rounded to
+            // 17 bits.
             spread: ((cones.spread * inverse) >> 11) + 2,
         }
     }
 
-    /// Follows a cone as far as all rays of its block are free: the t to which it has come, and the points at which it has asked.
+    /// Marches a cone while all rays of its block are free. Returns t at the end, and the number of evaluations.
     pub fn march_cone(&self, cone: &Cone) -> (u32, u32) {
         let Cone { ray, spread } = cone;
         let tuning = &self.tuning;
-        // A point is cut by less than a step along each axis: by less than two in all.
+        // A coordinate is truncated by less than one step, the point by less than two steps in the Euclidean norm.
         let cut = u32::from(self.is_round());
         let mut t = ray.start;
         let mut steps = 0;
@@ -86,25 +88,25 @@ impl FieldSetup {
         }
     }
 
-    /// The depth along n at a cone's t as the table has it: times 2^e, u11.7, rounded down.
+    /// Depth along n at t of a cone, in the format of the table: times 2^e, u11.7, rounded down.
     pub fn cleared(&self, cone: &Cone, t: u32) -> u32 {
         let depth = (u64::from(t) * u64::from(self.inverse(cone.ray.length))) >> 9;
         depth.min(FARTHEST.into()) as u32 >> (FRACTION - DEPTH_FRACTION)
     }
 }
 
-/// The rays of a picture, which it is to be asked for row by row: without a prepass as [`FieldSetup::ray`] has them, or else each
-/// begins where the cone of its block has come to.
+/// The rays of a picture, requested row by row. Without a prepass they are those of [`FieldSetup::ray`]; with a prepass
+/// each ray starts at the end of the cone of its block.
 pub struct Rays<'a> {
     setup: &'a FieldSetup,
-    /// What the cones of the row of blocks have cleared for each eye, and the row.
+    /// Depths at the ends of the cones in the current row of blocks, for each eye.
     cleared: [[u32; ROW]; 2],
     row: [Option<u32>; 2],
     evaluations: u64,
 }
 
 impl<'a> Rays<'a> {
-    /// Those of a frame.
+    /// The rays of a frame.
     pub const fn new(setup: &'a FieldSetup) -> Self {
         Self {
             setup,
@@ -135,7 +137,7 @@ impl<'a> Rays<'a> {
         setup.ray_from(eye, x, y, setup.near.max(cleared))
     }
 
-    /// Evaluations of the field that its cones have taken until now.
+    /// Evaluations by the cones so far.
     pub const fn evaluations(&self) -> u64 {
         self.evaluations
     }

@@ -1,26 +1,26 @@
-//! The directions of a frame's rays, before they are narrowed.
+//! The directions of a frame's rays in full precision.
 
 use glint_core::camera::View;
 use glint_core::fixed::Q2_23;
 
-/// The directions of the rays, D with 51 fraction bits before they are narrowed.
+/// The directions D of the rays, 51 fraction bits.
 pub(super) struct Directions {
-    /// D of the first pixel, of each eye.
+    /// D of the first pixel, for each eye.
     pub first: [[i64; 3]; 2],
-    /// What D grows by with a pixel to the right.
+    /// Change of D per pixel to the right.
     pub across: [i64; 3],
-    /// What D grows by with a pixel down.
+    /// Change of D per pixel down.
     pub down: [i64; 3],
-    /// D is 2^−exponent of the direction whose part along n is 1.
+    /// D is 2^−exponent times the direction whose component along n is 1.
     pub exponent: u32,
 }
 
 impl Directions {
-    /// `parallax` is what the left eye's direction takes of u and the right eye's gives, 28 fraction bits, at most 1; `round` says
-    /// that D is below 1 in the Euclidean norm, and not only in the maximum norm.
+    /// Directions of a view. `parallax`, 28 fraction bits, at most 1, is the share of u that the left eye's direction
+    /// gains and the right eye's loses. `round` keeps D below 1 in the Euclidean norm, not only in the maximum norm.
     pub fn new(view: &View, width: u32, height: u32, parallax: i64, round: bool) -> Self {
         let half_width = i64::from(view.half_width().to_bits());
-        // Twice the half width over the pixels: below 2^54 before the division.
+        // Twice the half width divided by the number of pixels: below 2^54 before the division.
         let step = |row: [Q2_23; 3]| {
             row.map(|x| (2 * half_width * i64::from(x.to_bits())) / i64::from(width))
         };
@@ -32,7 +32,7 @@ impl Directions {
                     - (i64::from(width - 1) * across[i] + i64::from(height - 1) * down[i]) / 2
             })
         });
-        // D is linear on the picture, so it is longest in a corner.
+        // D is linear over the picture, so its length is largest in a corner.
         let corners = first.iter().flat_map(|&first| {
             [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(x, y)| {
                 [0, 1, 2].map(|i: usize| {
@@ -43,11 +43,11 @@ impl Directions {
                 })
             })
         });
-        // A little below 1, as steps are rounded.
+        // Slightly below 1, because the steps are rounded.
         const ONE: i64 = (1 << 51) - (1 << 36);
         const SQUARE: i64 = (1 << 50) - (1 << 40);
         let exponent = if round {
-            // 25 of the fraction bits, and 3 others.
+            // 25 of the fraction bits, and 3 integer bits.
             let squares = corners.map(|d| d.map(|x| ((x >> 26) + 1).pow(2)).iter().sum());
             let longest: i64 = squares.max().unwrap_or(0);
             (0..3).find(|&e| longest >> (2 * e) < SQUARE).unwrap_or(3)
@@ -63,7 +63,7 @@ impl Directions {
         }
     }
 
-    /// 30 fraction bits, nearest, times 2^−e.
+    /// Narrows to 30 fraction bits, to nearest, times 2^−e.
     pub fn narrow(&self, x: i64) -> i32 {
         let shift = 21 + self.exponent;
         ((x + (1 << (shift - 1))) >> shift) as i32

@@ -1,4 +1,4 @@
-//! Fog: the part of a surface that it hides, by depth.
+//! Fog: the share of a surface's colour that fog hides, by depth.
 
 use glint_core::fixed::U4_28;
 
@@ -7,7 +7,7 @@ use super::palette::Palette;
 use super::setup::FieldSetup;
 
 impl FieldOptions {
-    /// The colours of a frame: with its fog, and grey for two eyes.
+    /// The colours of a frame, with its fog, and grey for two eyes.
     pub fn palette_for(&self, setup: &FieldSetup) -> Palette {
         let palette = if self.fog == U4_28::ZERO {
             self.palette
@@ -22,16 +22,16 @@ impl FieldOptions {
 }
 
 impl Palette {
-    /// With fog that leaves e^(−density·z) of what is z world units away along n. An entry is that of the middle of its
-    /// depths, within 0.51; the last one is that of everything behind it too.
+    /// The palette with fog of transmittance e^(−density·z) for a surface at depth z along n, in world units. An entry
+    /// holds the value at the middle of its depths, within 0.51; the last entry holds for all larger depths too.
     #[must_use]
     pub fn with_fog(self, setup: &FieldSetup, density: U4_28) -> Self {
-        // The smallest step of 256 that come to e^−8, or the largest that there is.
+        // Selects the smallest step of which 256 reach a transmittance of e^−8, or the largest available step.
         const ENOUGH: u64 = 8 << 32;
         let unit = fog_of_unit(setup, density);
         let fog_shift = (0..7).find(|shift| unit << (shift + 8) >= ENOUGH);
         let fog_shift = fog_shift.unwrap_or(7);
-        // Half a step first, then whole ones.
+        // A half step first, then whole steps.
         let half = faded((unit << fog_shift) / 2);
         let whole = product(half, half);
         let mut left = half;
@@ -50,19 +50,20 @@ impl Palette {
 /// 1 with 62 fraction bits.
 const FULL: u64 = 1 << 62;
 
-/// Of two numbers with 62 fraction bits.
+/// The product of two numbers with 62 fraction bits.
 fn product(a: u64, b: u64) -> u64 {
     ((u128::from(a) * u128::from(b)) >> 62) as u64
 }
 
-/// What a field unit times 2^e adds to the exponent of the fog, 32 fraction bits, rounded down: below 2^35.
+/// Growth of the fog's exponent per field unit times 2^e, 32 fraction bits, rounded down: below 2^35.
 fn fog_of_unit(setup: &FieldSetup, density: U4_28) -> u64 {
     let units = setup.scale.to_bits().max(1) as u128;
-    // 28 and 36 over 32 fraction bits.
+    // 28 + 36 fraction bits over 32.
     (((u128::from(density.to_bits()) << 36) / units) >> setup.exponent) as u64
 }
 
-/// e^−x, 62 fraction bits, of x with 32: (1 − x/2^20)^(2^20), smaller by a part of x²/2^21, and 0 from 16 on.
+/// e^−x, 62 fraction bits, for x with 32 fraction bits: (1 − x/2^20)^(2^20), below the exact value by a part of
+/// x²/2^21, and 0 for x ≥ 16.
 fn faded(x: u64) -> u64 {
     if x >= 16 << 32 {
         return 0;

@@ -1,33 +1,33 @@
-//! Light on what is round, whose normals are different at every point: ambient light and that of some directions.
+//! Light on spheres, whose normal differs at every point: ambient light and directional lights.
 
 use glint_core::field::{FixedSphere, MAX_SPHERES};
 use glint_core::light::{Lighting, MAX_LIGHTS, Material, Rgb};
 
-/// Light from one direction, and what there is of it.
+/// A directional light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Light {
-    /// Towards the light, s1.16, of length 1 at most.
+    /// Direction to the light, s1.16, of length 1 at most.
     pub direction: [i32; 3],
-    /// Its colour, eight bits a channel.
+    /// Colour of the light, eight bits a channel.
     pub colour: Rgb,
 }
 
-/// The lights of a frame and what they shine on.
+/// The lights of a frame, and the materials of the spheres.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lights {
-    /// What comes from everywhere, eight bits a channel.
+    /// Ambient light, eight bits a channel.
     pub ambient: Rgb,
-    /// The first `count` of them shine.
+    /// Lights; the first `count` entries are valid.
     pub list: [Light; MAX_LIGHTS],
-    /// 1 to 4. The gateware takes a clock for each.
+    /// Number of lights, 1 to 4. The gateware takes one clock for each light.
     pub count: usize,
-    /// The spheres' colours, by their numbers.
+    /// Material colours of the spheres, by number.
     pub materials: [Rgb; MAX_SPHERES],
 }
 
 impl Lights {
-    /// The lights of a scene on spheres of a material. Spheres that are to be told apart by their colours need some light to
-    /// be round: where there is none, it is day.
+    /// The lights of a scene on spheres of a material. Material `Normal` without lights gets daylight, because unshaded
+    /// spheres look flat.
     pub fn new(material: Material, lighting: &Lighting) -> Self {
         let day = Lighting::day();
         let lighting = match material {
@@ -37,7 +37,7 @@ impl Lights {
         let mut list = [Light::default(); MAX_LIGHTS];
         for (place, light) in list.iter_mut().zip(&lighting.lights) {
             *place = Light {
-                // Two fraction bits more.
+                // Two more fraction bits.
                 direction: light.direction().map(|x| i32::from(x) << 2),
                 colour: light.colour(),
             };
@@ -51,14 +51,14 @@ impl Lights {
     }
 }
 
-/// 255 is the whole.
+/// Widens a share: 255 becomes 256, the whole.
 pub(super) const fn whole(part: u8) -> i32 {
     part as i32 + (part >> 7) as i32
 }
 
 impl Lights {
-    /// A sphere's material in the light at a point, by the point as seen from its centre: (ambient + Σ max(0, n·l)·colour) times the
-    /// material, where n is the point over the radius.
+    /// Colour of a lit sphere at a point relative to its centre: (ambient + Σ max(0, n·l)·colour) times the material,
+    /// where n is the point over the radius.
     pub(super) fn shine_on(&self, number: u8, sphere: &FixedSphere, from_centre: [i32; 3]) -> Rgb {
         let mut sum = self.ambient.map(|part| i32::from(part) << 8);
         for light in self.list.iter().take(self.count) {
@@ -75,12 +75,12 @@ impl Lights {
     }
 }
 
-/// The cosine between the normal and a direction in 256ths, rounded down, 0 if it is negative: 256 is the most.
+/// The cosine between the normal and a direction, 8 fraction bits, rounded down; 0 if negative, at most 256.
 fn cosine(sphere: &FixedSphere, from_centre: [i32; 3], direction: [i32; 3]) -> i32 {
     let product: i64 = core::iter::zip(from_centre, direction)
         .map(|(a, b)| i64::from(a) * i64::from(b))
         .sum();
-    // The radius, shifted alike, has 21 bits; so this has 17 where it is not beyond the sphere.
+    // The radius has 21 bits after the same shift, so the product has 17 bits for a point on the sphere.
     let size = (product.max(0) >> sphere.shift).min((1 << 17) - 1);
     ((size * i64::from(sphere.inverse)) >> 25).min(256) as i32
 }

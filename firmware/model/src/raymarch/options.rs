@@ -1,4 +1,4 @@
-//! How a field is drawn: appearance, eyes, tuning, prepass.
+//! Options of drawing a field: appearance, eyes, tuning, prepass.
 
 use glint_core::appearance::Appearance;
 use glint_core::field::{FRACTION, Field};
@@ -11,26 +11,27 @@ use super::palette::Palette;
 /// Upper limit of t, u11.12.
 pub(super) const FARTHEST: u32 = (1 << (11 + FRACTION)) - 1;
 
-/// How finely a field is marched: what its error and its time depend on.
+/// Precision of the march, which determines its error and its time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tuning {
-    /// A ray has arrived where the distance is below this (field units, 12 fraction bits, below 2^16) ...
+    /// Threshold: a ray hits where the distance is below `threshold` + t·2^−`footprint`; field units, 12 fraction bits,
+    /// below 2^16.
     pub threshold: u32,
-    /// ... and this power of two (7 to 15) of the distance that it has gone: t·2^−shift.
+    /// Footprint: exponent of the share of t in the threshold, 7 to 15.
     pub footprint: u32,
-    /// The points after which a ray is given up, undecided: 1 to 255; four times as many where there is anything round.
+    /// Evaluations after which a ray ends undecided: 1 to 255, four times as many for scenes with spheres.
     pub cap: u32,
-    /// t beyond which there is nothing, u11.12.
+    /// Far limit of t, u11.12.
     pub far: u32,
 }
 
-/// What is used unless told otherwise, for pictures of all sizes (docs/report/raymarch.md).
+/// Default tuning for pictures of all sizes (docs/report/raymarch.md).
 ///
-/// What is wrong with a picture is wrong at edges: a ray that passes one by less than the threshold ends there. So the
-/// threshold follows the distance by much less than a pixel does, 1/23 of one even at 1280 × 720 and half width 0.9, and one
-/// rule serves all sizes: the evaluations hardly depend on them. They bound it from the other side: a smaller threshold, or
-/// less of the distance, takes the slowest of the report's views beyond 14.4 evaluations a ray; a larger part of the distance
-/// beside a smaller threshold shows more wrong faces for as many evaluations.
+/// Errors of a picture lie at edges: a ray that passes an edge within the threshold hits there. The threshold therefore
+/// grows with t by much less than a pixel's width, 1/23 of a pixel even at 1280 × 720 and half width 0.9. One tuning
+/// serves all sizes, because the number of evaluations hardly depends on the size. Evaluations bound the threshold from
+/// below: a smaller threshold or footprint takes the slowest view of the report beyond 14.4 evaluations a ray. A larger
+/// footprint with a smaller threshold shows more wrong faces for the same number of evaluations.
 pub const DEFAULT_TUNING: Tuning = Tuning {
     threshold: 28,
     footprint: 14,
@@ -38,7 +39,7 @@ pub const DEFAULT_TUNING: Tuning = Tuning {
     far: FARTHEST,
 };
 
-/// For round fields and oblique faces: silhouettes, and the normals of spheres, show where a ray has ended.
+/// Tuning for round fields and oblique faces, where silhouettes and the normals of spheres show the position of a hit.
 pub const ROUND_TUNING: Tuning = Tuning {
     threshold: 4,
     footprint: 15,
@@ -46,7 +47,7 @@ pub const ROUND_TUNING: Tuning = Tuning {
 };
 
 impl Tuning {
-    /// The default of a field.
+    /// Default tuning of a field.
     const fn of(field: &Field) -> Self {
         if field.is_round() || field.has_octants() {
             ROUND_TUNING
@@ -56,23 +57,23 @@ impl Tuning {
     }
 }
 
-/// How a field is drawn.
+/// Options of drawing a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FieldOptions {
-    /// One eye, or two.
+    /// Two eyes, or one.
     pub stereo: Option<Stereo>,
-    /// How finely.
+    /// Precision of the march.
     pub tuning: Tuning,
-    /// In which colours, without fog.
+    /// Colours, without fog.
     pub palette: Palette,
-    /// How dense the fog is: e^−z of something is left that is z/density world units away. 0 is none.
+    /// Density of the fog per world unit: transmittance is e^(−density · z) at depth z. 0 is no fog.
     pub fog: U4_28,
     /// Whether cones precede the rays.
     pub prepass: bool,
 }
 
 impl FieldOptions {
-    /// What is used unless told otherwise: as finely as suits the field.
+    /// Default options, with the default tuning of the field.
     pub fn of(field: &Field) -> Self {
         Self {
             tuning: Tuning::of(field),
@@ -81,7 +82,7 @@ impl FieldOptions {
         }
     }
 
-    /// A field of such an appearance, seen with one eye or two, with the default tuning.
+    /// Options for a field with an appearance, one eye or two, and the default tuning.
     pub fn new(field: &Field, appearance: &Appearance, stereo: Option<Stereo>) -> Self {
         let &Appearance {
             material,

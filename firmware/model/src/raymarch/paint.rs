@@ -1,4 +1,4 @@
-//! What a ray's end looks like: a colour of the palette, darkened by the steps that it took, faded by the fog.
+//! Colour of a ray's end: a colour of the palette, darkened by the number of steps, faded by the fog.
 
 use glint_core::field::Surface;
 
@@ -12,7 +12,7 @@ pub fn paint(setup: &FieldSetup, palette: &Palette, ray: &Ray, outcome: &RayResu
     let (colour, light, fog) = match outcome.state {
         State::Undecided => return palette.undecided,
         State::Miss => {
-            // The sine of the height, 8 bits of its 17.
+            // The sine of the elevation, the upper 8 of its 17 bits.
             let height = ray.direction[2].max(0) >> 9;
             (palette.zenith, 255, 255 - height.min(255) as u8)
         }
@@ -29,7 +29,7 @@ pub fn paint(setup: &FieldSetup, palette: &Palette, ray: &Ray, outcome: &RayResu
     mixed(lit, palette.horizon, fog)
 }
 
-/// The colour of a hit before it is darkened: a face's of the palette, a sphere's in its light, or what is between them.
+/// Colour of a hit before darkening: a face of the palette, a lit sphere, or a mixture of both on a fillet.
 fn surface_colour(
     setup: &FieldSetup,
     palette: &Palette,
@@ -46,7 +46,7 @@ fn surface_colour(
     mixed(face, round, surface.share())
 }
 
-/// The colour of something round in its light.
+/// Colour of a lit sphere; `None` if the hit is not on a sphere.
 fn lit(setup: &FieldSetup, palette: &Palette, ray: &Ray, outcome: &RayResult) -> Option<[u8; 3]> {
     let State::Hit(surface) = outcome.state else {
         return None;
@@ -56,7 +56,7 @@ fn lit(setup: &FieldSetup, palette: &Palette, ray: &Ray, outcome: &RayResult) ->
     Some(palette.lights.shine_on(number, sphere, normal))
 }
 
-/// From one colour a part of the way to another one, to nearest: 255 is all of it.
+/// Mixes two colours, to nearest: `part` is the weight of `to`, 255 for `to` alone.
 fn mixed(from: [u8; 3], to: [u8; 3], part: u8) -> [u8; 3] {
     core::array::from_fn(|i| {
         let [from, to] = [from[i], to[i]].map(i32::from);
@@ -65,7 +65,7 @@ fn mixed(from: [u8; 3], to: [u8; 3], part: u8) -> [u8; 3] {
 }
 
 impl FieldSetup {
-    /// The normal where a ray has come to a sphere, of about the radius' length: field units, 12 fraction bits.
+    /// The normal at a hit on a sphere, with about the radius as length: field units, 12 fraction bits.
     pub fn normal(&self, ray: &Ray, outcome: &RayResult) -> Option<[i32; 3]> {
         let State::Hit(surface) = outcome.state else {
             return None;

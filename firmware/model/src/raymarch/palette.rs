@@ -5,26 +5,26 @@ use glint_core::light::{Background, Lighting, Material};
 
 use super::lights::{Light, Lights};
 
-/// The colours of a frame, made by whoever knows materials and lights; eight bits a channel. With two eyes only the
-/// luminance counts, so all channels of a colour are the same then.
+/// The colours of a frame, computed from materials and lights; eight bits a channel. With two eyes only the luminance
+/// is used, and all channels of a colour are equal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Palette {
-    /// Of the faces, by [`Surface::face`](glint_core::field::Surface::face), after their light: six across the axes, or eight across the
-    /// diagonals.
+    /// Lit colours of the faces, by [`Surface::face`](glint_core::field::Surface::face): six perpendicular to the axes,
+    /// or eight perpendicular to the diagonals.
     pub faces: [[u8; 3]; 8],
-    /// Of what is round.
+    /// Lights and materials of the spheres.
     pub lights: Lights,
-    /// Of a ray that was given up.
+    /// Colour of an undecided ray.
     pub undecided: [u8; 3],
-    /// Of the sky above.
+    /// Colour of the sky at the zenith.
     pub zenith: [u8; 3],
-    /// Of the sky at the horizon and below, and of the fog.
+    /// Colour of the sky at the horizon and below, and of the fog.
     pub horizon: [u8; 3],
-    /// How much of a surface the fog hides, of 255, by its depth in steps of 2^`fog_shift` field units times 2^e.
+    /// Share of a surface's colour that fog hides, of 255, by depth in steps of 2^`fog_shift` field units times 2^e.
     pub fog: [u8; 256],
-    /// See `fog`: 0 to 7.
+    /// Exponent of the depth step of `fog`, 0 to 7.
     pub fog_shift: u32,
-    /// How much light is left at a surface, of 255, by the steps that the ray took: many lie in narrow places.
+    /// Share of light left at a surface, of 255, by the steps of the ray: rays take many steps in narrow places.
     pub occlusion: [u8; 256],
 }
 
@@ -36,7 +36,7 @@ impl Default for Palette {
 }
 
 impl Palette {
-    /// Faces of a material in some light, in front of a background, without fog or shadows.
+    /// Faces of a material in the given light, in front of a background, without fog or shadows.
     pub fn new(material: Material, lighting: &Lighting, background: Background) -> Self {
         let [zenith, horizon] = background.colours();
         Self {
@@ -54,7 +54,7 @@ impl Palette {
         }
     }
 
-    /// The same for a field, whose faces may be across the diagonals.
+    /// As [`new`](Self::new), for a field whose faces may be perpendicular to the diagonals.
     pub fn of(
         field: &Field,
         material: Material,
@@ -72,7 +72,7 @@ impl Palette {
         }
     }
 
-    /// With narrow places darkened: 255·40/(40 + steps) is left, rounded down.
+    /// Darkens narrow places: the share of light left is 255·40/(40 + steps), rounded down.
     #[must_use]
     pub fn with_occlusion(self) -> Self {
         const HALF: u32 = 40;
@@ -82,11 +82,11 @@ impl Palette {
         }
     }
 
-    /// The luminance in all channels, which two eyes need.
+    /// Replaces each colour by its luminance in all channels, for two eyes.
     #[must_use]
     pub fn grey(self) -> Self {
         let grey = |[r, g, b]: [u8; 3]| {
-            // Rec. 601: the weights are 256 together.
+            // Rec. 601; the weights add up to 256.
             [((77 * u32::from(r) + 150 * u32::from(g) + 29 * u32::from(b) + 128) >> 8) as u8; 3]
         };
         let lights = Lights {

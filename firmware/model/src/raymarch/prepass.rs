@@ -1,21 +1,23 @@
-//! Cones before the rays: their blocks and constants.
+//! The prepass: blocks of pixels and constants of their cones.
 
-/// Entries of the table of depths.
+/// Entries in the table of depths.
 const CONES: u32 = 1 << 14;
 
 /// The constants of a frame's cones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cones {
-    /// Blocks are of 2^this pixels each way: 2, 3, 4.
+    /// Blocks have 2^`block` by 2^`block` pixels: 2, 3 or 4.
     pub block: u32,
-    /// What D grows by from a block's first pixel to its middle, 30 fraction bits.
+    /// Change of D from a block's first pixel to its middle, 30 fraction bits.
     pub offset: [i32; 3],
-    /// The most by which D differs from the middle's anywhere in a block, in the norm of the rays, u0.18, 14 bits, rounded up.
+    /// Largest difference of D between the middle and any pixel of a block, in the norm of the rays, u0.18, 14 bits,
+    /// rounded up.
     pub spread: u32,
 }
 
 impl Cones {
-    /// The cones of blocks of 2^`block` pixels each way, 2 to 4. `steps` is the change of D for a pixel to the right and one down.
+    /// The constants for blocks of 2^`block` by 2^`block` pixels, 2 to 4. `steps` is the change of D per pixel to the
+    /// right and per pixel down.
     pub fn new(block: u32, round: bool, steps: &[[i32; 3]; 2]) -> Self {
         let block = block.clamp(2, 4);
         let [across, down] = steps.map(|step| step.map(i64::from));
@@ -32,15 +34,16 @@ impl Cones {
         Self {
             block,
             offset: [0, 1, 2].map(|i: usize| half(across[i] + down[i]) as i32),
-            // D is cut to 24 bits, both that of the middle and that of a pixel; halves are cut too.
+            // D is truncated to 24 bits, for the middle and for a pixel; half sums are truncated too.
             spread: (widest[0].max(widest[1]) >> 12) as u32 + 2,
         }
     }
 
-    /// What the entry of a cone's length is larger by than that of its middle: no direction in its block gets longer than 1.
+    /// Difference between the length index of a cone and that of its middle ray. It keeps every direction in the block
+    /// at length 1 or less.
     pub(super) const fn margin(&self, round: bool) -> u32 {
         if round {
-            // (|D| + s)² − |D|² is at most 2·s + s², of which s is at most 2^−4.
+            // (|D| + s)² − |D|² is at most 2·s + s², with s at most 2^−4.
             (self.spread >> 7) + (self.spread >> 12) + 2
         } else {
             (self.spread >> 8) + 1
@@ -48,7 +51,7 @@ impl Cones {
     }
 }
 
-/// Blocks of a picture: the smallest whose cones for all eyes fit the table, 2^this pixels each way.
+/// Block size of a picture as a power of two: the smallest one whose cones for all eyes fit the table.
 pub(super) const fn block_for((width, height): (u32, u32), eyes: u32) -> u32 {
     let mut block = 2;
     while block < 4 && eyes * (width >> block) * (height >> block) > CONES {

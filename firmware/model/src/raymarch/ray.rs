@@ -1,12 +1,12 @@
-//! A pixel's ray: where it begins, and where it ends.
+//! Rays: start, march and end.
 
 use glint_core::field::{FRACTION, Surface, cropped, magnitude};
 
 use super::options::FARTHEST;
 use super::setup::{Eye, FieldSetup};
 
-/// Below 1/m for every m that begins with these ten bits behind its point: 2^10/(i + 1), cut so that no product
-/// with m rounds to 1. u8.9, 17 bits.
+/// Lower bounds of 1/m by the first ten fraction bits i of m: 2^10/(i + 1), truncated so that no product with m rounds
+/// to 1. u8.9, 17 bits.
 const INVERSE: [u32; 1024] = inverses();
 
 const fn inverses() -> [u32; 1024] {
@@ -24,8 +24,8 @@ const fn inverses() -> [u32; 1024] {
     table
 }
 
-/// Below 1/√q for every q that begins with these ten bits behind its point: √(2^10/(i + 1)), less by a part of 2^−16 at least for
-/// what is rounded up afterwards. u8.9, 15 bits.
+/// Lower bounds of 1/√q by the first ten fraction bits i of q: √(2^10/(i + 1)), reduced by a part of at least 2^−16 to
+/// cover later rounding up. u8.9, 15 bits.
 const ROUND_INVERSE: [u32; 1024] = round_inverses();
 
 const fn round_inverses() -> [u32; 1024] {
@@ -38,47 +38,49 @@ const fn round_inverses() -> [u32; 1024] {
     table
 }
 
-/// A ray at its beginning.
+/// A ray before its first step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ray {
-    /// Which eye it starts from: 0 is the left one, or the only one.
+    /// Number of the eye: 0 for the left or only one.
     pub eye: usize,
-    /// Its direction, s1.17, of at most length 1: in the maximum norm, or in the Euclidean one if there is anything round.
+    /// Direction, s1.17, of length 1 at most: in the maximum norm, or in the Euclidean norm for scenes with spheres.
     pub direction: [i32; 3],
-    /// The first ten bits of the largest component of D, or of |D|²: the entry of the table that made the direction.
+    /// The first ten fraction bits of the largest component of D, or of |D|²: the table index used to scale the
+    /// direction.
     pub length: u32,
-    /// Where it begins, u11.12: at the near plane, or where it comes to the box.
+    /// Start of the ray, u11.12: the near plane, or the entry into the bounding box.
     pub start: u32,
 }
 
-/// How a ray has ended.
+/// Result of a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
-    /// At a surface.
+    /// Surface reached.
     Hit(Surface),
-    /// In nothing.
+    /// Far limit reached, or bounding box left.
     Miss,
-    /// Nobody knows: it was given up.
+    /// Step limit reached.
     Undecided,
 }
 
 /// The end of a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RayResult {
-    /// How.
+    /// The result.
     pub state: State,
-    /// Where the last evaluation was, or, of a hit on something round, a step further: u11.12.
+    /// t of the last evaluation, or of the step after it for a hit on a sphere or fillet: u11.12.
     pub t: u32,
-    /// From there to the plane of a face that was hit, at most 1 − 2^−12; 0 of all others. u0.12.
+    /// Distance from that point to the plane of the face, at most 1 − 2^−12; 0 without a face. u0.12.
     pub gap: u32,
-    /// The first ten bits of the direction's part along the face's normal, where the ray goes towards it; or else all ones.
+    /// The first ten fraction bits of the direction's component along the face's inward normal; all ones for a ray that
+    /// does not approach the face.
     pub slope: u32,
-    /// Points at which the field was asked, at most 1020.
+    /// Evaluated points, at most 1020.
     pub steps: u32,
 }
 
 impl RayResult {
-    /// Where the ray has come to, u11.12: the surface's plane, if that is where it ends.
+    /// t at the end of the ray, u11.12: at a hit on a face, on the plane of the face.
     pub fn reached(&self) -> u32 {
         let rest = (self.gap * INVERSE[self.slope as usize & 0x3FF]) >> 9;
         (self.t + rest).min(FARTHEST)
@@ -91,7 +93,7 @@ impl FieldSetup {
         self.ray_from(eye, x, y, self.near)
     }
 
-    /// The same from another near plane on.
+    /// The ray of a pixel from the given near plane.
     pub(super) fn ray_from(&self, eye: usize, x: u32, y: u32, near: u32) -> Ray {
         // s1.24.
         let direction = [0, 1, 2].map(|i: usize| {
@@ -114,10 +116,11 @@ impl FieldSetup {
         }
     }
 
-    /// The first ten bits of D's length, or of its square or a little more, from the magnitudes of its parts, 24 fraction bits.
+    /// The first ten fraction bits of the largest component of D, or of |D|² rounded up, from the components'
+    /// magnitudes with 24 fraction bits.
     pub(super) fn length(&self, parts: [u32; 3]) -> u32 {
         if self.is_round() {
-            // 17 bits of each. What was cut off them is below 2^−15 in all, which is added.
+            // 17 bits of each component. The sum of the truncated parts is below 2^−15 and is added.
             let square: u64 = parts.map(|part| u64::from(part >> 7).pow(2)).iter().sum();
             ((square + (1 << 19)) >> 24) as u32 & 0x3FF
         } else {
@@ -126,7 +129,7 @@ impl FieldSetup {
         }
     }
 
-    /// What a direction is D times of, u8.9.
+    /// The scale of D to a direction, u8.9.
     pub(super) fn inverse(&self, length: u32) -> u32 {
         if self.is_round() {
             ROUND_INVERSE[length as usize]
@@ -135,16 +138,16 @@ impl FieldSetup {
         }
     }
 
-    /// A direction of length at most 1, of D and the first bits of its length.
+    /// Scales D to a direction of length 1 at most, by its length index.
     pub(super) fn scaled(&self, direction: [i32; 3], length: u32) -> [i32; 3] {
         let inverse = i64::from(self.inverse(length));
-        // 24, 9 and 17 fraction bits.
+        // 24 + 9 fraction bits to 17.
         direction.map(|d| ((i64::from(d) * inverse + (1 << 15)) >> 16) as i32)
     }
 
-    /// The t at a depth along n, or a little before it.
+    /// t at a depth along n, or slightly less.
     pub(super) fn at_depth(&self, depth: u32, length: u32) -> u32 {
-        // The inverse of the inverse, or less, 10 fraction bits.
+        // A lower bound of the inverse's inverse, 10 fraction bits.
         let part = if self.is_round() {
             (self.inverse(length) * (length + 1)) >> 9
         } else {
@@ -153,9 +156,10 @@ impl FieldSetup {
         ((u64::from(depth) * u64::from(part)) >> 10) as u32
     }
 
-    /// Where a ray comes to the box if it does: never beyond it, and before it by some 2^−17 of the way.
+    /// t at which a ray enters the bounding box, or a lower bound: never beyond the box, and before it by at most about
+    /// 2^−17 of the way.
     ///
-    /// The table's reciprocal is too small by up to 1/i, so what is left to the box is divided once more.
+    /// The table's reciprocal is too small by up to 1/i, so the remaining way to the box is divided a second time.
     fn entry(&self, eye: usize, direction: &[i32; 3]) -> u64 {
         let Eye {
             origin, outside, ..
@@ -176,7 +180,7 @@ impl FieldSetup {
             .unwrap_or(0)
     }
 
-    /// Follows a ray to its end.
+    /// Marches a ray to its end.
     pub fn march(&self, ray: &Ray) -> RayResult {
         let tuning = &self.tuning;
         let mut t = ray.start;
@@ -222,18 +226,18 @@ impl FieldSetup {
         }
     }
 
-    /// By which power of two the threshold has grown. A ray along a face takes short steps; it need not come as near. Beside a sphere
-    /// it takes many too, and passes.
+    /// Exponent by which the threshold has grown after `steps`. A ray along a face takes short steps, so its threshold
+    /// grows. A ray beside a sphere also takes many steps, but passes, so its threshold stays.
     pub(super) fn patience(&self, steps: u32) -> u32 {
         if self.is_round() { 0 } else { steps >> 6 }
     }
 
-    /// The points after which a ray is given up: beside what is round it creeps for longer.
+    /// Step limit of a ray; larger for scenes with spheres, beside which steps are short.
     pub(super) fn cap(&self) -> u32 {
         self.tuning.cap << if self.is_round() { 2 } else { 0 }
     }
 
-    /// Whether a ray has left the box, or never came to it, and goes away from it.
+    /// Whether a ray is outside of the bounding box and moves away from it.
     pub(super) fn is_gone(&self, ray: &Ray, point: &[i32; 3]) -> bool {
         (0..3).any(|i| {
             magnitude(point[i]) > self.bounds[i] && (point[i] < 0) == (ray.direction[i] < 0)
@@ -248,13 +252,13 @@ impl FieldSetup {
         })
     }
 
-    /// The depth of a point of a ray along n in field units times 2^e, 21 fraction bits.
+    /// Depth along n of a point of a ray, in field units times 2^e, 21 fraction bits.
     pub fn depth_of(&self, ray: &Ray, t: u32) -> u64 {
         u64::from(t) * u64::from(self.inverse(ray.length))
     }
 }
 
-/// The gap to the plane of a face, u0.12, and the slope of the ray against it.
+/// The gap to the plane of a face, u0.12, and the slope of the ray against the face.
 fn approach(ray: &Ray, distance: i32, axis: u8, positive: bool) -> (u32, u32) {
     let part = ray.direction[usize::from(axis) % 3];
     let comes = (part < 0) == positive;
@@ -266,8 +270,8 @@ fn approach(ray: &Ray, distance: i32, axis: u8, positive: bool) -> (u32, u32) {
     (gap(distance), slope)
 }
 
-/// The same of a face across a diagonal, three quarters of both: a third of the sum of three parts is the slope, and a quarter
-/// needs no division.
+/// As [`approach`], for a face perpendicular to a diagonal; gap and slope are both three quarters of their exact value.
+/// The slope is a third of the sum of three parts; a quarter needs no division.
 fn approach_diagonal(ray: &Ray, distance: i32, signs: u8) -> (u32, u32) {
     let towards = [0, 1, 2].map(|i: usize| {
         let part = ray.direction[i] >> 7;
@@ -283,7 +287,7 @@ fn approach_diagonal(ray: &Ray, distance: i32, signs: u8) -> (u32, u32) {
     (gap - (gap >> 2), slope)
 }
 
-/// A distance as an end has it: saturates.
+/// The distance in the format of an end, saturated.
 fn gap(distance: i32) -> u32 {
     distance.clamp(0, (1 << FRACTION) - 1) as u32
 }

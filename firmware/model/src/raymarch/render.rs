@@ -1,4 +1,4 @@
-//! A whole frame.
+//! Drawing of a whole frame.
 
 use glint_core::stereo::Tint;
 
@@ -11,18 +11,18 @@ use crate::error::RenderError;
 use crate::frame_buffer::FrameBuffer;
 use crate::triangle::reciprocal::Reciprocal;
 
-/// What drawing a frame of a field took.
+/// Statistics of drawing a frame of a field.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FieldStats {
-    /// Rays: one a pixel and eye.
+    /// Rays: one per pixel and eye.
     pub rays: u32,
-    /// Evaluations of the field, by rays and by the cones before them: as many a step as there are spheres.
+    /// Evaluations of the field by rays and cones: one per sphere in each step.
     pub evaluations: u64,
-    /// Rays that came to a surface.
+    /// Rays that hit a surface.
     pub hits: u32,
-    /// Rays that went by.
+    /// Rays that missed.
     pub misses: u32,
-    /// Rays that were given up.
+    /// Rays that ended undecided.
     pub undecided: u32,
 }
 
@@ -39,13 +39,14 @@ impl FieldStats {
     }
 }
 
-/// Draws a field over what is in the target: where a depth code is larger, and nothing of it where two eyes look.
+/// Draws a field into the target. A pixel changes if the field's depth code is at least the target's. With two eyes
+/// every pixel changes.
 ///
-/// With two eyes `palette` is grey, and depths are the left eye's. Not inlined, so that its loop lies beside what it calls
-/// and they do not fight for an instruction cache.
+/// With two eyes `palette` is grey, and depths are the left eye's. Not inlined, so that its loop and the functions that
+/// it calls do not evict each other from the instruction cache.
 ///
 /// # Errors
-/// [`RenderError`] if the target has not the size of the setup; then nothing has been touched.
+/// [`RenderError`] if the target's size differs from the setup's; the target is then unchanged.
 #[inline(never)]
 pub fn render_field(
     setup: &FieldSetup,
@@ -105,7 +106,7 @@ impl FieldSetup {
     }
 }
 
-/// The colour nearest to three channels of eight bits, but for a half step near white.
+/// Converts three channels of eight bits to the nearest RGB565 colour, except within half a step of white.
 pub fn rgb565([r, g, b]: [u8; 3]) -> u16 {
     let narrow = |x: u8, bits: u32| {
         ((u32::from(x) + (0x80 >> bits)) >> (8 - bits)).min((1 << bits) - 1) as u16
@@ -113,7 +114,8 @@ pub fn rgb565([r, g, b]: [u8; 3]) -> u16 {
     narrow(r, 5) << 11 | narrow(g, 6) << 5 | narrow(b, 5)
 }
 
-/// What two eyes see, of their luminances: cut, not rounded, as all eight pixels of a word are composed at once.
+/// Composes an anaglyph pixel from the luminances of both eyes: truncated, because all eight pixels of a word are
+/// composed at once.
 pub fn compose(tint: Tint, left: u8, right: u8) -> u16 {
     let [red, green, blue] = match tint {
         Tint::RedBlue => [left, left.min(right), right],

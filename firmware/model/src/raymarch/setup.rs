@@ -1,4 +1,4 @@
-//! The constants of a frame of a field, made once from the field, the camera and the picture's size.
+//! The constants of a frame of a field, computed once from the field, the camera and the picture's size.
 
 use glint_core::camera::View;
 use glint_core::field::{
@@ -14,15 +14,15 @@ use super::prepass::{Cones, block_for};
 use crate::depth::DepthScale;
 use crate::error::{RenderError, SIZES};
 
-/// More than any coordinate: those of points are s13.12.
+/// Above the magnitude of every coordinate of a point, s13.12.
 const UNBOUNDED: u32 = (1 << (12 + FRACTION)) - 1;
 
-/// Where an eye is, and where it looks.
+/// Position of an eye, and direction of its first ray.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Eye {
-    /// In field units, s13.12.
+    /// Position in field units, s13.12.
     pub origin: [i32; 3],
-    /// How far it is outside of the box along each axis, u12.12; 0 inside, and where there is no box.
+    /// Distance outside of the bounding box along each axis, u12.12; 0 inside, and for unbounded fields.
     pub outside: [u32; 3],
     /// D of the first pixel, 30 fraction bits, modulo 2^32.
     pub first: [i32; 3],
@@ -36,31 +36,32 @@ pub struct FieldSetup {
     pub width: u32,
     /// Height of the picture in pixels.
     pub height: u32,
-    /// What there is.
+    /// The solid; for a union, its flat member.
     pub solid: Solid,
-    /// Spheres beside a solid that has faces: then there are both.
+    /// Spheres in union with a flat solid.
     pub beside: Option<Beside>,
-    /// Field units in a world unit: 2 to 256.
+    /// Field units per world unit: 2 to 256.
     pub scale: Q32_32,
-    /// Half the sides of the box about the origin that holds it, u12.12; as large as can be where it has no end.
+    /// Half the sides of the bounding box about the origin, u12.12; the largest value along an unbounded axis.
     pub bounds: [u32; 3],
     /// The left and the right eye; the second is unused without stereo.
     pub eyes: [Eye; 2],
-    /// What D grows by with a pixel to the right and one down, 30 fraction bits.
+    /// Change of D per pixel to the right and per pixel down, 30 fraction bits.
     pub steps: [[i32; 3]; 2],
-    /// D is 2^−e of the direction whose part along n is 1; e is 0 to 3.
+    /// Exponent e, 0 to 3: D is 2^−e times the direction whose component along n is 1.
     pub exponent: u32,
-    /// The near plane's distance in field units times 2^e, or that of the nearest corner of the box, 12 fraction bits, u11.12.
+    /// Depth of the near plane, or of the nearest corner of the bounding box if larger, in field units times 2^e,
+    /// u11.12.
     pub near: u32,
-    /// The cones before the rays, if any.
+    /// The cones of the prepass, if any.
     pub cones: Option<Cones>,
-    /// K for depths in field units times 2^e.
+    /// Scale K of depth codes for depths in field units times 2^e.
     pub depth: DepthScale,
-    /// K for depths in world units: the host's.
+    /// Scale K of depth codes for depths in world units, for the host.
     pub world_depth: DepthScale,
-    /// How finely.
+    /// Precision of the march.
     pub tuning: Tuning,
-    /// Two eyes, and in which colours.
+    /// Colours of two eyes; `None` for one eye.
     pub stereo: Option<Tint>,
 }
 
@@ -68,7 +69,7 @@ impl FieldSetup {
     /// The constants for a field, a camera and one of the [`SIZES`].
     ///
     /// # Errors
-    /// [`RenderError::Size`].
+    /// [`RenderError::Size`] for another size.
     pub fn new(
         field: &Field,
         view: &View,
@@ -112,7 +113,7 @@ impl FieldSetup {
                 let place = Q32_32::from_bits(view.eye()[i].to_bits() + sign * (aside >> 15));
                 let place = units(place, scale) as i32;
                 if repeated {
-                    // The same place in the cell about the origin.
+                    // The same position in the cell about the origin.
                     cropped(place, 6 + FRACTION)
                 } else {
                     place
@@ -128,7 +129,7 @@ impl FieldSetup {
 
         let near = i64::from(view.near().to_bits()) << 4;
         let nearest = nearest(view, extent);
-        // At most 2 world units for the plane, 64 for the box, of which a step of rounding is left out.
+        // At most 2 world units for the plane and 64 for the box, of which one rounding step is omitted.
         let [plane, corner] = [near, nearest >> 5].map(|x| units(Q32_32::from_bits(x), scale));
         let near_units = plane.max(corner - 1) << rays.exponent;
         let world_depth = DepthScale::from_nearest(nearest.max(near << 5));
@@ -158,31 +159,31 @@ impl FieldSetup {
 }
 
 impl FieldSetup {
-    /// The spheres that there are.
+    /// The spheres, if any.
     pub fn spheres(&self) -> Option<&FixedSpheres> {
         self.solid
             .spheres()
             .or(self.beside.as_ref().map(|beside| &beside.spheres))
     }
 
-    /// The fillet between them and what has faces.
+    /// The fillet between the spheres and the flat solid.
     pub fn blend(&self) -> Blend {
         self.beside
             .map_or_else(Blend::default, |beside| beside.blend)
     }
 
-    /// Whether there is anything round: then rays are scaled by their Euclidean length. It is never less than that in the maximum
-    /// norm, so distances of faces hold for such rays too.
+    /// Whether the scene has spheres. Rays are then scaled by their Euclidean length. That length is never below the
+    /// length in the maximum norm, so distances of flat solids hold for such rays too.
     pub fn is_round(&self) -> bool {
         self.spheres().is_some()
     }
 
-    /// How often the field is asked for one distance: once for each sphere.
+    /// Passes per evaluation of a point: one for each sphere, at least one.
     pub fn passes(&self) -> u32 {
         self.spheres().map_or(1, |spheres| spheres.count as u32)
     }
 
-    /// What is nearest to a point, each coordinate s10.12; of equals, the face.
+    /// The nearest surface at a point, coordinates s10.12; the face at equal distances.
     pub fn sample(&self, point: [i32; 3]) -> Sample {
         let flat = self.solid.sample(point);
         match &self.beside {
@@ -192,14 +193,14 @@ impl FieldSetup {
     }
 }
 
-/// The solid of a field, of a union its flat member, and the spheres beside that.
+/// The solid of a field (for a union, its flat member), and the spheres of a union.
 fn placed(field: &Field) -> (Placed<Solid>, Option<Beside>) {
     let union = match field {
         Field::Primitive(primitive) => return (primitive.placed(), None),
         Field::Union(union) => union,
     };
     let [flat, round] = [union.flat(), union.round()].map(Primitive::placed);
-    // A fillet is a quarter of its width high.
+    // A fillet is higher than both members by a quarter of its width at most.
     let extent = flat
         .extent
         .zip(round.extent)
@@ -211,14 +212,14 @@ fn placed(field: &Field) -> (Placed<Solid>, Option<Beside>) {
     (Placed { extent, ..flat }, beside)
 }
 
-/// The depth along n of the corner of the box that is nearest, 37 fraction bits, rounded down: below 0 beside it; 0 where there is
-/// no box.
+/// Depth along n of the nearest corner of the bounding box, 37 fraction bits, rounded down; negative for a corner
+/// behind the eye, and 0 for an unbounded field.
 fn nearest(view: &View, extent: Option<[Q32_32; 3]>) -> i64 {
     extent.map_or(0, |half| -> i64 {
         (0..3)
             .map(|i| {
                 let n = i64::from(view.n()[i].to_bits());
-                // 14 and 23 fraction bits; a little more for a length that is not quite 1.
+                // 14 + 23 fraction bits; slightly larger for a length that is not exactly 1.
                 let place = n * (view.eye()[i].to_bits() >> 18);
                 let reach = n.abs() * ((half[i].to_bits() >> 18) + 2);
                 -place - reach - (reach >> 13)

@@ -1,7 +1,7 @@
-//! Signed distances: negative inside, never more than the distance to the surface.
+//! Signed distances: negative inside, and never above the distance to the surface.
 //!
-//! What has faces across the axes is measured in the maximum norm, what is round in the Euclidean one. No distance changes by
-//! more than the Euclidean length of a step, so a sphere about a point with its distance as the radius is empty.
+//! Flat fields are measured in the maximum norm, round fields in the Euclidean norm. The distance changes by at most
+//! the Euclidean length of a step, so a ball about a point with the point's distance as radius is empty.
 
 use super::{Field, Plane};
 use crate::camera::{Vector, dot, length, subtract};
@@ -9,7 +9,7 @@ use crate::camera::{Vector, dot, length, subtract};
 impl Field {
     /// The signed distance of a point, in world units.
     ///
-    /// [`Field::SmoothUnion`] takes min(a, b) − h²k/4 of its members' distances, h = max(k − |a − b|, 0)/k.
+    /// [`Field::SmoothUnion`] is min(a, b) − h²k/4 of its members' distances a and b, with h = max(k − |a − b|, 0)/k.
     pub fn distance(&self, p: Vector) -> f64 {
         match self {
             Self::Menger { depth } => {
@@ -35,21 +35,21 @@ impl Field {
 }
 
 impl Plane {
-    /// The distance of a point in the maximum norm: a cube of half side r changes the product with the normal by r times the sum of
-    /// the normal's parts.
+    /// The distance of a point in the maximum norm. A cube of half side r changes the scalar product with the normal by
+    /// r times the sum of the magnitudes of the normal's components.
     fn distance(&self, p: Vector) -> f64 {
         let sum: f64 = self.normal.iter().map(|part| part.abs()).sum();
         (dot(self.normal, p) - self.offset) / sum
     }
 }
 
-/// The distance to a box about the origin in the maximum norm.
+/// The distance to a box about the origin, in the maximum norm.
 fn box_distance(half: Vector, p: Vector) -> f64 {
     let beyond = |axis: usize| p[axis].abs() - half[axis];
     beyond(0).max(beyond(1)).max(beyond(2))
 }
 
-/// A point as seen from the nearest one whose coordinates are integer multiples of the period.
+/// A point relative to the nearest point whose coordinates are integer multiples of the period.
 fn about_nearest(period: f64, p: Vector) -> Vector {
     p.map(|c| c - (c / period).round() * period)
 }
@@ -60,13 +60,14 @@ fn smooth_minimum(k: f64, a: f64, b: f64) -> f64 {
     a.min(b) - h * h * k / 4.0
 }
 
-/// Moves a point, along with the cube of the sponge's last level that is nearest to it, so that the cube is about the origin:
-/// in units of its side, and that unit.
+/// Folds a point and the nearest cube of the sponge's last level, so that the cube is centred at the origin. Returns
+/// the point in units of the cube's side, and that unit.
 ///
-/// At each level 27 cubes of side s meet, their centres at 0 and ±s. The point is mirrored into the corner with all
-/// coordinates at +s and looks from there, each axis turned round, so that the middle is at s. Of the cubes with one
-/// coordinate in the middle only that along the largest coordinate can be the nearest; those with two are not in the sponge.
-/// Every step is an isometry on each side of a fold and continuous across it, so distances do not grow faster than before.
+/// At each level 27 cubes of side s meet, with centres at 0 and ±s. The point is mirrored into the corner where all
+/// coordinates are at +s, and is expressed relative to that corner with each axis reversed, so that the middle is at s.
+/// Of the cubes with one coordinate in the middle, only the one along the largest coordinate can be the nearest; the
+/// cubes with two are not in the sponge. Every step is an isometry on each side of a fold and continuous across it, so
+/// the distance still changes by at most the length of a step.
 fn fold(depth: u32, p: Vector) -> (Vector, f64) {
     let side = 3f64.powi(depth as i32);
     let mut p = p.map(|c| c * side / 2.0);
@@ -92,7 +93,7 @@ mod tests {
 
     #[test]
     fn the_fold_gives_the_known_euclidean_distances() {
-        // In units of which the half side has 162.
+        // In units of 1/162 of the half side.
         let cases = [
             ([0.0; 3], 76.37),
             ([0.0, 0.0, 80.0], 54.0),
@@ -147,7 +148,7 @@ mod tests {
         let (a, b) = (ball(-2.0), ball(2.0));
         let union = Field::SmoothUnion { k: 0.5, a, b };
         assert_eq!(union.distance([0.0; 3]), 1.0 - 0.125);
-        // Half of the reach from there, a quarter as much.
+        // At half of the fillet's range the blend is a quarter of its maximum.
         assert_eq!(union.distance([0.125, 0.0, 0.0]), 0.875 - 0.03125);
         assert_eq!(union.distance([-4.0, 0.0, 0.0]), 1.0);
     }

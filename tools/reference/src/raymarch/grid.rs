@@ -3,10 +3,11 @@
 use super::surface::Hit;
 use crate::camera::Ray;
 
-/// The first hit of a ray with copies of a solid about all points whose coordinates are integer multiples of the period.
+/// The first hit of a ray with copies of a solid centred at all points whose coordinates are integer multiples of the
+/// period.
 ///
-/// `hit` is that of the solid about the origin with the ray given to it. The ray's cells are visited in the order in which it
-/// passes them (Amanatides and Woo 1987), up to `t_max`; the solid is nowhere nearer to another centre than to its own.
+/// `hit` returns the hit of the solid about the origin with the given ray. Cells are visited in the order of the ray
+/// (Amanatides and Woo 1987), up to `t_max`. Each point of the solid must be nearest to its own centre.
 pub(super) fn nearest(
     period: f64,
     ray: &Ray,
@@ -24,7 +25,7 @@ pub(super) fn nearest(
             direction: ray.direction,
         };
         best = Hit::nearer(best, hit(&local));
-        // Each border from its cell's number: a sum of steps would drift.
+        // Each border is computed from its cell's number: a sum of steps would drift.
         let border = |axis: usize| {
             let d = ray.direction[axis];
             if d == 0.0 {

@@ -1,13 +1,14 @@
-//! The Menger sponge by a walk over its cells.
+//! The Menger sponge by traversal of its cells.
 //!
-//! A cell of the last level has a number in each axis, 0 to 3^depth − 1. Its digits in base 3 say where the cells around it
-//! lie in those of the level above: one with two or three digits 1 at its level is a hole.
+//! A cell of the last level has a number along each axis, 0 to 3^depth − 1. The digits of the numbers in base 3 are the
+//! positions of its enclosing cells within the level above. An enclosing cell with the digit 1 along two or three axes
+//! is a hole.
 
 use super::solids::Slabs;
 use super::surface::Hit;
 use crate::camera::Ray;
 
-/// Where a ray enters the sponge.
+/// Entry of a ray into the sponge.
 pub(super) fn hit(depth: u32, ray: &Ray, t_min: f64) -> Option<Hit> {
     let slabs = Slabs::new([1.0; 3], ray)?;
     if slabs.exit <= t_min {
@@ -19,11 +20,11 @@ pub(super) fn hit(depth: u32, ray: &Ray, t_min: f64) -> Option<Hit> {
             .map(|c| ((c + 1.0) / 2.0 * count as f64).floor() as i64)
     };
     let mut t = slabs.enter.max(t_min);
-    // Across which axis the ray has come into the cell, if it has.
+    // The axis across which the ray has entered the cell, if any.
     let mut entered = (slabs.enter >= t_min).then_some(slabs.axis);
     let mut cell = number(t).map(|i| i.clamp(0, count - 1));
     while let Some(side) = hole(cell, count) {
-        // The hole's borders are multiples of its side.
+        // The borders of a hole are multiples of its side.
         let first = cell.map(|i| i / side * side);
         let border = |axis: usize| {
             let d = ray.direction[axis];
@@ -45,7 +46,7 @@ pub(super) fn hit(depth: u32, ray: &Ray, t_min: f64) -> Option<Hit> {
         let reached = number(t);
         for axis in 0..3 {
             let forward = ray.direction[axis] > 0.0;
-            // Never back, whatever the rounding: the walk would not end.
+            // Forward only, whatever the rounding: otherwise the traversal would not end.
             cell[axis] = match (axis == across, forward) {
                 (true, true) => first[axis] + side,
                 (true, false) => first[axis] - 1,
@@ -63,7 +64,7 @@ pub(super) fn hit(depth: u32, ray: &Ray, t_min: f64) -> Option<Hit> {
     })
 }
 
-/// The side of the largest hole that a cell of the last level lies in, in such cells.
+/// The side of the largest hole that contains a cell of the last level, in cells.
 fn hole(cell: [i64; 3], count: i64) -> Option<i64> {
     let mut side = count;
     while side > 1 {
@@ -108,9 +109,9 @@ mod tests {
             let (at, hit) = found.expect("a wall");
             (at - t).abs() < 1e-12 && hit == face(axis)
         };
-        // The ceiling of the tunnel that it came by.
+        // The ceiling of the tunnel of entry.
         assert!(near(along([0.0, 2.0, 0.5]), 2.0 / 3.0, 2));
-        // Through the middle, and against the far wall of the tunnel along z.
+        // Through the middle, to the far wall of the tunnel along z.
         assert!(near(along([0.0, 2.0, 0.3]), 7.0 / 6.0, 1));
     }
 

@@ -1,27 +1,27 @@
-//! How far a picture is from the reference.
+//! Accuracy of a picture against the reference.
 
 use super::{Face, Field, Hit};
 use crate::camera::{Ray, Size, Vector, cross, dot, length};
 
-/// How far beside a pixel's centre its surroundings are looked at, in pixels.
+/// Offset of the neighbouring rays that test a pixel's stability, in pixels.
 const BESIDE: f64 = 0.05;
 
-/// How much nearer or farther the surroundings may be, as a part of the depth.
+/// Largest relative difference in depth between a stable pixel and its neighbouring rays.
 const STEADY: f64 = 1e-3;
 
-/// What the reference shows in a pixel.
+/// The reference in a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Expected {
     /// The hit of the ray through the pixel's centre.
     pub hit: Option<Hit>,
-    /// Whether the rays 0.05 pixels to the left and right of it, up and down, hit the same face of the same member at a depth
-    /// within a thousandth, or miss as it does. Elsewhere a picture may be good and differ.
+    /// Whether the rays 0.05 pixels to the left, right, top and bottom agree with the centre: the same face of the same
+    /// member at a depth within a thousandth, or a miss. At unstable pixels a correct picture may differ.
     pub stable: bool,
 }
 
-/// The picture of a field, row by row, with what is hit at parameters from `t_min` to `t_max`.
+/// The reference picture of a field, row by row, with hits at parameters from `t_min` to `t_max`.
 ///
-/// `ray` is that of a pixel, such as [`Camera::ray`](crate::camera::Camera::ray).
+/// `ray` returns the ray of a pixel, such as [`Camera::ray`](crate::camera::Camera::ray).
 ///
 /// # Panics
 /// As [`Field::hit`].
@@ -47,7 +47,7 @@ pub fn expected(
         .collect()
 }
 
-/// Whether a hit beside a pixel's centre is on the same surface.
+/// Whether the hit of a neighbouring ray is on the same surface as that of the pixel's centre.
 fn alike(centre: Option<Hit>, beside: Option<Hit>) -> bool {
     match (centre, beside) {
         (None, None) => true,
@@ -58,7 +58,7 @@ fn alike(centre: Option<Hit>, beside: Option<Hit>) -> bool {
     }
 }
 
-/// What a picture shows in a pixel.
+/// Result of a pixel in a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Outcome {
     /// A surface.
@@ -67,28 +67,28 @@ pub enum Outcome {
         t: f64,
         /// The face.
         face: Face,
-        /// Out of the solid, of any length; not looked at unless the face is round.
+        /// Outward normal of any length; used only for round faces.
         normal: Vector,
     },
-    /// None.
+    /// No surface.
     Miss,
-    /// The method gave up.
+    /// Step limit reached.
     Undecided,
 }
 
-/// Of some numbers, by nearest rank: the smallest that at least such a part of them does not exceed.
+/// Quantiles by nearest rank: the smallest value that at least the given share of the values does not exceed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quantiles {
-    /// Of one half.
+    /// Quantile of 50 %.
     pub median: f64,
-    /// Of 99 in 100.
+    /// Quantile of 99 %.
     pub p99: f64,
-    /// Of all.
+    /// Maximum.
     pub max: f64,
 }
 
 impl Quantiles {
-    /// `None` without numbers.
+    /// `None` for an empty list.
     fn new(mut values: Vec<f64>) -> Option<Self> {
         values.sort_by(f64::total_cmp);
         let max = *values.last()?;
@@ -101,33 +101,34 @@ impl Quantiles {
     }
 }
 
-/// How far a picture is from the reference. All pixels count, unstable ones too.
+/// Accuracy of a picture against the reference. All pixels count, unstable ones too.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accuracy {
-    /// Pixels, one ray each.
+    /// Number of pixels, one ray each.
     pub rays: usize,
-    /// The part of them that is not stable.
+    /// Share of unstable pixels.
     pub unstable: f64,
-    /// Pixels where both hit among those where either does; 1 when none does. What is undecided is no hit.
+    /// Intersection over union of the hits: pixels where both hit among pixels where either hits; 1 without hits.
+    /// Undecided pixels are not hits.
     pub iou: f64,
     /// Pixels where the reference hits and the picture misses.
     pub false_miss: usize,
     /// Pixels where the picture hits and the reference misses.
     pub false_hit: usize,
-    /// Pixels that the picture left undecided.
+    /// Undecided pixels of the picture.
     pub undecided: usize,
-    /// The difference of the parameters, without its sign, where both hit.
+    /// Absolute difference of the parameters, where both hit.
     pub depth: Option<Quantiles>,
-    /// The part of the pixels where both hit that have another face; 0 when there are none.
+    /// Share of pixels with another face among pixels where both hit; 0 without such pixels.
     pub wrong_faces: f64,
-    /// The angle between the normals in degrees, where both hit a round face.
+    /// Angle between the normals in degrees, where both hit a round face.
     pub normal: Option<Quantiles>,
 }
 
 /// Compares a picture with the reference, pixel by pixel.
 ///
 /// # Panics
-/// When they are not of one size.
+/// If the sizes differ.
 pub fn accuracy(expected: &[Expected], found: &[Outcome]) -> Accuracy {
     assert_eq!(expected.len(), found.len(), "pixels of both");
     let (mut false_miss, mut false_hit, mut undecided) = (0, 0, 0);
@@ -167,9 +168,9 @@ pub fn accuracy(expected: &[Expected], found: &[Outcome]) -> Accuracy {
     }
 }
 
-/// The angle between two directions.
+/// The angle between two directions, in degrees.
 fn degrees(a: Vector, b: Vector) -> f64 {
-    // Not by the arc cosine, which loses small angles.
+    // The arc cosine would lose small angles.
     length(cross(a, b)).atan2(dot(a, b)).to_degrees()
 }
 
@@ -280,7 +281,7 @@ mod tests {
             let ray = |pixel| camera.ray(pixel, size);
             expected(field, size, (camera.near, 100.0), ray)
         };
-        // The face fills 33 2/3 pixels to each side of the middle: no ray is beside its border.
+        // The face extends 33 2/3 pixels to each side of the middle: no ray is beside its border.
         let cube = Field::Box { half: [1.0; 3] };
         let front = seen(&cube, [0.0, -4.0, 0.0], [0.0; 3]);
         assert!(front.iter().all(|pixel| pixel.stable));

@@ -1,4 +1,4 @@
-//! Pictures of the model's raymarcher as [`metrics`] takes them, and what each ray cost.
+//! Pictures of the model's raymarcher in the form of [`metrics`], and the cost of each ray.
 
 use glint_core::camera::View;
 use glint_core::field::{
@@ -12,21 +12,21 @@ use super::metrics::{self, Accuracy, Expected, Outcome, Quantiles, accuracy};
 use super::{Face, Field, Plane, Sphere, views};
 use crate::camera::{Camera, Size, length};
 
-/// What a ray of the model comes to.
+/// Result of a ray of the model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RenderedRay {
-    /// With the depth along n in world units for its parameter, as it follows from t.
+    /// Result with the depth along n, computed from t, as parameter; in world units.
     pub outcome: Outcome,
-    /// The same depth by its code, for a hit.
+    /// Depth of a hit, computed from its depth code.
     pub coded: Option<f64>,
-    /// Evaluations of the field.
+    /// Evaluations of the field by the ray.
     pub steps: u32,
-    /// Those of the cones that were marched before it.
+    /// Evaluations by the cones that were marched before the ray.
     pub cones: u64,
 }
 
 impl RenderedRay {
-    /// [`Self::outcome`] with the depth of the code.
+    /// [`Self::outcome`] with the depth of the depth code.
     pub fn by_code(&self) -> Outcome {
         match (self.outcome, self.coded) {
             (Outcome::Hit { face, normal, .. }, Some(t)) => Outcome::Hit { t, face, normal },
@@ -35,9 +35,9 @@ impl RenderedRay {
     }
 }
 
-/// The picture of one eye, row by row; eye 0 is the left or the only one.
+/// The picture of one eye, row by row; eye 0 is the left or only one.
 ///
-/// With a prepass what its cones take counts as of the rays before which they are marched: the first one of a row of blocks.
+/// With a prepass, the evaluations of a row of cones count for the first ray of the row of blocks.
 pub fn picture(setup: &FieldSetup, eye: usize) -> Vec<RenderedRay> {
     let mut rays = raymarch::Rays::new(setup);
     let mut cones = 0;
@@ -52,7 +52,7 @@ pub fn picture(setup: &FieldSetup, eye: usize) -> Vec<RenderedRay> {
         .collect()
 }
 
-/// The end of one ray.
+/// The result of one ray.
 pub fn rendered_ray(
     setup: &FieldSetup,
     ray: &raymarch::Ray,
@@ -110,18 +110,18 @@ pub fn rendered_ray(
     }
 }
 
-/// The depth in world units at which a ray ends for its length, surface or not.
+/// The depth at the far limit of a ray, in world units.
 fn reach(setup: &FieldSetup, ray: &raymarch::Ray) -> f64 {
     depth(setup, ray, setup.tuning.far)
 }
 
-/// The depth at a ray's t, in world units.
+/// The depth at t of a ray, in world units.
 pub fn depth(setup: &FieldSetup, ray: &raymarch::Ray, t: u32) -> f64 {
     let units = setup.depth_of(ray, t) as f64 * (-21.0 - f64::from(setup.exponent)).exp2();
     units / setup.scale.to_num::<f64>()
 }
 
-/// What the reference shows of the picture of a camera that has no more digits than a view, as far as the model's rays reach.
+/// The reference picture up to the far limit of the model's rays. The camera must be exact in the precision of a view.
 fn expected(setup: &FieldSetup, field: &Field, camera: &Camera) -> Vec<Expected> {
     let size = Size {
         width: setup.width,
@@ -145,7 +145,7 @@ fn pixels(setup: &FieldSetup) -> impl Iterator<Item = (u32, u32)> {
 }
 
 impl Field {
-    /// The solid with the numbers as they are.
+    /// The reference solid of a field of the engine, with the same numbers.
     pub fn of(scene: &Scene) -> Self {
         match scene {
             Scene::Primitive(primitive) => Self::of_primitive(primitive),
@@ -215,30 +215,30 @@ impl Field {
     }
 }
 
-/// A field and a camera, with what is to be seen.
+/// A field and a camera, with the reference picture.
 pub struct Subject {
-    /// What it is called.
+    /// Name of the camera position.
     pub name: String,
-    /// As it is typed.
+    /// Text form of the field.
     pub scene: String,
-    /// The size of its picture.
+    /// Size of the picture.
     pub size: (u32, u32),
-    /// The camera, with a view's digits.
+    /// The camera, in the precision of a view.
     pub camera: Camera,
-    /// The field that is looked at.
+    /// The field of the reference.
     pub field: Field,
-    /// What the reference shows, as far as rays reach by default.
+    /// The reference picture, up to the default far limit.
     pub expected: Vec<Expected>,
-    /// The field as it was read.
+    /// The field of the engine.
     pub parsed: Scene,
     view: View,
 }
 
 impl Subject {
-    /// `scene` is a field as it is typed, `size` one of [`glint_model::SIZES`].
+    /// `scene` is the text form of a field, `size` one of [`glint_model::SIZES`].
     ///
     /// # Panics
-    /// When something of that is not so, or the camera is not one.
+    /// If the field, the camera or the size is invalid.
     pub fn new(name: &str, scene: &str, camera: &Camera, size: (u32, u32)) -> Self {
         let parsed = Scene::parse(scene).expect("a field");
         let view = camera.view().expect("a camera");
@@ -257,7 +257,7 @@ impl Subject {
         subject
     }
 
-    /// The constants of its frame.
+    /// The frame constants.
     pub fn setup(&self, options: &FieldOptions) -> FieldSetup {
         FieldSetup::new(&self.parsed, &self.view, self.size, options).expect("a size that there is")
     }
@@ -278,7 +278,7 @@ pub fn sponges(size: (u32, u32)) -> Vec<Subject> {
         .collect()
 }
 
-/// The other kinds of fields, from aside; all but the box go on to the horizon.
+/// The other flat fields, seen from the side; all but the box extend to the horizon.
 pub fn others(size: (u32, u32)) -> Vec<Subject> {
     let camera = views::camera([1.25, -1.875, 0.40625], [0.0; 3]);
     [
@@ -292,7 +292,7 @@ pub fn others(size: (u32, u32)) -> Vec<Subject> {
     .into()
 }
 
-/// What is round, alone and beside faces, from aside and from amid.
+/// Round fields and unions, seen from the side and from within.
 pub fn rounds(size: (u32, u32)) -> Vec<Subject> {
     let scenes = [
         "sphere:1",
@@ -322,23 +322,23 @@ pub fn rounds(size: (u32, u32)) -> Vec<Subject> {
         .collect()
 }
 
-/// What a picture is worth and what it has cost.
+/// Accuracy and cost of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
-    /// By depths as they follow from t.
+    /// Accuracy by the depths computed from t.
     pub accuracy: Accuracy,
-    /// The depths' errors by their codes, where both hit.
+    /// Errors of the depths computed from depth codes, where both hit.
     pub coded: Option<Quantiles>,
-    /// Evaluations of the field, of all rays and cones.
+    /// Evaluations of the field by all rays and cones.
     pub evaluations: u64,
-    /// Of the cones alone.
+    /// Evaluations by cones alone.
     pub cones: u64,
-    /// Of the ray that took the most.
+    /// Largest number of evaluations of a ray.
     pub most: u32,
 }
 
 impl Measured {
-    /// Of a picture, or of several after each other.
+    /// Accuracy and cost of one picture, or of several concatenated ones.
     pub fn new(expected: &[Expected], found: &[RenderedRay]) -> Self {
         let outcomes = |of: fn(&RenderedRay) -> Outcome| found.iter().map(of).collect::<Vec<_>>();
         Self {
@@ -353,7 +353,7 @@ impl Measured {
         }
     }
 
-    /// Evaluations a ray.
+    /// Mean number of evaluations per ray.
     pub fn cost(&self) -> f64 {
         self.evaluations as f64 / self.accuracy.rays.max(1) as f64
     }

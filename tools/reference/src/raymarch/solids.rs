@@ -1,20 +1,20 @@
-//! Where a ray enters boxes, balls and the room between two planes.
+//! Entries of rays into boxes, convex solids and balls, and hits with two planes from between them.
 
 use super::surface::{Face, Hit, Plane, Sphere};
 use crate::camera::{Ray, Vector, add_scaled, dot, length, normalised, subtract};
 
-/// The part of a ray in a box about the origin.
+/// The interval of a ray inside a box about the origin.
 pub(super) struct Slabs {
-    /// Where the ray enters it.
+    /// Parameter of the entry.
     pub enter: f64,
-    /// Where it leaves it.
+    /// Parameter of the exit.
     pub exit: f64,
-    /// The axis across which it enters.
+    /// Axis of the face of the entry.
     pub axis: usize,
 }
 
 impl Slabs {
-    /// `None` when the whole line of the ray misses the box (Kay and Kajiya 1986).
+    /// `None` if the whole line of the ray misses the box (Kay and Kajiya 1986).
     pub fn new(half: Vector, ray: &Ray) -> Option<Self> {
         let mut slabs = Self {
             enter: f64::NEG_INFINITY,
@@ -39,7 +39,7 @@ impl Slabs {
     }
 }
 
-/// Where a ray enters a box about the origin.
+/// Entry of a ray into a box about the origin.
 pub(super) fn box_hit(half: Vector, ray: &Ray, t_min: f64) -> Option<Hit> {
     let slabs = Slabs::new(half, ray)?;
     if slabs.enter >= t_min {
@@ -49,7 +49,7 @@ pub(super) fn box_hit(half: Vector, ray: &Ray, t_min: f64) -> Option<Hit> {
     }
 }
 
-/// Where a ray enters what is behind all of some planes (Cyrus and Beck 1978).
+/// Entry of a ray into the intersection of half-spaces (Cyrus and Beck 1978).
 pub(super) fn convex_hit(planes: &[Plane], ray: &Ray, t_min: f64) -> Option<Hit> {
     let (mut enter, mut exit, mut normal) = (f64::NEG_INFINITY, f64::INFINITY, [0.0; 3]);
     for plane in planes {
@@ -82,15 +82,15 @@ pub(super) fn convex_hit(planes: &[Plane], ray: &Ray, t_min: f64) -> Option<Hit>
     }
 }
 
-/// Where a ray enters a ball about the origin.
+/// Entry of a ray into a ball about the origin.
 ///
-/// The quadratic is solved without the difference of large numbers, as E. Haines, J. Günther and T. Akenine-Möller do it in
-/// "Precision improvements for ray/sphere intersection" (Ray Tracing Gems, 2019).
+/// The quadratic is solved without a difference of large numbers, following E. Haines, J. Günther and T.
+/// Akenine-Möller, "Precision improvements for ray/sphere intersection" (Ray Tracing Gems, 2019).
 pub(super) fn sphere_hit(radius: f64, ray: &Ray, t_min: f64) -> Option<Hit> {
     let (o, d) = (ray.origin, ray.direction);
     let a = dot(d, d);
     let b = -dot(o, d);
-    // The point of the line that is nearest to the centre.
+    // The point of the line nearest to the centre.
     let nearest = length(add_scaled(o, d, b / a));
     if nearest >= radius {
         return None;
@@ -114,7 +114,7 @@ pub(super) fn sphere_hit(radius: f64, ray: &Ray, t_min: f64) -> Option<Hit> {
     }
 }
 
-/// Where a ray enters the first of some balls.
+/// First entry of a ray into any of several balls.
 pub(super) fn spheres_hit(spheres: &[Sphere], ray: &Ray, t_min: f64) -> Option<Hit> {
     let hits = spheres.iter().enumerate().map(|(member, sphere)| {
         let ray = Ray {
@@ -126,7 +126,7 @@ pub(super) fn spheres_hit(spheres: &[Sphere], ray: &Ray, t_min: f64) -> Option<H
     hits.fold(None, Hit::nearer)
 }
 
-/// Where a ray leaves the room between z = −half and z = half.
+/// Exit of a ray from the room between z = −half and z = half.
 pub(super) fn planes_hit(half: f64, ray: &Ray, t_min: f64) -> Option<Hit> {
     let (o, d) = (ray.origin[2], ray.direction[2]);
     if (o + t_min * d).abs() > half {

@@ -1,48 +1,48 @@
-//! Parts of solids, and hits on them.
+//! Parts of solids, and hits of rays.
 
 use crate::camera::Vector;
 
 /// A ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {
-    /// In world units.
+    /// Centre, in world units.
     pub centre: Vector,
-    /// In world units, above 0.
+    /// Radius, in world units, above 0.
     pub radius: f64,
 }
 
-/// A plane, with the solid behind it.
+/// A plane that bounds a half-space of solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
-    /// Out of the solid, of any length but 0.
+    /// Outward normal, of any length but 0.
     pub normal: Vector,
-    /// The product of the normal with any point of the plane.
+    /// Scalar product of the normal with any point of the plane.
     pub offset: f64,
 }
 
-/// What of a surface was hit.
+/// Kind of surface at a hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Face {
-    /// A plane across an axis.
+    /// A plane perpendicular to an axis.
     Axis {
-        /// 0 to 2.
+        /// Axis, 0 to 2.
         axis: usize,
-        /// Whether the outward normal points along the axis and not against it.
+        /// Whether the outward normal points along the axis.
         positive: bool,
     },
-    /// A plane across a diagonal.
+    /// A plane perpendicular to a diagonal.
     Diagonal {
-        /// Whether the outward normal points along each axis, and not against it.
+        /// Whether the outward normal points along each axis.
         positive: [bool; 3],
     },
     /// A curved surface.
     Round,
-    /// None: the ray starts within the solid.
+    /// No surface: the ray starts inside the solid.
     Inside,
 }
 
 impl Face {
-    /// The face with an outward normal along an axis or a diagonal.
+    /// The face with the given outward normal, along an axis or a diagonal.
     pub fn of_normal(normal: Vector) -> Self {
         let largest = normal
             .iter()
@@ -59,7 +59,7 @@ impl Face {
         }
     }
 
-    /// The face across `axis` by which a ray of this direction enters.
+    /// The face perpendicular to `axis` through which a ray of this direction enters.
     pub(super) fn entered(axis: usize, direction: Vector) -> Self {
         Self::Axis {
             axis,
@@ -68,21 +68,21 @@ impl Face {
     }
 }
 
-/// The first point of a ray that is in a solid.
+/// The first point of a ray inside a solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// The ray's parameter, in lengths of its direction.
     pub t: f64,
-    /// Of length 1 and out of the solid; zero for [`Face::Inside`].
+    /// Outward normal of length 1; zero for [`Face::Inside`].
     pub normal: Vector,
-    /// What was hit.
+    /// Surface at the hit.
     pub face: Face,
     /// Number of the sphere in `Field::Spheres`, or of the member of the outermost union. 0 for other fields, and inside.
     pub member: usize,
 }
 
 impl Hit {
-    /// That of a ray which starts within.
+    /// Hit of a ray that starts inside.
     pub(super) fn inside(t: f64) -> Self {
         Self {
             t,
@@ -92,7 +92,7 @@ impl Hit {
         }
     }
 
-    /// On the face across `axis` by which a ray of this direction enters.
+    /// Hit on the face perpendicular to `axis` through which a ray of this direction enters.
     pub(super) fn entered(t: f64, axis: usize, direction: Vector) -> Self {
         let mut normal = [0.0; 3];
         normal[axis] = -direction[axis].signum();
@@ -104,7 +104,7 @@ impl Hit {
         }
     }
 
-    /// As the hit of a member of more; where the ray starts may be in several.
+    /// Sets the number of the member. A hit inside keeps 0, because several members may contain the start.
     pub(super) fn of(mut self, member: usize) -> Self {
         if self.face != Face::Inside {
             self.member = member;
@@ -112,7 +112,7 @@ impl Hit {
         self
     }
 
-    /// The nearer of two, the first when they are equally near.
+    /// The nearer of two hits; the first at equal parameters.
     pub(super) fn nearer(a: Option<Self>, b: Option<Self>) -> Option<Self> {
         match (a, b) {
             (Some(a), Some(b)) => Some(if b.t < a.t { b } else { a }),

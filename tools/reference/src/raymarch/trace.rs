@@ -1,22 +1,22 @@
-//! Sphere tracing (J. C. Hart 1996): steps as long as the distance, which nothing of the solid can be within.
+//! Sphere tracing (J. C. Hart 1996): each step is as long as the distance, within which no surface lies.
 
 use super::{Face, Field, Hit};
 use crate::camera::{Ray, Vector, length, normalised, subtract};
 use std::fmt;
 
-/// How near to the surface a trace ends, in world units.
+/// Distance from the surface at which a trace ends, in world units.
 const NEAR: f64 = 1e-9;
 
-/// A step to either side of a point for the slope of the distance there, in world units.
+/// Step to either side of a point for the gradient of the distance, in world units.
 const STEP: f64 = 1e-6;
 
-/// Enough for any ray that is not almost parallel to a face just beside it.
+/// Sufficient for any ray that is not almost parallel to a face close by.
 const MOST_STEPS: u32 = 1 << 20;
 
-/// A ray was still on its way after 2^20 steps: it runs beside a surface, nearly parallel to it.
+/// A trace without an end after 2^20 steps: its ray runs close to a surface, nearly parallel to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unconverged {
-    /// How far it has come.
+    /// Parameter of the last step.
     pub t: f64,
 }
 
@@ -29,13 +29,14 @@ impl fmt::Display for Unconverged {
 impl std::error::Error for Unconverged {}
 
 impl Field {
-    /// As [`Self::hit`], for every field from nothing but its distance.
+    /// As [`Self::hit`], for every field, from its distance alone.
     ///
-    /// It ends 1e-9 world units from the surface: a ray that passes nearer hits, and the parameter is less than that of the
-    /// surface by 1e-9 over the cosine of the angle of incidence. So it does at once for a ray that starts on a surface.
+    /// A trace ends 1e-9 world units from the surface. A ray that passes within that distance hits. The parameter is
+    /// below that of the surface by 1e-9 over the cosine of the angle of incidence. A ray that starts on a surface hits
+    /// immediately.
     ///
     /// # Errors
-    /// The ray is beside a surface for too long to decide.
+    /// The ray runs close to a surface for 2^20 steps.
     pub fn traced(
         &self,
         origin: Vector,
@@ -110,7 +111,7 @@ impl Field {
         }
     }
 
-    /// The slope of the distance by central differences.
+    /// The gradient of the distance by central differences.
     fn slope(&self, p: Vector) -> Vector {
         [0, 1, 2].map(|axis| {
             let beside = |step: f64| {
@@ -123,7 +124,7 @@ impl Field {
     }
 }
 
-/// Which of two fields a point is nearer to: 0 or 1.
+/// Index of the field that is nearer to a point: 0 or 1.
 fn nearer(a: &Field, b: &Field, p: Vector) -> usize {
     usize::from(b.distance(p) < a.distance(p))
 }

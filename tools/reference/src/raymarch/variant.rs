@@ -1,4 +1,4 @@
-//! Other ways to march to the sponge than Glint's, in f64, to compare what they cost.
+//! Variants of the march to the sponge in f64, for comparisons of cost with Glint's.
 
 use super::distance::euclidean;
 use super::metrics::Outcome;
@@ -6,12 +6,12 @@ use super::raymarched::RenderedRay;
 use super::{Face, Field};
 use crate::camera::{Ray, Vector, length};
 
-/// How distances are measured.
+/// Norm of distances.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Norm {
-    /// By the largest coordinate.
+    /// Largest coordinate.
     Maximum,
-    /// By the root of the squares.
+    /// Square root of the sum of squares.
     Euclidean,
 }
 
@@ -24,36 +24,37 @@ impl Norm {
     }
 }
 
-/// A way to march.
+/// A variant of the march.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Method {
-    /// In which the sponge's distance is taken.
+    /// Norm of the sponge's distance.
     pub distance: Norm,
     /// In which a ray's direction has length 1. A ray in the maximum norm goes as far as a distance in this norm allows, one
     /// in the Euclidean norm less far; Euclidean distances need the Euclidean norm.
     pub rays: Norm,
-    /// A ray ends where the distance is below this, in world units, ...
+    /// Constant part of the threshold, in world units.
     pub threshold: f64,
-    /// ... and this part of the way gone.
+    /// Growth of the threshold per unit of distance travelled.
     pub footprint: f64,
-    /// The evaluations after which a ray is given up.
+    /// Step limit.
     pub cap: u32,
-    /// Evaluations after each of which the threshold is twice as large, if ever.
+    /// Number of steps after each of which the threshold doubles; `None` for a constant threshold.
     pub relax: Option<u32>,
-    /// Whether the last step goes to the face, if the ray does: the distance over the direction's part along the normal.
+    /// Whether the last step of an approaching ray reaches the plane of the face: the distance over the direction's
+    /// component along the normal.
     pub correct: bool,
 }
 
 impl Method {
-    /// Marches to the sponge of a depth from a parameter of the ray on, its depth.
+    /// Marches to the sponge of a depth, from the parameter `start` of the ray.
     ///
-    /// The normal at the end is by the largest slope of the distance in the maximum norm.
+    /// The normal at the end is that of the largest component of the gradient, in the maximum norm.
     pub fn march(&self, depth: u32, ray: &Ray, start: f64) -> RenderedRay {
         let sponge = Field::Menger { depth };
         let speed = self.rays.of(ray.direction);
         let distance = |p| match self.distance {
             Norm::Maximum => sponge.distance(p),
-            // What is not above 0 has no size in the other norm.
+            // A distance of 0 or less needs no conversion to the Euclidean norm.
             Norm::Euclidean => euclidean(depth, p).max(sponge.distance(p).min(0.0)),
         };
         let mut t = start;
@@ -94,12 +95,12 @@ impl Method {
     }
 }
 
-/// Whether a ray that is at a point goes away from the origin along an axis.
+/// Whether a ray at a point moves away from the origin along an axis.
 fn outward(ray: &Ray, axis: usize, p: Vector) -> bool {
     (p[axis] < 0.0) == (ray.direction[axis] < 0.0)
 }
 
-/// Where a ray comes to the cube around the sponge if it does; 0 for one that starts inside.
+/// Parameter at which a ray enters the sponge's cube; 0 for a ray that starts inside.
 pub fn entry(ray: &Ray) -> f64 {
     (0..3)
         .filter(|&axis| !outward(ray, axis, ray.origin))
@@ -107,20 +108,20 @@ pub fn entry(ray: &Ray) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// How a normal is found from distances beside a point.
+/// Method of estimating a normal from distances near a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Taps {
-    /// The point, and one beside it along each axis.
+    /// The point, and one neighbour along each axis.
     Forward,
-    /// The corners of a tetrahedron about it.
+    /// The corners of a tetrahedron about the point.
     Tetrahedron,
 }
 
 impl Taps {
-    /// How many distances it takes.
+    /// Number of distances per normal.
     pub const COUNT: u32 = 4;
 
-    /// The face across the axis of the largest slope, by distances `step` beside a point.
+    /// The face perpendicular to the axis of the largest gradient component, from distances at `step` from a point.
     pub fn face(self, field: &Field, p: Vector, step: f64) -> Face {
         let beside = |offset: Vector| field.distance([0, 1, 2].map(|i| p[i] + step * offset[i]));
         let slope = match self {

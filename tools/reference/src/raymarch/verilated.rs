@@ -1,4 +1,4 @@
-//! The raymarcher itself, verilated: what a picture takes of it.
+//! The verilated raymarcher, for measurements of the cost of a picture.
 
 use glint_model::raymarch::{FieldSetup, Palette, Rays};
 use glint_model::triangle::descriptor::band_rows;
@@ -13,23 +13,23 @@ pub struct Raymarcher {
     counted: Taken,
 }
 
-/// What a picture took.
+/// Cost of a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Taken {
-    /// Clocks in which it was drawn.
+    /// Clocks from the start to the end of the picture.
     pub clocks: u64,
     /// Evaluations of the field.
     pub evaluations: u64,
 }
 
 impl Raymarcher {
-    /// Its lanes.
+    /// Number of lanes.
     pub const LANES: u32 = 2;
 
-    /// A raymarcher out of reset.
+    /// A raymarcher after reset.
     ///
     /// # Panics
-    /// When it has not been built.
+    /// If the module has not been built.
     #[must_use]
     pub fn new() -> Self {
         let mut module = Module::new("raymarcher", 1);
@@ -45,7 +45,7 @@ impl Raymarcher {
     /// Draws a picture.
     ///
     /// # Panics
-    /// When a pixel is not the model's.
+    /// If a pixel differs from the model's.
     pub fn draw(&mut self, setup: &FieldSetup) -> Taken {
         let palette = Palette::default();
         set_lane(&mut self.module, setup);
@@ -92,7 +92,7 @@ impl Raymarcher {
             self.module.drive("band_open", 0);
             self.pulse("band_next");
         }
-        // Counters are some clocks late.
+        // Counters lag by some clocks.
         (0..4).for_each(|_| self.module.clock());
         let count = |name| self.module.value(self.module.port(name));
         let counted = Taken {

@@ -13,7 +13,7 @@ use crate::fixed::Q32_32;
 /// A box about the origin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cuboid {
-    /// Half of each side.
+    /// Half of each side, in world units.
     pub half: [Q32_32; 3],
 }
 
@@ -22,7 +22,7 @@ pub struct Cuboid {
 pub struct Cubes {
     /// Distance between neighbouring centres.
     pub period: Q32_32,
-    /// Half of a cube's side, below half the period.
+    /// Half the side of a cube, below half the period.
     pub half: Q32_32,
 }
 

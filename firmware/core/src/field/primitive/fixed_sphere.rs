@@ -17,7 +17,7 @@ pub struct FixedSphere {
 }
 
 impl FixedSphere {
-    /// A sphere of a radius from 2^6 to 2^21 − 1.
+    /// A sphere with a radius from 2^6 to 2^21 − 1.
     pub fn new(centre: [i32; 3], radius: i32) -> Self {
         let lead = radius.max(1).ilog2().clamp(6, 20);
         let shifted = (radius.max(1) as u64) << (20 - lead);

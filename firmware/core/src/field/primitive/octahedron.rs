@@ -51,7 +51,8 @@ pub struct FixedOctahedron {
 impl FlatSolid for FixedOctahedron {
     const CODE: u8 = 2;
 
-    /// A cube of half side r changes |x| + |y| + |z| by 3r at most. 85/256 is below 1/3; rounded down.
+    /// A cube of half side r changes |x| + |y| + |z| by 3r at most, so the distance is a third of |x| + |y| + |z| −
+    /// size. 85/256, rounded down, is a lower bound of a third.
     #[inline]
     fn sample(&self, point: [i32; 3]) -> Sample {
         let sum: u32 = point.map(magnitude).iter().sum();

@@ -22,7 +22,7 @@ pub struct Sphere {
 }
 
 impl Sphere {
-    /// A sphere within [`MAX_EXTENT`].
+    /// Checks that the sphere lies within [`MAX_EXTENT`].
     fn checked(self) -> Result<Self, FieldError<'static>> {
         check("radius", self.radius, [SMALLEST, MAX_EXTENT])?;
         let room = MAX_EXTENT - self.radius;
@@ -75,7 +75,7 @@ impl Spheres {
 pub struct Lattice {
     /// Distance between neighbouring centres, in world units.
     pub period: Q32_32,
-    /// Radius of each sphere, below half the period.
+    /// Radius of each sphere in world units, below half the period.
     pub radius: Q32_32,
 }
 
