@@ -1,4 +1,4 @@
-//! The raymarcher's ports: frame constants, rays, ends and pixels.
+//! Ports of the raymarcher's modules: frame constants, rays, ends and pixels.
 
 use crate::{Bits, Layout, Module, Record};
 use glint_core::field::{Solid, Surface};
@@ -13,9 +13,9 @@ pub struct Place {
     pub odd: bool,
     /// Line in the band.
     pub line: u32,
-    /// The column.
+    /// Column.
     pub column: u32,
-    /// The eye, 0 for the left one or the only one.
+    /// Eye: 0 for the left or only one.
     pub eye: usize,
 }
 
@@ -67,7 +67,7 @@ fn ray_record(layout: &Layout, place: Place, ray: &Ray) -> Record {
     record
 }
 
-/// Name of a ray's result in `state_t`.
+/// Result of a ray; its name in `state_t`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Kind {
     /// Far limit reached.
@@ -98,8 +98,8 @@ impl Kind {
     }
 }
 
-/// End of a ray or cone. An unused member is 0: surface and slope without a hit, t of an undecided ray, a face behind
-/// a sphere, the direction without a sphere.
+/// End of a ray or cone. Unused members are 0: surface and slope without a hit, t of an undecided ray, the face of a
+/// pure sphere, the direction without a sphere.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct End {
     /// The result.
@@ -321,7 +321,7 @@ pub fn set_rays(module: &mut Module, setup: &FieldSetup) {
     drive_eyes(module, "origins", eyes.map(|eye| eye.origin));
 }
 
-/// Drives the step of D per block of pixels.
+/// Drives the offset of a block's middle and the spread of its cone.
 pub fn set_blocks(module: &mut Module, setup: &FieldSetup, offset: &str, spread: &str) {
     let cones = setup.cones.map(|cones| (cones.offset, cones.spread));
     let (middle, widest) = cones.unwrap_or_default();
@@ -329,7 +329,7 @@ pub fn set_blocks(module: &mut Module, setup: &FieldSetup, offset: &str, spread:
     module.drive(spread, widest);
 }
 
-/// An `end_t`.
+/// Packs an `end_t`.
 pub fn end(layout: &Layout, place: Place, ray: &Ray, outcome: &RayResult) -> Bits {
     let end = End::expected(ray, outcome);
     let mut record = layout.record();
@@ -352,7 +352,7 @@ fn colour([r, g, b]: [u8; 3]) -> u64 {
     u64::from(b) << 16 | u64::from(g) << 8 | u64::from(r)
 }
 
-/// Drives a frame's constants for painting, and fills its tables.
+/// Drives the frame constants of the paint module, and fills its tables.
 pub fn set_paint(module: &mut Module, setup: &FieldSetup, palette: &Palette) {
     let mut colours = module.record("palette");
     colours.set("zenith", colour(palette.zenith));
@@ -376,22 +376,22 @@ pub fn set_paint(module: &mut Module, setup: &FieldSetup, palette: &Palette) {
     module.set(write, 0);
 }
 
-/// A pixel for the band buffer.
+/// A pixel as a group of the band buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pixel {
     /// The eye.
     pub eye: u64,
-    /// The row of the band.
+    /// Row of the band buffer.
     pub row: u64,
-    /// The line in the band.
+    /// Line in the band.
     pub line: u64,
-    /// The column of eight pixels.
+    /// Column of eight pixels.
     pub column: u64,
-    /// The one lane.
+    /// Mask of the one pixel.
     pub mask: u64,
-    /// The depth code.
+    /// Depth code.
     pub code: u64,
-    /// RGB565, or the luminance twice.
+    /// RGB565 colour, or the luminance twice.
     pub colour: u64,
 }
 

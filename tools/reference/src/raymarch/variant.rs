@@ -29,8 +29,8 @@ impl Norm {
 pub struct Method {
     /// Norm of the sponge's distance.
     pub distance: Norm,
-    /// In which a ray's direction has length 1. A ray in the maximum norm goes as far as a distance in this norm allows, one
-    /// in the Euclidean norm less far; Euclidean distances need the Euclidean norm.
+    /// Norm in which a ray's direction has length 1. With the maximum norm, steps are as long as distances in that norm
+    /// allow; with the Euclidean norm, they are shorter. Euclidean distances require the Euclidean norm.
     pub rays: Norm,
     /// Constant part of the threshold, in world units.
     pub threshold: f64,

@@ -77,7 +77,7 @@ impl Bench {
         self.port("size", u64::from(setup.width / 640));
     }
 
-    /// Draws a frame. With `hurry`, bands open at once and no stream stalls.
+    /// Draws a frame. With `hurry`, bands open immediately and no stream stalls.
     fn draw(
         &mut self,
         random: &mut Random,
@@ -118,7 +118,7 @@ impl Bench {
                 }
             }
             if !hurry {
-                // The triangles of the band come first.
+                // The triangles of the band are drawn first.
                 for _ in 0..random.integer(0, 3000) {
                     self.module.clock();
                 }
@@ -189,7 +189,8 @@ fn frames_of_all_fields_with_stalls() {
     }
 }
 
-/// Draws one of some fields. A ray at the limit costs as much as 20.
+/// Draws a small frame of a random field in `fields`, with a low step limit: an undecided ray costs as much as 20
+/// others.
 fn draw_in_short(bench: &mut Bench, random: &mut Random, fields: &[&str]) {
     let mut setup = setup(random, fields);
     setup.tuning.cap = setup.tuning.cap.min(40);
@@ -224,7 +225,7 @@ fn frames_of_round_fields_in_all_lights() {
     }
 }
 
-/// Cost of lights: a sphere that fills most of the picture.
+/// Cost of lights, with a sphere that fills most of the picture.
 #[test]
 fn round_pixels_take_a_clock_a_light() {
     let mut random = Random(13);
@@ -261,8 +262,8 @@ fn sponges_keep_the_lanes_busy() {
     }
 }
 
-/// In the sponge's largest tunnel, where rays take the most evaluations, without and with a prepass: at 320 × 180, or
-/// with `GLINT_RTL_FIELDS=all` at 1280 × 720.
+/// Cost in the sponge's largest tunnel, where rays take the most evaluations, without and with a prepass: at 320 × 180,
+/// or at 1280 × 720 with `GLINT_RTL_FIELDS=all`.
 #[test]
 fn cones_take_evaluations_off_the_rays_of_a_tunnel() {
     let all = std::env::var("GLINT_RTL_FIELDS").is_ok_and(|fields| fields == "all");

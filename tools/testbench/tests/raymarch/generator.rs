@@ -91,7 +91,7 @@ fn run(module: &mut Module, setup: &FieldSetup, expected: &[Bits], stalls: Stall
     clocks
 }
 
-/// Ends a frame: the generator is idle after the last ray, and needs a reset before.
+/// Ends a frame. After a whole frame the generator must be idle; within a frame it needs a reset.
 fn end(module: &mut Module, whole: bool) {
     let [rst, busy] = ["rst", "busy"].map(|name| module.port(name));
     module.settle();

@@ -23,7 +23,7 @@ fn palette(random: &mut Random) -> Palette {
     palette
 }
 
-/// A random end, also ones that no ray of the scene reaches; t is not 0.
+/// A random end, including ends that no ray of the scene reaches; t is not 0.
 fn ending(random: &mut Random, setup: &FieldSetup, start: &Ray) -> RayResult {
     if random.coin() {
         return setup.march(start);

@@ -1,4 +1,4 @@
-//! Test scenes: fields and cameras, typical ones and ones at the limits.
+//! Test scenes: fields and cameras, typical ones and extreme ones.
 
 use glint_core::camera::View;
 use glint_core::field::{Field, Primitive};
@@ -8,7 +8,7 @@ use glint_model::raymarch::{FieldOptions, FieldSetup, Light, Lights, Stereo, Tin
 
 use glint_vectors::{Camera, Random};
 
-/// Fields of a build with the sponge alone.
+/// Fields of a build with sponges alone.
 pub const SPONGES: [&str; 4] = ["menger:4", "menger:3", "menger:2", "menger:1"];
 
 /// Fields of a build with spheres.
@@ -70,7 +70,7 @@ pub fn every_field() -> Vec<String> {
     fixed.into_iter().map(String::from).chain(drawn).collect()
 }
 
-/// A random camera in a field or beside it, with any direction.
+/// A random camera inside or outside a field, with any direction.
 pub fn camera(random: &mut Random) -> View {
     let distance = match random.bits() % 4 {
         0 => random.real(0.0, 1.0),
@@ -101,7 +101,7 @@ pub fn setup(random: &mut Random, fields: &[impl AsRef<str>]) -> FieldSetup {
     setup_with(random, fields, false)
 }
 
-/// The same with cones before the rays, or without.
+/// As [`setup`], with or without a prepass.
 pub fn setup_with(random: &mut Random, fields: &[impl AsRef<str>], prepass: bool) -> FieldSetup {
     let field = Field::parse(fields[random.bits() as usize % fields.len()].as_ref()).unwrap();
     let mut options = FieldOptions {

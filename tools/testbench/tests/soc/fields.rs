@@ -1,5 +1,5 @@
 //! The whole SoC with its raymarcher against glint-model: colours, depths and statistics of every field, from three
-//! sides, for one eye and for two.
+//! cameras, for one eye and for two eyes.
 
 use glint::board::{Board, SimulatedBoard, built_firmware};
 use glint::console::Console;
@@ -20,7 +20,7 @@ use glint_core::wire::Manifest;
 use crate::{Replies, compare_triangles, read, send};
 use glint_vectors::Camera;
 
-/// Longest silence of the firmware, in board time.
+/// Longest pause in the firmware's output, in board time.
 const PATIENCE_MS: u64 = 4000;
 
 /// Every kind of field.
@@ -52,8 +52,8 @@ fn looking(eye: [f64; 3], target: [f64; 3], half_width: f64, near: f64) -> View 
     Camera::looking(eye, target, half_width, near).rounded()
 }
 
-/// Cameras outside, near by and in the hole of the sponge. They look down, where rays end soon: near a horizon they
-/// take ten times the evaluations, each of which is simulated.
+/// Cameras outside, close to, and in the hole of the sponge. They look down, where rays end early: near a horizon rays
+/// take ten times as many evaluations, each of which is simulated.
 fn views() -> [View; 3] {
     [
         looking([2.2, 1.7, 1.3], [0.0; 3], 0.9, 0.1),
@@ -80,7 +80,7 @@ fn board() -> SimulatedBoard {
     SimulatedBoard::fast(&built_firmware(None).unwrap()).unwrap()
 }
 
-/// Draws a field on the board, with or without writing depths to memory, and compares it with the model's.
+/// Draws a field on the board, with or without depth output, and compares frame and statistics with the model's.
 fn compare(
     console: &mut Console<SimulatedBoard>,
     subject: FieldSubject,
@@ -103,7 +103,7 @@ fn compare(
     compare_picture(console, &replies, &name, &image, with_depth);
 }
 
-/// Console commands of a frame whose mesh is loaded. One write with all of them draws one frame.
+/// Console commands of a frame whose mesh is loaded. One write with all commands draws one frame.
 fn lines(frame: &Frame, with_depth: bool) -> Vec<String> {
     let mut lines = vec![
         render::size_command(frame.size),
@@ -160,9 +160,8 @@ fn all() -> bool {
     std::env::var("GLINT_RTL_FIELDS").is_ok_and(|which| which == "all")
 }
 
-/// Every fourth combination, with one side for each number of eyes, and cones in every second. With
-/// `GLINT_RTL_FIELDS=all`: all fields from all sides with both numbers of eyes, and once more with cones from one
-/// side.
+/// Every fourth combination, with one camera for each number of eyes, and a prepass in every second. With
+/// `GLINT_RTL_FIELDS=all`: all fields from all cameras with both numbers of eyes, and with a prepass from one camera.
 #[test]
 fn the_soc_draws_every_field() {
     let mut board = board();
@@ -170,7 +169,7 @@ fn the_soc_draws_every_field() {
     console.greet().unwrap();
     for (number, text) in fields().into_iter().enumerate() {
         let field = Field::parse(text).unwrap();
-        // Where the list has no field of a kind, its example is always drawn.
+        // The example of a kind that the list lacks is always drawn.
         let is_further = number >= FIELDS.len();
         for (side, view) in views().iter().enumerate() {
             // The tints alternate.
@@ -242,8 +241,8 @@ fn load(console: &mut Console<SimulatedBoard>, mesh: &[u8]) -> String {
     format!("load {length} {crc32:08x}")
 }
 
-/// A mesh that intersects a field, with triangles that need clipping, and with light, fog, sky and cones of the
-/// field. With `GLINT_RTL_FIELDS=all` from more sides, in another size, and back to back.
+/// A mesh that intersects a field, with clipped triangles, light, fog, sky and prepass. With `GLINT_RTL_FIELDS=all`:
+/// more cameras, a second size, and consecutive frames.
 #[test]
 fn the_soc_draws_a_mesh_in_a_field() {
     let mut board = board();
