@@ -189,7 +189,7 @@ fn frames_of_all_fields_with_stalls() {
     }
 }
 
-/// Draws a small frame of a random field in `fields`, with a low step limit: an undecided ray costs as much as 20
+/// Draws a frame of a random field in `fields` with a low step limit: an undecided ray costs as much as 20
 /// others.
 fn draw_in_short(bench: &mut Bench, random: &mut Random, fields: &[&str]) {
     let mut setup = setup(random, fields);
