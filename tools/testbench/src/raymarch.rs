@@ -193,7 +193,7 @@ impl End {
             gap: record.get("gap"),
             surface: if_hit("surface"),
             round,
-            // A face beside a whole sphere has no share.
+            // A pure sphere has no face.
             face: if round && share != 255 {
                 record.get("face")
             } else {

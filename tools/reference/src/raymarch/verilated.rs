@@ -5,11 +5,11 @@ use glint_model::triangle::descriptor::band_rows;
 use glint_testbench::raymarch::{Pixel, Place, pixel, set_blocks, set_lane, set_paint, set_rays};
 use glint_testbench::{Module, Port};
 
-/// The raymarcher for every field, alone: bands are open at once, and every pixel is taken as it comes.
+/// The raymarcher's module with every field. Bands are open immediately, and every pixel is accepted immediately.
 pub struct Raymarcher {
     module: Module,
     group: [Port; Pixel::PAYLOAD.len()],
-    /// What was counted before.
+    /// Counters after the previous picture.
     counted: Taken,
 }
 
