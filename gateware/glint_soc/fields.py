@@ -1,8 +1,9 @@
-"""The flat fields of the raymarcher: one description each.
+"""The flat fields of the raymarcher, with one description for each.
 
-From these follow `rtl/raymarch/fields_pkg.sv` (numbers, latency, kind of faces) and `rtl/raymarch/flat_fields.sv` (instances, delays,
-choice), which `gateware/tests/run.py --packages` writes; the values of `solid.kind` and the bits of `caps.flat`, and with them the PAC
-and the driver's checks; the builds, and the variants of tests and sizes. docs/adding-a-field.md has the steps.
+`gateware/tests/run.py --packages` generates `rtl/raymarch/fields_pkg.sv` (numbers, latency, kind of faces) and
+`rtl/raymarch/flat_fields.sv` (instances, delays, choice) from the descriptions. They also determine the values of `solid.kind` and the
+bits of `caps.flat`, with the PAC and the driver's checks; the builds; and the variants of tests and sizes. docs/adding-a-field.md has
+the steps.
 """
 
 from dataclasses import dataclass, field
@@ -12,12 +13,12 @@ from .rtl import RTL
 
 @dataclass(frozen=True)
 class FlatField:
-    """A field with faces. Its module is `field_` and its name.
+    """A flat field. Its module has the name `field_NAME`.
 
-    `text` names the fields that need it, in the plural, for errors. `clocks` is the latency in SystemVerilog, of LEVELS. `ports` and
-    `parameters` are connected to members of `solid_t` and parameters beside `clk`, `point`, `distance` and `surface`. `octants` says
-    that its faces are perpendicular to the diagonals (±1, ±1, ±1): `surface` is {z, y, x}, 1 where the normal is positive. Otherwise
-    faces are perpendicular to the axes: `surface` is {axis, positive}.
+    `text` is the plural of the fields that use the module, for errors. `clocks` is the latency as a SystemVerilog expression of LEVELS.
+    `ports` connects ports beside `clk`, `point`, `distance` and `surface` to members of `solid_t`; `parameters` sets parameters. With
+    `octants`, faces are perpendicular to the diagonals (±1, ±1, ±1), and `surface` is {z, y, x}, 1 where the normal is positive.
+    Otherwise faces are perpendicular to the axes, and `surface` is {axis, positive}.
     """
 
     name: str
@@ -35,28 +36,28 @@ FLAT_FIELDS = (
               ports={port: f"solid.{port}" for port in ("half", "has", "room", "repeated")}),
     FlatField("octahedron", "octahedra", clocks="5", ports={"size": "solid.half[0]"}, octants=True),
 )
-"""All of them, by their numbers in `solid.kind`. 0 is the sponge, of which the build says how many levels."""
+"""All flat fields, by their numbers in `solid.kind`. Field 0 is the sponge; the build sets its number of levels."""
 
 NAMES = tuple(flat.name for flat in FLAT_FIELDS)
 
 KIND_BITS = max(1, (len(FLAT_FIELDS) - 1).bit_length())
-"""Bits of `solid.kind`."""
+"""Width of `solid.kind` in bits."""
 
 _HEADER = "// Generated from gateware/glint_soc/fields.py by `gateware/tests/run.py --packages`. Do not edit."
 
 
 def mask(names):
-    """The parameter FIELDS of a build: bit k is field k."""
+    """The parameter FIELDS of a build: bit k is set if field k is built."""
     return sum(1 << NAMES.index(name) for name in names)
 
 
 def has_octants(names):
-    """Whether a build has fields with octants for faces."""
+    """Whether a build has fields whose faces are perpendicular to the diagonals."""
     return any(flat.octants for flat in FLAT_FIELDS if flat.name in names)
 
 
 def files():
-    """The text of each generated file."""
+    """Text of each generated file, by path."""
     return {RTL / "raymarch" / "fields_pkg.sv": _package(), RTL / "raymarch" / "flat_fields.sv": _module()}
 
 
@@ -67,25 +68,25 @@ def _package():
     octants = [number for number, flat in enumerate(FLAT_FIELDS) if flat.octants]
     is_octant = " || ".join(f"kind == {_number(number)}" for number in octants) or "1'b0 && kind == '0"
     return f"""{_HEADER}
-// What the raymarcher needs to know of flat fields, by their numbers.
+// Properties of the flat fields, by number.
 
 `default_nettype none
 
 package fields_pkg;
-    // Each module uses some.
+    // Each module uses a part of the constants.
     /* verilator lint_off UNUSEDPARAM */
     localparam int unsigned KIND_BITS = {KIND_BITS};
-    // The bits of all fields, and of those whose faces are perpendicular to the diagonals.
+    // Masks of all fields, and of the fields whose faces are perpendicular to the diagonals.
     localparam int unsigned ALL       = {mask(NAMES)};
     localparam int unsigned OCTANTS   = {sum(1 << number for number in octants)};
     /* verilator lint_on UNUSEDPARAM */
 
-    // Whether faces of a kind are perpendicular to the diagonals.
+    // Whether the faces of a kind of field are perpendicular to the diagonals.
     function automatic logic has_octants(input logic [KIND_BITS-1:0] kind);
         has_octants = {is_octant};
     endfunction
 
-    // Clocks from a point to its distance, of a choice between several fields.
+    // Clocks from a point to its distance, including the choice between several fields.
     function automatic int unsigned flat_clocks(input int unsigned levels, input int unsigned fields);
         flat_clocks = 0;
 {clocks}
@@ -149,7 +150,7 @@ module flat_fields #(
     localparam bit          CHOICE = (FIELDS & (FIELDS - 1)) != 0;
     localparam int unsigned KNOWN  = fields_pkg::flat_clocks(LEVELS, FIELDS) - (CHOICE ? 1 : 0);
 
-    // Distance and surface of each.
+    // Distance and surface of each field.
     logic [{len(FLAT_FIELDS) - 1}:0][24:0] found;
     logic [24:0] chosen;
 {instances}

@@ -1,4 +1,4 @@
-"""The raymarcher: distance fields, beside the triangles in the band buffer. The work is done by rtl/raymarch."""
+"""The raymarcher: draws distance fields into the bands of the triangle engine. rtl/raymarch implements it."""
 
 from dataclasses import asdict, dataclass
 from functools import reduce
@@ -16,17 +16,17 @@ from .rtl import add_sources
 IDENT = int.from_bytes(b"MARC", "big")
 
 _ERRORS = [
-    ("0", "none", "what is asked for is built"),
-    ("1", "field", "the sponge, so many levels of it, boxes, spheres, or fillets are not built"),
+    ("0", "none", "all requested features are built"),
+    ("1", "field", "the flat field, the depth of the sponge, spheres or fillets are not built"),
     ("2", "stereo", "two eyes are not built"),
-    ("3", "prepass", "cones are not built"),
+    ("3", "prepass", "the prepass is not built"),
 ]
 
 
 @dataclass(frozen=True)
 class Fields:
-    """What a raymarcher is built with: lanes (1, 2, 4), levels of the sponge (0 to 6), flat fields by their names, of which the sponge
-    is one where it has levels, spheres, fillets, two eyes, cones before the rays."""
+    """Build options of a raymarcher: number of lanes (1, 2, 4), levels of the sponge (0 to 6), names of the flat fields (with levels
+    also the sponge), spheres, fillets, two eyes, prepass."""
 
     lanes: int = 2
     levels: int = 6
@@ -37,7 +37,7 @@ class Fields:
     prepass: bool = True
 
     def parameters(self):
-        """Returns those of the module by their names."""
+        """Returns the parameters of the module by name."""
         values = asdict(self)
         return {"FIELDS": mask(values.pop("flat")), **{name.upper(): int(value) for name, value in values.items()}}
 
@@ -48,117 +48,122 @@ BUILDS = {
     "faces": Fields(levels=4, flat=("menger", "box"), round=False, blend=False, prepass=False),
     "sponge": Fields(lanes=4, levels=4, flat=("menger",), round=False, blend=False),
 }
-"""What there is to choose from: everything; less and less of it; and the sponge alone, by twice as many lanes."""
+"""The builds: all features; two builds with fewer features; and the sponge alone, with twice as many lanes."""
 
 
 class Raymarcher(LiteXModule):
     """Draws distance fields into the frames of a triangle engine's raster pass.
 
-    `clk`, to be driven, is its clock, or that gated by `clock_enable`. `field` is its side of the engine's ports of that name.
+    `clk` is the block's clock and must be driven: by the system clock, or by that clock gated with `clock_enable`.
     """
 
     def __init__(self, platform, fields, engine):
         self._ident = CSRStatus(32, name="ident", reset=IDENT, description="`MARC` in ASCII; 0 where the block is absent.")
         self._caps = CSRStatus(name="caps", fields=[
-            CSRField("lanes", size=3, offset=0, reset=fields.lanes, description="Evaluations of the field a clock."),
-            CSRField("levels", size=3, offset=4, reset=fields.levels, description="The deepest sponge; 0: none."),
+            CSRField("lanes", size=3, offset=0, reset=fields.lanes, description="Lanes: evaluations of the field per clock."),
+            CSRField("levels", size=3, offset=4, reset=fields.levels, description="Largest depth of a sponge; 0 without sponges."),
             CSRField("stereo", offset=9, reset=int(fields.stereo), description="Two eyes."),
-            CSRField("round", offset=10, reset=int(fields.round), description="Spheres, alone and beside what has faces."),
-            CSRField("blend", offset=11, reset=int(fields.blend), description="Fillets between both."),
-            CSRField("prepass", offset=12, reset=int(fields.prepass), description="Cones before the rays."),
-            CSRField("flat", size=8, offset=16, reset=mask(fields.flat), description="Bit k is set if flat fields of the kind k "
-                     "of `solid` are built."),
+            CSRField("round", offset=10, reset=int(fields.round), description="Spheres, alone and in unions."),
+            CSRField("blend", offset=11, reset=int(fields.blend), description="Fillets between spheres and flat fields."),
+            CSRField("prepass", offset=12, reset=int(fields.prepass), description="Prepass: cones before the rays."),
+            CSRField("flat", size=8, offset=16, reset=mask(fields.flat), description="Bit k is set if the flat field of kind k in "
+                                                           "`solid` is built."),
         ], description="What this block can do.")
         self._control = CSRStorage(name="control", fields=[
-            CSRField("enable", offset=0, description="Frames of the raster pass have the field, after their triangles."),
+            CSRField("enable", offset=0, description="Draws the field in every raster pass, after the triangles."),
             CSRField("stereo", size=2, offset=1, values=[
                 ("0", "mono", "one eye"), ("1", "red_blue", "the left eye red, the right one blue, green the smaller of both"),
                 ("2", "red_cyan", "the left eye red, the right one green and blue")],
-                description="How many eyes look, and in which colours."),
-            CSRField("prepass", offset=3, description="A cone for each block of pixels says where its rays begin."),
-        ], description="Operation. This and all other registers have to hold while a raster pass runs.")
+                description="Number of eyes, and their colours."),
+            CSRField("prepass", offset=3, description="Marches a cone for each block of pixels first: the rays of the block start "
+                     "at the end of their cone."),
+        ], description="Operation. All registers of this block must hold during a raster pass.")
         self._status = CSRStatus(name="status", fields=[
             CSRField("busy", offset=0, description="A field is being drawn."),
-            CSRField("error", size=2, offset=4, values=_ERRORS, description="What the registers ask for and is not built: frames "
-                     "are drawn without the field then."),
+            CSRField("error", size=2, offset=4, values=_ERRORS, description="Feature that the registers request and this build "
+                     "lacks. Frames are then drawn without the field."),
         ], description="State.")
         self.ev = EventManager()
         self.ev.field = EventSourcePulse(name="field", description="The field of a frame has been drawn.")
         self.ev.finalize()
 
         self._solid = CSRStorage(name="solid", fields=[
-            CSRField("levels", size=6, offset=1, description="Levels of the sponge that count, the first one in bit 0."),
-            CSRField("has", size=3, offset=8, description="Axes along which the box has an end, x in bit 0."),
-            CSRField("room", offset=11, description="The solid is what is outside of the box."),
-            CSRField("repeated", offset=12, description="The box repeats itself every 64 units along each axis."),
-            CSRField("is_round", offset=13, description="There are spheres."),
-            CSRField("flat_too", offset=14, description="What has faces is there beside them."),
-            CSRField("spheres_repeated", offset=15, description="The spheres repeat themselves every 64 units along each axis."),
-            CSRField("last_sphere", size=3, offset=16, description="The last sphere's number; 0 where there is none."),
-            CSRField("last_light", size=2, offset=20, description="The number of the last light on spheres."),
+            CSRField("levels", size=6, offset=1, description="Levels of the sponge in use, the first level in bit 0."),
+            CSRField("has", size=3, offset=8, description="Axes along which the box is bounded, x in bit 0."),
+            CSRField("room", offset=11, description="The solid is the space outside of the box."),
+            CSRField("repeated", offset=12, description="The box repeats every 64 field units along each axis."),
+            CSRField("is_round", offset=13, description="The field has spheres."),
+            CSRField("flat_too", offset=14, description="The field is a union of the flat field and spheres."),
+            CSRField("spheres_repeated", offset=15, description="The sphere repeats every 64 field units along each axis."),
+            CSRField("last_sphere", size=3, offset=16, description="Number of the last sphere; 0 without spheres."),
+            CSRField("last_light", size=2, offset=20, description="Number of the last light on spheres."),
             CSRField("kind", size=KIND_BITS, offset=22,
                      values=[(str(number), flat.name, flat.text) for number, flat in enumerate(FLAT_FIELDS)],
-                     description="The flat field."),
+                     description="Kind of the flat field."),
         ], description="The solid.")
-        self._cube_half = CSRStorage(22, name="cube_half", description="Half the side of the cubes that a sponge leaves, u10.12.")
+        self._cube_half = CSRStorage(22, name="cube_half", description="Half the side of the sponge's smallest solid cubes, u10.12.")
         box_half = [self._register(f"half_{axis}", 22, f"Half the side of the box along {axis}, u10.12.") for axis in "xyz"]
         self._tuning = CSRStorage(name="tuning", fields=[
-            CSRField("threshold", size=16, offset=0, description="A ray has arrived where the distance is below this, u4.12 ..."),
-            CSRField("footprint", size=4, offset=16, description="... and t * 2^-footprint, 7 to 15."),
-            CSRField("cap", size=8, offset=20, description="Evaluations after which a ray is given up, from 1."),
-        ], description="How finely.")
-        self._far = CSRStorage(23, name="far", description="t beyond which there is nothing, u11.12.")
-        self._near = CSRStorage(23, name="near", description="Distance of the near plane times 2^e, or of the nearest corner of the "
-                                "box, u11.12.")
+            CSRField("threshold", size=16, offset=0, description="Threshold, u4.12: a ray hits where the distance is below "
+                     "threshold + t * 2^-footprint."),
+            CSRField("footprint", size=4, offset=16, description="Footprint, 7 to 15: the exponent of the part of the threshold "
+                     "that grows with t."),
+            CSRField("cap", size=8, offset=20, description="Step limit, at least 1: evaluations after which a ray is undecided. "
+                     "Fields with spheres take four times this limit."),
+        ], description="Threshold and step limit of the rays.")
+        self._far = CSRStorage(23, name="far", description="Far limit of t, u11.12.")
+        self._near = CSRStorage(23, name="near", description="Depth of the near plane, or of the nearest corner of the bounding box "
+                                "if larger, times 2^e, u11.12.")
         origins, outside, first = [], [], []
         for eye in ("left", "right"):
             for axis in "xyz":
-                origins.append(self._register(f"origin_{eye}_{axis}", 25, f"Where the {eye} eye is, {axis}, s13.12."))
-                outside.append(self._register(f"outside_{eye}_{axis}", 24, f"How far the {eye} eye is outside of the box along "
-                                              f"{axis}, u12.12."))
+                origins.append(self._register(f"origin_{eye}_{axis}", 25, f"Position of the {eye} eye, {axis}, s13.12."))
+                outside.append(self._register(f"outside_{eye}_{axis}", 24, f"Distance of the {eye} eye outside of the bounding box "
+                                              f"along {axis}, u12.12."))
                 first.append(self._register(f"first_{eye}_{axis}", 32, f"D of the {eye} eye's first ray, {axis}, s2.30."))
-        bounds = [self._register(f"bounds_{axis}", 24, f"Half the side of the box about the field along {axis}, u12.12.")
+        bounds = [self._register(f"bounds_{axis}", 24, f"Half the side of the bounding box along {axis}, u12.12.")
                   for axis in "xyz"]
-        across = [self._register(f"across_{axis}", 32, f"What D grows by with a column, {axis}, s2.30.") for axis in "xyz"]
-        down = [self._register(f"down_{axis}", 32, f"What D grows by with a line, {axis}, s2.30.") for axis in "xyz"]
-        offset = [self._register(f"cone_offset_{axis}", 32, f"What D grows by from a block's first pixel to its middle, {axis}, s2.30.")
+        across = [self._register(f"across_{axis}", 32, f"Change of D per column, {axis}, s2.30.") for axis in "xyz"]
+        down = [self._register(f"down_{axis}", 32, f"Change of D per line, {axis}, s2.30.") for axis in "xyz"]
+        offset = [self._register(f"cone_offset_{axis}", 32, f"Change of D from a block's first pixel to its middle, {axis}, s2.30.")
                   for axis in "xyz"]
-        self._cone_spread = CSRStorage(14, name="cone_spread", description="The most by which D differs from that in the middle of a "
-                                       "block, u0.18.")
+        self._cone_spread = CSRStorage(14, name="cone_spread", description="Largest difference of D between the middle and any "
+                                       "pixel of a block, u0.18.")
         self._depth_scale = CSRStorage(name="depth_scale", fields=[
-            CSRField("mantissa", size=17, offset=0, description="In 2^16 to 2^17 - 1."),
-            CSRField("exponent", size=6, offset=17, description="Two's complement."),
-        ], description="K for depths in field units times 2^e: mantissa * 2^exponent.")
+            CSRField("mantissa", size=17, offset=0, description="Mantissa, 2^16 to 2^17 - 1."),
+            CSRField("exponent", size=6, offset=17, description="Exponent, two's complement."),
+        ], description="Scale K of depth codes, for depths in field units times 2^e: mantissa * 2^exponent.")
         palette = [self._register(f"colour_{number}", 24, f"Colour of {what}: red in bits 0 to 7, green, blue.")
                    for number, what in enumerate([*(f"faces whose normal points {way} {axis}" for axis in "xyz"
-                                                    for way in ("against", "along")), "rays that were given up", "the zenith"])]
+                                                    for way in ("against", "along")), "undecided rays", "the zenith"])]
         self._horizon = CSRStorage(24, name="horizon", description="Colour of the horizon, and of the fog.")
-        self._fog_shift = CSRStorage(3, name="fog_shift", description="An entry of the fog is for 2^this field units times 2^e.")
+        self._fog_shift = CSRStorage(3, name="fog_shift", description="Exponent of the depth step of the fog: an entry covers "
+                                     "2^fog_shift field units times 2^e.")
         self._table = CSRStorage(name="table", fields=[
-            CSRField("part", size=8, offset=0, description="Of 255."),
-            CSRField("entry", size=9, offset=8, description="0 to 255: what the fog hides, by depth. 256 to 511: what light is left, "
-                     "by evaluations."),
-        ], description="Writing sets an entry of fog or light.")
+            CSRField("part", size=8, offset=0, description="Share, of 255."),
+            CSRField("entry", size=9, offset=8, description="0 to 255: share hidden by fog, by depth. 256 to 511: share of light "
+                     "left, by evaluations."),
+        ], description="Writing sets an entry of the tables of fog and light.")
 
         self._sphere = CSRStorage(name="sphere", fields=[
-            CSRField("value", size=24, offset=0, description="A constant of spheres or their light."),
-            CSRField("entry", size=6, offset=24, description="0 to 2: a sphere's centre, x, y, z, s9.12. 3: its radius, u9.12. 4: the "
-                     "inverse of the radius in bits 0 to 16, and its shift. 8 + n: the colour of sphere n, which takes these constants. "
-                     "16 + 4i + 0, 1, 2: the direction to light i, s1.16. 16 + 4i + 3: its colour. 5: the ambient light's colour. 6: the "
-                     "width of the fillet, u5.12, 0 without one. 7: 1 over twice that, u1.16. 32, 33: the colours "
-                     "of the faces 6 and 7 of a field that has eight."),
-        ], description="Writing sets a constant of spheres, their light, or faces.")
+            CSRField("value", size=24, offset=0, description="Value of the constant."),
+            CSRField("entry", size=6, offset=24, description="0 to 2: centre of a sphere, x, y, z, s9.12. 3: radius of the sphere, "
+                     "u9.12. 4: inverse of the radius in bits 0 to 16, and its shift. 5: colour of the ambient light. 6: width of "
+                     "the fillet, u5.12, 0 without a fillet. 7: 1 / (2 * width), u1.16. 8 + n: colour of sphere n, which also takes "
+                     "the constants 0 to 4. 16 + 4i + 0, 1, 2: direction to light i, s1.16. 16 + 4i + 3: colour of light i. 32, 33: "
+                     "colours of the faces 6 and 7 of a field with eight faces."),
+        ], description="Writing sets a constant of spheres, lights or faces.")
 
         counters = {
             "cycles_busy": "Clock cycles in which a field was drawn.",
-            "cycles_stalled": "Clock cycles in which a ray waited as no end of one was taken.",
+            "cycles_stalled": "Clock cycles in which a ray waited because no end of a ray was taken.",
             "items_in": "Rays.",
-            "items_out": "Pixels given to the band buffer, each eye's.",
-            "cycles_idle": "Clock cycles, of each lane, in which it had room for a ray and none came.",
-            "evaluations": "Evaluations of the field: slots of the lanes that were occupied.",
-            "hits": "Rays that came to a surface.",
-            "misses": "Rays that went by.",
-            "undecided": "Rays that were given up.",
+            "items_out": "Pixels given to the band buffer, counted for each eye.",
+            "cycles_idle": "Clock cycles, summed over the lanes, in which a lane had room for a ray and no ray came.",
+            "evaluations": "Evaluations of the field: occupied slots of the lanes.",
+            "hits": "Rays that hit.",
+            "misses": "Rays that missed.",
+            "undecided": "Undecided rays.",
         }
         status = {}
         for name, description in counters.items():
@@ -175,25 +180,25 @@ class Raymarcher(LiteXModule):
         error = self._status.fields.error
         solid, tuning = self._solid.fields, self._tuning.fields
         write_sphere, number, sphere, lights, (blend_width, blend_inverse) = self._spheres(fields, solid.last_light)
-        # Without levels the sponge is an empty field: what a frame of spheres alone asks for.
+        # Without levels the sponge is an empty field. A frame with spheres alone requests the empty field.
         unknown = [solid.kind == number for number, flat in enumerate(FLAT_FIELDS) if number and flat.name not in fields.flat]
         not_built = Signal()
         self.comb += not_built.eq(reduce(or_, unknown, Constant(0)) | (solid.is_round & int(not fields.round)) |
                                   (solid.flat_too & ((blend_width | blend_inverse) != 0) & int(not fields.blend)))
         too_deep = (solid.kind == 0) & (solid.levels >> fields.levels != 0)
-        constants = Struct("solid_t", "The solid: the fillet's width, u5.12, 0 without one, and 1 over twice that, u1.16; whether the flat "
-            "field is there beside spheres, whether there are any, whether they repeat themselves, and the last one's number; the "
-            "flat field, and its constants.", {
+        constants = Struct("solid_t", "The solid: width of the fillet, u5.12, 0 without a fillet, and 1 / (2 * width), u1.16; "
+            "whether the flat field is in union with spheres; whether the field has spheres, whether they repeat, and the number of "
+            "the last one; kind of the flat field, and its constants.", {
             "blend_width": blend_width, "blend_inverse": blend_inverse,
             **{name: getattr(solid, name) for name in ("flat_too", "is_round", "spheres_repeated", "last_sphere", "kind", "levels")},
             "cube_half": self._cube_half.storage, "half": box_half,
             **{name: getattr(solid, name) for name in ("has", "room", "repeated")}})
-        limits = Struct("tuning_t", "The tuning: distance and part of t below which a ray has hit, its most evaluations, its largest t.", {
+        limits = Struct("tuning_t", "Limits of a ray: threshold, footprint, step limit, far limit of t.", {
             **{name: getattr(tuning, name) for name in ("threshold", "footprint", "cap")}, "far_limit": self._far.storage})
-        colours = Struct("palette_t", "Colours, {blue, green, red}: the zenith, rays that were given up, and faces by their surface.", {
+        colours = Struct("palette_t", "Colours, {blue, green, red}: zenith, undecided rays, and faces by their surface.", {
             "zenith": palette[7], "undecided": palette[6], "faces": [*palette[:6], *self._octants(fields)]})
         self.package = Package("raymarch", structs=[constants, sphere, lights, limits, colours])
-        # The engine's clock runs while a pass does; the tables are written while it stands.
+        # The engine's clock runs during a pass. Writes to tables and spheres start it between passes.
         lingers, working = Signal(5), Signal()
         self.comb += [
             If(not_built | too_deep, error.eq(1)).Elif((stereo != 0) & int(not fields.stereo), error.eq(2)).Elif(
@@ -263,8 +268,8 @@ class Raymarcher(LiteXModule):
         add_sources(platform, "raymarcher")
 
     def _spheres(self, fields, last_light):
-        """The constants that writes to `sphere` leave: whether a sphere is written, its number, the sphere, the lights, and width and
-        inverse of the fillet."""
+        """Decodes writes to `sphere`. Returns whether a sphere is written, its number, the sphere, the lights, and width and inverse of
+        the fillet."""
         value, entry = self._sphere.fields.value, self._sphere.fields.entry
         centre, radius, inverse = [Signal(22) for _ in range(3)], Signal(21), Signal(22)
         directions, colours = [[Signal(18) for _ in range(3)] for _ in range(4)], [Signal(24) for _ in range(4)]
@@ -276,16 +281,16 @@ class Raymarcher(LiteXModule):
                       **{19 + 4*light: colour for light, colour in enumerate(colours)}}
             self.sync += If(self._sphere.re, Case(entry, {number: place.eq(value) for number, place in places.items()}))
             self.comb += write.eq(self._sphere.re & (entry[3:] == 0b001))
-        sphere = Struct("sphere_t", "A sphere: its material, {blue, green, red}; the inverse of its radius and a shift (docs/formats.md, "
-                        "\"Light\"); its radius, and its centre.", {
+        sphere = Struct("sphere_t", "A sphere: its material, {blue, green, red}; the inverse of its radius and a shift "
+            "(docs/formats.md, \"Light\"); its radius, and its centre.", {
             "material": value, "shift": inverse[17:], "inverse": inverse[:17], "radius": radius, "centre": centre})
-        lights = Struct("lights_t", "The light on spheres: the last light's number, ambient light, and lights in their colours from "
-                        "their directions, s1.16.", {
+        lights = Struct("lights_t", "Light on spheres: number of the last light, ambient light, colours of the lights, and "
+            "directions to the lights, s1.16.", {
             "last_light": last_light, "ambient": ambient, "colours": colours, "directions": directions})
         return write, entry[:3], sphere, lights, blend
 
     def _octants(self, fields):
-        """The colours of the faces 6 and 7, which writes to `sphere` set; without registers where no field has such faces."""
+        """The colours of faces 6 and 7, set by writes to `sphere`; constants in builds whose fields have no such faces."""
         if not has_octants(fields.flat):
             return [Constant(0, 24)] * 2
         colours = [Signal(24), Signal(24)]
@@ -294,7 +299,7 @@ class Raymarcher(LiteXModule):
         return colours
 
     def _register(self, name, size, description):
-        """Adds a register and returns what is in it."""
+        """Adds a register and returns its content."""
         register = CSRStorage(size, name=name, description=description)
         setattr(self, f"_{name}", register)
         return register.storage

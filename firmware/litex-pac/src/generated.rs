@@ -4068,7 +4068,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5804) }
         }
 
-        /// `control`, 4 bits: Operation. This and all other registers have to hold while a raster pass runs.
+        /// `control`, 4 bits: Operation. All registers of this block must hold during a raster pass.
         #[inline]
         #[must_use]
         pub const fn control(&self) -> Register<Control, ReadWrite> {
@@ -4116,7 +4116,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_581c) }
         }
 
-        /// `cube_half`, 22 bits: Half the side of the cubes that a sponge leaves, u10.12.
+        /// `cube_half`, 22 bits: Half the side of the sponge's smallest solid cubes, u10.12.
         #[inline]
         #[must_use]
         pub const fn cube_half(&self) -> Register<u32, ReadWrite> {
@@ -4148,7 +4148,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_582c) }
         }
 
-        /// `tuning`, 28 bits: How finely.
+        /// `tuning`, 28 bits: Threshold and step limit of the rays.
         #[inline]
         #[must_use]
         pub const fn tuning(&self) -> Register<Tuning, ReadWrite> {
@@ -4156,7 +4156,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5830) }
         }
 
-        /// `far`, 23 bits: t beyond which there is nothing, u11.12.
+        /// `far`, 23 bits: Far limit of t, u11.12.
         #[inline]
         #[must_use]
         pub const fn far(&self) -> Register<u32, ReadWrite> {
@@ -4164,7 +4164,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5834) }
         }
 
-        /// `near`, 23 bits: Distance of the near plane times 2^e, or of the nearest corner of the box, u11.12.
+        /// `near`, 23 bits: Depth of the near plane, or of the nearest corner of the bounding box if larger, times 2^e, u11.12.
         #[inline]
         #[must_use]
         pub const fn near(&self) -> Register<u32, ReadWrite> {
@@ -4172,7 +4172,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5838) }
         }
 
-        /// `origin_left_x`, 25 bits: Where the left eye is, x, s13.12.
+        /// `origin_left_x`, 25 bits: Position of the left eye, x, s13.12.
         #[inline]
         #[must_use]
         pub const fn origin_left_x(&self) -> Register<u32, ReadWrite> {
@@ -4180,7 +4180,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_583c) }
         }
 
-        /// `outside_left_x`, 24 bits: How far the left eye is outside of the box along x, u12.12.
+        /// `outside_left_x`, 24 bits: Distance of the left eye outside of the bounding box along x, u12.12.
         #[inline]
         #[must_use]
         pub const fn outside_left_x(&self) -> Register<u32, ReadWrite> {
@@ -4196,7 +4196,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5844) }
         }
 
-        /// `origin_left_y`, 25 bits: Where the left eye is, y, s13.12.
+        /// `origin_left_y`, 25 bits: Position of the left eye, y, s13.12.
         #[inline]
         #[must_use]
         pub const fn origin_left_y(&self) -> Register<u32, ReadWrite> {
@@ -4204,7 +4204,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5848) }
         }
 
-        /// `outside_left_y`, 24 bits: How far the left eye is outside of the box along y, u12.12.
+        /// `outside_left_y`, 24 bits: Distance of the left eye outside of the bounding box along y, u12.12.
         #[inline]
         #[must_use]
         pub const fn outside_left_y(&self) -> Register<u32, ReadWrite> {
@@ -4220,7 +4220,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5850) }
         }
 
-        /// `origin_left_z`, 25 bits: Where the left eye is, z, s13.12.
+        /// `origin_left_z`, 25 bits: Position of the left eye, z, s13.12.
         #[inline]
         #[must_use]
         pub const fn origin_left_z(&self) -> Register<u32, ReadWrite> {
@@ -4228,7 +4228,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5854) }
         }
 
-        /// `outside_left_z`, 24 bits: How far the left eye is outside of the box along z, u12.12.
+        /// `outside_left_z`, 24 bits: Distance of the left eye outside of the bounding box along z, u12.12.
         #[inline]
         #[must_use]
         pub const fn outside_left_z(&self) -> Register<u32, ReadWrite> {
@@ -4244,7 +4244,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_585c) }
         }
 
-        /// `origin_right_x`, 25 bits: Where the right eye is, x, s13.12.
+        /// `origin_right_x`, 25 bits: Position of the right eye, x, s13.12.
         #[inline]
         #[must_use]
         pub const fn origin_right_x(&self) -> Register<u32, ReadWrite> {
@@ -4252,7 +4252,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5860) }
         }
 
-        /// `outside_right_x`, 24 bits: How far the right eye is outside of the box along x, u12.12.
+        /// `outside_right_x`, 24 bits: Distance of the right eye outside of the bounding box along x, u12.12.
         #[inline]
         #[must_use]
         pub const fn outside_right_x(&self) -> Register<u32, ReadWrite> {
@@ -4268,7 +4268,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5868) }
         }
 
-        /// `origin_right_y`, 25 bits: Where the right eye is, y, s13.12.
+        /// `origin_right_y`, 25 bits: Position of the right eye, y, s13.12.
         #[inline]
         #[must_use]
         pub const fn origin_right_y(&self) -> Register<u32, ReadWrite> {
@@ -4276,7 +4276,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_586c) }
         }
 
-        /// `outside_right_y`, 24 bits: How far the right eye is outside of the box along y, u12.12.
+        /// `outside_right_y`, 24 bits: Distance of the right eye outside of the bounding box along y, u12.12.
         #[inline]
         #[must_use]
         pub const fn outside_right_y(&self) -> Register<u32, ReadWrite> {
@@ -4292,7 +4292,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5874) }
         }
 
-        /// `origin_right_z`, 25 bits: Where the right eye is, z, s13.12.
+        /// `origin_right_z`, 25 bits: Position of the right eye, z, s13.12.
         #[inline]
         #[must_use]
         pub const fn origin_right_z(&self) -> Register<u32, ReadWrite> {
@@ -4300,7 +4300,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5878) }
         }
 
-        /// `outside_right_z`, 24 bits: How far the right eye is outside of the box along z, u12.12.
+        /// `outside_right_z`, 24 bits: Distance of the right eye outside of the bounding box along z, u12.12.
         #[inline]
         #[must_use]
         pub const fn outside_right_z(&self) -> Register<u32, ReadWrite> {
@@ -4316,7 +4316,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5880) }
         }
 
-        /// `bounds_x`, 24 bits: Half the side of the box about the field along x, u12.12.
+        /// `bounds_x`, 24 bits: Half the side of the bounding box along x, u12.12.
         #[inline]
         #[must_use]
         pub const fn bounds_x(&self) -> Register<u32, ReadWrite> {
@@ -4324,7 +4324,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5884) }
         }
 
-        /// `bounds_y`, 24 bits: Half the side of the box about the field along y, u12.12.
+        /// `bounds_y`, 24 bits: Half the side of the bounding box along y, u12.12.
         #[inline]
         #[must_use]
         pub const fn bounds_y(&self) -> Register<u32, ReadWrite> {
@@ -4332,7 +4332,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5888) }
         }
 
-        /// `bounds_z`, 24 bits: Half the side of the box about the field along z, u12.12.
+        /// `bounds_z`, 24 bits: Half the side of the bounding box along z, u12.12.
         #[inline]
         #[must_use]
         pub const fn bounds_z(&self) -> Register<u32, ReadWrite> {
@@ -4340,7 +4340,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_588c) }
         }
 
-        /// `across_x`, 32 bits: What D grows by with a column, x, s2.30.
+        /// `across_x`, 32 bits: Change of D per column, x, s2.30.
         #[inline]
         #[must_use]
         pub const fn across_x(&self) -> Register<u32, ReadWrite> {
@@ -4348,7 +4348,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5890) }
         }
 
-        /// `across_y`, 32 bits: What D grows by with a column, y, s2.30.
+        /// `across_y`, 32 bits: Change of D per column, y, s2.30.
         #[inline]
         #[must_use]
         pub const fn across_y(&self) -> Register<u32, ReadWrite> {
@@ -4356,7 +4356,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5894) }
         }
 
-        /// `across_z`, 32 bits: What D grows by with a column, z, s2.30.
+        /// `across_z`, 32 bits: Change of D per column, z, s2.30.
         #[inline]
         #[must_use]
         pub const fn across_z(&self) -> Register<u32, ReadWrite> {
@@ -4364,7 +4364,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5898) }
         }
 
-        /// `down_x`, 32 bits: What D grows by with a line, x, s2.30.
+        /// `down_x`, 32 bits: Change of D per line, x, s2.30.
         #[inline]
         #[must_use]
         pub const fn down_x(&self) -> Register<u32, ReadWrite> {
@@ -4372,7 +4372,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_589c) }
         }
 
-        /// `down_y`, 32 bits: What D grows by with a line, y, s2.30.
+        /// `down_y`, 32 bits: Change of D per line, y, s2.30.
         #[inline]
         #[must_use]
         pub const fn down_y(&self) -> Register<u32, ReadWrite> {
@@ -4380,7 +4380,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_58a0) }
         }
 
-        /// `down_z`, 32 bits: What D grows by with a line, z, s2.30.
+        /// `down_z`, 32 bits: Change of D per line, z, s2.30.
         #[inline]
         #[must_use]
         pub const fn down_z(&self) -> Register<u32, ReadWrite> {
@@ -4388,7 +4388,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_58a4) }
         }
 
-        /// `cone_offset_x`, 32 bits: What D grows by from a block's first pixel to its middle, x, s2.30.
+        /// `cone_offset_x`, 32 bits: Change of D from a block's first pixel to its middle, x, s2.30.
         #[inline]
         #[must_use]
         pub const fn cone_offset_x(&self) -> Register<u32, ReadWrite> {
@@ -4396,7 +4396,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_58a8) }
         }
 
-        /// `cone_offset_y`, 32 bits: What D grows by from a block's first pixel to its middle, y, s2.30.
+        /// `cone_offset_y`, 32 bits: Change of D from a block's first pixel to its middle, y, s2.30.
         #[inline]
         #[must_use]
         pub const fn cone_offset_y(&self) -> Register<u32, ReadWrite> {
@@ -4404,7 +4404,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_58ac) }
         }
 
-        /// `cone_offset_z`, 32 bits: What D grows by from a block's first pixel to its middle, z, s2.30.
+        /// `cone_offset_z`, 32 bits: Change of D from a block's first pixel to its middle, z, s2.30.
         #[inline]
         #[must_use]
         pub const fn cone_offset_z(&self) -> Register<u32, ReadWrite> {
@@ -4412,7 +4412,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_58b0) }
         }
 
-        /// `cone_spread`, 14 bits: The most by which D differs from that in the middle of a block, u0.18.
+        /// `cone_spread`, 14 bits: Largest difference of D between the middle and any pixel of a block, u0.18.
         #[inline]
         #[must_use]
         pub const fn cone_spread(&self) -> Register<u16, ReadWrite> {
@@ -4420,7 +4420,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_58b4) }
         }
 
-        /// `depth_scale`, 23 bits: K for depths in field units times 2^e: mantissa * 2^exponent.
+        /// `depth_scale`, 23 bits: Scale K of depth codes, for depths in field units times 2^e: mantissa * 2^exponent.
         #[inline]
         #[must_use]
         pub const fn depth_scale(&self) -> Register<DepthScale, ReadWrite> {
@@ -4476,7 +4476,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_58d0) }
         }
 
-        /// `colour_6`, 24 bits: Colour of rays that were given up: red in bits 0 to 7, green, blue.
+        /// `colour_6`, 24 bits: Colour of undecided rays: red in bits 0 to 7, green, blue.
         #[inline]
         #[must_use]
         pub const fn colour_6(&self) -> Register<u32, ReadWrite> {
@@ -4500,7 +4500,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_58dc) }
         }
 
-        /// `fog_shift`, 3 bits: An entry of the fog is for 2^this field units times 2^e.
+        /// `fog_shift`, 3 bits: Exponent of the depth step of the fog: an entry covers 2^fog_shift field units times 2^e.
         #[inline]
         #[must_use]
         pub const fn fog_shift(&self) -> Register<u8, ReadWrite> {
@@ -4508,7 +4508,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_58e0) }
         }
 
-        /// `table`, 17 bits: Writing sets an entry of fog or light.
+        /// `table`, 17 bits: Writing sets an entry of the tables of fog and light.
         #[inline]
         #[must_use]
         pub const fn table(&self) -> Register<Table, ReadWrite> {
@@ -4516,7 +4516,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_58e4) }
         }
 
-        /// `sphere`, 30 bits: Writing sets a constant of spheres, their light, or faces.
+        /// `sphere`, 30 bits: Writing sets a constant of spheres, lights or faces.
         #[inline]
         #[must_use]
         pub const fn sphere(&self) -> Register<Sphere, ReadWrite> {
@@ -4532,7 +4532,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_58ec) }
         }
 
-        /// `cycles_stalled`, 32 bits: Clock cycles in which a ray waited as no end of one was taken, modulo 2^32.
+        /// `cycles_stalled`, 32 bits: Clock cycles in which a ray waited because no end of a ray was taken, modulo 2^32.
         #[inline]
         #[must_use]
         pub const fn cycles_stalled(&self) -> Register<u32, ReadOnly> {
@@ -4548,7 +4548,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_58f4) }
         }
 
-        /// `items_out`, 32 bits: Pixels given to the band buffer, each eye's, modulo 2^32.
+        /// `items_out`, 32 bits: Pixels given to the band buffer, counted for each eye, modulo 2^32.
         #[inline]
         #[must_use]
         pub const fn items_out(&self) -> Register<u32, ReadOnly> {
@@ -4556,7 +4556,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_58f8) }
         }
 
-        /// `cycles_idle`, 32 bits: Clock cycles, of each lane, in which it had room for a ray and none came, modulo 2^32.
+        /// `cycles_idle`, 32 bits: Clock cycles, summed over the lanes, in which a lane had room for a ray and no ray came, modulo 2^32.
         #[inline]
         #[must_use]
         pub const fn cycles_idle(&self) -> Register<u32, ReadOnly> {
@@ -4564,7 +4564,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_58fc) }
         }
 
-        /// `evaluations`, 32 bits: Evaluations of the field: slots of the lanes that were occupied, modulo 2^32.
+        /// `evaluations`, 32 bits: Evaluations of the field: occupied slots of the lanes, modulo 2^32.
         #[inline]
         #[must_use]
         pub const fn evaluations(&self) -> Register<u32, ReadOnly> {
@@ -4572,7 +4572,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5900) }
         }
 
-        /// `hits`, 32 bits: Rays that came to a surface, modulo 2^32.
+        /// `hits`, 32 bits: Rays that hit, modulo 2^32.
         #[inline]
         #[must_use]
         pub const fn hits(&self) -> Register<u32, ReadOnly> {
@@ -4580,7 +4580,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5904) }
         }
 
-        /// `misses`, 32 bits: Rays that went by, modulo 2^32.
+        /// `misses`, 32 bits: Rays that missed, modulo 2^32.
         #[inline]
         #[must_use]
         pub const fn misses(&self) -> Register<u32, ReadOnly> {
@@ -4588,7 +4588,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5908) }
         }
 
-        /// `undecided`, 32 bits: Rays that were given up, modulo 2^32.
+        /// `undecided`, 32 bits: Undecided rays, modulo 2^32.
         #[inline]
         #[must_use]
         pub const fn undecided(&self) -> Register<u32, ReadOnly> {
@@ -4612,14 +4612,14 @@ pub mod raymarch {
     }
 
     impl Caps {
-        /// `lanes`, bits 2 to 0: Evaluations of the field a clock.
+        /// `lanes`, bits 2 to 0: Lanes: evaluations of the field per clock.
         #[inline]
         #[must_use]
         pub const fn lanes(self) -> u8 {
             (self.0 & 0x7) as u8
         }
 
-        /// `levels`, bits 6 to 4: The deepest sponge; 0: none.
+        /// `levels`, bits 6 to 4: Largest depth of a sponge; 0 without sponges.
         #[inline]
         #[must_use]
         pub const fn levels(self) -> u8 {
@@ -4633,28 +4633,28 @@ pub mod raymarch {
             (self.0 >> 9) & 1 != 0
         }
 
-        /// `round`, bit 10: Spheres, alone and beside what has faces.
+        /// `round`, bit 10: Spheres, alone and in unions.
         #[inline]
         #[must_use]
         pub const fn round(self) -> bool {
             (self.0 >> 10) & 1 != 0
         }
 
-        /// `blend`, bit 11: Fillets between both.
+        /// `blend`, bit 11: Fillets between spheres and flat fields.
         #[inline]
         #[must_use]
         pub const fn blend(self) -> bool {
             (self.0 >> 11) & 1 != 0
         }
 
-        /// `prepass`, bit 12: Cones before the rays.
+        /// `prepass`, bit 12: Prepass: cones before the rays.
         #[inline]
         #[must_use]
         pub const fn prepass(self) -> bool {
             (self.0 >> 12) & 1 != 0
         }
 
-        /// `flat`, bits 23 to 16: Bit k is set if flat fields of the kind k of `solid` are built.
+        /// `flat`, bits 23 to 16: Bit k is set if the flat field of kind k in `solid` is built.
         #[inline]
         #[must_use]
         pub const fn flat(self) -> u8 {
@@ -4677,7 +4677,7 @@ pub mod raymarch {
     }
 
     impl Control {
-        /// `enable`, bit 0: Frames of the raster pass have the field, after their triangles.
+        /// `enable`, bit 0: Draws the field in every raster pass, after the triangles.
         #[inline]
         #[must_use]
         pub const fn enable(self) -> bool {
@@ -4691,7 +4691,7 @@ pub mod raymarch {
             Self(self.0 & !0x1 | value as u32 & 0x1)
         }
 
-        /// `stereo`, bits 2 to 1: How many eyes look, and in which colours.
+        /// `stereo`, bits 2 to 1: Number of eyes, and their colours.
         #[inline]
         #[must_use]
         pub const fn stereo(self) -> Option<Stereo> {
@@ -4705,7 +4705,7 @@ pub mod raymarch {
             Self(self.0 & !(0x3 << 1) | (value as u32 & 0x3) << 1)
         }
 
-        /// `prepass`, bit 3: A cone for each block of pixels says where its rays begin.
+        /// `prepass`, bit 3: Marches a cone for each block of pixels first: the rays of the block start at the end of their cone.
         #[inline]
         #[must_use]
         pub const fn prepass(self) -> bool {
@@ -4742,7 +4742,7 @@ pub mod raymarch {
             self.0 & 1 != 0
         }
 
-        /// `error`, bits 5 to 4: What the registers ask for and is not built: frames are drawn without the field then.
+        /// `error`, bits 5 to 4: Feature that the registers request and this build lacks. Frames are then drawn without the field.
         #[inline]
         #[must_use]
         pub const fn error(self) -> Error {
@@ -4848,7 +4848,7 @@ pub mod raymarch {
     }
 
     impl Solid {
-        /// `levels`, bits 6 to 1: Levels of the sponge that count, the first one in bit 0.
+        /// `levels`, bits 6 to 1: Levels of the sponge in use, the first level in bit 0.
         #[inline]
         #[must_use]
         pub const fn levels(self) -> u8 {
@@ -4862,7 +4862,7 @@ pub mod raymarch {
             Self(self.0 & !(0x3f << 1) | (value as u32 & 0x3f) << 1)
         }
 
-        /// `has`, bits 10 to 8: Axes along which the box has an end, x in bit 0.
+        /// `has`, bits 10 to 8: Axes along which the box is bounded, x in bit 0.
         #[inline]
         #[must_use]
         pub const fn has(self) -> u8 {
@@ -4876,7 +4876,7 @@ pub mod raymarch {
             Self(self.0 & !(0x7 << 8) | (value as u32 & 0x7) << 8)
         }
 
-        /// `room`, bit 11: The solid is what is outside of the box.
+        /// `room`, bit 11: The solid is the space outside of the box.
         #[inline]
         #[must_use]
         pub const fn room(self) -> bool {
@@ -4890,7 +4890,7 @@ pub mod raymarch {
             Self(self.0 & !(0x1 << 11) | (value as u32 & 0x1) << 11)
         }
 
-        /// `repeated`, bit 12: The box repeats itself every 64 units along each axis.
+        /// `repeated`, bit 12: The box repeats every 64 field units along each axis.
         #[inline]
         #[must_use]
         pub const fn repeated(self) -> bool {
@@ -4904,7 +4904,7 @@ pub mod raymarch {
             Self(self.0 & !(0x1 << 12) | (value as u32 & 0x1) << 12)
         }
 
-        /// `is_round`, bit 13: There are spheres.
+        /// `is_round`, bit 13: The field has spheres.
         #[inline]
         #[must_use]
         pub const fn is_round(self) -> bool {
@@ -4918,7 +4918,7 @@ pub mod raymarch {
             Self(self.0 & !(0x1 << 13) | (value as u32 & 0x1) << 13)
         }
 
-        /// `flat_too`, bit 14: What has faces is there beside them.
+        /// `flat_too`, bit 14: The field is a union of the flat field and spheres.
         #[inline]
         #[must_use]
         pub const fn flat_too(self) -> bool {
@@ -4932,7 +4932,7 @@ pub mod raymarch {
             Self(self.0 & !(0x1 << 14) | (value as u32 & 0x1) << 14)
         }
 
-        /// `spheres_repeated`, bit 15: The spheres repeat themselves every 64 units along each axis.
+        /// `spheres_repeated`, bit 15: The sphere repeats every 64 field units along each axis.
         #[inline]
         #[must_use]
         pub const fn spheres_repeated(self) -> bool {
@@ -4946,7 +4946,7 @@ pub mod raymarch {
             Self(self.0 & !(0x1 << 15) | (value as u32 & 0x1) << 15)
         }
 
-        /// `last_sphere`, bits 18 to 16: The last sphere's number; 0 where there is none.
+        /// `last_sphere`, bits 18 to 16: Number of the last sphere; 0 without spheres.
         #[inline]
         #[must_use]
         pub const fn last_sphere(self) -> u8 {
@@ -4960,7 +4960,7 @@ pub mod raymarch {
             Self(self.0 & !(0x7 << 16) | (value as u32 & 0x7) << 16)
         }
 
-        /// `last_light`, bits 21 to 20: The number of the last light on spheres.
+        /// `last_light`, bits 21 to 20: Number of the last light on spheres.
         #[inline]
         #[must_use]
         pub const fn last_light(self) -> u8 {
@@ -4974,7 +4974,7 @@ pub mod raymarch {
             Self(self.0 & !(0x3 << 20) | (value as u32 & 0x3) << 20)
         }
 
-        /// `kind`, bits 23 to 22: The flat field.
+        /// `kind`, bits 23 to 22: Kind of the flat field.
         #[inline]
         #[must_use]
         pub const fn kind(self) -> Option<Kind> {
@@ -5004,7 +5004,7 @@ pub mod raymarch {
     }
 
     impl Tuning {
-        /// `threshold`, bits 15 to 0: A ray has arrived where the distance is below this, u4.12 ...
+        /// `threshold`, bits 15 to 0: Threshold, u4.12: a ray hits where the distance is below threshold + t * 2^-footprint.
         #[inline]
         #[must_use]
         pub const fn threshold(self) -> u16 {
@@ -5018,7 +5018,7 @@ pub mod raymarch {
             Self(self.0 & !0xffff | value as u32 & 0xffff)
         }
 
-        /// `footprint`, bits 19 to 16: ... and t * 2^-footprint, 7 to 15.
+        /// `footprint`, bits 19 to 16: Footprint, 7 to 15: the exponent of the part of the threshold that grows with t.
         #[inline]
         #[must_use]
         pub const fn footprint(self) -> u8 {
@@ -5032,7 +5032,7 @@ pub mod raymarch {
             Self(self.0 & !(0xf << 16) | (value as u32 & 0xf) << 16)
         }
 
-        /// `cap`, bits 27 to 20: Evaluations after which a ray is given up, from 1.
+        /// `cap`, bits 27 to 20: Step limit, at least 1: evaluations after which a ray is undecided. Fields with spheres take four times this limit.
         #[inline]
         #[must_use]
         pub const fn cap(self) -> u8 {
@@ -5062,7 +5062,7 @@ pub mod raymarch {
     }
 
     impl DepthScale {
-        /// `mantissa`, bits 16 to 0: In 2^16 to 2^17 - 1.
+        /// `mantissa`, bits 16 to 0: Mantissa, 2^16 to 2^17 - 1.
         #[inline]
         #[must_use]
         pub const fn mantissa(self) -> u32 {
@@ -5076,7 +5076,7 @@ pub mod raymarch {
             Self(self.0 & !0x0001_ffff | value & 0x0001_ffff)
         }
 
-        /// `exponent`, bits 22 to 17: Two's complement.
+        /// `exponent`, bits 22 to 17: Exponent, two's complement.
         #[inline]
         #[must_use]
         pub const fn exponent(self) -> u8 {
@@ -5106,7 +5106,7 @@ pub mod raymarch {
     }
 
     impl Table {
-        /// `part`, bits 7 to 0: Of 255.
+        /// `part`, bits 7 to 0: Share, of 255.
         #[inline]
         #[must_use]
         pub const fn part(self) -> u8 {
@@ -5120,7 +5120,7 @@ pub mod raymarch {
             Self(self.0 & !0xff | value as u32 & 0xff)
         }
 
-        /// `entry`, bits 16 to 8: 0 to 255: what the fog hides, by depth. 256 to 511: what light is left, by evaluations.
+        /// `entry`, bits 16 to 8: 0 to 255: share hidden by fog, by depth. 256 to 511: share of light left, by evaluations.
         #[inline]
         #[must_use]
         pub const fn entry(self) -> u16 {
@@ -5150,7 +5150,7 @@ pub mod raymarch {
     }
 
     impl Sphere {
-        /// `value`, bits 23 to 0: A constant of spheres or their light.
+        /// `value`, bits 23 to 0: Value of the constant.
         #[inline]
         #[must_use]
         pub const fn value(self) -> u32 {
@@ -5164,7 +5164,7 @@ pub mod raymarch {
             Self(self.0 & !0x00ff_ffff | value & 0x00ff_ffff)
         }
 
-        /// `entry`, bits 29 to 24: 0 to 2: a sphere's centre, x, y, z, s9.12. 3: its radius, u9.12. 4: the inverse of the radius in bits 0 to 16, and its shift. 8 + n: the colour of sphere n, which takes these constants. 16 + 4i + 0, 1, 2: the direction to light i, s1.16. 16 + 4i + 3: its colour. 5: the ambient light's colour. 6: the width of the fillet, u5.12, 0 without one. 7: 1 over twice that, u1.16. 32, 33: the colours of the faces 6 and 7 of a field that has eight.
+        /// `entry`, bits 29 to 24: 0 to 2: centre of a sphere, x, y, z, s9.12. 3: radius of the sphere, u9.12. 4: inverse of the radius in bits 0 to 16, and its shift. 5: colour of the ambient light. 6: width of the fillet, u5.12, 0 without a fillet. 7: 1 / (2 * width), u1.16. 8 + n: colour of sphere n, which also takes the constants 0 to 4. 16 + 4i + 0, 1, 2: direction to light i, s1.16. 16 + 4i + 3: colour of light i. 32, 33: colours of the faces 6 and 7 of a field with eight faces.
         #[inline]
         #[must_use]
         pub const fn entry(self) -> u8 {
@@ -5232,13 +5232,13 @@ pub mod raymarch {
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     #[repr(u8)]
     pub enum Error {
-        /// What is asked for is built.
+        /// All requested features are built.
         None = 0,
-        /// The sponge, so many levels of it, boxes, spheres, or fillets are not built.
+        /// The flat field, the depth of the sponge, spheres or fillets are not built.
         Field = 1,
         /// Two eyes are not built.
         Stereo = 2,
-        /// Cones are not built.
+        /// The prepass is not built.
         Prepass = 3,
     }
 
@@ -5273,10 +5273,10 @@ pub mod raymarch {
         #[must_use]
         pub const fn text(self) -> &'static str {
             match self {
-                Self::None => "what is asked for is built",
-                Self::Field => "the sponge, so many levels of it, boxes, spheres, or fillets are not built",
+                Self::None => "all requested features are built",
+                Self::Field => "the flat field, the depth of the sponge, spheres or fillets are not built",
                 Self::Stereo => "two eyes are not built",
-                Self::Prepass => "cones are not built",
+                Self::Prepass => "the prepass is not built",
             }
         }
     }
@@ -5335,21 +5335,21 @@ pub mod raymarch {
     pub struct Counters {
         /// Clock cycles in which a field was drawn, modulo 2^32.
         pub cycles_busy: u32,
-        /// Clock cycles in which a ray waited as no end of one was taken, modulo 2^32.
+        /// Clock cycles in which a ray waited because no end of a ray was taken, modulo 2^32.
         pub cycles_stalled: u32,
         /// Rays, modulo 2^32.
         pub items_in: u32,
-        /// Pixels given to the band buffer, each eye's, modulo 2^32.
+        /// Pixels given to the band buffer, counted for each eye, modulo 2^32.
         pub items_out: u32,
-        /// Clock cycles, of each lane, in which it had room for a ray and none came, modulo 2^32.
+        /// Clock cycles, summed over the lanes, in which a lane had room for a ray and no ray came, modulo 2^32.
         pub cycles_idle: u32,
-        /// Evaluations of the field: slots of the lanes that were occupied, modulo 2^32.
+        /// Evaluations of the field: occupied slots of the lanes, modulo 2^32.
         pub evaluations: u32,
-        /// Rays that came to a surface, modulo 2^32.
+        /// Rays that hit, modulo 2^32.
         pub hits: u32,
-        /// Rays that went by, modulo 2^32.
+        /// Rays that missed, modulo 2^32.
         pub misses: u32,
-        /// Rays that were given up, modulo 2^32.
+        /// Undecided rays, modulo 2^32.
         pub undecided: u32,
     }
 

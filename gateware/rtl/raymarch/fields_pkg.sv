@@ -1,23 +1,23 @@
 // Generated from gateware/glint_soc/fields.py by `gateware/tests/run.py --packages`. Do not edit.
-// What the raymarcher needs to know of flat fields, by their numbers.
+// Properties of the flat fields, by number.
 
 `default_nettype none
 
 package fields_pkg;
-    // Each module uses some.
+    // Each module uses a part of the constants.
     /* verilator lint_off UNUSEDPARAM */
     localparam int unsigned KIND_BITS = 2;
-    // The bits of all fields, and of those whose faces are perpendicular to the diagonals.
+    // Masks of all fields, and of the fields whose faces are perpendicular to the diagonals.
     localparam int unsigned ALL       = 7;
     localparam int unsigned OCTANTS   = 4;
     /* verilator lint_on UNUSEDPARAM */
 
-    // Whether faces of a kind are perpendicular to the diagonals.
+    // Whether the faces of a kind of field are perpendicular to the diagonals.
     function automatic logic has_octants(input logic [KIND_BITS-1:0] kind);
         has_octants = kind == 2'd2;
     endfunction
 
-    // Clocks from a point to its distance, of a choice between several fields.
+    // Clocks from a point to its distance, including the choice between several fields.
     function automatic int unsigned flat_clocks(input int unsigned levels, input int unsigned fields);
         flat_clocks = 0;
         if ((fields & 1) != 0 && 3 * levels + 3 > flat_clocks) flat_clocks = 3 * levels + 3;

@@ -19,7 +19,7 @@ module flat_fields #(
     localparam bit          CHOICE = (FIELDS & (FIELDS - 1)) != 0;
     localparam int unsigned KNOWN  = fields_pkg::flat_clocks(LEVELS, FIELDS) - (CHOICE ? 1 : 0);
 
-    // Distance and surface of each.
+    // Distance and surface of each field.
     logic [2:0][24:0] found;
     logic [24:0] chosen;
 

@@ -6,9 +6,9 @@
 package raymarch_registers_pkg;
     // Each module uses some.
     /* verilator lint_off UNUSEDPARAM */
-    // The solid: the fillet's width, u5.12, 0 without one, and 1 over twice that, u1.16; whether the flat field is there
-    // beside spheres, whether there are any, whether they repeat themselves, and the last one's number; the flat field, and
-    // its constants.
+    // The solid: width of the fillet, u5.12, 0 without a fillet, and 1 / (2 * width), u1.16; whether the flat field is in
+    // union with spheres; whether the field has spheres, whether they repeat, and the number of the last one; kind of the flat
+    // field, and its constants.
     typedef struct packed {
         logic [16:0] blend_width;
         logic [16:0] blend_inverse;
@@ -35,7 +35,7 @@ package raymarch_registers_pkg;
         logic [2:0][21:0] centre;
     } sphere_t;
 
-    // The light on spheres: the last light's number, ambient light, and lights in their colours from their directions, s1.16.
+    // Light on spheres: number of the last light, ambient light, colours of the lights, and directions to the lights, s1.16.
     typedef struct packed {
         logic [1:0] last_light;
         logic [23:0] ambient;
@@ -43,7 +43,7 @@ package raymarch_registers_pkg;
         logic [3:0][2:0][17:0] directions;
     } lights_t;
 
-    // The tuning: distance and part of t below which a ray has hit, its most evaluations, its largest t.
+    // Limits of a ray: threshold, footprint, step limit, far limit of t.
     typedef struct packed {
         logic [15:0] threshold;
         logic [3:0] footprint;
@@ -51,7 +51,7 @@ package raymarch_registers_pkg;
         logic [22:0] far_limit;
     } tuning_t;
 
-    // Colours, {blue, green, red}: the zenith, rays that were given up, and faces by their surface.
+    // Colours, {blue, green, red}: zenith, undecided rays, and faces by their surface.
     typedef struct packed {
         logic [23:0] zenith;
         logic [23:0] undecided;
