@@ -2,7 +2,7 @@
 //
 //   point - centre ─▶ |x|, |y|, |z| ─▶ shift ─▶ three squares, one sum ─▶ root ─▶ shift back ─▶ - radius ─▶ distance
 //                                        │                                            ▲
-//                                        └──────────── how far ───────────────────────┘
+//                                        └──────────── shift ─────────────────────────┘
 //
 // The shift makes the largest component fill 17 bits. The root is a linear interpolation between two entries of a
 // table. The length is never above the exact one, and below it by at most 3 plus a part of 2^-15 (12 fraction bits).

@@ -1,7 +1,7 @@
 // Lane of the raymarcher: rays circulate in a ring pipeline, one evaluation of the field per round, one evaluation a
 // clock in total.
 //
-//   rays ──▶ slot ─▶ o + t·d ─▶ field_unit ─▶ distance small? ─▶ far? given up? ─┐
+//   rays ──▶ slot ─▶ o + t·d ─▶ field_unit ─▶ distance ─▶ hit? miss? undecided? ─┐
 //             ▲                                                                   ├─▶ fifo ─▶ ends
 //             └───────────────────── t + distance ◀───────────────────────────────┘
 //

@@ -412,7 +412,7 @@ fn both_draw_the_same_pictures_of_the_sponge() {
             let found = accuracy(&expected, &traced.collect::<Vec<_>>());
             println!("{name}, depth {depth}: {found:?}");
             assert_eq!((found.iou, found.undecided), (1.0, 0), "{name}, {depth}");
-            let depths = found.depth.expect("it shows the sponge");
+            let depths = found.depth.expect("a hit on the sponge");
             assert!(depths.max < TOLERANCE, "{name}, {depth}: {depths:?}");
             assert!(found.wrong_faces < 1e-3, "{name}, {depth}");
         }

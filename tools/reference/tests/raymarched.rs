@@ -53,7 +53,7 @@ impl Seen {
 
     /// Checks the median and the 99th percentile of the depth errors.
     fn near(self, median: f64, p99: f64) -> Self {
-        let depth = self.found.depth.expect("something to see");
+        let depth = self.found.depth.expect("a hit");
         assert!(
             depth.median <= median && depth.p99 <= p99,
             "{}: {depth:?}",

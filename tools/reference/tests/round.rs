@@ -15,7 +15,7 @@ fn round_fields_are_where_they_are() {
         let picture = subject.picture(&FieldOptions::of(&subject.parsed));
         let found = Measured::new(&subject.expected, &picture).accuracy;
         println!("{}, {}: {found:?}", subject.scene, subject.name);
-        let depth = found.depth.expect("it shows something");
+        let depth = found.depth.expect("a hit");
         assert!(found.iou >= 0.999 && found.undecided == 0);
         assert!(found.wrong_faces <= 0.01);
         let horizon = subject.scene.starts_with("lattice");

@@ -75,7 +75,7 @@ pub fn rendered_ray(
                     (Face::of_normal(normal), normal)
                 }
                 Surface::Round { .. } => {
-                    let normal = setup.normal(ray, end).expect("it is round");
+                    let normal = setup.normal(ray, end).expect("a round surface");
                     (Face::Round, normal.map(f64::from))
                 }
                 Surface::Blended {
@@ -84,7 +84,10 @@ pub fn rendered_ray(
                     share,
                     ..
                 } => {
-                    let round = setup.normal(ray, end).expect("it is round").map(f64::from);
+                    let round = setup
+                        .normal(ray, end)
+                        .expect("a round surface")
+                        .map(f64::from);
                     let share = f64::from(share) / 256.0;
                     let mut normal = round.map(|part| part / length(round) * share);
                     normal[usize::from(axis)] += (1.0 - share) * if positive { 1.0 } else { -1.0 };
@@ -259,7 +262,7 @@ impl Subject {
 
     /// The frame constants.
     pub fn setup(&self, options: &FieldOptions) -> FieldSetup {
-        FieldSetup::new(&self.parsed, &self.view, self.size, options).expect("a size that there is")
+        FieldSetup::new(&self.parsed, &self.view, self.size, options).expect("a supported size")
     }
 
     /// The model's picture.
