@@ -238,7 +238,8 @@ module ring_lane #(
         assign from_early = {1'b0, t_early} + ({24{cones && is_last_early}} & ~{8'b0, footprint});
         wire _unused = &{1'b0, product[15:0]};
     end else begin : rays_alone
-        assign footprint  = 16'(t_early >> tuning.footprint);
+        // `tuning.footprint` is 7 to 15: a shift by 7, or by 8 and its low bits.
+        assign footprint  = tuning.footprint[3] ? {1'b0, t_early[22:8]} >> tuning.footprint[2:0] : t_early[22:7];
         assign wide       = 1'b0;
         assign from_early = {1'b0, t_early};
         wire _unused = &{1'b0, cones, in_ray.spread, is_last_early};
