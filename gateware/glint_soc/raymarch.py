@@ -9,6 +9,7 @@ from litex.soc.interconnect.csr import CSRField, CSRStatus, CSRStorage
 from litex.soc.interconnect.csr_eventmanager import EventManager, EventSourcePulse
 from migen import Case, Cat, Constant, If, Instance, Mux, ResetSignal, Signal
 
+from .counters import Counters
 from .fields import FLAT_FIELDS, KIND_BITS, NAMES, has_octants, mask
 from .packed import Package, Struct
 from .rtl import add_sources
@@ -154,22 +155,17 @@ class Raymarcher(LiteXModule):
                      "colours of the faces 6 and 7 of a field with eight faces."),
         ], description="Writing sets a constant of spheres, lights or faces.")
 
-        counters = {
+        self.counters = Counters(self, {
             "cycles_busy": "Clock cycles in which a field was drawn.",
             "cycles_stalled": "Clock cycles in which a ray waited because no end of a ray was taken.",
             "items_in": "Rays.",
             "items_out": "Pixels given to the band buffer, counted for each eye.",
-            "cycles_idle": "Clock cycles, summed over the lanes, in which a lane had room for a ray and no ray came.",
-            "evaluations": "Evaluations of the field: occupied slots of the lanes.",
+            "cycles_idle": ("Clock cycles, summed over the lanes, in which a lane had room for a ray and no ray came.", 3),
+            "evaluations": ("Evaluations of the field: occupied slots of the lanes.", 3),
             "hits": "Rays that hit.",
             "misses": "Rays that missed.",
             "undecided": "Undecided rays.",
-        }
-        status = {}
-        for name, description in counters.items():
-            status[name] = CSRStatus(32, name=name, description=description[:-1] + ", modulo 2^32.")
-            setattr(self, f"_{name}", status[name])
-        self.counters = list(counters)
+        })
 
         # # #
 
@@ -197,8 +193,9 @@ class Raymarcher(LiteXModule):
             **{name: getattr(tuning, name) for name in ("threshold", "footprint", "cap")}, "far_limit": self._far.storage})
         colours = Struct("palette_t", "Colours, {blue, green, red}: zenith, undecided rays, and faces by their surface.", {
             "zenith": palette[7], "undecided": palette[6], "faces": [*palette[:6], *self._octants(fields)]})
-        self.package = Package("raymarch", structs=[constants, sphere, lights, limits, colours])
-        # The engine's clock runs during a pass. Writes to tables and spheres start it between passes.
+        self.package = Package("raymarch", structs=[constants, sphere, lights, limits, colours, self.counters.events])
+        # The engine's clock runs during a pass. Writes to tables and spheres start it between passes. The last events come some
+        # clocks after the end of a pass, and all events are 0 when the clock stops.
         lingers, working = Signal(5), Signal()
         self.comb += [
             If(not_built | too_deep, error.eq(1)).Elif((stereo != 0) & int(not fields.stereo), error.eq(2)).Elif(
@@ -212,7 +209,6 @@ class Raymarcher(LiteXModule):
         self.sync += [
             was_busy.eq(busy),
             If(working, lingers.eq(31)).Elif(lingers != 0, lingers.eq(lingers - 1)),
-            If(engine.field.valid & engine.field.ready, status["items_out"].status.eq(status["items_out"].status + 1)),
         ]
         eye = Signal()
         self.comb += engine.field.halves.eq(Mux(stereo == 0, 0b11, Mux(eye, 0b10, 0b01)))
@@ -256,14 +252,7 @@ class Raymarcher(LiteXModule):
             i_group_ready    = engine.field.ready,
             o_group_eye      = eye,
             **{f"o_group_{name}": getattr(engine.field, name) for name in ("row", "line", "column", "mask", "code", "colour")},
-            o_clocks_busy    = status["cycles_busy"].status,
-            o_clocks_idle    = status["cycles_idle"].status,
-            o_clocks_waiting = status["cycles_stalled"].status,
-            o_evaluations    = status["evaluations"].status,
-            o_rays           = status["items_in"].status,
-            o_hits           = status["hits"].status,
-            o_misses         = status["misses"].status,
-            o_undecided      = status["undecided"].status,
+            o_events         = self.counters.events.value,
         )
         add_sources(platform, "raymarcher")
 

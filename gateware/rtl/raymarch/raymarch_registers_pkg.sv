@@ -57,6 +57,19 @@ package raymarch_registers_pkg;
         logic [23:0] undecided;
         logic [7:0][23:0] faces;
     } palette_t;
+
+    // Growth of each counter in this clock.
+    typedef struct packed {
+        logic cycles_busy;
+        logic cycles_stalled;
+        logic items_in;
+        logic items_out;
+        logic [2:0] cycles_idle;
+        logic [2:0] evaluations;
+        logic hits;
+        logic misses;
+        logic undecided;
+    } events_t;
     /* verilator lint_on UNUSEDPARAM */
 endpackage
 

@@ -19,8 +19,7 @@
 // one eye looks and the picture is wider than 320, or else 80×45 for each eye.
 //
 // Each lane takes one evaluation of the field a clock. `restart`, and reset, give the frame up. Groups: a stream, valid/ready, payload
-// stays. Counters run freely: clocks busy, evaluations, clocks in which a lane had room for a ray and none came, clocks in which a
-// ray waited as no end was taken, rays, and how they ended.
+// stays. `events` has the growth of each counter in this clock.
 
 `default_nettype none
 
@@ -84,15 +83,8 @@ module raymarcher #(
     output logic [7:0]                group_mask,
     output logic [17:0]               group_code,
     output logic [15:0]               group_colour,
-    // Counters.
-    output logic [31:0]               clocks_busy,
-    output logic [31:0]               clocks_idle,
-    output logic [31:0]               clocks_waiting,
-    output logic [31:0]               evaluations,
-    output logic [31:0]               rays,
-    output logic [31:0]               hits,
-    output logic [31:0]               misses,
-    output logic [31:0]               undecided
+    // Growth of each counter; 0 when no frame is drawn.
+    output raymarch_registers_pkg::events_t events
 );
     localparam int unsigned EARLY_BITS = $clog2(EARLY + 1);
     localparam int unsigned KEPT_BITS  = raymarch_pkg::end_bits(ROUND, BLEND);
@@ -285,11 +277,8 @@ module raymarcher #(
         wire _unused = &{1'b0, prepass, looks, number, cones_left};
     end
 
-    // The events are registered first: a carry chain of 32 bits is long enough by itself.
-    logic             ray_came, ended, waited;
-    raymarch_pkg::state_t how;
     logic [LANES-1:0] idles;
-    logic [2:0]       evaluated, idle_lanes;
+    logic             ended;
 
     function automatic logic [2:0] ones(input logic [LANES-1:0] which);
         ones = '0;
@@ -297,28 +286,19 @@ module raymarcher #(
     endfunction
 
     assign idles = lane_ready & ~(lane_valid & {LANES{ray_valid}});
+    assign ended = paint_valid && paint_ready;
 
-    always_ff @(posedge clk) begin
-        ray_came   <= ray_moves && !cones;
-        ended      <= paint_valid && paint_ready;
-        how        <= paint_end.state;
-        waited     <= waits != '0;
-        evaluated  <= ones(evaluates);
-        idle_lanes <= busy ? ones(idles) : '0;
-
-        clocks_busy    <= clocks_busy + 32'(busy);
-        clocks_idle    <= clocks_idle + 32'(idle_lanes);
-        clocks_waiting <= clocks_waiting + 32'(waited);
-        evaluations    <= evaluations + 32'(evaluated);
-        rays           <= rays + 32'(ray_came);
-        hits           <= hits + 32'(ended && how == raymarch_pkg::HIT);
-        misses         <= misses + 32'(ended && how == raymarch_pkg::MISS);
-        undecided      <= undecided + 32'(ended && how == raymarch_pkg::UNDECIDED);
-
-        if (rst) begin
-            {ray_came, ended, waited, evaluated, idle_lanes} <= '0;
-            {clocks_busy, clocks_idle, clocks_waiting, evaluations, rays, hits, misses, undecided} <= '0;
-        end
+    always_comb begin
+        events = '0;
+        events.cycles_busy    = busy;
+        events.cycles_stalled = waits != '0;
+        events.items_in       = ray_moves && !cones;
+        events.items_out      = group_moves;
+        events.cycles_idle    = busy ? ones(idles) : '0;
+        events.evaluations    = ones(evaluates);
+        events.hits           = ended && paint_end.state == raymarch_pkg::HIT;
+        events.misses         = ended && paint_end.state == raymarch_pkg::MISS;
+        events.undecided      = ended && paint_end.state == raymarch_pkg::UNDECIDED;
     end
 
     wire _unused = generating;

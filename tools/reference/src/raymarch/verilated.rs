@@ -3,12 +3,13 @@
 use glint_model::raymarch::{FieldSetup, Palette, Rays};
 use glint_model::triangle::descriptor::band_rows;
 use glint_testbench::raymarch::{Pixel, Place, pixel, set_blocks, set_lane, set_paint, set_rays};
-use glint_testbench::{Module, Port};
+use glint_testbench::{Counters, Module, Port};
 
 /// The raymarcher's module with every field. Bands are open immediately, and every pixel is accepted immediately.
 pub struct Raymarcher {
     module: Module,
     group: [Port; Pixel::PAYLOAD.len()],
+    counters: Counters,
     /// Counters after the previous picture.
     counted: Taken,
 }
@@ -36,6 +37,7 @@ impl Raymarcher {
         let group = Pixel::PAYLOAD.map(|name| module.port(&format!("group_{name}")));
         module.drive("group_ready", 1);
         Self {
+            counters: Counters::new(&module, "events"),
             module,
             group,
             counted: Taken::default(),
@@ -83,7 +85,7 @@ impl Raymarcher {
                     assert_eq!(found, wanted, "in band {band} of {setup:?}");
                     left -= 1;
                 }
-                self.module.clock();
+                self.clock();
             }
             assert_eq!(
                 left, 0,
@@ -92,12 +94,11 @@ impl Raymarcher {
             self.module.drive("band_open", 0);
             self.pulse("band_next");
         }
-        // Counters lag by some clocks.
-        (0..4).for_each(|_| self.module.clock());
-        let count = |name| self.module.value(self.module.port(name));
+        // The last events come some clocks after the end.
+        (0..4).for_each(|_| self.clock());
         let counted = Taken {
-            clocks: count("clocks_busy"),
-            evaluations: count("evaluations"),
+            clocks: self.counters.get("cycles_busy"),
+            evaluations: self.counters.get("evaluations"),
         };
         let before = std::mem::replace(&mut self.counted, counted);
         Taken {
@@ -112,8 +113,14 @@ impl Raymarcher {
 
     fn pulse(&mut self, name: &str) {
         self.module.drive(name, 1);
-        self.module.clock();
+        self.clock();
         self.module.drive(name, 0);
+    }
+
+    fn clock(&mut self) {
+        self.module.settle();
+        self.counters.sample(&self.module);
+        self.module.clock();
     }
 }
 

@@ -2,7 +2,7 @@
 
 use glint_model::SIZES;
 use glint_model::raymarch::{FieldSetup, FieldStats, Palette, Rays, State};
-use glint_testbench::{Module, Sink, Stalls};
+use glint_testbench::{Bits, Counters, Module, Sink, Stalls};
 
 use crate::scenes::{
     FIELDS, ROUND, SPONGES, UNIONS, band_lines, further_kinds, lights, setup, setup_with, tunnel,
@@ -13,11 +13,11 @@ use glint_testbench::raymarch::{
 use glint_vectors::Random;
 
 const COUNTERS: [&str; 8] = [
-    "clocks_busy",
-    "clocks_idle",
-    "clocks_waiting",
+    "cycles_busy",
+    "cycles_idle",
+    "items_out",
     "evaluations",
-    "rays",
+    "items_in",
     "hits",
     "misses",
     "undecided",
@@ -26,6 +26,7 @@ const COUNTERS: [&str; 8] = [
 struct Bench {
     module: Module,
     lanes: u64,
+    counters: Counters,
     counted: [u64; 8],
 }
 
@@ -49,11 +50,27 @@ impl Taken {
 
 impl Bench {
     fn new(name: &str, lanes: u64, seed: u32) -> Self {
+        let module = Module::new(name, seed);
         Self {
-            module: Module::new(name, seed),
+            counters: Counters::new(&module, "events"),
+            module,
             lanes,
             counted: [0; 8],
         }
+    }
+
+    fn clock(&mut self) {
+        self.module.settle();
+        self.counters.sample(&self.module);
+        self.module.clock();
+    }
+
+    fn clocks(&mut self, clocks: u32) {
+        (0..clocks).for_each(|_| self.clock());
+    }
+
+    fn counted(&self) -> [u64; 8] {
+        COUNTERS.map(|name| self.counters.get(name))
     }
 
     fn port(&mut self, name: &str, value: u64) {
@@ -63,7 +80,7 @@ impl Bench {
 
     fn pulse(&mut self, name: &str) {
         self.port(name, 1);
-        self.module.clock();
+        self.clock();
         self.port(name, 0);
     }
 
@@ -119,9 +136,7 @@ impl Bench {
             }
             if !hurry {
                 // The triangles of the band are drawn first.
-                for _ in 0..random.integer(0, 3000) {
-                    self.module.clock();
-                }
+                self.clocks(random.integer(0, 3000) as u32);
             }
             self.port("band_open", 1);
             let begun = self.module.cycles();
@@ -136,7 +151,7 @@ impl Bench {
                 if self.module.is_high(done) {
                     break;
                 }
-                self.module.clock();
+                self.clock();
             }
             for item in sink.take() {
                 let found = Pixel::from(std::array::from_fn(|i| item[i].number()));
@@ -154,16 +169,21 @@ impl Bench {
         stats.evaluations += rays.evaluations();
         let busy = self.module.port("busy");
         assert!(!self.module.is_high(busy), "busy after the last band");
-        // Counters lag by some clocks.
-        for _ in 0..4 {
-            self.module.clock();
-        }
-        let counted = COUNTERS.map(|name| self.module.value(self.module.port(name)));
+        // The last events come some clocks after the end.
+        self.clocks(4);
+        let events = self.module.port("events");
+        assert_eq!(
+            self.module.get(events),
+            Bits::default(),
+            "events of no frame"
+        );
+        let counted = self.counted();
         let counters = std::array::from_fn(|i| counted[i] - self.counted[i]);
         self.counted = counted;
         assert_eq!(
-            counters[3..],
+            counters[2..],
             [
+                stats.rays.into(),
                 stats.evaluations,
                 stats.rays.into(),
                 stats.hits.into(),
@@ -171,7 +191,7 @@ impl Bench {
                 stats.undecided.into()
             ],
             "{:?} of {setup:?}",
-            &COUNTERS[3..]
+            &COUNTERS[2..]
         );
         Taken { counters, stats }
     }
@@ -289,15 +309,11 @@ fn a_frame_given_up_leaves_nothing() {
         bench.port("band_open", 1);
         bench.port("group_ready", 1);
         bench.pulse("start");
-        for _ in 0..clocks {
-            bench.module.clock();
-        }
+        bench.clocks(clocks);
         bench.port("band_open", 0);
         bench.pulse("restart");
-        for _ in 0..4 {
-            bench.module.clock();
-        }
-        bench.counted = COUNTERS.map(|name| bench.module.value(bench.module.port(name)));
+        bench.clocks(4);
+        bench.counted = bench.counted();
         let mut setup = setup;
         setup.tuning.cap = 8;
         bench.draw(&mut random, &setup, &Palette::default(), false);
