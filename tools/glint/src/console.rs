@@ -1,4 +1,4 @@
-//! The firmware's console for programs: a command and its reply, line by line.
+//! The firmware's console for programs: sends a command, and reads its reply line by line.
 
 use crate::board::{Board, BoardError};
 use glint_core::console::PROMPT;
@@ -14,7 +14,7 @@ pub enum ConsoleError {
     Refused {
         /// The command.
         command: String,
-        /// The text behind `error: `.
+        /// The text after `error: ` in the reply.
         reason: String,
     },
     /// A timeout before the end of the reply.
@@ -29,7 +29,7 @@ pub enum ConsoleError {
         /// The last text received.
         last: String,
     },
-    /// A reply of another form.
+    /// A reply that does not have the expected form.
     #[error("the reply to `{command}`: expected {expected}, found {found:?}")]
     Reply {
         /// The command.
@@ -41,19 +41,19 @@ pub enum ConsoleError {
     },
 }
 
-/// Timeout of a reply in milliseconds: longer than the slowest frame of a board without accelerators.
+/// Time-out of a reply in milliseconds of the board's time: longer than the slowest frame of a board without accelerators.
 pub const PATIENCE_MS: u64 = 30_000;
 
 /// The console of a board.
 pub struct Console<'b, B: ?Sized = dyn Board> {
     board: &'b mut B,
-    /// Received bytes that are not read yet.
+    /// Received bytes that have not been used yet.
     pending: Vec<u8>,
     patience_ms: u64,
 }
 
 impl<'b, B: Board + ?Sized> Console<'b, B> {
-    /// The console of a board whose firmware runs.
+    /// Creates the console of a board whose firmware is running.
     pub fn new(board: &'b mut B) -> Self {
         Self {
             board,
@@ -71,7 +71,7 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         }
     }
 
-    /// Adds bytes that have been received elsewhere.
+    /// Adds bytes that other code has received from the board, as if the console had received them.
     pub fn hear(&mut self, said: &[u8]) {
         self.pending.extend_from_slice(said);
     }
@@ -106,8 +106,8 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         self.reply(command)
     }
 
-    /// Sends a command with a transfer. Returns true if the board is ready for the transfer, and false if the command has ended
-    /// without one.
+    /// Sends a command that may start a transfer. Returns true if the board is ready for the transfer, and false if the
+    /// command has ended without one.
     ///
     /// # Errors
     /// The firmware refuses the command, or does not answer.
@@ -116,8 +116,8 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         self.lines(command, &mut |_| {})
     }
 
-    /// Calls `on_line` with each line of a reply up to `ready` or the final `ok`. Returns true for `ready`: the board waits for a
-    /// transfer.
+    /// Calls `on_line` with each line of a reply up to `ready` or the final `ok`. Returns true if the reply ends with `ready`,
+    /// which says that the board waits for a transfer.
     ///
     /// # Errors
     /// The firmware refuses the command, or does not answer.
@@ -138,7 +138,7 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         }
     }
 
-    /// The first word of a value of `info`.
+    /// Sends `info KEY` and returns the first word of the value in its reply.
     ///
     /// # Errors
     /// An unknown key, or no answer.
@@ -149,7 +149,7 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         Ok(found.split(' ').next().unwrap_or_default().to_owned())
     }
 
-    /// The line and its received bytes, for a transfer.
+    /// The board, and the received bytes that have not been used yet. A transfer works on both.
     pub fn line(&mut self) -> (&mut B, &mut Vec<u8>) {
         (self.board, &mut self.pending)
     }
@@ -159,7 +159,7 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         self.board
     }
 
-    /// The rest of the reply to a command, up to `ok`.
+    /// Reads the rest of the reply to `command` and returns its lines without the final `ok`.
     ///
     /// # Errors
     /// The firmware refuses the command, or does not answer.
@@ -169,15 +169,15 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         Ok(lines)
     }
 
-    /// Sends a command and reads its echo.
+    /// Sends a command and waits for its echo.
     ///
     /// # Errors
     /// The board does not answer.
     pub fn send(&mut self, command: &str) -> Result<(), ConsoleError> {
-        // A zero discards an unfinished line.
+        // The zero byte makes the board discard an unfinished input line.
         self.board.write(format!("\0{command}\r").as_bytes())?;
         loop {
-            // Earlier output such as the prompt precedes the echo.
+            // The line of the echo may start with earlier output, such as the prompt.
             if self.next_line(command)?.ends_with(command) {
                 return Ok(());
             }
@@ -193,7 +193,8 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         }
     }
 
-    /// The next complete line. After a transfer its text starts behind the last zero byte.
+    /// Takes the next complete line out of the received bytes. After a transfer the line may start with bytes of the transfer, so
+    /// its text starts after the last zero byte.
     fn take_line(&mut self) -> Option<String> {
         let end = self.pending.iter().position(|&b| b == b'\n')?;
         let line: Vec<u8> = self.pending.drain(..=end).collect();
@@ -227,7 +228,7 @@ fn refused(command: &str, line: &str) -> Result<(), ConsoleError> {
     }
 }
 
-/// The value of a reply's line `key value`.
+/// The parsed value of the line `key value` in a reply.
 ///
 /// # Errors
 /// [`ConsoleError::Reply`] without such a line, or for a value of another type.
@@ -254,14 +255,14 @@ fn find(bytes: &[u8], wanted: &[u8]) -> Option<usize> {
         .position(|window| window == wanted)
 }
 
-/// Text without the escape sequences of terminals.
+/// Converts bytes to text, without the escape sequences of terminals.
 fn plain(bytes: &[u8]) -> String {
     let mut text = Vec::with_capacity(bytes.len());
     let mut rest = bytes.iter();
     while let Some(&byte) = rest.next() {
         match byte {
             0x1b => {
-                // A control sequence ends with a letter.
+                // A control sequence ends with a byte from 0x40 to 0x7E.
                 if rest.as_slice().first() == Some(&b'[') {
                     rest.next();
                     rest.by_ref().find(|b| (0x40..0x7f).contains(*b));
@@ -279,7 +280,7 @@ mod tests {
     use super::*;
     use std::collections::VecDeque;
 
-    /// Replays a board's output, one part after each line sent.
+    /// A board that answers each line that it receives with the next of its prepared replies.
     struct Script {
         replies: VecDeque<&'static str>,
         output: Vec<u8>,
@@ -295,7 +296,7 @@ mod tests {
         }
 
         fn read(&mut self, bytes: &mut Vec<u8>, wait_ms: u64) -> Result<(), BoardError> {
-            // Byte by byte: no line arrives in one read.
+            // Each read returns one byte, so that no line arrives in one read.
             if self.output.is_empty() {
                 self.now_ms += wait_ms;
             } else {

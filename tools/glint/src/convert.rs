@@ -112,7 +112,7 @@ struct FlatTriangle {
     colour: Option<Rgb8>,
 }
 
-/// All triangles that have an area after rounding, and the number of the others.
+/// Returns all triangles that have an area after rounding, and the number of those that have none.
 fn flat_triangles(polygons: &Polygons, rounded: &Rounded) -> (Vec<FlatTriangle>, usize) {
     let mut triangles = Vec::with_capacity(polygons.triangle_count());
     let mut degenerate = 0;
@@ -132,14 +132,15 @@ fn flat_triangles(polygons: &Polygons, rounded: &Rounded) -> (Vec<FlatTriangle>,
     (triangles, degenerate)
 }
 
-/// Face normal before rounding; `None` if the triangle has no area after rounding.
+/// Unit face normal, from the corners before rounding; `None` if the triangle has no area after rounding.
 fn normal(polygons: &Polygons, rounded: &Rounded, corners: [Corner; 3]) -> Option<Vector> {
-    // Differences have 17 bits, and their products are exact in f64: the test for zero area is exact.
+    // Differences of rounded coordinates have 17 bits, and their products are exact in f64, so the test for zero area is exact.
     let after = unit(area_vector(
         corners.map(|corner| rounded.position(corner).map(f64::from)),
     ))?;
     let before = unit(area_vector(corners.map(|corner| polygons.point(corner))));
-    // Rounding may flip a sliver: the rounded triangle is the one that is drawn.
+    // Rounding may turn a sliver over. Then the rounded corners give the normal, because the rounded triangle is
+    // the one that is drawn.
     Some(
         before
             .filter(|before| dot(*before, after) > 0.0)
@@ -147,7 +148,7 @@ fn normal(polygons: &Polygons, rounded: &Rounded, corners: [Corner; 3]) -> Optio
     )
 }
 
-/// Unique vertices, and the triangles between them.
+/// Returns the mesh's unique vertices, and its triangles as indices of vertices.
 fn index(
     polygons: &Polygons,
     rounded: &Rounded,
@@ -202,11 +203,11 @@ fn index(
     (vertices, indexed)
 }
 
-/// Identity of a vertex.
+/// Two vertices are the same if these values are equal: position, normal and colour.
 #[derive(PartialEq, Eq, Hash)]
 struct VertexKey([i16; 3], [i16; 3], Rgb565);
 
-/// A unit vector in Q2.14, to nearest.
+/// Rounds a unit vector to Q2.14, to nearest.
 fn direction(unit: Vector) -> [i16; 3] {
     unit.map(|c| (c * ONE + 0.5).floor() as i16)
 }
@@ -254,7 +255,7 @@ mod tests {
 
     #[test]
     fn scaled_to_the_unit_box() {
-        // The unused point does not count.
+        // The scale does not depend on the point that no face uses.
         let polygons = soup(
             &[
                 [10.0, 0.0, 0.0],

@@ -1,11 +1,11 @@
-//! Counters of an engine by name: a new one in the gateware needs no change here.
+//! Counters of an engine, identified by name, so that a new counter in the gateware needs no change here.
 
 use std::fmt;
 
 use serde::de::{IgnoredAny, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// Names and values, in the order in which the board prints them. Empty where no engine has drawn.
+/// Names and values of an engine's counters, in the order in which the board prints them; empty if no engine has drawn.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Counters(Vec<(String, u64)>);
 
@@ -39,7 +39,7 @@ impl Serialize for Counters {
     }
 }
 
-/// A line of the board's statistics. Only numbers are counters.
+/// The value of one line of the board's statistics. Only a number is a counter.
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Entry {

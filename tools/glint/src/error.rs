@@ -1,9 +1,9 @@
-//! Errors of inputs: place, expected, found; always one line. Limits of inputs.
+//! Errors of inputs, and limits of inputs. An error is one line: the place, the expected and the found content.
 
 use std::fmt;
 use std::path::Path;
 
-/// Maximum size of a file in bytes. An ASCII STL of this size has about as many triangles as a board's mesh memory.
+/// Maximum size of a file in bytes. An ASCII STL of this size has about as many triangles as fit a board's mesh memory.
 pub const MAX_FILE: usize = 512 << 20;
 /// Maximum length of a line in bytes; a polygon of [`MAX_POLYGON`] corners fits.
 pub const MAX_LINE: usize = 64 << 10;

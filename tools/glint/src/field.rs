@@ -24,7 +24,7 @@ pub fn with_files(text: &str) -> Result<Cow<'_, str>, InputError> {
 /// Reads spheres, `[[cx,cy,cz,r],...]` in world units, and returns them as `X,Y,Z,R;...`.
 ///
 /// # Errors
-/// Other JSON, no sphere, or more than [`MAX_SPHERES`]. The parser of fields checks the numbers.
+/// The JSON has another form, no sphere, or more than [`MAX_SPHERES`]. The parser of fields checks the numbers.
 pub fn spheres(bytes: &[u8]) -> Result<String, FormatError> {
     let list: Vec<[f64; 4]> = serde_json::from_slice(bytes).map_err(|error| {
         let found = error.to_string().escape_debug().to_string();

@@ -1,14 +1,15 @@
 //! LiteX's serial boot (SFL), host side.
 //!
-//! The BIOS sends a request and waits for an answer. It then takes frames: a length byte, a CRC-16, a command, a payload. It answers
-//! each complete frame with one letter, in order, and drops a frame that stays incomplete for 250 ms. A frame carries its own
-//! address, so it may be sent again at any time.
+//! The BIOS sends a request and waits for an answer. It then takes frames, each made of a length byte, a CRC-16, a command and a
+//! payload. It answers each complete frame with one letter, in order, and drops a frame that stays incomplete for 250 ms. A frame
+//! carries its own address, so it may be sent again at any time.
 //!
-//! The letters carry no number, so a lost answer could be taken for the next frame's. Frames therefore go in batches. A batch has
-//! arrived when its answers are exactly one `K` per frame. Otherwise the host waits until the line has been quiet, so that both sides
-//! agree on the start of a frame, and sends the whole batch again. After a failure batches and frames get shorter, because a short
-//! frame is hit less often. After a success they grow: frames up to the size of the BIOS's buffer, batches where answers take time.
-//! A line that answers at once gains nothing from batches, and may be faster than the BIOS.
+//! The letters carry no frame number, so after a lost answer the answer to the next frame could be taken for it. Frames
+//! therefore go in batches. A batch has arrived when its answers are exactly one `K` per frame. Otherwise the host waits until
+//! the line has been quiet, so that both sides agree on the start of a frame, and sends the whole batch again. After a failure,
+//! batches and frames get shorter, because a short frame is damaged less often. After a success, frames grow up to the size of
+//! the BIOS's buffer. Batches grow only where answers take time: a line that answers at once gains nothing from them, and may
+//! be faster than the BIOS.
 
 mod frame;
 mod link;
@@ -18,15 +19,16 @@ pub use link::{FlashError, Report};
 use crate::board::Board;
 use link::{Delivery, Link};
 
-/// Request of a BIOS that is ready for a serial boot.
+/// Text that the BIOS sends when it is ready for a serial boot.
 pub const REQUEST: &[u8] = b"sL5DdSMmkekro\n";
 /// Answer to [`REQUEST`] that starts the transfer.
 pub const ACCEPT: &[u8] = b"z6IHG7cYDID6o\n";
 
-/// Wait for a request before the host sends `reboot`: the board may run a program.
+/// Time in milliseconds after which the host sends `reboot` if no request has come, because the board may be running a program.
 const POKE_MS: u64 = 2000;
 
-/// Sends a program to `address` and starts it there. `progress` gets the bytes that have arrived and the total.
+/// Sends a program to `address` and starts it there. `progress` is called with the number of bytes that
+/// have arrived, and their total.
 ///
 /// If no request comes, the host sends `reboot` once: a command of the BIOS and of Glint's firmware.
 ///
@@ -85,7 +87,7 @@ fn wait_for_request(board: &mut dyn Board, wait_ms: u64) -> Result<(), FlashErro
             board.write(b"\rreboot\r")?;
         }
         board.read(&mut heard, 100)?;
-        // Kept: the start of a request, and text for the error.
+        // Keeps the last bytes: they may hold the start of a request, and the error quotes the end of them.
         let surplus = heard.len().saturating_sub(1024);
         heard.drain(..surplus);
     }
@@ -111,7 +113,7 @@ mod tests {
         memory: BTreeMap<u32, u8>,
         jumped: Option<u32>,
         accepted: bool,
-        /// Bytes in 1000 that are hit, in both directions.
+        /// Number of bytes in 1000 that the line damages, in both directions.
         faults: usize,
         random: Random,
     }
@@ -131,7 +133,7 @@ mod tests {
             }
         }
 
-        /// A byte after the line: dropped, flipped, repeated or unchanged.
+        /// Returns what arrives when `byte` goes over the line: dropped, flipped, repeated or unchanged.
         fn line(&mut self, byte: u8) -> Vec<u8> {
             if self.random.below(1000) >= self.faults {
                 return vec![byte];

@@ -19,7 +19,7 @@ fn main() -> ExitCode {
     let bad_input = error
         .chain()
         .any(|cause| cause.is::<InputError>() || cause.is::<FormatError>());
-    // One line, even if the message of an operating system or board has several.
+    // The error is printed on one line, even if the message of an operating system or board has several.
     eprintln!(
         "error: {}",
         format!("{error:#}").trim_end().replace('\n', " ")

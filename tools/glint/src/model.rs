@@ -1,4 +1,4 @@
-//! MODEL of the command line: a mesh file, or a generator.
+//! The argument MODEL of the command line: a mesh file, or a generator.
 
 use crate::convert::{self, Options, Report};
 use crate::error::InputError;

@@ -3,21 +3,22 @@
 use crate::polygons::Vector;
 use crate::triangulate::{dot, sub, unit};
 
-/// Sums the face normals about each point, weighted with the face's angle there, so that the result does not depend on the
-/// triangulation (Thürmer and Wüthrich, 1998).
+/// Sums of the face normals at each point. Each normal is weighted with the face's angle at the point, so that the result does
+/// not depend on the triangulation (Thürmer and Wüthrich, 1998).
 pub struct NormalSums {
     sums: Vec<Vector>,
 }
 
 impl NormalSums {
-    /// Sums for a number of points.
+    /// Creates sums of zero for `points` points.
     pub fn new(points: usize) -> Self {
         Self {
             sums: vec![[0.0; 3]; points],
         }
     }
 
-    /// Adds a triangle: numbers and positions of its points.
+    /// Adds the normal of a triangle to the sums of its points; `numbers` and `places` are the numbers
+    /// and positions of the points.
     pub fn add(&mut self, numbers: [usize; 3], places: [Vector; 3], normal: Vector) {
         let [a, b, c] = places;
         for (number, [a, b, c]) in numbers.into_iter().zip([[a, b, c], [b, c, a], [c, a, b]]) {
@@ -31,9 +32,9 @@ impl NormalSums {
         }
     }
 
-    /// Normal at a point; `None` if its faces cancel out.
+    /// Unit normal at a point; `None` if the normals of its faces cancel out.
     pub fn at(&self, number: usize) -> Option<Vector> {
-        // The sum of angles is at most a few turns: a smaller value is rounding error.
+        // The weights are angles of a few turns in total, so a sum shorter than 1e-9 is only rounding error.
         self.sums
             .get(number)
             .copied()

@@ -21,7 +21,7 @@ pub struct Image {
 }
 
 impl Image {
-    /// An image of this size without its colours and depth codes.
+    /// Creates an image of this size with empty lists of colours and depth codes.
     pub const fn empty(size: Size) -> Self {
         Self {
             width: size.width(),
@@ -31,7 +31,7 @@ impl Image {
         }
     }
 
-    /// The picture in 8 bits a channel, by bit replication as the scan-out does it.
+    /// Converts the colours to 8 bits a channel by bit replication, as the scan-out does it.
     pub fn picture(&self) -> Picture {
         let rgb = self
             .colour
@@ -41,7 +41,8 @@ impl Image {
         Picture::new(self.width as usize, self.height as usize, rgb)
     }
 
-    /// Writes the distance along n in world units as one little-endian f32 a pixel, +inf where the code is clear.
+    /// Writes the distance along n in world units as one little-endian f32 a pixel, and +inf for a pixel
+    /// whose depth code is clear.
     ///
     /// # Errors
     /// The file cannot be written.

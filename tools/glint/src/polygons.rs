@@ -13,7 +13,7 @@ impl Rgb8 {
     /// Colour of surfaces without a colour: a light warm grey.
     pub const DEFAULT: Self = Self([0xd8, 0xd8, 0xd0]);
 
-    /// From three intensities; values outside 0 to 1 saturate.
+    /// Converts three intensities from 0 to 1; values outside saturate.
     pub fn from_unit(rgb: [f64; 3]) -> Self {
         Self(rgb.map(|c| (c.clamp(0.0, 1.0) * 255.0).round() as u8))
     }
@@ -62,7 +62,7 @@ pub struct Polygons {
     pub points: Vec<Vector>,
     /// One colour per point, or empty.
     pub point_colours: Vec<Rgb8>,
-    /// Normals of the file, of any length.
+    /// Normals from the file. Their vectors may have any length.
     pub normals: Vec<Vector>,
     /// The corners of all faces.
     pub corners: Vec<Corner>,
@@ -75,7 +75,8 @@ pub struct Polygons {
     largest_normal: Largest,
 }
 
-/// The largest index and its place: enough to check forward references at the end.
+/// The largest index used so far, and its place. Faces may use points that come later, so the check follows at the end,
+/// and checks this index only.
 #[derive(Clone, Copy, Debug, Default)]
 struct Largest(Option<(u32, Place)>);
 
@@ -102,7 +103,7 @@ impl Polygons {
     /// Adds a point and returns its index.
     ///
     /// # Errors
-    /// [`MAX_POINTS`] exceeded.
+    /// There are more than [`MAX_POINTS`] points.
     pub fn add_point(&mut self, point: Vector, place: Place) -> Result<u32, FormatError> {
         push(&mut self.points, point, "points", place)
     }
@@ -110,7 +111,7 @@ impl Polygons {
     /// Adds a normal and returns its index.
     ///
     /// # Errors
-    /// [`MAX_POINTS`] exceeded.
+    /// There are more than [`MAX_POINTS`] normals.
     pub fn add_normal(&mut self, normal: Vector, place: Place) -> Result<u32, FormatError> {
         push(&mut self.normals, normal, "normals", place)
     }
@@ -118,7 +119,7 @@ impl Polygons {
     /// Adds a polygon. Its indices may refer to points added later.
     ///
     /// # Errors
-    /// Fewer than three corners, more than [`MAX_POLYGON`], or [`MAX_TRIANGLES`] exceeded.
+    /// The polygon has fewer than three corners or more than [`MAX_POLYGON`], or the mesh more than [`MAX_TRIANGLES`] triangles.
     pub fn add_face(
         &mut self,
         corners: &[Corner],
@@ -159,7 +160,7 @@ impl Polygons {
     /// Checks that there is a face, and that the points and normals of all corners exist.
     ///
     /// # Errors
-    /// No face, or the place of the largest index out of range.
+    /// There is no face, or an index is out of range; the error has the place of the largest index.
     pub fn check_indices(&self) -> Result<(), FormatError> {
         self.largest_point.check(self.points.len(), "point")?;
         self.largest_normal.check(self.normals.len(), "normal")?;
@@ -185,7 +186,7 @@ impl Polygons {
     }
 }
 
-/// Appends to a list of at most [`MAX_POINTS`]; returns the index.
+/// Appends a vector to a list of at most [`MAX_POINTS`]; returns its index.
 fn push(
     list: &mut Vec<Vector>,
     vector: Vector,

@@ -16,7 +16,7 @@ pub enum TransferError {
     /// An error of the transfer's protocol.
     #[error("{0}")]
     Failed(Failure),
-    /// Direct access to the memory of a board without it.
+    /// A transfer through memory on a board that offers no direct access to its memory.
     #[error("memory transfer: expected the virtual board, found a board with a serial line only")]
     NoMemory,
 }
@@ -43,7 +43,7 @@ impl Route {
 /// A callback with the bytes transferred and the total.
 pub type Progress<'p> = dyn FnMut(u64, u64) + 'p;
 
-/// The longest wait for an answer, in the board's time.
+/// Longest wait for bytes of the board in one read, in milliseconds of the board's time.
 const LOOK_MS: u64 = 2;
 
 /// Uploads a mesh and shows it.
@@ -59,7 +59,8 @@ pub fn upload<B: Board + ?Sized>(
     upload_for(console, "load", mesh, session, progress, &mut |_| {})
 }
 
-/// Uploads the data of a command, and calls `on_line` with the other lines of its reply.
+/// Sends the console command `name` with the length and CRC-32 of `data`, and uploads the data if the board asks for it. Calls
+/// `on_line` with the other lines of the reply.
 ///
 /// # Errors
 /// The transfer fails, or the firmware refuses.
@@ -77,7 +78,7 @@ pub fn upload_for<B: Board + ?Sized>(
     if console.lines(&command, on_line)? {
         let (board, pending) = console.line();
         let sent = send(board, pending, data, session, progress);
-        // The firmware's error says more than the error on this side.
+        // The rest of the reply is read even after a failed transfer, so that it is not taken for the reply to the next command.
         let reply = console.lines(&command, on_line);
         sent?;
         reply?;
@@ -85,7 +86,8 @@ pub fn upload_for<B: Board + ?Sized>(
     Ok(())
 }
 
-/// Writes data directly to the staging memory: the board then finds the CRC-32 of the next upload right, and skips its transfer.
+/// Writes data directly to the board's staging memory. The board then finds that they have the CRC-32
+/// of the next upload, and skips its transfer.
 ///
 /// # Errors
 /// [`TransferError::NoMemory`], or data beyond the memory.
@@ -98,7 +100,7 @@ pub fn stage<B: Board + ?Sized>(
     Ok(memory.write_memory(address, data)?)
 }
 
-/// Reads memory directly, `offset` bytes behind an address of `info`.
+/// Reads main memory directly, from `offset` bytes after the address that `info` prints for `key`.
 ///
 /// # Errors
 /// [`TransferError::NoMemory`], or an unknown key.
@@ -115,7 +117,7 @@ pub fn read_memory<B: Board + ?Sized>(
     Ok(bytes)
 }
 
-/// An address of `info`.
+/// The address that `info` prints for `key`.
 fn address<B: Board + ?Sized>(console: &mut Console<B>, key: &str) -> Result<u32, ConsoleError> {
     let word = console.info(key)?;
     word.strip_prefix("0x")
@@ -127,7 +129,7 @@ fn address<B: Board + ?Sized>(console: &mut Console<B>, key: &str) -> Result<u32
         })
 }
 
-/// Downloads the `length` bytes of a command such as `frame`.
+/// Sends a command such as `frame`, and downloads the `length` bytes that it provides.
 ///
 /// # Errors
 /// The board refuses the command, the transfer fails, or the length differs.
@@ -154,7 +156,7 @@ pub fn download<B: Board + ?Sized>(
     Ok(data)
 }
 
-/// Sends data to a board that is ready. Later bytes of the board stay in `pending`.
+/// Sends data to a board that waits for it. Bytes that the board sends after the transfer stay in `pending`.
 ///
 /// # Errors
 /// The transfer fails.
@@ -169,7 +171,8 @@ pub fn send<B: Board + ?Sized>(
     run(board, pending, &mut sender, progress)
 }
 
-/// Receives data from a board that is ready, and returns its length. Later bytes of the board stay in `pending`.
+/// Receives data from a board that is ready to send, and returns the data's length. Bytes that the board sends after
+/// the transfer stay in `pending`.
 ///
 /// # Errors
 /// The transfer fails.

@@ -15,7 +15,8 @@ pub struct Scratch {
     triangles: Vec<[Corner; 3]>,
 }
 
-/// Vector of twice a triangle's area; its tip is on the side from which the triangle runs counter-clockwise.
+/// Vector perpendicular to a triangle, as long as twice the area. It points to the side from
+/// which the triangle runs counter-clockwise.
 pub fn area_vector([a, b, c]: [Vector; 3]) -> Vector {
     cross(sub(b, a), sub(c, a))
 }
@@ -39,7 +40,8 @@ pub fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Vector of length 1 in the direction of `v`; `None` for zero and for infinite or invalid vectors. Any finite length works.
+/// Vector of length 1 in the direction of `v`; `None` for zero and for infinite or invalid vectors. Very short and
+/// very long vectors work too.
 pub fn unit(v: Vector) -> Option<Vector> {
     let largest = v.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
     if !(largest > 0.0 && largest.is_finite()) {
@@ -50,7 +52,7 @@ pub fn unit(v: Vector) -> Option<Vector> {
     Some(v.map(|c| c / length))
 }
 
-/// Triangles of a face, in the face's winding.
+/// Cuts a face into triangles that have the face's winding.
 pub fn face<'a>(polygons: &Polygons, face: &Face, scratch: &'a mut Scratch) -> &'a [[Corner; 3]] {
     let corners = polygons.corners_of(face);
     scratch.triangles.clear();
@@ -63,7 +65,7 @@ pub fn face<'a>(polygons: &Polygons, face: &Face, scratch: &'a mut Scratch) -> &
     &scratch.triangles
 }
 
-/// Projects a polygon along the axis nearest to its normal (Newell's method), so that it runs counter-clockwise.
+/// Projects a polygon along the axis nearest to its normal (Newell's method), so that it runs counter-clockwise in `plane`.
 fn project(polygons: &Polygons, corners: &[Corner], plane: &mut Vec<[f64; 2]>) {
     let origin = corners
         .first()
@@ -97,8 +99,9 @@ fn area([ax, ay]: [f64; 2], [bx, by]: [f64; 2], [cx, cy]: [f64; 2]) -> f64 {
     (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
 }
 
-/// Clips one ear after the other. Whether a corner is an ear is cached and updated beside a cut only, so the time grows with
-/// the square of the number of corners. A self-intersecting polygon may run out of ears: then any corner is clipped.
+/// Clips one ear after the other. Whether a corner is an ear is cached, and a cut updates only the two corners beside
+/// it, so the time grows with the square of the number of corners. A self-intersecting polygon may run out of ears:
+/// then any corner is clipped.
 fn clip_ears(corners: &[Corner], scratch: &mut Scratch) {
     let n = corners.len();
     scratch.next.clear();
@@ -126,12 +129,12 @@ fn clip_ears(corners: &[Corner], scratch: &mut Scratch) {
         for i in [before, after] {
             scratch.is_ear[i] = is_ear(scratch, i);
         }
-        // Skipping the neighbour makes fewer slivers than a fan.
+        // Going on after the neighbour makes fewer slivers than cutting a fan from one corner.
         at = scratch.next[after];
     }
 }
 
-/// Whether a corner is convex and no other corner lies in the triangle with its neighbours.
+/// Whether a corner is convex and no other corner lies in the triangle that it forms with its neighbours.
 fn is_ear(scratch: &Scratch, i: usize) -> bool {
     let (before, after) = (scratch.previous[i], scratch.next[i]);
     let [a, b, c] = [before, i, after].map(|i| scratch.plane[i]);
@@ -141,7 +144,7 @@ fn is_ear(scratch: &Scratch, i: usize) -> bool {
     let mut at = scratch.next[after];
     while at != before {
         let p = scratch.plane[at];
-        // A hole that is joined to the outline passes the same points twice; they do not count.
+        // A hole that is joined to the outline passes the same points twice; such points do not count.
         let shared = p == a || p == b || p == c;
         if !shared && area(a, b, p) >= 0.0 && area(b, c, p) >= 0.0 && area(c, a, p) >= 0.0 {
             return false;

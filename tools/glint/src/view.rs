@@ -54,7 +54,7 @@ fn vector<T: Fixed>(values: [f64; 3], name: &str) -> Result<[T; 3], FormatError>
     Ok([number(x, name)?, number(y, name)?, number(z, name)?])
 }
 
-/// Converts to fixed point, to nearest.
+/// Converts a value to fixed point, to nearest; an error mentions `name`.
 fn number<T: Fixed>(value: f64, name: &str) -> Result<T, FormatError> {
     T::checked_from_num(value).ok_or_else(|| {
         FormatError::whole(
@@ -67,7 +67,7 @@ fn number<T: Fixed>(value: f64, name: &str) -> Result<T, FormatError> {
 /// Camera on a sphere about the origin, from `R,THETA,PHI`: distance and two angles in degrees.
 ///
 /// # Errors
-/// Not three decimals, or outside the range of [`View::spherical`].
+/// The text is not three decimals, or a value is outside the range of [`View::spherical`].
 pub fn spherical(text: &str) -> Result<View, FormatError> {
     let refuse = || {
         FormatError::whole(

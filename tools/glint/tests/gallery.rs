@@ -12,7 +12,7 @@ fn docs() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs")
 }
 
-/// Arguments of each `glint …` command of the page; a `\` continues a line.
+/// Arguments of each `glint …` command in docs/gallery.md; a `\` continues a line.
 fn commands() -> Vec<Vec<String>> {
     let page = std::fs::read_to_string(docs().join("gallery.md")).expect("the page");
     let page = page.replace("\\\n", " ");

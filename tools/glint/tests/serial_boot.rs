@@ -12,7 +12,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::Duration;
 use virtual_board::{Start, VirtualBoard, pty::Pty};
 
-/// Time-out in cycles of the board: several times the need.
+/// Time-out in clock cycles of the board: several times what the tests need.
 const LIMIT: u64 = 400_000_000;
 
 /// Bytes of output kept for an error message.
@@ -95,7 +95,7 @@ impl Terminal {
                 self.seen.drain(..at + wanted.len());
                 return;
             }
-            // The progress bar prints megabytes.
+            // Only the end of the output is kept, because the progress bar prints megabytes.
             let keep = self
                 .seen
                 .floor_char_boundary(self.seen.len().saturating_sub(KEPT));
@@ -142,7 +142,7 @@ fn litex_term_loads_the_firmware_and_gets_an_answer() {
     terminal.type_in(b"info\r");
     terminal.wait_for("triangles 12", &board);
     terminal.wait_for("ok", &board);
-    // litex_term ends on two Ctrl-C within half a second; the second counts once the first was read.
+    // litex_term ends on two Ctrl-C within half a second. The second one counts only after the first has been read.
     terminal.type_in(b"\x03");
     terminal.wait_for("^C", &board);
     terminal.type_in(b"\x03");

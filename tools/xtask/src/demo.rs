@@ -18,8 +18,8 @@ pub fn demo(arguments: &[String]) -> Result<()> {
     tool("glint", "glint", "demo", arguments)
 }
 
-/// Builds everything and measures the page `name` of the report; for the raymarcher's also builds the SoC with four lanes and
-/// the raymarcher alone. `pages` rebuilds all pages from their tables and needs no build.
+/// Builds everything and measures the page `name` of the report. For the raymarcher's page it also builds the SoC with four lanes
+/// and the raymarcher alone. With `pages` as name it rebuilds all pages from their tables, and needs no build.
 ///
 /// # Errors
 /// A build or a measurement fails.

@@ -35,14 +35,14 @@ pub fn build(features: &[&str]) -> Result<PathBuf> {
     ]);
     cargo.arg("--features").arg(features.join(","));
     if features.contains(&"peers") {
-        // Generic kernels are instantiated in the program's crate, which therefore gets their optimization level.
+        // The program's crate instantiates the generic kernels, so it gets the optimization level of the kernels' crates.
         for package in ["glint-firmware", "\"*\""] {
             cargo
                 .arg("--config")
                 .arg(format!("profile.firmware.package.{package}.opt-level = 3"));
         }
     }
-    // A folder of its own: cargo locks a target folder during a build.
+    // The firmware has a target folder of its own, because cargo locks a target folder during a build.
     cargo
         .arg("--target-dir")
         .arg(&built)
@@ -69,7 +69,7 @@ fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     fs::write(path, bytes).with_context(|| format!("writing {}", path.display()))
 }
 
-/// The bytes for the start of main memory, and the sections that they consist of.
+/// Returns the bytes for the start of main memory, and a text that lists the sections that they consist of.
 fn image(elf: &[u8]) -> Result<(Vec<u8>, String)> {
     let file = ElfFile32::<Endianness>::parse(elf).context("not an ELF file")?;
     let endian = file.endian();
@@ -106,7 +106,7 @@ fn image(elf: &[u8]) -> Result<(Vec<u8>, String)> {
         if segment.p_type(endian) != PT_LOAD {
             continue;
         }
-        // Load address, which may differ from the run address.
+        // This is the load address, which may differ from the address at run time.
         let address = u64::from(segment.p_paddr(endian));
         let length = u64::from(segment.p_memsz(endian));
         let Ok(data) = segment.data(endian, elf) else {

@@ -37,7 +37,7 @@ impl Board {
     }
 }
 
-/// Fields of a raymarcher: `BUILDS` of `glint_soc/raymarch.py`.
+/// The sets of fields that a raymarcher can be built with: `BUILDS` of `glint_soc/raymarch.py`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Fields {
     /// Every field, with cones: two lanes
@@ -142,7 +142,7 @@ fn generate(board: Board, folder: &Path, options: &[&str]) -> Result<()> {
     fs::write(&stamp, inputs).with_context(|| format!("writing {}", stamp.display()))
 }
 
-/// Waveform output of a library.
+/// Whether a library has waveform output.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Waveforms {
     With,
@@ -171,7 +171,7 @@ fn verilate(folder: &Path, waveforms: Waveforms) -> Result<()> {
     )
 }
 
-/// A line that changes with any file below `roots`, and with `salt`.
+/// A text that changes when `salt` or any file below `roots` changes.
 fn fingerprint(roots: &[PathBuf], salt: &str) -> Result<String> {
     let mut hasher = DefaultHasher::new();
     salt.hash(&mut hasher);
@@ -186,7 +186,7 @@ fn fingerprint(roots: &[PathBuf], salt: &str) -> Result<String> {
     Ok(format!("{:016x}\n", hasher.finish()))
 }
 
-/// All files below the folder `root` in a fixed order, without Python's caches; for a file `root` alone.
+/// All files below the folder `root` in a fixed order, without Python's caches. If `root` is a file, only that file.
 fn files(root: &Path) -> Result<Vec<PathBuf>> {
     if !root.is_dir() {
         return Ok(vec![root.to_owned()]);

@@ -11,8 +11,8 @@
 //! A module is a file: an inline module belongs to the file around it. Libraries, binaries, tests and examples are checked, each as
 //! a crate of its own. A method call makes no arrow; the path to a type does. `use path::*` makes arrows for the used names.
 //!
-//! `cargo modules dependencies --acyclic` does the same with rust-analyzer, which takes minutes to compile. `syn` is compiled for the
-//! derives in any case, and names are enough here.
+//! `cargo modules dependencies --acyclic` does the same with rust-analyzer, which takes minutes to compile. This check uses
+//! `syn`, which is compiled for the derive macros in any case: the names that it finds are enough here.
 
 mod arrows;
 mod circles;
@@ -66,8 +66,7 @@ pub fn check() -> Result<()> {
     Ok(())
 }
 
-/// The circles of one crate as chains, `a → b (name) → a (name)`: the name in brackets is the item that the arrow before it
-/// uses.
+/// The circles of one crate as chains `a → b (name) → a (name)`. Each name is the item that the arrow before it uses.
 fn circles(tree: &Crate) -> Vec<String> {
     let arrows = arrows::arrows(tree);
     circles::circles(&arrows)
@@ -88,7 +87,7 @@ fn chain(tree: &Crate, arrows: &Arrows, circle: &[usize]) -> String {
     text
 }
 
-/// The used part of `cargo metadata`'s output.
+/// The used part of the output of `cargo metadata`.
 #[derive(Deserialize)]
 struct Metadata {
     packages: Vec<Package>,

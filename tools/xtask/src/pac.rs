@@ -1,10 +1,9 @@
 //! `cargo xtask pac`: writes the register access crate and the register map's page from the SoC's own description.
 //!
-//! LiteX exports a SoC in two incomplete files: `soc.svd` has fields and interrupts, `csr.json` has access
-//! rights, constants and memories. `description.json` (`gateware/glint_soc/description.py`) has the rest: enumerated values, counters,
-//! the blocks' constants. [`soc::Soc`] joins the three and refuses contradictions; [`rust`] and [`markdown`] print the
-//! result. The output does not depend on the time, the machine or the order in which LiteX collects the parts: the same SoC
-//! gives the same bytes.
+//! LiteX exports a SoC in two incomplete files: `soc.svd` has fields and interrupts, `csr.json` has access rights, constants and
+//! memories. `description.json` (`gateware/glint_soc/description.py`) has the rest: enumerated values, counters, the blocks'
+//! constants. [`soc::Soc`] joins the three and refuses contradictions; [`rust`] and [`markdown`] print the result. The output
+//! does not depend on the time, the machine or the order in which LiteX collects the parts: the same SoC gives the same bytes.
 
 mod description;
 mod machine;

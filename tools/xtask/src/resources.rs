@@ -63,7 +63,7 @@ pub fn resources(options: &Options) -> Result<()> {
     within(&excesses)
 }
 
-/// Checks the own blocks against the budget; the SoC takes too long for every test.
+/// Checks this project's own blocks against the budget. The SoC takes too long to measure in every test.
 ///
 /// # Errors
 /// As [`resources`].

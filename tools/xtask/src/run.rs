@@ -19,7 +19,7 @@ const SHOWN_ON_FAILURE: usize = 60;
 /// Progress lines of the running steps.
 static SPINNERS: LazyLock<MultiProgress> = LazyLock::new(MultiProgress::new);
 
-/// Whether progress goes to standard error.
+/// Whether progress goes to standard error instead of standard output.
 static TO_STDERR: AtomicBool = AtomicBool::new(false);
 
 /// Sends progress to standard error from now on, for commands whose standard output is data.
@@ -66,7 +66,7 @@ pub fn watched_step(name: &str, command: &mut Command, mut watch: impl FnMut(&st
     let mut child = command
         .spawn()
         .with_context(|| format!("{name}: cannot start `{program}`"))?;
-    // The pipe ends once only the child holds its write end.
+    // The command still holds write ends of the pipe. They are replaced, so that the pipe ends when the child closes its own.
     command.stdout(Stdio::null()).stderr(Stdio::null());
     let mut tail = VecDeque::new();
     let mut lines = BufReader::new(reader);
@@ -89,7 +89,7 @@ pub fn watched_step(name: &str, command: &mut Command, mut watch: impl FnMut(&st
         print_progress(&format!("  ok   {seconds:6.1} s  {name}"));
         return Ok(());
     }
-    // One write: another step may print at the same time.
+    // One write prints everything, because another step may print at the same time.
     let tail: String = tail.iter().map(|line| format!("\n    {line}")).collect();
     print_progress(&format!("  FAIL {seconds:6.1} s  {name}{tail}"));
     bail!("{name} failed ({status}); see {}", log_path.display())
@@ -137,7 +137,7 @@ fn spinner(name: &str) -> ProgressBar {
     bar
 }
 
-/// `target/log/NAME.log`, with a valid file name.
+/// Path of a step's log: `target/log/NAME.log`, where NAME is made a valid file name.
 fn log_path(name: &str) -> Result<std::path::PathBuf> {
     let folder = paths::target().join("log");
     fs::create_dir_all(&folder).with_context(|| format!("creating {}", folder.display()))?;

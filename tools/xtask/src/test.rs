@@ -29,7 +29,7 @@ pub fn test() -> Result<()> {
     thread::scope(|scope| -> Result<()> {
         scope.spawn(|| {
             results.add(gateware_check("gateware tests", "gateware/tests/run.py"));
-            // The receiver is gone if a build has failed.
+            // The error is ignored: it means that the receiver is gone because a build has failed.
             let _ = models_are_built.send(());
             results.add(gateware_check("proofs", "gateware/formal/run.py"));
             results.add(resources::check_own_blocks().map(|()| 1));
@@ -126,7 +126,7 @@ fn documentation() -> Result<u32> {
     Ok(1)
 }
 
-/// Runs a Python program as a check: benches with board files, or proofs.
+/// Runs a Python program as a check: the gateware tests, or the proofs.
 fn gateware_check(name: &str, program: &str) -> Result<u32> {
     run::step(
         name,

@@ -4,14 +4,14 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Absence of a part, such as the model of a block that computes nothing.
+/// Text of a cell for an absent part, such as the model of a block that computes nothing.
 const ABSENT: &str = "–";
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// Cells of a table's row, without code marks.
+/// Cells of a row of a table, without code marks.
 fn cells(row: &str) -> Vec<String> {
     let row = row.trim().trim_matches('|');
     row.split('|')
@@ -19,7 +19,7 @@ fn cells(row: &str) -> Vec<String> {
         .collect()
 }
 
-/// Rows of the table of blocks: its header first.
+/// Rows of the table of blocks; the first is its header.
 fn table() -> Vec<Vec<String>> {
     let page = fs::read_to_string(root().join("docs/architecture.md")).unwrap();
     page.lines()

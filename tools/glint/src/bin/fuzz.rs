@@ -32,7 +32,7 @@ struct Arguments {
     only: Option<u64>,
 }
 
-/// Inputs that a thread takes at once.
+/// Inputs that a thread takes at once from the shared counter.
 const STRIDE: u64 = 256;
 
 fn main() -> anyhow::Result<()> {
@@ -58,7 +58,7 @@ fn main() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Counts of a run.
+/// Counts of a run, shared by its threads.
 #[derive(Default)]
 struct Tally {
     next: AtomicU64,

@@ -1,6 +1,6 @@
 //! Errors of boards.
 
-/// An error of a board.
+/// An error in the access to a board.
 #[derive(Debug, thiserror::Error)]
 pub enum BoardError {
     /// An error of the virtual board.

@@ -2,38 +2,39 @@
 
 use super::error::BoardError;
 
-/// A board behind its serial line.
+/// A board that the host reaches over its serial line.
 pub trait Board {
-    /// Sends bytes, and blocks until all are taken.
+    /// Sends `bytes` to the board, and returns when the line has accepted all of them.
     ///
     /// # Errors
     /// The line is broken.
     fn write(&mut self, bytes: &[u8]) -> Result<(), BoardError>;
 
-    /// Appends received bytes. Without any it waits for the first, at most `wait_ms` milliseconds of the board's time.
+    /// Appends the bytes that the board has sent to `bytes`. If there are none yet, it waits for the first one, at most `wait_ms`
+    /// milliseconds of the board's time.
     ///
     /// # Errors
     /// The line is broken.
     fn read(&mut self, bytes: &mut Vec<u8>, wait_ms: u64) -> Result<(), BoardError>;
 
-    /// The board's time in milliseconds, the unit of all waits: a simulation may be slow.
+    /// The board's time in milliseconds. All waits are measured in it, because a simulated board may run slower than real time.
     fn now_ms(&self) -> u64;
 
-    /// Direct access to the board's main memory, where the board has it.
+    /// Direct access to the board's main memory; `None` for a board that offers its serial line only.
     fn memory(&mut self) -> Option<&mut dyn Memory> {
         None
     }
 }
 
-/// A board's main memory, by addresses of its CPU.
+/// Direct access to a board's main memory; addresses are those of the board's CPU.
 pub trait Memory {
-    /// Reads bytes.
+    /// Fills `bytes` with the main memory from `address` on.
     ///
     /// # Errors
     /// The range is not in main memory.
     fn read_memory(&mut self, address: u32, bytes: &mut [u8]) -> Result<(), BoardError>;
 
-    /// Writes bytes.
+    /// Writes `bytes` to main memory from `address` on.
     ///
     /// # Errors
     /// The range is not in main memory.

@@ -1,4 +1,4 @@
-//! Boards behind their serial line: the virtual board in this process, or a serial port.
+//! Access to boards over their serial line: the virtual board simulated in this process, or a board on a serial port.
 
 mod error;
 mod line;

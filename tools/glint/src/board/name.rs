@@ -1,15 +1,15 @@
-//! Boards as the command line names them.
+//! Names of boards on the command line.
 
 use std::convert::Infallible;
 use std::fmt;
 use std::str::FromStr;
 
-/// A board by its name.
+/// A board as named on the command line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum BoardName {
-    /// `virtual`: the verilated SoC in this process.
+    /// `virtual`: the verilated SoC, simulated in this process.
     Virtual,
-    /// Any other name: a serial port.
+    /// Any other name is that of a serial port.
     Serial(String),
 }
 
@@ -33,12 +33,12 @@ impl fmt::Display for BoardName {
     }
 }
 
-/// The bit-exact model in this process, or a board.
+/// What does the work of a command: the bit-exact model, which runs in this process without a board, or a board.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ModelOrBoard {
-    /// `model`.
+    /// `model`: the bit-exact model.
     Model,
-    /// Any other name.
+    /// Any other name is that of a board.
     Board(BoardName),
 }
 

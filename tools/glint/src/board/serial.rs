@@ -6,10 +6,10 @@ use serialport::SerialPort;
 use std::io::{self, Read, Write};
 use std::time::{Duration, Instant};
 
-/// The shortest wait of a read: a loop around it does not spin.
+/// Shortest time-out of a read from the port, so that a loop of reads does not keep a core busy.
 const SHORTEST: Duration = Duration::from_millis(1);
 
-/// A serial port, 8N1 without flow control.
+/// A board on a serial port with 8 data bits, no parity, 1 stop bit and no flow control.
 pub struct SerialBoard {
     port: Box<dyn SerialPort>,
     opened: Instant,
@@ -40,7 +40,7 @@ impl Board for SerialBoard {
         while !bytes.is_empty() {
             match self.port.write(bytes) {
                 Ok(written) => bytes = &bytes[written..],
-                // The port's buffer is full and empties at the speed of the line.
+                // The port's buffer is full. It empties at the speed of the line, so the loop tries again.
                 Err(error) if is_transient(&error) => {}
                 Err(error) => return Err(error.into()),
             }

@@ -1,25 +1,25 @@
-//! The virtual board in this process. A read advances the board's time.
+//! The virtual board, simulated in this process. A read from its serial line advances the simulation.
 
 use super::error::BoardError;
 use super::line::{Board, Memory};
 use std::path::{Path, PathBuf};
 use virtual_board::{Start, VirtualBoard};
 
-/// Cycles between two polls of the line.
+/// Simulated clock cycles between two checks for received bytes.
 const SLICE: u64 = 1000;
 
-/// A virtual board in this process.
+/// A virtual board, simulated in this process.
 pub struct SimulatedBoard {
     board: VirtualBoard,
 }
 
 impl SimulatedBoard {
-    /// A board that has been built.
+    /// Wraps a virtual board that the caller has built.
     pub fn new(board: VirtualBoard) -> Self {
         Self { board }
     }
 
-    /// A board that starts with `firmware` in its memory, without the BIOS.
+    /// Builds a virtual board that starts with `firmware` in its memory, without the BIOS.
     ///
     /// # Errors
     /// The gateware is not built.
@@ -31,7 +31,7 @@ impl SimulatedBoard {
         ))
     }
 
-    /// A board that starts with its BIOS.
+    /// Builds a virtual board that starts with its BIOS.
     ///
     /// # Errors
     /// The gateware is not built.
@@ -41,13 +41,13 @@ impl SimulatedBoard {
         ))
     }
 
-    /// The virtual board: pins, monitor, cycles.
+    /// The underlying virtual board, for access to its pins, its monitor and its cycle counter.
     pub fn inner(&mut self) -> &mut VirtualBoard {
         &mut self.board
     }
 }
 
-/// The firmware of a file, or the one that `cargo xtask firmware` has built in this checkout.
+/// Reads the firmware from `path`, or without a path the one that `cargo xtask firmware` has built in this checkout.
 ///
 /// # Errors
 /// [`BoardError::Firmware`] for a file that cannot be read.

@@ -1,4 +1,4 @@
-//! Boards, progress bars and output for all commands.
+//! Options, access to boards, progress bars and output that the commands share.
 
 use anyhow::Context;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -11,7 +11,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Options of a board's line.
+/// Options for the connection to a board.
 #[derive(clap::Args)]
 pub struct LineArguments {
     /// Bit rate of a serial port.
@@ -23,7 +23,7 @@ pub struct LineArguments {
 }
 
 impl LineArguments {
-    /// A virtual board at its firmware's first prompt.
+    /// Starts a virtual board and runs it to the firmware's first prompt.
     pub fn virtual_board(&self) -> anyhow::Result<SimulatedBoard> {
         let firmware = built_firmware(self.firmware.as_deref())?;
         let mut board = SimulatedBoard::fast(&firmware)?;
@@ -33,12 +33,12 @@ impl LineArguments {
         Ok(board)
     }
 
-    /// A board on a serial port.
+    /// Opens a board on a serial port.
     pub fn serial_board(&self, port: &str) -> anyhow::Result<SerialBoard> {
         Ok(SerialBoard::open(port, self.baud)?)
     }
 
-    /// The board of a name, running its firmware.
+    /// Opens the board that `name` selects. A virtual board is started and runs its firmware.
     pub fn board(&self, name: &BoardName) -> anyhow::Result<Box<dyn Board>> {
         Ok(match name {
             BoardName::Virtual => Box::new(self.virtual_board()?),
@@ -60,7 +60,7 @@ pub struct TransferArguments {
     pub json: bool,
 }
 
-/// A parser of names: returns the value of `all` with that name.
+/// Returns a clap parser that accepts the names of the values in `all` and converts a name to its value.
 pub fn named<T: Copy + Send + Sync + 'static, const N: usize>(
     all: [T; N],
     name: fn(T) -> &'static str,
@@ -71,7 +71,7 @@ pub fn named<T: Copy + Send + Sync + 'static, const N: usize>(
     })
 }
 
-/// A spinner for work of unknown length, on a terminal only.
+/// A spinner for work of unknown length. It is drawn on a terminal only.
 pub fn spinner(label: &str) -> ProgressBar {
     let spinner = ProgressBar::new_spinner().with_message(label.to_owned());
     spinner.set_style(style("{spinner} {msg} {elapsed}"));
@@ -79,14 +79,14 @@ pub fn spinner(label: &str) -> ProgressBar {
     spinner
 }
 
-/// A progress bar of bytes, on a terminal only.
+/// A progress bar that counts bytes. It is drawn on a terminal only.
 pub fn bar(label: &str) -> ProgressBar {
     let bar = ProgressBar::new(0).with_message(label.to_owned());
     bar.set_style(style("{msg} {wide_bar} {bytes}/{total_bytes} {eta}"));
     bar
 }
 
-/// A progress bar of counted items, on a terminal only.
+/// A progress bar that counts items, which the text `items` names. It is drawn on a terminal only.
 pub fn count_bar(label: &str, items: &str) -> ProgressBar {
     let bar = ProgressBar::new(0).with_message(label.to_owned());
     let template = format!("{{msg}} {{wide_bar}} {{pos}}/{{len}} {items} {{eta}}");
@@ -98,7 +98,7 @@ fn style(template: &str) -> ProgressStyle {
     ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
 }
 
-/// Sets the position of a bar.
+/// Returns a progress callback that sets the position and the length of a bar.
 pub fn advance(bar: &ProgressBar) -> impl FnMut(u64, u64) {
     move |done, all| {
         bar.set_length(all);
@@ -106,7 +106,7 @@ pub fn advance(bar: &ProgressBar) -> impl FnMut(u64, u64) {
     }
 }
 
-/// Prints a line. A closed pipe, as behind `head`, is no error.
+/// Prints a line to standard output. A closed pipe, as with `| head`, is no error.
 pub fn say(line: impl std::fmt::Display) -> anyhow::Result<()> {
     match writeln!(std::io::stdout(), "{line}") {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
@@ -121,7 +121,7 @@ pub fn print_json(value: &impl Serialize) -> anyhow::Result<()> {
     say(serde_json::to_string(value)?)
 }
 
-/// Writes a file whole.
+/// Writes `bytes` as the whole content of the file at `path`.
 pub fn write_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
     std::fs::write(path, bytes).with_context(|| format!("{}: cannot be written", path.display()))
 }

@@ -72,7 +72,7 @@ impl ConvertArguments {
     }
 }
 
-/// Report of a file that is not a GLM.
+/// The report of a conversion to OBJ, STL or PLY.
 #[derive(Serialize)]
 struct Copied {
     points: usize,
@@ -131,7 +131,7 @@ fn convert_to(
         .try_for_each(|remark| say(format_args!("note: {remark}")))
 }
 
-/// Prints a report as text.
+/// Prints the report of a conversion to GLM as text.
 pub fn print_report(report: &Report) -> anyhow::Result<()> {
     let Report {
         points,
@@ -164,7 +164,7 @@ pub fn print_report(report: &Report) -> anyhow::Result<()> {
         .try_for_each(|remark| say(format_args!("note       {remark}")))
 }
 
-/// Loads a MODEL.
+/// Loads the MODEL argument of a command: a mesh file, or the name of a generator.
 pub fn load(name: &str, keep_scale: bool) -> anyhow::Result<model::Model> {
     let spinner = spinner("reading the model");
     let model = model::load(name, Options { keep_scale })?;

@@ -57,13 +57,13 @@ const EYES: Stereo = Stereo {
     tint: Tint::RedBlue,
 };
 const SPONGE_FRAMES_PER_SECOND: u16 = 3;
-/// Time-out of the BIOS's boot, in board time.
+/// Longest wait for the BIOS's request for a serial boot, in milliseconds of the board's time.
 const BOOT_MS: u64 = 10_000;
 
 /// A model and its name.
 type Named<'n> = (&'n str, Model);
 
-/// One row of the table.
+/// A model's row in the table that the demo prints.
 struct Row {
     number: u32,
     picture: PathBuf,
@@ -88,7 +88,7 @@ impl DemoArguments {
             .collect::<anyhow::Result<Vec<_>>>()?;
         let firmware = built_firmware(self.firmware.as_deref())?;
 
-        // Two boards: a simulation uses one core, and most hosts have two.
+        // Two boards run in parallel: a simulation uses one core, and most hosts have two.
         let (first, others) = models.split_first().context("no model")?;
         let (mut rows, lines) = std::thread::scope(|scope| {
             let second = scope.spawn(|| self.second_board(first, others, &firmware));
@@ -106,7 +106,8 @@ impl DemoArguments {
         lines.into_iter().try_for_each(say)
     }
 
-    /// Full serial path: BIOS, serial boot, upload over the line; then the same picture by the soft core.
+    /// Runs the whole serial path on one board: BIOS, serial boot, upload over the line. Then the soft
+    /// core draws the same picture.
     fn first_board(&self, model: &Named, firmware: &[u8]) -> anyhow::Result<Row> {
         let mut board = SimulatedBoard::full()?;
         let mut renderer =
@@ -119,7 +120,8 @@ impl DemoArguments {
         Ok(row)
     }
 
-    /// Preloaded firmware and memory for the other models, the orbit about the last one, and the sponge.
+    /// Runs the second board, whose firmware is preloaded: shows the other models, uploaded through its memory, then the orbit
+    /// around the last one and the sponge.
     fn second_board(
         &self,
         first: &Named,
@@ -149,7 +151,7 @@ impl DemoArguments {
         Ok((rows, [orbit, sponge]))
     }
 
-    /// Shows a model on the board, captures the monitor, and compares the picture with the model's.
+    /// Shows a model on the board, saves the monitor's picture, and checks that it equals the picture of the bit-exact model.
     fn show(
         &self,
         renderer: &mut BoardRenderer<SimulatedBoard>,
@@ -188,7 +190,7 @@ impl DemoArguments {
         })
     }
 
-    /// Renders one turn about the shown model; returns the mean cycles of a frame.
+    /// Animates one turn of the camera around the shown model; returns the mean number of cycles of a frame.
     fn orbit(
         &self,
         renderer: &mut BoardRenderer<SimulatedBoard>,
@@ -201,7 +203,7 @@ impl DemoArguments {
         let mut cycles = 0;
         let mut images = Vec::new();
         for number in 0..self.orbit {
-            // `camera` is shorter than `view`: the serial line takes most of a frame's time.
+            // The text of `camera` is shorter than that of `view`, and the serial line takes most of a frame's time.
             let degrees = f64::from(number) * 360.0 / f64::from(self.orbit);
             let command = format!("camera {DISTANCE} {degrees:.3} {POLAR_DEGREES}");
             renderer.console().command(&command)?;
@@ -221,7 +223,7 @@ impl DemoArguments {
         Ok(cycles / u64::from(self.orbit.max(1)))
     }
 
-    /// Animates a camera that moves towards the sponge and around it; returns the mean cycles of a frame.
+    /// Animates a camera that moves towards the sponge and around it; returns the mean number of cycles of a frame.
     fn sponge(
         &self,
         renderer: &mut BoardRenderer<SimulatedBoard>,
@@ -236,7 +238,7 @@ impl DemoArguments {
         };
         let console = renderer.console();
         console.command(&size_command(SIZE))?;
-        // A new board: every other option has its default.
+        // No earlier command of this board has set another option of fields, so all of them have their defaults.
         console.command(&format!("stereo {EYES}"))?;
         console.command(&format!("field {SPONGE}"))?;
         let mut cycles = 0;
@@ -267,7 +269,7 @@ impl DemoArguments {
     }
 }
 
-/// Summary line of an animation; `cycles` is the mean of a frame.
+/// Summary line of an animation; `cycles` is the mean number of cycles of a frame.
 fn line(path: &Path, what: &str, size: Size, cycles: u64) -> String {
     format!(
         "{}: {what}, {size}, by the gateware in {cycles} cycles each: {:.0} frames a second at 81.25 MHz",
@@ -276,7 +278,7 @@ fn line(path: &Path, what: &str, size: Size, cycles: u64) -> String {
     )
 }
 
-/// Azimuth of a model's picture: a different side for each.
+/// Azimuth of the camera for a model's picture. Each model is seen from a different side.
 fn azimuth(number: u32) -> Turns {
     Turns::from_degrees(Q32_32::from_num(number * 50 + 30))
 }
@@ -284,10 +286,10 @@ fn azimuth(number: u32) -> Turns {
 const DISTANCE: u32 = 2;
 const POLAR_DEGREES: u32 = 60;
 
-/// Half width of the image plane at distance 1: models nearly fill the height of the picture.
+/// Half width of the image plane at distance 1. With this value models nearly fill the height of the picture.
 const HALF_WIDTH: f64 = 0.6;
 
-/// The camera at an azimuth.
+/// The demo's camera at `azimuth`.
 fn camera(azimuth: Turns) -> anyhow::Result<View> {
     let polar = Turns::from_degrees(Q32_32::from_num(POLAR_DEGREES));
     let view = View::spherical(Q32_32::from_num(DISTANCE), azimuth, polar);
@@ -304,7 +306,7 @@ fn camera(azimuth: Turns) -> anyhow::Result<View> {
     .map_err(anyhow::Error::msg)
 }
 
-/// Boots from reset through the BIOS's serial boot to the firmware's prompt.
+/// Boots a board from reset: the BIOS, its serial boot, then the firmware to its prompt. Returns the firmware's console.
 fn boot<'b>(
     board: &'b mut SimulatedBoard,
     firmware: &[u8],
@@ -331,7 +333,7 @@ fn boot<'b>(
     Ok(console)
 }
 
-/// File name for a model's name.
+/// File name of a picture, without extension, derived from the name of its model.
 fn file_stem(name: &str) -> String {
     let stem = Path::new(name)
         .file_stem()

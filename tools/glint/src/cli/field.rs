@@ -11,7 +11,7 @@ use glint_core::light::{self, Background, Light, MAX_LIGHTS, Material, parse_rgb
 use glint_core::stereo::{self, Stereo};
 use std::fmt::Display;
 
-/// A field and its appearance.
+/// Options of a distance field and its appearance.
 #[derive(Args)]
 pub struct FieldArguments {
     #[arg(long, value_name = "FIELD", help = field_help())]
@@ -39,18 +39,19 @@ pub struct FieldArguments {
     /// Ambient occlusion: darken narrow places of a field.
     #[arg(long)]
     occlusion: bool,
-    /// March a cone for each block of pixels first; its rays start where the cone ends. Fewer evaluations of the field.
+    /// Before the rays, march a cone for each block of pixels; the block's rays start where the cone ends. This
+    /// saves evaluations of the field.
     #[arg(long)]
     prepass: bool,
 }
 
 impl FieldArguments {
-    /// The text of the field, if given.
+    /// The text of `--field`, if given.
     pub fn name(&self) -> Option<&str> {
         self.field.as_deref()
     }
 
-    /// The field, if given.
+    /// The parsed field, if `--field` is given.
     pub fn field(&self) -> Result<Option<Field>, InputError> {
         let parse = |text| {
             let text = field::with_files(text)?;
@@ -60,7 +61,7 @@ impl FieldArguments {
         self.name().map(parse).transpose()
     }
 
-    /// The two eyes of stereo, if requested.
+    /// The parsed stereo settings, if `--stereo` is given.
     pub fn stereo(&self, with_mesh: bool) -> Result<Option<Stereo>, InputError> {
         let Some(text) = &self.stereo else {
             return Ok(None);
@@ -77,12 +78,12 @@ impl FieldArguments {
             .map_err(|error| refusal("--stereo", "two eyes", escaped(error)))
     }
 
-    /// Whether cones precede the rays.
+    /// Whether cones are marched before the rays (`--prepass`).
     pub const fn prepass(&self) -> bool {
         self.prepass
     }
 
-    /// The appearance of the field; an error if options of a field come without one.
+    /// The appearance of the field. Options of a field that are given without a field are an error.
     pub fn appearance(&self) -> Result<Appearance, InputError> {
         let given = [
             ("--material", self.material.is_some()),
@@ -134,12 +135,12 @@ fn field_help() -> String {
     )
 }
 
-/// An error about arbitrary text, escaped to one line.
+/// The text of an error, escaped to one line because it may quote arbitrary input.
 fn escaped(error: impl Display) -> String {
     error.to_string().escape_debug().to_string()
 }
 
-/// The error of an option that is not as `expected`.
+/// Makes the error for an option whose value is not as `expected`.
 fn refusal(option: &str, expected: &str, found: String) -> InputError {
     FormatError::whole(expected, found).in_file(option)
 }

@@ -23,7 +23,8 @@ pub struct FlashArguments {
     /// Load address, and entry point.
     #[arg(long, default_value = "0x40000000", value_parser = parse_address)]
     address: u32,
-    /// Time-out of the BIOS's request, in seconds of board time. Press reset, or the host sends `reboot`.
+    /// Time-out of the wait for the BIOS's request, in seconds of board time. The request comes after a reset, or after the
+    /// command `reboot`, which the host sends.
     #[arg(long, default_value_t = 60, value_name = "SECONDS")]
     wait: u64,
     /// Baud rate of a serial port.

@@ -51,7 +51,7 @@ pub struct RenderArguments {
     /// The backend of a board: `cpu` (the soft core) or `gateware` (the accelerators) [default: gateware where the board has it].
     #[arg(long, value_parser = named(Backend::ALL, Backend::name))]
     backend: Option<Backend>,
-    /// 320x180, 640x360 or 1280x720.
+    /// Size of the picture: 320x180, 640x360 or 1280x720.
     #[arg(long, value_name = "WxH", default_value = "320x180")]
     size: String,
     /// The picture to write.
@@ -81,9 +81,9 @@ pub struct RenderArguments {
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Capture {
-    /// The frame buffer.
+    /// The frame buffer in the board's memory.
     Frame,
-    /// The video pins, scaled back.
+    /// The virtual board's video pins, scaled back to the frame's size.
     Monitor,
 }
 
@@ -100,7 +100,7 @@ struct Outcome<'a> {
     stats: &'a Totals<'a>,
 }
 
-/// Statistics of a frame, with derived ones.
+/// Statistics of a frame, and numbers derived from them.
 #[derive(Serialize)]
 struct Totals<'a> {
     #[serde(flatten)]
@@ -245,7 +245,7 @@ impl RenderArguments {
     }
 }
 
-/// The frame on the virtual board's monitor, scaled back to its own size.
+/// Captures the frame on the virtual board's monitor, scaled back to the frame's own size.
 fn from_monitor(board: &mut SimulatedBoard, size: Size) -> anyhow::Result<Vec<u16>> {
     let spinner = spinner("capturing a frame of the monitor");
     let picture = board.inner().capture()?;

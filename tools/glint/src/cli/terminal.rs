@@ -72,13 +72,13 @@ impl RawTerminal {
 impl Drop for RawTerminal {
     fn drop(&mut self) {
         if let Some(before) = &self.0 {
-            // The terminal may be gone: nothing can be restored then.
+            // An error is ignored: if the terminal is gone, there is no mode to restore.
             let _ = tcsetattr(std::io::stdin(), OptionalActions::Flush, before);
         }
     }
 }
 
-/// Pressed keys, read by a thread.
+/// Starts a thread that reads pressed keys, and returns the channel that delivers them.
 fn keys() -> Receiver<Vec<u8>> {
     let (sender, receiver) = channel();
     std::thread::spawn(move || {

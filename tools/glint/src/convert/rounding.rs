@@ -16,10 +16,10 @@ pub struct Placing {
 }
 
 impl Placing {
-    /// The placing in the unit box, or with `keep_scale` the identity.
+    /// The map that scales the mesh to the 1×1×1 box about the origin, or with `keep_scale` the identity.
     ///
     /// # Errors
-    /// No finite extent.
+    /// The mesh has no finite extent.
     pub fn of(polygons: &Polygons, keep_scale: bool) -> Result<Self, FormatError> {
         if keep_scale {
             return Ok(Self {
@@ -27,7 +27,7 @@ impl Placing {
                 scale: 1.0,
             });
         }
-        // Points without a face do not count.
+        // Points that no face uses do not count.
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for &corner in &polygons.corners {
             for (i, &c) in polygons.point(corner).iter().enumerate() {
@@ -49,7 +49,7 @@ impl Placing {
         })
     }
 
-    /// A point in world units.
+    /// Converts a point of the file to world units, without rounding.
     pub fn apply(&self, point: Vector) -> Vector {
         [0, 1, 2].map(|i| (point[i] - self.centre[i]) * self.scale)
     }
@@ -57,7 +57,7 @@ impl Placing {
 
 /// All points in Q2.14; points that round to the same position share it.
 pub struct Rounded {
-    /// Number of each point's position in `positions`.
+    /// For each point of the file, the index of its rounded position in `positions`.
     of_point: Vec<u32>,
     /// The positions in Q2.14.
     pub positions: Vec<[i16; 3]>,
@@ -111,18 +111,18 @@ impl Rounded {
         })
     }
 
-    /// The number of a corner's position.
+    /// Index of a corner's rounded position in `positions`.
     pub fn number(&self, corner: Corner) -> u32 {
         self.of_point[corner.point as usize]
     }
 
-    /// A corner's position in Q2.14.
+    /// A corner's rounded position in Q2.14.
     pub fn position(&self, corner: Corner) -> [i16; 3] {
         self.positions[self.number(corner) as usize]
     }
 }
 
-/// Rounds to Q2.14, to nearest, ties up; `None` outside [−2, 2 − 2^−14].
+/// Rounds a point to Q2.14, to nearest, ties up; `None` if a coordinate is outside [−2, 2 − 2^−14].
 fn nearest(exact: Vector) -> Option<[i16; 3]> {
     let mut position = [0; 3];
     for (q, c) in position.iter_mut().zip(exact) {

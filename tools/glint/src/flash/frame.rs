@@ -5,7 +5,7 @@ pub const LOAD: u8 = 1;
 /// Command: jump to an address.
 pub const JUMP: u8 = 2;
 
-/// A frame: length, CRC-16/XMODEM over command and payload (high byte first), command, payload.
+/// Builds a frame: length, CRC-16/XMODEM over command and payload (high byte first), command, payload.
 pub fn frame(command: u8, payload: &[u8]) -> Vec<u8> {
     const CRC: crc::Crc<u16> = crc::Crc::<u16>::new(&crc::CRC_16_XMODEM);
     let mut digest = CRC.digest();

@@ -8,13 +8,13 @@ use crate::board::{Board, BoardError};
 const MAX_DATA: usize = 96;
 /// Minimum data bytes of a frame.
 const MIN_DATA: usize = 12;
-/// Maximum frames of a batch: more than the delay and the buffers of an adapter hold at 1 Mbit/s.
+/// Maximum frames of a batch: more than a serial adapter's delay and buffers hold at 1 Mbit/s.
 const MAX_BATCH: usize = 64;
-/// Answer time per frame below which longer batches gain nothing.
+/// Answer time per frame in milliseconds below which longer batches gain nothing.
 const PROMPT_MS: u64 = 2;
-/// Silence after which the BIOS expects a new frame: more than its time-out of 250 ms.
+/// Silence in milliseconds after which the BIOS expects a new frame: more than its time-out of 250 ms.
 const QUIET_MS: u64 = 300;
-/// Time-out of an answer: a frame on a slow line and the delay of an adapter.
+/// Time-out of an answer in milliseconds: covers the time of a frame on a slow line and the delay of an adapter.
 const ANSWER_MS: u64 = 500;
 /// Maximum length of the BIOS's answers to one frame: `C` and, after the time-out of a surplus byte, `E`, each repeated by the line.
 /// Longer output comes from the program.
@@ -44,12 +44,12 @@ pub enum FlashError {
     /// The board's connection failed.
     #[error(transparent)]
     Board(#[from] BoardError),
-    /// No request of the BIOS.
+    /// The BIOS has sent no request for a serial boot.
     #[error(
         "no serial boot for {waited_ms} ms: expected the BIOS's request sL5DdSMmkekro, found {last:?}; press the board's reset button"
     )]
     NoRequest {
-        /// Board time of the wait.
+        /// Length of the wait in milliseconds of board time.
         waited_ms: u64,
         /// The end of the board's output.
         last: String,
@@ -89,16 +89,16 @@ pub struct Link<'b> {
     /// Counts of the whole transfer.
     pub report: Report,
     board: &'b mut dyn Board,
-    /// Data bytes a frame.
+    /// Current number of data bytes in a frame.
     data: usize,
-    /// Frames a batch.
+    /// Current number of frames in a batch.
     batch: usize,
     /// Failed batches since the last success.
     failures: u32,
 }
 
 impl<'b> Link<'b> {
-    /// A link that starts with long frames and batches of one.
+    /// Creates a link that starts with the longest frames, and with batches of one frame.
     pub fn new(board: &'b mut dyn Board) -> Self {
         Self {
             board,
@@ -109,17 +109,18 @@ impl<'b> Link<'b> {
         }
     }
 
-    /// The board's time.
+    /// The board's time in milliseconds.
     pub fn now_ms(&self) -> u64 {
         self.board.now_ms()
     }
 
-    /// Data bytes of a frame.
+    /// Current number of data bytes in a frame.
     pub fn data(&self) -> usize {
         self.data
     }
 
-    /// The next frames from `start` on.
+    /// Builds the next batch: frames that load the bytes of `program` from `start` on. `address` is where
+    /// the program's first byte goes.
     pub fn batch(&self, program: &[u8], address: u32, start: usize) -> Vec<Vec<u8>> {
         program[start..]
             .chunks(self.data)
@@ -132,7 +133,7 @@ impl<'b> Link<'b> {
             .collect()
     }
 
-    /// Sends frames and counts the answers.
+    /// Sends a batch of frames, and waits for one positive answer to each.
     pub fn deliver(&mut self, frames: &[Vec<u8>]) -> Result<Delivery, BoardError> {
         let start = self.board.now_ms();
         for frame in frames {
@@ -179,7 +180,8 @@ impl<'b> Link<'b> {
         Ok(rest)
     }
 
-    /// Makes frames, then batches, longer after a batch of `frames` frames that took `milliseconds`.
+    /// Makes frames longer, or batches if frames have their full length, after a batch of `frames`
+    /// frames that arrived in `milliseconds`.
     pub fn grow(&mut self, frames: usize, milliseconds: u64) {
         self.failures = 0;
         if self.data < MAX_DATA {
@@ -210,7 +212,7 @@ impl<'b> Link<'b> {
         Ok(())
     }
 
-    /// Starts the program. Output of the program counts as success even if the answer was damaged.
+    /// Starts the program. Output of the program counts as success even if the BIOS's answer was damaged.
     pub fn jump(&mut self, address: u32) -> Result<(), FlashError> {
         let frame = frame(JUMP, &address.to_be_bytes());
         loop {

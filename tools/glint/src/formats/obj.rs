@@ -66,9 +66,9 @@ impl From<FormatError> for ObjError {
     }
 }
 
-/// Parses an OBJ: faces with any number of corners, indices from the start or (negative) from the end, normals, vertex colours
-/// (`v x y z r g b`, up to 1 or up to 255) and the diffuse colour (`Kd`) of materials. Texture coordinates, lines, points and
-/// curves are skipped.
+/// Parses an OBJ. It reads faces with any number of corners, indices from the start or (negative) from the end, normals, vertex
+/// colours (`v x y z r g b`, up to 1 or up to 255) and the diffuse colour (`Kd`) of materials. Texture coordinates, lines,
+/// points and curves are skipped.
 ///
 /// # Errors
 /// The first violation of the format, with its line.
@@ -116,7 +116,7 @@ fn join_continued<'a>(
 #[derive(Default)]
 struct Reader {
     polygons: Polygons,
-    /// Colours as in the file; their scale, 1 or 255, is known at the end.
+    /// Colours as in the file. Their scale, 1 or 255, is known only at the end of the file.
     point_colours: Vec<Option<[f32; 3]>>,
     palette: HashMap<Vec<u8>, Rgb8>,
     colour: Option<Rgb8>,
@@ -174,7 +174,7 @@ impl Reader {
         let colour = match count {
             // A fourth number is a weight, used by curves only.
             0 | 1 => None,
-            // Colour, with an optional opacity.
+            // Three numbers are a colour; a fourth is an opacity, which is ignored.
             3 | 4 => Some([extra[0] as f32, extra[1] as f32, extra[2] as f32]),
             _ => {
                 return Err(FormatError::new(
@@ -229,7 +229,8 @@ impl Reader {
     }
 
     fn library(&mut self, names: &[u8], materials: &mut Materials) -> Result<(), ObjError> {
-        // One name with spaces, or several names: the first reading that finds a file wins.
+        // The text is one file name with spaces, or several names. If a file with the whole text as its name exists,
+        // only that one is read.
         let mut found = false;
         let whole = std::iter::once(names);
         let parts = names
@@ -282,7 +283,7 @@ impl Reader {
     }
 }
 
-/// The text after the keyword: a name that may contain spaces.
+/// The text after a line's keyword: a name that may contain spaces.
 fn rest_of(line: Line<'_>) -> &[u8] {
     let text = line.text.trim_ascii();
     text[text
@@ -292,8 +293,8 @@ fn rest_of(line: Line<'_>) -> &[u8] {
         .trim_ascii_start()
 }
 
-/// Converts an index to count from 0: `1` is the first, `-1` the last of the `count` so far. `None` for zero, for indices
-/// before the first, and beyond 32 bits.
+/// Converts an index of the file, where `1` is the first and `-1` the last of the `count` elements so far, to one that counts
+/// from 0. Returns `None` for zero, for an index before the first element, and for one beyond 32 bits.
 fn index(word: &[u8], count: usize) -> Option<u32> {
     let index: i64 = std::str::from_utf8(word).ok()?.parse().ok()?;
     let index = match index {

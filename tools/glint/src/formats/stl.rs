@@ -50,9 +50,10 @@ pub fn parse(file: &[u8]) -> Result<Polygons, FormatError> {
 /// Encoding of a colour in the attribute word of a binary record; both have five bits a channel.
 #[derive(Clone, Copy)]
 enum Colours {
-    /// VisCAM, SolidView: bit 15 marks a colour; red is in the highest bits.
+    /// As VisCAM and SolidView write it: a set bit 15 marks a colour; red is in the highest bits.
     VisCam,
-    /// Materialise Magics: the header has a default colour, a clear bit 15 marks a face's own; blue is in the highest bits.
+    /// As Materialise Magics writes it: the header has a default colour, and a clear bit 15 marks a face with a colour of its
+    /// own; blue is in the highest bits.
     Magics(Rgb8),
 }
 
@@ -111,7 +112,7 @@ fn parse_binary(file: &[u8], count: u32) -> Result<Polygons, FormatError> {
     Ok(polygons)
 }
 
-/// Expected next line of an ASCII STL.
+/// The kind of line that must come next in an ASCII STL.
 #[derive(Clone, Copy, PartialEq)]
 enum Expect {
     Solid,
@@ -153,7 +154,7 @@ fn parse_ascii(file: &[u8]) -> Result<Polygons, FormatError> {
             word.is_some_and(|word| word.eq_ignore_ascii_case(text.as_bytes()))
         };
         let refuse = || FormatError::new(place, expect.text(), quote(line.text.trim_ascii()));
-        // Remaining words of the line; the name of a solid is arbitrary.
+        // The remaining words of the line are skipped: the name of a solid is arbitrary.
         expect = match expect {
             Expect::Solid if is(Some(keyword), "solid") => {
                 words.by_ref().for_each(drop);

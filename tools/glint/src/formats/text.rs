@@ -97,7 +97,7 @@ pub fn coordinate(word: &[u8], place: Place) -> Result<f64, FormatError> {
     })
 }
 
-/// The value, if it is a valid coordinate.
+/// Returns the value if it is a valid coordinate.
 pub fn checked(value: f64) -> Option<f64> {
     (value.abs() <= MAX_COORDINATE).then_some(value)
 }
@@ -119,7 +119,7 @@ pub fn checked_at(value: f64, offset: usize) -> Result<f64, FormatError> {
 /// Parses the next three words as coordinates.
 ///
 /// # Errors
-/// Fewer words, or one is not a coordinate.
+/// The line has fewer than three more words, or one of them is not a coordinate.
 pub fn vector<'a>(
     words: &mut impl Iterator<Item = &'a [u8]>,
     what: &str,

@@ -12,7 +12,7 @@ use glint_core::orientation::Sample;
 use glint_core::orientation::log::{Setup, record, to_bytes};
 use glint_core::wire::{MAX_FRAME, Manifest, Receiver, Sender, State, Timing};
 
-/// Seeds of a target, within the maximum length.
+/// Returns the seeds of a target. None exceeds the maximum length of an input.
 pub fn of(target: Target) -> Vec<Vec<u8>> {
     let seeds = match target {
         Target::Upload => transfers(),
@@ -34,7 +34,7 @@ fn texts(texts: &[&str]) -> Vec<Vec<u8>> {
     texts.iter().map(|text| text.as_bytes().to_vec()).collect()
 }
 
-/// Small models: generated ones, and a concave coloured polygon.
+/// Small models: generated ones, and one with a concave coloured polygon.
 fn models() -> Vec<Polygons> {
     let mut models: Vec<Polygons> = ["cube", "icosphere:1", "icosphere:2", "sponge:0"]
         .iter()
@@ -79,7 +79,8 @@ fn meshes() -> Vec<Vec<u8>> {
         .collect()
 }
 
-/// Output of each side of a transfer, after three bytes that select its delivery to the other side.
+/// The bytes that each side of a transfer sends. Each seed starts with three bytes that select how the target delivers
+/// them to the other side.
 fn transfers() -> Vec<Vec<u8>> {
     let mut seeds = Vec::new();
     for length in [0, 1, 16, 100, 1500] {
@@ -106,7 +107,7 @@ fn transfers() -> Vec<Vec<u8>> {
     seeds
 }
 
-/// A log at rest, long enough for a calibration.
+/// A log of a sensor at rest, long enough for a calibration.
 fn still_log() -> Vec<u8> {
     let mut log = String::from("t_us,ax,ay,az,gx,gy,gz\n");
     for i in 0..80 {

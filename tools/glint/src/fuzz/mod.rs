@@ -11,7 +11,7 @@ pub use targets::{Target, Verdict};
 
 use mutate::mutate;
 
-/// Inputs of one target.
+/// The inputs of one target.
 pub struct Inputs {
     target: Target,
     seed: u64,
@@ -19,7 +19,7 @@ pub struct Inputs {
 }
 
 impl Inputs {
-    /// Creates the corpus of a target.
+    /// Creates the inputs of a target from its corpus; `seed` selects the mutations.
     pub fn new(target: Target, seed: u64) -> Self {
         Self {
             target,
@@ -28,7 +28,7 @@ impl Inputs {
         }
     }
 
-    /// Input with a number, at most [`MAX_INPUT`] bytes.
+    /// The input with the number `number`, at most [`MAX_INPUT`] bytes.
     pub fn input(&self, number: u64) -> Vec<u8> {
         let mut random = Random::new(self.seed, number);
         let mut input = mutate(&self.corpus, self.target.words(), &mut random);

@@ -7,7 +7,7 @@ pub const MAX_INPUT: usize = 4096;
 pub struct Random(u64);
 
 impl Random {
-    /// The stream of a seed and a number.
+    /// The random stream that a seed and a number select.
     pub fn new(seed: u64, number: u64) -> Self {
         let mut random = Self(seed);
         let start = random.next() ^ number.wrapping_mul(0xd134_2543_de82_ef95);
@@ -57,7 +57,7 @@ const WORDS: [&str; 20] = [
 ];
 const BYTES: [u8; 10] = [0, 1, 0x0a, 0x0d, 0x1b, 0x20, 0x7f, 0x80, 0xfe, 0xff];
 
-/// A seed of the corpus with one to eight mutations.
+/// Returns a random seed of the corpus with one to eight mutations.
 pub fn mutate(corpus: &[Vec<u8>], words: &[&str], random: &mut Random) -> Vec<u8> {
     let mut input = random.pick(corpus).cloned().unwrap_or_default();
     for _ in 0..=random.below(8) {
@@ -93,7 +93,7 @@ pub fn mutate(corpus: &[Vec<u8>], words: &[&str], random: &mut Random) -> Vec<u8
     input
 }
 
-/// A random range, mostly short.
+/// Returns a random range within `length`, mostly a short one.
 fn range(length: usize, random: &mut Random) -> std::ops::Range<usize> {
     let start = random.below(length + 1);
     let longest = if random.below(4) == 0 {
@@ -128,7 +128,7 @@ fn change_byte(input: &mut [u8], random: &mut Random, to: impl FnOnce(u8, &mut R
     }
 }
 
-/// Replaces a word by another.
+/// Replaces the word at a random place by a random one of `words`. A word longer than 64 bytes stays.
 fn replace_word(input: &mut Vec<u8>, random: &mut Random, words: &[&str]) {
     let Some(word) = random.pick(words) else {
         return;

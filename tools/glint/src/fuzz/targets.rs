@@ -13,7 +13,7 @@ use glint_core::wire::{MAX_FRAME, Manifest, Receiver, Sender, State, Timing, crc
 /// A parser of external bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Target {
-    /// Both sides of an upload.
+    /// The sender and the receiver of an upload.
     Upload,
     /// The line editor and the grammar of commands.
     Console,
@@ -34,9 +34,9 @@ pub enum Target {
 /// Result of a target on an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// Accepted to the end.
+    /// The target accepted the input to its end.
     Accepted,
-    /// Rejected before the end.
+    /// The target rejected the input before its end.
     Rejected,
 }
 
@@ -96,7 +96,7 @@ impl Target {
         }
     }
 
-    /// Corrects checksums and lengths, which would reject nearly every mutation.
+    /// Corrects checksums and lengths in the input. Wrong ones would make the parser reject nearly every mutation.
     pub fn repair(self, input: &mut Vec<u8>) {
         match self {
             Self::Upload => repair_frames(input),
@@ -157,9 +157,9 @@ impl Target {
     }
 }
 
-/// Converts and writes polygons that were parsed.
+/// Converts parsed polygons to a mesh. A mesh from the conversion must be valid.
 fn run_conversion(polygons: &Polygons) -> Verdict {
-    // Oversized input is rejected; any other output is a valid mesh.
+    // A conversion with the input's own scale may fail, but must not panic.
     let _ = convert::convert(polygons, Options { keep_scale: true });
     match convert::convert(polygons, Options::default()) {
         Ok((mesh, report)) => {
@@ -175,7 +175,7 @@ fn run_conversion(polygons: &Polygons) -> Verdict {
     }
 }
 
-/// Replays a parsed log, by its time stamps and with a fixed period, with every option on.
+/// Replays a parsed log with every option on: by its time stamps, and with two fixed periods.
 fn run_replay(entries: &[log::Entry]) {
     for period in [None, Some(1_000), Some(600_000)] {
         let options = replay::Options {
@@ -191,7 +191,7 @@ fn run_replay(entries: &[log::Entry]) {
             replayed.is_ok_and(|replayed| replayed.attitudes.len() == entries.len()),
             "without a calibration every log is replayed"
         );
-        // A log that moves fails the calibration.
+        // With a calibration, a log that is not at rest fails, so the result may be an error.
         let _ = replay(&replay::Options {
             still: Some(u64::MAX),
             ..options
@@ -199,7 +199,7 @@ fn run_replay(entries: &[log::Entry]) {
     }
 }
 
-/// Replays a log in a board's format: an accepted one gives attitudes.
+/// Replays a log in a board's format. An accepted log must give attitudes of length 1.
 fn run_image(input: &[u8]) -> Verdict {
     let mut image = input.to_vec();
     match image::replay(&mut image) {
@@ -220,7 +220,7 @@ fn run_image(input: &[u8]) -> Verdict {
     }
 }
 
-/// Renders a checked mesh.
+/// Renders a mesh if it is valid.
 fn run_model(mesh: &[u8]) {
     let (Ok(mesh_view), Ok(view)) = (glm::check(mesh), crate::view::spherical("2,30,60")) else {
         return;
@@ -286,12 +286,13 @@ fn run_console(input: &[u8]) -> Verdict {
     verdict
 }
 
-/// Data of the transfers in the corpus.
+/// The data that the transfers of the corpus send.
 pub fn upload_data(length: usize) -> Vec<u8> {
     (0..length).map(|i| (i * 7 / 3) as u8).collect()
 }
 
-/// Feeds the input to one side of a transfer, in pieces, while time passes.
+/// Feeds the input to one side of a transfer in pieces, while time passes. The first three bytes select the side, the time
+/// between two pieces and the length of a piece.
 fn run_transfer(input: &[u8]) -> Verdict {
     let &[side, pace, piece, ref stream @ ..] = input else {
         return Verdict::Rejected;

@@ -12,7 +12,7 @@ pub struct Builder {
 }
 
 impl Builder {
-    /// Number of a point. Points are equal if all bits of their coordinates are (zero has one sign).
+    /// Returns the number of a point. Points are equal if all bits of their coordinates are; −0 counts as 0.
     pub fn point(&mut self, point: Vector) -> Result<u32, FormatError> {
         let point = point.map(|c| c + 0.0);
         let key = point.map(f64::to_bits);
@@ -58,7 +58,7 @@ impl Builder {
         Ok(())
     }
 
-    /// Finishes with a colour for each point.
+    /// Finishes the mesh; `colour` gives each point its colour.
     pub fn coloured(mut self, colour: impl Fn(Vector) -> Rgb8) -> Polygons {
         self.polygons.point_colours = self
             .polygons
@@ -69,13 +69,13 @@ impl Builder {
         self.polygons
     }
 
-    /// Finishes with face colours.
+    /// Finishes the mesh with the colours of its faces only.
     pub fn finish(self) -> Polygons {
         self.polygons
     }
 }
 
-/// A light colour of the rainbow: `turns` of the colour wheel from red.
+/// A light colour of the colour wheel, `turns` turns from red.
 pub fn hue(turns: f64) -> Rgb8 {
     let channel = |shift: f64| 0.62 + 0.36 * (std::f64::consts::TAU * (turns - shift)).cos();
     Rgb8::from_unit([channel(0.0), channel(1.0 / 3.0), channel(2.0 / 3.0)])

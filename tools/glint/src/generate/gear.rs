@@ -6,7 +6,8 @@ use crate::polygons::{Polygons, Rgb8, Vector};
 use std::f64::consts::TAU;
 
 const TEETH: usize = 20;
-/// Radii and angles (in pitches) of one tooth's outline, from root to tip and back.
+/// Radius and angle of each point of one tooth's outline, from root to tip and back. Angles are in pitches: one pitch is
+/// the angle between two teeth.
 const TOOTH: [(f64, f64); 6] = [
     (0.80, -0.50),
     (0.80, -0.26),
@@ -16,7 +17,7 @@ const TOOTH: [(f64, f64); 6] = [
     (0.92, 0.17),
 ];
 const BORE: f64 = 0.30;
-/// The hub is thicker than the wheel.
+/// Radius of the hub, which is thicker than the wheel.
 const HUB: f64 = 0.45;
 const WEB: f64 = 0.66;
 const HALF_WIDTH: f64 = 0.16;
@@ -29,7 +30,7 @@ const BRASS: Rgb8 = Rgb8([0xd8, 0xa8, 0x50]);
 
 /// The gear about the z axis.
 pub fn gear() -> Result<Polygons, FormatError> {
-    // Every ring has one point per point of the outline, so that the surface is a grid, closed in both directions.
+    // Every ring has as many points as the outline, so that the surface is a grid that is closed in both directions.
     let angles: Vec<(f64, f64)> = (0..TEETH)
         .flat_map(|tooth| {
             TOOTH.map(|(radius, pitch)| (radius, (tooth as f64 + pitch) / TEETH as f64 * TAU))

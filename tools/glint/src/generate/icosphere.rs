@@ -19,7 +19,7 @@ pub fn icosphere(frequency: u32) -> Result<Polygons, FormatError> {
     let mut emit = |triangle: [Vector; 3]| divide(&mut builder, triangle, frequency);
     for sign in [1.0, -1.0] {
         for axis in 0..3 {
-            // The two triangles on the edge between (0, 1, golden) and (0, -1, golden) …
+            // Two triangles meet at each of six edges, such as the one between (0, 1, golden) and (0, -1, golden).
             for side in [1.0, -1.0] {
                 let tip = corner((axis + 1) % 3, sign, side);
                 let (a, b) = (
@@ -30,7 +30,7 @@ pub fn icosphere(frequency: u32) -> Result<Polygons, FormatError> {
             }
         }
     }
-    // … and one in each of the eight octants.
+    // The other eight triangles lie in one octant each.
     for octant in 0..8 {
         let sign = |bit: u32| if octant >> bit & 1 == 0 { 1.0 } else { -1.0 };
         let [x, y, z] = [sign(0), sign(1), sign(2)];
@@ -48,7 +48,7 @@ fn normalised(point: Vector) -> Vector {
     unit(point).unwrap_or(point)
 }
 
-/// The same triangle, counter-clockwise seen from outside a solid about the origin.
+/// Returns the triangle with its corners counter-clockwise, seen from outside a solid about the origin.
 fn facing_out([a, b, c]: [Vector; 3]) -> [Vector; 3] {
     use crate::triangulate::{cross, dot};
     if dot(a, cross(b, c)) > 0.0 {
@@ -64,8 +64,8 @@ fn divide(
     [a, b, c]: [Vector; 3],
     frequency: u32,
 ) -> Result<(), FormatError> {
-    // Weights of `b` and `c`. On an edge one of the three weights is zero and the sum of the other two does not depend on their
-    // order, so both triangles at the edge get the same bits.
+    // The arguments are the weights of `b` and `c`. On an edge one of the three weights is zero and the sum of the other two does
+    // not depend on their order, so both triangles at the edge get the same bits.
     let point = |to_b: u32, to_c: u32| -> Vector {
         let weights = [frequency - to_b - to_c, to_b, to_c].map(f64::from);
         normalised(

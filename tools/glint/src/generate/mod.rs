@@ -70,7 +70,7 @@ mod tests {
         "sponge:2",
     ];
 
-    /// Six times the enclosed volume, positive for faces that run counter-clockwise seen from outside.
+    /// The enclosed volume, positive for faces that run counter-clockwise seen from outside.
     pub fn volume(polygons: &Polygons) -> f64 {
         let mut scratch = triangulate::Scratch::default();
         let mut sum = 0.0;
@@ -83,7 +83,7 @@ mod tests {
         sum
     }
 
-    /// Every edge occurs equally often in both directions.
+    /// Checks that a mesh is closed: every edge occurs equally often in both directions.
     fn assert_closed(name: &str, edges: impl Iterator<Item = (u32, u32)>) {
         let mut balance: HashMap<(u32, u32), i32> = HashMap::new();
         for (a, b) in edges {

@@ -11,7 +11,7 @@ pub fn sponge(level: u32) -> Result<Polygons, FormatError> {
     Ok(builder.coloured(|point| Rgb8::from_unit(point.map(|c| 0.66 + 0.6 * c))))
 }
 
-/// Visits the cells in octree order, so that neighbours are close to each other and chunks share few points.
+/// Adds the faces of the cells, in octree order, so that neighbours are close to each other and chunks share few points.
 fn cells(
     builder: &mut Builder,
     corner: [i64; 3],
@@ -36,7 +36,7 @@ fn cells(
     Ok(())
 }
 
-/// Of the 27 parts of a cube, those in the middle of a side and in the centre are empty.
+/// Whether one of the 27 parts of a cube is empty: those in the middle of a side and in the centre are.
 fn is_hole(place: [i64; 3]) -> bool {
     place.iter().filter(|&&c| c == 1).count() >= 2
 }

@@ -7,7 +7,7 @@ use super::builder::Builder;
 use crate::error::FormatError;
 use crate::polygons::{Polygons, Rgb8, Vector};
 
-/// Quads along a patch's side.
+/// Quads along each side of a patch.
 const CUTS: usize = 10;
 
 const GLAZE: Rgb8 = Rgb8([0xe8, 0xc8, 0xa0]);
@@ -16,7 +16,7 @@ const HANDLE: Rgb8 = Rgb8([0xc0, 0x88, 0x70]);
 const SPOUT: Rgb8 = Rgb8([0xd0, 0xa0, 0x80]);
 const TEA: Rgb8 = Rgb8([0x70, 0x40, 0x28]);
 
-/// A row of four control points for a quarter of a ring: (r, 0, z), (r, −k, z), (k, −r, z), (0, −r, z).
+/// Four control points for a quarter of a ring with radius r at height z: (r, 0, z), (r, −k, z), (k, −r, z), (0, −r, z).
 struct Ring {
     r: f64,
     k: f64,
@@ -27,8 +27,8 @@ const fn ring(r: f64, k: f64, z: f64) -> Ring {
     Ring { r, k, z }
 }
 
-/// From the inner edge of the opening over the rim and down the body to the centre of the bottom. Each patch has four rows; its
-/// last row is the first of the next patch.
+/// Rings of the body, from the inner edge of the opening over the rim and down to the centre of the bottom. Each patch has four
+/// rows; its last row is the first of the next patch.
 const BODY: [Ring; 13] = [
     ring(1.4, 0.784, 2.4),
     ring(1.3375, 0.749, 2.53125),
@@ -45,7 +45,7 @@ const BODY: [Ring; 13] = [
     ring(0.0, 0.0, 0.0),
 ];
 
-/// From the top of the knob to the edge of the lid.
+/// Rings of the lid, from the top of the knob to the edge.
 const COVER: [Ring; 7] = [
     ring(0.0, 0.0, 3.15),
     ring(0.8, 0.45, 3.15),
@@ -67,7 +67,7 @@ const fn half(upper: [f64; 2], lower: [f64; 2], y: f64) -> HalfRing {
     HalfRing { upper, lower, y }
 }
 
-/// From the top of the body around to its side.
+/// Half rings of the handle, from the top of the body around to its side.
 const GRIP: [HalfRing; 7] = [
     half([-1.6, 2.025], [-1.5, 2.25], 0.3),
     half([-2.3, 2.025], [-2.5, 2.25], 0.3),
@@ -78,7 +78,7 @@ const GRIP: [HalfRing; 7] = [
     half([-2.0, 0.9], [-1.9, 0.6], 0.3),
 ];
 
-/// From the body to the inside of the spout.
+/// Half rings of the spout, from the body to the inside of the spout's opening.
 const NOZZLE: [HalfRing; 7] = [
     half([1.7, 1.425], [1.7, 0.6], 0.66),
     half([2.6, 1.425], [3.1, 0.825], 0.66),
@@ -112,7 +112,7 @@ pub fn teapot() -> Result<Polygons, FormatError> {
     Ok(builder.finish())
 }
 
-/// Rows of a surface given by rows of control points; each patch is cut into `CUTS` rows.
+/// Cuts patches into rows of points, `CUTS` rows for each patch; `row` makes the points of a row from its control points.
 fn rows<const N: usize>(
     control: &[[[Vector; N]; 4]],
     row: impl Fn([Vector; N]) -> Vec<Vector>,
@@ -131,7 +131,7 @@ fn rows<const N: usize>(
     rows
 }
 
-/// Patches over rows of control points; each starts with the last row of the one before.
+/// Groups rows of control points into patches of four rows. Each patch starts with the last row of the one before.
 fn patches<T, const N: usize>(
     control: &[T],
     row: impl Fn(&T) -> [Vector; N],
@@ -143,7 +143,7 @@ fn patches<T, const N: usize>(
         .collect()
 }
 
-/// Adds a surface of revolution about the z axis from one quarter of it.
+/// Adds a surface of revolution about the z axis, given by the rings of one quarter; returns its rows of points.
 fn turned(
     builder: &mut Builder,
     rings: &[Ring],
@@ -168,7 +168,7 @@ fn turned(
     Ok(rows)
 }
 
-/// Adds a tube from one half of it.
+/// Adds a tube, given by the control points of one half; returns its rows of points.
 fn tube(
     builder: &mut Builder,
     rings: &[HalfRing],
@@ -201,8 +201,8 @@ fn tube(
     Ok(rows)
 }
 
-/// A point of a cubic Bézier curve, by de Casteljau. The ends, and curves with equal control points, are exact, so that patches
-/// and poles close.
+/// A point of a cubic Bézier curve, by de Casteljau's method. The ends of a curve, and curves with equal control points, are
+/// exact, so that patches and poles close.
 fn bezier(mut control: [Vector; 4], t: f64) -> Vector {
     if t == 1.0 {
         return control[3];

@@ -12,7 +12,7 @@ const LENGTH: usize = 240;
 const GIRTH: usize = 16;
 const TUBE_RADIUS: f64 = 0.42;
 
-/// The knot's centre line at a fraction of its length.
+/// The point of the knot's centre line at the parameter `t`, from 0 to 1 for the whole knot.
 fn line(t: f64) -> Vector {
     let (p, q) = (2.0 * TAU * t, 3.0 * TAU * t);
     let r = 2.0 + q.cos();

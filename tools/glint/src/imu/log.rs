@@ -25,7 +25,7 @@ const COLUMNS: [&str; 8] = [TIME, "ax", "ay", "az", "gx", "gy", "gz", TEMPERATUR
 /// Maximum number of columns in a header; real logs have fewer.
 const MOST_COLUMNS: usize = 64;
 
-/// Position of each of [`COLUMNS`], and the number of columns in the file.
+/// The position in the file of each of [`COLUMNS`], and the number of columns in the file.
 struct Header {
     places: [Option<usize>; COLUMNS.len()],
     count: usize,

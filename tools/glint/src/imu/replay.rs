@@ -1,4 +1,4 @@
-//! Attitudes of a log by the firmware's arithmetic, on this host or on a board.
+//! Attitudes of a log, computed with the firmware's arithmetic on this host or on a board.
 
 use super::log::Entry;
 use crate::board::Board;
@@ -17,7 +17,7 @@ use glint_core::orientation::{Counts, LONGEST_STEP, Quaternion, Sample};
 pub struct Options {
     /// Scales of the raw counts.
     pub units: Units,
-    /// Sample period in µs, instead of the time stamps.
+    /// Fixed sample period in µs, used instead of the time stamps.
     pub period: Option<u32>,
     /// Length of the calibration at the start, in µs.
     pub still: Option<u64>,
@@ -34,8 +34,8 @@ struct Stamps<'a> {
 }
 
 impl Stamps<'_> {
-    /// Samples with 32-bit time stamps. A step backwards counts as no step, and a step beyond the longest integrated one is
-    /// shortened to just above that.
+    /// Samples with 32-bit time stamps. A step backwards becomes a step of 0. A step longer than `LONGEST_STEP` is not
+    /// integrated, and is shortened to 1 µs more than that.
     fn samples(&self) -> impl Iterator<Item = Sample> {
         let mut latest = self.entries.first().map_or(0, |entry| entry.t_us);
         let mut stamp = 0_u32;
@@ -61,7 +61,7 @@ impl Stamps<'_> {
     }
 }
 
-/// A log in a board's format.
+/// A log in the format that boards replay, and the calibration at its start.
 #[derive(Clone, Debug)]
 pub struct Prepared {
     image: Vec<u8>,
@@ -78,7 +78,7 @@ pub struct Replayed {
     pub counts: Counts,
     /// The calibration, if requested.
     pub calibration: Option<Report>,
-    /// Mean cycles of a sample on a board.
+    /// Mean number of cycles that a board takes for a sample; `None` on this host.
     pub cycles: Option<u64>,
 }
 
@@ -118,7 +118,8 @@ pub fn prepare(entries: &[Entry], options: &Options) -> Result<Prepared, Error> 
     let bias = calibration.map_or([0; 3], |report| report.bias);
     let setup =
         Setup::new(options.units, options.tilt, options.follow_bias, bias).map_err(Error::Log)?;
-    // A count beyond 32 bits is too long for every board, which reports it; the model goes by the number of bytes.
+    // A count beyond 32 bits becomes the largest one, which every board rejects as too long. The model uses
+    // the number of bytes instead.
     let count = u32::try_from(entries.len()).unwrap_or(u32::MAX);
     let mut image = setup.header(count).to_vec();
     stamps
@@ -146,7 +147,8 @@ pub fn on_model(mut prepared: Prepared) -> Result<Replayed, Error> {
     })
 }
 
-/// Replays a log on a board. `progress` gets bytes during transfers, and samples during the replay.
+/// Replays a log on a board. `progress` gets the stage, and the progress in bytes during transfers or
+/// in samples during the replay.
 ///
 /// # Errors
 /// The firmware rejects the log, or a transfer fails.
@@ -197,7 +199,7 @@ pub fn on_board<B: Board + ?Sized>(
     })
 }
 
-/// Console command.
+/// The console command that replays a log.
 const COMMAND: &str = "replay";
 /// Session number of the transfer: the same for every transfer, because a board's receiver lives for one transfer.
 const SESSION: u8 = 1;
@@ -218,7 +220,7 @@ fn attitudes(records: &[u8]) -> Result<Vec<Quaternion>, Error> {
         .collect()
 }
 
-/// Calibration at the start of a log, with at most the maximum number of samples.
+/// Calibrates with the samples in the first `still` µs of a log, at most as many as a calibration takes.
 fn calibrate(stamps: &Stamps, units: Units, still: u64) -> Result<Report, FormatError> {
     let mut elapsed = 0_u64;
     let mut last = 0_u32;
@@ -292,7 +294,7 @@ mod tests {
 
     #[test]
     fn stamps_of_any_size() {
-        // 100 °/s: a step back in time, a step across 2^32, a gap of an hour.
+        // The sensor turns at 100 °/s. The stamps have a step back in time, a step across 2^32 and a gap of an hour.
         let log = entries(&[
             u64::from(u32::MAX) - 5_000,
             u64::from(u32::MAX) + 5_000,

@@ -1,4 +1,4 @@
-//! A board's sensor, through its console.
+//! Access to a board's sensor through the board's console.
 
 use super::log::Entry;
 use crate::board::Board;
@@ -7,10 +7,10 @@ use virtual_board::virtual_mpu6050::{Chip, Counts, Imperfections, Source, State,
 
 /// Time-out of the first sample after the board's start, in ms of board time: covers detection, reset and setup.
 const START_MS: u64 = 1_000;
-/// Header of `imu stream` and of a log.
+/// Header of the output of `imu stream`, and of a log.
 pub const HEADER: &str = "t_us,ax,ay,az,gx,gy,gz";
 
-/// A sensor or board that gives no samples.
+/// An error of a sensor, or of the board that has it.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// The board reports an error, or does not answer.
@@ -47,7 +47,7 @@ pub fn wait<B: Board + ?Sized>(console: &mut Console<B>) -> Result<String, Error
     }
 }
 
-/// Streams `samples` samples to `on_sample`, with times in µs of board time, from 0.
+/// Streams `samples` samples to `on_sample`. Their times are µs of board time, counted from the first sample.
 ///
 /// # Errors
 /// The sensor or the board fails.
@@ -78,7 +78,7 @@ pub fn stream<B: Board + ?Sized>(
     malformed.map_or(Ok(()), |line| Err(Error::Sample(line)))
 }
 
-/// Extends 32-bit time stamps to 64 bits, from 0.
+/// Extends 32-bit time stamps to 64 bits, and counts from the first stamp.
 #[derive(Default)]
 struct ExtendedTime {
     last: Option<u32>,
@@ -114,11 +114,11 @@ pub struct Calibrated {
     pub bias: [f64; 3],
     /// Standard deviation of the samples.
     pub deviation: [f64; 3],
-    /// Expected drift of an attitude.
+    /// Expected drift of an attitude, in °/h.
     pub drift_per_hour: [f64; 3],
 }
 
-/// Calibrates with `samples` samples; `progress` gets the number so far.
+/// Calibrates with `samples` samples; `progress` gets the number of samples taken so far.
 ///
 /// # Errors
 /// The sensor moves or fails, as reported by the firmware.
@@ -162,8 +162,8 @@ impl std::str::FromStr for Triple {
     }
 }
 
-/// A sensor for a virtual board: at rest with typical errors, or with the counts of a log from the board's start; the last
-/// sample stays.
+/// A sensor for a virtual board. Without a log it is at rest, with typical errors. With a log it gives the log's counts, from the
+/// board's start, and keeps the last sample at the end.
 #[must_use]
 pub fn virtual_sensor(log: Option<&[Entry]>) -> Wires {
     let source = match log {

@@ -1,4 +1,4 @@
-//! A board as a renderer: frames become console commands.
+//! A renderer that draws frames on a board, by console commands.
 
 use super::commands::{field_commands, mesh_commands, size_command, view_command};
 use super::renderer::{Error, Parts, Rendered, Renderer};
@@ -11,17 +11,17 @@ use glint_core::camera::View;
 use glint_core::picture::{Backend, Size};
 use glint_model::Frame;
 
-/// A board as a renderer.
+/// A renderer that draws frames on a board.
 pub struct BoardRenderer<'b, B: ?Sized = dyn Board> {
     console: Console<'b, B>,
-    /// Uploads so far: the number of the next one differs from the last.
+    /// Number of uploads so far, modulo 256. Each upload gets it as its session number, so that two successive uploads differ.
     uploads: u8,
     backend: Option<Backend>,
     route: Route,
 }
 
 impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
-    /// A board whose firmware runs.
+    /// Creates a renderer on a board whose firmware is running.
     pub fn new(console: Console<'b, B>) -> Self {
         Self {
             console,
@@ -31,20 +31,20 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         }
     }
 
-    /// Sets the backend of all frames from now on; `None` leaves the board's own.
+    /// Sets the backend of all frames from now on; `None` leaves the choice to the board.
     #[must_use]
     pub fn with_backend(self, backend: impl Into<Option<Backend>>) -> Self {
         let backend = backend.into();
         Self { backend, ..self }
     }
 
-    /// Sets the route of [`render`](Renderer::render), instead of the serial line.
+    /// Sets the route by which [`render`](Renderer::render) transfers data. The default is the serial line.
     #[must_use]
     pub fn with_route(self, route: Route) -> Self {
         Self { route, ..self }
     }
 
-    /// Sets the backend of all frames from now on; `None` leaves the board's own.
+    /// Sets the backend of all frames from now on; `None` leaves the choice to the board.
     pub fn set_backend(&mut self, backend: impl Into<Option<Backend>>) {
         self.backend = backend.into();
     }
@@ -59,7 +59,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         &mut self.console
     }
 
-    /// Shows a frame: uploads its mesh if it has one, and waits until it is drawn.
+    /// Shows a frame: uploads its mesh if it has one, and waits until the frame is drawn.
     ///
     /// # Errors
     /// The firmware refuses, or the upload fails.
@@ -121,7 +121,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         self.redraw()
     }
 
-    /// The colours of the last frame.
+    /// Downloads the colours of the last frame.
     ///
     /// # Errors
     /// The download fails, or the board lacks this route.
@@ -138,7 +138,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
             .collect())
     }
 
-    /// The depth codes of the scene that is shown.
+    /// Downloads the depth codes of the scene that is shown.
     ///
     /// # Errors
     /// The download fails, or the board lacks this route.
@@ -148,7 +148,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         route: Route,
         progress: &mut Progress,
     ) -> Result<Vec<u32>, Error> {
-        // The gateware writes depth codes on request; over the serial line the command requests them.
+        // The gateware writes depth codes only on request. Over the serial line the download command makes the request.
         if route == Route::Memory {
             let lines = self.console.command("stats")?;
             if console::value::<String>("stats", &lines, "backend")? == Backend::Gateware.name() {
@@ -201,7 +201,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
     /// # Errors
     /// The firmware refuses.
     pub fn render_after(&mut self, command: &str) -> Result<Stats, Error> {
-        // In one write, so that the board does not draw the change before `render` arrives.
+        // The commands are sent in one write, so that the board does not draw the change before `render` arrives.
         let text = format!("{command}\rrender\r");
         self.console.board().write(text.as_bytes())?;
         self.console.reply(command)?;

@@ -1,4 +1,4 @@
-//! Frames as console commands.
+//! The console commands that make a board draw a frame.
 
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;
@@ -7,12 +7,12 @@ use glint_core::light::Hexadecimal;
 use glint_core::picture::Size;
 use glint_model::{FieldSubject, MeshSubject};
 
-/// The console command of a size.
+/// The console command that sets the picture's size.
 pub fn size_command(size: Size) -> String {
     format!("size {} {}", size.width(), size.height())
 }
 
-/// The console commands of a mesh's options.
+/// The console commands that set the options of a mesh.
 pub fn mesh_commands(subject: &MeshSubject) -> [String; 2] {
     [
         format!("cull {}", switch_name(subject.cull)),
@@ -20,7 +20,7 @@ pub fn mesh_commands(subject: &MeshSubject) -> [String; 2] {
     ]
 }
 
-/// The console command of a view. Its decimals are exact, so that the board reads the same fixed-point numbers.
+/// The console command that sets a view. Its decimals are exact, so that the board reads the same fixed-point numbers.
 pub fn view_command(view: &View) -> String {
     let mut command = "view".to_owned();
     let mut put = |number: &dyn std::fmt::Display| command.push_str(&format!(" {number}"));
@@ -33,7 +33,7 @@ pub fn view_command(view: &View) -> String {
     command
 }
 
-/// The console commands of a field, alone or with the present mesh in it. Only the last one leads to a new frame.
+/// The console commands that set a field, alone or with the present mesh in it. Only the last one makes the board draw a frame.
 pub fn field_commands(subject: &FieldSubject, with_mesh: bool) -> Vec<String> {
     let Appearance {
         material,
@@ -45,7 +45,7 @@ pub fn field_commands(subject: &FieldSubject, with_mesh: bool) -> Vec<String> {
     } = subject.appearance;
     let ambient = ambient.map(|ambient| Hexadecimal(ambient).to_string());
     let mut commands = vec![
-        // A change of a field that is off needs no frame.
+        // While the field is off, a change of its options draws no frame.
         "field off".to_owned(),
         format!("material {}", material.name()),
         "light default".to_owned(),

@@ -1,11 +1,11 @@
-//! The bit-exact model in this process as a renderer.
+//! The bit-exact model as a renderer, in this process and without a board.
 
 use super::renderer::{Error, Parts, Rendered, Renderer};
 use crate::picture::Image;
 use crate::transfer::Progress;
 use glint_model::{Frame, FrameBuffer, Projected};
 
-/// The model in this process.
+/// Renders with the bit-exact model in this process, without a board.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ModelRenderer;
 
@@ -15,10 +15,10 @@ impl Renderer for ModelRenderer {
     }
 }
 
-/// Draws a frame by the model.
+/// Draws a frame with the bit-exact model.
 ///
 /// # Errors
-/// A mesh seen from too far, or with two eyes.
+/// A mesh is seen from too far, or is to be drawn for two eyes.
 pub fn on_model(frame: &Frame) -> Result<Rendered, Error> {
     let ([width, height], pixels) = (frame.size.pixels(), frame.size.pixel_count());
     let mut image = Image {
@@ -68,7 +68,7 @@ mod tests {
         let Rendered { image, stats } = on_model(&frame).unwrap();
         let triangles = stats.triangles();
         assert_eq!((triangles.triangles_in, triangles.triangles_drawn), (12, 2));
-        // The front face is a square at depth 2 in the middle: 0.5/2 of a half width of 0.9 at 160 pixels.
+        // The front face is a square of half width 0.5 at depth 2. The picture's half width is 160 pixels, or 0.9 at depth 1.
         let half = (160.0 * 0.25 / 0.9) as usize;
         let scale = frame.constants().unwrap().depth_scale().unwrap();
         let depth = |x: usize, y: usize| scale.distance(image.depth[y * 320 + x]);

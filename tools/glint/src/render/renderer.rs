@@ -9,10 +9,10 @@ use glint_model::{Frame, RenderError};
 
 /// A renderer of frames: the model in this process, or a board.
 pub trait Renderer {
-    /// Draws a frame and brings the requested parts of it to this process.
+    /// Draws a frame and returns the requested parts of it.
     ///
     /// # Errors
-    /// A frame beyond the renderer's limits, or a board that does not answer.
+    /// The frame is beyond the renderer's limits, or the board does not answer.
     fn render(
         &mut self,
         frame: &Frame,
@@ -21,12 +21,12 @@ pub trait Renderer {
     ) -> Result<Rendered, Error>;
 }
 
-/// Parts of a drawn frame.
+/// The parts of a drawn frame that the caller requests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Parts {
-    /// Colours.
+    /// Whether the colours are requested.
     pub colour: bool,
-    /// Depth codes.
+    /// Whether the depth codes are requested.
     pub depth: bool,
 }
 

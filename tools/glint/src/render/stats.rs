@@ -6,7 +6,7 @@ use glint_model::FrameStats;
 use serde::de::value::MapDeserializer;
 use serde::{Deserialize, Serialize};
 
-/// Cycles and counts of a frame, the contents of the file of `--stats`.
+/// Cycles and counts of a frame. The option `--stats` writes them to its file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Stats {
     /// Cycles of the board's clock; `None` from the model, which has no clock.
@@ -32,17 +32,17 @@ pub struct Stats {
 pub struct TriangleCounts {
     /// Triangles in the mesh.
     pub triangles_in: u32,
-    /// Triangles that did not reach the walker.
+    /// Triangles that did not reach the walker, which tests the pixels of a triangle.
     pub triangles_culled: u32,
     /// Triangles that went through the clipper.
     pub triangles_clipped: u32,
     /// Triangles that reached the walker.
     pub triangles_drawn: u32,
-    /// Pixels tested by the walker; the gateware's tests eight at a time.
+    /// Pixels tested by the walker. The gateware's walker tests eight at a time.
     pub pixels_tested: u64,
     /// Pixels covered, counted once for each triangle.
     pub pixels_covered: u64,
-    /// Pixels written; `None` for a mesh in a field, whose pixels the gateware counts with them.
+    /// Pixels written; `None` for a mesh in a field, where the gateware does not count the mesh's pixels apart from the field's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pixels_drawn: Option<u64>,
 }
@@ -50,7 +50,7 @@ pub struct TriangleCounts {
 /// Counts of a field.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RayCounts {
-    /// Rays: one a pixel and eye.
+    /// Rays, one for each pixel and eye.
     pub rays: u32,
     /// Evaluations of the field.
     pub evaluations: u64,
@@ -63,7 +63,7 @@ pub struct RayCounts {
 }
 
 impl RayCounts {
-    /// Evaluations of the field a ray.
+    /// Mean number of evaluations of the field per ray.
     pub fn evaluations_per_ray(&self) -> f64 {
         self.evaluations as f64 / f64::from(self.rays)
     }
@@ -76,7 +76,7 @@ impl Stats {
     }
 }
 
-/// The statistics of a frame by the model.
+/// Converts the statistics of a frame that the model has drawn.
 impl From<FrameStats> for Stats {
     fn from(FrameStats { mesh, field }: FrameStats) -> Self {
         let mesh = mesh.map(|counts| TriangleCounts {
@@ -106,7 +106,7 @@ impl From<FrameStats> for Stats {
     }
 }
 
-/// Reads the statistics of a frame from lines of a key and a value.
+/// Reads the statistics of a frame from a reply whose lines are a key and a value.
 ///
 /// # Errors
 /// [`ConsoleError::Reply`] without the lines of a frame.

@@ -29,20 +29,20 @@ pub fn renderer(board: &mut SimulatedBoard) -> BoardRenderer<'_, SimulatedBoard>
     BoardRenderer::new(console(board))
 }
 
-/// A mesh seen from outside.
+/// A frame of a mesh, seen from the camera `R,THETA,PHI`.
 pub fn mesh_frame<'m>(mesh: &'m [u8], camera: &str, size: Size) -> Frame<'m> {
     let mesh = Mesh::new_checked(mesh).unwrap();
     Frame::new(Subject::mesh(mesh), view::spherical(camera).unwrap(), size)
 }
 
-/// A generated mesh.
+/// A generated mesh, converted to the board's memory layout.
 pub fn mesh(name: &str) -> Vec<u8> {
     convert::convert(&generate::named(name).unwrap(), Options::default())
         .unwrap()
         .0
 }
 
-/// The counts without cycles, clock, backend and engine counters: those that the model has too.
+/// The statistics without cycles, clock, backend and engine counters, which the model does not have.
 pub fn timeless(stats: Stats) -> Stats {
     Stats {
         cycles: None,
@@ -53,7 +53,7 @@ pub fn timeless(stats: Stats) -> Stats {
     }
 }
 
-/// The first word of a line of `info`.
+/// The first word of the value that `info` prints for `key`.
 pub fn info<T: std::str::FromStr>(console: &mut Console<SimulatedBoard>, key: &str) -> T {
     let lines = console.command(&format!("info {key}")).unwrap();
     let short: Vec<String> = lines
@@ -63,7 +63,7 @@ pub fn info<T: std::str::FromStr>(console: &mut Console<SimulatedBoard>, key: &s
     value("info", &short, key).unwrap()
 }
 
-/// A line of `info` that is an address.
+/// The address that `info` prints for `key`.
 pub fn address(console: &mut Console<SimulatedBoard>, key: &str) -> u32 {
     let word: String = info(console, key);
     u32::from_str_radix(word.trim_start_matches("0x"), 16).unwrap()

@@ -24,14 +24,14 @@ fn a_field_by_the_cpu_is_the_models() {
     a_field_by(Backend::Cpu, "cpu");
 }
 
-/// The first lines of a frame that the soft core draws, read during drawing: a cube, and a box through it.
+/// Checks the first lines of a frame while the soft core draws it: a cube, and a box through the cube.
 #[test]
 fn the_cpu_draws_a_mesh_in_a_field() {
     const PIXELS: usize = 2 * 320;
-    // Neither a colour nor a depth of this scene.
+    // A fill value that is neither a colour nor a depth of this scene.
     const UNTOUCHED: [u8; 4] = 0xA5A5_A5A5_u32.to_le_bytes();
     let mesh = mesh("cube");
-    // The view looks down, so that both are at the top of the picture.
+    // The view looks down, so that cube and box are both at the top of the picture.
     let eye = r#"{"eye":[0,-6,0],"u":[1,0,0],"v":[0,-0.6,-0.8],"n":[0,0.8,-0.6],"half_width":1.4,"near":0.1}"#;
     let field = FieldSubject {
         field: &Field::parse("box:3,0.2,0.4").unwrap(),
@@ -68,7 +68,7 @@ fn the_cpu_draws_a_mesh_in_a_field() {
     renderer
         .upload(&mesh, Route::Memory, &mut |_, _| {})
         .unwrap();
-    // Two frame buffers take turns: the next frame goes to the other one.
+    // The two frame buffers take turns, so the next frame goes to the other one.
     renderer.redraw().unwrap();
     let console = renderer.console();
     let [colour, depth] = ["frame", "depth"].map(|key| address(console, key));
@@ -81,13 +81,14 @@ fn the_cpu_draws_a_mesh_in_a_field() {
             .write_memory(place, &UNTOUCHED.repeat(PIXELS))
             .unwrap();
     }
-    // In one write: no frame starts between two commands.
+    // The commands are sent in one write, so that no frame starts between two of them.
     let text: String = lines.iter().map(|line| format!("{line}\r")).collect();
     console.board().write(text.as_bytes()).unwrap();
     for line in &lines {
         console.reply(line).unwrap();
     }
-    // The frame is cleared to black first, and no visible surface is black.
+    // The soft core clears the frame to black first, and no visible surface is black. So another colour in the last pixel says
+    // that the lines are drawn.
     let mut waited = 0;
     loop {
         let drawn = read(console, colour, 2 * PIXELS);
@@ -99,7 +100,7 @@ fn the_cpu_draws_a_mesh_in_a_field() {
         assert!(waited < 200, "the frame is not drawn");
         console.board().read(&mut Vec::new(), 1).unwrap();
     }
-    // The last pixel's depth may not be written yet.
+    // The last pixel is left out, because its depth may not be written yet.
     let before = PIXELS - 1;
     assert!(read(console, colour, 2 * before) == colours[..2 * before]);
     assert!(read(console, depth, 4 * before) == depths[..4 * before]);
@@ -112,7 +113,7 @@ fn read(console: &mut Console<SimulatedBoard>, place: u32, bytes: usize) -> Vec<
     found
 }
 
-/// A small, distant field drawn by `backend`.
+/// Checks a small, distant field that `backend` draws.
 fn a_field_by(backend: Backend, name: &str) {
     let mut board = running_board();
     let mut renderer = renderer(&mut board).with_backend(backend);
@@ -144,7 +145,7 @@ fn a_field_by(backend: Backend, name: &str) {
 
     let shown = renderer.console().command("info scene").unwrap();
     assert_eq!(shown, ["scene box:0.5,0.5,0.25"]);
-    // The mesh is shown again, and the eye is too far away for it.
+    // Without the field the mesh is shown again, and the eye is too far away for it.
     renderer.console().command("field off").unwrap();
     let error = renderer.redraw().unwrap_err().to_string();
     assert!(

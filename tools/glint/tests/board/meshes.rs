@@ -1,4 +1,4 @@
-//! Pictures and depths of meshes: the model's, bit for bit, on the monitor, in memory and over the line.
+//! Pictures and depths of meshes on the monitor, in memory and over the line equal the model's, bit for bit.
 
 use crate::common::{mesh, mesh_frame, renderer, running_board, timeless};
 use glint::board::{Board, SimulatedBoard};
@@ -45,14 +45,14 @@ fn smooth_shading_is_the_models_on_every_backend() {
     }
 }
 
-/// Renders a mesh from three eyes, one of them inside it, on the board, and compares with the model: picture on the monitor,
-/// depth buffer, counts.
+/// Renders a mesh on the board from three positions of the camera, one of them inside the mesh, and compares the picture on the
+/// monitor, the depth buffer and the counts with the model's.
 fn the_monitor_shows_what_the_model_renders(name: &str) {
     let size = Size::W320;
     let outside = |camera: &str| (view::spherical(camera).unwrap(), true);
     let inside = r#"{"eye":[0.21,-0.1,0.05],"u":[0.6,0.8,0],"v":[0,0,-1],"n":[-0.8,0.6,0],"half_width":1.5,"near":0.3}"#;
     let inside: View = view::parse(inside.as_bytes()).unwrap();
-    // From inside most of a mesh shows its back faces.
+    // A camera inside a mesh sees mostly back faces.
     let cameras = [outside("2,30,60"), outside("2.5,200,130"), (inside, false)];
 
     let mut board = running_board();
@@ -152,7 +152,7 @@ fn captured(renderer: &mut BoardRenderer<SimulatedBoard>, scale: usize) -> Vec<u
     picture.scaled_back(scale).unwrap()
 }
 
-/// Shows the cube over the serial line only; returns the model's frame too.
+/// Shows the cube over the serial line only; returns the board's renderer and the model's frame.
 fn shown_over_the_line(board: &mut SimulatedBoard) -> (BoardRenderer<'_, SimulatedBoard>, Image) {
     let mesh = mesh("cube");
     let frame = mesh_frame(&mesh, "3,10,80", Size::W320);

@@ -13,7 +13,7 @@ fn a_sensor_is_found_calibrated_and_gives_samples() {
 
     let found = sensor::calibrate(&mut console, 64, &mut |_| {}).unwrap();
     assert_eq!(found.samples, 64);
-    // The virtual sensor's biases, within the noise of 64 samples.
+    // The measured biases are those of the virtual sensor, within the noise of 64 samples.
     for (found, bias) in found.bias.iter().zip([-4.5, 1.25, 2.0]) {
         assert!((found - bias).abs() < 0.1, "{found}, expected {bias}");
     }
@@ -31,7 +31,7 @@ fn a_sensor_is_found_calibrated_and_gives_samples() {
             "{step}"
         );
     }
-    // Gravity, with the virtual sensor's scale error and bias.
+    // The acceleration is gravity, with the virtual sensor's scale error and bias.
     assert!(
         entries
             .iter()

@@ -1,4 +1,4 @@
-//! Uploads of meshes: over a line with faults, and of bad meshes.
+//! Uploads of meshes over a line with faults, and uploads of invalid meshes.
 
 use crate::common::{address, console, info, mesh, running_board};
 use glint::board::{Board, BoardError, SimulatedBoard};

@@ -5,7 +5,8 @@ use crate::common::{folder, refused, succeed};
 #[test]
 fn logs_of_a_gyroscope() {
     let folder = folder("imu");
-    // At rest for 0.1 s with noise and a bias, then 90 °/s about z for a second; the last 10 ms are missing.
+    // The sensor is at rest for 0.1 s, with noise and a bias, then turns at 90 °/s about z for a second. Only the last of the
+    // samples in the last 10 ms exists.
     let mut log = String::from("gx,gy,gz,t_us,temp,ax,ay,az\n");
     for i in (0..=1090).chain([1100]) {
         let noise = i * 7 % 5 - 2;
@@ -37,7 +38,8 @@ fn logs_of_a_gyroscope() {
     );
     let last = numbers(said.last().unwrap());
     assert_eq!(last[0], 4_100_000.0);
-    // The first sample in motion follows one at rest: half a step is missing, and the error of a cubic at the corner.
+    // The angle is less than 90°: between the last sample at rest and the first in motion half a step is lost, and the jump of
+    // the rate adds the error of the cubic interpolation.
     assert!(
         (last[5] - 89.96).abs() < 0.02 && last[6].abs() < 0.1 && last[7].abs() < 0.1,
         "{last:?}"
@@ -52,7 +54,8 @@ fn logs_of_a_gyroscope() {
     let yaw = summary["end"]["yaw"].as_f64().unwrap();
     assert!((yaw - last[5]).abs() < 1e-6, "{yaw}");
 
-    // Twice the sample period and half the scale give the same attitude. The gap becomes an ordinary step.
+    // Twice the sample period and half the scale give the same attitude. The gap becomes an ordinary step,
+    // because the period is fixed.
     let said = replay(
         "turn.csv",
         &["--dt-us", "2000", "--gyro-lsb", "32.8", "--no-tilt"],

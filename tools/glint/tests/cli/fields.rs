@@ -126,7 +126,7 @@ fn a_mesh_in_a_field() {
     let mut seen = [0, 0];
     for (i, pixel) in both.chunks_exact(3).enumerate() {
         let (a, b) = (mesh_depth[i], field_depth[i]);
-        // Depth codes of mesh and field have different scales when each is drawn alone.
+        // When drawn alone, mesh and field have depth codes of different scales, so close distances count as equal.
         if (a - b).abs() < 1e-3 {
             continue;
         }

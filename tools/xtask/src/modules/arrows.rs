@@ -1,4 +1,4 @@
-//! The arrows of a crate: for each module the items of other modules that it names.
+//! The arrows of a crate: for each module, the items of other modules that it names.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
@@ -43,7 +43,7 @@ struct Collector<'a> {
 }
 
 impl Collector<'_> {
-    /// An item at the module's top level.
+    /// Collects the arrows of an item at the module's top level.
     fn item(&mut self, item: &Item) {
         // Child modules have their own collector.
         if matches!(item, Item::Mod(_)) {
@@ -67,7 +67,7 @@ impl Collector<'_> {
         }
     }
 
-    /// A path in the scope of the module and its current block.
+    /// Adds the arrow of a path in the scope of the module and its current block.
     fn path(&mut self, path: &[String]) {
         let Some(first) = path.first() else { return };
         if path.len() == 1 && self.bindings.contains(first) {
@@ -86,10 +86,11 @@ impl Collector<'_> {
         }
     }
 
-    /// Paths in the arguments of a macro or attribute, which are tokens; with `absolute` only paths from `crate`.
+    /// Collects the paths in the arguments of a macro or attribute, which are tokens. With `absolute`,
+    /// only paths from `crate` count.
     fn tokens(&mut self, tokens: TokenStream, absolute: bool) {
         let mut path = Segments::new();
-        // The last tokens: a single `.` before a name makes it a field or a method, `::` continues the path.
+        // State after the last tokens: after a single `.` a name is a field or a method, and after `::` it continues the path.
         let (mut colons, mut dot) = (0, false);
         for token in tokens {
             match token {
@@ -193,7 +194,7 @@ impl<'ast> Visit<'ast> for Collector<'_> {
         self.tokens(call.tokens.clone(), false);
     }
 
-    /// A definition by `macro_rules!`: its relative paths belong to the caller, those from `$crate` to this module.
+    /// Handles a definition by `macro_rules!`: its relative paths belong to the caller, those from `$crate` to this module.
     fn visit_item_macro(&mut self, item: &'ast ItemMacro) {
         if item.ident.is_some() {
             self.tokens(item.mac.tokens.clone(), true);
@@ -202,7 +203,7 @@ impl<'ast> Visit<'ast> for Collector<'_> {
         }
     }
 
-    /// The paths in `#[clap(value_parser = super::parse)]`; the attribute's own name is not of this crate.
+    /// Collects the paths in `#[clap(value_parser = super::parse)]`. The attribute's own name is not of this crate.
     fn visit_attribute(&mut self, attribute: &'ast Attribute) {
         match &attribute.meta {
             Meta::List(list) => self.tokens(list.tokens.clone(), false),

@@ -51,7 +51,7 @@ fn walk(root: &Path, folder: &Path, found: &mut Vec<String>) -> Result<()> {
     Ok(())
 }
 
-/// The number of lines of a hand-written file above [`MOST_LINES`]; `None` for shorter and for generated files.
+/// The number of lines of a hand-written file that has more than [`MOST_LINES`]; `None` for shorter and for generated files.
 fn excess(text: &str) -> Option<usize> {
     let lines = text.lines().count();
     (lines > MOST_LINES && !is_generated(text)).then_some(lines)

@@ -12,7 +12,7 @@ pub type Id = usize;
 /// Segments of a path.
 pub type Segments = Vec<String>;
 
-/// Reads the text of a source file; nothing where no such file exists.
+/// Reads the text of a source file; `None` if no such file exists.
 pub type ReadSource<'a> = &'a dyn Fn(&Path) -> Option<String>;
 
 /// One crate: its root file and the modules below.
@@ -216,7 +216,8 @@ impl Crate {
         self.resolve_guarded(from, path, &mut HashSet::new())
     }
 
-    /// The nearest module, from `from` upwards, that defines the macro `name`: macros are visible in text order.
+    /// The macro `name`, defined in `from` or in the nearest module above it: macros are visible in
+    /// text order, child modules included.
     pub fn textual_macro(&self, from: Id, name: &str) -> Option<Definition> {
         let mut next = Some(from);
         while let Some(id) = next {
@@ -229,7 +230,7 @@ impl Crate {
         None
     }
 
-    /// As [`Self::resolve`]; `seen` ends a cycle of imports.
+    /// As [`Self::resolve`]; `seen` stops the search in a cycle of imports.
     fn resolve_guarded<'a>(
         &'a self,
         from: Id,
@@ -261,7 +262,7 @@ impl Crate {
         self.descend(start, rest, seen)
     }
 
-    /// The meanings of `path` below `module`.
+    /// The meanings of `path`, whose first segment is a name in the scope of `module`.
     fn descend<'a>(
         &'a self,
         module: Id,
@@ -283,17 +284,17 @@ impl Crate {
             })
             .collect();
         if modules.is_empty() {
-            // A type: the next segment is a variant or an associated item.
+            // The name is a type: the next segment is a variant or an associated item.
             return found;
         }
-        // A function may have a module's name; only the module has names below.
+        // A function may have the same name as a module, but only the module has names below.
         modules
             .into_iter()
             .flat_map(|id| self.descend(id, rest, seen))
             .collect()
     }
 
-    /// The meanings of `name` in the scope of `module`; an own name hides those of globs.
+    /// The meanings of `name` in the scope of `module`. A name that the module itself states hides those of globs.
     fn lookup<'a>(
         &'a self,
         module: Id,

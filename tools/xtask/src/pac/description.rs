@@ -115,10 +115,10 @@ impl Description {
         Ok(block)
     }
 
-    /// The shared numbers, after all blocks have been taken out.
+    /// Returns the shared numbers. Call it after all blocks have been taken out.
     ///
     /// # Errors
-    /// When a block is left; names the first one.
+    /// A block has not been taken out; the error names the first one.
     pub fn finish(self) -> Result<Machine> {
         let left = self.blocks.keys().next();
         ensure!(

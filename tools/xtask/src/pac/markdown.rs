@@ -124,7 +124,7 @@ fn bits(lsb: u32, width: u32) -> String {
     }
 }
 
-/// Text that does not end its table cell.
+/// Escapes text so that it does not end its table cell.
 fn cell(text: &str) -> String {
     text.replace('|', "\\|")
 }

@@ -1,4 +1,4 @@
-//! The SoC, joined from three descriptions: LiteX's two by address, Glint's own by name.
+//! The SoC, joined from three descriptions: LiteX's two are matched by address, Glint's own by name.
 
 use std::collections::BTreeMap;
 
@@ -16,9 +16,9 @@ const BUILD_ID: &str = "build_id";
 pub struct Soc {
     /// CRC-32 of the pinned register map.
     pub build_id: u32,
-    /// By base address.
+    /// Peripherals in the order of their base addresses.
     pub peripherals: Vec<Peripheral>,
-    /// Memories by base address, without `csr`.
+    /// Memories in the order of their base addresses, without `csr`.
     pub memories: Vec<Memory>,
     /// Numbers that gateware, firmware and host share.
     pub machine: Machine,
@@ -233,7 +233,7 @@ fn join_fields(
 
 /// A register of csr.json.
 struct Declared {
-    /// `peripheral_register`.
+    /// Name of the form `peripheral_register`.
     name: String,
     words: u32,
     access: Access,

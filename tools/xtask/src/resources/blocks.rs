@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 
 use crate::paths;
 
-/// The own blocks, the slowest to measure first.
+/// This project's own blocks. The one that takes longest to measure comes first.
 pub const OWN: [&str; 7] = [
     "ring_lane",
     "setup",
@@ -17,8 +17,8 @@ pub const OWN: [&str; 7] = [
     "i2c_engine",
 ];
 
-/// Engines made of own blocks, in several builds, and parts of the raymarcher. The tables show them; measuring them in every test
-/// would take too long.
+/// Engines made of own blocks, in several builds, and parts of the raymarcher. The tables show them. `cargo xtask test` does not
+/// measure them, because that would take too long.
 pub const BUILDS: [&str; 10] = [
     "triangle_engine_smooth",
     "raymarcher",
@@ -32,7 +32,7 @@ pub const BUILDS: [&str; 10] = [
     "round_light",
 ];
 
-/// The modules of the raymarcher's fields: the files `field_*.sv`, but for the unit that has them all.
+/// The modules of the raymarcher's fields: the files `field_*.sv`, except `field_unit.sv`, which has them all.
 ///
 /// # Errors
 /// The folder cannot be read.
@@ -59,7 +59,7 @@ pub const FLAT: &str = "flat_build";
 /// The whole of the Urbana's FPGA.
 pub const SOC: &str = "soc";
 
-/// The rows of the tables in their order; other modules come after them.
+/// The rows of the tables, in their order. Other modules come after these.
 pub const ROWS: [&str; 22] = [
     "scanout",
     "i2c_engine",

@@ -20,7 +20,7 @@ pub type Limits = BTreeMap<Resource, u32>;
 pub struct Budget {
     /// Resources of the FPGA: the SoC's limits.
     pub device: Limits,
-    /// Default limits of every own block.
+    /// Default limits for each of this project's own blocks.
     own: Limits,
     /// Limits of single blocks.
     block: BTreeMap<String, Limits>,
@@ -75,7 +75,7 @@ impl Budget {
         Ok(budget)
     }
 
-    /// Limits of a block: its own, otherwise those of its kind.
+    /// Limits of a block: its own where it has any, otherwise those of its kind.
     pub fn limits(&self, block: &str) -> Limits {
         let common = if block == SOC {
             &self.device

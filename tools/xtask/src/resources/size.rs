@@ -19,7 +19,7 @@ pub enum Resource {
     Ramb36,
     /// Carry chains of four bits.
     Carry4,
-    /// Cells between registers.
+    /// Cells on the longest path between registers.
     Path,
 }
 
@@ -111,7 +111,7 @@ impl Size {
         }
     }
 
-    /// Amount of `resource`.
+    /// Amount of `resource` in the block.
     pub fn of(&self, resource: Resource) -> f64 {
         match resource {
             Resource::Lut => f64::from(self.logic + self.srl + self.lutram),
@@ -145,7 +145,7 @@ pub fn number(count: f64) -> String {
 pub mod tests {
     use super::*;
 
-    /// A block with a different count of everything.
+    /// A block in which every count is different.
     pub fn size(name: &str) -> Size {
         let line = r#"{"name": "NAME", "yosys": "Yosys 0.70", "logic": 1200, "srl": 30, "lutram": 4, "ff": 2000, "dsp48": 7,
             "ramb36": 2, "ramb18": 1, "carry4": 50, "path": 9, "others": {"MUXF7": 3}}"#;

@@ -82,7 +82,7 @@ fn budget_rows(sizes: &[Size], budget: &Budget) -> Rows {
     rows
 }
 
-/// Cells of the SoC that count as no resource.
+/// Text with the SoC's cells that count as no resource.
 fn others(sizes: &[Size]) -> Option<String> {
     let soc = sizes.iter().find(|size| size.name == SOC)?;
     let cells: Vec<String> = soc

@@ -60,7 +60,7 @@ pub struct ReplayArguments {
     transfer: TransferArguments,
 }
 
-/// The summary of a replay.
+/// The summary of a replay, as printed.
 #[derive(Serialize)]
 struct Summary<'a> {
     log: &'a Path,
@@ -72,14 +72,14 @@ struct Summary<'a> {
     gaps: u64,
     saturated: u64,
     rejected: u64,
-    /// Mean cycles of a sample on a board.
+    /// Mean number of cycles that a board takes for a sample.
     #[serde(skip_serializing_if = "Option::is_none")]
     cycles_per_sample: Option<u64>,
     calibration: Option<Calibrated>,
     end: Attitude,
 }
 
-/// A calibration in LSB and °/h.
+/// The result of a calibration, as printed, in LSB and °/h.
 #[derive(Serialize)]
 struct Calibrated {
     samples: u32,
@@ -173,7 +173,7 @@ impl ReplayArguments {
                 Stage::Replay => replay,
             };
             if now != stage {
-                // Only one bar is shown.
+                // Resets both bars, so that only the bar of the new stage is shown.
                 bars.iter().for_each(ProgressBar::reset);
                 stage = now;
             }

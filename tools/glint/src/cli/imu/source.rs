@@ -1,4 +1,4 @@
-//! Samples of a board's sensor, and of a log.
+//! The sources of samples: a board's sensor, and a log.
 
 use crate::cli::common::{LineArguments, spinner};
 use clap::Args;
@@ -51,7 +51,7 @@ impl SensorArguments {
     }
 }
 
-/// Reads a log.
+/// Reads and parses the log at `path`.
 pub fn read_log(path: &Path) -> anyhow::Result<Vec<Entry>> {
     let text = read_file(path)?;
     Ok(log::parse(&text).map_err(|error| error.in_path(path))?)

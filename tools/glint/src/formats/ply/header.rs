@@ -55,7 +55,7 @@ impl Scalar {
         }
     }
 
-    /// Decodes the low [`size`](Self::size) bytes, least significant first.
+    /// Decodes a value from the first [`size`](Self::size) bytes of `raw`, least significant byte first.
     pub fn decode(self, raw: [u8; 8]) -> f64 {
         let [a, b, c, d, ..] = raw;
         match self {
@@ -88,7 +88,7 @@ impl Scalar {
             .is_none_or(|(low, high)| (low..=high).contains(&value) && value.fract() == 0.0)
     }
 
-    /// Full intensity of a colour channel of this type.
+    /// The value that stands for full intensity in a colour channel of this type.
     pub fn full_scale(self) -> f64 {
         self.range().map_or(1.0, |(_, high)| high)
     }
@@ -108,7 +108,7 @@ impl Scalar {
     }
 }
 
-/// Type of a property: one value, or a list after its length.
+/// Type of a property: one value, or a list that is preceded by its length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// One value.

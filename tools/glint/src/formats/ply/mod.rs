@@ -35,7 +35,7 @@ pub fn parse(file: &[u8]) -> Result<Polygons, FormatError> {
 fn read_body(header: &Header, mut source: impl Source) -> Result<Polygons, FormatError> {
     let mut polygons = Polygons::default();
     for element in &header.elements {
-        // An element without properties has no bytes at any count.
+        // An element without properties takes no bytes in the file, whatever its count.
         if element.properties.is_empty() {
             continue;
         }
@@ -84,12 +84,12 @@ fn list_length(count: Scalar, source: &mut impl Source) -> Result<u64, FormatErr
     Ok(length as u64)
 }
 
-/// Destination of a scalar property.
+/// The coordinate or colour channel that a scalar property sets.
 #[derive(Clone, Copy)]
 enum Slot {
     Position(usize),
     Normal(usize),
-    /// Channel, and full intensity of the property's type.
+    /// Number of the channel, and the value of full intensity in the property's type.
     Colour(usize, f64),
     None,
 }
@@ -114,7 +114,7 @@ impl Slot {
     }
 }
 
-/// Whether the properties include all three channels of a kind.
+/// Whether the properties include all three coordinates or channels that `kind` selects.
 fn has_all(slots: &[Slot], kind: impl Fn(&Slot) -> Option<usize>) -> bool {
     (0..3).all(|i| slots.iter().any(|slot| kind(slot) == Some(i)))
 }
@@ -179,7 +179,7 @@ fn read_vertices(
             let value = source.value(scalar)?;
             match *slot {
                 Slot::Position(i) => point[i] = coordinate(value, place)?,
-                // An invalid normal counts as none.
+                // An invalid component of a normal counts as 0.
                 Slot::Normal(i) => normal[i] = checked(value).unwrap_or(0.0),
                 Slot::Colour(i, full) => colour[i] = value / full,
                 Slot::None => {}

@@ -16,7 +16,7 @@ pub trait Source {
     fn place(&self) -> Place;
 }
 
-/// Values as decimal words, a line per instance of an element.
+/// Values as decimal words, with one line per instance of an element.
 pub struct AsciiSource<'a> {
     lines: Lines<'a>,
     words: Vec<&'a [u8]>,
@@ -25,7 +25,7 @@ pub struct AsciiSource<'a> {
 }
 
 impl<'a> AsciiSource<'a> {
-    /// The values in the lines after the header.
+    /// Creates the source from the lines after the header.
     pub fn new(lines: Lines<'a>) -> Self {
         Self {
             lines,
@@ -92,7 +92,7 @@ pub struct BinarySource<'a> {
 }
 
 impl<'a> BinarySource<'a> {
-    /// The values of `file` from `offset` on.
+    /// Creates the source from the bytes of `file` from `offset` on.
     pub fn new(file: &'a [u8], offset: usize, big_endian: bool) -> Self {
         Self {
             file,

@@ -15,7 +15,7 @@ pub struct Enumeration<'s> {
     /// Width of its fields in bits.
     width: u32,
     values: &'s [NamedValue],
-    /// `register.field`.
+    /// The fields that hold one of the values, as `register.field`.
     fields: Vec<String>,
 }
 
@@ -31,7 +31,8 @@ impl Enumeration<'_> {
     }
 }
 
-/// The enumerations of a peripheral. Fields with the same values share one; its name is the part that their names end in.
+/// The enumerations of a peripheral. Fields with the same values share one, which is named by the words that the names
+/// of the fields end in.
 ///
 /// # Errors
 /// When a name is taken already, or fields that share their values have no part of their name in common.

@@ -1,4 +1,4 @@
-//! Prints a peripheral: its handle, an accessor a register, a type for each register's value that has fields.
+//! Prints a peripheral: its handle, an accessor for each register, and a type for the value of each register with fields.
 
 use std::fmt::{self, Write};
 
@@ -68,14 +68,14 @@ pub fn write(out: &mut String, peripheral: &Peripheral) -> Result<()> {
     Ok(())
 }
 
-/// The block's identifier and its other constants.
+/// Prints the block's identifier and its other constants.
 fn constants(peripheral: &Peripheral) -> String {
     let ident = peripheral.registers.iter().find(|r| r.name == "ident");
     let ident = ident.map(|register| {
         (
             "Value of `ident` where the block is present.".to_owned(),
             "IDENT".to_owned(),
-            // The reset value of a register of one word has 32 bits.
+            // `ident` is a register of one word, so its reset value has 32 bits.
             hex(register.reset as u32),
         )
     });
@@ -164,7 +164,7 @@ fn write_accessor(out: &mut String, base: u32, register: &Register) -> fmt::Resu
     writeln!(out, "        }}")
 }
 
-/// The type of a register's value that has fields.
+/// Prints the type for the value of a register with fields.
 fn write_value(out: &mut String, register: &Register, enumerations: &[Enumeration]) -> fmt::Result {
     let kind = camel(&register.name);
     writeln!(out, "\n    /// A value of `{}`.", register.name)?;
@@ -284,7 +284,7 @@ fn kept(width: u32) -> String {
     }
 }
 
-/// The smallest type that holds `width` bits.
+/// The smallest Rust type that holds `width` bits.
 fn integer(width: u32) -> &'static str {
     match width {
         1 => "bool",

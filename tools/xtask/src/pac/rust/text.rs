@@ -3,7 +3,7 @@
 /// Words that cannot name a function.
 const KEYWORDS: [&str; 5] = ["in", "loop", "mod", "type", "use"];
 
-/// `ev_pending` as `EvPending`.
+/// Converts a name to Rust's form for types: `ev_pending` becomes `EvPending`.
 pub fn camel(name: &str) -> String {
     name.split('_')
         .map(|part| {
@@ -15,7 +15,7 @@ pub fn camel(name: &str) -> String {
         .collect()
 }
 
-/// `name`, or `name_` where Rust has that word.
+/// Returns `name`, or `name_` if `name` is a keyword of Rust.
 pub fn identifier(name: &str) -> String {
     if KEYWORDS.contains(&name) {
         format!("{name}_")
@@ -24,7 +24,7 @@ pub fn identifier(name: &str) -> String {
     }
 }
 
-/// `0x4000_0000`.
+/// Formats a number like `0x4000_0000`.
 pub fn hex(value: u32) -> String {
     if value >> 16 == 0 {
         format!("{value:#x}")
@@ -33,7 +33,7 @@ pub fn hex(value: u32) -> String {
     }
 }
 
-/// `81_250_000`.
+/// Formats a number like `81_250_000`.
 pub fn decimal(value: u32) -> String {
     let digits = value.to_string();
     let groups: Vec<_> = digits
@@ -45,7 +45,7 @@ pub fn decimal(value: u32) -> String {
     groups.join("_")
 }
 
-/// A description that rustdoc takes as text: outside code, brackets would be links and tags.
+/// Escapes a description for rustdoc, which takes brackets outside code for links and tags.
 pub fn documented(description: &str) -> String {
     let parts = description.split('`').enumerate().map(|(index, part)| {
         if index % 2 == 1 {
@@ -59,7 +59,7 @@ pub fn documented(description: &str) -> String {
     parts.collect::<Vec<_>>().join("`")
 }
 
-/// `no error` as `No error.`.
+/// Turns a phrase into a sentence: `no error` becomes `No error.`.
 pub fn sentence(text: &str) -> String {
     let mut letters = text.trim_end_matches('.').chars();
     letters.next().map_or(String::new(), |first| {
