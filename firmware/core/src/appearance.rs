@@ -23,7 +23,7 @@ pub struct Appearance {
 }
 
 impl Appearance {
-    /// Ambient light and lights, with their defaults.
+    /// The ambient light and the lights to draw with: the values of this appearance, or the defaults where it has none.
     pub fn lighting(&self) -> Lighting {
         let lighting = if self.lights.is_empty() {
             self.material.light()

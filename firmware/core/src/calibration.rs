@@ -1,7 +1,7 @@
 //! Bias of a gyroscope: calibrated at rest, then tracked at rest.
 //!
-//! [`Calibration`] takes the mean of many samples and fails if the sensor moved. [`RestBias`] follows the bias slowly afterwards, only at
-//! rest.
+//! [`Calibration`] takes the mean of many samples and fails if the sensor moved. [`RestBias`] follows the bias slowly afterwards,
+//! only at rest.
 
 mod rest;
 
@@ -15,19 +15,20 @@ pub use rest::RestBias;
 
 /// Default number of samples of a calibration.
 pub const SAMPLES: u32 = 8_192;
-/// Accepted numbers of samples of a calibration.
+/// Smallest and largest accepted number of samples of a calibration.
 pub const MOST_SAMPLES: [u32; 2] = [64, 65_536];
 
-/// Largest difference of a sample's rate from the first one, in °/s: ten times the noise. Even a hand held still exceeds this limit.
+/// Largest accepted difference between the rates of a sample and of the first sample, in °/s: ten times the sensor's noise. Even
+/// a sensor in a still hand exceeds this limit.
 const MOST_RATE: u32 = 2;
-/// Largest difference between the means of both halves, in 1/8 °/s.
+/// Largest accepted difference between the mean rates of the first and the second half of the samples, in 1/8 °/s.
 const MOST_CHANGE: u32 = 1;
-/// Largest bias, in °/s: the data sheet's ±20 °/s at 25 °C, doubled for temperature.
+/// Largest accepted bias, in °/s: twice the data sheet's ±20 °/s at 25 °C, because the bias also changes with temperature.
 const MOST_BIAS: u32 = 40;
-/// Largest difference of a sample's force from the first one along an axis, in 1/8 g.
+/// Largest accepted difference between the forces of a sample and of the first sample along an axis, in 1/8 g.
 const MOST_FORCE: u32 = 1;
 
-/// LSB per °/s and per g.
+/// Scales of a sensor's raw counts: LSB per °/s and LSB per g.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Units {
     /// LSB of the gyroscope per °/s.
@@ -37,27 +38,27 @@ pub struct Units {
 }
 
 impl Units {
-    /// An MPU-6050 at ±2000 °/s and ±8 g.
+    /// Scales of an MPU-6050 with the ranges ±2000 °/s and ±8 g.
     pub const MPU_6050: Self = Self {
         per_dps: GYRO_LSB_PER_DPS,
         per_g: 4_096,
     };
 
-    /// `dps` degrees per second in LSB, rounded up, at least 1.
+    /// Converts a rate of `dps` degrees per second to LSB, rounded up. The result is at least 1.
     fn rate(self, dps: u32) -> u32 {
-        // The scale of a 16-bit count is at most 2^12 LSB per °/s.
+        // The scale of a 16-bit count is at most 2^12 LSB per °/s; the clamp also excludes scales below 2^−4.
         let lsb = self.per_dps.to_bits().clamp(1 << 28, 1 << 44);
         ((i128::from(lsb) * i128::from(dps) + (1 << 32) - 1) >> 32) as u32
     }
 
-    /// A rate in 2^−16 LSB as °/h, rounded down.
+    /// Converts a rate from 2^−16 LSB to °/h, rounded down.
     fn per_hour(self, rate: u32) -> Q32_32 {
         let lsb = i128::from(self.per_dps.to_bits().max(1 << 28));
         Q32_32::saturating_from_num(fixed_i128(((i128::from(rate) * 3_600) << 48) / lsb))
     }
 }
 
-/// A number with 32 fraction bits.
+/// Converts raw bits to a fixed-point number with 32 fraction bits.
 fn fixed_i128(bits: i128) -> fixed::FixedI128<fixed::types::extra::U32> {
     fixed::FixedI128::from_bits(bits)
 }
@@ -71,12 +72,12 @@ pub struct Report {
     pub bias: [i32; 3],
     /// The standard deviation of a sample in 1/256 LSB, rounded down.
     pub deviation: [u32; 3],
-    /// Standard error of the mean by white noise, in 2^−16 LSB, rounded down.
+    /// Standard error of the mean if the noise is white, in 2^−16 LSB, rounded down.
     pub error: [u32; 3],
 }
 
 impl Report {
-    /// Expected drift of each axis by [`Report::error`], in °/h. The bias itself wanders by another 5 to 10 °/h.
+    /// Expected drift of each axis that [`Report::error`] causes, in °/h. Slow changes of the bias itself add 5 to 10 °/h.
     pub fn drift(&self, units: Units) -> [Q32_32; 3] {
         self.error.map(|error| units.per_hour(error))
     }
@@ -85,9 +86,9 @@ impl Report {
 /// Reason why samples give no calibration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SampleError {
-    /// The rate differs from the first sample.
+    /// The rate of a sample differs too much from the rate of the first sample.
     Turned {
-        /// The sample, from 0.
+        /// Number of the sample, from 0.
         sample: u32,
         /// The axis, 0 for x.
         axis: usize,
@@ -96,9 +97,9 @@ pub enum SampleError {
         /// The accepted maximum in LSB.
         most: u32,
     },
-    /// The force differs from the first sample.
+    /// The force of a sample differs too much from the force of the first sample.
     Pushed {
-        /// The sample, from 0.
+        /// Number of the sample, from 0.
         sample: u32,
         /// The axis, 0 for x.
         axis: usize,
@@ -107,7 +108,7 @@ pub enum SampleError {
         /// The accepted maximum in LSB.
         most: u32,
     },
-    /// The means of both halves differ.
+    /// The mean rates of the first and the second half of the samples differ too much.
     Changed {
         /// The axis, 0 for x.
         axis: usize,
@@ -116,16 +117,16 @@ pub enum SampleError {
         /// The accepted maximum in 1/256 LSB.
         most: u32,
     },
-    /// The sensor turns steadily, or its bias exceeds the data sheet.
+    /// The mean rate is too large: the sensor turns steadily, or its bias exceeds the data sheet.
     TooLarge {
         /// The axis, 0 for x.
         axis: usize,
-        /// The mean in LSB.
+        /// The mean rate in LSB.
         mean: i32,
         /// The accepted maximum in LSB.
         most: u32,
     },
-    /// All samples are equal in all axes. Without noise the sensor does not measure.
+    /// All samples have the same rates. A sensor that measures has noise, so this sensor does not measure.
     Frozen,
 }
 
@@ -188,10 +189,10 @@ pub struct Calibration {
     count: u32,
     first: Sample,
     last_us: u32,
-    /// Sums of counts (at most 2^31 in magnitude) and of their squares (at most 2^46) over all samples.
+    /// Sums over all samples, for each axis: the gyroscope's counts (at most 2^31 in magnitude) and their squares (at most 2^46).
     sum: [i64; 3],
     squares: [u64; 3],
-    /// Sums over the first half.
+    /// Sums of the gyroscope's counts over the first half of the samples, for each axis.
     half: [i64; 3],
 }
 
@@ -222,7 +223,7 @@ impl Calibration {
     /// Takes a sample. A sample with the time of the previous sample is ignored.
     ///
     /// # Errors
-    /// The sensor moved. Start again.
+    /// The sensor moved or does not measure; the calibration has ended, and a new one is needed.
     pub fn on_sample(&mut self, sample: &Sample) -> Result<Progress, SampleError> {
         if self.count == 0 {
             self.first = *sample;
@@ -305,7 +306,7 @@ impl Calibration {
                 });
             }
         }
-        // n²·variance: at most 2^62, and at least 0 by the Cauchy–Schwarz inequality.
+        // n²·variance for n samples, on each axis: at most 2^62, and at least 0 by the Cauchy–Schwarz inequality.
         let spread = [0, 1, 2].map(|axis| {
             u64::from(self.count) * self.squares[axis] - self.sum[axis].unsigned_abs().pow(2)
         });

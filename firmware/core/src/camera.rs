@@ -9,21 +9,21 @@ use core::fmt;
 use crate::fixed::{Q2_23, Q32_32, Turns, U4_28};
 use crate::trig::sin_cos_q30;
 
-/// Half width of the image plane at distance 1, for cameras given by angles: 0.9.
+/// Half width of the image plane at distance 1, for cameras that are defined by angles.
 pub const DEFAULT_HALF_WIDTH: U4_28 = U4_28::lit("0.9");
-/// Distance of the near plane, for cameras given by angles: 0.1.
+/// Distance of the near plane, for cameras that are defined by angles.
 pub const DEFAULT_NEAR: U4_28 = U4_28::lit("0.1");
 
 /// Largest distance of an eye from the origin.
 pub const MAX_EYE: u32 = 32;
-/// Accepted half widths.
+/// Smallest and largest accepted half width of the image plane at distance 1.
 pub const HALF_WIDTH: [U4_28; 2] = [U4_28::lit("0.05"), U4_28::lit("4")];
-/// Accepted near planes.
+/// Smallest and largest accepted distance of the near plane.
 pub const NEAR: [U4_28; 2] = [U4_28::lit("0.01"), U4_28::lit("2")];
-/// Accepted radii of the spherical camera.
+/// Smallest and largest accepted distance of the spherical camera from the origin.
 pub const RADIUS: [Q32_32; 2] = [Q32_32::lit("2"), Q32_32::lit("5")];
 
-/// A vector in units of 2^−60.
+/// A vector with components in units of 2^−60.
 type Exact = [i64; 3];
 
 /// A checked camera.
@@ -38,7 +38,7 @@ pub struct View {
 }
 
 impl View {
-    /// A camera of eye, basis, half width and near plane.
+    /// Checks eye, basis, half width and near plane, and makes a camera of them.
     ///
     /// The basis must be orthonormal within 1e-4 (lengths and scalar products) with u × v = n; it is not normalised. The
     /// eye must be within 32 of the origin, `half_width` in [0.05, 4] and `near` in [0.01, 2].
@@ -179,8 +179,8 @@ impl View {
     }
 }
 
-/// The arguments of the console's `view`: eye, u, v, n, half width and near plane, each as the shortest decimal that reads
-/// back as the same bits.
+/// Writes the arguments of the console's command `view`: eye, u, v, n, half width and near plane. Each number is the shortest
+/// decimal that reads back as the same bits.
 impl fmt::Display for View {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         self.eye.iter().try_for_each(|x| write!(f, "{x} "))?;
@@ -192,7 +192,7 @@ impl fmt::Display for View {
     }
 }
 
-/// Sine and cosine in units of 2^−30; a product of two is below 2^61.
+/// Sine and cosine of an angle, in units of 2^−30; the product of two such numbers is below 2^61.
 fn sines(angle: Turns) -> (i64, i64) {
     let (sin, cos) = sin_cos_q30(angle);
     (sin.to_bits().into(), cos.to_bits().into())
@@ -208,7 +208,7 @@ fn rounded(x: Exact) -> [Q2_23; 3] {
     x.map(|x| Q2_23::from_bits(((x + (1 << 36)) >> 37) as i32))
 }
 
-/// r·x with x in units of 2^−60, to nearest. |r| ≤ 5 and |x| ≤ 1, so the result fits.
+/// The product r·x of a radius and a number x in units of 2^−60, rounded to nearest. |r| ≤ 5 and |x| ≤ 1, so the result fits.
 fn scaled(r: Q32_32, x: i64) -> Q32_32 {
     Q32_32::from_bits(((i128::from(r.to_bits()) * i128::from(x) + (1 << 59)) >> 60) as i64)
 }
@@ -220,7 +220,7 @@ fn within(place: [Q32_32; 3], distance: u32) -> bool {
         .map(|x| u128::from(x.to_bits().unsigned_abs()).pow(2))
         .iter()
         .sum();
-    // The sum of squares is below 2^64.
+    // `limit * limit` does not overflow: `limit` is below 2^64.
     squared <= limit * limit
 }
 
@@ -234,13 +234,13 @@ fn check_eye(eye: [Q32_32; 3]) -> Result<(), ViewError> {
 
 fn check_basis(u: [Q2_23; 3], v: [Q2_23; 3], n: [Q2_23; 3]) -> Result<(), ViewError> {
     const ONE: i64 = 1 << 46;
-    // 1e-4 and its square, in units of 2^−46.
+    // The tolerance 1e-4 and its square, in units of 2^−46.
     const TOLERANCE: i64 = ONE / 10_000;
     const SQUARE: i64 = ONE / 100_000_000;
 
     let rows = [(Axis::U, u), (Axis::V, v), (Axis::N, n)];
     for (axis, row) in rows {
-        // Components within ±2 keep the sums below from overflow.
+        // Components below 2 in magnitude keep the scalar products from overflow.
         let squared = row
             .iter()
             .all(|x| x.unsigned_abs() < 2)
@@ -260,7 +260,7 @@ fn check_basis(u: [Q2_23; 3], v: [Q2_23; 3], n: [Q2_23; 3]) -> Result<(), ViewEr
             });
         }
     }
-    // The rows are orthonormal, so u × v is n or −n, which the sign of one product decides.
+    // The rows are orthonormal, so u × v is n or −n; the sign of (u × v)·n decides which.
     let cross = [[1, 2], [2, 0], [0, 1]].map(|[i, j]| {
         let (a, b) = (
             i64::from(u[i].to_bits()) * i64::from(v[j].to_bits()),
@@ -275,7 +275,7 @@ fn check_basis(u: [Q2_23; 3], v: [Q2_23; 3], n: [Q2_23; 3]) -> Result<(), ViewEr
     }
 }
 
-/// The scalar product in units of 2^−46; exact for components within ±2.
+/// The scalar product of two vectors, in units of 2^−46; exact for components within ±2.
 fn dot(a: [Q2_23; 3], b: [Q2_23; 3]) -> i64 {
     core::iter::zip(a, b)
         .map(|(a, b)| i64::from(a.to_bits()) * i64::from(b.to_bits()))
@@ -287,7 +287,7 @@ const fn narrow_product(x: i64) -> i32 {
     (x >> 23) as i32
 }
 
-/// A row of the basis.
+/// One of the three vectors of a camera's basis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axis {
     /// To the right of the screen.
@@ -313,18 +313,18 @@ impl fmt::Display for Axis {
 pub enum ViewError {
     /// The eye is too far from the origin.
     Eye([Q32_32; 3]),
-    /// The length of a row of the basis differs from 1 by more than 1e-4.
+    /// The length of a vector of the basis differs from 1 by more than 1e-4.
     Length {
-        /// The row.
+        /// Name of the vector.
         axis: Axis,
-        /// Components of the row.
+        /// Components of the vector.
         row: [Q2_23; 3],
     },
-    /// Two rows have a scalar product beyond 1e-4.
+    /// The scalar product of two vectors of the basis exceeds 1e-4 in magnitude.
     NotPerpendicular {
-        /// The first row.
+        /// The first vector.
         a: Axis,
-        /// The second row.
+        /// The second vector.
         b: Axis,
         /// Their scalar product.
         product: Q2_23,

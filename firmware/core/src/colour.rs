@@ -10,7 +10,7 @@ impl Rgb565 {
     /// Full red, green and blue.
     pub const WHITE: Self = Self(0xFFFF);
 
-    /// The nearest colour to three 8-bit channels.
+    /// The RGB565 colour nearest to three 8-bit channels.
     pub const fn from_rgb888(rgb: [u8; 3]) -> Self {
         const fn nearest(channel: u8, max: u32) -> u16 {
             ((channel as u32 * max * 2 + 255) / 510) as u16
@@ -18,7 +18,7 @@ impl Rgb565 {
         Self(nearest(rgb[0], 31) << 11 | nearest(rgb[1], 63) << 5 | nearest(rgb[2], 31))
     }
 
-    /// Three 8-bit channels by bit replication, as the scan-out shows them.
+    /// The colour as three 8-bit channels, widened by bit replication as in the scan-out.
     pub const fn to_rgb888(self) -> [u8; 3] {
         let [r, g, b] = self.channels();
         [r << 3 | r >> 2, g << 2 | g >> 4, b << 3 | b >> 2]

@@ -1,9 +1,9 @@
 //! Distance fields: scenes defined by the distance of every point from a solid, instead of a mesh.
 //!
 //! The text form is a kind, a colon and numbers in world units, such as `menger:4` or `cubes:2,0.5`; [`Field::parse`]
-//! checks the numbers. Each kind is one module here: its name, its numbers and their ranges ([`Shape`]), and the solid in the
-//! engine's arithmetic, bit for bit as the gateware evaluates it ([`FlatSolid`], [`FixedSpheres`]). A kind is registered in
-//! the lists of `primitive` (docs/adding-a-field.md).
+//! checks the numbers. Each kind of field has one module here. The module defines the kind's name, its numbers and their ranges
+//! ([`Shape`]), and its solid in fixed-point arithmetic, bit for bit as the gateware evaluates it ([`FlatSolid`],
+//! [`FixedSpheres`]). The lists in the module `primitive` name all kinds (docs/adding-a-field.md).
 
 use core::fmt;
 
@@ -38,7 +38,7 @@ pub enum Field {
 }
 
 impl Field {
-    /// Whether the field has spheres: its distances are then in the Euclidean norm.
+    /// Whether the field has spheres; if so, its distances are in the Euclidean norm, otherwise in the maximum norm.
     pub const fn is_round(&self) -> bool {
         match self {
             Self::Primitive(primitive) => primitive.is_round(),
@@ -54,7 +54,7 @@ impl Field {
         }
     }
 
-    /// Whether the faces are perpendicular to the diagonals instead of the axes.
+    /// Whether the field's faces are perpendicular to the diagonals instead of the axes.
     pub const fn has_octants(&self) -> bool {
         match self {
             Self::Primitive(primitive) => primitive.has_octants(),
@@ -80,7 +80,8 @@ impl Field {
         }
     }
 
-    /// Chooses a field at random: its kind, and its numbers from their ranges.
+    /// Makes a random field for tests and test vectors: its kind, and its numbers within their ranges. `random` returns
+    /// 32 random bits.
     pub fn draw(mut random: impl FnMut() -> u32) -> Self {
         let mut numbers = Random::new(&mut random);
         let primitive = Primitive::draw(&mut numbers);
@@ -100,7 +101,7 @@ impl<P: Into<Primitive>> From<P> for Field {
     }
 }
 
-/// Writes the text form.
+/// Writes the text form of the field, such as `menger:4`.
 impl fmt::Display for Field {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {

@@ -1,24 +1,23 @@
 //! The named fixed-point formats, angles, and decimals.
 //!
-//! `QI.F` is a two's complement number with I integer bits, which include the sign, and F fraction bits; `UI.F` has no sign.
-//! The types are those of the [`fixed`] crate: an alias may hold more integer bits than its name says, and the creator of
-//! a value keeps its range. Their `FromStr` reads a decimal by integer arithmetic, rounds to nearest with ties to even,
-//! and refuses numbers out of range; their `Display` prints the shortest decimal that
-//! reads back as the same bits.
+//! `QI.F` is a two's complement number with I integer bits, which include the sign, and F fraction bits; `UI.F` has no sign. The
+//! types are aliases of types of the [`fixed`] crate. Such a type may have more integer bits than the alias says; the code that
+//! makes a value keeps it within the range of the alias. `FromStr` reads a decimal by integer arithmetic, rounds to nearest with
+//! ties to even, and refuses numbers out of range. `Display` prints the shortest decimal that reads back as the same bits.
 
 pub use ::fixed;
 use ::fixed::types::extra::{U14, U23, U28, U30, U32};
 use ::fixed::{FixedI16, FixedI32, FixedI64, FixedU32};
 
-/// Positions, normals: 1/16384 in [−2, 2).
+/// Format of positions and normals: units of 2^−14, in [−2, 2).
 pub type Q2_14 = FixedI16<U14>;
-/// The basis of a camera: 2^−23 in [−2, 2), 25 bits in a 32-bit word.
+/// Format of a camera's basis: units of 2^−23, in [−2, 2), 25 bits in a 32-bit word.
 pub type Q2_23 = FixedI32<U23>;
-/// Sines and cosines: 2^−30 in [−2, 2).
+/// Format of sines and cosines: units of 2^−30, in [−2, 2).
 pub type Q2_30 = FixedI32<U30>;
-/// Position of an eye: 2^−32.
+/// Format of positions in the world, such as an eye: units of 2^−32.
 pub type Q32_32 = FixedI64<U32>;
-/// The half width of a picture and the near plane: 2^−28 in [0, 16).
+/// Format of half width and near plane of a camera: units of 2^−28, in [0, 16).
 pub type U4_28 = FixedU32<U28>;
 
 /// An angle in units of 2^−32 turns, modulo one turn.
@@ -35,7 +34,7 @@ impl Turns {
     pub const fn from_degrees(degrees: Q32_32) -> Self {
         let bits = degrees.to_bits();
         let nearest = bits.div_euclid(360) + (bits.rem_euclid(360) >= 180) as i64;
-        // Truncation drops the whole turns.
+        // The conversion to 32 bits drops the whole turns.
         Self(nearest as u32)
     }
 
@@ -64,7 +63,7 @@ impl core::ops::Neg for Turns {
     }
 }
 
-/// The product of two numbers, exact.
+/// The exact product of two numbers.
 pub(crate) const fn wide(a: i32, b: i32) -> i64 {
     a as i64 * b as i64
 }

@@ -1,7 +1,7 @@
 //! Cameras steered by an attitude: free look, and orbit about the model.
 //!
-//! The camera's basis is computed from the quaternion without angles and has no singularity: a small turn of the sensor is an equally small
-//! turn of the picture, at the zenith and the nadir too.
+//! The camera's basis is computed from the attitude's quaternion without angles, so it has no singularity: a small turn of the
+//! sensor turns the picture by an equally small angle, also at the zenith and the nadir.
 
 use core::fmt;
 
@@ -15,17 +15,17 @@ use crate::trig::sin_cos_q30;
 /// A direction of the sensor along one of its axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
-    /// Along x.
+    /// In the direction of +x.
     X,
-    /// Against x.
+    /// In the direction of −x.
     MinusX,
-    /// Along y.
+    /// In the direction of +y.
     Y,
-    /// Against y.
+    /// In the direction of −y.
     MinusY,
-    /// Along z.
+    /// In the direction of +z.
     Z,
-    /// Against z.
+    /// In the direction of −z.
     MinusZ,
 }
 
@@ -39,7 +39,7 @@ choices!(Direction {
 });
 
 impl Direction {
-    /// 0, 1, 2 for x, y, z.
+    /// Number of the direction's axis: 0, 1, 2 for x, y, z.
     const fn axis(self) -> usize {
         match self {
             Self::X | Self::MinusX => 0,
@@ -48,18 +48,18 @@ impl Direction {
         }
     }
 
-    /// The direction in the world, 30 fraction bits.
+    /// This direction in the world, 30 fraction bits, from the world's directions of the sensor's axes x, y, z.
     fn of(self, axes: &[[i32; 3]; 3]) -> [i32; 3] {
         let axis = axes[self.axis()];
         match self {
             Self::X | Self::Y | Self::Z => axis,
-            // The sum is at most 2^30 plus a rounding error.
+            // The negation cannot overflow: a component is at most 2^30 in magnitude plus a rounding error.
             Self::MinusX | Self::MinusY | Self::MinusZ => axis.map(|x| -x),
         }
     }
 }
 
-/// Mounting of the sensor: its directions along the camera's axes.
+/// Mounting of the sensor: which of its directions points into the scene, and which points up on the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Mounting {
     forward: Direction,
@@ -67,7 +67,8 @@ pub struct Mounting {
 }
 
 impl Default for Mounting {
-    /// Forward is y and up is z, so that at the identity the camera looks along +y, as [`View::look`] does with all angles 0.
+    /// Forward is y and up is z, so that with the identity as attitude the camera looks along +y, as [`View::look`] does with
+    /// all angles 0.
     fn default() -> Self {
         Self {
             forward: Direction::Y,
@@ -77,20 +78,20 @@ impl Default for Mounting {
 }
 
 impl Mounting {
-    /// A mounting from the sensor's directions into the scene and up on the screen; `None` unless they are perpendicular.
+    /// Makes a mounting from the sensor's directions into the scene and up on the screen; `None` unless they are perpendicular.
     pub fn new(forward: Direction, up: Direction) -> Option<Self> {
         (forward.axis() != up.axis()).then_some(Self { forward, up })
     }
 }
 
-/// The directions forward and up, as the console accepts them.
+/// Writes the directions forward and up, as the console accepts them.
 impl fmt::Display for Mounting {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         write!(f, "{} {}", self.forward, self.up)
     }
 }
 
-/// The camera at `eye` in the direction of the sensor.
+/// The camera at `eye` that looks in the direction of the sensor.
 ///
 /// The basis is orthonormal within 2^−21.
 ///
@@ -105,8 +106,8 @@ pub fn free_look(
     View::new_checked(eye, u, v, n, DEFAULT_HALF_WIDTH, DEFAULT_NEAR)
 }
 
-/// The camera at distance `r` from the origin that faces it in the direction of the sensor: yaw and pitch move the eye about the model,
-/// roll turns the picture.
+/// The camera that looks at the origin from the distance `r`, in the direction of the sensor: yaw and pitch move the eye about
+/// the model, roll turns the picture.
 ///
 /// # Errors
 /// `r` is outside [2, 5].
@@ -121,13 +122,13 @@ pub fn orbit(r: Q32_32, attitude: Quaternion, mounting: Mounting) -> Result<View
     free_look(eye, attitude, mounting)
 }
 
-/// The rows u, v and n.
+/// The vectors u, v and n of the camera's basis.
 fn basis(attitude: Quaternion, mounting: Mounting) -> [[Q2_23; 3]; 3] {
     let axes = attitude.axes();
     let n = mounting.forward.of(&axes);
     let up = mounting.up.of(&axes);
     let v = up.map(|x| -x);
-    // Forward × up is to the right.
+    // The direction to the right is u = forward × up.
     let u = [0, 1, 2].map(|i| {
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);
         let wide = |a: i32, b: i32| i64::from(a) * i64::from(b);
@@ -136,22 +137,22 @@ fn basis(attitude: Quaternion, mounting: Mounting) -> [[Q2_23; 3]; 3] {
     [u, v, n].map(|row| row.map(|x| Q2_23::from_bits((x + (1 << 6)) >> 7)))
 }
 
-/// A sensitivity of 1.
+/// The sensitivity 1, in units of 1/256: the camera turns as far as the sensor.
 pub const NATURAL: u16 = 256;
-/// Accepted sensitivities, in 1/256.
+/// Smallest and largest accepted sensitivity, in units of 1/256.
 pub const SENSITIVITY: [u16; 2] = [32, 2_048];
 
-/// Steering: computes the camera's attitude from the sensor's attitude, by centre and sensitivity.
+/// Computes the camera's attitude from the sensor's attitude, the attitude chosen as centre, and the sensitivity.
 ///
-/// With a sensitivity of 1 the camera's attitude is the sensor's attitude times a constant rotation, with the same accuracy. Another
-/// sensitivity scales the angle of each turn about its own axis, and the horizon may drift.
+/// With the sensitivity 1 the camera's attitude is a constant rotation times the sensor's attitude, with the same accuracy. With
+/// another sensitivity the angle of each turn is scaled and its axis is kept; the horizon may drift.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Steering {
     sensitivity: u16,
     /// The sensor's attitude at the last call.
     seen: Option<Quaternion>,
     camera: Quaternion,
-    /// Left factor that turns the sensor's attitude into the camera's.
+    /// The left factor: the camera's attitude is this quaternion times the sensor's attitude.
     offset: Quaternion,
 }
 
@@ -162,7 +163,7 @@ impl Default for Steering {
 }
 
 impl Steering {
-    /// Steering with a sensitivity in 1/256, which saturates to [`SENSITIVITY`].
+    /// Starts with a sensitivity in units of 1/256, which saturates to [`SENSITIVITY`].
     pub fn new(sensitivity: u16) -> Self {
         Self {
             sensitivity: sensitivity.clamp(SENSITIVITY[0], SENSITIVITY[1]),
@@ -177,7 +178,7 @@ impl Steering {
         self.sensitivity
     }
 
-    /// Changes the sensitivity; the camera stays where it is.
+    /// Changes the sensitivity; the camera keeps its attitude.
     pub fn set_sensitivity(&mut self, sensitivity: u16) {
         self.sensitivity = sensitivity.clamp(SENSITIVITY[0], SENSITIVITY[1]);
     }
@@ -195,27 +196,28 @@ impl Steering {
         self.camera
     }
 
-    /// Turns the camera's heading to the start for the present direction of the sensor. The horizon does not change.
+    /// Turns the camera back to its heading at the start; the sensor's present direction now gives this heading. The horizon
+    /// does not change.
     pub fn recentre(&mut self) {
         let back = Quaternion::about_axis(2, -self.camera.heading());
         self.camera = back.times(self.camera);
         self.offset = back.times(self.offset);
     }
 
-    /// Makes the sensor's present attitude the centre, including the horizon.
+    /// Makes the sensor's present attitude the centre: the camera's attitude becomes the identity, including the horizon.
     pub fn level(&mut self) {
         self.offset = self.seen.unwrap_or(Quaternion::IDENTITY).inverse();
         self.camera = Quaternion::IDENTITY;
     }
 }
 
-/// A rotation about the same axis by a scaled angle. The angle of `turn` is at most half a turn.
+/// The rotation about the axis of `turn` by `sensitivity`/256 times its angle, which is at most half a turn.
 fn scaled(turn: Quaternion, sensitivity: u16) -> Quaternion {
     let [w, x, y, z] = turn
         .canonical()
         .parts()
         .map(|part| i64::from(part.to_bits()));
-    // At most 2^60.
+    // The sum of squares is at most 2^60.
     let sine = (x * x + y * y + z * z).isqrt();
     if sine == 0 {
         return Quaternion::IDENTITY;

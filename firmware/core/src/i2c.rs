@@ -7,19 +7,19 @@ use embedded_hal_async::i2c::I2c;
 pub struct PeriodicRead {
     /// Address of the device.
     pub address: u8,
-    /// First register, written to the device before each read.
+    /// Number of the first register to read; it is written to the device before each read.
     pub register: u8,
-    /// Bytes of one read, 1 to 32.
+    /// Number of bytes in one read, 1 to 32.
     pub length: u8,
     /// Time from the start of a read to the start of the next, in µs.
     pub period: u32,
-    /// Reads per interrupt, 1 to 16.
+    /// Number of reads after which the bus interrupts the processor, 1 to 16.
     pub batch: u8,
 }
 
-/// A bus that repeats a read until another transaction or an error ends the repetition.
+/// A bus that can repeat a read periodically, until another transaction or an error ends the repetition.
 pub trait PeriodicI2c: I2c {
-    /// Begins the repetition; the first read starts one period from now.
+    /// Begins to repeat `read`; the first read starts one period from now.
     ///
     /// # Errors
     /// The bus does not support this read.

@@ -1,6 +1,7 @@
 //! Sensor that steers the camera: samples, calibration, attitude and steering.
 //!
-//! [`Imu`] is the [`Sink`] of an MPU-6050's [`Stream`](crate::mpu6050::Stream). During failures of the sensor the attitude is held.
+//! [`Imu`] is the [`Sink`] of an MPU-6050's [`Stream`](crate::mpu6050::Stream). While the sensor fails, the
+//! attitude stays constant.
 
 use core::fmt;
 
@@ -33,7 +34,7 @@ pub enum CalibrationError<E> {
     Samples(calibration::SampleError),
     /// The sensor gave no samples.
     Failed(Error<E>),
-    /// No sensor was found since start.
+    /// No sensor was found since the board started.
     Absent,
 }
 
@@ -59,7 +60,7 @@ enum Calibrating<E> {
 #[derive(Clone, Copy, Debug)]
 pub struct Imu<E> {
     identity: Option<Identity>,
-    /// The present error.
+    /// The error that stopped the samples; `None` while samples arrive.
     error: Option<Error<E>>,
     errors: u32,
     samples: u32,
@@ -70,7 +71,7 @@ pub struct Imu<E> {
     mounting: Mounting,
     steering: Steering,
     follow: Option<Follow>,
-    /// Whether the attitude has changed since the last view.
+    /// Whether the camera may have changed since the last call of `view`.
     moved: bool,
 }
 
@@ -97,12 +98,12 @@ impl<E: Copy> Default for Imu<E> {
 }
 
 impl<E: Copy> Imu<E> {
-    /// The last chip found.
+    /// The chip that was found last; `None` if none was found yet.
     pub const fn identity(&self) -> Option<Identity> {
         self.identity
     }
 
-    /// The present error; `None` while samples arrive.
+    /// The error that stopped the samples; `None` while samples arrive.
     pub const fn error(&self) -> Option<Error<E>> {
         self.error
     }
@@ -138,7 +139,7 @@ impl<E: Copy> Imu<E> {
         self.tracker.attitude()
     }
 
-    /// Counts of the attitude's samples.
+    /// Counts of the samples by their effect on the attitude.
     pub const fn counts(&self) -> Counts {
         self.tracker.counts()
     }
@@ -150,7 +151,7 @@ impl<E: Copy> Imu<E> {
             .map(|bias| mpu6050::degrees_per_second(bias.into()))
     }
 
-    /// Starts a calibration with this number of samples, in place of one in progress.
+    /// Starts a calibration with this number of samples. A calibration in progress is dropped.
     pub fn calibrate(&mut self, samples: u32) {
         self.calibrating = match self.error {
             Some(error) => Calibrating::Ended(Err(CalibrationError::Failed(error))),
@@ -159,7 +160,7 @@ impl<E: Copy> Imu<E> {
         };
     }
 
-    /// Number of samples taken by the calibration in progress.
+    /// Number of samples that the calibration in progress has taken; `None` without one.
     pub const fn calibrated_samples(&self) -> Option<u32> {
         match self.calibrating {
             Calibrating::Going(_, samples) => Some(samples),
@@ -167,7 +168,7 @@ impl<E: Copy> Imu<E> {
         }
     }
 
-    /// Result of the last calibration.
+    /// Result of the last calibration; `None` if none has ended, or while one is in progress.
     pub const fn calibration(&self) -> Option<Result<Report, CalibrationError<E>>> {
         match self.calibrating {
             Calibrating::Ended(result) => Some(result),
@@ -180,40 +181,40 @@ impl<E: Copy> Imu<E> {
         self.follow
     }
 
-    /// Sets how the sensor steers the camera; `None` stops it.
+    /// Sets how the sensor steers the camera; with `None` the sensor does not steer it.
     pub const fn set_follow(&mut self, follow: Option<Follow>) {
         self.follow = follow;
         self.moved = true;
     }
 
-    /// The sensor's directions for the camera.
+    /// Which directions of the sensor point into the scene and up on the screen.
     pub const fn mounting(&self) -> Mounting {
         self.mounting
     }
 
-    /// Sets the sensor's directions for the camera.
+    /// Sets which directions of the sensor point into the scene and up on the screen.
     pub const fn set_mounting(&mut self, mounting: Mounting) {
         self.mounting = mounting;
         self.moved = true;
     }
 
-    /// Camera gain, in 1/256.
+    /// Camera gain (the sensitivity of the steering), in units of 1/256.
     pub const fn sensitivity(&self) -> u16 {
         self.steering.sensitivity()
     }
 
-    /// Sets the camera gain in 1/256, which saturates to [`SENSITIVITY`](follow::SENSITIVITY).
+    /// Sets the camera gain in units of 1/256, which saturates to [`SENSITIVITY`](follow::SENSITIVITY).
     pub fn set_sensitivity(&mut self, sensitivity: u16) {
         self.steering.set_sensitivity(sensitivity);
     }
 
-    /// Turns the camera's heading to the start, for the present direction of the sensor.
+    /// Turns the camera back to its heading at the start; the sensor's present direction now gives this heading.
     pub fn recentre(&mut self) {
         self.steering.recentre();
         self.moved = true;
     }
 
-    /// Takes a sample for the calibration in progress. A separate function, because this code is long and rarely runs.
+    /// Passes a sample to the calibration in progress. This is a separate function, because its code is long and rarely runs.
     #[cold]
     #[inline(never)]
     fn go_on_calibrating(&mut self, sample: &Sample) {
@@ -233,7 +234,8 @@ impl<E: Copy> Imu<E> {
         }
     }
 
-    /// The steered camera at `eye` or at a distance of `radius`; `None` if the attitude has not changed since the last call.
+    /// The steered camera: at `eye` for [`Follow::Look`], at the distance `radius` from the origin for [`Follow::Orbit`]. `None`
+    /// if nothing has changed since the last call, or if the sensor does not steer the camera.
     ///
     /// # Errors
     /// Eye or radius is out of range.

@@ -1,7 +1,7 @@
-//! Code shared by firmware and host: cameras, sines, attitudes and their sensor, fields and lights, mesh and wire formats, and the
-//! console's grammar.
+//! Code shared by firmware and host: cameras, sines, the sensor and its attitude, distance fields and lights, the format of
+//! meshes, transfers over a serial line, and the console's grammar.
 //!
-//! Everything here is integer arithmetic without allocation, and no input makes it panic.
+//! All code is integer arithmetic, and no input makes it panic. Only the feature `alloc` allocates memory.
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -1,8 +1,8 @@
 //! Light on distance fields.
 //!
-//! Faces perpendicular to the axes have six directions, so lighting takes six colours a frame and no work per pixel. Spheres are lit
-//! per pixel, in `glint-model` and in the gateware. Light depends only on the angle between a normal and the direction to a light,
-//! without shadows.
+//! Faces perpendicular to the axes have six directions, so six lit colours are computed once a frame, and no pixel needs further
+//! work. Spheres are lit per pixel, in `glint-model` and in the gateware. Light depends only on the angle between the normal and
+//! the direction to the light; there are no shadows.
 
 use core::fmt;
 
@@ -21,7 +21,7 @@ pub const MAX_LIGHTS: usize = 4;
 /// Text form of a light.
 pub const FORM: &str = "X,Y,Z[,RRGGBB]";
 
-/// 1.0 in the units of a direction: 2^14.
+/// The number 1 in the format of a direction, s1.14.
 const ONE: i32 = 1 << 14;
 
 /// A light at infinite distance.
@@ -29,13 +29,13 @@ const ONE: i32 = 1 << 14;
 pub struct Light {
     /// Direction to the light as entered, of any length.
     towards: [Q32_32; 3],
-    /// Direction to the light of length 1: s1.14, to nearest.
+    /// Direction to the light, scaled to length 1: s1.14, rounded to nearest.
     direction: [i16; 3],
     colour: Rgb,
 }
 
 impl Light {
-    /// A light in a direction of any length except 0.
+    /// Makes a light from the direction to it, which has any length except 0, and its colour.
     ///
     /// # Errors
     /// The direction is 0.
@@ -45,7 +45,7 @@ impl Light {
         let Some(lead) = largest.checked_ilog2() else {
             return Err(LightError::Nowhere);
         };
-        // The largest component has 31 bits, so the sum of squares has at most 64.
+        // The components are scaled so that the largest has 31 bits; the sum of their squares then has at most 64 bits.
         let scaled = magnitudes.map(|x| {
             if lead < 30 {
                 x << (30 - lead)
@@ -63,7 +63,7 @@ impl Light {
         })
     }
 
-    /// The direction to the light, of length 1: s1.14.
+    /// The direction to the light as a vector of length 1, s1.14.
     pub const fn direction(&self) -> [i16; 3] {
         self.direction
     }
@@ -97,7 +97,7 @@ impl Light {
     }
 }
 
-/// The text form.
+/// Writes the text form, with the colour.
 impl fmt::Display for Light {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let [x, y, z] = self.towards;
@@ -158,16 +158,16 @@ pub struct Lighting {
 }
 
 impl Lighting {
-    /// Colours without shading.
+    /// Full ambient light and no lights: surfaces show their own colours.
     pub const PLAIN: Self = Self {
         ambient: [0xFF; 3],
         lights: Vec::new(),
     };
 
-    /// Default ambient light for the given lights.
+    /// Default ambient light for lights that the user has set.
     pub const AMBIENT: Rgb = [0x40; 3];
 
-    /// Sun and sky, which give each face a different brightness.
+    /// The lights of the materials except `Normal`: a sun and a sky, whose directions give faces different brightness.
     pub fn day() -> Self {
         let sun = Light {
             towards: [3, -5, 8].map(Q32_32::from_num),
@@ -185,22 +185,23 @@ impl Lighting {
         }
     }
 
-    /// Lit colours of six faces: each channel is c·min(1, ambient + Σ max(0, n·l)·light), where 1 is 255, to nearest. Only the
-    /// result and the directions are rounded.
+    /// Lit colours of six faces from their colours c in full light: each channel is c·min(1, ambient + Σ max(0, n·l)·light),
+    /// where 255 stands for 1, n is the face's normal and l the direction to a light. Only the directions and the result are
+    /// rounded (to nearest).
     pub fn shine_on(&self, faces: &[Rgb; 6]) -> [Rgb; 6] {
         core::array::from_fn(|face| {
             self.lit(faces[face], |light| {
                 let along = i32::from(light.direction[face / 2]);
-                // As in the code of a surface, normals of odd faces point along their axis.
+                // The faces are in the order −x, x, −y, y, −z, z, so the normals of odd faces point in the positive direction.
                 if face % 2 == 1 { along } else { -along }
             })
         })
     }
 
-    /// Lit colours of the eight faces perpendicular to the diagonals, with n·l rounded down: bit i of a face's number is set if its
-    /// normal points along axis i.
+    /// Lit colours of the eight faces perpendicular to the diagonals, from their colours in full light. Bit i of a face's number
+    /// is set if component i of its normal is positive. The cosine n·l is rounded down.
     pub fn shine_on_octants(&self, faces: &[Rgb; 8]) -> [Rgb; 8] {
-        // 1/√3, 14 fraction bits.
+        // 1/√3 with 14 fraction bits: each component of a normal, apart from its sign.
         const PART: i32 = 9_459;
         core::array::from_fn(|face| {
             self.lit(faces[face], |light| {
@@ -213,7 +214,8 @@ impl Lighting {
         })
     }
 
-    /// The lit colour of a face, from the cosine between its normal and the direction to each light, 14 fraction bits.
+    /// The lit colour of a face, from its colour in full light and the cosine between its normal and the direction to each light.
+    /// Cosines have 14 fraction bits.
     fn lit(&self, colour: Rgb, cosine: impl Fn(&Light) -> i32) -> Rgb {
         core::array::from_fn(|channel| {
             let sum: i32 = self
@@ -222,7 +224,7 @@ impl Lighting {
                 .map(|light| cosine(light).max(0) * i32::from(light.colour[channel]))
                 .sum();
             let light = (i32::from(self.ambient[channel]) * ONE + sum).min(255 * ONE);
-            // Below 2^30.
+            // The product is below 2^30.
             let lit = i32::from(colour[channel]) * light;
             ((lit + 255 * ONE / 2) / (255 * ONE)) as u8
         })
@@ -232,7 +234,7 @@ impl Lighting {
 /// Material of a solid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Material {
-    /// Colours each face by its normal, and the spheres with the colours of the materials in turn.
+    /// Each face has a colour that depends on its normal; spheres have the colours of the other materials in turn.
     #[default]
     Normal,
     /// Reddish brown.
@@ -260,7 +262,7 @@ choices!(Material {
 });
 
 impl Material {
-    /// The colours of the faces in full light, in the order −x, x, −y, y, −z, z.
+    /// The colours of the six faces in full light, by the direction of their normals: −x, x, −y, y, −z, z.
     pub const fn faces(self) -> [Rgb; 6] {
         match self {
             Self::Normal => [
@@ -280,8 +282,8 @@ impl Material {
         }
     }
 
-    /// The colours of the eight faces perpendicular to the diagonals, in full light: bit i of a face's number is set if its normal
-    /// points along axis i.
+    /// The colours of the eight faces perpendicular to the diagonals, in full light. Bit i of a face's number is set if component
+    /// i of its normal is positive.
     pub const fn octants(self) -> [Rgb; 8] {
         let mut colours = [self.faces()[0]; 8];
         if let Self::Normal = self {
@@ -289,7 +291,8 @@ impl Material {
             while face < colours.len() {
                 let mut i = 0;
                 while i < 3 {
-                    // The channel differs from its middle value by 1/√3 of a face's difference.
+                    // A face perpendicular to an axis has 40 or 230 in the axis's channel. Here each component of the normal is 1/√3 in
+                    // magnitude, so the channels differ from the middle value by 1/√3 as much.
                     colours[face][i] = if face >> i & 1 == 1 { 188 } else { 78 };
                     i += 1;
                 }
@@ -299,7 +302,8 @@ impl Material {
         colours
     }
 
-    /// Colours of spheres in full light, by number: one colour, or the materials' colours in turn to distinguish neighbours.
+    /// Colours of the spheres in full light, by their numbers. All have the material's colour; for `Normal` they have the colours
+    /// of the other materials in turn, to distinguish neighbours.
     pub const fn spheres(self) -> [Rgb; MAX_SPHERES] {
         let mut colours = [self.faces()[0]; MAX_SPHERES];
         if let Self::Normal = self {
@@ -312,7 +316,7 @@ impl Material {
         colours
     }
 
-    /// Default lighting. `Normal` needs no light to separate faces.
+    /// Default lighting. `Normal` needs no lights, because its colours already distinguish the faces.
     pub fn light(self) -> Lighting {
         match self {
             Self::Normal => Lighting::PLAIN,
@@ -337,7 +341,7 @@ choices!(Background {
 });
 
 impl Background {
-    /// Colours at the zenith, and at the horizon and below.
+    /// Two colours: the colour at the zenith, and the colour at the horizon and below.
     pub const fn colours(self) -> [Rgb; 2] {
         match self {
             Self::White => [[0xFF; 3]; 2],

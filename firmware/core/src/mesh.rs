@@ -11,16 +11,16 @@ pub use crate::colour::Rgb565;
 #[cfg(feature = "alloc")]
 pub use encode::{EncodeError, IndexedTriangle, encode};
 
-/// The first four bytes.
+/// The first four bytes of a mesh.
 pub const MAGIC: [u8; 4] = *b"GLM1";
 /// Largest length of a mesh in bytes.
 pub const MAX_BYTES: u32 = 32 << 20;
 /// Largest number of vertices of a chunk.
 pub const MAX_CHUNK_VERTICES: u32 = u16::MAX as u32;
-/// The largest radius, u.14: 2·√3, the distance of the farthest position, rounded up.
+/// The largest radius, in units of 2^−14: 2·√3, the distance of the farthest position from the origin, rounded up.
 pub const MAX_RADIUS: u32 = 56_756;
 
-/// Bytes of a record; the header takes two records.
+/// Bytes of a record. The mesh's header is as long as two records.
 const RECORD: usize = 16;
 /// Bytes of the mesh's header.
 const HEADER: usize = 2 * RECORD;
@@ -40,7 +40,7 @@ impl<'a> Mesh<'a> {
     /// Checks every length, count, index and reserved field of a mesh, and that its radius holds all vertices.
     ///
     /// # Errors
-    /// The first error, with its place.
+    /// The first deviation from the format, with its place.
     pub fn new_checked(bytes: &'a [u8]) -> Result<Self, MeshError> {
         let found = bytes.len();
         // Truncation is harmless: the comparison with the length below rejects longer inputs.
@@ -131,33 +131,33 @@ impl<'a> Mesh<'a> {
         })
     }
 
-    /// All bytes of the mesh, from its header on.
+    /// All bytes of the mesh, including its header.
     pub const fn bytes(&self) -> &'a [u8] {
         self.bytes
     }
 
-    /// Vertices of the largest chunk.
+    /// Number of vertices of the largest chunk.
     pub fn largest_chunk(&self) -> usize {
         let counts = self.chunks().map(|chunk| chunk.vertex_count());
         counts.max().unwrap_or(0)
     }
 
-    /// Vertices in all chunks.
+    /// Number of vertices in all chunks.
     pub const fn vertex_count(&self) -> u32 {
         self.vertices
     }
 
-    /// Triangles in all chunks.
+    /// Number of triangles in all chunks.
     pub const fn triangle_count(&self) -> u32 {
         self.triangles
     }
 
-    /// A radius about the origin that holds all vertices, u.14, at most [`MAX_RADIUS`].
+    /// Radius of a sphere about the origin that holds all vertices, in units of 2^−14; at most [`MAX_RADIUS`].
     pub const fn radius(&self) -> u32 {
         self.radius
     }
 
-    /// The bytes of all chunks, from the first header on.
+    /// The records of all chunks, including the chunks' headers.
     pub const fn records(&self) -> &'a [[u8; RECORD]] {
         self.records
     }
@@ -171,7 +171,7 @@ impl<'a> Mesh<'a> {
     }
 }
 
-/// Vertices, and triangles that index them.
+/// A part of a mesh: vertices, and triangles that use these vertices by their indices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Chunk<'a> {
     vertices: &'a [[u8; RECORD]],
@@ -209,7 +209,7 @@ impl<'a> Chunk<'a> {
         self.triangles.iter().map(Triangle::from_bytes)
     }
 
-    /// Checks the records of the chunk whose header is at `offset`.
+    /// Checks the records of the chunk. Its header is at byte `offset` of the mesh, whose radius is `radius`.
     fn check(&self, offset: u32, radius: u32) -> Result<(), MeshError> {
         let count = self.vertices.len() as u32;
         let mut offset = offset + RECORD as u32;
@@ -296,16 +296,16 @@ impl Triangle {
     }
 }
 
-/// Iterates over the chunks' extents.
+/// Divides the records after the mesh's header into chunks.
 #[derive(Clone)]
 struct Walk<'a> {
     rest: &'a [[u8; RECORD]],
-    /// Place of `rest` in bytes from the start of the mesh.
+    /// Offset of `rest` in bytes from the start of the mesh.
     offset: u32,
 }
 
 impl<'a> Walk<'a> {
-    /// The next chunk and its offset.
+    /// The next chunk, and the offset of its header.
     fn chunk(&mut self) -> Result<(u32, Chunk<'a>), MeshError> {
         let offset = self.offset;
         let Some((header, rest)) = self.rest.split_first() else {
@@ -368,12 +368,12 @@ impl<'a> Iterator for Chunks<'a> {
     type Item = Chunk<'a>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        // In a checked mesh the iteration fails only at the end.
+        // In a checked mesh this is an error only at the end, where no chunk is left.
         self.0.chunk().ok().map(|(_, chunk)| chunk)
     }
 }
 
-/// The first little-endian words of `bytes`, 0 beyond the end.
+/// The first `N` little-endian words of `bytes`; words beyond the end are 0.
 fn words<const N: usize>(bytes: &[u8]) -> [u32; N] {
     let mut words = [0; N];
     for (word, bytes) in words.iter_mut().zip(bytes.as_chunks().0) {
@@ -382,7 +382,7 @@ fn words<const N: usize>(bytes: &[u8]) -> [u32; N] {
     words
 }
 
-/// A record as little-endian half words.
+/// The eight little-endian half words of a record.
 fn halves(record: &[u8; RECORD]) -> [u16; RECORD / 2] {
     let mut halves = [0; RECORD / 2];
     for (half, bytes) in halves.iter_mut().zip(record.as_chunks().0) {
@@ -417,15 +417,15 @@ fn expect_zeros<const N: usize>(offset: u32, reserved: [u32; N]) -> Result<(), M
 /// Reason why bytes are not a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MeshError {
-    /// Place in bytes from the start.
+    /// Offset of the error in bytes from the start of the mesh.
     pub offset: u32,
-    /// The expected contents.
+    /// What was expected at this place.
     pub expected: Expected,
-    /// The number found.
+    /// The number that was found instead.
     pub found: u32,
 }
 
-/// Expected contents; each variant holds a count and its name.
+/// What was expected in a mesh; a variant holds the name of what is counted, and the count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Expected {
     /// The four bytes [`MAGIC`].

@@ -1,10 +1,11 @@
 //! The MPU-6050, and chips with the same registers: from power-on to samples with time stamps.
 //!
-//! [`Mpu6050`] configures the chip over any [`I2c`] without delays of its own. [`Stream`] does not end: it finds the chip, wakes it,
-//! reads each sample once, and recovers from every error of the bus. The bus repeats one read at a steady pace ([`PeriodicI2c`]);
-//! [`Pace`] computes the times of the samples from the times of these reads.
+//! [`Mpu6050`] configures the chip over any [`I2c`]; the caller provides the delays. [`Stream`] runs without end: it finds the
+//! chip, wakes it, reads each sample once, and recovers from every error of the bus. The bus repeats one read at a steady pace
+//! ([`PeriodicI2c`]); [`Pace`] computes the times of the samples from the times of these reads.
 //!
-//! Registers are those of RM-MPU-6000A 4.2. The range is ±2000 °/s and ±8 g, the filter 98 Hz (a delay of 2.8 ms), the rate 1 kHz.
+//! The registers are those of the register map RM-MPU-6000A, revision 4.2. The ranges are ±2000 °/s and ±8 g, the low-pass filter
+//! has 98 Hz (a delay of 2.8 ms), and the sample rate is 1 kHz.
 
 mod pace;
 mod stream;
@@ -20,15 +21,15 @@ use crate::i2c::{PeriodicI2c, PeriodicRead};
 pub use pace::Pace;
 pub use stream::{Sink, Stream};
 
-/// The chip's address with AD0 low, and high.
+/// The chip's two I2C addresses: with its pin AD0 low, and high.
 pub const ADDRESSES: [u8; 2] = [0x68, 0x69];
 
-/// LSB of the gyroscope at 10 °/s, at the range configured by [`Mpu6050`].
+/// LSB of the gyroscope per 10 °/s, at the range that [`Mpu6050`] configures.
 const LSB_PER_10_DPS: i64 = 164;
 /// LSB of the gyroscope per °/s: 16.4.
 pub const GYRO_LSB_PER_DPS: Q32_32 = Q32_32::from_bits((LSB_PER_10_DPS << 32) / 10);
 
-/// A rate in 1/256 LSB, below 2^32, as °/s, rounded towards zero to 2^−32.
+/// Converts a rate from 1/256 LSB (below 2^32 in magnitude) to °/s, rounded towards zero to a multiple of 2^−32.
 #[must_use]
 pub const fn degrees_per_second(rate: i64) -> Q32_32 {
     Q32_32::from_bits((rate << 24) * 10 / LSB_PER_10_DPS)
@@ -37,12 +38,12 @@ pub const fn degrees_per_second(rate: i64) -> Q32_32 {
 /// The time between two samples, in µs.
 pub const PERIOD: u32 = 1_000;
 
-/// Reads per interrupt.
+/// Number of reads after which the bus interrupts the processor.
 const BATCH: u8 = 5;
 
-/// Time of a reset in ms.
+/// Time that a reset of the chip takes, in ms.
 const RESET: u32 = 100;
-/// Settling time of the gyroscope's oscillator in ms.
+/// Time that the gyroscope's oscillator needs to settle, in ms.
 const START: u32 = 30;
 
 const SMPLRT_DIV: u8 = 0x19;
@@ -53,15 +54,15 @@ const WHO_AM_I: u8 = 0x75;
 
 /// Bit DEVICE_RESET of PWR_MGMT_1.
 const DEVICE_RESET: u8 = 0x80;
-/// PWR_MGMT_1 of an awake chip, clocked by the gyroscope about x.
+/// Value of PWR_MGMT_1 for a chip that is awake and clocked by the oscillator of its x gyroscope.
 const CLOCK_OF_X: u8 = 0x01;
 /// Bit DATA_RDY of INT_ENABLE and INT_STATUS.
 const DATA_RDY: u8 = 0x01;
 
-/// Contents of the registers from SMPLRT_DIV on: 1 kHz, DLPF_CFG 2, ±2000 °/s, ±8 g.
+/// Values of four consecutive registers from SMPLRT_DIV on: 1 kHz, DLPF_CFG 2 (the filter of 98 Hz), ±2000 °/s, ±8 g.
 const CONFIGURATION: [u8; 4] = [0x00, 0x02, 0x18, 0x10];
 
-/// Chip by its WHO_AM_I.
+/// The type of a chip, by the contents of its register WHO_AM_I.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Identity {
     /// An MPU-6050 or MPU-6000.
@@ -91,15 +92,15 @@ impl Identity {
         known.map(|(_, identity, _)| *identity)
     }
 
-    /// Temperature in 1/100 °C from the chip's register; the quotient rounds towards 0.
+    /// Converts `raw`, the chip's temperature register, to 1/100 °C. The quotient is rounded towards 0.
     pub const fn temperature(self, raw: i16) -> i32 {
         let raw = raw as i32;
         match self {
-            // 36.53 °C + 1/340 °C a LSB.
+            // 36.53 °C plus 1/340 °C per LSB.
             Self::Mpu6050 => 3_653 + raw * 5 / 17,
-            // 21 °C + 1/333.87 °C a LSB.
+            // 21 °C plus 1/333.87 °C per LSB.
             Self::Mpu6500 | Self::Mpu9250 | Self::Mpu9255 => 2_100 + raw * 10_000 / 33_387,
-            // 25 °C + 1/326.8 °C a LSB.
+            // 25 °C plus 1/326.8 °C per LSB.
             Self::Icm20689 => 2_500 + raw * 1_000 / 3_268,
         }
     }
@@ -112,14 +113,14 @@ impl fmt::Display for Identity {
     }
 }
 
-/// One sample in counts, measured at one time.
+/// One sample of the chip in counts; all its numbers were measured at the same time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Measurement {
-    /// The force along each axis, 1/4096 g.
+    /// The specific force along each axis, in units of 1/4096 g.
     pub accel: [i16; 3],
-    /// See [`Identity::temperature`].
+    /// The temperature in counts, which [`Identity::temperature`] converts.
     pub temperature: i16,
-    /// The rate about each axis, [`GYRO_LSB_PER_DPS`].
+    /// The rate about each axis in counts, [`GYRO_LSB_PER_DPS`] counts per °/s.
     pub gyro: [i16; 3],
 }
 
@@ -146,20 +147,20 @@ impl Measurement {
 pub enum Error<E> {
     /// Error of the bus.
     Bus(E),
-    /// WHO_AM_I of an unknown chip.
+    /// An unknown chip, with the contents of its register WHO_AM_I.
     Identity(u8),
     /// A register does not keep the written value.
     Register {
-        /// Address of the register.
+        /// Number of the register.
         register: u8,
         /// The written value.
         expected: u8,
         /// The value read.
         found: u8,
     },
-    /// No sample arrives.
+    /// The chip answers, but has no new sample.
     Silent,
-    /// All samples are equal, without noise.
+    /// Successive samples are all equal, so the chip does not measure.
     Frozen,
 }
 
@@ -211,8 +212,8 @@ impl<B: I2c> Mpu6050<B> {
         }
     }
 
-    /// Finds the chip at one of its addresses, then resets and configures it, which takes 0.13 s. Without `reset` a configured chip
-    /// keeps its state.
+    /// Finds the chip at one of its addresses, then resets and configures it, which takes 0.13 s. Without `reset`, a chip that is
+    /// already configured is left as it is.
     ///
     /// # Errors
     /// The chip is absent, unknown, or does not accept its configuration.
@@ -234,7 +235,7 @@ impl<B: I2c> Mpu6050<B> {
         Ok(identity)
     }
 
-    /// Checks that the chip is awake and configured. A failure of its supply resets it.
+    /// Checks that the chip is awake and configured. It loses its configuration when its supply fails.
     ///
     /// # Errors
     /// The chip is not configured, or absent.
@@ -251,7 +252,7 @@ impl<B: I2c> Mpu6050<B> {
             let answer = self.bus.write_read(address, &[WHO_AM_I], &mut found).await;
             match answer {
                 Ok(()) => return Identity::of(found[0]).ok_or(Error::Identity(found[0])),
-                // Try the other address.
+                // No chip answers at the first address: the loop tries the second one.
                 Err(error)
                     if address == ADDRESSES[0]
                         && matches!(error.kind(), ErrorKind::NoAcknowledge(_)) => {}
@@ -267,7 +268,7 @@ impl<B: I2c> Mpu6050<B> {
         Ok(self.bus.transaction(self.address, &mut operations).await?)
     }
 
-    /// Compares consecutive registers with their expected values.
+    /// Reads consecutive registers and checks that they have the expected values.
     async fn expect<const N: usize>(
         &mut self,
         register: u8,
@@ -290,11 +291,12 @@ impl<B: I2c> Mpu6050<B> {
     }
 }
 
-/// Contents of a read: INT_STATUS, then the sample.
+/// The bytes of one periodic read: INT_STATUS, then the sample.
 type Look = [u8; 1 + Measurement::BYTES];
 
 impl<B: PeriodicI2c> Mpu6050<B> {
-    /// Starts reads every `period` µs. A read is one burst of 0.43 ms at 400 kHz, during which the chip does not change its data.
+    /// Starts to read the chip every `period` µs. A read is one burst, which takes 0.43 ms at 400 kHz; during a burst the chip
+    /// keeps its data constant.
     ///
     /// # Errors
     /// Errors of the bus.
@@ -308,7 +310,7 @@ impl<B: PeriodicI2c> Mpu6050<B> {
         })?)
     }
 
-    /// The next read: its start in µs, and the sample unless the previous read returned it.
+    /// Waits for the next read, and returns its start in µs and its sample; the sample is `None` if an earlier read returned it.
     ///
     /// # Errors
     /// Errors of the bus.

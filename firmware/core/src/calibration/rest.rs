@@ -1,31 +1,32 @@
-//! Tracking of the bias at rest.
+//! Tracking of a gyroscope's bias while the sensor is at rest.
 
 use super::Units;
 use crate::orientation::{Gain, Sample};
 
-/// Time constant of the means that detect rest, in µs.
+/// Time constant, in µs, of the running means of rates and forces; rest is detected by the differences from these means.
 const NOTICE: u32 = 500_000;
-/// Time of rest before tracking starts, in µs.
+/// Time in µs that the sensor must be at rest before the bias is tracked.
 const REST: u32 = 1_500_000;
-/// Time constant of tracking, in µs.
+/// Time constant, in µs, with which the bias approaches the rates at rest.
 const LEARN: u32 = 100_000_000;
-/// Largest difference of a rate from its mean at rest, in °/s.
+/// At rest, the difference between a rate and its running mean is below this limit, in °/s.
 const MOST_RATE: u32 = 1;
-/// Largest difference between mean and bias at rest, in °/s: the change by temperature between two rests.
+/// At rest, the difference between the mean rate and the bias is below this limit, in °/s. The limit allows for the change of the
+/// bias with temperature since the last rest.
 const MOST_BIAS: u32 = 2;
-/// Largest difference of a force from its mean at rest, in 1/16 g.
+/// At rest, the difference between a force and its running mean is below this limit, in 1/16 g.
 const MOST_FORCE: u32 = 1;
 
-/// Tracks the bias of a gyroscope at rest. Numbers are in LSB with 32 fraction bits: the smallest gain, 10^−5 at 1 kHz,
-/// then resolves a difference of 2^−15 LSB.
+/// Tracks the bias of a gyroscope at rest. Bias and means are in LSB with 32 fraction bits, so that even the smallest gain, 10^−5
+/// at 1 kHz, resolves a difference of 2^−15 LSB.
 #[derive(Clone, Copy, Debug)]
 pub struct RestBias {
-    /// Largest differences of rates, forces and bias at rest, in LSB.
+    /// The limits of the differences of rates, of forces and of the bias at rest, in LSB.
     most: [u32; 3],
     bias: [i64; 3],
     mean: [i64; 3],
     force: [i64; 3],
-    /// Time of rest in µs; `None` before the first sample.
+    /// Time since the sensor came to rest in µs, 0 in motion; `None` before the first sample.
     rested: Option<u32>,
     notice: Gain,
     learn: Gain,
@@ -93,19 +94,19 @@ impl RestBias {
     }
 }
 
-/// A count with 32 fraction bits.
+/// Converts a count to 32 fraction bits.
 fn fraction(count: i16) -> i64 {
     i64::from(count) << 32
 }
 
-/// Whether numbers differ by less than `most` LSB.
+/// Whether two numbers with 32 fraction bits differ by less than `most` LSB.
 #[inline(never)]
 fn near(a: i64, b: i64, most: u32) -> bool {
     (a - b).unsigned_abs() >> 32 < u64::from(most)
 }
 
-/// Moves a mean towards a count, to nearest. The mean has 32 fraction bits and is below 2^48, so its product with the 31-bit gain
-/// fits.
+/// Moves `mean` towards `count` by the part `gain` (32 fraction bits) of their difference, rounded to nearest. The mean has 32
+/// fraction bits and is below 2^48, so no product overflows.
 #[inline(never)]
 fn approach(mean: &mut i64, count: i16, gain: u32) {
     let difference = fraction(count) - *mean;

@@ -7,27 +7,27 @@ use super::syntax::{Kind, Parameter, Shape, Syntax};
 use super::words::{Word, Words};
 use crate::choice::Choice;
 
-/// The type of an argument, of one or several words.
+/// A type of argument, which takes one word or several words of a line.
 pub trait Argument {
-    /// The value of the argument's words.
+    /// The value that the argument's words are parsed into.
     type Value<'a>;
-    /// Whether the line may end before the argument.
+    /// Whether the argument may be missing at the end of the line.
     const OPTIONAL: bool = false;
     /// The words of the argument.
     const SHAPE: Shape;
 
-    /// Takes the argument's words and returns their value. `None` is an error, kept in the reader.
+    /// Takes the argument's words from `reader` and returns their value. `None` means an error, which `reader` stores.
     fn read<'a>(reader: &mut Reader<'a>, parameter: &'static Parameter) -> Option<Self::Value<'a>>;
 }
 
-/// The type of an argument of one word.
+/// A type of argument that takes one word.
 pub trait WordArgument {
-    /// The value of the word.
+    /// The value that the word is parsed into.
     type Value<'a>;
     /// The accepted texts.
     const KIND: Kind;
 
-    /// The value of a word. `None` rejects it.
+    /// Parses a word. `None` means that the word is not accepted.
     fn parse(text: &str) -> Option<Self::Value<'_>>;
 
     /// The reason why [`parse`](Self::parse) rejects a word.
@@ -38,8 +38,8 @@ pub trait WordArgument {
 
 /// The words of a line after the command's name, and the first error.
 ///
-/// The reader keeps the error, so that the many small functions that read arguments return plain options, which is smaller code than
-/// results.
+/// The reader stores the error, so that the many small functions that read arguments return `Option` instead of `Result`, which
+/// makes the code smaller.
 pub struct Reader<'a> {
     syntax: &'static Syntax,
     words: Words<'a>,
@@ -48,7 +48,7 @@ pub struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// The arguments in `words`, of a command with this syntax and name.
+    /// Reads the arguments in `words` for a command with this syntax and name.
     pub const fn new(syntax: &'static Syntax, name: Word<'a>, words: Words<'a>) -> Self {
         Self {
             syntax,
@@ -58,7 +58,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Reads the value of one parameter. `None` is an error, kept in the reader.
+    /// Reads the value of one parameter. `None` means an error, which the reader stores.
     pub fn read<T: Argument>(&mut self, parameter: &'static Parameter) -> Option<T::Value<'a>> {
         T::read(self, parameter)
     }
@@ -69,7 +69,7 @@ impl<'a> Reader<'a> {
         self.words.clone().next().is_none()
     }
 
-    /// Takes one word.
+    /// Takes the next word; at the end of the line, stores the error that `parameter` is missing.
     #[inline(never)]
     fn word(&mut self, parameter: &'static Parameter) -> Option<&'a str> {
         let syntax = self.syntax;
@@ -81,7 +81,7 @@ impl<'a> Reader<'a> {
         None
     }
 
-    /// Keeps the error of the last word.
+    /// Stores the error of the word that was taken last.
     #[cold]
     #[inline(never)]
     fn reject_word(&mut self, parameter: &'static Parameter, error_of: ErrorOf) {
@@ -98,7 +98,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Keeps an error of a value whose words are accepted one by one.
+    /// Stores the error of a value whose words are valid one by one, but not in combination.
     #[cold]
     #[inline(never)]
     pub fn reject(&mut self, error: ValueError<'a>) {
@@ -106,7 +106,7 @@ impl<'a> Reader<'a> {
         self.error = Some(ParseError(ParseErrorKind::Value { syntax, error }));
     }
 
-    /// Ends the line.
+    /// Checks that all arguments were accepted and that no word is left.
     ///
     /// # Errors
     /// An argument was rejected, or the line has surplus words.
@@ -122,7 +122,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// The function [`WordArgument::error`] of the type.
+/// The type of [`WordArgument::error`].
 type ErrorOf = fn(&str) -> ValueError<'_>;
 
 impl Parameter {
@@ -140,7 +140,7 @@ impl<T: WordArgument> Argument for T {
     type Value<'a> = T::Value<'a>;
     const SHAPE: Shape = Shape::Word(&T::KIND);
 
-    // One copy of this code serves all commands.
+    // Not inlined, so that all commands share one copy for each type of argument.
     #[inline(never)]
     fn read<'a>(reader: &mut Reader<'a>, parameter: &'static Parameter) -> Option<Self::Value<'a>> {
         let value = T::parse(reader.word(parameter)?);
@@ -165,7 +165,7 @@ impl<T: Argument> Argument for Option<T> {
     }
 }
 
-/// An optional keyword, the parameter's own name: the value is whether the keyword is present.
+/// An optional keyword, which is the parameter's own name. The value states whether the keyword is present.
 pub struct Flag;
 
 impl Argument for Flag {
@@ -185,8 +185,8 @@ impl Argument for Flag {
     }
 }
 
-/// A value that takes several words: `group!(Name: Value = (word: Type, …) => expression)`. The expression has the words'
-/// values under their names, and is a `Result` with a [`ValueError`].
+/// Defines the argument type `Name` of several words: `group!(Name: Value = (word: Type, …) => expression)`. The expression
+/// computes the value from the parsed words, which it uses by their names. It is a `Result` with a [`ValueError`].
 macro_rules! group {
     ($(#[$doc:meta])* $name:ident: $value:ty = ($($word:ident: $type:ty),+ $(,)?) => $build:expr) => {
         $(#[$doc])*
@@ -214,7 +214,7 @@ macro_rules! group {
 }
 pub(super) use group;
 
-/// A name of one of a type's values.
+/// The name of a value of a [`Choice`].
 impl<T: Choice> WordArgument for T {
     type Value<'a> = T;
     const KIND: Kind = Kind::Words(T::WORDS);
@@ -224,9 +224,9 @@ impl<T: Choice> WordArgument for T {
     }
 }
 
-/// A keyword instead of a value.
+/// A keyword that may stand in place of a value.
 pub trait Keyword {
-    /// The keyword.
+    /// The text of the keyword.
     const WORD: &'static str;
 }
 

@@ -15,7 +15,7 @@ use crate::light::{Background, Light, Material, Rgb};
 use crate::picture::Backend;
 use crate::stereo::Stereo;
 
-/// Executes commands: the machine.
+/// The machine, which executes commands: each trait of commands below has one method per command.
 pub trait Executor<'a> {
     /// The result of a command. It may borrow from the line.
     type Output;
@@ -81,7 +81,7 @@ commands! {
     }
 }
 
-/// Reads the arguments of a command. `None` is an error, kept in the reader.
+/// A function that reads the arguments of a command. `None` means an error, which the reader stores.
 type Read = for<'a> fn(&mut Reader<'a>) -> Option<Command<'a>>;
 
 /// A command in the table.
@@ -103,7 +103,7 @@ impl WordArgument for CommandName {
 }
 
 impl<'a> Command<'a> {
-    /// Parses a line: a command and its arguments, between blanks. A blank line is `None`.
+    /// Parses a line: a command and its arguments, separated by blanks. The result of a blank line is `None`.
     ///
     /// # Errors
     /// The line is not a command.
@@ -137,7 +137,7 @@ pub(super) fn syntaxes() -> impl Iterator<Item = &'static Syntax> {
     COMMANDS.iter().map(|entry| &entry.syntax)
 }
 
-/// Writes the help of one command, or the list of all commands for no or an unknown name.
+/// Writes the help of `command`, or the list of all commands if the name is missing or unknown.
 ///
 /// # Errors
 /// Errors of the writer.

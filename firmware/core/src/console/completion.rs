@@ -4,10 +4,11 @@ use super::command::{find, syntaxes};
 use super::syntax::{Kind, Parameter, Shape};
 use super::words::{Word, Words};
 
-/// Calls `offer` with each candidate for the last word of `line`, and with the missing part of the candidate.
+/// Calls `offer` for each candidate for the last word of `line`. The arguments of `offer` are the whole candidate and the part of
+/// it that is missing in the line.
 pub fn complete(line: &str, offer: &mut dyn FnMut(&'static str, &'static str)) {
     let words = Words::new(line);
-    // A blank at the end begins a new word.
+    // After a blank at the end of the line, the word to complete is a new, empty word.
     let ends = line.is_empty() || line.ends_with(' ');
     let count = words.clone().count() + usize::from(ends);
     let begun = words.clone().last().filter(|_| !ends);
@@ -32,7 +33,7 @@ pub fn complete(line: &str, offer: &mut dyn FnMut(&'static str, &'static str)) {
     }
 }
 
-/// The parameter of a command at `index`, from 0.
+/// The parameter of `command` for the argument word `index`, counted from 0.
 fn parameter(command: &str, index: usize) -> Option<&'static Parameter> {
     let mut left = index;
     find(command)?

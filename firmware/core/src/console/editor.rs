@@ -10,15 +10,15 @@ use super::completion::complete;
 pub const PROMPT: &str = "glint> ";
 /// Longest line in bytes.
 pub const LINE_MAX: usize = 640;
-/// Lines of the history.
+/// Maximum number of lines in the history.
 pub const HISTORY: usize = 8;
 
 type Line = Vec<u8, LINE_MAX>;
 
-/// Effect of a byte.
+/// What the caller must handle after a byte from the terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event<'a> {
-    /// No effect except the written echo.
+    /// Nothing; only the echo was written.
     None,
     /// A complete line: ASCII without control characters.
     Line(&'a str),
@@ -41,8 +41,8 @@ pub enum Event<'a> {
 /// | Ctrl-L | redraws prompt and line |
 /// | Ctrl-C | cancels the line |
 ///
-/// A zero byte drops the line without an answer, because a zero byte ends the remains of a binary transfer. Other control characters,
-/// unknown escape sequences and bytes beyond ASCII are ignored.
+/// A zero byte drops the line without an answer, because a zero byte ends the remains of a binary transfer. Other control
+/// characters, unknown escape sequences and bytes beyond ASCII are ignored.
 #[derive(Debug)]
 pub struct LineEditor {
     line: Line,
@@ -50,14 +50,14 @@ pub struct LineEditor {
     cursor: usize,
     /// Whether the line exceeds its buffer.
     overlong: bool,
-    /// Whether the line was returned; the next byte then clears the line.
+    /// Whether the caller has got the line; if so, the next byte clears it.
     ended: bool,
-    /// Whether the last byte was a carriage return, so that a line feed is part of the same line end.
+    /// Whether the last byte was a carriage return; if so, a line feed belongs to the same end of line.
     returned: bool,
     escape: Escape,
     /// The history, newest line last.
     history: Deque<Line, HISTORY>,
-    /// Number of the shown line of the history, from 1; 0 is the typed line.
+    /// Which line is shown: 0 is the typed line, 1 the newest line of the history, and higher numbers are older lines.
     shown: usize,
     /// The typed line, while a line of the history is shown.
     typed: Line,
@@ -67,9 +67,9 @@ pub struct LineEditor {
 #[derive(Clone, Copy, Debug)]
 enum Escape {
     No,
-    /// After Escape.
+    /// The Escape byte was received.
     Begun,
-    /// After Escape and `[` or `O`, with the number so far.
+    /// Escape and `[` or `O` were received. The value is the sequence's number, as far as its digits were received.
     Number(u8),
 }
 
@@ -112,8 +112,8 @@ impl LineEditor {
         }
     }
 
-    /// Takes a byte and writes the echo for the terminal to `echo`, which must send a carriage return with every line feed. Errors of `echo`
-    /// are ignored, because the echo then has no reader.
+    /// Takes a byte and writes the echo for the terminal to `echo`, which must send a carriage return with every line feed.
+    /// Errors of `echo` are ignored, because the echo then has no reader.
     pub fn on_byte(&mut self, byte: u8, echo: &mut dyn Write) -> Event<'_> {
         if self.ended {
             self.clear();
@@ -129,7 +129,7 @@ impl LineEditor {
             b'\n' if returned => {}
             b'\r' | b'\n' => return self.end(echo),
             _ => {
-                // An echo that cannot be written has no reader.
+                // Errors of the echo are ignored, because a terminal that gets no echo is not there.
                 let _ = match self.decode(byte) {
                     Input::Nothing => Ok(()),
                     Input::Character(byte) => self.insert(byte, echo),
@@ -152,7 +152,7 @@ impl LineEditor {
             if self.history.is_full() {
                 self.history.pop_front();
             }
-            // The removal above makes room in the history.
+            // This cannot fail: if the history was full, its oldest line was removed above.
             let _ = self.history.push_back(self.line.clone());
         }
         Event::Line(text(&self.line))
@@ -182,7 +182,7 @@ impl LineEditor {
                 self.escape = Escape::Number(number.saturating_mul(10).saturating_add(byte - b'0'));
                 return Input::Nothing;
             }
-            // Further parameters are the modifiers Shift, Alt and Ctrl.
+            // Separators such as `;` are skipped: the parameters after them are the modifiers Shift, Alt and Ctrl.
             (Escape::Number(_), b' '..=b'?') => return Input::Nothing,
             (Escape::Number(number), last) => {
                 self.escape = Escape::No;
@@ -228,7 +228,7 @@ impl LineEditor {
         for place in self.line.iter_mut().skip(self.cursor) {
             core::mem::swap(place, &mut carried);
         }
-        // The check above ensures room in the line.
+        // This cannot fail: the check above ensures that the line has room.
         let _ = self.line.push(carried);
         self.cursor += 1;
         echo.write_char(byte.into())?;
@@ -275,7 +275,7 @@ impl LineEditor {
         self.write_tail(echo)
     }
 
-    /// Inserts the common beginning of all candidates, or lists them.
+    /// Completes the word at the cursor: inserts the text that all candidates have in common, or lists the candidates.
     fn complete(&mut self, echo: &mut dyn Write) -> fmt::Result {
         let (mut count, mut common) = (0, "");
         complete(self.before(), &mut |_, rest| {
@@ -321,7 +321,7 @@ impl LineEditor {
         }
     }
 
-    /// Deletes the text between two places; one of the places is the cursor.
+    /// Deletes the characters from `start` to `end`; one of these two places is the cursor.
     fn delete(&mut self, start: usize, end: usize, echo: &mut dyn Write) -> fmt::Result {
         if start >= end {
             return Ok(());
@@ -331,14 +331,14 @@ impl LineEditor {
             place += 1;
             !(start + 1..=end).contains(&place)
         });
-        // The surplus text is lost, and the remaining text is a valid line.
+        // The characters that did not fit into the line are lost; what remains after the deletion is a valid line.
         self.overlong = false;
         self.move_to(start, echo)?;
         echo.write_str("\x1B[K")?;
         self.write_tail(echo)
     }
 
-    /// Shows a line of the history, counted from the last, or the typed line.
+    /// Shows the line with the number `shown`: 0 is the typed line, 1 the newest line of the history.
     fn show(&mut self, shown: usize, echo: &mut dyn Write) -> fmt::Result {
         if self.shown == 0 {
             self.typed.clone_from(&self.line);
@@ -357,7 +357,7 @@ impl LineEditor {
         Ok(())
     }
 
-    /// Writes the text after the cursor and moves back.
+    /// Writes the text after the cursor to the terminal, and moves the terminal's cursor back to its place.
     fn write_tail(&self, echo: &mut dyn Write) -> fmt::Result {
         match self.line.get(self.cursor..) {
             Some(tail) if !tail.is_empty() => write!(echo, "{}\x1B[{}D", text(tail), tail.len()),
@@ -372,7 +372,7 @@ impl Default for LineEditor {
     }
 }
 
-/// All bytes of a line are ASCII.
+/// Converts the bytes of a line to a string. This cannot fail, because all bytes of a line are ASCII.
 fn text(bytes: &[u8]) -> &str {
     core::str::from_utf8(bytes).unwrap_or_default()
 }

@@ -30,7 +30,7 @@ pub(super) enum ParseErrorKind<'a> {
         parameter: &'static Parameter,
         word: Word<'a>,
     },
-    /// The line has surplus words after the last parameter.
+    /// A word follows the last parameter.
     Surplus {
         syntax: &'static Syntax,
         word: Word<'a>,
@@ -49,16 +49,16 @@ pub enum ValueError<'a> {
     Kind,
     /// The width and height are not a picture size.
     Size([u32; 2]),
-    /// A number of samples follows an action without samples.
+    /// A number of samples follows an action of the sensor that takes no such number.
     Samples {
         /// The action.
         action: &'static str,
         /// The number of samples.
         samples: u32,
     },
-    /// Both directions of the sensor lie on one axis.
+    /// Both directions of a mounting lie on the same axis of the sensor.
     Mounting,
-    /// The gain is outside [`SENSITIVITY`].
+    /// The camera gain is outside [`SENSITIVITY`].
     Sensitivity,
     /// The numbers do not describe a camera.
     View(ViewError),

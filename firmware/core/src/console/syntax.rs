@@ -7,7 +7,7 @@ use core::fmt::{self, Display, Write as _};
 pub struct Syntax {
     /// The first word of the line.
     pub name: &'static str,
-    /// Help line: imperative, without a full stop.
+    /// Help line: what the command does, in the imperative and without a full stop.
     pub summary: &'static str,
     /// Parameters in their order. Only the last one may be optional.
     pub parameters: &'static [Parameter],
@@ -16,11 +16,11 @@ pub struct Syntax {
 /// A parameter of a command.
 #[derive(Debug)]
 pub struct Parameter {
-    /// Name in lower case, as in the command's enumeration.
+    /// Name in lower case, equal to the field's name in `Command`.
     pub name: &'static str,
     /// Whether the line may end before this parameter.
     pub optional: bool,
-    /// Words of the parameter.
+    /// The words that the parameter consists of.
     pub shape: Shape,
 }
 
@@ -35,14 +35,14 @@ const fn assert_optional_last(parameters: &[Parameter]) {
     }
 }
 
-/// The words of a parameter.
+/// The words that a parameter consists of.
 #[derive(Debug)]
 pub enum Shape {
     /// One word.
     Word(&'static Kind),
     /// A keyword: the parameter's own name.
     Flag,
-    /// Parameters of a value that takes several words.
+    /// Several words, which form one value; each word is described as a parameter.
     Group(&'static [Parameter]),
 }
 
@@ -52,16 +52,16 @@ pub enum Kind {
     Words(&'static [&'static str]),
     /// A text with this description.
     Text(&'static (dyn Display + Sync)),
-    /// A keyword, or a word of the other kind.
+    /// A keyword, or a word of the given kind.
     Either(&'static str, &'static Kind),
     /// The name of a command.
     Command,
 }
 
-/// Longest list of words in a usage line; a longer list is replaced by the parameter's name.
+/// Largest number of words that a usage line lists for a parameter; for longer lists it shows the parameter's name instead.
 const USAGE_WORDS: usize = 3;
 
-/// The usage line: name and parameters.
+/// Writes the usage line: the command's name and its parameters.
 impl Display for Syntax {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.write_str(self.name)?;
@@ -69,7 +69,7 @@ impl Display for Syntax {
     }
 }
 
-/// Writes parameters with blanks between them, after `lead`.
+/// Writes `lead` and then the parameters, separated by blanks.
 fn write_usage(f: &mut fmt::Formatter, parameters: &[Parameter], lead: &str) -> fmt::Result {
     parameters
         .iter()
@@ -91,7 +91,7 @@ fn write_usage(f: &mut fmt::Formatter, parameters: &[Parameter], lead: &str) -> 
 }
 
 impl Syntax {
-    /// A command. Only the last parameter may be optional, which is checked at compile time.
+    /// The syntax of a command. Only the last parameter may be optional; this is checked at compile time.
     pub const fn new(
         name: &'static str,
         summary: &'static str,
@@ -105,7 +105,7 @@ impl Syntax {
         }
     }
 
-    /// Calls `visit` with each parameter of one word, in the order of the line.
+    /// Calls `visit` with each parameter that takes one word, in the order of the line. Groups are visited word by word.
     ///
     /// # Errors
     /// The first error of `visit`, which ends the visits.
@@ -163,7 +163,7 @@ impl Display for Form<'_> {
     }
 }
 
-/// The accepted texts of a parameter of one word.
+/// Describes the texts that a parameter of one word accepts.
 impl Display for Parameter {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self.shape {

@@ -1,6 +1,6 @@
 //! Macro that generates the grammar and the execution of commands from their table.
 
-/// States every command once, grouped by subject:
+/// Defines all commands, grouped by subject:
 ///
 /// ```text
 /// commands! {
@@ -20,7 +20,7 @@ macro_rules! commands {
             $($name:ident $variant:ident($($argument:ident: $type:ty),* $(,)?): $summary:literal;)+
         }
     )+) => {
-        /// A command with its arguments, checked except for the state of the machine.
+        /// A command with its arguments. The arguments are checked, but not against the state of the machine.
         #[derive(Clone, Copy, Debug, PartialEq)]
         #[expect(
             clippy::large_enum_variant,
@@ -63,7 +63,7 @@ macro_rules! commands {
         )+
 
         impl<'a> Command<'a> {
-            /// Calls the command's method of `executor`.
+            /// Executes the command: calls the method of `executor` that has the command's name.
             pub fn execute<E: $($subject<'a> +)+>(self, executor: &mut E) -> E::Output {
                 match self {
                     $($(

@@ -1,6 +1,6 @@
 //! Types of arguments: numbers, angles, colours, fields and values of several words.
 //!
-//! Parsers of numbers and fields are not inlined: one copy for all commands is less code, which loads faster.
+//! Parsers of numbers and fields are not inlined, so that all commands share one copy: less code loads faster.
 
 use core::fmt::{self, Display};
 
@@ -20,7 +20,7 @@ use crate::picture;
 use crate::stereo;
 use crate::wire::Manifest;
 
-/// A word without restriction.
+/// A name: any word is accepted.
 pub struct Name;
 
 impl WordArgument for Name {
@@ -141,7 +141,7 @@ fn whole(text: &str) -> Option<u32> {
     }
 }
 
-/// Digits only, without a sign.
+/// Parses a number of digits only, without a sign.
 #[inline(never)]
 fn digits(text: &str, radix: u32) -> Option<u32> {
     let digits = text.bytes().all(|byte| byte.is_ascii_hexdigit());
@@ -218,7 +218,7 @@ impl WordArgument for light::Light {
     }
 }
 
-/// A camera gain in 1/256, rounded down.
+/// A camera gain, entered as a decimal number and stored in 1/256, rounded down.
 pub struct Sensitivity;
 
 impl WordArgument for Sensitivity {
@@ -263,7 +263,7 @@ group! {
 }
 
 group! {
-    /// Directions of the sensor.
+    /// The directions of the sensor that point into the scene and up on the screen.
     Mounting: follow::Mounting = (forward: Direction, up: Direction)
         => follow::Mounting::new(forward, up).ok_or(ValueError::Mounting)
 }
@@ -275,9 +275,9 @@ pub enum ImuAction {
     Calibrate(u32),
     /// Print this number of samples; without a number, until the next command.
     Stream(Option<u32>),
-    /// Steer the camera, or stop steering it.
+    /// Steer the camera in this way, or stop steering it (`None`).
     Follow(Option<Follow>),
-    /// Turn the camera's heading to the start.
+    /// Turn the camera back to the heading that it had at the start.
     Recentre,
 }
 

@@ -11,7 +11,7 @@ pub struct Word<'a> {
     pub column: usize,
 }
 
-/// Writes the word and its column, shortened and with `?` for characters other than visible ASCII.
+/// Writes the word and its column. A long word is shortened, and characters other than visible ASCII become `?`.
 impl fmt::Display for Word<'_> {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         const LONGEST: usize = 24;

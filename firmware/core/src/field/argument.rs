@@ -4,19 +4,19 @@ use super::error::FieldError;
 use super::limits::MAX_SPHERES;
 use crate::fixed::{Q32_32, Turns};
 
-/// A source of a field's numbers. Each kind of field requests its numbers by name and range, so that parser, errors and random
-/// tests share one statement of the ranges.
+/// A source of a field's numbers. Each kind of field requests its numbers by name and range, so that the ranges are stated once
+/// for parser, error messages and random tests.
 pub trait Arguments<'a> {
-    /// The next number, from a range that includes both ends.
+    /// The next number, which is within `range` (both ends included).
     ///
     /// # Errors
     /// The number is missing, malformed or out of range.
     fn number(&mut self, name: &'static str, range: [Q32_32; 2]) -> Result<Q32_32, FieldError<'a>>;
 
-    /// The next number, an integer.
+    /// The next number, which is an integer within `range` (both ends included).
     ///
     /// # Errors
-    /// As [`number`](Self::number).
+    /// The same as those of [`number`](Self::number).
     fn integer(&mut self, name: &'static str, range: [u8; 2]) -> Result<u8, FieldError<'a>>;
 
     /// An optional angle in degrees; 0 if it is missing.
@@ -25,7 +25,7 @@ pub trait Arguments<'a> {
     /// The word is not a number.
     fn angle(&mut self, name: &'static str) -> Result<Turns, FieldError<'a>>;
 
-    /// Moves to the next group of numbers; semicolons separate groups. `false` after the last group.
+    /// Moves to the next group of numbers, and returns whether there is one. Semicolons separate groups.
     ///
     /// # Errors
     /// The group before the semicolon has a surplus number.
@@ -49,7 +49,7 @@ pub(in crate::field) fn check(
 pub(in crate::field) struct Words<'a> {
     kind: &'a str,
     words: core::str::Split<'a, char>,
-    /// Groups not read yet.
+    /// The text of the groups that are not read yet.
     rest: Option<&'a str>,
     in_group: bool,
 }
@@ -131,7 +131,7 @@ impl<'a> Arguments<'a> for Words<'a> {
     }
 }
 
-/// Random numbers for tests and test vectors: each is an end of its range or a value between the ends.
+/// A source of random numbers for tests and test vectors: each number is an end of its range or a value between the ends.
 #[derive(Debug)]
 pub struct Random<F> {
     bits: F,
@@ -139,13 +139,13 @@ pub struct Random<F> {
 }
 
 impl<F: FnMut() -> u32> Random<F> {
-    /// Takes random numbers from a source of 32 random bits.
+    /// Makes random numbers from the function `bits`, which returns 32 random bits.
     pub fn new(mut bits: F) -> Self {
         let groups = 1 + bits() % MAX_SPHERES as u32;
         Self { bits, groups }
     }
 
-    /// A random element of a list.
+    /// The random index of an element in a list of `count` elements.
     pub(in crate::field) fn choose(&mut self, count: usize) -> usize {
         (self.bits)() as usize % count.max(1)
     }

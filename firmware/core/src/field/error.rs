@@ -12,7 +12,7 @@ pub enum FieldError<'a> {
     Kind {
         /// The word before the colon.
         kind: &'a str,
-        /// All kinds: text form and description.
+        /// Text form and description of every kind.
         kinds: &'static [(&'static str, &'static str)],
     },
     /// A number is missing.
@@ -36,7 +36,7 @@ pub enum FieldError<'a> {
         /// The word.
         word: &'a str,
     },
-    /// The two kinds of a union cannot be its members.
+    /// The text of a union does not name two kinds that can be its members.
     Union,
     /// The number of spheres is 0 or above [`MAX_SPHERES`].
     Spheres,

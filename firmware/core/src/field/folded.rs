@@ -1,11 +1,12 @@
-//! Coordinates under mirrors and exchanges, which preserve the maximum norm and the direction of the nearest face.
+//! Coordinates that are mirrored and exchanged (folded) during an evaluation. Folding keeps the maximum norm, and each coordinate
+//! keeps its direction in the world, so that the direction of the nearest face is known at the end.
 
 use super::surface::Surface;
 
 /// A coordinate during folding: its value, and the direction in the world in which it increases.
 ///
-/// A coordinate k represents k + 1/2, the middle of the interval that is truncated to k. Therefore −x is exactly `!k`, and a mirror
-/// needs no carry.
+/// The integer k represents the coordinate x = k + 1/2, the middle of the interval that is truncated to k. Therefore −x is
+/// exactly `!k`, and a mirror needs no carry.
 #[derive(Clone, Copy)]
 pub(in crate::field) struct Folded {
     pub value: i32,
@@ -14,7 +15,7 @@ pub(in crate::field) struct Folded {
 }
 
 impl Folded {
-    /// The coordinates of a point in the world.
+    /// The coordinates of a point before folding.
     pub fn of(point: [i32; 3]) -> [Self; 3] {
         [0, 1, 2].map(|axis: u8| Self {
             value: point[usize::from(axis)],
@@ -36,7 +37,7 @@ impl Folded {
         }
     }
 
-    /// Another value with the same direction.
+    /// A coordinate with the given value and the direction of this coordinate.
     pub fn with(self, value: i32) -> Self {
         Self { value, ..self }
     }
@@ -48,7 +49,7 @@ impl Folded {
         }
     }
 
-    /// The face perpendicular to the coordinate's axis.
+    /// The face whose normal is the coordinate's direction.
     pub const fn face(self) -> Surface {
         Surface::Face {
             axis: self.axis,
@@ -57,7 +58,7 @@ impl Folded {
     }
 }
 
-/// Index of the largest of three numbers; among equals the second comes first, then the first.
+/// Index of the largest of three numbers. If several are largest, y is preferred to x, and x to z.
 pub(in crate::field) fn largest([x, y, z]: [i32; 3]) -> usize {
     if z > x && z > y {
         2

@@ -1,5 +1,5 @@
-//! The two lists of kinds of fields: [`Primitive`] for all kinds in text form, [`Flat`] for kinds with faces as the engine
-//! evaluates them.
+//! The two lists of kinds of fields: [`Primitive`] lists all kinds that have a text form, [`Flat`] lists the solids with flat
+//! faces as the gateware evaluates them.
 
 use core::fmt;
 
@@ -20,7 +20,7 @@ pub use menger::{FixedSponge, MAX_DEPTH, Menger};
 pub use octahedron::{FixedOctahedron, Octahedron};
 pub use sphere::{CentredSphere, Lattice, MovingSphere, Sphere, Spheres};
 
-/// The kinds of fields, in the order of the help.
+/// Defines [`Primitive`] from the kinds of fields, in the order of the help.
 macro_rules! primitives {
     ($($kind:ident($shape:ty)),* $(,)?) => {
         /// A field that is not a union.
@@ -110,7 +110,7 @@ primitives! {
     Moving(MovingSphere),
 }
 
-/// The flat solids of the engine.
+/// Defines [`Flat`] from the solids with flat faces that the gateware evaluates.
 macro_rules! flat_solids {
     ($($solid:ident),* $(,)?) => {
         /// A flat solid in field units.
@@ -120,7 +120,7 @@ macro_rules! flat_solids {
         }
 
         impl Flat {
-            /// Distance and nearest surface at a point; coordinates s10.12.
+            /// Distance and nearest surface at a point with coordinates in s10.12, in field units.
             #[inline]
             pub fn sample(&self, point: [i32; 3]) -> Sample {
                 match self {
@@ -128,7 +128,7 @@ macro_rules! flat_solids {
                 }
             }
 
-            /// The solid's constants for the gateware.
+            /// The solid's constants, as the gateware's registers hold them.
             pub fn constants(&self) -> FlatConstants {
                 match self {
                     $(Self::$solid(solid) => solid.constants(),)*
@@ -166,7 +166,7 @@ pub enum Solid {
 }
 
 impl Solid {
-    /// Distance and nearest surface at a point; coordinates s10.12.
+    /// Distance and nearest surface at a point with coordinates in s10.12, in field units.
     #[inline]
     pub fn sample(&self, point: [i32; 3]) -> Sample {
         match self {
@@ -175,7 +175,7 @@ impl Solid {
         }
     }
 
-    /// The solid's spheres.
+    /// The solid's spheres; `None` for a solid with faces.
     pub const fn spheres(&self) -> Option<&FixedSpheres> {
         match self {
             Self::Flat(_) => None,
@@ -207,7 +207,7 @@ impl Primitive {
         Some(primitive.and_then(|primitive| words.end().map(|()| primitive)))
     }
 
-    /// Chooses a field at random: its kind, and its numbers from their ranges.
+    /// Makes a random field for tests and test vectors: its kind, and its numbers within their ranges.
     pub(super) fn draw<F: FnMut() -> u32>(numbers: &mut Random<F>) -> Self {
         loop {
             let kind = Self::NAMES[numbers.choose(Self::NAMES.len())];

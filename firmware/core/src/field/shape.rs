@@ -19,23 +19,23 @@ pub trait Shape: Sized {
     const ABOUT: &'static str;
     /// An example of this kind, for tests of pictures.
     const EXAMPLE: &'static str;
-    /// Whether the kind can be a member of a union: the first member if flat, the second if round.
+    /// Whether the kind can be a member of a union: a flat kind is the first member, a round kind the second.
     const JOINS: bool = false;
     /// Whether the kind has spheres.
     const ROUND: bool = false;
     /// Whether the faces are perpendicular to the diagonals instead of the axes.
     const OCTANTS: bool = false;
 
-    /// Parses the numbers.
+    /// Reads the numbers of a field of this kind, from a text or at random.
     ///
     /// # Errors
-    /// Errors of the numbers.
+    /// A number is missing, malformed or out of range.
     fn read<'a>(numbers: &mut impl Arguments<'a>) -> Result<Self, FieldError<'a>>;
 
     /// Writes the numbers in text form.
     ///
     /// # Errors
-    /// Errors of the formatter.
+    /// The formatter reports an error.
     fn write(&self, f: &mut fmt::Formatter) -> fmt::Result;
 
     /// The solid in field units.
@@ -53,10 +53,11 @@ pub struct Placed<S> {
     pub extent: Option<[Q32_32; 3]>,
 }
 
-/// Field units per world unit for a field without a period: S of the sponge's levels is then 27, 9, 3, 1.
+/// Field units per world unit for a field without a period. With this scale the cubes of the Menger sponge's first four levels
+/// have the sides 27, 9, 3 and 1.
 pub const SCALE: Q32_32 = Q32_32::lit("40.5");
 
-/// Field units per world unit for a field with the given period in world units: a period is 64 field units.
+/// Field units per world unit for a field with the given period in world units, so that the period is 64 field units.
 pub fn scale_of(period: Q32_32) -> Q32_32 {
     const PERIOD: Q32_32 = Q32_32::lit("64");
     Q32_32::from_bits(((PERIOD.to_bits() << 16) / (period.to_bits() >> 8).max(1)) << 8)
@@ -81,7 +82,7 @@ impl<S> Placed<S> {
         }
     }
 
-    /// Another type of solid with the same scale and bounding box.
+    /// Converts the solid, and keeps scale and bounding box.
     pub fn map<T>(self, into: impl FnOnce(S) -> T) -> Placed<T> {
         Placed {
             solid: into(self.solid),
@@ -91,33 +92,33 @@ impl<S> Placed<S> {
     }
 }
 
-/// A flat solid of the engine, evaluated by one module of the gateware.
+/// A solid with flat faces, which one module of the gateware evaluates.
 pub trait FlatSolid {
-    /// The solid's number in `solid.kind`, and its bit in `caps.flat`.
+    /// The solid's number in the raymarcher's register field `solid.kind`, and the number of its bit in `caps.flat`.
     const CODE: u8;
 
-    /// Distance and nearest surface at a point; coordinates s10.12.
+    /// Distance and nearest surface at a point with coordinates in s10.12, in field units.
     fn sample(&self, point: [i32; 3]) -> Sample;
 
-    /// The solid's constants for the gateware.
+    /// The solid's constants, as the gateware's registers hold them.
     fn constants(&self) -> FlatConstants;
 }
 
-/// The constants of a flat solid by the names of their registers; 0 for a constant that the solid lacks.
+/// The constants of a flat solid, by the names of their registers. A constant that the solid does not use is 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FlatConstants {
     /// [`FlatSolid::CODE`].
     pub kind: u8,
-    /// Evaluated levels of the sponge, the first level in bit 0.
+    /// Which levels of the sponge are evaluated, the first level in bit 0.
     pub levels: u8,
-    /// Axes along which the box is bounded, x in bit 0.
+    /// Axes along which the box has faces, x in bit 0.
     pub has: u8,
     /// Whether the solid is outside the box.
     pub room: bool,
-    /// The solid is periodic with 64 units along each axis.
+    /// Whether the solid is periodic with 64 units along each axis.
     pub repeated: bool,
     /// Half the side of a sponge's smallest cubes, u10.12.
     pub cube_half: u32,
-    /// Half the sides of a box along x, y and z, or other lengths of a solid, u10.12.
+    /// Half the sides of a box along x, y and z, u10.12; other solids keep their lengths here.
     pub half: [u32; 3],
 }

@@ -1,23 +1,23 @@
-//! Distances in the engine's arithmetic: field units with 12 fraction bits, and the nearest surface.
+//! Distances as the gateware computes them, in field units with 12 fraction bits, and the nearest surface.
 
 use crate::fixed::Q32_32;
 
-/// Fraction bits of field units.
+/// Number of fraction bits of coordinates and distances in field units.
 pub const FRACTION: u32 = 12;
 
-/// The nearest surface.
+/// The surface of a solid that is nearest to a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Surface {
     /// A face perpendicular to an axis.
     Face {
         /// Axis of the normal: 0, 1, 2 for x, y, z.
         axis: u8,
-        /// Whether the normal points along the axis, not against it.
+        /// Whether the normal points in the positive direction of the axis.
         positive: bool,
     },
     /// A face perpendicular to a diagonal.
     Octant {
-        /// Bit i is set if the normal points along axis i.
+        /// Bit i is set if component i of the normal is positive.
         signs: u8,
     },
     /// The surface of a sphere.
@@ -29,7 +29,7 @@ pub enum Surface {
     Blended {
         /// Axis of the face.
         axis: u8,
-        /// Whether the face's normal points along the axis.
+        /// Whether the face's normal points in the positive direction of the axis.
         positive: bool,
         /// Number of the sphere.
         number: u8,
@@ -39,7 +39,8 @@ pub enum Surface {
 }
 
 impl Surface {
-    /// The face in the gateware's encoding: twice its axis, plus 1 if the normal is positive; or the signs of an octant.
+    /// The face in the gateware's encoding. A face perpendicular to an axis is twice the axis, plus 1 if the normal is positive;
+    /// a face perpendicular to a diagonal is its `signs`. `None` for a sphere.
     pub const fn face(self) -> Option<u8> {
         match self {
             Self::Face { axis, positive } | Self::Blended { axis, positive, .. } => {
@@ -50,7 +51,7 @@ impl Surface {
         }
     }
 
-    /// Number of the sphere, if any.
+    /// Number of the sphere; `None` for a face.
     pub const fn number(self) -> Option<u8> {
         match self {
             Self::Face { .. } | Self::Octant { .. } => None,
@@ -58,7 +59,7 @@ impl Surface {
         }
     }
 
-    /// Weight of the sphere; 255 for a sphere alone.
+    /// Weight of the sphere in the surface: 0 for a face alone, 255 for a sphere alone.
     pub const fn share(self) -> u8 {
         match self {
             Self::Face { .. } | Self::Octant { .. } => 0,
@@ -68,30 +69,30 @@ impl Surface {
     }
 }
 
-/// A distance and the nearest surface.
+/// The distance of a point from a solid, and the nearest surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sample {
-    /// Distance, s10.12: in the maximum norm for flat fields (the cube of this half side about the point holds no surface), in the
-    /// Euclidean norm for round fields.
+    /// Distance, s10.12. For a flat field it is in the maximum norm: the cube about the point with this half side holds no
+    /// surface. For a round field it is in the Euclidean norm.
     pub distance: i32,
-    /// The nearest surface.
+    /// The surface of a solid that is nearest to a point.
     pub surface: Surface,
 }
 
-/// The lowest bits of a number, sign-extended.
+/// The lowest `bits` bits of a number, sign-extended.
 pub const fn cropped(x: i32, bits: u32) -> i32 {
     let beyond = 32 - bits;
     x << beyond >> beyond
 }
 
-/// |x| for x ≥ 0, |x| − 1 for a negative x.
+/// The magnitude without the carry of a negation: |x| for x ≥ 0, |x| − 1 for x < 0.
 pub const fn magnitude(x: i32) -> u32 {
     (x ^ (x >> 31)) as u32
 }
 
 /// Converts a length from world units to field units, to nearest. |x| is at most 64, the scale at most 256.
 pub fn units(x: Q32_32, scale: Q32_32) -> i64 {
-    // The factors have 24 and 20 fraction bits.
+    // The length is used with 24 fraction bits, the scale with 20.
     let product = (x.to_bits() >> 8) * (scale.to_bits() >> 12);
     (product + (1 << (43 - FRACTION))) >> (44 - FRACTION)
 }

@@ -7,7 +7,7 @@ use super::error::FieldError;
 use super::primitive::Primitive;
 use crate::fixed::Q32_32;
 
-/// Range of the fillet's width, in world units.
+/// Smallest and largest accepted width of a fillet, in world units.
 const BLEND: [Q32_32; 2] = [Q32_32::lit("0.01"), Q32_32::lit("0.5")];
 
 /// The union of a flat field and a round field.
@@ -19,7 +19,7 @@ pub struct Union {
 }
 
 impl Union {
-    /// Names, numbers and descriptions of both kinds of union.
+    /// Text forms and descriptions of the sharp and the smooth union.
     pub(super) const KINDS: [(&str, &str); 2] = [
         (
             "union:A+B",
@@ -60,7 +60,8 @@ impl Union {
         &self.round
     }
 
-    /// Width of the fillet in world units: the largest difference of both distances within the fillet. 0 is no fillet.
+    /// Width of the fillet in world units: within the fillet, the distances to both members differ by at most this width. 0
+    /// means no fillet.
     pub const fn blend(&self) -> Q32_32 {
         self.blend
     }
@@ -83,7 +84,7 @@ impl Union {
         Self::new(member(flat)?, member(round)?, blend)
     }
 
-    /// Chooses the members and the fillet at random.
+    /// Makes a union of the given members with a random fillet, or without one.
     pub(super) fn draw(
         flat: Primitive,
         round: Primitive,

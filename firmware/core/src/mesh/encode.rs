@@ -16,16 +16,16 @@ pub struct IndexedTriangle {
     pub normal: [i16; 3],
 }
 
-/// Encodes an indexed mesh, cut into chunks of at most 65,535 vertices.
+/// Encodes an indexed mesh, divided into chunks of at most 65,535 vertices.
 ///
-/// Triangles keep their order. A vertex is repeated in every chunk that uses it. A vertex without triangles is left
-/// out, except the first vertex of a mesh without triangles, as a chunk has at least one.
+/// Triangles keep their order. A vertex is repeated in every chunk that uses it. A vertex that no triangle uses is left out. A
+/// mesh without triangles keeps its first vertex, because a chunk has at least one.
 ///
 /// # Errors
-/// The mesh has no vertex, an index has no vertex, or the result exceeds [`MAX_BYTES`].
+/// The mesh has no vertex, a triangle uses a missing vertex, or the encoded mesh exceeds [`MAX_BYTES`].
 pub fn encode(vertices: &[Vertex], triangles: &[IndexedTriangle]) -> Result<Vec<u8>, EncodeError> {
     let mut writer = Writer::default();
-    // Index in the chunk for each vertex of the mesh.
+    // For each vertex of the mesh, its index in the present chunk, if the chunk has it.
     let mut local = alloc::vec![None; vertices.len()];
     let mut used: Vec<u32> = Vec::new();
     let mut records: Vec<[u8; RECORD]> = Vec::new();
@@ -49,7 +49,7 @@ pub fn encode(vertices: &[Vertex], triangles: &[IndexedTriangle]) -> Result<Vec<
             })?;
             *index = *place.get_or_insert_with(|| {
                 used.push(global);
-                // The check above limits the index to 65,534.
+                // The conversion to 16 bits is exact, because the check above limits the index to 65,534.
                 (used.len() - 1) as u16
             });
         }
@@ -68,7 +68,7 @@ pub fn encode(vertices: &[Vertex], triangles: &[IndexedTriangle]) -> Result<Vec<
     Ok(writer.finish())
 }
 
-/// A record of half words, padded with zeros.
+/// Makes a record of little-endian half words, padded with zeros.
 fn record(halves: impl IntoIterator<Item = u16>) -> [u8; RECORD] {
     let mut record = [0; RECORD];
     for (bytes, half) in record.as_chunks_mut().0.iter_mut().zip(halves) {
@@ -77,7 +77,7 @@ fn record(halves: impl IntoIterator<Item = u16>) -> [u8; RECORD] {
     record
 }
 
-/// Encoded chunks, and their sums for the header.
+/// The encoded chunks, and the sums over all chunks that the mesh's header needs.
 #[derive(Default)]
 struct Writer {
     records: Vec<[u8; RECORD]>,

@@ -2,32 +2,34 @@
 
 /// A model of the sensor's clock.
 ///
-/// A new sample was measured between the previous read and the present read. The periods of reads and samples have no common
-/// multiple, so reads drift across the samples, and from time to time this interval bounds the sample's time closely. The clock
-/// predicts the time; the smallest correction moves the prediction into the interval.
+/// A new sample was measured in the interval between the previous read and the present read. The period of the samples is
+/// not a multiple of the period of the reads, so the reads drift across the samples, and from time to time the interval
+/// begins or ends close to the sample's time. The clock predicts each sample's time; the smallest correction moves the
+/// prediction into the interval.
 #[derive(Clone, Copy, Debug)]
 pub struct Pace {
-    /// Nominal and estimated period of the samples, in 2^−8 µs.
+    /// Nominal period (`nominal`) and estimated period (`period`) of the samples, in 2^−8 µs.
     nominal: u32,
     period: u32,
     /// Time of the previous read, in µs.
     looked: Option<u64>,
-    /// Time of the next sample, 2^−8 µs.
+    /// Predicted time of the next sample, in 2^−8 µs.
     expected: Option<u64>,
-    /// Samples until corrections also apply to the period.
+    /// Number of samples that are left until corrections apply to the estimated period too.
     settling: u8,
 }
 
-/// Number of samples in which reads drift across a sample's period.
+/// Number of samples after a start in which only the time is corrected, not the period: in this time the reads drift across a
+/// whole period of the samples.
 const SETTLED: u8 = 32;
 
-/// Part of the clock's error that corrects the period: 2^−5, which settles in some dozens of corrections.
+/// The estimated period changes by 2^−5 of each correction of the time, so that it settles within some dozens of corrections.
 const SLOWNESS: u32 = 5;
-/// Largest error of the nominal period: 1/32.
+/// The estimated period differs from the nominal period by at most 2^−5 of it.
 const TOLERANCE: u32 = 5;
 
 impl Pace {
-    /// A clock for samples with a nominal period in µs, at most 2^20.
+    /// Starts a clock for samples with a nominal period in µs, at most 2^20.
     #[must_use]
     pub const fn new(period: u32) -> Self {
         Self {
@@ -39,8 +41,8 @@ impl Pace {
         }
     }
 
-    /// Takes the time of a read in µs, later than the previous read, and gives the time of its new sample. The sample of the first read
-    /// may be old and is ignored.
+    /// Takes the time of a read in µs, which is later than the previous read. Returns the time of the read's sample if `found`
+    /// states that the read has a new sample. The sample of the first read may be old and is ignored.
     pub fn on_look(&mut self, time: u64, found: bool) -> Option<u64> {
         let before = self.looked.replace(time)?;
         if !found {
@@ -52,7 +54,7 @@ impl Pace {
         if self.settling > 0 {
             self.settling -= 1;
         } else {
-            // Corrects a part of the error. The error is less than a period unless samples were lost.
+            // The period is corrected by a part of the error. The error is less than a period, unless samples were lost.
             let most = i64::from(self.nominal);
             let off = (measured as i64 - expected as i64).clamp(-most, most) >> SLOWNESS;
             let tolerance = self.nominal >> TOLERANCE;

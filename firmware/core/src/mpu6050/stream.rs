@@ -9,27 +9,28 @@ use super::pace::Pace;
 use super::{Error, Identity, Measurement, Mpu6050, PERIOD};
 use crate::i2c::PeriodicI2c;
 
-/// Time between two reads in µs: slightly longer than a read, and slightly less than half a sample period, so that no sample is
-/// missed and reads drift by 40 µs per sample.
+/// Time between the starts of two reads in µs. It is slightly longer than a read, and slightly less than half a sample period, so
+/// that no sample is missed and the reads drift by 40 µs per sample.
 const LOOK: u32 = 480;
-/// Time between two reads in µs for a chip that stretches the clock: slightly less than a sample period, with the same drift.
+/// Time between the starts of two reads in µs for a chip that stretches the clock. It is slightly less than a sample period and
+/// has the same drift.
 const LONG_LOOK: u32 = 960;
 
-/// Longest time without a sample, in µs.
+/// Longest time without a new sample that is not an error, in µs.
 const SILENCE: u32 = 20_000;
-/// Number of equal samples in a row that count as an error.
+/// Number of successive samples, each equal to its predecessor, that counts as an error.
 const FROZEN: u32 = 50;
-/// Time between two attempts to find the chip, in ms. This pause bounds the cost of an absent sensor.
+/// Pause before the next attempt to find the chip, in ms. It bounds the load that an absent sensor causes.
 const AGAIN: u32 = 30;
 
 /// Receiver of samples.
 pub trait Sink<E> {
     /// The chip was found and configured.
     fn on_start(&mut self, identity: Identity);
-    /// Takes a sample and its time in µs, which includes the filter's delay. The error of the time is at most 0.1 ms, and 0.3 ms for the
-    /// first hundred samples after a start.
+    /// Takes a sample and its time in µs. The time is later than the measured motion by the delay of the chip's filter. Apart from
+    /// this delay its error is at most 0.1 ms, and 0.3 ms for the first hundred samples after a start.
     fn on_sample(&mut self, time: u64, measurement: &Measurement);
-    /// An attempt failed. The stream tries again.
+    /// The chip was not found, or reading it failed. The stream tries again.
     fn on_error(&mut self, error: Error<E>);
 }
 
@@ -59,7 +60,7 @@ impl<B: PeriodicI2c, D: DelayNs, S: Sink<B::Error>> Stream<B, D, S> {
         let mut look = LOOK;
         loop {
             let Err(error) = self.start_and_read(reset, look).await;
-            // A chip that answers without measuring may be configured: reset it.
+            // A chip that answers without measuring may seem correctly configured, so the next start resets it.
             reset = matches!(error, Error::Silent | Error::Frozen);
             let is_late = matches!(&error, Error::Bus(error) if error.kind() == ErrorKind::Overrun);
             look = if is_late { LONG_LOOK } else { LOOK };
@@ -78,7 +79,7 @@ impl<B: PeriodicI2c, D: DelayNs, S: Sink<B::Error>> Stream<B, D, S> {
         self.read_all(look).await
     }
 
-    /// Reads the chip every `look` µs.
+    /// Reads the chip every `look` µs, until an error occurs.
     async fn read_all(&mut self, look: u32) -> Result<Infallible, Error<B::Error>> {
         self.chip.begin_looks(look)?;
         let mut pace = Pace::new(PERIOD);

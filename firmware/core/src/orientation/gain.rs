@@ -1,20 +1,20 @@
-//! 1 − exp(−dt/τ): the gain of a first-order filter for a step dt of any length.
+//! The gain 1 − exp(−dt/τ) of a first-order filter with the time constant τ, for a step dt of any length.
 
 /// The shortest time constant, in µs.
 pub const SHORTEST: u32 = 1_000;
 
-/// The gains of a time constant.
+/// Computes the gains of a filter with a given time constant.
 #[derive(Clone, Copy, Debug)]
 pub struct Gain {
     time_constant: u32,
-    /// 2^48 over the time constant.
+    /// 2^48 divided by the time constant.
     inverse: u64,
-    /// The last step and its gain, as most steps are equal.
+    /// The last step and its gain. They are stored because most steps are equal.
     last: (u32, u32),
 }
 
 impl Gain {
-    /// The gains of a time constant in µs of at least [`SHORTEST`]; shorter values saturate.
+    /// Prepares the gains for a time constant in µs; values below [`SHORTEST`] saturate.
     pub fn new(time_constant: u32) -> Self {
         let time_constant = time_constant.max(SHORTEST);
         Self {
@@ -29,8 +29,8 @@ impl Gain {
         self.time_constant
     }
 
-    /// The gain of a step in µs; steps saturate to 2^19. The gain has 32 fraction bits; its error is at most 4 units plus 2^−16 of the gain
-    /// for τ up to 1000 s. A gain that would round to 1 is 1 − 2^−32.
+    /// The gain of a step in µs; steps saturate to 2^19. The gain has 32 fraction bits; its error is at most 4 units plus 2^−16
+    /// of the gain for τ up to 1000 s. A gain that would round to 1 is 1 − 2^−32.
     pub fn of(&mut self, step: u32) -> u32 {
         if step != self.last.0 {
             self.last = (step, self.fresh(step));
@@ -38,10 +38,10 @@ impl Gain {
         self.last.1
     }
 
-    /// The gain of a new step.
+    /// Computes the gain of a step that differs from the last one.
     #[inline(never)]
     fn fresh(&self, step: u32) -> u32 {
-        // The inverse is below 2^39.
+        // `self.inverse` is below 2^39, so the product fits 64 bits.
         let part = (u64::from(step.min(1 << 19)) * self.inverse + (1 << 15)) >> 16;
         match u32::try_from(part) {
             Ok(part) if part < SMALL => series(part),
@@ -50,14 +50,14 @@ impl Gain {
     }
 }
 
-/// 2^48 over a time constant, rounded down. Below 16 s a few 32-bit divisions replace the slow 64-bit division.
+/// 2^48 divided by a time constant, rounded down. Below 2^24 µs (16.8 s) a few 32-bit divisions replace the slow 64-bit division.
 fn inverse(time_constant: u32) -> u64 {
     if time_constant >= 1 << 24 {
         return (1 << 48) / u64::from(time_constant);
     }
     let mut quotient = u64::from((1 << 31) / time_constant);
     let mut rest = (1 << 31) % time_constant;
-    // Long division by digits of 8, 8 and 1 bits: the remainder is below 2^24.
+    // Long division appends 8, 8 and 1 bits to the quotient. The remainder is below 2^24, so the shifted remainder fits 32 bits.
     for bits in [8, 8, 1] {
         let number = rest << bits;
         quotient = quotient << bits | u64::from(number / time_constant);
@@ -66,14 +66,15 @@ fn inverse(time_constant: u32) -> u64 {
     quotient
 }
 
-/// Upper limit of the series' argument: 1/16 with 32 fraction bits.
+/// Limit of the argument of `series`: 1/16 with 32 fraction bits.
 const SMALL: u32 = 1 << 28;
 
-/// 1 − exp(−x), both with 32 fraction bits.
+/// Computes 1 − exp(−x) for any x; argument and result have 32 fraction bits.
 #[cold]
 #[inline(never)]
 fn approach(x: u64) -> u32 {
-    // x is halved until it is below 1/16, where a series of five terms suffices; each 1 − (1 − y)² = 2y − y² then doubles the argument.
+    // x is halved until it is below 1/16, where a series of five terms suffices. With y = 1 − exp(−x), the result for 2x is then
+    // 1 − (1 − y)² = 2y − y²; this step undoes each halving.
     let halvings = x.checked_ilog2().map_or(0, |lead| lead.saturating_sub(27));
     if halvings > 9 {
         return u32::MAX;
@@ -85,18 +86,20 @@ fn approach(x: u64) -> u32 {
     y.min(u32::MAX.into()) as u32
 }
 
-/// 1 − exp(−x) for x < 1/16: x·(1 − x/2·(1 − x/3·(1 − x/4·(1 − x/5)))). The first omitted term is below 2^−33.
+/// Computes 1 − exp(−x) for x < 1/16 as x·(1 − x/2·(1 − x/3·(1 − x/4·(1 − x/5)))). Argument and result have 32 fraction bits. The
+/// first omitted term is below 2^−33.
 fn series(x: u32) -> u32 {
     let times = |a: u32, b: u32| ((u64::from(a) * u64::from(b)) >> 32) as u32;
     let part = |n: u32| times(x, ((1 << 32) / u64::from(n)) as u32);
-    // 1 minus the outer bracket, rounded down.
+    // Computes part·(1 − lack), rounded down: each `lack` is 1 minus a bracket of the series, from the
+    // innermost bracket outwards.
     let less = |part: u32, lack: u32| {
         part - ((u64::from(part) * u64::from(lack) + u64::from(u32::MAX)) >> 32) as u32
     };
     let lack = less(part(4), part(5));
     let lack = less(part(3), lack);
     let lack = less(part(2), lack);
-    // x·(1 − lack) is rounded to nearest.
+    // The result x·(1 − lack) is rounded to nearest.
     let taken = u64::from(x) * u64::from(lack);
     x - ((taken + (1 << 31) - 1) >> 32) as u32
 }

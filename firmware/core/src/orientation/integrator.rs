@@ -1,10 +1,10 @@
-//! Attitude by integration of rates: exact for a constant rate, and without numerical drift.
+//! Computes an attitude by integration of angular rates: exactly for a constant rate, and without numerical drift.
 //!
-//! A step by the half angle vector h multiplies the attitude by exp h = (cos|h|, h·sin|h|/|h|), as q + q·(exp h − 1): the
-//! addend is small, and so is its rounding error. The series of 1 − cos|h| and of 1 − sin|h|/|h| in |h|² have no singularity
-//! and need neither a root nor a division. Three rounding errors would accumulate over millions of steps and are avoided: the attitude
-//! has 62 fraction bits, of which the upper 30 are multiplied; the vector of exp h is rounded to 32 bits and its remainder goes
-//! into the next step; and each step corrects the length, by half of 1 − |q|².
+//! A step by the half angle vector h multiplies the attitude by exp h = (cos|h|, h·sin|h|/|h|), as q + q·(exp h − 1): the addend
+//! is small, and so is its rounding error. The series of 1 − cos|h| and of 1 − sin|h|/|h| in |h|² have no singularity and need
+//! neither a root nor a division. Three rounding errors would accumulate over millions of steps and are avoided: the attitude has
+//! 62 fraction bits, of which the upper 30 are multiplied; the vector of exp h is rounded to 32 bits and its remainder goes into
+//! the next step; and each step corrects the length, by half of 1 − |q|².
 
 use super::quaternion::{Quaternion, dot, product};
 use super::rate::History;
@@ -13,7 +13,7 @@ use super::scale::Scale;
 /// Longest integrated step, in µs.
 pub const LONGEST_STEP: u32 = 500_000;
 
-/// Integrates rates.
+/// Integrates angular rates to an attitude.
 #[derive(Clone, Copy, Debug)]
 pub struct Integrator {
     scale: Scale,
@@ -22,15 +22,16 @@ pub struct Integrator {
     attitude: [i64; 4],
     /// The attitude rounded to 30 fraction bits, to nearest.
     rounded: Quaternion,
-    /// Rounding remainder of the last step's vector, 48 fraction bits.
+    /// What rounding left of the last step's vector part of exp h, with 48 fraction bits; it is added to the next step.
     rest: [i32; 3],
 }
 
-/// Largest component of the half angle of one rotation, 0.25 rad with 48 fraction bits, which bounds |h|² by 3/16.
+/// Largest component of the half angle vector h that one multiplication applies: 0.25 rad with 48 fraction bits. It bounds
+/// |h|² by 3/16.
 const LARGEST: i64 = 1 << 46;
 
 impl Integrator {
-    /// Starts at an attitude and a rate in 1/256 LSB.
+    /// Starts with an attitude and with a rate in 1/256 LSB.
     pub fn new(scale: Scale, attitude: Quaternion, rate: [i32; 3]) -> Self {
         let mut integrator = Self {
             scale,
@@ -50,21 +51,22 @@ impl Integrator {
         self.rounded = attitude;
     }
 
-    /// Restarts at a rate, with the present attitude.
+    /// Drops the earlier rates and continues from `rate` (in 1/256 LSB) with the present attitude.
     pub fn restart(&mut self, rate: [i32; 3]) {
         self.history.start(rate);
     }
 
-    /// Integrates a rate in 1/256 LSB that was measured `step` µs after the previous rate. `correction` is an additional rotation: half
-    /// an angle about each of the body's axes in radians with 48 fraction bits, within ±8.
+    /// Integrates a rate in 1/256 LSB that was measured `step` µs after the previous rate. `correction` is an additional
+    /// rotation: a half angle vector in the body's axes, in radians with 48 fraction bits, with components within ±8.
     ///
-    /// The rate saturates to ±1.5·2^23. A step of 0 or beyond [`LONGEST_STEP`] only replaces the last rate.
+    /// The rate saturates to ±1.5·2^23. If the step is 0 or longer than [`LONGEST_STEP`], the attitude is kept, and integration
+    /// restarts from this rate.
     pub fn advance(&mut self, rate: [i32; 3], step: u32, correction: [i64; 3]) {
         self.advance_order::<4>(rate, step, correction);
     }
 
-    /// Integrates a rate as [`Self::advance`] does, by a method of order 1 to 4 (higher orders saturate to 4): the newest sample, the mean
-    /// of two samples, a parabola through three, or a cubic through four.
+    /// Integrates a rate as [`Self::advance`] does, by a method of the given order (above 4 as for 4): order 1 takes the newest
+    /// sample, 2 the mean of two samples, 3 a parabola through three samples, and 4 a cubic through four samples.
     pub fn advance_order<const ORDER: u32>(
         &mut self,
         rate: [i32; 3],
@@ -78,8 +80,8 @@ impl Integrator {
         self.turn(&[0, 1, 2].map(|i| half[i] + correction[i]));
     }
 
-    /// Takes a rate in 1/256 LSB that was measured `step` µs (1 to [`LONGEST_STEP`]) after the previous rate, and gives the rotation as half
-    /// an angle about each of the body's axes, in radians with 48 fraction bits.
+    /// Takes a rate in 1/256 LSB that was measured `step` µs (1 to [`LONGEST_STEP`]) after the previous rate. Returns the
+    /// rotation of the step as a half angle vector in the body's axes, in radians with 48 fraction bits.
     pub(super) fn half_angle<const ORDER: u32>(&mut self, rate: [i32; 3], step: u32) -> [i64; 3] {
         self.history.advance::<ORDER>(rate, step, self.scale)
     }
@@ -89,12 +91,12 @@ impl Integrator {
         self.rounded
     }
 
-    /// A reference to the attitude.
+    /// A reference to the attitude, rounded to nearest.
     pub(super) const fn rounded(&self) -> &Quaternion {
         &self.rounded
     }
 
-    /// Turns by a half angle vector of any length, 48 fraction bits, components within ±2^57.
+    /// Turns the attitude by a half angle vector of any length. Its components have 48 fraction bits and are within ±2^57.
     pub(super) fn turn(&mut self, half: &[i64; 3]) {
         if half.iter().all(|x| (-LARGEST..LARGEST).contains(x)) {
             self.turn_part(half);
@@ -103,7 +105,7 @@ impl Integrator {
         }
     }
 
-    /// Turns by a half angle vector in several equal parts.
+    /// Turns the attitude by a long half angle vector, in several equal parts.
     #[cold]
     #[inline(never)]
     fn turn_far(&mut self, half: &[i64; 3]) {
@@ -118,7 +120,7 @@ impl Integrator {
     #[inline(never)]
     fn turn_part(&mut self, half: &[i64; 3]) {
         let half = [0, 1, 2].map(|i| half[i] + i64::from(self.rest[i]));
-        // |h|² with 32 fraction bits, rounded down; each square is below 2^29.
+        // `square` is |h|² with 32 fraction bits, rounded down; each of its three addends is below 2^29.
         let short = half.map(|x| (x >> 16) as i32);
         let square = short
             .map(|x| ((i64::from(x) * i64::from(x)) >> 32) as u32)
@@ -126,11 +128,12 @@ impl Integrator {
             .sum();
         let (versine, lack) = series(square);
         let q = &self.rounded.parts;
-        // 1 − |q|² with 60 fraction bits, and its half with 32, rounded down.
+        // `excess` is 1 − |q|² with 60 fraction bits. The scalar part of `change` uses half of it, with 32 fraction
+        // bits, rounded down.
         let excess = (1 << 60) - dot(q, q[0], q[1], q[2], q[3]);
         let mut change = [(excess >> 29) as i32 - versine as i32, 0, 0, 0];
         for i in 0..3 {
-            // h·sin|h|/|h| with 48 fraction bits, plus half a unit of 32 fraction bits for rounding.
+            // `exact` is h·sin|h|/|h| with 48 fraction bits, plus 2^−33 so that the shift below rounds to nearest.
             let exact = half[i] - ((i64::from(short[i]) * i64::from(lack)) >> 16) + (1 << 15);
             self.rest[i] = i32::from(exact as u16) - (1 << 15);
             change[i + 1] = (exact >> 16) as i32;
@@ -144,8 +147,8 @@ impl Integrator {
     }
 }
 
-/// 1 − cos x and 1 − sin(x)/x as functions of x², each with 32 fraction bits and within 2 units for x² up to 3/16. The remainders of
-/// the series, x¹²/12! and x¹⁰/11!, are then 9e-14 and 6e-12.
+/// Computes 1 − cos x and 1 − sin(x)/x from x². Argument and results have 32 fraction bits. For x² up to 3/16 the errors are at
+/// most 2 units; the first omitted terms of the series, x¹²/12! and x¹⁰/11!, are then 9e-14 and 6e-12.
 fn series(square: u32) -> (u32, u32) {
     const fn one_over(n: u64) -> u32 {
         (((1 << 32) + n / 2) / n) as u32

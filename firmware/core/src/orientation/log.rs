@@ -1,4 +1,5 @@
-//! The format of a log for replay on a board: a header, then a record per sample. Replay replaces each sample by the attitude after it.
+//! The format of a log for replay on a board: a header, then one record for each sample. Replay computes the attitude after each
+//! sample, and writes it over the sample's record.
 //!
 //! All numbers are little-endian.
 //!
@@ -32,17 +33,17 @@ use crate::fixed::Q32_32;
 pub const HEADER_BYTES: usize = 48;
 /// Bytes of a record.
 pub const RECORD_BYTES: usize = 16;
-/// Largest bias in 1/256 LSB: the largest mean of counts.
+/// Largest accepted bias in 1/256 LSB, which is the largest mean of counts.
 pub const LARGEST_BIAS: u32 = 1 << 23;
 
 const MAGIC: [u8; 4] = *b"GIMU";
 const TILT: u32 = 1 << 0;
 const FOLLOW_BIAS: u32 = 1 << 1;
 
-/// A sample, or the attitude after it, in words.
+/// The four words of a record: a sample, or the attitude after this sample.
 pub type Record = [u32; 4];
 
-/// Parameters of a replay.
+/// The parameters of a replay, which the log's header holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Setup {
     units: Units,
@@ -128,13 +129,14 @@ impl fmt::Display for LogError {
 
 impl core::error::Error for LogError {}
 
-/// Bytes of a log.
+/// Length in bytes of a log with this number of samples.
 const fn length(samples: u32) -> u64 {
     HEADER_BYTES as u64 + RECORD_BYTES as u64 * samples as u64
 }
 
 impl Setup {
-    /// Parameters from the units of counts, the tilt correction, and the bias in 1/256 LSB, constant or tracked at rest.
+    /// Checks the parameters of a replay: the units of the counts, whether the accelerometer corrects the tilt, whether the bias
+    /// is tracked at rest, and the bias in 1/256 LSB.
     ///
     /// # Errors
     /// The units or the bias are out of range.
@@ -162,7 +164,7 @@ impl Setup {
         })
     }
 
-    /// A tracker before the first sample.
+    /// Makes a tracker with these parameters, before its first sample.
     pub fn tracker(&self) -> Tracker {
         let tilt = self
             .tilt
@@ -242,10 +244,10 @@ impl Setup {
     }
 }
 
-/// Checks a log, and gives its parameters and the bytes of its records.
+/// Checks a log, and returns its parameters and the bytes of its records.
 ///
 /// # Errors
-/// The first error.
+/// The first deviation from the format.
 pub fn open(bytes: &mut [u8]) -> Result<(Setup, &mut [[u8; RECORD_BYTES]]), LogError> {
     let all = bytes.len();
     let (header, records) = bytes
@@ -283,14 +285,14 @@ pub fn to_bytes(record: Record) -> [u8; RECORD_BYTES] {
     bytes
 }
 
-/// The record of a sample.
+/// Packs a sample into a record.
 pub fn record(sample: &Sample) -> Record {
     let pair = |low: i16, high: i16| u32::from(low as u16) | u32::from(high as u16) << 16;
     let ([ax, ay, az], [gx, gy, gz]) = (sample.accel, sample.gyro);
     [sample.t_us, pair(ax, ay), pair(az, gx), pair(gy, gz)]
 }
 
-/// The sample of a record.
+/// Unpacks the sample that a record holds.
 pub const fn sample([t_us, ax_ay, az_gx, gy_gz]: Record) -> Sample {
     Sample {
         t_us,
@@ -299,17 +301,17 @@ pub const fn sample([t_us, ax_ay, az_gx, gy_gz]: Record) -> Sample {
     }
 }
 
-/// The record of an attitude.
+/// Packs an attitude into a record.
 pub fn attitude_record(attitude: Quaternion) -> Record {
     attitude.parts.map(|part| part as u32)
 }
 
-/// The attitude of a record; `None` unless its length is 1.
+/// Unpacks the attitude that a record holds; `None` unless the quaternion's length is 1 (within 2^−28).
 pub fn attitude(record: Record) -> Option<Quaternion> {
     Quaternion::exact(record.map(|part| part as i32))
 }
 
-/// Replays a log in place, and gives the counts of its samples.
+/// Replays a log in place: replaces each sample by the attitude after it. Returns the counts of the samples by their effect.
 ///
 /// # Errors
 /// The bytes are not a log; they stay unchanged.

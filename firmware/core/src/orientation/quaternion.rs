@@ -11,18 +11,19 @@ pub struct Quaternion {
     pub(super) parts: [i32; 4],
 }
 
-/// 1.0 in the units of a component.
+/// The number 1 in the units of a component.
 const ONE: i32 = 1 << 30;
-/// The cosine of the pitch below which roll is defined as 0: 2^−16, within 0.00088° of the pole; 60 fraction bits.
+/// If the cosine of the pitch is below this limit, roll is defined as 0. The limit is 2^−16 (within 0.00088° of the pole), with
+/// 60 fraction bits.
 const POLE: i64 = 1 << 44;
 
 impl Quaternion {
-    /// The axes of body and world coincide.
+    /// The identity: the axes of body and world coincide.
     pub const IDENTITY: Self = Self {
         parts: [ONE, 0, 0, 0],
     };
 
-    /// The quaternion in the direction of four numbers (w, x, y, z), unless all are 0.
+    /// Scales four numbers (w, x, y, z) to a quaternion of length 1; `None` if all are 0.
     pub fn new(parts: [Q2_30; 4]) -> Option<Self> {
         let largest = parts.iter().map(|part| part.to_bits().unsigned_abs()).max();
         let up = largest?.checked_ilog2().map(|lead| 30 - lead.min(30))?;
@@ -49,7 +50,8 @@ impl Quaternion {
 
     /// The rotation by an angle about one of the axes: 0, 1, 2 for x, y, z (larger numbers are z).
     pub fn about_axis(axis: usize, angle: Turns) -> Self {
-        // Half of an angle in (−½, ½] turns: small angles of both signs stay near the identity.
+        // The angle is taken as −½ to ½ turns before it is halved, so that small angles of both signs give a quaternion
+        // near the identity.
         let half = Turns((angle.0 as i32 >> 1) as u32);
         let (sin, cos) = sin_cos_q30(half);
         let mut parts = [cos.to_bits(), 0, 0, 0];
@@ -83,7 +85,7 @@ impl Quaternion {
         }
     }
 
-    /// The product: `other` followed by this rotation, rounded to nearest and normalised.
+    /// The product of two rotations: first `other`, then this one. The result is rounded to nearest and normalised.
     #[must_use]
     pub fn times(self, other: Self) -> Self {
         let products = product(&self.parts, other.parts);
@@ -91,7 +93,8 @@ impl Quaternion {
         Self { parts }.renormalised()
     }
 
-    /// The quaternion of the same attitude with w ≥ 0. An attitude with w = 0 has two such quaternions.
+    /// The quaternion with w ≥ 0 that is the same attitude: this one or its negative. An attitude with w = 0 has
+    /// two such quaternions.
     #[must_use]
     pub fn canonical(self) -> Self {
         if self.parts[0] < 0 {
@@ -103,17 +106,17 @@ impl Quaternion {
         }
     }
 
-    /// The world's directions of the body's axes x, y, z, which are the columns of the rotation's matrix. 30 fraction bits,
-    /// to nearest, of length 1 within 2^−28.
+    /// The directions of the body's axes x, y, z in the world, which are the columns of the rotation's matrix. They have 30
+    /// fraction bits, rounded to nearest, and length 1 within 2^−28.
     pub fn axes(self) -> [[i32; 3]; 3] {
         self.columns()
             .map(|column| column.map(|x| ((x + (1 << 29)) >> 30) as i32))
     }
 
-    /// The rotation's matrix with 60 fraction bits, exact.
+    /// The columns of the rotation's matrix, exact, with 60 fraction bits.
     fn columns(self) -> [[i64; 3]; 3] {
         let [w, x, y, z] = self.parts.map(i64::from);
-        // Each is at most 1 in magnitude, and twice the sum of two products at most 2.
+        // Each element of the matrix is at most 1 in magnitude, and no intermediate value exceeds 2, so 64 bits are enough.
         let twice = |a: i64, b: i64| 2 * (a + b);
         [
             [
@@ -134,10 +137,10 @@ impl Quaternion {
         ]
     }
 
-    /// The body's direction of the world's z axis, which is up: 30 fraction bits, rounded down.
+    /// The direction of the world's z axis (up) in the body's axes: 30 fraction bits, rounded down.
     pub(super) fn up(&self) -> [i32; 3] {
         let [w, x, y, z] = self.parts;
-        // At most 1 in magnitude, apart from the error of the length.
+        // Each component is at most 1 in magnitude, apart from the error of the quaternion's length.
         [
             ((wide(x, z) - wide(w, y)) >> 29) as i32,
             ((wide(y, z) + wide(w, x)) >> 29) as i32,
@@ -145,11 +148,11 @@ impl Quaternion {
         ]
     }
 
-    /// Yaw, pitch and roll, intrinsic about z, then y, then x. For output only.
+    /// Yaw, pitch and roll: successive rotations about the body's z axis, then its y axis, then its x axis. For output only.
     ///
-    /// Yaw and roll are in [−½, ½) turns and pitch in [−¼, ¼]. An error ε of the quaternion gives yaw and roll an
-    /// error of ε/cos(pitch), and their sum an error of ε. For cos(pitch) < 2^−16 roll is 0 and yaw is the whole remaining
-    /// rotation: at the poles yaw − roll for pitch +¼, yaw + roll for −¼.
+    /// Yaw and roll are in [−½, ½) turns and pitch in [−¼, ¼]. An error ε of the quaternion gives yaw and roll an error of
+    /// ε/cos(pitch), and their sum an error of ε. For cos(pitch) < 2^−16, roll is defined as 0, and yaw is the whole remaining
+    /// rotation: yaw − roll at the pole with pitch +¼, yaw + roll at the pole with pitch −¼.
     pub fn angles(self) -> Angles {
         let [[xx, xy, xz], [yx, yy, yz], [_, _, zz]] = self.columns();
         let (level, yaw) = polar(xx, xy);
@@ -166,27 +169,28 @@ impl Quaternion {
         Angles { yaw, pitch, roll }
     }
 
-    /// The angle of the turn about the world's z axis that is nearest to this attitude (its twist). It is continuous
-    /// except for a body upside down, and at both poles of the pitch.
+    /// The heading: the angle of the rotation about the world's z axis that is nearest to this attitude (the twist). The heading
+    /// is continuous, also at both poles of the pitch, except for a body that is upside down.
     pub fn heading(self) -> Turns {
         let [w, _, _, z] = self.parts.map(i64::from);
         let (_, half) = polar(w << 30, z << 30);
         Turns(half.0 << 1)
     }
 
-    /// One Newton step towards length 1. The step squares the relative error, so that an error within 2^−15 vanishes in the last place.
+    /// Corrects the length to 1 by one Newton step. The step squares the relative error, so that an error within 2^−15 becomes
+    /// smaller than a unit in the last place.
     #[must_use]
     fn renormalised(self) -> Self {
         let parts = self.parts.map(i64::from);
         let excess = (1 << 60) - parts.iter().map(|x| x * x).sum::<i64>();
-        // |excess| is below 2^46 within this error, so the products stay below 2^62.
+        // For an error of the length within 2^−15, |excess| is below 2^46, so the products stay below 2^62.
         let parts = parts.map(|x| (x + ((x * (excess >> 29) + (1 << 31)) >> 32)) as i32);
         Self { parts }
     }
 }
 
-/// The product of two quaternions, in the product of their units. Both lengths are at most 1 apart from their errors, so by the
-/// Cauchy–Schwarz inequality no partial sum exceeds the product of the units.
+/// The product of two quaternions; its unit is the product of their units. Both lengths are at most 1 apart from their errors, so
+/// by the Cauchy–Schwarz inequality no partial sum exceeds 1 in this unit by more than these errors.
 pub(super) fn product(a: &[i32; 4], [w, x, y, z]: [i32; 4]) -> [i64; 4] {
     [
         dot(a, w, -x, -y, -z),
@@ -196,8 +200,8 @@ pub(super) fn product(a: &[i32; 4], [w, x, y, z]: [i32; 4]) -> [i64; 4] {
     ]
 }
 
-/// The sum of four products; partial sums fit 64 bits. One function instead of inline code saves space in the soft core's small
-/// instruction cache.
+/// The sum of four products; the caller ensures that partial sums fit 64 bits. The function is not inlined, which saves space in
+/// the soft core's small instruction cache.
 #[inline(never)]
 pub(super) fn dot([aw, ax, ay, az]: &[i32; 4], w: i32, x: i32, y: i32, z: i32) -> i64 {
     wide(*aw, w) + wide(*ax, x) + wide(*ay, y) + wide(*az, z)

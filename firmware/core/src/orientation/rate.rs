@@ -1,4 +1,4 @@
-//! Rotation of a step between two samples of the angular rate.
+//! Computes the rotation of a body between two samples of its angular rate.
 //!
 //! A step of length h goes from the last sample but one, ω₂, to the last sample, ω₃. Its rotation vector φ is approximated by the
 //! first two terms of the Magnus expansion:
@@ -18,31 +18,33 @@
 //! ```
 //!
 //! and with equal steps A is the Adams–Moulton formula (9ω₃ + 19ω₂ − 5ω₁ + ω₀)/24. For the cubic itself E would be e₁ − T/10. The
-//! error of A, −19/720·h⁴·d⁴ω/dt⁴, accumulates while the body turns: integration by parts in the world's axes gives a bounded term
-//! and the growing term 19/720·h⁴·ω × d³ω/dt³. As h³·d³ω/dt³ is about 6·T, an additional 19/10·T in E cancels the growing term. The
-//! factor 9/5 reduces the drift of coning at 20 samples a turn to a ninth of the drift with −1/10.
+//! error of A, −19/720·h⁴·d⁴ω/dt⁴, accumulates while the body turns: integration by parts in the world's axes gives a bounded
+//! term and the growing term 19/720·h⁴·ω × d³ω/dt³. As h³·d³ω/dt³ is about 6·T, an additional 19/10·T in E cancels the growing
+//! term. The factor 9/5 reduces the drift of coning at 20 samples a turn to a ninth of the drift with −1/10.
 
 use super::scale::{Factor, Scale};
 use crate::fixed::wide;
 
-/// Longest step integrated by a cubic, in µs; longer steps are integrated linearly.
+/// Longest step, in µs, for which the rate is interpolated by a cubic; for longer steps it is interpolated linearly.
 pub const LONGEST_CURVE: u32 = 1 << 15;
-/// Largest ratio of a step to the previous step for a cubic; beyond this ratio old samples would outweigh new ones.
+/// Largest ratio of a step to the previous step for which the rate is interpolated by a cubic; beyond this ratio old samples
+/// would outweigh new ones.
 pub const MOST_STRETCH: u32 = 3;
-/// The largest rate, in 1/256 LSB: the largest count plus half of it as bias. This limit keeps all numbers below within 32 bits.
+/// The largest rate, in 1/256 LSB: 1.5 times the largest count, which leaves room for a bias. With this limit all numbers in this
+/// file that are stored in 32 bits fit.
 pub const LARGEST_RATE: i32 = 3 << 22;
 
-/// The earlier samples that a step needs.
+/// What a step needs of the earlier samples.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct History {
-    /// Number of earlier steps: 0, 1, 2.
+    /// Number of earlier steps that can be used: 0, 1 or 2.
     steps: u8,
     axes: [Axis; 3],
     /// The earlier steps h₁ and h₂ in µs.
     ages: [u32; 2],
 }
 
-/// The earlier rates along an axis, in 1/256 LSB.
+/// What a step needs of the earlier rates about an axis, in 1/256 LSB.
 #[derive(Clone, Copy, Debug, Default)]
 struct Axis {
     /// The last rate, ω₂.
@@ -53,14 +55,15 @@ struct Axis {
     second: i32,
 }
 
-/// Weights of a cubic from the times of samples, with 15 fraction bits by default.
+/// The weights of the module's formulas, which depend only on the times of the samples. Those without a stated format have
+/// 15 fraction bits.
 #[derive(Clone, Copy)]
 struct Weights {
-    /// g in 2^−30, rounded to 15 fraction bits.
+    /// g = h/h₁ in units of 2^−30, rounded to 15 fraction bits.
     stretch: u32,
-    /// g², the factor of the previous S in D.
+    /// g², the factor of the previous step's S in D.
     stretch_squared: i32,
-    /// h/(h + h₁) in 2^−32, rounded to 15 fraction bits.
+    /// h/(h + h₁) in units of 2^−32, rounded to 15 fraction bits.
     half: u32,
     /// The factor 9/5·h/(h + h₁ + h₂) of D in E.
     near: i32,
@@ -73,7 +76,7 @@ const FOUR_THIRDS: i32 = (4 << 15) / 3 + 1;
 const NINE_FIFTHS: i32 = (9 << 15) / 5;
 
 impl Weights {
-    /// Weights for equal steps.
+    /// Weights for three equal steps.
     const EVEN: Self = Self {
         stretch: 1 << 30,
         stretch_squared: 1 << 15,
@@ -82,7 +85,7 @@ impl Weights {
         far: FOUR_THIRDS,
     };
 
-    /// Weights for a step without earlier steps: linear interpolation.
+    /// Weights for a step without usable earlier steps, which give linear interpolation.
     const STRAIGHT: Self = Self {
         stretch: 0,
         stretch_squared: 0,
@@ -91,7 +94,7 @@ impl Weights {
         far: 0,
     };
 
-    /// Weights for a step h and earlier steps h₁ and h₂.
+    /// Weights for a step h (`step`) and the earlier steps h₁ and h₂, of which `steps` can be used.
     #[inline(never)]
     fn of<const ORDER: u32>(steps: u8, step: u32, [h1, h2]: [u32; 2]) -> Self {
         if steps == 0 {
@@ -101,7 +104,7 @@ impl Weights {
             return Self::EVEN;
         }
         let g = Divisor::new(h1).ratio(step);
-        // D needs S of the previous step.
+        // Without two earlier steps D is unknown, because D needs S of the previous step; its weights are then 0.
         let (mut near, mut far) = (0, 0);
         if steps == 2 && ORDER >= 4 {
             let all = Divisor::new(step + h1 + h2);
@@ -119,7 +122,7 @@ impl Weights {
     }
 }
 
-/// x·2^−15 to nearest, for a result within 31 bits.
+/// The product x·2^−15, rounded to nearest; the result must fit 31 bits.
 const fn narrow(x: i64) -> i32 {
     half_up((x >> 14) as i32)
 }
@@ -129,12 +132,12 @@ const fn half_up(x: i32) -> i32 {
     (x + 1) >> 1
 }
 
-/// The upper word of a product.
+/// The upper 32 bits of a product.
 const fn upper(a: i32, b: u32) -> i32 {
     ((a as i64 * b as i64) >> 32) as i32
 }
 
-/// A divisor with its reciprocal, so that the slow division runs once.
+/// A divisor with its reciprocal, so that several quotients need one slow division.
 struct Divisor {
     number: u32,
     /// (2^32 − 1)/divisor, rounded down.
@@ -149,22 +152,24 @@ impl Divisor {
         }
     }
 
-    /// a/divisor with 15 fraction bits, to nearest. All numbers fit 32 bits: a < 2^17, and the ratio is at most 3.
+    /// The quotient a/divisor with 15 fraction bits, rounded to nearest. All numbers fit 32 bits, because a < 2^17 and the
+    /// quotient is at most 3.
     const fn ratio(&self, a: u32) -> i32 {
         let number = (a << 15) + self.number / 2;
-        // Below the quotient by less than 1 before rounding down.
+        // `below` is the quotient or 1 less: the product with the reciprocal is too small by less than 1 before it
+        // is rounded down.
         let below = ((number as u64 * self.inverse as u64) >> 32) as u32;
         let rest = number - below * self.number;
         (below + (rest >= self.number) as u32) as i32
     }
 }
 
-/// A rate, saturated to the formats.
+/// Limits a rate to ±`LARGEST_RATE`.
 fn within(rate: i32) -> i32 {
     rate.clamp(-LARGEST_RATE, LARGEST_RATE)
 }
 
-/// A with 12 fraction bits and E with 8.
+/// A (with 12 fraction bits) and E (with 8 fraction bits) of the module's formulas, for one axis.
 type Ends = (i32, i32);
 
 impl Axis {
@@ -173,11 +178,12 @@ impl Axis {
     fn advance(&mut self, rate: i32, weights: &Weights) -> Ends {
         let rate = within(rate);
         let e1 = rate - self.last;
-        // g ≤ 3, so |S| ≤ 3·1.5·2^24 and |D| ≤ 10 times that.
+        // As g ≤ 3, |S| is at most 3·1.5·2^24, and |D| at most 10 times as much.
         let before = half_up(upper(self.difference << 3, weights.stretch));
         let second = half_up(upper((e1 - before) << 1, weights.half));
         let third = second - narrow(wide(weights.stretch_squared, self.second));
-        // The factor 16/12 is the division by 12 and the change from 8 to 12 fraction bits.
+        // `curve` is (2·S + D·…)/12 of A. The factor 16/12 in the weights is the division by 12 and the change from 8 to
+        // 12 fraction bits.
         let curve = wide(second, EIGHT_THIRDS) + wide(third, weights.far);
         let curve = ((curve + (1 << 14)) >> 15) as i32;
         let mean = ((rate + self.last) << 3) - curve;
@@ -187,7 +193,7 @@ impl Axis {
             difference: e1,
             second,
         };
-        // Motion within the range is not clipped.
+        // The limits are beyond every motion within the sensor's range.
         (
             mean.clamp(-MOST_MEAN, MOST_MEAN),
             end.clamp(-MOST_CHANGE, MOST_CHANGE),
@@ -208,11 +214,12 @@ impl History {
         };
     }
 
-    /// Takes a sample, `step` µs (at least 1) after the previous sample, and gives φ/2 as a rotation vector, 48 fraction bits.
+    /// Takes the rate of a sample, `step` µs (at least 1) after the previous sample. Returns half the rotation vector, φ/2, with
+    /// 48 fraction bits.
     ///
     /// The rate saturates to ±[`LARGEST_RATE`]. `ORDER` is the order of the method: 1 takes the newest sample, 2 the mean of two
-    /// samples, 3 the parabola through three with e₁ for E, 4 or more the cubic. The first steps have fewer earlier samples and
-    /// together leave an error of order h³.
+    /// samples, 3 the parabola through three samples (with e₁ in place of E), and 4 or more the cubic. The first steps after a
+    /// start have fewer earlier samples; together they leave an error of order h³.
     pub fn advance<const ORDER: u32>(
         &mut self,
         rate: [i32; 3],
@@ -244,10 +251,11 @@ impl History {
     }
 }
 
-/// φ/2 along an axis, from A along this axis and from A and E along the two next axes.
+/// The component of φ/2 along an axis, from A along this axis (`mean`), and from A and E along the two other axes
+/// in cyclic order.
 #[inline(always)]
 fn turned(mean: i32, (mj, ej): Ends, (mk, ek): Ends, coning: u32, factor: Factor) -> i64 {
-    // The cross product in LSB² with 20 fraction bits, at most 2^55.
+    // Before the shift the cross product A × E is in LSB² with 20 fraction bits, at most 2^55.
     let cross = ((wide(mj, ek) - wide(mk, ej)) >> 25) as i32;
     let coning = (i64::from(cross) * i64::from(coning) + (1 << 31)) >> 32;
     factor.half_angle(mean + coning as i32)

@@ -5,8 +5,8 @@
 pub struct Sample {
     /// Time in µs, modulo 2^32.
     pub t_us: u32,
-    /// Specific force along each axis.
+    /// Specific force along each axis, in counts.
     pub accel: [i16; 3],
-    /// Rate about each axis.
+    /// Angular rate about each axis, in counts.
     pub gyro: [i16; 3],
 }

@@ -1,34 +1,35 @@
 //! Tilt correction by the accelerometer.
 //!
-//! An accelerometer reads gravity plus acceleration. In the axes of the world gravity is constant, and the acceleration of a body that
-//! returns to its place has mean 0, so that a low pass in these axes rejects it: the attitude turns by
+//! An accelerometer reads gravity plus acceleration. In the axes of the world gravity is constant, and the acceleration of a body
+//! that returns to its place has mean 0, so a low-pass filter in these axes rejects it. For each reading the attitude turns by
 //!
 //! ```text
 //! (1 − exp(−dt/τ))·(a × up)/g
 //! ```
 //!
-//! with `a` and `up` in the body's axes. Readings are not normalised, and a slightly wrong length does not reject a reading: both would
-//! weight accelerations unequally and bias their mean. Readings above 3 g, which hand and walk do not reach, and readings at the end
-//! of the sensor's range are rejected.
+//! where τ is the filter's time constant, dt the time since the previous reading, `a` the reading and `up` the upward direction,
+//! both in the body's axes. Readings are not normalised, and a reading is not rejected because its length differs slightly from 1
+//! g: both would weight accelerations unequally and bias their mean. Readings above 3 g, which a hand or a walking person does
+//! not reach, and readings at the end of the sensor's range are rejected.
 
 use super::gain::Gain;
 use super::quaternion::{Angles, Quaternion};
 use crate::fixed::{Turns, wide};
 use crate::polar::polar;
 
-/// Default τ in µs.
+/// Default time constant τ of the filter, in µs.
 pub const TIME_CONSTANT: u32 = 3_000_000;
-/// Accepted LSB per g.
+/// Smallest and largest accepted LSB per g.
 pub const LSB_PER_G: [u32; 2] = [1_024, 32_767];
-/// Nominal age of an attitude from one reading, in µs.
+/// Time of readings that an attitude from a single reading counts as, in µs.
 pub const FRESH: u32 = 20_000;
-/// Nominal age of an attitude after saturation of the gyroscope or a gap, in µs. The accelerometer corrects the error within ten times
-/// this age, and a short saturation changes the attitude little.
+/// Time of readings that an attitude counts as after saturation of the gyroscope or a gap, in µs. The accelerometer corrects the
+/// attitude's error within ten times this time, and a short saturation changes the attitude little.
 pub const DOUBTFUL: u32 = 100_000;
 /// Largest accepted reading, in g.
 const MOST: u32 = 3;
 
-/// Corrects the tilt.
+/// Corrects the tilt of an attitude by the readings of an accelerometer.
 #[derive(Clone, Copy, Debug)]
 pub struct Tilt {
     /// 2^32 over the LSB of 1 g.
@@ -36,13 +37,15 @@ pub struct Tilt {
     /// Square of the largest accepted reading, in LSB².
     largest: u32,
     time_constant: u32,
-    /// Total time of the readings in µs, up to τ: the time constant of a running mean.
+    /// Total time of the readings so far in µs, up to τ. It is the present time constant, so that the first readings form
+    /// a running mean.
     age: u32,
     gain: Gain,
 }
 
 impl Tilt {
-    /// The correction for an accelerometer with `lsb_per_g` (saturates to [`LSB_PER_G`]) and a time constant in µs.
+    /// Prepares the correction for an accelerometer with `lsb_per_g` (which saturates to [`LSB_PER_G`]) and a time
+    /// constant in µs.
     pub fn new(lsb_per_g: u32, time_constant: u32) -> Self {
         let one = lsb_per_g.clamp(LSB_PER_G[0], LSB_PER_G[1]);
         Self {
@@ -54,7 +57,7 @@ impl Tilt {
         }
     }
 
-    /// Whether readings span the time constant.
+    /// Whether the total time of the readings has reached the time constant.
     pub fn is_settled(&self) -> bool {
         self.age >= self.time_constant
     }
@@ -67,8 +70,9 @@ impl Tilt {
         self.gain = Gain::new(self.age.min(self.time_constant));
     }
 
-    /// Corrects a step in µs (at most 2^19) by the reading at its end: adds at most 3 rad to the half angle about each of the body's axes,
-    /// 48 fraction bits. Returns whether the reading was accepted.
+    /// Corrects the attitude by the reading at the end of a step of `step` µs (at most 2^19): adds the correction to `half`, a
+    /// half angle vector in the body's axes with 48 fraction bits. Each component changes by at most 3 rad. Returns whether the
+    /// reading was accepted.
     #[inline]
     pub fn correct(
         &mut self,
@@ -85,12 +89,13 @@ impl Tilt {
         if self.gain.time_constant() < self.time_constant {
             self.grow(step);
         }
-        // Half the gain per g, for 2^−14 LSB, with 57 fraction bits; the inverse of g is at most 2^22.
+        // The factor is half the gain divided by g, for an error in 2^−14 LSB, with 57 fraction bits. `self.inverse` is
+        // at most 2^22.
         let factor = ((u64::from(self.gain.of(step)) * u64::from(self.inverse)) >> 22) as u32;
         let up = attitude.up();
-        // The sum uses only the upper words of the products.
+        // With this shift, the error below takes only the upper words of the products.
         let a = a.map(|x| x << 16);
-        // Components in LSB with 14 fraction bits, rounded down: at most 2^30.
+        // The components of a × up, in LSB with 14 fraction bits, rounded down; they are at most 2^30.
         let error = [0, 1, 2].map(|i| {
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
             ((wide(a[j], up[k]) - wide(a[k], up[j])) >> 32) as i32
@@ -108,21 +113,21 @@ impl Tilt {
         true
     }
 
-    /// Lengthens the time constant by a step, up to τ.
+    /// Lengthens the present time constant by a step, up to τ.
     #[inline(never)]
     fn grow(&mut self, step: u32) {
         self.age = self.age.saturating_add(step).min(self.time_constant);
         self.gain = Gain::new(self.age);
     }
 
-    /// The attitude with yaw 0 for which the reading points upwards. A reading of 0 gives the identity.
+    /// The attitude with yaw 0 in which the reading points upwards. A reading of 0 gives the identity.
     #[cold]
     #[inline(never)]
     pub fn align(reading: [i16; 3]) -> Quaternion {
         let [x, y, z] = reading.map(|x| i64::from(x) << 40);
         let (level, roll) = polar(z, y);
         let (_, pitch) = polar(level, -x);
-        // With the nose straight up or down the roll is undefined, and `polar` gives 0.
+        // If the x axis points straight up or down, the roll is undefined; `polar` then gives 0.
         Quaternion::from_angles(Angles {
             yaw: Turns(0),
             pitch,
@@ -131,20 +136,20 @@ impl Tilt {
     }
 }
 
-/// |a × up| decreases for errors beyond a right angle. For these errors the length is set to 2·|a|, about the angle of the error in
-/// radians, so that upside down is not a fixed point. A zero vector is replaced by an axis perpendicular to `up`. `square` is |a|², at
-/// most (2^16 − 1)².
+/// Lengthens `error`, which is a × up, for a tilt of more than a right angle. There |a × up| decreases with the tilt and is 0
+/// upside down, so that the attitude would stay there. The length is set to 2·|a|, roughly |a| times the angle in radians.
+/// A vector near 0 is replaced by an axis across `up`. `square` is |a|², at most (2^16 − 1)².
 #[cold]
 #[inline(never)]
 fn lengthened(error: [i32; 3], up: [i32; 3], square: u32) -> [i32; 3] {
-    // The length is below 2^31.
+    // 2·|a| in units of 2^−14 LSB; below 2^31.
     let length = i64::from(square.isqrt()) << 15;
     let error = error.map(i64::from);
     // The sum of squares is at most 2^62.
     let now = error.iter().map(|x| x * x).sum::<i64>().isqrt();
     if now > 1 << 14 {
-        // The product is at most 2^30·2^31. A component is at most the length, so the quotient is at most the length, apart from the rounding of
-        // the root.
+        // The product x·length is at most 2^30·2^31. As |x| is at most `now`, the quotient is at most `length`, apart from the
+        // rounding of the root.
         let most = i64::from(i32::MAX);
         return error.map(|x| (x * length / now).clamp(-most, most) as i32);
     }
@@ -154,12 +159,12 @@ fn lengthened(error: [i32; 3], up: [i32; 3], square: u32) -> [i32; 3] {
     across
 }
 
-/// Whether a count is at an end of its range.
+/// Whether a count is at an end of its 16-bit range.
 pub(super) const fn is_end(count: i32) -> bool {
     count ^ (count >> 31) == i16::MAX as i32
 }
 
-/// |v|² of counts, at most 3·2^30.
+/// The squared length |v|² of a vector of counts, at most 3·2^30.
 fn square(v: [i32; 3]) -> u32 {
     v.iter().map(|&x| (x * x) as u32).sum()
 }

@@ -1,4 +1,4 @@
-//! Attitude from samples.
+//! Computes a body's attitude from samples of its sensor.
 
 use core::mem;
 
@@ -9,43 +9,44 @@ use super::scale::Scale;
 use super::tilt::{Tilt, is_end};
 use crate::calibration::RestBias;
 
-/// Effect of a sample.
+/// Effect of a sample on the attitude.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
     /// First sample: the attitude starts.
     First,
-    /// The attitude was integrated to the sample.
+    /// The attitude was integrated from the previous sample to this one.
     Step,
     /// Ignored, because the sample is not later than the previous sample.
     Stale,
-    /// The attitude was held over a gap of more than [`LONGEST_STEP`] and continues from this sample.
+    /// The sample follows a gap of more than [`LONGEST_STEP`]: the attitude stayed constant over the gap and continues
+    /// from this sample.
     Gap,
 }
 
-/// Counts of samples by their effect.
+/// Counts of samples by their effect on the attitude.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Integrated samples.
     pub steps: u64,
-    /// Samples ignored for their time.
+    /// Samples that were ignored because they are not later than their predecessor.
     pub stale: u64,
-    /// Gaps, for which the attitude was held.
+    /// Gaps between samples, over which the attitude stayed constant.
     pub gaps: u64,
     /// Samples at an end of the gyroscope's range.
     pub saturated: u64,
-    /// Samples with a rejected accelerometer.
+    /// Samples whose accelerometer reading was rejected.
     pub rejected: u64,
 }
 
-/// The largest bias, in 1/256 LSB: counts have 24 bits, so the difference fits 32 bits.
+/// The largest bias, in 1/256 LSB. Counts in this unit have 24 bits, so a count minus a bias fits 32 bits.
 const LARGEST_BIAS: i32 = 1 << 30;
 
-/// The attitude of a body.
+/// Computes the attitude of a body from samples.
 #[derive(Clone, Copy, Debug)]
 pub struct Tracker {
     integrator: Integrator,
     tilt: Option<Tilt>,
-    /// Half angle of the correction by the last reading, 48 fraction bits, applied in the next step.
+    /// Tilt correction by the last reading, as a half angle vector with 48 fraction bits. The next step applies it.
     correction: [i64; 3],
     bias: [i32; 3],
     resting: Option<RestBias>,
@@ -68,13 +69,13 @@ impl Tracker {
         }
     }
 
-    /// Sets a constant bias of the gyroscope, in 1/256 LSB. The bias saturates to ±2^30, beyond every rate.
+    /// Sets a constant bias of the gyroscope, in 1/256 LSB. The bias saturates to ±2^30, which is beyond every rate.
     pub fn set_bias(&mut self, bias: [i32; 3]) {
         self.bias = bias.map(|bias| bias.clamp(-LARGEST_BIAS, LARGEST_BIAS));
         self.resting = None;
     }
 
-    /// Tracks the bias of the gyroscope from now on.
+    /// Tracks the bias of the gyroscope by `resting` from now on.
     pub fn follow_bias(&mut self, resting: RestBias) {
         self.set_bias(resting.bias());
         self.resting = Some(resting);
@@ -95,12 +96,12 @@ impl Tracker {
         self.counts
     }
 
-    /// Whether the tilt correction has settled; never without an accelerometer.
+    /// Whether the tilt correction has settled; `false` without tilt correction.
     pub fn is_settled(&self) -> bool {
         self.tilt.is_some_and(|tilt| tilt.is_settled())
     }
 
-    /// Takes a sample.
+    /// Takes a sample and updates the attitude; returns the sample's effect.
     // On the soft core most of the time is spent on misses of the instruction cache, so the code of every sample is small and
     // contiguous, and rare code is in separate functions.
     #[inline(never)]
@@ -119,7 +120,8 @@ impl Tracker {
             *half += mem::take(correction);
         }
         self.integrator.turn(&half);
-        // The attitude after the step is the attitude at the time of the reading. With the attitude before the step a fast turn would cause a tilt.
+        // The correction uses the attitude after the step, which is the attitude at the time of the reading. With the attitude
+        // before the step a fast turn would cause a tilt.
         if let Some(tilt) = &mut self.tilt
             && !tilt.correct(
                 self.integrator.rounded(),
@@ -133,7 +135,7 @@ impl Tracker {
         self.counts.steps += 1;
         if let Some(resting) = &mut self.resting {
             resting.on_sample(sample, step);
-            // The bias is a mean of counts and of the first bias, so the sum fits.
+            // The bias is a weighted mean of counts and of the first bias, so `rate` does not overflow.
             self.bias = resting.bias();
         }
         if sample.gyro.into_iter().any(|count| is_end(count.into())) {
@@ -143,7 +145,7 @@ impl Tracker {
         Outcome::Step
     }
 
-    /// The first sample.
+    /// Takes the first sample, which starts the attitude.
     #[cold]
     #[inline(never)]
     fn begin(&mut self, sample: &Sample, rate: [i32; 3]) -> Outcome {
@@ -155,11 +157,11 @@ impl Tracker {
         Outcome::First
     }
 
-    /// A sample that is not integrated: not later than the previous sample, or after a gap.
+    /// Takes a sample that is not integrated, because it is not later than the previous sample or follows a gap.
     #[cold]
     #[inline(never)]
     fn hold(&mut self, t_us: u32, step: u32, rate: [i32; 3]) -> Outcome {
-        // A difference of more than half of the range of stamps means an earlier time.
+        // Time stamps wrap modulo 2^32, so a difference of more than half this range means an earlier time.
         if step == 0 || step > u32::MAX / 2 {
             self.counts.stale += 1;
             return Outcome::Stale;
@@ -170,7 +172,7 @@ impl Tracker {
         Outcome::Gap
     }
 
-    /// Restarts after a gap or saturation: the last rate is unrelated to earlier rates, and the tilt may have changed.
+    /// Restarts after a gap or saturation: the present rate is unrelated to earlier rates, and the tilt may be wrong.
     #[cold]
     #[inline(never)]
     fn doubt(&mut self, rate: [i32; 3]) {

@@ -1,4 +1,4 @@
-//! `box:X,Y,Z`, `cubes:PERIOD,HALF` and `planes:HALF`: boxes, single or periodic, solid or as rooms.
+//! `box:X,Y,Z`, `cubes:PERIOD,HALF` and `planes:HALF`: a box, a lattice of cubes, and the room between a floor and a ceiling.
 
 use core::fmt;
 
@@ -122,12 +122,12 @@ impl Shape for Planes {
     }
 }
 
-/// A box, a lattice of boxes, or the room inside a box.
+/// A box, a lattice of boxes, or a room (the space inside a box, with the solid around it), in field units.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FixedBox {
-    /// Half of each side; `None` along axes without an end.
+    /// Half of each side, u10.12; `None` along an axis on which the box has no end.
     half: [Option<i32>; 3],
-    /// Whether the solid is outside the box.
+    /// Whether the box is a room, so that the solid is outside the box.
     room: bool,
     /// Whether the solid is periodic with 64 units along each axis.
     repeated: bool,
@@ -136,10 +136,11 @@ pub struct FixedBox {
 impl FlatSolid for FixedBox {
     const CODE: u8 = 1;
 
-    /// The maximum of |x| − half over the axes.
+    /// The distance is the maximum of |x| − half over the axes, with the opposite sign in a room.
     #[inline]
     fn sample(&self, point: [i32; 3]) -> Sample {
-        // 64 units are 2^18: the lowest 18 bits of a coordinate, as a signed number, are relative to the centre of its cell.
+        // A period of 64 units is 2^18 in s10.12, so the lowest 18 bits of a coordinate, as a signed number, are the coordinate
+        // relative to the centre of its cell.
         let wrap = |x: i32| {
             if self.repeated {
                 cropped(x, 6 + FRACTION)
@@ -148,7 +149,7 @@ impl FlatSolid for FixedBox {
             }
         };
         let p = Folded::of(point.map(wrap)).map(|x| x.negated_if(x.value < 0));
-        // Less than every distance to a face: below −2^21, within 23 bits.
+        // The distance for an axis without an end: less than every distance to a face, and within 23 bits.
         let nowhere = -1 << (10 + FRACTION);
         let outside =
             [0, 1, 2].map(|i: usize| self.half[i].map_or(nowhere, |half| p[i].value - half));

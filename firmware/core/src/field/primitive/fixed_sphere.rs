@@ -1,23 +1,25 @@
-//! Distances to spheres, by a table of square roots, rounded down so that a step never passes a surface.
+//! Distances to spheres from a table of square roots. Distances are rounded down, so that a step of this length never passes a
+//! surface.
 
 use crate::field::limits::MAX_SPHERES;
 use crate::field::surface::{Sample, Surface, magnitude};
 
-/// A sphere in field units, 12 fraction bits.
+/// A sphere in field units with 12 fraction bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FixedSphere {
     /// The centre, s9.12.
     pub centre: [i32; 3],
-    /// The radius, u9.12, above 2^6.
+    /// The radius, u9.12: from 2^6 to 2^21 − 1 units of 2^−12.
     pub radius: i32,
-    /// Reciprocal of the radius: 2^37 over the radius shifted to 21 bits, 17 bits, nearest, saturated.
+    /// Reciprocal of the radius: 2^37 over the radius, which is first shifted left until it has 21 bits. The quotient is rounded
+    /// to nearest and saturates to 17 bits.
     pub inverse: u32,
-    /// Right shift, 6 to 20, to 17 bits, of the product of the radius and a number with 16 fraction bits.
+    /// Right shift (6 to 20) that reduces the product of the radius and a number with 16 fraction bits to 17 bits.
     pub shift: u32,
 }
 
 impl FixedSphere {
-    /// A sphere with a radius from 2^6 to 2^21 − 1.
+    /// Makes a sphere from its centre and its radius, which is from 2^6 to 2^21 − 1 units of 2^−12.
     pub fn new(centre: [i32; 3], radius: i32) -> Self {
         let lead = radius.max(1).ilog2().clamp(6, 20);
         let shifted = (radius.max(1) as u64) << (20 - lead);
@@ -31,14 +33,14 @@ impl FixedSphere {
     }
 }
 
-/// Several spheres; an evaluation takes one pass per sphere.
+/// Several spheres. The gateware evaluates one sphere per pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FixedSpheres {
-    /// The first `count` entries are valid.
+    /// The spheres, in the first `count` entries.
     pub list: [FixedSphere; MAX_SPHERES],
     /// Number of spheres, 1 to 8.
     pub count: usize,
-    /// Whether the solid is periodic with 64 units along each axis; it then has one sphere, about the origin.
+    /// Whether the solid is periodic with 64 units along each axis. A periodic solid has one sphere, about the origin.
     pub repeated: bool,
 }
 
@@ -46,14 +48,14 @@ pub struct FixedSpheres {
 const MOST: i32 = (1 << 21) - 1;
 
 impl FixedSpheres {
-    /// The nearest sphere; the first of equals.
+    /// Distance to the nearest sphere, and its number. Of several spheres at the same distance the first counts.
     pub fn sample(&self, point: [i32; 3]) -> Sample {
         let mut nearest = Sample {
             distance: MOST,
             surface: Surface::Round { number: 0 },
         };
         for (number, sphere) in (0..).zip(self.list.iter().take(self.count)) {
-            // The unsaturated distance is below 2^23.
+            // The distance before saturation to `MOST` is below 2^23.
             let distance = length(self.from(sphere, point)) - sphere.radius;
             if distance < nearest.distance {
                 nearest = Sample {
@@ -65,7 +67,7 @@ impl FixedSpheres {
         nearest
     }
 
-    /// A point relative to a sphere's centre, s11.12.
+    /// The vector from a sphere's centre to a point, s11.12.
     pub fn from(&self, sphere: &FixedSphere, point: [i32; 3]) -> [i32; 3] {
         // 64 units are 2^18: the lowest 18 bits of a coordinate, as a signed number, are relative to the centre of its cell.
         let beyond = if self.repeated { 14 } else { 9 };
@@ -73,15 +75,16 @@ impl FixedSpheres {
     }
 }
 
-/// √x for x from 1 to 4 in steps of 1/128, indexed by 128·x, and the difference to the next entry; 18 fraction bits, rounded
-/// down. Linear interpolation between entries is below the root by at most 2^−19 of it.
+/// √x for x from 1 to 4 in steps of 1/128, and the difference to the next entry. The index is 128·x; the entries have 18
+/// fraction bits and are rounded down. Linear interpolation between entries gives at most the exact root; the relative error is
+/// at most 2^−19.
 const ROOTS: [(u32, u32); 512] = roots();
 
 const fn roots() -> [(u32, u32); 512] {
     let mut table = [(0, 0); 512];
     let mut i = 0;
     while i < table.len() {
-        // Entries for x below 1 are unused.
+        // The entries for x below 1 are never read; they repeat the value for x = 1.
         let from = if i < 128 { 128 } else { i as u64 };
         let root = (from << 29).isqrt() as u32;
         table[i] = (root, ((from + 1) << 29).isqrt() as u32 - root);
@@ -90,13 +93,13 @@ const fn roots() -> [(u32, u32); 512] {
     table
 }
 
-/// The length of a vector with components of at most 23 bits, rounded down; the error is at most 3 plus 2^−15 of the length.
+/// A lower bound of the length of a vector with components of at most 23 bits. The error is at most 3 plus 2^−15 of the length.
 fn length(q: [i32; 3]) -> i32 {
     let parts = q.map(magnitude);
     let Some(lead) = (parts[0] | parts[1] | parts[2]).checked_ilog2() else {
         return 0;
     };
-    // Components scaled so that the largest has 17 bits.
+    // The components are scaled so that the largest has 17 bits, and their squares are added.
     let square: u64 = parts
         .map(|part| u64::from((part << (21 - lead)) >> 5).pow(2))
         .iter()

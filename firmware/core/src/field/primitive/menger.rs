@@ -38,7 +38,7 @@ impl Shape for Menger {
     }
 
     fn placed(&self) -> Placed<FixedSponge> {
-        // 81/3^i, each an even multiple of 2^−12.
+        // The side S of the cubes of each level: 81/3^i for level i from 1, rounded to an even multiple of 2^−12.
         let one = 1 << FRACTION;
         let [third, ninth] = [3, 9].map(|parts| (one / 2 + parts / 2) / parts * 2);
         let levels = [27 * one, 9 * one, 3 * one, one, third, ninth];
@@ -52,25 +52,26 @@ impl Shape for Menger {
     }
 }
 
-/// The sponge with half side 40.5 field units.
+/// The sponge in field units: its half side is 40.5.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FixedSponge {
-    /// S of each level: 27, 9, 3, 1, 1/3, 1/9, each an even multiple of 2^−12.
+    /// The side S of the cubes of each level: 27, 9, 3, 1, 1/3, 1/9, each an even multiple of 2^−12.
     levels: [i32; MAX_DEPTH as usize],
     /// Number of evaluated levels.
     depth: u8,
-    /// Half the side of the smallest cubes: half of the last S.
+    /// Half the side S of the cubes of the last level.
     half: i32,
 }
 
 impl FlatSolid for FixedSponge {
     const CODE: u8 = 0;
 
-    /// Each level mirrors space onto one of its cubes, and its holes onto the outside of this cube.
+    /// Each level folds space by mirrors: its cubes of side S onto one cube about the origin, and its holes onto the outside
+    /// of this cube.
     ///
-    /// S − |x| is above S/2 for a coordinate in the middle third. A point is in a hole if two coordinates are in the middle third:
-    /// mirroring the largest at S/2 moves the hole out of the cube |x| ≤ S/2 and keeps all other points inside. Mirrors and
-    /// permutations keep the maximum norm.
+    /// Every coordinate x is replaced by S − |x|, which is above S/2 if x is in the middle third. A point is in a hole if at
+    /// least two coordinates are in the middle third. Therefore the largest new coordinate is mirrored at S/2: all points outside
+    /// the holes are then in the cube |x| ≤ S/2, and points in a hole are not. Mirrors and permutations keep the maximum norm.
     #[inline]
     fn sample(&self, point: [i32; 3]) -> Sample {
         let mut p = Folded::of(point);

@@ -51,8 +51,9 @@ pub struct FixedOctahedron {
 impl FlatSolid for FixedOctahedron {
     const CODE: u8 = 2;
 
-    /// A cube of half side r changes |x| + |y| + |z| by 3r at most, so the distance is a third of |x| + |y| + |z| −
-    /// size. 85/256, rounded down, is a lower bound of a third.
+    /// The distance in the maximum norm. Within a cube of half side r about the point, |x| + |y| + |z| changes by at most 3r, so
+    /// the distance is a third of |x| + |y| + |z| − size. The product with 85/256, rounded down, approximates this third from
+    /// below outside the solid.
     #[inline]
     fn sample(&self, point: [i32; 3]) -> Sample {
         let sum: u32 = point.map(magnitude).iter().sum();

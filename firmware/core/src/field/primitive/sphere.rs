@@ -48,10 +48,10 @@ pub struct Spheres {
 }
 
 impl Spheres {
-    /// A field of 1 to [`MAX_SPHERES`] spheres.
+    /// Checks 1 to [`MAX_SPHERES`] spheres, and makes a field of them.
     ///
     /// # Errors
-    /// The number of spheres, or the first number of a sphere, is out of range.
+    /// The number of spheres is out of range, or the radius or a coordinate of a sphere is; the first such number is reported.
     pub fn new(spheres: &[Sphere]) -> Result<Self, FieldError<'static>> {
         let mut list = [Sphere::default(); MAX_SPHERES];
         let count = spheres.len();
@@ -221,7 +221,7 @@ impl Shape for MovingSphere {
 
     fn placed(&self) -> Placed<FixedSpheres> {
         let (sine, cosine) = sin_cos_q30(self.angle);
-        // The distance is at most 12 with 20 fraction bits; the sine and cosine have 30 fraction bits.
+        // The orbit's radius is at most 12 and is used with 20 fraction bits; sine and cosine have 30 fraction bits.
         let along = |part: Q2_30| {
             Q32_32::from_bits(((self.orbit.to_bits() >> 12) * i64::from(part.to_bits())) >> 18)
         };
@@ -237,7 +237,7 @@ impl Shape for MovingSphere {
     }
 }
 
-/// Spheres in field units.
+/// Converts spheres from world units to field units, and computes their bounding box.
 fn placed<'a>(spheres: impl IntoIterator<Item = &'a Sphere>) -> Placed<FixedSpheres> {
     let mut list = [FixedSphere::default(); MAX_SPHERES];
     let mut extent = [Q32_32::ZERO; 3];
