@@ -1,4 +1,4 @@
-// Replaces field_unit by one with any distance to any surface. Properties proven with it hold for all fields.
+// Replaces field_unit by one that returns any distance to any surface. Properties proven with it hold for all fields.
 
 `default_nettype none
 

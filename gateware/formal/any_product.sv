@@ -1,4 +1,4 @@
-// Replaces multiply_add by one with any result. Properties proven with it hold for all numbers.
+// Replaces multiply_add by one that returns any result. Properties proven with it hold for all numbers.
 
 `default_nettype none
 

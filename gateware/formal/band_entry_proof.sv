@@ -1,6 +1,7 @@
-// Proof of the placement of triangles, with any traffic on both sides. Triangles are numbered and carry their number
-// in every field. Triangles with a row in their band come out once each, in order, with all their fields and results;
-// the others leave no trace. No triangle waits without limit, and `holds` says in which bands triangles are inside.
+// Proof of band_entry, which places triangles at their first row in a band, with any traffic on both sides. Triangles are
+// numbered and carry their number in every field. Each triangle with a row in its band comes out once, in order, with all its
+// fields and results; the other triangles leave no trace. No triangle waits without limit, and `holds` says to which bands the
+// triangles inside belong.
 
 `default_nettype none
 
@@ -26,7 +27,7 @@ module band_entry_proof (
     triangle_pkg::descriptor_t descriptor;
     raster_pkg::placed_t       placed;
 
-    // Dropped triangles carry a number that is never expected.
+    // The proof never expects the number `'1`, which the dropped triangles carry.
     assign number = in_kept ? kept : '1;
 
     always_comb begin
@@ -66,7 +67,7 @@ module band_entry_proof (
     stream_checker #(.WIDTH(2), .GIVEN(1)) given (
         .clk, .rst, .valid(in_valid), .ready(in_ready), .data({in_kept, in_odd})
     );
-    // All fields of the triangle are loaded at once.
+    // It is enough to check these fields of the output: all fields of a triangle are loaded at once.
     stream_checker #(.WIDTH(17)) shown (
         .clk, .rst, .valid(out_valid), .ready(out_ready), .data({out_odd, placed.colour})
     );

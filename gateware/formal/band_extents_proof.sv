@@ -1,9 +1,9 @@
-// Proof of the planned words, at a small size: bands of one to four lines with one to three columns, in two frame buffers of
-// four lines, any groups, any bands, any traffic.
+// Proof of band_extents, which plans the words that the flush of a band writes, at a small size: bands of one to four lines
+// with one to three columns, in two frame buffers of four lines, any groups, any bands, any traffic.
 //
-// The proof marks each drawn column, of this band and, for each line of a frame buffer, of the last band there. The expected
-// span of a line goes from the first to the last column of both. After reset, and after a cancelled band, the last columns
-// of the lines are unknown: a band with such a line is `whole`.
+// The proof marks the columns drawn in this band and, for each line of a frame buffer, the columns drawn in the last band
+// there. The expected span of a line goes from the first to the last column of both sets. After reset, and after a cancelled
+// band, the last columns of the lines are unknown, and a band with such a line must be `whole`.
 
 `default_nettype none
 
@@ -19,7 +19,7 @@ module band_extents_proof (
     input wire       span_ready,
     input wire       restart
 );
-    // Most clocks without an expected span, or without the end after the last span.
+    // Largest number of clocks without an expected span, or without the end of `busy` after the last span.
     localparam int unsigned WITHIN = 10;
 
     logic rst = 1'b1;
@@ -79,7 +79,8 @@ module band_extents_proof (
     end
 
     logic [3:0] without_span, without_end;
-    // Covered: a line that had drawn columns before and has others now, in a band that is not `whole`.
+    // For a cover: a line of a band that is not `whole` has drawn columns, and lacks a column that it had in its
+    // frame buffer before.
     logic       united;
 
     always_ff @(posedge clk) begin

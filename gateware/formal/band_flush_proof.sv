@@ -2,15 +2,16 @@
 // back-pressure, any restart.
 //
 // The bank's row r holds r in every colour and r + 1 in every depth, and all rows are drawn. So the expected words are
-// known: the colours of the rows in the spans, in order, each once, then both halves of each row's depths. Afterwards these
-// rows are clear, the others are not. The bank has band_bank's latencies and a cleared row loses its pixels.
+// known: first the colours of the rows in the spans, in order, each once; then both halves of each row's depths.
+// Afterwards these rows are clear and the other rows are not. The model of the bank has the latencies of band_bank; a
+// cleared row loses its pixels.
 
 `default_nettype none
 
 module band_flush_proof (
     input wire       clk,
     input wire       start,
-    // The rows to flush, given as spans at any time, whole or in pieces.
+    // The rows to flush, as a bit mask. The proof gives them as spans at any time, each span whole or in pieces.
     input wire [3:0] rows,
     input wire       gives,
     input wire       in_pieces,
@@ -20,7 +21,7 @@ module band_flush_proof (
     input wire       out_ready
 );
     localparam logic [15:0] BACKGROUND = 16'h8421;
-    // Most clocks without a word while memory takes all words.
+    // Largest number of clocks without a word while memory takes all words.
     localparam int unsigned WITHIN = 10;
 
     (* anyconst *) logic [5:0] base, depth_base;
@@ -79,7 +80,7 @@ module band_flush_proof (
         first_of = of_rows[0] ? 2'd0 : of_rows[1] ? 2'd1 : of_rows[2] ? 2'd2 : 2'd3;
     endfunction
 
-    // Spans: rows not yet given, and whether more spans may follow.
+    // Rows that were not yet given as a span, and whether more spans may follow.
     logic [3:0] to_give;
     logic       offered, pieces, lingering;
 
@@ -109,7 +110,7 @@ module band_flush_proof (
         end
     end
 
-    // Expected words: rows whose colours or depths are missing, and the half of the next depth word.
+    // The expected words: rows whose colours or depths have not come out yet, and the half of the next depth word.
     logic [5:0] flush_base, flush_depth_base, expected_addr;
     logic [3:0] flush_rows, colour_rows, depth_rows;
     logic [1:0] colour_row, depth_row;
@@ -119,7 +120,8 @@ module band_flush_proof (
     assign colour_row = first_of(colour_rows);
     assign depth_row  = first_of(depth_rows);
     assign none_left  = colour_rows == '0 && depth_rows == '0;
-    // Tells depth words from colour words: the halves of a depth differ, those of two colours are equal.
+    // Tells depth words from colour words by the lowest 32 bits: the two halves of a depth differ, two neighbouring
+    // colours are equal.
     assign is_depth   = out_data[31:16] != out_data[15:0];
 
     logic [127:0] expected;
@@ -168,7 +170,7 @@ module band_flush_proof (
         .clk, .rst, .valid(out_valid), .ready(out_ready), .data({out_addr, out_data})
     );
 
-    // A cleared row shows in the bank two clocks later.
+    // A row that is cleared reads as clear in the bank two clocks later.
     logic [1:0] settled;
     logic       fresh;
     always_ff @(posedge clk) begin

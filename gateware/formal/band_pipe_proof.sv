@@ -1,8 +1,8 @@
-// Proof of the read-modify-write hazard of the band buffer: the result equals that of a memory without latency.
+// Proof that band_pipe handles its read-modify-write hazard: the result equals that of a memory without latency.
 //
-// Two rows, any groups at any time, on a depth memory and its marks with band_bank's latencies. The proof follows one pixel,
-// any lane of any row: each accepted group updates the followed copy at once. When the pipe is empty, copy and memory must
-// agree.
+// Two rows, any groups at any time, on a depth memory and its written bits with the latencies of band_bank. The proof follows
+// one pixel, any lane of any row: each accepted group updates a copy of this pixel at once. When the pipe is empty, the copy
+// and the memory must agree.
 
 `default_nettype none
 
@@ -16,7 +16,7 @@ module band_pipe_proof (
     // Tag in the colours, which distinguishes groups of equal depth.
     input wire [1:0]      group_tag
 );
-    // Most clocks for which a group is held.
+    // Largest number of clocks for which a group is held.
     localparam int unsigned WITHIN = 4;
 
     logic rst = 1'b1;
@@ -36,7 +36,7 @@ module band_pipe_proof (
         .read_row, .stored, .stored_written, .write_row, .write_lanes, .write_halves(), .write_codes, .write_colours, .empty, .held()
     );
 
-    // The followed pixel in the memory. The other pixels hold any value, and their groups do not matter.
+    // The followed pixel in the memory. The other pixels hold any value, since their groups do not matter.
     logic        from_row, to_row, to_lane, latched_written, read_written, written;
     logic [17:0] to_store, latched, read, code;
     logic        latched_here, read_here;
@@ -76,7 +76,7 @@ module band_pipe_proof (
         end
     end
 
-    // The same pixel in a memory without latency.
+    // The copy of the followed pixel, in a memory without latency.
     logic        taken, drawn;
     logic [17:0] nearest, given;
     logic [1:0]  nearest_tag;
@@ -85,7 +85,7 @@ module band_pipe_proof (
     assign given = group_codes[18*lane +: 18];
     assign taken = group_valid && group_ready;
 
-    // The memory is one clock behind `empty`.
+    // `empty` one clock ago: the model of the memory is one clock behind, so the copy and the memory are compared later.
     logic was_empty, was_held;
 
     always_ff @(posedge clk) begin

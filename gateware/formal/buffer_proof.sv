@@ -1,5 +1,5 @@
-// Proof of the contract of a buffer between two streams, with any traffic on both sides: the skid buffer, or a FIFO
-// of DEPTH places.
+// Proof that a buffer between two streams keeps its contract, with any traffic on both sides. The buffer is the skid buffer,
+// or a FIFO of DEPTH places.
 
 `default_nettype none
 

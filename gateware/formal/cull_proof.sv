@@ -1,5 +1,5 @@
-// Proof that culled triangles do not block, for any triangles in any order. Count the clocks in which the output is
-// not held: a triangle waits at most 3 of them for the stage, each triangle leaves once, culled or drawn, and at
+// Proof that culled triangles do not block, for any triangles in any order. The limits count only the clocks in which the
+// output is not held. A triangle waits for the stage in at most 3 of them; each triangle leaves once, culled or drawn; and at
 // least one leaves in any 8 of them while triangles are inside.
 
 `default_nettype none
@@ -29,7 +29,7 @@ module cull_proof (
     stream_checker #(.WIDTH(16), .GIVEN(1)) given (
         .clk, .rst, .valid(in_valid), .ready(in_ready), .data(in_colour)
     );
-    // All fields of the triangle are loaded at once.
+    // It is enough to check the colour: all fields of the triangle are loaded at once.
     stream_checker #(.WIDTH(16)) shown (
         .clk, .rst, .valid(out_valid), .ready(out_ready), .data(out_triangle.colour)
     );

@@ -1,6 +1,6 @@
-// Proof of the path from the walker's groups to the drawn groups: lanes and the skid buffer behind them, with any
-// traffic on both sides. Groups are numbered, and cover all pixels or none. Groups with coverage come out once each,
-// in order, with all their fields; the others leave no trace. No output waits for the consumer to be ready first.
+// Proof of the path from the walker's groups to the drawn groups: `lanes` and the skid buffer behind it, with any traffic on
+// both sides. Groups are numbered, and cover all pixels or none. Each group with coverage comes out once, in order, with all
+// its fields; the other groups leave no trace. No output waits for the consumer to be ready first.
 
 `default_nettype none
 
@@ -30,8 +30,8 @@ module lanes_proof (
     logic [BITS-1:0]        kept = '0, went = '0, number;
     logic [2:0]             unseen = '0, refused = '0;
 
-    // Groups without coverage carry a number that is never expected. One edge passes in lane 7 only, the other in
-    // lane 0 only.
+    // Groups without coverage carry the number `'1`, which the proof never expects. They have one edge that passes in lane 7
+    // only, and another that passes in lane 0 only.
     assign number = in_kept ? kept : '1;
 
     always_comb begin

@@ -91,11 +91,11 @@ MUTATIONS = {
         _flush("depth_words_base <= depth_base;", "depth_words_base <= base;", "in_their_places"),
         _flush("{clear_row, 1'b1}", "{clear_row, 1'b0}", "in_their_places"),
         _flush("address   <= address_2;", "address   <= address_1;", "in_their_places"),
-        # Begins a span where the previous span ended.
+        # A span begins where the previous span ended, not at its own first row.
         _flush("row       <= span_first;", "row       <= row + 1'b1;", "in_their_places"),
-        # Admits more words than the FIFO has places.
+        # The flush admits more words than the FIFO has places.
         _flush("in_span && places != '0;", "in_span;", "words_in_order"),
-        # Clears a row before its depth is read.
+        # The flush clears a row before it reads the row's depth.
         _flush("clears <= part == last_part;", "clears <= 1'b1;", "words_in_order"),
         _flush("{18{written[lane]}}", "18'b0", "words_in_order"),
         _flush("&& row == last_row;", "&& row == '1;", "none_made_up"),
@@ -103,15 +103,15 @@ MUTATIONS = {
         _flush("COLOUR:     if (part_ends && depth_too)", "COLOUR: if (depth_too)", "colour_first"),
         _flush("if (taken && !issue) ", "if (out_valid && !issue) ", "all_taken"),
         _flush("last_row  <= span_last;", "last_row  <= span_first;", "none_left_out"),
-        # Ends during a span, or before the last span has come.
+        # The flush ends during a span, or before the last span has come.
         _flush("if (!in_span && !spans_busy)", "if (!spans_busy)", "none_left_out"),
         _flush("if (!in_span && !spans_busy)", "if (!in_span && !span_valid)", "none_left_out"),
         _flush("(!in_span || span_ends);", "span_ends;", "no_standstill"),
         _flush("places <= places + 1'b1;", "places <= places;", "ends"),
         _flush("if (row == '1) state", "if (row == '1 && idle) state", "sweep_ends"),
-        # Restart waits until memory has taken the words.
+        # A restart waits until memory has taken the words.
         _flush("SWEEP: begin", "SWEEP: if (places == COUNT_BITS'(WORDS)) begin", "sweep_ends"),
-        # Restart begins at the row of the flush.
+        # A restart begins its sweep at the row that the flush had reached.
         _flush("state  <= SWEEP;\n            row    <= '0;", "state  <= SWEEP;", "all_swept"),
         _flush("clears <= part == last_part;", "clears <= part == last_part && row != last_row;", "cleared_behind"),
         _flush("clear_row <= row;", "clear_row <= row + 1'b1;", "cleared_behind"),
@@ -149,12 +149,12 @@ MUTATIONS = {
         Mutation("skid_buffer.sv", "if (!out_valid || out_ready)", "if (1'b1)", "spans.valid_stays"),
         Mutation("skid_buffer.sv", "if (!out_valid || out_ready)", "if (!out_valid || out_ready || in_valid)",
                  "spans.payload_stable"),
-        # Loses the last extent, or takes it from the other frame buffer.
+        # The plan loses the last extent of a line, or takes it from the other frame buffer.
         _extents("united(earlier, now_3);", "now_3;", "in_order"),
         _extents("to       <= from;", "to       <= {1'b0, from[PLACE_BITS-2:0]};", "in_order"),
-        # Overtakes lines while spans are not taken.
+        # The plan moves to further lines while spans are not taken.
         _extents("        if (advance) begin", "        if (1'b1) begin", "none_left_out"),
-        # Keeps the new extent for the next band, or only its last group.
+        # The new extent stays for the next band, or keeps only its last group.
         _extents("empties ? EMPTY : united", "united", "in_order"),
         _extents("united(kept[bank], {add_column, add_column})", "{add_column, add_column}", "in_order"),
         _extents("if (valid[4]) line_row", "line_row", "in_order"),

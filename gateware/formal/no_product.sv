@@ -1,4 +1,5 @@
-// Replaces multiply_add by one whose products are 0. The sum is the addend, which identifies its triangle.
+// Replaces multiply_add by one whose products are 0, so its sum is the addend. The addend identifies its
+// triangle in the proof.
 
 `default_nettype none
 

@@ -54,7 +54,7 @@ class Proof:
         return [label for source in self.sources for label in re.findall(r"(\w+):\s*assert\b", source.read_text())]
 
 
-# The longest first.
+# The longest proofs come first: two run at a time, and a long one should not run alone at the end.
 PROOFS = [
     Proof("ring_lane", "ring_lane_proof", 36, ("any_product", "any_field")),
     Proof("band_flush", "band_flush_proof", 23),
@@ -71,7 +71,7 @@ PROOFS = [
     Proof("cull", "cull_proof", 20, ("any_product",)),
 ]
 
-# State as bit vectors, the only form that Bitwuzla accepts.
+# The option `--stbv` represents the state as bit vectors, the only form that Bitwuzla accepts.
 _SBY = """[options]
 mode {mode}
 depth {depth}
@@ -122,7 +122,7 @@ def prove(proofs):
 def _fails(proof):
     start = time.monotonic()
     folder = _BUILD / proof.name.replace(" ", "_")
-    # The covers show that the assumptions are not contradictory.
+    # The covers show that the assumptions of the proof do not contradict each other.
     verdicts = [(mode, *check(proof, mode, folder / mode)) for mode in ("bmc", "cover")]
     bad = [f"{mode}: {verdict}: {', '.join(found)}" for mode, verdict, found in verdicts if verdict != "PASS"]
     outcome = f"{len(proof.properties())} properties, {proof.depth} clocks"

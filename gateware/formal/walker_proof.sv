@@ -1,9 +1,8 @@
-// Proof of the walk over triangles, with any edge functions and any traffic on both sides. Triangles are numbered in their
-// colour; bounds are up
-// to three groups wide and two lines high.
+// Proof that the walker visits the right groups of a triangle, with any edge functions and any traffic on both sides.
+// Triangles are numbered in their colour; their bounds are up to three groups wide and two lines high.
 //
-// Groups belong to accepted triangles, in order, within their lines and bounds, none twice. Where no edge fails, every group
-// of the bounds comes out. The walk over a triangle ends in time.
+// Groups come out in the order of the accepted triangles, within the lines and bounds of their triangle, none twice. Where no
+// edge fails, every group of the bounds comes out. The walk over each triangle ends in time.
 
 `default_nettype none
 
@@ -20,7 +19,7 @@ module walker_proof (
 );
     localparam int unsigned BITS = 3;
 
-    // Set: no edge of any triangle fails in any group.
+    // When `solid` is 1, no edge of any triangle fails in any group.
     (* anyconst *) logic solid;
 
     logic rst = 1'b1;
@@ -91,7 +90,8 @@ module walker_proof (
             within_bounds:   assert (group.line[5:1] == '0 && group.group[7:2] == '0 && (group_bit & bounds) != '0);
             none_twice:      assert ((group_bit & gone) == '0);
         end
-        // Up to two of a line's three groups may fail before the first group, and are tried again after it.
+        // The walker may try two of a line's three groups, in which an edge fails, before it finds the line's first group, and
+        // try them again after it.
         left_in_time:  assert (!walking || walked < 5'd10);
         none_left_out: assert (!solid || !some || !(taken || idle) || (gone | (goes ? group_bit : '0)) == bounds);
         busy_while_it_walks: assert (idle || some);

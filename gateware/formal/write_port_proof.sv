@@ -1,4 +1,4 @@
-// Proof of the write port, at a small size: four places, bursts of two, any traffic and any memory.
+// Proof of write_port, at a small size: four places, bursts of two, any traffic and any memory.
 //
 // The words are numbered: word n has address n and data n. The port does not depend on its payload, so the proof holds for
 // any address and data. Memory takes the data of a command at any time, without looking at valid.
@@ -13,7 +13,7 @@ module write_port_proof (
     input wire wdata_ready
 );
     localparam int unsigned DEPTH = 4, NUMBER_BITS = 5;
-    // Most clocks until a word is in a memory that takes all words: through both FIFOs with all places full.
+    // Largest number of clocks until a memory that takes all words has a word: through both FIFOs with all places full.
     localparam int unsigned WITHIN = 8;
 
     logic rst = 1'b1;
@@ -36,7 +36,8 @@ module write_port_proof (
         .clk, .rst, .valid(cmd_valid), .ready(cmd_ready), .data(cmd_addr)
     );
 
-    // Clocks in which memory took all words and the port owed more.
+    // Clocks in a row without a transfer of data, although memory takes all words: `unmoved` while the port holds words under
+    // `hurry`, `refused` while it accepts no word.
     logic [3:0] unmoved, refused;
 
     always_ff @(posedge clk) begin

@@ -35,10 +35,10 @@ def main():
                         help="build of the raymarcher (default: all; for the urbana, with less room: faces)")
     arguments = parser.parse_args()
     logging.getLogger().setLevel(logging.WARNING)
-    # The BIOS build calls meson and ninja of the virtual environment that runs this.
+    # The build of the BIOS calls meson and ninja, which are in the virtual environment that runs this program.
     os.environ["PATH"] = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
 
-    # LiteX asks git for its own version and would get the version of this project.
+    # LiteX asks git for LiteX's own version, and would get the version of this project.
     os.environ["GIT_CEILING_DIRECTORIES"] = sys.prefix
 
     full = make_soc("virtual", 0, OPTIONAL_BLOCKS)
@@ -54,12 +54,12 @@ def main():
     output = arguments.output.resolve()
     builder = Builder(
         soc, output_dir=str(output), gateware_dir=str(output / "gateware"), software_dir=str(output / "software"),
-        # Without inlining the serial boot's loop would evict itself from the instruction cache.
+        # Without inlining, the loop of the serial boot would evict itself from the instruction cache.
         bios_lto=True,
-        # The vendor tool is run by hand, where it is installed.
+        # The vendor tool is run by hand, on a computer where it is installed.
         compile_gateware=False)
     builder.build()
-    # The builder's own SVD and CSV contain the build time: equal SoCs would give different files.
+    # The SVD and CSV files that the builder writes contain the build time, so equal SoCs would give different files.
     (output / "csr.csv").unlink()
     description.write(soc, output / "description.json")
     (output / "soc.svd").write_text(export.get_csr_svd(soc, vendor="glint", name="glint", description="The Glint SoC"))

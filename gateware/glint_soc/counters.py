@@ -26,8 +26,8 @@ class Counters:
             setattr(block, f"_{name}", self.registers[name])
             members[name] = Signal(bits, name=f"event_{name}")
         self.events = Struct("events_t", "Growth of each counter in this clock.", members)
-        # Input registers: a carry chain of 32 bits is long enough alone, and the inputs come from all parts of the
-        # block.
+        # `step` registers each event before its counter: the carry chain of 32 bits is long enough alone, and events come from
+        # all parts of the block.
         for name, event in members.items():
             step, count = Signal(len(event), name=f"step_{name}"), self.registers[name].status
             block.sync += [step.eq(event), count.eq(count + step)]

@@ -62,7 +62,7 @@ class I2CMaster(LiteXModule):
             CSRField("failed", offset=4, description="An error has ended the transaction; commands wait for `clear`."),
             CSRField("error", size=ERRORS.bits, offset=8, values=ERRORS.values, description="Error."),
         ], description="State.")
-        # One entry more than the FIFO's places: the output register.
+        # A queue holds one entry more than its FIFO has places: the one in the output register.
         self.constants = {
             "command_places": (COMMANDS + 1, "Places in the queue of commands."),
             "answer_places": (ANSWERS + 1, "Places in the queue of received bytes."),
@@ -81,7 +81,7 @@ class I2CMaster(LiteXModule):
         wires = {name: Signal() for name in ("scl_in", "scl_out", "sda_in", "sda_out")}
         self.comb += reset.eq(ResetSignal("sys") | self._control.fields.clear)
         self.specials += Instance("i2c_engine", name="i2c_core",
-            # A bit has three phases. Rounded up: at most BIT_RATE.
+            # A bit has three phases. The clocks of a phase are rounded up, so that the bit rate is at most BIT_RATE.
             p_PHASE         = -int(-sys_clk_freq // (3 * BIT_RATE)),
             p_COMMANDS      = COMMANDS,
             p_ANSWERS       = ANSWERS,

@@ -36,9 +36,9 @@ class MemoryBridge(LiteXModule):
         beat = address[:2]
         self.comb += address.eq(bus.adr - base_address // (_BUS_BITS // 8))
 
-        # Data of writes, from the command's acceptance until the controller requests them.
+        # Data of writes wait here from the acceptance of their command until the controller requests them.
         self.writes = writes = stream.SyncFIFO([("data", _BUS_BITS), ("sel", _BUS_BITS // 8), ("beat", 2)], depth=8)
-        # Both words of a line: the controller sends them without back-pressure.
+        # Room for both words of a line, which the controller sends without back-pressure.
         self.reads = reads = stream.SyncFIFO([("data", _PORT_BITS)], depth=2)
         self.comb += [
             writes.sink.data.eq(bus.dat_w),
@@ -53,10 +53,11 @@ class MemoryBridge(LiteXModule):
             bus.dat_r.eq(Array(reads.source.data[_BUS_BITS * word:][:_BUS_BITS] for word in range(_WORDS))[beat]),
         ]
 
-        # Second half of the line, kept because the bus access may have ended when it arrives.
+        # Word address of the second half of the line, kept because the bus access may have ended before
+        # memory takes its command.
         second = Signal.like(port.cmd.addr)
 
-        # Requested words not yet taken out of `reads`.
+        # Number of requested words that were not yet taken out of `reads`.
         owed = Signal(max=3)
         asked = Signal()
         taken = Signal()
@@ -99,7 +100,8 @@ class MemoryBridge(LiteXModule):
         fsm.act("SERVE",
             bus.ack.eq(bus.cyc & bus.stb & ~bus.we & reads.source.valid),
             If(bus.ack,
-                # Last word of the burst, or last requested word: further words need a new request.
+                # Takes the word out of `reads` with its last part, or with the end of the burst. After the last requested
+                # word, further words need a new request.
                 reads.source.ready.eq(~more | (beat == _WORDS - 1)),
                 If(~more | ((beat == _WORDS - 1) & (owed == 1)),
                     NextState("DROP"),

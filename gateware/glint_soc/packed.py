@@ -57,7 +57,7 @@ def _type(value):
         return value.name
     if isinstance(value, list):
         element, = {_type(element) for element in value}
-        # The dimension of the array comes before the dimensions of its elements.
+        # SystemVerilog writes the dimension of the array before the dimensions of its elements.
         name, *dimensions = element.split(" ")
         return f"{name} {''.join([f'[{len(value) - 1}:0]', *dimensions])}"
     return "logic" if len(value) == 1 else f"logic [{len(value) - 1}:0]"

@@ -34,14 +34,14 @@ PINNED = {
     "scanout": Location(9, irq=3),
     "triangle": Location(10, irq=4),
     "raymarch": Location(11, irq=5),
-    # Physical layers differ between boards. They are outside the map that the build id covers.
+    # The physical layers differ between boards, so the build id does not cover their registers.
     "ddrphy": Location(30),
     "uart_phy": Location(31),
 }
 
 BOARD_SPECIFIC = ("ddrphy", "uart_phy")
 
-# Optional blocks, with their bit in the register `identity_blocks`.
+# The optional blocks, each with the number of its bit in the register `identity_blocks`.
 OPTIONAL_BLOCKS = {"scanout": 0, "triangle": 1, "raymarch": 2}
 
 CSR_MAP = {name: location.window for name, location in PINNED.items()}

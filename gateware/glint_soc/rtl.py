@@ -13,7 +13,7 @@ RTL = Path(__file__).resolve().parent.parent / "rtl"
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.S)
 _DEFINITION = re.compile(r"^\s*(module|package)\s+(\w+)", re.M)
 _PACKAGE_USE = re.compile(r"\b(\w+)::")
-# Matches a module name before parameters or an instance with ports, but no block label.
+# Matches the name of a module before its parameters, or before an instance name with ports, but no block label.
 _INSTANCE = re.compile(r"(?<!: )\b(\w+)\s+(?:#\s*\(|\w+\s*\()")
 
 
@@ -56,7 +56,7 @@ def sources(*tops, others=()):
         uses = {*_PACKAGE_USE.findall(text), *_INSTANCE.findall(text)} & library.keys()
         for use in sorted(uses - {name}):
             visit(use)
-        # Reinserts the file behind its dependencies.
+        # Moves the file to the end of `found`, after the files that it depends on.
         del found[path]
         found[path] = None
 

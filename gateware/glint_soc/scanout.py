@@ -12,7 +12,7 @@ IDENT = int.from_bytes(b"SCAN", "big")
 
 VIDEO_LAYOUT = [("hsync", 1), ("vsync", 1), ("de", 1), ("r", 8), ("g", 8), ("b", 8)]
 
-# Address bits of a 16-byte word in the CPU's 32-bit space. The memory port uses the lowest of them.
+# Bits of the address of a 16-byte word in the CPU's 32-bit address space. The memory port uses only the lowest of them.
 _WORD_ADDRESS_BITS = 28
 
 

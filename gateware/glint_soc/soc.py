@@ -48,7 +48,7 @@ class GlintSoC(SoCCore):
             raise ValueError("the raymarcher draws into the triangle engine's band buffer: expected the block triangle too")
         self.smooth = smooth
         self.fields = fields or Fields()
-        # Set before SoCCore adds uart and timer0, which keep an existing location.
+        # Set before SoCCore adds `uart` and `timer0`, because SoCCore keeps an interrupt number that is already set.
         self.interrupt_map = {
             name: location.irq for name, location in PINNED.items()
             if location.irq is not None and (name not in OPTIONAL_BLOCKS or name in self.blocks)
@@ -64,8 +64,8 @@ class GlintSoC(SoCCore):
         )
         # A build time in the BIOS would make every build different.
         self.add_config("BIOS_NO_BUILD_TIME")
-        # The BIOS's interrupt handler drops bytes that do not fit its buffer. With polling, bytes in the UART stall
-        # the sender.
+        # The interrupt handler of the BIOS drops bytes that do not fit its buffer. With polling, unread bytes stay in the UART
+        # and stall the sender.
         self.add_constant("UART_POLLING")
         self.add_constant("BUILD_ID", build_id)
 
@@ -78,8 +78,9 @@ class GlintSoC(SoCCore):
     def add_dram(self, phy):
         """Adds the DDR3 controller over the board's PHY, then the blocks that access memory."""
         module = MT41K64M16(self.sys_clk_freq, "1:4")
-        # Fewer turns between reads and writes, a dozen clocks each, than with LiteDRAM's runs of 32 reads and 16
-        # writes. A port changes bank only when its commands are done, so fewer queued commands shorten the wait.
+        # Longer runs than LiteDRAM's 32 reads and 16 writes mean fewer turns between reads and writes, which take a
+        # dozen clocks each. A port changes to another bank only when its commands are done, so fewer queued
+        # commands shorten that wait.
         self.add_sdram("sdram", phy=phy, module=module, with_soc_interconnect=False,
                        controller_settings=ControllerSettings(read_time=64, write_time=128, cmd_buffer_depth=4))
         main_ram = SoCRegion(origin=self.mem_map["main_ram"], size=MAIN_RAM_SIZE, mode="rwx")

@@ -13,7 +13,7 @@ from .rtl import add_sources
 
 IDENT = int.from_bytes(b"TRIA", "big")
 
-# Group of the raymarcher: one pixel, or one eye's half of it.
+# Fields of a group from the raymarcher: one pixel, or the half of a pixel that belongs to one eye.
 _FIELD_GROUP = [("halves", 2), ("row", 11), ("line", 6), ("column", 8), ("mask", 8), ("code", 18), ("colour", 16)]
 
 _ADDRESS_BITS = 23
@@ -77,7 +77,7 @@ class TriangleEngine(LiteXModule):
             "memory.")
         self.ev.finalize()
 
-        # Parameters of the geometry pass, constant while it runs.
+        # Registers with the parameters of the geometry pass, constant while the pass runs.
         self._geometry = CSRStorage(name="geometry", fields=[
             CSRField("start", offset=0, pulse=True, description="Write 1 to start."),
             CSRField("cull", offset=1, description="Cull back faces."),
@@ -118,7 +118,7 @@ class TriangleEngine(LiteXModule):
             CSRField("exponent", size=4, offset=17, description="ke, two's complement."),
         ], description="Depth scale K = km * 2^ke.")
 
-        # Parameters of the raster pass, constant while it runs.
+        # Registers with the parameters of the raster pass, constant while the pass runs.
         self._raster = CSRStorage(name="raster", fields=[
             CSRField("start", offset=0, pulse=True, description="Write 1 to start."),
             CSRField("size", size=SIZES.bits, offset=1, values=SIZES.values, description="Size of the picture."),
@@ -142,7 +142,7 @@ class TriangleEngine(LiteXModule):
             ]:
                 setattr(self, f"_{name}", register)
 
-        # Results of the last geometry pass.
+        # Registers with the results of the last geometry pass.
         results = {
             "triangles": "Triangles of the mesh.",
             "unseen": "Triangles behind the near plane or beyond one side of the picture.",
@@ -176,7 +176,7 @@ class TriangleEngine(LiteXModule):
 
         # # #
 
-        # Gated clock: the engine runs while `working` and shortly after.
+        # Control of the gated clock: the engine is clocked while `working` is high and for 31 clocks after that.
         self.clk = Signal()
         self.clock_enable = Signal()
         recovering, linger = Signal(), Signal(5)
@@ -186,7 +186,7 @@ class TriangleEngine(LiteXModule):
                        | self._status.fields.geometry_busy | self._status.fields.raster_busy),
             self.clock_enable.eq(working | (linger != 0)),
         ]
-        # The last events come some clocks after the end of a pass.
+        # The last events reach the counters some clocks after the end of a pass.
         self.sync += If(working, linger.eq(31)).Elif(linger != 0, linger.eq(linger - 1))
 
         # The link to a raymarcher: see rtl/triangle/raster_unit.sv.

@@ -58,7 +58,7 @@ class CRG(LiteXModule):
         sys_mmcm.create_clkout(self.cd_sys, sys_clk_freq, margin=0)
         sys_mmcm.create_clkout(self.cd_sys4x, 4 * sys_clk_freq, margin=0)
         sys_mmcm.create_clkout(self.cd_sys4x_dqs, 4 * sys_clk_freq, phase=90, margin=0)
-        # The reset of the sys domain also resets its clock generator, in the domain of the input clock.
+        # The reset of the domain `sys` also resets the generator of its clock, which runs in the domain of the input clock.
         platform.add_false_path_constraints(self.cd_sys.clk, "clk100")
 
         self.idelay_pll = idelay_pll = S7PLL(speedgrade=_SPEED_GRADE)
@@ -72,7 +72,7 @@ class CRG(LiteXModule):
         pixel_mmcm.create_clkout(self.cd_pix, PIXEL_CLK_FREQ)
         pixel_mmcm.create_clkout(self.cd_pix5x, 5 * PIXEL_CLK_FREQ)
 
-        # Every path between the clocks goes through a crossing of rtl/common or two flip-flops of LiteX.
+        # Every path between these two clocks goes through a crossing of rtl/common, or through two flip-flops that LiteX adds.
         platform.add_false_path_constraints(self.cd_sys.clk, self.cd_pix.clk)
 
 
@@ -86,8 +86,8 @@ class UrbanaSoC(GlintSoC):
         self.ddrphy = A7DDRPHY(
             platform.request("ddram"), memtype="DDR3", nphases=4,
             sys_clk_freq=SYS_CLK_FREQ, iodelay_clk_freq=_IDELAY_CLK_FREQ)
-        # Set here because `add_electrical_settings` stores the value under a name that the initialisation does not
-        # read.
+        # Set directly, because `add_electrical_settings` stores the value under a name that the initialisation of the
+        # memory does not read.
         self.ddrphy.settings.rtt_nom = "40ohm"
         self.add_dram(self.ddrphy)
         for name in {"triangle", "raymarch"} & self.blocks:

@@ -4,7 +4,8 @@ from litex.build.generic_platform import IOStandard, Misc, Pins, Subsignal
 from litex.build.openfpgaloader import OpenFPGALoader
 from litex.build.xilinx import Xilinx7SeriesPlatform
 
-# Bank 35 (buttons, switches) shares its supply with a pair that the board uses as LVDS_25, hence 2.5 V for all of it.
+# Bank 35 has the buttons and switches, and a differential pair that the board uses as LVDS_25, so the supply
+# of the bank is 2.5 V.
 _BANK_35 = IOStandard("LVCMOS25")
 
 _io = [
@@ -14,20 +15,20 @@ _io = [
     ("switches", 0, Pins("G1 F2 F1 E2 E1 D2 D1 C2 B2 A4 A5 A6 C7 A7 B7 A8"), _BANK_35),
     ("leds", 0, Pins("C13 C14 D14 D15 D16 F18 E17 D17 C17 B18 A17 B17 C18 D18 E18 G17"), IOStandard("LVCMOS33")),
 
-    # Directions as seen from the FPGA. The vendor's file names these pins as seen from the USB bridge.
+    # `rx` and `tx` are as seen from the FPGA. The vendor's file names these pins as seen from the USB bridge.
     ("serial", 0,
         Subsignal("rx", Pins("B16")),
         Subsignal("tx", Pins("A16")),
         IOStandard("LVCMOS33")),
 
-    # PMOD B, pins 2 and 3: an external MPU-6050. Its module has pull-ups; the FPGA's pull-ups keep the bus idle without the
-    # module.
+    # An external MPU-6050 at PMOD B, pins 2 and 3. Its module has pull-up resistors; those of the FPGA keep the bus idle while
+    # no module is connected.
     ("i2c", 0,
         Subsignal("sda", Pins("G18")),
         Subsignal("scl", Pins("K14")),
         Misc("PULLUP=TRUE"), IOStandard("LVCMOS33")),
 
-    # The clock is CCLK, reached through STARTUPE2.
+    # The clock of the flash has no entry: it is the pin CCLK, reached through the primitive STARTUPE2.
     ("spiflash4x", 0,
         Subsignal("cs_n", Pins("M13")),
         Subsignal("dq", Pins("K17 K18 L14 M15")),
@@ -45,7 +46,7 @@ _io = [
         Subsignal("data2_n", Pins("T14")),
         IOStandard("TMDS_33")),
 
-    # DDR3L, 1 Gbit x16. The chip select is tied on the board.
+    # The memory is DDR3L, 1 Gbit, 16 bits wide. Its chip select is tied on the board.
     ("ddram", 0,
         Subsignal("a", Pins("V3 R4 P6 T3 T6 T1 V5 U7 R7 U6 U3 P5 V6"), IOStandard("SSTL135")),
         Subsignal("ba", Pins("V2 V4 R3"), IOStandard("SSTL135")),

@@ -1,4 +1,5 @@
-// LUT memories as what their reads are: a table that the address chooses from. A path ends where it writes one.
+// Models of LUT memories that have only their reads: each is a table from which the address chooses. A path ends where
+// it writes a memory.
 
 module RAM32M #(
     parameter INIT_A = 0, INIT_B = 0, INIT_C = 0, INIT_D = 0, IS_WCLK_INVERTED = 0

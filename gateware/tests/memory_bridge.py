@@ -35,7 +35,7 @@ class Memory:
         cycle, earliest = 0, 0
         previous = None
         while True:
-            # A command must not change until it is taken, unless the bus withdraws the access.
+            # Checks that a command does not change until it is taken, unless the bus withdraws the access.
             shown = None
             if (yield port.cmd.valid):
                 shown = ((yield port.cmd.we), (yield port.cmd.addr))
@@ -126,7 +126,7 @@ def master(bus, memory, rng, errors, counts):
                                   f"expected {expected[word + n]:#010x}, got {found:#010x}")
                     return
         if kind == "given up" and stop == 0:
-            # The access may have left after the command was sent.
+            # The bus gives this access up, maybe after its command was sent.
             yield bus.adr.eq(BASE // 4 + word)
             yield bus.cti.eq(wishbone.CTI_BURST_INCREMENTING)
             for _ in range(rng.randint(1, 12)):

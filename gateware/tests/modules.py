@@ -26,11 +26,11 @@ class Module:
         return {self.top: {}, **self.variants}
 
 
-# The same time per memory word as at 1280x720, in a 200th of its frame.
+# A small picture: each memory word has the same time as at 1280x720, and a frame is a 200th of a frame at 1280x720.
 _SMALL_RASTER = {"H_ACTIVE": 160, "H_FRONT": 8, "H_SYNC": 4, "H_BACK": 12,
                  "V_ACTIVE": 24, "V_FRONT": 2, "V_SYNC": 2, "V_BACK": 4}
 _SMOOTH = {"SMOOTH": 1}
-# A lane and its consumer of ends, with every field.
+# Parameters of a lane, and of the module that takes the ends of its rays, with every field.
 _ALL_FIELDS = {name: BUILDS["all"].parameters()[name] for name in ("LEVELS", "FIELDS", "ROUND", "BLEND", "PREPASS")}
 _ALL_PAINT = {"ROUND": 1, "OCTANTS": int(has_octants(NAMES))}
 _PREPASS = {"PREPASS": 1}
@@ -42,7 +42,7 @@ MODULES = [
     ),
     Module(top="skid_buffer"),
     Module(top="fifo", variants={"fifo_2": {"DEPTH": 2}}),
-    # Time-out for a device that holds SCL low: half a millisecond.
+    # The time-out for a device that holds SCL low is half a millisecond in this build.
     Module(top="i2c_engine", variants={"i2c_engine_hasty": {"STRETCH_BITS": 15}}, measured=("i2c_engine",)),
     Module(top="band_buffer", variants={"band_buffer_stereo": {"STEREO": 1}}),
     Module(top="binner"),

@@ -32,7 +32,7 @@ from verilate import module as verilated_module  # noqa: E402
 from verilate.programs import run_verilator  # noqa: E402
 
 
-# Checks at a time: each keeps one core busy.
+# Number of checks that run at the same time: each keeps one core busy.
 _AT_A_TIME = 2
 
 

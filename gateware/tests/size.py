@@ -14,19 +14,19 @@ SOC = "soc"
 _SOC_FILES = BUILD.parent / "urbana" / "gateware"
 _FOLDER = BUILD.parent / "size"
 
-# Cells of each resource. Other cells are counted by name.
+# The cells of each resource, as a pattern of their names. Other cells are counted by name.
 _RESOURCES = {"logic": r"LUT[1-6]|INV", "srl": r"SRL16E|SRLC32E", "lutram": r"RAM\d+[MX]\w*", "ff": r"(FD[RSCP]|LD[CP])E(_1)?",
               "dsp48": r"DSP48E1", "ramb36": r"RAMB36E1", "ramb18": r"RAMB18E1", "carry4": r"CARRY4"}
 
-# LUTs per LUT memory.
+# LUTs that one cell of each kind of LUT memory takes.
 _LUTRAM = {"RAM32M": 4, "RAM64M": 4, "RAM64X1S": 1, "RAM128X1S": 2, "RAM256X1S": 4, "RAM64X1D": 2, "RAM128X1D": 4}
 
 # Marks that Yosys leaves in a netlist, and the pads and clock buffers that it adds to a top module.
 _MARKS, _PADS = {"$scopeinfo"}, {"BUFG", "IBUF", "OBUF"}
 
-# Combinational cells between registers. `ltp` treats a flip-flop as logic and takes a LUT memory's write for its
-# read, so reads become tables and only combinational cells remain. An unknown LUT memory would cut a path, so none is
-# allowed.
+# Keeps only the combinational cells between registers and finds the longest path in them. `ltp` treats a flip-flop as logic,
+# and takes the write of a LUT memory for its read. So reads of LUT memories become tables, and all cells but the combinational
+# ones are deleted. A LUT memory of an unknown kind would cut a path, so none is allowed.
 _SCRIPT = """synth_xilinx -family xc7 -top {top} -flatten;
 tee -q -o {folder}/cells.json stat -json;
 techmap -map {reads}; opt_clean;
@@ -124,7 +124,7 @@ def _differences(expected, measured):
     return [f"{key}: expected {value}, got {measured.get(key)}" for key, value in expected.items() if measured.get(key) != value]
 
 
-# Numbers of `size_sample.sv`, explained there.
+# Expected numbers for `size_sample.sv`, which explains them.
 _SAMPLE = {"logic": 38, "srl": 1, "lutram": 4, "ff": 101, "dsp48": 1, "ramb36": 1, "ramb18": 1, "carry4": 16, "others": {},
            "path": 10}
 

@@ -1,4 +1,4 @@
-// A known number of each resource, to test the measurement of sizes.
+// A module with a known number of each resource, to test the measurement of sizes.
 module size_sample (
     input  logic        clk,
     input  logic [31:0] a,
@@ -14,9 +14,9 @@ module size_sample (
     output logic [31:0] large_out,
     output logic [15:0] small_out
 );
-    // A sum of 32 LUTs and 8 CARRY4; a LUT memory that stores it (a RAM32M of 4 LUTs); a sum of its 6 bits and 32
-    // others, 6 LUTs and 8 CARRY4; and 101 flip-flops. The memory lies between the two sums, so the longest path is
-    // the memory's read, a LUT and 8 CARRY4.
+    // A sum of 32 LUTs and 8 CARRY4; a LUT memory that stores 6 bits of it (a RAM32M of 4 LUTs); a sum of these 6 bits and 32
+    // other bits, 6 LUTs and 8 CARRY4; and 101 flip-flops. The memory is between the two sums, so the longest path is the read
+    // of the memory, a LUT and 8 CARRY4.
     (* ram_style = "distributed" *) logic [5:0] few [32];
     logic [31:0] a_held, b_held, first;
     logic [4:0] read_address_held;

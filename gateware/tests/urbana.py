@@ -16,7 +16,7 @@ _OUTPUT = BUILD / "urbana"
 _GATEWARE = _OUTPUT / "gateware"
 _PINS = TESTS / "urbana_pins.csv"
 
-# Clocks that must come out of the FPGA's MMCMs and PLLs exactly: MHz and phase.
+# Clocks that the FPGA's MMCMs and PLLs must generate exactly: frequency in MHz and phase in degrees.
 _CLOCKS = Counter({(81.25, 0): 1, (325.0, 0): 1, (325.0, 90): 1, (200.0, 0): 1, (74.25, 0): 1, (371.25, 0): 1})
 
 _CONSTRAINTS = [
@@ -118,7 +118,7 @@ def synthesis_sources(folder):
     for path in (verilog, script):
         if not path.exists():
             raise ToolError(f"{path} is missing; `cargo xtask gateware --board urbana` makes it")
-    # LiteX ties the unused outputs of its serializers to 0, which Vivado takes and Yosys does not.
+    # LiteX ties the unused outputs of its serializers to 0, which Vivado accepts and Yosys does not.
     open_outputs = folder / "open_outputs.v"
     open_outputs.write_text(re.sub(r"(\.SHIFTOUT\d +)\(1'd0\)", r"\1()", verilog.read_text()))
     sources = [open_outputs if source.endswith(f"/{verilog.name}") else source

@@ -28,11 +28,11 @@ def build(folder, waveforms):
     options = [*compiler.flags(objects, waveforms), "-O3"]
     harness_options = [*options, f'-DGLINT_BIOS="{bios}"', f"-I{folder / 'software' / 'include'}", f"-I{_SOC}"]
 
-    # The model, which takes most of the time.
+    # The C++ of the model, which takes most of the time.
     inputs = digest([verilog, *files_below(GATEWARE / "rtl", _SOC), *compiler.RECIPE, Path(__file__)], waveforms)
     stamp = objects / "model.stamp"
     if not is_current(stamp, inputs):
-        # Verilator names its output by its content, so files of an older build must go.
+        # Verilator derives names of its output files from their content, so the files of an older build must go.
         shutil.rmtree(objects, ignore_errors=True)
         objects.mkdir(parents=True)
         print("Verilator", flush=True)
@@ -41,7 +41,7 @@ def build(folder, waveforms):
         _compile_model(objects, options, harness_options, waveforms)
         stamp.write_text(inputs)
 
-    # The harness around it.
+    # The harness around the model.
     inputs = digest([bios], inputs)
     stamp = objects / "library.stamp"
     if is_current(stamp, inputs, library):
@@ -56,7 +56,7 @@ def _compile_model(objects, options, harness_options, waveforms):
     slow = [source for source in sources if "__Slow" in source.name]
     hot = [source for source in sources if source not in slow]
     compiler.compile_all("compile what runs once", slow, objects, options)
-    # Waveforms cost more time than a profile gains.
+    # Waveforms cost more time than a profile gains, so a build with waveforms has no profile.
     if not waveforms:
         harness = [_SOC / "soc.cpp", _SOC / "train.cpp"]
         compiler.compile_all("compile the training", harness, objects, harness_options)
@@ -66,6 +66,6 @@ def _compile_model(objects, options, harness_options, waveforms):
         run(["g++", "-fprofile-generate", "-pthread", *sorted(objects.glob("*.o")), "-o", program])
         run([program], cwd=objects)
         compiler.object_of(harness[1], objects).unlink()
-        # Without partial training, code that the BIOS never reaches would be optimized for size.
+        # Without the option for partial training, code that the BIOS never reaches would be optimized for size.
         options = [*options, "-fprofile-use", "-fprofile-partial-training"]
     compiler.compile_all("compile what runs in each cycle", hot, objects, options)

@@ -34,7 +34,7 @@ def verilate(top, sources, parameters, folder, options):
                   *(f"-G{key}={value}" for key, value in parameters.items()), *sources)
     description = describe(top, sources, parameters, folder)
     (folder / "ports.inc").write_text("".join(f"PORT({port['name']})\n" for port in description["ports"]))
-    # One literal per line: compilers limit the length of a literal.
+    # The description becomes one string literal per line, since compilers limit the length of a literal.
     text = "".join(json.dumps(line) + "\n" for line in json.dumps(description, indent=0).splitlines())
     (folder / "description.inc").write_text(text)
 
@@ -55,7 +55,7 @@ def compile_all(name, sources, folder, options):
     lock = threading.Lock()
 
     def compile_one(source):
-        # Verilator calls files "slow" that run once.
+        # Verilator puts code that runs only once into files whose names contain "slow".
         slow = ["-O1"] if "__Slow" in source.name else []
         run(["g++", *options, *slow, "-c", source, "-o", object_of(source, folder)])
         nonlocal done
@@ -63,7 +63,7 @@ def compile_all(name, sources, folder, options):
             done += 1
             print(f"{name}: {done} of {len(sources)}", flush=True)
 
-    # Largest file first: it decides when the last one ends.
+    # Compiles the largest file first, because it decides when the last compilation ends.
     queue = sorted(sources, key=lambda source: -source.stat().st_size)
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         list(pool.map(compile_one, queue))

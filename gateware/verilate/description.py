@@ -12,7 +12,7 @@ import json
 
 from .programs import ToolError, run_verilator
 
-# Integer types without a declared range.
+# Widths of the integer types that need no declared range.
 _WIDTHS = {"logic": 1, "bit": 1, "byte": 8, "shortint": 16, "int": 32, "integer": 32, "longint": 64}
 
 
@@ -23,7 +23,7 @@ def describe(top, sources, parameters, folder):
     tree = json.loads((folder / "Vmodel.tree.json").read_text())
     table = next(entry for entry in tree["miscsp"] if entry["type"] == "TYPETABLE")["typesp"]
     types = {entry["addr"]: entry for entry in table}
-    # The syntax tree is larger than the model.
+    # Deletes the syntax tree, which is larger than the model.
     for left_over in folder.glob("Vmodel.tree*.json"):
         left_over.unlink()
     module = next(module for module in tree["modulesp"] if module["type"] == "MODULE" and module["level"] == 1)

@@ -1,11 +1,11 @@
-// One memory of the band buffer: 2^ROW_BITS rows of eight lanes, one block RAM a lane, so that each lane has a write enable. With
-// HALVES = 2 each half of a lane has a write enable: block RAM has one for nine bits.
+// One memory of the band buffer: 2^ROW_BITS rows of eight lanes, with one block RAM for each lane, so that each lane has a
+// write enable. With HALVES = 2, each half of a lane has a write enable, since block RAM has one for every nine bits.
 //
 //   read_row ─▶ register ─▶ RAM ─▶ register ─▶ read_data     3 clocks from `read_row` to its data
 //   write_*  ─▶ register ─▶ RAM                              a `read_row` one clock after `write_row` reads what was written
 //
-// One read and one write in every clock. A lane that is read and written in the same clock may give either value: users must
-// not rely on it.
+// One read and one write in every clock. If a lane is read and written in the same clock, the read may return the old or the
+// new value: users must not rely on either.
 
 `default_nettype none
 

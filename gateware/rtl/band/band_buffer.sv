@@ -10,38 +10,38 @@
 //        └──────────────▶│ band_extents │──────────────────────────────────────────┘
 //                        └──────────────┘
 //
-// A row is eight pixels, and its address is line * (W/8) + column: y in the band and x/8. Beside its colour each pixel has a
-// written bit; a bank is clear when no bit is set. A pixel without the bit has depth 0 and the clear colour, and neither is
-// stored. So one depth memory serves both banks, and the clear colour may change from band to band. The flush resets the
-// bits
-// behind itself: there is no clear pass. 25 RAMB36.
+// A row is eight pixels, and its address is line * (W/8) + column, with W the width of the picture, line = y in the band, and
+// column = x/8. Beside its colour each pixel has a written bit; a bank is clear when none of these bits is set. A pixel
+// without the bit counts as depth 0 and as the clear colour, and neither is stored. So one depth memory serves both banks,
+// and the clear colour may change from band to band. The flush resets the bits of each row that it has read, so there is no
+// clear pass. 25 RAMB36.
 //
-// Groups: {row, line, column, mask, eight depth codes u18, eight colours RGB565}, lane 0 (the leftmost) in the lowest bits. Lane
-// i is written where mask[i] is set and code[i] is at least the stored one. With STEREO a group may belong to one eye: `halves` 1
-// is the left eye, 2 the right one, and that half of the colours is its luminance. Such a group is written without a depth test,
-// and the stored depth is that of the left eye. The flush composes both eyes, see band_flush; every pixel must then be drawn for
-// both. One group a clock; hazards: see band_pipe.
+// Groups: {row, line, column, mask, eight depth codes u18, eight colours RGB565}, lane 0 (the leftmost) in the lowest bits.
+// Lane i is written where mask[i] is set and code[i] is at least the stored one. With STEREO a group may belong to one eye:
+// `halves` is 1 for the left eye and 2 for the right one, and that half of each colour is the eye's luminance. Such a group is
+// written without a depth test, and the stored depth is that of the left eye. The flush composes both eyes, see band_flush;
+// every pixel must then be drawn for both. Throughput one group a clock; hazards: see band_pipe.
 //
 // Bands: an item of `band_*` ends the drawing of a band and says how to flush it: address of its first 128-bit word, its
 // `lines` (at least 1), `stride` (rows of a line) and clear colour. Groups taken up to and including the first clock of
-// `band_valid` belong to the band. Then no group is taken until the item has moved: the last group is written, the previous band
-// is in memory, and the banks have changed places.
+// `band_valid` belong to the band. After that no group is taken until the item has moved. The item moves when the last group
+// is written, the previous band is in memory, and the banks have changed places.
 //
-// For two frame buffers, `slot` 0 and 1, the buffer remembers which words of each line of the picture (`first_line` on) the last
-// flush left other than clear: one extent a line. The union of that extent and of the words drawn now goes to memory. `whole`
-// sends all words. It is required when the lines in the frame buffer are unknown, or differ from the last flush to this slot
-// with the same clear colour and stride.
+// There are two frame buffers, `slot` 0 and 1. For each line of their pictures (from `first_line` on) the band buffer
+// remembers one extent: the words that the last flush to this slot left other than clear. The union of that extent and of the
+// words drawn now goes to memory. With `whole` all words go to memory. `whole` is required unless the lines in the frame
+// buffer are as the last flush to this slot left them, with the same clear colour and stride.
 //
-// `with_depth` is for debugging: depth goes to memory too, as 32-bit words from `depth_base` on, and all of the band as with
+// `with_depth` is for debugging: depth goes to memory too, as 32-bit words from `depth_base` on, for all of the band as with
 // `whole`. The next band is drawn only after this flush, which takes three words a row.
 //
-// `restart` (and reset) drops the band being drawn and stops the flush; words already read, at most 16, still come out. Then both
-// banks are cleared: 2,048 clocks in which `clearing` is high and no stream is taken, with or without memory's help. The next
-// flush of the lines that were being flushed (after reset of all lines) must be `whole` in this slot. The renderers must be
-// restarted too: a group or band offered afterwards counts.
+// `restart` (and reset) drops the band being drawn and stops the flush; words already read, at most 16, still come out. Then
+// both banks are cleared: for 2,048 clocks `clearing` is high and no stream is taken, whether memory takes words or not. The
+// next flush of the lines that were being flushed (after reset: of all lines) must be `whole` in this slot. The renderers must
+// be restarted too, because a group or band offered afterwards counts.
 //
 // Streams: an item moves in a clock in which valid and ready are high; valid does not wait for ready, and a payload holds
-// until it has moved. Words for memory: see band_flush. `flushed`: memory has taken all words of all bands.
+// until it has moved. Words for memory: see band_flush. `flushed` is high when memory has taken all words of all bands.
 
 `default_nettype none
 
@@ -86,7 +86,7 @@ module band_buffer #(
 );
     localparam int unsigned ROW_BITS = 11;
 
-    // The bank that is drawn; the other one is flushed.
+    // Number of the colour bank that is drawn; the other bank is flushed.
     logic drawn, closing, swap;
 
     // The draw side.
@@ -144,7 +144,7 @@ module band_buffer #(
         .out_valid(word_valid), .out_ready(word_ready), .out_addr(word_addr), .out_data(word_data)
     );
 
-    // A pixel in a colour bank is {written, colour}; with STEREO each half has the bit.
+    // A pixel in a colour bank is {written, colour}; with STEREO it is {written, half of the colour} for each half.
     localparam int unsigned PIXEL_BITS = STEREO ? 18 : 17;
     localparam int unsigned HALVES     = STEREO ? 2 : 1;
     logic [8*PIXEL_BITS-1:0] bank_pixels [0:1];
@@ -154,7 +154,7 @@ module band_buffer #(
     for (genvar bank = 0; bank < 2; bank++) begin : banks
         logic                    flushes;
         logic [8*PIXEL_BITS-1:0] store;
-        // Groups still under way are not written while the banks are cleared.
+        // While the banks are cleared, groups that are still in the pipe are not written.
         assign flushes = clearing || drawn != 1'(bank);
 
         for (genvar lane = 0; lane < 8; lane++) begin : lanes
@@ -198,7 +198,7 @@ module band_buffer #(
         .write_data(draw_codes)
     );
 
-    // Without STEREO both halves are written.
+    // Without STEREO both halves of a colour are always written.
     wire _unused_half = draw_halves[1];
 
     function automatic logic [3:0] ones(input logic [7:0] lanes);

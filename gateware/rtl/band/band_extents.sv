@@ -1,5 +1,5 @@
-// Plans the flush of a band: in each line the words from the first to the last that was drawn now or in the last frame of the
-// same frame buffer. All other words already hold the clear colour in memory.
+// Plans the flush of a band: in each line, the words from the first to the last one that was drawn now or in the last frame of
+// the same frame buffer. All other words already hold the clear colour in memory.
 //
 //               ┌───────────────┐
 //   groups ────▶│ now, bank 0/1 │──┬──────────────▶ union ─▶ + line's first row ─▶ skid_buffer ─▶ spans
@@ -8,19 +8,20 @@
 //                          │ last, slot 0/1├─────────┘
 //                          └───────────────┘
 //
-// `now` holds a line's extent, its first and its last column (of eight pixels), in LUT memory, one memory a bank. A group
-// updates its extent in one clock, so there is no hazard. `last` holds the extents of all lines of both frame buffers in a block
-// RAM. An empty extent goes from the largest column down to 0, the neutral element of the union; the largest column, all ones,
-// must not be drawn.
+// The memory `now` holds the extent of each line, its first and its last column (of eight pixels), in LUT memory, one memory
+// for each bank. A group updates the extent of its line in one clock, so there is no hazard. The memory `last` holds the
+// extents of all lines of both frame buffers in a block RAM. An empty extent goes from the largest column down to 0, the
+// neutral element of the union; so the largest column, all ones, must not be drawn.
 //
-// `start` (one clock, not while `busy` or `sweep` is high) plans the band in the bank that is not drawn from the next clock on:
-// its `lines` (at least 1) from the picture's line `first_line` on, of `stride` columns each. The output has a span for every
-// line that is not empty, its first and its last row in the band buffer, in order; with `whole`, all rows of every line. `busy`
-// falls when the last span has been taken. The lines' extents have then moved from `now` to `last`. Latency 6 clocks from
-// `start` to the first span, throughput a line a clock, empty or not.
+// `start` (one clock, not while `busy` or `sweep` is high) plans the band in the bank that is not drawn from the next clock
+// on: its `lines` (at least 1) from the picture's line `first_line` on, of `stride` columns each. For every line that is not
+// empty, the output has a span: the line's first and last row in the band buffer, in order of lines. With `whole` the span has
+// all rows, for every line. `busy` falls when the last span has been taken. The extents of the lines have then moved from
+// `now` to `last`. Latency 6 clocks from `start` to the first span; throughput one line a clock, empty or not.
 //
-// `sweep` empties `now`; it must last 2^LINE_BITS clocks at least. Sweep and reset cancel the plan under way: the extents of its
-// lines in `last` are unknown then (after reset those of all lines), and the next band of such lines must be `whole`.
+// `sweep` empties `now`; it must last 2^LINE_BITS clocks at least. Sweep and reset cancel a plan that is under way.
+// Then the extents of its lines in `last` are unknown (after reset: those of all lines), and the next band with such
+// lines must be `whole`.
 
 `default_nettype none
 
@@ -123,7 +124,7 @@ module band_extents #(
         if (rst || sweep) planning <= 1'b0;
     end
 
-    // The last extent and the new one are written a clock after the read.
+    // The extent that is read from `last` is replaced by the new extent in the clock after the read.
     (* ram_style = "block", rw_addr_collision = "no", no_rw_check *)
     logic [EXTENT_BITS-1:0] last [0:2**PLACE_BITS-1];
     logic [PLACE_BITS-1:0]  from, to;

@@ -1,32 +1,31 @@
-// Flushes a finished band: reads spans of rows from its bank, sends their words, and clears each row behind itself.
+// Flushes a finished band: reads spans of rows from its bank, sends their words, and clears each row after its last read.
 //
 //   span ─▶ row ─▶ ┄┄ band_bank's read ┄┄ ─▶ compose ─▶ fifo ─▶ out
 //            └──▶ clear_row, a clock later, ─▶ address ──┘
 //
-// One row is one 128-bit word: eight RGB565 pixels, the leftmost in the lowest bits, in the clear colour where a pixel is not
-// written. With `compose` (STEREO only) a pixel holds the luminances of two eyes, {right, left}: 1 makes the left one red, the
-// right one blue and the smaller of both green, 2 the left one red and the right one green and blue. The colour word of row r
-// goes to `base` + r. With `with_depth`, the rows of a span are read again after its colours: two words a row, four depths of 32
-// bits each, 0 where a pixel is not written, for `depth_base` + 2r and the word after it. Neighbours in memory follow each other,
-// so memory seldom turns to another bank.
+// One row is one 128-bit word: eight RGB565 pixels, the leftmost in the lowest bits, with the clear colour where a pixel is
+// not written. With `compose` (STEREO only) a pixel holds the luminances of two eyes, {right, left}: 1 makes the left one red,
+// the right one blue and the smaller of both green, 2 makes the left one red and the right one green and blue. The colour word
+// of row r goes to address `base` + r. With `with_depth`, the rows of a span are read again after its colours: two words a
+// row, four depths of 32 bits each, 0 where a pixel is not written, for address `depth_base` + 2r and the word after it. Words
+// with neighbouring addresses follow each other, so memory seldom turns to another bank.
 //
-// `start` (only while `idle`) takes these parameters and begins; `idle` is low until the last word has been taken. Spans are
-// items {first, last}, last >= first; `spans_busy` is high until the last one has been taken. Throughput one word a clock as far
-// as spans and memory keep up; the first word comes 6 clocks after the first span is taken.
+// `start` (only while `idle`) takes these parameters and begins a flush; `idle` is low until the last word has been taken.
+// Spans are items {first, last}, last >= first; `spans_busy` must be high until the last span has been taken. Throughput one
+// word a clock as far as spans and memory keep up; the first word comes 6 clocks after the first span is taken.
 //
-// Out: a stream of {address, data}; valid does not wait for ready, and a word holds until it has moved. A place in the FIFO
+// Output: a stream of {address, data}; valid does not wait for ready, and a word holds until it has moved. A place in the FIFO
 // is reserved before a row is read, so `out_ready` may stay low for any time.
 //
-// `restart` and reset abandon the band and clear all 2^ROW_BITS rows of both banks, one a clock, while `sweeping` is high.
-// Nothing
-// may be drawn then. Words already read go out in the meantime or later.
+// `restart` and reset abandon the band and clear all 2^ROW_BITS rows of both banks, one row a clock, while `sweeping` is high.
+// Nothing may be drawn then. Words that were already read go out meanwhile or later.
 
 `default_nettype none
 
 module band_flush #(
     parameter int unsigned ADDRESS_BITS = 23,
     parameter int unsigned ROW_BITS     = 11,
-    // Most words under way, a power of two. A place is free again 7 clocks after the request of its row.
+    // Largest number of words under way, a power of two. A place is free again 7 clocks after the request of its row.
     parameter int unsigned WORDS        = 16,
     parameter bit          STEREO       = 1'b0
 ) (
@@ -50,7 +49,8 @@ module band_flush #(
     input  wire  [ROW_BITS-1:0]     span_first,
     input  wire  [ROW_BITS-1:0]     span_last,
     input  wire                     spans_busy,
-    // Bank port: its data belong to the `row` of 3 clocks before. `clears` marks `clear_row` as not written.
+    // Bank port: colours, codes and written bits belong to the `row` of 3 clocks ago. `clears` marks
+    // `clear_row` as not written.
     output logic [ROW_BITS-1:0]     row,
     input  wire  [8*16-1:0]         colours,
     input  wire  [8*18-1:0]         codes,
@@ -65,7 +65,7 @@ module band_flush #(
 );
     localparam int unsigned COUNT_BITS = $clog2(WORDS + 1);
 
-    // Words of the current row.
+    // The words that a row gives: its colours, the left half of its depths, and the right half.
     typedef enum logic [1:0] {COLOUR, DEPTH_LEFT, DEPTH_RIGHT} part_t;
 
     typedef enum logic [1:0] {IDLE, FLUSH, SWEEP} state_t;
@@ -76,7 +76,7 @@ module band_flush #(
     logic [15:0]           background;
     logic [1:0]            composing;
     logic [ADDRESS_BITS-1:0] colour_base, depth_words_base;
-    // Words that may still be requested.
+    // Number of words that may still be requested: places of the FIFO that are not reserved.
     logic [COUNT_BITS-1:0] places;
 
     assign idle        = state == IDLE && places == COUNT_BITS'(WORDS);
@@ -89,7 +89,7 @@ module band_flush #(
     assign span_ends   = issue && part_ends && part == last_part;
     assign span_ready  = state == FLUSH && (!in_span || span_ends);
 
-    // Rows, and their clearing a clock later, when the read is under way.
+    // Requests a row in each clock, and clears it a clock later, when its read is under way.
     always_ff @(posedge clk) begin
         clears    <= 1'b0;
         clear_row <= row;
@@ -144,7 +144,7 @@ module band_flush #(
     logic [ADDRESS_BITS-1:0] address_1, address_2, address;
 
     always_ff @(posedge clk) begin
-        // Here `clear_row` is the requested row.
+        // `clear_row` is here the row that was requested one clock ago.
         case (part_0)
             COLOUR:     address_1 <= colour_base + ADDRESS_BITS'(clear_row);
             DEPTH_LEFT: address_1 <= depth_words_base + ADDRESS_BITS'({clear_row, 1'b0});
@@ -203,7 +203,7 @@ module band_flush #(
         endcase
     end
 
-    // A place is reserved, so `word_ready` is high whenever a word comes.
+    // A place is reserved for each word, so `word_ready` is high whenever a word comes.
     fifo #(.WIDTH(ADDRESS_BITS + 128), .DEPTH(WORDS)) words (
         .clk, .rst,
         .in_valid(word_valid), .in_ready(word_ready), .in_data({address, word}),

@@ -3,16 +3,17 @@
 //   groups ─▶ issue ─▶ ┄┄┄┄┄┄┄┄ band_bank's read ┄┄┄┄┄┄┄┄ ─▶ compare ─▶ ┄┄ band_bank's write ┄┄
 //             read_row    reading[0]      reading[1]         write_*
 //
-// A lane is written where its mask is set and its code is at least the stored one, 0 for a pixel not yet written in this band. A
-// group for one half of the colour, the view of one eye, has no depth test. Latency 3 clocks from `read_row` to `write_*`;
-// throughput one group a clock.
+// A lane is written where its mask is set and its code is at least the stored one; the stored code of a pixel not yet written
+// in this band is 0. A group for one half of the colour, the view of one eye, has no depth test. Latency 3 clocks from
+// `read_row` to `write_*`; throughput one group a clock.
 //
-// Hazard: a group must not read a lane before an earlier group has written it. A group that shares a row and a lane with one of
-// the three groups before it is held until at least four clocks lie between them. Groups that share a row and no lane, as
-// neighbouring triangles do along their edge, pass without a stall: each lane is a memory of its own.
+// Hazard: a group must not read a lane before an earlier group has written it. A group that shares a row and a lane with one
+// of the three groups before it is held until there are at least four clocks between both. Groups that share a row but no
+// lane, as neighbouring triangles do along their common edge, pass without a stall: each lane is a memory of its own.
 //
-// Stream contract on the input: valid/ready, an item moves in a clock in which both are high; `group_ready` comes from
-// registers and from `open`, which lets groups in. `empty`: all groups are written as far as reads through `read_row` see.
+// Stream contract on the input: an item moves in a clock in which valid and ready are high; `group_ready` comes from registers
+// and from `open`, which lets groups in. `empty` is high when every accepted group is written, so that a read through
+// `read_row` sees it.
 
 `default_nettype none
 
@@ -30,7 +31,7 @@ module band_pipe #(
     input  wire  [1:0]          group_halves,
     input  wire  [8*18-1:0]     group_codes,
     input  wire  [8*16-1:0]     group_colours,
-    // Memory ports. `stored` and `stored_written` belong to the `read_row` of 3 clocks before.
+    // Memory ports. `stored` and `stored_written` belong to the `read_row` of 3 clocks ago.
     output logic [ROW_BITS-1:0] read_row,
     input  wire  [8*18-1:0]     stored,
     input  wire  [7:0]          stored_written,
@@ -54,7 +55,7 @@ module band_pipe #(
     group_t     issued, reading_0, reading_1, comparing;
     logic       issued_valid, issue;
     logic [2:0] occupied;
-    // Remaining clocks of the issued group's wait.
+    // Number of clocks for which the issued group still waits.
     logic [1:0] hold;
 
     assign held        = issued_valid && hold != '0;
@@ -63,7 +64,8 @@ module band_pipe #(
     assign read_row    = issued.row;
     assign empty       = !issued_valid && occupied == '0;
 
-    // Compared at the input, so that `group_ready` does not wait for a comparison. An empty place has no mask.
+    // A group is compared with the earlier groups at the input, so that `group_ready` does not depend on the comparison. A
+    // stage without a group has an empty mask, so it never conflicts.
     logic conflict_issued, conflict_0, conflict_1;
     assign conflict_issued = issued_valid && group_row == issued.row && (group_mask & issued.mask) != '0;
     assign conflict_0      = group_row == reading_0.row && (group_mask & reading_0.mask) != '0;

@@ -1,7 +1,7 @@
-// One bit from any clock into `clk`: two flip-flops in a row.
+// Brings one bit from any clock domain into the domain of `clk`, through two flip-flops in a row.
 //
-// Latency 2 to 3 clocks. The level must hold for longer than one period of `clk` to be seen for sure. There is no
-// reset: after one the output follows the input within the latency.
+// Latency 2 to 3 clocks. A level is seen for sure only if it holds for longer than one period of `clk`. There is no reset
+// input: after a reset of the design the output follows the input within the latency.
 
 `default_nettype none
 

@@ -2,13 +2,13 @@
 //
 //   start ──▶ request (level, until done) ──▶ done ──▶ finished (one clock) ──▶ busy falls
 //
-// The payload crosses in plain registers. The source's payload must be stable from `start` until `finished`, the
-// destination's from the clock of `done` at the latest until the next `request`. Both are then stable for at least one receiving
-// clock before use.
+// The payload crosses in plain registers. The payload of the source must be stable from `start` until `finished`, that of the
+// destination from the clock of `done` at the latest until the next `request`. Each payload is then stable for at least one
+// clock of the receiving side before its use.
 //
-// Levels, not toggles, because the two sides may be reset apart: a destination after reset sees the request again, a source after
-// reset withdraws it. One request at a time; `start` is ignored while `busy`.
-// Latency of a round trip: about 3 clocks of each side, plus the work.
+// The signals are levels, not toggles, because each side may be reset alone: a destination after reset sees the request again,
+// a source after reset withdraws it. One request at a time; `start` is ignored while `busy`. Latency of a round trip: about 3
+// clocks of each side, plus the work.
 
 `default_nettype none
 

@@ -1,5 +1,5 @@
-// A clock that stops without a glitch while `enable` is low: the gate changes at the falling edge. For simulation; an FPGA has
-// cells for this.
+// Gates a clock: `gated` stops without a glitch while `enable` is low, since the gate changes at the falling edge. For
+// simulation only; an FPGA has cells for this purpose.
 
 `default_nettype none
 
@@ -8,7 +8,7 @@ module clock_gate (
     input  wire  enable,
     output logic gated
 );
-    // Open initially, so that the first edge sees the reset.
+    // The gate is open initially, so that the block sees the reset at the first clock edge.
     logic open = 1'b1;
 
     always_ff @(negedge clk) open <= enable;

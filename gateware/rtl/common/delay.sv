@@ -1,4 +1,4 @@
-// Delays its input by CLOCKS clocks with `enable` high.
+// Delays its input by CLOCKS clocks, counting only clocks in which `enable` is high.
 
 `default_nettype none
 

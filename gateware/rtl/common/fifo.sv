@@ -1,4 +1,4 @@
-// First in, first out: DEPTH places in LUTRAM, or with BLOCK in block RAM, and one in the output register, DEPTH + 1 in all.
+// A FIFO with DEPTH + 1 places: DEPTH in LUTRAM, or in block RAM with BLOCK, and one in the output register.
 //
 // Latency 2 clocks, throughput one item a clock. Stream contract on both sides: an item moves in a clock in which valid
 // and ready are high; valid does not wait for ready, and a payload holds until it has moved. `in_ready` and
@@ -26,7 +26,7 @@ module fifo #(
 );
     localparam int unsigned PLACE_BITS = $clog2(DEPTH);
 
-    // One bit more than a place needs: equal pointers mean empty, pointers DEPTH apart mean full.
+    // The pointers have one bit more than the number of a place: equal pointers mean empty, pointers DEPTH apart mean full.
     logic [PLACE_BITS:0] head, tail;
     logic                stored, load;
 

@@ -1,13 +1,13 @@
-// Shares one native read port of the memory among CLIENTS, each with a stream of word addresses in and a stream of words
-// out, in its own order.
+// Shares one native read port of the memory among CLIENTS clients. Each client has an input stream of word addresses and an
+// output stream of words, in the order of its addresses.
 //
-// Memory side, the LiteDRAM native read port: commands by valid/ready, one word each; data comes in the commands' order,
-// some time later, and cannot be held back. A client is therefore served only while the DEPTH places of its FIFO have room for
-// all words under way. A word a clock.
+// Memory side, the LiteDRAM native read port: commands by valid/ready, one word each; data comes in the commands' order, some
+// time later, and cannot be held back. A client is therefore served only while the FIFO of DEPTH places for its words has room
+// for all words under way. Throughput one word a clock.
 //
 // Memory takes four clocks to turn to another bank, and a dozen from writes to reads and back. So a client is served in
-// bursts: until it has no request or its FIFO is full, and again when half of the FIFO is empty; the others have their turns in
-// between.
+// bursts: until it has no request or its FIFO is full, and again when half of its FIFO is empty. The other clients have
+// their turns in between.
 //
 // Latency: 2 clocks from `ask` to the command, 3 from the memory's data to the client.
 // `drop`, held until `idle`, cancels everything: no commands go out, and words still to come from memory are discarded.
@@ -46,11 +46,12 @@ module read_port #(
 );
     localparam int unsigned CLIENT_BITS = CLIENTS > 1 ? $clog2(CLIENTS) : 1;
     localparam int unsigned ROOM_BITS   = $clog2(DEPTH + 1);
-    // Most words under way.
+    // The largest number of words under way is CLIENTS * DEPTH.
     localparam int unsigned OWNER_BITS  = $clog2(CLIENTS * DEPTH);
 
-    // The client of the next command, chosen a clock ahead: the same client while it may continue, otherwise the next
-    // one with a request. The choice does not depend on requests in the same clock. A turn without a request passes.
+    // The client of the next command is chosen a clock ahead: the same client while it may continue, otherwise the next
+    // client with a request. The choice does not depend on requests in the same clock. A chosen client without a
+    // request loses its turn.
     logic [CLIENT_BITS-1:0] turn, first, chosen, asker;
     logic [CLIENTS-1:0]     servable, taken;
     logic                   given, any, moves;
@@ -86,7 +87,7 @@ module read_port #(
         end
     end
 
-    // Owner of each word under way, in order.
+    // The client of each word under way, in the order of the commands.
     (* ram_style = "distributed" *) logic [CLIENT_BITS-1:0] owners [0:2**OWNER_BITS-1];
     logic [OWNER_BITS:0]    asked, answered;
     logic [CLIENT_BITS-1:0] owner;
@@ -117,7 +118,7 @@ module read_port #(
     end
 
     for (genvar i = 0; i < CLIENTS; i++) begin : client
-        // Free places of the FIFO that are not reserved.
+        // Number of free places in the client's FIFO that are not reserved for a word under way.
         logic [ROOM_BITS-1:0] room;
         logic                 has_turn, asks, bursting;
 
@@ -138,7 +139,7 @@ module read_port #(
             end
         end
 
-        // The places are reserved, so `in_ready` is high whenever a word comes.
+        // A place is reserved for each word, so `in_ready` is high whenever a word comes.
         /* verilator lint_off PINCONNECTEMPTY */
         fifo #(.WIDTH(128), .DEPTH(DEPTH)) words (
             .clk       (clk),

@@ -1,4 +1,5 @@
-// Two places between the sides of a stream, so that no path leads through: neither ready from ready, nor valid from valid.
+// Two places between both sides of a stream, so that no combinational path crosses it: neither from ready to ready, nor
+// from valid to valid.
 //
 // Latency 1 clock, throughput one item a clock. Stream contract on both sides: an item moves in a clock in which valid
 // and ready are high; valid does not wait for ready, and a payload holds until it has moved.

@@ -1,6 +1,6 @@
 // Synchronises an input pin and suppresses spikes: the output changes after the input has been different for LENGTH clocks.
 //
-// Latency 2 to 3 clocks for the crossing, and LENGTH. High after a reset.
+// Latency: 2 to 3 clocks for the synchronisation, and LENGTH clocks. The output is high after a reset.
 
 `default_nettype none
 

@@ -1,16 +1,17 @@
 // Writes words of 16 bytes to memory through a native write port, in bursts.
 //
-// In: a stream of {address, data, strobe}, strobe bit k for byte k. Memory side, the LiteDRAM native write port: commands
-// by valid/ready, and the data of each in the same order some time later. Memory takes data without looking at valid; data
-// are always valid, since they enter their FIFO before the command goes out.
+// Input: a stream of {address, data, strobe}, with strobe bit k for byte k. Memory side, the LiteDRAM native write port:
+// commands by valid/ready, and the data of each command in the same order, some time later. Memory takes data without looking
+// at valid; data are always valid by then, since they enter their FIFO before the command goes out.
 //
-// Memory takes a dozen clocks to turn from reads to writes and back. So words gather until BURST of them go out together; with
-// `hurry`, needed for the last words, they go out at once.
+// Memory takes a dozen clocks to turn from reads to writes and back. So words gather until BURST of them go out together.
+// While `hurry` is high, as needed for the last words, words go out at once.
 //
 //   in ──┬─▶ addresses ─▶ gate ─▶ command
 //        └─▶ words ─────────────▶ data
 //
-// Latency 3 clocks to the command in a burst, throughput a word a clock. `idle`: memory has taken all words.
+// Latency 3 clocks from a word to its command during a burst, throughput one word a clock. `idle` is high when memory
+// has taken all words.
 
 `default_nettype none
 
@@ -45,7 +46,7 @@ module write_port #(
     assign move     = in_valid && in_ready;
     assign in_ready = room;
 
-    // Addresses leave before their data: room for data implies room for addresses.
+    // An address leaves its FIFO before its data, so room for data implies room for the address.
     /* verilator lint_off PINCONNECTEMPTY */
     fifo #(.WIDTH(ADDRESS_BITS), .DEPTH(DEPTH)) addresses (
         .clk       (clk),
@@ -70,7 +71,7 @@ module write_port #(
         .out_data  ({wdata_strobe, wdata})
     );
 
-    // Words without a command, and words whose data the memory has not taken.
+    // Number of words whose command was not sent, and number of words whose data memory has not taken.
     logic [COUNT_BITS-1:0] gathered, waiting;
     logic                  bursting, sent;
 

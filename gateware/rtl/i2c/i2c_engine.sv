@@ -19,29 +19,30 @@
 //   SDA  ═══════════════╳═════════════════════════
 //        HIGH ││ LOW     │ SET    │ HIGH     ││
 //
-// The phase of a high SCL begins when SCL is seen high, so a device may stretch the clock. Between two commands of a transaction,
-// and while there is no room for a byte to receive, SCL is kept low. A bit takes 3 phases, and 7 clocks until SCL is
-// seen high; a start 3 phases and 1 more within a transaction, a stop 4.
+// The phase of a high SCL begins when SCL is seen high, so a device may stretch the clock. Between two commands of a
+// transaction, and while there is no room for a byte to receive, SCL is kept low. A bit takes 3 phases, and 7 clocks until SCL
+// is seen high. A start takes 3 phases, and 1 more within a transaction; a stop takes 4 phases.
 //
-// A start checks SDA. When SDA is low, a device hangs in the middle of a byte: it gets up to nine clocks, and the start follows in
-// the first one with a released SDA, which resets the device.
+// A start checks SDA. When SDA is low, a device hangs in the middle of a byte. The device then gets up to nine SCL clocks, and
+// the start follows in the first of these clocks with a released SDA, which resets the device.
 //
-// Rounds: with `repeats` a finished command goes back into the queue, and a transaction begins every `period` + 1 clocks, the first
-// one `period` + 1 clocks after `repeats` rises. The queue holds a transaction by then, from start to stop. `ended` pulses once
-// every `batch` + 1 transactions. A transaction still running when the next is due is an error.
+// Rounds: with `repeats` a finished command goes back into the queue, and a transaction begins every `period` + 1
+// clocks, the first one `period` + 1 clocks after `repeats` rises. By then the queue must hold a whole transaction, from
+// start to stop. `ended` pulses once every `batch` + 1 transactions. A transaction that is still running when the next
+// one is due is an error.
 //
 //   command ──▶┌──────┐
 //          ┌──▶│ fifo │──▶ steps ──┐
 //          │   └──────┘            │
 //          └──── repeats ◀─────────┘
 //
-// An error ends the transaction: the wires are released, `failed` and `error` hold, and commands wait until `rst`. After a missing
-// acknowledge a stop comes first.
+// An error ends the transaction: the wires are released, `failed` and `error` hold their values, and commands wait until
+// `rst`. After a missing acknowledge a stop comes first.
 
 `default_nettype none
 
 module i2c_engine #(
-    // Clocks of a phase: a third of an SCL period.
+    // Clocks of a phase, a third of an SCL period.
     parameter int unsigned PHASE        = 68,
     // Longest clock stretching: 2^STRETCH_BITS clocks.
     parameter int unsigned STRETCH_BITS = 21,
@@ -80,8 +81,8 @@ module i2c_engine #(
     localparam int unsigned PHASE_BITS = $clog2(PHASE);
     localparam logic [3:0]  LAST_CLOCK = 4'd8;
 
-    // States: IDLE, the bus is free; HELD, within a transaction; FALL, start condition; RISE, stop condition; FREE,
-    // bus free time after a stop.
+    // States: in IDLE the bus is free; HELD is a wait within a transaction; FALL makes a start condition, RISE a stop
+    // condition; FREE is the bus free time after a stop.
     typedef enum logic [3:0] {IDLE, HELD, SET, HIGH, LOW, FALL, RISE, FREE, FAILED} state_t;
     state_t state;
 
@@ -90,10 +91,10 @@ module i2c_engine #(
     logic                  pending, taken, room, received;
     logic [1:0]            operation;
     logic [7:0]            bytes;
-    // Shift register, sent from the top and filled from the bottom: a byte and its acknowledge.
+    // Shift register of nine bits, a byte and its acknowledge: sent from the highest bit, filled from the lowest.
     logic [8:0]            shift;
     logic [3:0]            clocks;
-    // The next byte is an address.
+    // High while the next byte to send is an address.
     logic                  addressing;
     logic [PHASE_BITS-1:0] phase;
     logic                  held, expired, waiting;
@@ -188,7 +189,7 @@ module i2c_engine #(
                         scl_out <= 1'b0;
                         state   <= LOW;
                         shift   <= {shift[7:0], sda};
-                        // Another device pulls SDA low.
+                        // SDA is low although this bit is a 1: another device pulls SDA low.
                         if (!ninth && command.operation == WRITE && sda != shift[8]) begin
                             error   <= DATA;
                             scl_out <= 1'b1;

@@ -2,8 +2,8 @@
 //
 //   a, b ─▶ a − b ─▶ h = max(0, k − |a − b|) ─▶ w = h/2k ─▶ min(a, b) − h·w/2
 //
-// Latency 8 clocks, throughput one point a clock, no handshake; `solid` holds. `takes_round` selects the sphere: the
-// nearer or only surface. `nearest` passes through.
+// Latency 8 clocks, throughput one point a clock, no handshake; `solid` must hold. `takes_round` selects the sphere where it
+// is the nearer or the only surface. `nearest` passes through.
 
 `default_nettype none
 
@@ -21,7 +21,8 @@ module blend_unit (
     output logic [7:0]                  share,
     output raymarch_pkg::nearest_t         nearest
 );
-    // 1: difference of the distances. 2: h. 5: weight of the larger distance. 8: blended distance.
+    // By clock (the suffix of a name): 1 difference of the distances, 2 h, 5 weight of the larger distance,
+    // 8 blended distance.
     logic signed [22:0] apart_1;
     logic [21:0]        away_1;
     logic [17:0]        left_1;
@@ -37,7 +38,7 @@ module blend_unit (
 
     assign width  = solid.flat_too ? solid.blend_width : '0;
     assign blends = width != '0;
-    // |a - b|, or |a - b| - 1 for a negative difference; `left_1` corrects the latter.
+    // |a - b|, or |a - b| - 1 for a negative difference. `left_1`, which is k - |a - b|, corrects the latter.
     assign away_1 = apart_1[21:0] ^ {22{apart_1[22]}};
     assign left_1 = {1'b0, width} + {1'b1, ~away_1[16:0]} + 18'(!apart_1[22]);
 
@@ -56,19 +57,19 @@ module blend_unit (
     delay #(.WIDTH(22), .CLOCKS(6)) least_waits (.clk, .enable(1'b1), .in(least_1), .out(least_5));
     delay #(.WIDTH(1), .CLOCKS(5)) which (.clk, .enable(1'b1), .in(takes_round), .out(round_5));
 
-    // Rounded down: the shift applies to −h·w, not to h·w.
+    // The product is subtracted as (−h)·w, so that the shift rounds the blended distance down.
     assign minus_h_5 = -$signed({8'b0, h_5});
     multiply_add #(.BITS(40)) subtract (
         .clk, .enable(1'b1), .a(minus_h_5), .b({1'b0, weight_5}), .c({least_5[21], least_5, 17'b0}), .p(sum_8)
     );
     assign distance = sum_8[38:17];
 
-    // In units of 2^-16. The nearer surface has more than half.
+    // The share of the sphere, in units of 2^-16. The nearer surface has more than half.
     assign share_5 = round_5 ? 17'h1_0000 - weight_5 : weight_5;
     always_ff @(posedge clk) share_6 <= share_5[15:8] | {8{share_5[16]}} | {8{!blends}};
     delay #(.WIDTH(8), .CLOCKS(2)) share_waits (.clk, .enable(1'b1), .in(share_6), .out(share));
 
-    // With a fillet the surface counts as round; otherwise the selected surface counts.
+    // On a fillet the surface counts as round; otherwise the selected surface decides.
     logic [2:0]          flat_7;
     logic                round_7;
     raymarch_pkg::nearest_t known_7;

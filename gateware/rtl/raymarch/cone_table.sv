@@ -1,10 +1,11 @@
-// Table of the cones of a picture: the depth up to which all rays of a block of pixels are free (docs/formats.md,
-// "Cones").
+// Table of the cones of a picture. For each block of pixels it holds the depth up to which all rays of the block are free of
+// the field's surface (docs/formats.md, "Cones").
 //
 //   end of a cone: t, length ─▶ t·inverse ─▶ depth ─▶ 2^14 places ─▶ near plane of a block
 //
-// A write takes 6 clocks, one a clock. A read takes 2 clocks in which `enable` is high, one a clock; a read does not
-// return a write in flight. With ROUND, and while `round` is high, the inverses are those of Euclidean lengths.
+// A write takes 6 clocks; throughput one write a clock. A read takes 2 clocks in which `enable` is high; throughput one read a
+// clock. A read does not return a write that is under way. With ROUND, and while `round` is high, the inverses are those of
+// Euclidean lengths.
 
 `default_nettype none
 

@@ -1,9 +1,9 @@
-// Depth code of a depth: K/depth, to nearest, 1 to 2^18 - 1 (docs/formats.md, "Ends").
+// Computes the depth code of a depth: K/depth, rounded to nearest, 1 to 2^18 - 1 (docs/formats.md, "Ends").
 //
 //   depth ─▶ normalise ─▶ m ─▶ seed ─▶ two Newton steps, four products ─▶ 1/m ─▶ times K, shift, round ─▶ code
 //
-// The depth is a u19.21 other than 0; K = mantissa·2^exponent. Latency 23 clocks in which `enable` is high, throughput
-// one depth a clock: the reciprocal is that of `reciprocal`, with a separate multiplier for each product.
+// The depth is a u19.21 other than 0; K = mantissa·2^exponent. Latency 23 clocks in which `enable` is high, throughput one
+// depth a clock. The reciprocal is that of the module `reciprocal`, here with a separate multiplier for each product.
 
 `default_nettype none
 
@@ -15,14 +15,14 @@ module depth_code (
     input  wire  [39:0]       depth,
     output logic [17:0]       code
 );
-    // nearest(2^10/(1 + (i + 1/2)/256)), which is nearest(2^19/(513 + 2·i)).
+    // Seed i of the Newton steps is nearest(2^10/(1 + (i + 1/2)/256)), which is nearest(2^19/(513 + 2·i)).
     logic [9:0] seeds [256];
 
     initial begin
         for (int i = 0; i < 256; i++) seeds[i] = 10'(((1 << 20) + 513 + 2 * i) / (2 * (513 + 2 * i)));
     end
 
-    // 3: m. 4: y0.
+    // By clock (the suffix of a name): 3 the mantissa m of the depth, 4 its seed y0.
     logic [23:0] m_3, m_4, m_10;
     logic [5:0]  lead_3;
     logic [9:0]  y0_4, y0_6, y0_7, y0_9;
@@ -41,7 +41,8 @@ module depth_code (
     delay #(.WIDTH(10), .CLOCKS(1)) y0_for_step (.clk, .enable, .in(y0_6), .out(y0_7));
     delay #(.WIDTH(10), .CLOCKS(2)) y0_for_y1 (.clk, .enable, .in(y0_7), .out(y0_9));
 
-    // 7: e0 = -m·y0, made as ~m·y0 + y0. 10: y1 = y0 + y0·e0. 13: e1 = -m·y1. 16: y1·e1. 17: y.
+    // By clock (the suffix of a name): 7 e0 = -m·y0, made as ~m·y0 + y0; 10 y1 = y0 + y0·e0; 13 e1 = -m·y1; 16 y1·e1;
+    // 17 the reciprocal y.
     logic signed [36:0] e0_7, sum_10, e1_13, step_16;
     logic [16:0]        y1_10, y1_12, y1_13, y1_16;
     logic [24:0]        sum;
@@ -63,7 +64,7 @@ module depth_code (
 
     assign sum = {1'b0, y1_16, 7'b0} + 25'($signed(step_16[36:25]));
 
-    // 20: K·y, to be divided by 2^(22 + shift). A divisor below 2^22 gives a code above the largest one.
+    // Clock 20: K·y, to be divided by 2^(22 + shift). A divisor below 2^22 would give a code above the largest one.
     logic signed [42:0] product_20;
     logic [5:0]         lead_19;
     logic signed [7:0]  shift_20;

@@ -3,8 +3,8 @@
 //
 //   point ─▶ |x| - half of each coordinate ─▶ largest ─▶ distance, surface
 //
-// Latency 3 clocks, throughput one point a clock, no handshake. Along an axis outside of `has` the box is unbounded.
-// With `room` the solid is the space outside of the box. The parameters hold.
+// Latency 3 clocks, throughput one point a clock, no handshake. `has` says along which axes the box is bounded; along the
+// other axes it is unbounded. With `room` the solid is the space outside of the box. The parameters must hold.
 
 `default_nettype none
 
@@ -23,7 +23,7 @@ module field_box (
     always_comb begin
         for (int i = 0; i < 3; i++) begin
             place[i] = point[i];
-            // 64 units are 2^18: the point in the cell about the origin.
+            // The period of 64 units is 2^18. The point moves to the same position in the cell about the origin.
             if (repeated) place[i][21:18] = {4{point[i][17]}};
         end
     end

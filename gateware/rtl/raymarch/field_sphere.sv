@@ -4,13 +4,12 @@
 //                                        │                                            ▲
 //                                        └──────────── shift ─────────────────────────┘
 //
-// The shift makes the largest component fill 17 bits. The root is a linear interpolation between two entries of a
-// table. The length is never above the exact one, and below it by at most 3 plus a part of 2^-15 (12 fraction bits).
-// Distances of 2^21 and more saturate at 2^21 - 1. With `repeated` the sphere repeats every 64 units; its centre is
-// then 0.
+// The shift makes the largest component fill 17 bits. The root is a linear interpolation between two entries of a table. The
+// computed length is never above the exact one, and below it by at most 3 units of 2^-12 plus a part of 2^-15. Distances of
+// 2^21 units of 2^-12 and more saturate at 2^21 - 1. With `repeated` the sphere repeats every 64 units; its centre is then 0.
 //
 // Latency 18 clocks, throughput one point a clock, no handshake. `number` comes one clock before its point. Spheres are
-// written one a clock, while the pipeline is empty; `repeated` holds.
+// written one a clock, while the pipeline is empty. `repeated` must hold.
 
 `default_nettype none
 
@@ -42,8 +41,8 @@ module field_sphere (
         radius_17 <= radii[number_16];
     end
 
-    // 1: from the centre. 2: magnitudes, and their bitwise OR. 3, 4: shifted left until the highest bit of the OR is
-    // one of the top two bits.
+    // By clock (the suffix of a name): 1 the point relative to the centre; 2 magnitudes of the coordinates, and their bitwise
+    // OR; 3 and 4 the magnitudes shifted left until the highest bit of the OR is one of the top two bits.
     logic [2:0][22:0] apart_1;
     logic [2:0][21:0] size_2, by_8, shifted_8;
     logic [2:0][17:0] by_2;
@@ -85,7 +84,7 @@ module field_sphere (
         for (int i = 0; i < 3; i++) begin
             logic [22:0] apart;
             apart = minus(point[i], centre_0[i]);
-            // 64 units are 2^18: relative to the middle of the point's cell.
+            // The period of 64 units is 2^18. The difference moves to the range about the middle of the point's cell.
             apart_1[i] <= repeated ? {{5{apart[17]}}, apart[17:0]} : apart;
             size_2[i]  <= magnitude(apart_1[i]);
             by_8[i]    <= shifted_8[i];
@@ -98,7 +97,7 @@ module field_sphere (
         places_4 <= {eights_3, twos, 1'b0};
     end
 
-    // 9: the sum of the squares, from 2^32 to 3·2^34.
+    // Clock 9 has the sum of the squares, from 2^32 to 3·2^34.
     logic [2:0][16:0]   part_4;
     logic [16:0]        part_y_5, part_z_6;
     logic signed [36:0] x_7, x_y_8, square_9;
@@ -121,7 +120,8 @@ module field_sphere (
         .clk, .enable(1'b1), .a({8'b0, part_z_6}), .b({1'b0, part_z_6}), .c(x_y_8), .p(square_9)
     );
 
-    // 10: a quarter of the sum where it is too large. 12: entry of the table. 15: root, 2^18 to 2^19.
+    // By clock (the suffix of a name): 10 the sum, divided by 4 where it is too large for the table; 12 the entry of the
+    // table; 15 the root, 2^18 to 2^19.
     logic [17:0]        base_12, base_14;
     logic [9:0]         slope_12;
     logic [16:0]        rest_12;
@@ -136,7 +136,7 @@ module field_sphere (
         .clk, .enable(1'b1), .a({15'b0, slope_12}), .b({1'b0, rest_12}), .c({1'b0, 1'b1, base_14, 17'b0}), .p(root_15)
     );
 
-    // 16, 17: shifted back. 18: the distance.
+    // By clock (the suffix of a name): 16 and 17 the length, shifted back; 18 the distance.
     logic [4:0]         back_11, back_15;
     logic [2:0]         back_16;
     logic [22:0]        length_16, length_17;

@@ -1,4 +1,5 @@
-// Lower bound of 1/m by the first ten bits i of m: 2^10/(i + 1), u8.9 (docs/formats.md, "Rays"). Two ports.
+// Table of lower bounds of 1/m by the first ten bits i of m: 2^10/(i + 1), u8.9 (docs/formats.md, "Rays"). It
+// has two read ports.
 //
 // Latency 2 clocks in which `enable` is high, throughput one result a clock at each port.
 
@@ -18,7 +19,7 @@ module inverse_table (
 
     initial begin
         for (int i = 0; i < 1024; i++) inverses[i] = 17'(((1 << 19) - 2) / (i + 1));
-        // Saturated to 17 bits.
+        // The first entries do not fit 17 bits and are saturated.
         for (int i = 0; i < 3; i++) inverses[i] = '1;
     end
 

@@ -8,15 +8,15 @@
 //         │   │   │   │
 //         └───┴───┴───┘ 3S wide
 //
-// A coordinate k represents k + 1/2, so that -x is ~k. Each coordinate carries its direction of growth in the world,
+// A coordinate k represents k + 1/2, so that -x is ~k. Each coordinate carries the direction in which it grows in the world,
 // {axis, positive}. Latency 3 clocks, throughput one point a clock, no handshake. While `enable` is low, points pass
-// unchanged; `enable` holds.
+// unchanged; `enable` must hold.
 
 `default_nettype none
 
 module menger_level #(
     parameter int unsigned BITS = 22,
-    // An even number.
+    // Side of the cube that remains, an even number.
     parameter int          S    = 27 << 12
 ) (
     input  wire                         clk,

@@ -1,6 +1,7 @@
-// Shares of fog and light, 256 entries of 8 bits each, in one block RAM.
+// Tables of the shares of fog and light, 256 entries of 8 bits each, in one block RAM.
 //
-// Latency 2 clocks in which `enable` is high, throughput one pair a clock. A write replaces a read of the fog.
+// Latency 2 clocks in which `enable` is high, throughput one pair of entries a clock. In the clock of a write, no entry
+// of the fog is read.
 
 `default_nettype none
 
@@ -8,7 +9,7 @@ module paint_table (
     input  wire        clk,
     input  wire        enable,
     input  wire        write,
-    // {1: light, 0: fog; entry}
+    // Address of a write: the highest bit selects the table, 1 for light and 0 for fog; the other bits are the entry.
     input  wire  [8:0] write_entry,
     input  wire  [7:0] write_part,
     input  wire  [7:0] fog_entry,

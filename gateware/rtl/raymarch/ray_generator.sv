@@ -6,21 +6,22 @@
 //                                        └─▶ start: the largest of the near plane and of outside·inverses, the entries into the box;
 //                                            the remaining distance is multiplied by the inverses a second time
 //
-// D is the sum of 32-bit additions, exactly the formula. Rays come by band, in a band by line from the top, in a line
-// by column from the left; with `stereo` each line comes first for the left eye and then for the right eye.
+// D (docs/formats.md, "Rays") is made by 32-bit additions, which give exactly its formula. Rays come by band, in a band
+// by line from the top, in a line by column from the left; with `stereo` each line comes first for the left eye and then
+// for the right eye.
 //
-// With ROUND, and while `round` is high, rays are scaled by their Euclidean length: the sum of three squares replaces
-// the largest component, and a second table the first one.
+// With ROUND, and while `round` is high, rays are scaled by their Euclidean length: the sum of three squares replaces the
+// largest component of D, and a second table replaces the first one.
 //
-// While `cones` is high, the module generates cones instead: through the middle of blocks of 2^`block` pixels each way,
-// in the same order, with numbers. Columns and lines are then those of blocks, `offset` and `spread` are a block's
-// middle and radius in D, and cones start at the near plane. With `prepass`, and without `cones`, the near plane of a
-// block is the depth at the end of its cone: requested by `number`, returned 2 clocks later. `fine`: 160 blocks in a
-// line instead of 80.
+// While `cones` is high, the module generates cones instead of rays: through the middle of blocks of 2^`block` by 2^`block`
+// pixels, in the same order, each with its number. Columns and lines are then those of blocks; `offset` and `spread` are a
+// block's middle and radius in units of D; and cones start at the near plane. With `prepass` and without `cones`, the rays of
+// a block have the depth at the end of its cone as their near plane: requested by `number`, returned 2 clocks later. `fine`
+// means 160 blocks in a line instead of 80.
 //
-// `start` (one clock, not while `busy`) begins the frame; parameters hold until it has ended. Latency 25 clocks, 28
-// with ROUND, throughput one ray a clock. Output: a valid/ready stream; a ray stays until its transfer. `rst` ends the
-// frame.
+// `start` (one clock, not while `busy`) begins the frame; the parameters must hold until the frame has ended. Latency 25
+// clocks, 28 with ROUND; throughput one ray a clock. The output is a valid/ready stream; a ray stays until its transfer.
+// `rst` ends the frame.
 
 `default_nettype none
 
@@ -43,7 +44,7 @@ module ray_generator #(
     input  wire  [2:0][31:0]          across,
     input  wire  [2:0][31:0]          down,
     input  wire  [22:0]               near_limit,
-    // Of both eyes: positions, and distances outside of the box along each axis.
+    // For both eyes: positions, and distances outside of the box about the field along each axis.
     input  wire  [1:0][2:0][24:0]     origins,
     input  wire  [1:0][2:0][23:0]     outside,
     // Cones.
@@ -61,7 +62,7 @@ module ray_generator #(
     input  wire                       out_ready,
     output raymarch_pkg::ray_t           out_ray
 );
-    // Clocks by which the sum of the squares is later than the largest component; clocks until a ray leaves.
+    // SUM: clocks by which the sum of the squares is later than the largest component. LAST: clocks until a ray leaves.
     localparam int unsigned SUM  = ROUND ? 3 : 0;
     localparam int unsigned LAST = SUM + 23;
 
@@ -71,7 +72,7 @@ module ray_generator #(
     logic [5:0]    band;
     logic [2:0][31:0] d, row, next_row, step_across, step_down;
 
-    // Stable from the clock after `start`.
+    // The steps of D from one column and one line to the next; stable from the clock after `start`.
     if (PREPASS) begin : steps_of_blocks
         always_ff @(posedge clk)
             for (int i = 0; i < 3; i++) begin
@@ -128,7 +129,8 @@ module ray_generator #(
         end
     end
 
-    // 0: high bits of D. 1: first bits of each component. 2: largest component, rounded up for a cone. 4: its inverse.
+    // By clock (the suffix of a name): 0 the high bits of D, 1 the first bits of each component, 2 the largest component,
+    // rounded up for a cone, 4 its inverse.
     raymarch_pkg::place_t place_now;
     logic [9:0]  part_x, part_y, part_z, largest_2, longest_2, length_10, length_18;
     logic [16:0] largest_inverse_4, inverse_4;
@@ -169,7 +171,8 @@ module ray_generator #(
 
     delay #(.WIDTH(75), .CLOCKS(4)) wait_for_inverse (.clk, .enable, .in(d_0), .out(d_4));
 
-    // With ROUND: the index of either table, its inverse, and the length computed from both.
+    // The factor of the near plane: the largest component, or with `round` the length, computed from the index of the table of
+    // inverses and its entry.
     logic [10:0] part_10, part_18;
 
     if (ROUND) begin : by_squares
@@ -184,7 +187,7 @@ module ray_generator #(
         delay #(.WIDTH(17), .CLOCKS(1)) y_waits (.clk, .enable, .in(y_now), .out(y_late));
         delay #(.WIDTH(17), .CLOCKS(2)) z_waits (.clk, .enable, .in(z_now), .out(z_late));
 
-        // The constant covers the truncated bits: the sum is at least |D|^2, 34 fraction bits.
+        // The addend covers the truncated bits, so that the sum is at least |D|^2, with 34 fraction bits.
         multiply_add #(.BITS(37)) x_squared (
             .clk, .enable, .a({8'b0, x_now}), .b({1'b0, x_now}), .c(37'd1 << 19), .p(x_square)
         );
@@ -202,7 +205,7 @@ module ray_generator #(
 
         assign inverse_4 = round ? round_inverse_4 : largest_inverse_4;
 
-        // A lower bound of the length: inverse·square.
+        // The product inverse·square is a lower bound of the length |D|.
         delay #(.WIDTH(10), .CLOCKS(4)) length_waits (.clk, .enable, .in(length_3), .out(length_7));
         delay #(.WIDTH(10), .CLOCKS(2)) length_goes_on (.clk, .enable, .in(length_7), .out(length_9));
         delay #(.WIDTH(10), .CLOCKS(1)) length_is_there (.clk, .enable, .in(length_9), .out(length_10));
@@ -222,7 +225,7 @@ module ray_generator #(
         wire _unused = round;
     end
 
-    // 7: direction. 9: inverses of its components.
+    // By clock (the suffix of a name): 7 the direction, 9 the inverses of its components.
     logic [2:0][17:0] direction_7;
     logic [2:0][9:0]  index_7;
     logic [2:0][16:0] inverse_9;
@@ -243,7 +246,7 @@ module ray_generator #(
     delay #(.WIDTH(10), .CLOCKS(8)) length_stays (.clk, .enable, .in(length_10), .out(length_18));
     delay #(.WIDTH(11), .CLOCKS(8)) part_stays (.clk, .enable, .in(part_10), .out(part_18));
 
-    // 10 to 21: entry of the ray into the box, along each axis.
+    // Clocks 10 to 21 compute where the ray enters the box, along each axis.
     for (genvar i = 0; i < 3; i++) begin : axes
         logic signed [42:0] scaled;
         logic               backwards_9, negative_9;
@@ -257,8 +260,8 @@ module ray_generator #(
         delay #(.WIDTH(1), .CLOCKS(2)) sign (.clk, .enable, .in(direction_7[i][17]), .out(backwards_9));
         assign negative_9 = STEREO && place_9.eye ? origins[1][i][24] : origins[0][i][24];
 
-        // 12: outside·inverse. 13: saturated. 16: t·(|d| + 1). 17: remaining distance. 20: remaining·inverse. 21:
-        // entry.
+        // By clock (the suffix of a name): 12 outside·inverse; 13 the same, saturated: t; 16 t·(|d| + 1); 17 the remaining
+        // distance; 20 remaining·inverse; 21 the entry into the box.
         logic [16:0]        part_7, part_13, inverse_17;
         logic [23:0]        outside_9, outside_16, left_17;
         logic signed [41:0] product_12, gone_16, product_20;
@@ -285,7 +288,7 @@ module ray_generator #(
         multiply_add #(.BITS(42)) rest (
             .clk, .enable, .a({1'b0, left_17}), .b({1'b0, inverse_17}), .c('0), .p(product_20)
         );
-        // Below 2^32: the remaining distance is at most the whole one, and its inverse is below 2^17.
+        // The sum is below 2^32: the remaining distance is at most the whole one, and its inverse is below 2^17.
         assign sum = 34'(t_20) + 34'(product_20[41:9]);
 
         always_ff @(posedge clk) begin
@@ -299,13 +302,13 @@ module ray_generator #(
         wire _unused = &{1'b0, scaled[42:34], scaled[15:0], product_12[8:0], gone_16[16:0], product_20[8:0]};
     end
 
-    // 21: the near plane, in the same clock as the entries into the box.
+    // Clock 21 has the near plane, in the same clock as the entries into the box.
     multiply_add #(.BITS(34)) at_near (
         .clk, .enable, .a({2'b0, near_18}), .b({7'b0, part_18}), .c('0), .p(near_product)
     );
     assign near_21 = near_product[32:10];
 
-    // 22, 23: largest of the four.
+    // Clocks 22 and 23 select the largest of these four values, the start of the ray.
     logic [22:0] farther_22, later_22, start_23;
 
     always_ff @(posedge clk) begin
@@ -316,14 +319,14 @@ module ray_generator #(
         end
     end
 
-    // Near plane of a ray from its cone, and spread of a cone.
+    // `near_18` is the near plane of a ray, from its cone with the prepass; `spread_23` is the spread of a cone.
     logic [22:0] near_18;
     logic [raymarch_pkg::SPREAD_BITS-1:0] spread_23;
 
     if (PREPASS) begin : with_prepass
         localparam int unsigned CONES_ACROSS = picture_pkg::CONES_ACROSS;
 
-        // Line within a row of blocks, and number of the row's first block.
+        // The line within a row of blocks, and the number of the first block of that row.
         logic [3:0]         line;
         logic [13:0]        row_number, number_1, counted;
         logic signed [42:0] spread_7;
@@ -351,7 +354,8 @@ module ray_generator #(
             place_now = place;
             if (cones) {place_now.odd, place_now.line, place_now.column} = {1'b0, 3'b0, counted};
         end
-        // For squares: (|D| + s)^2 - |D|^2 is at most 2 s + s^2, with s at most 2^-4.
+        // With `round` the margin is that of a square: (|D| + s)^2 - |D|^2 is at most 2 s + s^2, with s
+        // (`spread`) at most 2^-4.
         always_ff @(posedge clk) begin
             if (!cones)     margin <= '0;
             else if (round) margin <= {1'b0, spread[13:7]} + {6'b0, spread[13:12]} + 8'd2;
@@ -387,7 +391,7 @@ module ray_generator #(
         .out_valid, .out_ready, .out_data(out_ray)
     );
 
-    // Only the signs of the origins are used.
+    // Only the signs of the origins are used here.
     wire _unused = &{1'b0, origins, d[0][31], d[0][5:0], d[1][31], d[1][5:0], d[2][31], d[2][5:0], near_product[33], near_product[9:0]};
 endmodule
 

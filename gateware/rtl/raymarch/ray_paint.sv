@@ -1,26 +1,26 @@
-// Pixels from the ends of rays: colour by surface, darkened and faded, and depth (docs/formats.md, "Ends").
+// Makes pixels from the ends of rays: colour by surface, darkened and faded, and depth (docs/formats.md, "Ends").
 //
 //             ┌─▶ t·inverse ─▶ depth ─┬─▶ depth_code ───────────────────────────────┐
 //   ends ─────┤                       └─▶ fog ─┐                                    ├─▶ group of one pixel
 //             ├─▶ steps ─▶ light ─────┐        ▼                                    │
 //             └─▶ surface ─▶ colour ─▶ × ─▶ mixed with the horizon ─▶ RGB565, L8 ───┘
 //
-// First, a hit moves from its last t to the plane of its face: by `gap` over the direction's component along the
-// normal.
+// Before the other steps, a hit moves from its last t to the plane of its face: t grows by `gap` divided by the component of
+// the direction along the normal.
 //
-// A pixel leaves as a group of the band buffer: row, line, column of eight pixels, a mask of one pixel, one code, and
-// one colour for all pixels of the group. With `stereo` the colour is the luminance, twice, and `out_eye` selects the
-// valid half.
+// A pixel leaves as a group for the band buffer: row, line, column of eight pixels, a mask of one pixel, one code,
+// and one colour for all pixels of the group. With `stereo` the colour holds the luminance twice, and `out_eye`
+// selects the valid half.
 //
-// With ROUND, the end of a ray on a sphere or fillet comes with its colour, `in_colour`, and `round` means that rays
-// are scaled by their Euclidean length. Streams are valid/ready. Latency 36 clocks, throughput one pixel a clock.
-// Parameters hold while pixels are in the pipeline.
+// With ROUND, the end of a ray on a sphere or fillet comes with its colour, `in_colour`, and `round` means that rays are
+// scaled by their Euclidean length. Streams are valid/ready. Latency 36 clocks, throughput one pixel a clock. The parameters
+// must hold while pixels are in the pipeline.
 
 `default_nettype none
 
 module ray_paint #(
     parameter bit ROUND   = 1'b0,
-    // Eight face colours, for faces perpendicular to the diagonals; otherwise six.
+    // With OCTANTS there are eight face colours, for faces perpendicular to the diagonals; otherwise six.
     parameter bit OCTANTS = 1'b0
 ) (
     input  wire                     clk,
@@ -68,8 +68,8 @@ module ray_paint #(
         if (rst) valid <= '0;
     end
 
-    // The step to the plane of the face takes FIRST clocks: 2 for the slope's inverse, 3 for the product, 1 for t.
-    // Clock numbers below count from `ending_0`.
+    // The step to the plane of the face takes FIRST clocks: 2 for the inverse of the slope, 3 for the product, 1 for t. The
+    // clock numbers below count from `ending_0`, after this step.
     raymarch_pkg::end_t    ending_0, waited;
     logic [16:0]        slope_inverse;
     logic [11:0]        gap_waits;
@@ -87,11 +87,11 @@ module ray_paint #(
 
     always_comb begin
         ending_0   = waited;
-        // Saturated.
+        // The sum is saturated to 23 bits.
         ending_0.t = reached[22:0] | {23{reached[23]}};
     end
 
-    // 2: inverse. 5: depth.
+    // By clock (the suffix of a name): 2 the inverse of the length, 5 the depth.
     logic [16:0]        inverse_2, largest_inverse_2;
     logic [22:0]        t_2;
     logic signed [42:0] product_5;
@@ -115,7 +115,7 @@ module ray_paint #(
         .clk, .enable, .mantissa(depth_mantissa), .exponent(depth_exponent), .depth(product_5[39:0]), .code(code_28)
     );
 
-    // 7: entries of the tables. 9: their values.
+    // By clock (the suffix of a name): 7 entries to look up in the tables of fog and light, 9 their values.
     logic [18:0] deep_6;
     logic [7:0]  fog_entry_7, fog_9, light_9, height_9, steps_7;
 
@@ -133,7 +133,7 @@ module ray_paint #(
         .fog_entry(fog_entry_7), .fog(fog_9), .light_entry(steps_7), .light(light_9)
     );
 
-    // 9: colour. 10: shares of light and fog in 256ths.
+    // By clock (the suffix of a name): 9 the colour of the surface, 10 the shares of light and fog in 256ths.
     raymarch_pkg::state_t state_8, state_9;
     logic [2:0]        surface_8;
     logic [2:0][7:0]   colour_9, colour_10;
@@ -144,7 +144,7 @@ module ray_paint #(
         .clk, .enable, .in({ending_0.state, ending_0.surface}), .out({state_8, surface_8})
     );
 
-    // The end on a sphere or fillet comes with its lit colour.
+    // The end of a ray on a sphere or fillet comes with a colour that includes the light.
     logic        lit_8;
     logic [23:0] lit_colour_8;
 
@@ -191,7 +191,7 @@ module ray_paint #(
 
     delay #(.WIDTH(9), .CLOCKS(4)) fog_waits (.clk, .enable, .in(fog_10), .out(fog_14));
 
-    // 13: darkened. 14: difference to the horizon. 17: faded.
+    // By clock (the suffix of a name): 13 the darkened colour, 14 its difference to the horizon's colour, 17 the faded colour.
     logic [2:0][7:0] faded_17;
 
     for (genvar i = 0; i < 3; i++) begin : channels
@@ -212,10 +212,10 @@ module ray_paint #(
         wire _unused = &{1'b0, lit_13[25:16], lit_13[7:0], faded[25:16], faded[7:0]};
     end
 
-    // 18: in the format of the frame buffer.
+    // Clock 18 has the colour in the format of the frame buffer.
     logic [15:0] colour_18, colour_29;
 
-    // Rounded to nearest, saturated.
+    // Rounds a channel to nearest, and saturates it.
     function automatic logic [4:0] five(input logic [5:0] channel);
         five = channel[5:1] == '1 ? '1 : channel[5:1] + 5'(channel[0]);
     endfunction
@@ -229,7 +229,7 @@ module ray_paint #(
 
     delay #(.WIDTH(16), .CLOCKS(11)) colour_waits (.clk, .enable, .in(colour_18), .out(colour_29));
 
-    // 29: the group. The code is 0 without a hit.
+    // Clock 29 has the group. The code is 0 for a ray without a hit.
     raymarch_pkg::place_t place_26, place_29;
     logic              hit_28;
     logic [17:0]       code_29;

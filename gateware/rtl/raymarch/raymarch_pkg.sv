@@ -3,9 +3,10 @@
 `default_nettype none
 
 package raymarch_pkg;
-    // Each module uses a part of the constants.
+    // Verilator would warn about constants that a module does not use, and each module uses only some.
     /* verilator lint_off UNUSEDPARAM */
-    // t, u11.12; coordinates of a point: s10.12 as input of fields, s13.12 before; direction, s1.17.
+    // Widths of t, u11.12; of a point's coordinate as input of a field, s10.12, and before that, s13.12; of a component of
+    // the direction, s1.17.
     localparam int unsigned T_BITS         = 23;
     localparam int unsigned POINT_BITS     = 22;
     localparam int unsigned WIDE_BITS      = 25;
@@ -15,7 +16,7 @@ package raymarch_pkg;
     // Largest number of evaluations of a cone.
     localparam int unsigned CONE_STEPS     = 192;
 
-    // Place of a pixel: parity of its band, line in the band, column, and eye: 0 for the left or only one.
+    // Place of a pixel: parity of its band, eye (0 is the left or the only one), line in the band, and column.
     typedef struct packed {
         logic        odd;
         logic        eye;
@@ -25,8 +26,7 @@ package raymarch_pkg;
 
     localparam int unsigned PLACE_BITS = 19;
 
-    // A ray before its first step, or a cone. A cone has its number in the low bits of `place`, and a `spread` other
-    // than 0.
+    // A ray before its first step, or a cone. In a cone the low bits of `place` are its number, and `spread` is not 0.
     typedef struct packed {
         logic [SPREAD_BITS-1:0]    spread;
         place_t                    place;
@@ -37,10 +37,10 @@ package raymarch_pkg;
 
     typedef enum logic [1:0] {MISS = 2'd0, HIT = 2'd1, UNDECIDED = 2'd2} state_t;
 
-    // End of a ray. `surface` is {axis, positive}, or the number of a sphere; `gap` is the distance from `t` to the
-    // face, and `slope` the component of the direction along the face's inward normal. Only the light on spheres uses
-    // `direction`. On a fillet, `face` is the face's {axis, positive} and `share` is the sphere's weight, u0.8. For a
-    // miss, `t` is the sine of the elevation in 8 bits, 0 below the horizon.
+    // The end of a ray. `surface` is {axis, positive}, or the number of a sphere; `gap` is the distance from the point at `t`
+    // to the face, and `slope` is the component of the direction along the inward normal of the face. Only the light on
+    // spheres uses `direction`. On a fillet, `face` is the face's {axis, positive} and `share` is the sphere's weight, u0.8.
+    // For a miss, `t` is the sine of the elevation in 8 bits, 0 below the horizon.
     typedef struct packed {
         logic [2:0]        face;
         logic [7:0]        share;
@@ -59,7 +59,7 @@ package raymarch_pkg;
     localparam int unsigned ROUND_END_BITS = FLAT_END_BITS + 1 + 3 * DIRECTION_BITS;
     localparam int unsigned END_BITS       = ROUND_END_BITS + 8 + 3;
 
-    // Nearest sphere of the passes so far: distance and number.
+    // The nearest sphere among those evaluated so far for a point: its distance and number.
     typedef struct packed {
         logic signed [POINT_BITS-1:0] distance;
         logic [2:0]                   number;
@@ -72,7 +72,8 @@ package raymarch_pkg;
         end_bits = blend ? END_BITS : round ? ROUND_END_BITS : FLAT_END_BITS;
     endfunction
 
-    // Clocks from a point to its distance: by levels of the sponge, flat fields as a bit mask, spheres, fillets.
+    // Clocks from a point to its distance, by the levels of the sponge, the flat fields as a bit mask, and whether there are
+    // spheres and fillets.
     function automatic int unsigned field_clocks(input int unsigned levels, input int unsigned fields, input bit round, input bit blend);
         field_clocks = fields_pkg::flat_clocks(levels, fields);
         if (round && field_clocks < 19) field_clocks = 19;

@@ -1,8 +1,8 @@
-// sqrt(x) for x from 1 to 4 in steps of 1/128, and the difference to the next entry: 18 fraction bits, rounded down
-// (docs/formats.md, "Fields").
+// Table of sqrt(x) for x from 1 to 4 in steps of 1/128, and of the difference to the next entry: 18 fraction bits, rounded
+// down (docs/formats.md, "Fields").
 //
-// `index` is 128·x; indices below 128 read as 128. `root` omits its leading bit, which is 1. Latency 2 clocks,
-// throughput one result a clock.
+// `index` is 128·x; an index below 128 reads the entry of 128. `root` omits the leading bit of the root, which is 1. Latency 2
+// clocks, throughput one result a clock.
 
 `default_nettype none
 
@@ -16,7 +16,8 @@ module root_table (
     logic [27:0] entries [0:511];
     logic [27:0] latched;
 
-    // {18 fraction bits of the root, difference to the next entry}. Reals are exact enough, as in round_inverse.
+    // An entry is {18 fraction bits of the root, difference to the next root}. Real numbers are exact enough here,
+    // see round_inverse.
     initial begin
         for (int i = 0; i < 512; i++)
             entries[i] = {

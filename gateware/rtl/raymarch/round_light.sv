@@ -3,11 +3,11 @@
 //   end ─▶ o + t·d ─▶ - centre ─▶ · light ─▶ / radius ─▶ times its colour, summed ─▶ times the material ─▶ end, colour
 //                                   └──────────── once for each light ────────────┘
 //
-// All ends pass in order; the colour of other ends is undefined. An end on a sphere or fillet takes one clock per
-// light, any other end one clock. With BLEND the colour is interpolated between that of the face, from `palette`, and
-// that of the sphere, by `share`. Latency 24 clocks, 28 with BLEND, plus one clock for each light but the first. The
-// output has no direction. Streams are valid/ready. Spheres are written, and parameters change, while the pipeline is
-// empty.
+// All ends pass in order; the colour of ends on other surfaces is undefined. An end on a sphere or fillet takes one clock per
+// light, any other end one clock. With BLEND the colour is interpolated, by `share`, between that of the face, from
+// `palette`, and that of the sphere. Latency 24 clocks, 28 with BLEND, plus one clock for each light but the first. The ends
+// of the output have no direction. Streams are valid/ready. Spheres are written, and parameters change, only while the
+// pipeline is empty.
 
 `default_nettype none
 
@@ -43,7 +43,7 @@ module round_light #(
     (* ram_style = "distributed" *) logic [16:0] inverses [0:7];
     (* ram_style = "distributed" *) logic [23:0] materials [0:7];
 
-    // 0: an end, repeated for each light.
+    // Clock 0 holds an end, for one clock per light.
     logic            enable, held_valid, last_0;
     raymarch_pkg::end_t held;
     logic [1:0]      light_0;
@@ -69,7 +69,7 @@ module round_light #(
         end
     end
 
-    // Constants of the sphere, each in the clock of its use.
+    // The constants of the sphere, each read in time for the clock of its use.
     logic [2:0]       number_2, number_8, number_11, number_18;
     logic [2:0][21:0] centre_3;
     logic [4:0]       shift_9;
@@ -96,7 +96,8 @@ module round_light #(
         end
     end
 
-    // 3: point. 4: relative to the centre, and direction of the light.
+    // By clock (the suffix of a name): 3 the point where the ray ends; 4 the point relative to the centre, and the
+    // direction of the light.
     logic              eye_2;
     logic [1:0]        light_3, light_14;
     logic              first_17;
@@ -144,7 +145,8 @@ module round_light #(
         wire _unused = &{1'b0, sum[raymarch_pkg::WIDE_BITS+16:40], sum[16:0]};
     end
 
-    // 9: their product. 11: shifted to 17 bits or more. 12: saturated at 17 bits.
+    // By clock (the suffix of a name): 9 the scalar product of the point and the light's direction; 11 the product, shifted to
+    // 17 bits or more; 12 the same, saturated at 17 bits.
     logic [22:0]        apart_y_5, apart_z_6;
     logic [17:0]        towards_y_5, towards_z_6;
     logic signed [42:0] x_7, x_y_8, product_9;
@@ -181,7 +183,8 @@ module round_light #(
         end
     end
 
-    // 15: cosine in 256ths. 18: sum. 19: saturated at 255.
+    // By clock (the suffix of a name): 15 cosine between normal and light in 256ths, 18 sum over the lights, 19 the
+    // sum, saturated at 255.
     logic signed [36:0] cosine_15;
     logic [8:0]         share_15;
     logic [23:0]        colour_15;
@@ -222,7 +225,8 @@ module round_light #(
         wire _unused = &{1'b0, sum_18[7:0], coloured[25:16], coloured[7:0]};
     end
 
-    // 22: colour of the face. 23: difference to the sphere's colour. 26: their mixture by the sphere's weight.
+    // By clock (the suffix of a name): 22 the colour of the face, 23 its difference to the sphere's colour, 26 their mixture
+    // by the sphere's weight.
     if (BLEND) begin : between
         logic [2:0]      face_21;
         logic [7:0]      share_22;

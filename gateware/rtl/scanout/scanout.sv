@@ -6,13 +6,13 @@
 //                  └──────────── one source line at a time ◀── scanout_lines ◀── scanout_timing
 //
 // Once a frame, when the vertical blanking begins, the sys side latches `frame_base`, `scale` and `enable`, counts the frame
-// and pulses `vblank`; the pix side requests line 0 only after that. So all lines of a frame come from one base. The raster never
-// waits: a late line is replaced by the previous one and counted.
+// and pulses `vblank`. The pix side requests line 0 only after that, so all lines of a frame come from one base. The raster
+// never waits: a line that comes late is replaced by the previous one and counted.
 //
-// Throughput: one pixel a pix_clk, at most one memory word a sys_clk. Latency: 3 pix_clk from the raster to the video
-// outputs; a source line is requested one to `scale` output lines before its first use.
-// Crossings: three four-phase requests with stable payload (cdc_request), one level, and the line ring, whose slots are
-// written and read at different times by the protocol of scanout_lines.
+// Throughput: one pixel a pix_clk, at most one memory word a sys_clk. Latency: 3 pix_clk from the raster to the video outputs;
+// a source line is requested one to `scale` output lines before its first use. Clock domain crossings: three four-phase
+// requests with stable payload (cdc_request), one level, and the line ring, whose slots are written and read at different
+// times by the protocol of scanout_lines.
 
 `default_nettype none
 
@@ -31,7 +31,7 @@ module scanout #(
     input  wire                     sys_rst,
     input  wire                     pix_clk,
     input  wire                     pix_rst,
-    // Settings requested by software, latched at vblank. The base is in words of 16 bytes, the scale is 4, 2 or 1.
+    // Settings requested by software, latched at vblank. The base is an address in words of 16 bytes, the scale is 4, 2 or 1.
     input  wire                     enable,
     input  wire  [2:0]              scale,
     input  wire  [ADDRESS_BITS-1:0] frame_base,
@@ -91,7 +91,7 @@ module scanout #(
 
     /* verilator lint_on PINCONNECTEMPTY */
 
-    // A level, so that a reset of the sys side blacks the screen at once.
+    // This signal is a level, so that a reset of the sys side blacks the screen at once.
     logic pix_enabled;
     cdc_level cross_enabled (.clk(pix_clk), .level(enabled), .synced(pix_enabled));
 
@@ -212,7 +212,7 @@ module scanout #(
         sync_2       <= sync_1;
 
         {video_hsync, video_vsync, video_de} <= sync_2;
-        // Replicating the top bits maps 31 and 63 to 255.
+        // Repeats the top bits of a channel as its lowest bits, so that 31 and 63 become 255.
         video_r <= {pixel[15:11], pixel[15:13]};
         video_g <= {pixel[10:5],  pixel[10:9]};
         video_b <= {pixel[4:0],   pixel[4:2]};

@@ -1,12 +1,12 @@
 // Fetches one source line from memory into a slot of the line ring.
 //
-// Memory side, the LiteDRAM native read port: commands by valid/ready (payload stable while valid and not ready), one
-// word a clock at most; data comes in order, some time later, and cannot be held back. The whole slot is free before the
-// first command, so each word has its place and is stored in the clock it comes.
+// Memory side, the LiteDRAM native read port: commands by valid/ready (payload stable while valid and not ready), one word a
+// clock at most; data comes in order, some time later, and cannot be held back. The whole slot is free before the first
+// command, so each word is stored in its place in the clock in which it comes.
 //
-// Work side: `request` is a level with `line` and `slot`, held until `done` (one clock). Without `enable` a request is
-// done at once and reads nothing. A withdrawn request ends without `done`.
-// Latency: 3 clocks to the first command, 1 from the last word to `done`.
+// Work side: `request` is a level with `line` and `slot`, held until `done` (one clock). Without `enable` a request is done at
+// once and reads nothing. A request that is withdrawn ends without `done`. Latency: 3 clocks to the first command, 1 clock
+// from the last word to `done`.
 
 `default_nettype none
 
@@ -41,7 +41,7 @@ module scanout_fetch #(
     localparam int unsigned OFFSET_BITS = Y_BITS + WORD_BITS;
     localparam logic [WORD_BITS-1:0] FULL_LINE = WORD_BITS'(LINE_WORDS);
 
-    // Shifts and adds, two for 160 words: synthesis would spend a DSP48 on `*`.
+    // Multiplies by LINE_WORDS with shifts and adds, two for 160 words: synthesis would spend a DSP48 on `*`.
     function automatic logic [OFFSET_BITS-1:0] times_line_words(input logic [Y_BITS-1:0] factor);
         times_line_words = '0;
         for (int i = 0; i < WORD_BITS; i++)
@@ -64,7 +64,7 @@ module scanout_fetch #(
         case (state)
             IDLE: begin
                 withdrawn  <= 1'b0;
-                // Exact: LINE_WORDS is a multiple of the largest scale.
+                // The shift loses no bits, since LINE_WORDS is a multiple of the largest scale.
                 offset     <= times_line_words(line) >> shift;
                 last       <= (FULL_LINE >> shift) - 1'b1;
                 store_slot <= slot;

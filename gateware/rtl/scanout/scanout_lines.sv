@@ -1,16 +1,16 @@
 // Control of the line ring: which of the two slots is shown, and which source line is fetched into the other.
 //
-// Decided once an output line, at the tick (the leading edge of hsync, when the last pixel has left):
+// Decisions are taken once an output line, at the tick (the leading edge of hsync, when the last pixel has left):
 //
-//   1. the hidden slot holds the source line the next output line needs: the slots change places;
-//   2. it does not, and this is the line's first use: an underflow. The shown slot is shown again, or black where this
-//      frame has shown nothing yet. Later output lines of the same source line look again;
-//   3. the hidden slot is free: the source line after the needed one is requested, also after an underflow. During the
+//   1. if the hidden slot holds the source line that the next output line needs, the slots change places;
+//   2. if it does not, and this is the first use of that source line, there is an underflow: the shown slot is shown again,
+//      or black where this frame has shown nothing yet. Later output lines of the same source line check the slot again;
+//   3. if the hidden slot is free, the source line after the needed one is requested, also after an underflow. During the
 //      vertical blanking that is line 0, as soon as the frame's parameters are latched (`frame_begun`).
 //
-// A slot is written only while it is hidden, and a frame shows only lines requested after its vblank: the screen never mixes
-// frames. A slow fetch delays later fetches, never the raster.
-// `want_line`, `want_slot` are stable from `fetch` until `fetch_busy` falls.
+// A slot is written only while it is hidden, and a frame shows only lines requested after its vblank, so the screen never
+// mixes frames. A slow fetch delays later fetches, never the raster. `fetch_line` and `fetch_slot` are stable from `fetch`
+// until `fetch_busy` falls.
 
 `default_nettype none
 
@@ -38,7 +38,7 @@ module scanout_lines #(
     output logic              shown_slot,
     output logic              underflow
 );
-    // The source line that the coming output line shows, and the one after it.
+    // The source line that the next output line shows, and the source line after it.
     logic [Y_BITS-1:0] needed, next, group_mask;
     logic              in_picture, first_use, next_exists;
 
@@ -51,11 +51,11 @@ module scanout_lines #(
         next_exists = next < (Y_BITS'(V_ACTIVE) >> shift);
     end
 
-    // A fetch into the hidden slot was requested in this frame.
+    // `hidden_asked`: a fetch into the hidden slot was requested in this frame.
     logic frame_open, hidden_asked, hidden_ready;
     assign hidden_ready = hidden_asked && !fetch_busy && fetch_line == needed && in_picture;
 
-    // Step 3 runs a clock after steps 1 and 2 and uses their results.
+    // Step 3 above runs a clock after steps 1 and 2 and uses their results.
     logic              decide;
     logic [Y_BITS-1:0] decide_line;
     logic              decide_exists;

@@ -1,13 +1,11 @@
-// The video timing: counters, syncs and a tick a line.
+// Generates the video timing: counters of pixels and lines, both syncs, and a tick in each line.
 //
-// A line is active, front porch, sync, back porch; a frame likewise. Both syncs are active high, and vsync changes with
-// the leading edge of hsync, as in CEA-861. Its only inputs are clock and reset.
+// A line consists of active pixels, front porch, sync and back porch, and a frame likewise of lines. Both syncs are active
+// high, and vsync changes with the leading edge of hsync, as in CEA-861. The only inputs are clock and reset.
 //
-// `tick` is the first clock of hsync. `tick_line` is then the line that follows, 0 to V_ACTIVE - 1, or V_ACTIVE and
-// more in the vertical blanking; V_ACTIVE itself is the tick that begins the blanking.
-// One pixel a clock; the outputs are registers. Reset sets the counters to the end of the last active line: a vertical
-// blanking comes
-// first.
+// `tick` is the first clock of hsync. `tick_line` is then the number of the line that follows, 0 to V_ACTIVE - 1, or V_ACTIVE
+// and more in the vertical blanking; the tick with V_ACTIVE begins the blanking. Throughput one pixel a clock; the outputs are
+// registers. Reset sets the counters to the end of the last active line, so that a vertical blanking comes first.
 
 `default_nettype none
 

@@ -1,4 +1,5 @@
-// Places a triangle at the row where it enters the band: its first one, or the band's if it begins above.
+// Places a triangle at the row where it enters the band: its first row, or the first row of the band if the
+// triangle begins above.
 //
 //        top ─────────▲            E' and depth there are start + step_y * (first - top), and at the other end of the
 //                    ╱ ╲           group E' + 7 * step_x: exact, E' in 34 bits and depth modulo 2^32
@@ -6,7 +7,7 @@
 //         band     ╱     ╲
 //      ═══════════════════════════
 //
-// A multiplier and adder, and for `beside` a second one, do all in eight passes, one a clock:
+// One multiplier and adder, and a second one for `beside`, compute all values in eight passes, one a clock:
 //
 //   pass   product              plus           gives
 //   0, 1   step_y * offset      start          E' at lane 0 of edges 0 and 1
@@ -16,11 +17,11 @@
 //   6      step_x * 7           pass 4         lane 7 and beside
 //   7      its high 8 bits      pass 5         depth
 //
-// Streams are valid/ready, and ready comes from registers. Latency 13 clocks, throughput a triangle in 8 clocks: while one is in
-// its passes the previous one ends, or is held until there is room, and another one waits. A triangle without a row in the band is
-// taken and dropped. The band's first row `in_y0` and its parity `in_odd` come with the triangle; `holds` is set for the parities
-// of the triangles inside. The bands' `rows` must hold while triangles are inside.
-// With SMOOTH, planes of light go the same way, each with a multiplier of its own.
+// Streams are valid/ready, and ready comes from registers. Latency 13 clocks, throughput a triangle in 8 clocks: while one
+// triangle is in its passes, the previous one finishes, or is held until there is room, and another one waits at the input. A
+// triangle without a row in the band is taken and dropped. The band's first row `in_y0` and its parity `in_odd` come with the
+// triangle; `holds` is set for the parities of the triangles inside. `rows`, the rows of a band, must hold while triangles are
+// inside. With SMOOTH, planes of light go the same way, each with a multiplier of its own.
 
 `default_nettype none
 
@@ -42,20 +43,21 @@ module band_entry #(
     input  wire                            out_ready,
     output logic                           out_odd,
     output raster_pkg::placed_t            out_triangle,
-    // Starts of the edges: values at the row, in lane 0.
+    // Planes of light: their values at the row, in lane 0.
     output logic [PLANES_BITS-1:0]         out_planes
 );
     localparam logic [31:0] HALF_A_CODE = 32'd1 << 13;
     localparam logic [2:0]  STALLS = 3'd3, ROWS_KNOWN = 3'd4, LAST = 3'd7;
 
-    // Three stages: the triangle in its passes, then in its three `ending` clocks, then held.
+    // Three stages: a triangle is in its passes, then in its three `ending` clocks, then held.
     triangle_pkg::descriptor_t triangle;
     logic [9:0]  y0;
     logic        busy, odd, held_valid, held_odd, advance, next_free;
     logic [2:0]  pass;
     logic [3:1]  ending;
 
-    // The first result of a triangle replaces the first result of the previous one.
+    // The first result of a triangle overwrites the first result of the previous one, so the passes stall until that
+    // triangle has left the held stage.
     assign advance   = pass != STALLS || !held_valid || !out_valid;
     assign next_free = !out_valid || out_ready;
     assign in_ready  = !busy || pass == LAST;
@@ -65,7 +67,7 @@ module band_entry #(
                         || out_valid && out_odd == 1'(b);
     end
 
-    // Rows relative to the band's first one.
+    // Rows relative to the first row of the band.
     logic [10:0] above, below;
     logic [9:0]  offset;
     logic [5:0]  first, past, count;
@@ -80,7 +82,7 @@ module band_entry #(
         count <= past > first ? past - first : '0;
     end
 
-    // The step_x that the passes use.
+    // The horizontal step of the edge that this pass uses, its sign and its magnitude.
     logic [2:0][20:0] step_x, step_y;
     logic [20:0]      step;
     logic             rises, falls;
@@ -97,7 +99,7 @@ module band_entry #(
         slope = falls ? 20'(-step) : step[19:0];
     end
 
-    // Operands of a pass, `c` a clock later; `sum` and `beside` follow two more clocks later.
+    // Operands of a pass; `c` comes a clock later, and `sum` and `beside` come two more clocks later.
     logic signed [24:0] a;
     logic signed [17:0] b, b_beside;
     logic signed [47:0] c, sum;
@@ -140,7 +142,7 @@ module band_entry #(
     logic [2:0]          all_rises, all_falls;
 
     for (genvar k = 0; k < 3; k++) begin : edges
-        // Pass that uses the edge's step_x, and the clocks with its sums.
+        // LANE_0: the pass in whose clock the edge's value at lane 0 arrives. STEP: the pass that uses the edge's step_x.
         localparam logic [2:0] LANE_0 = k == 2 ? 3'd7 : 3'd3 + 3'(k);
         localparam logic [2:0] STEP   = k == 2 ? 3'd6 : 3'd2 + 3'(k);
         logic at_lane_0, at_lane_7;
@@ -165,7 +167,7 @@ module band_entry #(
         assign step_y[k] = steps.y;
     end
 
-    // Held triangle: the results stay in their registers, the other fields are copied after the last pass.
+    // The held triangle: its results stay in their registers, its other fields are copied here after the last pass.
     always_ff @(posedge clk) begin
         if (pass == LAST) begin
             held_odd            <= odd;

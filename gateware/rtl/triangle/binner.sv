@@ -1,5 +1,5 @@
-// Writes the results of the setup to memory: each descriptor once, its number to the list of every band that it touches, and
-// the numbers of exceptions to a list of their own.
+// Writes the results of the setup to memory: each descriptor once, the number of the descriptor to the list of every band that
+// the triangle touches, and the numbers of exceptions to a list of their own.
 //
 // Layout in words of 16 bytes, entries being u32 (docs/formats.md "Band lists"):
 //   descriptors   descriptor_base + 3·number           3 words each; with SMOOTH 6, and 6·number
@@ -7,12 +7,12 @@
 //                 list_base + 16 + (band << list_shift) + 128·band  the list of a band, 4 entries a word
 //   exceptions    exception_base                       4 entries a word
 //
-// The entries of a list are kept here until there are four of them: a word is written whole. Turning from the descriptors to
-// a list and back costs memory several clocks, so one write for four entries counts.
+// The entries of a list are kept here until there are four of them, so that each word is written whole. Turning from the
+// descriptors to a list and back costs memory several clocks, so it matters that four entries take one write.
 //
-// Throughput 6 clocks a descriptor, with SMOOTH 9, and 2 more for each further band. `restart` (while idle) empties all
-// lists, which takes 64 clocks; `finish` (a level, after the last input) writes the lengths and ends with `done`.
-// Without room, items are dropped and `full` is set: the frame is incomplete.
+// Throughput 6 clocks a descriptor, with SMOOTH 9, and 2 more for each band after the first. `restart` (while idle) empties
+// all lists, which takes 64 clocks; `finish` (a level, after the last input) writes the lengths and ends with `done`. Items
+// for which there is no room are dropped, and `full` is set: the frame is incomplete.
 
 `default_nettype none
 
@@ -52,7 +52,7 @@ module binner #(
     output logic [ADDRESS_BITS-1:0] write_addr,
     output logic [127:0]            write_data,
     output logic [15:0]             write_strobe,
-    // Memory word of a descriptor or of a list.
+    // High when the word belongs to a descriptor, low when it belongs to a list.
     output logic                    write_descriptor
 );
     localparam int unsigned BANDS       = 64;
@@ -60,7 +60,7 @@ module binner #(
     localparam int unsigned DESCRIPTOR_WORDS = 3 << SMOOTH;
     localparam int unsigned WORD_BITS        = $clog2(DESCRIPTOR_WORDS);
 
-    // v/3 for 8 bits: 171/512 is exact in this range.
+    // Computes v/3 for 8 bits as v·171/512, which is exact in this range.
     function automatic logic [6:0] third(input logic [7:0] v);
         logic [15:0] product;
         product = (16'(v) << 7) + (16'(v) << 5) + (16'(v) << 3) + (16'(v) << 1) + 16'(v);
@@ -75,7 +75,7 @@ module binner #(
         endcase
     endfunction
 
-    // Entry in lane `lane` of an otherwise empty word.
+    // The strobe that writes only the entry in lane `lane` of a word.
     function automatic logic [15:0] entry_strobe(input logic [1:0] lane);
         entry_strobe = 16'hf << {lane, 2'b00};
     endfunction
@@ -83,7 +83,7 @@ module binner #(
     typedef enum logic [3:0] {CLEAR, IDLE, LOCATE, WORD, LOOK, ENTRY, LENGTHS, LENGTHS_WORD, DONE} state_t;
     state_t state;
 
-    // Length of each list, and the first three entries of its incomplete last word.
+    // Per list: its length, and the first three entries of its incomplete last word.
     (* ram_style = "distributed" *) logic [COUNT_BITS-1:0]   lengths [0:BANDS-1];
     (* ram_style = "distributed" *) logic [3*COUNT_BITS-1:0] ends [0:BANDS-1];
     logic [BAND_BITS-1:0]    band, last_band;
@@ -127,7 +127,7 @@ module binner #(
         endcase
     end
 
-    // The data follow `band` a clock later.
+    // Values that are read for `band` come a clock after it.
     logic [ADDRESS_BITS-1:0] first_list, list_word;
     logic [127:0]            list_data;
 
@@ -191,7 +191,7 @@ module binner #(
                 word            <= word + 1'b1;
                 if (word == WORD_BITS'(DESCRIPTOR_WORDS - 1)) state <= ENTRY;
             end
-            // One clock to read the next list's length and entries.
+            // Waits one clock to read the next list's length and entries.
             LOOK: state <= ENTRY;
             ENTRY: if (free || !word_ends) begin
                 if (word_ends) begin

@@ -5,8 +5,8 @@
 //   else one behind, or one beyond the guard band                                  exception: its number goes out
 //   else                                                                           regular
 //
-// Latency 2 clocks, throughput a triangle a clock. `width` and `height` hold while triangles are inside. Triangles are
-// numbered in the order they come, from 0 after `restart`.
+// Latency 2 clocks, throughput a triangle a clock. `width` and `height` must hold while triangles are inside. Triangles are
+// numbered in the order in which they come, from 0 after `restart`.
 
 `default_nettype none
 
@@ -19,7 +19,7 @@ module classify #(
     input  wire  [10:0]              width,
     input  wire  [9:0]               height,
     output logic                     idle,
-    // High for one clock for each triangle that is dropped.
+    // High for one clock for each triangle that is dropped as unseen.
     output logic                     unseen,
     output logic [31:0]              count,
     input  wire                      in_valid,
@@ -34,7 +34,8 @@ module classify #(
     input  wire                      exception_ready,
     output logic [31:0]              exception_number
 );
-    // Sides of the picture beyond which a vertex lies: left, right, above, below. Compares whole pixels.
+    // The sides of the picture beyond which a vertex lies: left, right, above, below. Only the whole pixels
+    // of its place count.
     function automatic logic [3:0] off_sides(input logic [12:0] x, input logic [12:0] y);
         off_sides = {x[12], !x[12] && x[11:0] >= 12'(width), y[12], !y[12] && y[11:0] >= 12'(height)};
     endfunction
@@ -46,7 +47,7 @@ module classify #(
     logic [2:0]           behind, beyond;
     logic                 is_unseen, is_exceptional;
 
-    // First stage: each vertex. Second stage: the triangle.
+    // The first stage examines each vertex, the second stage decides about the triangle.
     assign idle           = !held && !known;
     assign next_free      = !known || moves;
     assign in_ready       = !held || next_free;

@@ -1,14 +1,15 @@
 // The first part of the triangle setup: area, facing, bounds and start group. A triangle without area, a back face while
-// `cull_back`, or one without a pixel's centre in the bounds ends here, with a pulse of `culled`. So does one that is off a
-// side of the picture: its bounds are empty.
+// `cull_back`, or a triangle without a pixel's centre in its bounds ends here, with a pulse of `culled`. So does a triangle
+// beyond one side of the picture, because its bounds are empty.
 //
-// Throughput a triangle in 4 clocks, latency 8. Two triangles are inside, one after the other in time with `phase`:
+// Throughput a triangle in 4 clocks, latency 8. Two triangles are inside, in different stages; `phase` counts the 4
+// clocks of a stage:
 //
 //   in ─▶│ first 4 clocks: products of the area,  │─▶│ last 4 clocks: area,        │─▶ out
 //        │ minima and maxima, one in each clock   │  │ bounds, start; then verdict │
 //
-// Everything stops while a triangle that is not culled waits in phase 3 for `out`; a culled one never waits. in_ready follows
-// out_ready in the same clock, so out_ready must come from registers, as in `setup`.
+// Everything stops while a triangle that is not culled waits in phase 3 for `out`; a culled triangle never waits. `in_ready`
+// follows `out_ready` in the same clock, so `out_ready` must come from registers, as in `setup`.
 
 `default_nettype none
 
@@ -33,10 +34,10 @@ module cull #(
     output logic                   out_valid,
     input  wire                    out_ready,
     output setup_pkg::oriented_t              out_triangle,
-    // Light L of the vertices for the visible side.
+    // Light L of the vertices, for the visible side of the triangle.
     output logic [2:0][LIT_BITS-1:0] out_lit
 );
-    // Inputs of a triangle, and the differences of its coordinates.
+    // The inputs of a triangle, and the differences of the coordinates of its vertices.
     typedef struct packed {
         triangle_pkg::screen_vertex_t v0, v1, v2;
         logic [15:0]          colour;
@@ -90,7 +91,8 @@ module cull #(
         end
     end
 
-    // 2A = x10·y20 + x20·y01, the highest four bits of y20 and y01 first. Valid in phase 2 of the last clocks.
+    // `area` is 2A = x10·y20 + x20·y01, from products with the highest four bits of y20 and y01 first. Valid in phase 2
+    // of the last clocks.
     logic signed [24:0] a;
     logic signed [17:0] b;
     logic signed [43:0] c, area;
@@ -109,8 +111,8 @@ module cull #(
 
     multiply_add #(.BITS(44)) dsp (.clk, .enable(advance), .a, .b, .c, .p(area));
 
-    // Left, right, top, bottom: selected in phases 0 to 3, rounded up to a centre one clock later, clamped to the
-    // picture after that.
+    // Left, right, top and bottom of the bounds: selected in phases 0 to 3, rounded up to a pixel's centre one clock later,
+    // and then clamped to the picture.
     logic [20:0] extreme;
     logic [12:0] pixel;
     logic [10:0] size, cut, left, right;
@@ -134,7 +136,7 @@ module cull #(
         cut     = pixel[12] ? '0 : pixel[11:0] > {1'b0, size} ? size : pixel[10:0];
     end
 
-    // The verdict and the values that depend on the facing, registered for phase 3.
+    // The decision to cull, and the values that depend on the facing, registered for phase 3.
     logic        front, no_area, no_column, no_row;
     logic [39:0] flipped_area;
     logic [9:0]  group_top;
@@ -145,7 +147,7 @@ module cull #(
     assign right_last = right - 1'b1;
 
     always_comb begin
-        // The lowest number among equals, after the swap of a front face.
+        // `topmost` is the lowest vertex number among vertices of equal height, numbered after the swap of a front face.
         if ((last.y01[20] || last.y01 == '0) && !last.y20[20]) topmost = 2'd0;
         else if (last.y_same)                                  topmost = area[43] ? 2'd2 : 2'd1;
         else                                                   topmost = last.y_21 ? 2'd2 : 2'd1;
@@ -180,7 +182,7 @@ module cull #(
     assign drop   = no_area || no_row || no_column || cull_back && !front;
     assign culled = in_ready && last_valid && drop;
 
-    // A front face swaps its vertices 1 and 2. A change of sign uses −v = ~v + 1.
+    // In a front face, vertices 1 and 2 are swapped. Values that change their sign use −v = ~v + 1.
     setup_pkg::oriented_t oriented;
 
     always_comb begin
@@ -213,9 +215,9 @@ module cull #(
         if (rst) out_valid <= 1'b0;
     end
 
-    // Light in the order of the swapped vertices; 0 for light of the other side.
+    // Light of the vertices in the order after the swap; 0 for a vertex whose light belongs to the other side of the triangle.
     if (SMOOTH) begin : light
-        // Vectors, as Yosys does not support arrays here.
+        // These are vectors, because Yosys does not support arrays here.
         logic [3*LIGHT_BITS-1:0] first_light, last_light;
         logic [3*LIT_BITS-1:0]   lit;
 

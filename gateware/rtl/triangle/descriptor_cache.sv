@@ -1,5 +1,5 @@
-// A cache of descriptors: numbers in, descriptors out. A triangle is drawn in several bands, one after the other, and is mostly
-// read from memory once.
+// A cache of descriptors: descriptor numbers in, descriptors out. A triangle is drawn in several bands, one after the other,
+// and with the cache its descriptor is mostly read from memory only once.
 //
 //                 ┌──────┐ miss                              ┌───────┐
 //   numbers ─────▶│ tags ├──────▶ addresses ─▶ memory ─words▶│       │
@@ -7,12 +7,13 @@
 //                    └─────────────▶ marks ─────────────────▶│       │
 //                                                            └───────┘
 //
-// Direct-mapped: a number's low bits choose the line. Tags change at the front in the order of the numbers, and lines at the
-// back in the same order, so a hit finds the descriptor of its tag. An item without a descriptor (`in_end`) passes in order.
+// The cache is direct-mapped: the low bits of a number choose the line. At the front, tags change in the order of the numbers;
+// at the back, lines change in the same order. So a number that hits finds the descriptor of its tag. An item without a
+// descriptor (`in_end`) passes in order.
 //
-// Latency 5 clocks for a hit, for a miss that of memory and 6 more. Throughput a hit in 4 clocks, a miss in 5, with SMOOTH in 8.
-// Descriptors must not change in memory while `forget` is low. A clock with `forget`, while the cache is empty of requests,
-// invalidates all lines, a line a clock; numbers wait for it.
+// Latency 5 clocks for a hit; for a miss that of memory and 6 more. Throughput a hit in 4 clocks, a miss in 5, with SMOOTH in
+// 8. Descriptors must not change in memory while `forget` is low. A clock with `forget`, given while no request is in the
+// cache, starts to invalidate all lines, one line a clock; numbers wait until that is done.
 //
 // Streams: an item moves in a clock in which valid and ready are high; valid does not wait for ready, and a payload stays as
 // it is until it has moved. Memory: a client of read_port.
@@ -23,14 +24,14 @@ module descriptor_cache #(
     parameter int unsigned ADDRESS_BITS = 23,
     parameter int unsigned COUNT_BITS   = 20,
     parameter int unsigned LINE_BITS    = 8,
-    // Descriptors of six words, with planes of light.
+    // With SMOOTH a descriptor has six words, which include planes of light.
     parameter bit          SMOOTH       = 1'b0,
     localparam int unsigned PLANES_BITS = SMOOTH ? 289 : 1
 ) (
     input  wire                       clk,
     input  wire                       rst,
     input  wire                       forget,
-    // Base address of each set's descriptors.
+    // Base addresses of the descriptors of both sets.
     input  wire  [2*ADDRESS_BITS-1:0] base,
     input  wire                       in_valid,
     output logic                      in_ready,
@@ -53,10 +54,10 @@ module descriptor_cache #(
     localparam int unsigned WORDS     = 3 << SMOOTH;
     localparam int unsigned WORD_BITS = $clog2(WORDS + 1);
     localparam int unsigned MARKS     = 16;
-    // Tag: set, high bits of the number, and a valid bit.
+    // A tag consists of the set, the high bits of the number, and a valid bit.
     localparam int unsigned TAG_BITS  = COUNT_BITS - LINE_BITS + 2;
 
-    // Front: an item waits one clock for the tag of its line, then for room in the FIFOs of marks and addresses.
+    // Front: an item waits one clock for the tag of its line, then until the FIFOs of marks and addresses have room.
     (* ram_style = "distributed" *) logic [TAG_BITS-1:0] tags [0:2**LINE_BITS-1];
     logic                    looked, is_end, set, hit, passes, asks;
     logic [COUNT_BITS-1:0]   number;
@@ -102,7 +103,7 @@ module descriptor_cache #(
         end
     end
 
-    // Addresses of a descriptor's words.
+    // Requests the words of a descriptor, one address a clock.
     logic [WORD_BITS-1:0] word;
 
     assign words_asked = !ask_valid || ask_ready && word == WORD_BITS'(WORDS - 1);
@@ -127,7 +128,7 @@ module descriptor_cache #(
         .out_valid(marked), .out_ready(out_valid && out_ready), .out_data({out_end, mark_hit, mark_line})
     );
 
-    // Back: the words of a miss are gathered and written to its line when it leaves; a hit reads its line.
+    // Back: the words of a descriptor that missed are gathered, and written to its line when it leaves; a hit reads its line.
     (* ram_style = "block", rw_addr_collision = "no", no_rw_check *)
     logic [128*WORDS-1:0]    lines [0:2**LINE_BITS-1];
     logic [128*WORDS-1:0]    cached, descriptor;

@@ -1,7 +1,8 @@
-// Flat shading with the light at the camera: intensity = clamp(nearest(∓N·n·2^8), 0, 1) and colour·intensity to nearest.
+// Flat shading with the light at the camera: intensity = clamp(nearest(∓N·n·2^8), 0, 1), and colour·intensity
+// rounded to nearest.
 //
-// Three products for N·n, one for blue and green side by side, one for red. Driven by the `count` of the setup's beat:
-// inputs hold during a beat; the colour is valid in clock 10.
+// One multiplier makes three products for N·n, one for blue and green side by side, and one for red. It is driven by the
+// `count` of the setup's beat: the inputs hold during a beat; the colour is valid in clock 10 of the beat.
 
 `default_nettype none
 
@@ -46,7 +47,7 @@ module flat_shade (
         endcase
     end
 
-    // Intensity: 0 where the sum is negative, 1 where it is at least 1, otherwise its fraction.
+    // The intensity is 0 where the sum is negative, 1 where the sum is at least 1, otherwise the fraction of the sum.
     always_ff @(posedge clk) begin
         if (enable && count == 4'd5) intensity <= p[43] ? '0 : p[42:37] != '0 ? 9'h100 : {1'b0, p[36:29]};
         if (enable && count == 4'd9) green_blue <= {p[26:21], p[12:8]};

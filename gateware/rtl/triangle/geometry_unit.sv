@@ -7,13 +7,14 @@
 //                                ▼        │
 //   vertices ─────────────────▶ vertex_stage
 //
-// `start` (one clock, not while `busy`) begins a frame. The parameters must hold from a clock before it until `done` (one clock),
-// when all results are in memory. With `done`, `mesh_error` (a chunk without vertices or beyond the mesh's end) and `full` (no room
-// for all descriptors, list entries or exceptions) mark an incomplete frame, whose descriptors are listed all the same. `restart`
-// (any time) cancels the frame; the next start must wait until read_port is idle.
+// `start` (one clock, not while `busy`) begins a frame. The parameters must hold from a clock before `start` until `done` (one
+// clock), when all results are in memory. With `done`, two errors mark an incomplete frame: `mesh_error` (a chunk without
+// vertices or beyond the mesh's end) and `full` (no room for all descriptors, list entries or exceptions). The lists then name
+// the descriptors that were written. `restart` (any time) cancels the frame; the next start must wait until read_port is idle.
 //
-// Throughput: the slowest of 11 clocks a drawn triangle, 4 a culled one, 6 a vertex that is not in the cache, 4 and one a band in
-// the binner. Memory: two clients of a read_port, two native write ports. Results are those of the frame.
+// Throughput is that of the slowest part: 11 clocks a drawn triangle, 4 a culled one, 6 a vertex that is not in the cache, and
+// in the binner 4 clocks a triangle and one more for each of its bands. Memory: two clients of a read_port, two native write
+// ports. `results` are those of the frame.
 
 `default_nettype none
 
@@ -33,7 +34,7 @@ module geometry_unit #(
     input  wire triangle_registers_pkg::geometry_flags_t flags,
     input  wire triangle_registers_pkg::geometry_t parameters,
     input  wire triangle_registers_pkg::view_t view,
-    // Read clients of the mesh and of the vertices.
+    // Clients of a read_port, one for the mesh and one for the vertices.
     output logic [1:0]               ask_valid,
     input  wire  [1:0]               ask_ready,
     output logic [2*ADDRESS_BITS-1:0] ask_addr,
@@ -47,9 +48,9 @@ module geometry_unit #(
     output triangle_registers_pkg::results_t results,
     output triangle_registers_pkg::events_t events
 );
-    // Colour and normal of a triangle.
+    // Bits of a triangle's colour and normal.
     localparam int unsigned SIDE_BITS = 64;
-    // A light_t.
+    // Bits of a triangle_pkg::light_t.
     localparam int unsigned LIGHT_BITS  = SMOOTH ? 41 : 1;
     localparam int unsigned VERTEX_BITS = SMOOTH ? 68 + LIGHT_BITS : 68;
     localparam int unsigned FLIGHT_BITS = 8;
@@ -73,7 +74,7 @@ module geometry_unit #(
         done <= 1'b0;
         case (state)
             IDLE:    if (start) state <= PREPARE;
-            // The lists are being emptied.
+            // Waits while the lists are emptied.
             PREPARE: if (lists_idle) state <= BEGIN;
             BEGIN:   state <= WALK;
             WALK:    if (!walk_busy && drained && lists_idle) state <= FINISH;
@@ -91,7 +92,7 @@ module geometry_unit #(
     logic                    triangle_valid, triangle_ready, chunk;
     logic [127:0]            triangle;
     logic [ADDRESS_BITS-1:0] vertex_base, mesh_first;
-    // First word behind the mesh.
+    // Address of the first word after the mesh.
     logic [ADDRESS_BITS:0]   mesh_past;
 
     assign mesh_first = parameters.mesh[4 +: ADDRESS_BITS];
@@ -211,7 +212,8 @@ module geometry_unit #(
     assign hurry       = state == FINISH || state == IDLE;
     assign write_ready = write_descriptor ? descriptors_ready : lists_ready;
 
-    // Descriptors follow each other in memory, lists do not: ports of their own keep their bank turns apart.
+    // Descriptors follow each other in memory, lists do not. With a port for each, lists do not make the descriptors' port
+    // turn to other banks.
     assign descriptors_write_request.wdata_strobe = '1;
 
     /* verilator lint_off PINCONNECTEMPTY */
@@ -235,7 +237,7 @@ module geometry_unit #(
         .wdata_strobe(lists_write_request.wdata_strobe)
     );
 
-    // Count of triangles between the walk and their end.
+    // Number of triangles that have left the walk over the mesh and have not yet reached their end.
     logic [FLIGHT_BITS-1:0] flight;
     logic                   came, was_unseen, was_culled, was_kept, was_exception;
 

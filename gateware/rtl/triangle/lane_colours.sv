@@ -1,11 +1,11 @@
-// The division in two lanes (docs/formats.md, "Smooth shading"): colours from the accumulators of depth and light.
+// Colours of two pixels from their accumulators of depth and light, by a division (docs/formats.md, "Smooth shading").
 //
 //   clock   0          1           2               3                      4, 5, 6        7
 //           depth ─▶ zeros by 4 ─▶ zeros, index ─▶ table: inverse y ──┐
 //                                                  light ─────────────┴▶ light·y + half ─▶ five or six bits, by the zeros
 //
-// Both lanes share a table in half a block RAM, which has two ports. Latency 7 clocks in which `enable` is high, from light 4;
-// throughput two pixels a clock.
+// Both pixels share a table in half a block RAM, which has two ports. Latency 7 clocks in which `enable` is high, counted from
+// the depths, and 4 from the light; throughput two pixels a clock.
 
 `default_nettype none
 
@@ -16,7 +16,7 @@ module lane_colours (
     input  wire  [1:0][2:0][31:0] lights, // red in the lowest; three clocks after the depths
     output logic [1:0][15:0]      colours
 );
-    // nearest(2^17/(1 + (i + 1/2)/1024)), which is nearest(2^28/(2049 + 2·i)).
+    // Entry i of the table is nearest(2^17/(1 + (i + 1/2)/1024)), which is nearest(2^28/(2049 + 2·i)).
     (* ram_style = "block" *) logic [16:0] inverses [0:1023];
 
     initial begin
@@ -76,7 +76,7 @@ module lane_colours (
                 .clk, .enable, .a({1'b0, light[31:8]}), .b({1'b0, inverse[lane]}), .c(half >> (BITS - 5)), .p(product)
             );
 
-            // Just below 0.
+            // The light is negative, but close to 0.
             assign dark = light[31:26] == '1;
 
             delay #(.WIDTH(1), .CLOCKS(3)) dark_delay (.clk, .enable, .in(dark), .out(dark_6));

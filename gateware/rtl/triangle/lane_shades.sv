@@ -1,11 +1,12 @@
-// Eight pixels under smooth shading: the colours of a group beside `lanes`, and the outputs of `lanes` delayed to match.
+// Smooth shading of eight pixels: computes the colours of a group beside `lanes`, and delays the outputs of `lanes` to match.
 //
 //   stage   1         3                4                    6              10
 //           light ───────────────────────▶ lane_values ─────▶ ┌──────────────┐
 //                     depths ───────────────────────────────▶ │ lane_colours │─▶ colours
 //                                      group ─────────────────└──────────────┘─▶ group
 //
-// Stages are those of `lanes`; all move with `enable`. Latency 6 clocks from the group, throughput a group a clock.
+// Stages are those of `lanes`; all move with `enable`. Latency 6 clocks from the output of the group by `lanes`,
+// throughput a group a clock.
 
 `default_nettype none
 
@@ -52,7 +53,7 @@ module lane_shades #(
 
     always_ff @(posedge clk) if (enable) smooth <= smooth_9;
 
-    // Light waits for the depths of its group: as accumulator and step before the lanes, as eight values behind them.
+    // Light waits for the depths of its group: before `lane_values` as an accumulator and its step, after it as eight values.
     logic [2:0][7:0][31:0] lights;
 
     for (genvar k = 0; k < 3; k++) begin : channels
@@ -63,7 +64,7 @@ module lane_shades #(
     end
 
     for (genvar pair = 0; pair < 4; pair++) begin : pairs
-        // Vectors, as Yosys does not support arrays here.
+        // These are vectors, because Yosys does not support arrays here.
         logic [2*96-1:0] pair_lights;
         logic [2*16-1:0] colours;
 

@@ -1,21 +1,22 @@
-// Reads the descriptors of a frame, band by band, in the order of their lists: in each band the geometry unit's set first, then
-// an optional second set by the firmware (clipped triangles). Layout as in binner.
+// Reads the descriptors of a frame, band by band, in the order of their lists: in each band first the set written by
+// the geometry unit, then an optional second set written by the firmware (clipped triangles). The layout in memory
+// is that of binner.
 //
 //             words               entries   ┌──────────────────┐
 //   lengths ─────────▶ lists ────────┬─────▶│ descriptor_cache │──▶ out
 //                        └─▶ jobs ───┘      └──────────────────┘
 //
-// Each part runs ahead of the one behind it as far as its FIFO reaches, through the ends of lists and bands: lengths of 16 bands,
-// lists of 8 jobs (a list of a band each) or 128 entries, 10 descriptors (5 with SMOOTH), which hides memory's latency. Three
-// clients of a read_port: the lengths of the lists, the lists, the descriptors. Throughput a descriptor in 5 clocks, with SMOOTH
-// in 8; a list takes at least 4 clocks.
+// Each part runs ahead of the next part as far as its FIFO reaches, even past the ends of lists and bands: by the lengths of
+// 16 bands, by 8 jobs (a job is the list of one band) or 128 entries, and by 10 descriptors (5 with SMOOTH). This hides the
+// latency of memory. Three clients of a read_port read the lengths of the lists, the lists, and the descriptors. Throughput a
+// descriptor in 5 clocks, with SMOOTH in 8; a list takes at least 4 clocks.
 //
-// `list_error`: since `start` a list exceeded the largest length and was read as empty, or an entry exceeded the set's
-// `counts` descriptors and was replaced by another one.
+// `list_error`: since `start` a list was longer than the largest length and was read as empty, or an entry was not below its
+// set's number of descriptors (`counts`) and was replaced by another entry.
 //
 // `start` (one clock, not while a frame is read) begins with band 0. `forget`: see descriptor_cache. An item of `out` is a
-// descriptor, or with `out_end` the end of a band; the end of `last_band` is the last one. Streams: an item moves in a clock in
-// which valid and ready are high; valid does not wait for ready, and a payload holds until it has moved.
+// descriptor, or with `out_end` the end of a band; the end of `last_band` is the last item. Streams: an item moves in a clock
+// in which valid and ready are high; valid does not wait for ready, and a payload holds until it has moved.
 
 `default_nettype none
 
@@ -37,7 +38,7 @@ module list_reader #(
     input  wire  [2*COUNT_BITS-1:0]   counts,
     input  wire  [4:0]                list_shift,
     output logic                      list_error,
-    // Read clients of the lengths, the lists, the descriptors.
+    // Clients of a read_port, for the lengths, the lists and the descriptors.
     output logic [2:0]                ask_valid,
     input  wire  [2:0]                ask_ready,
     output logic [3*ADDRESS_BITS-1:0] ask_addr,
@@ -56,7 +57,7 @@ module list_reader #(
 
     assign lists = list_base;
 
-    // Lengths: one read per list, since a word of the table has the lengths of four bands and the sets alternate.
+    // Reads of the lengths: one read per list. A word of the table has the lengths of four bands, but the two sets alternate.
     logic       asks_lengths, length_set;
     logic [5:0] length_band;
 
@@ -78,7 +79,7 @@ module list_reader #(
         if (rst) asks_lengths <= 1'b0;
     end
 
-    // Lists: a job is the length of a list, 0 for an absent one; the list's words follow later.
+    // Reads of the lists: a job is the length of a list, 0 for an absent one; the words of the list follow later.
     typedef enum logic [2:0] {IDLE, LENGTH, CHECK, JOB, WORDS} list_state_t;
     list_state_t list_state;
 
@@ -145,7 +146,7 @@ module list_reader #(
         .out_valid(next_valid), .out_ready(next_ready), .out_data(next_length)
     );
 
-    // Triangles: entries are taken from the words of the list; the end of the band follows both lists.
+    // Entries of the lists: taken from the words of a list one after the other; the end of the band follows after both lists.
     logic                    job_valid, set, left, last_entry, entry_taken, end_taken;
     logic                    item_valid, item_ready, item_free, item_end, item_set;
     logic [COUNT_BITS-1:0]   entries_after;

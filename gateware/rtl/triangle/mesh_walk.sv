@@ -1,12 +1,13 @@
-// Walks through a mesh in memory (docs/formats.md): its triangles, chunk by chunk.
+// Reads the triangles of a mesh in memory, chunk by chunk (docs/formats.md, "Mesh in memory").
 //
-// Reads words of 16 bytes as a client of read_port: a chunk's header, then its triangles one after the other. The vertices of the
-// chunk, from `vertex_base` on, are read by the vertex stage; they belong to the triangles that are out, so the next chunk begins
-// only when the pipeline behind is `drained`: some hundred clocks a chunk of up to 65,535 vertices. Throughput within a chunk: a
-// triangle a clock, as far as memory keeps up.
+// Reads words of 16 bytes as a client of read_port: a chunk's header, then its triangles one after the other. The vertex stage
+// reads the vertices of the chunk, from `vertex_base` on. Triangles that were sent still need the vertices of their chunk, so
+// the next chunk begins only when the pipeline behind is `drained`: this costs some hundred clocks a chunk of up to 65,535
+// vertices. Throughput within a chunk: a triangle a clock, as far as memory keeps up.
 //
-// `start` (one clock, not while `busy`) begins at `first`, the word of the mesh's first chunk; `past` is the word behind the mesh.
-// A chunk without vertices or beyond `past` ends the walk with `error`, which holds until the next start.
+// `start` (one clock, not while `busy`) begins at `first`, the address of the mesh's first chunk; `past` is the address
+// of the first word after the mesh. A chunk without vertices or beyond `past` ends the walk with `error`, which holds
+// until the next start.
 
 `default_nettype none
 
@@ -21,7 +22,7 @@ module mesh_walk #(
     input  wire                     drained,
     output logic                    busy,
     output logic                    error,
-    // Chunk of the emitted triangles. `chunk` is high for one clock when the chunk changes.
+    // `vertex_base` belongs to the chunk of the emitted triangles. `chunk` is high for one clock when the chunk changes.
     output logic                    chunk,
     output logic [ADDRESS_BITS-1:0] vertex_base,
     // Memory.
@@ -36,7 +37,7 @@ module mesh_walk #(
     input  wire                     out_ready,
     output logic [127:0]            out_triangle
 );
-    // Addresses and counts may have any value; their sums must not wrap.
+    // Addresses and counts in memory may have any value; with these bits their sums do not wrap around.
     localparam int unsigned SUM_BITS = 34;
 
     typedef enum logic [2:0] {IDLE, ASK, HEADER, LOCATE, SUM, CHECK, TRIANGLES, DRAIN} state_t;

@@ -4,8 +4,9 @@
 //                                   ▲
 //                                   c
 //
-// Latency 3 clocks in which `enable` is high, 1 from `c`. Throughput one product a clock. `c` may depend on `p`, to
-// accumulate. A wide factor goes through in pieces of 17 bits without a sign, and one with the sign.
+// Latency 3 clocks in which `enable` is high, 1 from `c`. Throughput one product a clock. `c` may depend on `p`,
+// to accumulate. A factor that is too wide is multiplied in pieces: pieces of 17 bits without a sign, and one
+// piece with the sign.
 
 `default_nettype none
 
@@ -21,7 +22,7 @@ module multiply_add #(
 );
     logic signed [24:0] factor_a;
     logic signed [17:0] factor_b;
-    // A product has at most 43 bits; p may be narrower.
+    // A product has at most 43 bits; fewer are kept if p is narrower.
     localparam int unsigned PRODUCT_BITS = BITS < 43 ? BITS : 43;
     logic signed [PRODUCT_BITS-1:0] product;
 

@@ -1,6 +1,8 @@
-// A u40 that is not 0 as m·2^(lead − 23): lead = floor(log2 in), m = floor(in·2^(23 − lead)) in [2^23, 2^24).
+// Represents a u40 that is not 0 as m·2^(lead − 23), with lead = floor(log2 in) and
+// m = floor(in·2^(23 − lead)) in [2^23, 2^24).
 //
-// Latency 3 clocks in which `enable` is high for m and lead, throughput one a clock. A shift in three parts: 16s, 4s and 1s.
+// Latency 3 clocks in which `enable` is high for m and lead, throughput one number a clock. The shift has three parts: by
+// multiples of 16, of 4 and of 1.
 
 `default_nettype none
 

@@ -1,7 +1,7 @@
-// Moves a plane of light to the row where `band_entry` places the triangle, `first` of the band: start + step_y * offset,
-// modulo 2^32.
+// Moves a plane of light to the row where `band_entry` places the triangle: its value there is
+// start + step_y * offset, modulo 2^32.
 //
-// Driven by the passes of band_entry: the step's low 24 bits in pass 5, its high 8 bits in pass 7.
+// Driven by the passes of band_entry: the low 24 bits of the step are multiplied in pass 5, its high 8 bits in pass 7.
 
 `default_nettype none
 

@@ -4,9 +4,8 @@
 
 package raster_pkg;
     // A triangle at the row where it enters the band, in its start group. An edge function is linear, so within a group of
-    // eight lanes its maximum is at one end: lane 7 where it rises to the right, else lane 0. The lane beside the other end
-    // shows
-    // whether the edge passes anywhere in the next group: lane -1 where it rises, else lane 8.
+    // eight lanes it is largest at one end: in lane 7 if it rises to the right, else in lane 0. The lane beside the other end,
+    // lane -1 if the edge rises and else lane 8, shows whether the edge passes anywhere in the next group on that side.
     typedef struct packed {
         logic [2:0][33:0] best;         // E' at the lane where it is largest
         logic [2:0][33:0] beside;       // E' at the lane beside
@@ -26,7 +25,7 @@ package raster_pkg;
         logic [15:0]      colour;
     } placed_t;
 
-    // A group of eight pixels in which no edge fails everywhere: every `best` is at least 0.
+    // A group of eight pixels in which every edge passes in at least one lane: every `best` is at least 0.
     typedef struct packed {
         logic [5:0]       line;
         logic [7:0]       group;

@@ -4,24 +4,23 @@
 //   lists, descriptors ──▶ list_reader ──▶ triangle_raster ──┬▶ band_buffer ──┴─▶ write_port 1 ─┴─▶ frame, depth
 //   pixels of a field, from a raymarcher ────────────────────┘
 //
-// `start` (one clock, not while `busy`) begins a frame. The parameters must hold until `done` (one clock), when the frame is in
-// memory. A band takes the time of its groups, and about 16 clocks to be handed over; meanwhile descriptors are read ahead and the
-// first triangles of the next band prepared. `restart` (any time) cancels the frame; the next start must wait until the unit is
-// `ready` and read_port is idle.
+// `start` (one clock, not while `busy`) begins a frame. The parameters must hold until `done` (one clock), when the frame is
+// in memory. A band takes the time of its groups, and about 16 clocks to be handed over; meanwhile descriptors are read ahead,
+// and the first triangles of the next band are prepared. `restart` (any time) cancels the frame; the next start must wait
+// until the unit is `ready` and read_port is idle.
 //
-// With FIELDS, a frame with `field_source.enable` has the field of a raymarcher beside the unit. `start` begins the field;
-// when the triangles of a band are drawn, `open` admits the field's pixels until `done`, and `next` hands the band over.
-// `compose` maps the
-// luminances of two eyes to colours, see band_flush.
+// With FIELDS, a raymarcher beside the unit draws the field of a frame with `field_source.enable`. `field_sink.start` begins
+// the field; when the triangles of a band are drawn, `open` admits the field's pixels until `done` of the raymarcher, and
+// `next` hands the band over. `compose` maps the luminances of two eyes to colours, see band_flush.
 //
-// `slot` is the number of the frame buffer. Only words that can differ from the last frame in the same slot are written. `whole`
-// writes all words; it is required when the contents of the frame buffer are unknown (a new buffer, another size or clear colour,
-// a write by the CPU). `depth` implies `whole`, and so does a slot without a complete frame: after reset, and after a cancelled
-// frame.
+// `slot` is the number of the frame buffer. Only words that can differ from the last frame in the same slot are written.
+// `whole` writes all words; it is required when the contents of the frame buffer are unknown (a new buffer, another size or
+// clear colour, a write by the CPU). `depth` implies `whole`. All words are also written if the slot holds no complete frame:
+// after reset, and after a cancelled frame.
 //
 // Memory: three clients of a read_port, and two native write ports, one for the even banks of memory and one for the odd ones.
-// A port turns to another bank only when the previous bank is idle, a dozen clocks later, and a band's lines change the bank at
-// every step: while one port waits for its bank, the other one writes.
+// A port turns to another bank only when the previous bank is idle, a dozen clocks later, and consecutive lines of a band are
+// in different banks: while one port waits for its bank, the other port writes.
 
 `default_nettype none
 
@@ -38,7 +37,7 @@ module raster_unit #(
     input  wire                       start,
     output logic                      busy,
     output logic                      done,
-    // With `done`: a list was damaged (list_reader), or an entry named no descriptor and was skipped.
+    // Valid with `done`: a list was damaged (see list_reader), or a descriptor was outside of the picture and was skipped.
     output logic                      list_error,
     input  wire triangle_registers_pkg::raster_flags_t flags,
     input  wire triangle_registers_pkg::raster_t parameters,
@@ -58,7 +57,7 @@ module raster_unit #(
     input  wire triangle_registers_pkg::write_answer_t odd_write_answer,
     output triangle_registers_pkg::events_t events
 );
-    // By size: bands of a picture, lines of a band, groups of a line, words of a band.
+    // By the size of the picture: its last band, lines of a band, groups of a line, words of a band.
     logic [5:0]  last_band, rows;
     logic [7:0]  stride;
     logic [10:0] words;
@@ -72,11 +71,11 @@ module raster_unit #(
     logic [9:0]              first_row;
     logic [ADDRESS_BITS-1:0] base, band_depth_base;
     logic                    clearing, flushed, in_memory, band_ready, begins, drawn, has_field;
-    // The band whose triangles are read: the band being drawn, or the next one.
+    // The first row and the parity of the band whose triangles are read: the band being drawn, or the next one.
     logic [9:0]              read_row;
     logic                    read_odd;
 
-    // Frame buffers that hold a whole frame; the frame buffer being drawn does not count.
+    // Per slot: whether the frame buffer holds a complete frame. The slot being drawn does not.
     logic [1:0] known;
     logic       all_words;
 
@@ -132,13 +131,13 @@ module raster_unit #(
     triangle_pkg::descriptor_t descriptor;
     logic [(SMOOTH ? 289 : 1)-1:0] planes;
 
-    // A descriptor beyond the picture is skipped.
+    // A descriptor whose groups are outside of the picture is skipped.
     logic stray, list_damaged;
 
     assign stray = descriptor.group_left > descriptor.group_start || descriptor.group_start > descriptor.group_right
                 || descriptor.group_right >= stride;
 
-    // The end of the band waits until the band is drawn.
+    // The item that ends a band waits until the band is drawn.
     assign triangle_valid = item_valid && !band_ends && !stray;
     assign item_ready     = band_ends ? read_odd == band[0] : stray || triangle_ready;
     assign drawn          = read_odd != band[0] && raster_idle;

@@ -1,13 +1,13 @@
 // The reciprocal of docs/formats.md: y = 2^47/m for a mantissa m in [2^23, 2^24), from a table and two Newton steps.
 //
-// `out_y` comes with `out_valid` (one clock) 14 clocks after m, and stays until the next one; nothing stalls. Throughput an
-// m in 10 clocks, by `in_ready`. One DSP48 makes the four products:
+// `out_y` comes with `out_valid` (one clock) 14 clocks after m, and stays until the next result; nothing stalls. Throughput:
+// `in_ready` admits one m in 10 clocks. One DSP48 makes the four products:
 //
 //   clock  0        1          4             7           10            13         14
 //          m ─▶ seed y0 ─▶ e0 = −m·y0 ─▶ y1 = y0 + y0·e0 ─▶ e1 = −m·y1 ─▶ y1·e1 ─▶ y = y1 + y1·e1
 //
-// −m·y is made as ~m·y + y, so that no adder stands before the multiplier. The residues e are differences from powers of
-// two, which are 0 in the kept bits.
+// −m·y is made as ~m·y + y, so that there is no adder before the multiplier. The residues e are differences from powers of
+// two, which are 0 in the bits that are kept.
 
 `default_nettype none
 
@@ -20,14 +20,14 @@ module reciprocal (
     output logic        out_valid,
     output logic [23:0] out_y
 );
-    // nearest(2^10/(1 + (i + 1/2)/256)), which is nearest(2^19/(513 + 2·i)).
+    // Seed i of the Newton steps is nearest(2^10/(1 + (i + 1/2)/256)), which is nearest(2^19/(513 + 2·i)).
     logic [9:0] seeds [256];
 
     initial begin
         for (int i = 0; i < 256; i++) seeds[i] = 10'(((1 << 20) + 513 + 2 * i) / (2 * (513 + 2 * i)));
     end
 
-    // since[k]: m came k + 1 clocks ago.
+    // Bit k of `since` is high when an m came k + 1 clocks ago.
     logic [13:0] since;
     logic [23:0] m;
     logic [9:0]  y0;

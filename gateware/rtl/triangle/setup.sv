@@ -1,26 +1,27 @@
-// Cull, setup and flat shading of triangles: from three vertices on the screen to a descriptor (docs/formats.md, "Triangle
-// setup"; the start is that of descriptor_t).
+// Culling, setup and flat shading of triangles: from three vertices on the screen to a descriptor (docs/formats.md, "Triangle
+// setup"). The start is the pixel of descriptor_t at which edge functions and depth begin.
 //
 //         4 clocks a triangle            11 clocks a triangle, all four in step with `count`
 //   in ─▶│ cull: area, facing, bounds │─▶│ 1 edges, normal, 1/a, shade │ 2 E1, 1/a │ 3 gradients │ 4 depth │─▶ out
 //            └▶ culled
 //
 // Throughput a drawn triangle in 11 clocks, a culled one in 4; latency at most 75 clocks. The stages 1 to 4 move together, in
-// the last clock of a beat, which lasts until there is room behind stage 4; empty stages move too, so a single triangle gets
-// through. A culled triangle leaves before stage 1 and waits only for earlier triangles. `culled` and `drawn` are high for
-// one
-// clock for each triangle, `drawn` with its descriptor.
-// The frame's constants (`width`, `height`, `cull_back`, `camera_n`, `smooth`) hold while `busy` and when a triangle comes.
+// the last clock of a beat. The beat lasts until there is room after stage 4; empty stages move too, so a single triangle gets
+// through. A culled triangle leaves before stage 1 and waits only for earlier triangles. `culled` and `drawn` are high for one
+// clock for each triangle, `drawn` with its descriptor. The frame's constants (`width`, `height`, `cull_back`, `camera_n`,
+// `smooth`) must hold while `busy` and when a triangle comes.
 //
-// Edges 0 and 2 meet in vertex 0, so both take (px, py) from there. The third follows: E0 + E1 + E2 = 2A = a at every point,
-// since the three differences of vertices add up to 0, so the sum does not depend on the point, and at vertex 0 it is E1.
+// Edges 0 and 2 meet in vertex 0, so both start from (px, py), the start relative to vertex 0. Edge 1 follows from E0 + E1 +
+// E2 = 2A = a. This holds at every point: the differences of the three vertices add up to 0, so the sum does not depend on the
+// point, and at vertex 0 it is E1.
 //
-// With SMOOTH, each channel of light has a plane: stage 1 makes P of it, stage 2 the planes' normals.
+// With SMOOTH, each channel of light has a plane: stage 1 computes P of docs/formats.md ("Smooth shading") for it, stage 2
+// the planes' normals.
 
 `default_nettype none
 
 module setup #(
-    // Last clock of a beat; smaller only in proofs of the control.
+    // The last clock of a beat; a proof of the control uses a smaller number.
     parameter bit [3:0] LAST = 4'd10,
     parameter bit SMOOTH = 1'b0,
     localparam int unsigned LIGHT_BITS  = SMOOTH ? 41 : 1,
@@ -48,14 +49,14 @@ module setup #(
     output triangle_pkg::descriptor_t out_descriptor,
     output logic [PLANES_BITS-1:0]    out_planes
 );
-    // Passes through all stages unchanged.
+    // Values that pass through all stages unchanged.
     typedef struct packed {
         logic [7:0]  group_start, group_right, group_left;
         logic [9:0]  bottom, top;
         logic [20:0] y20, x02, y01, x10;
     } passed_t;
 
-    // Vertex 0, and the start's centre relative to it, for the depth.
+    // Depth of vertex 0, and the centre of the start pixel relative to vertex 0, for the depth plane.
     typedef struct packed {
         logic [23:0] w0;
         logic [20:0] px, py;
@@ -91,8 +92,8 @@ module setup #(
         end
     end
 
-    // Stage 1. Bias: 1 on an edge that is neither top nor left, from step_x and the sign of step_y. Both steps are 0
-    // without an edge.
+    // Stage 1. The bias is 1 on an edge that is neither top nor left, as seen from step_x and the sign of step_y. Both steps
+    // are 0 only for an edge of length 0.
     function automatic logic bias(input logic [20:0] step_x, input logic right_to_left);
         bias = step_x[20] || step_x == '0 && right_to_left;
     endfunction
@@ -118,8 +119,8 @@ module setup #(
             bias_0      <= bias(first.y01, first.x10[20]);
             bias_2      <= bias(first.y20, first.x02[20]);
         end
-        // The steps of the three edges add up to 0, so these sums are the negated steps of edge 1. Constant from the
-        // second clock on.
+        // The steps of the three edges add up to 0, so these sums are the negated steps of edge 1. They are constant from the
+        // second clock of a beat on.
         sum_x <= t.y01 + t.y20;
         sum_y <= t.x10 + t.x02;
     end
@@ -137,15 +138,16 @@ module setup #(
     flat_shade shade (
         .clk, .enable, .count, .camera_n, .front(t.front), .normal(t.normal), .colour(t.colour), .lit
     );
-    // Reciprocal of the area, from clock 3 of stage 1 to clock 6 of stage 2, or earlier in a longer beat.
+    // The reciprocal of the area takes from clock 3 of stage 1 to clock 6 of stage 2, or less of stage 2 if
+    // the beat is longer.
     normalise normalised (.clk, .enable(1'b1), .in(t.area), .m, .lead);
     reciprocal reciprocal_of_area (
         .clk, .rst, .in_valid(count == 4'd3), .in_ready(reciprocal_ready), .in_m(m),
         .out_valid(reciprocal_done), .out_y(y)
     );
 
-    // Values only passed on stay in flip-flops: shift registers would take LUTs.
-    // Stage 2: E1 − bias = a − (E0 − bias) − (E2 − bias) − all biases, over 2^8, from the carry of the lowest 8 bits.
+    // Values that are only passed on stay in flip-flops (`keep`), since shift registers would take LUTs. Stage 2 computes (E1
+    // − bias)/2^8 from E1 − bias = a − (E0 − bias) − (E2 − bias) − all biases, with the carry of the lowest 8 bits.
     (* keep *) passed_t passed_2;
     (* keep *) origin_t origin_2;
     logic        [45:0] nx_2, ny_2;
@@ -162,7 +164,7 @@ module setup #(
     assign low_sum = {3'b0, area_low} - {3'b0, e0_2[7:0]} - {3'b0, e2_2[7:0]} - {9'b0, biases};
 
     always_ff @(posedge clk) begin
-        // −e = ~e + 1; both ones enter as carries.
+        // −e = ~e + 1; the ones of both negations enter as carries.
         carry <= low_sum[10:8] + 3'd2;
         unique case (count)
             4'd0:    addend <= ~e0_2[41:8];
@@ -233,9 +235,9 @@ module setup #(
         .px(origin_4.px), .py(origin_4.py), .value(origin_4.w0), .step_x, .step_y, .start(depth_start)
     );
 
-    // Planes of light. Stage 2 computes their normals while the depth waits for 1/a.
+    // Planes of light. Stage 2 computes their normals while the depth plane waits for 1/a.
     if (SMOOTH) begin : light
-        // Vectors, as Yosys does not support arrays here.
+        // These are vectors, because Yosys does not support arrays here.
         logic [3*LIT_BITS-1:0] lit_1;
         logic [3*24-1:0]       p0;
         logic [3*25-1:0]       p10, p20;

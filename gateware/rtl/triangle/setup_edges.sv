@@ -1,8 +1,8 @@
-// Edge functions 0 and 2 of the triangle setup at the start, biased, with 8 fraction bits: E − bias.
+// Computes edge functions 0 and 2 of a triangle at the start pixel, minus their biases, with 8 fraction bits: E − bias.
 //
-// Both edges pass through vertex 0, so (px, py) is the start pixel's centre from vertex 0. An edge takes four products, those
-// of the 17 low bits of its steps first. Driven by the `count` of the setup's beat: inputs hold during a beat; E0 is valid
-// from clock 7, E2 in clock 10.
+// Both edges pass through vertex 0, and (px, py) is the centre of the start pixel relative to vertex 0. An edge takes four
+// products, first those of the 17 low bits of its steps. Driven by the `count` of the setup's beat: the inputs hold during a
+// beat; E0 is valid from clock 7 on, E2 in clock 10.
 
 `default_nettype none
 
@@ -27,7 +27,8 @@ module setup_edges (
     logic        [20:0] step;
     logic        [16:0] low;
 
-    // Operands by clock, 4·k + 2·high + term. The sum follows two clocks later.
+    // Selects operands by clock = 4·k + 2·high + term, with k = 0 for edge 0 and 1 for edge 2. The sum
+    // follows two clocks later.
     always_comb begin
         a    = 25'($signed(count[0] ? px : py));
         step = count[2] ? (count[0] ? y20 : x02) : (count[0] ? y01 : x10);

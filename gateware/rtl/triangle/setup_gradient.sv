@@ -1,7 +1,8 @@
-// The depth gradients of the triangle setup before their rounding: floor(Nx·y·2^−(lead + 7)) modulo 2^41, and the same of Ny.
+// Computes the gradients of a plane before their rounding: floor(Nx·y·2^−(lead + 7)) modulo 2^41, and the same of Ny.
 //
-// Three products each, of 17, 17 and 12 bits of N from the low end; then a shift in three parts: 16s, 4s and 1s. Driven by
-// the `count` of the setup's beat: inputs hold during a beat; the result for Nx is valid from clock 8, for Ny in clock 10.
+// Each gradient takes three products, of 17, 17 and 12 bits of N from the low end; then a shift in three parts: by multiples
+// of 16, of 4 and of 1. Driven by the `count` of the setup's beat: the inputs hold during a beat; the result for Nx is valid
+// from clock 8 on, for Ny in clock 10.
 
 `default_nettype none
 

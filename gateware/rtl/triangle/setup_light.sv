@@ -1,10 +1,9 @@
-// P of a triangle's vertices (docs/formats.md, "Smooth shading"): nearest((w + 1/2)·L) of each channel, in the form that a
-// plane needs: the value at vertex 0, and the differences of the other vertices from it. Stage 1 of the triangle setup.
+// Computes P of a triangle's vertices (docs/formats.md, "Smooth shading"), nearest((w + 1/2)·L) of each channel, in the form
+// that a plane needs: the value at vertex 0, and the differences of the other vertices from it. Stage 1 of the triangle setup.
 //
-// Nine products, one channel of a vertex after the other. Driven by the `count` and the `beat` of the setup: inputs hold
-// during
-// a beat, and the results belong to the next one; the blue of `p20` is valid from clock 1 of that beat on, all others from
-// clock 0.
+// There are nine products, one channel of a vertex after the other. Driven by the `count` and the `beat` of the setup: the
+// inputs hold during a beat, and the results belong to the next one. The blue of `p20` is valid from clock 1 of that beat on,
+// all other results from clock 0.
 
 `default_nettype none
 
@@ -23,13 +22,13 @@ module setup_light (
 );
     logic        [1:0]  channel;
     logic        [39:0] vertex;
-    // With half a code added: w of vertex 0, and w of the next vertex.
+    // w with half a code added: `w0` of vertex 0, `w` of the next vertex.
     logic        [24:0] w0, w;
     logic signed [24:0] a;
     logic signed [17:0] b;
     logic signed [43:0] p;
 
-    // Operands by clock, 3·vertex + channel. The product follows three clocks later.
+    // Selects operands by clock = 3·vertex + channel. The product follows three clocks later.
     always_comb begin
         unique case (count)
             4'd0, 4'd1, 4'd2: {vertex, a} = {lit[0], w0};
@@ -41,7 +40,7 @@ module setup_light (
             4'd1, 4'd4, 4'd7:       channel = 2'd1;
             default:                channel = 2'd2;
         endcase
-        // L with 14 fraction bits.
+        // L of the vertex in this channel, with 14 fraction bits.
         unique case (channel)
             2'd0:    b = {4'b0, vertex[39:27], 1'b0};
             2'd1:    b = {4'b0, vertex[26:13]};
@@ -58,7 +57,7 @@ module setup_light (
 
     logic [2:0][23:0] p0_1;
     logic [2:0][24:0] p10_1;
-    // Value of vertex 0 in the next channel.
+    // The value of vertex 0 in the next channel.
     logic [23:0]      first;
     logic [24:0]      difference, p20_red;
 

@@ -1,7 +1,7 @@
-// The plane's normal in the triangle setup: Nx = w10·y20 + w20·y01 and Ny = w20·x10 + w10·x02, s46.
+// Computes the normal of a plane: Nx = w10·y20 + w20·y01 and Ny = w20·x10 + w10·x02, s46.
 //
-// Four products each, those of the four high bits first. Driven by the `count` of the setup's beat: inputs hold during a
-// beat; Nx is valid from clock 7, Ny in clock 10.
+// Each component takes four products, first those of the four high bits. Driven by the `count` of the setup's beat: the inputs
+// hold during a beat; Nx is valid from clock 7 on, Ny in clock 10.
 
 `default_nettype none
 
@@ -23,7 +23,7 @@ module setup_normal (
     logic signed [45:0] c, p;
     logic        [20:0] factor;
 
-    // Operands by clock, 4·y + 2·low + term. The sum follows two clocks later.
+    // Selects operands by clock = 4·y + 2·low + term, with y = 1 for Ny. The sum follows two clocks later.
     always_comb begin
         a      = $signed(count[2] ^ count[0] ? w20 : w10);
         factor = count[2] ? (count[0] ? x02 : x10) : (count[0] ? y01 : y20);

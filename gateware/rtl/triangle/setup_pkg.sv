@@ -3,8 +3,8 @@
 `default_nettype none
 
 package setup_pkg;
-    // A clockwise triangle with an area, accepted for drawing. Some differences have the opposite sign, so that sums
-    // of products need no subtraction.
+    // A clockwise triangle with an area, accepted for drawing. Some differences of coordinates have the opposite sign, so that
+    // sums of products need no subtraction.
     typedef struct packed {
         logic             front;
         logic [2:0][15:0] normal;      // s2.14

@@ -1,7 +1,7 @@
-// A plane's gradients and its accumulator at the start, from its normal: stages 3 and 4 of the triangle setup.
+// Computes the gradients of a plane, and its accumulator at the start, from its normal: stages 3 and 4 of the triangle setup.
 //
-// Driven by the `count` and the `beat` of the setup. The normal is valid at the end of a beat, the reciprocal holds in the next
-// beat, the inputs for vertex 0 in the one after, at the end of which all outputs are valid.
+// Driven by the `count` and the `beat` of the setup. The normal is valid at the end of a beat, the reciprocal holds in the
+// next beat, and the inputs for vertex 0 hold in the beat after that, at the end of which all outputs are valid.
 
 `default_nettype none
 
@@ -15,7 +15,7 @@ module setup_plane (
     // Stage 3.
     input  wire  [23:0] y,
     input  wire  [5:0]  lead,
-    // Stage 4: the start's centre relative to vertex 0, and the value at vertex 0, u18.6.
+    // Inputs of stage 4: the start's centre relative to vertex 0, and the value at vertex 0, u18.6.
     input  wire  [20:0] px,
     input  wire  [20:0] py,
     input  wire  [23:0] value,
@@ -31,7 +31,7 @@ module setup_plane (
     assign step_x = gx[31:0];
     assign step_y = gy[31:0];
 
-    // Stage 4 is a clock late: first the gradients are rounded.
+    // Stage 4 begins a clock after its beat, because the gradients are rounded first.
     always_ff @(posedge clk) begin
         if (beat) begin
             nx_3       <= nx;

@@ -1,8 +1,8 @@
-// A plane's accumulator at the start: value·2^8 + floor((Gx·px + Gy·py)/2^8) modulo 2^32, with the value at vertex 0 and (px, py)
-// from there.
+// Computes the accumulator of a plane at the start: value·2^8 + floor((Gx·px + Gy·py)/2^8) modulo 2^32. `value` is that at
+// vertex 0, and (px, py) is the start relative to vertex 0.
 //
-// Two products each of 17, 17 and 6 bits of the gradients from the low end, of which bits 8 to 39 are right. Driven by the
-// `count` of the setup's beat: inputs hold during a beat; the result is valid from clock 9.
+// Each gradient takes three products, of 17, 17 and 6 bits from the low end; bits 8 to 39 of their sum are exact. Driven by
+// the `count` of the setup's beat: the inputs hold during a beat; the result is valid from clock 9 on.
 
 `default_nettype none
 
@@ -24,7 +24,7 @@ module setup_start (
     logic        [8:0]  low;
     logic        [16:0] middle;
 
-    // Operands by clock, 2·piece + term. The sum follows two clocks later.
+    // Selects operands by clock = 2·piece + term. The sum follows two clocks later.
     always_comb begin
         a        = 25'($signed(count[0] ? py : px));
         gradient = count[0] ? gy : gx;

@@ -3,17 +3,17 @@
 //   ask ──▶ pending ──▶ regions, one a clock ──▶ start ──▶ busy ──▶ done ──▶ ended, error
 //                                     └── refused ─────────────────────────────▲
 //
-// The parameters of a pass name regions of memory: the byte address of their first word of 16 bytes, in the CPU's 32-bit space,
-// and their lengths. A region that is not aligned or not within memory (2^ADDRESS_BITS words from BASE on) ends the pass with
-// ERROR_ADDRESS before the first access to memory. `ended` (one clock) closes each ask: refused, done, or cancelled; `error` then
-// holds until the next ask of this pass.
+// The parameters of a pass name regions of memory: the byte address of their first word of 16 bytes, in the CPU's 32-bit
+// space, and their lengths. A region that is not aligned or not within memory (2^ADDRESS_BITS words from BASE on) ends the
+// pass with ERROR_ADDRESS before its first access to memory. `ended` (one clock) answers each ask when its pass is refused,
+// done or cancelled; `error` then holds until the next ask of this pass.
 //
-// A pass is `active` from its ask until its error is valid. A second ask meanwhile does not stop it; the error is then ERROR_BUSY,
-// unless the pass ends with an error of its own.
+// A pass is `active` from its ask until its error is valid. A second ask meanwhile does not stop the pass; the error is then
+// ERROR_BUSY, unless the pass ends with an error of its own.
 //
-// `cancel` (one clock, at any time) ends both passes, also those asked for in its clock. Later asks wait until the engine is
-// `ready`. Latency 15 clocks from `ask` to `start`. `kept` holds the flags of a pass from its `ask` on; all other parameters must
-// hold until `ended`.
+// `cancel` (one clock, at any time) ends both passes, also those asked for in the same clock. Later asks wait until the engine
+// is `ready`. Latency 15 clocks from `ask` to `start`. `kept` holds the flags of a pass from its `ask` on; all other
+// parameters must hold until `ended`.
 
 `default_nettype none
 
@@ -54,7 +54,7 @@ module triangle_control #(
                            ERROR_LIST = triangle_registers_pkg::ERROR_LIST,
                            ERROR_CANCELLED = triangle_registers_pkg::ERROR_CANCELLED;
 
-    // Bits of a region's length in words, also of one larger than memory.
+    // Bits of a region's length in words; a length may exceed the size of memory.
     localparam int unsigned WORD_BITS  = ADDRESS_BITS + 2;
     // Largest list shift: longer lists would exceed the entry counter.
     localparam logic [4:0]  LAST_SHIFT = 5'(COUNT_BITS - 3);
@@ -76,7 +76,7 @@ module triangle_control #(
 
     assign bands = band_pkg::bands(size);
 
-    // Lengths of the region under check.
+    // First address and length of the region under check, and the lengths from which the latter is selected.
     logic [31:0]          first;
     logic [WORD_BITS-1:0] words, mesh_words, list_words, frame_words, descriptor_words;
     logic [COUNT_BITS-1:0] count;
@@ -112,7 +112,7 @@ module triangle_control #(
         endcase
     end
 
-    // Two clocks: the region, then its end.
+    // The check of a region takes two clocks: one selects the region, the next one computes its end.
     logic                 looked, was_used;
     logic [31:0]          was_first;
     logic [WORD_BITS-1:0] was_words;
@@ -140,7 +140,7 @@ module triangle_control #(
 
         if (engine.ready) recovering <= 1'b0;
 
-        // Asked for while the same pass is pending or busy: refused, and the pass continues.
+        // A pass that is asked for while it is pending or busy is refused, and the earlier ask continues.
         if (geometry_ask) begin
             if (geometry_active) begin
                 geometry_error <= ERROR_BUSY;
@@ -170,7 +170,7 @@ module triangle_control #(
                 region <= region + 1'b1;
                 if (region == (rastering ? LAST_RASTER : LAST_GEOMETRY)) state <= SETTLE;
             end
-            // End of the last region.
+            // Waits for the end of the last region.
             SETTLE: state <= JUDGE;
             JUDGE: begin
                 if (size == 2'd3 || misplaced) begin

@@ -1,4 +1,4 @@
-// The triangle engine: from a mesh in memory to a frame in memory, in two passes that may run at the same time, for two frames.
+// The triangle engine: from a mesh in memory to a frame in memory, in two passes that may run at the same time for two frames.
 //
 //              ┌───────────────┐                        ┌─────────────┐
 //   mesh ─────▶│ geometry_unit │──▶ descriptors, lists ─▶│ raster_unit │──▶ frame, depth
@@ -6,10 +6,10 @@
 //                                firmware's lists ──────────▲
 //
 // Three native read ports of the memory serve triangles, vertices, and the raster unit. LiteDRAM lets a port turn to another
-// bank only when the previous bank is idle, four clocks later, so each stream has a port of its own. Write ports serve
-// descriptors, lists, and the frame's words in even and in odd banks. `cancel` (one clock, at any time) ends both passes;
-// `status.ready`: no read is under way and the band buffer is clear, so either unit may start. Parameters and results: see the
-// units. `events` has the growth of each counter in this clock.
+// bank only when the previous bank is idle, four clocks later, so each of these streams has a port of its own. Write ports
+// serve descriptors, lists, and the frame's words in even and in odd banks. `cancel` (one clock, at any time) ends both
+// passes. `status.ready` is high when no read is under way and the band buffer is clear, so that either unit may start.
+// Parameters and results: see the units. `events` has the growth of each counter in this clock.
 //
 // SMOOTH builds smooth shading, which `smooth` of the geometry's flags chooses for a frame: light of the vertices, interpolated
 // over the depth and divided at each pixel (docs/formats.md, "Smooth shading"). Descriptors then have twice the words.
@@ -119,7 +119,8 @@ module triangle_engine #(
         .events(raster_events)
     );
 
-    // LiteDRAM answers one read port at a time and takes data from one write port at a time.
+    // LiteDRAM serves one read port at a time and takes data from one write port at a time; the events count
+    // the ports that wait.
     always_comb begin
         port_events = '0;
         port_events.stalled_reads = mesh_read_request.cmd_valid && !mesh_read_answer.cmd_ready

@@ -10,23 +10,23 @@ package triangle_pkg;
         logic [20:0] x;
     } screen_vertex_t;
 
-    // A vertex after the vertex stage. A vertex behind the near plane has no place. Beyond the guard band the place is
-    // saturated and only says which sides of the picture the vertex is beyond.
+    // A vertex after the vertex stage. `place` is 0 for a vertex behind the near plane. Beyond the guard band `place` is
+    // saturated, and only says beyond which sides of the picture the vertex is.
     typedef struct packed {
         logic           behind;
         logic           beyond;
         screen_vertex_t place;
     } projected_t;
 
-    // Steps of E' of an edge, a pixel down and a pixel to the right, s21.
+    // The growth of the edge function E' of an edge over one pixel down and over one pixel to the right, s21.
     typedef struct packed {
         logic [20:0] y;
         logic [20:0] x;
     } steps_t;
 
-    // A triangle after the setup, 384 bits, as it lies in memory: three words of 128, the lowest first.
-    // E' and depth are at the first column of group_start in row top. A group is 8 columns. Edges are arrays of vectors: Yosys
-    // reads an array of structs as a narrower type, without a message.
+    // A triangle after the setup, 384 bits, as it lies in memory: three words of 128 bits, the lowest first. E' and depth are
+    // at the first column of group_start in row top. A group is 8 columns. The steps are an array of vectors, not of steps_t:
+    // Yosys reads an array of structs as a narrower type, without a message.
     typedef struct packed {
         logic [15:0]      colour;       // RGB565, lit
         logic [7:0]       group_start;  // the group of the topmost vertex, cut to the bounds
@@ -41,7 +41,7 @@ package triangle_pkg;
         logic [2:0][33:0] start;        // E' of each edge, s34
     } descriptor_t;
 
-    // Light of a vertex with smooth shading: whether it goes to back faces, and L of each channel, in 2^-13, 2^-14
+    // Light of a vertex with smooth shading: whether it belongs to back faces, and L of each channel, in units of 2^-13, 2^-14
     // and 2^-13. Builds without smooth shading replace each of the following types by one bit, 0.
     typedef struct packed {
         logic        back;
@@ -57,7 +57,7 @@ package triangle_pkg;
         logic [31:0] start;
     } plane_t;
 
-    // Follows descriptor_t in memory, red in the lowest bits; without `smooth` the triangle has one colour.
+    // The planes of light follow descriptor_t in memory, red in the lowest bits. Without `smooth` the triangle has one colour.
     typedef struct packed {
         logic             smooth;
         logic [2:0][95:0] light; // a plane_t each

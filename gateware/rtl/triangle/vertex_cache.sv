@@ -7,16 +7,15 @@
 //    │      └──────┘                └───────────────────────────┘        │ vertices │──▶ 3 vertices ─▶ out
 //    └─────────────────────────────────────────────────── side ─────────▶└──────────┘              ▲
 //                                                              └───────────────────────────────────┘
-// Direct mapped. Tags change in the order of the indices, at the front; vertices change in the same order, at the back,
-// where a record that missed takes the next vertex of `projected`. So a record that hit finds its vertex at any latency, and
-// there is no hazard. Within either memory there is none either: the tags are read and
-// replaced by one access, the old one first; and a record either reads its slot or writes it, on its way past one port.
+// The cache is direct mapped. Tags change in the order of the indices, at the front; vertices change in the same order, at the
+// back, where a record that missed takes the next vertex of `projected`. So a record that hit finds its vertex at any latency:
+// there is no hazard between front and back. There is none within either memory: a tag is read and replaced by one access,
+// which returns the old tag; and a record either reads its slot or writes it, through one port.
 //
-// `clear` (one clock) invalidates all vertices for the triangles that move in later, at the start of a chunk or a frame. Tags hold the
-// number of the time between two clears, so only every 2^EPOCH_BITS − 1 clears, and after a reset, all are swept: 1 clock
-// a slot.
-// Latency 15 clocks without a miss. Throughput an index a clock, a triangle in 3, while there are no misses. Each stream
-// goes by valid and ready.
+// `clear` (one clock) invalidates all vertices for the triangles that move in later, at the start of a chunk or a frame. A tag
+// holds the number of its epoch, the time between two clears, so all tags are swept only every 2^EPOCH_BITS − 1 clears, and
+// after a reset: 1 clock a slot. Latency 15 clocks without a miss. Throughput an index a clock, a triangle in 3, while there
+// are no misses. Each stream is valid/ready.
 
 `default_nettype none
 
@@ -53,7 +52,7 @@ module vertex_cache #(
     localparam int unsigned PLACES     = 16; // for vertices whose triangle is incomplete
     localparam int unsigned TRIANGLES  = 32; // more than the triangles of all RECORDS and PLACES
 
-    // Front: the indices of a triangle go to the tags one by one while there is room for their records.
+    // Front: the indices of a triangle go to the tags one by one, while there is room for their records.
     logic [2:0][15:0]        indices;
     logic [1:0]              to_look;
     logic [$clog2(RECORDS):0] records;
@@ -63,7 +62,7 @@ module vertex_cache #(
     assign in_ready = (to_look == 2'd0 || to_look == 2'd1 && look) && side_room && !clearing;
     assign taken    = in_valid && in_ready;
 
-    // Epoch 0 is reserved: a slot with it never hits.
+    // Epoch 0 is reserved: a slot with this epoch never hits.
     logic [EPOCH_BITS-1:0] epoch;
     logic                  sweeping;
     logic [SLOT_BITS-1:0]  sweep;
@@ -104,7 +103,7 @@ module vertex_cache #(
         end
     end
 
-    // Tags: three clocks from an index to its record.
+    // Lookup of the tags: three clocks from an index to its record.
     (* ram_style = "block" *) logic [ENTRY_BITS-1:0] tags [0:SLOTS-1];
     logic                       replace;
     logic [SLOT_BITS-1:0]       slot;
@@ -138,7 +137,7 @@ module vertex_cache #(
         end
     end
 
-    // Each index in one FIFO has a record in the other, so `records` limits both.
+    // Each index in the FIFO of fetches has a record in the other FIFO, so the limit of `records` holds for both.
     logic                 record_valid, record_missed, fetch_room, record_room;
     logic [SLOT_BITS-1:0] record_slot;
 
@@ -216,7 +215,8 @@ module vertex_cache #(
         end
     end
 
-    // Never full, and the triangle's other fields arrive long before its vertices.
+    // The FIFOs are never full, and the triangle's other fields arrive long before its vertices, so these
+    // signals need no check.
     logic unused;
     assign unused = fetch_room && record_room && vertex_room && side_valid;
 endmodule

@@ -1,8 +1,8 @@
 // The light of a vertex (docs/formats.md, "Smooth shading"): L of each channel, and the side of a triangle that L belongs to.
 //
-// Three products for N·n, one for green and blue side by side, one for red: a vertex in 6 clocks, in step with
-// `vertex_stage`: `take` is high for one clock when a vertex enters that stage. The light waits in a FIFO for the vertex's
-// place; `give` takes it out. Latency 17 clocks.
+// There are three products for N·n, one for green and blue side by side, and one for red. A vertex takes 6 clocks, in step
+// with `vertex_stage`: `take` is high for one clock when a vertex enters that stage. The light waits in a FIFO for the place
+// of its vertex; `give` takes it out. Latency 17 clocks.
 //
 //   clocks after `take`   1…3: N·n in     6: there     7, 8: |N·n| rounded     9: intensity     10, 11: colour in     13, 14: L
 
@@ -18,10 +18,10 @@ module vertex_light (
     input  wire              give,
     output logic [40:0]      out_light // {to back faces, red u13, green u14, blue u13}
 );
-    // More places than vertices fit in vertex_stage.
+    // The FIFO has more places than vertices fit in vertex_stage.
     localparam int unsigned PLACES = 16;
 
-    // since[k]: the vertex came k + 1 clocks ago.
+    // Bit k of `since` is high when a vertex came k + 1 clocks ago.
     logic        [13:0]      since;
     logic        [2:0][15:0] normal;
     logic        [15:0]      colour, colour_held;
@@ -52,7 +52,7 @@ module vertex_light (
 
     multiply_add #(.BITS(44)) dsp (.clk, .enable(1'b1), .a, .b, .c, .p);
 
-    // −v = ~v + 1; the 1 carries into the half only if all lower bits are 0.
+    // −v = ~v + 1; the added 1 carries into the bit of one half only if all lower bits are 0.
     assign carry = !back && whole;
 
     always_ff @(posedge clk) begin
@@ -74,7 +74,7 @@ module vertex_light (
         if (rst) since <= '0;
     end
 
-    // Never full, and never empty at `give`.
+    // The FIFO is never full, and never empty at `give`.
     logic room, valid;
 
     fifo #(.WIDTH(41), .DEPTH(PLACES)) finished (

@@ -14,9 +14,9 @@ module vertex_normalise (
     input  wire                half,
     input  wire  [1:0]         element,
     input  wire  [4:0]         scale_shift,
-    // Without the lowest five bits; the next bit may be half a unit.
+    // `planar` omits the lowest five bits; its lowest bit may be half a unit of the result.
     input  wire  signed [38:0] planar,
-    // Leading zeros of Z: sh is f + lead − 34, and lead is 40 − zeros. Valid in clock 7.
+    // Leading zeros of Z, valid in clock 7. The shift sh is f + lead − 34, and lead is 40 − zeros.
     input  wire  [3:0]         zeros,
     output logic signed [24:0] x,
     output logic signed [24:0] y
@@ -31,7 +31,7 @@ module vertex_normalise (
 
     always_comb begin
         saturated = rounded[24:0];
-        // Rounding may reach the first value out of range.
+        // Rounding may give the first value that is out of range.
         if (overflow || rounded[25] != rounded[24]) saturated = {sign, {24{!sign}}};
     end
 
@@ -55,7 +55,7 @@ module vertex_normalise (
         overflow <= shifted[38:25] != {14{shifted[38]}};
     end
 
-    // Results held for the reciprocal: X' from 12 on, Y' from 15 on.
+    // Results held for the reciprocal: X' from clock 12 on, Y' from clock 15 on.
     logic signed [24:0] x_first, x_second, y_first, y_second;
 
     always_ff @(posedge clk) begin

@@ -1,4 +1,5 @@
-// Step 5 of the vertex stage, the reciprocal of docs/formats.md, every 6 clocks: up to three vertices share one multiplier.
+// Step 5 of the vertex stage: the reciprocal of docs/formats.md, one every 6 clocks; up to three vertices
+// share one multiplier.
 //
 // Clock numbers count from the vertex's entry into `vertex_stage`; products follow three clocks after their factors.
 //
@@ -14,14 +15,14 @@ module vertex_reciprocal (
     input  wire  [23:0] m,
     output logic [23:0] y
 );
-    // nearest(2^10/(1 + (i + 1/2)/256)), which is nearest(2^19/(513 + 2·i)).
+    // Seed i of the Newton steps is nearest(2^10/(1 + (i + 1/2)/256)), which is nearest(2^19/(513 + 2·i)).
     logic [9:0] seeds [0:255];
 
     initial begin
         for (int i = 0; i < 256; i++) seeds[i] = 10'(((1 << 20) + 513 + 2 * i) / (2 * (513 + 2 * i)));
     end
 
-    // −m is valid from 10 and again from 16 on; y0 from 10; y1 from 17 and from 23.
+    // −m is valid from clock 10 on, and `minus_m_later` from 16 on; y0 from 10 on; y1 from 17 and `y1_later` from 23 on.
     logic signed [24:0] minus_m, minus_m_later;
     logic        [9:0]  y0;
     logic        [16:0] y1, y1_later;
@@ -30,7 +31,7 @@ module vertex_reciprocal (
     logic signed [36:0] c, p;
     logic        [24:0] sum;
 
-    // The residues e are differences from powers of two, which are 0 in the kept bits.
+    // The residues e are differences from powers of two, which are 0 in the bits that are kept.
     assign e = p[25:8];
 
     logic unused;

@@ -19,7 +19,7 @@ module vertex_snap (
     input  wire  [9:0]        centre_y,
     input  wire  [16:0]       depth_mantissa,
     input  wire  signed [3:0] depth_exponent,
-    // Per vertex: leading zeros of Z in clock 7, `behind` in clock 8, mantissas from 25 on.
+    // Values of a vertex: leading zeros of Z in clock 7, `behind` in clock 8, mantissas from clock 25 on.
     input  wire  [3:0]        zeros,
     input  wire               behind,
     input  wire signed [24:0] x,
@@ -27,8 +27,9 @@ module vertex_snap (
     input  wire  [23:0]       inverse,
     output triangle_pkg::projected_t vertex
 );
-    // w is the product with km over 2^(16 + depth_shift), and saturates for all smaller shifts. Lead is 40 − zeros.
-    // Bits 4 to 0 of the age come every 6 clocks, from 8 on and from 9 on.
+    // w is the product with km divided by 2^(16 + depth_shift), and saturates for a negative depth_shift. The value `lead` of
+    // the vertex is 40 − zeros. Each of both registers shifts every 6 clocks, so that its five places follow the vertices
+    // through the stage: the first register from clock 8 on, the second one from clock 9 on.
     logic [4:0][4:0]   depth_shifts;
     logic [4:0]        behinds;
     logic signed [4:0] depth_shift;
@@ -68,7 +69,7 @@ module vertex_snap (
         if (half && element == 2'd2) low <= p[16:15];
     end
 
-    // A place with 8 fraction bits, saturated to s12.8; the guard band ends at 2047 pixels.
+    // The coordinate of a place has 8 fraction bits and is saturated to s12.8; the guard band ends at 2047 pixels.
     logic signed [22:0] place;
     logic signed [19:0] saturated, place_x, place_y;
     logic               beyond, beyond_x, beyond_y;
@@ -95,7 +96,7 @@ module vertex_snap (
         end
     end
 
-    // The lowest bit is half a unit of w.
+    // The lowest bit of the shifted product is half a unit of w.
     logic [25:0] product, by_fours, shifted, rounded;
     logic [4:0]  shift;
     logic [23:0] depth;

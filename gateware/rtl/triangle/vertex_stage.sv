@@ -1,17 +1,16 @@
 // The vertex stage (docs/formats.md, steps 1 to 8): a position of the mesh in, a place on the screen out, in order.
 //
-// A vertex in 6 clocks; latency 39 clocks, plus up to 5 until its slot in the schedule. Four multipliers work through a
-// schedule of 6
-// clocks that never stands still: `half` is 0, 0, 0, 1, 1, 1 and `element` 0, 1, 2, 0, 1, 2 in clocks 1 to 6 of a vertex,
-// and again every 6 clocks; clock 0 is the vertex's entry. A vertex moves in only if the FIFO at the end has a place for
-// it, so the schedule never stops.
+// A vertex takes 6 clocks; latency 39 clocks, plus up to 5 until its slot in the schedule. Four multipliers work through a
+// schedule of 6 clocks: `half` is 0, 0, 0, 1, 1, 1 and `element` is 0, 1, 2, 0, 1, 2 in clocks 1 to 6 of a vertex, and again
+// every 6 clocks; clock 0 is the vertex's entry. A vertex moves in only if the FIFO at the end has a place for it, so the
+// schedule never stops.
 //
 //   clock  1         7            9                  25             37
 //     in ─▶ transform ─▶ lead ──────▶ m ─▶ reciprocal ──▶ y ─▶ snap ───▶ FIFO ─▶ out
 //                  └──▶ X, Y ─▶ normalise ──────────▶ X', Y' ─┘
 //
-// The frame's constants hold from its first vertex in to its last vertex out. The other fields of a vertex behind the near
-// plane are 0; beyond the guard band x and y are saturated to s12.8.
+// The frame's constants must hold from the entry of its first vertex until its last vertex has left. The other fields of a
+// vertex behind the near plane are 0; beyond the guard band x and y are saturated to s12.8.
 
 `default_nettype none
 
@@ -89,7 +88,7 @@ module vertex_stage (
         .depth_mantissa(depth_mantissa), .depth_exponent(depth_exponent), .zeros(zeros), .behind(behind), .x(x), .y(y),
         .inverse(inverse), .vertex(vertex));
 
-    // Never full.
+    // The FIFO is never full, since a place is reserved for each vertex.
     logic room, unused;
     assign unused = room;
 

@@ -1,4 +1,5 @@
-// Steps 1 to 4 of the vertex stage: into the camera's frame, behind or not, and the mantissa of Z.
+// Steps 1 to 4 of the vertex stage: transforms a position to the camera's frame, compares it with the near plane, and gives
+// the mantissa of Z.
 //
 // Clock numbers count from the vertex's entry into `vertex_stage`, which explains `half` and `element`.
 //
@@ -53,8 +54,8 @@ module vertex_transform (
         endcase
     end
 
-    // Two clocks after the first of three products the accumulator adds the translation and this product, then the other
-    // products.
+    // Two clocks after the first of three products the accumulator adds the translation and this product, then it adds
+    // the other products.
     logic               first;
     logic signed [43:0] translation, addend_planar, addend_deep, sum, deep;
 
@@ -69,8 +70,8 @@ module vertex_transform (
     multiply_add #(.BITS(44)) multiply_deep (
         .clk(clk), .enable(1'b1), .a(row_deep), .b(18'(factor)), .c(addend_deep), .p(deep));
 
-    // Z < near in two halves. Bits above 38 exist in Z only, see `far`. The highest set bit of a visible Z is among
-    // bits 30 to 40.
+    // Compares Z < near in two halves. Only Z has bits above 38, see `far`. The highest set bit of a visible Z is
+    // among bits 30 to 40.
     logic        negative, far, high_less, high_equal, low_less;
     logic [40:6] z;
 
@@ -98,7 +99,7 @@ module vertex_transform (
         endcase
     end
 
-    // Shifts the highest set bit to the top, first by fours.
+    // Shifts the highest set bit of Z to the top, first by multiples of four.
     logic [26:0] risen;
     logic [1:0]  rest;
 

@@ -66,11 +66,11 @@ module walker #(
     logic [5:0]       line, rows_below;
     logic             active, last_row;
 
-    // Directions of the walk that are open in this row. Seeking ends once the row's first group is found. `resume`:
-    // columns remain to the right of the snapshot.
+    // Directions of the walk that are open in this row. Seeking ends once the row's first group is found. `resume` is high
+    // while columns remain to the right of the snapshot.
     logic seek_left, seek_right, extend_left, extend_right, resume;
 
-    // Decision, from sign bits and the directions above.
+    // The next move, decided from sign bits of the edge functions and the directions above.
     logic [2:0]        best_fails, beside_fails;
     logic              fails, go_right, go_left, open_left, open_right;
     logic              extend, seek, left, leave;
@@ -97,7 +97,7 @@ module walker #(
     assign walking  = active && out_ready;
     assign in_ready = leave && out_ready;
 
-    // The snapshot follows while the walker seeks.
+    // While the walker seeks, the snapshot follows it.
     logic keep;
 
     assign keep = extend || resume;
@@ -130,7 +130,7 @@ module walker #(
         .current(depth), .next(next_depth)
     );
 
-    // Light does not affect the decision: it follows the same moves a clock later.
+    // Light does not affect the next move, so it follows the same moves a clock later.
     if (SMOOTH) begin : light
         logic [PLANES_BITS-1:0] planes;
         logic                   was_keep, was_extend, was_seek, was_left, was_last;
@@ -208,7 +208,7 @@ module walker #(
                 rows_below   <= in_triangle.rows - 1'b1;
                 last_row     <= !in_valid || in_triangle.rows == 6'd1;
             end
-            // Without work the walker stays, ready to load.
+            // Without a next triangle the walker stays, ready to load one.
             if (leave && !in_valid) begin
                 seek_left    <= 1'b0;
                 seek_right   <= 1'b0;
