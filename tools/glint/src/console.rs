@@ -3,7 +3,7 @@
 use crate::board::{Board, BoardError};
 use glint_core::console::PROMPT;
 
-/// An error of a command.
+/// An error of a command that was sent to the console.
 #[derive(Debug, thiserror::Error)]
 pub enum ConsoleError {
     /// An error of the board.
@@ -17,7 +17,7 @@ pub enum ConsoleError {
         /// The text after `error: ` in the reply.
         reason: String,
     },
-    /// A timeout before the end of the reply.
+    /// The board sent nothing for the time-out, before the reply was complete.
     #[error(
         "waited {waited_ms} ms of the board's time for {expected}; the last lines were {last:?}"
     )]
@@ -26,7 +26,7 @@ pub enum ConsoleError {
         expected: String,
         /// Time without a byte, in milliseconds.
         waited_ms: u64,
-        /// The last text received.
+        /// The end of the received text.
         last: String,
     },
     /// A reply that does not have the expected form.

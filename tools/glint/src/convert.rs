@@ -31,11 +31,11 @@ pub struct Report {
     pub triangles: u32,
     /// Triangles dropped because they have no area after rounding.
     pub degenerate: usize,
-    /// Chunks of at most 65,535 vertices.
+    /// Chunks that the mesh is divided into, each of at most 65,535 vertices.
     pub chunks: usize,
     /// The mesh's length in bytes.
     pub bytes: usize,
-    /// Scale factor from the file's lengths to world units.
+    /// Factor that converts the file's lengths to world units.
     pub scale: f64,
     /// The file's point that became the origin.
     pub centre: Vector,

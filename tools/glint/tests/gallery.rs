@@ -22,7 +22,7 @@ fn commands() -> Vec<Vec<String>> {
         .collect()
 }
 
-/// The value of an option.
+/// The value that follows `option` in a command.
 fn value<'a>(command: &'a [String], option: &str) -> &'a str {
     let at = command.iter().position(|word| word == option);
     let value = at.and_then(|at| command.get(at + 1));

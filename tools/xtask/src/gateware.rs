@@ -13,7 +13,7 @@ use anyhow::{Context, Result};
 
 use crate::{paths, run};
 
-/// Board of a gateware.
+/// A board that the gateware is built for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Board {
     /// The verilated SoC.
@@ -108,7 +108,7 @@ pub fn build_with_waveforms() -> Result<()> {
     verilate(&folder, Waveforms::With)
 }
 
-/// Runs LiteX: Verilog, BIOS, `csr.json` and `soc.svd`.
+/// Runs LiteX, which writes Verilog, the BIOS, `csr.json` and `soc.svd`.
 fn generate(board: Board, folder: &Path, options: &[&str]) -> Result<()> {
     let root = paths::root();
     let gateware = root.join("gateware");

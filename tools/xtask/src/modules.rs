@@ -98,7 +98,7 @@ struct Package {
     targets: Vec<Target>,
 }
 
-/// A crate of a package.
+/// A crate of a package, as `cargo metadata` lists it.
 #[derive(Deserialize)]
 struct Target {
     name: String,
@@ -106,7 +106,7 @@ struct Target {
     src_path: PathBuf,
 }
 
-/// Every crate of the workspace.
+/// Lists every crate of the workspace.
 fn targets() -> Result<Vec<Target>> {
     let output = Command::new("cargo")
         .args([

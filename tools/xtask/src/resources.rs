@@ -72,7 +72,7 @@ pub fn check_own_blocks() -> Result<()> {
     within(&budget.excesses(&measure(OWN.map(String::from).into())?))
 }
 
-/// Fails with one line per excess.
+/// Fails if there is an excess; the error has one line for each.
 fn within(excesses: &[Excess]) -> Result<()> {
     if excesses.is_empty() {
         return Ok(());
@@ -84,7 +84,7 @@ fn within(excesses: &[Excess]) -> Result<()> {
     )
 }
 
-/// Blocks to measure, without repeats, the slowest first.
+/// Returns the blocks to measure, without repeats. If `blocks` is empty, these are all blocks, the slowest first.
 fn selection(blocks: &[String]) -> Result<VecDeque<String>> {
     let mut names = VecDeque::new();
     let wanted = if blocks.is_empty() {

@@ -6,7 +6,7 @@ pub enum BoardError {
     /// An error of the virtual board.
     #[error(transparent)]
     Virtual(#[from] virtual_board::Error),
-    /// A serial port that cannot be opened.
+    /// The serial port cannot be opened.
     #[error("{port}: expected a serial port, found: {source}")]
     Open {
         /// Name of the port.
@@ -14,10 +14,10 @@ pub enum BoardError {
         /// Error of the operating system.
         source: serialport::Error,
     },
-    /// An error of the serial line.
+    /// Reading from or writing to the serial line failed.
     #[error("serial line: {0}")]
     Line(#[from] std::io::Error),
-    /// A firmware file that cannot be read.
+    /// The firmware file of the virtual board cannot be read.
     #[error("the firmware {path} cannot be read ({source}); run `cargo xtask firmware`")]
     Firmware {
         /// Path of the file.

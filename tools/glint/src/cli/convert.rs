@@ -18,7 +18,7 @@ pub struct ModelArguments {
     name: String,
     /// Output file; the extension selects the format: .obj, .stl, .ply or .glm.
     out: PathBuf,
-    /// Keep the generator's coordinates.
+    /// Keep the generator's coordinates, without scaling.
     #[arg(long)]
     keep_scale: bool,
     /// Print the report as JSON.

@@ -36,7 +36,7 @@ pub struct FieldArguments {
     /// Fog in the background's colour: transmittance is exp(-distance * DENSITY). 0 to below 16.
     #[arg(long, value_name = "DENSITY", allow_hyphen_values = true)]
     fog: Option<String>,
-    /// Ambient occlusion: darken narrow places of a field.
+    /// Ambient occlusion: darken a field's surface in narrow places.
     #[arg(long)]
     occlusion: bool,
     /// Before the rays, march a cone for each block of pixels; the block's rays start where the cone ends. This

@@ -20,7 +20,7 @@ pub struct FlashArguments {
     /// Board: `virtual` or a serial port.
     #[arg(long, default_value = "virtual")]
     board: BoardName,
-    /// Load address, and entry point.
+    /// Address to load the program at, and to start it at.
     #[arg(long, default_value = "0x40000000", value_parser = parse_address)]
     address: u32,
     /// Time-out of the wait for the BIOS's request, in seconds of board time. The request comes after a reset, or after the

@@ -59,7 +59,7 @@ impl Placing {
 pub struct Rounded {
     /// For each point of the file, the index of its rounded position in `positions`.
     of_point: Vec<u32>,
-    /// The positions in Q2.14.
+    /// The distinct rounded positions in Q2.14.
     pub positions: Vec<[i16; 3]>,
     /// Maximum distance between a point and its position, in world units.
     pub error_max: f64,

@@ -22,7 +22,7 @@ const MAX_ANSWER: usize = 4;
 /// Failed batches in a row after which the transfer fails.
 const MAX_FAILURES: u32 = 24;
 
-/// Counts of a transfer.
+/// Report of a serial boot.
 #[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Report {
     /// The program's length.
@@ -59,7 +59,7 @@ pub enum FlashError {
         "at {address:#010x}: {MAX_FAILURES} batches failed in a row, the last with {data} data bytes a frame: expected {expected}, found {found}"
     )]
     Line {
-        /// Address of the batch's data.
+        /// Load address of the data in the failed batch.
         address: u32,
         /// Data bytes of a frame in the last batch.
         data: usize,
@@ -70,7 +70,7 @@ pub enum FlashError {
     },
 }
 
-/// The outcome of a batch.
+/// What happened to a batch of frames.
 pub enum Delivery {
     /// Every frame was acknowledged.
     Arrived {

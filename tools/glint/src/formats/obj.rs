@@ -54,9 +54,9 @@ pub type Materials<'a> = dyn FnMut(&str) -> Option<Vec<u8>> + 'a;
 /// An error in an OBJ or in its material file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ObjError {
-    /// In the OBJ.
+    /// The error is in the OBJ.
     Obj(FormatError),
-    /// In a material file.
+    /// The error is in a material file.
     Mtl(InputError),
 }
 

@@ -19,7 +19,7 @@ pub struct Options {
     pub units: Units,
     /// Fixed sample period in µs, used instead of the time stamps.
     pub period: Option<u32>,
-    /// Length of the calibration at the start, in µs.
+    /// Length in µs of the calibration at the log's start; `None` for no calibration.
     pub still: Option<u64>,
     /// Whether tilt correction is on.
     pub tilt: bool,
@@ -74,7 +74,7 @@ pub struct Prepared {
 pub struct Replayed {
     /// Attitude at each sample.
     pub attitudes: Vec<Quaternion>,
-    /// Counts of the samples by treatment.
+    /// Numbers of samples by how the integration treated them.
     pub counts: Counts,
     /// The calibration, if requested.
     pub calibration: Option<Report>,

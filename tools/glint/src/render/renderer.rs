@@ -33,13 +33,13 @@ pub struct Parts {
 /// A drawn frame.
 #[derive(Clone, Debug)]
 pub struct Rendered {
-    /// Colours and depth codes.
+    /// The requested colours and depth codes.
     pub image: Image,
     /// Cycles and counts.
     pub stats: Stats,
 }
 
-/// An error of a frame.
+/// An error in drawing a frame or in transferring it.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// A frame beyond the limits of the model.

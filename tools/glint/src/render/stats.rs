@@ -11,10 +11,10 @@ use serde::{Deserialize, Serialize};
 pub struct Stats {
     /// Cycles of the board's clock; `None` from the model, which has no clock.
     pub cycles: Option<u64>,
-    /// Counts of the mesh.
+    /// Counts of the mesh; `None` without one.
     #[serde(flatten)]
     pub mesh: Option<TriangleCounts>,
-    /// Counts of the field.
+    /// Counts of the field; `None` without one.
     #[serde(flatten)]
     pub rays: Option<RayCounts>,
     /// The board's clock in Hz.

@@ -12,7 +12,7 @@ use glint_core::picture::Size;
 /// Board time without output after which the firmware counts as failed.
 const PATIENCE_MS: u64 = 2000;
 
-/// A board on which the firmware starts.
+/// A board that starts with the built firmware in its memory.
 pub fn running_board() -> SimulatedBoard {
     SimulatedBoard::fast(&built_firmware(None).unwrap()).unwrap()
 }

@@ -99,7 +99,7 @@ fn a_bad_upload_leaves_the_old_model() {
     transfer::upload(&mut console, &good, 1, quiet).unwrap();
     let shown = frame(&mut console);
 
-    // A mesh that differs from the announced one.
+    // The announced CRC-32 is not that of the mesh that is sent.
     let Manifest { length, crc32 } = Manifest::of(&good);
     let command = format!("load {length} {:08x}", !crc32);
     assert!(console.command_with_transfer(&command).unwrap());

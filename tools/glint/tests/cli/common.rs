@@ -36,7 +36,7 @@ pub fn succeed(folder: &Path, arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// The single error line of a rejected input.
+/// Runs the program on input that it must reject; returns its single line of error.
 pub fn refused(folder: &Path, arguments: &[&str]) -> String {
     let output = glint(folder, arguments);
     let error = String::from_utf8(output.stderr).unwrap();

@@ -59,7 +59,7 @@ fn fields_and_their_files() {
         said.starts_with("{\"field\":\"box:0.5,0.5,0.25\",") && said.contains("\"rays\":115200,"),
         "{said}"
     );
-    // At most four lights.
+    // More than four lights are an error.
     let lights = ["--light", "0,0,1"].repeat(5);
     let arguments = [
         &["render", "--field", "menger:1", "--out", "b.png"],

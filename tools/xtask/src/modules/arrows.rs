@@ -31,13 +31,13 @@ pub fn arrows(tree: &Crate) -> Arrows {
     arrows
 }
 
-/// Walks the items of one module.
+/// Collects the arrows of one module from its items.
 struct Collector<'a> {
     tree: &'a Crate,
     module: Id,
     /// Variables and parameters of the current item; their names are not paths.
     bindings: HashSet<String>,
-    /// Imports of the blocks around the current place.
+    /// Imports of the code blocks around the current expression, the outermost block first.
     blocks: Vec<HashMap<String, Segments>>,
     arrows: &'a mut Arrows,
 }

@@ -21,7 +21,7 @@ pub fn circles(arrows: &Arrows) -> Vec<Vec<Id>> {
     circles.into_iter().collect()
 }
 
-/// A shortest circle through `start`, breadth first.
+/// A shortest circle through `start`, found by a breadth-first search.
 fn shortest(arrows: &Arrows, start: Id) -> Option<Vec<Id>> {
     let mut before: HashMap<Id, Id> = HashMap::new();
     let mut queue = VecDeque::from([start]);

@@ -8,7 +8,7 @@ use anyhow::{Context, Result};
 /// The most lines that a hand-written source file may have.
 pub const MOST_LINES: usize = 500;
 
-/// Endings of source files.
+/// File name extensions of source files.
 const ENDINGS: [&str; 5] = ["rs", "py", "sv", "cpp", "h"];
 
 /// Folders without source of this project; hidden folders are skipped too.

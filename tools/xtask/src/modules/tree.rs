@@ -42,7 +42,7 @@ enum Name {
     Item(Id),
     /// A child module.
     Module(Id),
-    /// An import, resolved on use.
+    /// An import. Its path is resolved when the name is looked up.
     Import(Segments),
 }
 
@@ -338,7 +338,7 @@ struct Place<'a> {
     folder: PathBuf,
 }
 
-/// The leaves of a `use` tree.
+/// The imports of a `use` declaration, one for each leaf of its tree.
 pub fn imports(tree: &UseTree) -> Vec<Import> {
     let mut leaves = Vec::new();
     add_imports(tree, &mut Vec::new(), &mut leaves);
@@ -389,7 +389,7 @@ pub fn text(ident: &Ident) -> String {
     text.strip_prefix("r#").map(str::to_owned).unwrap_or(text)
 }
 
-/// Whether the visibility reaches beyond the module.
+/// Whether an import with this visibility can be seen outside its module.
 pub fn is_reexport(visibility: &Visibility) -> bool {
     !matches!(visibility, Visibility::Inherited)
 }

@@ -26,7 +26,7 @@ pub struct Soc {
     pub constants: Vec<(String, u32)>,
 }
 
-/// A window of registers.
+/// A peripheral: a block of registers in the CPU's address space.
 #[derive(Debug)]
 pub struct Peripheral {
     pub name: String,
@@ -231,7 +231,7 @@ fn join_fields(
     Ok(())
 }
 
-/// A register of csr.json.
+/// A register as csr.json declares it.
 struct Declared {
     /// Name of the form `peripheral_register`.
     name: String,

@@ -22,7 +22,7 @@ pub struct Budget {
     pub device: Limits,
     /// Default limits for each of this project's own blocks.
     own: Limits,
-    /// Limits of single blocks.
+    /// Limits of single blocks, by the block's name.
     block: BTreeMap<String, Limits>,
 }
 

@@ -73,7 +73,7 @@ pub struct Size {
     pub carry4: u32,
     /// Cells on the longest path between registers.
     pub path: u32,
-    /// Other cells by name.
+    /// Numbers of the other cells by the name of their kind.
     pub others: BTreeMap<String, u32>,
 }
 

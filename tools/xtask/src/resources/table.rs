@@ -8,7 +8,7 @@ use super::blocks::{FLAT, FLAT_PARTS, OWN, SOC};
 use super::budget::{Budget, Excess};
 use super::size::{Resource, Size, number};
 
-/// Notes on the method.
+/// Notes on the method of measurement, for the page.
 const NOTES: [&str; 7] = [
     "Yosys counts the cells of the mapped netlist; no cell is estimated. Placement and routing are not run: wires have no \
      delay, and no clock rate follows. Other tools give other counts. Yosys' own counts vary by a cell of path or a percent \
@@ -28,7 +28,7 @@ const NOTES: [&str; 7] = [
     "The SoC's path is not limited: the soft core has longer paths than the own blocks.",
 ];
 
-/// Rows of equal length; the first is the head.
+/// The rows of a table, all of equal length; the first is the head.
 type Rows = Vec<Vec<String>>;
 
 /// Sizes of the blocks, and the SoC's share of the device.

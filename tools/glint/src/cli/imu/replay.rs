@@ -53,7 +53,7 @@ pub struct ReplayArguments {
     /// Disable tilt correction by the accelerometer.
     #[arg(long)]
     no_tilt: bool,
-    /// Track the bias whenever the sensor is at rest.
+    /// Track the gyroscope's bias whenever the sensor is at rest.
     #[arg(long)]
     follow_bias: bool,
     #[command(flatten)]

@@ -5,7 +5,7 @@ use std::fmt::{self, Write};
 use super::super::soc::{Peripheral, Register};
 use super::text::{camel, documented, identifier};
 
-/// Prints `Counters` of `peripheral`, where it has any.
+/// Prints the type `Counters` of `peripheral`, if it has any counters.
 pub fn write(out: &mut String, peripheral: &Peripheral) -> fmt::Result {
     let counters = peripheral.counters();
     if counters.is_empty() {

@@ -1,6 +1,6 @@
 use super::{Access, NamedValue, Soc};
 
-/// A SoC of one timer, as LiteX describes it.
+/// The three descriptions of a SoC with one timer.
 fn descriptions() -> (String, String, String) {
     let register = |name: &str, offset: u32, fields: &str| {
         format!(
