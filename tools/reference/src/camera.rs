@@ -40,7 +40,7 @@ pub(crate) fn normalised(a: Vector) -> Vector {
     a.map(|c| c / length)
 }
 
-/// A half line whose points are origin + t·direction, t at least 0.
+/// The points origin + t·direction for all t of at least 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
     /// The point at t = 0, in world units.
@@ -59,22 +59,22 @@ impl Ray {
 /// One of the two eyes of a stereo picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// The left eye, at eye − offset·u.
+    /// The left eye, at `eye` − `offset`·u of the camera and the stereo parameters.
     Left,
-    /// The right eye, at eye + offset·u.
+    /// The right eye, at `eye` + `offset`·u of the camera and the stereo parameters.
     Right,
 }
 
-/// Two parallel eyes with shifted pictures (off-axis projection).
+/// Parameters of two parallel eyes whose pictures are shifted (off-axis projection).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stereo {
-    /// Distance of each eye from the camera along u, in world units.
+    /// Distance of each eye from the camera's `eye` along u, in world units.
     pub offset: f64,
-    /// Depth of zero parallax, in world units.
+    /// Depth at which both eyes see a point in the same pixel, in world units.
     pub zero: f64,
 }
 
-/// A pinhole camera: an eye, an orthonormal basis with u × v = n, and its picture's plane at distance 1.
+/// A pinhole camera: an eye and an orthonormal basis with u × v = n. Its picture lies in the plane at distance 1 along n.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// The centre of projection, in world units.
@@ -85,14 +85,14 @@ pub struct Camera {
     pub v: Vector,
     /// Direction forward, into the scene.
     pub n: Vector,
-    /// Half the width of the picture in the plane at distance 1.
+    /// Half the width of the picture in the plane at distance 1, in world units.
     pub half_width: f64,
     /// Distance of the near plane along n, in world units.
     pub near: f64,
 }
 
 impl From<&View> for Camera {
-    /// The camera with the view's numbers, which f64 holds exactly.
+    /// The camera with the numbers of a view. The conversion to f64 is exact.
     fn from(view: &View) -> Self {
         Self {
             eye: view.eye().map(|c| c.to_num()),
@@ -117,7 +117,8 @@ pub struct Size {
 impl Camera {
     /// A camera at `eye` that looks at `target`, with +z up.
     ///
-    /// `half_width` and `near` become the fields of the same names. For a line of sight parallel to z, u and v are NaN.
+    /// `half_width` and `near` become the camera's fields of these names. If the line of sight is parallel to z, u and v
+    /// are NaN.
     pub fn looking_at(eye: Vector, target: Vector, half_width: f64, near: f64) -> Self {
         let n = normalised(subtract(target, eye));
         let u = normalised(cross(n, [0.0, 0.0, 1.0]));
@@ -131,12 +132,12 @@ impl Camera {
         }
     }
 
-    /// This camera turned about its eye by yaw to the right, then pitch downwards, then roll, in degrees, like
-    /// [`View::look`].
+    /// This camera turned about its eye by the angles yaw to the right, then pitch downwards, then roll, in degrees, as
+    /// [`View::look`] turns a view.
     #[must_use]
     pub fn turned(&self, angles: Vector) -> Self {
         let [(sy, cy), (sp, cp), (sr, cr)] = angles.map(|angle| angle.to_radians().sin_cos());
-        // In coordinates of this camera: right, up, forward.
+        // The turned axes in coordinates of this camera: right, up, forward.
         let right = [cy, 0.0, -sy];
         let up = [sp * sy, cp, sp * cy];
         let forward = [cp * sy, -sp, cp * cy];
@@ -152,13 +153,13 @@ impl Camera {
         }
     }
 
-    /// The view with the nearest representable numbers.
+    /// Converts the camera to a view, with each number rounded to the nearest that its fixed-point format has.
     ///
     /// # Errors
-    /// As [`View::new_checked`].
+    /// The errors of [`View::new_checked`].
     ///
     /// # Panics
-    /// When a number exceeds its format.
+    /// When a number is outside the range of its format.
     pub fn view(&self) -> Result<View, ViewError> {
         let row = |row: Vector| row.map(Q2_23::from_num);
         View::new_checked(
@@ -171,9 +172,10 @@ impl Camera {
         )
     }
 
-    /// The ray through a pixel's centre. `pixel` is its column and row from 0; fractions lie between centres.
+    /// The ray through a point of the picture. `pixel` is a column and a row from 0: whole numbers are pixel centres,
+    /// fractions lie between centres.
     ///
-    /// The direction's component along n is 1, so the parameter is the depth.
+    /// The component of the ray's direction along n is 1, so its parameter t is the depth.
     pub fn ray(&self, [x, y]: [f64; 2], size: Size) -> Ray {
         let width = f64::from(size.width);
         let right = (2.0 * x + 1.0 - width) / width * self.half_width;
@@ -185,7 +187,7 @@ impl Camera {
         }
     }
 
-    /// As [`Self::ray`], from one eye of a stereo pair.
+    /// The ray from one eye of a stereo pair through a point of the picture, which is given as for [`Self::ray`].
     pub fn stereo_ray(&self, side: Side, stereo: Stereo, pixel: [f64; 2], size: Size) -> Ray {
         let offset = match side {
             Side::Left => -stereo.offset,
@@ -198,13 +200,14 @@ impl Camera {
         }
     }
 
-    /// The camera coordinates of a point of the world: right, down and forward of the eye, in world units.
+    /// Converts a point of the world to camera coordinates: distances to the right of, below and in front of the eye, in
+    /// world units.
     pub fn coordinates(&self, point: Vector) -> Vector {
         let d = subtract(point, self.eye);
         [dot(d, self.u), dot(d, self.v), dot(d, self.n)]
     }
 
-    /// The screen position, in pixels from the top left, of a point in camera coordinates in front of the eye.
+    /// Projects a point in camera coordinates, in front of the eye, to a screen position in pixels from the top left.
     pub fn screen(&self, point: Vector, size: Size) -> [f64; 2] {
         let scale = self.pixels_per_unit(size);
         [
@@ -213,13 +216,13 @@ impl Camera {
         ]
     }
 
-    /// Pixels of one unit in the plane at distance 1; pixels are square.
+    /// Number of pixels that one world unit spans in the plane at distance 1, horizontally and vertically.
     pub fn pixels_per_unit(&self, size: Size) -> f64 {
         f64::from(size.width) / 2.0 / self.half_width
     }
 
-    /// The part of a convex polygon in camera coordinates that lies on or beyond the near plane
-    /// (Sutherland and Hodgman 1974, in homogeneous coordinates: z is the divisor of the projection).
+    /// Clips a convex polygon in camera coordinates: returns the part on or beyond the near plane (Sutherland and Hodgman
+    /// 1974, in homogeneous coordinates: z is the divisor of the projection).
     pub fn clip_near(&self, polygon: &[Vector]) -> Vec<Vector> {
         let mut kept = Vec::with_capacity(polygon.len() + 1);
         for (i, &a) in polygon.iter().enumerate() {
@@ -240,10 +243,10 @@ impl Camera {
         kept
     }
 
-    /// K of the depth codes, code = K/z: (2^18 − 4)·max(near, −eye·n − radius·(1 + 2^-13)), truncated to 17 significant bits.
-    /// The factor on the radius covers a length of n slightly above 1.
+    /// The factor K of depth codes, with code = K/z: (2^18 − 4)·max(near, −eye·n − radius·(1 + 2^-13)), truncated to 17
+    /// significant bits. The factor 1 + 2^-13 allows for a length of n slightly above 1.
     ///
-    /// `radius` is the radius of the scene about the origin, in world units.
+    /// `radius` is the radius of a sphere about the origin that contains the scene, in world units.
     pub fn depth_scale(&self, radius: f64) -> f64 {
         let nearest = (-dot(self.eye, self.n) - radius * (1.0 + 1.0 / 8192.0)).max(self.near);
         let full = f64::from((1 << 18) - 4) * nearest;
@@ -341,7 +344,7 @@ mod tests {
 
     #[test]
     fn depth_scale_leaves_four_codes_at_the_nearest_depth() {
-        // 3·262140 has 20 bits, and its lowest three are truncated.
+        // Near plane 3 has K = 3·262140, a number of 20 bits; its lowest three bits are truncated.
         assert_eq!(CAMERA.depth_scale(0.0), 786_416.0);
         // (2 − 2^-13)·262140 = 524248.0 has 19 bits and ends in two zeros.
         assert_eq!(CAMERA.depth_scale(1.0), 524_248.0);

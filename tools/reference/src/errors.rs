@@ -1,23 +1,23 @@
-//! Statistics of errors.
+//! RMS and maximum of a set of errors.
 
 /// RMS and maximum of errors.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Errors {
-    /// Largest magnitude.
+    /// Largest magnitude of an error.
     pub max: f64,
     squares: f64,
     count: u64,
 }
 
 impl Errors {
-    /// Adds an error.
+    /// Adds an error, of either sign.
     pub fn add(&mut self, error: f64) {
         self.max = self.max.max(error.abs());
         self.squares += error * error;
         self.count += 1;
     }
 
-    /// Root of the mean square; 0 without errors.
+    /// Root of the mean square of the errors; 0 if there are none.
     pub fn rms(&self) -> f64 {
         (self.squares / self.count.max(1) as f64).sqrt()
     }

@@ -1,12 +1,13 @@
-//! References for Glint's errors, written from the specification and independent of the model, and the report.
+//! References for the errors of Glint's computations, written from the specification and not from the model, and the
+//! report.
 //!
-//! - [`errors`]: RMS and maximum of errors.
-//! - [`camera`]: the camera in f64.
-//! - [`raymarch`]: hits of rays on distance fields, and the errors of pictures of fields.
-//! - [`imu`]: attitudes from a gyroscope and an accelerometer, for motions of known truth.
+//! - [`errors`]: RMS and maximum of a set of errors.
+//! - [`camera`]: projection, clipping and depth scale of a camera, in f64.
+//! - [`raymarch`]: hits of rays on distance fields, and the errors of the raymarcher's pictures.
+//! - [`imu`]: attitudes from a gyroscope and an accelerometer, for motions whose true attitude is known.
 //! - [`report`]: the measurements and pages of docs/report.
-//! - [`sine`]: exhaustive error tables of sine and cosine, beside other libraries.
-//! - [`triangle`]: the exact rasterizer, the visible surface of each pixel, errors of smooth shading.
+//! - [`sine`]: errors of sine and cosine over all inputs, for Glint's kernels and for other libraries.
+//! - [`triangle`]: the exact rasterizer, the visible surface of each pixel, and the errors of smooth shading.
 
 #![forbid(unsafe_code)]
 

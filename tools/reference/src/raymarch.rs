@@ -1,15 +1,15 @@
-//! Solids given by signed distance fields, in f64: where a ray hits them, found in two ways that share no code.
+//! Solids given by signed distance fields, in f64, and two ways to find where a ray hits them that share no code.
 //!
 //! - [`Field::distance`]: the distance fields themselves.
-//! - [`Field::traced`]: any field by sphere tracing, which sees nothing but its distance.
-//! - [`Field::hit`]: each solid from its own geometry, exact but for the rounding of f64.
+//! - [`Field::traced`]: hits by sphere tracing, which uses nothing but the field's distance.
+//! - [`Field::hit`]: hits from the geometry of each solid, exact but for the rounding of f64.
 //! - [`views`]: cameras that look at the sponge.
-//! - [`metrics`]: how far a picture is from the reference.
-//! - [`raymarched`]: pictures of Glint's raymarcher, to be compared.
-//! - [`variant`]: other ways to march.
-//! - [`verilated`]: what pictures take of the raymarcher itself.
+//! - [`metrics`]: errors of a picture against the reference.
+//! - [`raymarched`]: pictures of Glint's raymarcher in the form that `metrics` compares.
+//! - [`variant`]: other marching methods, for comparisons of their cost.
+//! - [`verilated`]: clocks and evaluations that the verilated raymarcher takes for a picture.
 //!
-//! A ray that only touches a solid, or lies in the plane of one of its faces, may hit or miss it.
+//! For a ray that only touches a solid, or lies in the plane of one of its faces, both a hit and a miss are right.
 
 mod distance;
 mod grid;
@@ -33,28 +33,28 @@ use crate::camera::{Ray, Vector};
 pub enum Field {
     /// The Menger sponge that fills the cube from −1 to 1 in every axis.
     Menger {
-        /// How often holes are cut, 1 to 6.
+        /// Number of levels of holes, 1 to 6.
         depth: u32,
     },
     /// A box about the origin.
     Box {
-        /// Half of its sides.
+        /// Half of the side along each axis.
         half: Vector,
     },
-    /// A convex solid: what is behind all of some planes.
+    /// A convex solid: the points that are behind all of these planes.
     Convex(Vec<Plane>),
     /// The union of balls.
     Spheres(Vec<Sphere>),
     /// Balls about all points whose coordinates are integer multiples of the period.
     Lattice {
-        /// From centre to centre.
+        /// Distance between the centres of neighbouring balls.
         period: f64,
-        /// Of each ball.
+        /// Radius of each ball.
         radius: f64,
     },
     /// Cubes along the axes about all points whose coordinates are integer multiples of the period.
     Cubes {
-        /// From centre to centre.
+        /// Distance between the centres of neighbouring cubes.
         period: f64,
         /// Half of each cube's side, at most half the period.
         half: f64,
@@ -64,28 +64,29 @@ pub enum Field {
         /// Half of the room's height.
         half: f64,
     },
-    /// What is in either.
+    /// The points that are in at least one of two fields.
     Union(Box<Self>, Box<Self>),
-    /// What is in either, with a fillet where they are close (the quadratic smooth minimum of Quilez).
+    /// The points that are in at least one of two fields, with a fillet where their surfaces are close (the quadratic
+    /// smooth minimum of Quilez).
     SmoothUnion {
-        /// The difference of the distances to the members up to which the fillet reaches.
+        /// Range of the fillet: it exists where the distances to the two members differ by less than `k`.
         k: f64,
-        /// Member 0.
+        /// The first of the two members.
         a: Box<Self>,
-        /// Member 1.
+        /// The second of the two members.
         b: Box<Self>,
     },
 }
 
 impl Field {
-    /// The first point of a ray with a parameter from `t_min` to `t_max` that is in the solid; at `t_min` itself and
-    /// [`Face::Inside`] when the ray is there already.
+    /// The first point of a ray, with a parameter from `t_min` to `t_max`, that is in the solid. If the ray is in the solid
+    /// at `t_min` already, the hit is at `t_min` and its face is [`Face::Inside`].
     ///
-    /// `direction` is of any length but 0. For [`Field::Lattice`] and [`Field::Cubes`] `t_max` is finite: the ray may go on
-    /// between them for ever.
+    /// `direction` may have any length but 0. For [`Field::Lattice`] and [`Field::Cubes`] `t_max` must be finite, because a
+    /// ray may pass between their parts for ever.
     ///
     /// # Panics
-    /// When a ray neither hits a [`Field::SmoothUnion`] nor leaves it behind: see [`Unconverged`].
+    /// When a ray runs close to a [`Field::SmoothUnion`] for too many steps without an end: see [`Unconverged`].
     pub fn hit(&self, origin: Vector, direction: Vector, t_min: f64, t_max: f64) -> Option<Hit> {
         let ray = Ray { origin, direction };
         let hit = match self {

@@ -1,4 +1,4 @@
-//! Filters that correct the tilt by the accelerometer, in f64.
+//! Attitude filters that correct the tilt by the accelerometer, in f64.
 
 use std::f64::consts::{SQRT_2, TAU};
 
@@ -8,13 +8,13 @@ use super::method::{Integrator, Method};
 use super::quaternion::Quaternion;
 use crate::camera::{Vector, cross, dot};
 
-/// A filter of the accelerometer. Times are in seconds.
+/// How the accelerometer corrects the attitude. Times are in seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Filter {
     /// The accelerometer is ignored.
     None,
-    /// Complementary filter: mixes pitch and roll of the attitude with those of the reading, by the exact gain for this time
-    /// constant.
+    /// Complementary filter with this time constant: after each step, pitch and roll of the attitude move towards those of
+    /// the accelerometer's reading, by the exact gain of an exponential.
     Complementary(f64),
     /// Mahony's filter: the deviation of the normalised reading from the attitude's up direction corrects the rate and the
     /// bias.
@@ -24,24 +24,25 @@ pub enum Filter {
         /// Integral gain in 1/s².
         integral: f64,
     },
-    /// Laidig and Seel's VQF without its bias estimate: a second-order low pass of the readings, rotated to world axes by the
-    /// gyroscope's attitude, and the rotation that turns the filtered reading upwards.
+    /// Laidig and Seel's VQF without its bias estimate, with this time constant: the readings are rotated to world axes by
+    /// the gyroscope's attitude and pass a second-order low pass; the attitude is turned so that the filtered reading
+    /// points upwards.
     LowPass(f64),
     /// The firmware's filter, with this time constant.
     Tilt(f64),
-    /// The firmware's filter, which ignores readings outside a range.
+    /// The firmware's filter, changed to ignore readings whose strength is outside a range.
     Gated {
-        /// Time constant.
+        /// Time constant in seconds.
         tau: f64,
-        /// Lowest and highest strength in g.
+        /// Lowest and highest strength of a reading that is used, in g.
         range: [f64; 2],
     },
-    /// The firmware's filter with the gain dt/τ.
+    /// The firmware's filter with this time constant τ and the explicit gain dt/τ instead of the exact one.
     Explicit(f64),
 }
 
 impl Filter {
-    /// A name for tables.
+    /// The filter's name in tables.
     pub fn name(self) -> String {
         match self {
             Self::None => "none".into(),
@@ -61,7 +62,7 @@ impl Filter {
     }
 }
 
-/// Estimates an attitude from samples.
+/// Estimates an attitude from samples by an integration method and a filter.
 #[derive(Clone, Debug)]
 pub struct Estimator {
     filter: Filter,
@@ -71,19 +72,20 @@ pub struct Estimator {
     bias: Vector,
     integrator: Integrator,
     last: Option<u32>,
-    /// First attitude without an accelerometer.
+    /// First attitude of a filter that ignores the accelerometer.
     start: Quaternion,
     age: f64,
-    /// Correction by the last reading, half an angle about each of the body's axes; the next step applies it.
+    /// Correction by the last reading: half an angle about each of the body's axes, which the next step applies.
     correction: Vector,
-    /// Low passes of [`Filter::LowPass`].
+    /// Low passes of [`Filter::LowPass`], one for each world axis.
     low_pass: [Butterworth; 3],
-    /// Rotation of [`Filter::LowPass`] from the axes of the gyroscope alone to the world's.
+    /// For [`Filter::LowPass`], the rotation from the world axes of the gyroscope's own attitude to the corrected world
+    /// axes.
     upright: Quaternion,
 }
 
 impl Estimator {
-    /// An estimator without a sample; units are LSB per °/s and per g.
+    /// An estimator that has not seen a sample. `gyro_lsb` is in LSB per °/s, `accel_lsb` in LSB per g.
     pub fn new(method: Method, filter: Filter, gyro_lsb: f64, accel_lsb: f64) -> Self {
         Self {
             filter,
@@ -105,7 +107,7 @@ impl Estimator {
         self.bias = lsb.map(|x| (x / self.gyro_lsb).to_radians());
     }
 
-    /// Sets the first attitude of a filter without accelerometer (default: identity).
+    /// Sets the first attitude for a filter that ignores the accelerometer (default: identity).
     pub fn begin_at(&mut self, attitude: Quaternion) {
         self.start = attitude;
     }
@@ -115,7 +117,7 @@ impl Estimator {
         self.upright.times(self.integrator.attitude())
     }
 
-    /// Takes a sample. A sample not later than the last is ignored.
+    /// Takes a sample. Ignores it if its time is not later than that of the last sample.
     pub fn on_sample(&mut self, sample: &Sample) {
         let rate = [0, 1, 2]
             .map(|i| (f64::from(sample.gyro[i]) / self.gyro_lsb).to_radians() - self.bias[i]);
@@ -148,7 +150,7 @@ impl Estimator {
     fn advance(&mut self, rate: Vector, force: Vector, step: f64) {
         let correction = std::mem::take(&mut self.correction);
         self.integrator.advance_corrected(rate, step, correction);
-        // The reading belongs to the attitude after this step.
+        // The reading was taken at the end of this step, so it is compared with the attitude after the step.
         let up = self.integrator.attitude().up();
         let strength = dot(force, force).sqrt();
         let turn = |gain: f64| cross(force, up).map(|x| x * gain / 2.0);
@@ -190,7 +192,7 @@ impl Estimator {
                 let [x, y, z] = force;
                 let [yaw, pitch, roll] = self.integrator.attitude().angles();
                 let mixed = |angle: f64, read: f64| {
-                    // Wrapped to ±π.
+                    // The difference is wrapped to ±π.
                     let difference = (read - angle + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0;
                     angle + gain * difference
                 };
@@ -203,7 +205,7 @@ impl Estimator {
                 let world = self.integrator.attitude().rotate(force);
                 let mean = [0, 1, 2].map(|i| self.low_pass[i].next(world[i], step, tau));
                 let [x, y, z] = self.upright.rotate(mean);
-                // The shortest rotation that takes the mean to z.
+                // The shortest rotation that takes the mean reading to the z axis.
                 let length = (x * x + y * y + z * z).sqrt();
                 if length > 1e-6 {
                     let half = Quaternion([length + z, y, -x, 0.0]);
@@ -215,7 +217,8 @@ impl Estimator {
         }
     }
 
-    /// The exact gain of a step; during the first τ close to the gain of a running mean.
+    /// The exact gain of a step of `step` seconds. During the first `tau` seconds it is close to the gain of a running
+    /// mean.
     fn aged_gain(&mut self, tau: f64, step: f64) -> f64 {
         if self.age < tau {
             self.age = (self.age + step).min(tau);
@@ -224,7 +227,8 @@ impl Estimator {
     }
 }
 
-/// A second-order Butterworth low pass by the bilinear transform; a running mean during the first τ.
+/// A second-order Butterworth low pass by the bilinear transform. During the first τ seconds it returns the running mean
+/// instead.
 #[derive(Clone, Copy, Debug, Default)]
 struct Butterworth {
     age: f64,
@@ -235,7 +239,7 @@ struct Butterworth {
 
 impl Butterworth {
     fn next(&mut self, x: f64, step: f64, tau: f64) -> f64 {
-        // VQF's cut-off frequency for a time constant.
+        // tan(π·f·dt) for VQF's cut-off frequency f = √2/(2π·τ); `TAU` is 2π here.
         let c = (TAU / 2.0 * SQRT_2 / (TAU * tau) * step).tan();
         let d = c * c + SQRT_2 * c + 1.0;
         let b0 = c * c / d;
@@ -245,7 +249,7 @@ impl Butterworth {
             self.sum += x;
             self.count += 1.0;
             let mean = self.sum / self.count;
-            // The state after a constant input of `mean`.
+            // Sets the state that the low pass would have after a long constant input of `mean`.
             self.state = [(1.0 - b0) * mean, (b0 - a[1]) * mean];
             return mean;
         }

@@ -1,4 +1,4 @@
-//! Measurements shared by the tests and the report.
+//! Measurements of the attitude that the tests and the report share.
 
 use glint_core::calibration::{
     Calibration, Progress, Report, RestBias, SAMPLES, SampleError, Units,
@@ -13,10 +13,10 @@ use super::quaternion::Quaternion;
 use super::sensor::Sensor;
 use crate::errors::Errors;
 
-/// The firmware's time constant of the tilt, in seconds.
+/// Time constant of the firmware's tilt correction, in seconds.
 pub const TAU: f64 = TIME_CONSTANT as f64 * 1e-6;
 
-/// The firmware's tracker for a sensor, with its bias to 1/256 LSB.
+/// The firmware's tracker for a sensor. It knows the sensor's bias, rounded to 1/256 LSB.
 ///
 /// # Panics
 /// When the firmware does not support the sensor's units.
@@ -35,16 +35,16 @@ fn bias(sensor: &Sensor) -> [f64; 3] {
         .map(|bias| (bias * sensor.gyro_lsb * 256.0).round())
 }
 
-/// Largest errors of the firmware.
+/// Largest errors of the firmware over a motion.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Largest {
-    /// Angle to the attitude by the same method in f64 on the same counts, in degrees.
+    /// Angle between the firmware's attitude and that of the same method in f64 on the same samples, in degrees.
     pub angle: f64,
-    /// Error of the quaternion's length.
+    /// Difference of the length of the firmware's quaternion from 1.
     pub norm: f64,
 }
 
-/// Runs the firmware beside the same method in f64, with and without the accelerometer.
+/// Runs the firmware beside the same method in f64 on the same samples. `tilt` says whether both use the accelerometer.
 pub fn against_f64(sensor: Sensor, motion: Motion, seconds: f64, tilt: bool) -> Largest {
     let mut tracker = tracker(&sensor, tilt);
     let filter = if tilt {
@@ -66,7 +66,8 @@ pub fn against_f64(sensor: Sensor, motion: Motion, seconds: f64, tilt: bool) -> 
     largest
 }
 
-/// The error of a method at the end in degrees, on unrounded rates.
+/// The error in degrees of a method's attitude at the end of a motion. The method takes exact, unrounded rates `rate` times
+/// a second.
 pub fn method_error(method: Method, motion: Motion, seconds: f64, rate: f64) -> f64 {
     let start = motion.attitude(0.0).unwrap_or(Quaternion::IDENTITY);
     let mut integrator = Integrator::new(method, start, motion.rate(0.0));
@@ -79,12 +80,13 @@ pub fn method_error(method: Method, motion: Motion, seconds: f64, rate: f64) -> 
     integrator.attitude().angle_to(truth)
 }
 
-/// Bias left after a calibration and a change of temperature, in °/s, along x, y and z.
+/// Assumed remaining error of the gyroscope's bias after a calibration and a change of temperature, in °/s along x, y and
+/// z.
 pub const LEFT_BIAS: [f64; 3] = [0.02, -0.02, 0.02];
-/// Time in seconds from which errors of the tilt count.
+/// Time in seconds from which errors of the inclination are counted.
 const SETTLED: f64 = 10.0;
 
-/// The firmware's inclination against the truth, in degrees, with [`LEFT_BIAS`].
+/// Errors of the firmware's inclination against the truth, in degrees, when its bias is wrong by [`LEFT_BIAS`].
 ///
 /// # Panics
 /// When the motion has no attitude in closed form.
@@ -105,7 +107,7 @@ pub fn inclination(sensor: Sensor, motion: Motion, seconds: f64) -> Errors {
     errors
 }
 
-/// The inclination of a filter in f64 against the truth, in degrees, with [`LEFT_BIAS`].
+/// Errors of the inclination by a filter in f64 against the truth, in degrees, when its bias is wrong by [`LEFT_BIAS`].
 ///
 /// # Panics
 /// As [`inclination`].
@@ -127,13 +129,13 @@ pub fn filter_inclination(filter: Filter, sensor: Sensor, motion: Motion, second
     errors
 }
 
-/// Calibrates the firmware by samples of a motion.
+/// Runs the firmware's calibration on samples of a motion and returns its report.
 ///
 /// # Errors
-/// Errors of the firmware's calibration.
+/// When the firmware's calibration refuses a sample.
 ///
 /// # Panics
-/// When the samples end before the calibration.
+/// When the samples end before the calibration does.
 pub fn calibrated(sensor: Sensor, motion: Motion) -> Result<Report, SampleError> {
     let mut calibration = Calibration::new(Units::MPU_6050, SAMPLES);
     for sample in sensor.samples(motion, u64::from(SAMPLES) + 1, 3) {
@@ -144,7 +146,8 @@ pub fn calibrated(sensor: Sensor, motion: Motion) -> Result<Report, SampleError>
     unreachable!("a calibration ends after the requested number of samples");
 }
 
-/// Drift of yaw at rest after a calibration, in °/h, with the bias kept or tracked.
+/// Drift of yaw in °/h at rest after the calibration in `report`. With `follow` the firmware tracks the bias, otherwise
+/// keeps it.
 pub fn yaw_drift(sensor: Sensor, report: &Report, hours: f64, follow: bool) -> f64 {
     let mut tracker = tracker(&sensor, true);
     tracker.set_bias(report.bias);

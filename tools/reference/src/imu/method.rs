@@ -7,21 +7,21 @@ use glint_core::orientation::{LONGEST_CURVE, MOST_STRETCH};
 /// An integration method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// Rates about the body's axes added to yaw, pitch and roll.
+    /// Adds the rates about the body's axes directly to yaw, pitch and roll.
     Angles,
-    /// q + q·ω·dt/2, normalised, with the newest sample.
+    /// q + q·ω·dt/2, normalised; ω is the newest sample.
     FirstOrder,
-    /// Quaternion exponential of the newest sample.
+    /// Rotation by the newest sample, through the quaternion exponential.
     Newest,
-    /// Quaternion exponential of the mean of two samples.
+    /// Rotation by the mean of the last two samples, through the quaternion exponential.
     Trapezoid,
-    /// The trapezoid plus the coning term of a rate that is linear between two samples.
+    /// The trapezoid with the coning term of a rate that is linear between the two samples.
     Coning,
-    /// The parabola through three samples, with its coning term.
+    /// Rotation by the parabola through the last three samples, with its coning term.
     Parabola,
-    /// The cubic through four samples, as the firmware integrates it.
+    /// Rotation by the cubic through the last four samples, with the firmware's coning coefficient.
     Cubic,
-    /// The cubic with the coning term of its own polynomial.
+    /// The firmware's cubic with the coning term that follows from the cubic itself.
     PlainCubic,
 }
 
@@ -38,7 +38,7 @@ impl Method {
         Self::Cubic,
     ];
 
-    /// A name for tables.
+    /// The method's name in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Angles => "rates added to angles",
@@ -53,7 +53,7 @@ impl Method {
     }
 }
 
-/// An integrated attitude.
+/// Integrates rates to an attitude by one method.
 #[derive(Clone, Debug)]
 pub struct Integrator {
     method: Method,
@@ -72,7 +72,7 @@ fn combine(a: Vector, b: Vector, factor: f64) -> Vector {
 }
 
 impl Integrator {
-    /// An integrator at an attitude and a rate.
+    /// An integrator that starts at an attitude and a rate, in rad/s.
     pub fn new(method: Method, attitude: Quaternion, rate: Vector) -> Self {
         Self {
             method,
@@ -86,13 +86,13 @@ impl Integrator {
         }
     }
 
-    /// Restarts at a rate and keeps the attitude.
+    /// Restarts the interpolation at a rate, and keeps the attitude.
     pub fn restart(&mut self, rate: Vector) {
         self.last = rate;
         self.steps = 0;
     }
 
-    /// The method.
+    /// The integration method.
     pub fn method(&self) -> Method {
         self.method
     }
@@ -108,12 +108,12 @@ impl Integrator {
         self.attitude
     }
 
-    /// Takes the rate `step` seconds after the last one.
+    /// Takes the rate that was measured `step` seconds after the previous one, and turns the attitude.
     pub fn advance(&mut self, rate: Vector, step: f64) {
         self.advance_corrected(rate, step, [0.0; 3]);
     }
 
-    /// As [`Self::advance`], plus a rotation by `correction`, half an angle about each of the body's axes.
+    /// As [`Self::advance`], and then turns by `correction`: half an angle about each of the body's axes.
     pub fn advance_corrected(&mut self, rate: Vector, step: f64, correction: Vector) {
         match self.method {
             Method::Angles => {
@@ -134,9 +134,9 @@ impl Integrator {
         self.last = rate;
     }
 
-    /// The rotation vector of a step.
+    /// The rotation vector of a step of `step` seconds that ends at `rate`.
     fn turn(&mut self, rate: Vector, step: f64) -> Vector {
-        // The firmware's times are whole microseconds, so steps that differ by less are equal.
+        // The firmware's times are whole microseconds, so steps that differ by less than a nanosecond count as equal.
         let within = |longest: f64| step <= longest + 1e-9;
         let curved = within(f64::from(LONGEST_CURVE) * 1e-6)
             && (self.steps == 0 || within(f64::from(MOST_STRETCH) * self.ages[0]));

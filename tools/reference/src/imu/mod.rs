@@ -1,7 +1,7 @@
-//! Attitudes from a gyroscope and an accelerometer in f64: the firmware's method without its roundings, other methods, motions of
-//! known truth, and sensors that measure them.
+//! Attitudes from a gyroscope and an accelerometer, in f64: the firmware's method without its roundings, other methods,
+//! motions whose true attitude is known, and sensors that measure these motions.
 //!
-//! Rates are in rad/s about the body's axes, forces in g. An accelerometer at rest reads +1 g upwards.
+//! Rates are in rad/s about the body's axes, forces in g. At rest, an accelerometer reads +1 g upwards.
 
 pub mod filter;
 pub mod measure;

@@ -1,4 +1,4 @@
-//! Motions with a known truth.
+//! Motions whose true rate and attitude are known.
 
 use std::f64::consts::TAU;
 
@@ -9,7 +9,7 @@ use crate::camera::Vector;
 /// The standard acceleration of gravity, in m/s².
 pub const GRAVITY: f64 = 9.806_65;
 
-/// a·sin(τ·f·t + p): amplitude, frequency in Hz, phase in radians.
+/// The function a·sin(τ·f·t + p) as its amplitude a, frequency f in Hz and phase p in radians; τ is 2π.
 type Wave = [f64; 3];
 
 fn value(waves: &[Wave], t: f64) -> f64 {
@@ -26,34 +26,35 @@ fn slope(waves: &[Wave], t: f64) -> f64 {
         .sum()
 }
 
-/// A motion, at times in seconds.
+/// A motion of the sensor. Times are in seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Motion {
     /// At rest.
     Rest,
     /// A constant rate in °/s about each axis.
     Spin(Vector),
-    /// Rotation about all axes up to a rate in °/s, without an attitude in closed form.
+    /// Rotation about all axes at rates up to this one, in °/s. Its attitude has no closed form.
     Tumble(f64),
     /// The body's z axis moves around a cone.
     Coning {
         /// Half the cone's angle, in degrees.
         angle: f64,
-        /// Turns a second.
+        /// Turns around the cone per second.
         frequency: f64,
     },
-    /// A square wave of the rate about z.
+    /// A rate about z that is a square wave.
     Square {
         /// Amplitude in °/s.
         rate: f64,
         /// Frequency in Hz.
         frequency: f64,
     },
-    /// Hand motion about a wrist 10 cm away, mostly sideways, 0.5 to 2 Hz, up to 300 °/s.
+    /// Hand motion about a wrist 10 cm away, mostly sideways: 0.5 to 2 Hz, up to 300 °/s.
     Hand,
-    /// Hand motion, mostly up and down.
+    /// Hand motion about a wrist 10 cm away, mostly up and down.
     Nod,
-    /// A walk: ±3 m/s² up and down at 2 Hz, ±1.5 m/s² fore and aft, and 10 m/s² upwards for 50 ms with every step.
+    /// A walk: accelerations of ±3 m/s² up and down at 2 Hz, of ±1.5 m/s² fore and aft, and of 10 m/s² upwards for 50 ms
+    /// with every step.
     Walk,
 }
 
@@ -68,7 +69,7 @@ const WALK: [&[Wave]; 3] = [&[[0.3, 0.1, 0.0]], &[[0.05, 2.0, 0.4]], &[[0.07, 1.
 const ARM: Vector = [0.1, 0.0, 0.0];
 
 impl Motion {
-    /// The rate about the body's axes in rad/s.
+    /// The rate about the body's axes at time `t`, in rad/s.
     pub fn rate(self, t: f64) -> Vector {
         match self {
             Self::Rest => [0.0; 3],
@@ -109,7 +110,7 @@ impl Motion {
         }
     }
 
-    /// Yaw, pitch and roll of motions defined by them.
+    /// Yaw, pitch and roll as sums of waves, for motions that are defined by them.
     fn waves(self) -> [&'static [Wave]; 3] {
         match self {
             Self::Hand => HAND,
@@ -119,7 +120,7 @@ impl Motion {
         }
     }
 
-    /// The attitude, for motions with a closed form.
+    /// The attitude at time `t`, for motions that have one in closed form.
     pub fn attitude(self, t: f64) -> Option<Quaternion> {
         match self {
             Self::Rest => Some(Quaternion::IDENTITY),
@@ -141,8 +142,8 @@ impl Motion {
         }
     }
 
-    /// The attitude after `seconds`: [`Self::attitude`] for motions in closed form, otherwise integrated from the identity with
-    /// 16 · `rate` steps a second.
+    /// The attitude after `seconds`: [`Self::attitude`] if there is a closed form, otherwise integrated from the identity
+    /// with 16 · `rate` steps a second.
     pub fn attitude_after(self, seconds: f64, rate: f64) -> Quaternion {
         self.attitude(seconds).unwrap_or_else(|| {
             let step = 1.0 / (16.0 * rate);
@@ -156,8 +157,8 @@ impl Motion {
         })
     }
 
-    /// The reading of an accelerometer along the body's axes in g: gravity alone for motions without a position, and gravity along z
-    /// for those without an attitude.
+    /// The reading of an accelerometer along the body's axes at time `t`, in g. A motion without a position gives gravity
+    /// alone, and a motion without an attitude in closed form gives gravity along z.
     pub fn force(self, t: f64) -> Vector {
         let attitude = self.attitude(t).unwrap_or(Quaternion::IDENTITY);
         let [x, y, z] = self.acceleration(t);
@@ -167,11 +168,11 @@ impl Motion {
             .map(|x| x / GRAVITY)
     }
 
-    /// The acceleration of the sensor in the world, in m/s².
+    /// The acceleration of the sensor in world axes at time `t`, in m/s².
     fn acceleration(self, t: f64) -> Vector {
         match self {
             Self::Hand | Self::Nod => {
-                // The error of the difference, about 1e-6 m/s², is negligible.
+                // The error of this second difference, about 1e-6 m/s², is negligible.
                 let step = 1e-3;
                 let [a, b, c] = [t - step, t, t + step].map(|t| {
                     let attitude = self.attitude(t).unwrap_or(Quaternion::IDENTITY);

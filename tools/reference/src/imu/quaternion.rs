@@ -1,4 +1,4 @@
-//! Hamilton quaternions in f64, body to world.
+//! Hamilton quaternions in f64 that rotate from body to world axes.
 
 use glint_core::orientation;
 
@@ -15,13 +15,13 @@ impl From<orientation::Quaternion> for Quaternion {
 }
 
 impl Quaternion {
-    /// No rotation.
+    /// The rotation by no angle.
     pub const IDENTITY: Self = Self([1.0, 0.0, 0.0, 0.0]);
 
-    /// The rotation by twice a vector, in radians.
+    /// The rotation whose rotation vector is twice `half`, in radians (the quaternion exponential of `half`).
     pub fn exp(half: Vector) -> Self {
         let angle = dot(half, half).sqrt();
-        // Below 1e-8 the sine is its angle to the last place.
+        // Below 1e-8 the sine and the angle are equal in f64.
         let scale = if angle > 1e-8 {
             angle.sin() / angle
         } else {
@@ -31,7 +31,7 @@ impl Quaternion {
         Self([angle.cos(), x, y, z])
     }
 
-    /// Yaw, pitch and roll in radians, intrinsic about z, y, x.
+    /// The rotation by yaw about z, then pitch about the new y, then roll about the new x, in radians.
     pub fn of_angles([yaw, pitch, roll]: Vector) -> Self {
         let about = |axis: usize, angle: f64| {
             let mut half = [0.0; 3];
@@ -41,7 +41,7 @@ impl Quaternion {
         about(2, yaw).times(about(1, pitch)).times(about(0, roll))
     }
 
-    /// The product: the rotation by `other`, then by this quaternion.
+    /// The product of two rotations: first `other`, then this one.
     #[must_use]
     pub fn times(self, other: Self) -> Self {
         let ([aw, ax, ay, az], [bw, bx, by, bz]) = (self.0, other.0);
@@ -53,7 +53,7 @@ impl Quaternion {
         ])
     }
 
-    /// The inverse rotation.
+    /// The inverse of this quaternion, which has length 1.
     #[must_use]
     pub fn inverse(self) -> Self {
         let [w, x, y, z] = self.0;
@@ -72,7 +72,7 @@ impl Quaternion {
         Self(self.0.map(|x| x / norm))
     }
 
-    /// `v` rotated from the body's axes to the world's.
+    /// Rotates a vector from the body's axes to the world's.
     pub fn rotate(self, v: Vector) -> Vector {
         let [w, x, y, z] = self.0;
         let twice = cross([x, y, z], v).map(|c| 2.0 * c);
@@ -80,7 +80,7 @@ impl Quaternion {
         [0, 1, 2].map(|i| v[i] + w * twice[i] + again[i])
     }
 
-    /// The world's z axis in the body's.
+    /// The world's z axis in coordinates of the body.
     pub fn up(self) -> Vector {
         self.inverse().rotate([0.0, 0.0, 1.0])
     }
@@ -91,14 +91,14 @@ impl Quaternion {
         2.0 * (x * x + y * y + z * z).sqrt().atan2(w.abs()).to_degrees()
     }
 
-    /// The angle between the up directions of two attitudes, in degrees.
+    /// The angle between the up directions of two attitudes, in degrees; yaw does not count.
     pub fn inclination_to(self, other: Self) -> f64 {
         let (a, b) = (self.up(), other.up());
         let sine = cross(a, b);
         dot(sine, sine).sqrt().atan2(dot(a, b)).to_degrees()
     }
 
-    /// Yaw, pitch and roll in radians, the inverse of [`Self::of_angles`].
+    /// Yaw, pitch and roll in radians; the inverse of [`Self::of_angles`].
     pub fn angles(self) -> Vector {
         let [w, x, y, z] = self.0;
         let level = [w * w + x * x - y * y - z * z, 2.0 * (x * y + w * z)];

@@ -1,4 +1,4 @@
-//! Sensors: samples of a motion.
+//! Sensors that turn a motion into samples.
 
 use glint_core::orientation::Sample;
 use rand::{Rng, RngExt, SeedableRng};
@@ -7,31 +7,31 @@ use rand_pcg::Pcg64Mcg;
 use super::motion::Motion;
 use crate::camera::Vector;
 
-/// A gyroscope and an accelerometer.
+/// Properties and errors of a gyroscope and an accelerometer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensor {
-    /// LSB per °/s.
+    /// Counts (LSB) of the gyroscope per °/s.
     pub gyro_lsb: f64,
-    /// LSB per g.
+    /// Counts (LSB) of the accelerometer per g.
     pub accel_lsb: f64,
     /// Bias of the gyroscope in °/s.
     pub bias: Vector,
-    /// Standard deviation of a sample of the gyroscope, in °/s.
+    /// Standard deviation of the noise in each sample of the gyroscope, in °/s.
     pub noise: f64,
-    /// Standard deviation of a sample of the accelerometer, in g.
+    /// Standard deviation of the noise in each sample of the accelerometer, in g.
     pub accel_noise: f64,
     /// Scale error of the gyroscope, as a fraction of the rate.
     pub scale_error: f64,
     /// Samples a second.
     pub rate: f64,
-    /// Largest jitter of a sample's time, as a fraction of the period.
+    /// Largest deviation of a sample's time from the even grid, as a fraction of the period.
     pub jitter: f64,
-    /// Fraction of lost samples.
+    /// Fraction of the samples that are lost.
     pub lost: f64,
 }
 
 impl Sensor {
-    /// A sensor without errors except rounding; ±2000 °/s and ±8 g.
+    /// A sensor without errors except the rounding to counts, with ranges of ±2000 °/s and ±8 g.
     pub fn ideal(rate: f64) -> Self {
         Self {
             gyro_lsb: 16.4,
@@ -46,7 +46,7 @@ impl Sensor {
         }
     }
 
-    /// A sensor with the noise and bias of a logged one.
+    /// A sensor with the noise and bias of a real sensor whose samples were logged.
     pub fn real(rate: f64) -> Self {
         Self {
             bias: [4.5, 0.05, 1.1],
@@ -56,7 +56,7 @@ impl Sensor {
         }
     }
 
-    /// `count` samples of a motion, minus lost ones. The first and the last are never lost and have no jitter.
+    /// The samples of a motion: `count`, minus the lost ones. The first and the last are never lost and have no jitter.
     pub fn samples(self, motion: Motion, count: u64, seed: u64) -> impl Iterator<Item = Sample> {
         let mut random = Pcg64Mcg::seed_from_u64(seed);
         let period = 1e6 / self.rate;
@@ -68,12 +68,12 @@ impl Sensor {
                 0.0
             };
             let lost = uniform(&mut random) < self.lost && inner;
-            // Time stamps are whole microseconds; the sample is taken at its stamp.
+            // Time stamps are whole microseconds, and the sample is taken exactly at its time stamp.
             let t_us = ((i as f64 + jitter) * period).round();
             let t = t_us * 1e-6;
             let (rate, force) = (motion.rate(t), motion.force(t));
             let sample = Sample {
-                // Time stamps wrap as on the board.
+                // Time stamps wrap at 32 bits, as on the board.
                 t_us: t_us as u64 as u32,
                 gyro: [0, 1, 2].map(|k| {
                     let true_rate = rate[k].to_degrees() * (1.0 + self.scale_error);
@@ -89,7 +89,7 @@ impl Sensor {
     }
 }
 
-/// Rounds to nearest; saturates like the sensor.
+/// Rounds to the nearest count, and saturates like the sensor.
 fn counts(x: f64) -> i16 {
     x.round() as i16
 }
@@ -98,7 +98,7 @@ fn uniform(random: &mut impl Rng) -> f64 {
     random.random()
 }
 
-/// Normal noise of a standard deviation.
+/// A random number of a normal distribution with mean 0 and this standard deviation.
 fn scaled_noise(deviation: f64, random: &mut impl Rng) -> f64 {
     if deviation == 0.0 {
         0.0
@@ -107,7 +107,7 @@ fn scaled_noise(deviation: f64, random: &mut impl Rng) -> f64 {
     }
 }
 
-/// A standard normal number, by Box and Muller.
+/// A random number of the standard normal distribution, by the method of Box and Muller.
 fn normal(random: &mut impl Rng) -> f64 {
     let radius = (-2.0 * (1.0 - uniform(random)).ln()).sqrt();
     radius * (std::f64::consts::TAU * uniform(random)).cos()

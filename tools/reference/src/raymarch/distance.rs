@@ -1,7 +1,8 @@
-//! Signed distances: negative inside, and never above the distance to the surface.
+//! Signed distances of fields: negative inside a solid; outside, never larger than the true distance to the surface.
 //!
-//! Flat fields are measured in the maximum norm, round fields in the Euclidean norm. The distance changes by at most
-//! the Euclidean length of a step, so a ball about a point with the point's distance as radius is empty.
+//! Distances to flat fields are in the maximum norm, distances to round fields in the Euclidean norm. From one point to
+//! another a field's distance changes by at most the Euclidean length of the way, so a ball about a point whose radius is
+//! the point's distance is empty.
 
 use super::{Field, Plane};
 use crate::camera::{Vector, dot, length, subtract};
@@ -9,7 +10,8 @@ use crate::camera::{Vector, dot, length, subtract};
 impl Field {
     /// The signed distance of a point, in world units.
     ///
-    /// [`Field::SmoothUnion`] is min(a, b) − h²k/4 of its members' distances a and b, with h = max(k − |a − b|, 0)/k.
+    /// For [`Field::SmoothUnion`] it is min(a, b) − h²k/4, with the distances a and b to the two members and h = max(k − |a
+    /// − b|, 0)/k.
     pub fn distance(&self, p: Vector) -> f64 {
         match self {
             Self::Menger { depth } => {
@@ -35,39 +37,40 @@ impl Field {
 }
 
 impl Plane {
-    /// The distance of a point in the maximum norm. A cube of half side r changes the scalar product with the normal by
-    /// r times the sum of the magnitudes of the normal's components.
+    /// The distance of a point to the plane in the maximum norm. Within a cube of half side r about a point, the scalar
+    /// product with the normal changes by up to r times the sum of the magnitudes of the normal's components. So the
+    /// distance is divided by that sum.
     fn distance(&self, p: Vector) -> f64 {
         let sum: f64 = self.normal.iter().map(|part| part.abs()).sum();
         (dot(self.normal, p) - self.offset) / sum
     }
 }
 
-/// The distance to a box about the origin, in the maximum norm.
+/// The distance of a point to a box about the origin, in the maximum norm.
 fn box_distance(half: Vector, p: Vector) -> f64 {
     let beyond = |axis: usize| p[axis].abs() - half[axis];
     beyond(0).max(beyond(1)).max(beyond(2))
 }
 
-/// A point relative to the nearest point whose coordinates are integer multiples of the period.
+/// The position of a point relative to the nearest point whose coordinates are all integer multiples of the period.
 fn about_nearest(period: f64, p: Vector) -> Vector {
     p.map(|c| c - (c / period).round() * period)
 }
 
-/// The quadratic polynomial smooth minimum (I. Quilez, "smooth minimum").
+/// The smooth minimum of `a` and `b` by a quadratic polynomial (I. Quilez, "smooth minimum").
 fn smooth_minimum(k: f64, a: f64, b: f64) -> f64 {
     let h = (k - (a - b).abs()).max(0.0) / k;
     a.min(b) - h * h * k / 4.0
 }
 
-/// Folds a point and the nearest cube of the sponge's last level, so that the cube is centred at the origin. Returns
-/// the point in units of the cube's side, and that unit.
+/// Moves a point by reflections and shifts so that the nearest cube of the sponge's last level has its centre at the
+/// origin. Returns the moved point, in units of the cube's side, and the side in world units.
 ///
-/// At each level 27 cubes of side s meet, with centres at 0 and ±s. The point is mirrored into the corner where all
-/// coordinates are at +s, and is expressed relative to that corner with each axis reversed, so that the middle is at s.
-/// Of the cubes with one coordinate in the middle, only the one along the largest coordinate can be the nearest; the
-/// cubes with two are not in the sponge. Every step is an isometry on each side of a fold and continuous across it, so
-/// the distance still changes by at most the length of a step.
+/// At each level, 27 cubes of side s meet, with centres at 0 and ±s. The point is mirrored into the corner where all
+/// coordinates are at +s. It is then expressed relative to that corner with each axis reversed, so that the middle is at s.
+/// Of the cubes with one coordinate in the middle, only the one along the largest coordinate can be the nearest. The cubes
+/// with two coordinates in the middle are holes of the sponge. Every step keeps lengths on each side of a fold and is
+/// continuous across it. So the distance still changes by at most the length of the way.
 fn fold(depth: u32, p: Vector) -> (Vector, f64) {
     let side = 3f64.powi(depth as i32);
     let mut p = p.map(|c| c * side / 2.0);
@@ -80,7 +83,7 @@ fn fold(depth: u32, p: Vector) -> (Vector, f64) {
     (p, 2.0 / side)
 }
 
-/// The Euclidean distance of a point outside of the sponge.
+/// The Euclidean distance of a point outside the sponge to its surface.
 pub(super) fn euclidean(depth: u32, p: Vector) -> f64 {
     let (folded, unit) = fold(depth, p);
     length(folded.map(|c| (c.abs() - 0.5).max(0.0))) * unit
@@ -93,7 +96,7 @@ mod tests {
 
     #[test]
     fn the_fold_gives_the_known_euclidean_distances() {
-        // In units of 1/162 of the half side.
+        // Points and their distances are in units of 1/162 of the sponge's half side.
         let cases = [
             ([0.0; 3], 76.37),
             ([0.0, 0.0, 80.0], 54.0),
@@ -112,7 +115,7 @@ mod tests {
         assert!(close([0.0; 3], 1.0 / 3.0));
         assert!(close([2.0, 0.0, 0.0], 1.0));
         assert!(close([-1.5, 3.0, 0.2], 2.0));
-        // In the middle of a small tunnel, and of the small cube beside it.
+        // The middle of a small tunnel, and then the middle of the small cube beside the tunnel.
         assert!(close([2.0 / 3.0, 1.0, 2.0 / 3.0], 1.0 / 9.0));
         assert!(close([8.0 / 9.0, 8.0 / 9.0, 8.0 / 9.0], -1.0 / 9.0));
     }
@@ -148,7 +151,7 @@ mod tests {
         let (a, b) = (ball(-2.0), ball(2.0));
         let union = Field::SmoothUnion { k: 0.5, a, b };
         assert_eq!(union.distance([0.0; 3]), 1.0 - 0.125);
-        // At half of the fillet's range the blend is a quarter of its maximum.
+        // Where the distances differ by half of `k`, the fillet adds a quarter of its largest thickness.
         assert_eq!(union.distance([0.125, 0.0, 0.0]), 0.875 - 0.03125);
         assert_eq!(union.distance([-4.0, 0.0, 0.0]), 1.0);
     }

@@ -1,13 +1,14 @@
-//! Solids repeated in all three axes.
+//! Hits of rays on solids that repeat along all three axes.
 
 use super::surface::Hit;
 use crate::camera::Ray;
 
-/// The first hit of a ray with copies of a solid centred at all points whose coordinates are integer multiples of the
+/// The first hit of a ray with copies of a solid, one about each point whose coordinates are integer multiples of the
 /// period.
 ///
-/// `hit` returns the hit of the solid about the origin with the given ray. Cells are visited in the order of the ray
-/// (Amanatides and Woo 1987), up to `t_max`. Each point of the solid must be nearest to its own centre.
+/// `hit` returns the hit of a given ray with the copy about the origin. Cells are visited in the order in which the ray
+/// passes them (Amanatides and Woo 1987), up to `t_max`. Every point of a copy must be nearer to its own centre than to any
+/// other.
 pub(super) fn nearest(
     period: f64,
     ray: &Ray,
@@ -25,7 +26,7 @@ pub(super) fn nearest(
             direction: ray.direction,
         };
         best = Hit::nearer(best, hit(&local));
-        // Each border is computed from its cell's number: a sum of steps would drift.
+        // Each border is computed from its cell's number, because a running sum of steps would drift.
         let border = |axis: usize| {
             let d = ray.direction[axis];
             if d == 0.0 {

@@ -1,30 +1,31 @@
-//! Accuracy of a picture against the reference.
+//! Errors of a picture against the reference.
 
 use super::{Face, Field, Hit};
 use crate::camera::{Ray, Size, Vector, cross, dot, length};
 
-/// Offset of the neighbouring rays that test a pixel's stability, in pixels.
+/// Offset in pixels of the four neighbouring rays that tell whether a pixel is stable (`Expected::stable`).
 const BESIDE: f64 = 0.05;
 
 /// Largest relative difference in depth between a stable pixel and its neighbouring rays.
 const STEADY: f64 = 1e-3;
 
-/// The reference in a pixel.
+/// The reference result of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Expected {
     /// The hit of the ray through the pixel's centre.
     pub hit: Option<Hit>,
-    /// Whether the rays 0.05 pixels to the left, right, top and bottom agree with the centre: the same face of the same
-    /// member at a depth within a thousandth, or a miss. At unstable pixels a correct picture may differ.
+    /// Whether the rays 0.05 pixels to the left, right, top and bottom give the same as the ray through the centre: the
+    /// same face of the same member at a depth that differs by less than a thousandth, or also a miss. At an unstable pixel
+    /// a correct picture may differ from the reference.
     pub stable: bool,
 }
 
-/// The reference picture of a field, row by row, with hits at parameters from `t_min` to `t_max`.
+/// Computes the reference picture of a field, row by row, from hits at parameters from `t_min` to `t_max`.
 ///
-/// `ray` returns the ray of a pixel, such as [`Camera::ray`](crate::camera::Camera::ray).
+/// `ray` returns the ray of a pixel and may be [`Camera::ray`](crate::camera::Camera::ray).
 ///
 /// # Panics
-/// As [`Field::hit`].
+/// As for [`Field::hit`].
 pub fn expected(
     field: &Field,
     size: Size,
@@ -47,7 +48,8 @@ pub fn expected(
         .collect()
 }
 
-/// Whether the hit of a neighbouring ray is on the same surface as that of the pixel's centre.
+/// Whether a pixel stays stable: whether the hit of a neighbouring ray is on the same surface as that of the ray through
+/// the centre.
 fn alike(centre: Option<Hit>, beside: Option<Hit>) -> bool {
     match (centre, beside) {
         (None, None) => true,
@@ -58,25 +60,25 @@ fn alike(centre: Option<Hit>, beside: Option<Hit>) -> bool {
     }
 }
 
-/// Result of a pixel in a picture.
+/// Result of a pixel in a compared picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Outcome {
-    /// A surface.
+    /// The ray hits a surface.
     Hit {
-        /// The ray's parameter.
+        /// Parameter of the ray at the hit.
         t: f64,
-        /// The face.
+        /// The face that was hit.
         face: Face,
         /// Outward normal of any length; used only for round faces.
         normal: Vector,
     },
-    /// No surface.
+    /// The ray hits no surface.
     Miss,
-    /// Step limit reached.
+    /// The ray reached the step limit before a hit or a miss.
     Undecided,
 }
 
-/// Quantiles by nearest rank: the smallest value that at least the given share of the values does not exceed.
+/// Quantiles by nearest rank: each is the smallest of the values that is not below the given share of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quantiles {
     /// Quantile of 50 %.
@@ -88,7 +90,7 @@ pub struct Quantiles {
 }
 
 impl Quantiles {
-    /// `None` for an empty list.
+    /// The quantiles of a list of values; `None` for an empty list.
     fn new(mut values: Vec<f64>) -> Option<Self> {
         values.sort_by(f64::total_cmp);
         let max = *values.last()?;
@@ -101,34 +103,34 @@ impl Quantiles {
     }
 }
 
-/// Accuracy of a picture against the reference. All pixels count, unstable ones too.
+/// Errors of a picture against the reference. All pixels count, also unstable ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accuracy {
     /// Number of pixels, one ray each.
     pub rays: usize,
     /// Share of unstable pixels.
     pub unstable: f64,
-    /// Intersection over union of the hits: pixels where both hit among pixels where either hits; 1 without hits.
-    /// Undecided pixels are not hits.
+    /// Intersection over union of the hits: the number of pixels where picture and reference both hit, divided by the
+    /// number where at least one of them hits; 1 if neither hits anywhere. Undecided pixels are not hits.
     pub iou: f64,
     /// Pixels where the reference hits and the picture misses.
     pub false_miss: usize,
     /// Pixels where the picture hits and the reference misses.
     pub false_hit: usize,
-    /// Undecided pixels of the picture.
+    /// Pixels of the picture that are undecided.
     pub undecided: usize,
-    /// Absolute difference of the parameters, where both hit.
+    /// Absolute difference of the parameters of the hits, over the pixels where both hit.
     pub depth: Option<Quantiles>,
-    /// Share of pixels with another face among pixels where both hit; 0 without such pixels.
+    /// Share of pixels with a different face, among the pixels where both hit; 0 without such pixels.
     pub wrong_faces: f64,
-    /// Angle between the normals in degrees, where both hit a round face.
+    /// Angle between the normals in degrees, over the pixels where both hit a round face.
     pub normal: Option<Quantiles>,
 }
 
-/// Compares a picture with the reference, pixel by pixel.
+/// Compares a picture with the reference pixel by pixel.
 ///
 /// # Panics
-/// If the sizes differ.
+/// When the two pictures differ in size.
 pub fn accuracy(expected: &[Expected], found: &[Outcome]) -> Accuracy {
     assert_eq!(expected.len(), found.len(), "pixels of both");
     let (mut false_miss, mut false_hit, mut undecided) = (0, 0, 0);
@@ -170,7 +172,7 @@ pub fn accuracy(expected: &[Expected], found: &[Outcome]) -> Accuracy {
 
 /// The angle between two directions, in degrees.
 fn degrees(a: Vector, b: Vector) -> f64 {
-    // The arc cosine would lose small angles.
+    // Not by the arc cosine, which is inexact for small angles.
     length(cross(a, b)).atan2(dot(a, b)).to_degrees()
 }
 
@@ -281,13 +283,13 @@ mod tests {
             let ray = |pixel| camera.ray(pixel, size);
             expected(field, size, (camera.near, 100.0), ray)
         };
-        // The face extends 33 2/3 pixels to each side of the middle: no ray is beside its border.
+        // The face extends 33 2/3 pixels to each side of the middle, so that no ray is close to its border.
         let cube = Field::Box { half: [1.0; 3] };
         let front = seen(&cube, [0.0, -4.0, 0.0], [0.0; 3]);
         assert!(front.iter().all(|pixel| pixel.stable));
         let hits = front.iter().filter(|pixel| pixel.hit.is_some()).count();
         assert_eq!(hits, 67 * 67);
-        // An edge runs down the middle column.
+        // An edge of the cube runs down the middle column.
         let edge = seen(&cube, [4.0, -4.0, 0.0], [0.0; 3]);
         for pixel in edge.chunks(101).map(|row| row[50]) {
             assert_eq!(pixel.stable, pixel.hit.is_none());

@@ -1,4 +1,4 @@
-//! Pictures of the model's raymarcher in the form of [`metrics`], and the cost of each ray.
+//! Pictures of the model's raymarcher in the form that [`metrics`] compares, and the number of evaluations of each ray.
 
 use glint_core::camera::View;
 use glint_core::field::{
@@ -12,21 +12,21 @@ use super::metrics::{self, Accuracy, Expected, Outcome, Quantiles, accuracy};
 use super::{Face, Field, Plane, Sphere, views};
 use crate::camera::{Camera, Size, length};
 
-/// Result of a ray of the model.
+/// Result and cost of one ray of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RenderedRay {
-    /// Result with the depth along n, computed from t, as parameter; in world units.
+    /// Result of the ray. The parameter of a hit is its depth along n, computed from t, in world units.
     pub outcome: Outcome,
-    /// Depth of a hit, computed from its depth code.
+    /// Depth along n of a hit, computed from its depth code, in world units; `None` without a hit or such a depth.
     pub coded: Option<f64>,
-    /// Evaluations of the field by the ray.
+    /// Number of evaluations of the field by the ray.
     pub steps: u32,
-    /// Evaluations by the cones that were marched before the ray.
+    /// Number of evaluations by the cones that were marched just before the ray.
     pub cones: u64,
 }
 
 impl RenderedRay {
-    /// [`Self::outcome`] with the depth of the depth code.
+    /// [`Self::outcome`], but with the depth that was computed from the depth code.
     pub fn by_code(&self) -> Outcome {
         match (self.outcome, self.coded) {
             (Outcome::Hit { face, normal, .. }, Some(t)) => Outcome::Hit { t, face, normal },
@@ -35,9 +35,9 @@ impl RenderedRay {
     }
 }
 
-/// The picture of one eye, row by row; eye 0 is the left or only one.
+/// Draws the picture of one eye on the model, row by row. Eye 0 is the left eye, or the only one.
 ///
-/// With a prepass, the evaluations of a row of cones count for the first ray of the row of blocks.
+/// With a prepass, the evaluations of a row of cones are counted with the first ray of that row of blocks.
 pub fn picture(setup: &FieldSetup, eye: usize) -> Vec<RenderedRay> {
     let mut rays = raymarch::Rays::new(setup);
     let mut cones = 0;
@@ -52,7 +52,7 @@ pub fn picture(setup: &FieldSetup, eye: usize) -> Vec<RenderedRay> {
         .collect()
 }
 
-/// The result of one ray.
+/// Converts the model's result of one ray to the form that the comparison uses. The cones' evaluations are left at 0.
 pub fn rendered_ray(
     setup: &FieldSetup,
     ray: &raymarch::Ray,
@@ -113,18 +113,19 @@ pub fn rendered_ray(
     }
 }
 
-/// The depth at the far limit of a ray, in world units.
+/// The depth along n of a ray at the far limit, in world units.
 fn reach(setup: &FieldSetup, ray: &raymarch::Ray) -> f64 {
     depth(setup, ray, setup.tuning.far)
 }
 
-/// The depth at t of a ray, in world units.
+/// The depth along n of a ray at its parameter t, in world units.
 pub fn depth(setup: &FieldSetup, ray: &raymarch::Ray, t: u32) -> f64 {
     let units = setup.depth_of(ray, t) as f64 * (-21.0 - f64::from(setup.exponent)).exp2();
     units / setup.scale.to_num::<f64>()
 }
 
-/// The reference picture up to the far limit of the model's rays. The camera must be exact in the precision of a view.
+/// The reference picture up to the far limit of the model's rays. A view must be able to hold the numbers of `camera`
+/// exactly.
 fn expected(setup: &FieldSetup, field: &Field, camera: &Camera) -> Vec<Expected> {
     let size = Size {
         width: setup.width,
@@ -141,14 +142,14 @@ fn expected(setup: &FieldSetup, field: &Field, camera: &Camera) -> Vec<Expected>
     picture
 }
 
-/// All pixels, row by row.
+/// The columns and rows of all pixels, row by row.
 fn pixels(setup: &FieldSetup) -> impl Iterator<Item = (u32, u32)> {
     let width = setup.width;
     (0..setup.height).flat_map(move |y| (0..width).map(move |x| (x, y)))
 }
 
 impl Field {
-    /// The reference solid of a field of the engine, with the same numbers.
+    /// Converts a field of the engine to the reference solid with the same numbers.
     pub fn of(scene: &Scene) -> Self {
         match scene {
             Scene::Primitive(primitive) => Self::of_primitive(primitive),
@@ -218,27 +219,27 @@ impl Field {
     }
 }
 
-/// A field and a camera, with the reference picture.
+/// A field seen by a camera, with its reference picture.
 pub struct Subject {
-    /// Name of the camera position.
+    /// Name of the camera's position.
     pub name: String,
     /// Text form of the field.
     pub scene: String,
-    /// Size of the picture.
+    /// Size of the picture: width and height in pixels.
     pub size: (u32, u32),
-    /// The camera, in the precision of a view.
+    /// The camera, with numbers that a view holds exactly.
     pub camera: Camera,
-    /// The field of the reference.
+    /// The field as a solid of the reference.
     pub field: Field,
     /// The reference picture, up to the default far limit.
     pub expected: Vec<Expected>,
-    /// The field of the engine.
+    /// The field as the engine takes it.
     pub parsed: Scene,
     view: View,
 }
 
 impl Subject {
-    /// `scene` is the text form of a field, `size` one of [`glint_model::SIZES`].
+    /// `scene` is the text form of a field, and `size` is one of [`glint_model::SIZES`].
     ///
     /// # Panics
     /// If the field, the camera or the size is invalid.
@@ -260,18 +261,18 @@ impl Subject {
         subject
     }
 
-    /// The frame constants.
+    /// The frame constants of the model for this subject with these options.
     pub fn setup(&self, options: &FieldOptions) -> FieldSetup {
         FieldSetup::new(&self.parsed, &self.view, self.size, options).expect("a supported size")
     }
 
-    /// The model's picture.
+    /// The picture of this subject that the model draws with these options.
     pub fn picture(&self, options: &FieldOptions) -> Vec<RenderedRay> {
         picture(&self.setup(options), 0)
     }
 }
 
-/// The sponge of depth 4 in all [`views`].
+/// Subjects with the sponge of depth 4, one for each of the [`views`].
 pub fn sponges(size: (u32, u32)) -> Vec<Subject> {
     views::views()
         .into_iter()
@@ -281,7 +282,7 @@ pub fn sponges(size: (u32, u32)) -> Vec<Subject> {
         .collect()
 }
 
-/// The other flat fields, seen from the side; all but the box extend to the horizon.
+/// Subjects with the other flat fields, seen from the side. All but the box extend to the horizon.
 pub fn others(size: (u32, u32)) -> Vec<Subject> {
     let camera = views::camera([1.25, -1.875, 0.40625], [0.0; 3]);
     [
@@ -295,7 +296,7 @@ pub fn others(size: (u32, u32)) -> Vec<Subject> {
     .into()
 }
 
-/// Round fields and unions, seen from the side and from within.
+/// Subjects with round fields and unions, seen from the side and from within.
 pub fn rounds(size: (u32, u32)) -> Vec<Subject> {
     let scenes = [
         "sphere:1",
@@ -325,23 +326,23 @@ pub fn rounds(size: (u32, u32)) -> Vec<Subject> {
         .collect()
 }
 
-/// Accuracy and cost of a picture.
+/// Errors and evaluations of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
-    /// Accuracy by the depths computed from t.
+    /// Errors of the picture, with depths computed from t.
     pub accuracy: Accuracy,
-    /// Errors of the depths computed from depth codes, where both hit.
+    /// Errors of depths computed from depth codes, over the pixels where picture and reference both hit.
     pub coded: Option<Quantiles>,
-    /// Evaluations of the field by all rays and cones.
+    /// Number of evaluations of the field by all rays and cones.
     pub evaluations: u64,
-    /// Evaluations by cones alone.
+    /// Number of evaluations by cones alone.
     pub cones: u64,
-    /// Largest number of evaluations of a ray.
+    /// Number of evaluations of the ray that took most.
     pub most: u32,
 }
 
 impl Measured {
-    /// Accuracy and cost of one picture, or of several concatenated ones.
+    /// Compares one picture, or several concatenated ones, with the reference.
     pub fn new(expected: &[Expected], found: &[RenderedRay]) -> Self {
         let outcomes = |of: fn(&RenderedRay) -> Outcome| found.iter().map(of).collect::<Vec<_>>();
         Self {
@@ -356,7 +357,7 @@ impl Measured {
         }
     }
 
-    /// Mean number of evaluations per ray.
+    /// Mean number of evaluations per ray, those by cones included.
     pub fn cost(&self) -> f64 {
         self.evaluations as f64 / self.accuracy.rays.max(1) as f64
     }

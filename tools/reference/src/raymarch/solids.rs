@@ -1,20 +1,20 @@
-//! Entries of rays into boxes, convex solids and balls, and hits with two planes from between them.
+//! Hits of rays on boxes, convex solids and balls from outside, and on two parallel planes from the room between them.
 
 use super::surface::{Face, Hit, Plane, Sphere};
 use crate::camera::{Ray, Vector, add_scaled, dot, length, normalised, subtract};
 
-/// The interval of a ray inside a box about the origin.
+/// The part of a ray's line inside a box about the origin.
 pub(super) struct Slabs {
-    /// Parameter of the entry.
+    /// Parameter of the line where it enters the box.
     pub enter: f64,
-    /// Parameter of the exit.
+    /// Parameter of the line where it leaves the box.
     pub exit: f64,
-    /// Axis of the face of the entry.
+    /// Axis perpendicular to the face through which the line enters.
     pub axis: usize,
 }
 
 impl Slabs {
-    /// `None` if the whole line of the ray misses the box (Kay and Kajiya 1986).
+    /// The part inside the box of half sides `half`; `None` if the whole line of the ray misses it (Kay and Kajiya 1986).
     pub fn new(half: Vector, ray: &Ray) -> Option<Self> {
         let mut slabs = Self {
             enter: f64::NEG_INFINITY,
@@ -39,7 +39,7 @@ impl Slabs {
     }
 }
 
-/// Entry of a ray into a box about the origin.
+/// Hit of a ray on a box about the origin.
 pub(super) fn box_hit(half: Vector, ray: &Ray, t_min: f64) -> Option<Hit> {
     let slabs = Slabs::new(half, ray)?;
     if slabs.enter >= t_min {
@@ -49,7 +49,7 @@ pub(super) fn box_hit(half: Vector, ray: &Ray, t_min: f64) -> Option<Hit> {
     }
 }
 
-/// Entry of a ray into the intersection of half-spaces (Cyrus and Beck 1978).
+/// Hit of a ray on the intersection of half-spaces (Cyrus and Beck 1978).
 pub(super) fn convex_hit(planes: &[Plane], ray: &Ray, t_min: f64) -> Option<Hit> {
     let (mut enter, mut exit, mut normal) = (f64::NEG_INFINITY, f64::INFINITY, [0.0; 3]);
     for plane in planes {
@@ -82,15 +82,15 @@ pub(super) fn convex_hit(planes: &[Plane], ray: &Ray, t_min: f64) -> Option<Hit>
     }
 }
 
-/// Entry of a ray into a ball about the origin.
+/// Hit of a ray on a ball about the origin.
 ///
-/// The quadratic is solved without a difference of large numbers, following E. Haines, J. Günther and T.
+/// The quadratic equation is solved without differences of nearly equal numbers, after E. Haines, J. Günther and T.
 /// Akenine-Möller, "Precision improvements for ray/sphere intersection" (Ray Tracing Gems, 2019).
 pub(super) fn sphere_hit(radius: f64, ray: &Ray, t_min: f64) -> Option<Hit> {
     let (o, d) = (ray.origin, ray.direction);
     let a = dot(d, d);
     let b = -dot(o, d);
-    // The point of the line nearest to the centre.
+    // Distance from the ball's centre to the point of the line nearest to it.
     let nearest = length(add_scaled(o, d, b / a));
     if nearest >= radius {
         return None;
@@ -114,7 +114,7 @@ pub(super) fn sphere_hit(radius: f64, ray: &Ray, t_min: f64) -> Option<Hit> {
     }
 }
 
-/// First entry of a ray into any of several balls.
+/// First hit of a ray on any of several balls.
 pub(super) fn spheres_hit(spheres: &[Sphere], ray: &Ray, t_min: f64) -> Option<Hit> {
     let hits = spheres.iter().enumerate().map(|(member, sphere)| {
         let ray = Ray {
@@ -126,7 +126,7 @@ pub(super) fn spheres_hit(spheres: &[Sphere], ray: &Ray, t_min: f64) -> Option<H
     hits.fold(None, Hit::nearer)
 }
 
-/// Exit of a ray from the room between z = −half and z = half.
+/// Hit of a ray on the floor at z = −half or the ceiling at z = half of the room between them.
 pub(super) fn planes_hit(half: f64, ray: &Ray, t_min: f64) -> Option<Hit> {
     let (o, d) = (ray.origin[2], ray.direction[2]);
     if (o + t_min * d).abs() > half {

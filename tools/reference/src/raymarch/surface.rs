@@ -1,4 +1,4 @@
-//! Parts of solids, and hits of rays.
+//! Balls and planes, of which solids are made, and the hits of rays.
 
 use crate::camera::Vector;
 
@@ -11,10 +11,10 @@ pub struct Sphere {
     pub radius: f64,
 }
 
-/// A plane that bounds a half-space of solid.
+/// A plane in the surface of a solid that lies behind it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
-    /// Outward normal, of any length but 0.
+    /// Normal that points out of the solid, of any length but 0.
     pub normal: Vector,
     /// Scalar product of the normal with any point of the plane.
     pub offset: f64,
@@ -42,7 +42,7 @@ pub enum Face {
 }
 
 impl Face {
-    /// The face with the given outward normal, along an axis or a diagonal.
+    /// The face whose outward normal is `normal`, which points along an axis or a diagonal.
     pub fn of_normal(normal: Vector) -> Self {
         let largest = normal
             .iter()
@@ -59,7 +59,7 @@ impl Face {
         }
     }
 
-    /// The face perpendicular to `axis` through which a ray of this direction enters.
+    /// The face perpendicular to `axis` through which a ray of this direction enters a solid.
     pub(super) fn entered(axis: usize, direction: Vector) -> Self {
         Self::Axis {
             axis,
@@ -71,18 +71,19 @@ impl Face {
 /// The first point of a ray inside a solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// The ray's parameter, in lengths of its direction.
+    /// The ray's parameter at the hit: the distance in multiples of the direction's length.
     pub t: f64,
-    /// Outward normal of length 1; zero for [`Face::Inside`].
+    /// Outward normal of length 1; zero if the face is [`Face::Inside`].
     pub normal: Vector,
-    /// Surface at the hit.
+    /// Kind of surface at the hit.
     pub face: Face,
-    /// Number of the sphere in `Field::Spheres`, or of the member of the outermost union. 0 for other fields, and inside.
+    /// Number of the ball in `Field::Spheres`, or of the member of the outermost union; 0 for other fields, and if the ray
+    /// starts inside.
     pub member: usize,
 }
 
 impl Hit {
-    /// Hit of a ray that starts inside.
+    /// Hit at parameter `t` of a ray that is inside the solid there already.
     pub(super) fn inside(t: f64) -> Self {
         Self {
             t,
@@ -92,7 +93,7 @@ impl Hit {
         }
     }
 
-    /// Hit on the face perpendicular to `axis` through which a ray of this direction enters.
+    /// Hit at parameter `t`, on the face perpendicular to `axis` through which a ray of this direction enters.
     pub(super) fn entered(t: f64, axis: usize, direction: Vector) -> Self {
         let mut normal = [0.0; 3];
         normal[axis] = -direction[axis].signum();
@@ -104,7 +105,8 @@ impl Hit {
         }
     }
 
-    /// Sets the number of the member. A hit inside keeps 0, because several members may contain the start.
+    /// Sets the number of the hit member. If the ray starts inside, the number stays 0, because several members may contain
+    /// the start.
     pub(super) fn of(mut self, member: usize) -> Self {
         if self.face != Face::Inside {
             self.member = member;
@@ -112,7 +114,7 @@ impl Hit {
         self
     }
 
-    /// The nearer of two hits; the first at equal parameters.
+    /// The nearer of two hits; at equal parameters the first.
     pub(super) fn nearer(a: Option<Self>, b: Option<Self>) -> Option<Self> {
         match (a, b) {
             (Some(a), Some(b)) => Some(if b.t < a.t { b } else { a }),

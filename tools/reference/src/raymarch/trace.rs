@@ -1,4 +1,4 @@
-//! Sphere tracing (J. C. Hart 1996): each step is as long as the distance, within which no surface lies.
+//! Sphere tracing (J. C. Hart 1996): each step is as long as the field's distance, within which no surface lies.
 
 use super::{Face, Field, Hit};
 use crate::camera::{Ray, Vector, length, normalised, subtract};
@@ -7,16 +7,17 @@ use std::fmt;
 /// Distance from the surface at which a trace ends, in world units.
 const NEAR: f64 = 1e-9;
 
-/// Step to either side of a point for the gradient of the distance, in world units.
+/// Step to either side of a point in the central difference for the gradient, in world units.
 const STEP: f64 = 1e-6;
 
-/// Sufficient for any ray that is not almost parallel to a face close by.
+/// Limit of steps, sufficient for every ray that is not almost parallel to a face close by.
 const MOST_STEPS: u32 = 1 << 20;
 
-/// A trace without an end after 2^20 steps: its ray runs close to a surface, nearly parallel to it.
+/// The error of a trace that has not ended after 2^20 steps, because its ray runs close to a surface and nearly parallel to
+/// it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unconverged {
-    /// Parameter of the last step.
+    /// Parameter of the ray at the last step.
     pub t: f64,
 }
 
@@ -29,14 +30,14 @@ impl fmt::Display for Unconverged {
 impl std::error::Error for Unconverged {}
 
 impl Field {
-    /// As [`Self::hit`], for every field, from its distance alone.
+    /// As [`Self::hit`], but computed from the field's distance alone, in the same way for every field.
     ///
-    /// A trace ends 1e-9 world units from the surface. A ray that passes within that distance hits. The parameter is
-    /// below that of the surface by 1e-9 over the cosine of the angle of incidence. A ray that starts on a surface hits
-    /// immediately.
+    /// A trace ends 1e-9 world units from the surface. So a ray that only passes within that distance hits, and a ray that
+    /// starts on a surface hits immediately. The found parameter is smaller than that of the surface by 1e-9 divided by the
+    /// cosine of the angle of incidence.
     ///
     /// # Errors
-    /// The ray runs close to a surface for 2^20 steps.
+    /// When the ray has not ended after 2^20 steps, because it runs close to a surface.
     pub fn traced(
         &self,
         origin: Vector,
@@ -70,7 +71,7 @@ impl Field {
         Err(Unconverged { t })
     }
 
-    /// The face, the normal and the member at a point of the surface.
+    /// The face, the normal and the member's number at a point of the surface.
     pub(super) fn surface(&self, p: Vector) -> (Face, Vector, usize) {
         match self {
             Self::Menger { .. } | Self::Box { .. } | Self::Cubes { .. } | Self::Planes { .. } => {
@@ -111,7 +112,7 @@ impl Field {
         }
     }
 
-    /// The gradient of the distance by central differences.
+    /// The gradient of the field's distance at a point, by central differences.
     fn slope(&self, p: Vector) -> Vector {
         [0, 1, 2].map(|axis| {
             let beside = |step: f64| {
@@ -124,7 +125,7 @@ impl Field {
     }
 }
 
-/// Index of the field that is nearer to a point: 0 or 1.
+/// Which of two fields is nearer to a point: 0 for `a`, 1 for `b`.
 fn nearer(a: &Field, b: &Field, p: Vector) -> usize {
     usize::from(b.distance(p) < a.distance(p))
 }

@@ -1,4 +1,4 @@
-//! Variants of the march to the sponge in f64, for comparisons of cost with Glint's.
+//! Other methods of marching to the sponge, in f64, to compare their number of steps with Glint's method.
 
 use super::distance::euclidean;
 use super::metrics::Outcome;
@@ -6,12 +6,12 @@ use super::raymarched::RenderedRay;
 use super::{Face, Field};
 use crate::camera::{Ray, Vector, length};
 
-/// Norm of distances.
+/// A norm: how the length of a vector is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Norm {
-    /// Largest coordinate.
+    /// The largest magnitude of a coordinate.
     Maximum,
-    /// Square root of the sum of squares.
+    /// The square root of the sum of the coordinates' squares.
     Euclidean,
 }
 
@@ -24,37 +24,39 @@ impl Norm {
     }
 }
 
-/// A variant of the march.
+/// A method of marching to the sponge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Method {
-    /// Norm of the sponge's distance.
+    /// Norm in which the distance to the sponge is computed.
     pub distance: Norm,
-    /// Norm in which a ray's direction has length 1. With the maximum norm, steps are as long as distances in that norm
-    /// allow; with the Euclidean norm, they are shorter. Euclidean distances require the Euclidean norm.
+    /// Norm in which a ray's direction has length 1. If it is the norm of the distances, a step is as long as the distance
+    /// allows. Rays of Euclidean length 1 take shorter steps with distances in the maximum norm. Euclidean distances
+    /// require the Euclidean norm here.
     pub rays: Norm,
-    /// Constant part of the threshold, in world units.
+    /// Constant part of the threshold at which a ray ends, in world units.
     pub threshold: f64,
-    /// Growth of the threshold per unit of distance travelled.
+    /// Growth of the threshold for each unit of distance that the ray has travelled.
     pub footprint: f64,
-    /// Step limit.
+    /// Limit of the number of steps.
     pub cap: u32,
     /// Number of steps after each of which the threshold doubles; `None` for a constant threshold.
     pub relax: Option<u32>,
-    /// Whether the last step of an approaching ray reaches the plane of the face: the distance over the direction's
-    /// component along the normal.
+    /// Whether the end of a ray that approaches a face is moved on to the plane of the face, by the distance divided by the
+    /// component of the ray's direction along the normal.
     pub correct: bool,
 }
 
 impl Method {
-    /// Marches to the sponge of a depth, from the parameter `start` of the ray.
+    /// Marches a ray to a sponge of this depth, from the parameter `start` of the ray.
     ///
-    /// The normal at the end is that of the largest component of the gradient, in the maximum norm.
+    /// The normal of a hit points along the axis of the largest component of the gradient of the distance in the maximum
+    /// norm.
     pub fn march(&self, depth: u32, ray: &Ray, start: f64) -> RenderedRay {
         let sponge = Field::Menger { depth };
         let speed = self.rays.of(ray.direction);
         let distance = |p| match self.distance {
             Norm::Maximum => sponge.distance(p),
-            // A distance of 0 or less needs no conversion to the Euclidean norm.
+            // Inside the sponge this distance is 0, which ends the ray like a negative distance.
             Norm::Euclidean => euclidean(depth, p).max(sponge.distance(p).min(0.0)),
         };
         let mut t = start;
@@ -95,12 +97,12 @@ impl Method {
     }
 }
 
-/// Whether a ray at a point moves away from the origin along an axis.
+/// Whether a ray moves away from the plane through the origin perpendicular to `axis`, at the point `p`.
 fn outward(ray: &Ray, axis: usize, p: Vector) -> bool {
     (p[axis] < 0.0) == (ray.direction[axis] < 0.0)
 }
 
-/// Parameter at which a ray enters the sponge's cube; 0 for a ray that starts inside.
+/// The parameter at which a ray enters the cube around the sponge; 0 for a ray that starts inside the cube.
 pub fn entry(ray: &Ray) -> f64 {
     (0..3)
         .filter(|&axis| !outward(ray, axis, ray.origin))
@@ -108,20 +110,21 @@ pub fn entry(ray: &Ray) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Method of estimating a normal from distances near a point.
+/// Places of the distances from which a normal is estimated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Taps {
-    /// The point, and one neighbour along each axis.
+    /// The point itself, and one neighbour along each axis.
     Forward,
-    /// The corners of a tetrahedron about the point.
+    /// The corners of a tetrahedron around the point.
     Tetrahedron,
 }
 
 impl Taps {
-    /// Number of distances per normal.
+    /// Number of distances for a normal.
     pub const COUNT: u32 = 4;
 
-    /// The face perpendicular to the axis of the largest gradient component, from distances at `step` from a point.
+    /// The face perpendicular to the axis of the gradient's largest component. The gradient is estimated from distances
+    /// that are `step` apart from the point `p`.
     pub fn face(self, field: &Field, p: Vector, step: f64) -> Face {
         let beside = |offset: Vector| field.distance([0, 1, 2].map(|i| p[i] + step * offset[i]));
         let slope = match self {

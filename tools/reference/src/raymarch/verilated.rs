@@ -1,36 +1,37 @@
-//! The verilated raymarcher, for measurements of the cost of a picture.
+//! The verilated raymarcher, which measures the clocks and evaluations of a picture.
 
 use glint_model::raymarch::{FieldSetup, Palette, Rays};
 use glint_model::triangle::descriptor::band_rows;
 use glint_testbench::raymarch::{Pixel, Place, pixel, set_blocks, set_lane, set_paint, set_rays};
 use glint_testbench::{Counters, Module, Port};
 
-/// The raymarcher's module with every field. Bands are open immediately, and every pixel is accepted immediately.
+/// The raymarcher's module, built with every field. The bench opens each band immediately, and accepts every pixel
+/// immediately.
 pub struct Raymarcher {
     module: Module,
     group: [Port; Pixel::PAYLOAD.len()],
     counters: Counters,
-    /// Counters after the previous picture.
+    /// Counters at the end of the previous picture.
     counted: Taken,
 }
 
-/// Cost of a picture.
+/// Clocks and evaluations of a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Taken {
-    /// Clocks from the start to the end of the picture.
+    /// Clocks from the start of the picture to its end.
     pub clocks: u64,
-    /// Evaluations of the field.
+    /// Number of evaluations of the field.
     pub evaluations: u64,
 }
 
 impl Raymarcher {
-    /// Number of lanes.
+    /// Number of lanes of the built raymarcher.
     pub const LANES: u32 = 2;
 
     /// A raymarcher after reset.
     ///
     /// # Panics
-    /// If the module has not been built.
+    /// When the module has not been built.
     #[must_use]
     pub fn new() -> Self {
         let mut module = Module::new("raymarcher", 1);
@@ -44,10 +45,10 @@ impl Raymarcher {
         }
     }
 
-    /// Draws a picture.
+    /// Draws a picture, compares each pixel with the model, and returns the clocks and evaluations.
     ///
     /// # Panics
-    /// If a pixel differs from the model's.
+    /// When a pixel differs from the model's.
     pub fn draw(&mut self, setup: &FieldSetup) -> Taken {
         let palette = Palette::default();
         set_lane(&mut self.module, setup);
@@ -94,7 +95,7 @@ impl Raymarcher {
             self.module.drive("band_open", 0);
             self.pulse("band_next");
         }
-        // The last events come some clocks after the end.
+        // The last events are signalled some clocks after the end of the picture.
         (0..4).for_each(|_| self.clock());
         let counted = Taken {
             clocks: self.counters.get("cycles_busy"),

@@ -1,20 +1,20 @@
-//! Cameras that look at the sponge, shared by measurements and tests.
+//! Cameras that look at the sponge, shared by the measurements and the tests.
 
 use crate::camera::{Camera, Vector};
 
-/// Half the width of all pictures in the plane at distance 1.
+/// Half the width of each picture in the plane at distance 1, in world units.
 pub const HALF_WIDTH: f64 = 0.9;
 
-/// Distance of the near plane of all pictures, in world units.
+/// Distance of the near plane for each picture, in world units.
 pub const NEAR: f64 = 0.01;
 
-/// Name, eye and target of each view, in world units, with +z up.
+/// Name, position of the eye and target of each view. Positions are in world units, and +z is up.
 ///
-/// Every coordinate is a multiple of 1/64 and thus exact in every fixed-point format.
+/// Every coordinate is a multiple of 1/64, and is therefore exact in every fixed-point format.
 pub fn views() -> [(&'static str, Vector, Vector); 4] {
     [
         ("outside", [2.1875, 1.6875, 1.3125], [0.0; 3]),
-        // A quarter of a unit before the face at y = −1, at an angle to a corner of the largest hole.
+        // A quarter of a unit in front of the face at y = −1, looking at an angle to a corner of the largest hole.
         ("close", [0.5, -1.25, 0.4375], [0.375, -1.0, 0.3125]),
         // In the largest tunnel along y.
         (
@@ -22,20 +22,21 @@ pub fn views() -> [(&'static str, Vector, Vector); 4] {
             [0.0625, -0.8125, 0.09375],
             [-0.125, 0.9375, 0.03125],
         ),
-        // A sixteenth of a unit above the face at z = 1, down to it by less than two degrees.
+        // A sixteenth of a unit above the face at z = 1, looking down at it by less than two degrees.
         ("grazing", [-1.1875, -0.9375, 1.0625], [0.8125, 0.5625, 1.0]),
     ]
 }
 
-/// The camera of a view.
+/// The camera at `eye` that looks at `target`, with `HALF_WIDTH` and `NEAR`.
 pub fn camera(eye: Vector, target: Vector) -> Camera {
     Camera::looking_at(eye, target, HALF_WIDTH, NEAR)
 }
 
-/// Attitudes of a head that looks around for a second: yaw to the right, pitch downwards and roll in degrees, from 0.
+/// Rotations of a head that looks around for a second: yaw to the right, pitch downwards and roll in degrees, each starting
+/// at 0.
 ///
 /// # Panics
-/// If `look-around.csv`, which also has the time in milliseconds, is damaged.
+/// When the file `look-around.csv` (time in milliseconds and the three angles) is damaged.
 pub fn path() -> Vec<Vector> {
     let rows = include_str!("look-around.csv").lines().skip(1);
     rows.map(|row| {

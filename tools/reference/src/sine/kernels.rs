@@ -1,4 +1,4 @@
-//! The measured kernels, each over all inputs of its own format.
+//! The measured kernels of sine and cosine, each with all inputs of its own format.
 
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -13,21 +13,21 @@ use micromath::F32Ext;
 use super::statistics::Statistics;
 use super::truth::{Image, OCTANT, SinCos, TURN};
 
-/// A kernel and its inputs, numbered in steps. A step may cover several inputs.
+/// A kernel and its inputs, which are measured in steps with numbers from 0. A step may cover several inputs.
 pub struct Kernel {
     /// Name of the kernel, as in the firmware's `bench sine`.
     pub name: &'static str,
-    /// Line of the kernel in the work-precision diagram.
+    /// Name of the kernel's line in the work-precision diagram.
     pub family: &'static str,
-    /// Variant of the kernel.
+    /// Name of the variant of the kernel, for instance the order of its series.
     pub config: &'static str,
     /// Number format of the outputs.
     pub format: &'static str,
-    /// Unit in the last place of the outputs' format; for floats that of numbers just below 1.
+    /// Unit in the last place of the outputs' format. For floats it is that of numbers just below 1.
     pub ulp: f64,
-    /// Description of the inputs.
+    /// Description of the measured inputs.
     pub inputs: &'static str,
-    /// Whether the inputs are phases, whose symmetries can be checked bit for bit.
+    /// Whether the inputs are phases. Their symmetries can be checked bit for bit.
     pub by_phase: bool,
     /// Whether Glint uses the kernel.
     pub shipped: bool,
@@ -36,27 +36,27 @@ pub struct Kernel {
     show: Box<dyn Fn(u64) -> String + Sync>,
 }
 
-/// Adds the errors of a range of steps, with a stride.
+/// Measures the steps `stride·i` for all i in a range, and adds their errors to the statistics.
 type Run = dyn Fn(Range<u64>, u64, &mut Statistics) + Sync;
 
 impl Kernel {
-    /// Number of steps for all inputs.
+    /// Number of steps that cover all inputs.
     pub fn steps(&self) -> u64 {
         self.steps
     }
 
-    /// Measures the steps `stride·i` for all i in `range`.
+    /// Measures the steps `stride·i` for all i in `range`, and adds their errors to `statistics`.
     pub fn run(&self, range: Range<u64>, stride: u64, statistics: &mut Statistics) {
         (self.run)(range, stride, statistics);
     }
 
-    /// Description of the input of a number.
+    /// Description of the input with this number, as in the statistics.
     pub fn show_input(&self, number: u64) -> String {
         (self.show)(number)
     }
 }
 
-/// All kernels, Glint's first.
+/// All measured kernels; those of Glint come first.
 pub fn kernels() -> Vec<Kernel> {
     vec![
         Kernel {
@@ -126,14 +126,14 @@ pub fn kernels() -> Vec<Kernel> {
 
 const GLINT: &str = "glint: table of 64 and Taylor";
 
-/// Stride through a format's inputs, and its description.
+/// Which inputs are measured: the spacing of the measured inputs of a format, and their description.
 type Inputs = (u32, &'static str);
 
 const SHORT_PHASES: Inputs = (1 << 16, "all 2^16 phases of 16 bits");
 const ALL_PHASES: Inputs = (1, "all 2^32 phases");
 const SOME_PHASES: Inputs = (15, "every 15th phase of an octant, in all octants");
 const ALL_RADIANS: Inputs = (1, "all radians in [−π, π]");
-/// Inputs of a slow kernel whose format has over 10^9 inputs.
+/// Inputs of a slow kernel whose format has more than 10^9 inputs, so that only a part is measured.
 const SOME_RADIANS: Inputs = (17, "every 17th of the radians in [−π, π]");
 
 fn q14(angle: u32) -> (i32, i32) {
@@ -146,7 +146,7 @@ fn q30<const ORDER: u32>(angle: u32) -> (i32, i32) {
     (sin.to_bits(), cos.to_bits())
 }
 
-/// Glint's Q2.30 kernel with a Taylor series of a lower `ORDER`, over a part of the phases.
+/// Glint's Q2.30 kernel with its Taylor series cut off at a lower `ORDER`, measured on a part of the phases.
 fn lower_order<const ORDER: u32>(name: &'static str, config: &'static str) -> Kernel {
     let labels = [name, GLINT, config, "Q2.30"];
     phases(labels, 30, SOME_PHASES, q30::<ORDER>)
@@ -157,12 +157,12 @@ fn cordic_sin_cos<T: CordicNumber + Fixed<Bits = i32>>(angle: i32) -> (i32, i32)
     (sin.to_bits(), cos.to_bits())
 }
 
-/// 2^-`fraction_bits`.
+/// Unit in the last place of a format with this number of fraction bits.
 fn last_place(fraction_bits: u32) -> f64 {
     (-f64::from(fraction_bits)).exp2()
 }
 
-/// Sine and cosine from fixed point with the unit `ulp`.
+/// Converts fixed-point outputs, in units of `ulp`, to f64.
 fn scaled((sin, cos): (i32, i32), ulp: f64) -> SinCos {
     SinCos {
         sin: f64::from(sin) * ulp,
@@ -170,8 +170,9 @@ fn scaled((sin, cos): (i32, i32), ulp: f64) -> SinCos {
     }
 }
 
-/// A kernel of phases. A step is a phase of the first octant, evaluated at its images in all octants. Images with the same output
-/// bits, apart from signs and order, have the same error and are only counted; others are measured singly.
+/// Makes a kernel whose inputs are phases. A step is a phase of the first octant, evaluated at its images in all eight
+/// octants. Images whose outputs have the same bits, apart from signs and order, have the same error. So their error is
+/// computed once and counted for all of them; each other image is measured on its own.
 fn phases(
     [name, family, config, format]: [&'static str; 4],
     fraction_bits: u32,
@@ -215,7 +216,8 @@ fn phases(
     }
 }
 
-/// A kernel of fixed-point radians with the fraction bits of its outputs: every `spacing`-th input in [−π, π].
+/// Makes a kernel of radians in fixed point, with as many fraction bits as its outputs. It measures every `spacing`-th
+/// input in [−π, π].
 fn radians(
     [name, family, config, format]: [&'static str; 4],
     fraction_bits: u32,
@@ -247,7 +249,8 @@ fn radians(
     }
 }
 
-/// A kernel of f32 radians: all floats from 2^-24, below which a sine is its angle, to 2π.
+/// Makes a kernel of f32 radians. It measures all floats from 2^-24 to 2π; at smaller angles the sine is equal to its
+/// angle.
 fn floats(
     [name, family, config, format]: [&'static str; 4],
     evaluate: impl Fn(f32) -> (f32, f32) + Sync + 'static,
@@ -281,7 +284,7 @@ fn floats(
     }
 }
 
-/// A table with one entry a degree, in 16.16: all angles in [0°, 360°) in 16.16.
+/// A table of sines with one entry per degree, measured at all angles in [0°, 360°) in Q16.16.
 fn degrees() -> Kernel {
     let table: Vec<f64> = (0..=180)
         .map(|degree| (f64::from(degree).to_radians().sin() * 65536.0).round() / 65536.0)
@@ -328,7 +331,7 @@ mod tests {
             .expect("a kernel")
     }
 
-    /// Errors known from theory or from the libraries' documents.
+    /// Bounds of the largest errors, known from theory or from the libraries' documents.
     #[test]
     fn other_libraries_have_their_documented_errors() {
         for (name, at_least, at_most) in [
@@ -346,10 +349,11 @@ mod tests {
 
     #[test]
     fn the_weight_of_a_float_is_its_part_of_the_circle() {
-        // Half of the inputs are below 2^-11 rad, where a cosine of 1 would be nearly right.
+        // Half of all input floats are below 2^-11 rad, where even an output that is always sin 0 and cos 0 is nearly
+        // right.
         let careless = floats(["", "", "", ""], |_| (0.0, 1.0));
         let statistics = sweep(&careless, 997, &|_| ());
-        // Over the circle: mean of (sin² + (cos − 1)²)/2 = (1/2 + 3/2)/2 = 1.
+        // With weights by angle, the mean over the circle is (sin² + (cos − 1)²)/2 = (1/2 + 3/2)/2 = 1.
         assert!(
             (statistics.rms() - 1.0).abs() < 1e-3,
             "{}",
@@ -364,7 +368,7 @@ mod tests {
         });
         let statistics = sweep(&crooked, 1, &|_| ());
         assert_eq!(statistics.inputs, 1 << 16);
-        // The seven images of the crooked first-octant phase differ from it.
+        // The first-octant phase has a wrong output, so the outputs at its seven other images differ from it.
         assert_eq!(statistics.asymmetric, 7);
     }
 }

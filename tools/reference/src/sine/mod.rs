@@ -1,8 +1,8 @@
-//! Sine and cosine: errors over all inputs, of Glint's kernels and of other libraries.
+//! Errors of sine and cosine over all inputs, for Glint's kernels and for other libraries.
 //!
-//! - [`truth`]: the f64 reference, and its own error.
-//! - [`statistics`]: statistics of the errors.
-//! - [`kernels`]: the kernels, each with all inputs of its format.
+//! - [`truth`]: the exact values in f64, and their own error.
+//! - [`statistics`]: maximum, RMS and percentiles of the errors.
+//! - [`kernels`]: the measured kernels, each with all inputs of its format.
 //! - [`sweep`]: runs a kernel over its inputs on all cores.
 
 pub mod kernels;

@@ -1,8 +1,8 @@
-//! Statistics of a sweep's errors.
+//! Statistics of the errors of sine and cosine over many inputs.
 
 use super::truth::SinCos;
 
-/// One of the two outputs.
+/// The sine or the cosine, as an output of a kernel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Function {
     /// The sine.
@@ -20,28 +20,28 @@ impl std::fmt::Display for Function {
     }
 }
 
-/// Buckets of the histogram in one octave; percentiles have a relative resolution of 1/64.
+/// Buckets of the histogram in one octave of error sizes; percentiles have a relative resolution of 1/64.
 const BUCKETS_PER_OCTAVE: u64 = 64;
-/// Errors below 2^-64 share the first bucket, and errors from 1 up the last.
+/// Octaves of the histogram below 1. Errors below 2^-64 share the first bucket, and errors of 1 or more share the last.
 const OCTAVES: u64 = 64;
 
-/// Errors of sine and cosine together, absolute.
+/// Statistics of the absolute errors of sine and cosine together.
 ///
-/// The weight of an input is its part of the circle, so means are over the angle even where inputs are dense, as floats near
-/// zero.
+/// Each input has a weight: the part of the circle that it stands for. So means are means over the angle, even if inputs
+/// are denser in some places, as floats are near zero.
 #[derive(Clone, Debug)]
 pub struct Statistics {
-    /// Number of inputs; each has a sine and a cosine.
+    /// Number of inputs. Each input adds an error of the sine and one of the cosine.
     pub inputs: u64,
-    /// The largest error.
+    /// The largest error of an output.
     pub max: f64,
-    /// Number of the first input with the largest error, as the kernel counts.
+    /// Number, as the kernel counts its inputs, of the first input with the largest error.
     pub worst_input: u64,
-    /// The output with the largest error.
+    /// Whether the sine or the cosine has the largest error.
     pub worst_function: Function,
     /// The largest |sin² + cos² − 1|.
     pub max_norm: f64,
-    /// Inputs whose outputs are not those of their image in the first octant, bit for bit.
+    /// Number of inputs whose outputs differ, bit for bit, from those of their image in the first octant.
     pub asymmetric: u64,
     weight: f64,
     sum_of_squares: f64,
@@ -67,13 +67,13 @@ impl Default for Statistics {
 }
 
 impl Statistics {
-    /// Adds one input's outputs.
+    /// Adds the errors of one input. `got` are the kernel's outputs, and `truth` the exact values.
     pub fn add(&mut self, input: u64, truth: SinCos, got: SinCos, weight: f64) {
         self.inputs += 1;
         self.add_both(input, truth, got, weight);
     }
 
-    /// Adds the outputs of `count` images of an input, whose outputs and truth are equal apart from signs and order.
+    /// Adds the errors of `count` images of an input. Their outputs and exact values are equal apart from signs and order.
     pub fn add_images(&mut self, input: u64, truth: SinCos, got: SinCos, count: u64) {
         self.inputs += count;
         self.add_both(input, truth, got, count as f64);
@@ -100,10 +100,10 @@ impl Statistics {
         }
     }
 
-    /// Adds the statistics of later inputs.
+    /// Adds the statistics of other inputs, which were measured later.
     pub fn merge(&mut self, later: &Self) {
         self.inputs += later.inputs;
-        // Inputs need not come in order of their numbers.
+        // Later inputs may have smaller numbers. Of equal errors, that of the smaller number is kept.
         if later.max > self.max || (later.max == self.max && later.worst_input < self.worst_input) {
             (self.max, self.worst_input, self.worst_function) =
                 (later.max, later.worst_input, later.worst_function);
@@ -123,12 +123,12 @@ impl Statistics {
         (self.sum_of_squares / self.weight).sqrt()
     }
 
-    /// Mean error of the magnitude: positive when outputs are too far from zero.
+    /// Mean error of the outputs' magnitude: positive if outputs are too far from zero.
     pub fn bias(&self) -> f64 {
         self.sum / self.weight
     }
 
-    /// The 99th percentile, rounded up by at most 1/64 of itself.
+    /// The 99th percentile of the errors, too large by at most 1/64 of itself.
     pub fn p99(&self) -> f64 {
         let mut below = 0.0;
         for (index, count) in self.histogram.iter().enumerate() {
@@ -141,7 +141,8 @@ impl Statistics {
     }
 }
 
-/// Bits of an f64 from the bucket's size up: the exponent and six bits of the mantissa.
+/// Number of low bits of an f64 that do not matter for its bucket. The remaining bits are the exponent and six bits of the
+/// mantissa.
 const SHIFT: u32 = 52 - BUCKETS_PER_OCTAVE.ilog2();
 const FIRST: u64 = (1023 - OCTAVES) * BUCKETS_PER_OCTAVE;
 

@@ -1,4 +1,4 @@
-//! Runs a kernel over its inputs on all cores. The result does not depend on their number.
+//! Runs a kernel over its inputs on all cores. The result does not depend on the number of cores.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -7,10 +7,12 @@ use std::thread;
 use super::kernels::Kernel;
 use super::statistics::Statistics;
 
-/// Steps of a part, the unit of work of a core. Parts are summed in order, so the result is reproducible.
+/// Number of steps in a part, the unit of work of a core. Results of the parts are added in order, so the sum is
+/// reproducible.
 const PART: u64 = 1 << 18;
 
-/// The errors of `kernel` over every `stride`-th of its steps. `progress` receives the number of completed steps.
+/// The errors of `kernel` over every `stride`-th of its steps. After each completed part, `progress` receives the part's
+/// number of steps.
 pub fn sweep(kernel: &Kernel, stride: u64, progress: &(dyn Fn(u64) + Sync)) -> Statistics {
     let steps = kernel.steps().div_ceil(stride);
     let parts = steps.div_ceil(PART);

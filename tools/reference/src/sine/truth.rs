@@ -1,11 +1,11 @@
-//! The f64 reference for sines and cosines, and its own error.
+//! The f64 reference values of sine and cosine, and their own error.
 
 use std::f64::consts::PI;
 
-/// Units of phase in a turn: an angle is a `u32` in units of 2^-32 turns.
+/// Units of phase in a whole turn. A phase is a `u32` in units of 2^-32 turns.
 pub const TURN: f64 = 4_294_967_296.0;
 
-/// Units of phase in an octant.
+/// Units of phase in an octant, an eighth of a turn.
 pub const OCTANT: u32 = 1 << 29;
 
 /// Sine and cosine of an angle.
@@ -18,19 +18,19 @@ pub struct SinCos {
 }
 
 impl SinCos {
-    /// Sine and cosine of an angle in radians, by the standard library.
+    /// Sine and cosine of an angle in radians, computed by the standard library.
     pub fn of_radians(angle: f64) -> Self {
         let (sin, cos) = angle.sin_cos();
         Self { sin, cos }
     }
 
-    /// Sine and cosine of a phase in the first octant, 0 to [`OCTANT`].
+    /// Sine and cosine of a phase in the first octant, from 0 to [`OCTANT`].
     pub fn of_octant(phase: u32) -> Self {
         Self::of_radians(f64::from(phase) * (2.0 * PI / TURN))
     }
 }
 
-/// One of the eight angles that share an octant's sine and cosine.
+/// One of the eight angles whose sine and cosine are those of an angle in the first octant, apart from signs and order.
 #[derive(Clone, Copy, Debug)]
 pub struct Image {
     quarter: u32,
@@ -38,10 +38,10 @@ pub struct Image {
 }
 
 impl Image {
-    /// The images of an octant phase.
+    /// The images of a phase in the first octant: at most one angle in each octant.
     ///
-    /// Over all phases from 0 to [`OCTANT`] the images are all 2^32 angles, each once: a border that two octants share counts
-    /// once.
+    /// Over all phases from 0 to [`OCTANT`], the images are all 2^32 angles, each once. An angle at the border of two
+    /// octants is listed for one of them only.
     pub fn all(phase: u32) -> impl Iterator<Item = Self> {
         (0..8)
             .map(|i| Self {
@@ -51,7 +51,7 @@ impl Image {
             .filter(move |image| phase != if image.mirrored { 0 } else { OCTANT })
     }
 
-    /// The angle, in units of 2^-32 turns, of this image of `phase`.
+    /// The angle of this image of the first-octant phase `phase`, in units of 2^-32 turns.
     pub fn angle(self, phase: u32) -> u32 {
         let start = self.quarter << 30;
         if self.mirrored {
@@ -61,7 +61,7 @@ impl Image {
         }
     }
 
-    /// Sine and cosine of this image from those of the octant phase, by exact identities.
+    /// Sine and cosine of this image, by exact identities from those of the first-octant phase.
     pub fn carry<T: Copy + std::ops::Neg<Output = T>>(self, sin: T, cos: T) -> (T, T) {
         let (sin, cos) = if self.mirrored {
             (cos, sin)
@@ -77,8 +77,8 @@ impl Image {
     }
 }
 
-/// The largest error of [`SinCos::of_octant`] over every `stride`-th phase, against a series in 62-bit integers with an
-/// error below 2^-56.
+/// The largest error of [`SinCos::of_octant`] over every `stride`-th phase, in comparison with a series in 62-bit integers
+/// whose own error is below 2^-56.
 pub fn reference_error(stride: u32) -> f64 {
     let apart = |exact: i128, value: f64| (exact - (value * ONE as f64) as i128).abs();
     let worst = (0..=OCTANT)
@@ -92,22 +92,22 @@ pub fn reference_error(stride: u32) -> f64 {
     worst.unwrap_or(0) as f64 / ONE as f64
 }
 
-/// 1.0 with 62 fraction bits.
+/// The number 1 with 62 fraction bits.
 const ONE: i128 = 1 << 62;
 
-/// π with 93 fraction bits, to the nearest.
+/// π with 93 fraction bits, rounded to nearest.
 const PI_Q93: i128 = 31_112_826_664_028_885_653_815_243_078;
 
-/// Sine and cosine of an octant phase with 62 fraction bits, by Taylor's series: about twenty terms, each truncated
-/// by less than four units of the last place.
+/// Sine and cosine of a first-octant phase with 62 fraction bits, by Taylor's series: about twenty terms, each truncated by
+/// less than four units in the last place.
 fn series(phase: u32) -> (i128, i128) {
-    // phase·2π/2^32 = phase·π/2^31; the product stays below 2^124.
+    // The angle is phase·2π/2^32 = phase·π/2^31. The product stays below 2^124, so it fits.
     let angle = (i128::from(phase) * PI_Q93) >> 62;
     let square = (angle * angle) >> 62;
     let sum = |first: i128, start: i128| {
         let (mut term, mut total, mut n) = (first, first, start);
         while term != 0 {
-            // Division of the magnitude truncates toward zero.
+            // Division of the magnitude, with the sign applied afterwards, truncates toward zero.
             term = -(term.signum() * (((term.abs() * square) >> 62) / (n * (n + 1))));
             total += term;
             n += 2;

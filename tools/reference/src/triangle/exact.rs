@@ -1,27 +1,28 @@
-//! Exact rasterization of a snapped triangle: coverage by the top-left rule and the plane of depth, in integers.
+//! Exact rasterization of a snapped triangle in integers: coverage by the top-left rule, and the plane of depth.
 //!
-//! The rule is that of Direct3D and Vulkan: a pixel is covered when its centre lies inside the triangle, or on an
-//! edge that is a *top* edge (exactly horizontal, the triangle below it) or a *left* edge (not horizontal, the triangle
-//! to its right). The position of the opposite vertex tells top and left, so the winding does not matter.
+//! The rule is that of Direct3D and Vulkan: a pixel is covered if its centre lies inside the triangle or on a *top* or
+//! *left* edge. A top edge is exactly horizontal, with the triangle below it. A left edge is not horizontal and has the
+//! triangle to its right. On which side of an edge the triangle lies is known from the position of the third vertex, so the
+//! winding does not matter.
 
-/// Steps of the snapped grid in one pixel.
+/// Steps of the grid of snapped vertices in one pixel.
 pub const SUBPIXELS: i64 = 256;
 
 /// Steps of a vertex's depth in one depth code.
 pub const DEPTH_STEPS: i64 = 64;
 
-/// A vertex on the screen's grid.
+/// A vertex whose position is snapped to the grid of the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SnappedVertex {
-    /// Pixels to the right of the picture's left border, in steps of 1/256 pixel.
+    /// Distance to the right of the picture's left border, in steps of 1/256 pixel.
     pub x: i64,
-    /// Pixels below the picture's top border, in steps of 1/256 pixel.
+    /// Distance below the picture's top border, in steps of 1/256 pixel.
     pub y: i64,
     /// Depth, proportional to 1/z, in steps of 1/64 depth code.
     pub w: i64,
 }
 
-/// One edge as a half plane: positive on the side of the opposite vertex.
+/// An edge as a linear function of the position, which is positive on the side of the opposite vertex.
 #[derive(Clone, Copy, Debug)]
 struct Edge {
     x: i128,
@@ -32,10 +33,10 @@ struct Edge {
 }
 
 impl Edge {
-    /// The edge from `a` to `b` of a triangle whose third vertex is `opposite`, which does not lie on the edge's line.
+    /// The edge from `a` to `b` of a triangle. Its third vertex `opposite` must not lie on the edge's line.
     fn new(a: SnappedVertex, b: SnappedVertex, opposite: SnappedVertex) -> Self {
         let top = a.y == b.y && opposite.y > a.y;
-        // Down the edge, points to its right on the screen have a negative orientation.
+        // From the upper to the lower end of the edge, points to the right on the screen have a negative orientation.
         let (upper, lower) = if a.y < b.y { (a, b) } else { (b, a) };
         let left = a.y != b.y && orientation(upper, lower, opposite) < 0;
         let sign = orientation(a, b, opposite).signum();
@@ -58,7 +59,7 @@ impl Edge {
     }
 }
 
-/// Doubled signed area of a, b, c: positive when they run clockwise on the screen (y points down).
+/// Twice the signed area of the triangle a, b, c: positive if they run clockwise on the screen (y points down).
 fn orientation(a: SnappedVertex, b: SnappedVertex, c: SnappedVertex) -> i128 {
     let (abx, aby) = (i128::from(b.x - a.x), i128::from(b.y - a.y));
     let (acx, acy) = (i128::from(c.x - a.x), i128::from(c.y - a.y));
@@ -75,7 +76,7 @@ pub struct ExactTriangle {
 }
 
 impl ExactTriangle {
-    /// The triangle of three snapped vertices in any order; `None` when its area is zero.
+    /// The triangle of three snapped vertices in any order; `None` if its area is zero.
     pub fn new(vertices: [SnappedVertex; 3]) -> Option<Self> {
         let [a, b, c] = vertices;
         let doubled_area = orientation(a, b, c).abs();
@@ -86,7 +87,7 @@ impl ExactTriangle {
         })
     }
 
-    /// Whether the centre of the pixel in column `column` and row `row` is covered.
+    /// Whether the triangle covers the pixel in this column and row.
     pub fn covers(&self, column: i64, row: i64) -> bool {
         let (x, y) = centre(column, row);
         self.edges.iter().all(|edge| edge.holds(x, y))
@@ -112,7 +113,7 @@ impl ExactTriangle {
         }
     }
 
-    /// The plane of depth through the three vertices, at the centre of a pixel.
+    /// The depth of the plane through the three vertices, at the centre of the pixel in this column and row.
     pub fn depth(&self, column: i64, row: i64) -> ExactDepth {
         let (x, y) = centre(column, row);
         let weighted = |i: usize| self.edges[i].at(x, y) * i128::from(self.vertices[i].w);
@@ -122,7 +123,7 @@ impl ExactTriangle {
         }
     }
 
-    /// The steepest slope of the plane of depth, in depth codes a pixel.
+    /// The largest slope of the plane of depth, in depth codes per pixel.
     pub fn depth_slope(&self) -> f64 {
         let here = self.depth(0, 0).codes();
         let (right, below) = (self.depth(1, 0).codes(), self.depth(0, 1).codes());
@@ -135,7 +136,7 @@ fn centre(column: i64, row: i64) -> (i128, i128) {
     (middle(column), middle(row))
 }
 
-/// A depth as an exact fraction of depth codes.
+/// A depth in depth codes, as an exact fraction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ExactDepth {
     numerator: i128,
@@ -143,12 +144,12 @@ pub struct ExactDepth {
 }
 
 impl ExactDepth {
-    /// The depth in codes, rounded to f64 (relative error below 2^-51).
+    /// The depth in codes, rounded to f64 with a relative error below 2^-51.
     pub fn codes(&self) -> f64 {
         self.numerator as f64 / self.denominator as f64
     }
 
-    /// `code` minus this depth, in codes; exact before its rounding to f64.
+    /// `code` minus this depth, in codes. The difference is exact before it is rounded to f64.
     pub fn error_of(&self, code: u32) -> f64 {
         (i128::from(code) * self.denominator - self.numerator) as f64 / self.denominator as f64
     }
@@ -170,7 +171,7 @@ mod tests {
 
     #[test]
     fn centres_on_top_and_left_edges_belong_and_those_on_right_and_bottom_edges_do_not() {
-        // The two halves of the square from centre (0, 0) to centre (2, 2).
+        // The two triangles whose union is the square between the pixel centres (0, 0) and (2, 2).
         let upper = triangle([(128, 128), (640, 128), (640, 640)]);
         let lower = triangle([(128, 128), (128, 640), (640, 640)]);
         assert_eq!(pixels(&upper), [(0, 0), (1, 0), (1, 1)]);
@@ -196,7 +197,7 @@ mod tests {
 
     #[test]
     fn depth_is_the_plane_through_the_vertices() {
-        // w = 64·(10 + column + 2·row) at pixel centres.
+        // w is 64·(10 + column + 2·row) at the pixel centres.
         let vertex = |column: i64, row: i64| SnappedVertex {
             x: column * 256 + 128,
             y: row * 256 + 128,

@@ -1,5 +1,5 @@
-//! Smooth shading: errors of the model's pixels against the exact quotient of the planes through a triangle's vertices, and of
-//! interpolation without the division.
+//! Errors of smooth shading: of the model's pixels, and of interpolation without the division by depth. Both are compared
+//! with the exact quotient of the planes through a triangle's vertices.
 
 use glint_core::camera::View;
 use glint_core::colour::Rgb565;
@@ -14,10 +14,10 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::errors::Errors;
 
-/// Steps of each channel for a light of 1.
+/// Steps of the red, green and blue channel that correspond to a light of 1.
 const RANGES: [f64; 3] = [32.0, 64.0, 32.0];
 
-/// A triangle on the screen with exact interpolation.
+/// A triangle on the screen whose light is interpolated exactly.
 #[derive(Clone, Copy, Debug)]
 pub struct Interpolated {
     places: [[f64; 2]; 3],
@@ -26,7 +26,7 @@ pub struct Interpolated {
 }
 
 impl Interpolated {
-    /// The triangle of snapped vertices and their light.
+    /// The triangle of three snapped vertices and the light at each of them.
     pub fn new(vertices: &[ScreenVertex; 3], lit: &[Lit; 3]) -> Self {
         Self {
             places: vertices.map(|v| [v.x, v.y].map(|x| f64::from(x) / 256.0)),
@@ -38,12 +38,12 @@ impl Interpolated {
         }
     }
 
-    /// Barycentric coordinates of a point.
+    /// Barycentric coordinates of a point: the parts of the three vertices.
     fn parts(&self, [x, y]: [f64; 2]) -> [f64; 3] {
         let [a, b, c] = self.places.map(|[px, py]| [px - x, py - y]);
         let cross = |p: [f64; 2], q: [f64; 2]| p[0] * q[1] - p[1] * q[0];
         let areas = [cross(b, c), cross(c, a), cross(a, b)];
-        // Not the sum of the three: each has a rounding error of its own.
+        // The divisor is not the sum of the three areas, because each has a rounding error of its own.
         let side = |k: usize| [0, 1].map(|axis| self.places[k][axis] - self.places[0][axis]);
         areas.map(|area| area / cross(side(1), side(2)))
     }
@@ -58,41 +58,41 @@ impl Interpolated {
         })
     }
 
-    /// The channels at a point in steps, linear on the triangle in space: the exact result.
+    /// The exact channels at a point, in steps: light is linear on the triangle in space.
     pub fn perspective(&self, point: [f64; 2]) -> [f64; 3] {
         let parts = self.parts(point);
         self.weighted([0, 1, 2].map(|i| parts[i] * self.w[i]))
     }
 
-    /// The channels at a point in steps, linear on the screen.
+    /// The channels at a point, in steps, if light is linear on the screen.
     pub fn affine(&self, point: [f64; 2]) -> [f64; 3] {
         self.weighted(self.parts(point))
     }
 }
 
-/// The figures of a scene. Errors are in steps of a channel.
+/// Counts and errors of a scene. Errors are in steps of a channel.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Measured {
     /// Triangles on the screen.
     pub triangles: u64,
-    /// Triangles on the screen made by the clipper.
+    /// Triangles on the screen that the clipper made.
     pub clipped: u64,
-    /// Back faces on the screen.
+    /// Triangles on the screen that show their back face.
     pub back: u64,
-    /// Covered pixels, counted for each triangle.
+    /// Covered pixels, summed over the triangles.
     pub pixels: u64,
-    /// The smallest depth code.
+    /// The smallest depth code of a covered pixel.
     pub farthest: u32,
-    /// Errors of the model.
+    /// Errors of the model's pixels.
     pub model: Errors,
-    /// Errors of the reference rounded to a step, the lower bound of all methods.
+    /// Errors of the exact channels rounded to a step. No method that returns whole steps has smaller errors.
     pub rounded: Errors,
-    /// Errors of interpolation that is linear on the screen, rounded to a step.
+    /// Errors of channels that are linear on the screen, rounded to a step.
     pub affine: Errors,
 }
 
 impl Measured {
-    /// Draws a triangle alone and adds its pixels.
+    /// Draws a triangle alone and adds its pixels to the figures.
     fn add(&mut self, triangle: &Oriented, lit: &[Lit; 3], (width, height): (u32, u32)) {
         let Some(bounds) = Bounds::new(&triangle.vertices, width, height) else {
             return;
@@ -129,29 +129,29 @@ impl Measured {
     }
 }
 
-/// A scene with a bound of the model's error.
+/// A scene with a limit for the model's error.
 pub struct Scene {
-    /// Description.
+    /// Description of the scene.
     pub name: &'static str,
-    /// Largest allowed error, in steps of a channel.
+    /// Largest allowed error of the model, in steps of a channel.
     pub bound: f64,
     content: Content,
 }
 
 enum Content {
-    /// A mesh with its camera.
+    /// A mesh seen by a camera.
     Mesh {
         bytes: Vec<u8>,
         view: Box<View>,
         size: (u32, u32),
         cull: bool,
     },
-    /// Triangles on the screen.
+    /// Triangles given by their snapped vertices and the light at them.
     Screen(Vec<([ScreenVertex; 3], [Lit; 3])>),
 }
 
 impl Scene {
-    /// Draws each triangle alone and measures its pixels.
+    /// Draws each triangle of the scene alone and measures its pixels.
     ///
     /// # Panics
     /// When the mesh is malformed.
@@ -186,7 +186,7 @@ impl Scene {
     }
 }
 
-/// The triangles of a mesh that the model draws.
+/// The triangles that the model draws for a mesh, after clipping.
 fn drawn(bytes: &[u8], view: &View, (width, height): (u32, u32), cull: bool) -> Vec<DrawnTriangle> {
     let mesh = Mesh::new_checked(bytes).expect("a scene's mesh is good");
     let vertices = mesh.chunks().map(|chunk| chunk.vertex_count()).max();
@@ -214,17 +214,17 @@ fn drawn(bytes: &[u8], view: &View, (width, height): (u32, u32), cull: bool) -> 
     drawn
 }
 
-/// Bound of a channel's error in steps for depth codes of at least `farthest`: half a step of the last rounding, and the bound of
-/// docs/formats.md, "Smooth shading".
+/// Largest error of a channel, in steps, for depth codes of at least `farthest`: half a step by the last rounding, plus the
+/// bound in docs/formats.md, "Smooth shading".
 fn bound(farthest: f64) -> f64 {
     0.5 + 0.032 + 43.0 / farthest
 }
 
-/// Smallest depth code of any camera and mesh.
+/// Smallest depth code that any camera and mesh can give.
 const FARTHEST: f64 = 228.0;
 const LARGEST: u32 = ((1 << 18) - 4) * 64;
 
-/// The view along y from x = z = 0.
+/// The view along +y from the point (0, `y`, 0).
 fn along(y: f64, half_width: f64, near: f64) -> Box<View> {
     let json = format!(
         r#"{{"eye":[0,{y},0],"u":[1,0,0],"v":[0,0,-1],"n":[0,1,0],"half_width":{half_width},"near":{near}}}"#
@@ -232,7 +232,8 @@ fn along(y: f64, half_width: f64, near: f64) -> Box<View> {
     Box::new(glint::view::parse(json.as_bytes()).expect("a good camera"))
 }
 
-/// A mesh of triangles without shared vertices, with random colours and normals, most of which point towards small y.
+/// Encodes a mesh of triangles that share no vertices, with random colours and with random normals, most of which point
+/// towards −y.
 fn soup(random: &mut Pcg64Mcg, triangles: &[[[f64; 3]; 3]]) -> Vec<u8> {
     let quantised = |x: f64| (x * 16384.0).round().clamp(-32768.0, 32767.0) as i16;
     let vertices: Vec<Vertex> = triangles
@@ -246,7 +247,7 @@ fn soup(random: &mut Pcg64Mcg, triangles: &[[[f64; 3]; 3]]) -> Vec<u8> {
                 random.random_range(-0.7..0.7),
             ]
             .map(quantised),
-            // Half of the colours are white or black, for the steepest light.
+            // Half of the colours are white or black, because these give the steepest change of light.
             colour: Rgb565(
                 [0, 0xFFFF, random.random(), random.random()][random.random_range(0..4)],
             ),
@@ -262,7 +263,7 @@ fn soup(random: &mut Pcg64Mcg, triangles: &[[[f64; 3]; 3]]) -> Vec<u8> {
     encode(&vertices, &triangles).expect("a small mesh")
 }
 
-/// Triangles of every shape on the screen, over the whole range of depths.
+/// Random triangles on the screen, of every shape and over the whole range of depths; with `thin`, slivers.
 fn screen(random: &mut Pcg64Mcg, thin: bool) -> Vec<([ScreenVertex; 3], [Lit; 3])> {
     const GUARD: i32 = 2047 << 8;
     (0..300)
@@ -274,7 +275,7 @@ fn screen(random: &mut Pcg64Mcg, thin: bool) -> Vec<([ScreenVertex; 3], [Lit; 3]
             };
             let [a, b, mut c] = [corner(), corner(), corner()];
             if thin {
-                // Close to the middle of the edge.
+                // The third corner is close to the middle of the edge between the others.
                 c = [0, 1].map(|k| (a[k] + b[k]) / 2 + random.random_range(-64..=64));
             }
             let vertices = [a, b, c].map(|[x, y]| ScreenVertex {
@@ -295,7 +296,7 @@ fn screen(random: &mut Pcg64Mcg, thin: bool) -> Vec<([ScreenVertex; 3], [Lit; 3]
         .collect()
 }
 
-/// Common scenes and extreme ones.
+/// The measured scenes, common and extreme ones.
 pub fn scenes() -> Vec<Scene> {
     let mut random = Pcg64Mcg::new(1);
     let [small, _, large] = glint_model::SIZES;
@@ -304,7 +305,7 @@ pub fn scenes() -> Vec<Scene> {
         let made = glint::convert::convert(&polygons, glint::convert::Options::default());
         made.expect("a good mesh").0
     };
-    // A floor from just before the eye to the limit of a mesh.
+    // A floor that extends from just in front of the eye to the largest coordinates of a mesh.
     let floor = |from: f64| {
         let (near, far) = (0.05, 1.9);
         [

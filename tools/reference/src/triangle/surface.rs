@@ -1,36 +1,38 @@
-//! The visible surface of each pixel of the exact, unsnapped scene, and the pixels that snapping may change.
+//! The visible surface of each pixel of a scene that is exact, without snapping, and the pixels that snapping may change.
 //!
-//! The classes follow the rasterization checks of the Khronos conformance tests (dEQP): a pixel whose centre is inside
-//! by more than the tolerance must be drawn, a pixel outside by more must not, and either result is right in between.
+//! The classes of pixels follow the rasterization checks of the Khronos conformance tests (dEQP). A pixel whose centre is
+//! inside a triangle by more than the tolerance must be drawn, and one that is outside by more must not. In between, both
+//! results are right.
 
 use crate::camera::{Camera, Size, Vector, cross, dot, subtract};
 
-/// Position of a pixel's centre relative to a triangle.
+/// Position of a pixel's centre relative to a triangle, with a tolerance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
-    /// Inside by at least the tolerance: must be drawn.
+    /// Inside the triangle by at least the tolerance: the pixel must be drawn.
     Full,
-    /// Within the tolerance of an edge: may be drawn.
+    /// Closer to an edge than the tolerance: the pixel may be drawn.
     Partial,
-    /// Outside by at least the tolerance: must not be drawn.
+    /// Outside the triangle by at least the tolerance: the pixel must not be drawn.
     None,
 }
 
 /// A triangle clipped and projected in f64.
 #[derive(Clone, Debug)]
 pub struct ProjectedTriangle {
-    /// Corners of the part beyond the near plane, in pixels; empty without such a part.
+    /// Corners, in pixels, of the part of the triangle beyond the near plane; empty if there is no such part.
     pub corners: Vec<[f64; 2]>,
-    /// Lines through the edges as (a, b, c): a·x + b·y + c is the distance to the edge, positive inside, in pixels.
+    /// Lines through the edges as (a, b, c): a·x + b·y + c is the distance to the edge in pixels, positive inside the
+    /// triangle.
     edges: Vec<Vector>,
-    /// 1/z = plane · (x, y, 1) with x and y in pixels, z in world units.
+    /// Plane of the inverse depth: 1/z = plane · (x, y, 1), with x and y in pixels and z in world units.
     inverse_depth: Vector,
-    /// Whether the front face is visible: its vertices run counter-clockwise.
+    /// Whether the front face is visible: whether the vertices run counter-clockwise on the screen.
     pub front: bool,
 }
 
 impl ProjectedTriangle {
-    /// Projects a triangle of the world.
+    /// Clips and projects a triangle of the world.
     pub fn new(camera: &Camera, size: Size, triangle: [Vector; 3]) -> Self {
         let points = triangle.map(|point| camera.coordinates(point));
         let normal = cross(
@@ -43,13 +45,15 @@ impl ProjectedTriangle {
             .iter()
             .map(|&point| camera.screen(point, size))
             .collect();
-        // A point (x, y) of the screen is the direction ((x − cx)/s, (y − cy)/s, 1), and normal · (z · direction) = offset.
+        // With the picture's centre (cx, cy) and s pixels per unit, the ray through a point (x, y) of the screen has the
+        // direction ((x − cx)/s, (y − cy)/s, 1). At depth z it meets the triangle's plane: normal · (z · direction) =
+        // offset.
         let scale = camera.pixels_per_unit(size);
         let [a, b] = [normal[0] / scale, normal[1] / scale];
         let c = normal[2] - a * f64::from(size.width) / 2.0 - b * f64::from(size.height) / 2.0;
         let front = offset < 0.0;
         let inverse_depth = if offset == 0.0 {
-            // Edge-on, depth is no function of the position.
+            // The triangle is seen edge-on, so its depth is no function of the position.
             [0.0, 0.0, f64::INFINITY]
         } else {
             [a / offset, b / offset, c / offset]
@@ -62,13 +66,13 @@ impl ProjectedTriangle {
         }
     }
 
-    /// The class of the pixel in `column` and `row`, with a tolerance in pixels.
+    /// The class of the pixel in `column` and `row`, for a tolerance in pixels.
     pub fn classify(&self, column: u32, row: u32, tolerance: f64) -> Class {
         if self.corners.is_empty() {
             return Class::None;
         }
         let here = centre(column, row);
-        // Fewer than three edges enclose nothing.
+        // Fewer than three edges enclose no area, so no centre can be inside.
         let most = if self.edges.len() < 3 {
             0.0
         } else {
@@ -88,17 +92,19 @@ impl ProjectedTriangle {
         }
     }
 
-    /// 1/z of the triangle's plane at a pixel's centre, z in world units along n; infinite for a triangle seen edge-on.
+    /// 1/z of the triangle's plane at the centre of a pixel, with z in world units along n; infinite for a triangle seen
+    /// edge-on.
     pub fn inverse_depth(&self, column: u32, row: u32) -> f64 {
         dot(self.inverse_depth, centre(column, row))
     }
 
-    /// The steepest slope of 1/z, per pixel.
+    /// The largest slope of 1/z, per pixel.
     pub fn inverse_depth_slope(&self) -> f64 {
         self.inverse_depth[0].hypot(self.inverse_depth[1])
     }
 
-    /// The pixels of the picture whose centres may be within a pixel of the triangle: columns, then rows.
+    /// The pixels of the picture whose centres may be within a pixel of the triangle: the range of columns, then the range
+    /// of rows.
     pub fn bounds(&self, size: Size) -> [std::ops::Range<u32>; 2] {
         let range = |axis: usize, limit: u32| {
             let (mut first, mut last) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -113,12 +119,12 @@ impl ProjectedTriangle {
     }
 }
 
-/// Length in pixels below which an edge has no reliable direction. Without such an edge a polygon extends only where the
-/// polygon is as narrow.
+/// Length in pixels below which the direction of an edge is not reliable, so that the edge is left out. Without it the
+/// polygon becomes larger only where it is about as narrow as this length.
 const SHORTEST_EDGE: f64 = 1e-6;
 
-/// The edges of a convex polygon, their normals pointing inwards. A front face runs counter-clockwise in the world and, y
-/// pointing down, so does its picture: negative area.
+/// The edges of a convex polygon as lines whose normals point inwards. A front face runs counter-clockwise in the world.
+/// Its picture does so on the screen too, where y points down, so its signed area is negative.
 fn inward_edges(corners: &[[f64; 2]], front: bool) -> Vec<Vector> {
     let sign = if front { -1.0 } else { 1.0 };
     let mut edges = Vec::with_capacity(corners.len());
@@ -138,37 +144,37 @@ fn centre(column: u32, row: u32) -> Vector {
     [f64::from(column) + 0.5, f64::from(row) + 0.5, 1.0]
 }
 
-/// The visible surface of a pixel.
+/// The visible surface of a pixel, as far as snapping cannot change it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Visible {
-    /// No surface, for any snapping of the vertices.
+    /// No surface, however vertices are snapped.
     Background,
-    /// A triangle, for any snapping of the vertices.
+    /// This triangle, however vertices are snapped.
     Surface {
         /// Index of the triangle in the scene's list.
         triangle: usize,
         /// 1/z at the pixel's centre, z in world units.
         inverse_depth: f64,
-        /// Slope of 1/z, per pixel.
+        /// The largest slope of 1/z on the triangle, per pixel.
         slope: f64,
     },
-    /// Dependent on the snapping of vertices or the rounding of depth.
+    /// The result depends on the snapping of vertices or on the rounding of depth.
     Unstable,
 }
 
-/// Tolerated deviation from the exact scene.
+/// Deviation from the exact scene that counts as correct.
 #[derive(Clone, Copy, Debug)]
 pub struct Tolerance {
-    /// Displacement of an edge, in pixels.
+    /// Largest displacement of an edge, in pixels.
     pub pixels: f64,
-    /// Error of a depth, in units of 1/z.
+    /// Largest error of a depth, in units of 1/z.
     pub inverse_depth: f64,
 }
 
-/// The visible surfaces of a picture, row by row.
+/// The visible surface of each pixel of a picture, row by row.
 ///
-/// With `cull`, back faces are left out. Pixels near their edges stay unstable, because snapping can turn a very thin triangle
-/// over.
+/// With `cull`, back faces are left out. But pixels near their edges stay unstable, because snapping can turn a very thin
+/// back face into a front face.
 pub fn visible_surfaces(
     camera: &Camera,
     size: Size,
@@ -201,7 +207,7 @@ pub fn visible_surfaces(
     pixels.iter().map(Candidates::decide).collect()
 }
 
-/// The nearest surface so far, and the largest 1/z that another one can reach.
+/// The nearest surface of a pixel so far, and the largest 1/z that any other surface may have there.
 #[derive(Clone)]
 struct Candidates {
     nearest: Option<(usize, f64, f64, f64)>,
@@ -270,7 +276,7 @@ mod tests {
         inverse_depth: 1e-5,
     };
 
-    /// A front face in the plane z that covers the left half of the picture and more.
+    /// A front face in the plane at this z, which covers the left half of the picture and more.
     fn half(z: f64) -> [Vector; 3] {
         [[0.0, 9.0, z], [0.0, -9.0, z], [-9.0, 0.0, z]]
     }
