@@ -132,8 +132,8 @@ impl Camera {
         }
     }
 
-    /// This camera turned about its eye by the angles yaw to the right, then pitch downwards, then roll, in degrees, as
-    /// [`View::look`] turns a view.
+    /// This camera turned about its eye by the angles yaw to the right, then
+    /// pitch downwards, then roll, in degrees, as [`View::look`] turns a view.
     #[must_use]
     pub fn turned(&self, angles: Vector) -> Self {
         let [(sy, cy), (sp, cp), (sr, cr)] = angles.map(|angle| angle.to_radians().sin_cos());
@@ -172,8 +172,8 @@ impl Camera {
         )
     }
 
-    /// The ray through a point of the picture. `pixel` is a column and a row from 0: whole numbers are pixel centres,
-    /// fractions lie between centres.
+    /// The ray through a point of the picture. `pixel` is a column and a row
+    /// from 0: whole numbers are pixel centres, fractions lie between centres.
     ///
     /// The component of the ray's direction along n is 1, so its parameter t is the depth.
     pub fn ray(&self, [x, y]: [f64; 2], size: Size) -> Ray {
@@ -200,8 +200,8 @@ impl Camera {
         }
     }
 
-    /// Converts a point of the world to camera coordinates: distances to the right of, below and in front of the eye, in
-    /// world units.
+    /// Converts a point of the world to camera coordinates: distances
+    /// to the right of, below and in front of the eye, in world units.
     pub fn coordinates(&self, point: Vector) -> Vector {
         let d = subtract(point, self.eye);
         [dot(d, self.u), dot(d, self.v), dot(d, self.n)]
@@ -344,7 +344,7 @@ mod tests {
 
     #[test]
     fn depth_scale_leaves_four_codes_at_the_nearest_depth() {
-        // Near plane 3 has K = 3·262140, a number of 20 bits; its lowest three bits are truncated.
+        // The nearest depth is 3: 3·262140 has 20 bits, and the lowest three of them are truncated.
         assert_eq!(CAMERA.depth_scale(0.0), 786_416.0);
         // (2 − 2^-13)·262140 = 524248.0 has 19 bits and ends in two zeros.
         assert_eq!(CAMERA.depth_scale(1.0), 524_248.0);

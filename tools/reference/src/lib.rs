@@ -1,5 +1,4 @@
-//! References for the errors of Glint's computations, written from the specification and not from the model, and the
-//! report.
+//! References for the errors of Glint's computations, written from the specification and not from the model, and the report.
 //!
 //! - [`errors`]: RMS and maximum of a set of errors.
 //! - [`camera`]: projection, clipping and depth scale of a camera, in f64.

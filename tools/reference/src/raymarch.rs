@@ -66,8 +66,8 @@ pub enum Field {
     },
     /// The points that are in at least one of two fields.
     Union(Box<Self>, Box<Self>),
-    /// The points that are in at least one of two fields, with a fillet where their surfaces are close (the quadratic
-    /// smooth minimum of Quilez).
+    /// The points that are in at least one of two fields, with a fillet where
+    /// their surfaces are close (the quadratic smooth minimum of Quilez).
     SmoothUnion {
         /// Range of the fillet: it exists where the distances to the two members differ by less than `k`.
         k: f64,

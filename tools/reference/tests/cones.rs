@@ -1,4 +1,4 @@
-//! The prepass against exact hits: no ray starts behind its surface.
+//! Compares the prepass with exact hits: no ray may start behind the surface that it hits.
 
 use glint_core::camera::View;
 use glint_core::field::Field as Scene;
@@ -8,24 +8,24 @@ use glint_model::raymarch::{Cones, FieldOptions, FieldSetup, Rays, Stereo, Tint}
 use glint_reference::camera::Camera;
 use glint_reference::raymarch::{Field, views};
 
-/// Truncation of a point, and of the position of a face, in field units.
+/// Error by truncation of a point and of the position of a face, in field units.
 const STEPS: f64 = 2.0 / 4096.0;
 
-/// Comparison of a picture's rays with and without a prepass.
+/// Result of comparing a picture's rays with and without a prepass.
 #[derive(Debug, Default)]
 struct Seen {
     hits: usize,
-    /// Rays that start farther along.
+    /// Rays that start farther along with the prepass than without it.
     helped: usize,
-    /// Largest distance of a start behind the surface, in field units.
+    /// Largest distance by which a ray starts behind its surface, in field units.
     behind: f64,
-    /// Rays with a different end.
+    /// Rays whose end changes by the prepass.
     changed: usize,
-    /// Mean number of evaluations per ray, without and with a prepass.
+    /// Mean number of evaluations per ray, first without and then with a prepass.
     cost: [f64; 2],
 }
 
-/// Compares one pixel in every `stride` by `stride` pixels.
+/// Compares the rays of a picture, one pixel in every `stride` by `stride` pixels.
 fn see(scene: &str, setup: &FieldSetup, stride: u32) -> Seen {
     let field = Field::of(&Scene::parse(scene).expect("a field"));
     let size = (setup.width, setup.height);
@@ -69,7 +69,7 @@ fn see(scene: &str, setup: &FieldSetup, stride: u32) -> Seen {
     seen
 }
 
-/// The constants of a picture with a prepass.
+/// The frame constants of a picture with a prepass.
 fn with_prepass(scene: &str, view: &View, size: (u32, u32), stereo: Option<Stereo>) -> FieldSetup {
     let scene = Scene::parse(scene).expect("a field");
     let options = FieldOptions {
@@ -94,7 +94,8 @@ fn no_ray_of_the_views_starts_behind_a_surface() {
     }
 }
 
-/// Random cameras of any width, with one and two eyes, in every field: 39 frames, or the number in `GLINT_CONES`.
+/// Draws frames of random cameras of any width, with one and two
+/// eyes, in every field: 39 frames, or as many as `GLINT_CONES` says.
 #[test]
 fn no_ray_of_random_cameras_starts_behind_a_surface() {
     let mut state = 7_u64;

@@ -1,4 +1,4 @@
-//! The references of distance fields against each other: geometric hits against sphere tracing.
+//! Compares the two references of distance fields with each other: hits from geometry and hits by sphere tracing.
 //!
 //! All rays come from fixed seeds, and a failure prints the ray. `--nocapture` shows the measured figures.
 
@@ -8,17 +8,17 @@ use glint_reference::raymarch::{Face, Field, Hit, Plane, Sphere, views};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
-/// Rays of each kind for each field.
+/// Number of rays of each kind, for each field.
 const RAYS: usize = 10_000;
 
-/// Largest difference of both hits of a ray, in world units. At a small angle to the surface the trace's remaining
-/// distance is added.
+/// Largest difference between the two hits of a ray, in world units. At a
+/// small angle to the surface, the distance that the trace leaves is added.
 const TOLERANCE: f64 = 1e-6;
 
 /// Distance from the surface at which a trace ends, in world units.
 const TRACE: f64 = 1e-9;
 
-/// Tolerance at edges, in world units: results may differ if a ray moved by this much gives the other result.
+/// Tolerance at edges, in world units. The two results may differ if a ray that is moved by this much gives the other result.
 const BESIDE: f64 = 1e-6;
 
 fn ball(centre: Vector, radius: f64) -> Field {
@@ -29,7 +29,7 @@ fn boxed(field: Field) -> Box<Field> {
     Box::new(field)
 }
 
-/// A box with corners cut off by diagonal planes.
+/// A box whose corners are cut off by diagonal planes.
 fn cut_box() -> Field {
     let planes = (0..6).map(|face| {
         let mut normal = [0.0; 3];
@@ -46,7 +46,7 @@ fn cut_box() -> Field {
     Field::Convex(planes.chain(diagonals).collect())
 }
 
-/// Each kind of field with a geometric hit, and the spacing of its faces or centres.
+/// Name of each kind of field that has a geometric hit, the field, and the spacing of its faces or centres.
 fn fields() -> Vec<(String, Field, f64)> {
     let mut random = Pcg64Mcg::new(2);
     let mut fields: Vec<_> = (1..=6)
@@ -92,18 +92,18 @@ fn fields() -> Vec<(String, Field, f64)> {
     fields
 }
 
-/// Distribution of random rays.
+/// How random rays are distributed.
 #[derive(Clone, Copy, Debug)]
 enum Kind {
-    /// Any origin and any direction, near the field's origin.
+    /// Any origin near the field's origin, and any direction.
     Any,
-    /// Any origin, direction along an axis.
+    /// Any origin, and a direction along an axis.
     Parallel,
-    /// Any origin, direction perpendicular to an axis.
+    /// Any origin, and a direction perpendicular to an axis.
     InPlane,
-    /// Origin close to multiples of the spacing, direction along an axis or nearly so.
+    /// An origin close to multiples of the spacing, and a direction along an axis or nearly so.
     Beside,
-    /// Origin in the large tunnel of the sponge along y.
+    /// An origin in the sponge's large tunnel along y.
     Tunnel,
 }
 
@@ -119,7 +119,7 @@ fn draw(random: &mut Pcg64Mcg, kind: Kind, spacing: f64) -> Ray {
     let mut numbers = |reach: f64| [0; 3].map(|_| random.random_range(-reach..reach));
     let mut origin = numbers(3.0);
     let mut direction = numbers(2.0);
-    // Closer to a wall a trace would need too many steps.
+    // The offset is at least 1e-4, because closer to a wall a trace would need too many steps.
     let offset = numbers(1e-3).map(|c| c + 1e-4f64.copysign(c));
     let axis = random.random_range(0..3);
     match kind {
@@ -133,7 +133,7 @@ fn draw(random: &mut Pcg64Mcg, kind: Kind, spacing: f64) -> Ray {
         Kind::Beside => {
             let tilt = [0.0, 1e-3, 0.1][random.random_range(0..3)];
             for i in 0..3 {
-                // Relative to the corner of the sponge, because the origin is the middle of a cell.
+                // Multiples of the spacing are counted from the corner of the sponge, because its origin is the middle of a cell.
                 origin[i] = ((origin[i] + 1.0) / spacing).round() * spacing - 1.0 + offset[i];
                 if i != axis {
                     direction[i] *= tilt;
@@ -153,17 +153,17 @@ fn dot(a: Vector, b: Vector) -> f64 {
     (0..3).map(|i| a[i] * b[i]).sum()
 }
 
-/// Smallest parameter of all hits, in lengths of the direction.
+/// Smallest parameter at which hits count, in lengths of the direction.
 const NEAR: f64 = 0.01;
 
-/// Largest parameter of all hits.
+/// Largest parameter at which hits count, in lengths of the direction.
 const FAR: f64 = 20.0;
 
 fn hit(field: &Field, ray: &Ray) -> Option<Hit> {
     field.hit(ray.origin, ray.direction, NEAR, FAR)
 }
 
-/// Distance of two hits, and its tolerance, in world units.
+/// Distance between two hits of a ray, and the largest distance allowed, in world units.
 fn apart(ray: &Ray, a: &Hit, b: &Hit) -> (f64, f64) {
     let speed = length(ray.direction);
     let cosine = dot(ray.direction, a.normal).abs() / speed;
@@ -243,7 +243,7 @@ fn hits_are_where_traces_end() {
     }
 }
 
-/// Unions with a fillet.
+/// Unions with a fillet, and their names.
 fn smooth_unions() -> Vec<(&'static str, Field)> {
     let smooth = |k, a, b| Field::SmoothUnion {
         k,
@@ -279,7 +279,7 @@ fn smooth_unions() -> Vec<(&'static str, Field)> {
     ]
 }
 
-/// The first zero of a field's distance after `from`, by small steps and bisection.
+/// The first parameter from `from` at which a field's distance is zero, found by small steps and then by bisection.
 fn bisected(field: &Field, ray: &Ray, from: f64, to: f64) -> Option<f64> {
     let step = 1e-3 / length(ray.direction);
     let solid = |t| field.distance(ray.at(t)) <= 0.0;
@@ -323,7 +323,7 @@ fn smooth_unions_are_hit_where_their_distance_changes_its_sign() {
                     hits += 1;
                 }
                 (None, None) => {}
-                // A chord shorter than the small steps.
+                // The ray crosses the solid within less than one of the small steps, so they may miss it.
                 (None, Some(hit)) => {
                     let cosine = dot(ray.direction, hit.normal) / length(ray.direction);
                     assert!(cosine.abs() < 0.01, "{}", context());

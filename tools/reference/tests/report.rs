@@ -1,5 +1,5 @@
-//! The report: a quick run writes its files, the committed tables hold for today's code as far as that is cheap, and the
-//! committed pages are those of the committed tables.
+//! Tests of the report. A quick run writes its files. The committed tables agree with today's code, as far as this is cheap
+//! to check. The committed pages are those that the committed tables give.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -25,7 +25,7 @@ use glint_reference::sine::sweep::sweep;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-/// Console lines as the firmware prints them, so that no board is needed.
+/// Lines of the console as the firmware prints them. With this transcript no board is needed.
 const TRANSCRIPT: &str = "bench sin_cos_q14 min 1 median 2 max 3 cycles\nok\n";
 
 fn folder(name: &str) -> PathBuf {
@@ -88,12 +88,12 @@ fn a_quick_report_is_written_and_shipped_kernels_keep_their_bounds() {
     );
 }
 
-/// The rows of a table of docs/report.
+/// The rows of a committed table in docs/report.
 fn committed<T: DeserializeOwned>(name: &str) -> Vec<T> {
     read_csv(&workspace::path("docs/report").join(name)).expect("a committed table")
 }
 
-/// Whether a committed figure is that of today, to a relative `tolerance`.
+/// Checks that a committed figure is equal to today's, to a relative `tolerance`.
 fn assert_close(committed: f64, now: f64, tolerance: f64, what: &str) {
     assert!(
         (committed - now).abs() <= tolerance * now,
@@ -131,7 +131,7 @@ fn the_committed_pages_are_those_of_the_committed_tables() {
     }
 }
 
-/// Recomputes the rows of sine.csv that take less than a second.
+/// Measures again the rows of sine.csv that take less than a second.
 #[test]
 fn the_committed_errors_of_sines_hold() {
     let rows: Vec<sine::Row> = committed("sine.csv");
@@ -155,7 +155,8 @@ fn the_committed_errors_of_sines_hold() {
     assert!(recomputed >= 2);
 }
 
-/// Counts the evaluations of the sponge's small frames again, whose cycles are those of the whole SoC.
+/// Counts the evaluations of the sponge's small frames again. The cycles
+/// of these frames need the whole SoC and are not measured again.
 #[test]
 fn the_committed_frames_a_second_are_of_these_frames() {
     let rows: Vec<rates::Row> = committed("raymarch-rates.csv");
@@ -189,7 +190,7 @@ fn the_committed_frames_a_second_are_of_these_frames() {
     assert_eq!(counted, 4 * views::path().len());
 }
 
-/// Draws Glint's configuration on the verilated raymarcher again.
+/// Draws the views with Glint's configuration on the verilated raymarcher again, and compares the cycles.
 #[test]
 fn the_committed_cycles_of_pictures_hold() {
     let size = (320, 180);
@@ -204,14 +205,14 @@ fn the_committed_cycles_of_pictures_hold() {
     let shipped = rows.iter().find(|row| row.shipped);
     let cycles = shipped.and_then(|row| row.cycles).expect("Glint's cycles");
     let now = clocks as f64 / subjects.len() as f64;
-    // The lane with the first turn depends on the picture before, which moves a picture by a clock.
+    // The first lane to get a ray depends on the picture before, which changes the cycles of a picture by one.
     assert!(
         (cycles - now).abs() <= 1.0,
         "raymarch-cap.csv: {cycles} cycles in the table and {now} now: run `cargo xtask report raymarch`"
     );
 }
 
-/// Draws the small pictures of raymarch.csv again.
+/// Draws the small pictures of raymarch.csv again, and compares their errors.
 #[test]
 fn the_committed_pictures_of_fields_hold() {
     let rows: Vec<pictures::Row> = committed("raymarch.csv");
@@ -259,7 +260,7 @@ fn the_committed_pictures_of_fields_hold() {
     }
 }
 
-/// Integrates the tumble and the coning of imu-methods.csv again, where samples are few.
+/// Integrates the tumble and the coning of imu-methods.csv again, at the rates that have few samples.
 #[test]
 fn the_committed_errors_of_attitudes_hold() {
     let rows: Vec<MethodTrial> = committed("imu-methods.csv");

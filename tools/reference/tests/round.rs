@@ -1,4 +1,4 @@
-//! The model's round fields against the exact hits of the same rays. `--nocapture` shows the measured figures.
+//! Compares the model's pictures of round fields with the exact hits of the same rays. `--nocapture` shows the measured figures.
 
 use glint_core::field::{CentredSphere, Field as Scene, Primitive};
 use glint_core::fixed::Q32_32;
@@ -7,7 +7,7 @@ use glint_model::raymarch::{FieldOptions, Lights, Palette, paint};
 use glint_reference::camera::Camera;
 use glint_reference::raymarch::raymarched::{Measured, Subject, rounds};
 
-/// Bounded fields must have normals within 0.3° and depths within 3e-3. Lattices have larger tolerances, because their
+/// In bounded fields, normals must be within 0.3° and depths within 3e-3. Lattices have larger tolerances, because their
 /// spheres at the horizon are smaller than a pixel.
 #[test]
 fn round_fields_are_where_they_are() {
@@ -21,14 +21,14 @@ fn round_fields_are_where_they_are() {
         let horizon = subject.scene.starts_with("lattice");
         let (most, angle) = if horizon { (6e-3, 0.7) } else { (3e-3, 0.3) };
         assert!(depth.median <= 3e-4 && depth.p99 <= most);
-        // Some views show only faces, which have no round normals.
+        // Some views show only faces, so they have no normals of round surfaces.
         let normal = found.normal.map_or(0.0, |normal| normal.p99);
         assert!(normal <= angle, "{normal}");
     }
 }
 
-/// Each kind of bounded field. Unbounded fields are skipped: they have small faces and spheres at the horizon, and rays
-/// along faces.
+/// Checks each kind of bounded field. Unbounded fields are skipped: they have
+/// small faces and spheres at the horizon, and rays that run along faces.
 #[test]
 fn every_kind_of_field_is_where_it_is() {
     for scene in Primitive::EXAMPLES {
@@ -57,7 +57,7 @@ fn every_kind_of_field_is_where_it_is() {
     }
 }
 
-/// Channels of a lit sphere against max(0, n·l) of the exact normals.
+/// Compares the channels of a lit sphere with max(0, n·l), computed from the exact normals n and the light's direction l.
 #[test]
 fn spheres_are_lit_as_they_should_be() {
     let light = |text| Light::parse(text).expect("a light");

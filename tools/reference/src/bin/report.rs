@@ -94,7 +94,7 @@ struct Output {
 }
 
 impl Output {
-    /// The folder, created where it is missing.
+    /// The folder for the results, which is created if it is missing. `partial` selects the default folder of a quick run.
     fn folder(&self, partial: bool) -> Result<PathBuf> {
         let default = if partial {
             "target/report"
@@ -107,7 +107,7 @@ impl Output {
         Ok(folder)
     }
 
-    /// Prints rows as JSON, or the table that `table` makes of them.
+    /// Prints rows as JSON or as a table, which `table` makes of them.
     fn print<T: Serialize>(&self, rows: &[T], table: fn(&[T]) -> String) -> Result<()> {
         if self.json {
             println!("{}", serde_json::to_string_pretty(rows)?);
@@ -138,7 +138,7 @@ fn main() -> Result<()> {
     }
 }
 
-/// Rebuilds a page and prints its path.
+/// Rebuilds a page in a folder and prints its path.
 fn written(name: &str, folder: &Path, rebuild: pages::Rebuild) -> Result<()> {
     rebuild(folder).with_context(|| format!("the page {name}.md"))?;
     eprintln!("wrote {name}.md to {}", folder.display());
@@ -171,7 +171,7 @@ fn measure_raymarch(quick: bool, output: &Output) -> Result<()> {
     let folder = output.folder(quick)?;
     let rows = raymarch::pictures::measure(quick);
     output.print(&rows, pages::raymarch::table)?;
-    // Each table is written as soon as it is complete, because the next one takes minutes.
+    // Each table is written as soon as it is complete, because the next one takes minutes to measure.
     write_csv(&rows, &folder.join("raymarch.csv"))?;
     if !quick {
         let rates = raymarch::rates::measure()?;

@@ -16,17 +16,15 @@ pub enum Filter {
     /// Complementary filter with this time constant: after each step, pitch and roll of the attitude move towards those of
     /// the accelerometer's reading, by the exact gain of an exponential.
     Complementary(f64),
-    /// Mahony's filter: the deviation of the normalised reading from the attitude's up direction corrects the rate and the
-    /// bias.
+    /// Mahony's filter: the deviation of the normalised reading from the attitude's up direction corrects the rate and the bias.
     Mahony {
         /// Proportional gain in 1/s.
         proportional: f64,
         /// Integral gain in 1/s².
         integral: f64,
     },
-    /// Laidig and Seel's VQF without its bias estimate, with this time constant: the readings are rotated to world axes by
-    /// the gyroscope's attitude and pass a second-order low pass; the attitude is turned so that the filtered reading
-    /// points upwards.
+    /// Laidig and Seel's VQF without its bias estimate, with this time constant: the readings are rotated to world axes by the
+    /// gyroscope's attitude and pass a second-order low pass; the attitude is turned so that the filtered reading points upwards.
     LowPass(f64),
     /// The firmware's filter, with this time constant.
     Tilt(f64),
@@ -79,8 +77,7 @@ pub struct Estimator {
     correction: Vector,
     /// Low passes of [`Filter::LowPass`], one for each world axis.
     low_pass: [Butterworth; 3],
-    /// For [`Filter::LowPass`], the rotation from the world axes of the gyroscope's own attitude to the corrected world
-    /// axes.
+    /// For [`Filter::LowPass`], the rotation from the world axes of the gyroscope's own attitude to the corrected world axes.
     upright: Quaternion,
 }
 
@@ -217,8 +214,7 @@ impl Estimator {
         }
     }
 
-    /// The exact gain of a step of `step` seconds. During the first `tau` seconds it is close to the gain of a running
-    /// mean.
+    /// The exact gain of a step of `step` seconds. During the first `tau` seconds it is close to the gain of a running mean.
     fn aged_gain(&mut self, tau: f64, step: f64) -> f64 {
         if self.age < tau {
             self.age = (self.age + step).min(tau);
@@ -227,8 +223,7 @@ impl Estimator {
     }
 }
 
-/// A second-order Butterworth low pass by the bilinear transform. During the first τ seconds it returns the running mean
-/// instead.
+/// A second-order Butterworth low pass by the bilinear transform. During the first τ seconds it returns the running mean instead.
 #[derive(Clone, Copy, Debug, Default)]
 struct Butterworth {
     age: f64,

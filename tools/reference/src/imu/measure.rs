@@ -66,8 +66,8 @@ pub fn against_f64(sensor: Sensor, motion: Motion, seconds: f64, tilt: bool) -> 
     largest
 }
 
-/// The error in degrees of a method's attitude at the end of a motion. The method takes exact, unrounded rates `rate` times
-/// a second.
+/// The error in degrees of a method's attitude at the end of a motion.
+/// The method takes exact, unrounded rates `rate` times a second.
 pub fn method_error(method: Method, motion: Motion, seconds: f64, rate: f64) -> f64 {
     let start = motion.attitude(0.0).unwrap_or(Quaternion::IDENTITY);
     let mut integrator = Integrator::new(method, start, motion.rate(0.0));
@@ -80,8 +80,7 @@ pub fn method_error(method: Method, motion: Motion, seconds: f64, rate: f64) -> 
     integrator.attitude().angle_to(truth)
 }
 
-/// Assumed remaining error of the gyroscope's bias after a calibration and a change of temperature, in °/s along x, y and
-/// z.
+/// Assumed remaining error of the gyroscope's bias after a calibration and a change of temperature, in °/s along x, y and z.
 pub const LEFT_BIAS: [f64; 3] = [0.02, -0.02, 0.02];
 /// Time in seconds from which errors of the inclination are counted.
 const SETTLED: f64 = 10.0;
@@ -146,8 +145,7 @@ pub fn calibrated(sensor: Sensor, motion: Motion) -> Result<Report, SampleError>
     unreachable!("a calibration ends after the requested number of samples");
 }
 
-/// Drift of yaw in °/h at rest after the calibration in `report`. With `follow` the firmware tracks the bias, otherwise
-/// keeps it.
+/// Drift of yaw in °/h at rest after the calibration in `report`. With `follow` the firmware tracks the bias, otherwise keeps it.
 pub fn yaw_drift(sensor: Sensor, report: &Report, hours: f64, follow: bool) -> f64 {
     let mut tracker = tracker(&sensor, true);
     tracker.set_bias(report.bias);

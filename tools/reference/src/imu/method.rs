@@ -113,7 +113,7 @@ impl Integrator {
         self.advance_corrected(rate, step, [0.0; 3]);
     }
 
-    /// As [`Self::advance`], and then turns by `correction`: half an angle about each of the body's axes.
+    /// As [`Self::advance`], with an additional rotation by `correction`: half an angle about each of the body's axes.
     pub fn advance_corrected(&mut self, rate: Vector, step: f64, correction: Vector) {
         match self.method {
             Method::Angles => {

@@ -53,8 +53,8 @@ pub enum Motion {
     Hand,
     /// Hand motion about a wrist 10 cm away, mostly up and down.
     Nod,
-    /// A walk: accelerations of ±3 m/s² up and down at 2 Hz, of ±1.5 m/s² fore and aft, and of 10 m/s² upwards for 50 ms
-    /// with every step.
+    /// A walk: accelerations of ±3 m/s² up and down at 2 Hz, of ±1.5 m/s²
+    /// fore and aft, and of 10 m/s² upwards for 50 ms with every step.
     Walk,
 }
 
@@ -142,8 +142,8 @@ impl Motion {
         }
     }
 
-    /// The attitude after `seconds`: [`Self::attitude`] if there is a closed form, otherwise integrated from the identity
-    /// with 16 · `rate` steps a second.
+    /// The attitude after `seconds`: [`Self::attitude`] if there is a closed form,
+    /// otherwise integrated from the identity with 16 · `rate` steps a second.
     pub fn attitude_after(self, seconds: f64, rate: f64) -> Quaternion {
         self.attitude(seconds).unwrap_or_else(|| {
             let step = 1.0 / (16.0 * rate);

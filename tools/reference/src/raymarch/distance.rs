@@ -1,8 +1,8 @@
 //! Signed distances of fields: negative inside a solid; outside, never larger than the true distance to the surface.
 //!
-//! Distances to flat fields are in the maximum norm, distances to round fields in the Euclidean norm. From one point to
-//! another a field's distance changes by at most the Euclidean length of the way, so a ball about a point whose radius is
-//! the point's distance is empty.
+//! Distances to flat fields are in the maximum norm, distances to round fields in the Euclidean
+//! norm. From one point to another a field's distance changes by at most the Euclidean length
+//! of the way, so a ball about a point whose radius is the point's distance is empty.
 
 use super::{Field, Plane};
 use crate::camera::{Vector, dot, length, subtract};
@@ -10,8 +10,8 @@ use crate::camera::{Vector, dot, length, subtract};
 impl Field {
     /// The signed distance of a point, in world units.
     ///
-    /// For [`Field::SmoothUnion`] it is min(a, b) − h²k/4, with the distances a and b to the two members and h = max(k − |a
-    /// − b|, 0)/k.
+    /// For [`Field::SmoothUnion`] it is min(a, b) − h²k/4, with h = max(k
+    /// − |a − b|, 0)/k and the distances a and b to the two members.
     pub fn distance(&self, p: Vector) -> f64 {
         match self {
             Self::Menger { depth } => {
@@ -37,9 +37,9 @@ impl Field {
 }
 
 impl Plane {
-    /// The distance of a point to the plane in the maximum norm. Within a cube of half side r about a point, the scalar
-    /// product with the normal changes by up to r times the sum of the magnitudes of the normal's components. So the
-    /// distance is divided by that sum.
+    /// The distance of a point to the plane in the maximum norm. Within a cube of half side
+    /// r about a point, the scalar product with the normal changes by up to r times the sum
+    /// of the magnitudes of the normal's components. So the distance is divided by that sum.
     fn distance(&self, p: Vector) -> f64 {
         let sum: f64 = self.normal.iter().map(|part| part.abs()).sum();
         (dot(self.normal, p) - self.offset) / sum

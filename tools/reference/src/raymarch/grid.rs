@@ -3,12 +3,11 @@
 use super::surface::Hit;
 use crate::camera::Ray;
 
-/// The first hit of a ray with copies of a solid, one about each point whose coordinates are integer multiples of the
-/// period.
+/// The first hit of a ray with copies of a solid, one about each point whose coordinates are integer multiples of the period.
 ///
 /// `hit` returns the hit of a given ray with the copy about the origin. Cells are visited in the order in which the ray
-/// passes them (Amanatides and Woo 1987), up to `t_max`. Every point of a copy must be nearer to its own centre than to any
-/// other.
+/// passes them (Amanatides and Woo 1987), up to `t_max`. Every point
+/// of a copy must be nearer to its own centre than to any other.
 pub(super) fn nearest(
     period: f64,
     ray: &Ray,

@@ -1,8 +1,7 @@
 //! Hits of rays on the Menger sponge, by traversal of its cells.
 //!
-//! A cell of the last level has a number along each axis, 0 to 3^depth − 1. In base 3, each digit of the number is the
-//! position of an enclosing cell in the cell of the level above. An enclosing cell with the digit 1 along two or three axes
-//! is a hole.
+//! A cell of the last level has a number along each axis, 0 to 3^depth − 1. In base 3, each digit of the number is the position
+//! of an enclosing cell in the cell of the level above. An enclosing cell with the digit 1 along two or three axes is a hole.
 
 use super::solids::Slabs;
 use super::surface::Hit;

@@ -15,7 +15,7 @@ pub struct Expected {
     /// The hit of the ray through the pixel's centre.
     pub hit: Option<Hit>,
     /// Whether the rays 0.05 pixels to the left, right, top and bottom give the same as the ray through the centre: the
-    /// same face of the same member at a depth that differs by less than a thousandth, or also a miss. At an unstable pixel
+    /// same face of the same member at a depth that differs by at most a thousandth, or also a miss. At an unstable pixel
     /// a correct picture may differ from the reference.
     pub stable: bool,
 }
@@ -48,8 +48,8 @@ pub fn expected(
         .collect()
 }
 
-/// Whether a pixel stays stable: whether the hit of a neighbouring ray is on the same surface as that of the ray through
-/// the centre.
+/// Whether a pixel stays stable: whether the hit of a neighbouring
+/// ray is on the same surface as that of the ray through the centre.
 fn alike(centre: Option<Hit>, beside: Option<Hit>) -> bool {
     match (centre, beside) {
         (None, None) => true,

@@ -124,8 +124,7 @@ pub fn depth(setup: &FieldSetup, ray: &raymarch::Ray, t: u32) -> f64 {
     units / setup.scale.to_num::<f64>()
 }
 
-/// The reference picture up to the far limit of the model's rays. A view must be able to hold the numbers of `camera`
-/// exactly.
+/// The reference picture up to the far limit of the model's rays. A view must be able to hold the numbers of `camera` exactly.
 fn expected(setup: &FieldSetup, field: &Field, camera: &Camera) -> Vec<Expected> {
     let size = Size {
         width: setup.width,

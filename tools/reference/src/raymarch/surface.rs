@@ -77,8 +77,8 @@ pub struct Hit {
     pub normal: Vector,
     /// Kind of surface at the hit.
     pub face: Face,
-    /// Number of the ball in `Field::Spheres`, or of the member of the outermost union; 0 for other fields, and if the ray
-    /// starts inside.
+    /// Number of the ball in `Field::Spheres`, or of the member of the
+    /// outermost union; 0 for other fields, and if the ray starts inside.
     pub member: usize,
 }
 
@@ -105,8 +105,8 @@ impl Hit {
         }
     }
 
-    /// Sets the number of the hit member. If the ray starts inside, the number stays 0, because several members may contain
-    /// the start.
+    /// Sets the number of the hit member. If the ray starts inside, the
+    /// number stays 0, because several members may contain the start.
     pub(super) fn of(mut self, member: usize) -> Self {
         if self.face != Face::Inside {
             self.member = member;

@@ -13,8 +13,7 @@ const STEP: f64 = 1e-6;
 /// Limit of steps, sufficient for every ray that is not almost parallel to a face close by.
 const MOST_STEPS: u32 = 1 << 20;
 
-/// The error of a trace that has not ended after 2^20 steps, because its ray runs close to a surface and nearly parallel to
-/// it.
+/// The error of a trace that has not ended after 2^20 steps, because its ray runs close to a surface and nearly parallel to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unconverged {
     /// Parameter of the ray at the last step.
@@ -32,9 +31,9 @@ impl std::error::Error for Unconverged {}
 impl Field {
     /// As [`Self::hit`], but computed from the field's distance alone, in the same way for every field.
     ///
-    /// A trace ends 1e-9 world units from the surface. So a ray that only passes within that distance hits, and a ray that
-    /// starts on a surface hits immediately. The found parameter is smaller than that of the surface by 1e-9 divided by the
-    /// cosine of the angle of incidence.
+    /// A trace ends 1e-9 world units from the surface. So a ray that only passes within that
+    /// distance hits, and a ray that starts on a surface hits immediately. The found parameter is
+    /// smaller than that of the surface by 1e-9 divided by the cosine of the angle of incidence.
     ///
     /// # Errors
     /// When the ray has not ended after 2^20 steps, because it runs close to a surface.

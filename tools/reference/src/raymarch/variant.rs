@@ -29,9 +29,9 @@ impl Norm {
 pub struct Method {
     /// Norm in which the distance to the sponge is computed.
     pub distance: Norm,
-    /// Norm in which a ray's direction has length 1. If it is the norm of the distances, a step is as long as the distance
-    /// allows. Rays of Euclidean length 1 take shorter steps with distances in the maximum norm. Euclidean distances
-    /// require the Euclidean norm here.
+    /// Norm in which a ray's direction has length 1. If it is the norm of the distances, a step
+    /// is as long as the distance allows. Rays of Euclidean length 1 take shorter steps with
+    /// distances in the maximum norm. Euclidean distances require the Euclidean norm here.
     pub rays: Norm,
     /// Constant part of the threshold at which a ray ends, in world units.
     pub threshold: f64,
@@ -49,8 +49,7 @@ pub struct Method {
 impl Method {
     /// Marches a ray to a sponge of this depth, from the parameter `start` of the ray.
     ///
-    /// The normal of a hit points along the axis of the largest component of the gradient of the distance in the maximum
-    /// norm.
+    /// The normal of a hit points along the axis of the largest component of the gradient of the distance in the maximum norm.
     pub fn march(&self, depth: u32, ray: &Ray, start: f64) -> RenderedRay {
         let sponge = Field::Menger { depth };
         let speed = self.rays.of(ray.direction);

@@ -5,8 +5,7 @@ use glint_model::triangle::descriptor::band_rows;
 use glint_testbench::raymarch::{Pixel, Place, pixel, set_blocks, set_lane, set_paint, set_rays};
 use glint_testbench::{Counters, Module, Port};
 
-/// The raymarcher's module, built with every field. The bench opens each band immediately, and accepts every pixel
-/// immediately.
+/// The raymarcher's module, built with every field. The bench opens each band immediately, and accepts every pixel immediately.
 pub struct Raymarcher {
     module: Module,
     group: [Port; Pixel::PAYLOAD.len()],

@@ -32,8 +32,7 @@ pub fn camera(eye: Vector, target: Vector) -> Camera {
     Camera::looking_at(eye, target, HALF_WIDTH, NEAR)
 }
 
-/// Rotations of a head that looks around for a second: yaw to the right, pitch downwards and roll in degrees, each starting
-/// at 0.
+/// Rotations of a head that looks around for a second: yaw to the right, pitch downwards and roll in degrees, each starting at 0.
 ///
 /// # Panics
 /// When the file `look-around.csv` (time in milliseconds and the three angles) is damaged.

@@ -1,4 +1,4 @@
-//! Cycles of kernels on the soft core, from the firmware's `bench`.
+//! Cycles of kernels on the soft core, as measured by the firmware's `bench`.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -9,18 +9,18 @@ use virtual_board::{Start, VirtualBoard};
 
 use super::workspace;
 
-/// Cycles of one call.
+/// Cycles of one call of a kernel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Figures {
-    /// Fastest call.
+    /// Cycles of the fastest call.
     pub min: u64,
-    /// Median of the calls.
+    /// Median over the calls.
     pub median: u64,
-    /// Slowest call.
+    /// Cycles of the slowest call.
     pub max: u64,
 }
 
-/// Figures by the kernel's name.
+/// Cycles of each kernel, by the kernel's name.
 pub type Cycles = BTreeMap<String, Figures>;
 
 /// Reads the lines `bench NAME min MIN median MEDIAN max MAX cycles` of a console's output.
@@ -71,10 +71,10 @@ pub fn parse(console: &str) -> Result<Cycles> {
 
 /// The console's prompt.
 const PROMPT: &str = "glint> ";
-/// Limit of the start and of all kernels, each several times their duration.
+/// Limit in cycles for the start of the firmware, and for the run of all kernels. Each takes several times less.
 const LIMIT: u64 = 500_000_000;
 
-/// The source of measured cycles.
+/// Where the cycles are measured: on the virtual board, or read from a transcript.
 #[derive(clap::Args)]
 pub struct Source {
     /// Verilated SoC [default: the build of `cargo xtask gateware`]
@@ -89,7 +89,7 @@ pub struct Source {
 }
 
 impl Source {
-    /// The figures of `bench KERNELS`.
+    /// The cycles that the console's command `bench KERNELS` reports.
     ///
     /// # Errors
     /// When the transcript cannot be read, or the run on the virtual board fails.
@@ -102,23 +102,23 @@ impl Source {
         measure(&self.library(), &self.firmware(), kernels)
     }
 
-    /// Path of the verilated SoC.
+    /// Path of the library with the verilated SoC.
     fn library(&self) -> PathBuf {
         let built = || workspace::path("target/gateware/virtual/libglint_soc.so");
         self.library.clone().unwrap_or_else(built)
     }
 
-    /// Path of the firmware.
+    /// Path of the firmware's image.
     pub fn firmware(&self) -> PathBuf {
         let built = || workspace::path("target/firmware/glint-peers.bin");
         self.firmware.clone().unwrap_or_else(built)
     }
 }
 
-/// Runs `bench KERNELS` on the virtual board.
+/// Runs the console's command `bench KERNELS` on the virtual board.
 ///
 /// # Errors
-/// When the board or the firmware is not built, or does not answer.
+/// When the board or the firmware is not built, or the console does not answer.
 fn measure(library: &Path, firmware: &Path, kernels: &str) -> Result<Cycles> {
     for (path, command) in [
         (library, "cargo xtask gateware"),
@@ -157,7 +157,7 @@ fn measure(library: &Path, firmware: &Path, kernels: &str) -> Result<Cycles> {
     parse(&reply).with_context(|| format!("`{command}` on the virtual board"))
 }
 
-/// Whether a command's reply is complete: its last line is `ok` or an error.
+/// Whether the reply to a command is complete: whether its last line is `ok` or an error.
 fn ends(reply: &[u8]) -> bool {
     let last = reply.strip_suffix(PROMPT.as_bytes()).unwrap_or(reply);
     let last = last

@@ -1,7 +1,7 @@
-//! The report on error against run time (docs/report).
+//! The report on error against run time, in docs/report.
 //!
-//! [`experiments`] measure and return rows, [`table`] writes and reads rows as CSV, [`pages`] makes the pages and diagrams from
-//! the CSV files alone. So a page can be rebuilt, and checked, without measuring again.
+//! [`experiments`] measure and return rows. [`table`] writes and reads rows as CSV files. [`pages`] makes the pages and
+//! diagrams from the CSV files alone, so that a page can be rebuilt and checked without measuring again.
 
 pub mod cycles;
 pub mod experiments;

@@ -1,4 +1,5 @@
-//! Work-precision diagrams: error across, cost up, each logarithmic unless it stays within a decade.
+//! Work-precision diagrams: the error is on the horizontal axis and the cost on the vertical axis. An axis is logarithmic
+//! unless its values stay within a decade.
 
 use std::path::Path;
 
@@ -7,10 +8,10 @@ use plotters::coord::ranged1d::ValueFormatter;
 use plotters::prelude::*;
 
 const SIZE: (u32, u32) = (960, 600);
-/// Range of the cost axis without measured costs.
+/// Range of the cost axis if no point has a cost.
 const EMPTY: Span = Span(10.0, 100_000.0);
 
-/// Colours of the families, dark enough for thin text.
+/// Colours of the families of points, dark enough for thin text.
 const COLOURS: [RGBColor; 8] = [
     RGBColor(176, 24, 48),
     RGBColor(24, 120, 48),
@@ -22,27 +23,27 @@ const COLOURS: [RGBColor; 8] = [
     RGBColor(136, 104, 56),
 ];
 
-/// Title and axes of a diagram.
+/// Title and axis labels of a diagram.
 pub struct Diagram {
     /// Title above the diagram.
     pub title: &'static str,
-    /// Horizontal axis: an error.
+    /// Label of the horizontal axis, which shows an error.
     pub across: &'static str,
-    /// Vertical axis: a cost.
+    /// Label of the vertical axis, which shows a cost.
     pub up: &'static str,
 }
 
-/// A point of the diagram.
+/// A point of the diagram: a configuration with its error and cost.
 pub struct Point {
-    /// Points of a family are joined.
+    /// Name of the family. A line joins the points of a family.
     pub family: String,
     /// Text beside the point.
     pub label: String,
     /// Position on the horizontal axis.
     pub error: f64,
-    /// Position on the vertical axis; without it the point is a dashed line at its error.
+    /// Position on the vertical axis. A point without a cost becomes a dashed line at its error.
     pub cost: Option<f64>,
-    /// Whether Glint uses the configuration; its point has a ring.
+    /// Whether Glint uses the configuration. Such a point gets a ring.
     pub shipped: bool,
 }
 
@@ -94,20 +95,20 @@ fn draw(
     Ok(())
 }
 
-/// The area between two lines.
+/// The area between two lines of a diagram.
 pub struct Band {
     /// Name in the legend.
     pub name: &'static str,
-    /// Lower edge.
+    /// Points of the lower edge.
     pub low: Vec<(f64, f64)>,
-    /// Upper edge.
+    /// Points of the upper edge.
     pub high: Vec<(f64, f64)>,
 }
 
-/// A line with its name in the legend.
+/// A line of a diagram: its name in the legend and its points.
 pub type Line = (&'static str, Vec<(f64, f64)>);
 
-/// Writes a diagram of lines in front of a band, both axes logarithmic.
+/// Writes a diagram of lines in front of a band. Both axes are logarithmic.
 ///
 /// # Errors
 /// When there are no points or the file cannot be written.
@@ -171,7 +172,7 @@ fn draw_lines(
     Ok(())
 }
 
-/// Draws axes, points and legend.
+/// Draws the axes, the points and the legend of a chart.
 fn fill<'a, X, Y>(
     mut chart: ChartContext<'a, SVGBackend<'a>, Cartesian2d<X, Y>>,
     diagram: &Diagram,
@@ -238,7 +239,7 @@ where
     Ok(())
 }
 
-/// A number in scientific notation, powers of ten without a mantissa's fraction.
+/// A number in scientific notation with one digit if that is exact, otherwise with three.
 fn number(error: &f64) -> String {
     let short = format!("{error:.0e}");
     if short
@@ -261,12 +262,13 @@ fn families(points: &[Point]) -> Vec<&str> {
     found
 }
 
-/// Range of an axis.
+/// Range of an axis: lowest and highest value.
 #[derive(Clone, Copy)]
 struct Span(f64, f64);
 
 impl Span {
-    /// Whole decades around positive values with a margin for labels; within one decade the margin alone.
+    /// The range for these positive values: whole decades around them, with
+    /// a margin for labels. Values within a decade get the margin alone.
     fn new(values: impl Iterator<Item = f64>) -> Option<Self> {
         let range = values.fold(None, |range: Option<(f64, f64)>, value| match range {
             None => Some((value, value)),
@@ -282,7 +284,7 @@ impl Span {
         ))
     }
 
-    /// Whether the range is below a decade, where a logarithmic axis has no numbers.
+    /// Whether the range is less than a decade. A logarithmic axis would then have no numbers.
     fn is_narrow(self) -> bool {
         self.1 < 10.0 * self.0
     }

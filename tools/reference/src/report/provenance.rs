@@ -1,19 +1,19 @@
-//! The state of the source and the tools that figures were measured with.
+//! The state of the source and the versions of the tools with which figures were measured.
 
 use std::process::Command;
 
 use super::workspace;
 
-/// Commit and tools of a measurement.
+/// Commit and tools of a measurement, for its rows.
 pub struct Provenance {
-    /// The last commit that touched the measured source, with `-dirty` after uncommitted changes.
+    /// The last commit that touched the measured source, followed by `-dirty` if there are uncommitted changes.
     pub commit: String,
     /// Versions of the compiler and the compared libraries.
     pub tools: String,
 }
 
 impl Provenance {
-    /// Reads both from git, the compiler and the lock file; `unknown` where one is missing.
+    /// Reads both fields from git, the compiler and the lock file. A value that cannot be read is `unknown`.
     pub fn find() -> Self {
         let lock = std::fs::read_to_string(workspace::path("Cargo.lock")).unwrap_or_default();
         let mut tools = vec![output("rustc", &["--version"])];
@@ -41,7 +41,7 @@ fn commit() -> String {
     git(&["log", "-1", "--format=%h", "--abbrev=12"]) + if changed { "-dirty" } else { "" }
 }
 
-/// A program's standard output, or `unknown` after a failure.
+/// A program's standard output, or `unknown` if the program fails.
 fn output(program: &str, arguments: &[&str]) -> String {
     let run = Command::new(program)
         .args(arguments)

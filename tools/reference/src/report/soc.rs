@@ -1,4 +1,4 @@
-//! Cycles of frames on the whole SoC.
+//! Cycles that frames take on the whole SoC.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
@@ -8,20 +8,20 @@ use anyhow::{Context, Result, bail};
 use glint::board::SimulatedBoard;
 use glint::render::BoardRenderer;
 
-/// Clocks in Hz: the default, and the faster one.
+/// Clock frequencies of the SoC in Hz: the default, and the faster one.
 pub const CLOCKS: [f64; 2] = [81.25e6, 100e6];
 
-/// Counters of frames drawn back to back, by their names in the console's reply.
+/// Counters over frames that are drawn back to back, by their names in the console's reply.
 pub struct BackToBack {
     kernel: String,
     values: BTreeMap<String, f64>,
 }
 
 impl BackToBack {
-    /// Draws the shown scene back to back; `kernel` is its name in `bench`.
+    /// Draws the scene that the renderer shows, back to back. `kernel` is the engine's name in the console's command `bench`.
     ///
     /// # Errors
-    /// When the console reports an error or its reply has no line of this kernel.
+    /// When the console reports an error, or its reply has no line for this kernel.
     pub fn measure(renderer: &mut BoardRenderer<SimulatedBoard>, kernel: &str) -> Result<Self> {
         let command = format!("bench {kernel}");
         let lines = renderer.console().command(&command)?;
@@ -40,10 +40,10 @@ impl BackToBack {
         })
     }
 
-    /// The value of a counter for one frame.
+    /// The mean value of a counter per frame.
     ///
     /// # Errors
-    /// When there is no such counter.
+    /// When the reply has no counter of this name.
     pub fn frame(&self, name: &str) -> Result<f64> {
         let value = |name: &str| {
             self.values.get(name).with_context(|| {
@@ -57,7 +57,8 @@ impl BackToBack {
     }
 }
 
-/// Results of `work` for all items, in their order. Two run at a time, because a simulation keeps one core busy.
+/// Runs `work` on all items and returns the results in the order of the
+/// items. Two run at a time, because each simulation keeps a core busy.
 ///
 /// # Errors
 /// When `work` fails or panics.

@@ -7,7 +7,7 @@ use anyhow::{Context, Result};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-/// Writes rows as CSV.
+/// Writes rows to a CSV file.
 ///
 /// # Errors
 /// When the file cannot be written.
@@ -21,10 +21,10 @@ pub fn write_csv<T: Serialize>(rows: &[T], path: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Reads rows from CSV.
+/// Reads rows from a CSV file.
 ///
 /// # Errors
-/// When the file is missing or a line is not such a row.
+/// When the file is missing, or a line does not have the columns of such a row.
 pub fn read_csv<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
     let mut reader =
         csv::Reader::from_path(path).with_context(|| format!("cannot read {}", path.display()))?;
@@ -34,10 +34,10 @@ pub fn read_csv<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
         .with_context(|| format!("{}: unexpected line", path.display()))
 }
 
-/// As [`read_csv`]; no rows without the file, as after a run with `--quick`.
+/// As [`read_csv`], but returns no rows if the file is missing, as after a run with `--quick`.
 ///
 /// # Errors
-/// When a line is not such a row.
+/// When a line does not have the columns of such a row.
 pub fn read_optional_csv<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
     if path.exists() {
         read_csv(path)
@@ -46,7 +46,7 @@ pub fn read_optional_csv<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
     }
 }
 
-/// A Markdown table of `N` columns.
+/// A Markdown table of `N` columns, built row by row.
 pub struct Table<const N: usize> {
     text: String,
 }
@@ -71,19 +71,19 @@ impl<const N: usize> Table<N> {
         let _ = writeln!(self.text, "| {} |", cells.join(" | "));
     }
 
-    /// The table as text, with a final line end.
+    /// The complete table as text, with a line end after the last row.
     pub fn finish(self) -> String {
         self.text
     }
 }
 
-/// `text` in bold where `bold` is set.
+/// `text` as Markdown, in bold if `bold` is set.
 pub fn bold(text: impl std::fmt::Display, bold: bool) -> String {
     let mark = if bold { "**" } else { "" };
     format!("{mark}{text}{mark}")
 }
 
-/// A value, or an empty cell.
+/// The value as text, or an empty text if there is none.
 pub fn optional<T: ToString>(value: Option<T>) -> String {
     value.map_or_else(String::new, |value| value.to_string())
 }

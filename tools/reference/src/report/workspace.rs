@@ -1,8 +1,8 @@
-//! Paths of the workspace.
+//! Paths in the workspace.
 
 use std::path::{Path, PathBuf};
 
-/// A path relative to the workspace's root.
+/// Converts a path relative to the workspace's root to an absolute one.
 pub fn path(relative: &str) -> PathBuf {
     let reference = Path::new(env!("CARGO_MANIFEST_DIR"));
     let root = reference.ancestors().nth(2).unwrap_or(reference);

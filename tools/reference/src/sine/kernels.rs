@@ -216,8 +216,8 @@ fn phases(
     }
 }
 
-/// Makes a kernel of radians in fixed point, with as many fraction bits as its outputs. It measures every `spacing`-th
-/// input in [−π, π].
+/// Makes a kernel of radians in fixed point, with as many fraction bits
+/// as its outputs. It measures every `spacing`-th input in [−π, π].
 fn radians(
     [name, family, config, format]: [&'static str; 4],
     fraction_bits: u32,
@@ -249,8 +249,7 @@ fn radians(
     }
 }
 
-/// Makes a kernel of f32 radians. It measures all floats from 2^-24 to 2π; at smaller angles the sine is equal to its
-/// angle.
+/// Makes a kernel of f32 radians. It measures all floats from 2^-24 to 2π; at smaller angles the sine is equal to its angle.
 fn floats(
     [name, family, config, format]: [&'static str; 4],
     evaluate: impl Fn(f32) -> (f32, f32) + Sync + 'static,
@@ -349,8 +348,7 @@ mod tests {
 
     #[test]
     fn the_weight_of_a_float_is_its_part_of_the_circle() {
-        // Half of all input floats are below 2^-11 rad, where even an output that is always sin 0 and cos 0 is nearly
-        // right.
+        // Half of all input floats are below 2^-11 rad, where even an output that is always sin 0 and cos 0 is nearly right.
         let careless = floats(["", "", "", ""], |_| (0.0, 1.0));
         let statistics = sweep(&careless, 997, &|_| ());
         // With weights by angle, the mean over the circle is (sin² + (cos − 1)²)/2 = (1/2 + 3/2)/2 = 1.

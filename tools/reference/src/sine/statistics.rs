@@ -141,8 +141,8 @@ impl Statistics {
     }
 }
 
-/// Number of low bits of an f64 that do not matter for its bucket. The remaining bits are the exponent and six bits of the
-/// mantissa.
+/// Number of low bits of an f64 that do not matter for its bucket.
+/// The remaining bits are the exponent and six bits of the mantissa.
 const SHIFT: u32 = 52 - BUCKETS_PER_OCTAVE.ilog2();
 const FIRST: u64 = (1023 - OCTAVES) * BUCKETS_PER_OCTAVE;
 

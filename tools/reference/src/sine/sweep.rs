@@ -7,12 +7,11 @@ use std::thread;
 use super::kernels::Kernel;
 use super::statistics::Statistics;
 
-/// Number of steps in a part, the unit of work of a core. Results of the parts are added in order, so the sum is
-/// reproducible.
+/// Number of steps in a part, the unit of work of a core. Results of the parts are added in order, so the sum is reproducible.
 const PART: u64 = 1 << 18;
 
-/// The errors of `kernel` over every `stride`-th of its steps. After each completed part, `progress` receives the part's
-/// number of steps.
+/// The errors of `kernel` over every `stride`-th of its steps. After
+/// each completed part, `progress` receives the part's number of steps.
 pub fn sweep(kernel: &Kernel, stride: u64, progress: &(dyn Fn(u64) + Sync)) -> Statistics {
     let steps = kernel.steps().div_ceil(stride);
     let parts = steps.div_ceil(PART);

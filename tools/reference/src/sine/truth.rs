@@ -77,8 +77,8 @@ impl Image {
     }
 }
 
-/// The largest error of [`SinCos::of_octant`] over every `stride`-th phase, in comparison with a series in 62-bit integers
-/// whose own error is below 2^-56.
+/// The largest error of [`SinCos::of_octant`] over every `stride`-th phase, in
+/// comparison with a series in 62-bit integers whose own error is below 2^-56.
 pub fn reference_error(stride: u32) -> f64 {
     let apart = |exact: i128, value: f64| (exact - (value * ONE as f64) as i128).abs();
     let worst = (0..=OCTANT)

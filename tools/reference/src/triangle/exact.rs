@@ -2,8 +2,8 @@
 //!
 //! The rule is that of Direct3D and Vulkan: a pixel is covered if its centre lies inside the triangle or on a *top* or
 //! *left* edge. A top edge is exactly horizontal, with the triangle below it. A left edge is not horizontal and has the
-//! triangle to its right. On which side of an edge the triangle lies is known from the position of the third vertex, so the
-//! winding does not matter.
+//! triangle to its right. On which side of an edge the triangle lies is known
+//! from the position of the third vertex, so the winding does not matter.
 
 /// Steps of the grid of snapped vertices in one pixel.
 pub const SUBPIXELS: i64 = 256;

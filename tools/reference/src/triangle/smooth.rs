@@ -232,8 +232,8 @@ fn along(y: f64, half_width: f64, near: f64) -> Box<View> {
     Box::new(glint::view::parse(json.as_bytes()).expect("a good camera"))
 }
 
-/// Encodes a mesh of triangles that share no vertices, with random colours and with random normals, most of which point
-/// towards −y.
+/// Encodes a mesh of triangles that share no vertices, with random
+/// colours and with random normals, most of which point towards −y.
 fn soup(random: &mut Pcg64Mcg, triangles: &[[[f64; 3]; 3]]) -> Vec<u8> {
     let quantised = |x: f64| (x * 16384.0).round().clamp(-32768.0, 32767.0) as i16;
     let vertices: Vec<Vertex> = triangles

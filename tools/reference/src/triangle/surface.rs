@@ -1,8 +1,8 @@
 //! The visible surface of each pixel of a scene that is exact, without snapping, and the pixels that snapping may change.
 //!
-//! The classes of pixels follow the rasterization checks of the Khronos conformance tests (dEQP). A pixel whose centre is
-//! inside a triangle by more than the tolerance must be drawn, and one that is outside by more must not. In between, both
-//! results are right.
+//! The classes of pixels follow the rasterization checks of the Khronos conformance tests
+//! (dEQP). A pixel whose centre is inside a triangle by more than the tolerance must be
+//! drawn, and one that is outside by more must not. In between, both results are right.
 
 use crate::camera::{Camera, Size, Vector, cross, dot, subtract};
 
@@ -22,8 +22,7 @@ pub enum Class {
 pub struct ProjectedTriangle {
     /// Corners, in pixels, of the part of the triangle beyond the near plane; empty if there is no such part.
     pub corners: Vec<[f64; 2]>,
-    /// Lines through the edges as (a, b, c): a·x + b·y + c is the distance to the edge in pixels, positive inside the
-    /// triangle.
+    /// Lines through the edges as (a, b, c): a·x + b·y + c is the distance to the edge in pixels, positive inside the triangle.
     edges: Vec<Vector>,
     /// Plane of the inverse depth: 1/z = plane · (x, y, 1), with x and y in pixels and z in world units.
     inverse_depth: Vector,
@@ -46,8 +45,7 @@ impl ProjectedTriangle {
             .map(|&point| camera.screen(point, size))
             .collect();
         // With the picture's centre (cx, cy) and s pixels per unit, the ray through a point (x, y) of the screen has the
-        // direction ((x − cx)/s, (y − cy)/s, 1). At depth z it meets the triangle's plane: normal · (z · direction) =
-        // offset.
+        // direction ((x − cx)/s, (y − cy)/s, 1). At depth z it meets the triangle's plane: normal · (z · direction) = offset.
         let scale = camera.pixels_per_unit(size);
         let [a, b] = [normal[0] / scale, normal[1] / scale];
         let c = normal[2] - a * f64::from(size.width) / 2.0 - b * f64::from(size.height) / 2.0;
@@ -92,8 +90,7 @@ impl ProjectedTriangle {
         }
     }
 
-    /// 1/z of the triangle's plane at the centre of a pixel, with z in world units along n; infinite for a triangle seen
-    /// edge-on.
+    /// 1/z of the triangle's plane at the centre of a pixel, with z in world units along n; infinite for a triangle seen edge-on.
     pub fn inverse_depth(&self, column: u32, row: u32) -> f64 {
         dot(self.inverse_depth, centre(column, row))
     }
@@ -103,8 +100,8 @@ impl ProjectedTriangle {
         self.inverse_depth[0].hypot(self.inverse_depth[1])
     }
 
-    /// The pixels of the picture whose centres may be within a pixel of the triangle: the range of columns, then the range
-    /// of rows.
+    /// The pixels of the picture whose centres may be within a pixel
+    /// of the triangle: the range of columns, then the range of rows.
     pub fn bounds(&self, size: Size) -> [std::ops::Range<u32>; 2] {
         let range = |axis: usize, limit: u32| {
             let (mut first, mut last) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -173,8 +170,8 @@ pub struct Tolerance {
 
 /// The visible surface of each pixel of a picture, row by row.
 ///
-/// With `cull`, back faces are left out. But pixels near their edges stay unstable, because snapping can turn a very thin
-/// back face into a front face.
+/// With `cull`, back faces are left out. But pixels near their edges stay
+/// unstable, because snapping can turn a very thin back face into a front face.
 pub fn visible_surfaces(
     camera: &Camera,
     size: Size,

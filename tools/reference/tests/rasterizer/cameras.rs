@@ -1,4 +1,4 @@
-//! Cameras from f64 numbers, and random ones.
+//! Views from cameras in f64, and random cameras.
 
 use glint_core::camera::View;
 use glint_core::fixed::{Q2_23, Q32_32, U4_28};
@@ -6,7 +6,7 @@ use glint_reference::camera::{Camera, Vector};
 use rand::RngExt;
 use rand_pcg::Pcg64;
 
-/// The view nearest to a camera.
+/// Converts a camera to a view, with each number rounded to the nearest.
 pub fn view(camera: &Camera) -> View {
     let basis = |row: Vector| row.map(Q2_23::from_num);
     let made = View::new_checked(
@@ -23,10 +23,10 @@ pub fn view(camera: &Camera) -> View {
     }
 }
 
-/// A camera at `eye` that looks at `target`, rolled by `roll` radians about its axis.
+/// A camera at `eye` that looks at `target`, rolled by `roll` radians about its line of sight.
 pub fn looking_at(eye: Vector, target: Vector, roll: f64, half_width: f64, near: f64) -> Camera {
     let n = unit(minus(target, eye));
-    // Any direction not parallel to n.
+    // An arbitrary direction that is not parallel to n.
     let aside = if n[2].abs() < 0.9 {
         [0.0, 0.0, 1.0]
     } else {
@@ -46,7 +46,7 @@ pub fn looking_at(eye: Vector, target: Vector, roll: f64, half_width: f64, near:
     }
 }
 
-/// A camera in a random direction, at a distance of `distance` from its target near the origin.
+/// A camera at `distance` in a random direction from its target, which is a random point near the origin.
 pub fn around(random: &mut Pcg64, distance: f64, half_width: f64, near: f64) -> Camera {
     let target = [(); 3].map(|()| random.random_range(-0.3..0.3));
     let direction = direction(random);
@@ -60,7 +60,7 @@ pub fn around(random: &mut Pcg64, distance: f64, half_width: f64, near: f64) -> 
     )
 }
 
-/// A random direction, uniform on the sphere.
+/// A random direction, uniformly distributed on the sphere.
 pub fn direction(random: &mut Pcg64) -> Vector {
     let z: f64 = random.random_range(-1.0..1.0);
     let (sin, cos) = random.random_range(0.0..std::f64::consts::TAU).sin_cos();
@@ -68,7 +68,7 @@ pub fn direction(random: &mut Pcg64) -> Vector {
     [across * cos, across * sin, z]
 }
 
-/// A log-uniform random number.
+/// A random number whose logarithm is uniformly distributed.
 pub fn log_range(random: &mut Pcg64, low: f64, high: f64) -> f64 {
     random
         .random_range(low.ln()..high.ln())

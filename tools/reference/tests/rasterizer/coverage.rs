@@ -1,5 +1,5 @@
-//! Coverage and depth of single triangles: against the exact rasterizer with the model's own snapped vertices,
-//! and against the unsnapped triangle by the classes of the conformance tests.
+//! Checks coverage and depth of single triangles: against the exact rasterizer, with the model's own snapped vertices, and
+//! against the unsnapped triangle, by the classes of the conformance tests.
 
 use glint_reference::camera::{Camera, Size};
 use glint_reference::triangle::surface::{Class, ProjectedTriangle};
@@ -8,7 +8,7 @@ use crate::cameras::view;
 use crate::renderer::{Renderer, exact};
 use crate::scenes::{Case, LARGE, Scene, random_case};
 
-/// Counts and largest errors of the comparison.
+/// Counts and largest errors of a comparison.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Tally {
     triangles: u64,
@@ -38,10 +38,10 @@ impl Tally {
     }
 }
 
-/// Largest deviation of the depth from the exact plane, in codes.
+/// Largest allowed deviation of a depth from the exact plane, in codes.
 const DEPTH_LIMIT: f64 = 2.0;
 
-/// Largest displacement of an edge by snapping, in pixels. The conformance tests allow three steps of the grid.
+/// Largest allowed displacement of an edge by snapping, in pixels. The conformance tests allow three steps of the grid.
 pub fn snap_limit(size: Size) -> f64 {
     if size == LARGE {
         2.0 / 256.0
@@ -50,7 +50,7 @@ pub fn snap_limit(size: Size) -> f64 {
     }
 }
 
-/// Draws each triangle of a case alone and compares all its pixels.
+/// Draws each triangle of a case alone and compares all pixels with both references.
 pub fn check(renderer: &mut Renderer, case: &Case) -> Tally {
     let view = view(&case.camera);
     let camera = Camera::from(&view);
@@ -77,7 +77,7 @@ pub fn check(renderer: &mut Renderer, case: &Case) -> Tally {
     total
 }
 
-/// Compares the last picture, of one triangle, with the exact coverage and depth of the parts that were drawn.
+/// Compares the renderer's last picture, of one triangle, with the exact coverage and depth of the parts that the model drew.
 fn against_exact(renderer: &Renderer, size: Size) -> Tally {
     let mut tally = Tally::default();
     let mut left = renderer.depth.clone();
@@ -85,7 +85,7 @@ fn against_exact(renderer: &Renderer, size: Size) -> Tally {
         part.for_each_pixel(size.width, size.height, |column, row| {
             let code = &mut left[(row * size.width + column) as usize];
             if *code == 0 {
-                // Not drawn, or counted for another part: parts do not overlap.
+                // The pixel was not drawn, or was already counted for another part. Parts do not overlap, so both are errors.
                 tally.missing += 1;
             } else {
                 tally.covered += 1;
@@ -99,7 +99,7 @@ fn against_exact(renderer: &Renderer, size: Size) -> Tally {
     tally
 }
 
-/// Compares the last picture with the classes of its one unsnapped triangle.
+/// Compares the renderer's last picture, of one triangle, with the classes of the unsnapped triangle.
 fn classify(renderer: &Renderer, camera: &Camera, scene: &Scene, case: &Case, tally: &mut Tally) {
     let size = case.size;
     let triangle = ProjectedTriangle::new(camera, size, scene.corners(0));
@@ -121,7 +121,7 @@ fn classify(renderer: &Renderer, camera: &Camera, scene: &Scene, case: &Case, ta
             }
         }
     }
-    // Pixels drawn outside the bounds.
+    // The pixels that remain are outside the triangle's bounds, so none should have been drawn.
     tally.class_extra += drawn;
 }
 

@@ -1,4 +1,4 @@
-//! Triangles that share edges cover every pixel exactly once.
+//! Checks that triangles that share edges cover every pixel exactly once.
 
 use glint_reference::camera::Camera;
 use glint_reference::triangle::surface::{Class, ProjectedTriangle};
@@ -12,8 +12,8 @@ use crate::scenes::{Case, ONE, SMALL, Scene};
 /// Steps along an edge of a [`Cut`].
 const STEPS: i64 = 200;
 
-/// A large triangle cut into many with shared edges. All vertices lie on a lattice in the triangle's plane, so the parts cover
-/// exactly the whole.
+/// A large triangle that is cut into many with shared edges. All vertices lie on a lattice in the plane of the triangle, so
+/// the parts together are exactly the whole.
 struct Cut {
     origin: [i64; 3],
     sides: [[i64; 3]; 2],
@@ -22,7 +22,7 @@ struct Cut {
 }
 
 impl Cut {
-    /// A triangle with corners at most `reach` from the axes' planes.
+    /// A random triangle whose corners have coordinates of magnitude `reach` at most.
     fn new(random: &mut Pcg64, reach: f64) -> Self {
         let reach = (reach * ONE) as i64;
         let mut corner = || [(); 3].map(|()| random.random_range(-reach..reach));
@@ -36,8 +36,8 @@ impl Cut {
         }
     }
 
-    /// Cuts one triangle in three at an inner lattice point, if there is one. The parts start at any of their vertices: the first is
-    /// the origin of the depth plane.
+    /// Cuts one triangle in three at an inner lattice point, if there is one. Each part starts
+    /// at a random one of its vertices, because the first vertex is the origin of the depth plane.
     fn cut(&mut self, random: &mut Pcg64) {
         let chosen = random.random_range(0..self.triangles.len());
         let [a, b, c] = self.triangles[chosen];
@@ -79,12 +79,12 @@ impl Cut {
     }
 }
 
-/// Doubled signed area.
+/// Twice the signed area of a triangle.
 fn area([a, b, c]: [[i64; 2]; 3]) -> i64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])
 }
 
-/// A whole triangle and its parts, some of them turned over.
+/// A random whole triangle as a scene, and its parts as another scene. Some parts are turned over.
 fn whole_and_parts(random: &mut Pcg64, reach: f64) -> (Scene, Scene) {
     let mut cut = Cut::new(random, reach);
     let whole = cut.scene();
@@ -96,7 +96,7 @@ fn whole_and_parts(random: &mut Pcg64, reach: f64) -> (Scene, Scene) {
     (whole, parts)
 }
 
-/// Turns some triangles over.
+/// Turns over about half of the triangles.
 fn mix_winding(random: &mut Pcg64, scene: &mut Scene) {
     for triangle in &mut scene.triangles {
         if random.random_bool(0.5) {
@@ -105,7 +105,7 @@ fn mix_winding(random: &mut Pcg64, scene: &mut Scene) {
     }
 }
 
-/// Coverage count of each pixel by the triangles of a case, drawn one by one.
+/// Number of triangles of a case that cover each pixel. The triangles are drawn one by one.
 fn counts(renderer: &mut Renderer, case: &Case) -> Vec<u32> {
     let view = view(&case.camera);
     let mut counts = vec![0; (case.size.width * case.size.height) as usize];
@@ -118,7 +118,8 @@ fn counts(renderer: &mut Renderer, case: &Case) -> Vec<u32> {
     counts
 }
 
-/// Compares counts with the outline: one inside, none outside, at most one within the tolerance of the outline.
+/// Checks coverage counts against the outline of all triangles together: one
+/// inside, none outside, and at most one within the tolerance of the outline.
 fn check_against_outline(case: &Case, outline: usize, whole: &Scene, counts: &[u32]) -> u64 {
     let camera = Camera::from(&view(&case.camera));
     let outline = ProjectedTriangle::new(&camera, case.size, whole.corners(outline));
@@ -162,7 +163,7 @@ fn a_cut_triangle_covers_what_it_did_before_and_once() {
         let counts = counts(&mut renderer, &case);
         check_against_outline(&case, 0, &whole, &counts);
 
-        // Without clipping the outline's snapped corners decide exactly which pixels are inside.
+        // If nothing was clipped, the snapped corners of the outline say exactly which pixels are inside.
         renderer.draw(&whole, &view(&case.camera), case.size, false);
         let mut expected = vec![0; counts.len()];
         if let Some(outline) = renderer.drawn.first().and_then(exact) {

@@ -1,7 +1,7 @@
-//! Coverage against Mesa's software rasterizer, on machines with Mesa and moderngl.
+//! Compares coverage with Mesa's software rasterizer llvmpipe, on machines that have Mesa and moderngl.
 //!
-//! llvmpipe draws each triangle twice. From the model's snapped vertices it must cover the same pixels. From the f64
-//! vertices it does its own snapping, so pixels may differ only where a vertex snapped differently.
+//! llvmpipe draws each triangle twice. First it draws from the model's snapped vertices, and must cover the same pixels.
+//! Then it draws from vertices in f64 and snaps these itself, so pixels may differ only if it snaps a vertex differently.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -16,7 +16,7 @@ use crate::cameras::view;
 use crate::renderer::Renderer;
 use crate::scenes::{SMALL, random_case};
 
-/// Input of compare.py.
+/// Input of the script compare.py.
 #[derive(Serialize)]
 struct Scenes {
     width: u32,
@@ -32,7 +32,7 @@ struct Triangle {
     covered: Vec<[u32; 3]>,
 }
 
-/// Output of compare.py.
+/// Output of the script compare.py.
 #[derive(Deserialize)]
 struct Results {
     renderer: String,
@@ -62,29 +62,29 @@ impl Differences {
     }
 }
 
-/// A triangle as the model drew it, with data to explain a difference.
+/// A triangle that the model has drawn, with the data that explain a difference.
 struct Subject {
     name: String,
     exact: ProjectedTriangle,
-    /// Positions of the triangle's corners in f64, in pixels; undefined behind the eye.
+    /// Positions of the triangle's corners on the screen in f64, in pixels; undefined for corners behind the eye.
     places: [[f64; 2]; 3],
-    /// The triangle's corners as the model snapped them, in the order of `places`; `None` when it was clipped.
+    /// The triangle's corners as the model snapped them, in the order of `places`; `None` if the triangle was clipped.
     snapped: Option<[SnappedVertex; 3]>,
     covered: Vec<bool>,
 }
 
-/// Extent of llvmpipe's viewport from the middle of the picture, in pixels: beyond the model's guard band, so llvmpipe clips only
-/// triangles that the model clips too.
+/// Extent of llvmpipe's viewport from the middle of the picture, in pixels. It is larger than the model's guard band, so
+/// llvmpipe clips only triangles that the model clips too.
 const REACH: u32 = 2400;
 
-/// Clip coordinates: x and y are −1 and 1 at the ends of the viewport, and z ≥ −w is the near plane.
+/// The clip coordinates of a point of the world. x and y are −1 and 1 at the ends of the viewport, and z ≥ −w is the near plane.
 fn clip_coordinates(camera: &Camera, size: Size, point: Vector) -> [f64; 4] {
     let [x, y, z] = camera.coordinates(point);
     let scale = camera.pixels_per_unit(size) / f64::from(REACH);
     [x * scale, y * scale, z - 2.0 * camera.near, z]
 }
 
-/// Runs of covered pixels.
+/// Runs of covered pixels, row by row.
 fn spans(covered: &[bool], size: Size) -> Vec<[u32; 3]> {
     let mut spans = Vec::new();
     for (row, pixels) in (0..).zip(covered.chunks(size.width as usize)) {
@@ -100,7 +100,7 @@ fn spans(covered: &[bool], size: Size) -> Vec<[u32; 3]> {
     spans
 }
 
-/// The snapped vertices of the model's only triangle in the order of the corners' positions, if it was not clipped.
+/// The snapped vertices of the model's only triangle, in the order of the corners' positions; `None` if it was clipped.
 fn snapped_corners(renderer: &Renderer, places: [[f64; 2]; 3]) -> Option<[SnappedVertex; 3]> {
     let [drawn] = renderer.drawn.as_slice() else {
         return None;
@@ -159,15 +159,15 @@ fn subjects() -> (Scenes, Vec<Subject>) {
     (scenes, subjects)
 }
 
-/// llvmpipe's snapping of a position in f64, or `None` when its floats may round to either side.
+/// The grid step to which llvmpipe snaps a coordinate in f64; `None` if its floats may round to either side.
 fn llvmpipe_snap(place: f64) -> Option<i64> {
     let steps = place * 256.0;
-    // A few roundings of 2^-24 on numbers as large as the position and the picture.
+    // Bound of a few roundings of 2^-24, on numbers as large as the position and the picture.
     let uncertain = 0.01 + (steps.abs() + 160.0 * 256.0) * 4.0 / 16_777_216.0;
     ((steps - steps.floor() - 0.5).abs() > uncertain).then(|| steps.round() as i64)
 }
 
-/// The vertices as snapped by llvmpipe, if certain.
+/// The vertices as llvmpipe snaps them; `None` if this is not certain.
 fn llvmpipe_vertices(places: [[f64; 2]; 3]) -> Option<[SnappedVertex; 3]> {
     let [a, b, c] = places.map(|[x, y]| {
         let (x, y) = (llvmpipe_snap(x)?, llvmpipe_snap(y)?);
@@ -176,7 +176,7 @@ fn llvmpipe_vertices(places: [[f64; 2]; 3]) -> Option<[SnappedVertex; 3]> {
     Some([a?, b?, c?])
 }
 
-/// llvmpipe's coverage, from the model's and the differences.
+/// llvmpipe's coverage, from the model's coverage and the pixels that differ.
 fn llvmpipe_coverage(subject: &Subject, differences: &Differences) -> Vec<bool> {
     let mut covered = subject.covered.clone();
     for &[column, row] in differences.pixels() {
@@ -192,7 +192,7 @@ fn llvmpipe_differs_only_where_a_vertex_snapped_differently() {
     let results = match compare(&scenes) {
         Ok(results) => results,
         Err(reason) => {
-            // Directly to the terminal, because the test harness captures output.
+            // The reason is written directly to the terminal, because the test harness captures the output of tests.
             let _ = writeln!(
                 std::io::stderr(),
                 "SKIPPED the comparison with llvmpipe: {reason}"
@@ -212,15 +212,15 @@ fn llvmpipe_differs_only_where_a_vertex_snapped_differently() {
     );
 }
 
-/// Compared triangles, and differing pixels.
+/// Counts of compared triangles and differing pixels.
 #[derive(Debug, Default)]
 struct Tally {
-    /// Drawn without clipping.
+    /// Triangles that were drawn without clipping.
     whole: usize,
     covered: usize,
     snapped_differently: usize,
     differing_pixels: usize,
-    /// Clipped, or without pixels.
+    /// Triangles that were clipped or have no pixels.
     others: usize,
     other_covered: usize,
     other_differing_pixels: usize,
@@ -230,8 +230,8 @@ impl Tally {
     fn add(&mut self, subject: &Subject, comparison: &Comparison) {
         let covered = subject.covered.iter().filter(|&&covered| covered).count();
         let projected = &comparison.projected;
-        // Both rasterizers follow one rule and their vertices differ by a step at most, so only pixels within a step of an edge
-        // can differ.
+        // Both rasterizers follow one rule and their vertices differ by a
+        // step at most, so only pixels within a step of an edge can differ.
         for &[column, row] in projected.pixels() {
             let class = subject.exact.classify(column, row, 2.0 / 256.0);
             assert_eq!(
@@ -273,7 +273,7 @@ impl Tally {
             self.snapped_differently += 1;
             self.differing_pixels += projected.count();
         }
-        // With certain snapping llvmpipe covers the exact rasterizer's pixels.
+        // Where llvmpipe's snapping is certain, it must cover the same pixels as the exact rasterizer with these vertices.
         if let Some(theirs) = theirs {
             let mut expected = vec![false; subject.covered.len()];
             if let Some(triangle) = ExactTriangle::new(theirs) {
@@ -291,7 +291,7 @@ impl Tally {
     }
 }
 
-/// Runs compare.py; the error is the reason it cannot run.
+/// Runs compare.py on scenes. The error is the reason why it cannot run.
 fn compare(scenes: &Scenes) -> Result<Results, String> {
     let reference = Path::new(env!("CARGO_MANIFEST_DIR"));
     let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("llvmpipe-scenes.json");
@@ -311,7 +311,7 @@ fn compare(scenes: &Scenes) -> Result<Results, String> {
     read(&output)
 }
 
-/// The results, or the reason for their absence. Any reason except a machine without llvmpipe is a failure.
+/// Reads the results of compare.py, or the reason why there are none. Any reason except a machine without llvmpipe is a failure.
 fn read(output: &Output) -> Result<Results, String> {
     let complaint = String::from_utf8_lossy(&output.stderr).trim().to_owned();
     match output.status.code() {

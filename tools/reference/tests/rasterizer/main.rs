@@ -1,4 +1,4 @@
-//! The model's triangle pipeline against the exact rasterizer and the f64 scene.
+//! Compares the model's triangle pipeline with the exact rasterizer and with the scene in f64.
 //!
 //! All scenes come from fixed seeds, and a failure names the case and the triangle. `--nocapture` shows the measured figures.
 

@@ -1,4 +1,4 @@
-//! A simple interface to the model: from a scene to a picture and its trace.
+//! A simple interface to the model, which draws a scene and returns the picture and the drawn triangles.
 
 use glint_core::camera::View;
 use glint_core::mesh::Mesh;
@@ -8,20 +8,20 @@ use glint_reference::triangle::exact::{ExactTriangle, SnappedVertex};
 
 use crate::scenes::Scene;
 
-/// Buffers kept from one picture to the next.
+/// Draws on the model. The buffers are kept from one picture to the next.
 #[derive(Default)]
 pub struct Renderer {
-    /// RGB565 of the last picture.
+    /// Colours of the last picture, in RGB565.
     pub colour: Vec<u16>,
     /// Depth codes of the last picture.
     pub depth: Vec<u32>,
-    /// The triangles of the last picture.
+    /// Triangles that the model drew in the last picture.
     pub drawn: Vec<DrawnTriangle>,
     scratch: Vec<Projected>,
 }
 
 impl Renderer {
-    /// Draws a scene over cleared buffers.
+    /// Clears the buffers and draws a scene.
     pub fn draw(&mut self, scene: &Scene, view: &View, size: Size, cull: bool) -> Stats {
         let bytes = scene.encode();
         let mesh = Mesh::new_checked(&bytes).expect("the encoder makes good meshes");
@@ -56,7 +56,7 @@ impl Renderer {
     }
 }
 
-/// A vertex of the model for the exact rasterizer.
+/// Converts a vertex of the model to one of the exact rasterizer.
 pub fn snapped(vertex: ScreenVertex) -> SnappedVertex {
     SnappedVertex {
         x: vertex.x.into(),
@@ -65,7 +65,7 @@ pub fn snapped(vertex: ScreenVertex) -> SnappedVertex {
     }
 }
 
-/// A drawn triangle for the exact rasterizer; `None` for an area of 0.
+/// Converts a drawn triangle to one of the exact rasterizer; `None` if its area is 0.
 pub fn exact(drawn: &DrawnTriangle) -> Option<ExactTriangle> {
     ExactTriangle::new(drawn.vertices.map(snapped))
 }

@@ -1,4 +1,4 @@
-//! Meshes and random cases.
+//! Scenes that are encoded as meshes, and random cases.
 
 use glint_core::mesh::{IndexedTriangle, Rgb565, Vertex, encode};
 use glint_reference::camera::{Camera, Size, Vector};
@@ -7,7 +7,7 @@ use rand_pcg::Pcg64;
 
 use crate::cameras::{around, log_range};
 
-/// 1.0 in Q2.14.
+/// The number 1 in units of Q2.14.
 pub const ONE: f64 = 16384.0;
 
 pub const SMALL: Size = Size {
@@ -23,14 +23,14 @@ pub const LARGE: Size = Size {
     height: 720,
 };
 
-/// Triangles in Q2.14.
+/// A list of triangles whose coordinates are in Q2.14.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
     pub positions: Vec<[i16; 3]>,
     pub triangles: Vec<[u32; 3]>,
-    /// A face normal for each triangle, or none for all.
+    /// A face normal for each triangle; empty if no triangle has one.
     pub normals: Vec<[i16; 3]>,
-    /// A colour for each triangle, or none for all.
+    /// A colour for each triangle; empty if no triangle has one.
     pub colours: Vec<u16>,
 }
 
@@ -41,24 +41,24 @@ impl Scene {
         self.positions.len() as u32 - 1
     }
 
-    /// Adds a triangle with its own vertices.
+    /// Adds a triangle with three vertices of its own.
     pub fn triangle(&mut self, points: [Vector; 3]) {
         let indices = points.map(|point| self.vertex(point));
         self.triangles.push(indices);
     }
 
-    /// A triangle's corners, exact in f64.
+    /// The corners of a triangle, converted to f64 exactly.
     pub fn corners(&self, triangle: usize) -> [Vector; 3] {
         self.triangles[triangle]
             .map(|index| self.positions[index as usize].map(|x| f64::from(x) / ONE))
     }
 
-    /// All triangles' corners.
+    /// The corners of all triangles.
     pub fn all_corners(&self) -> Vec<[Vector; 3]> {
         (0..self.triangles.len()).map(|i| self.corners(i)).collect()
     }
 
-    /// The scene reduced to one of its triangles.
+    /// A scene with only this one of the triangles.
     pub fn only(&self, triangle: usize) -> Self {
         Self {
             positions: self.triangles[triangle]
@@ -70,7 +70,7 @@ impl Scene {
         }
     }
 
-    /// The mesh's bytes.
+    /// The bytes of the scene's mesh.
     pub fn encode(&self) -> Vec<u8> {
         let vertices: Vec<Vertex> = self
             .positions
@@ -94,7 +94,7 @@ impl Scene {
     }
 }
 
-/// A scene with its camera.
+/// A scene with its camera and options.
 pub struct Case {
     pub name: String,
     pub scene: Scene,
@@ -103,10 +103,10 @@ pub struct Case {
     pub cull: bool,
 }
 
-/// Makes a scene and a camera for it.
+/// A function that makes a random scene and a camera for it.
 type Kind = fn(&mut Pcg64) -> (Scene, Camera);
 
-/// The kinds of random cases, each with its own difficulty.
+/// Name and function of each kind of random case. Each kind has its own difficulty.
 const KINDS: [(&str, Kind); 8] = [
     ("a cloud of small triangles", cloud),
     ("triangles larger than the picture", large),
@@ -118,7 +118,7 @@ const KINDS: [(&str, Kind); 8] = [
     ("closed bodies cut by a far near plane", bodies),
 ];
 
-/// The random case of a seed.
+/// The random case that belongs to a seed.
 pub fn random_case(seed: u64) -> Case {
     let mut random = Pcg64::seed_from_u64(seed);
     let kinds = KINDS.len() as u64;
@@ -149,7 +149,7 @@ fn near(random: &mut Pcg64, middle: Vector, reach: f64) -> Vector {
     [0, 1, 2].map(|i| middle[i] + offset[i])
 }
 
-/// `count` triangles within a range of sizes, spread in a box of half width `reach`.
+/// `count` random triangles within a range of sizes, spread in a box of half width `reach`.
 fn spread(random: &mut Pcg64, count: usize, reach: f64, sizes: [f64; 2]) -> Scene {
     let mut scene = Scene::default();
     for _ in 0..count {
@@ -221,7 +221,7 @@ fn tiny(random: &mut Pcg64) -> (Scene, Camera) {
     )
 }
 
-/// Tetrahedra, whose triangles share edges.
+/// A scene of random tetrahedra, whose triangles share edges.
 fn bodies(random: &mut Pcg64) -> (Scene, Camera) {
     let mut scene = Scene::default();
     for _ in 0..10 {

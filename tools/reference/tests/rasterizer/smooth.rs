@@ -1,4 +1,4 @@
-//! Smooth shading against the exact quotient in f64.
+//! Compares smooth shading with the exact quotient in f64.
 
 use glint_reference::triangle::smooth::scenes;
 

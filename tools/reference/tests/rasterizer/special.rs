@@ -1,4 +1,4 @@
-//! Named hard cases, each through all coverage checks.
+//! Hard cases with names, each of which passes through all checks of coverage.
 
 use glint_reference::camera::{Camera, Vector};
 use rand::{RngExt, SeedableRng};
@@ -26,12 +26,12 @@ fn case(name: &str, camera: Camera, triangles: &[[Vector; 3]]) -> Case {
     }
 }
 
-/// The view along +y from a distance of 2; x is right and z is up.
+/// The camera at a distance of 2 from the origin that looks along +y; x is to the right and z is up.
 fn ahead() -> Camera {
     looking_at([0.0, -2.0, 0.0], [0.0; 3], 0.0, 0.5, 0.1)
 }
 
-/// Draws a case in all sizes and with culling, and returns the pixels covered at 320x180 without it.
+/// Checks a case in all sizes, with and without culling, and returns the number of pixels covered at 320x180 without culling.
 fn check_all(case: Case) -> usize {
     let mut renderer = Renderer::default();
     let mut case = case;
@@ -47,7 +47,7 @@ fn check_all(case: Case) -> usize {
     covered(&mut renderer, &case)
 }
 
-/// Pixels covered by a whole case.
+/// Number of pixels that a case covers when it is drawn as a whole.
 fn covered(renderer: &mut Renderer, case: &Case) -> usize {
     renderer.draw(&case.scene, &view(&case.camera), case.size, case.cull);
     renderer.depth.iter().filter(|&&code| code != 0).count()
@@ -57,7 +57,7 @@ fn covered(renderer: &mut Renderer, case: &Case) -> usize {
 fn triangles_without_area_draw_nothing() {
     let point = [0.1, 0.2, 0.3];
     let triangles = [
-        // Triangles without area: a point, a line there and back, three points of a line, and a triangle seen edge-on.
+        // Triangles without area on the screen: a point, a line there and back, three points of a line, a triangle seen edge-on.
         [point; 3],
         [[-0.5, 0.0, 0.0], [0.5, 0.0, 0.25], [-0.5, 0.0, 0.0]],
         [[-0.5, 0.0, 0.0], [0.0, 0.0, 0.0], [0.5, 0.0, 0.0]],
@@ -72,7 +72,7 @@ fn slivers_a_thousand_times_longer_than_wide() {
     for i in (1..40).step_by(3) {
         let along = [0.9, 0.0, 0.02 * f64::from(i) - 0.4];
         let back = along.map(|x: f64| -x);
-        // The third corner is one to forty steps of Q2.14 off the long edge, at its middle or at one of its ends.
+        // The third corner is one to forty steps of Q2.14 away from the long edge, at its middle or at one of its ends.
         for (place, depth) in [(0.0, 0.0), (0.9, 1.0), (-0.9, -1.0)] {
             let off = [place, depth, place * along[2] / 0.9 + f64::from(i) * STEP];
             triangles.push([along, back, off]);
@@ -85,7 +85,7 @@ fn slivers_a_thousand_times_longer_than_wide() {
 #[test]
 fn off_the_screen_on_every_side() {
     let mut triangles = Vec::new();
-    // Beside the picture, beyond the guard band, behind the eye.
+    // Triangles beside the picture, beyond the guard band and behind the eye.
     for far in [1.2, 1.9] {
         for [x, z] in [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0], [1.0, 1.0]] {
             let middle = [x * far, -0.5, z * far];
@@ -123,7 +123,7 @@ fn an_apex_at_the_eye() {
     for i in 0..12 {
         let (sin, cos) = (f64::from(i) * 0.55).sin_cos();
         triangles.push([eye, [cos, 1.0, sin], [0.7 * sin, 1.5, 0.7 * cos]]);
-        // A triangle with an apex one step from the eye, on either side of the near plane.
+        // A triangle with a corner one step of Q2.14 beside the eye, in front of or behind the near plane.
         let beside = [eye[0] + STEP, eye[1] + f64::from(i) * STEP * 32.0, eye[2]];
         triangles.push([beside, [sin, 0.5, cos], [-cos, 1.5, sin]]);
     }
@@ -178,7 +178,7 @@ fn inside_a_cube_everything_is_covered() {
 
 #[test]
 fn half_pixel_grid_where_many_centres_lie_on_edges() {
-    // At distance 1 and half_width 0.625, 1/256 is a pixel at 320x180, so vertices fall on centres and borders.
+    // At distance 1 and half_width 0.625, a pixel of 320x180 is 1/256 wide, so vertices fall on pixel centres and borders.
     let camera = Camera {
         eye: [0.0, 0.0, 0.0],
         u: [1.0, 0.0, 0.0],

@@ -1,4 +1,4 @@
-//! Snapped vertices and their depth against the f64 projection.
+//! Compares snapped vertices and their depths with the projection in f64.
 
 use std::fmt;
 
@@ -13,13 +13,13 @@ use crate::cameras::{around, log_range, view};
 use crate::renderer::Renderer;
 use crate::scenes::{LARGE, ONE, SMALL, Scene};
 
-/// Distances from the f64 projection, in steps of the grid, and errors of depth in steps of 1/64 code.
+/// Largest distances from the projection in f64, in steps of the grid, and largest errors of depth, in steps of 1/64 code.
 #[derive(Clone, Copy, Debug, Default)]
 struct Worst {
     vertices: u64,
     across: f64,
     distance: f64,
-    /// The distance with the camera's rounding included.
+    /// Largest distance from the projection through the camera before its numbers were rounded to a view.
     unrounded_distance: f64,
     depth: f64,
 }
@@ -34,7 +34,7 @@ impl fmt::Display for Worst {
     }
 }
 
-/// Distance between a snapped vertex and a point of the screen, in steps of the grid.
+/// Distance along x and y from a point of the screen to a snapped vertex, in steps of the grid.
 fn offset(snapped: ScreenVertex, exact: [f64; 2]) -> [f64; 2] {
     [
         f64::from(snapped.x) - exact[0] * 256.0,
@@ -42,9 +42,9 @@ fn offset(snapped: ScreenVertex, exact: [f64; 2]) -> [f64; 2] {
     ]
 }
 
-/// Projects random vertices through random cameras and compares those in the guard band.
+/// Projects random vertices through random cameras and compares those that are in the guard band.
 ///
-/// `limit` bounds the distance from the projection through the unrounded camera, in steps of the grid.
+/// `limit` is the largest allowed distance from the projection through the unrounded camera, in steps of the grid.
 fn compare(size: Size, seeds: std::ops::Range<u64>, limit: f64) -> Worst {
     let mut worst = Worst::default();
     for seed in seeds {
@@ -55,7 +55,7 @@ fn compare(size: Size, seeds: std::ops::Range<u64>, limit: f64) -> Worst {
         let asked = around(&mut random, distance, half_width, near);
         let view = view(&asked);
         let camera = Camera::from(&view);
-        // A mesh of vertices in or near the picture.
+        // The mesh has vertices in the picture or close to it.
         let setup = MeshSetup::new(&view, size.width, size.height, MAX_RADIUS).expect("a size");
         let depth_scale = camera.depth_scale(f64::from(MAX_RADIUS) / ONE);
         for _ in 0..400 {
@@ -81,7 +81,8 @@ fn compare(size: Size, seeds: std::ops::Range<u64>, limit: f64) -> Worst {
                 ux.hypot(uy),
                 asked.screen(asked.coordinates(point), size),
             );
-            // Earlier steps round w by less than the half step of its last rounding, so half a code is a wide bound.
+            // The roundings before the last one change w by less than the
+            // half step of the last one, so half a code is a generous bound.
             assert!(
                 depth.abs() <= 32.0,
                 "seed {seed}: depth of {position:?} is {depth:.2}/64 codes off\n{asked:?}"
@@ -91,7 +92,7 @@ fn compare(size: Size, seeds: std::ops::Range<u64>, limit: f64) -> Worst {
     worst
 }
 
-/// A vertex of Q2.14 in the picture or close to it, if the random direction has one.
+/// A random vertex in Q2.14 that is in the picture or close to it; `None` if the random direction has none.
 fn somewhere_in_view(random: &mut Pcg64, camera: &Camera, size: Size) -> Option<[i16; 3]> {
     let z = log_range(random, camera.near, 10.0);
     let scale = camera.pixels_per_unit(size);
@@ -117,7 +118,7 @@ fn snapped_vertices_are_within_two_steps_of_the_projection_at_1280x720() {
     assert!(worst.vertices > 20_000, "{worst}");
 }
 
-/// The trace of an unclipped triangle has the vertices of the vertex stage, in any order.
+/// The model's trace of an unclipped triangle must have the vertices that the vertex stage computes, in any order.
 #[test]
 fn drawn_triangles_have_the_snapped_vertices() {
     let mut renderer = Renderer::default();

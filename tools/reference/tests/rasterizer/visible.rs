@@ -1,4 +1,4 @@
-//! Whole scenes: the visible surface and its depth, in all pixels that snapping cannot change.
+//! Checks the visible surface and its depth in pictures of whole scenes, in all pixels that snapping cannot change.
 
 use glint_reference::camera::Camera;
 use glint_reference::triangle::surface::{Tolerance, Visible, visible_surfaces};
@@ -8,20 +8,20 @@ use crate::coverage::snap_limit;
 use crate::renderer::Renderer;
 use crate::scenes::{Case, ONE, random_case};
 
-/// Counts of the comparison.
+/// Counts of a comparison, and its largest error.
 #[derive(Debug, Default)]
 struct Tally {
     stable: u64,
     surface: u64,
     unstable: u64,
-    /// Largest error of the depth in codes, without the effect of snapping on a slope.
+    /// Largest error of the depth in codes, after subtracting the effect of snapping on a slope.
     depth_error: f64,
 }
 
-/// Bound of the depth's error in codes, beside the effect of a displaced vertex.
+/// Largest allowed error of the depth in codes, without the effect of a displaced vertex.
 const DEPTH_LIMIT: f64 = 2.0;
 
-/// Gives every triangle its own colour and a normal towards the camera, so shading keeps the colour.
+/// Gives every triangle a colour of its own and a normal towards the camera, so that shading does not change the colour.
 fn colour_by_number(case: &mut Case) {
     let camera = &case.camera;
     for (i, [a, b, c]) in case.scene.all_corners().into_iter().enumerate() {
@@ -43,7 +43,7 @@ fn check(renderer: &mut Renderer, case: &Case, tally: &mut Tally) {
         .flatten()
         .map(|&p| dot(p, p).sqrt())
         .fold(0.0, f64::max);
-    // The mesh keeps the radius in Q.14, rounded up.
+    // A mesh keeps its radius with 14 fraction bits, rounded up.
     let radius = (radius * ONE).ceil() / ONE;
     let depth_scale = camera.depth_scale(radius);
     let tolerance = Tolerance {

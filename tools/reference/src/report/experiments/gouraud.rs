@@ -1,4 +1,4 @@
-//! Errors of smooth shading, and its cost in the gateware.
+//! Errors of smooth shading, and the resources that it takes in the gateware.
 
 use std::process::Command;
 
@@ -9,38 +9,38 @@ use crate::report::provenance::Provenance;
 use crate::report::workspace;
 use crate::triangle::smooth::{Measured, scenes};
 
-/// A scene: a line of `gouraud.csv`. Errors are in steps of a channel.
+/// Errors of a scene: a line of `gouraud.csv`. Errors are in steps of a channel.
 #[derive(Serialize, Deserialize)]
 pub struct Row {
     /// Description of the scene.
     pub scene: String,
-    /// Drawn triangles.
+    /// Number of drawn triangles.
     pub triangles: u64,
-    /// Triangles that the clipper cut.
+    /// Number of triangles that the clipper cut.
     pub clipped: u64,
-    /// Back faces among the drawn triangles.
+    /// Number of drawn triangles that show their back face.
     pub back_faces: u64,
-    /// Covered pixels.
+    /// Number of covered pixels, summed over the triangles.
     pub pixels: u64,
-    /// Smallest depth code.
+    /// Smallest depth code of a covered pixel.
     pub smallest_depth_code: u32,
-    /// Bound of the error (docs/formats.md).
+    /// Upper bound of the model's error (docs/formats.md).
     pub bound: f64,
-    /// Largest error.
+    /// Largest error of the model.
     pub max_err: f64,
-    /// RMS of the errors.
+    /// RMS of the model's errors.
     pub rms: f64,
-    /// Largest error of the rounded reference.
+    /// Largest error of the exact channels rounded to a step.
     pub rounded_max_err: f64,
-    /// RMS of the rounded reference.
+    /// RMS of the errors of the exact channels rounded to a step.
     pub rounded_rms: f64,
     /// Largest error of interpolation that is linear on the screen.
     pub affine_max_err: f64,
-    /// RMS of interpolation that is linear on the screen.
+    /// RMS of the errors of interpolation that is linear on the screen.
     pub affine_rms: f64,
-    /// Commit of the measurement.
+    /// Commit with which the scene was measured.
     pub commit: String,
-    /// Tools of the measurement.
+    /// Versions of the tools with which the scene was measured.
     pub tools: String,
 }
 
@@ -75,16 +75,16 @@ pub fn measure() -> Vec<Row> {
         .collect()
 }
 
-/// The triangle engine without and with smooth shading: modules of `gateware/tests/run.py`.
+/// The triangle engine without and with smooth shading: a description, and the module's name in `gateware/tests/run.py`.
 const ENGINES: [(&str, &str); 2] = [
     ("flat", "triangle_engine"),
     ("flat and smooth", "triangle_engine_smooth"),
 ];
 
-/// Resources of an engine: a line of `gouraud-cost.csv`.
+/// Resources of a triangle engine: a line of `gouraud-cost.csv`.
 #[derive(Serialize, Deserialize)]
 pub struct Cost {
-    /// The engine's shading.
+    /// Kinds of shading that the engine has.
     pub engine: String,
     /// LUTs, those used as memory included.
     #[serde(rename = "LUT")]
@@ -98,11 +98,11 @@ pub struct Cost {
     /// Block RAMs of 36 Kbit.
     #[serde(rename = "RAMB36")]
     pub bram: f64,
-    /// Longest path in LUT levels (docs/resources.md).
+    /// Longest path between registers, in LUT levels (docs/resources.md).
     pub path: u32,
 }
 
-/// Yosys's cell counts of a module.
+/// Numbers of cells of a module, as Yosys counts them.
 #[derive(Deserialize)]
 struct Cells {
     logic: u32,
@@ -115,7 +115,7 @@ struct Cells {
     path: u32,
 }
 
-/// Synthesises both engines.
+/// Synthesises both engines and returns their resources.
 ///
 /// # Errors
 /// When the synthesis fails.

@@ -1,4 +1,4 @@
-//! Measurements. Each returns typed rows, one CSV line each.
+//! Measurements for the report. Each returns typed rows, and each row becomes a line of a CSV file.
 
 pub mod gouraud;
 pub mod imu;

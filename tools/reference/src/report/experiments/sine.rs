@@ -1,4 +1,4 @@
-//! Errors and cycles of sine and cosine kernels over all inputs.
+//! Errors over all inputs, and cycles, of kernels of sine and cosine.
 
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
@@ -11,15 +11,16 @@ use crate::sine::statistics::Statistics;
 use crate::sine::sweep::sweep;
 use crate::sine::truth::reference_error;
 
-/// Steps of a sample of the inputs. Strides are odd, so they reach every value of the low bits.
+/// Approximate number of steps of each kernel that a quick run measures.
+/// Its strides are odd, so that they reach every value of the low bits.
 const SAMPLE: u64 = 1 << 15;
 
-/// A kernel in one configuration: a line of `sine.csv`. Errors are absolute.
+/// Errors and cycles of a kernel in one configuration: a line of `sine.csv`. Errors are absolute.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Row {
-    /// Name of the kernel in `bench sine`.
+    /// Name of the kernel in the console's `bench sine`.
     pub kernel: String,
-    /// Line of the diagram.
+    /// Name of the kernel's line in the diagram.
     pub family: String,
     /// Variant of the kernel.
     pub config: String,
@@ -27,7 +28,7 @@ pub struct Row {
     pub word_length: String,
     /// Whether Glint uses the kernel.
     pub shipped: bool,
-    /// Measured inputs.
+    /// Description of the measured inputs.
     pub inputs: String,
     /// Number of measured inputs.
     pub samples: u64,
@@ -39,23 +40,23 @@ pub struct Row {
     pub rms: f64,
     /// 99th percentile of the errors.
     pub p99: f64,
-    /// Mean error of the magnitude.
+    /// Mean error of the outputs' magnitude; positive if they are too far from zero.
     pub bias: f64,
-    /// Function and input of the largest error.
+    /// Function (sine or cosine) and input with the largest error.
     pub argmax: String,
     /// Largest |sin² + cos² − 1|.
     pub max_norm: f64,
-    /// Phases at which a symmetry of the circle does not hold bit for bit; none for other inputs.
+    /// Number of phases at which a symmetry of the circle does not hold bit for bit; `None` if the inputs are not phases.
     pub asymmetric: Option<u64>,
-    /// Fastest call, in cycles of the soft core.
+    /// Fastest call, in cycles of the soft core; `None` if the kernel was not measured there.
     pub cycles_min: Option<u64>,
-    /// Median call.
+    /// Median over the calls, in cycles of the soft core.
     pub cycles_median: Option<u64>,
-    /// Slowest call.
+    /// Slowest call, in cycles of the soft core.
     pub cycles_max: Option<u64>,
-    /// Commit of the measurement.
+    /// Commit with which the kernel was measured.
     pub commit: String,
-    /// Tools of the measurement.
+    /// Versions of the tools with which the kernel was measured.
     pub tools: String,
 }
 
@@ -98,20 +99,20 @@ impl Row {
         }
     }
 
-    /// Accurate fraction bits: −log2 of the largest error.
+    /// Number of accurate fraction bits: −log2 of the largest error.
     pub fn bits(&self) -> f64 {
         -self.max_err.log2()
     }
 }
 
-/// The error of the f64 reference: the line of `sine-reference.csv`.
+/// The error of the f64 reference itself: the line of `sine-reference.csv`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Reference {
-    /// Largest absolute error against a Taylor series in 62-bit integers.
+    /// Largest absolute error, in comparison with a Taylor series in 62-bit integers.
     pub max_err: f64,
 }
 
-/// Measures all kernels; `quick` takes a sample of the inputs.
+/// Measures all kernels, with `quick` only on a sample of the inputs. `cycles` are those of the console's `bench sine`.
 ///
 /// # Errors
 /// When the terminal refuses a progress bar.

@@ -1,4 +1,4 @@
-//! The triangle engine on the whole SoC, with LiteDRAM and scan-out running.
+//! The triangle engine on the whole SoC, while LiteDRAM and scan-out are running.
 
 use anyhow::{Context, Result, ensure};
 use glint::board::{SimulatedBoard, built_firmware};
@@ -17,16 +17,16 @@ use serde::{Deserialize, Serialize};
 use crate::report::provenance::Provenance;
 use crate::report::soc::{self, BackToBack, CLOCKS};
 
-/// The requirement on a scene, with a goal beyond it.
+/// The requirement on a scene, and for most kinds a goal beyond it.
 #[derive(Clone, Copy)]
 enum Target {
-    /// Pixels a clock of the walk, at least.
+    /// Lower bound of pixels per clock, over the clocks in which the rasterizer walks.
     Fill(f64),
-    /// Pixels a clock, frames back to back: at least, and the goal.
+    /// Lower bound and goal of pixels per clock, for frames back to back.
     Sustained(f64, f64),
-    /// Clocks a triangle: at most, and the goal.
+    /// Upper bound and goal of clocks per triangle.
     Triangle(f64, f64),
-    /// Frames a second at 81.25 MHz: at least, and the goal.
+    /// Lower bound and goal of frames per second at 81.25 MHz.
     Frames(f64, Option<f64>),
 }
 
@@ -38,7 +38,7 @@ struct Case {
     target: Target,
 }
 
-/// Half width at which a sphere of diameter 1 at distance 2 fills 96 % of the height.
+/// Half width of the view at which a sphere of diameter 1 at distance 2 fills 96 % of the picture's height.
 const FILLING: f64 = 0.4781;
 
 const CASES: [Case; 7] = [
@@ -100,7 +100,7 @@ fn named(name: &str) -> Result<Vec<u8>> {
         .0)
 }
 
-/// A triangle that covers the whole screen at distance 1, inside the guard band.
+/// A mesh of one triangle that covers the whole screen at distance 1 and stays inside the guard band.
 fn screen() -> Result<Vec<u8>> {
     let mut polygons = Polygons::default();
     let corners = [[-1.09, -1.0, -0.4], [1.09, -1.0, -0.4], [0.0, -1.0, 1.2]];
@@ -118,7 +118,7 @@ fn screen() -> Result<Vec<u8>> {
         .map_err(|error| anyhow::anyhow!("{error}"))
 }
 
-/// The view from (0, −2, 0) along y.
+/// The view from the point (0, −2, 0) along +y.
 fn ahead(half_width: f64) -> Result<View> {
     let json = format!(
         r#"{{"eye":[0,-2,0],"u":[1,0,0],"v":[0,0,-1],"n":[0,1,0],"half_width":{half_width},"near":0.5}}"#
@@ -126,7 +126,7 @@ fn ahead(half_width: f64) -> Result<View> {
     view::parse(json.as_bytes()).map_err(|error| anyhow::anyhow!("{error}"))
 }
 
-/// A scene: a line of `triangle.csv`. Cycles are of one frame, in clocks of the SoC.
+/// Figures of a scene: a line of `triangle.csv`. Cycles are those of one frame, in clocks of the SoC.
 #[derive(Serialize, Deserialize)]
 pub struct Row {
     /// Name of the scene.
@@ -135,55 +135,55 @@ pub struct Row {
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
-    /// Triangles of the mesh.
+    /// Number of triangles in the mesh.
     pub triangles: u32,
-    /// Drawn triangles.
+    /// Number of triangles that were drawn.
     pub drawn: u32,
-    /// Clipped triangles.
+    /// Number of triangles that the clipper cut.
     pub clipped: u32,
-    /// Covered pixels, counted by the model.
+    /// Number of covered pixels, counted by the model.
     pub pixels: u64,
-    /// A frame alone: from the first register write to the end seen by the firmware.
+    /// Cycles of a frame drawn alone, from the first register write until the firmware sees the end.
     pub cycles_alone: u64,
-    /// Geometry pass of a frame alone.
+    /// Cycles of the geometry pass of a frame drawn alone.
     pub cycles_geometry: u64,
-    /// Raster pass of a frame alone.
+    /// Cycles of the raster pass of a frame drawn alone.
     pub cycles_raster: u64,
-    /// A frame among many drawn back to back.
+    /// Mean cycles of a frame among many that are drawn back to back.
     pub cycles_frame: f64,
-    /// Geometry pass of a frame back to back, which shares memory with the raster pass of another frame.
+    /// Cycles of the geometry pass of a frame back to back. It shares memory with the raster pass of another frame.
     pub cycles_geometry_together: f64,
-    /// Raster pass of a frame back to back, which shares memory with the geometry pass of another frame.
+    /// Cycles of the raster pass of a frame back to back. It shares memory with the geometry pass of another frame.
     pub cycles_raster_together: f64,
-    /// The same frame on the soft core.
+    /// Cycles of the same frame when the soft core draws it; `None` if this was not measured.
     pub cycles_cpu: Option<u64>,
-    /// Part of the raster pass alone: groups with covered pixels.
+    /// Share of the raster pass of a frame alone that is spent on groups with covered pixels.
     pub covered: f64,
-    /// Part of the raster pass alone: groups without covered pixels.
+    /// Share of the raster pass of a frame alone that is spent on groups without covered pixels.
     pub empty: f64,
-    /// Part of the raster pass alone: waits for the flush.
+    /// Share of the raster pass of a frame alone that is spent waiting for the flush.
     pub flush: f64,
-    /// The rest of the raster pass alone.
+    /// Remaining share of the raster pass of a frame alone.
     pub other: f64,
-    /// Part of the geometry pass alone: waits for a write to memory.
+    /// Share of the geometry pass of a frame alone that is spent waiting for writes to memory.
     pub geometry_writes: f64,
-    /// Measured value of the required figure.
+    /// Measured value of the figure that has a requirement.
     pub measured: f64,
-    /// Unit of the figure.
+    /// Unit of this figure.
     pub unit: String,
-    /// Required limit of the figure.
+    /// Required bound of this figure: an upper bound for clocks per triangle, otherwise a lower bound.
     pub at_least: f64,
-    /// The goal beyond the limit.
+    /// Goal of this figure beyond the bound.
     pub aim: Option<f64>,
-    /// Whether the limit is met.
+    /// Whether the measured value meets the required bound.
     pub met: bool,
-    /// Commit of the measurement.
+    /// Commit with which the scene was measured.
     pub commit: String,
-    /// Tools of the measurement.
+    /// Versions of the tools with which the scene was measured.
     pub tools: String,
 }
 
-/// Measures the scenes whose name contains `only`; `quick` leaves out the CPU's frames.
+/// Measures the scenes whose name contains `only`. With `quick` the soft core draws no frames.
 ///
 /// # Errors
 /// When the board is not built, or a frame differs from the model's.
@@ -200,7 +200,7 @@ pub fn measure(only: Option<&str>, quick: bool) -> Result<Vec<Row>> {
     })
 }
 
-/// Measures a case on a board of its own.
+/// Measures a scene on a virtual board of its own.
 fn measure_case(firmware: &[u8], case: &Case, quick: bool, provenance: &Provenance) -> Result<Row> {
     let mut board = SimulatedBoard::fast(firmware)?;
     let mut console = Console::new(&mut board);
@@ -218,7 +218,8 @@ fn measure_case(firmware: &[u8], case: &Case, quick: bool, provenance: &Provenan
         "{}: the engine's frame is not the model's",
         case.name
     );
-    // Only differing words are written, so both frame buffers take the frame before it is measured.
+    // Only words that differ from the previous frame are written. So
+    // both frame buffers receive the frame once before it is measured.
     renderer.look(&frame.view)?;
     let alone = renderer.look(&frame.view)?;
     let together = BackToBack::measure(&mut renderer, "triangle")?;

@@ -8,7 +8,7 @@ use super::template::{fill, made, write};
 use crate::report::experiments::gouraud::{Cost, Row};
 use crate::report::table::{Table, read_csv, read_optional_csv};
 
-/// Rebuilds the page.
+/// Rebuilds the page from the CSV files in `folder`.
 ///
 /// # Errors
 /// When a table is missing or a file cannot be written.
@@ -29,7 +29,7 @@ pub fn rebuild(folder: &Path) -> Result<()> {
     write(&page, &folder.join("gouraud.md"))
 }
 
-/// Errors of the scenes.
+/// The table of errors of the scenes.
 pub fn table(rows: &[Row]) -> String {
     let mut table = Table::new([
         "scene",

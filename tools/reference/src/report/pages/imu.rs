@@ -15,7 +15,7 @@ use crate::report::experiments::imu::time::ErrorsAtTime;
 use crate::report::plot::{self, Band, Diagram, Point};
 use crate::report::table::{Table, bold, read_csv};
 
-/// Rebuilds the page and its diagrams.
+/// Rebuilds the page and its diagrams from the CSV files in `folder`.
 ///
 /// # Errors
 /// When a table is missing or a file cannot be written.
@@ -55,7 +55,7 @@ pub fn rebuild(folder: &Path) -> Result<()> {
     write(&page, &folder.join("imu.md"))
 }
 
-/// Errors with their requirements and goals.
+/// The table of errors with their requirements and goals.
 pub fn table(targets: &[Target]) -> String {
     let mut table = Table::new(["error", "required:", "goal:", "measured:", "reached"]);
     for target in targets {
@@ -76,7 +76,7 @@ pub fn table(targets: &[Target]) -> String {
     table.finish()
 }
 
-/// A limit, in scientific notation below 1/1000.
+/// A required limit as text, in scientific notation below 1/1000.
 fn limit(limit: f64) -> String {
     if limit < 1e-3 {
         format!("{limit:e}")
@@ -85,7 +85,7 @@ fn limit(limit: f64) -> String {
     }
 }
 
-/// An error with two digits.
+/// An error as text, with two digits.
 fn error(error: f64) -> String {
     if error < 0.01 {
         format!("{error:.1e}")

@@ -1,4 +1,4 @@
-//! The pages of docs/report: prose from a Markdown template beside each module, figures from the CSV files.
+//! The pages of docs/report. Their prose comes from a Markdown template beside each module, their figures from the CSV files.
 
 pub mod gouraud;
 pub mod imu;
@@ -11,10 +11,10 @@ use std::path::Path;
 
 use anyhow::Result;
 
-/// A page with its diagrams, rebuilt from the CSV files in a folder into the same folder.
+/// Rebuilds a page and its diagrams in a folder, from the CSV files in the same folder.
 pub type Rebuild = fn(&Path) -> Result<()>;
 
-/// All pages by name.
+/// Name of each page, and the function that rebuilds it.
 pub const PAGES: [(&str, Rebuild); 5] = [
     ("sine", sine::rebuild),
     ("triangle", triangle::rebuild),

@@ -17,7 +17,7 @@ use crate::report::experiments::raymarch::requirements::{
 use crate::report::experiments::raymarch::trials::Trial;
 use crate::report::table::{Table, optional, read_csv, read_optional_csv};
 
-/// Rebuilds the page and the diagrams of its studies.
+/// Rebuilds the page and the diagrams of its studies from the CSV files in `folder`.
 ///
 /// # Errors
 /// When the table of pictures is missing or a file cannot be written.
@@ -72,7 +72,7 @@ pub fn rebuild(folder: &Path) -> Result<()> {
     write(&page, &folder.join("raymarch.md"))
 }
 
-/// Errors and evaluations of the pictures.
+/// The table of errors and evaluations of the pictures.
 pub fn table(rows: &[Row]) -> String {
     let mut table = Table::new([
         "field",

@@ -15,7 +15,7 @@ const DIAGRAM: Diagram = Diagram {
     up: "median cycles of a call on the SoC",
 };
 
-/// Rebuilds the page and its diagram.
+/// Rebuilds the page and its diagram from the CSV files in `folder`.
 ///
 /// # Errors
 /// When a table is missing or a file cannot be written.
@@ -26,7 +26,7 @@ pub fn rebuild(folder: &Path) -> Result<()> {
     write(&page(&rows, &reference)?, &folder.join("sine.md"))
 }
 
-/// Errors and cycles of the kernels.
+/// The table of errors and cycles of the kernels.
 pub fn table(rows: &[Row]) -> String {
     let mut table = Table::new([
         "kernel",
@@ -113,7 +113,7 @@ fn page(rows: &[Row], reference: &[Reference]) -> Result<String> {
     )
 }
 
-/// The points of the diagram, one a kernel: the row with more inputs where there are two.
+/// The points of the diagram, one for each kernel. If a kernel has several rows, the last one counts.
 fn points(rows: &[Row]) -> Vec<Point> {
     let mut last: Vec<&Row> = Vec::new();
     for row in rows {

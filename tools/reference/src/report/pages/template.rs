@@ -1,13 +1,13 @@
-//! Templates: Markdown with placeholders.
+//! Markdown templates with placeholders.
 
 use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
 
-/// Replaces each placeholder `{{name}}` of a template by its value.
+/// Replaces each placeholder `{{name}}` of a template by the value of this name.
 ///
 /// # Errors
-/// When a value has no placeholder or a placeholder no value.
+/// When a value has no placeholder, or a placeholder has no value.
 pub fn fill(template: &str, values: &[(&str, String)]) -> Result<String> {
     let mut text = template.to_owned();
     for (name, value) in values {
@@ -25,7 +25,7 @@ pub fn fill(template: &str, values: &[(&str, String)]) -> Result<String> {
     Ok(text)
 }
 
-/// Writes a page.
+/// Writes the text of a page to a file.
 ///
 /// # Errors
 /// When the file cannot be written.
@@ -33,7 +33,7 @@ pub fn write(text: &str, path: &Path) -> Result<()> {
     std::fs::write(path, text).with_context(|| format!("cannot write {}", path.display()))
 }
 
-/// The last line of a page.
+/// The last line of a page, which says how its figures were made.
 pub fn made(commit: &str, tools: &str) -> String {
     format!("Made at commit {commit} with {tools}.")
 }

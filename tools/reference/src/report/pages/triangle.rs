@@ -9,7 +9,7 @@ use crate::report::experiments::triangle::Row;
 use crate::report::soc::CLOCKS;
 use crate::report::table::{Table, bold, optional, read_csv};
 
-/// Rebuilds the page.
+/// Rebuilds the page from the CSV file in `folder`.
 ///
 /// # Errors
 /// When the table is missing or a file cannot be written.

@@ -1,4 +1,4 @@
-//! Errors of the inclination with different filters of the accelerometer.
+//! Errors of the inclination by different filters of the accelerometer.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,7 +8,7 @@ use crate::imu::motion::Motion;
 use crate::imu::sensor::Sensor;
 use crate::report::provenance::Provenance;
 
-/// A filter: a line of `imu-filters.csv`. RMS of the inclination's error in degrees.
+/// Errors of a filter: a line of `imu-filters.csv`. Each error is the RMS of the inclination's error in degrees.
 #[derive(Serialize, Deserialize)]
 pub struct FilterErrors {
     /// Name and parameters of the filter.
@@ -23,11 +23,11 @@ pub struct FilterErrors {
     pub nod: f64,
     /// Error of a walk.
     pub walk: f64,
-    /// Commit of the measurement.
+    /// Commit with which the filter was measured.
     pub commit: String,
 }
 
-/// Measures all filters; `part` shortens the motions to at least 30 s.
+/// Measures all filters. `part` scales the duration of the motions, which is at least 30 s.
 pub fn measure(part: f64) -> Vec<FilterErrors> {
     let commit = Provenance::find().commit;
     let seconds = (120.0 * part).max(30.0);

@@ -1,4 +1,4 @@
-//! Errors of the integration methods against the truth, by sample rate.
+//! Errors of the integration methods against the true attitude, at several sample rates.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,31 +8,31 @@ use crate::imu::method::Method;
 use crate::report::cycles::Cycles;
 use crate::report::provenance::Provenance;
 
-/// Samples a second at which methods are compared.
+/// Sample rates at which the methods are compared, in samples per second.
 pub const RATES: [f64; 5] = [50.0, 100.0, 200.0, 500.0, 1000.0];
 
-/// A method at a rate: a line of `imu-methods.csv`.
+/// Error of a method at one sample rate: a line of `imu-methods.csv`.
 #[derive(Serialize, Deserialize)]
 pub struct Trial {
-    /// `tumble` or `coning`.
+    /// Name of the motion, `tumble` or `coning`.
     pub motion: String,
     /// Name of the method.
     pub method: String,
     /// Whether Glint uses the method.
     pub shipped: bool,
-    /// Samples a second.
+    /// Samples per second.
     pub rate: f64,
-    /// Error after 20 s in degrees.
+    /// Error of the attitude after 20 s, in degrees.
     pub error: f64,
-    /// Observed order: the power of the step by which the error fell from the rate before.
+    /// Observed order of the method: the error fell by this power of the step since the previous sample rate.
     pub order: Option<f64>,
-    /// Median cycles of a sample on the soft core, for methods in the firmware.
+    /// Median cycles per sample on the soft core, for methods that the firmware contains.
     pub cycles: Option<u64>,
-    /// Commit of the measurement.
+    /// Commit with which the error was measured.
     pub commit: String,
 }
 
-/// Name of a method in `bench attitude`, for methods in the firmware.
+/// Name of a method in the console's `bench attitude`, for methods that the firmware contains.
 fn kernel(method: Method) -> Option<&'static str> {
     match method {
         Method::Angles => Some("angles"),
@@ -45,7 +45,7 @@ fn kernel(method: Method) -> Option<&'static str> {
     }
 }
 
-/// Measures all methods at all rates.
+/// Measures all methods at all sample rates. `cycles` are those of the console's `bench attitude`.
 pub fn measure(cycles: &Cycles) -> Vec<Trial> {
     let commit = Provenance::find().commit;
     let mut trials = Vec::new();

@@ -1,4 +1,5 @@
-//! Errors of the attitude: against f64 and the truth, by method and filter, over time, and in stiff cases.
+//! Errors of the attitude: against the same method in f64, against
+//! the truth, by method and filter, over time, and in stiff cases.
 
 pub mod filters;
 pub mod methods;

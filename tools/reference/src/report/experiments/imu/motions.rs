@@ -1,15 +1,15 @@
-//! Motions that several experiments share.
+//! Motions that several experiments use.
 
 use crate::imu::motion::Motion;
 
-/// A tumble of 700 °/s about a turning axis.
+/// Rotation at up to 700 °/s about an axis that itself turns.
 pub const TUMBLE: Motion = Motion::Tumble(700.0);
-/// Coning of 5° at 10 Hz.
+/// Coning with a half angle of 5° at 10 turns per second.
 pub const CONING: Motion = Motion::Coning {
     angle: 5.0,
     frequency: 10.0,
 };
-/// A rate just inside the gyroscope's range.
+/// Constant rotation at a rate just inside the gyroscope's range.
 pub const SPIN: Motion = Motion::Spin([0.0, 0.0, 1990.0]);
-/// A rate of one count.
+/// Constant rotation at a rate of one count of the gyroscope.
 pub const COUNT: Motion = Motion::Spin([1.0 / 16.4, 0.0, 0.0]);

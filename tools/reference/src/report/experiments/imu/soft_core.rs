@@ -1,4 +1,4 @@
-//! The attitude on the soft core: cycles of a sample, and its comparison with the host's, bit for bit.
+//! The attitude on the soft core: cycles per sample, and a comparison of its attitudes with those of the host, bit for bit.
 
 use anyhow::{Context, Result};
 use glint::board::{SimulatedBoard, built_firmware};
@@ -14,7 +14,8 @@ use crate::imu::motion::Motion;
 use crate::imu::sensor::Sensor;
 use crate::report::cycles::{Cycles, Source};
 
-/// Kernels of the firmware's integration with their limits and goals, in cycles a sample.
+/// The kernels of the firmware's integration: name in `bench attitude`,
+/// description, required limit and goal in cycles per sample.
 const KERNELS: [(&str, &str, u64, u64); 4] = [
     ("cubic", "integration, even steps", 800, 500),
     ("cubic_jitter", "integration, uneven steps", 800, 500),
@@ -22,36 +23,36 @@ const KERNELS: [(&str, &str, u64, u64); 4] = [
     ("cubic_tilt_jitter", "with tilt, uneven steps", 2_000, 1_200),
 ];
 
-/// A kernel of the firmware: a line of `imu-cycles.csv`. All figures are cycles a sample.
+/// Cycles of a kernel of the firmware: a line of `imu-cycles.csv`. All figures are cycles per sample.
 #[derive(Serialize, Deserialize)]
 pub struct Kernel {
-    /// Kind of the integrated samples.
+    /// Description of the kernel and of the samples that it integrates.
     pub what: String,
-    /// Required limit.
+    /// Required upper bound.
     pub at_least: u64,
-    /// The goal beyond the limit.
+    /// The goal beyond the required bound.
     pub aim: u64,
-    /// Median of the runs.
+    /// Median of the measured runs.
     pub median: u64,
-    /// Slowest run.
+    /// Slowest of the measured runs.
     pub max: u64,
 }
 
-/// A long motion on the soft core: the line of `imu-replay.csv`.
+/// Result of a long motion on the soft core: the line of `imu-replay.csv`.
 #[derive(Serialize, Deserialize)]
 pub struct Replay {
     /// Number of samples.
     pub samples: u64,
-    /// Attitudes that differ from the host's in any bit.
+    /// Number of attitudes that differ from those of the host in any bit.
     pub differing: usize,
-    /// Mean cycles of a sample.
+    /// Mean cycles per sample.
     pub cycles: u64,
 }
 
-/// The kernels of the firmware, from `bench attitude`.
+/// The rows of the firmware's kernels, from the cycles of the console's `bench attitude`.
 ///
 /// # Errors
-/// When a kernel is missing.
+/// When a kernel is missing in `cycles`.
 pub fn kernels(cycles: &Cycles) -> Result<Vec<Kernel>> {
     let kernel = |(name, what, at_least, aim): (&str, &str, u64, u64)| {
         let figures = cycles
@@ -68,7 +69,7 @@ pub fn kernels(cycles: &Cycles) -> Result<Vec<Kernel>> {
     KERNELS.into_iter().map(kernel).collect()
 }
 
-/// Replays a hand motion at 1 kHz on the virtual board, with tilt and a tracked bias.
+/// Replays a hand motion at 1 kHz on the virtual board, with correction of the tilt and with a tracked bias.
 ///
 /// # Errors
 /// When the board is not built or the replay fails.

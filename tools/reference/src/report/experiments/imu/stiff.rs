@@ -1,4 +1,4 @@
-//! Stiff and extreme cases of the attitude.
+//! Stiff and extreme cases of the attitude, where simple methods fail.
 
 use glint_core::calibration::{RestBias, Units};
 use glint_core::orientation::{Gain, Sample};
@@ -10,12 +10,12 @@ use crate::imu::motion::Motion;
 use crate::imu::quaternion::Quaternion;
 use crate::imu::sensor::Sensor;
 
-/// A case: a line of `imu-stiff.csv`.
+/// Result of a case: a line of `imu-stiff.csv`.
 #[derive(Serialize, Deserialize)]
 pub struct StiffCase {
-    /// Input and measured quantity.
+    /// Description of the input and of the measured quantity.
     pub case: String,
-    /// Result of other methods.
+    /// Result of other methods; empty if none is compared.
     pub other: String,
     /// Result of Glint's method.
     pub glint: String,
@@ -23,7 +23,7 @@ pub struct StiffCase {
     pub outcome: String,
 }
 
-/// Measures all cases; `part` shortens long ones, `day` adds those of 24 hours.
+/// Measures all cases. `part` scales the duration of long ones, and `day` adds the cases of 24 hours.
 pub fn measure(part: f64, day: bool) -> Vec<StiffCase> {
     let mut rows = gains();
     rows.extend(words(part));
@@ -48,14 +48,14 @@ pub fn measure(part: f64, day: bool) -> Vec<StiffCase> {
     rows
 }
 
-/// One step of a first-order filter, explicit and exact.
+/// The error that one step of a first-order filter leaves, with the explicit and with the exact gain.
 fn gains() -> Vec<StiffCase> {
     [1e-4, 1e-3, 1e-2, 0.1, 0.5, 1.0, 1.9, 2.1, 5.0, 10.0]
         .map(|ratio: f64| {
             let step = 10_000;
             let time_constant = (f64::from(step) / ratio).round() as u32;
             let gain = f64::from(Gain::new(time_constant).of(step)) / 2f64.powi(32);
-            // The time constant has whole microseconds.
+            // The ratio of the time constant that was really used, because this is rounded to whole microseconds.
             let ratio = f64::from(step) / f64::from(time_constant);
             let explicit = 1.0 - ratio;
             let outcome = match ratio {
@@ -77,7 +77,7 @@ fn gains() -> Vec<StiffCase> {
         .into()
 }
 
-/// A bias of 1 LSB, learnt by running means of different word lengths.
+/// A bias of 1 LSB, learnt by running means whose accumulators have different word lengths.
 fn words(part: f64) -> Vec<StiffCase> {
     [10, 100, 1000]
         .map(|time_constant: u32| {
@@ -108,7 +108,7 @@ fn words(part: f64) -> Vec<StiffCase> {
         .into()
 }
 
-/// The attitude at rest without noise, to find a limit cycle.
+/// The attitude at rest without noise. A limit cycle would show as motion of the attitude.
 fn rest_cycle() -> StiffCase {
     let mut tracker = tracker(&Sensor::ideal(1000.0), true);
     let mut first: Option<Quaternion> = None;
@@ -133,7 +133,7 @@ fn rest_cycle() -> StiffCase {
     }
 }
 
-/// Uneven and lost samples, integrated by their time stamps and as if they were even.
+/// Uneven and lost samples, integrated once by their time stamps and once as if they were even.
 fn uneven() -> Vec<StiffCase> {
     let even = Sensor::ideal(200.0);
     let error = |sensor: Sensor, stamped: bool| {
@@ -177,7 +177,7 @@ fn uneven() -> Vec<StiffCase> {
     .into()
 }
 
-/// A saturated gyroscope for 30 ms of a hand motion.
+/// A hand motion during which the gyroscope is saturated for 30 ms.
 fn saturation() -> StiffCase {
     let sensor = Sensor::real(1000.0);
     let mut tracker = tracker(&sensor, true);
@@ -206,7 +206,7 @@ fn saturation() -> StiffCase {
     }
 }
 
-/// Rates of zero mean over long periods.
+/// Square waves of the rate with zero mean, from which no bias must be learnt.
 fn squares() -> Vec<StiffCase> {
     [(1500.0, 1.0), (1500.0, 0.1), (5.0, 0.1)]
         .map(|(rate, frequency)| {

@@ -1,4 +1,4 @@
-//! Errors with a requirement and a goal.
+//! Errors of the attitude that have a requirement and a goal.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,28 +9,28 @@ use crate::imu::motion::Motion;
 use crate::imu::sensor::Sensor;
 use crate::report::provenance::Provenance;
 
-/// A requirement: a line of `imu.csv`.
+/// An error with its requirement: a line of `imu.csv`.
 #[derive(Serialize, Deserialize)]
 pub struct Target {
-    /// The measured error.
+    /// Description of the measured error.
     pub what: String,
     /// Unit of the error.
     pub unit: String,
-    /// Required limit of the error.
+    /// Required upper bound of the error.
     pub at_least: f64,
-    /// The goal beyond the limit.
+    /// The goal beyond the required bound.
     pub aim: f64,
-    /// The measured figure.
+    /// Measured value of the error.
     pub measured: f64,
-    /// Outcome: `aim`, `at least` or `missed`.
+    /// Best bound that was met: `aim` for the goal, `at least` for the requirement, or `missed`.
     pub reached: String,
-    /// Commit of the measurement.
+    /// Commit with which the error was measured.
     pub commit: String,
-    /// Tools of the measurement.
+    /// Versions of the tools with which the error was measured.
     pub tools: String,
 }
 
-/// Measures all requirements; `part` shortens long motions.
+/// Measures all errors that have a requirement. `part` scales the duration of long motions.
 pub fn measure(part: f64) -> Vec<Target> {
     let Provenance { commit, tools } = Provenance::find();
     let mut rows = Vec::new();

@@ -1,4 +1,4 @@
-//! Errors of the attitude over time.
+//! Growth of the attitude's errors over time.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,25 +9,25 @@ use crate::imu::motion::Motion;
 use crate::imu::quaternion::Quaternion;
 use crate::imu::sensor::Sensor;
 
-/// Angle random walk of 0.1 °/s of noise at 1 kHz, in degrees per root of a second.
+/// Angle random walk, in degrees per root of a second, of a gyroscope with noise of 0.1 °/s at 1 kHz.
 const WALK: f64 = 0.1 * 0.031_622_776_601_683_79;
 
-/// Errors at a time: a line of `imu-time.csv`, in degrees.
+/// Errors at a point of time: a line of `imu-time.csv`. Errors are in degrees.
 #[derive(Serialize, Deserialize)]
 pub struct ErrorsAtTime {
-    /// Time since the start.
+    /// Time since the start, in seconds.
     pub seconds: f64,
-    /// Firmware against f64 on the same counts.
+    /// Error of the firmware against f64 on the same counts.
     pub numeric: f64,
-    /// Firmware on noiseless counts against the truth.
+    /// Error of the firmware against the truth, on counts without noise.
     pub counts: f64,
-    /// Firmware on noisy counts against the truth.
+    /// Error of the firmware against the truth, on counts with noise.
     pub sensor: f64,
-    /// Standard deviation of integrated noise.
+    /// Standard deviation of the error that the integrated noise alone causes.
     pub floor: f64,
 }
 
-/// Measures a hand motion by the gyroscope alone.
+/// Measures a hand motion of this duration, with the gyroscope alone.
 pub fn measure(seconds: f64) -> Vec<ErrorsAtTime> {
     let motion = Motion::Hand;
     let ideal = Sensor::ideal(1000.0);

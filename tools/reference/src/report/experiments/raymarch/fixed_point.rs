@@ -1,6 +1,6 @@
-//! The sponge's march in integers with any number of fraction bits, for the study of word lengths.
+//! Marches to the sponge in integers with any number of fraction bits, for the study of word lengths.
 //!
-//! The gateware and its model have 12 fraction bits. Directions always have the 17 bits of the model.
+//! The gateware and its model have 12 fraction bits. Ray directions have the model's 17 bits for all of these numbers.
 
 use glint_model::raymarch::{DEFAULT_TUNING, FieldOptions, FieldSetup, Ray, Tuning};
 
@@ -8,32 +8,33 @@ use crate::raymarch::metrics::Outcome;
 use crate::raymarch::raymarched::{RenderedRay, Subject};
 use crate::raymarch::{Face, Field};
 
-/// Fraction bits of the model's field units.
+/// Number of fraction bits of field units in the model.
 pub const MODEL_FRACTION: u32 = 12;
 
-/// Field units in a world unit, doubled: the sponge's half side is 40.5.
+/// Field units per world unit, times 2. The sponge's half side is 40.5 field units.
 const TWICE_SCALE: i64 = 81;
 
-/// The constants of a picture of the sponge.
+/// The constants of a picture of the sponge, with any number of fraction bits.
 pub struct FixedPoint {
-    /// The model's constants, for directions.
+    /// The model's constants, from which ray directions are taken.
     setup: FieldSetup,
-    /// Fraction bits of field units, 8 to 16.
+    /// Number of fraction bits of field units, 8 to 16.
     fraction: u32,
-    /// S of each level.
+    /// Sides S of the cells of each level, in field units with `fraction` bits: see `menger` in docs/formats.md.
     levels: Vec<i32>,
-    /// Half the sponge's side.
+    /// Half the sponge's side, in field units with `fraction` bits.
     bound: u32,
-    /// The eye.
+    /// Position of the eye, in field units with `fraction` bits.
     origin: [i32; 3],
-    /// Smallest depth, times 2^e.
+    /// Smallest depth in field units with `fraction` bits, times 2^e; e is the exponent of the model's constants.
     near: u32,
-    /// Threshold and far limit with `fraction` bits.
+    /// Tuning of the march, whose threshold and far limit have `fraction` bits.
     tuning: Tuning,
 }
 
 impl FixedPoint {
-    /// `threshold` has the model's fraction bits and is rounded to the nearest step of `fraction` bits.
+    /// The constants of a subject's picture. `threshold` has the model's
+    /// fraction bits, and is rounded to the nearest step of `fraction` bits.
     ///
     /// # Panics
     /// When the subject is not a sponge of at most four levels.
@@ -47,7 +48,7 @@ impl FixedPoint {
             .camera
             .view()
             .expect("a subject's camera is a view's");
-        // Lengths in world units have 24 fraction bits here; halves are rounded up.
+        // Converts a length in world units with 24 fraction bits to field units with `fraction` bits; halves are rounded up.
         let units =
             |length: i64| (length * TWICE_SCALE + (1 << (24 - fraction))) >> (25 - fraction);
         let corner: i64 = (0..3)
@@ -79,7 +80,7 @@ impl FixedPoint {
         }
     }
 
-    /// The picture, row by row.
+    /// Draws the picture, row by row.
     pub fn picture(&self) -> Vec<RenderedRay> {
         let (width, height) = (self.setup.width, self.setup.height);
         (0..width * height)
@@ -125,7 +126,7 @@ impl FixedPoint {
         }
     }
 
-    /// t at the start of a ray: at the near plane or at the cube around the sponge.
+    /// The parameter t at which a ray starts: at the near plane, or at the cube around the sponge if that is farther.
     fn start(&self, ray: &Ray) -> u32 {
         let near = ((u64::from(self.near) * u64::from(ray.length + 1)) >> 10) as u32;
         let farthest = farthest(self.fraction);
@@ -135,7 +136,7 @@ impl FixedPoint {
                 let outside = u64::from(self.origin[i].unsigned_abs().saturating_sub(self.bound));
                 let part = magnitude(ray.direction[i]);
                 let inverse = u64::from(self.reciprocal(part >> 7));
-                // The reciprocal is too small, so the remainder after the first product is divided again.
+                // The reciprocal is slightly too small. So what the first product leaves over is multiplied by it again.
                 let first = ((outside * inverse) >> 9).min(farthest.into());
                 let gone = (first * (u64::from(part) + 1)) >> 17;
                 first + ((outside.saturating_sub(gone + 1) * inverse) >> 9)
@@ -145,7 +146,7 @@ impl FixedPoint {
         near.max(entry.min(farthest.into()) as u32).min(farthest)
     }
 
-    /// The point of a ray at t.
+    /// The point of a ray at its parameter t.
     fn point(&self, ray: &Ray, t: u32) -> [i32; 3] {
         [0, 1, 2].map(|i: usize| {
             let way = i64::from(t) * i64::from(ray.direction[i]);
@@ -153,11 +154,11 @@ impl FixedPoint {
         })
     }
 
-    /// The distance to the sponge in the maximum norm, and the axis and side of the nearest face.
+    /// The distance of a point to the sponge in the maximum norm, and the axis and side of the nearest face.
     fn sample(&self, point: [i32; 3]) -> (i32, usize, bool) {
         let mut p = [0, 1, 2].map(|axis| (point[axis], axis, true));
         for &s in &self.levels {
-            // −x is `!x`: a coordinate stands for the middle of its step.
+            // −x is computed as `!x`, because a coordinate stands for the middle of its step.
             p = p.map(|x| if x.0 >= 0 { mirrored(x) } else { x });
             p = p.map(|(x, axis, positive)| (x + s, axis, positive));
             let big = largest(p.map(|x| x.0));
@@ -174,7 +175,7 @@ impl FixedPoint {
         (value - half, axis, positive)
     }
 
-    /// Remaining t to the plane of a face ahead of the ray.
+    /// The part of t that remains to the plane of a face, for a ray that approaches the face.
     fn rest(&self, ray: &Ray, distance: i32, axis: usize, positive: bool) -> u32 {
         let part = ray.direction[axis];
         let slope = if (part < 0) == positive {
@@ -186,16 +187,16 @@ impl FixedPoint {
         ((u64::from(gap) * u64::from(self.reciprocal(slope))) >> 9) as u32
     }
 
-    /// The depth along n at a ray's t, in world units.
+    /// The depth along n of a ray at its parameter t, in world units.
     fn depth(&self, ray: &Ray, t: u32) -> f64 {
         let scaled = u64::from(t) * u64::from(self.reciprocal(ray.length));
-        // 21 fraction bits, as in the model: 9 of them are the reciprocal's.
+        // The result has 21 fraction bits, as in the model; 9 of them come from the reciprocal.
         let scaled = scaled << MODEL_FRACTION >> self.fraction;
         let bits = 21.0 + f64::from(self.setup.exponent);
         scaled as f64 * (-bits).exp2() / (TWICE_SCALE as f64 / 2.0)
     }
 
-    /// The model's reciprocal of a number that begins with these ten bits, u8.9.
+    /// The model's reciprocal, in the format u8.9, of a number that begins with these ten bits.
     fn reciprocal(&self, first_bits: u32) -> u32 {
         let ray = Ray {
             eye: 0,
@@ -207,12 +208,12 @@ impl FixedPoint {
     }
 }
 
-/// Upper limit of t: 11 integer bits.
+/// Upper limit of t, which has 11 integer bits.
 const fn farthest(fraction: u32) -> u32 {
     (1 << (11 + fraction)) - 1
 }
 
-/// |x|, or |x| − 1 of a negative x.
+/// |x| for a positive x, |x| − 1 for a negative x.
 const fn magnitude(x: i32) -> u32 {
     (x ^ (x >> 31)) as u32
 }
@@ -221,7 +222,7 @@ fn mirrored((value, axis, positive): (i32, usize, bool)) -> (i32, usize, bool) {
     (!value, axis, !positive)
 }
 
-/// The index of the largest of three numbers; of equals 1, then 0.
+/// The index of the largest of three numbers; of equal ones 1 comes before 0, and 0 before 2.
 fn largest([x, y, z]: [i32; 3]) -> usize {
     if z > x && z > y {
         2

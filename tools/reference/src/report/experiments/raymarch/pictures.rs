@@ -1,4 +1,4 @@
-//! Errors of the model's pictures against exact hits, and their evaluations.
+//! Errors of the model's pictures against exact hits, and the evaluations that the pictures take.
 
 use glint_model::raymarch::{FieldOptions, FieldSetup};
 use serde::{Deserialize, Serialize};
@@ -8,10 +8,10 @@ use crate::raymarch::Field;
 use crate::raymarch::raymarched::{self, Measured, Subject};
 use crate::report::provenance::Provenance;
 
-/// A picture: a line of `raymarch.csv`. Depths are in world units along n.
+/// Errors and evaluations of a picture: a line of `raymarch.csv`. Depths are in world units along n.
 #[derive(Serialize, Deserialize)]
 pub struct Row {
-    /// The field as typed.
+    /// Text form of the field.
     pub scene: String,
     /// Name of the view.
     pub view: String,
@@ -19,47 +19,47 @@ pub struct Row {
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
-    /// Side of the blocks that have a cone, in pixels; 0 without a prepass.
+    /// Side in pixels of the blocks that have a cone each; 0 without a prepass.
     pub prepass: u32,
-    /// Intersection over union of the masks.
+    /// Intersection over union of the sets of hit pixels of picture and reference.
     pub iou: f64,
-    /// Hits where the reference misses.
+    /// Number of pixels where the picture hits and the reference misses.
     pub false_hits: usize,
-    /// Misses where the reference hits.
+    /// Number of pixels where the picture misses and the reference hits.
     pub false_misses: usize,
-    /// Rays at the step limit.
+    /// Number of rays that reach the step limit.
     pub undecided: usize,
-    /// Median error of the depth from t.
+    /// Median error of depths that are computed from t.
     pub depth_median: Option<f64>,
-    /// 99th percentile of the error of the depth from t.
+    /// 99th percentile of the errors of depths that are computed from t.
     pub depth_p99: Option<f64>,
-    /// Largest error of the depth from t.
+    /// Largest error of depths that are computed from t.
     pub depth_max: Option<f64>,
-    /// Median error of the depth from the code.
+    /// Median error of depths that are computed from depth codes.
     pub code_median: Option<f64>,
-    /// 99th percentile of the error of the depth from the code.
+    /// 99th percentile of the errors of depths that are computed from depth codes.
     pub code_p99: Option<f64>,
-    /// Largest error of the depth from the code.
+    /// Largest error of depths that are computed from depth codes.
     pub code_max: Option<f64>,
-    /// Fraction of wrong faces among common hits.
+    /// Fraction of the pixels with the wrong face, among those where picture and reference both hit.
     pub wrong_faces: f64,
-    /// 99th percentile of the angle between normals of round surfaces, in degrees.
+    /// 99th percentile of the angle between the normals of picture and reference on round surfaces, in degrees.
     pub normal_p99: Option<f64>,
-    /// Fraction of pixels beside an edge, whose result depends on tiny differences.
+    /// Fraction of pixels close to an edge, whose result depends on tiny differences of the ray.
     pub unstable: f64,
-    /// Mean evaluations a ray, those of cones included.
+    /// Mean number of evaluations per ray, those by cones included.
     pub evaluations: f64,
-    /// Fraction of the evaluations that cones take.
+    /// Fraction of the evaluations that are made by cones.
     pub evaluations_cones: f64,
-    /// Evaluations of the slowest ray.
+    /// Number of evaluations of the ray that takes most.
     pub evaluations_max: u32,
-    /// Missed requirements.
+    /// Names of the requirements that the picture misses.
     pub missed: String,
-    /// Missed goals.
+    /// Names of the goals that the picture misses.
     pub not_reached: String,
-    /// Commit of the measurement.
+    /// Commit with which the picture was measured.
     pub commit: String,
-    /// Tools of the measurement.
+    /// Versions of the tools with which the picture was measured.
     pub tools: String,
 }
 
@@ -79,7 +79,7 @@ impl Row {
         } else {
             LARGE_COST
         };
-        // Requirements hold for the sponge and round fields, goals for the sponge alone.
+        // Requirements exist for the sponge and for round fields, goals for the sponge only.
         let list = |level: usize| {
             let sponge = matches!(subject.field, Field::Menger { .. });
             let mut missed = if sponge || subject.parsed.is_round() && level == 0 {
@@ -122,7 +122,7 @@ impl Row {
     }
 }
 
-/// Measures all pictures; `quick` leaves out those of 1280 × 720.
+/// Measures all pictures. With `quick`, those of 1280 × 720 are left out.
 pub fn measure(quick: bool) -> Vec<Row> {
     let provenance = Provenance::find();
     let small: Vec<Subject> = [

@@ -1,4 +1,4 @@
-//! Speed of fields on the whole SoC, with LiteDRAM and scan-out running.
+//! Frames per second of fields on the whole SoC, while LiteDRAM and scan-out are running.
 
 use anyhow::{Context, Result, ensure};
 use glint::board::{SimulatedBoard, built_firmware};
@@ -19,10 +19,10 @@ use crate::report::provenance::Provenance;
 use crate::report::soc::{self, BackToBack};
 use crate::report::workspace;
 
-/// A build of the SoC in a folder of `target/gateware`.
+/// A build of the SoC, in a folder of `target/gateware`.
 pub struct Build {
     folder: &'static str,
-    /// Lanes of its raymarcher.
+    /// Number of lanes of its raymarcher.
     pub lanes: u32,
 }
 
@@ -35,35 +35,35 @@ const SPONGE: Build = Build {
     lanes: 4,
 };
 
-/// A measured field with its required rate.
+/// A measured field with its required frames per second.
 pub struct Case {
-    /// The field as typed.
+    /// Text form of the field, as typed in the console.
     pub field: &'static str,
     stereo: Option<&'static str>,
-    /// Whether cones precede the rays.
+    /// Whether cones are marched before the rays (prepass).
     pub prepass: bool,
     /// Width and height in pixels.
     pub size: (u32, u32),
     /// The build of the SoC that draws the field.
     pub build: Build,
     cameras: fn() -> Vec<(&'static str, Camera)>,
-    /// Rotations of each camera.
+    /// Rotations of each camera, in degrees; each gives a pose.
     path: fn() -> Vec<Vector>,
-    /// Index in [`soc::CLOCKS`] of the clock for the required rate.
+    /// Index in [`soc::CLOCKS`] of the clock at which the requirement holds.
     pub clock: usize,
-    /// Required frames a second.
+    /// Required frames per second.
     pub at_least: f64,
-    /// The goal beyond the requirement.
+    /// The goal beyond the requirement, in frames per second.
     pub aim: Option<f64>,
 }
 
 impl Case {
-    /// Number of eyes.
+    /// Number of eyes of a picture.
     pub const fn eyes(&self) -> u32 {
         if self.stereo.is_some() { 2 } else { 1 }
     }
 
-    /// Whether a row is a pose of this case.
+    /// Whether a row was measured for this case.
     pub fn contains(&self, row: &Row) -> bool {
         self.field == row.field
             && self.stereo == row.stereo.as_deref()
@@ -72,7 +72,7 @@ impl Case {
     }
 }
 
-/// All cases, in the order of the page.
+/// All measured cases, in the order of the page.
 pub const CASES: [Case; 5] = [
     Case {
         field: "menger:4",
@@ -157,20 +157,20 @@ fn still() -> Vec<Vector> {
     vec![[0.0; 3]]
 }
 
-/// A pose of a camera: a line of `raymarch-rates.csv`.
+/// Cycles of a pose of a camera: a line of `raymarch-rates.csv`.
 #[derive(Serialize, Deserialize)]
 pub struct Row {
-    /// The field as typed.
+    /// Text form of the field, as typed in the console.
     pub field: String,
-    /// Stereo parameters as typed; none for one eye.
+    /// Stereo parameters as typed in the console; `None` for one eye.
     pub stereo: Option<String>,
-    /// Whether cones precede the rays.
+    /// Whether cones are marched before the rays (prepass).
     pub prepass: bool,
     /// Width in pixels.
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
-    /// Lanes of the raymarcher.
+    /// Number of lanes of the raymarcher.
     pub lanes: u32,
     /// Name of the view.
     pub view: String,
@@ -180,22 +180,22 @@ pub struct Row {
     pub pitch: f64,
     /// Roll in degrees.
     pub roll: f64,
-    /// Rays of a frame.
+    /// Number of rays of a frame.
     pub rays: u32,
-    /// Evaluations of a frame.
+    /// Number of evaluations of the field in a frame.
     pub evaluations: u64,
-    /// Cycles of a frame alone: from the first register write to the end seen by the firmware.
+    /// Cycles of a frame drawn alone, from the first register write until the firmware sees the end.
     pub cycles_alone: u64,
-    /// Cycles of a frame of many back to back; for the slowest pose.
+    /// Mean cycles of a frame among many that are drawn back to back. Only the slowest pose of a view has them.
     pub cycles_frame: Option<f64>,
-    /// Commit of the measurement.
+    /// Commit with which the pose was measured.
     pub commit: String,
 }
 
-/// Draws all cases, two boards at a time.
+/// Measures all cases, on two virtual boards at a time.
 ///
 /// # Errors
-/// When a board is not built, or a frame differs from the model's.
+/// When a board is not built, or a frame differs from that of the model.
 pub fn measure() -> Result<Vec<Row>> {
     let commit = Provenance::find().commit;
     let firmware = built_firmware(None)?;
@@ -220,7 +220,7 @@ pub fn measure() -> Result<Vec<Row>> {
     Ok(rows.into_iter().flatten().collect())
 }
 
-/// Draws the poses of a camera on a board of its own.
+/// Draws all poses of a camera on a virtual board of its own.
 fn draw(
     firmware: &[u8],
     case: &Case,

@@ -1,29 +1,29 @@
-//! Requirements on pictures of fields, and goals beyond them. The first number of each pair is the requirement, the second the
-//! goal.
+//! Requirements on pictures of fields, and goals beyond them. In each pair of numbers the requirement comes first, then the goal.
 
 use crate::raymarch::metrics::Accuracy;
 
-/// Pictures of most measurements.
+/// Size in pixels of the pictures in most measurements.
 pub const SMALL: (u32, u32) = (320, 180);
-/// Pictures of the monitor's size.
+/// Size in pixels of pictures that fill the monitor.
 pub const LARGE: (u32, u32) = (1280, 720);
 
-/// Smallest intersection over union of the masks.
+/// Lower bounds of the intersection over union of the hit pixels of picture and reference.
 pub const IOU: [f64; 2] = [0.999, 0.9999];
-/// Largest median error of the depth, in world units.
+/// Upper bounds of the median error of the depth, in world units.
 pub const MEDIAN: [f64; 2] = [3e-4, 2e-4];
-/// Largest 99th percentile of the depth's error, in world units.
+/// Upper bounds of the 99th percentile of the errors of the depth, in world units.
 pub const P99: [f64; 2] = [3e-3, 5e-4];
-/// Largest fraction of wrong faces among common hits.
+/// Upper bounds of the fraction of wrong faces, among the pixels where picture and reference both hit.
 pub const FACES: [f64; 2] = [0.01, 0.003];
-/// Largest 99th percentile of the angle between normals of round surfaces, in degrees.
+/// Upper bound of the 99th percentile of the angle between normals on round surfaces, in degrees; there is no goal.
 pub const NORMALS: f64 = 0.3;
-/// Most evaluations a ray at 320 × 180: 60 frames a second for two eyes, from two lanes at 81.25 MHz.
+/// Upper bounds of the evaluations per ray at 320 × 180. The requirement
+/// allows 60 frames per second for two eyes, with two lanes at 81.25 MHz.
 pub const SMALL_COST: [f64; 2] = [23.5, 11.7];
-/// Most evaluations a ray at 1280 × 720.
+/// Upper bounds of the evaluations per ray at 1280 × 720.
 pub const LARGE_COST: [f64; 2] = [14.4, 11.5];
 
-/// Names of the requirements (level 0) or goals (level 1) that a picture misses, without its cost.
+/// Names of the requirements (`level` 0) or goals (`level` 1) that a picture misses. The number of evaluations is not checked.
 pub fn missed(accuracy: &Accuracy, level: usize) -> Vec<&'static str> {
     let depth = accuracy.depth;
     let checks = [

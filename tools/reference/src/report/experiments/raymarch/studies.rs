@@ -1,4 +1,4 @@
-//! Studies: the effect of each parameter on the march's errors and cycles.
+//! Studies of the march: the effect of each of its parameters on errors and cycles.
 
 use anyhow::Result;
 use glint_model::raymarch::{Cones, DEFAULT_TUNING, FieldOptions, Tuning};
@@ -12,10 +12,10 @@ use crate::raymarch::variant::{Method, Norm, Taps};
 use crate::report::provenance::Provenance;
 use crate::report::{progress, soc};
 
-/// Draws the configurations of a study.
+/// Draws all configurations of a study and returns their trials.
 type Study = fn(&Views) -> Vec<Trial>;
 
-/// The studies, in the order of the page: `raymarch-NAME.csv` each.
+/// Name and function of each study, in the order of the page. The file of a study is `raymarch-NAME.csv`.
 const STUDIES: [(&str, Study); 7] = [
     ("fraction", fractions),
     ("cap", caps),
@@ -26,7 +26,7 @@ const STUDIES: [(&str, Study); 7] = [
     ("normal", normals),
 ];
 
-/// Runs all studies and hands each to `finished` with its name as soon as it is complete.
+/// Runs all studies. As soon as a study is complete, `finished` receives its name and trials.
 ///
 /// # Errors
 /// When `finished` fails.
@@ -50,10 +50,10 @@ fn tuned(tuning: Tuning) -> FieldOptions {
     }
 }
 
-/// The sponge's field units in a world unit.
+/// Field units of the sponge in one world unit.
 const UNITS: f64 = 40.5;
 
-/// Glint's march in f64, with another threshold.
+/// Glint's method of marching in f64. `threshold` replaces its threshold, and is in field units with 12 fraction bits.
 fn in_f64(threshold: u32) -> Method {
     Method {
         distance: Norm::Maximum,
@@ -117,7 +117,7 @@ fn thresholds(views: &Views) -> Vec<Trial> {
     trials.collect()
 }
 
-/// A family of five thresholds: `change` makes the method of the family from Glint's in f64.
+/// Trials with five thresholds that form a family. `change` turns Glint's method in f64 into the method of the family.
 fn by_threshold(
     views: &Views,
     family: &str,
@@ -184,7 +184,7 @@ fn prepasses(views: &Views) -> Vec<Trial> {
             ..DEFAULT_TUNING
         })
     };
-    // The gateware has blocks of 4 pixels for pictures of this size.
+    // The gateware has blocks of 4 × 4 pixels for pictures of this size.
     let built = [("no prepass", false), ("blocks of 4", true)];
     let built = built.into_iter().flat_map(|(family, prepass)| {
         THRESHOLDS.map(|threshold| {

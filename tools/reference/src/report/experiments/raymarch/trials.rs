@@ -1,4 +1,4 @@
-//! Configurations of the march, each over the sponge's four views at 320 × 180.
+//! Trials of configurations of the march. Each draws the sponge's four views at 320 × 180.
 
 use std::cell::RefCell;
 
@@ -14,18 +14,18 @@ use crate::raymarch::raymarched::{self, Measured, RenderedRay, Subject};
 use crate::raymarch::variant::{Method, entry};
 use crate::raymarch::verilated::Raymarcher;
 
-/// A configuration: a line of a study's CSV.
+/// Errors and cost of a configuration: a line of a study's CSV file.
 #[derive(Serialize, Deserialize)]
 pub struct Trial {
-    /// Line of the diagram.
+    /// Name of the configuration's line in the diagram.
     pub family: String,
     /// Value of the varied parameter.
     pub config: String,
     /// Whether Glint uses the configuration.
     pub shipped: bool,
-    /// Intersection over union of the masks.
+    /// Intersection over union of the sets of hit pixels of picture and reference.
     pub iou: f64,
-    /// Rays at the step limit.
+    /// Number of rays that reach the step limit.
     pub undecided: usize,
     /// Median error of the depth, in world units.
     pub depth_median: Option<f64>,
@@ -33,20 +33,20 @@ pub struct Trial {
     pub depth_p99: Option<f64>,
     /// Largest error of the depth.
     pub depth_max: Option<f64>,
-    /// Fraction of wrong faces among common hits.
+    /// Fraction of the pixels with the wrong face, among those where picture and reference both hit.
     pub wrong_faces: f64,
-    /// Mean evaluations a ray.
+    /// Mean number of evaluations per ray.
     pub evaluations: f64,
-    /// Mean clocks of the verilated raymarcher for a picture; none for configurations that only software has.
+    /// Mean clocks of the verilated raymarcher per picture; `None` for configurations that only software has.
     pub cycles: Option<f64>,
-    /// Missed requirements.
+    /// Names of the requirements that the configuration misses.
     pub failed: String,
-    /// Commit of the measurement.
+    /// Commit with which the configuration was measured.
     pub commit: String,
 }
 
 impl Trial {
-    /// Evaluations a clock and lane of the raymarcher.
+    /// Evaluations per clock in each lane of the verilated raymarcher.
     pub fn rate(&self) -> Option<f64> {
         let rays = f64::from(SMALL.0 * SMALL.1);
         self.cycles
@@ -54,7 +54,7 @@ impl Trial {
     }
 }
 
-/// The views that every trial draws.
+/// The views that every trial draws, and what draws them.
 pub struct Views<'a> {
     subjects: &'a [Subject],
     expected: Vec<Expected>,
@@ -64,7 +64,7 @@ pub struct Views<'a> {
 }
 
 impl<'a> Views<'a> {
-    /// The views, a bar that shows the running trial, and the commit for its rows.
+    /// Takes the views, a progress bar that shows the running trial, and the commit for the trials' rows.
     pub fn new(subjects: &'a [Subject], bar: ProgressBar, commit: &'a str) -> Self {
         let expected = subjects.iter().flat_map(|subject| &subject.expected);
         Self {
@@ -76,7 +76,8 @@ impl<'a> Views<'a> {
         }
     }
 
-    /// Draws all views with `draw`. `added` counts evaluations of each hit that the pictures do not count.
+    /// Draws all views with `draw` and compares them with the reference. For each
+    /// hit, `added` evaluations are counted that the pictures do not contain.
     pub fn trial(
         &self,
         family: &str,
@@ -107,7 +108,7 @@ impl<'a> Views<'a> {
         }
     }
 
-    /// Draws the views by the model and by the verilated raymarcher.
+    /// Draws the views with the model, for the errors, and with the verilated raymarcher, for the clocks.
     pub fn model(&self, family: &str, config: String, options: &FieldOptions) -> Trial {
         let mut trial = self.trial(family, config, 0, |subject| subject.picture(options));
         trial.shipped = *options == FieldOptions::default();
@@ -120,7 +121,8 @@ impl<'a> Views<'a> {
         trial
     }
 
-    /// Draws the views in f64. Rays start where the model's do, or with `exact_entry` exactly at the cube around the sponge.
+    /// Draws the views with a method in f64. Rays start where the model's rays
+    /// start, or with `exact_entry` exactly at the cube around the sponge.
     pub fn variant(
         &self,
         family: &str,
@@ -148,7 +150,7 @@ impl<'a> Views<'a> {
     }
 }
 
-/// A subject's pixels with their rays, row by row.
+/// Column, row and ray of each pixel of a subject, row by row.
 pub fn pixels(subject: &Subject) -> impl Iterator<Item = (u32, u32, Ray)> {
     let (width, height) = subject.size;
     let size = Size { width, height };

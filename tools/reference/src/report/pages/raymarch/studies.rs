@@ -1,4 +1,4 @@
-//! Diagrams and sections of the studies.
+//! Diagrams of the studies, and their sections of the page.
 
 use std::path::{Path, PathBuf};
 
@@ -8,12 +8,12 @@ use crate::report::experiments::raymarch::trials::Trial;
 use crate::report::plot::{self, Diagram, Point};
 use crate::report::table::{Table, optional, read_optional_csv};
 
-/// The presentation of a study.
+/// The diagram and the text that present a study.
 pub struct Study {
-    /// Name of its files.
+    /// Name of the study in the names of its files.
     name: &'static str,
     diagram: Diagram,
-    /// The varied parameter and its effect.
+    /// Description of the varied parameter and of its effect.
     text: &'static str,
     error: fn(&Trial) -> f64,
     cost: fn(&Trial) -> Option<f64>,
@@ -24,7 +24,7 @@ const DEPTH_MEDIAN: &str = "median error of the depth, in world units";
 const EVALUATIONS: &str = "evaluations a ray";
 const CYCLES: &str = "cycles a picture, two lanes";
 
-/// The studies in the order of the page.
+/// The studies, in the order of the page.
 pub const STUDIES: [Study; 7] = [
     Study {
         name: "fraction",
@@ -130,7 +130,7 @@ fn p99(trial: &Trial) -> f64 {
     trial.depth_p99.unwrap_or(0.0)
 }
 
-/// An error with two digits.
+/// An error as text with two digits, or `none`.
 pub fn error(error: Option<f64>) -> String {
     error.map_or("none".to_owned(), |error| format!("{error:.1e}"))
 }
@@ -140,15 +140,15 @@ impl Study {
         folder.join(format!("raymarch-{}.{extension}", self.name))
     }
 
-    /// The study's trials; none without its file.
+    /// Reads the study's trials from its CSV file. If the file is missing, there are none.
     ///
     /// # Errors
-    /// When a line is not a trial.
+    /// When a line does not have the columns of a trial.
     pub fn read(&self, folder: &Path) -> Result<Vec<Trial>> {
         read_optional_csv(&self.file(folder, "csv"))
     }
 
-    /// Writes the diagram.
+    /// Writes the study's diagram of its trials.
     ///
     /// # Errors
     /// When the file cannot be written.
@@ -166,7 +166,7 @@ impl Study {
         plot::write(&self.diagram, &points, &self.file(folder, "svg"))
     }
 
-    /// The study's section of the page.
+    /// The study's section of the page, as Markdown.
     pub fn section(&self, trials: &[Trial]) -> String {
         let (name, title) = (self.name, self.diagram.title);
         format!(
@@ -177,7 +177,7 @@ impl Study {
     }
 }
 
-/// The trials that miss a requirement, with the names of missed requirements.
+/// The trials that miss a requirement, each with the names of the requirements that it misses.
 fn misses(trials: &[Trial]) -> String {
     let failed = trials.iter().filter(|trial| !trial.failed.is_empty());
     let failed: Vec<&Trial> = failed.collect();
