@@ -9,7 +9,7 @@ module band_entry_proof (
     input wire clk,
     input wire in_valid,
     input wire in_odd,
-    // The triangle has a row in its band.
+    // High when the triangle has a row in its band.
     input wire in_kept,
     input wire out_ready
 );

@@ -40,12 +40,13 @@ module band_extents_proof (
         .clk, .rst(rst || sweep), .valid(span_valid), .ready(span_ready), .data({span_first, span_last})
     );
 
-    // Columns of each line: drawn in this band, drawn in the last band, and still expected.
+    // Sets of columns of each line: `marked` drawn in this band, `to_come` still expected in a span, `left` drawn in the last
+    // band at this line of a frame buffer.
     logic [3:0][2:0]      marked, to_come;
     logic [1:0][3:0][2:0] left;
     logic [1:0][3:0]      known;
     logic [2:0]           all;
-    // The planned band, and the progress of the sweep.
+    // First line and slot of the planned band, and the number of clocks since the sweep began.
     logic [1:0]           band_line, swept;
     logic                 band_slot, all_known;
 
@@ -55,7 +56,7 @@ module band_extents_proof (
         hull = columns == 3'b101 ? 3'b111 : columns;
     endfunction
 
-    // The line of the next span.
+    // The line whose span is expected next.
     logic       comes;
     logic [1:0] next_line;
     logic [3:0] next_row;

@@ -51,7 +51,7 @@ module band_flush_proof (
         depth_of = 18'(of_row) + 1'b1;
     endfunction
 
-    // Model of the bank. A flush starts with all rows drawn.
+    // Model of the bank: `drawn` has a bit for each row. A flush starts with all rows drawn.
     logic [3:0] drawn;
     logic [1:0] from_row, latched_row, read_row, to_row;
     logic       latched_drawn, read_drawn, to_clear;
@@ -196,7 +196,7 @@ module band_flush_proof (
         ends:              assert (without_end < 4'd4);
         sweep_ends:        assert (sweep_clocks < 4'd5);
         all_swept:         assert (!(fresh && settled == 2'd2) || drawn == '0);
-        // Exactly the flushed rows are cleared.
+        // After a flush exactly the flushed rows are clear.
         cleared_behind:    assert (!(flushing && idle) || dropped || drawn == ~flush_rows);
         flushed:           cover (flushing && idle && !dropped && flush_rows == 4'b1001);
         deep:              cover (flushing && idle && !dropped && flush_depth && flush_rows == 4'b0100);

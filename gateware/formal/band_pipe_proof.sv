@@ -13,7 +13,7 @@ module band_pipe_proof (
     input wire            group_row,
     input wire [7:0]      group_mask,
     input wire [8*18-1:0] group_codes,
-    // Tag in the colours, which distinguishes groups of equal depth.
+    // Tag that the colours carry, to distinguish groups of equal depth.
     input wire [1:0]      group_tag
 );
     // Largest number of clocks for which a group is held.

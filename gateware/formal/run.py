@@ -95,7 +95,8 @@ def check(proof, mode, folder, sources=None, only=None):
     sources = sources or proof.sources
     folder.parent.mkdir(parents=True, exist_ok=True)
     shutil.rmtree(folder, ignore_errors=True)
-    # Relative paths: Yosys accepts no others, and SymbiYosys copies the sources to its work folder.
+    # The script names files without folders: Yosys accepts only relative paths, and SymbiYosys copies the sources to its
+    # work folder.
     config = folder.with_suffix(".sby")
     config.write_text(_SBY.format(
         mode=mode, depth=proof.depth, top=proof.top,

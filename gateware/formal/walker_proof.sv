@@ -29,7 +29,8 @@ module walker_proof (
     raster_pkg::placed_t    placed;
     raster_pkg::candidate_t group;
 
-    // The current triangle: its number, its groups (bit 4·line + column), and the groups that have come out.
+    // The current triangle: its number, its groups (bit 4·line + column) in `bounds`, and the groups that have come out in
+    // `gone`.
     logic [BITS-1:0] came = '0, number;
     logic            some = 1'b0;
     logic [7:0]      bounds, gone, group_bit;

@@ -114,7 +114,7 @@ class MemoryBridge(LiteXModule):
                 NextState("DROP"),
             )
         )
-        # Discards the words left by a burst that ended early.
+        # Discards the words that were requested for a burst and not taken before the burst ended.
         fsm.act("DROP",
             reads.source.ready.eq(1),
             If((owed == 0) | ((owed == 1) & reads.source.valid),

@@ -189,7 +189,7 @@ class TriangleEngine(LiteXModule):
         # The last events reach the counters some clocks after the end of a pass.
         self.sync += If(working, linger.eq(31)).Elif(linger != 0, linger.eq(linger - 1))
 
-        # The link to a raymarcher: see rtl/triangle/raster_unit.sv.
+        # Signals between the engine and a raymarcher, explained in rtl/triangle/raster_unit.sv.
         self.field = field = Record([
             ("enable", 1), ("compose", 2), ("start", 1), ("restart", 1), ("size", 2), ("open", 1), ("done", 1), ("next", 1),
             ("valid", 1), ("ready", 1), *_FIELD_GROUP])

@@ -21,7 +21,8 @@ _RESOURCES = {"logic": r"LUT[1-6]|INV", "srl": r"SRL16E|SRLC32E", "lutram": r"RA
 # LUTs that one cell of each kind of LUT memory takes.
 _LUTRAM = {"RAM32M": 4, "RAM64M": 4, "RAM64X1S": 1, "RAM128X1S": 2, "RAM256X1S": 4, "RAM64X1D": 2, "RAM128X1D": 4}
 
-# Marks that Yosys leaves in a netlist, and the pads and clock buffers that it adds to a top module.
+# Marks that Yosys leaves in a netlist, and pads and clock buffers that it adds to a top module. Sizes omit these cells, but
+# include the pads of the SoC.
 _MARKS, _PADS = {"$scopeinfo"}, {"BUFG", "IBUF", "OBUF"}
 
 # Keeps only the combinational cells between registers and finds the longest path in them. `ltp` treats a flip-flop as logic,

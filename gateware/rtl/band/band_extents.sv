@@ -34,9 +34,9 @@ module band_extents #(
     input  wire                     clk,
     input  wire                     rst,
     input  wire                     sweep,
-    // Bank that is drawn.
+    // Number of the bank that is drawn.
     input  wire                     drawn,
-    // Groups with at least one pixel.
+    // Groups that cover at least one pixel.
     input  wire                     group_valid,
     input  wire  [LINE_BITS-1:0]    group_line,
     input  wire  [COLUMN_BITS-1:0]  group_column,
@@ -57,7 +57,7 @@ module band_extents #(
     localparam int unsigned EXTENT_BITS = 2 * COLUMN_BITS;
     localparam int unsigned PLACE_BITS  = PICTURE_BITS + 1;
 
-    // {last column, first column}
+    // An extent is {last column, first column}.
     localparam logic [EXTENT_BITS-1:0] EMPTY = {{COLUMN_BITS{1'b0}}, {COLUMN_BITS{1'b1}}};
 
     function automatic logic [EXTENT_BITS-1:0] united(input logic [EXTENT_BITS-1:0] a, input logic [EXTENT_BITS-1:0] b);
@@ -131,7 +131,7 @@ module band_extents #(
     logic [EXTENT_BITS-1:0] to_store, latched, earlier, now_1, now_2, now_3, united_4;
     logic                   to_write;
     logic [4:1]             valid;
-    // Line in the last stage.
+    // Address of the first row of the line in the last stage.
     logic [ROW_BITS-1:0]    line_row;
 
     always_ff @(posedge clk) begin

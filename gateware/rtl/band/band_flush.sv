@@ -138,7 +138,7 @@ module band_flush #(
         end
     end
 
-    // Pipeline parallel to the bank's read.
+    // Delays the kind and the address of each requested word, in step with the bank's read.
     logic  asked_0, asked_1, asked_2;
     part_t part_0, part_1, part_2;
     logic [ADDRESS_BITS-1:0] address_1, address_2, address;

@@ -26,7 +26,7 @@ module skid_buffer #(
 );
     logic [WIDTH-1:0] spare;
 
-    // The spare place is free exactly while `in_ready` is high.
+    // `in_ready` is high exactly while the spare place is free.
     always_ff @(posedge clk) begin
         if (!out_valid || out_ready) begin
             out_valid <= in_valid || !in_ready;

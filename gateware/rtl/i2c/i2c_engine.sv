@@ -44,7 +44,7 @@
 module i2c_engine #(
     // Clocks of a phase, a third of an SCL period.
     parameter int unsigned PHASE        = 68,
-    // Longest clock stretching: 2^STRETCH_BITS clocks.
+    // A device may hold SCL low for up to 2^STRETCH_BITS clocks; longer stretching is an error.
     parameter int unsigned STRETCH_BITS = 21,
     parameter int unsigned COMMANDS     = 32,
     parameter int unsigned ANSWERS      = 128

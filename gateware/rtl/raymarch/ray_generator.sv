@@ -34,7 +34,7 @@ module ray_generator #(
     input  wire                       rst,
     input  wire                       start,
     output logic                      busy,
-    // Frame: columns - 1, lines - 1 of a band, bands - 1.
+    // Frame: numbers of its last column, of the last line of a band, and of its last band, counted from 0.
     input  wire  [10:0]               last_column,
     input  wire  [5:0]                last_line,
     input  wire  [5:0]                last_band,

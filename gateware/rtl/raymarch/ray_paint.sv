@@ -28,7 +28,7 @@ module ray_paint #(
     // Frame.
     input  wire                     stereo,
     input  wire                     round,
-    // Groups of eight pixels in a line: 40, 80, 160.
+    // Number of groups of eight pixels in a line: 40, 80 or 160.
     input  wire  [7:0]              stride,
     input  wire  [16:0]             depth_mantissa,
     input  wire  signed [5:0]       depth_exponent,

@@ -11,9 +11,9 @@ package raymarch_pkg;
     localparam int unsigned POINT_BITS     = 22;
     localparam int unsigned WIDE_BITS      = 25;
     localparam int unsigned DIRECTION_BITS = 18;
-    // Growth of a cone's radius per unit of t, u0.16.
+    // Width of a cone's spread, the growth of its radius per unit of t, u0.16.
     localparam int unsigned SPREAD_BITS    = 16;
-    // Largest number of evaluations of a cone.
+    // Largest number of evaluations of the field for one cone.
     localparam int unsigned CONE_STEPS     = 192;
 
     // Place of a pixel: parity of its band, eye (0 is the left or the only one), line in the band, and column.
@@ -67,7 +67,7 @@ package raymarch_pkg;
 
     localparam int unsigned NEAREST_BITS = POINT_BITS + 3;
 
-    // Number of bits of an end in a lane, with or without spheres and fillets.
+    // Bits of the end of a ray in a lane, by whether the build has spheres and fillets.
     function automatic int unsigned end_bits(input bit round, input bit blend);
         end_bits = blend ? END_BITS : round ? ROUND_END_BITS : FLAT_END_BITS;
     endfunction

@@ -18,7 +18,7 @@ module scanout_fetch #(
 ) (
     input  wire                     clk,
     input  wire                     rst,
-    // Frame parameters: address of the first word, and log2 of the scale.
+    // Frame parameters: `base` is the address of the first word, `shift` the log2 of the scale.
     input  wire                     enable,
     input  wire  [ADDRESS_BITS-1:0] base,
     input  wire  [1:0]              shift,

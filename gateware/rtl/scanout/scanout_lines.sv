@@ -25,7 +25,7 @@ module scanout_lines #(
     // Raster.
     input  wire               tick,
     input  wire  [Y_BITS-1:0] tick_line,
-    // Vertical blanking has begun, and the frame's parameters are latched.
+    // `vblank`: vertical blanking has begun. `frame_begun`: the parameters of the next frame are latched.
     output logic              vblank,
     input  wire               frame_begun,
     // Fetches.

@@ -29,7 +29,7 @@ module binner #(
     output logic                    done,
     output logic                    idle,
     output logic                    full,
-    // Rows per band by size code: 45, 24, 12.
+    // Size code of the picture: a band has 45, 24 or 12 rows for codes 0, 1 and 2.
     input  wire  [1:0]              size,
     input  wire  [ADDRESS_BITS-1:0] descriptor_base,
     input  wire  [COUNT_BITS-1:0]   descriptor_limit,

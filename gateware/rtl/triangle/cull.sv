@@ -43,7 +43,7 @@ module cull #(
         logic [15:0]          colour;
         logic [2:0][15:0]     normal;
         logic [20:0]          x10, x20, y01, y20;
-        // `y_21`: vertex 2 is above vertex 1. `y_same`: both vertices have the same height.
+        // `y_21`: vertex 2 is above vertex 1. `y_same`: vertices 1 and 2 have the same height.
         logic                 y_21, y_same;
     } triangle_t;
 

@@ -19,8 +19,8 @@
 // after reset, and after a cancelled frame.
 //
 // Memory: three clients of a read_port, and two native write ports, one for the even banks of memory and one for the odd ones.
-// A port turns to another bank only when the previous bank is idle, a dozen clocks later, and consecutive lines of a band are
-// in different banks: while one port waits for its bank, the other port writes.
+// A port turns to another bank only when the previous bank is idle, a dozen clocks later, and the lines of a band move from
+// bank to bank. So while one port waits for its bank, the other port writes.
 
 `default_nettype none
 
@@ -41,7 +41,7 @@ module raster_unit #(
     output logic                      list_error,
     input  wire triangle_registers_pkg::raster_flags_t flags,
     input  wire triangle_registers_pkg::raster_t parameters,
-    // Pixels of the raymarcher, in groups of one pixel.
+    // Link to a raymarcher, which sends its pixels in groups of one pixel.
     input  wire triangle_registers_pkg::field_source_t field_source,
     output triangle_registers_pkg::field_sink_t field_sink,
     // Memory.

@@ -11,9 +11,9 @@
 // clock for each triangle, `drawn` with its descriptor. The frame's constants (`width`, `height`, `cull_back`, `camera_n`,
 // `smooth`) must hold while `busy` and when a triangle comes.
 //
-// Edges 0 and 2 meet in vertex 0, so both start from (px, py), the start relative to vertex 0. Edge 1 follows from E0 + E1 +
-// E2 = 2A = a. This holds at every point: the differences of the three vertices add up to 0, so the sum does not depend on the
-// point, and at vertex 0 it is E1.
+// Edges 0 and 2 meet in vertex 0, so both start from (px, py), the start relative to vertex 0. Edge 1 follows from
+// E0 + E1 + E2 = 2A = a. This holds at every point: the differences of the three vertices add up to 0, so the sum does not
+// depend on the point, and at vertex 0 it is E1.
 //
 // With SMOOTH, each channel of light has a plane: stage 1 computes P of docs/formats.md ("Smooth shading") for it, stage 2
 // the planes' normals.
@@ -146,8 +146,8 @@ module setup #(
         .out_valid(reciprocal_done), .out_y(y)
     );
 
-    // Values that are only passed on stay in flip-flops (`keep`), since shift registers would take LUTs. Stage 2 computes (E1
-    // − bias)/2^8 from E1 − bias = a − (E0 − bias) − (E2 − bias) − all biases, with the carry of the lowest 8 bits.
+    // Stage 2 computes E1 − bias = a − (E0 − bias) − (E2 − bias) − all biases, divided by 2^8: only the carry of the lowest 8
+    // bits is kept. Values that are only passed on stay in flip-flops (`keep`), since shift registers would take LUTs.
     (* keep *) passed_t passed_2;
     (* keep *) origin_t origin_2;
     logic        [45:0] nx_2, ny_2;

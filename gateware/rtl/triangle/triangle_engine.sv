@@ -119,8 +119,8 @@ module triangle_engine #(
         .events(raster_events)
     );
 
-    // LiteDRAM serves one read port at a time and takes data from one write port at a time; the events count
-    // the ports that wait.
+    // LiteDRAM answers one read port at a time and takes data from one write port at a time, so `items_in` and `items_out`
+    // grow by at most 1 a clock.
     always_comb begin
         port_events = '0;
         port_events.stalled_reads = mesh_read_request.cmd_valid && !mesh_read_answer.cmd_ready

@@ -1,11 +1,11 @@
-// Steps 7 and 8 of the vertex stage: the place on the screen, the guard band, and w.
+// Steps 7 and 8 of the vertex stage: computes the place on the screen, the guard band flag, and w.
 //
 // Clock numbers count from the vertex's entry into `vertex_stage`; products follow three clocks after their factors.
 //
 //   25, 26, 27   X', Y' and km times the low 17 bits of y
 //   28, 29, 30   the same factors times the high 7 bits, plus the high part of the first product
 //   31, 32       x and y; the first product included half a unit and the centre
-//   33…36        km·y is shifted to w, rounded, and saturates
+//   33…36        km·y is shifted to w, rounded and saturated
 //   37           `vertex` is valid
 
 `default_nettype none

@@ -7,8 +7,8 @@
 //          │          to the right while lane 8 is inside (1', …), then down from the snapshot.
 //          ▼
 //
-// The walk is complete. The covered columns of a row reach from a to b: edges with step_x > 0 have E' >= 0 from column a on,
-// edges with step_x < 0 up to column b; a horizontal edge passes everywhere or nowhere.
+// The walk misses no covered group. The covered columns of a row reach from a column a to a column b: edges with step_x > 0
+// have E' >= 0 from column a on, edges with step_x < 0 up to column b; a horizontal edge passes everywhere or nowhere.
 //  * An edge that fails at both ends of a group fails in all of it. A failing edge that rises puts a further right, one that
 //    falls puts b further left; the covered columns lie on that side. If edges disagree, if the direction returns to a place
 //    where an edge has failed, or leaves the bounds, or if a horizontal edge fails, the row is empty. So seeking never
@@ -48,7 +48,7 @@ module walker #(
     output logic                     out_valid,
     input  wire                      out_ready,
     output raster_pkg::candidate_t   out_group,
-    // Light of the group, a clock later: {smooth, blue, green, red}, each {step_x, accumulator at lane 0}.
+    // Light of the group, a clock after `out_group`: {smooth, blue, green, red}, each {step_x, accumulator at lane 0}.
     output logic [VALUES_BITS-1:0]   out_light
 );
     // The triangle.
