@@ -77,12 +77,12 @@ class Rasterizer:
         self.corners.write(b"".join(struct.pack("4f", *corner) for corner in corners))
         self.frame.clear()
         self.triangle.render()
-        # Row 0 of a texture has the least y, and `clip` puts the top of the picture there. So rows keep their order, and
-        # llvmpipe's top-left rule has this sense of y.
+        # Row 0 of a texture has the smallest y, and in clip coordinates the top of the picture has the smallest y too. So the
+        # rows read back are in the order of the picture, and "top" in llvmpipe's top-left rule is the top of the picture.
         return self.frame.read(components=1, alignment=1)
 
     def from_screen(self, points):
-        """Corners in clip coordinates for positions in pixels."""
+        """Converts positions in pixels to corners in clip coordinates."""
         middle_x, middle_y = self.middle
         return [((x - middle_x) / self.reach, (y - middle_y) / self.reach, 0, 1) for x, y in points]
 

@@ -304,7 +304,7 @@ mod tests {
         for ray in [left, right] {
             assert!(length(subtract(ray.at(stereo.zero), meeting)) < 1e-12);
         }
-        // The left eye sees nearer points further to the right.
+        // In front of zero parallax the left ray is left of the right ray: so the left eye sees nearer points further right.
         assert!(left.at(1.0)[0] < right.at(1.0)[0]);
     }
 
@@ -346,7 +346,7 @@ mod tests {
     fn depth_scale_leaves_four_codes_at_the_nearest_depth() {
         // The nearest depth is 3: 3·262140 has 20 bits, and the lowest three of them are truncated.
         assert_eq!(CAMERA.depth_scale(0.0), 786_416.0);
-        // (2 − 2^-13)·262140 = 524248.0 has 19 bits and ends in two zeros.
+        // The nearest depth is 2 − 2^-13: (2 − 2^-13)·262140 = 524248.0005 has 19 bits before the point, which end in two zeros.
         assert_eq!(CAMERA.depth_scale(1.0), 524_248.0);
         assert_eq!(CAMERA.depth_scale(9.0), 262_140.0);
     }

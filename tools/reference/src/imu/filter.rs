@@ -66,7 +66,7 @@ pub struct Estimator {
     filter: Filter,
     gyro_lsb: f64,
     accel_lsb: f64,
-    /// Bias in rad/s.
+    /// Bias that is subtracted from the gyroscope's rates, in rad/s.
     bias: Vector,
     integrator: Integrator,
     last: Option<u32>,

@@ -109,7 +109,7 @@ pub fn inclination(sensor: Sensor, motion: Motion, seconds: f64) -> Errors {
 /// Errors of the inclination by a filter in f64 against the truth, in degrees, when its bias is wrong by [`LEFT_BIAS`].
 ///
 /// # Panics
-/// As [`inclination`].
+/// When the motion has no attitude in closed form.
 pub fn filter_inclination(filter: Filter, sensor: Sensor, motion: Motion, seconds: f64) -> Errors {
     let mut estimator = Estimator::new(Method::Cubic, filter, sensor.gyro_lsb, sensor.accel_lsb);
     if let Some(start) = motion.attitude(0.0) {

@@ -26,7 +26,7 @@ pub enum Method {
 }
 
 impl Method {
-    /// All methods, the cheapest first.
+    /// All methods, in the order of their cost, the cheapest first.
     pub const ALL: [Self; 8] = [
         Self::Angles,
         Self::FirstOrder,
@@ -58,7 +58,7 @@ impl Method {
 pub struct Integrator {
     method: Method,
     attitude: Quaternion,
-    /// Yaw, pitch and roll of [`Method::Angles`].
+    /// Yaw, pitch and roll, which [`Method::Angles`] integrates.
     angles: Vector,
     last: Vector,
     difference: Vector,
@@ -97,7 +97,7 @@ impl Integrator {
         self.method
     }
 
-    /// Continues from another attitude.
+    /// Replaces the attitude and continues from it.
     pub fn set_attitude(&mut self, attitude: Quaternion) {
         self.attitude = attitude;
         self.angles = attitude.angles();

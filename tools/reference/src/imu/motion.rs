@@ -29,7 +29,7 @@ fn slope(waves: &[Wave], t: f64) -> f64 {
 /// A motion of the sensor. Times are in seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Motion {
-    /// At rest.
+    /// The sensor does not move.
     Rest,
     /// A constant rate in °/s about each axis.
     Spin(Vector),
@@ -44,9 +44,9 @@ pub enum Motion {
     },
     /// A rate about z that is a square wave.
     Square {
-        /// Amplitude in °/s.
+        /// Amplitude of the square wave, in °/s.
         rate: f64,
-        /// Frequency in Hz.
+        /// Frequency of the square wave, in Hz.
         frequency: f64,
     },
     /// Hand motion about a wrist 10 cm away, mostly sideways: 0.5 to 2 Hz, up to 300 °/s.

@@ -4,7 +4,7 @@ use glint_core::orientation;
 
 use crate::camera::{Vector, cross, dot};
 
-/// A quaternion w, x, y, z.
+/// A quaternion as its parts w, x, y and z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quaternion(pub [f64; 4]);
 
@@ -60,7 +60,7 @@ impl Quaternion {
         Self([w, -x, -y, -z])
     }
 
-    /// Length.
+    /// The length of the quaternion.
     pub fn norm(self) -> f64 {
         self.0.iter().map(|x| x * x).sum::<f64>().sqrt()
     }

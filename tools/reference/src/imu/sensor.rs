@@ -20,9 +20,9 @@ pub struct Sensor {
     pub noise: f64,
     /// Standard deviation of the noise in each sample of the accelerometer, in g.
     pub accel_noise: f64,
-    /// Scale error of the gyroscope, as a fraction of the rate.
+    /// Relative error of the gyroscope's scale: a fraction of the rate.
     pub scale_error: f64,
-    /// Samples a second.
+    /// Samples per second.
     pub rate: f64,
     /// Largest deviation of a sample's time from the even grid, as a fraction of the period.
     pub jitter: f64,

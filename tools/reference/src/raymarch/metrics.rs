@@ -81,11 +81,11 @@ pub enum Outcome {
 /// Quantiles by nearest rank: each is the smallest of the values that is not below the given share of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quantiles {
-    /// Quantile of 50 %.
+    /// Quantile of 50 %: at least half of the values are not above it.
     pub median: f64,
     /// Quantile of 99 %.
     pub p99: f64,
-    /// Maximum.
+    /// Largest of the values.
     pub max: f64,
 }
 
@@ -106,7 +106,7 @@ impl Quantiles {
 /// Errors of a picture against the reference. All pixels count, also unstable ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accuracy {
-    /// Number of pixels, one ray each.
+    /// Number of compared pixels, with one ray each.
     pub rays: usize,
     /// Share of unstable pixels.
     pub unstable: f64,

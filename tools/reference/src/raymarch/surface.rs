@@ -25,14 +25,14 @@ pub struct Plane {
 pub enum Face {
     /// A plane perpendicular to an axis.
     Axis {
-        /// Axis, 0 to 2.
+        /// Number of the axis: 0, 1 or 2 for x, y or z.
         axis: usize,
         /// Whether the outward normal points along the axis.
         positive: bool,
     },
     /// A plane perpendicular to a diagonal.
     Diagonal {
-        /// Whether the outward normal points along each axis.
+        /// For each axis, whether the outward normal points along it rather than against it.
         positive: [bool; 3],
     },
     /// A curved surface.

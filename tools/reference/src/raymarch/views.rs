@@ -16,7 +16,7 @@ pub fn views() -> [(&'static str, Vector, Vector); 4] {
         ("outside", [2.1875, 1.6875, 1.3125], [0.0; 3]),
         // A quarter of a unit in front of the face at y = −1, looking at an angle to a corner of the largest hole.
         ("close", [0.5, -1.25, 0.4375], [0.375, -1.0, 0.3125]),
-        // In the largest tunnel along y.
+        // The eye is in the largest tunnel along y.
         (
             "tunnel",
             [0.0625, -0.8125, 0.09375],

@@ -39,7 +39,7 @@ pub struct Point {
     pub family: String,
     /// Text beside the point.
     pub label: String,
-    /// Position on the horizontal axis.
+    /// Position on the horizontal axis: the error of the configuration.
     pub error: f64,
     /// Position on the vertical axis. A point without a cost becomes a dashed line at its error.
     pub cost: Option<f64>,

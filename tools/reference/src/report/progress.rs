@@ -1,4 +1,4 @@
-//! Progress bars.
+//! Progress bars for measurements that take minutes.
 
 use anyhow::Result;
 use indicatif::{ProgressBar, ProgressStyle};

@@ -8,7 +8,7 @@ use super::workspace;
 pub struct Provenance {
     /// The last commit that touched the measured source, followed by `-dirty` if there are uncommitted changes.
     pub commit: String,
-    /// Versions of the compiler and the compared libraries.
+    /// Versions of the compiler and of the libraries that are compared.
     pub tools: String,
 }
 

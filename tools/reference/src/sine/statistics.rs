@@ -39,7 +39,7 @@ pub struct Statistics {
     pub worst_input: u64,
     /// Whether the sine or the cosine has the largest error.
     pub worst_function: Function,
-    /// The largest |sin² + cos² − 1|.
+    /// The largest |sin² + cos² − 1| of an input's outputs.
     pub max_norm: f64,
     /// Number of inputs whose outputs differ, bit for bit, from those of their image in the first octant.
     pub asymmetric: u64,
@@ -118,7 +118,7 @@ impl Statistics {
         }
     }
 
-    /// Root of the mean squared error.
+    /// Root of the mean squared error, over both outputs of all inputs.
     pub fn rms(&self) -> f64 {
         (self.sum_of_squares / self.weight).sqrt()
     }

@@ -70,7 +70,7 @@ fn orientation(a: SnappedVertex, b: SnappedVertex, c: SnappedVertex) -> i128 {
 #[derive(Clone, Debug)]
 pub struct ExactTriangle {
     vertices: [SnappedVertex; 3],
-    /// `edges[i]` lies opposite to `vertices[i]`.
+    /// The edge `edges[i]` lies opposite to the vertex `vertices[i]`.
     edges: [Edge; 3],
     doubled_area: i128,
 }

@@ -73,7 +73,7 @@ impl Interpolated {
 /// Counts and errors of a scene. Errors are in steps of a channel.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Measured {
-    /// Triangles on the screen.
+    /// Triangles on the screen, whole or made by the clipper.
     pub triangles: u64,
     /// Triangles on the screen that the clipper made.
     pub clipped: u64,

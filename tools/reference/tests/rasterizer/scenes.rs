@@ -124,7 +124,7 @@ pub fn random_case(seed: u64) -> Case {
     let kinds = KINDS.len() as u64;
     let (kind, make) = KINDS[(seed % kinds) as usize];
     let (mut scene, camera) = make(&mut random);
-    // Fewer triangles in large pictures, to save time.
+    // Larger pictures get fewer triangles, to save time.
     let (size, most) = match seed / kinds % 10 {
         8 => (MIDDLE, 25),
         9 => (LARGE, 10),

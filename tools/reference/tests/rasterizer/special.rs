@@ -9,7 +9,7 @@ use crate::coverage::check;
 use crate::renderer::Renderer;
 use crate::scenes::{Case, LARGE, MIDDLE, ONE, SMALL, Scene};
 
-/// One step of Q2.14.
+/// One step of a coordinate in Q2.14.
 const STEP: f64 = 1.0 / ONE;
 
 fn case(name: &str, camera: Camera, triangles: &[[Vector; 3]]) -> Case {

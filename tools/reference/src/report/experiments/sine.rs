@@ -22,7 +22,7 @@ pub struct Row {
     pub kernel: String,
     /// Name of the kernel's line in the diagram.
     pub family: String,
-    /// Variant of the kernel.
+    /// Name of the kernel's variant, for instance the order of its series.
     pub config: String,
     /// Number format of the outputs.
     pub word_length: String,
@@ -32,7 +32,7 @@ pub struct Row {
     pub inputs: String,
     /// Number of measured inputs.
     pub samples: u64,
-    /// Largest error.
+    /// Largest error of the sine and the cosine.
     pub max_err: f64,
     /// Largest error in units of the last place of the outputs.
     pub max_ulp: f64,
@@ -44,7 +44,7 @@ pub struct Row {
     pub bias: f64,
     /// Function (sine or cosine) and input with the largest error.
     pub argmax: String,
-    /// Largest |sin² + cos² − 1|.
+    /// Largest |sin² + cos² − 1| of an input.
     pub max_norm: f64,
     /// Number of phases at which a symmetry of the circle does not hold bit for bit; `None` if the inputs are not phases.
     pub asymmetric: Option<u64>,

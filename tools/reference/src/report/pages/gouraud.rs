@@ -1,4 +1,4 @@
-//! The page `gouraud.md`.
+//! Builds the page `gouraud.md` of the report.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! The page `imu.md`.
+//! Builds the page `imu.md` of the report.
 
 use std::path::Path;
 

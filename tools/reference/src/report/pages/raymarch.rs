@@ -1,4 +1,4 @@
-//! The page `raymarch.md`.
+//! Builds the page `raymarch.md` of the report.
 
 mod rates;
 mod studies;

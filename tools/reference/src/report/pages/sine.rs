@@ -1,4 +1,4 @@
-//! The page `sine.md`.
+//! Builds the page `sine.md` of the report.
 
 use std::path::Path;
 

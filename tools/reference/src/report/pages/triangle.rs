@@ -1,4 +1,4 @@
-//! The page `triangle.md`.
+//! Builds the page `triangle.md` of the report.
 
 use std::path::Path;
 
@@ -30,7 +30,7 @@ pub fn rebuild(folder: &Path) -> Result<()> {
     write(&page, &folder.join("triangle.md"))
 }
 
-/// All tables of the page.
+/// The tables of the page: requirements, cycles, and the parts of the passes.
 pub fn table(rows: &[Row]) -> String {
     [requirements(rows), cycles(rows), parts(rows)].join("\n")
 }

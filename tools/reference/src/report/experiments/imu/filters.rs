@@ -15,13 +15,13 @@ pub struct FilterErrors {
     pub filter: String,
     /// Whether Glint uses the filter.
     pub shipped: bool,
-    /// Error at rest.
+    /// Error for a sensor at rest.
     pub rest: f64,
-    /// Error of a hand motion, mostly sideways.
+    /// Error during a hand motion that is mostly sideways.
     pub hand: f64,
-    /// Error of a hand motion, mostly up and down.
+    /// Error during a hand motion that is mostly up and down.
     pub nod: f64,
-    /// Error of a walk.
+    /// Error during a walk.
     pub walk: f64,
     /// Commit with which the filter was measured.
     pub commit: String,

@@ -41,7 +41,7 @@ pub struct Kernel {
 /// Result of a long motion on the soft core: the line of `imu-replay.csv`.
 #[derive(Serialize, Deserialize)]
 pub struct Replay {
-    /// Number of samples.
+    /// Number of replayed samples.
     pub samples: u64,
     /// Number of attitudes that differ from those of the host in any bit.
     pub differing: usize,

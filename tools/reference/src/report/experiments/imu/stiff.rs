@@ -19,7 +19,7 @@ pub struct StiffCase {
     pub other: String,
     /// Result of Glint's method.
     pub glint: String,
-    /// Outcome in words.
+    /// Short statement of the outcome.
     pub outcome: String,
 }
 

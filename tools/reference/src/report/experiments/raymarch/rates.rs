@@ -290,7 +290,7 @@ fn draw(
         last = Some(frame.view);
         bar.inc(1);
     }
-    // Only the slowest pose is drawn back to back.
+    // Only the slowest pose of the view is drawn back to back.
     if let Some(slowest) = rows.iter_mut().max_by_key(|row| row.cycles_alone) {
         let angles = [slowest.yaw, slowest.pitch, slowest.roll];
         let view = camera.turned(angles).view().map_err(anyhow::Error::msg)?;

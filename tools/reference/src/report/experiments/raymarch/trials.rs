@@ -29,9 +29,9 @@ pub struct Trial {
     pub undecided: usize,
     /// Median error of the depth, in world units.
     pub depth_median: Option<f64>,
-    /// 99th percentile of the depth's error.
+    /// 99th percentile of the errors of the depth, in world units.
     pub depth_p99: Option<f64>,
-    /// Largest error of the depth.
+    /// Largest error of the depth, in world units.
     pub depth_max: Option<f64>,
     /// Fraction of the pixels with the wrong face, among those where picture and reference both hit.
     pub wrong_faces: f64,
