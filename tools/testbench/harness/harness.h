@@ -1,6 +1,7 @@
-// One verilated design in a context of its own: what every library of a design has. See interface.h for the C interface around it.
+// One verilated design with a Verilator context of its own. Every library of a design contains this; interface.h adds the
+// C interface.
 //
-// MODEL is the model's class, MODEL_HEADER its header.
+// The build defines MODEL as the class of the verilated model, and MODEL_HEADER as the header of that class.
 
 #pragma once
 
@@ -15,13 +16,13 @@
 #include "verilated_vcd_c.h"
 #endif
 
-// Initial values of registers without a reset.
+// Initial values of registers that have no reset.
 enum class Registers { ZERO, NOISE };
 
 struct Harness {
     VerilatedContext context;
     MODEL top;
-    // Time units of an evaluation in waveforms.
+    // Time units by which each evaluation advances the time in the waveforms.
     uint64_t step = 1;
 #if VM_TRACE_VCD
     std::unique_ptr<VerilatedVcdC> trace;
@@ -42,7 +43,7 @@ struct Harness {
     Harness(const Harness &) = delete;
     Harness &operator=(const Harness &) = delete;
 
-    // Single-threaded model, with noise from the seed.
+    // Makes the model single-threaded, and sets the seed of the noise in registers without a reset.
     void prepare(uint32_t seed, Registers registers) {
         context.threads(1);
         context.randReset(registers == Registers::NOISE ? 2 : 0);
@@ -57,7 +58,8 @@ struct Harness {
 #endif
     }
 
-    // Starts writing waveforms, before the first evaluation. False in a library without waveforms.
+    // Starts writing waveforms to a file; call it before the first evaluation. Returns false when nothing can be written,
+    // as in a library that was built without waveforms.
     bool write_waveforms(const char *path) {
 #if VM_TRACE_VCD
         context.traceEverOn(true);

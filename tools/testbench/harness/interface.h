@@ -13,7 +13,7 @@
 #pragma GCC visibility push(default)
 extern "C" {
 
-// Changes with every change of this interface.
+// Version of this interface, to be increased with every change of the interface.
 uint32_t harness_version() { return 1; }
 
 const char *harness_description() {
@@ -22,7 +22,7 @@ const char *harness_description() {
         ;
 }
 
-// A design before its first evaluation.
+// Creates an instance of the design, before its first evaluation.
 INSTANCE *harness_new(uint32_t seed) { return new INSTANCE(seed); }
 void harness_free(INSTANCE *instance) { delete instance; }
 
@@ -36,10 +36,10 @@ void *harness_port(INSTANCE *instance, size_t port) {
     return nullptr;
 }
 
-// Lets the design follow its inputs, clocks among them.
+// Evaluates the design for its current inputs, which include the clocks.
 void harness_eval(INSTANCE *instance) { instance->eval(); }
 
-// As Harness::write_waveforms: 1 when it writes them.
+// Calls Harness::write_waveforms; returns 1 when waveforms are written, else 0.
 int harness_waveforms(INSTANCE *instance, const char *path) { return instance->write_waveforms(path); }
 
 }  // extern "C"

@@ -1,16 +1,16 @@
-//! Bits of a port.
+//! Values of ports as bits.
 
 use std::fmt;
 
-/// 32-bit words of the widest port.
+/// Number of 32-bit words that the widest port needs.
 const WORDS: usize = 16;
 
-/// Up to 512 bits; a narrower port uses the lowest.
+/// A value of up to 512 bits. The value of a narrower port is in the lowest bits.
 #[derive(Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub struct Bits([u32; WORDS]);
 
 impl Bits {
-    /// From 32-bit words, the lowest first; missing words are 0.
+    /// Makes a value from 32-bit words, the lowest first; missing words are 0.
     ///
     /// # Panics
     /// With more than 512 bits.
@@ -24,7 +24,7 @@ impl Bits {
         bits
     }
 
-    /// From at most 64 bytes, the lowest first; missing bytes are 0.
+    /// Makes a value from at most 64 bytes, the lowest first; missing bytes are 0.
     #[must_use]
     pub fn from_bytes(bytes: &[u8]) -> Self {
         let mut bits = Self::default();
@@ -36,7 +36,7 @@ impl Bits {
         bits
     }
 
-    /// As 32-bit words, the lowest first.
+    /// The value as 32-bit words, the lowest first.
     #[must_use]
     pub fn words(&self) -> &[u32; WORDS] {
         &self.0
@@ -50,10 +50,10 @@ impl Bits {
         cut && above.all(|&word| word == 0)
     }
 
-    /// The `width` bits from `low` on, at most 64.
+    /// Returns the `width` bits from bit `low` on as a number; `width` is at most 64.
     ///
     /// # Panics
-    /// When the field is wider, or not within 512 bits.
+    /// When `width` is above 64, or the bits are not within the 512 bits.
     #[must_use]
     pub(crate) fn field(&self, low: usize, width: usize) -> u64 {
         assert!(width <= 64 && low + width <= 32 * WORDS);
@@ -63,25 +63,25 @@ impl Bits {
         (three >> (low % 32)) as u64 & ((1_u128 << width) - 1) as u64
     }
 
-    /// The `width` bits from `low` on, of any width, in the lowest bits.
+    /// Returns the `width` bits from bit `low` on, moved to the lowest bits; `width` has no limit of its own.
     ///
     /// # Panics
-    /// When they are not within 512 bits.
+    /// When the bits are not within the 512 bits.
     #[must_use]
     pub fn slice(&self, low: usize, width: usize) -> Self {
         Self::default().with_words(0, self, low, width)
     }
 
-    /// Replaces the `width` bits from `low` on by the lowest ones of `bits`.
+    /// Replaces the `width` bits from bit `low` on by the `width` lowest bits of `bits`.
     ///
     /// # Panics
-    /// When they are not within 512 bits.
+    /// When the bits are not within the 512 bits.
     #[must_use]
     pub fn with_slice(self, low: usize, width: usize, bits: Self) -> Self {
         self.with_words(low, &bits, 0, width)
     }
 
-    /// Replaces the `width` bits from `low` on by those of `source` from `from` on.
+    /// Replaces the `width` bits from bit `low` on by the `width` bits of `source` from its bit `from` on.
     fn with_words(mut self, low: usize, source: &Self, from: usize, width: usize) -> Self {
         let mut done = 0;
         while done < width {
@@ -93,20 +93,20 @@ impl Bits {
         self
     }
 
-    /// All bits as a number of at most 64 bits.
+    /// Returns all bits as one number.
     ///
     /// # Panics
-    /// When it does not fit 64 bits.
+    /// When the number does not fit 64 bits.
     #[must_use]
     pub fn number(&self) -> u64 {
         assert!(self.fits(64), "{self:?} in 64 bits");
         self.field(0, 64)
     }
 
-    /// The element `index` of a value made by [`pack`](Self::pack).
+    /// Returns the field number `index` of a value that [`pack`](Self::pack) made from fields of `width` bits.
     ///
     /// # Panics
-    /// Beyond 512 bits, or for a `width` above 64.
+    /// When the field is not within the 512 bits, or `width` is above 64.
     #[must_use]
     pub fn element(&self, width: usize, index: usize) -> u64 {
         self.field(width * index, width)
@@ -115,7 +115,7 @@ impl Bits {
     /// Concatenates fields of the same `width`, the first in the lowest bits.
     ///
     /// # Panics
-    /// With more than 512 bits, or a value that does not fit.
+    /// When the fields have more than 512 bits, or one of `values` does not fit `width` bits.
     #[must_use]
     pub fn pack(width: usize, values: impl IntoIterator<Item: Into<i128>>) -> Self {
         let lows = (0..).step_by(width);
@@ -125,17 +125,17 @@ impl Bits {
             })
     }
 
-    /// The `width` bits from `low` on as a two's complement number.
+    /// Returns the `width` bits from bit `low` on as a two's complement number.
     ///
     /// # Panics
-    /// As [`field`](Self::field), and for no bits.
+    /// As [`field`](Self::field), and when `width` is 0.
     #[must_use]
     pub(crate) fn signed(&self, low: usize, width: usize) -> i64 {
         let unused = 64 - width;
         (self.field(low, width) << unused) as i64 >> unused
     }
 
-    /// Replaces the `width` bits from `low` on by `value`, in two's complement where it is negative.
+    /// Replaces the `width` bits from bit `low` on by `value`, in two's complement if `value` is negative.
     ///
     /// # Panics
     /// When the field is not within 512 bits, or `value` does not fit, signed or unsigned.
@@ -152,7 +152,7 @@ impl Bits {
     }
 }
 
-/// Whether `width` bits hold a number, signed or unsigned.
+/// Whether `width` bits can hold the number `value`, either as a signed or as an unsigned number.
 pub(crate) fn holds(width: usize, value: i128) -> bool {
     width > 126 || value >= -(1 << (width - 1)) && value < 1 << width
 }

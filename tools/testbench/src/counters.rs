@@ -1,16 +1,17 @@
-//! Counters of a module's events: one packed struct with each counter's increment per clock.
+//! Counters of a module's events. The module has an output port with a packed struct, whose members are the increments of
+//! the counters in the current clock.
 
 use crate::{Bits, Module, Port};
 
-/// Sums of a port's members, by name.
+/// Sums up the members of such a port over the clocks, by the members' names.
 pub struct Counters {
     events: Port,
-    /// Name and part of each member, and its sum.
+    /// For each member: its name, its bits of the port, and its sum so far.
     counts: Vec<(String, Port, u64)>,
 }
 
 impl Counters {
-    /// Counters of the struct on the port `name`, starting at 0.
+    /// Creates the counters of the struct on the port `name`; they start at 0.
     ///
     /// # Panics
     /// When there is no such port.
@@ -27,7 +28,7 @@ impl Counters {
         }
     }
 
-    /// Adds the increments of a clock; call between [`Module::settle`] and [`Module::clock`].
+    /// Adds the increments of the current clock; call it between [`Module::settle`] and [`Module::clock`].
     pub fn sample(&mut self, module: &Module) {
         let events = module.get(self.events);
         if events == Bits::default() {
@@ -38,7 +39,7 @@ impl Counters {
         }
     }
 
-    /// The count of a member.
+    /// Returns the sum of a member over all sampled clocks.
     ///
     /// # Panics
     /// When there is no such member.

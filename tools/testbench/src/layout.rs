@@ -14,13 +14,13 @@ pub struct Layout {
     width: usize,
 }
 
-/// A type as described by `gateware/verilate/description.py`.
+/// A type in the JSON description that `gateware/verilate/description.py` writes.
 #[derive(Debug, Deserialize)]
 #[serde(untagged)]
 enum Shape {
     Array {
         count: usize,
-        /// Index of the element in the lowest bits.
+        /// Lowest index; its element is in the lowest bits.
         lowest: usize,
         element: Layout,
     },
@@ -54,14 +54,14 @@ impl From<Shape> for Layout {
     }
 }
 
-/// Part of a type: its bits from `low` on.
+/// Part of a value of a packed type: the bits from `low` on, which have the type `layout`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Part<'a> {
     pub low: usize,
     pub layout: &'a Layout,
 }
 
-/// A path without a part, or a value outside the part's range.
+/// Error of an access to a part of a packed value: the path names no part, or the value does not fit the part.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum LayoutError {
@@ -72,9 +72,9 @@ pub enum LayoutError {
         path: String,
         /// The unknown name.
         member: String,
-        /// The structure's type.
+        /// Name of the structure's type.
         structure: String,
-        /// Its members.
+        /// Names of the structure's members.
         members: Vec<String>,
     },
     /// An index outside of an array.
@@ -89,17 +89,17 @@ pub enum LayoutError {
         /// The highest index.
         highest: usize,
     },
-    /// A member or an index of a type that has none.
+    /// A path that continues with a member or an index where the type has none.
     #[error("{path}: no `{rest}` in {found}")]
     Leaf {
         /// The whole path.
         path: String,
-        /// Text after the part that ends the path.
+        /// Rest of the path, which the type `found` does not have.
         rest: String,
-        /// The type of that part.
+        /// Description of the type at that place of the path.
         found: String,
     },
-    /// A value outside the part's range.
+    /// A value that does not fit the bits of its part.
     #[error("{path}: {value} does not fit {width} bits")]
     Value {
         /// The path.
@@ -116,19 +116,19 @@ pub enum LayoutError {
         path: String,
         /// The unknown name.
         name: String,
-        /// The type of the part.
+        /// Description of the part's type.
         found: String,
-        /// Values of that type; empty if it is not an enumeration.
+        /// Names of that type's values; empty if the type is not an enumeration.
         values: Vec<String>,
     },
-    /// A list whose length differs from its array's.
+    /// A list of values whose length differs from that of the array to be set.
     #[error("{path}: {found} values for {found_in}")]
     Length {
         /// The path.
         path: String,
-        /// Values in the list.
+        /// Number of values in the list.
         found: usize,
-        /// The type of the part.
+        /// Description of the part's type.
         found_in: String,
     },
 }
@@ -140,7 +140,7 @@ impl Layout {
         self.width
     }
 
-    /// The type of a part.
+    /// Returns the type of the part at `path`.
     ///
     /// # Errors
     /// When the path names no part.
@@ -167,7 +167,7 @@ impl Layout {
         Ok(part)
     }
 
-    /// Names of a structure's members, the highest first; empty for another type.
+    /// Names of a structure's members, the one in the highest bits first; empty for any other type.
     pub(crate) fn member_names(&self) -> Vec<String> {
         match &*self.shape {
             Shape::Structure { members, .. } => {
@@ -177,7 +177,7 @@ impl Layout {
         }
     }
 
-    /// Elements of an array, the lowest index first.
+    /// Number of elements of an array, and the type of an element; `None` for any other type.
     pub(crate) fn elements(&self) -> Option<(usize, &Self)> {
         match &*self.shape {
             Shape::Array { count, element, .. } => Some((*count, element)),
@@ -185,7 +185,7 @@ impl Layout {
         }
     }
 
-    /// Names and values of an enumeration.
+    /// Names and values of an enumeration; `None` for any other type.
     pub(crate) fn values(&self) -> Option<&BTreeMap<String, u64>> {
         match &*self.shape {
             Shape::Enumeration { values, .. } => Some(values),
@@ -193,7 +193,7 @@ impl Layout {
         }
     }
 
-    /// Description of the type, for messages.
+    /// Describes the type for error messages.
     pub(crate) fn describe(&self) -> String {
         match &*self.shape {
             Shape::Array { count, element, .. } => {
@@ -206,7 +206,8 @@ impl Layout {
 }
 
 impl Part<'_> {
-    /// Steps into the member or element at the start of `rest`; returns the remaining path.
+    /// Narrows this part to the member or element at the start of `rest`, and returns the remaining path. `path` is the
+    /// whole path, for errors.
     fn enter<'p>(&mut self, path: &str, rest: &'p str) -> Result<&'p str, LayoutError> {
         match (&*self.layout.shape, rest.strip_prefix('[')) {
             (

@@ -1,10 +1,10 @@
 //! Verilated designs, their ports by name, and both ends of their streams.
 //!
-//! A [`Module`] is one instance of one module, with ports by name and a clock. A [`Source`] and a [`Sink`] speak its
-//! streams (valid/ready), stall at random, and hold both sides to the contract: a payload does not change while it is
-//! valid and not taken.
+//! A [`Module`] is one instance of one module, with ports by name and a clock. A [`Source`] sends to an input stream of
+//! the module (valid/ready), a [`Sink`] takes from an output stream. Both stall at random. A payload must not change
+//! while it is valid and not taken: the source obeys this rule, and the sink checks it.
 //!
-//! `python gateware/tests/run.py --models` builds the modules; `cargo xtask test` sees to it.
+//! `python gateware/tests/run.py --models` builds the modules; `cargo xtask test` runs that command.
 
 mod bits;
 mod counters;

@@ -1,4 +1,4 @@
-//! The shared library of a verilated design: `tools/testbench/harness/interface.h` as safe Rust.
+//! The shared library of a verilated design: a safe interface to the functions of `tools/testbench/harness/interface.h`.
 
 use std::collections::BTreeMap;
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
@@ -65,7 +65,7 @@ pub(crate) struct Description {
     pub types: BTreeMap<String, Layout>,
 }
 
-/// Where a port is stored.
+/// Storage of a port in the verilated model.
 #[derive(Clone, Copy)]
 struct Slot {
     address: NonNull<u8>,
@@ -79,7 +79,7 @@ impl Slot {
         let width = described.layout.width();
         Self {
             address,
-            // Verilator's storage: the smallest integer type, or whole words.
+            // Verilator stores a port in the smallest integer type that holds it, or above 64 bits in whole 32-bit words.
             bytes: match width {
                 0..=8 => 1,
                 9..=16 => 2,
@@ -101,7 +101,7 @@ pub struct Instance {
     free: unsafe extern "C" fn(*mut c_void),
     eval: unsafe extern "C" fn(*mut c_void),
     path: PathBuf,
-    // Last field: its library is unloaded after everything that lives in it.
+    // The last field, so that the library is unloaded after the other fields are dropped, which point into it.
     library: Library,
 }
 
@@ -109,7 +109,7 @@ pub struct Instance {
 unsafe impl Send for Instance {}
 
 impl Instance {
-    /// Loads a library and makes a design before its first evaluation.
+    /// Loads a library and creates an instance of its design, before the first evaluation.
     ///
     /// # Errors
     /// When the file is missing, or is not a library of this version of the harness.
@@ -179,7 +179,7 @@ impl Instance {
     /// Looks up a function of the library outside the common interface.
     ///
     /// # Errors
-    /// When it has none of that name.
+    /// When the library has no function of that name.
     ///
     /// # Safety
     /// `T` must be the function's type, and the function must not be called after the instance has been dropped.
@@ -205,7 +205,7 @@ impl Instance {
     /// Number of the port `name`.
     ///
     /// # Panics
-    /// When there is none; lists the names.
+    /// When there is no such port; the message lists the names of all ports.
     #[must_use]
     pub fn find(&self, name: &str) -> usize {
         let ports = &self.description.ports;
@@ -216,10 +216,10 @@ impl Instance {
         })
     }
 
-    /// A port of at most 64 bits, as of the last evaluation.
+    /// Returns the value of a port of at most 64 bits after the last evaluation.
     ///
     /// # Panics
-    /// When there is no such port, or it is wider.
+    /// When there is no such port, or the port is wider.
     #[must_use]
     pub fn value(&self, port: usize) -> u64 {
         let bytes = self.bytes(port);
@@ -254,7 +254,7 @@ impl Instance {
         }
     }
 
-    /// A port, as of the last evaluation.
+    /// Returns the value of a port after the last evaluation.
     #[must_use]
     pub fn bits(&self, port: usize) -> Bits {
         Bits::from_bytes(self.bytes(port))
@@ -280,13 +280,14 @@ impl Instance {
         assert!(fits, "{value:?} in the {width} bits of {}", name());
     }
 
-    /// Evaluates the design for its current inputs, clocks among them.
+    /// Evaluates the design for its current inputs, which include the clocks.
     pub fn eval(&mut self) {
         // SAFETY: the handle belongs to an instance.
         unsafe { (self.eval)(self.handle.as_ptr()) }
     }
 
-    /// Starts writing waveforms to a file, before the first evaluation. False for a library without waveforms.
+    /// Starts writing waveforms to a file; call it before the first evaluation. Returns `false` when nothing can be
+    /// written, as with a library that was built without waveforms.
     ///
     /// # Errors
     /// When the library lacks the function.
@@ -303,15 +304,14 @@ impl Instance {
         }
     }
 
-    /// The bytes of a port, little-endian.
+    /// The storage of a port, little-endian.
     fn bytes(&self, port: usize) -> &[u8] {
         let Slot { address, bytes, .. } = self.ports[port];
-        // SAFETY: the address is valid for this many bytes as long as the instance lives, and writes need `&mut
-        // self`.
+        // SAFETY: the address is valid for this many bytes as long as the instance lives, and writes need `&mut self`.
         unsafe { slice::from_raw_parts(address.as_ptr(), bytes) }
     }
 
-    /// The bytes of a port, little-endian, to be changed.
+    /// The storage of a port for changes, little-endian.
     fn bytes_mut(&mut self, port: usize) -> &mut [u8] {
         let Slot { address, bytes, .. } = self.ports[port];
         // SAFETY: as in `bytes`; `&mut self` excludes other access.

@@ -1,4 +1,4 @@
-//! Model of the memory behind LiteDRAM's native ports, 16 bytes a word.
+//! Model of the memory behind LiteDRAM's native ports, in words of 16 bytes.
 
 use std::collections::VecDeque;
 
@@ -10,7 +10,7 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// A memory of `words` words, filled with 0xa5.
+    /// Creates a memory of `words` words; each byte is 0xa5.
     #[must_use]
     pub fn new(words: usize) -> Self {
         Self {
@@ -18,20 +18,20 @@ impl Memory {
         }
     }
 
-    /// Writes bytes from the word `address` on.
+    /// Writes bytes from the start of the word number `address` on.
     ///
     /// # Panics
-    /// When they do not end within the memory.
+    /// When the bytes do not end within the memory.
     pub fn write(&mut self, address: u32, bytes: &[u8]) {
         for (i, chunk) in bytes.chunks(16).enumerate() {
             self.words[address as usize + i][..chunk.len()].copy_from_slice(chunk);
         }
     }
 
-    /// A word.
+    /// Returns the word number `address`.
     ///
     /// # Panics
-    /// Beyond the memory.
+    /// When the address is beyond the memory.
     #[must_use]
     pub fn word(&self, address: u32) -> Bits {
         let bytes = self.words[address as usize];
@@ -45,10 +45,10 @@ impl Memory {
         )
     }
 
-    /// Writes the bytes of a word whose bit is set in `strobe`.
+    /// Writes those bytes of the word number `address` whose bit is set in `strobe`.
     ///
     /// # Panics
-    /// Beyond the memory.
+    /// When the address is beyond the memory.
     pub fn store(&mut self, address: u32, data: Bits, strobe: u16) {
         for (i, byte) in self.words[address as usize].iter_mut().enumerate() {
             if strobe >> i & 1 == 1 {
@@ -57,10 +57,10 @@ impl Memory {
         }
     }
 
-    /// The entry `index` of 32 bits from the word `address` on.
+    /// Returns number `index` of the 32-bit entries that start at the word number `address`.
     ///
     /// # Panics
-    /// Beyond the memory.
+    /// When the address is beyond the memory.
     #[must_use]
     pub fn entry(&self, address: u32, index: u32) -> u32 {
         self.word(address + index / 4)
@@ -68,25 +68,25 @@ impl Memory {
     }
 }
 
-/// Default latency, in clocks from a command to its data.
+/// Default of `latency` of a read port, in clocks.
 const LATENCY: u64 = 12;
 
-/// The memory's side of a read port: the structs `NAME_read_request` and `NAME_read_answer`. Data cannot be held back
-/// by the module.
+/// The memory's side of a read port: the structs `NAME_read_request` and `NAME_read_answer` of the module. The module
+/// cannot hold back data.
 pub struct ReadPort {
     cmd: [Port; 3],
     rdata: [Port; 2],
-    /// Words under way: the cycle from which each may come, and its address.
+    /// Words that were requested and not delivered: the cycle from which each may be delivered, and its address.
     queue: VecDeque<(u64, u32)>,
     stalls: Stalls,
-    /// Least clocks from a command to its data.
+    /// Lowest number of clocks from a command to its data.
     pub latency: u64,
-    /// Count of delivered words.
+    /// Number of words delivered so far.
     pub given: u64,
 }
 
 impl ReadPort {
-    /// The port `name`.
+    /// Creates the memory's side of the port `name`.
     #[must_use]
     pub fn new(module: &Module, name: &str, stalls: Stalls) -> Self {
         let request = |member| module.port(&format!("{name}_read_request.{member}"));
@@ -105,7 +105,7 @@ impl ReadPort {
         }
     }
 
-    /// Drives the port: a due word if any, and ready or a stall.
+    /// Drives the port: delivers a word if one is due, and is ready for a command or stalls.
     pub fn drive(&mut self, module: &mut Module, memory: &Memory) {
         let stalled = self.stalls.next_stalled();
         module.set(self.cmd[1], u64::from(!stalled));
@@ -121,7 +121,7 @@ impl ReadPort {
         }
     }
 
-    /// Accepts a valid command.
+    /// Takes the command of this clock, if there is one.
     pub fn sample(&mut self, module: &Module) {
         if module.is_high(self.cmd[0]) && module.is_high(self.cmd[1]) {
             let address = module.value(self.cmd[2]) as u32;
@@ -131,21 +131,21 @@ impl ReadPort {
     }
 }
 
-/// The memory's side of a write port: the structs `NAME_write_request` and `NAME_write_answer`. The memory takes the
-/// data of a command in any later clock, without looking at valid.
+/// The memory's side of a write port: the structs `NAME_write_request` and `NAME_write_answer` of the module. The memory
+/// takes the data of a command in any later clock, when the data must be valid.
 pub struct WritePort {
     cmd: [Port; 3],
     wdata: [Port; 4],
-    /// Commands whose data have not been taken.
+    /// Addresses of the commands whose data have not been taken.
     owed: VecDeque<u32>,
     takes: bool,
     stalls: Stalls,
-    /// Count of written words.
+    /// Number of words written so far.
     pub written: u64,
 }
 
 impl WritePort {
-    /// The port `name`.
+    /// Creates the memory's side of the port `name`.
     #[must_use]
     pub fn new(module: &Module, name: &str, stalls: Stalls) -> Self {
         let request = |member| module.port(&format!("{name}_write_request.{member}"));
@@ -169,7 +169,7 @@ impl WritePort {
         }
     }
 
-    /// Drives the port: ready for a command and for data, or stalls.
+    /// Drives the port: is ready for a command or stalls, and takes the data of an earlier command or stalls.
     pub fn drive(&mut self, module: &mut Module) {
         let stalled = self.stalls.next_stalled();
         module.set(self.cmd[1], u64::from(!stalled));
@@ -177,7 +177,7 @@ impl WritePort {
         module.set(self.wdata[1], u64::from(self.takes));
     }
 
-    /// Accepts a valid command and the data of the oldest one.
+    /// Takes the command of this clock, if there is one, and writes the data that `drive` announced to take.
     ///
     /// # Panics
     /// When the data of a command are missing, or the address is beyond the memory.

@@ -11,14 +11,14 @@ pub struct Port {
     index: usize,
     pub(crate) low: usize,
     pub(crate) width: usize,
-    /// Whether the bits of the port below and above the part do not exist.
+    /// Whether this is the whole port, with no other bits below or above.
     whole: bool,
 }
 
 /// One instance of a module, with a clock `clk` and a reset `rst`.
 pub struct Module {
     instance: Instance,
-    /// The port `clk`; `None` for a module with other clocks, which its bench drives.
+    /// The port `clk`; `None` for a module with other clocks, which the test bench drives itself.
     clock: Option<Port>,
     cycles: u64,
 }
@@ -42,8 +42,8 @@ impl Module {
         module
     }
 
-    /// Loads the module `name` before its first evaluation, with all inputs low. For a bench that drives clocks and
-    /// resets: the first [`settle`](Self::settle) evaluates the module.
+    /// Loads the module `name` with all inputs low, and does not evaluate it, for a test bench that drives clocks and
+    /// resets itself. The first [`settle`](Self::settle) evaluates the module.
     ///
     /// # Panics
     /// When the module has not been built.
@@ -69,16 +69,16 @@ impl Module {
         }
     }
 
-    /// A port, or part of one: `busy`, `status.busy`, `origins[2]`. See [`Record`] for paths.
+    /// Finds a port, or part of one, by its path: `busy`, `status.busy`, `origins[2]`. See [`Record`] for paths.
     ///
     /// # Panics
-    /// When there is none; lists the names.
+    /// When there is none; the message lists the known names.
     #[must_use]
     pub fn port(&self, path: &str) -> Port {
         self.part(path).0
     }
 
-    /// A port or a part of one, with its type.
+    /// Finds a port, or part of one, and its type.
     fn part(&self, path: &str) -> (Port, &Layout) {
         let (name, rest) = split(path);
         let index = self.instance.find(name);
@@ -94,10 +94,10 @@ impl Module {
         (port, part.layout)
     }
 
-    /// A type of a package by its name, as `raymarch_pkg::end_t`.
+    /// Finds a type of a SystemVerilog package by its name, such as `raymarch_pkg::end_t`.
     ///
     /// # Panics
-    /// When there is none; lists the names.
+    /// When there is none; the message lists the known names.
     #[must_use]
     pub fn packed_type(&self, name: &str) -> &Layout {
         let types = &self.instance.description().types;
@@ -107,7 +107,7 @@ impl Module {
         })
     }
 
-    /// A record of the type of a port or a part of one, all zero.
+    /// Makes a record, all zero, of the type of a port or of part of one.
     ///
     /// # Panics
     /// When there is no such part.
@@ -116,8 +116,7 @@ impl Module {
         self.part(path).1.record()
     }
 
-    /// Drives an input, or part of one, with a number: `stereo`, `solid.levels`, `origins[0][2]`. See [`Record`] for
-    /// paths.
+    /// Drives an input, or part of one, with a number: `stereo`, `solid.levels`, `origins[0][2]`. See [`Record`] for paths.
     ///
     /// # Panics
     /// When there is no such part, or the number does not fit.
@@ -166,7 +165,7 @@ impl Module {
         self.set(self.port(path), record);
     }
 
-    /// Drives an input with the lowest bits of a value.
+    /// Drives an input, or part of one, with a value.
     ///
     /// # Panics
     /// When the port is an output, or the value does not fit.
@@ -186,7 +185,7 @@ impl Module {
         self.instance.set_bits(index, value);
     }
 
-    /// Drives an input of at most 64 bits.
+    /// Drives an input, or part of one, of at most 64 bits.
     ///
     /// # Panics
     /// When the port is an output, or the value does not fit.
@@ -231,7 +230,7 @@ impl Module {
         self.eval_with_clock(0);
     }
 
-    /// One clock edge: takes the current inputs and updates the outputs.
+    /// Advances by one clock: the rising edge takes the current inputs, and the outputs follow.
     pub fn clock(&mut self) {
         self.eval_with_clock(0);
         self.eval_with_clock(1);
@@ -246,14 +245,14 @@ impl Module {
         self.instance.eval();
     }
 
-    /// Number of clock edges.
+    /// Number of clocks so far.
     #[must_use]
     pub fn cycles(&self) -> u64 {
         self.cycles
     }
 }
 
-/// Splits a path into port and rest.
+/// Splits a path into the name of the port and the path within the port.
 fn split(path: &str) -> (&str, &str) {
     path.split_at(path.find(['.', '[']).unwrap_or(path.len()))
 }

@@ -1,4 +1,4 @@
-//! Ports of the raymarcher's modules: frame constants, rays, ends and pixels.
+//! Values on the ports of the raymarcher's modules: frame constants, rays, ends of rays, and pixels.
 
 use crate::{Bits, Layout, Module, Record};
 use glint_core::field::{Solid, Surface};
@@ -6,21 +6,21 @@ use glint_model::raymarch::{
     Cone, FieldSetup, Lights, Palette, Ray, RayResult, State, paint, rgb565,
 };
 
-/// A pixel's place: parity of the band, line in the band, column.
+/// Place of a pixel, as in the member `place` of a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Place {
-    /// Parity of the band.
+    /// Whether the number of the band is odd.
     pub odd: bool,
     /// Line in the band.
     pub line: u32,
     /// Column.
     pub column: u32,
-    /// Eye: 0 for the left or only one.
+    /// Eye: 0 is the left eye or the only one, 1 the right eye.
     pub eye: usize,
 }
 
 impl Place {
-    /// The place of a cone: its eye and number.
+    /// The place that stands for a cone: line and column hold the cone's number.
     pub fn of_cone(eye: usize, number: u32) -> Self {
         Self {
             odd: false,
@@ -47,12 +47,12 @@ impl Place {
     }
 }
 
-/// A `ray_t` before its first step.
+/// Packs a `ray_t` before the ray's first step.
 pub fn ray(layout: &Layout, place: Place, ray: &Ray) -> Bits {
     ray_record(layout, place, ray).bits()
 }
 
-/// A `ray_t` of a cone.
+/// Packs the `ray_t` of a cone.
 pub fn cone(layout: &Layout, place: Place, cone: &Cone) -> Bits {
     let record = ray_record(layout, place, &cone.ray);
     record.with("spread", cone.spread).bits()
@@ -67,15 +67,15 @@ fn ray_record(layout: &Layout, place: Place, ray: &Ray) -> Record {
     record
 }
 
-/// Result of a ray; its name in `state_t`.
+/// Result of a ray; the names in `state_t` are in `NAMES`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Kind {
-    /// Far limit reached.
+    /// The ray reached the far limit.
     #[default]
     Miss,
-    /// Surface reached.
+    /// The ray reached a surface.
     Hit,
-    /// Step limit reached.
+    /// The ray reached the limit of steps.
     Undecided,
 }
 
@@ -98,27 +98,27 @@ impl Kind {
     }
 }
 
-/// End of a ray or cone. Unused members are 0: surface and slope without a hit, t of an undecided ray, the face of a
-/// pure sphere, the direction without a sphere.
+/// End of a ray or cone. Members without a meaning are 0: `surface` and `slope` without a hit, `t` of an undecided ray,
+/// `face` of a pure sphere, `direction` without a sphere.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct End {
     /// The result.
     pub state: Kind,
     /// Whether the surface is a sphere.
     pub round: bool,
-    /// Number of the sphere, or axis and sign of the face.
+    /// Number of the sphere if `round`, else axis and sign of the face.
     pub surface: u64,
     /// Axis and sign of the face of a fillet.
     pub face: u64,
     /// Share of the sphere in a fillet, u0.8.
     pub share: u64,
-    /// Distance, u11.12; of a miss, the sine above the horizon in 8 bits.
+    /// Distance, u11.12; after a miss, the sine of the direction's angle above the horizon in 8 bits.
     pub t: u64,
-    /// Evaluations, at most 255.
+    /// Number of evaluations, at most 255.
     pub steps: u64,
     /// Length of the ray's direction.
     pub length: u64,
-    /// Distance from t to the face.
+    /// Distance of the face from the point at `t`.
     pub gap: u64,
     /// Slope of the ray towards the face.
     pub slope: u64,
@@ -127,7 +127,7 @@ pub struct End {
 }
 
 impl End {
-    /// End of a ray in the model.
+    /// Converts the result of one ray in the model to the end that the module must produce.
     #[must_use]
     pub fn expected(ray: &Ray, outcome: &RayResult) -> Self {
         let (state, surface, t) = match outcome.state {
@@ -156,7 +156,8 @@ impl End {
         }
     }
 
-    /// Expected end of a cone: distance and evaluations only.
+    /// Converts the model's distance and evaluations of a cone to the end that the module must produce; the other
+    /// members, except the length, are 0.
     pub fn expected_of_cone(cone: &Cone, (t, steps): (u32, u32)) -> Self {
         Self {
             t: t.into(),
@@ -166,7 +167,7 @@ impl End {
         }
     }
 
-    /// Place and end of a cone from an `end_t`.
+    /// Unpacks the place and the end of a cone from an `end_t`.
     #[must_use]
     pub fn of_cone(record: &Record) -> (Place, Self) {
         let end = Self {
@@ -178,7 +179,7 @@ impl End {
         (Place::of(record), end)
     }
 
-    /// Place and end of a ray from an `end_t`.
+    /// Unpacks the place and the end of a ray from an `end_t`, with 0 in members without a meaning.
     #[must_use]
     pub fn of(record: &Record) -> (Place, Self) {
         let state = Kind::of(record);
@@ -261,7 +262,7 @@ fn set_spheres(module: &mut Module, setup: &FieldSetup, lights: &Lights) {
     module.drive("sphere_write", 0);
 }
 
-/// Sets the lights on spheres.
+/// Drives the lights on spheres, and fills the tables of spheres.
 pub fn set_lights(module: &mut Module, setup: &FieldSetup, lights: &Lights) {
     let mut record = module.record("lights");
     record.set("ambient", colour(lights.ambient));
@@ -280,7 +281,7 @@ fn drive_eyes(module: &mut Module, name: &str, [left, right]: [[impl Into<i128>;
     module.drive_all(&format!("{name}[1]"), right);
 }
 
-/// Drives a frame's constants for a lane.
+/// Drives the frame constants of a lane.
 pub fn set_lane(module: &mut Module, setup: &FieldSetup) {
     let tuning = &setup.tuning;
     let record = module
@@ -297,7 +298,7 @@ pub fn set_lane(module: &mut Module, setup: &FieldSetup) {
     set_spheres(module, setup, &Palette::default().lights);
 }
 
-/// Drives a frame's constants for the generator, with bands of `band_lines` lines.
+/// Drives the frame constants of the ray generator, with bands of `band_lines` lines.
 pub fn set_generator(module: &mut Module, setup: &FieldSetup, band_lines: u32) {
     for (name, value) in [
         ("last_column", setup.width - 1),
@@ -309,7 +310,7 @@ pub fn set_generator(module: &mut Module, setup: &FieldSetup, band_lines: u32) {
     set_rays(module, setup);
 }
 
-/// Drives the constants of the rays' starts.
+/// Drives the frame constants that the starts of the rays depend on.
 pub fn set_rays(module: &mut Module, setup: &FieldSetup) {
     let eyes = setup.eyes;
     module.drive("stereo", setup.stereo.is_some());
@@ -321,7 +322,8 @@ pub fn set_rays(module: &mut Module, setup: &FieldSetup) {
     drive_eyes(module, "origins", eyes.map(|eye| eye.origin));
 }
 
-/// Drives the offset of a block's middle and the spread of its cone.
+/// Drives the constants of cones: on the port `offset`, the offset of a block's middle from its first pixel; on the port
+/// `spread`, the spread of a cone.
 pub fn set_blocks(module: &mut Module, setup: &FieldSetup, offset: &str, spread: &str) {
     let cones = setup.cones.map(|cones| (cones.offset, cones.spread));
     let (middle, widest) = cones.unwrap_or_default();
@@ -329,7 +331,7 @@ pub fn set_blocks(module: &mut Module, setup: &FieldSetup, offset: &str, spread:
     module.drive(spread, widest);
 }
 
-/// Packs an `end_t`.
+/// Packs the `end_t` of a ray from the model's result.
 pub fn end(layout: &Layout, place: Place, ray: &Ray, outcome: &RayResult) -> Bits {
     let end = End::expected(ray, outcome);
     let mut record = layout.record();
@@ -376,7 +378,7 @@ pub fn set_paint(module: &mut Module, setup: &FieldSetup, palette: &Palette) {
     module.set(write, 0);
 }
 
-/// A pixel as a group of the band buffer.
+/// A pixel in the form of a group of eight pixels, as the band buffer takes it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pixel {
     /// The eye.
@@ -385,18 +387,18 @@ pub struct Pixel {
     pub row: u64,
     /// Line in the band.
     pub line: u64,
-    /// Column of eight pixels.
+    /// Column of the group, in units of eight pixels.
     pub column: u64,
-    /// Mask of the one pixel.
+    /// Mask of the group's pixels, with the one pixel's bit set.
     pub mask: u64,
     /// Depth code.
     pub code: u64,
-    /// RGB565 colour, or the luminance twice.
+    /// RGB565 colour; with two eyes, the luminance in both bytes.
     pub colour: u64,
 }
 
 impl Pixel {
-    /// Names of the numbers that [`from`](Self::from) takes: the members of a stream of pixels.
+    /// Names of the numbers that [`from`](Self::from) takes, which are the payload of a stream of pixels.
     pub const PAYLOAD: [&str; 7] = ["eye", "row", "line", "column", "mask", "code", "colour"];
 }
 
@@ -414,7 +416,7 @@ impl From<[u64; 7]> for Pixel {
     }
 }
 
-/// Expected pixel of an end.
+/// Paints the model's result of one ray: the pixel that the paint module must produce.
 pub fn pixel(
     setup: &FieldSetup,
     palette: &Palette,

@@ -16,16 +16,16 @@ pub struct Record {
 }
 
 impl Layout {
-    /// A record of this type, all zero.
+    /// Makes a record of this type, all zero.
     #[must_use]
     pub fn record(&self) -> Record {
         self.record_of(Bits::default())
     }
 
-    /// A record of this type with the given bits.
+    /// Makes a record of this type from its bits.
     ///
     /// # Panics
-    /// With bits above the type's width.
+    /// When a bit above the type's width is set.
     #[must_use]
     pub fn record_of(&self, bits: Bits) -> Record {
         Record::new(self.clone(), bits)
@@ -111,7 +111,7 @@ impl Record {
         result.unwrap_or_else(|error| panic!("{error}"));
     }
 
-    /// The part as an unsigned number of at most 64 bits.
+    /// Returns a part of at most 64 bits as an unsigned number.
     ///
     /// # Panics
     /// When there is no such part, or a wider one.
@@ -121,7 +121,7 @@ impl Record {
         self.bits.field(part.low, part.layout.width())
     }
 
-    /// The part as a two's complement number of at most 64 bits.
+    /// Returns a part of at most 64 bits as a two's complement number.
     ///
     /// # Panics
     /// When there is no such part, or a wider one.
@@ -142,7 +142,7 @@ impl Record {
         self.bits.field(part.low, 1) != 0
     }
 
-    /// Name of an enumeration's value; `None` for a number without a name.
+    /// Returns the name of an enumeration's value; `None` for a number without a name.
     ///
     /// # Panics
     /// When there is no such part, or it is no enumeration.
@@ -156,7 +156,7 @@ impl Record {
         found.map(|(name, _)| name.as_str())
     }
 
-    /// A part as a record of its own.
+    /// Returns a part as a record of its own.
     ///
     /// # Panics
     /// When there is no such part.
@@ -172,7 +172,7 @@ impl Record {
     /// Fallible [`set`](Self::set).
     ///
     /// # Errors
-    /// Where that panics.
+    /// Where the other method panics.
     pub fn try_set(&mut self, path: &str, value: i128) -> Result<(), LayoutError> {
         let part = self.layout.find(path)?;
         self.bits = with_number(self.bits, path, part.low, part.layout, value)?;
@@ -182,7 +182,7 @@ impl Record {
     /// Fallible [`set_all`](Self::set_all).
     ///
     /// # Errors
-    /// Where that panics.
+    /// Where the other method panics.
     pub fn try_set_all(&mut self, path: &str, values: &[i128]) -> Result<(), LayoutError> {
         let part = self.layout.find(path)?;
         let elements = part.layout.elements();
@@ -203,7 +203,7 @@ impl Record {
     /// Fallible [`set_name`](Self::set_name).
     ///
     /// # Errors
-    /// Where that panics.
+    /// Where the other method panics.
     pub fn try_set_name(&mut self, path: &str, name: &str) -> Result<(), LayoutError> {
         let part = self.layout.find(path)?;
         let values = part.layout.values();
@@ -220,7 +220,7 @@ impl Record {
     /// Fallible [`set_bits`](Self::set_bits).
     ///
     /// # Errors
-    /// Where that panics.
+    /// Where the other method panics.
     pub fn try_set_bits(&mut self, path: &str, bits: Bits) -> Result<(), LayoutError> {
         let part = self.layout.find(path)?;
         let (low, width) = (part.low, part.layout.width());
@@ -241,7 +241,7 @@ impl Record {
     }
 }
 
-/// `bits` with the part of type `layout` at `low` set to a number.
+/// Returns `bits` with `value` in the part at `low`, which has the type `layout`. `path` is for errors.
 fn with_number(
     bits: Bits,
     path: &str,
@@ -260,7 +260,7 @@ fn with_number(
     Ok(bits.with(low, width, value))
 }
 
-/// Whether a part holds a number. A part not declared signed accepts signed and unsigned numbers.
+/// Whether a part of `width` bits can hold a number. A part that is not declared signed accepts signed and unsigned numbers.
 fn fits(value: i128, width: usize, signed: bool) -> bool {
     holds(width, value) && !(signed && value >= 1 << (width - 1).min(126))
 }

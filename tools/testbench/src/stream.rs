@@ -1,7 +1,7 @@
-//! Both ends of a stream: valid, ready, and a payload of some ports.
+//! The test bench's ends of a module's streams. A stream has the ports `valid`, `ready`, and those of its payload.
 //!
-//! In every cycle: `drive` all ends, [`Module::settle`], `sample` all ends, [`Module::clock`]. [`step`] does this for
-//! a module with streams alone.
+//! In every cycle: `drive` all ends, [`Module::settle`], `sample` all ends, [`Module::clock`]. [`step`] does this for a
+//! module that has no ports except those of streams.
 
 use std::collections::VecDeque;
 
@@ -10,13 +10,13 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::{Bits, Module, Port};
 
-/// One cycle of a module: [`exchange`], then the clock edge.
+/// Runs one cycle of a module: [`exchange`], then the clock edge.
 pub fn step(module: &mut Module, sources: &mut [&mut Source], sinks: &mut [&mut Sink]) {
     exchange(module, sources, sinks);
     module.clock();
 }
 
-/// Drives and samples both ends of streams. The outputs are settled; the clock edge is left to the caller.
+/// Drives the ends of streams, lets the module's outputs settle, and samples the ends; the caller does the clock edge.
 pub fn exchange(module: &mut Module, sources: &mut [&mut Source], sinks: &mut [&mut Sink]) {
     sources.iter_mut().for_each(|source| source.drive(module));
     sinks.iter_mut().for_each(|sink| sink.drive(module));
@@ -29,16 +29,16 @@ pub fn exchange(module: &mut Module, sources: &mut [&mut Source], sinks: &mut [&
 pub struct Stalls {
     random: Pcg64Mcg,
     share: f64,
-    /// Cycles until the next decision.
+    /// Cycles until the next random decision between stall and no stall.
     left: u32,
     stalled: bool,
 }
 
 impl Stalls {
-    /// Longest run without a new decision.
+    /// Most cycles between two random decisions.
     const RUN: u32 = 8;
 
-    /// Stalls in a `share` of the cycles: 0 never, 1 always.
+    /// Creates stalls in the share `share` of the cycles: never for 0, always for 1.
     #[must_use]
     pub fn new(seed: u64, share: f64) -> Self {
         Self {
@@ -49,7 +49,7 @@ impl Stalls {
         }
     }
 
-    /// Whether the next cycle stalls.
+    /// Advances by one cycle; returns whether that cycle stalls.
     pub fn next_stalled(&mut self) -> bool {
         if self.left == 0 {
             self.left = self.random.random_range(1..=Self::RUN);
@@ -84,17 +84,17 @@ impl Ports {
     }
 }
 
-/// Sends items to a module, one `Bits` for each port of the payload.
+/// Sends items to a module. An item has one `Bits` for each port of the payload.
 pub struct Source {
     ports: Ports,
     items: VecDeque<Vec<Bits>>,
     stalls: Stalls,
-    /// Whether an item is shown; it then stays until it is taken.
+    /// Whether the first item is valid on the ports; it then stays valid until it is taken.
     shown: bool,
 }
 
 impl Source {
-    /// The input stream `name`: ports `name_valid`, `name_ready` and `name_…` for each of `payload`.
+    /// Creates the source of the input stream `name`: the ports `name_valid`, `name_ready`, and `name_…` for each of `payload`.
     #[must_use]
     pub fn new(module: &Module, name: &str, payload: &[&str], stalls: Stalls) -> Self {
         Self {
@@ -105,19 +105,19 @@ impl Source {
         }
     }
 
-    /// Queues an item.
+    /// Appends an item to the queue of items to be sent.
     pub fn push(&mut self, item: Vec<Bits>) {
         assert_eq!(item.len(), self.ports.payload.len(), "{}", self.ports.name);
         self.items.push_back(item);
     }
 
-    /// Drops all items not taken, also the shown one, for a reset of the sender.
+    /// Drops all items that were not taken, even one that is valid on the ports, as a reset of the sender does.
     pub fn clear(&mut self) {
         self.items.clear();
         self.shown = false;
     }
 
-    /// Number of items not taken.
+    /// Number of items that were not taken yet.
     #[must_use]
     pub fn len(&self) -> usize {
         self.items.len()
@@ -129,7 +129,7 @@ impl Source {
         self.items.is_empty()
     }
 
-    /// Drives the next item, or zeros without one.
+    /// Drives the next item, or zeros if there is none.
     pub fn drive(&mut self, module: &mut Module) {
         let stalled = self.stalls.next_stalled();
         self.shown |= !stalled && !self.items.is_empty();
@@ -142,7 +142,7 @@ impl Source {
         }
     }
 
-    /// Records whether the item is taken.
+    /// Removes the item on the ports from the queue if the module takes it in this cycle.
     pub fn sample(&mut self, module: &Module) {
         if self.ports.moves(module) {
             self.items.pop_front();
@@ -156,12 +156,12 @@ pub struct Sink {
     ports: Ports,
     items: Vec<Vec<Bits>>,
     stalls: Stalls,
-    /// Payload that was valid and not taken, and must be unchanged.
+    /// Payload that was valid and not taken in the last cycle; it must not change.
     waiting: Option<Vec<Bits>>,
 }
 
 impl Sink {
-    /// The output stream `name`: ports `name_valid`, `name_ready` and `name_…` for each of `payload`.
+    /// Creates the sink of the output stream `name`: the ports `name_valid`, `name_ready`, and `name_…` for each of `payload`.
     #[must_use]
     pub fn new(module: &Module, name: &str, payload: &[&str], stalls: Stalls) -> Self {
         Self {
@@ -188,16 +188,16 @@ impl Sink {
         std::mem::replace(&mut self.stalls, stalls)
     }
 
-    /// Drives ready, or stalls.
+    /// Drives `ready`: high, or low during a stall.
     pub fn drive(&mut self, module: &mut Module) {
         let ready = !self.stalls.next_stalled();
         module.set(self.ports.ready, u64::from(ready));
     }
 
-    /// Takes a valid item.
+    /// Takes the item of this cycle if it is valid and the sink is ready.
     ///
     /// # Panics
-    /// When a payload has changed, or has gone, that was not taken.
+    /// When a payload that was valid and not taken has changed, or is no longer valid.
     pub fn sample(&mut self, module: &Module) {
         let valid = module.is_high(self.ports.valid);
         let found: Vec<Bits> = self

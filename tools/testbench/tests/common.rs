@@ -1,8 +1,8 @@
-//! The buffers of `rtl/common`: skid buffer and FIFO.
+//! The buffers of `gateware/rtl/common`: skid buffer and FIFO.
 
 use glint_testbench::{Bits, Module, Sink, Source, Stalls, step};
 
-/// Sends numbers through a buffer with stalls on both sides and expects them in order.
+/// Sends numbers through a buffer with stalls on both sides, and expects all of them in order. Returns the clocks.
 fn passes_all_in_order(name: &str, source_stalls: f64, sink_stalls: f64) -> u64 {
     const COUNT: u64 = 500;
     let mut module = Module::new(name, 1);
@@ -45,7 +45,7 @@ fn the_fifo_keeps_order_and_passes_an_item_a_clock() {
     }
 }
 
-/// Items that a buffer accepts while its output is blocked.
+/// Returns the number of items that a buffer accepts while its output is blocked.
 fn capacity(name: &str) -> usize {
     const MORE_THAN_FITS: usize = 50;
     let mut module = Module::new(name, 1);

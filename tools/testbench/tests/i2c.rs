@@ -3,9 +3,9 @@
 use glint_testbench::{Bits, Module, Port};
 use virtual_mpu6050::{Chip, Fault, Imperfections, Source, State, Wires};
 
-/// Clocks of a phase at 81.25 MHz, as in the SoC.
+/// Clocks of a phase (part of a bit on the bus) at 81.25 MHz, as in the SoC.
 const PHASE: u64 = 68;
-/// Longest clock stretching of this build, in clocks.
+/// Longest clock stretching that the tested variant of the engine accepts, in clocks.
 const PATIENCE: u64 = 1 << 15;
 
 const START: u32 = 0;
@@ -26,12 +26,12 @@ enum Failure {
     Late,
 }
 
-/// A command, packed as in the queue.
+/// Packs a command for the engine's queue.
 fn command(operation: u32, argument: u32) -> u32 {
     operation << 8 | argument
 }
 
-/// A transaction: start, write of `sent`, read of `received` bytes, stop.
+/// Makes the commands of a transaction: start, write of the bytes `sent`, read of `received` bytes, stop.
 fn transfer(sent: &[u32], received: u32) -> Vec<u32> {
     let mut commands = vec![command(START, 0), command(WRITE, WRITES)];
     commands.extend(sent.iter().map(|&byte| command(WRITE, byte)));
@@ -50,7 +50,7 @@ struct Bench {
     module: Module,
     device: Wires,
     ports: Ports,
-    /// Takes the received bytes.
+    /// Whether the test bench takes the received bytes.
     listens: bool,
     answers: Vec<u8>,
     ended: u32,
@@ -103,7 +103,7 @@ impl Bench {
         bench
     }
 
-    /// Lets the wires rise before the engine samples them.
+    /// Resets the engine. During the reset the wires rise, before the engine samples them.
     fn reset(&mut self) {
         self.module.set(self.ports.rst, 1);
         for _ in 0..10 {
@@ -112,7 +112,7 @@ impl Bench {
         self.module.set(self.ports.rst, 0);
     }
 
-    /// Advances one clock. The wires are the AND of both sides.
+    /// Advances by one clock. A wire is high if both the engine and the device release it.
     fn clock(&mut self) {
         let [scl_in, scl_out, sda_in, sda_out] = self.ports.wires;
         let now = self.module.cycles() * 160 / 13;
@@ -131,7 +131,7 @@ impl Bench {
         self.ended += u32::from(self.module.is_high(self.ports.ended));
     }
 
-    /// Queues commands as the queue has room.
+    /// Queues commands one by one, and waits while the queue is full.
     fn push(&mut self, commands: &[u32]) {
         let [valid, ready, data] = self.ports.command;
         for &command in commands {
@@ -172,7 +172,7 @@ impl Bench {
         all.into_iter().find(|&failure| failure as u64 == error)
     }
 
-    /// Runs a transfer to its end and returns its failure.
+    /// Runs a transfer to its end; returns its failure, if any.
     fn run(&mut self, commands: &[u32]) -> Option<Failure> {
         let ended = self.ended;
         self.push(commands);
@@ -190,7 +190,7 @@ impl Bench {
         self.push(commands);
     }
 
-    /// Runs for `clocks` and returns the times of start conditions.
+    /// Runs for `clocks` clocks; returns the clocks at which start conditions occur.
     fn starts(&mut self, clocks: u64) -> Vec<u64> {
         let [_, scl_out, _, sda_out] = self.ports.wires;
         let mut starts = Vec::new();
@@ -245,7 +245,7 @@ fn rounds_begin_at_their_times() {
     let begin = bench.module.cycles();
     bench.repeat(&transfer(&[0x3a], 15), PERIOD, 3);
     let starts = bench.starts(10 * PERIOD);
-    // The repeated start of each round comes while SCL is low.
+    // Every second start is the repeated start within a round, which is left out.
     let first: Vec<u64> = starts.iter().map(|at| at - begin).step_by(2).collect();
     assert_eq!(first.len(), 9, "{starts:?}");
     assert!(
@@ -262,7 +262,7 @@ fn rounds_begin_at_their_times() {
     assert_eq!(bench.log().matches(round).count(), 9, "{}", bench.log());
     let violations = &bench.device.violations;
     assert!(violations.is_empty(), "{violations:#?}");
-    // A reset clears the queue of the rounds.
+    // A reset clears the queue of the rounds' commands.
     bench.module.set(bench.ports.rounds[0], 0);
     bench.reset();
     bench.answers.clear();
@@ -277,7 +277,7 @@ fn a_round_that_is_not_over_in_time_is_an_error() {
     bench.repeat(&transfer(&[0x3a], 15), 34_000, 1);
     bench.starts(3 * 34_000);
     assert_eq!((bench.failure(), bench.ended), (Some(Failure::Late), 1));
-    // No received byte is taken: of nine rounds of 15 bytes the queue has room for 129 bytes.
+    // No received byte is taken. Nine rounds receive 15 bytes each, but the queue has room for only 129 bytes.
     let mut bench = Bench::new(None);
     bench.listens = false;
     bench.repeat(&transfer(&[0x3a], 15), 39_000, 1);
@@ -315,7 +315,7 @@ fn reads_in_a_row_are_one_and_wait_for_room() {
         stop,
     ]);
     bench.push(&commands);
-    // The queue holds 129 bytes. SCL stays low until there is room, without a time-out.
+    // The queue holds 129 received bytes. When it is full, SCL stays low until there is room, without a time-out.
     for _ in 0..3 * PATIENCE {
         bench.clock();
     }
@@ -385,7 +385,7 @@ fn a_clock_may_be_stretched_for_a_while() {
         (PATIENCE..PATIENCE + 50 * PHASE).contains(&took),
         "{took} clocks"
     );
-    // The error is the same with SCL low from the beginning.
+    // The error is the same if SCL is low from the beginning of a transfer.
     bench.reset();
     assert_eq!(bench.run(&transfer(&[0x19], 0)), Some(Failure::Clock));
     bench.device.set_fault(None);
@@ -408,7 +408,7 @@ fn a_stuck_device_is_clocked_free() {
 
 #[test]
 fn a_device_left_in_a_byte_is_freed_wherever_it_is() {
-    // Resets the master at every clock of a read of zeros and of a write.
+    // Resets the master in the middle of a read of zeros and of a write, at times 97 clocks apart.
     for commands in [transfer(&[0x00], 3), transfer(&[0x19, 0x00], 0)] {
         let mut length = 0;
         for clocks in (100..).step_by(97) {

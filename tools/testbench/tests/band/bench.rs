@@ -1,4 +1,4 @@
-//! Bench of the band buffer: a source of groups and a memory around the module.
+//! Test bench of the band buffer, with a source of groups and bands, and a memory.
 
 use glint_testbench::{Bits, Counters, Module, Port, Sink, Source, Stalls};
 use std::collections::VecDeque;
@@ -10,7 +10,7 @@ pub struct Bench {
     pub group_source: Source,
     pub band_source: Source,
     pub words: Sink,
-    /// What `words` took.
+    /// Words that `words` has taken: those written to memory.
     pub written: Vec<Word>,
     pub groups: VecDeque<Group>,
     pub bands: VecDeque<Band>,
@@ -18,20 +18,20 @@ pub struct Bench {
     pub restart: Port,
     pub clearing: Port,
     pub flushed: Port,
-    /// `band_valid` in the previous clock: no group is taken.
+    /// Whether `band_valid` was high in the previous clock, so that no group may be taken.
     pub closed: bool,
     pub drawn: Pixels,
     pub left: Left,
-    /// Band whose flush came last.
+    /// The band whose flush began last.
     pub flushed_last: Option<Band>,
     pub expected: Vec<Word>,
-    /// Rows per line.
+    /// Rows of the band buffer per line of the picture; a row is a group of eight pixels.
     pub stride: usize,
     pub counters: Counters,
 }
 
 impl Bench {
-    /// A band buffer after reset, still clearing its banks.
+    /// Creates a bench with the module variant `name` after reset, while the band buffer still clears its banks.
     pub fn new(name: &str, seed: u64, group_stalls: f64, memory_stalls: f64) -> Self {
         let mut module = Module::new(name, seed as u32);
         let restart = module.port("restart");
@@ -86,7 +86,7 @@ impl Bench {
         }
     }
 
-    /// As [`new`](Self::new), after the clearing.
+    /// Creates a bench with the band buffer after it has cleared its banks.
     pub fn ready(seed: u64, group_stalls: f64, memory_stalls: f64) -> Self {
         Self::of("band_buffer", seed, group_stalls, memory_stalls)
     }
@@ -119,7 +119,7 @@ impl Bench {
         self.groups.push_back(group);
     }
 
-    /// Ends a band. The flush is whole where the content of the frame buffer is unknown.
+    /// Queues the end of a band. All words of the band are to be flushed if the content of the frame buffer is unknown there.
     pub fn push_band(&mut self, mut band: Band) {
         assert_eq!(band.stride, self.stride);
         let waiting = self.bands.iter().filter(|other| other.slot == band.slot);
@@ -189,7 +189,7 @@ impl Bench {
         panic!("not done after {limit} clocks");
     }
 
-    /// Draws groups and ends the band.
+    /// Queues groups and the end of their band, and waits until all groups are taken.
     pub fn draw(&mut self, groups: impl IntoIterator<Item = Group>, band: Band) {
         for group in groups {
             self.push_group(group);
@@ -218,11 +218,12 @@ impl Bench {
 }
 
 impl Bench {
-    /// Restarts the buffer while memory takes no words: it clears its banks all the same. Then memory resumes.
+    /// Restarts the band buffer while memory takes no words, and checks that the buffer clears its banks all the same.
+    /// Then memory takes words again.
     pub fn restart_with_dead_memory(&mut self) {
         let alive = self.words.set_stalls(Stalls::new(1, 1.0));
 
-        // The restart drops the renderers' groups and bands too.
+        // With the restart, the senders drop the groups and bands that were not taken.
         self.module.set(self.restart, 1_u64);
         self.clock();
         self.module.set(self.restart, 0_u64);

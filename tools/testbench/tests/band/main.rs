@@ -9,7 +9,7 @@ use rand_pcg::Pcg64Mcg;
 use crate::bench::Bench;
 use crate::pixels::{Band, Group, LANES, PICTURE_LINES};
 
-/// A group among few rows and few depths, so that groups often overlap.
+/// Makes a random group in one of `rows` rows, with few different depths, so that groups often overlap.
 fn random_group(random: &mut Pcg64Mcg, rows: usize) -> Group {
     Group {
         row: random.random_range(0..rows),
@@ -29,7 +29,7 @@ fn random_group(random: &mut Pcg64Mcg, rows: usize) -> Group {
     }
 }
 
-/// A band at one of few positions of the picture, so that most bands repeat a position.
+/// Makes a random band at one of three positions of the picture, so that most bands repeat a position.
 fn random_band(random: &mut Pcg64Mcg, [lines, stride]: [usize; 2]) -> Band {
     Band {
         base: random.random_range(0..1 << 22),
@@ -45,7 +45,7 @@ fn random_band(random: &mut Pcg64Mcg, [lines, stride]: [usize; 2]) -> Band {
     }
 }
 
-/// A group that covers its row.
+/// Makes a group whose eight pixels are all drawn.
 fn full_group(row: usize, code: u32) -> Group {
     Group {
         row,
@@ -56,7 +56,7 @@ fn full_group(row: usize, code: u32) -> Group {
     }
 }
 
-/// A band whose last flush is unknown.
+/// Makes a band of which all words are flushed.
 fn plain_band([lines, stride]: [usize; 2]) -> Band {
     Band {
         base: 0x12_3456,
@@ -79,12 +79,12 @@ fn random_groups_in_many_bands_with_stalls() {
         println!("seed {seed}, stalls {group_stalls} and {memory_stalls}");
         let mut random = Pcg64Mcg::new(u128::from(seed));
         let mut bench = Bench::ready(seed, group_stalls, memory_stalls);
-        // Streams of the same kind of groups for all bands. A group taken just before the end of a band belongs to
-        // that band.
+        // All bands have groups for both eyes, so the groups of the next band may follow at once. A group that is taken
+        // just before the end of a band belongs to that band.
         let shape @ [lines, stride] = [random.random_range(1..20), random.random_range(1..6)];
         bench.stride = stride;
         for _ in 0..60 {
-            // Often few groups, so that lines are empty and extents differ.
+            // Often there are few groups, so that lines are empty and the drawn columns differ from line to line.
             let most = [4, 20, 200][random.random_range(0..3)];
             let groups: Vec<_> = (0..random.random_range(0..most))
                 .map(|_| random_group(&mut random, lines * stride))
@@ -111,7 +111,7 @@ fn luminances_of_two_eyes_are_composed() {
                 .map(|_| random_group(&mut random, lines * stride))
                 .collect();
             if band.compose != 0 {
-                // Each drawn pixel is drawn for both eyes.
+                // Replaces each group by one for the left and one for the right eye.
                 groups = groups
                     .into_iter()
                     .flat_map(|group| {
@@ -125,7 +125,7 @@ fn luminances_of_two_eyes_are_composed() {
                 groups.sort_by_cached_key(|_| order(&mut random));
             }
             bench.draw(groups, band);
-            // The next band has groups of another kind.
+            // Waits for the end of the band, as the next band may have groups of the other kind (for both eyes or for one).
             bench.run_until(100_000, |bench| bench.bands.is_empty());
         }
         bench.finish();
@@ -141,7 +141,7 @@ fn whole_bands_leave_nothing_to_the_next() {
         bench.draw(groups, plain_band(shape));
     }
     bench.stride = 160;
-    // Flushes both banks without a group.
+    // Flushes bands without a group, so that each bank must be clear again.
     for clear in [1, 2, 3] {
         let band = Band {
             clear,
@@ -153,7 +153,7 @@ fn whole_bands_leave_nothing_to_the_next() {
     bench.finish();
 }
 
-/// Tests extents at all four corners of the largest bands, and of the picture.
+/// Draws at all four corners of the largest bands, at the top and at the bottom of the picture.
 #[test]
 fn only_pixels_drawn_now_or_last_are_flushed() {
     let mut bench = Bench::ready(11, 0.0, 0.1);
@@ -171,7 +171,7 @@ fn only_pixels_drawn_now_or_last_are_flushed() {
             bench.draw([], *band);
         }
         let last = lines * stride - 1;
-        // Rows in the first and in the last line; no row.
+        // Rows of the band buffer at the corners of the band, in the first and in the last line.
         for rows in [
             [0, last],
             [stride - 1, last + 1 - stride],
@@ -218,7 +218,7 @@ fn one_group_a_clock_where_rows_or_lanes_differ() {
     const COUNT: usize = 1920;
     let mut bench = Bench::ready(7, 0.0, 0.0);
     let rows = (0..COUNT).map(|i| full_group(i, 1));
-    // Groups of neighbouring triangles: the same row, other lanes.
+    // Groups as of neighbouring triangles: pairs with the same row and other lanes (pixels of the row).
     let lanes = (0..COUNT).map(|i| Group {
         mask: 0x0f << (i % 2 * 4),
         ..full_group(i / 2, 2)
@@ -265,7 +265,7 @@ fn the_flush_keeps_up_with_memory_and_overlaps_with_drawing() {
         let clocks = bench.module.cycles() - start;
         assert!(clocks <= words + 16, "{clocks} clocks for {words} words");
     }
-    // Six bands with as many groups as words.
+    // Six bands, each with as many groups as words to flush.
     let start = bench.module.cycles();
     for _ in 0..6 {
         let band = Band {
@@ -294,7 +294,7 @@ fn a_line_takes_a_clock_for_each_word_and_one_at_least() {
     };
     bench.draw([], band);
     bench.finish();
-    // Words in every n-th line, n, and the clocks of a flush after an equal frame.
+    // Number of words in every n-th line, n, and the clocks of the flush if the frame before was the same.
     for (words, every, clocks) in [(1, 1, 45), (2, 1, 90), (5, 3, 75), (1, 3, 45), (1, 45, 45)] {
         for same in [false, true] {
             let rows = (0..45)
@@ -335,7 +335,7 @@ fn a_restart_ends_whatever_goes_on() {
         let stride = random.random_range(1..10);
         let (shape, rows) = ([lines, stride], lines * stride);
         bench.stride = stride;
-        // The extents of these lines stay known.
+        // What was drawn in these lines stays known: they are not among those of the band that the restart interrupts.
         bench.draw(
             (0..rows / 2).map(|row| full_group(row, 9)),
             Band {
@@ -354,7 +354,7 @@ fn a_restart_ends_whatever_goes_on() {
         for _ in 0..random.random_range(0..400) {
             bench.clock();
         }
-        // In half of the rounds the end of a band is pending.
+        // In half of the rounds, the end of a band is pending at the restart.
         if random.random() {
             bench.push_band(random_band(&mut random, shape));
             bench.clock();

@@ -1,11 +1,11 @@
-//! Groups of pixels, bands, and their picture.
+//! Groups of pixels, bands, and the words that the flush of a band must write.
 
 use glint_model::raymarch::{Tint, compose};
 use std::ops::Range;
 
 pub const LANES: usize = 8;
 pub const ROWS_OF_A_BANK: u64 = 2048;
-/// Most words under way: places of the FIFO.
+/// Most words that are on their way to memory at once: the number of places in the FIFO.
 pub const WORDS: usize = 16;
 pub const PICTURE_LINES: usize = 720;
 
@@ -13,7 +13,7 @@ pub const PICTURE_LINES: usize = 720;
 pub struct Group {
     pub row: usize,
     pub mask: u8,
-    /// Eyes of the group: 1 left, 2 right, 3 both.
+    /// Eyes for which the group is drawn: 1 left, 2 right, 3 both.
     pub halves: u8,
     pub codes: [u32; LANES],
     pub colours: [u16; LANES],
@@ -30,7 +30,7 @@ pub struct Band {
     pub whole: bool,
     pub with_depth: bool,
     pub clear: u16,
-    /// Composition of the eyes' luminances: 0 none, 1 red and blue, 2 red and cyan.
+    /// How the flush composes a colour from the luminances of the two eyes: 0 not, 1 red and blue, 2 red and cyan.
     pub compose: u8,
 }
 
@@ -43,10 +43,11 @@ impl Band {
 
 pub type Word = (u32, [u32; 4]);
 
-/// First and last column drawn by the last flush, of each line in each frame buffer, where known.
+/// For each frame buffer and each line of the picture: the columns of groups that were drawn when the line was last
+/// flushed, from the first to the last; `None` where unknown.
 pub type Left = [Vec<Option<Range<usize>>>; 2];
 
-/// Depth and colour of the drawn pixels, by row.
+/// Depth and colour of the drawn pixels of a band, by row of the band buffer.
 pub struct Pixels(pub Vec<[Option<(u32, u16)>; LANES]>);
 
 impl Pixels {
@@ -70,7 +71,7 @@ impl Pixels {
         }
     }
 
-    /// Words of the flush, in order.
+    /// Returns the words that the flush of a band must write, in order, and updates `left`.
     pub fn words(&self, band: &Band, left: &mut Left) -> Vec<Word> {
         let mut words = Vec::new();
         for (line, picture_line) in band.picture_lines().enumerate() {

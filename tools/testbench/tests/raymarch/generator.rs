@@ -7,15 +7,15 @@ use crate::scenes::{FIELDS, ROUND, band_lines, every_field, setup, setup_with};
 use glint_testbench::raymarch::{Place, cone, ray, set_blocks, set_generator};
 use glint_vectors::Random;
 
-/// Module variant with all fields and cones.
+/// Name of the module variant with all fields and with cones.
 const GENERATOR: &str = "ray_generator_all";
 
-/// Layout of a ray.
+/// Type of a ray at the module's output.
 fn ray_type(module: &Module) -> Layout {
     module.packed_type("raymarch_pkg::ray_t").clone()
 }
 
-/// The rays of the first `lines` lines.
+/// The model's rays of the first `lines` lines of a frame, in the order of the generator.
 fn expected(layout: &Layout, setup: &FieldSetup, lines: u32) -> Vec<Bits> {
     let eyes = if setup.stereo.is_some() { 2 } else { 1 };
     let band_lines = band_lines(setup.width);
@@ -37,7 +37,7 @@ fn expected(layout: &Layout, setup: &FieldSetup, lines: u32) -> Vec<Bits> {
         .collect()
 }
 
-/// All cones, ordered by number.
+/// The model's cones of a frame, ordered by number.
 fn expected_cones(layout: &Layout, setup: &FieldSetup) -> Vec<Bits> {
     let cones = setup.cones.expect("cones");
     let eyes = if setup.stereo.is_some() { 2 } else { 1 };
@@ -57,7 +57,7 @@ fn expected_cones(layout: &Layout, setup: &FieldSetup) -> Vec<Bits> {
         .collect()
 }
 
-/// Runs the first `lines` lines of a frame and returns the clocks until the last ray.
+/// Compares the rays of the first `lines` lines of a frame with the model's; returns the clocks until the last ray.
 fn check(module: &mut Module, setup: &FieldSetup, lines: u32, stalls: Stalls) -> u64 {
     set_generator(module, setup, band_lines(setup.width));
     module.drive("round", setup.is_round());
@@ -69,7 +69,7 @@ fn check(module: &mut Module, setup: &FieldSetup, lines: u32, stalls: Stalls) ->
     clocks
 }
 
-/// Starts the generator and takes its rays until all expected ones have come. Returns the clocks.
+/// Starts the generator and compares its rays with `expected` until all have come; returns the clocks.
 fn run(module: &mut Module, setup: &FieldSetup, expected: &[Bits], stalls: Stalls) -> u64 {
     let mut sink = Sink::new(module, "out", &["ray"], stalls);
     let start = module.port("start");
@@ -91,7 +91,7 @@ fn run(module: &mut Module, setup: &FieldSetup, expected: &[Bits], stalls: Stall
     clocks
 }
 
-/// Ends a frame. After a whole frame the generator must be idle; within a frame it needs a reset.
+/// Ends a frame: after a whole frame, checks that the generator is idle; after a part of a frame, resets the generator.
 fn end(module: &mut Module, whole: bool) {
     let [rst, busy] = ["rst", "busy"].map(|name| module.port(name));
     module.settle();

@@ -13,18 +13,18 @@ use glint_vectors::Random;
 /// Number of rays or cones in a frame.
 const RAYS: usize = 2_000;
 
-/// A ray or cone, its expected end, and its evaluations.
+/// A ray or cone as it is sent, its expected end, and its number of evaluations.
 struct Sent {
     item: Bits,
     end: End,
     steps: u32,
 }
 
-/// Random rays of a frame, by place.
+/// Makes random rays of a frame, with their expected ends, by place.
 fn some_rays(random: &mut Random, layout: &Layout, setup: &FieldSetup) -> HashMap<Place, Sent> {
     let eyes = if setup.stereo.is_some() { 2 } else { 1 };
     let mut all = HashMap::new();
-    // A place repeats after a few bands: keep one ray for each place.
+    // Places repeat after two bands, so only one ray is kept for each place.
     while all.len() < RAYS {
         let x = random.integer(0, i64::from(setup.width) - 1) as u32;
         let y = random.integer(0, i64::from(setup.height) - 1) as u32;
@@ -46,7 +46,7 @@ fn some_rays(random: &mut Random, layout: &Layout, setup: &FieldSetup) -> HashMa
     all
 }
 
-/// Random cones of a frame, by place.
+/// Makes random cones of a frame, with their expected ends, by place.
 fn some_cones(random: &mut Random, layout: &Layout, setup: &FieldSetup) -> HashMap<Place, Sent> {
     let cones = setup.cones.expect("cones");
     let eyes = if setup.stereo.is_some() { 2 } else { 1 };
@@ -72,7 +72,7 @@ struct Bench {
     module: Module,
     source: Source,
     sink: Sink,
-    /// Clocks with an evaluation, and clocks in which a ray waited for a slot.
+    /// Numbers of clocks with an evaluation, and of clocks in which a ray waited for a free slot of the lane.
     evaluated: u64,
     waited: u64,
 }
@@ -90,7 +90,7 @@ impl Bench {
         }
     }
 
-    /// Layout of a ray.
+    /// Type of a ray at the module's input.
     fn ray(&self) -> Layout {
         self.module.packed_type("raymarch_pkg::ray_t").clone()
     }
@@ -136,12 +136,12 @@ impl Bench {
     }
 }
 
-/// Rays per test: `GLINT_RTL_RAYS`, or 150,000.
+/// Number of rays per test: 150,000, or the value of `GLINT_RTL_RAYS` in the environment.
 fn rays() -> usize {
     std::env::var("GLINT_RTL_RAYS").map_or(150_000, |text| text.parse().unwrap())
 }
 
-/// Lanes with different shares of stalls.
+/// Creates benches of the module `name` with different shares of stalls.
 fn benches(name: &str) -> Vec<Bench> {
     let shares = [(0.0, 0.0), (0.5, 0.5), (0.0, 0.95), (0.9, 0.0)];
     (1..)

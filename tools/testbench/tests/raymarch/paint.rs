@@ -23,7 +23,7 @@ fn palette(random: &mut Random) -> Palette {
     palette
 }
 
-/// A random end, including ends that no ray of the scene reaches; t is not 0.
+/// Makes a random result of a ray, which need not be one that a ray of the scene can have; `t` is not 0.
 fn ending(random: &mut Random, setup: &FieldSetup, start: &Ray) -> RayResult {
     if random.coin() {
         return setup.march(start);

@@ -8,10 +8,10 @@ use glint_model::raymarch::{FieldOptions, FieldSetup, Light, Lights, Stereo, Tin
 
 use glint_vectors::{Camera, Random};
 
-/// Fields of a build with sponges alone.
+/// Fields for a build of the raymarcher that supports sponges only.
 pub const SPONGES: [&str; 4] = ["menger:4", "menger:3", "menger:2", "menger:1"];
 
-/// Fields of a build with spheres.
+/// Fields with spheres.
 pub const ROUND: [&str; 8] = [
     "sphere:1",
     "sphere:12",
@@ -23,7 +23,7 @@ pub const ROUND: [&str; 8] = [
     "spheres:0,0,0,0.5;1,0,0,0.5;0,1,0,0.5;0,0,1,0.5;-1,0,0,0.5;0,-1,0,0.5;0,0,-1,0.5;8,-8,8,3.5",
 ];
 
-/// Unions of a flat and a round field.
+/// Unions of a field with flat faces and a field with spheres.
 pub const UNIONS: [&str; 7] = [
     "union:menger:4+sphere:0.75",
     "union:menger:2+moving:0.25,1,-75",
@@ -34,7 +34,7 @@ pub const UNIONS: [&str; 7] = [
     "smooth:0.01,menger:1+moving:1,0.5,30",
 ];
 
-/// Every flat field.
+/// Fields with flat faces, of every kind.
 pub const FIELDS: [&str; 12] = [
     "menger:4",
     "menger:6",
@@ -50,7 +50,7 @@ pub const FIELDS: [&str; 12] = [
     "planes:0.01",
 ];
 
-/// An example of each kind of field that is in no list above.
+/// Examples of the kinds of fields that are neither in `FIELDS` nor in `ROUND`, one each.
 pub fn further_kinds() -> Vec<&'static str> {
     let listed = [&FIELDS[..], &ROUND].concat();
     let kind = |text: &&str| text.split(':').next().map(str::to_owned);
@@ -58,7 +58,8 @@ pub fn further_kinds() -> Vec<&'static str> {
     Primitive::EXAMPLES.into_iter().filter(is_new).collect()
 }
 
-/// Fields of all kinds: the lists above, an example of each kind, and random fields with values at the ends of their ranges.
+/// Fields of all kinds: those of the lists above, an example of each kind, and random fields, some with values at the
+/// ends of their ranges.
 pub fn every_field() -> Vec<String> {
     let boxes = [
         "union:box:1,0.5,0.25+moving:0.25,1",
@@ -70,7 +71,7 @@ pub fn every_field() -> Vec<String> {
     fixed.into_iter().map(String::from).chain(drawn).collect()
 }
 
-/// A random camera inside or outside a field, with any direction.
+/// Makes a random camera inside or outside of a field, with any direction.
 pub fn camera(random: &mut Random) -> View {
     let distance = match random.bits() % 4 {
         0 => random.real(0.0, 1.0),
@@ -81,7 +82,7 @@ pub fn camera(random: &mut Random) -> View {
     let eye = random.direction().map(|x| x * distance);
     let towards = match random.bits() % 4 {
         0 => random.direction(),
-        // Nearly along an axis.
+        // A direction that is nearly along an axis.
         1 => {
             let axis = (random.bits() % 3) as usize;
             let little = random.logarithmic(1e-7, 1e-1);
@@ -96,12 +97,12 @@ pub fn camera(random: &mut Random) -> View {
     Camera::aimed(random, eye, towards, [0.0; 2], half_width, near).rounded()
 }
 
-/// Random constants of a frame, with random tuning and one or two eyes.
+/// Makes random frame constants, with random tuning and one or two eyes.
 pub fn setup(random: &mut Random, fields: &[impl AsRef<str>]) -> FieldSetup {
     setup_with(random, fields, false)
 }
 
-/// As [`setup`], with or without a prepass.
+/// As [`setup`], with a prepass if `prepass` is set.
 pub fn setup_with(random: &mut Random, fields: &[impl AsRef<str>], prepass: bool) -> FieldSetup {
     let field = Field::parse(fields[random.bits() as usize % fields.len()].as_ref()).unwrap();
     let mut options = FieldOptions {
@@ -126,7 +127,7 @@ pub fn setup_with(random: &mut Random, fields: &[impl AsRef<str>], prepass: bool
     FieldSetup::new(&field, &camera(random), size, &options).unwrap()
 }
 
-/// Random lights and materials.
+/// Makes random lights and materials.
 pub fn lights(random: &mut Random) -> Lights {
     let mut colour = || [0; 3].map(|_| random.bits() as u8);
     let materials = [0; 8].map(|_| colour());
@@ -143,7 +144,7 @@ pub fn lights(random: &mut Random) -> Lights {
     }
 }
 
-/// View along the largest tunnel of the sponge, as in the report.
+/// Frame constants of a view along the largest tunnel of the sponge.
 pub fn tunnel(size: (u32, u32), prepass: bool) -> FieldSetup {
     let (eye, target) = ([0.0625, -0.8125, 0.09375], [-0.125, 0.9375, 0.03125]);
     let view = Camera::looking(eye, target, 0.9, 0.01).rounded();
@@ -155,7 +156,7 @@ pub fn tunnel(size: (u32, u32), prepass: bool) -> FieldSetup {
     FieldSetup::new(&sponge, &view, size, &options).unwrap()
 }
 
-/// Lines of a band for a picture's width.
+/// Number of lines of a band in a picture of this width.
 pub fn band_lines(width: u32) -> u32 {
     match width {
         320 => 45,

@@ -1,4 +1,4 @@
-//! Bench of the scan-out module: two clocks, memory, software and a monitor.
+//! Test bench of the scan-out module, with two clocks, a memory, software that changes the settings, and a monitor.
 
 use glint_testbench::{Module, Port};
 use rand::{RngExt, SeedableRng};
@@ -31,7 +31,7 @@ struct Ports {
 }
 
 impl Ports {
-    /// Outputs compared in every cycle.
+    /// Names of the outputs that are compared in every cycle of `sys_clk`.
     const REGISTERS: [&str; 8] = [
         "enabled",
         "scale_current",
@@ -84,12 +84,12 @@ pub struct Bench {
     counted: Counted,
     expected_error: u64,
     late_before: u64,
-    /// Time of the picture's last pixel, until the vertical blanking that follows.
+    /// Time of the last pixel of the picture; `None` from the report of the vertical blanking on.
     active_end: Option<u64>,
 }
 
 impl Bench {
-    /// The module `name` after both resets.
+    /// Creates a bench with the module `name` after both resets.
     pub fn new(name: &str, raster: Raster, clocks: Clocks, seed: u64) -> Self {
         let module = Module::load(name, seed as u32);
         let mut random = Pcg64Mcg::seed_from_u64(seed);
@@ -102,7 +102,7 @@ impl Bench {
             software: None,
             raster,
             clocks,
-            // The unit of time is chosen so that each period equals the frequency of the other clock.
+            // The unit of time is such that the period of each clock is the number in `clocks` for the other clock.
             next_sys: 1 + random.random_range(0..clocks.pix),
             next_pix: 1 + random.random_range(0..clocks.sys),
             random,
@@ -130,7 +130,7 @@ impl Bench {
         bench
     }
 
-    /// The module with the small raster.
+    /// Creates a bench with the module `scanout_small`.
     pub fn small(clocks: Clocks, seed: u64) -> Self {
         Self::new("scanout_small", Raster::SMALL, clocks, seed)
     }
@@ -142,7 +142,7 @@ impl Bench {
         }
     }
 
-    /// Runs for the time of `count` lines.
+    /// Runs for the time of `count` lines of the video timing.
     pub fn run_lines(&mut self, count: u64) {
         self.run_cycles(self.clocks.sys_cycles(count * self.raster.h_total()));
     }
@@ -163,10 +163,10 @@ impl Bench {
         }
     }
 
-    /// Asserts or releases the reset of the sys side (memory and registers).
+    /// Asserts or releases the reset of the side in the domain of `sys_clk` (memory and registers).
     pub fn reset_sys(&mut self, on: bool) {
         self.module.set_value(self.ports.sys_rst, u64::from(on));
-        // A vertical blanking during the reset is reported after the reset.
+        // A vertical blanking during the reset is reported only after the reset, so its time is not checked.
         self.active_end = None;
         if on {
             self.asked = Settings::RESET;
@@ -183,7 +183,7 @@ impl Bench {
         }
     }
 
-    /// Asserts or releases the reset of the pix side (video).
+    /// Asserts or releases the reset of the side in the domain of `pix_clk` (video).
     pub fn reset_pix(&mut self, on: bool) {
         self.module.set_value(self.ports.pix_rst, u64::from(on));
         if on {
@@ -192,7 +192,7 @@ impl Bench {
         }
     }
 
-    /// Whether a fetch of a source line is under way.
+    /// Whether the module is fetching a source line from memory.
     pub fn is_fetching(&self) -> bool {
         self.module.is_high(self.ports.fetching)
     }
@@ -201,7 +201,7 @@ impl Bench {
         self.module.is_high(self.ports.sys_rst)
     }
 
-    /// Advances to the next edge of either clock, or of both.
+    /// Advances to the next rising edge of a clock, which may be one of both clocks at once.
     fn edge(&mut self) {
         self.now = self.next_sys.min(self.next_pix);
         let (sys, pix) = (self.now == self.next_sys, self.now == self.next_pix);

@@ -1,7 +1,7 @@
-//! Scan-out between two clocks, a memory of any timing and a monitor; the bench checks every cycle and every pixel.
+//! Scan-out with two clocks, a memory of any timing and a monitor; the test bench checks every cycle and every pixel.
 //!
-//! `scanout` is the module as built, CEA-861 1280×720. `scanout_small` has a raster of a few thousand clocks and as much time a line
-//! for its memory words, so that thousands of frames fit in a test.
+//! The module `scanout` has the video timing of the SoC, CEA-861 1280×720. The module `scanout_small` has frames of a few
+//! thousand clocks, with the same time per memory word, so that thousands of frames fit in a test.
 
 mod bench;
 mod memory;
@@ -19,7 +19,7 @@ use settings::{Settings, error};
 
 const SMALL: Raster = Raster::SMALL;
 
-/// Software that changes the settings several times a frame.
+/// Changes the settings at random times, several times per frame, as software could.
 fn restless(random: &mut Pcg64Mcg, asked: &mut Settings) {
     if random.random_range(0..1500) == 0 {
         *asked = Settings::random(random);
@@ -31,12 +31,12 @@ fn all_scales_are_pixel_exact(clocks: Clocks) {
     bench.memory.manners = Manners::BUSY;
     for scale in [4, 2, 1] {
         bench.asked = Settings::shown(scale, 0x12_3456 * scale);
-        // Taken over there.
+        // The module takes over the settings at the vertical blanking.
         bench.run_to_vblank();
     }
     bench.run_to_vblank();
     assert_eq!((bench.monitor.late, bench.monitor.frames), (0, 3));
-    // Lines and words of the three frames, each read once.
+    // The source lines and the memory words of the three frames, each read once.
     assert_eq!(bench.module.read("items_out"), 180 + 360 + 720);
     let words = 180 * 40 + 360 * 80 + 720 * 160;
     assert_eq!(bench.module.read("items_in"), words);
@@ -79,7 +79,7 @@ fn a_late_line_is_replaced_by_the_one_before() {
         bench.asked = Settings::shown(scale, 0x100);
         bench.run_frames(2);
         bench.monitor.may_be_late = true;
-        // Stops memory within the picture for twice the time of a source line.
+        // Stops memory in the middle of the picture, for twice the time of a source line.
         bench.run_lines(SMALL.lines_to_picture());
         bench.memory.stopped = true;
         bench.run_lines(2 * scale);
@@ -87,7 +87,7 @@ fn a_late_line_is_replaced_by_the_one_before() {
         bench.run_to_vblank();
         let late = bench.monitor.late;
         assert!((1..=3).contains(&late), "scale {scale}: {late} late lines");
-        // The late line appears in the remaining output lines of its source line.
+        // At scale 4, the late source line still appears in the last of its output lines.
         assert!(scale < 4 || bench.monitor.late_again >= 1);
         assert_eq!(bench.module.read("error"), error::UNDERFLOW);
         bench.monitor.may_be_late = false;
@@ -103,7 +103,7 @@ fn starved_memory_never_disturbs_the_raster() {
         let clocks = [Clocks::FAST, Clocks::SLOW][seed as usize & 1];
         let mut bench = Bench::small(clocks, seed);
         bench.monitor.may_be_late = true;
-        // Pauses of memory last from lines to whole frames.
+        // Memory pauses for some lines up to whole frames.
         bench.memory.manners = Manners {
             ready: 0.6,
             deliver: 0.6,
@@ -131,7 +131,7 @@ fn dead_memory_shows_black_and_comes_back() {
     bench.monitor.may_be_late = true;
     bench.run_frames(3);
     assert_eq!(bench.monitor.late, 3 * SMALL.v_active / 2);
-    // The words delivered now were requested three frames ago, for another base.
+    // The first words that memory delivers now were requested three frames ago, for another base address.
     bench.asked.base = 0x8000;
     bench.run_to_vblank();
     bench.memory.stopped = false;
@@ -165,7 +165,7 @@ fn either_side_may_be_reset_alone() {
         bench.run_frames(2);
         let cycles = bench.random.random_range(0..frame);
         bench.run_cycles(cycles);
-        // The raster continues while only the sys side is reset, so the monitor keeps its position.
+        // The video timing continues while only the side of `sys_clk` is reset, so the monitor keeps its position.
         if round % 2 == 0 {
             bench.reset_sys(true);
         }
@@ -176,7 +176,7 @@ fn either_side_may_be_reset_alone() {
         bench.run_cycles(cycles);
         bench.reset_sys(false);
         bench.reset_pix(false);
-        // Lets the reset settle: a processor takes longer for its first access.
+        // The reset must have reached both clock domains before the first access; a processor takes longer than this.
         bench.run_cycles(20);
     }
     bench.asked.enable = true;
@@ -198,7 +198,7 @@ fn a_fetch_may_outlive_its_request() {
     bench.run_cycles(20);
     bench.reset_pix(false);
     bench.run_to_vblank();
-    // Line 0 is requested while the fetch of the old line is under way.
+    // Line 0 of the next frame is requested while the fetch of the old line is still under way.
     bench.run_lines(2);
     bench.memory.stopped = false;
     bench.run_frames(2);

@@ -12,19 +12,20 @@ use crate::settings::Settings;
 /// Bytes per memory word.
 pub const WORD: u64 = 16;
 
-/// Timing of the memory: shares of cycles in which it takes a command and delivers a word, and the latency in cycles.
+/// Timing of the memory: the shares of cycles in which it takes a command (`ready`) and delivers a due word (`deliver`),
+/// and the lowest and highest latency in cycles.
 #[derive(Clone, Copy, Debug)]
 pub struct Manners {
     pub ready: f64,
     pub deliver: f64,
     pub latency: [u64; 2],
-    /// Probability of a pause per cycle, and its longest length in cycles.
+    /// Probability, in each cycle, that a pause begins; `pause_cycles` is its longest length in cycles.
     pub pause: f64,
     pub pause_cycles: u64,
 }
 
 impl Manners {
-    /// No stalls, latency 8 cycles.
+    /// A memory without stalls, with a latency of 8 cycles.
     pub const PROMPT: Self = Self {
         ready: 1.0,
         deliver: 1.0,
@@ -32,14 +33,14 @@ impl Manners {
         pause: 0.0,
         pause_cycles: 0,
     };
-    /// Shared with mostly idle masters.
+    /// A memory that is shared with mostly idle masters.
     pub const SHARED: Self = Self {
         ready: 0.8,
         deliver: 0.9,
         latency: [2, 20],
         ..Self::PROMPT
     };
-    /// Shared with busy masters.
+    /// A memory that is shared with busy masters.
     pub const BUSY: Self = Self {
         ready: 0.5,
         deliver: 0.7,
@@ -53,16 +54,16 @@ pub fn chance(random: &mut Pcg64Mcg, share: f64) -> bool {
     share >= 1.0 || share > 0.0 && random.random_bool(share)
 }
 
-/// The memory behind the read port.
+/// The memory, as it appears at the module's read port.
 pub struct Memory {
     pub manners: Manners,
-    /// Blocks commands and data.
+    /// Whether the memory takes no commands and delivers no words.
     pub stopped: bool,
     cmd: [Port; 3],
     rdata: [Port; 2],
-    /// Word address of each command, and the cycle from which its data are due.
+    /// For each command whose word was not delivered: the word address, and the cycle from which the word is due.
     commands: VecDeque<(u64, u64)>,
-    /// Address of the command that waits.
+    /// Address of the command that is valid and was not taken.
     held: Option<u64>,
     paused_until: u64,
 }
@@ -87,14 +88,14 @@ impl Memory {
         self.rest(module);
     }
 
-    /// Drives an idle port.
+    /// Drives the port so that the memory takes no command and delivers no word.
     pub fn rest(&self, module: &mut Module) {
         module.set_value(self.rdata[0], 0);
         module.set_value(self.cmd[1], 0);
     }
 
-    /// Takes the command of this cycle and checks that its address belongs to the frame `from`. Returns whether a
-    /// command waits.
+    /// Takes the command of this cycle, if the memory is ready, and checks that the address is in the frame with the
+    /// settings `from`. Returns whether a command waits because the memory is not ready.
     pub fn sample(
         &mut self,
         module: &Module,
@@ -130,7 +131,7 @@ impl Memory {
         );
         let [least, most] = self.manners.latency;
         let due = cycle + random.random_range(least..=most);
-        // In order.
+        // Words are delivered in the order of the commands.
         let due = self.commands.back().map_or(due, |&(_, last)| due.max(last));
         self.commands.push_back((address, due));
         false
@@ -141,7 +142,7 @@ impl Memory {
         module.is_high(self.rdata[0])
     }
 
-    /// Drives the port: a due word or noise, and ready.
+    /// Drives the port: `ready`, and a due word, or noise in place of a word.
     pub fn drive(&mut self, module: &mut Module, random: &mut Pcg64Mcg, cycle: u64) {
         let manners = self.manners;
         if cycle >= self.paused_until && chance(random, manners.pause) {

@@ -1,7 +1,7 @@
 //! The monitor: checks video timing and picture from the outputs alone.
 //!
-//! At each pixel clock it checks the syncs against a position counted from the first edge of vsync, and at the end of each
-//! line that the line is the expected one, or the previous line where memory was late.
+//! At each pixel clock, the monitor compares the syncs with those of its position, which it counts from the first edge of
+//! vsync on. At the end of each line, it checks that the line is the expected one, or the previous one if memory was late.
 
 use glint_testbench::{Module, Port};
 
@@ -19,17 +19,17 @@ pub struct Monitor {
     position: Option<u64>,
     vsync_before: bool,
     line: Vec<u32>,
-    /// Skips the check of this line, which a reset disturbed.
+    /// Whether not to check the current line, because a reset disturbed it.
     pub line_unchecked: bool,
-    /// Last source line shown in this frame.
+    /// Source line that was shown last in this frame.
     pub line_shown: Option<u64>,
-    /// Accepts late lines.
+    /// Whether late lines are accepted.
     pub may_be_late: bool,
-    /// Frames shown to their last line.
+    /// Number of frames that were shown up to their last line.
     pub frames: u64,
-    /// Count of late source lines.
+    /// Number of late source lines.
     pub late: u64,
-    /// Output lines in which a late source line first appeared.
+    /// Number of late source lines that appeared in a later one of their output lines.
     pub late_again: u64,
 }
 
@@ -53,14 +53,14 @@ impl Monitor {
         }
     }
 
-    /// Waits for the next vsync.
+    /// Makes the monitor wait for the next vsync.
     pub fn reset(&mut self) {
         self.position = None;
         self.line.clear();
         self.vsync_before = true;
     }
 
-    /// Checks one pixel clock. Returns whether it ended the picture of a frame.
+    /// Checks the outputs of one pixel clock; returns whether its pixel was the last one of a frame.
     pub fn watch(&mut self, module: &Module, in_force: &Settings) -> bool {
         let vsync = module.is_high(self.vsync);
         let position = match self.position {

@@ -14,7 +14,7 @@ pub struct Raster {
 }
 
 impl Raster {
-    /// CEA-861 1280×720 at 60 Hz, of the module `scanout`.
+    /// The timing of the module `scanout`: CEA-861 1280×720 at 60 Hz.
     pub const CEA: Self = Self {
         h_active: 1280,
         h_front: 110,
@@ -26,7 +26,7 @@ impl Raster {
         v_back: 20,
     };
 
-    /// Small timing of the module `scanout_small`: the same time per memory word in a 200th of the frame.
+    /// The timing of the module `scanout_small`: a frame is about 200 times smaller, with the same time per memory word.
     pub const SMALL: Self = Self {
         h_active: 160,
         h_front: 8,
@@ -84,7 +84,7 @@ impl Clocks {
     }
 }
 
-/// The RGB565 pixel at a byte address: a hash, so that all lines of all frames differ.
+/// The RGB565 pixel at a byte address of memory: a hash of the address, so that all lines of all frames differ.
 pub fn pixel_at(address: u64) -> u16 {
     let z = address
         .wrapping_mul(0x9E37_79B9_7F4A_7C15)
@@ -94,7 +94,7 @@ pub fn pixel_at(address: u64) -> u16 {
     (z ^ z >> 31) as u16
 }
 
-/// RGB888 of an RGB565 pixel, by bit replication.
+/// Widens an RGB565 pixel to RGB888 by bit replication.
 pub fn rgb888(pixel: u16) -> u32 {
     let (r, g, b) = (
         u32::from(pixel >> 11),

@@ -3,24 +3,24 @@
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
-/// Settings, requested or latched.
+/// Settings of scan-out, as software requests them or as the module has latched them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
     pub enable: bool,
     pub scale: u64,
-    /// In memory words.
+    /// Address of the frame, in memory words.
     pub base: u64,
 }
 
 impl Settings {
-    /// After reset.
+    /// The settings after a reset.
     pub const RESET: Self = Self {
         enable: false,
         scale: 4,
         base: 0,
     };
 
-    /// Settings of an enabled frame.
+    /// Settings that show the frame at `base` with a scale.
     pub const fn shown(scale: u64, base: u64) -> Self {
         Self {
             enable: true,
@@ -29,7 +29,7 @@ impl Settings {
         }
     }
 
-    /// Any settings.
+    /// Makes random valid settings.
     pub fn random(random: &mut Pcg64Mcg) -> Self {
         Self {
             enable: random.random_range(0..8) != 0,
@@ -39,7 +39,7 @@ impl Settings {
     }
 }
 
-/// Error codes of a frame.
+/// Values of the module's output `error`, which reports on the last frame.
 pub mod error {
     pub const NONE: u64 = 0;
     pub const SCALE: u64 = 1;

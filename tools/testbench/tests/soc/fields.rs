@@ -20,10 +20,10 @@ use glint_core::wire::Manifest;
 use crate::{Replies, compare_triangles, read, send};
 use glint_vectors::Camera;
 
-/// Longest pause in the firmware's output, in board time.
+/// Longest pause in the firmware's output that the console accepts, in board time.
 const PATIENCE_MS: u64 = 4000;
 
-/// Every kind of field.
+/// Representative fields.
 const FIELDS: [&str; 13] = [
     "menger:4",
     "menger:6",
@@ -40,7 +40,7 @@ const FIELDS: [&str; 13] = [
     "smooth:0.3,menger:1+sphere:1.2",
 ];
 
-/// All fields: the representative ones, and an example of each other kind.
+/// All tested fields: the representative ones, and an example of each other kind.
 fn fields() -> Vec<&'static str> {
     let kind = |text: &&str| text.split(':').next().map(str::to_owned);
     let is_new = |text: &&str| !FIELDS.iter().any(|other| kind(other) == kind(text));
@@ -52,8 +52,8 @@ fn looking(eye: [f64; 3], target: [f64; 3], half_width: f64, near: f64) -> View 
     Camera::looking(eye, target, half_width, near).rounded()
 }
 
-/// Cameras outside, close to, and in the hole of the sponge. They look down, where rays end early: near a horizon rays
-/// take ten times as many evaluations, each of which is simulated.
+/// Cameras outside of the sponge, close to it, and in its hole. They look down, as rays near the horizon would take ten
+/// times as many evaluations, and each evaluation is simulated.
 fn views() -> [View; 3] {
     [
         looking([2.2, 1.7, 1.3], [0.0; 3], 0.9, 0.1),
@@ -62,7 +62,7 @@ fn views() -> [View; 3] {
     ]
 }
 
-/// One eye, and two eyes with either tint.
+/// The settings for one eye, and for two eyes with each of the tints.
 fn eyes() -> [Option<Stereo>; 3] {
     let stereo = |tint| Stereo {
         half_separation: Q32_32::lit("0.03"),
@@ -103,7 +103,7 @@ fn compare(
     compare_picture(console, &replies, &name, &image, with_depth);
 }
 
-/// Console commands of a frame whose mesh is loaded. One write with all commands draws one frame.
+/// Console commands that draw a frame whose mesh, if any, is loaded. Sent in one write, they draw one frame only.
 fn lines(frame: &Frame, with_depth: bool) -> Vec<String> {
     let mut lines = vec![
         render::size_command(frame.size),
@@ -155,13 +155,14 @@ fn compare_picture(
     }
 }
 
-/// Whether to draw all combinations, which takes long.
+/// Whether the environment asks for all combinations, which take long.
 fn all() -> bool {
     std::env::var("GLINT_RTL_FIELDS").is_ok_and(|which| which == "all")
 }
 
-/// Every fourth combination, with one camera for each number of eyes, and a prepass in every second. With
-/// `GLINT_RTL_FIELDS=all`: all fields from all cameras with both numbers of eyes, and with a prepass from one camera.
+/// Draws every fourth field, each from one camera with one eye or two, and every second of these with a prepass; also one
+/// field of each kind that `FIELDS` lacks. With `GLINT_RTL_FIELDS=all`, draws all fields from all cameras, with one eye
+/// and with two eyes, and from one camera also with a prepass.
 #[test]
 fn the_soc_draws_every_field() {
     let mut board = board();
@@ -169,10 +170,10 @@ fn the_soc_draws_every_field() {
     console.greet().unwrap();
     for (number, text) in fields().into_iter().enumerate() {
         let field = Field::parse(text).unwrap();
-        // The example of a kind that the list lacks is always drawn.
+        // Fields of the kinds that `FIELDS` lacks are always drawn.
         let is_further = number >= FIELDS.len();
         for (side, view) in views().iter().enumerate() {
-            // The tints alternate.
+            // With two eyes, the tints alternate.
             for stereo in [None, eyes()[1 + (number + side) % 2]] {
                 let once = side == number % 3;
                 let in_turn = once && stereo.is_some() == ((number / 4 + side) % 2 == 0);
@@ -232,7 +233,7 @@ fn the_soc_draws_large_fields_and_goes_back_to_meshes() {
     }
 }
 
-/// Copies a mesh into the staging memory; returns the `load` command that takes it from there.
+/// Copies a mesh into the board's staging memory; returns the `load` command that takes the mesh from there.
 fn load(console: &mut Console<SimulatedBoard>, mesh: &[u8]) -> String {
     let Manifest { length, crc32 } = Manifest::of(mesh);
     let staging = send(console, &["info".to_owned()]).address("staging");
@@ -241,8 +242,8 @@ fn load(console: &mut Console<SimulatedBoard>, mesh: &[u8]) -> String {
     format!("load {length} {crc32:08x}")
 }
 
-/// A mesh that intersects a field, with clipped triangles, light, fog, sky and prepass. With `GLINT_RTL_FIELDS=all`:
-/// more cameras, a second size, and consecutive frames.
+/// Draws a mesh that intersects a field, with clipped triangles, light, fog, sky and prepass. With
+/// `GLINT_RTL_FIELDS=all`, also from more cameras, at a second size, and in consecutive frames.
 #[test]
 fn the_soc_draws_a_mesh_in_a_field() {
     let mut board = board();
@@ -310,7 +311,7 @@ fn the_soc_draws_a_mesh_in_a_field() {
     if !all() {
         return;
     }
-    // Back to back, without waiting for the screen.
+    // Draws frames one after the other, without waiting for the screen.
     let replies = send(
         &mut console,
         &["bench field".to_owned(), "info scene".to_owned()],

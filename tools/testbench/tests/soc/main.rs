@@ -1,10 +1,10 @@
-//! The whole SoC draws with its triangle engine what glint-model draws: the pictures on the monitor, the depths in
-//! memory, the counts.
+//! The whole SoC with its triangle engine against glint-model: the pictures on the monitor, the depths in memory, and the
+//! counts of triangles.
 //!
-//! Needs what `cargo xtask gateware` and `cargo xtask firmware` build; `cargo xtask test` sees to it.
+//! The tests need what `cargo xtask gateware` and `cargo xtask firmware` build; `cargo xtask test` runs both.
 //!
-//! A board draws one frame while the monitor takes in the one before, so that a scene costs one frame of the video, the
-//! largest part of the test's time:
+//! The board draws a frame while the monitor takes in the frame before, so that each scene costs the time of one video
+//! frame. Video frames are the largest part of the test's time:
 //!
 //! ```text
 //! video   |      nothing      |   scene 0   |   scene 1   |   scene 2 ...
@@ -25,29 +25,29 @@ use glint_vectors::meshes;
 use glint_vectors::scenes::Scene;
 use rand_pcg::Pcg64Mcg;
 
-/// Bytes of a generated model's mesh.
+/// Returns the mesh of the generated model `name`, as bytes.
 fn generated(name: &str) -> Vec<u8> {
     let model = generate::named(name).expect("a model");
     let converted = convert::convert(&model, convert::Options::default());
     converted.expect("a mesh").0
 }
 
-/// Longest silence of the firmware, in board time.
+/// Longest pause in the firmware's output that the console accepts, in board time.
 const PATIENCE_MS: u64 = 2000;
 
-/// Longest wait for a picture: three frames of the video.
+/// Longest wait for a picture: the time of three video frames.
 const MOST_WAIT_MS: u64 = 50;
 
 /// A board whose pictures are compared with an expected sequence.
 struct Watched {
     board: SimulatedBoard,
-    /// Pixels of the picture per pixel of the frame, along a side.
+    /// Factor by which scan-out enlarges the frame to the picture.
     scale: usize,
-    /// Expected frames, in order; the first one is black.
+    /// Names and pixels of the expected frames, in order; the first frame is black.
     expected: Vec<(String, Vec<u16>)>,
-    /// Number of expected frames that were seen.
+    /// Number of expected frames that the monitor has shown.
     seen: usize,
-    /// Number of compared pictures.
+    /// Number of pictures that were compared.
     pictures: u64,
 }
 
@@ -55,13 +55,14 @@ impl Watched {
     /// Appends a frame to the expected ones.
     fn expect(&mut self, name: &str, frame: Vec<u16>) {
         match self.expected.last_mut() {
-            // Equal frames in a row look like one.
+            // Equal frames one after the other look like one frame on the monitor.
             Some((last, old)) if *old == frame => name.clone_into(last),
             _ => self.expected.push((name.to_owned(), frame)),
         }
     }
 
-    /// Compares the last picture: it equals the previous frame or the next one, never a mix.
+    /// Takes a new picture, if any, and checks that it equals the expected frame that was shown last or the next one,
+    /// never a mix of both.
     fn look(&mut self) {
         let Some(picture) = self.board.inner().monitor().take_picture() else {
             return;
@@ -131,7 +132,7 @@ impl Board for Watched {
     }
 }
 
-/// Replies of the firmware: statistics of the last frame, counters of the machine.
+/// Lines of the firmware's replies, each with a key and a value.
 struct Replies {
     lines: Vec<String>,
 }
@@ -160,7 +161,7 @@ impl Replies {
     }
 }
 
-/// Compares the counts of triangles with the model's.
+/// Compares the counts of triangles in the firmware's replies with the model's.
 fn compare_triangles(replies: &Replies, name: &str, stats: &Stats) {
     let counts =
         ["in", "culled", "clipped", "drawn"].map(|key| replies.number(&format!("triangles_{key}")));
@@ -194,11 +195,11 @@ fn read<B: Board>(console: &mut Console<B>, address: u32, length: usize) -> Vec<
     bytes
 }
 
-/// Largest mesh to upload, in bytes: loading costs the firmware about 20 cycles a byte, one second of simulation for
-/// 10 kB.
+/// Largest size of a small mesh, in bytes. Loading costs the firmware about 20 cycles per byte, which is one second of
+/// simulation for 10 kB.
 const SMALL: usize = 256 << 10;
 
-/// The scenes with small meshes, or the others; the latter include a mesh of two chunks.
+/// The scenes with meshes of at most `SMALL` bytes and one with two small chunks; or, without `small`, the other scenes.
 fn scenes(small: bool) -> Vec<Scene> {
     let mut scenes = glint_vectors::scenes::scenes(generated);
     scenes.retain(|(_, mesh, ..)| (mesh.len() <= SMALL) == small);
@@ -226,11 +227,11 @@ fn draw(size: Size, scenes: Vec<Scene>) {
         &["backend gateware".to_owned(), "info".to_owned()],
     );
     console.board().board.inner().monitor().turn_on();
-    // Count of video frames when the last scene was drawn.
+    // The firmware's count of video frames when the last scene was drawn.
     let mut drawn = u32::MAX;
 
     for (name, mesh, view, cull) in scenes {
-        // Without depth only the changed part of a frame is written.
+        // Further views are drawn without depth, when the engine writes only the changed part of a frame.
         let others = if name == "a sphere" {
             ["2,60,100", "3,200,60"].map(view::spherical).to_vec()
         } else {
@@ -252,7 +253,7 @@ fn draw(size: Size, scenes: Vec<Scene>) {
                 render::view_command(&view),
             ];
             if number == 0 {
-                // The bytes are in place, so `load` finds their CRC-32 correct and skips the transfer.
+                // The bytes are already in the staging memory, so `load` finds their CRC-32 correct and skips the transfer.
                 let Manifest { length, crc32 } = Manifest::of(&mesh);
                 let memory = console.board().memory().unwrap();
                 memory
@@ -263,7 +264,7 @@ fn draw(size: Size, scenes: Vec<Scene>) {
             lines.push("info".to_owned());
             console.board().expect(&name, image.colour);
             replies = send(&mut console, &lines);
-            // `render` would replace a frame before it is shown.
+            // Waits until the last frame is shown, as `render` would replace it before.
             while replies.number("video_frames") == drawn {
                 console.board().wait_for_picture();
                 replies = send(&mut console, &["info".to_owned()]);

@@ -1,4 +1,4 @@
-//! Requests to the triangle engine and their results: `triangle_control` before a simple engine.
+//! Requests to the triangle engine and their results: the module `triangle_control` with a simple engine behind it.
 
 mod bench;
 mod passes;
@@ -12,7 +12,7 @@ use crate::control::passes::{
     RASTER, refusal, regions,
 };
 
-/// Each region of both passes, at valid and invalid addresses; with the pass alone, and with the other pass.
+/// Asks for passes with each region of memory at valid and invalid addresses; for one pass alone, and for both passes.
 #[test]
 fn regions_are_wholly_in_memory() {
     let mut bench = Bench::new(1);
@@ -20,7 +20,7 @@ fn regions_are_wholly_in_memory() {
     for which in [GEOMETRY, RASTER] {
         for size in 0..3 {
             bench.passes = Pass::good();
-            // Enables all regions of the raster pass.
+            // With these switches, the raster pass uses all its regions.
             let flags = &mut bench.passes[which].flags;
             flags.size = size;
             flags.choose(&["cull", "first", "second", "depth", "slot", "whole"]);
@@ -67,7 +67,7 @@ fn regions_are_wholly_in_memory() {
     println!("{cases} cases");
 }
 
-/// Counts and lengths from 0 to the largest: the region ends with memory, or one word beyond.
+/// For counts and lengths from the lowest to the highest, a region may end where memory ends, but not one word farther.
 #[test]
 fn lengths_are_counted_to_the_last_word() {
     let mut bench = Bench::new(2);
@@ -96,7 +96,7 @@ fn lengths_are_counted_to_the_last_word() {
         }
     }
 
-    // Regions longer than memory, at any address.
+    // Regions that are longer than memory are invalid.
     bench.passes = Pass::good();
     bench.passes[GEOMETRY].set("geometry.mesh", BASE);
     for bytes in [MEMORY + 16, 1 << 28, 1 << 29, 1 << 30, 1 << 31, 0xffff_fff0] {
@@ -107,7 +107,7 @@ fn lengths_are_counted_to_the_last_word() {
             "a mesh of {bytes:#x}"
         );
     }
-    // Every list length with every size.
+    // Every value of `list_shift`, which sets the length of the lists, with every size of the picture.
     for size in 0..4 {
         for shift in 0..32 {
             bench.passes = Pass::good();
@@ -132,7 +132,7 @@ fn lengths_are_counted_to_the_last_word() {
     }
 }
 
-/// Addresses of unused regions may have any value.
+/// The address of a region that a pass does not use may have any value.
 #[test]
 fn unused_regions_are_not_checked() {
     let mut bench = Bench::new(3);
@@ -161,7 +161,7 @@ fn unused_regions_are_not_checked() {
     }
 }
 
-/// A single pass starts after the stated latency and ends with the engine's result.
+/// A single pass starts after the stated latency at the latest, and ends with the engine's result.
 #[test]
 fn passes_end_as_the_engine_says() {
     let mut bench = Bench::new(4);
@@ -200,7 +200,8 @@ fn passes_end_as_the_engine_says() {
     }
 }
 
-/// A second ask while a pass is pending, checked, started, busy or done: the pass continues and ends once.
+/// Asks for a pass again while it is checked, started, busy or done: the second ask is refused, and the pass continues
+/// and ends once.
 #[test]
 fn asks_in_between_are_refused() {
     let mut bench = Bench::new(5);
@@ -244,7 +245,7 @@ fn asks_in_between_are_refused() {
     }
 }
 
-/// Cancels one pass or both at any time, and asks again before and after the engine is ready.
+/// Cancels one pass or both at any time, and asks for both again, before and after the engine is ready again.
 #[test]
 fn asks_after_a_cancel_wait_for_the_engine() {
     let mut bench = Bench::new(6);
@@ -282,7 +283,7 @@ fn asks_after_a_cancel_wait_for_the_engine() {
     }
 }
 
-/// Random events in every clock.
+/// Random asks and cancels in every clock.
 #[test]
 fn random_sequences() {
     let mut random = Pcg64Mcg::new(7);
@@ -318,7 +319,7 @@ fn random_sequences() {
     }
 }
 
-/// A valid pass, or one with an error.
+/// Makes random parameters of a pass, valid or with an error.
 fn some_pass(random: &mut Pcg64Mcg, which: usize) -> Pass {
     let mut pass = Pass::good()[which].clone();
     pass.flags.size = random.random_range(0..4);

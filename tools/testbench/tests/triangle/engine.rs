@@ -1,5 +1,5 @@
-//! The triangle engine against glint-model: the same pixels and depths from a mesh in memory. Clipping is done by the
-//! model, as by the firmware on the board.
+//! The triangle engine against glint-model: the same pixels and depths from a mesh in memory. The model clips triangles,
+//! as the firmware does on the board.
 
 mod bench;
 
@@ -12,7 +12,7 @@ use glint_vectors::scenes::{inside, scenes};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
-/// Bytes of a generated model's mesh.
+/// Returns the mesh of the generated model `name`, as bytes.
 fn generated(name: &str) -> Vec<u8> {
     let model = generate::named(name).expect("a model");
     let converted = convert::convert(&model, convert::Options::default());
@@ -53,13 +53,13 @@ fn scenes_at_1280x720() {
     all_scenes(SIZES[2], 0.0);
 }
 
-/// Smooth and flat frames in turns, with stalls and without.
+/// Smooth and flat frames alternate, with stalls of the memory and without.
 #[test]
 fn scenes_with_smooth_shading() {
     for stalls in [0.0, 0.4] {
         let mut bench = Bench::smooth(5, stalls);
         for (name, mesh, view, cull) in scenes(generated) {
-            // Large meshes only take longer.
+            // Large meshes would only take longer.
             if mesh.len() > 1 << 20 {
                 continue;
             }
@@ -78,7 +78,8 @@ fn scenes_with_smooth_shading() {
     }
 }
 
-/// The frame does not depend on stalls. `GLINT_RTL_LISTS` is the number of lists, 25 by default.
+/// The frame does not depend on stalls of the memory. `GLINT_RTL_LISTS` in the environment is the number of frames,
+/// 25 by default.
 #[test]
 fn random_lists_with_random_stalls() {
     let lists = std::env::var("GLINT_RTL_LISTS").map_or(25, |text| text.parse().unwrap());
@@ -91,7 +92,7 @@ fn random_lists_with_random_stalls() {
         } else {
             Bench::new(seed, stalls)
         };
-        // Writing depths triples the time.
+        // Only some frames have depths, as writing depths triples the time.
         bench.with_depth = seed % 5 == 0;
         let count = random.random_range(1..200);
         let size = [0.01, 0.1, 0.5, 2.0][random.random_range(0..4)];
@@ -112,7 +113,8 @@ fn random_lists_with_random_stalls() {
     }
 }
 
-/// A frame buffer holds the last frame whatever it held before, although only words that can differ are written.
+/// After a frame, the frame buffer holds that frame whatever it held before, although the engine writes only words that
+/// can differ.
 #[test]
 fn frames_after_each_other() {
     for seed in 0..4_u32 {
@@ -130,7 +132,7 @@ fn frames_after_each_other() {
                 5 => bench.scribble(),
                 _ => {}
             }
-            // Few triangles: most lines are empty, and the others change from frame to frame.
+            // There are few triangles, so that most lines are empty and the others change from frame to frame.
             let count = random.random_range(0..8);
             let extent = [0.02, 0.3, 1.0][random.random_range(0..3)];
             let mesh = meshes::mesh(&meshes::random(&mut random, count, extent), 65_535);
@@ -196,7 +198,7 @@ fn nothing_new_is_not_written() {
     }
 }
 
-/// The engine's clock may stop when a pass has ended: no write follows, not even of the last list lengths.
+/// When a pass has ended, the engine's clock may stop: no write follows, not even that of the last list lengths.
 #[test]
 fn all_is_in_memory_when_a_pass_has_ended() {
     for (stalls, mesh) in [0.0, 0.3, 0.6, 0.9].into_iter().flat_map(|stalls| {
@@ -302,8 +304,8 @@ fn bad_meshes_and_full_lists_are_reported() {
     }
 }
 
-/// Descriptors and lists of random bits: the frame ends with an error, writes only its own memory, and the next frame
-/// is correct.
+/// Draws frames from random descriptors and lists: such a frame ends, with an error if a descriptor or a list is invalid,
+/// writes only its own memory, and the next frame is correct.
 #[test]
 fn frames_end_with_random_memory() {
     let mesh = generated("icosphere:4");
@@ -315,7 +317,7 @@ fn frames_end_with_random_memory() {
         let expected = expected(&mesh, &inside(), size, false);
         let mut descriptors: Vec<u8> = (0..48 * 300).map(|_| random.random()).collect();
         if seed % 4 > 0 {
-            // Keeps the groups within the picture, as only these are drawn: the bits from 344 on.
+            // Keeps the columns of groups, in the bits from 344 on, within the picture, as the engine draws only those.
             let last = (size.0 / 8 - 1) as u8;
             for descriptor in descriptors.as_chunks_mut::<48>().0 {
                 let mut groups: [u8; 3] = std::array::from_fn(|_| random.random_range(0..=last));
@@ -334,9 +336,9 @@ fn frames_end_with_random_memory() {
     }
 }
 
-/// Pixels drawn per clock on a sphere that fills 96 % of the picture's height, without memory stalls, after the same
-/// frame. Counted for a single frame, from the first fetch to the last word written, and for frames with overlapping
-/// passes, where the longer pass counts.
+/// Checks the pixels drawn per clock on a sphere that fills 96 % of the picture's height, without memory stalls, where
+/// the frame before was the same. There are two lower bounds: `alone`, over the clocks of both passes of a frame, and
+/// `overlapped`, over those of the longer pass, as for frames whose passes overlap.
 #[test]
 fn a_sphere_is_drawn_fast() {
     for (name, size, smooth, alone, overlapped, most_read) in [
@@ -384,7 +386,7 @@ fn a_sphere_is_drawn_fast() {
     }
 }
 
-/// Reads are issued ahead: 64 clocks more memory latency cost a frame hardly more than 64 clocks, once.
+/// Reads are issued ahead, so that 64 clocks more latency of the memory cost a frame only a few times 64 clocks.
 #[test]
 fn latency_of_memory_is_hidden() {
     for (name, size) in [("icosphere:6", SIZES[0]), ("icosphere:12", SIZES[2])] {
@@ -400,7 +402,7 @@ fn latency_of_memory_is_hidden() {
             bench.draw(name, &mesh, &expected).raster
         });
         println!("{name} at {size:?}: {raster:?} clocks for the raster");
-        // Lengths, lists and descriptors wait for each other in the first band, and a few times later.
+        // The reads of lengths, lists and descriptors wait for each other in the first band, and a few times later.
         assert!(raster[1] < raster[0] + 8 * 64, "{name}: {raster:?}");
     }
 }

@@ -1,4 +1,4 @@
-//! The band lists in memory, as written by the binner.
+//! The binner, which writes the lists of the bands to memory.
 
 use glint_model::triangle::descriptor::{band_rows, list_word};
 use glint_testbench::{Bits, Layout, Memory, Module, Sink, Source, Stalls, exchange};
@@ -44,7 +44,7 @@ impl Bench {
         bench
     }
 
-    /// Layout of a descriptor.
+    /// Type of a descriptor at the module's input.
     fn descriptor(&self) -> Layout {
         self.module.record("in_descriptor").layout().clone()
     }
@@ -76,7 +76,7 @@ impl Bench {
         self.module.clock();
     }
 
-    /// Waits until all inputs are taken, then writes the lengths.
+    /// Waits until all inputs are taken, then makes the module write the lengths of the lists.
     fn finish(&mut self) {
         let start = self.module.cycles();
         let all_in = |bench: &Self| bench.descriptors.is_empty() && bench.exceptions.is_empty();
@@ -100,7 +100,7 @@ impl Bench {
     }
 }
 
-/// Descriptors with random rows and random other bits: first row, row past the last, bits.
+/// Makes descriptors with random rows and random other bits: for each, the first row, the row past the last, and all bits.
 fn descriptors(
     random: &mut Pcg64Mcg,
     layout: &Layout,
@@ -126,7 +126,7 @@ fn every_band_lists_what_touches_it() {
         for stalls in [0.0, 0.6] {
             let mut random = Pcg64Mcg::new(size as u128 + 1);
             let mut bench = Bench::new(size, 1000, stalls);
-            // The second frame starts with empty lists.
+            // Draws two frames; the second must start with empty lists.
             for count in [90, 50] {
                 let given = descriptors(&mut random, &bench.descriptor(), count, height);
                 let exceptions: Vec<u32> = (0..30).map(|_| random.random()).collect();
@@ -180,7 +180,7 @@ fn full_lists_are_reported() {
         record.with("top", 5).with("bottom", 6).bits()
     };
     let mut random = Pcg64Mcg::new(1);
-    // As many entries as a list holds, and one more.
+    // Number of entries that a list holds. The cases are: number of descriptors, limit, and the expected output `full`.
     let room = 4 << LIST_SHIFT;
     for (count, limit, full) in [
         (room, 1000, 0),

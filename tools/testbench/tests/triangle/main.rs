@@ -1,4 +1,4 @@
-//! The triangle engine's modules against the model: each alone, together, and behind their registers.
+//! The triangle engine's modules against the model: each alone, all together, and the control of the engine's passes.
 
 mod control;
 mod engine;

@@ -1,4 +1,4 @@
-//! The rasterizer against glint-model: its groups, band by band, make the model's picture.
+//! The rasterizer against glint-model: the groups of pixels that it draws, band by band, must make the model's picture.
 
 mod bench;
 mod triangles;
@@ -28,7 +28,7 @@ fn random_triangles() {
     }
 }
 
-/// Smooth and flat triangles mixed, at all depths of a frame.
+/// Draws smooth and flat triangles in one frame, at all depths that a frame can have.
 #[test]
 fn random_triangles_smooth() {
     for (seed, source_stalls, sink_stalls) in [(4, 0.0, 0.0), (5, 0.5, 0.2), (6, 0.1, 0.7)] {
@@ -50,7 +50,8 @@ fn random_triangles_smooth() {
     }
 }
 
-/// Light from 0 to the largest over every range of depths, each triangle alone; and constant light.
+/// Draws triangles with light from 0 to the largest value over each range of depths, and with constant light, each
+/// triangle alone.
 #[test]
 fn extreme_light() {
     let (near, far) = (((1 << 18) - 4) * 64, 228 * 64);
@@ -77,7 +78,7 @@ fn extreme_light() {
     }
 }
 
-/// A huge, a small and a narrow triangle with these depths.
+/// Makes a huge, a small and a narrow triangle whose vertices have these depths.
 fn shapes_at(depths: [u32; 3]) -> [[ScreenVertex; 3]; 3] {
     let shapes = [
         [[-2000.0, -1500.0], [2000.0, 60.0], [-1900.0, 2000.0]],
@@ -93,7 +94,7 @@ fn shapes_at(depths: [u32; 3]) -> [[ScreenVertex; 3]; 3] {
     })
 }
 
-/// Clamps the depth to the farthest of a frame.
+/// Moves a vertex that is too far away to the farthest depth of a frame.
 fn visible(corner: ScreenVertex) -> ScreenVertex {
     ScreenVertex {
         w: corner.w.max(228 * 64),
@@ -101,7 +102,7 @@ fn visible(corner: ScreenVertex) -> ScreenVertex {
     }
 }
 
-/// Each triangle alone, so that no other one hides it.
+/// Draws each triangle alone, so that no other triangle hides it.
 #[test]
 fn difficult_triangles() {
     let far = f64::from(GUARD) / 256.0;
@@ -205,7 +206,7 @@ fn difficult_triangles() {
     ];
     let mut bench = Bench::new(11, 0.3, 0.3);
     for (name, corners) in shapes {
-        // All orientations, and mirrored vertically.
+        // Draws each triangle with its corners in three orders, which have both orientations, and mirrored left to right.
         let [a, b, c] = corners;
         let flipped = [a, b, c].map(|v| ScreenVertex {
             x: 256 * 320 - v.x,
@@ -218,7 +219,7 @@ fn difficult_triangles() {
     assert!(numbered(SMALL, shapes.map(|(_, corners)| corners)).len() >= 20);
 }
 
-/// Depths at both ends of the range, with gradients that wrap on the way.
+/// Draws triangles with depths at both ends of the range, whose gradients overflow on the way.
 #[test]
 fn extreme_depths() {
     let near = ((1 << 18) - 4) * 64;
@@ -238,7 +239,7 @@ fn extreme_depths() {
     }
 }
 
-/// Triangles around a point cover each pixel of their outline once.
+/// Triangles around a point cover each pixel within their outline once.
 #[test]
 fn a_fan_covers_once() {
     let mut random = Random::new(5);
@@ -258,7 +259,7 @@ fn a_fan_covers_once() {
         let fan = (0..24).map(|i| [middle, rim[(i + 1) % 24], rim[i]]);
         let triangles = numbered(SMALL, fan);
         let counts = bench.check("fan", SMALL, &triangles);
-        // The number of covered pixels equals that of another partition of the polygon.
+        // Another partition of the same polygon must cover the same number of pixels.
         let strip = (1..23).map(|i| [rim[0], rim[i + 1], rim[i]]);
         let other = bench.check("other fan", SMALL, &numbered(SMALL, strip));
         assert_eq!(counts.pixels, other.pixels);
@@ -280,7 +281,7 @@ fn whole_pictures() {
         let counts = bench.check("all of it", size, &triangles);
         assert_eq!(counts.pixels, u64::from(size.0 * size.1));
         println!("{size:?}: {counts:?}");
-        // The walker visits few groups beyond the covered ones.
+        // The rasterizer visits few groups beyond those with a covered pixel.
         assert!(counts.walked < counts.pixels / 8 * 11 / 10);
 
         let mut random = Random::new(6);
@@ -322,7 +323,7 @@ fn mesh(name: &str) -> Vec<u8> {
         .0
 }
 
-/// A camera in which the mesh's sphere fills 96 % of the height.
+/// Makes a camera in which the mesh's bounding sphere fills 96 % of the picture's height.
 fn filling(mesh: &Mesh) -> View {
     let camera = view::spherical("3,30,60").unwrap();
     let radius = f64::from(mesh.radius()) / 16384.0;
@@ -338,7 +339,7 @@ fn filling(mesh: &Mesh) -> View {
     .unwrap()
 }
 
-/// Measures the pixels per clock of the walker on a body of small triangles.
+/// Measures the pixels per clock, over the clocks in which the rasterizer walks, on a sphere of small triangles.
 #[test]
 fn a_sphere_is_walked_efficiently() {
     for (frequency, size, least) in [(6, SMALL, 3.3), (12, LARGE, 4.5)] {

@@ -32,7 +32,7 @@ struct Input {
     light: [Light; 3],
 }
 
-/// Layouts of a triangle's parts.
+/// Types of the parts of a triangle at the module's ports.
 struct Types {
     vertices: Layout,
     vertex: Layout,
@@ -60,7 +60,7 @@ impl Types {
             .with("w", vertex.w)
     }
 
-    /// Packs the light of a vertex, which belongs to one side.
+    /// Packs the light of a vertex, which is that of the front side or of the back side.
     fn light(&self, light: Light) -> Record {
         let back = light.back != Lit::default();
         let Lit([r, g, b]) = if back { light.back } else { light.front };
@@ -71,7 +71,7 @@ impl Types {
             .with("blue", b / 2)
     }
 
-    /// Payload of the input stream.
+    /// Packs a triangle for the input stream.
     fn item(&self, input: &Input, ability: Shading) -> Vec<Bits> {
         let mut vertices = self.vertices.record();
         let mut lights = self.lights.record();
@@ -87,7 +87,7 @@ impl Types {
     }
 }
 
-/// The two payloads of the expected descriptor; `None` for a culled triangle.
+/// Returns the two payloads of the descriptor that the module must produce; `None` for a culled triangle.
 fn expected(frame: &Frame, input: &Input) -> Option<[Bits; 2]> {
     let oriented = Oriented::new(input.vertices)?;
     if frame.cull && oriented.facing == Facing::Back {
@@ -201,7 +201,7 @@ impl Bench {
     }
 }
 
-/// A random triangle of a difficult kind.
+/// Makes a random triangle of one of several difficult kinds.
 fn triangle(random: &mut Pcg64Mcg, (width, height): (u32, u32)) -> Input {
     let [w, h] = [width, height].map(|size| (size << 8) as i32);
     let mut places = [[0; 2]; 3];
@@ -212,27 +212,27 @@ fn triangle(random: &mut Pcg64Mcg, (width, height): (u32, u32)) -> Input {
     ];
     for place in &mut places {
         *place = match kind {
-            // Anywhere in the guard band, or at its ends.
+            // Anywhere in the guard band, or at the ends and in the middle of its range.
             0 | 1 => [0; 2].map(|_| random.random_range(-GUARD..=GUARD)),
             2 => [0; 2].map(|_| [-GUARD, GUARD, 0, 128][random.random_range(0..4)]),
-            // About as large as the picture.
+            // Triangles about as large as the picture.
             3 => [w, h]
                 .map(|size| [0, size][random.random_range(0..2)] + random.random_range(-600..600)),
-            // Small, tiny, and on pixel centres or pixel corners.
+            // Small triangles, tiny triangles, and triangles with vertices on pixel centres or pixel corners.
             4 | 5 => centre.map(|x| x + random.random_range(-3000..3000)),
             6 => centre.map(|x| x + random.random_range(-100..100)),
             7 => centre.map(|x| (x & !255) + 128 * random.random_range(-8..8)),
             _ => centre.map(|x| x + random.random_range(-60_000..60_000)),
         };
     }
-    // Slivers: the last vertex near the line through the others.
+    // Slivers: the last vertex is near the line through the others.
     if kind == 8 {
         let (t, [a, b, last]) = (random.random_range(0..=256), &mut places);
         for i in 0..2 {
             last[i] = a[i] + (((b[i] - a[i]) * t) >> 8) + random.random_range(-1..=1);
         }
     }
-    // Horizontal and vertical edges, and triangles without area.
+    // Makes horizontal and vertical edges, and triangles without area.
     if random.random_ratio(1, 3) {
         let [i, k] = [0; 2].map(|_| random.random_range(0..3));
         let axis = random.random_range(0..2);
@@ -261,7 +261,7 @@ fn triangle(random: &mut Pcg64Mcg, (width, height): (u32, u32)) -> Input {
     }
 }
 
-/// Light of a vertex that faces either side, or is seen edge on.
+/// Makes random light of a vertex that shows its front side or its back side, or is seen edge on.
 fn light(random: &mut Pcg64Mcg) -> Light {
     let colour = [0, u16::MAX, random.random()][random.random_range(0..3)];
     let intensity = [0, 1, 256, random.random_range(0..=256)][random.random_range(0..4)];
@@ -291,7 +291,7 @@ fn random_triangles() {
     random_triangles_of(Shading::Flat);
 }
 
-/// Flat and smooth frames in turns.
+/// Flat and smooth frames in one sequence.
 #[test]
 fn random_triangles_smooth() {
     random_triangles_of(Shading::Smooth);
@@ -342,7 +342,7 @@ fn input(places: [[i32; 2]; 3], w: [u32; 3]) -> Input {
     }
 }
 
-/// Every order of extreme vertices, in every size, with every facing.
+/// Draws all triangles between extreme vertices, in every order, with and without culling, at every size of the picture.
 #[test]
 fn corners_of_the_guard_band_and_of_the_picture() {
     corners(Shading::Flat);
@@ -391,7 +391,8 @@ fn corners(shading: Shading) {
     }
 }
 
-/// With all vertices off the same side of the picture the bounds are empty, so the setup needs no separate test.
+/// If all vertices are beyond the same side of the picture, the bounds of the triangle are empty, so the setup needs no
+/// separate test for this.
 #[test]
 fn off_the_picture_is_without_a_centre() {
     let mut random = Pcg64Mcg::new(5);

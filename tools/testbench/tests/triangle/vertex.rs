@@ -5,7 +5,7 @@ use glint_model::{MeshSetup, Projected, SIZES, ScreenVertex};
 use glint_testbench::{Bits, Layout, Module, Record, Sink, Source, Stalls, step};
 use glint_vectors::{Camera, Random};
 
-/// Expected output of the stage, saturated to s12.8.
+/// Computes the expected output of the vertex stage with the model; x and y are saturated to s12.8.
 fn expected(layout: &Layout, frame: &MeshSetup, position: [i16; 3]) -> Record {
     let projected = project(frame, &transform(frame, position));
     let ScreenVertex { x, y, w } = projected.place().copied().unwrap_or_default();
@@ -36,7 +36,7 @@ fn set_frame(module: &mut Module, frame: &MeshSetup) {
 
 struct Bench {
     module: Module,
-    /// Layout of an output vertex.
+    /// Type of a vertex at the module's output.
     vertex: Layout,
     source: Source,
     sink: Sink,
@@ -81,7 +81,7 @@ impl Bench {
     }
 }
 
-/// A camera at a distance up to 8 that looks at a point of the mesh, or in any direction.
+/// Makes a random camera at a distance up to 8 that looks at a point of the mesh, or in any direction.
 fn camera(random: &mut Random, round: u32) -> Camera {
     let half_width = match round % 8 {
         0 => 0.05,
@@ -123,7 +123,7 @@ fn random_cameras_and_vertices() {
         .zip(shares)
         .map(|(seed, (source, sink))| Bench::new(seed, source, sink))
         .collect();
-    // Counts of vertices behind, beyond the guard band, and visible.
+    // Numbers of vertices behind the near plane, beyond the guard band, and visible.
     let mut seen = [0; 3];
     for round in 0..600 {
         let (width, height) = SIZES[round as usize % 3];
@@ -145,7 +145,7 @@ fn random_cameras_and_vertices() {
     assert!(seen.iter().all(|&count| count > 2000));
 }
 
-/// Frames whose near plane, depth scale or translation puts a vertex at a limit.
+/// Tests frame constants whose near plane, depth scale or translation puts a vertex at a limit.
 #[test]
 fn edges() {
     let mut random = Random(2);
@@ -159,7 +159,7 @@ fn edges() {
         let at = position(&mut random);
         let z = transform(&frame, at).z;
 
-        // On the near plane, and one unit of the last place before and behind it.
+        // Puts the near plane through the vertex, one unit of the last place in front of it and behind it, and farther away.
         if (least + 1..1 << 38).contains(&z) {
             near_planes += 1;
             for off in [-1, 0, 1, -(1 << 20), 1 << 20] {
@@ -173,7 +173,7 @@ fn edges() {
             continue;
         }
 
-        // w at its limit and near it.
+        // Scales the depth w to its limit and near it.
         let depth = frame.depth;
         for exponent in -5..=5 {
             frame.depth.exponent = exponent;
@@ -184,12 +184,13 @@ fn edges() {
         }
         frame.depth = depth;
 
-        // x or y near either end of the guard band, by choice of the translation.
+        // Puts x or y near either end of the guard band, by the choice of the translation.
         let axis = random.integer(0, 1) as usize;
         let side = if random.coin() { 1 } else { -1 };
         let centre = [width, height][axis] as i64 / 2;
         let place = side * 2047 * 256 - 256 * centre;
-        // x = X·2^(23 − f)·2^8/Z.
+        // Solves x = X·2^(31 − f)/Z for X: x in 1/256 pixel from the centre, X and Z in camera coordinates, and
+        // f = `scale_shift`.
         let wanted = ((i128::from(place) * i128::from(z)) >> (31 - frame.scale_shift)) as i64;
         let vertex = transform(&frame, at);
         let translation = frame.translation;
@@ -205,7 +206,7 @@ fn edges() {
             guard_edges += u32::from(edge.abs() <= 2);
             bench.check(&frame, &[at]);
         }
-        // Largest translations: X' and the place saturate.
+        // With the largest translations, the place on the screen and X', from which it is computed (docs/formats.md), saturate.
         for far in [(1 << 42) - 1, -(1 << 42), 1 << 41] {
             frame.translation[axis] = far;
             bench.check(&frame, &[at]);
@@ -217,8 +218,8 @@ fn edges() {
     assert!(near_planes > 100 && guard_edges > 1000 && full_depths > 100);
 }
 
-/// The camera's coordinates of the vertex at the origin are the translation. Its values cover mantissas of Z at both
-/// ends of each seed of the reciprocal, and X' on both sides of every rounding limit.
+/// The camera coordinates of a vertex at the origin are the translation. The tested translations cover mantissas of Z at
+/// both ends of the range of each seed of the reciprocal, and X' (docs/formats.md) on both sides of rounding limits.
 #[test]
 fn mantissas_and_shifts() {
     let mut random = Random(4);
@@ -228,13 +229,13 @@ fn mantissas_and_shifts() {
     for round in 0..3072 {
         let (width, height) = SIZES[round as usize % 3];
         let mut frame = MeshSetup::new(&view, width, height, RADIUS).unwrap();
-        // 0.01, the smallest distance of a near plane.
+        // The smallest distance of a near plane, 0.01.
         frame.near = 1_374_389_535;
         let seed = round / 4 % 256;
         let mantissa =
             (1 << 23) + (seed << 15) + [0, 1, (1 << 15) - 1, 1 << 14][round as usize % 4];
         let lead = random.integer(30, 40);
-        // The bits below the mantissa are all zeros, all ones, or random.
+        // The bits of Z below the mantissa are all zeros, all ones, or random.
         let below = (1 << (lead - 23)) - 1;
         let z = mantissa << (lead - 23)
             | [0, below, random.bits() as i64 & below][round as usize / 1024];

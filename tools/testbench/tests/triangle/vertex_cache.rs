@@ -10,18 +10,19 @@ const SLOTS: usize = 512;
 
 type Triangle = [u16; 3];
 
-/// 68 bits that identify a vertex of a chunk.
+/// Makes 68 bits that identify a vertex of a chunk.
 fn vertex(chunk: u32, index: u16) -> Bits {
     let mixed = (u64::from(chunk) << 16 | u64::from(index)).wrapping_mul(0x9E37_79B9_7F4A_7C15);
     Bits::from_words(&[mixed as u32, (mixed >> 32) as u32, mixed as u32 >> 7 & 15])
 }
 
-/// 96 bits that identify a triangle of a chunk.
+/// Makes 96 bits that identify a triangle of a chunk.
 fn side(chunk: u32, number: usize) -> Bits {
     Bits::from_words(&[number as u32, chunk, !(number as u32)])
 }
 
-/// Expected fetches: those of a direct-mapped cache that each chunk starts empty.
+/// Returns the indices of the vertices that the cache must fetch for a chunk: those that miss a direct-mapped cache that
+/// is empty at first.
 fn fetches(triangles: &[Triangle]) -> Vec<u16> {
     let mut slots = [None; SLOTS];
     let all = triangles.as_flattened().iter();
@@ -36,12 +37,12 @@ struct Bench {
     fetches: Sink,
     projected: Source,
     out: Sink,
-    /// Vertices under way, each with the clock in which it arrives.
+    /// Fetched vertices that have not arrived yet, each with the clock in which it arrives.
     on_the_way: VecDeque<(u64, Bits)>,
-    /// Expected fetches: chunk and index.
+    /// Fetches that are still expected: chunk and index of the vertex.
     expected_fetches: VecDeque<(u32, u16)>,
     latency: u64,
-    /// Clocks between two projected vertices.
+    /// Clocks between two vertices from the vertex stage.
     pace: u64,
     clear: Port,
     idle: Port,
@@ -89,7 +90,8 @@ impl Bench {
         }
     }
 
-    /// Sends chunks through, with a clear as soon as the last triangle of a chunk has moved in. Returns the clocks.
+    /// Sends chunks through the cache, and compares the vertices at its output. The cache is cleared as soon as it has
+    /// taken the last triangle of a chunk. Returns the clocks.
     fn check(&mut self, first: u32, chunks: &[Vec<Triangle>]) -> u64 {
         let start = self.module.cycles();
         let total: usize = chunks.iter().map(Vec::len).sum();
@@ -136,7 +138,8 @@ impl Bench {
     }
 }
 
-/// Triangles along a strip, of one slot's vertices, or random ones.
+/// Makes triangles of one random kind: along a strip, with vertices that share a few slots of the cache, with few
+/// vertices, or with any vertices.
 fn triangles(random: &mut Pcg64Mcg, count: usize) -> Vec<Triangle> {
     let kind = random.random_range(0..4);
     let base: u16 = random.random();
@@ -176,15 +179,15 @@ fn triangles_come_in_order_with_their_own_vertices() {
     }
 }
 
-/// A chunk hits no vertex of earlier chunks, also after the epochs wrap.
+/// A chunk hits no vertex of earlier chunks, even when the cache's epochs, which tell the chunks apart, start over.
 #[test]
 fn every_chunk_begins_empty() {
     let mut bench = Bench::new(20, [0.0; 4], 5, 1);
-    // The first chunk fills the cache; each later one has few vertices and must not hit the leftovers.
+    // The first chunk fills the cache. Each later chunk has few vertices, and must not hit what the first one left.
     let mut chunks = vec![(0..512).map(|i| [i, i, i]).collect::<Vec<Triangle>>()];
     chunks.extend((1..400).map(|chunk| vec![[chunk * 37 % 512; 3], [chunk * 41 % 512; 3]]));
     bench.check(1, &chunks);
-    // Chunks without a triangle.
+    // Chunks without a triangle also take an epoch each.
     for _ in 0..100 {
         bench.check(1000, &[vec![]]);
     }
@@ -205,7 +208,7 @@ fn a_triangle_in_three_clocks_when_all_is_there() {
 fn the_latency_of_memory_is_hidden() {
     let mut bench = Bench::new(40, [0.0; 4], 150, 6);
     let apart: Vec<Triangle> = (0..300).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-    // The first epoch follows a sweep.
+    // The first chunk follows a sweep of the cache, so it is not measured.
     bench.check(1, &[vec![[0; 3]]]);
     let clocks = bench.check(2, &[apart]);
     assert!(clocks <= 18 * 300 + 200, "{clocks} clocks for 900 misses");

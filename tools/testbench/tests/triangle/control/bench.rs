@@ -1,4 +1,4 @@
-//! Bench of `triangle_control`: software on one side, an engine on the other.
+//! Test bench of `triangle_control`, with software on one side and a simple engine on the other.
 
 use glint_testbench::{Module, Port};
 
@@ -7,24 +7,24 @@ use crate::control::passes::{
     NONE, Pass, RASTER, refusal,
 };
 
-/// State of a pass.
+/// Expected state of a pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
     Idle,
-    /// Asked for in this clock: the clocks it will run, and its result.
+    /// Asked for: the clock of the ask, and the error with which the ask must be refused, if any.
     Asked(u64, u64),
-    /// Runs for this many more clocks.
+    /// Started: the pass runs for this many more clocks.
     Runs(u64),
 }
 
-/// Readiness of the engine for a start: not from a cancel until the engine is ready.
+/// Whether the engine can start a pass. After a cancel it cannot until it is ready again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Recovery {
     Since(u64),
     Waits,
 }
 
-/// The controller with an engine behind it, and the expected behaviour of both.
+/// The module with an engine behind it, and the expected behaviour of the module.
 pub struct Bench {
     pub module: Module,
     /// Bytes per descriptor.
@@ -32,21 +32,21 @@ pub struct Bench {
     pub passes: [Pass; 2],
     pub list_shift: u64,
     pub states: [State; 2],
-    /// Expected `error` and `kept` of each pass.
+    /// Expected values of the outputs `error` and `kept` of each pass.
     pub errors: [u64; 2],
     pub kept: [Option<Flags>; 2],
     pub recovery: Recovery,
     /// Clocks until the engine is ready again.
     pub ready_in: u64,
-    /// Length and result of the engine's passes.
+    /// Length in clocks of each pass in the engine; `ends` has the result of each pass.
     pub runs: [u64; 2],
     pub ends: [u64; 2],
-    /// Accepted asks, starts and ends of each pass.
+    /// Numbers of accepted asks, starts and ends of each pass.
     pub counts: [[u64; 3]; 2],
     pub clocks: u64,
 }
 
-/// Inputs in a clock.
+/// What software does in a clock.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Events {
     pub ask: [bool; 2],
@@ -60,7 +60,7 @@ impl Bench {
         Self::of("triangle_control", 48, seed)
     }
 
-    /// The variant with smooth shading.
+    /// Creates a bench of the module variant with smooth shading.
     pub fn smooth(seed: u32) -> Self {
         Self::of("triangle_control_smooth", 96, seed)
     }
@@ -81,12 +81,13 @@ impl Bench {
             counts: [[0; 3]; 2],
             clocks: 0,
         };
-        // One clock with `ready`, which starts depend on.
+        // Runs one clock with `ready`, without which no pass starts.
         bench.clock(Events::default());
         bench
     }
 
-    /// Sets counts from 0 to the largest, for a region that ends with memory, or one word beyond.
+    /// Asks for the pass `which` with several values of `count`, in units of `item` bytes. The region at the port
+    /// `region` must be accepted where it ends with memory, and refused one word farther.
     pub fn lengths(&mut self, which: usize, count: &str, region: &str, item: u64) {
         const MOST: u64 = (1 << 20) - 1;
         let counts: &[u64] = if item == 1 {
@@ -157,7 +158,7 @@ impl Bench {
         self.states[which] != State::Idle
     }
 
-    /// Advances one clock, the engine first.
+    /// Advances by one clock, and checks the module's outputs.
     pub fn clock(&mut self, events: Events) {
         let now = self.clocks;
         let ready = self.ready_in == 0;
@@ -202,7 +203,7 @@ impl Bench {
                     assert!(!started, "{name} starts though cancelled");
                 }
                 State::Asked(since, refusal) => {
-                    // Both passes may be asked for in one clock, and their starts wait for the engine.
+                    // The limit is that of two passes, as both may be asked for in one clock. Starts also wait for the engine.
                     if let Recovery::Since(ready) = self.recovery {
                         let waited = now - since.max(ready);
                         assert!(waited <= 2 * LATENCY, "{name}: nothing for {waited} clocks");
@@ -263,7 +264,7 @@ impl Bench {
         }
     }
 
-    /// Drives the engine's outputs for the coming clock.
+    /// Drives the engine's outputs for the next clock.
     pub fn drive_engine(&mut self) {
         for which in [GEOMETRY, RASTER] {
             // `busy` rises after the start and falls with `done`.
@@ -272,7 +273,7 @@ impl Bench {
             let name = NAMES[which];
             self.module.drive(&format!("engine.{name}_busy"), busy);
             self.module.drive(&format!("engine.{name}_done"), done);
-            // Results are valid only with `done`.
+            // Results are valid only with `done`; without it, they are noise.
             let noise = self.clocks.is_multiple_of(3);
             let says = |error| {
                 u64::from(if done {
@@ -309,7 +310,7 @@ impl Bench {
     pub fn finish(&mut self) {
         for _ in 0..1000 {
             if !self.is_active(GEOMETRY) && !self.is_active(RASTER) {
-                // After the end a pass stays idle and its error holds.
+                // After its end, a pass stays idle and its error does not change.
                 for _ in 0..3 {
                     self.clock(Events::default());
                 }

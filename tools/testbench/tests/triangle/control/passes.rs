@@ -1,8 +1,8 @@
-//! The two passes of the engine: parameters, regions of memory, refusals.
+//! The two passes of the engine: their parameters, their regions of memory, and the errors with which they are refused.
 
 pub const BASE: u64 = 0x4000_0000;
 pub const MEMORY: u64 = 128 << 20;
-/// Clocks from the ask for a single pass to its start.
+/// Most clocks from the ask for a single pass to its start.
 pub const LATENCY: u64 = 15;
 
 pub const NONE: u64 = 0;
@@ -45,7 +45,7 @@ impl Flags {
         }
     }
 
-    /// The members of a port with these flags, and their values.
+    /// Returns the paths and values of the members of a port that has these flags.
     pub fn members(&self, port: &str) -> Vec<(String, u64)> {
         let others = self.others.iter().map(|&(name, set)| (name, set.into()));
         let all = [("size", self.size)].into_iter().chain(others);
@@ -54,7 +54,7 @@ impl Flags {
     }
 }
 
-/// Parameters of a pass: flags and port values.
+/// Parameters of a pass: its flags, and the values of its ports by name.
 #[derive(Clone, Debug)]
 pub struct Pass {
     pub flags: Flags,
@@ -71,7 +71,7 @@ impl Pass {
         port.unwrap().1 = value;
     }
 
-    /// Two passes with valid parameters.
+    /// Makes valid parameters of the two passes.
     pub fn good() -> [Self; 2] {
         let geometry = [
             ("geometry.mesh", BASE + 0x10_0000),
@@ -121,7 +121,7 @@ impl Pass {
     }
 }
 
-/// The regions of a pass that are checked: the port with the address, and the length in bytes.
+/// Returns the regions of memory that are checked for a pass: the port with the address, and the length in bytes.
 pub fn regions(
     which: usize,
     pass: &Pass,
@@ -172,7 +172,7 @@ pub fn regions(
     }
 }
 
-/// Expected error code of a pass.
+/// Returns the error code with which an ask for a pass must be refused, or `NONE`.
 pub fn refusal(which: usize, pass: &Pass, list_shift: u64, descriptor: u64) -> u64 {
     let misplaced = |&(port, bytes): &(&str, u64)| {
         let first = pass.get(port);

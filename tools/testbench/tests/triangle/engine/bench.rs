@@ -1,4 +1,4 @@
-//! Bench of the triangle engine: a memory around the module, and the expected frames.
+//! Test bench of the triangle engine, with a memory, and the expected frames.
 
 use glint_core::camera::View;
 use glint_core::mesh::Mesh;
@@ -11,7 +11,8 @@ use glint_testbench::{Bits, Counters, Memory, Module, ReadPort, Stalls, WritePor
 
 pub const SIZES: [(u32, u32); 3] = glint_model::SIZES;
 
-// Memory map, in words of 16 bytes. Set 0 belongs to the engine, set 1 to the clipper.
+// Addresses in memory, in words of 16 bytes. The engine writes the first of the two areas of lists and of descriptors,
+// the clipper the second one.
 const FRAMES: [u32; 2] = [0, 0x6_0000];
 const DEPTH: u32 = 0x2_0000;
 const LISTS: [u32; 2] = [0x8_0000, 0xc_0000];
@@ -19,11 +20,11 @@ const DESCRIPTORS: [u32; 2] = [0x10_0000, 0x14_0000];
 const EXCEPTIONS: u32 = 0x18_0000;
 const MESH: u32 = 0x1c_0000;
 const WORDS: usize = 0x20_0000;
-/// Words per list, as a power of two.
+/// Logarithm to base 2 of the words per list.
 const LIST_SHIFT: u32 = 11;
-/// Words behind a picture that must not change: more than a bank of the band buffer holds.
+/// Number of words behind a picture that are checked not to change: more than a bank of the band buffer holds.
 const BEHIND: usize = 4096;
-/// Limit of exceptions, and of descriptors in units of three words.
+/// Most exceptions that the engine may write, and most descriptors, the latter counted in units of three words.
 const LIMIT: u32 = 80_000;
 pub const CLEAR: u16 = 0x1234;
 
@@ -38,12 +39,12 @@ pub struct Expected {
     pub stats: Stats,
 }
 
-/// Draws with the model.
+/// Draws a frame with the model.
 pub fn expected(mesh: &[u8], view: &View, size: (u32, u32), cull: bool) -> Expected {
     expected_on(CLEAR, mesh, view, size, cull)
 }
 
-/// Draws with the model, with the clear colour `clear`.
+/// Draws a frame with the model; pixels without a triangle have the colour `clear`.
 pub fn expected_on(clear: u16, mesh: &[u8], view: &View, size: (u32, u32), cull: bool) -> Expected {
     let options = Options {
         cull,
@@ -53,7 +54,7 @@ pub fn expected_on(clear: u16, mesh: &[u8], view: &View, size: (u32, u32), cull:
     expected_with(options, mesh, view, size)
 }
 
-/// Draws with the model, with smooth shading.
+/// Draws a frame with the model, with smooth shading.
 pub fn expected_smooth(mesh: &[u8], view: &View, size: (u32, u32), cull: bool) -> Expected {
     let options = Options {
         cull,
@@ -100,7 +101,8 @@ fn expected_with(options: Options, mesh: &[u8], view: &View, size: (u32, u32)) -
     }
 }
 
-/// Writes lists and descriptors of the clipped triangles, as the firmware does.
+/// Writes the lists and descriptors of the clipped triangles to memory, as the firmware does. `ability` is the shading
+/// that the engine was built for.
 fn write_clipped(memory: &mut Memory, expected: &Expected, ability: Shading) {
     let (width, height) = expected.size;
     let rows = band_rows(width);
@@ -138,16 +140,17 @@ pub struct Bench {
     memory: Memory,
     pub reads: [ReadPort; 3],
     writes: [WritePort; 4],
-    /// Writes and compares depths too.
+    /// Whether frames are drawn with depths, which are then compared too.
     pub with_depth: bool,
-    /// Frame buffer to draw in.
+    /// Number of the frame buffer to draw in.
     pub slot: usize,
-    /// Size and clear colour of the last frame in each frame buffer, or `None` before the first one, which the engine writes
-    /// whole without a request.
+    /// For each frame buffer, the size and clear colour of its last frame; `None` before the first frame, which the
+    /// engine writes whole without a request.
     left: [Option<((u32, u32), u16)>; 2],
 }
 
-/// Clocks of the two passes, words read by the raster pass, and words written of the frame and its depths.
+/// What drawing a frame took: clocks of the two passes, words that the raster pass read, and words of colours
+/// and depths written.
 pub struct Clocks {
     pub geometry: u64,
     pub raster: u64,
@@ -156,12 +159,12 @@ pub struct Clocks {
 }
 
 impl Bench {
-    /// A bench with the module for flat shading, and stalls in a share of the clocks on every side of the memory.
+    /// Creates a bench with the module for flat shading; each port of the memory stalls in the share `stalls` of the clocks.
     pub fn new(seed: u32, stalls: f64) -> Self {
         Self::of(Shading::Flat, seed, stalls)
     }
 
-    /// As [`new`](Self::new), with smooth shading built.
+    /// As [`new`](Self::new), with the module for flat and smooth shading.
     pub fn smooth(seed: u32, stalls: f64) -> Self {
         Self::of(Shading::Smooth, seed, stalls)
     }
@@ -193,12 +196,12 @@ impl Bench {
         self.module.set(port, value);
     }
 
-    /// The number on a port.
+    /// Returns the number on a port.
     pub fn read(&self, path: &str) -> u64 {
         self.module.read(path)
     }
 
-    /// The count of an event.
+    /// Returns the count of an event of the engine.
     pub fn count(&self, event: &str) -> u64 {
         self.counters.get(event)
     }
@@ -238,12 +241,12 @@ impl Bench {
         self.module.cycles() - start
     }
 
-    /// Words written by all ports.
+    /// Number of words written by all ports.
     pub fn written(&self) -> u64 {
         self.writes.iter().map(|write| write.written).sum()
     }
 
-    /// Words of frames and depths written.
+    /// Number of words of colours and depths written.
     fn frame_words(&self) -> u64 {
         self.writes[2].written + self.writes[3].written
     }
@@ -268,7 +271,7 @@ impl Bench {
         let options = &expected.options;
         let bytes = |word: u32| u64::from(word) * 16;
         for (path, value) in [
-            // The mesh header has two words.
+            // The engine reads a mesh from behind its header, which has two words.
             ("geometry.mesh", bytes(MESH + 2)),
             (
                 "geometry.mesh_bytes",
@@ -317,7 +320,7 @@ impl Bench {
             .drive_all("raster.descriptors", DESCRIPTORS.map(bytes));
     }
 
-    /// Draws a frame and compares it.
+    /// Draws a frame and compares it with the expected one.
     pub fn draw(&mut self, name: &str, mesh: &[u8], expected: &Expected) -> Clocks {
         self.configure(mesh, expected);
         self.wait_for("status.ready");
@@ -359,8 +362,8 @@ impl Bench {
         }
     }
 
-    /// Draws from raw descriptors and lists: the list of each band has the same number of entries, taken from
-    /// `lists`, in every band.
+    /// Draws a frame from any descriptors and lists, valid or not. Each band has the same list `list`; its length is that
+    /// in `lengths`.
     ///
     /// # Panics
     /// When the frame does not end, or a word behind the picture changes.
@@ -400,7 +403,7 @@ impl Bench {
         }
     }
 
-    /// Overwrites the frame buffer.
+    /// Overwrites the frame buffer, and forgets its last frame.
     pub fn scribble(&mut self) {
         self.memory
             .write(FRAMES[self.slot], &[0x99; 1280 * 720 * 2]);

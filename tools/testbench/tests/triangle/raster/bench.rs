@@ -1,4 +1,4 @@
-//! Bench of the raster pass: draws one band after the other and assembles the picture from the groups.
+//! Test bench of the rasterizer: draws one band after the other, and makes the picture from the groups at the output.
 
 use glint_model::triangle::descriptor::{Descriptor, band_rows};
 use glint_model::triangle::raster::draw;
@@ -13,18 +13,18 @@ pub struct Pixel {
     pub depth: u32,
 }
 
-/// What drawing took.
+/// Counts of what drawing took.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Counts {
     pub clocks: u64,
-    /// Clocks spent on a group by the walker.
+    /// Clocks in which the rasterizer looked at a group (`cycles_walking`).
     pub walked: u64,
-    /// Of these, clocks without a group for the lanes.
+    /// Clocks among `walked` in which no group went on to be drawn (`cycles_empty`).
     pub empty: u64,
     /// Groups at the output.
     pub groups: u64,
     pub pixels: u64,
-    /// Triangles, counted in each band.
+    /// Triangles, counted again in each band that they are drawn in.
     pub entries: u64,
 }
 
@@ -40,12 +40,12 @@ pub struct Bench {
 }
 
 impl Bench {
-    /// The variant for flat triangles, which are identified by their colours.
+    /// Creates a bench of the module variant for flat triangles, which are identified by their colours.
     pub fn new(seed: u32, source_stalls: f64, sink_stalls: f64) -> Self {
         Self::of("triangle_raster", seed, source_stalls, sink_stalls)
     }
 
-    /// The variant for flat and smooth triangles.
+    /// Creates a bench of the module variant for flat and smooth triangles.
     pub fn smooth(seed: u32, source_stalls: f64, sink_stalls: f64) -> Self {
         Self::of("triangle_raster_smooth", seed, source_stalls, sink_stalls)
     }
@@ -75,7 +75,7 @@ impl Bench {
         }
     }
 
-    /// The groups of a band. The band ends when the rasterizer is idle.
+    /// Draws a band, which ends when the rasterizer is idle; returns its groups.
     pub fn band<'a>(
         &mut self,
         [y0, rows, stride]: [u32; 3],
@@ -109,7 +109,7 @@ impl Bench {
         self.sink.take()
     }
 
-    /// Draws triangles in all bands they touch, and compares with the model.
+    /// Draws triangles in all bands that they touch, and compares the picture with the model's.
     pub fn check(&mut self, name: &str, size: (u32, u32), triangles: &[Triangle]) -> Counts {
         let (width, height) = size;
         let blank = Pixel {
@@ -117,7 +117,7 @@ impl Bench {
             depth: 0,
         };
         let mut picture = vec![blank; (width * height) as usize];
-        // The last triangle drawn at each pixel.
+        // Number of the triangle that was drawn last at each pixel.
         let mut last = vec![None; picture.len()];
         let all_flat = triangles.iter().all(|t| t.setup.light.is_none());
         self.counts = Counts::default();

@@ -23,7 +23,7 @@ pub struct Triangle {
 }
 
 impl Triangle {
-    /// Sets up a triangle; `None` if it has no area or misses the picture.
+    /// Sets up a triangle; returns `None` if the triangle has no area or is off the picture.
     pub fn new(corners: Corners, (width, height): (u32, u32), number: usize) -> Option<Self> {
         let oriented = Oriented::new(corners)?;
         let bounds = Bounds::new(&oriented.vertices, width, height)?;
@@ -34,7 +34,7 @@ impl Triangle {
         })
     }
 
-    /// The same triangle with light.
+    /// Returns the same triangle with light at its vertices, for smooth shading.
     pub fn with_light(mut self, lit: &[Lit; 3]) -> Self {
         let oriented = Oriented::new(self.corners).unwrap();
         self.setup = Setup::smooth(&oriented, self.setup.bounds, lit);
@@ -42,7 +42,7 @@ impl Triangle {
     }
 }
 
-/// Numbers the triangles that cover part of the picture.
+/// Sets up and numbers the triangles that have an area and are not off the picture.
 pub fn numbered(size: (u32, u32), all: impl IntoIterator<Item = Corners>) -> Vec<Triangle> {
     let mut triangles = Vec::new();
     for corners in all {
@@ -51,12 +51,12 @@ pub fn numbered(size: (u32, u32), all: impl IntoIterator<Item = Corners>) -> Vec
     triangles
 }
 
-/// A vertex; the place is in 1/256 pixel.
+/// Makes a vertex at a place in units of 1/256 pixel.
 pub fn corner([x, y]: [i32; 2], w: u32) -> ScreenVertex {
     ScreenVertex { x, y, w }
 }
 
-/// Places in pixels.
+/// Makes the corners of a triangle from places in pixels; each corner has another depth.
 pub fn pixels(corners: [[f64; 2]; 3]) -> Corners {
     let mut w = 0;
     corners.map(|place| {
@@ -97,7 +97,7 @@ impl Random {
         corner([0; 2].map(|_| self.within(-reach, reach)), self.depth())
     }
 
-    /// A random vertex up to `reach` pixels from a place, in steps of `step`/256.
+    /// Makes a random vertex up to `reach` pixels from a place, in steps of `step`/256 pixel.
     pub fn near(&mut self, [x, y]: [i32; 2], reach: i32, step: i32) -> ScreenVertex {
         let reach = 256 * reach / step;
         let mut around = |c: i32| 256 * c + step * self.within(-reach, reach);
@@ -105,7 +105,7 @@ impl Random {
         corner(place, self.depth())
     }
 
-    /// A random triangle, of any size and shape.
+    /// Makes a random triangle of any size and shape.
     pub fn triangle(&mut self, (width, height): (u32, u32)) -> Corners {
         let (w, h) = (width as i32, height as i32);
         let place = [self.within(0, w), self.within(0, h)];
@@ -116,7 +116,7 @@ impl Random {
             3 | 4 => [0; 3].map(|_| self.near(place, 20, 1)),
             5 => [0; 3].map(|_| self.near(place, 2, 1)),
             6 => [0; 3].map(|_| self.near(place, 1, 16)),
-            // Vertices on pixel centres and edges; horizontal and vertical edges.
+            // Vertices on pixel centres and pixel edges, and so some horizontal and vertical triangle edges.
             7 => [0; 3].map(|_| self.near(place, 12, 128)),
             8 => {
                 let wide = [place[0] / 8 * 8, place[1]];
