@@ -1,4 +1,4 @@
-//! The chip behind `embedded-hal`.
+//! The chip on a bus that implements the I2C traits of `embedded-hal`.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -7,11 +7,11 @@ use embedded_hal::i2c::{ErrorKind, ErrorType, NoAcknowledgeSource, Operation};
 
 use crate::chip::{Chip, Fault};
 
-/// Time of a byte at 400 kHz, in ns.
+/// Time in ns of a byte and its acknowledge bit at 400 kHz.
 const BYTE_TIME: u64 = 9 * 2_500;
-/// A master's time-out of clock stretching, in ns.
+/// Longest clock stretching that the master accepts, in ns.
 const STRETCH_TIMEOUT: u64 = 25_000_000;
-/// Clocks with which a master frees a stuck device.
+/// Number of clocks that the master sends to free a stuck device.
 const RECOVERY_CLOCKS: u32 = 9;
 
 /// Bus errors.
@@ -32,7 +32,7 @@ impl embedded_hal::i2c::Error for Error {
     }
 }
 
-/// A bus with a chip and a clock; transfers and delays advance the same time. Clones are handles of one bus.
+/// A bus with a chip and a simulated time, which transfers and delays advance. Clones are handles of the same bus.
 #[derive(Clone)]
 pub struct Bus {
     shared: Rc<RefCell<Shared>>,
@@ -46,7 +46,7 @@ struct Shared {
 }
 
 impl Bus {
-    /// A bus at time 0.
+    /// Creates a bus with `chip`, at time 0.
     #[must_use]
     pub fn new(chip: Chip) -> Self {
         let shared = Shared {
@@ -60,7 +60,7 @@ impl Bus {
         }
     }
 
-    /// Runs a closure on the chip.
+    /// Calls `action` with the chip, and returns its result.
     pub fn with_chip<T>(&self, action: impl FnOnce(&mut Chip) -> T) -> T {
         action(&mut self.shared.borrow_mut().chip)
     }
@@ -71,13 +71,13 @@ impl Bus {
         self.shared.borrow().now
     }
 
-    /// Number of transactions.
+    /// Number of transactions so far, failed ones included.
     #[must_use]
     pub fn transactions(&self) -> u64 {
         self.shared.borrow().transactions
     }
 
-    /// Advances the time by ns.
+    /// Advances the time by `time` ns.
     pub fn advance(&self, time: u64) {
         self.shared.borrow_mut().advance(time);
     }
@@ -117,7 +117,7 @@ impl Shared {
 
     fn operate(&mut self, address: u8, operations: &mut [Operation]) -> Result<(), Error> {
         let mut reading = None;
-        // The first byte of a sequence of writes is a register.
+        // The first byte of consecutive writes is the register number.
         let mut has_register = false;
         for operation in operations {
             let reads = matches!(operation, Operation::Read(_));
@@ -155,7 +155,7 @@ impl Shared {
         Ok(())
     }
 
-    /// Advances the time by a byte.
+    /// Advances the time by that of one byte; fails when the chip stretches the clock for too long.
     fn advance_byte(&mut self) -> Result<(), Error> {
         self.advance(BYTE_TIME);
         match self.chip.fault {

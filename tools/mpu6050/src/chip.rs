@@ -1,4 +1,4 @@
-//! Registers, sample clock and measurement.
+//! The chip: its registers, its sample clock and its measurements.
 
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
@@ -6,7 +6,7 @@ use rand_pcg::Pcg64Mcg;
 /// I2C address with AD0 low.
 pub const ADDRESS: u8 = 0x68;
 
-/// Time without an answer after a reset, in ns.
+/// Time after a reset in which the chip does not answer, in ns.
 pub const RESET_TIME: u64 = 50_000_000;
 
 const SMPLRT_DIV: u8 = 0x19;
@@ -24,7 +24,8 @@ const DATA_RDY: u8 = 0x01;
 const DEVICE_RESET: u8 = 0x80;
 const SLEEP: u8 = 0x40;
 
-/// Delay in ms and bandwidth in Hz of the gyroscope by DLPF_CFG; the reserved 7 acts like 0.
+/// Delay in ms and bandwidth in Hz of the gyroscope's low-pass filter for each value of DLPF_CFG; the reserved value 7
+/// acts like 0.
 const FILTERS: [(f64, f64); 8] = [
     (0.98, 256.0),
     (1.9, 188.0),
@@ -36,11 +37,11 @@ const FILTERS: [(f64, f64); 8] = [
     (0.98, 256.0),
 ];
 
-/// LSB per °/s by FS_SEL; LSB per g by AFS_SEL.
+/// Counts per °/s for each value of FS_SEL, and counts per g for each value of AFS_SEL.
 const PER_DPS: [f64; 4] = [131.0, 65.5, 32.8, 16.4];
 const PER_G: [f64; 4] = [16_384.0, 8_192.0, 4_096.0, 2_048.0];
 
-/// Motion of the body at one time.
+/// Motion of the body that carries the sensor, at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State {
     /// Rate about each axis in °/s.
@@ -91,9 +92,9 @@ impl Counts {
 
 /// Source of the measurements.
 pub enum Source {
-    /// Motion at a time in s; measured with all imperfections.
+    /// Function from the time in s to the motion at that time. The chip measures it with its imperfections.
     Motion(Box<dyn Fn(f64) -> State + Send>),
-    /// Recorded counts, each with the time in ns from which it is current; used unchanged.
+    /// Recorded counts, each with the time in ns from which it is current. The chip delivers them unchanged.
     Log(Vec<(u64, Counts)>),
 }
 
@@ -114,7 +115,7 @@ pub struct Imperfections {
     pub accel_scale: [f64; 3],
     /// Noise density of the accelerometer in g per √Hz.
     pub accel_noise: f64,
-    /// Relative error of the clock rate: 0.01 is 1 % fast.
+    /// Relative error of the rate of the chip's clock: 0.01 is 1 % too fast.
     pub clock: f64,
 }
 
@@ -143,36 +144,36 @@ impl Imperfections {
     };
 }
 
-/// Faults of the chip.
+/// A fault of the chip, for tests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// Missing chip: no byte is acknowledged.
+    /// The chip is missing: no byte is acknowledged.
     Absent,
-    /// Acknowledge of the address, but of no byte after it.
+    /// The chip acknowledges its address, but no byte after it.
     NoAcknowledge,
-    /// SDA held low until the master has sent the given number of clocks; 0: forever.
+    /// The chip holds SDA low until the master has sent this number of clocks; with 0, forever.
     StuckData(u32),
-    /// Clock stretched by the given ns after each byte.
+    /// The chip stretches the clock by this time in ns after each byte.
     Stretched(u64),
-    /// Frozen data registers, while INT_STATUS still announces new data.
+    /// The data registers do not change, but INT_STATUS still announces new data.
     Frozen,
-    /// No new measurements.
+    /// The chip makes no new measurements, and INT_STATUS announces none.
     Stalled,
-    /// Another value of WHO_AM_I.
+    /// WHO_AM_I reads as this value.
     Identity(u8),
 }
 
-/// The chip.
+/// A virtual MPU-6050, as its I2C master sees it.
 pub struct Chip {
     registers: [u8; 128],
-    /// Readable data registers, and the latest measurement.
+    /// Data registers as they are read, and the latest measurement if it is not in them yet.
     data: [u8; 14],
     newest: Option<[u8; 14]>,
     source: Source,
     imperfections: Imperfections,
     random: Pcg64Mcg,
     now: u64,
-    /// Time of the next sample; `None` in sleep mode.
+    /// Time of the next sample in ns; `None` in sleep mode.
     next: Option<u64>,
     /// Time from which the chip answers after a reset, in ns.
     answers: u64,
@@ -182,14 +183,14 @@ pub struct Chip {
     pub address: u8,
     /// Current fault.
     pub fault: Option<Fault>,
-    /// Number of samples.
+    /// Number of samples so far.
     pub samples: u64,
-    /// Samples overwritten before INT_STATUS was read.
+    /// Number of samples that were overwritten before INT_STATUS was read.
     pub missed: u64,
 }
 
 impl Chip {
-    /// A chip after power-up.
+    /// Creates a chip as it is after power-up. `seed` determines its noise.
     #[must_use]
     pub fn new(source: Source, imperfections: Imperfections, seed: u64) -> Self {
         let mut chip = Self {
@@ -244,7 +245,7 @@ impl Chip {
         self.refresh();
     }
 
-    /// Marks the start or the end of bus traffic.
+    /// Tells the chip that a transfer starts or ends; the data registers do not change during a transfer.
     pub fn set_addressed(&mut self, is_addressed: bool) {
         self.is_addressed = is_addressed;
         self.refresh();
@@ -261,7 +262,7 @@ impl Chip {
         (internal * divider / (1.0 + self.imperfections.clock)) as u64
     }
 
-    /// Reads a register; a read clears INT_STATUS.
+    /// Reads a register. Reading INT_STATUS clears it.
     pub fn read(&mut self, register: u8) -> u8 {
         match register & 0x7f {
             WHO_AM_I => match self.fault {
@@ -274,7 +275,7 @@ impl Chip {
         }
     }
 
-    /// Writes a register.
+    /// Writes a register; read-only registers do not change.
     pub fn write(&mut self, register: u8, value: u8) {
         match register & 0x7f {
             WHO_AM_I | INT_STATUS | DATA..=DATA_END => {}
@@ -326,7 +327,7 @@ impl Chip {
             accel_noise,
             ..
         } = self.imperfections;
-        // White noise through a single pole.
+        // A single-pole filter passes as much white noise as an ideal filter of π/2 times its bandwidth.
         let through = (bandwidth * std::f64::consts::FRAC_PI_2).sqrt();
         let warmth = state.temperature - 25.0;
         let gyro = [0, 1, 2].map(|i| {
@@ -351,7 +352,7 @@ impl Chip {
         sum - 6.0
     }
 
-    /// Updates the data registers, unless the bus is in use.
+    /// Moves the latest measurement to the data registers and announces it in INT_STATUS, unless a transfer is under way.
     fn refresh(&mut self) {
         if self.is_addressed {
             return;
@@ -368,7 +369,7 @@ impl Chip {
     }
 }
 
-/// Rounds to nearest, saturating to 16 bits.
+/// Rounds to the nearest integer, and saturates to 16 bits.
 fn count(value: f64) -> i16 {
     value.round() as i16
 }

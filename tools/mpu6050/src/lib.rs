@@ -6,7 +6,7 @@
 //! | [`Wires`] | the chip on SCL and SDA, edge by edge; records violations of the data sheet's timing |
 //! | [`Bus`] | the chip behind `embedded-hal`, byte by byte, with its own clock |
 //!
-//! The calls and a seed determine everything; the caller passes the time, in ns.
+//! The caller passes the time, in ns. Equal calls with an equal seed give equal results.
 //!
 //! # Limits
 //! The low-pass filter delays, and limits the noise, but does not attenuate. There is no FIFO, no auxiliary bus, no self-test,

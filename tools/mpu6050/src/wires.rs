@@ -1,8 +1,8 @@
-//! The chip on its two wires.
+//! The chip on the two wires of the I2C bus, SCL and SDA.
 
 use crate::chip::{Chip, Fault};
 
-/// Minimum times of a master in fast mode, in ns.
+/// Minimum times that a master must keep in fast mode (400 kHz), in ns.
 const LOW: u64 = 1_300;
 const HIGH: u64 = 600;
 const START_SETUP: u64 = 600;
@@ -16,9 +16,9 @@ const FREE: u64 = 1_300;
 enum Phase {
     /// Not addressed: waits for the next start.
     Idle,
-    /// Byte from the master: received bits, their number, and the byte's meaning.
+    /// Receives a byte from the master: the bits so far, their number, and the meaning of the byte.
     In { bits: u8, count: u8, what: Byte },
-    /// Byte to the master, and the number of bits sent.
+    /// Sends a byte to the master: the byte, and the number of bits sent so far.
     Out { byte: u8, count: u8 },
 }
 
@@ -30,7 +30,7 @@ enum Byte {
     Value,
 }
 
-/// Times of the last edges.
+/// Times of the last edges on the wires, in ns.
 #[derive(Clone, Copy, Debug, Default)]
 struct Edges {
     scl_rose: u64,
@@ -40,28 +40,28 @@ struct Edges {
     stop: u64,
 }
 
-/// A chip on SCL and SDA.
+/// A chip that is driven by the levels of SCL and SDA.
 pub struct Wires {
     /// The chip.
     pub chip: Chip,
-    /// Log of S, P and bytes with acknowledge (+) or not (-), if enabled.
+    /// Log of the traffic, if it is enabled: S is a start, P a stop; a byte is followed by + with and by - without acknowledge.
     pub log: Option<Vec<String>>,
-    /// Violations of the minimum times.
+    /// Violations of the minimum times by the master, as messages.
     pub violations: Vec<String>,
     phase: Phase,
     register: u8,
-    /// Last state of both wires, and whether the chip pulls SDA.
+    /// Last state of SCL and SDA (`true` is high), and whether the chip pulls SDA low.
     wires: (bool, bool),
     pulls: bool,
-    /// End of clock stretching, in ns.
+    /// Time until which the chip stretches the clock, in ns.
     holds: u64,
-    /// Clocks counted by a stuck chip.
+    /// Number of clocks since the last call of `set_fault`; they free a stuck chip.
     clocks: u32,
     edges: Edges,
 }
 
 impl Wires {
-    /// A chip on a free bus.
+    /// Puts a chip on a free bus.
     #[must_use]
     pub fn new(chip: Chip) -> Self {
         Self {
@@ -78,12 +78,12 @@ impl Wires {
         }
     }
 
-    /// Sets the master's outputs (`true` releases, `false` pulls low); returns the resulting wires. Call it at each change, and
-    /// every few µs.
+    /// Sets the master's outputs for SCL and SDA at the time `now` in ns (`true` releases, `false` pulls low), and
+    /// returns the resulting levels of the wires. Call this at each change of the outputs, and every few µs.
     pub fn update(&mut self, now: u64, scl: bool, sda: bool) -> (bool, bool) {
         self.chip.advance(now);
         let mut wires = self.wires(now, scl, sda);
-        // The chip changes SDA after the falling edge of SCL.
+        // The chip can change SDA in answer to an edge, so this repeats until the wires are stable.
         while wires != self.wires {
             let (before, after) = (std::mem::replace(&mut self.wires, wires), wires);
             self.on_edge(now, before, after);
@@ -112,7 +112,7 @@ impl Wires {
         }
     }
 
-    /// Records a time below its minimum.
+    /// Records a violation if the time from `since` to `now` is below `least`.
     fn check(&mut self, now: u64, since: u64, least: u64, what: &str) {
         if since != 0 && now - since < least {
             let time = now - since;
@@ -189,7 +189,7 @@ impl Wires {
         }
     }
 
-    /// The next byte to send.
+    /// Reads the next register, and starts to send its value.
     fn next_out(&mut self) -> Phase {
         let byte = self.chip.read(self.register);
         self.register = self.register.wrapping_add(1);

@@ -32,14 +32,14 @@ fn write(bus: &mut Bus, register: u8, value: u8) {
         .expect("an acknowledge");
 }
 
-/// Awake at 1 kHz with the 98 Hz filter, ±2000 °/s and ±8 g.
+/// Wakes the chip: samples at 1 kHz, the 98 Hz filter, ranges of ±2000 °/s and ±8 g, new data announced in INT_STATUS.
 fn wake(bus: &mut Bus) {
     for (register, value) in [(0x6b, 1), (0x1a, 2), (0x1b, 0x18), (0x1c, 0x10), (0x38, 1)] {
         write(bus, register, value);
     }
 }
 
-/// Status and counts in one burst.
+/// Reads INT_STATUS and the data registers in one burst: whether the data are new, and the counts.
 fn burst(bus: &mut Bus) -> (bool, Counts) {
     let mut bytes = [0; 15];
     bus.write_read(ADDRESS, &[0x3a], &mut bytes)
@@ -63,7 +63,7 @@ fn it_wakes_up_as_in_the_register_map() {
     bus.delay_ms(2);
     let (fresh, counts) = burst(&mut bus);
     assert!(fresh);
-    // 25 °C and 1 g at 4096 LSB.
+    // 25 °C is −3920 counts, and 1 g is 4096 counts.
     assert_eq!(counts.accel, [0, 0, 4096]);
     assert_eq!(counts.temperature, -3920);
     assert!(!burst(&mut bus).0, "reading clears the status");
@@ -146,7 +146,7 @@ fn errors_match_the_imperfections() {
     let mut bus = bus_of(motion, imperfections);
     wake(&mut bus);
     let mean = |bus: &mut Bus| {
-        // The current sample was measured with the old range.
+        // The current sample may have been measured with the old range, so it is skipped.
         bus.delay_ms(2);
         burst(bus);
         let (mut sum, mut squares, mut count) = ([0.0; 3], 0.0, 0.0);
@@ -166,7 +166,7 @@ fn errors_match_the_imperfections() {
     for (rate, expected) in rates.into_iter().zip([206.0, 4.5, 0.0]) {
         assert!((rate - expected).abs() < 0.02, "{rates:?}");
     }
-    // Noise of 0.005 °/s/√Hz in a bandwidth of 98 Hz, plus the rounding of counts.
+    // Expected deviation: noise of 0.005 °/s per √Hz in a bandwidth of 98 Hz, and the rounding to counts.
     assert!((0.055..0.075).contains(&deviation), "{deviation}");
     assert!((2018.0..2022.0).contains(&count), "{count}");
     bus.advance(20_000 * MILLISECOND);

@@ -1,4 +1,4 @@
-//! Cameras in `f64`.
+//! Cameras with `f64` coordinates.
 
 use glint_core::camera::View;
 use glint_core::fixed::{Q2_23, Q32_32, U4_28};
@@ -6,16 +6,16 @@ use glint_core::fixed::{Q2_23, Q32_32, U4_28};
 use crate::math::{cross, dot, normalised};
 use crate::random::Random;
 
-/// A camera before rounding.
+/// A camera before it is rounded to the formats of the engine.
 #[derive(Clone, Copy, Debug)]
 pub struct Camera {
-    /// Position.
+    /// Position in the world.
     pub eye: [f64; 3],
-    /// To the right.
+    /// Unit vector to the right of the picture.
     pub u: [f64; 3],
-    /// Down.
+    /// Unit vector to the bottom of the picture.
     pub v: [f64; 3],
-    /// Forward.
+    /// Unit vector in the viewing direction.
     pub n: [f64; 3],
     /// Half the width of the picture at distance 1.
     pub half_width: f64,
@@ -24,7 +24,8 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// Camera at `eye`, with the direction `towards` at (a, b) on the image plane at distance 1.
+    /// Camera at `eye` that shows the direction `towards` at the point (a, b) of the image plane at distance 1. Its
+    /// rotation about that direction is random.
     pub fn aimed(
         random: &mut Random,
         eye: [f64; 3],
@@ -60,7 +61,7 @@ impl Camera {
         Self::aimed(random, eye, towards, [0.0; 2], half_width, near)
     }
 
-    /// Camera at `eye` that looks at `target`, with v as near to −z as possible.
+    /// Camera at `eye` that looks at `target`, with the picture's downward vector `v` as near to −z as possible.
     #[must_use]
     pub fn looking(eye: [f64; 3], target: [f64; 3], half_width: f64, near: f64) -> Self {
         let n = normalised([0, 1, 2].map(|i| target[i] - eye[i]));
@@ -75,7 +76,7 @@ impl Camera {
         }
     }
 
-    /// The camera in the engine's formats.
+    /// Rounds the camera to the engine's formats.
     ///
     /// # Panics
     /// When the engine's formats cannot represent the camera.
@@ -93,7 +94,7 @@ impl Camera {
         .unwrap()
     }
 
-    /// The camera of a view.
+    /// Converts a view in the engine's formats to a camera.
     #[must_use]
     pub fn of(view: &View) -> Self {
         let basis = |row: [Q2_23; 3]| row.map(|x| x.to_num::<f64>());
@@ -107,7 +108,8 @@ impl Camera {
         }
     }
 
-    /// x and y in pixels, and z.
+    /// Projects a position: returns x and y on a picture of this size, in pixels, and the distance z along
+    /// the viewing direction.
     #[must_use]
     pub fn project(&self, position: [f64; 3], width: u32, height: u32) -> [f64; 3] {
         let d = [0, 1, 2].map(|i| position[i] - self.eye[i]);

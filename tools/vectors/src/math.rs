@@ -1,12 +1,12 @@
 //! Vectors of three `f64`.
 
-/// The inner product.
+/// Inner product of two vectors.
 #[must_use]
 pub fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// The vector product.
+/// Vector product of two vectors.
 #[must_use]
 pub fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [
@@ -16,14 +16,14 @@ pub fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     ]
 }
 
-/// The unit vector in the same direction.
+/// Unit vector in the direction of `v`.
 #[must_use]
 pub fn normalised(v: [f64; 3]) -> [f64; 3] {
     let length = dot(v, v).sqrt();
     v.map(|x| x / length)
 }
 
-/// A mesh position, Q2.14, in world units.
+/// Converts a position of a mesh from Q2.14 to world units.
 #[must_use]
 pub fn world(position: [i16; 3]) -> [f64; 3] {
     position.map(|x| f64::from(x) / 16384.0)

@@ -1,4 +1,4 @@
-//! Meshes of single triangles, in the format in memory.
+//! Meshes made of separate triangles, as bytes of the mesh format.
 
 use glint_core::camera::View;
 use rand::RngExt;
@@ -6,13 +6,13 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::camera::Camera;
 
-/// One unit in mesh coordinates.
+/// One world unit in mesh coordinates (Q2.14).
 pub const ONE: i32 = 1 << 14;
 
-/// A triangle: its corners in 2^-14, its colour.
+/// A triangle: the positions of its corners in Q2.14, and its RGB565 colour.
 pub type Triangle = ([[i16; 3]; 3], u16);
 
-/// Mesh of these triangles, each with its own vertices, in chunks of at most `most` vertices.
+/// Encodes a mesh of `triangles`, each with its own three vertices, in chunks of at most `most` vertices.
 #[must_use]
 pub fn mesh(triangles: &[Triangle], most: usize) -> Vec<u8> {
     let mut body = Vec::new();
@@ -30,7 +30,7 @@ pub fn mesh(triangles: &[Triangle], most: usize) -> Vec<u8> {
             body.extend(word.to_le_bytes());
         }
         let corners = chunk.iter().flat_map(|(corners, _)| *corners);
-        // Any colours and normals, of any length: they matter only in smooth shading.
+        // Vertices get random colours and random normals of any length, which matter only for smooth shading.
         let mut random = Pcg64Mcg::new(count as u128);
         for corner in corners.chain(std::iter::repeat([0; 3])).take(count) {
             corner.iter().for_each(|c| body.extend(c.to_le_bytes()));
@@ -46,7 +46,7 @@ pub fn mesh(triangles: &[Triangle], most: usize) -> Vec<u8> {
                 body.extend((3 * number + index).to_le_bytes());
             }
             body.extend(colour.to_le_bytes());
-            // Any normal works: it only dims the colour.
+            // Any normal will do, as it only dims the colour.
             let normal = corners[0];
             normal.iter().for_each(|c| body.extend(c.to_le_bytes()));
             body.extend([0; 2]);
@@ -76,7 +76,8 @@ pub fn mesh(triangles: &[Triangle], most: usize) -> Vec<u8> {
     bytes
 }
 
-/// From (0, -2, 0) towards +y: a point at (x, y, z) is at distance y + 2, to the right with x and up with z.
+/// Camera at (0, -2, 0) that looks along +y: a point (x, y, z) appears at the distance y + 2, farther right for larger x,
+/// and higher for larger z.
 #[must_use]
 pub fn ahead(half_width: f64, near: f64) -> View {
     let camera = Camera {
@@ -90,13 +91,13 @@ pub fn ahead(half_width: f64, near: f64) -> View {
     camera.rounded()
 }
 
-/// A point in units.
+/// Converts a point from world units to mesh coordinates.
 #[must_use]
 pub fn at(x: f64, y: f64, z: f64) -> [i16; 3] {
     [x, y, z].map(|c| (c * f64::from(ONE)).round() as i16)
 }
 
-/// `count` triangles of about `size` units at random places.
+/// Makes `count` random triangles of about `size` world units at random places.
 pub fn random(random: &mut Pcg64Mcg, count: usize, size: f64) -> Vec<Triangle> {
     let reach = (size * f64::from(ONE)) as i32;
     (0..count)

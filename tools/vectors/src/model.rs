@@ -1,4 +1,4 @@
-//! Models from formulas.
+//! Models of a few simple shapes, computed or random.
 
 use glint_core::colour::Rgb565;
 use glint_core::mesh::{IndexedTriangle, Vertex, encode};
@@ -6,17 +6,17 @@ use glint_core::mesh::{IndexedTriangle, Vertex, encode};
 use crate::math::{cross, dot, normalised, world};
 use crate::random::Random;
 
-/// A triangle soup or an indexed mesh.
+/// A model: positions, and triangles that refer to them.
 #[derive(Clone, Debug, Default)]
 pub struct Model {
-    /// Positions, Q2.14.
+    /// Positions of the vertices, Q2.14.
     pub positions: Vec<[i16; 3]>,
-    /// Positions of each triangle.
+    /// For each triangle, the indices of its corners in `positions`.
     pub triangles: Vec<[u32; 3]>,
 }
 
 impl Model {
-    /// Triangles that share no vertices.
+    /// Makes a model of triangles that share no vertices.
     #[must_use]
     pub fn soup(triangles: &[[[i16; 3]; 3]]) -> Self {
         let positions = triangles.concat();
@@ -99,7 +99,7 @@ impl Model {
         }
     }
 
-    /// The same triangles with rotated vertices.
+    /// The same triangles, each with its three corners rotated by `turns` places in their order.
     #[must_use]
     pub fn rotated(&self, turns: usize) -> Self {
         let mut model = self.clone();
@@ -110,7 +110,7 @@ impl Model {
         model
     }
 
-    /// The same triangles with reversed orientation.
+    /// The same triangles, each with the opposite orientation.
     #[must_use]
     pub fn flipped(&self) -> Self {
         let mut model = self.clone();
@@ -118,10 +118,10 @@ impl Model {
         model
     }
 
-    /// The mesh's bytes; each triangle has its own colour and its geometric normal.
+    /// Encodes the model as a mesh of one chunk; each triangle has its own colour and its geometric normal.
     ///
     /// # Panics
-    /// With more vertices than a chunk holds.
+    /// When the model has more vertices than a chunk holds.
     #[must_use]
     pub fn encoded(&self) -> Vec<u8> {
         let vertices: Vec<Vertex> = self

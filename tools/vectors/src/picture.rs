@@ -1,4 +1,4 @@
-//! Pictures drawn by the model.
+//! Pictures drawn by the bit-exact model of the triangle engine.
 
 use glint_core::camera::View;
 use glint_core::mesh::Mesh;
@@ -9,21 +9,21 @@ use crate::model::Model;
 /// A rendered picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
-    /// Columns.
+    /// Number of columns.
     pub width: u32,
-    /// Lines.
+    /// Number of lines.
     pub height: u32,
-    /// RGB565, line by line.
+    /// RGB565 colours of the pixels, line by line.
     pub colour: Vec<u16>,
-    /// Depth codes, line by line.
+    /// Depth codes of the pixels, line by line; 0 without a triangle.
     pub depth: Vec<u32>,
     /// Statistics of the renderer.
     pub stats: Stats,
-    /// Number of triangles that were set up.
+    /// The triangles that were set up, in order.
     pub drawn: Vec<DrawnTriangle>,
 }
 
-/// The clear colour.
+/// Colour of pixels without a triangle, RGB565.
 pub const CLEAR: u16 = 0x0841;
 
 impl Picture {
@@ -54,14 +54,14 @@ impl Picture {
     /// Renders a mesh.
     ///
     /// # Panics
-    /// When the bytes are no mesh, or the counts of the renderer disagree.
+    /// When the bytes are no valid mesh, or the renderer's statistics contradict each other.
     #[must_use]
     pub fn of_bytes(bytes: &[u8], view: &View, size: (u32, u32), cull: bool) -> Self {
         let mesh = Mesh::new_checked(bytes).unwrap();
         let mut scratch =
             vec![Projected::Behind; mesh.chunks().map(|c| c.vertex_count()).max().unwrap()];
         let mut picture = Self::blank(size);
-        // Pixels without a triangle are clear.
+        // The renderer must overwrite these values in every pixel, even in those without a triangle.
         picture.colour.fill(0xDEAD);
         picture.depth.fill(0xDEAD);
         let mut drawn = Vec::new();
@@ -90,7 +90,7 @@ impl Picture {
         picture
     }
 
-    /// A rendered model.
+    /// Renders a model.
     #[must_use]
     pub fn of(model: &Model, view: &View, size: (u32, u32), cull: bool) -> Self {
         Self::of_bytes(&model.encoded(), view, size, cull)

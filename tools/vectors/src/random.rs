@@ -2,9 +2,7 @@
 
 use crate::math::{dot, normalised};
 
-/// SplitMix64.
-///
-/// The number is the seed.
+/// The generator SplitMix64. The number is its state, at first the seed.
 pub struct Random(pub u64);
 
 impl Random {
@@ -21,17 +19,17 @@ impl Random {
         self.bits() & 1 == 0
     }
 
-    /// A number in `low`…`high`, inclusive.
+    /// An integer from `low` to `high`, both included.
     pub fn integer(&mut self, low: i64, high: i64) -> i64 {
         low + (self.bits() % (high - low + 1) as u64) as i64
     }
 
-    /// A number in `low`…`high`, exclusive of `high`.
+    /// A number from `low`, included, to `high`, excluded.
     pub fn real(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * (self.bits() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// A number in `low`…`high`, exclusive of `high`, with a uniform logarithm.
+    /// A number from `low`, included, to `high`, excluded, whose logarithm is uniformly distributed.
     pub fn logarithmic(&mut self, low: f64, high: f64) -> f64 {
         self.real(low.ln(), high.ln()).exp()
     }

@@ -7,7 +7,7 @@ use rand_pcg::Pcg64Mcg;
 use crate::camera::Camera;
 use crate::meshes::{self, Triangle, ahead, at};
 
-/// A mesh, a camera, and whether back faces are culled.
+/// A scene: its name, the bytes of its mesh, the camera, and whether back faces are culled.
 pub type Scene = (&'static str, Vec<u8>, View, bool);
 
 /// A wide-angle view from near the middle of a model.
@@ -24,7 +24,7 @@ pub fn inside() -> View {
     camera.rounded()
 }
 
-/// Front faces around a centre, between two angles, seen from the front at the distance y + 2.
+/// A fan of `parts` front faces around a common corner, in the plane with this `y`, at the distance y + 2 of the camera `ahead`.
 fn fan(y: f64, radius: f64, parts: usize) -> Vec<Triangle> {
     let rim = |part: usize| {
         let (sin, cos) = (std::f64::consts::TAU * part as f64 / parts as f64).sin_cos();
@@ -40,7 +40,7 @@ fn fan(y: f64, radius: f64, parts: usize) -> Vec<Triangle> {
         .collect()
 }
 
-/// All scenes. `generated` makes the mesh of a named model, such as `icosphere:6`.
+/// Makes all scenes. `generated` must return the mesh of a named model, such as `icosphere:6`.
 #[must_use]
 pub fn scenes(generated: impl Fn(&str) -> Vec<u8>) -> Vec<Scene> {
     let mut random = Pcg64Mcg::new(1);
@@ -85,7 +85,7 @@ pub fn scenes(generated: impl Fn(&str) -> Vec<u8>) -> Vec<Scene> {
             0x07e0,
         ),
     ];
-    // Pixel centres at 320x180 and pixel corners at the other sizes, with 128 pixels a unit.
+    // A point that appears at a pixel centre at 320x180, where a unit has 128 pixels, and at a pixel corner at the other sizes.
     let centre = |x: i32, z: i32| {
         at(
             f64::from(2 * x + 1) / 256.0,
@@ -190,7 +190,7 @@ pub fn scenes(generated: impl Fn(&str) -> Vec<u8>) -> Vec<Scene> {
     ]
 }
 
-/// A camera on a sphere about the origin, with angles in degrees.
+/// A camera on a sphere of radius `r` about the origin; the angles are in degrees.
 fn spherical(r: i32, theta: i32, phi: i32) -> View {
     let [theta, phi] = [theta, phi].map(|angle| Turns::from_degrees(Q32_32::from_num(angle)));
     View::spherical(Q32_32::from_num(r), theta, phi).expect("a camera within the limits")

@@ -1,4 +1,4 @@
-//! Triangles on the screen.
+//! Triangles in screen coordinates.
 
 use glint_model::triangle::setup::{Bounds, Oriented, Setup};
 use glint_model::triangle::vertex::GUARD;
@@ -6,12 +6,12 @@ use glint_model::{SIZES, ScreenVertex};
 
 use crate::random::Random;
 
-/// Columns and lines of the picture.
+/// Columns and lines of the picture in which the triangles lie.
 pub const SIZE: (u32, u32) = SIZES[0];
-/// A depth.
+/// Depth of all vertices, in the format of `ScreenVertex::w`.
 pub const FLAT: u32 = 1000 * 64;
 
-/// A vertex at a place in 1/256 pixel, at the depth [`FLAT`].
+/// Makes a vertex at a place in units of 1/256 pixel, with the depth [`FLAT`].
 #[must_use]
 pub fn at([x, y]: [i64; 2]) -> ScreenVertex {
     ScreenVertex {
@@ -21,7 +21,7 @@ pub fn at([x, y]: [i64; 2]) -> ScreenVertex {
     }
 }
 
-/// Sets up a triangle; `None` without an area or off the picture.
+/// Sets up a triangle; returns `None` if the triangle has no area or is off the picture.
 #[must_use]
 pub fn set_up(
     vertices: [ScreenVertex; 3],
@@ -32,7 +32,8 @@ pub fn set_up(
     Some((oriented, Setup::new(&oriented, bounds)))
 }
 
-/// Random triangles of all sizes and shapes, many with vertices on pixel centres and edges, some over the whole guard band.
+/// Makes a random triangle of any size and shape; many have vertices on pixel centres and pixel edges, some cover the
+/// whole guard band.
 pub fn random_triangle(random: &mut Random) -> [ScreenVertex; 3] {
     let guard = i64::from(GUARD) + 128;
     let anywhere =

@@ -1,5 +1,5 @@
-//! Cost of the board over the bare model: speed of [`VirtualBoard::run`] in cycles per second, with the monitor off and on,
-//! against a C++ loop that only advances the clocks; alternating in one run.
+//! Measures what the virtual board costs over the bare model: the speed of [`VirtualBoard::run`] in cycles per second,
+//! with the monitor off and on, and that of a C++ loop that only advances the clocks. The three kinds of measurement alternate.
 //!
 //! Exit code 1 if the board with its monitor off is below 90 % of the bare loop's speed.
 
@@ -27,7 +27,7 @@ fn main() -> Result<ExitCode, Error> {
         if monitor {
             board.monitor().turn_on();
         }
-        // All run the same program from the same cycle on.
+        // All boards are at the same cycle of the same program when the measurements begin.
         board.run(TURN);
         boards.push(board);
     }

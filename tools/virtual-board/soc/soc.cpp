@@ -29,7 +29,7 @@ namespace {
 constexpr uint32_t PIXEL_TICKS = 297;
 constexpr uint32_t PIXEL_PERIOD = 325;
 
-// Longer than a store takes to reach memory, with an instruction fill and a refresh before it.
+// Cycles after which a store of the CPU has reached memory, even behind a line fill of the instruction cache and a refresh.
 constexpr uint64_t SETTLE_CYCLES = 1000;
 
 // LiteDRAM maps addresses ROW_BANK_COL: above the 16 bytes of a word come 7 bits of column, 3 of bank, 13 of row.
@@ -39,7 +39,7 @@ constexpr size_t COLUMN_BITS = 7;
 constexpr size_t BANK_BITS = 3;
 constexpr size_t RUN_BYTES = WORD_BYTES << COLUMN_BITS;  // Contiguous bytes in one bank.
 
-// Simulated time in units of 1 ps for waveforms.
+// Half a period of sys_clk in ps, the unit of time in waveforms.
 constexpr uint64_t HALF_PERIOD_PS = 500'000'000'000ull / CONFIG_CLOCK_FREQUENCY;
 
 }  // namespace
@@ -62,7 +62,7 @@ struct Soc : Harness {
     }
 
     void cycle() {
-        // The rising edge of sys_clk samples the current pins.
+        // Rising edge of sys_clk, at which the SoC samples its input pins.
         const bool sent = top.serial_source_valid;
         const uint8_t sent_byte = top.serial_source_data;
         const bool taken = top.serial_sink_valid && top.serial_sink_ready;
@@ -128,7 +128,7 @@ struct Soc : Harness {
         }
     }
 
-    // Whether pix_clk rises in this cycle.
+    // Advances pix_clk by one cycle of sys_clk; returns whether pix_clk rises in that cycle.
     bool pixel_tick() {
         pixel_phase += PIXEL_TICKS;
         const bool tick = pixel_phase >= PIXEL_PERIOD;
@@ -168,8 +168,7 @@ struct Soc : Harness {
         }
     }
 
-    // Empties both caches of the CPU. Called when no line is being filled, or old data would arrive in a line
-    // afterwards.
+    // Empties both caches of the CPU. No line may be being filled, as old data would arrive in the line afterwards.
     void drop_caches() {
         // The lowest bit of a tag is its valid bit.
         for (auto &tag : top.rootp->glint_virtual__DOT__VexRiscv__DOT__dataCache_1__DOT__ways_0_tags.m_storage) tag = 0;

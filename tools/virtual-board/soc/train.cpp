@@ -2,7 +2,7 @@
 
 #include "soc.h"
 
-// At this time the BIOS has trained and tested the memory and waits for a serial boot.
+// Number of cycles to run. By then the BIOS has trained and tested the memory, and waits for a serial boot.
 constexpr uint64_t CYCLES = 1000000;
 
 extern "C" Soc *harness_new(uint32_t seed);

@@ -1,4 +1,4 @@
-//! The board: clock, reset, pins and back door.
+//! The virtual board: clock, pins, devices, and the back door to DDR3.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -11,13 +11,13 @@ use virtual_mpu6050::Wires;
 use crate::library::Soc;
 use crate::{Error, Monitor, Picture, TimingError, boot};
 
-/// Cycles between two reads of the SoC's output and video.
+/// Cycles between two reads of the SoC's serial output and video.
 const SLICE: u64 = 1000;
 
-/// Two frames in cycles; a frame takes 1650 × 750 ticks of the pixel clock.
+/// Cycles of two video frames; a frame takes 1650 × 750 ticks of the pixel clock.
 const TWO_FRAMES: u64 = 2 * 1650 * 750 * 325 / 297 + SLICE;
 
-/// Start of a board.
+/// How a board starts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Start<'a> {
     /// Like a real board: the BIOS in ROM tests the memory and waits for a serial boot.
@@ -39,14 +39,14 @@ pub struct Builder<'a> {
 }
 
 impl<'a> Builder<'a> {
-    /// Library to load [default: the one that `cargo xtask gateware` built in this checkout].
+    /// Sets the library to load [default: the one that `cargo xtask gateware` built in this checkout].
     #[must_use]
     pub fn library(mut self, path: impl Into<PathBuf>) -> Self {
         self.library = Some(path.into());
         self
     }
 
-    /// Start; [`Start::Full`] by default.
+    /// Sets how the board starts; the default is [`Start::Full`].
     #[must_use]
     pub fn start(mut self, start: Start<'a>) -> Self {
         self.start = start;
@@ -106,18 +106,18 @@ fn built_libraries() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target/gateware/virtual")
 }
 
-/// One board.
+/// A virtual board: the SoC, and the devices on its pins.
 pub struct VirtualBoard {
     soc: Soc,
     monitor: Monitor,
     sensor: Option<Wires>,
-    /// Unread output of the SoC.
+    /// Serial output of the SoC that was not read yet.
     uart: Vec<u8>,
     running: Duration,
 }
 
 impl VirtualBoard {
-    /// Options of a board.
+    /// Default options of a board.
     #[must_use]
     pub fn builder<'a>() -> Builder<'a> {
         Builder::default()
@@ -143,16 +143,16 @@ impl VirtualBoard {
         self.running += start.elapsed();
     }
 
-    /// Runs `cycles` cycles in a bare C++ loop around the model: the reference speed for [`run`](Self::run). Output and video
-    /// of the SoC are lost meanwhile, and its input waits.
+    /// Runs `cycles` cycles in a bare C++ loop around the model, whose speed is the reference for [`run`](Self::run). The
+    /// SoC's serial output and video of these cycles are lost, and its serial input waits.
     pub fn run_bare(&mut self, cycles: u64) {
         let start = Instant::now();
         self.soc.run_bare(cycles);
         self.running += start.elapsed();
     }
 
-    /// Runs until `done` returns true, but at most `limit` cycles; checks every 1000 cycles. Returns whether `done` was
-    /// reached.
+    /// Runs until `done` returns true, but at most `limit` cycles; calls `done` every 1000 cycles. Returns whether `done`
+    /// returned true.
     pub fn run_until(&mut self, limit: u64, mut done: impl FnMut(&mut Self) -> bool) -> bool {
         let end = self.cycles().saturating_add(limit);
         loop {
@@ -167,7 +167,7 @@ impl VirtualBoard {
         }
     }
 
-    /// Passes the wires to the sensor, and its outputs back.
+    /// Passes the SoC's I2C outputs to the sensor, and the sensor's outputs to the SoC.
     fn update_wires(&mut self) {
         let now = u128::from(self.cycles()) * 1_000_000_000 / u128::from(self.clock_hz());
         let soc = self.soc.i2c_released();
@@ -177,7 +177,7 @@ impl VirtualBoard {
         }
     }
 
-    /// Reads new output and video of the SoC.
+    /// Takes new serial output and video from the SoC.
     fn collect(&mut self) {
         self.soc.uart_read(&mut self.uart);
         if self.monitor.is_on() {
@@ -215,21 +215,22 @@ impl VirtualBoard {
         self.soc.uart_write(bytes);
     }
 
-    /// Bytes queued for the UART.
+    /// Number of bytes that are queued for the UART.
     #[must_use]
     pub fn uart_queued(&self) -> usize {
         self.soc.uart_queued()
     }
 
-    /// Appends the unread output of the SoC to `output`.
+    /// Moves the unread serial output of the SoC to the end of `output`.
     pub fn uart_read(&mut self, output: &mut Vec<u8>) {
         output.append(&mut self.uart);
     }
 
-    /// Runs until the SoC has sent `expected`, and returns its output up to and including it. Later output stays unread.
+    /// Runs until the SoC has sent `expected`, and returns the unread output up to the end of `expected`. Later output
+    /// stays unread.
     ///
     /// # Errors
-    /// [`Error::Timeout`] with the output so far, after `limit` cycles.
+    /// [`Error::Timeout`], with the output so far, if `expected` has not come within `limit` cycles.
     pub fn read_until(&mut self, expected: &str, limit: u64) -> Result<String, Error> {
         let wanted = expected.as_bytes();
         let mut searched = 0;
@@ -257,7 +258,7 @@ impl VirtualBoard {
         }
     }
 
-    /// Presses buttons 0 to 3, one bit each.
+    /// Sets which of the buttons 0 to 3 are pressed, one bit each.
     pub fn set_buttons(&mut self, pressed: u8) {
         self.soc.set_buttons(pressed);
     }
@@ -273,7 +274,8 @@ impl VirtualBoard {
         self.soc.leds()
     }
 
-    /// Connects a sensor to the I2C bus; the sensor replaces the present one, and [`i2c_drive`](Self::i2c_drive).
+    /// Connects a sensor to the I2C bus instead of the present sensor, if any. The sensor then drives the wires in place
+    /// of [`i2c_drive`](Self::i2c_drive).
     pub fn plug(&mut self, sensor: Wires) {
         self.sensor = Some(sensor);
     }
@@ -283,7 +285,7 @@ impl VirtualBoard {
         self.sensor.as_mut()
     }
 
-    /// Disconnects the sensor from the I2C bus.
+    /// Disconnects the sensor from the I2C bus, and returns it.
     pub fn unplug(&mut self) -> Option<Wires> {
         self.soc.i2c_drive(0b11);
         self.sensor.take()
@@ -305,11 +307,11 @@ impl VirtualBoard {
         &mut self.monitor
     }
 
-    /// Captures the next whole frame; if the monitor is on already, the current one. Takes up to two frames' time, 2.7 million
-    /// cycles.
+    /// Captures a frame: the current one if the monitor is on, else the next whole one. Runs for at most two frames, 2.7
+    /// million cycles.
     ///
     /// # Errors
-    /// [`Error::Timeout`] without video.
+    /// [`Error::Timeout`] if the SoC shows no video.
     pub fn capture(&mut self) -> Result<Picture, Error> {
         let was_on = self.monitor.is_on();
         self.monitor.turn_on();
@@ -330,8 +332,8 @@ impl VirtualBoard {
         })
     }
 
-    /// Reads DDR3 from `address`, an address of the CPU. A board that has run first runs another thousand cycles, so that
-    /// stores of the CPU arrive.
+    /// Reads DDR3 from `address` on, an address of the CPU. If the board has run before, it first runs a thousand cycles,
+    /// so that pending stores of the CPU reach memory.
     ///
     /// # Errors
     /// [`Error::Address`] if the range is not within main RAM.
@@ -342,8 +344,8 @@ impl VirtualBoard {
         Ok(())
     }
 
-    /// Writes DDR3 from `address`, an address of the CPU, and invalidates the CPU's caches. A board that has run first runs
-    /// another thousand cycles, so that earlier stores of the CPU do not arrive later.
+    /// Writes DDR3 from `address` on, an address of the CPU, and invalidates the CPU's caches. If the board has run
+    /// before, it first runs a thousand cycles, so that pending stores of the CPU do not overwrite the new data.
     ///
     /// # Errors
     /// [`Error::Address`] if the range is not within main RAM.
@@ -355,7 +357,7 @@ impl VirtualBoard {
     }
 }
 
-/// Offset in main RAM of `length` bytes at `address`.
+/// Checks that `length` bytes at `address` are within main RAM, and returns their offset there.
 fn main_ram_offset(address: u32, length: usize) -> Result<u32, Error> {
     let ram: Range<u32> = MAIN_RAM.base..MAIN_RAM.base + MAIN_RAM.size;
     let fits = ram.contains(&address) && length as u64 <= u64::from(ram.end - address);

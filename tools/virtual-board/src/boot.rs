@@ -1,8 +1,8 @@
-//! ROM of the preloaded start: a few instructions instead of the BIOS.
+//! ROM contents for the preloaded start: a few instructions in place of the BIOS.
 
 use litex_pac::memories::MAIN_RAM;
 
-/// Registers by their ABI names.
+/// Numbers of CPU registers, by their names in the ABI.
 const T0: u32 = 5;
 const T1: u32 = 6;
 const ZERO: u32 = 0;
@@ -17,7 +17,7 @@ pub(crate) fn stub() -> Vec<u8> {
         .address() as u32;
     let controller_in_charge = litex_pac::sdram::DfiiControl::default().with_sel(true);
     [
-        // Bit 11 of the low part is its sign; the high part compensates.
+        // `sw` adds the low 12 bits of the address as a signed number, so the upper bits are rounded, not truncated.
         lui(T0, control.wrapping_add(0x800) >> 12),
         addi(
             T1,
@@ -38,17 +38,17 @@ const fn lui(rd: u32, upper: u32) -> u32 {
     upper << 12 | rd << 7 | 0x37
 }
 
-/// `addi rd, rs, immediate`; 12 bits, signed.
+/// `addi rd, rs, immediate`; the immediate is a signed number of 12 bits.
 const fn addi(rd: u32, rs: u32, immediate: u32) -> u32 {
     (immediate & 0xfff) << 20 | rs << 15 | rd << 7 | 0x13
 }
 
-/// `sw rs, offset(base)`; 12 bits, signed.
+/// `sw rs, offset(base)`; the offset is a signed number of 12 bits.
 const fn sw(rs: u32, base: u32, offset: u32) -> u32 {
     (offset >> 5 & 0x7f) << 25 | rs << 20 | base << 15 | 2 << 12 | (offset & 0x1f) << 7 | 0x23
 }
 
-/// `jalr rd, offset(base)`; 12 bits, signed.
+/// `jalr rd, offset(base)`; the offset is a signed number of 12 bits.
 const fn jalr(rd: u32, base: u32, offset: u32) -> u32 {
     (offset & 0xfff) << 20 | base << 15 | rd << 7 | 0x67
 }

@@ -1,18 +1,18 @@
-//! Errors of a board.
+//! Errors of the virtual board.
 
 use std::path::PathBuf;
 
 use glint_testbench::LoadError;
 
-/// Error of a board.
+/// An error of a virtual board.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// The library does not exist.
     #[error("the virtual board's library {} is missing; run `cargo xtask gateware{option}`", .path.display())]
     LibraryMissing {
-        /// Its path.
+        /// Path of the library.
         path: PathBuf,
-        /// Option of the command that builds it.
+        /// Option of `cargo xtask gateware` with which the command builds the library.
         option: &'static str,
     },
     /// The library cannot be used.
@@ -24,7 +24,7 @@ pub enum Error {
          run `cargo xtask gateware` and `cargo xtask pac`"
     )]
     BuildId {
-        /// Build id of the register access crate.
+        /// Build id of the register access crate, `litex_pac`.
         expected: u32,
         /// Build id of the library.
         found: u32,
@@ -32,7 +32,7 @@ pub enum Error {
     /// Waveforms cannot be written.
     #[error("waveforms to {}: cannot be written; expected an existing folder and a library of `cargo xtask gateware --waveforms`", .path.display())]
     Trace {
-        /// Path of the waveforms.
+        /// Path of the file for the waveforms.
         path: PathBuf,
     },
     /// An access of the back door outside main RAM.
@@ -41,21 +41,21 @@ pub enum Error {
         .ram.start, .ram.end
     )]
     Address {
-        /// First byte, an address of the CPU.
+        /// Address of the first byte, as the CPU sees it.
         address: u32,
         /// Number of bytes.
         length: usize,
-        /// Main RAM.
+        /// Address range of main RAM.
         ram: std::ops::Range<u32>,
     },
-    /// A wait that timed out.
+    /// The expected output or video did not come in time.
     #[error("expected {expected} within {cycles} cycles, found {got:?}")]
     Timeout {
-        /// Expected event.
+        /// What was expected.
         expected: String,
         /// Time-out in cycles.
         cycles: u64,
-        /// Output meanwhile.
+        /// Output of the SoC during the wait.
         got: String,
     },
     /// The operating system provides no pseudo-terminal.

@@ -1,4 +1,4 @@
-//! The shared library of the verilated SoC: `tools/virtual-board/soc/soc.h` as safe Rust.
+//! The shared library of the verilated SoC: a safe interface to the functions of `tools/virtual-board/soc/soc.h`.
 
 use std::ffi::{c_int, c_void};
 use std::path::Path;
@@ -10,7 +10,7 @@ use crate::Error;
 
 type Handle = *mut c_void;
 
-/// Declares the table of the library's functions, and its loading.
+/// Declares the struct `Functions`, a table of the library's functions, and a function that loads it.
 macro_rules! functions {
     ($($name:ident: fn($($argument:ty),*) $(-> $result:ty)?;)*) => {
         struct Functions {
@@ -18,7 +18,7 @@ macro_rules! functions {
         }
 
         impl Functions {
-            /// Looks up every function.
+            /// Looks up every function in the library of `instance`.
             ///
             /// # Safety
             /// The instance implements `soc.h` and outlives the table.
@@ -59,7 +59,7 @@ pub(crate) struct Soc {
     buttons: usize,
     switches: usize,
     leds: usize,
-    // Last field: its library is unloaded after the table.
+    // The last field, so that the library is unloaded after the table of its functions is dropped.
     instance: Instance,
 }
 
@@ -83,16 +83,17 @@ impl Soc {
     }
 
     pub fn build_id(&self) -> u32 {
-        // SAFETY: without conditions.
+        // SAFETY: the function may be called at any time.
         unsafe { (self.functions.build_id)() }
     }
 
     pub fn clock_hz(&self) -> u32 {
-        // SAFETY: without conditions.
+        // SAFETY: the function may be called at any time.
         unsafe { (self.functions.clock_hz)() }
     }
 
-    /// Starts writing waveforms. False for a library without waveforms.
+    /// Starts writing waveforms to a file. Returns `false` when nothing can be written, as with a library that was built
+    /// without waveforms.
     pub fn trace(&mut self, path: &Path) -> Result<bool, Error> {
         Ok(self.instance.write_waveforms(path)?)
     }
@@ -102,7 +103,7 @@ impl Soc {
         unsafe { (self.functions.run)(self.raw(), cycles) }
     }
 
-    /// Advances the clocks only.
+    /// Advances the clocks and nothing else; serial output and video are lost.
     pub fn run_bare(&mut self, cycles: u64) {
         // SAFETY: the handle is alive and ours alone.
         unsafe { (self.functions.run_bare)(self.raw(), cycles) }
@@ -123,7 +124,7 @@ impl Soc {
         unsafe { (self.functions.uart_queued)(self.raw()) }
     }
 
-    /// Appends the unread output of the SoC to `output`.
+    /// Moves the unread serial output of the SoC to the end of `output`.
     pub fn uart_read(&mut self, output: &mut Vec<u8>) {
         let mut buffer = [0; 256];
         loop {
@@ -161,13 +162,13 @@ impl Soc {
         unsafe { (self.functions.i2c_wires)(self.raw()) }
     }
 
-    /// The SoC's I2C outputs.
+    /// I2C outputs of the SoC: SCL in bit 0, SDA in bit 1; 0 pulls low, 1 releases.
     pub fn i2c_released(&self) -> u8 {
         // SAFETY: the handle is alive.
         unsafe { (self.functions.i2c_released)(self.raw()) }
     }
 
-    /// Runs until the SoC changes its I2C outputs, but at most `cycles`; returns the cycles run.
+    /// Runs until the SoC changes its I2C outputs, but at most `cycles` cycles. Returns the number of cycles run.
     pub fn run_to_i2c(&mut self, cycles: u64) -> u64 {
         // SAFETY: the handle is alive and ours alone.
         unsafe { (self.functions.run_to_i2c)(self.raw(), cycles) }
@@ -178,7 +179,7 @@ impl Soc {
         unsafe { (self.functions.video_record)(self.raw(), on.into()) }
     }
 
-    /// Passes the recorded samples to `consume` and clears them.
+    /// Passes the recorded video samples to `consume`, and then drops them.
     pub fn video_take(&mut self, consume: impl FnOnce(&[u32])) {
         let mut count = 0;
         // SAFETY: the handle is alive and ours alone, `count` is a place for the result.
@@ -192,13 +193,11 @@ impl Soc {
         unsafe { (self.functions.video_clear)(self.raw()) }
     }
 
-    /// `offset` and the length must lie within main RAM.
     pub fn ddr_read(&mut self, offset: u32, bytes: &mut [u8]) {
         // SAFETY: the handle is alive and ours alone; the board has checked the range.
         unsafe { (self.functions.ddr_read)(self.raw(), offset, bytes.as_mut_ptr(), bytes.len()) }
     }
 
-    /// `offset` and the length must lie within main RAM.
     pub fn ddr_write(&mut self, offset: u32, bytes: &[u8]) {
         // SAFETY: the handle is alive and ours alone; the board has checked the range.
         unsafe { (self.functions.ddr_write)(self.raw(), offset, bytes.as_ptr(), bytes.len()) }

@@ -4,13 +4,13 @@ use std::fmt;
 
 use crate::Picture;
 
-/// Pixels of a line.
+/// Number of pixels of a line.
 pub const WIDTH: usize = 1280;
-/// Lines of a picture.
+/// Number of lines of a picture.
 pub const HEIGHT: usize = 720;
 
-/// CEA-861 1280×720 at 60 Hz. A line starts with the leading edge of hsync, a frame with that of vsync, at the same tick. Both
-/// syncs are active high.
+/// Video timing of CEA-861 1280×720 at 60 Hz. A line starts with the leading edge of hsync, and a frame with that of
+/// vsync, at the same tick as a line. Both syncs are active high.
 const H_SYNC: usize = 40;
 const H_BACK: usize = 220;
 const H_FRONT: usize = 110;
@@ -20,10 +20,10 @@ const V_FRONT: usize = 5;
 const LINE: usize = H_SYNC + H_BACK + WIDTH + H_FRONT;
 const FRAME: usize = LINE * (V_SYNC + V_BACK + HEIGHT + V_FRONT);
 
-/// Maximum number of stored timing errors; all are counted.
+/// Maximum number of stored timing errors; later errors are only counted.
 const KEPT_ERRORS: usize = 16;
 
-/// The pins at one tick of the pixel clock, as glint_soc.h packs them.
+/// The video pins at one tick of the pixel clock, packed as in `soc.h` (`soc_video_samples`).
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct Pins(u32);
 
@@ -74,7 +74,7 @@ pub struct TimingError {
     pub line: usize,
     /// Tick in the line, 0 being the first of hsync.
     pub tick: usize,
-    /// Expected control pins, packed as in the samples.
+    /// Expected control pins, packed as in the video samples.
     pub expected: u32,
     /// Actual control pins.
     pub found: u32,
@@ -93,19 +93,19 @@ impl fmt::Display for TimingError {
     }
 }
 
-/// Monitor on the video output.
+/// A monitor on the video output.
 ///
-/// From the first leading edge of vsync on, it compares hsync, vsync and de at every tick with CEA-861 1280×720:
-/// 1280/110/40/220 ticks, 720/5/5/20 lines, positive syncs. It never resynchronizes, so a stall or a glitch causes errors until
-/// the end.
+/// From the first leading edge of vsync on, it compares hsync, vsync and de at every tick with CEA-861 1280×720 (active
+/// picture, front porch, sync, back porch: 1280/110/40/220 ticks, 720/5/5/20 lines; positive syncs). It never
+/// resynchronizes, so a stall or a glitch causes errors from then on.
 #[derive(Default)]
 pub struct Monitor {
     on: bool,
     /// Ticks since the start of the frame; `None` before the first vsync.
     position: Option<usize>,
-    /// Pins of the last tick; initially as during vsync, so that only a new vsync starts a frame.
+    /// Pins of the last tick. `None` counts as vsync, so that only a new leading edge of vsync starts a frame.
     last: Option<Pins>,
-    /// Pixels of the current frame.
+    /// Pixels of the current frame so far, three bytes each.
     pixels: Vec<u8>,
     picture: Option<Picture>,
     frames: u64,
@@ -114,7 +114,7 @@ pub struct Monitor {
 }
 
 impl Monitor {
-    /// Turns the monitor on; the current frame is not captured.
+    /// Turns the monitor on, if it is off. A frame that has already begun is not captured.
     pub fn turn_on(&mut self) {
         if !self.on {
             *self = Self {
@@ -125,7 +125,7 @@ impl Monitor {
         }
     }
 
-    /// Turns the monitor off, for more speed. Counts and errors are kept until it is turned on.
+    /// Turns the monitor off, for more speed. Counts and errors are kept until the monitor is turned on again.
     pub fn turn_off(&mut self) {
         self.on = false;
     }
@@ -136,36 +136,36 @@ impl Monitor {
         self.on
     }
 
-    /// Whole frames since the monitor was turned on.
+    /// Number of whole frames since the monitor was turned on.
     #[must_use]
     pub fn frames(&self) -> u64 {
         self.frames
     }
 
-    /// Timing errors since the monitor was turned on.
+    /// Number of timing errors since the monitor was turned on.
     #[must_use]
     pub fn error_count(&self) -> u64 {
         self.error_count
     }
 
-    /// The first timing errors.
+    /// The first timing errors since the monitor was turned on, at most 16.
     #[must_use]
     pub fn errors(&self) -> &[TimingError] {
         &self.errors
     }
 
-    /// Whether [`take_picture`](Self::take_picture) has a picture.
+    /// Whether [`take_picture`](Self::take_picture) would return a picture.
     #[must_use]
     pub fn has_picture(&self) -> bool {
         self.picture.is_some()
     }
 
-    /// Takes the last whole frame.
+    /// Removes and returns the picture of the last whole frame, if it was not taken yet.
     pub fn take_picture(&mut self) -> Option<Picture> {
         self.picture.take()
     }
 
-    /// Processes one sample per tick of the pixel clock.
+    /// Processes new video samples, one per tick of the pixel clock.
     pub(crate) fn watch(&mut self, samples: &[u32]) {
         for &sample in samples {
             self.tick(Pins(sample));
@@ -215,7 +215,7 @@ impl Monitor {
 mod tests {
     use super::*;
 
-    /// Correct video from `before` ticks ahead of a vsync; each pixel encodes its position.
+    /// Samples of correct video, which begin `before` ticks ahead of a vsync; each pixel encodes its position.
     fn video(before: usize, ticks: usize) -> Vec<u32> {
         (0..ticks)
             .map(|tick| {

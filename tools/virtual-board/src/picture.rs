@@ -1,53 +1,53 @@
-//! A captured picture.
+//! Pictures that the monitor captures.
 
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
 
-/// Error: a picture that is no enlarged RGB565 frame.
+/// Reason why a picture is not an enlarged RGB565 frame.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PictureError {
     /// The sides of the picture are not multiples of the scale.
     #[error("picture of {width}x{height}: expected multiples of the scale {scale}")]
     Scale {
-        /// Pixels of a line.
+        /// Number of pixels of a line.
         width: usize,
-        /// Lines.
+        /// Number of lines.
         height: usize,
         /// The requested scale.
         scale: usize,
     },
-    /// Pixels of one source pixel differ.
+    /// The pixels of a block, which show the same pixel of the frame, differ.
     #[error(
         "pixel {x}, {y}: expected {expected:?} as in the rest of its {scale}x{scale} block, found {found:?}"
     )]
     Block {
-        /// Column.
+        /// Column of the pixel.
         x: usize,
-        /// Line.
+        /// Line of the pixel.
         y: usize,
         /// Side of a block.
         scale: usize,
-        /// The block's first pixel, red, green and blue.
+        /// Red, green and blue of the first pixel of the block.
         expected: [u8; 3],
-        /// The pixel.
+        /// Red, green and blue of the pixel.
         found: [u8; 3],
     },
     /// A colour that bit replication of RGB565 cannot produce.
     #[error("pixel {x}, {y}: expected the RGB565 colour {expected:?}, found {found:?}")]
     Colour {
-        /// Column.
+        /// Column of the pixel.
         x: usize,
-        /// Line.
+        /// Line of the pixel.
         y: usize,
-        /// The nearest colour with the same upper bits.
+        /// The colour that bit replication produces from the upper bits of the pixel.
         expected: [u8; 3],
-        /// The pixel.
+        /// Red, green and blue of the pixel.
         found: [u8; 3],
     },
 }
 
-/// A picture of 8 bits a channel, row by row from the top left.
+/// A picture with 8 bits per channel; the pixels are stored line by line from the top left.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
     width: usize,
@@ -56,23 +56,23 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Creates a picture from three bytes per pixel.
+    /// Creates a picture from red, green and blue bytes of every pixel.
     ///
     /// # Panics
-    /// The number of bytes does not match.
+    /// When the number of bytes does not match the size.
     #[must_use]
     pub fn new(width: usize, height: usize, rgb: Vec<u8>) -> Self {
         assert_eq!(rgb.len(), 3 * width * height, "three bytes a pixel");
         Self { width, height, rgb }
     }
 
-    /// Pixels of a line.
+    /// Number of pixels of a line.
     #[must_use]
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// Lines.
+    /// Number of lines.
     #[must_use]
     pub fn height(&self) -> usize {
         self.height
@@ -87,7 +87,7 @@ impl Picture {
     /// Red, green and blue at column `x` of line `y`.
     ///
     /// # Panics
-    /// The pixel does not exist.
+    /// When the pixel is outside of the picture.
     #[must_use]
     pub fn pixel(&self, x: usize, y: usize) -> [u8; 3] {
         assert!(
@@ -100,10 +100,11 @@ impl Picture {
         [self.rgb[at], self.rgb[at + 1], self.rgb[at + 2]]
     }
 
-    /// The RGB565 frame behind this picture, which scan-out enlarged by `scale`, row by row.
+    /// Returns the RGB565 frame, line by line, that scan-out enlarged by `scale` to this picture.
     ///
     /// # Errors
-    /// A block of `scale` × `scale` has several colours, or a colour is not RGB565 widened by bit replication.
+    /// When the sides are no multiples of `scale`, a block of `scale` × `scale` pixels has several colours, or a colour
+    /// is not an RGB565 colour widened by bit replication.
     pub fn scaled_back(&self, scale: usize) -> Result<Vec<u16>, PictureError> {
         let Self { width, height, .. } = *self;
         if scale == 0 || !width.is_multiple_of(scale) || !height.is_multiple_of(scale) {
@@ -146,10 +147,10 @@ impl Picture {
         Ok(frame)
     }
 
-    /// Writes a PNG.
+    /// Writes the picture to a PNG file.
     ///
     /// # Errors
-    /// The file cannot be written.
+    /// When the file cannot be written.
     pub fn save(&self, path: &Path) -> std::io::Result<()> {
         let mut encoder = png::Encoder::new(
             BufWriter::new(File::create(path)?),
@@ -163,7 +164,7 @@ impl Picture {
     }
 }
 
-/// Upper bits of each channel: red in bits 15:11, green in 10:5, blue in 4:0.
+/// Packs the upper bits of each channel: red in bits 15:11, green in 10:5, blue in 4:0.
 fn to_rgb565([r, g, b]: [u8; 3]) -> u16 {
     u16::from(r >> 3) << 11 | u16::from(g >> 2) << 5 | u16::from(b >> 3)
 }
@@ -180,7 +181,7 @@ fn from_rgb565(colour: u16) -> [u8; 3] {
 mod tests {
     use super::*;
 
-    /// A frame with every colour bit in use, enlarged by `scale`.
+    /// Makes a frame that uses every colour bit, and the picture of the frame enlarged by `scale`.
     fn enlarged(width: usize, height: usize, scale: usize) -> (Vec<u16>, Picture) {
         let frame: Vec<u16> = (0..width * height)
             .map(|i| (i as u16).wrapping_mul(0x9e37))

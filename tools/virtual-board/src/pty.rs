@@ -12,31 +12,31 @@ use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 
 use crate::{Error, VirtualBoard};
 
-/// Cycles between two reads of the terminal.
+/// Cycles that the board runs between two reads of the terminal.
 const SLICE: u64 = 2000;
 
-/// Maximum number of bytes queued for the UART; beyond it the terminal waits.
+/// Most bytes in the queue for the UART; while the queue is full, the terminal is not read.
 const QUEUE: usize = 4096;
 
-/// A task for the board's thread, run between two slices.
+/// A closure that the board's thread calls between two slices of `SLICE` cycles.
 type Task = Box<dyn FnOnce(&mut VirtualBoard) + Send>;
 
 /// A board in its own thread, with its UART on a pseudo-terminal.
 ///
-/// The terminal is raw: every byte passes unchanged in both directions. Dropping this stops the board.
+/// The terminal is raw: every byte passes unchanged in both directions. Dropping the `Pty` stops the board.
 pub struct Pty {
     path: PathBuf,
     tasks: Option<Sender<Task>>,
     thread: Option<JoinHandle<VirtualBoard>>,
-    /// Keeps the terminal's other side open, so that programs can close and reopen it.
+    /// The side of the terminal that programs use; it is kept open here, so that programs can close and reopen it.
     _terminal: OwnedFd,
 }
 
 impl Pty {
-    /// Starts the board's thread.
+    /// Moves the board to a thread of its own, and starts it.
     ///
     /// # Errors
-    /// The system provides no pseudo-terminal.
+    /// When the system provides no pseudo-terminal.
     pub fn start(board: VirtualBoard) -> Result<Self, Error> {
         let (side, terminal, path) = open().map_err(io::Error::from)?;
         let (tasks, queue) = channel();
@@ -51,7 +51,7 @@ impl Pty {
         })
     }
 
-    /// Path of the device for programs, such as `/dev/pts/3`.
+    /// Path of the device that programs open, such as `/dev/pts/3`.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
@@ -60,14 +60,14 @@ impl Pty {
     /// Runs a closure on the board between two cycles and returns its result.
     ///
     /// # Panics
-    /// The board's thread has panicked.
+    /// When the board's thread has panicked.
     pub fn with<R: Send + 'static>(
         &self,
         task: impl FnOnce(&mut VirtualBoard) -> R + Send + 'static,
     ) -> R {
         let (reply, answer) = channel();
         let task: Task = Box::new(move |board| {
-            // The caller waits for the result.
+            // Sending cannot fail, as the caller waits for the result.
             let _ = reply.send(task(board));
         });
         let sent = self
@@ -81,7 +81,7 @@ impl Pty {
     /// Stops the board and returns it.
     ///
     /// # Panics
-    /// The board's thread has panicked.
+    /// When the board's thread has panicked.
     #[must_use]
     pub fn stop(mut self) -> VirtualBoard {
         self.tasks = None;
@@ -105,7 +105,8 @@ impl Drop for Pty {
     }
 }
 
-/// A raw pseudo-terminal: this side, non-blocking; the other side; its path.
+/// Opens a raw pseudo-terminal: returns the board's side, which does not block, the side for programs, and the path of
+/// the latter.
 fn open() -> rustix::io::Result<(File, OwnedFd, PathBuf)> {
     use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
     let side = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
@@ -125,7 +126,8 @@ fn open() -> rustix::io::Result<(File, OwnedFd, PathBuf)> {
     Ok((File::from(side), terminal, path))
 }
 
-/// The board's thread: terminal to UART, a slice of time, UART to terminal.
+/// Body of the board's thread. In turns it passes bytes from the terminal to the UART, runs the board for a slice, and
+/// passes bytes from the UART to the terminal.
 fn run(mut board: VirtualBoard, mut terminal: File, tasks: &Receiver<Task>) -> VirtualBoard {
     let mut output = Vec::new();
     loop {
@@ -154,7 +156,7 @@ fn run(mut board: VirtualBoard, mut terminal: File, tasks: &Receiver<Task>) -> V
     }
 }
 
-/// Whether the thread goes on.
+/// Whether the error only means that nothing can be transferred now, so that the thread goes on.
 fn is_passing(error: &io::Error) -> bool {
     matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted)
 }

@@ -5,13 +5,13 @@ use virtual_board::{Start, VirtualBoard};
 /// The BIOS's prompt, with its colours.
 const PROMPT: &str = "\x1b[92;1mlitex\x1b[0m> ";
 
-/// Time-out of the boot in cycles, which includes a quarter of a second for the serial boot.
+/// Time-out of the boot in cycles; a quarter of a second is for the serial boot.
 const BOOT_LIMIT: u64 = 60_000_000;
 
 /// Time-out of a command in cycles.
 const COMMAND_LIMIT: u64 = 2_000_000;
 
-/// A board at the BIOS's prompt, and its output so far.
+/// Starts a board; returns it at the BIOS's prompt, and its output so far.
 fn booted() -> (VirtualBoard, String) {
     let mut board = VirtualBoard::builder()
         .start(Start::Full)
@@ -26,7 +26,7 @@ fn booted() -> (VirtualBoard, String) {
     (board, start + &rest)
 }
 
-/// Sends a command and returns the answer.
+/// Sends a command to the BIOS, and returns the output up to the next prompt.
 fn command(board: &mut VirtualBoard, line: &str) -> String {
     board.uart_write(format!("{line}\n").as_bytes());
     board
@@ -34,7 +34,7 @@ fn command(board: &mut VirtualBoard, line: &str) -> String {
         .expect("an answer and a prompt")
 }
 
-/// The bytes of `mem_read` of one 16-byte line.
+/// Reads 16 bytes at `address` with the BIOS's command `mem_read`.
 fn mem_read(board: &mut VirtualBoard, address: u32) -> Vec<u8> {
     let answer = command(board, &format!("mem_read {address:#010x} 16"));
     let start = format!("{address:#010x}  ");
@@ -95,7 +95,7 @@ fn both_see_the_same_memory(board: &mut VirtualBoard) {
 }
 
 fn ranges_cross_banks_and_rows_in_order(board: &mut VirtualBoard) {
-    // Odd start and length, across all banks and into the next row.
+    // A range with odd start and odd length, across all banks and into the next row.
     let start = 0x4100_3fff - 5;
     let written: Vec<u8> = (0..20_001_u32)
         .map(|i| (i.wrapping_mul(0x9e37_79b1) >> 24) as u8)

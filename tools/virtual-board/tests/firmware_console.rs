@@ -7,13 +7,13 @@ use std::path::Path;
 use firmware::{PROMPT, command, image, started};
 use litex_pac::triangle::Counters;
 
-/// Keys whose values depend on time.
+/// Keys of output lines whose values depend on time.
 const TIMES: [&str; 3] = ["cycles ", "video_frames ", "uptime_ms "];
 
-/// Counters of the triangle engine whose values do not depend on time.
+/// Console names of counters of the triangle engine whose values do not depend on time.
 const COUNTS: [&str; 4] = ["vertices", "cycles_walking", "cycles_empty", "groups"];
 
-/// Console names of the triangle engine's counters, except those of pixels, which the statistics always have.
+/// Console names of the triangle engine's counters, except those of pixels, which are in all statistics.
 fn counters() -> Vec<&'static str> {
     let all = Counters::default();
     let names = all.iter().map(|(name, _)| match name {
@@ -87,14 +87,14 @@ fn console_output_matches_the_transcript() {
 #[test]
 fn noise_and_overlong_lines_are_rejected_and_nothing_is_lost() {
     let (mut board, _) = started(&image());
-    // Every byte except line ends: editing keys, partial characters and escape sequences.
+    // Noise of all bytes except line ends and Ctrl-C: editing keys, partial characters and escape sequences.
     let noise = (0..500_u32).map(|index| (index.wrapping_mul(0x9e37_79b9) >> 24) as u8);
     board.uart_write(
         &noise
             .filter(|byte| !b"\r\n\x03".contains(byte))
             .collect::<Vec<_>>(),
     );
-    // A zero clears the noise from the line.
+    // The zero byte clears the noise from the input line.
     board.uart_write(b"\0leds 7\r");
     board
         .read_until("leds 7\r\nok\r\nglint> ", firmware::LIMIT)
@@ -136,7 +136,7 @@ fn a_still_scene_renders_nothing_and_a_change_is_rendered_once() {
     let (mut board, _) = started(&image());
     command(&mut board, "camera 3 10 80");
     command(&mut board, "render");
-    // Different contents of frame and depth buffer mark the undrawn ones.
+    // Fills both frame buffers and the depth buffer with a pattern, which shows later which of them were not drawn to.
     let windows = [0x4100_0000, 0x4120_0000, 0x4140_0000];
     for window in windows {
         board
@@ -148,7 +148,7 @@ fn a_still_scene_renders_nothing_and_a_change_is_rendered_once() {
         board.ddr_read(window, &mut bytes).expect("main RAM");
         bytes.iter().all(|byte| *byte == 0xa5)
     };
-    // The same camera again, for longer than a frame takes.
+    // The same camera again must not start a frame; the wait is longer than a frame takes.
     command(&mut board, "camera 3 10 80");
     board.run(1_500_000);
     assert!(
@@ -157,7 +157,7 @@ fn a_still_scene_renders_nothing_and_a_change_is_rendered_once() {
             .iter()
             .all(|untouched| *untouched)
     );
-    // A new camera is drawn at once, to the frame buffer that is not shown. The engine writes depths on request only.
+    // A new camera starts a frame in the frame buffer that is not shown. Depths are written only on request, so not now.
     command(&mut board, "camera 3 11 80");
     board.run(2_500_000);
     let [a, b, depth] = windows.map(|window| untouched(&mut board, window));

@@ -1,4 +1,4 @@
-//! The firmware on gateware of another build, and its report of traps.
+//! The firmware on gateware of another build, and the firmware's report of traps.
 
 mod firmware;
 
@@ -8,7 +8,7 @@ use litex_pac::BUILD_ID;
 #[test]
 fn gateware_of_another_build_is_reported_and_the_console_works() {
     let mut image = image();
-    // A program built for another gateware.
+    // Makes the firmware one that was built for another gateware.
     patch(&mut image, address(&["GLINT_BUILD_ID"]), &[!BUILD_ID]);
     let (mut board, said) = started(&image);
     let (found, expected) = (
@@ -34,8 +34,8 @@ fn gateware_of_another_build_is_reported_and_the_console_works() {
     assert!(command(&mut board, "selftest").contains("selftest identity FAILED"));
 }
 
-/// Cause of each trap, code that triggers it, and its trap value. (An address without a device is no trap: LiteX's bus answers
-/// after a time-out.)
+/// For each trap: its cause, machine code that triggers it, and the trap value. (An access to an address without a device
+/// is no trap: LiteX's bus answers after a time-out.)
 const TRAPS: [(&str, &[u32], u32); 2] = [
     ("illegal instruction (mcause 2)", &[0x0000_0000], 0),
     // li a0, 1; lw a0, 0(a0)

@@ -5,14 +5,14 @@ mod program;
 use litex_pac::{buttons, leds, switches};
 use virtual_board::VirtualBoard;
 
-/// Address of the program's word, in a row of its own.
+/// Address of the word in DDR3 that the program reads, in a row of its own.
 const WORD: u32 = 0x4012_3450;
 
-/// Time-out of a round of the program.
+/// Cycles in which the program completes a round at the latest.
 const ROUND: u64 = 500;
 
 fn board() -> VirtualBoard {
-    // SAFETY: only addresses are taken.
+    // SAFETY: only addresses of registers are taken; nothing is accessed.
     let (buttons, switches, leds) = unsafe {
         (
             buttons::Buttons::steal(),
@@ -54,8 +54,8 @@ fn the_program_reads_buttons_and_switches_and_sets_the_leds() {
 #[test]
 fn the_back_door_reaches_what_the_caches_hold() {
     let mut board = board();
-    // Repeated, so that the writes meet every phase of the program's rounds, also the last fill of the 16 rounds that displace
-    // the word, which would leave old data for the next 16.
+    // The many writes meet every phase of the program's rounds. In 16 rounds of 32 the program displaces the word from
+    // the cache: old data from the last fill of these rounds would stay in the cache for the next 16 rounds.
     for i in 0..600_u16 {
         let value = (i * 7) & 15;
         board.ddr_write(WORD, &[value as u8]).expect("main RAM");
@@ -76,7 +76,7 @@ fn the_back_door_reaches_what_the_caches_hold() {
 
 #[test]
 fn the_back_door_sees_what_the_program_has_stored() {
-    // SAFETY: only an address is taken.
+    // SAFETY: only the address of a register is taken; nothing is accessed.
     let leds = unsafe { leds::Leds::steal() }.out().address() as u32;
     let mut board = program::started("stores", &[("WORD", WORD), ("LEDS_OUT", leds)]);
     board.run(2000);
@@ -93,7 +93,7 @@ fn the_back_door_sees_what_the_program_has_stored() {
     }
 }
 
-/// Address where the program copies its word without the increment.
+/// Address of the instruction at `patch` in `programs/pins.S`, which copies the word unchanged.
 fn patch_address(board: &mut VirtualBoard) -> u32 {
     const START: u32 = 0x4000_0000;
     const ADDI_T2_T2_0: u32 = 0x0003_8393;

@@ -5,17 +5,17 @@ mod program;
 use litex_pac::{leds, scanout};
 use virtual_board::{HEIGHT, WIDTH};
 
-/// Two frame buffers, a largest frame apart.
+/// Addresses of two frame buffers, far enough apart for the largest frame.
 const FRAME: u32 = 0x4100_0000;
 const OTHER_FRAME: u32 = 0x4120_0000;
 
 /// Address of the program's parameters.
 const PARAMETERS: u32 = 0x4010_0000;
 
-/// Address of the memory traffic.
+/// Address from which the program reads and writes memory during scan-out.
 const TRAFFIC: u32 = 0x4080_0000;
 
-/// A frame that uses every colour bit at every position.
+/// Makes a frame of `pixels` pixels of pseudo-random colours.
 fn frame(pixels: usize, seed: u32) -> Vec<u16> {
     (0..pixels as u32)
         .map(|i| (i.wrapping_add(seed).wrapping_mul(0x9e37_79b1) >> 13) as u16)
@@ -28,7 +28,7 @@ fn bytes(frame: &[u16]) -> Vec<u8> {
 
 /// Shows a frame, flips to another, and compares the monitor's pictures for `frames` frames.
 fn shows_and_flips(scale: usize, frames: u64) {
-    // SAFETY: only addresses are taken.
+    // SAFETY: only addresses of registers are taken; nothing is accessed.
     let (scanout, leds) = unsafe { (scanout::Scanout::steal(), leds::Leds::steal()) };
     let base = scanout::Scanout::BASE;
     let mut board = program::started(

@@ -18,7 +18,7 @@ const STEP: u64 = 8;
 const MILLISECOND: u64 = 81_250;
 
 fn sensor(motion: impl Fn(f64) -> State + Send + 'static) -> Wires {
-    // Noise of a typical sensor, without errors that need calibration.
+    // The noise of a typical sensor, without the errors that would need a calibration.
     let imperfections = Imperfections {
         noise: 0.005,
         accel_noise: 0.0004,
@@ -33,7 +33,7 @@ fn sensor(motion: impl Fn(f64) -> State + Send + 'static) -> Wires {
 
 #[test]
 fn a_program_reads_the_sensor_through_the_pins() {
-    // SAFETY: only addresses are taken.
+    // SAFETY: only addresses of registers are taken; nothing is accessed.
     let (i2c, leds) = unsafe { (i2c::I2c::steal(), leds::Leds::steal()) };
     let mut board = program::started(
         "i2c",
@@ -61,7 +61,7 @@ fn a_program_reads_the_sensor_through_the_pins() {
     assert!(violations.is_empty(), "{violations:#?}");
 }
 
-/// At rest, except for a turn of 45° to the left, which starts at 0.03 s and takes 0.05 s.
+/// Motion that is at rest except for a turn of 45° to the left, which starts at 0.03 s and takes 0.05 s.
 fn turn(time: f64) -> State {
     let turns = (0.03..0.08).contains(&time);
     State {
@@ -73,7 +73,7 @@ fn turn(time: f64) -> State {
 /// Tolerance of the angle of that turn, in degrees.
 const ANGLE: f64 = 0.1;
 
-/// The line of an answer with `key`.
+/// Finds the line of `answer` that starts with `key`, and returns the rest of that line.
 fn line<'a>(answer: &'a str, key: &str) -> &'a str {
     let mut lines = answer.lines();
     lines
@@ -123,7 +123,7 @@ fn the_camera_follows_the_sensor_and_a_replugged_one_is_found() {
     assert!((80..92).contains(&samples), "{status}");
     let angles = numbers(line(&status, "angles"));
     assert!((angles[0] - 45.0).abs() < ANGLE, "{status}");
-    // The camera is the attitude of the next frame.
+    // The camera takes over the attitude with the next frame.
     board.run(35 * MILLISECOND);
     let view = command(&mut board, "view");
     let view = numbers(line(&view, "view"));
@@ -131,7 +131,7 @@ fn the_camera_follows_the_sensor_and_a_replugged_one_is_found() {
     for (found, expected) in view[9..12].iter().zip([-sine, cosine, 0.0]) {
         assert!((found - expected).abs() < ANGLE.to_radians(), "{view:?}");
     }
-    // The sensor is unplugged and plugged again; the attitude is held.
+    // While the sensor is unplugged, the attitude is held.
     let sensor = board.unplug().expect("the sensor");
     board.run(15 * MILLISECOND);
     let status = command(&mut board, "imu");
@@ -164,8 +164,9 @@ fn the_camera_follows_the_sensor_and_a_replugged_one_is_found() {
 /// A rotation matrix from body to world.
 type Rotation = [[f64; 3]; 3];
 
-/// Parts of the motion, each followed by a rest: duration in s, mean rate about one axis in °/s or the peak rate and number of
-/// oscillations, and a shake along all axes in g.
+/// A part of the motion, which a rest follows. `time` is its duration in s. Without oscillations (`swings` is 0), `rate`
+/// is the mean rate about each axis in °/s; with them, `rate` is the peak rate, and `swings` the number of oscillations.
+/// `shake` is the amplitude of an acceleration along all axes, in g.
 struct Part {
     name: &'static str,
     time: f64,
@@ -185,8 +186,9 @@ impl Part {
         }
     }
 
-    /// At `time` seconds of `length`: seconds turned at full rate, relative rate, and relative shake. Starts and ends are
-    /// smooth, as sampling requires.
+    /// State at `time` in a part of duration `length`, both in s: the turn so far as a time at `rate`, the current rate
+    /// as a multiple of `rate`, and the current shake as a multiple of `shake`. The rate starts and ends smoothly, as
+    /// sampling requires.
     fn at(&self, time: f64, length: f64) -> (f64, f64, f64) {
         if self.swings > 0.0 {
             let turns = std::f64::consts::TAU * self.swings / length;
@@ -200,13 +202,13 @@ impl Part {
     }
 }
 
-/// Start of the script, and length of each rest, in seconds.
+/// Start of the first part, and length of the rest after each part, in seconds.
 const BEGIN: f64 = 0.03;
 const RESTING: f64 = 0.035;
 
 const SCRIPT: [Part; 6] = [
     Part::turn("yaw", 0.05, [0.0, 0.0, 900.0]),
-    // From level up through the pole, to 9° beyond it.
+    // From level up through the vertical, to 9° beyond it.
     Part::turn("pitch through 90°", 0.104, [950.0, 0.0, 0.0]),
     Part::turn("roll", 0.05, [0.0, -900.0, 0.0]),
     Part::turn("tumble", 0.06, [600.0, -800.0, 500.0]),
@@ -225,7 +227,7 @@ fn times(a: &Rotation, b: &Rotation) -> Rotation {
     [0, 1, 2].map(|i| [0, 1, 2].map(|j| (0..3).map(|k| a[i][k] * b[k][j]).sum()))
 }
 
-/// The rotation about `axis` by its length times `degrees` (Rodrigues).
+/// The rotation about `axis` by `degrees` times the length of `axis` (Rodrigues' formula).
 fn rotation(axis: [f64; 3], degrees: f64) -> Rotation {
     let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
     if length == 0.0 {
@@ -253,8 +255,8 @@ fn rotation(axis: [f64; 3], degrees: f64) -> Rotation {
     ]
 }
 
-/// The rotation of the script until `time`, and the sensor's inputs then. `stretch` multiplies each part's duration and divides
-/// its rate.
+/// The rotation that the parts of `SCRIPT` have made until `time`, and the motion at that time. `stretch` multiplies the
+/// duration of each part and divides its rate.
 fn script(time: f64, stretch: f64) -> (Rotation, State) {
     let mut turned = rotation([0.0; 3], 0.0);
     let (mut rate, mut shake) = ([0.0; 3], 0.0);
@@ -270,7 +272,7 @@ fn script(time: f64, stretch: f64) -> (Rotation, State) {
         }
         begin += length + RESTING;
     }
-    // Gravity is the world's z axis in body axes.
+    // At rest the sensor measures 1 g along the world's z axis, here in body axes.
     let state = State {
         rate,
         force: turned[2].map(|up| up + shake),
@@ -279,8 +281,8 @@ fn script(time: f64, stretch: f64) -> (Rotation, State) {
     (turned, state)
 }
 
-/// The camera follows the f64 reference of the sensor's motion, also through the pole of the pitch: 0.6 s of board time, and
-/// with `GLINT_IMU_MOTION` at a seventh of the speed in 2.6 s.
+/// The camera follows the sensor's motion as computed in f64, also where the pitch passes 90°. The motion takes 0.6 s of
+/// board time; with `GLINT_IMU_MOTION` in the environment it has a seventh of the speed and takes 2.6 s.
 #[test]
 fn the_camera_follows_a_script() {
     let is_slow = std::env::var_os("GLINT_IMU_MOTION").is_some();
@@ -295,11 +297,11 @@ fn the_camera_follows_a_script() {
     let mut end = BEGIN;
     for part in &SCRIPT {
         end += part.time * stretch + RESTING;
-        // Just before the next part: after the filter's delay and a frame.
+        // Runs until just before the next part, when the sensor's filter delay and a frame have passed.
         let until = ((end - 0.005) * 1e3 * MILLISECOND as f64) as u64;
         board.run(until.saturating_sub(board.cycles()));
         let (turned, _) = script(end, stretch);
-        // u, v, n of a camera that looks along y.
+        // The camera's u, v, n before any rotation: it looks along y.
         let expected = [[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]
             .map(|axis| [0, 1, 2].map(|i| (0..3).map(|k| turned[i][k] * axis[k]).sum::<f64>()));
         let found = camera(&mut board);
@@ -317,7 +319,8 @@ fn the_camera_follows_a_script() {
     assert_eq!(line(&answer, "video_underflows"), "0");
 }
 
-/// Every fault on the board: reported on the console, ended in time, without an effect on the pictures. A second of board time.
+/// Every fault of the sensor is reported on the console, ends in time, and does not affect the pictures. This takes a
+/// second of board time.
 #[test]
 fn every_fault_is_reported_and_recovered() {
     let mut board = board_with_sensor(|_| State::default());
@@ -330,7 +333,7 @@ fn every_fault_is_reported_and_recovered() {
         (failure, number("failures"), number("samples"))
     };
     let gone = "i2c: no device acknowledged the address";
-    // Fault, time-out of its report in ms, time-out of its end in ms, and its report.
+    // For each case: the fault, the time-out of its report in ms, the time-out of its end in ms, and the text of its report.
     let faults: [(Option<Fault>, u64, u64, &str); 8] = [
         (Some(Fault::Absent), 10, 100, gone),
         (
@@ -369,7 +372,7 @@ fn every_fault_is_reported_and_recovered() {
             250,
             "WHO_AM_I is 0x12: expected 0x68",
         ),
-        // A short loss of supply.
+        // A short loss of the sensor's supply.
         (None, 25, 250, gone),
     ];
     for (fault, until_told, until_over, text) in faults {

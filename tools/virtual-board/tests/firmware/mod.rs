@@ -8,13 +8,13 @@ use litex_pac::memories::MAIN_RAM;
 use object::{Object, ObjectSymbol};
 use virtual_board::{Start, VirtualBoard};
 
-/// Prompt of the console.
+/// Prompt of the firmware's console.
 pub const PROMPT: &str = "glint> ";
 
-/// Time-out in cycles, which includes the bus's time-out of a million cycles.
+/// Time-out of a command in cycles. It is longer than the time-out of a bus access, a million cycles.
 pub const LIMIT: u64 = 30_000_000;
 
-/// The firmware's image.
+/// Reads the firmware's image.
 pub fn image() -> Vec<u8> {
     read("glint.bin")
 }
@@ -27,7 +27,7 @@ fn read(name: &str) -> Vec<u8> {
         .unwrap_or_else(|error| panic!("{}: {error}; run `cargo xtask firmware`", path.display()))
 }
 
-/// Address of the symbol whose mangled name contains all of `parts`.
+/// Address of the firmware's symbol whose mangled name contains all of `parts`.
 pub fn address(parts: &[&str]) -> u32 {
     let elf = read("glint.elf");
     let file = object::File::parse(elf.as_slice()).expect("an ELF file");
@@ -45,14 +45,14 @@ pub fn address(parts: &[&str]) -> u32 {
     u32::try_from(symbol.address()).expect("32 bits")
 }
 
-/// Writes words to the image.
+/// Replaces words in the image, at an address of the CPU.
 pub fn patch(image: &mut [u8], address: u32, words: &[u32]) {
     let offset = (address - MAIN_RAM.base) as usize;
     let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
     image[offset..][..bytes.len()].copy_from_slice(&bytes);
 }
 
-/// A board that runs `image`, and its output up to the first prompt.
+/// Starts a board with `image`; returns the board, and its output up to the first prompt.
 pub fn started(image: &[u8]) -> (VirtualBoard, String) {
     let start = Start::Fast { firmware: image };
     let mut board = VirtualBoard::builder()

@@ -6,10 +6,10 @@ use std::sync::Mutex;
 
 use virtual_board::{Start, VirtualBoard};
 
-/// Tests run in parallel, and some assemble the same program.
+/// Lock on the assembled files: tests run in parallel, and some assemble the same program.
 static FILES: Mutex<()> = Mutex::new(());
 
-/// A board that runs `tests/programs/NAME.S` from the start of main RAM, with constants `symbols`.
+/// Starts a board that runs `tests/programs/NAME.S` from the start of main RAM; `symbols` are constants for the assembler.
 pub fn started(name: &str, symbols: &[(&str, u32)]) -> VirtualBoard {
     let start = Start::Fast {
         firmware: &assemble(name, symbols),

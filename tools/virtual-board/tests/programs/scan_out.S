@@ -15,7 +15,7 @@
     sw   t0, CONTROL(s0)
     li   s5, 0
 
-# Each round has two cache misses and two stores, over 64 KiB, which changes rows and banks.
+# Each pass of the loop has two cache misses and two stores. The loop covers 64 KiB, so that rows and banks change.
 again:
     mv   t0, s3
 traffic:
