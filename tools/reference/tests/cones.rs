@@ -19,7 +19,7 @@ struct Seen {
     helped: usize,
     /// Largest distance by which a ray starts behind its surface, in field units.
     behind: f64,
-    /// Rays whose end changes by the prepass.
+    /// Rays that end differently with the prepass.
     changed: usize,
     /// Mean number of evaluations per ray, first without and then with a prepass.
     cost: [f64; 2],

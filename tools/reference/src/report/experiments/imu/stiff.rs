@@ -206,7 +206,7 @@ fn saturation() -> StiffCase {
     }
 }
 
-/// Square waves of the rate with zero mean, from which no bias must be learnt.
+/// Square waves of the rate with zero mean, which the firmware must not learn as a bias.
 fn squares() -> Vec<StiffCase> {
     [(1500.0, 1.0), (1500.0, 0.1), (5.0, 0.1)]
         .map(|(rate, frequency)| {

@@ -213,7 +213,7 @@ const fn farthest(fraction: u32) -> u32 {
     (1 << (11 + fraction)) - 1
 }
 
-/// |x| for a positive x, |x| − 1 for a negative x.
+/// |x| if x is at least 0, |x| − 1 if x is negative.
 const fn magnitude(x: i32) -> u32 {
     (x ^ (x >> 31)) as u32
 }
