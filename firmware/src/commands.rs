@@ -1,6 +1,6 @@
 //! Execution of commands, by subject.
 //!
-//! A reply is text, then `ok` or `error: …`. A line of a reply that programs read is a key and its value.
+//! A reply is text, then `ok` or `error: …`. A line for programs consists of a key and its value.
 
 mod appearance;
 mod bench;
@@ -29,7 +29,7 @@ impl<'l> Executor<'l> for Machine {
 ///
 /// # Errors
 /// The line is not a command, or the command fails.
-// Not inlined, because the main loop would grow by several KiB.
+// Not inlined, because the code of the main loop would grow by several KiB.
 #[inline(never)]
 pub fn execute<'l>(
     machine: &mut Machine,

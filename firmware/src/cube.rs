@@ -1,15 +1,15 @@
 //! The built-in model: a cube of edge length 1 with one colour per side.
 
-/// Numbers of vertices and triangles.
+/// Number of vertices; `TRIANGLES` is the number of triangles.
 const VERTICES: usize = 8;
 const TRIANGLES: usize = 12;
-/// Bytes of a record (docs/formats.md, "Mesh in memory"); the header takes two records.
+/// Length of a record in bytes (docs/formats.md, "Mesh in memory"); the header is as long as two records.
 const RECORD: usize = 16;
 /// 1.0 in Q2.14.
 const ONE: i16 = 1 << 14;
 /// √3/2, the distance of a corner from the centre, in u.14 and rounded up.
 const RADIUS: u32 = 14_189;
-/// 1/√3 in Q2.14, the size of a corner normal's components.
+/// 1/√3 in Q2.14: the magnitude of each component of a corner's normal.
 const DIAGONAL: i16 = 9_459;
 
 /// Axis, colour of the positive side and colour of the negative side, for three pairs of sides.
@@ -107,7 +107,7 @@ impl Writer {
         self.half(x as u16).half(y as u16).half(z as u16)
     }
 
-    /// Two triangles, counter-clockwise seen from outside.
+    /// Appends the two triangles of a side, counter-clockwise seen from outside.
     const fn side(mut self, axis: usize, plus: bool, colour: u16) -> Self {
         let (base, b, c) = (
             (plus as usize) << axis,

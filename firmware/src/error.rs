@@ -23,7 +23,7 @@ pub enum CommandError<'l> {
     Overlong,
     /// The camera is out of range.
     View(ViewError),
-    /// The name is not an entry of `info`.
+    /// `info` has no entry of this name.
     Key(&'l str),
     /// The name is not a model or a named field.
     Scene(&'l str),
@@ -60,11 +60,11 @@ pub enum CommandError<'l> {
     Render(RenderError),
     /// No frame has been drawn yet.
     NoFrame,
-    /// No kernel has this name.
+    /// `bench` has no kernel of this name.
     Kernel {
         /// The name.
         name: &'l str,
-        /// The known names.
+        /// Names of the existing kernels.
         expected: &'static [&'static str],
     },
     /// This number of self-tests failed.

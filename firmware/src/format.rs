@@ -4,7 +4,7 @@ use core::fmt::{self, Display};
 
 use glint_core::fixed::Q32_32;
 
-/// A value, or `off`.
+/// Displays a value, or `off` for `None`.
 pub struct OrOff<T>(pub Option<T>);
 
 impl<T: Display> Display for OrOff<T> {
@@ -16,7 +16,7 @@ impl<T: Display> Display for OrOff<T> {
     }
 }
 
-/// Three numbers with six decimals.
+/// Displays three numbers with six decimals.
 pub struct Vector(pub [Q32_32; 3]);
 
 impl Display for Vector {

@@ -31,8 +31,8 @@ pub fn start(with_devices: bool, with_scanout: bool, with_triangle: bool) {
 
 /// Sleeps until an interrupt, unless `awake` reports work.
 pub fn sleep_unless(awake: impl FnOnce() -> bool) {
-    // An interrupt handled between `awake` and the sleep would not end the sleep. Interrupts are therefore masked: a pending interrupt ends
-    // the sleep and is handled afterwards.
+    // An interrupt handled between `awake` and the sleep would not end the sleep. Interrupts are therefore masked: a
+    // pending interrupt ends the sleep and is handled afterwards.
     riscv::interrupt::free(|| {
         if !awake() {
             riscv::asm::wfi();
@@ -56,7 +56,7 @@ fn handle() {
             timer::acknowledge();
             sensor::advance(start);
         }
-        // These interrupts are not enabled.
+        // This interrupt is never enabled; if it comes nevertheless, its line is disabled.
         Interrupt::Buttons => interrupt::disable(interrupt.bit()),
     });
     interrupt::disable(unexpected);

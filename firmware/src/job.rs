@@ -30,11 +30,11 @@ pub enum Job {
         /// Send depth codes, not colour.
         depth: bool,
     },
-    /// Turn the camera around the model.
+    /// Turn the camera once around the model.
     Orbit(Orbit),
-    /// Wait for the sensor.
+    /// Calibrate the sensor, or print its samples.
     Sensor(SensorJob),
-    /// Compute attitudes of a log.
+    /// Compute the attitudes for the samples of a log.
     Replay,
 }
 
@@ -54,7 +54,7 @@ pub enum SensorJob {
     },
 }
 
-/// One turn of the spherical camera about the z axis, a frame at a time.
+/// A turn of the spherical camera about the z axis, one frame at a time.
 pub struct Orbit {
     start: Sphere,
     frames: u32,
@@ -65,7 +65,7 @@ pub struct Orbit {
 const ORBIT_FRAMES: u32 = 240;
 
 impl Orbit {
-    /// A turn from `start` in this number of frames.
+    /// A turn that begins at `start` and takes `frames` frames, or the default number.
     pub fn new(start: Sphere, frames: Option<u32>) -> Self {
         Self {
             start,
@@ -80,7 +80,7 @@ impl Orbit {
             return Poll::Ready(Ok(()));
         }
         self.frame += 1;
-        // The product fits 64 bits. The quotient is at most one turn, which wraps to 0.
+        // The shifted number fits 64 bits. The quotient is at most one turn, 2^32, which wraps to 0.
         let turned = Turns(((u64::from(self.frame) << 32) / u64::from(self.frames)) as u32);
         let sphere = Sphere {
             theta: self.start.theta.wrapping_add(turned),

@@ -21,12 +21,12 @@ pub struct Identity {
     pub firmware: u32,
     /// Build id of the gateware.
     pub gateware: u32,
-    /// Block enable bits of the gateware.
+    /// Block enable bits of the gateware: one bit for each optional block that it has.
     pub blocks: u32,
 }
 
 impl Identity {
-    /// Whether the firmware knows the gateware's registers.
+    /// Whether the gateware has the registers that the firmware was built for.
     pub const fn matches(&self) -> bool {
         self.firmware == self.gateware
     }
@@ -46,7 +46,7 @@ pub struct Devices {
 
 /// The state of the machine.
 pub struct Machine {
-    /// Build ids.
+    /// Build ids of firmware and gateware.
     pub identity: Identity,
     /// Time since start.
     pub clock: Clock,
@@ -56,21 +56,21 @@ pub struct Machine {
     pub terminal: Terminal,
     /// Camera, field, size and appearance.
     pub scene: Scene,
-    /// Meshes.
+    /// The built-in mesh, the uploaded mesh and the staging memory.
     pub models: Models,
     /// Frame buffers and renderers.
     pub renderer: Renderer,
     /// The sensor's samples, attitude and calibration.
     pub imu: Imu,
-    /// Devices, if the build ids match.
+    /// The devices; `None` if the build ids differ.
     pub devices: Option<Devices>,
-    /// The SoC's reset.
+    /// The registers that reset the SoC.
     pub ctrl: Ctrl,
     /// Whether the first LED blinks, until a command sets the LEDs.
     pub heartbeat: bool,
     /// Transfers to the host.
     pub downloads: Downloads,
-    /// The log in the staging memory.
+    /// The replay of the log in the staging memory, if there is one.
     pub replay: Option<Replay>,
 }
 

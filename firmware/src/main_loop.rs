@@ -1,7 +1,7 @@
 //! The main loop.
 //!
-//! No step of the loop waits: interrupts fill queues, and each turn takes their contents. A command whose reply needs a
-//! frame or samples leaves a [`Job`]; input waits in the UART's queue meanwhile.
+//! No step of the loop waits: interrupts fill queues, and each turn of the loop takes their contents. A command whose
+//! reply needs a frame or samples leaves a [`Job`]; input waits in the UART's queue meanwhile.
 
 use core::future::pending;
 use core::pin::pin;
@@ -22,7 +22,8 @@ use crate::machine::Machine;
 use crate::sensor::{self, Inbox};
 use crate::terminal::Input;
 
-/// Idle time before redrawing, too short to be visible. A series of commands then causes a single frame.
+/// Idle time after a reply before the scene is redrawn. It is too short to be visible, but a series of commands then
+/// causes a single frame.
 const QUIET: Duration = Duration::from_millis(2);
 
 /// Button 2 calibrates the sensor.
@@ -37,11 +38,11 @@ const HEARTBEAT: Duration = Duration::from_millis(500);
 pub struct MainLoop {
     machine: Machine,
     job: Option<Job>,
-    /// Next change of the blinking LED.
+    /// Time of the next change of the blinking LED.
     beat: Deadline,
-    /// Buttons at the last poll.
+    /// Buttons that were pressed at the last poll, one bit each.
     pressed: u8,
-    /// End of the idle time after a reply.
+    /// Time at which the idle time after a reply ends.
     quiet: Deadline,
 }
 
@@ -89,7 +90,7 @@ impl MainLoop {
 
     /// Whether the next turn of the loop has work.
     fn is_busy(&mut self) -> bool {
-        // Without scan-out no interrupt would wake the loop for the blinking LED.
+        // The last condition is for SoCs without scan-out, where no interrupt would wake the loop for the blinking LED.
         self.answers_next()
             || self.machine.renderer.is_ready(&self.machine.scene)
             || sensor::has_events()
@@ -106,8 +107,8 @@ impl MainLoop {
         }
     }
 
-    /// Whether a line can be executed now. A line waits for the end of a job and of a frame drawn by the engine, and ends an orbit, a job of
-    /// the sensor, or a replay.
+    /// Whether a line can be executed now. A line waits for the end of most jobs, and of a frame drawn by the engine;
+    /// an orbit, a job of the sensor, or a replay is ended by the line instead.
     fn takes_input(&self) -> bool {
         matches!(
             self.job,
@@ -115,7 +116,7 @@ impl MainLoop {
         ) && !self.machine.renderer.is_busy()
     }
 
-    /// Executes a line.
+    /// Executes a complete line, if there is one and it can be executed now.
     fn answer(&mut self) {
         if !self.takes_input() {
             return;
@@ -138,7 +139,7 @@ impl MainLoop {
         }
     }
 
-    /// Turns the camera by the sensor, if a frame can be drawn.
+    /// Turns the camera to the sensor's attitude, if a frame can be drawn.
     fn steer(&mut self) {
         let Machine {
             renderer,
@@ -179,7 +180,7 @@ impl MainLoop {
         }
     }
 
-    /// Continues the job, and ends the reply at the end of the job.
+    /// Continues the job, if any, and ends the reply when the job has ended.
     fn poll_job(&mut self) {
         let machine = &mut self.machine;
         let Some(job) = &mut self.job else { return };
@@ -196,7 +197,7 @@ impl MainLoop {
         }
     }
 
-    /// Ends a reply.
+    /// Ends a reply and its job.
     fn finish(&mut self, result: Result<(), CommandError>) {
         self.job = None;
         let Machine {
@@ -243,7 +244,7 @@ impl MainLoop {
             ..
         } = &mut self.machine;
         self.beat = clock.after(HEARTBEAT);
-        // The stream cancels a transfer whose interrupt is missing.
+        // Polls the sensor's stream, which cancels a transfer whose interrupt is missing.
         sensor::advance(cpu::cycles_low());
         if let Some(devices) = devices.as_ref().filter(|_| *heartbeat) {
             let Ok(()) = devices.leds.pin(0).toggle();

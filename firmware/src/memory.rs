@@ -1,4 +1,4 @@
-//! The windows of main memory of `memory.x` as typed slices.
+//! The windows of main memory that `memory.x` defines, as typed slices.
 
 use core::mem::MaybeUninit;
 use core::ptr;
@@ -12,13 +12,13 @@ use crate::models::Buffer;
 
 /// All windows, each lent once.
 pub struct Memory {
-    /// Two frame buffers: RGB565, one number per pixel.
+    /// Two frame buffers: colours in RGB565, one per pixel.
     pub frames: [&'static mut [u16]; 2],
     /// Depth codes, one per pixel.
     pub depth: &'static mut [u32],
     /// Projected vertices of the CPU backend.
     pub scratch: Scratch,
-    /// Two meshes: the shown one, and the staging memory.
+    /// Memory for two meshes: the uploaded one, and the staging memory.
     pub meshes: [Buffer; 2],
     /// Descriptors and band lists between the passes of the triangle engine.
     pub lists: &'static mut [u32],
@@ -46,8 +46,8 @@ unsafe extern "C" {
 macro_rules! window {
     ($start:ident, $size:ident, $element:ty) => {{
         let bytes = (&raw const $size).addr();
-        // SAFETY: memory.x reserves this window for this use and asserts alignment and no overlap; every bit pattern is a valid element;
-        // the caller lends the window once.
+        // SAFETY: memory.x reserves this window for this use and asserts alignment and no overlap; every bit pattern is
+        // a valid element; the caller lends the window once.
         unsafe { slice::from_raw_parts_mut((&raw mut $start).cast::<$element>(), bytes / size_of::<$element>()) }
     }};
 }
@@ -56,7 +56,7 @@ impl Memory {
     /// The windows on the first call, `None` afterwards.
     pub fn take() -> Option<Self> {
         static TAKEN: AtomicBool = AtomicBool::new(false);
-        // Only the main program calls this: no interrupt comes between load and store.
+        // Only the main program calls this function, never an interrupt handler, so load and store need not be atomic.
         if TAKEN.load(Ordering::Relaxed) {
             return None;
         }
@@ -80,11 +80,12 @@ impl Memory {
     }
 }
 
-/// Copies the fast code of memory.x to the SRAM; fast code must not run earlier. Every SoC has this SRAM for the BIOS.
+/// Copies the fast code that memory.x defines to the SRAM; fast code must not run earlier. Every SoC has this
+/// SRAM for the BIOS.
 pub fn load_fast_code() {
     let size = (&raw const _fast_size).addr();
-    // SAFETY: memory.x reserves this SRAM for the fast code, and the program contains the image; both consist of whole words without
-    // another user.
+    // SAFETY: memory.x reserves this SRAM for the fast code, and the program contains the image; both consist of whole
+    // words without another user.
     unsafe {
         ptr::copy_nonoverlapping(&raw const _fast_loaded, &raw mut _fast, size);
     }
@@ -106,7 +107,7 @@ impl Scratch {
             self.ready = count;
         }
         let ready = self.memory.get_mut(..self.ready).unwrap_or_default();
-        // SAFETY: the first `ready` are initialised, and a `MaybeUninit` has the layout of its content.
+        // SAFETY: the first `ready` vertices are initialised, and a `MaybeUninit` has the layout of its content.
         unsafe { &mut *(ptr::from_mut(ready) as *mut [Projected]) }
     }
 }

@@ -1,4 +1,4 @@
-//! The shown mesh, the staging memory of the next one, and named fields.
+//! Meshes and named fields: the built-in mesh, the uploaded one, and the staging memory for the next upload.
 
 use core::slice;
 
@@ -113,14 +113,16 @@ impl Models {
         self.buffers[1].memory
     }
 
-    /// Checks the first `length` bytes of [`staging`](Self::staging) and shows them as the uploaded model.
+    /// Checks the first `length` bytes of [`staging`](Self::staging) as a mesh, and shows this mesh
+    /// as the uploaded model.
     ///
     /// # Errors
     /// [`MeshError`] for an invalid mesh; then nothing changes.
     pub fn accept(&mut self, length: usize) -> Result<(), MeshError> {
         let staged = self.buffers[1].memory.get(..length).unwrap_or_default();
-        // SAFETY: the memory is 'static. The mesh is stored as `uploaded`, and its buffer becomes the first buffer below. Only `staging` lends a
-        // buffer for writing, always the second one. Only this function swaps the buffers, and drops the old mesh.
+        // SAFETY: the memory is 'static. The mesh is stored as `uploaded`, and its buffer becomes the first buffer
+        // below. Only `staging` lends a buffer for writing, always the second one. Only this function swaps the
+        // buffers, and drops the old mesh.
         let staged: &'static [u8] = unsafe { slice::from_raw_parts(staged.as_ptr(), staged.len()) };
         self.uploaded = Some(Mesh::new_checked(staged)?);
         self.buffers.swap(0, 1);

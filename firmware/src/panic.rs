@@ -10,7 +10,7 @@ use riscv_rt::TrapFrame;
 
 use crate::interrupts::UART;
 
-/// The handler of all exceptions. None is expected.
+/// The handler of all CPU exceptions, of which none is expected.
 #[unsafe(export_name = "ExceptionHandler")]
 extern "C" fn exception(frame: &TrapFrame) -> ! {
     let code = mcause::read().code();
@@ -50,7 +50,7 @@ pub fn report(reason: core::fmt::Arguments) -> ! {
     UART.drain();
     // SAFETY: the interrupted program never continues, so its output cannot be disturbed.
     let (mut console, peripherals) = unsafe { (Direct::seize(), Peripherals::steal()) };
-    // An error means that the line accepts no text.
+    // Writing fails only if the line accepts no text, so an error is ignored.
     let _ = write!(
         console,
         "\r\n{reason}\r\nGlint {}, build id {:#010x}: halted, press Enter to restart\r\n",

@@ -14,7 +14,7 @@ use crate::scene::{Drawn, RenderedBy, Scene};
 pub struct Renderer {
     /// Two frame buffers, one of which is shown.
     pub display: Display,
-    /// Depth codes of the last frame with depth codes, one per pixel.
+    /// Depth codes of the last frame that was drawn with depth codes in memory, one per pixel.
     pub depth: &'static mut [u32],
     /// Memory for projected vertices.
     pub scratch: Scratch,
@@ -23,9 +23,9 @@ pub struct Renderer {
 }
 
 impl Renderer {
-    /// Draws the frame of `scene` with `mesh`, and shows it from the next vertical blanking on. Returns `None` while the
-    /// gateware draws, and while the frame buffer is still on the screen; `mesh` and `scene` must not change meanwhile. A frame by
-    /// the CPU takes long and calls `progress` at short intervals.
+    /// Draws the frame of `scene` with `mesh`, and shows it from the next vertical blanking on. Returns `None` while
+    /// the gateware draws, and while the frame buffer is still on the screen; `mesh` and `scene` must not change
+    /// meanwhile. A frame drawn by the CPU takes long and calls `progress` at short intervals.
     pub fn draw(
         &mut self,
         mesh: &Mesh,
@@ -59,7 +59,7 @@ impl Renderer {
         }
     }
 
-    /// Whether the gateware draws.
+    /// Whether the gateware is drawing a frame.
     pub fn is_busy(&self) -> bool {
         self.gateware
             .as_ref()
@@ -74,7 +74,8 @@ impl Renderer {
         }
     }
 
-    /// Draws by the gateware. `Err` is a frame for the CPU, with a reason unless the backend is the CPU or the SoC has no engine.
+    /// Draws a frame by the gateware. `Err` means that the CPU must draw the frame; it has a reason unless the backend
+    /// is the CPU or the SoC has no engine.
     fn draw_by_gateware(
         &mut self,
         frame: &Frame,
@@ -121,7 +122,7 @@ impl Renderer {
         }))
     }
 
-    /// Draws the frame of `scene` `count` times by the gateware, back to back and without showing it.
+    /// Draws the frame of `scene` by the gateware `count` times, back to back, without showing it.
     pub fn repeat(
         &mut self,
         mesh: &Mesh,

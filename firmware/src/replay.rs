@@ -1,4 +1,4 @@
-//! Replay of a log in memory: each record of a sample becomes the record of the attitude after it.
+//! Replay of a log in memory: the attitude after each sample overwrites the sample's record.
 
 use core::ops::Range;
 
@@ -6,7 +6,7 @@ use glint_core::orientation::log::{self, HEADER_BYTES, RECORD_BYTES, Record};
 use glint_core::orientation::{Counts, Tracker};
 use litex_pac::cpu;
 
-/// Samples per turn of the main loop: a few milliseconds of work.
+/// Number of samples that are replayed in one turn of the main loop: a few milliseconds of work.
 const SLICE: usize = 256;
 
 /// A log in the staging memory and the progress of its replay.
@@ -14,9 +14,9 @@ pub struct Replay {
     tracker: Tracker,
     samples: usize,
     done: usize,
-    /// Processed samples at the last report.
+    /// Number of samples processed at the last report.
     reported: usize,
-    /// Cycles of the tracker, with interrupts during its work.
+    /// Clock cycles of the tracker, including interrupts during its work.
     cycles: u64,
 }
 
@@ -32,12 +32,12 @@ impl Replay {
         }
     }
 
-    /// Samples of the log.
+    /// Number of samples of the log.
     pub const fn samples(&self) -> usize {
         self.samples
     }
 
-    /// Whether all samples have become attitudes.
+    /// Whether the attitudes after all samples have been computed.
     pub const fn is_done(&self) -> bool {
         self.done == self.samples
     }
@@ -47,12 +47,12 @@ impl Replay {
         self.tracker.counts()
     }
 
-    /// Processed samples since the last report.
+    /// Number of samples processed since the last report.
     pub const fn unreported(&self) -> usize {
         self.done - self.reported
     }
 
-    /// Processed samples so far, marked as reported.
+    /// Returns the number of samples processed so far, and marks them as reported.
     pub const fn report(&mut self) -> usize {
         self.reported = self.done;
         self.done
@@ -85,11 +85,11 @@ impl Replay {
     }
 }
 
-/// Replaces samples by attitudes, and returns the cycles of the tracker.
+/// Replaces the samples in `records` by the attitudes after them, and returns the clock cycles of the tracker.
 // The linker script places this function beside the tracker.
 #[inline(never)]
 pub fn track(tracker: &mut Tracker, records: &mut [Record]) -> u64 {
-    // Cycles of two consecutive readings of the counter.
+    // Measures the cycles between two consecutive readings of the counter.
     let start = cpu::cycles_low();
     let own = cpu::cycles_low().wrapping_sub(start);
     let mut all = 0;

@@ -28,7 +28,7 @@ impl Sphere {
     /// The camera at start: shows the whole model from above and in front.
     const START: Self = Self {
         r: Q32_32::lit("2.5"),
-        // 40° and 65°.
+        // Azimuth 40°, and 65° from the z axis.
         theta: Turns::from_degrees(Q32_32::lit("40")),
         phi: Turns::from_degrees(Q32_32::lit("65")),
     };
@@ -43,9 +43,9 @@ impl Sphere {
 pub struct Drawn {
     /// Clock cycles, without the wait for a free frame buffer.
     pub cycles: u64,
-    /// Counts of the renderer.
+    /// Counts of triangles, rays and pixels.
     pub stats: FrameStats,
-    /// The renderer.
+    /// Which renderer drew the frame.
     pub by: RenderedBy,
     /// Whether depth codes are in memory.
     pub has_depth: bool,
@@ -162,19 +162,19 @@ impl Scene {
         self.appearance = appearance;
     }
 
-    /// The two eyes for a field.
+    /// The two eyes for a field; `None` for one eye.
     pub const fn stereo(&self) -> Option<Stereo> {
         self.stereo
     }
 
-    /// Sets two eyes or one for a field.
+    /// Sets two eyes for a field, or one eye.
     pub fn set_stereo(&mut self, stereo: Option<Stereo>) {
-        // Stereo is not available for a mesh.
+        // A mesh is drawn for one eye only, so the setting changes pictures of fields only.
         self.changed |= self.field.is_some() && self.stereo != stereo;
         self.stereo = stereo;
     }
 
-    /// Sets whether cones precede the rays of a field.
+    /// Sets whether a prepass marches cones before the rays of a field.
     pub fn set_prepass(&mut self, prepass: bool) {
         self.changed |= self.field.is_some() && self.prepass != prepass;
         self.prepass = prepass;
@@ -196,7 +196,7 @@ impl Scene {
         self.sphere
     }
 
-    /// Sets position and basis of the camera, not its half width and near plane.
+    /// Sets position and basis of the camera to those of `view`, and keeps half width and near plane.
     pub fn move_view(&mut self, view: View) {
         self.set_view(view.with_lens_of(&self.view));
     }
@@ -255,12 +255,12 @@ impl Scene {
         self.wants_depth
     }
 
-    /// Requests depth codes in memory. The gateware writes them on request only.
+    /// Requests depth codes in memory for the next frame. The gateware writes them on request only.
     pub const fn want_depth(&mut self, wanted: bool) {
         self.wants_depth = wanted;
     }
 
-    /// Marks the scene as changed, after a change of the model.
+    /// Marks the scene as changed, because its model has changed.
     pub const fn touch(&mut self) {
         self.changed = true;
     }
@@ -278,12 +278,12 @@ impl Scene {
                 )
     }
 
-    /// The last frame, if there is one.
+    /// Statistics of the last frame, if there is one, or the error of its drawing.
     pub const fn drawn(&self) -> Option<Result<Drawn, RenderError>> {
         self.drawn
     }
 
-    /// Stores the frame of the present scene.
+    /// Stores the statistics of the frame of the present scene, or the error of its drawing.
     pub const fn set_drawn(&mut self, drawn: Result<Drawn, RenderError>) {
         self.drawn = Some(drawn);
         self.changed = false;

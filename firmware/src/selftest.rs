@@ -6,7 +6,7 @@ use litex_pac::cpu;
 
 use crate::machine::Machine;
 
-/// Bytes of tested memory: four times the data cache.
+/// Number of bytes in the memory test: four times the data cache.
 const TESTED: usize = 16 << 10;
 
 /// Runs all tests and returns the name of each test and whether it passed.
@@ -32,7 +32,7 @@ fn is_stuck(machine: &Machine) -> bool {
     )
 }
 
-/// Whether memory keeps a different word at each address, read back after a flush of the cache.
+/// Whether the memory keeps a different word at each address when it is read back after a flush of the cache.
 fn memory(window: &mut [u8]) -> bool {
     let (words, _) = window
         .get_mut(..TESTED)

@@ -1,7 +1,7 @@
 //! The sensor's stream: a future that interrupts poll, and a queue of its events for the main loop.
 //!
-//! The end of a transfer, of a batch of samples, and of a pause are interrupts, and each polls the stream. Samples are
-//! therefore read on time during long work of the program, and wait in the queue.
+//! The end of a transfer, of a batch of samples and of a pause each raise an interrupt, whose handler polls the stream.
+//! Samples are therefore read on time during long work of the program, and wait in the queue.
 
 use core::cell::{Cell, RefCell};
 use core::mem;
@@ -30,27 +30,27 @@ enum Event {
     Error(SensorError),
 }
 
-/// Capacity of the queue: the samples of a long frame.
+/// Capacity of the queue of events, enough for the samples that arrive while a long frame is drawn.
 const QUEUE: usize = 256;
 
 /// The endless stream of the sensor.
 struct Stream(Pin<&'static mut dyn Future<Output = ()>>);
 
-// SAFETY: there is one core, and a critical section excludes interrupts.
+// SAFETY: there is one core, and the stream is accessed only in critical sections, which exclude interrupts.
 unsafe impl Send for Stream {}
 
 static STREAM: Mutex<RefCell<Option<Stream>>> = Mutex::new(RefCell::new(None));
 static EVENTS: Mutex<RefCell<Deque<Event, QUEUE>>> = Mutex::new(RefCell::new(Deque::new()));
-/// Cycles of the stream and of the processing of its samples.
+/// Clock cycles of the stream, and of the processing of its samples.
 static CYCLES: Mutex<Cell<[u64; 2]>> = Mutex::new(Cell::new([0; 2]));
 
-/// The sink of the stream: it queues the events.
+/// The receiver of the stream's events, which it puts into the queue.
 pub struct Inbox;
 
 impl Inbox {
     fn push(event: Event) {
         critical_section::with(|token| {
-            // Queue full: drop the event. The gap between time stamps reveals it.
+            // If the queue is full, the event is dropped. The gap between time stamps reveals this.
             let _ = EVENTS.borrow_ref_mut(token).push_back(event);
         });
     }
@@ -73,7 +73,7 @@ impl Sink<i2c::BusError> for Inbox {
 /// Starts a stream into the [`Inbox`].
 ///
 /// # Safety
-/// The caller does not return.
+/// The caller must never return.
 pub unsafe fn start(stream: Pin<&mut dyn Future<Output = ()>>) {
     // SAFETY: the future is a local variable of a function that does not return, so the future is never dropped.
     let stream = unsafe {
@@ -86,19 +86,20 @@ pub unsafe fn start(stream: Pin<&mut dyn Future<Output = ()>>) {
     advance(cpu::cycles_low());
 }
 
-/// Polls the stream, for interrupts after a transfer or a pause; the cycles since `start` are added to the cycles of the stream.
+/// Polls the stream, after an interrupt by the end of a transfer or a pause. The cycles since `start` are added to the
+/// cycles of the stream.
 pub fn advance(start: u32) {
     critical_section::with(|token| {
         if let Some(stream) = &mut *STREAM.borrow_ref_mut(token) {
             let mut context = Context::from_waker(Waker::noop());
-            // The stream is always pending.
+            // The stream never ends, so the result is always `Pending`.
             let _ = stream.0.as_mut().poll(&mut context);
         }
     });
     count(0, start);
 }
 
-/// Adds the cycles since `start` to counter `which`.
+/// Adds the clock cycles since `start` to one of the two counters of `CYCLES`, selected by `which`.
 fn count(which: usize, start: u32) {
     let cycles = cpu::cycles_low().wrapping_sub(start);
     critical_section::with(|token| {
@@ -108,7 +109,8 @@ fn count(which: usize, start: u32) {
     });
 }
 
-/// Cycles of the stream and of the processing of its samples since start, including interrupts.
+/// Clock cycles of the stream and of the processing of its samples since the start of
+/// the machine, including interrupts.
 pub fn cycles() -> [u64; 2] {
     critical_section::with(|token| CYCLES.borrow(token).get())
 }

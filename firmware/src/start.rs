@@ -59,14 +59,15 @@ impl fmt::Display for StartError {
 pub fn machine() -> Result<Machine, StartError> {
     // SAFETY: the UART has no owner yet.
     let mut banner = unsafe { Direct::seize() };
-    // An error means that the line accepts no text.
+    // Writing fails only if the line accepts no text, so an error is ignored.
     let _ = write!(banner, "\r\nGlint {}\r\n", env!("CARGO_PKG_VERSION"));
 
     memory::load_fast_code();
     let peripherals = Peripherals::take().ok_or(StartError::Started)?;
     let memory = Memory::take().ok_or(StartError::Started)?;
     let identity = Identity {
-        // SAFETY: the pointer refers to a static. The read is volatile, because tools change the value in the program's file.
+        // SAFETY: the pointer refers to a static. The read is volatile, because tools change the value
+        // in the program's file.
         firmware: unsafe { (&raw const GLINT_BUILD_ID).read_volatile() },
         gateware: peripherals.identity.build_id().read(),
         blocks: peripherals.identity.blocks().read(),

@@ -17,7 +17,7 @@ const SEND_QUEUE: usize = 4 << 10;
 /// The UART of the SoC.
 pub type ConsoleUart = Uart<RECEIVE_QUEUE, SEND_QUEUE>;
 
-/// Longest wait for a line that accepts no text. The text is then dropped.
+/// Longest wait for a line that accepts no text; after it the text is dropped.
 const SEND_TIMEOUT: Duration = Duration::from_millis(500);
 
 /// Input from the user.
@@ -56,13 +56,13 @@ impl Terminal {
         }
     }
 
-    /// Receives and echoes input until a line is complete. Further lines wait in the UART's queue.
+    /// Receives and echoes input until a line is complete. Bytes of further lines wait in the UART's queue.
     pub fn listen(&mut self) {
         let mut byte = [0];
         while self.waiting.is_none() && self.uart.receive(&mut byte) > 0 {
             self.waiting = match self.editor.on_byte(byte[0], &mut self.output) {
                 Event::None => None,
-                // The editor limits lines to the capacity.
+                // The editor limits lines to the string's capacity, so the conversion does not fail.
                 Event::Line(line) => Some(Input::Line(String::try_from(line).unwrap_or_default())),
                 Event::Overlong => Some(Input::Overlong),
                 Event::Interrupt => Some(Input::Interrupt),
@@ -70,7 +70,7 @@ impl Terminal {
         }
     }
 
-    /// Takes the complete input.
+    /// Takes the complete input, if there is one.
     pub fn input(&mut self) -> Option<Input> {
         self.waiting.take()
     }

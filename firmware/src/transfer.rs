@@ -27,7 +27,7 @@ pub fn receive(
     run(uart, clock, receiver)
 }
 
-/// The sender of downloads. Each transfer has a session number different from the previous transfer.
+/// The sender of downloads. The session number of each transfer differs from that of the transfer before.
 pub struct Downloads {
     uart: &'static ConsoleUart,
     clock: Clock,
@@ -60,7 +60,7 @@ impl Downloads {
 fn run(uart: &ConsoleUart, clock: Clock, mut party: impl Party) -> Result<(), Failure> {
     let mut received = [0; 256];
     let mut frame = [0; MAX_FRAME];
-    // The part of the frame that does not fit into the UART's queue yet.
+    // The range of `frame` that does not fit into the UART's queue yet.
     let mut unsent = 0..0;
     loop {
         let now = clock.milliseconds();

@@ -5,14 +5,14 @@ use core::fmt;
 /// Error: this SoC lacks a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Absent {
-    /// `ident` of a present block: four letters of ASCII.
+    /// Value of the register `ident` if the block is present: four ASCII letters.
     pub expected: u32,
-    /// `ident` as read; 0 if the SoC lacks the block.
+    /// Value read from the register `ident`; 0 if the SoC lacks the block.
     pub found: u32,
 }
 
 impl Absent {
-    /// Compares a block's `ident`.
+    /// Checks that the value `found` in a block's register `ident` is the expected one.
     pub(crate) const fn check(found: u32, expected: u32) -> Result<(), Self> {
         if found == expected {
             Ok(())

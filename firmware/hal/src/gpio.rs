@@ -165,7 +165,7 @@ mod tests {
     #[test]
     fn inputs() {
         bus::connect(Board { leds: 0 });
-        // SAFETY: a model is behind the registers.
+        // SAFETY: a model on the bus answers all accesses, so no device is affected.
         let port = InputPort::new(unsafe { Peripherals::steal() }.switches.in_());
         assert_eq!(port.read(), 0x8001);
         assert!(port.pin(15).is_high().unwrap() && port.pin(14).is_low().unwrap());
@@ -175,7 +175,7 @@ mod tests {
     #[test]
     fn outputs() {
         bus::connect(Board { leds: 0b100 });
-        // SAFETY: a model is behind the registers.
+        // SAFETY: a model on the bus answers all accesses, so no device is affected.
         let port = OutputPort::new(unsafe { Peripherals::steal() }.leds.out());
         let (mut first, mut third) = (port.pin(0), port.pin(2));
         first.set_high().unwrap();

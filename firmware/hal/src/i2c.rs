@@ -1,17 +1,18 @@
 //! The I2C master `i2c`, which executes a queue of commands.
 //!
-//! Single master, 7-bit addresses, 400 kHz, clock stretching. A transaction is put into the queue, and an interrupt reports its end:
-//! [`embedded_hal_async::i2c::I2c`] yields the CPU meanwhile, [`embedded_hal::i2c::I2c`] polls. A device that was
-//! interrupted in the middle of a byte may hold SDA low; if so, each start first releases SDA by clocks.
+//! The master is the only one on the bus and supports 7-bit addresses, 400 kHz and clock stretching. A transaction is
+//! put into the queue, and an interrupt reports its end: [`embedded_hal_async::i2c::I2c`] yields the CPU meanwhile,
+//! [`embedded_hal::i2c::I2c`] polls. A device that was interrupted in the middle of a byte may hold SDA low; each start
+//! then first sends clocks until the device releases SDA.
 //!
 //! Periodic reads ([`PeriodicI2c`], the register `rounds`) are one transaction that the master repeats at a steady pace, with an
 //! interrupt after each batch of reads.
 //!
-//! A future that is dropped before its transaction has ended may leave the bus within a byte; the next transaction clears the
-//! master and begins with a start.
+//! A future that is dropped before its transaction has ended may leave the bus in the middle of a byte; the next
+//! transaction clears the master and begins with a start.
 //!
 //! # Limits
-//! Single master only: a wire that is low instead of high is an error, not arbitration.
+//! There is no arbitration between masters: a wire that is low instead of high is reported as an error.
 
 use core::fmt;
 use core::future::{Future, poll_fn};
@@ -27,8 +28,8 @@ use litex_pac::i2c::{
 
 use crate::timer::{Clock, Deadline, cycles, microseconds};
 
-/// Longest time without progress. The master reports a device that stretches the clock for more than 25.8 ms, and the 33 bytes
-/// of a full queue take 1 ms.
+/// Longest time without progress before a transaction times out. It is longer than the 25.8 ms of clock stretching
+/// after which the master reports a device, and than the 1 ms that the 33 bytes of a full queue take.
 const WAIT: Duration = Duration::from_millis(100);
 const WAIT_CYCLES: u64 = cycles(WAIT);
 
@@ -45,10 +46,10 @@ pub struct I2c {
     periodic: Option<Periodic>,
 }
 
-/// Periodic reads under way.
+/// Periodic reads that are in progress.
 #[derive(Clone, Copy)]
 struct Periodic {
-    /// Start of the next read to be taken, and time between two starts, in clock cycles.
+    /// Time at which the next read to be taken starts, in clock cycles; `period` is the time between two starts.
     next: u64,
     period: u64,
 }
@@ -68,7 +69,7 @@ pub enum BusError {
     Timeout,
     /// A periodic read was not over when the next read was due: the device stretches the clock, or the receive queue is full.
     Late,
-    /// Periodic reads exceed the master's limits or have not begun.
+    /// The requested periodic reads exceed the master's limits, or no periodic reads have begun.
     Reads,
     /// The master reports an undocumented error code.
     Unknown,
@@ -114,7 +115,7 @@ impl embedded_hal::i2c::Error for BusError {
 }
 
 impl I2c {
-    /// A master on `registers`, with both wires released. The end of each transaction is an interrupt.
+    /// A master on `registers`, with both wires released. The end of each transaction raises an interrupt.
     #[must_use]
     pub fn new(registers: i2c::I2c, clock: Clock) -> Self {
         let mut master = Self {
@@ -168,7 +169,8 @@ impl I2c {
         result
     }
 
-    /// Takes the bytes of a periodic read, after all bytes received earlier.
+    /// Takes the bytes of a periodic read from the receive queue until `bytes` is full; `received` of
+    /// them were taken before.
     fn take(
         &self,
         bytes: &mut [u8],
@@ -178,7 +180,7 @@ impl I2c {
         while let Some(slot) = bytes.get_mut(*received) {
             let answer = self.registers.answer().read();
             if !answer.valid() {
-                // All bytes received before the error were taken.
+                // The error is reported now, because all bytes received before it have been taken.
                 return match (self.status(), &deadline) {
                     (Err(error), _) => Poll::Ready(Err(error)),
                     (_, Some(deadline)) if deadline.passed() => Poll::Ready(Err(BusError::Timeout)),
@@ -194,8 +196,8 @@ impl I2c {
         Poll::Ready(Ok(()))
     }
 
-    /// Fills the command queue and empties the receive queue. Interrupt code is not in the cache, so one small function for both queues is
-    /// faster.
+    /// Fills the command queue and empties the receive queue. Interrupt code is not in the cache, so one small function
+    /// for both queues is faster.
     fn serve(
         &self,
         transfer: &mut Transfer,
@@ -248,10 +250,10 @@ impl I2c {
     }
 }
 
-/// Next part of a transaction.
+/// Kind of the next command of a transaction.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Stage {
-    /// Operations, or the start before an operation.
+    /// A command of an operation, or the start before an operation.
     Operations,
     /// The address after a start.
     Address,
@@ -264,12 +266,14 @@ struct Transfer<'o, 'b> {
     address: u8,
     operations: &'o mut [Operation<'b>],
     stage: Stage,
-    /// Whether the last start was a read.
+    /// Whether the last start began a read; `None` before the first start.
     reads: Option<bool>,
-    /// The operation of the next command, and the number of its bytes with a queued command.
+    /// Index in `operations` of the operation of the next command, and the number of its bytes that already have a
+    /// command in the queue.
     operation: usize,
     sent: usize,
-    /// The operation of the next received byte, and the number of its received bytes.
+    /// Index in `operations` of the read that gets the next received byte, and the number of bytes already
+    /// received for that read.
     receiver: usize,
     received: usize,
 }
@@ -308,7 +312,7 @@ impl<'o, 'b> Transfer<'o, 'b> {
                 Operation::Read(buffer) => (true, buffer.len()),
                 Operation::Write(bytes) => (false, bytes.len()),
             };
-            // A read of 0 bytes is impossible: a device sends after its read address.
+            // A read of 0 bytes is impossible, because a device sends a byte after its read address.
             let is_nothing = reads && length == 0;
             if self.reads != Some(reads) && !is_nothing {
                 self.reads = Some(reads);
@@ -329,7 +333,7 @@ impl<'o, 'b> Transfer<'o, 'b> {
             self.sent += count;
             let command = Command::default()
                 .with_operation(Action::Read)
-                // The command receives 1 to 256 bytes.
+                // The argument is one less than the number of bytes to receive, 1 to 256.
                 .with_argument((count - 1) as u8)
                 .with_more(self.sent < length || self.reads_on());
             return Some(command);
@@ -346,7 +350,7 @@ impl<'o, 'b> Transfer<'o, 'b> {
         .any(|has_bytes| has_bytes)
     }
 
-    /// Place of the next received bytes; `None` after the last byte.
+    /// The buffer for the next received bytes; `None` after the last byte of the transaction.
     fn slots(&mut self) -> Option<&mut [u8]> {
         loop {
             let length = match self.operations.get(self.receiver)? {
@@ -461,7 +465,7 @@ impl PeriodicI2c for I2c {
     }
 }
 
-/// Polls a future to its end, without other tasks.
+/// Polls a future until it is ready; the CPU does nothing else meanwhile.
 fn block_on<T>(future: impl Future<Output = T>) -> T {
     let mut future = pin!(future);
     let mut context = Context::from_waker(Waker::noop());

@@ -7,7 +7,7 @@ use litex_pac::Interrupt;
 
 /// Calls `handle` for each interrupt of `pending`, lowest number first, and returns the lines without a name.
 ///
-/// Handlers match on [`Interrupt`], so the compiler finds a missing one.
+/// Handlers match on [`Interrupt`], so the compiler finds an interrupt without a handler.
 pub fn dispatch(pending: u32, mut handle: impl FnMut(Interrupt)) -> u32 {
     let mut unknown = pending;
     for interrupt in Interrupt::ALL {
@@ -37,7 +37,7 @@ pub unsafe fn enable(interrupt: Interrupt) {
 pub fn disable(lines: u32) {
     use litex_pac::cpu;
     critical_section::with(|_| {
-        // SAFETY: no line is enabled; the critical section makes the change atomic.
+        // SAFETY: the change enables no line, and the critical section makes it atomic.
         unsafe { cpu::set_interrupt_mask(cpu::interrupt_mask() & !lines) }
     });
 }

@@ -1,8 +1,8 @@
 //! The raymarcher: distance fields in the frames of the triangle engine's raster pass.
 //!
-//! [`Raymarcher::set_field`] writes a field's frame constants. Every raster pass that starts afterwards draws the
-//! field, until [`Raymarcher::clear_field`]. Neither may be called during a raster pass. The raymarcher does not access
-//! memory.
+//! [`Raymarcher::set_field`] writes a field's frame constants. Every raster pass that starts afterwards draws
+//! the field, until [`Raymarcher::clear_field`]. Neither may be called during a raster pass. The raymarcher
+//! does not access memory.
 
 use core::fmt;
 
@@ -24,22 +24,22 @@ pub struct Capabilities {
     pub lanes: u8,
     /// Largest depth of a sponge; 0 without sponges.
     pub levels: u8,
-    /// Flat fields: bit k for the field of kind k.
+    /// Kinds of flat fields that this build draws: bit k stands for kind k.
     pub flat: u8,
-    /// Two eyes.
+    /// Whether this build draws two eyes.
     pub stereo: bool,
-    /// Spheres.
+    /// Whether this build draws spheres.
     pub round: bool,
-    /// Fillets between spheres and flat fields.
+    /// Whether this build draws fillets between spheres and flat fields.
     pub blend: bool,
-    /// Prepass.
+    /// Whether this build has the prepass.
     pub prepass: bool,
 }
 
 /// A feature that a frame needs and this build lacks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Missing {
-    /// Sponges, or sponges deeper than the contained number of levels.
+    /// Sponges deeper than this number of levels, the most that this build has; 0 if it has no sponges.
     Levels(u8),
     /// Flat fields of this kind.
     Flat(Kind),
@@ -73,7 +73,7 @@ impl fmt::Display for Missing {
 
 impl core::error::Error for Missing {}
 
-/// The ray statistics of the block's counters.
+/// Converts the block's counters to the model's statistics of rays.
 #[must_use]
 pub fn ray_counts(counters: &Counters) -> FieldStats {
     FieldStats {
@@ -89,7 +89,7 @@ pub fn ray_counts(counters: &Counters) -> FieldStats {
 pub struct Raymarcher {
     registers: raymarch::Raymarch,
     capabilities: Capabilities,
-    /// The contents of the tables of fog and light.
+    /// The contents last written to the tables of fog and light; `None` before the first write.
     tables: Option<[[u8; 256]; 2]>,
 }
 
@@ -151,7 +151,7 @@ impl Raymarcher {
                 return Err(Missing::Levels(levels));
             }
             let kind = kind(&constants);
-            // The check of the levels above covers the sponge, kind 0.
+            // Kind 0, the sponge, is covered by the check of the levels above.
             if constants.kind != 0 && flat >> constants.kind & 1 == 0 {
                 return Err(Missing::Flat(kind));
             }
@@ -227,7 +227,7 @@ impl Raymarcher {
             .cones
             .map(|cones| (cones.offset, cones.spread))
             .unwrap_or_default();
-        // Individual writes: a loop would need a table of the registers' addresses.
+        // The registers are written one by one, because a loop would need a table of their addresses.
         registers.far().write(setup.tuning.far);
         registers.near().write(setup.near);
         registers.origin_left_x().write(origins[0][0]);
@@ -344,7 +344,8 @@ impl Raymarcher {
         }
     }
 
-    /// Whether the tables hold those of a palette. The comparison takes longer than writing a frame's registers.
+    /// Whether the raymarcher's tables of fog and light are those of `palette`. The comparison takes longer than
+    /// writing a frame's registers.
     #[must_use]
     pub fn has_tables(&self, palette: &Palette) -> bool {
         let held = self.tables.as_ref();
@@ -373,7 +374,7 @@ impl Raymarcher {
     }
 }
 
-/// The kind of a flat field as a value of the register; the register's description has all kinds.
+/// The kind of a flat field as a register value. `Kind::ALL` has every kind of the model, so the default is never used.
 fn kind(constants: &FlatConstants) -> Kind {
     let kind = Kind::ALL.get(usize::from(constants.kind)).copied();
     kind.unwrap_or(Kind::Menger)

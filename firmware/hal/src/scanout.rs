@@ -22,11 +22,11 @@ use crate::Absent;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Scale {
-    /// 1280×720.
+    /// For frames of 1280×720 pixels.
     One = 1,
-    /// 640×360.
+    /// For frames of 640×360 pixels.
     Two = 2,
-    /// 320×180.
+    /// For frames of 320×180 pixels.
     Four = 4,
 }
 
@@ -59,8 +59,9 @@ impl Scanout {
         Ok(Self { registers })
     }
 
-    /// Keeps `shown` on the screen instead of `next` if `next` is not shown yet; returns whether `shown` was kept. Two frames with
-    /// different scales are not exchanged: a frame would be shown with the wrong scale.
+    /// Keeps the frame at `shown` on the screen instead of the frame at `next`, if that is not shown yet; returns
+    /// whether `shown` was kept. Two frames with different scales are not exchanged, because a frame would be shown
+    /// with the wrong scale.
     fn withdraw(&self, next: u32, shown: u32) -> bool {
         let registers = &self.registers;
         if registers.fb_next().read() != next
@@ -70,7 +71,7 @@ impl Scanout {
             return false;
         }
         registers.fb_next().write(shown);
-        // A vertical blanking may have come before the write.
+        // A vertical blanking may have come before the write, so that `next` is already shown.
         let withdrawn = registers.fb_current().read() == shown;
         if !withdrawn {
             registers.fb_next().write(next);
@@ -90,8 +91,8 @@ impl Scanout {
         if self.registers.scale().read() != scale as u8
             || self.registers.control().read() == disabled
         {
-            // A vertical blanking may come between any two of these writes. The picture is then switched off, so that no frame is shown with the
-            // scale of another frame.
+            // A vertical blanking may come between any two of these writes. The picture is then switched off, so that
+            // no frame is shown with the scale of another frame.
             self.registers.control().write(disabled);
             self.registers.scale().write(scale as u8);
             self.registers.fb_next().write(address);
@@ -142,8 +143,8 @@ impl Display {
         (!held).then_some(&mut *self.back)
     }
 
-    /// Takes back the frame of the last [`show`](Self::show) if it is not on the screen yet, to replace an outdated picture before it is
-    /// shown.
+    /// Takes back the frame of the last [`show`](Self::show) if it is not on the screen yet, to replace an outdated
+    /// picture before it is shown.
     pub fn withdraw(&mut self) {
         let withdrawn = self
             .scanout
@@ -204,14 +205,15 @@ mod tests {
 
     const IDENT: u32 = scanout::Scanout::IDENT;
 
-    /// The registers by offset. `blank_before` counts writes down to a vertical blanking.
+    /// Model of the registers. `blank_before` is the number of register writes that still come
+    /// before a vertical blanking.
     #[derive(Default)]
     struct Video {
         ident: u32,
         control: u32,
         next: u32,
         scale: u32,
-        /// Active control, frame and scale.
+        /// Control, frame and scale that were latched at the last vertical blanking.
         current: [u32; 3],
         blank_before: Option<u32>,
     }
@@ -262,7 +264,7 @@ mod tests {
             ..Video::default()
         }));
         bus::connect(Registers(video.clone()));
-        // SAFETY: a model is behind the registers.
+        // SAFETY: a model on the bus answers all accesses, so no device is affected.
         (
             Scanout::probe(unsafe { Peripherals::steal() }.scanout),
             video,
@@ -292,7 +294,7 @@ mod tests {
 
     #[test]
     fn a_frame_is_withdrawn_before_it_is_seen() {
-        // A vertical blanking at the last moment, or none.
+        // Tests with a vertical blanking during the withdrawal, and without one.
         for blanking in [Some(0), None] {
             let (scanout, video) = probe(IDENT);
             let mut display = Display::new(Some(scanout.unwrap()), frames());
@@ -315,7 +317,7 @@ mod tests {
             assert_eq!(display.front()[0], if seen_first { 1 } else { 2 });
             assert_eq!(video.borrow().current[1], address(display.front()));
         }
-        // A frame with another scale waits.
+        // A waiting frame with another scale than the shown one is not withdrawn.
         let (scanout, video) = probe(IDENT);
         let mut display = Display::new(Some(scanout.unwrap()), frames());
         display.show(Scale::Four);

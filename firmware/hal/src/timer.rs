@@ -1,7 +1,8 @@
 //! Time since reset, from the uptime counter of `timer0`.
 //!
-//! The counter has 64 bits and counts clock cycles of the SoC without stop or wrap. [`Clock`] is a copyable handle, also for interrupt
-//! handlers: a reading that is interrupted by another reading still gives a time between start and end of the reading.
+//! The counter has 64 bits and counts clock cycles of the SoC without stop or wrap. [`Clock`] is a copyable handle,
+//! also for interrupt handlers: a reading that is interrupted by another reading still gives a time between start and
+//! end of the reading.
 
 use core::future::poll_fn;
 use core::task::Poll;
@@ -18,7 +19,7 @@ pub const FREQUENCY: u32 = CONFIG_CLOCK_FREQUENCY;
 const QUARTERS: u64 = FREQUENCY as u64 / 250_000;
 const _: () = assert!(FREQUENCY.is_multiple_of(250_000));
 
-/// The SoC's uptime.
+/// Handle of the SoC's uptime counter.
 #[derive(Clone, Copy)]
 pub struct Clock {
     _running: (),
@@ -104,8 +105,9 @@ impl DelayNs for Clock {
     }
 }
 
-/// A delay ends at the first poll after its time; an interrupt of `timer0` causes this poll. `timer0` has a single interrupt: of several
-/// simultaneous delays only the last one gets the interrupt, and the others wait for another poll.
+/// A delay ends at the first poll after its time; an interrupt of `timer0` causes this poll. `timer0` has a
+/// single interrupt: of several simultaneous delays only the last one gets the interrupt, and the others
+/// wait for another poll.
 impl embedded_hal_async::delay::DelayNs for Clock {
     async fn delay_ns(&mut self, ns: u32) {
         self.wait(cycles(Duration::from_nanos(ns.into()))).await;
@@ -123,7 +125,7 @@ impl embedded_hal_async::delay::DelayNs for Clock {
 impl Clock {
     async fn wait(self, cycles: u64) {
         let deadline = self.after_cycles(cycles);
-        // An early interrupt only causes one additional poll.
+        // If the interrupt comes early, it only causes one additional poll.
         alarm(u32::try_from(cycles).unwrap_or(u32::MAX));
         poll_fn(|_| {
             if deadline.passed() {
@@ -155,7 +157,7 @@ pub fn acknowledge() {
         .write(EvPending::default().with_zero(true));
 }
 
-/// Clock cycles in µs, rounded down.
+/// Converts clock cycles to µs, rounded down.
 #[must_use]
 pub const fn microseconds(cycles: u64) -> u64 {
     // 4/QUARTERS with 64 fraction bits, rounded up: exact below 2^55 cycles, 14 years. A division would take a thousand cycles.
@@ -163,7 +165,7 @@ pub const fn microseconds(cycles: u64) -> u64 {
     ((cycles as u128 * INVERSE) >> 64) as u64
 }
 
-/// A span in clock cycles, rounded up, saturating.
+/// Converts a span to clock cycles, rounded up; saturates.
 #[must_use]
 pub const fn cycles(span: Duration) -> u64 {
     let frequency = FREQUENCY as u64;
@@ -223,16 +225,16 @@ pub(crate) mod tests {
         }
     }
 
-    /// A clock on the bus that this thread has connected.
+    /// A clock whose registers are the model that this thread has connected to the bus.
     pub fn clock() -> Clock {
-        // SAFETY: a model is behind the registers.
+        // SAFETY: a model on the bus answers all accesses, so no device is affected.
         Clock::new(unsafe { Timer0::steal() }).unwrap()
     }
 
     #[test]
     fn a_clock_without_a_counter_is_refused() {
         bus::connect(Uptime::new(0));
-        // SAFETY: a model is behind the registers.
+        // SAFETY: a model on the bus answers all accesses, so no device is affected.
         assert!(Clock::new(unsafe { Timer0::steal() }).is_err());
     }
 
@@ -251,7 +253,7 @@ pub(crate) mod tests {
         assert_eq!(clock.cycles(), 5 << 32);
     }
 
-    /// The uptime, and the last value written to `load`.
+    /// A model of the uptime counter and of the register `load`; the test sees the value last written to `load`.
     struct Alarm(Uptime, std::rc::Rc<core::cell::Cell<u32>>);
 
     impl Bus for Alarm {
@@ -283,7 +285,7 @@ pub(crate) mod tests {
         while delay.as_mut().poll(&mut context).is_pending() {
             looks += 1;
         }
-        // 8125 cycles; each reading of the clock takes 1000.
+        // The delay takes 8125 cycles, and each reading of the clock advances the model by 1000.
         assert_eq!((looks, asked.get()), (9, 8_126));
     }
 

@@ -5,8 +5,8 @@
 //! (docs/formats.md, "Descriptors and band lists"). Both passes may run at the same time, for two frames.
 //!
 //! The engine accesses memory by address and bypasses the CPU's data cache, so starting a pass is unsafe: see
-//! [`TriangleEngine::start_geometry`] and [`TriangleEngine::start_raster`]. The engine sees earlier writes of the CPU; the CPU sees writes
-//! of the engine after `litex_pac::cpu::flush_data_cache`.
+//! [`TriangleEngine::start_geometry`] and [`TriangleEngine::start_raster`]. The engine sees earlier writes of the CPU;
+//! the CPU sees writes of the engine after `litex_pac::cpu::flush_data_cache`.
 
 use core::fmt;
 use core::sync::atomic::{Ordering, compiler_fence};
@@ -36,7 +36,7 @@ pub enum EngineError {
     Eye,
 }
 
-/// Longest time without progress of a pass.
+/// Longest time that a pass may run without progress.
 pub const TIMEOUT: Duration = Duration::from_millis(100);
 
 impl EngineError {
@@ -73,7 +73,7 @@ impl core::error::Error for EngineError {}
 pub struct Lists {
     /// Address of the descriptors; the [`shading`](TriangleEngine::shading) of the engine sets their length.
     pub descriptors: u32,
-    /// Room for descriptors.
+    /// Largest number of descriptors that fit their memory.
     pub descriptor_limit: u32,
     /// Address of the band lists.
     pub lists: u32,
@@ -86,7 +86,7 @@ pub struct Geometry<'a> {
     pub mesh: &'a Mesh<'a>,
     /// The constants of the frame.
     pub frame: &'a MeshSetup,
-    /// Culls back faces.
+    /// Whether back faces are left out.
     pub cull: bool,
     /// Source of the colours; `Flat` if the engine has no smooth shading.
     pub shading: Shading,
@@ -94,7 +94,7 @@ pub struct Geometry<'a> {
     pub lists: Lists,
     /// Address of the list of exceptions: triangle numbers of 4 bytes.
     pub exceptions: u32,
-    /// Room for exceptions.
+    /// Largest number of exceptions that fit their memory.
     pub exception_limit: u32,
 }
 
@@ -122,9 +122,9 @@ pub struct Raster {
     pub size: Size,
     /// Address of the frame to write.
     pub frame: u32,
-    /// Number of the frame buffer.
+    /// Number of the frame buffer: `false` for 0, `true` for 1.
     pub slot: bool,
-    /// Writes the whole frame buffer, because its contents are unknown.
+    /// Whether the whole frame buffer is written, because its contents are unknown.
     pub whole: bool,
     /// Address for depth codes, if requested.
     pub depth: Option<u32>,
@@ -141,7 +141,7 @@ pub struct Counts {
     pub triangles: u32,
     /// Triangles behind the near plane or beyond one side of the picture.
     pub unseen: u32,
-    /// Triangles left out by the setup.
+    /// Triangles left out by the setup: culled back faces, and triangles that cover no pixel centre.
     pub culled: u32,
     /// Descriptors made.
     pub descriptors: u32,
@@ -170,7 +170,8 @@ impl TriangleEngine {
         Ok(Self { registers })
     }
 
-    /// Best shading of this gateware, which determines the length of a descriptor (`glint_model::triangle::descriptor::words`).
+    /// Best shading of this gateware. It determines the length of a descriptor
+    /// (`glint_model::triangle::descriptor::words`).
     #[must_use]
     pub fn shading(&self) -> Shading {
         if self.registers.caps().read().gouraud() {
@@ -180,8 +181,8 @@ impl TriangleEngine {
         }
     }
 
-    /// Writes the registers of a geometry pass while no geometry pass runs, so that the start itself is short. A band list has room for
-    /// 4 << `list_shift` entries, in both passes.
+    /// Writes the registers of a geometry pass while no geometry pass runs, so that the start itself is short. A band
+    /// list has room for 4 << `list_shift` entries, in both passes.
     ///
     /// # Errors
     /// [`Error::Size`] if the engine lacks this picture size; no register is then written.
@@ -208,7 +209,7 @@ impl TriangleEngine {
         registers.exception_limit().write(pass.exception_limit);
 
         registers.scale_shift().write(frame.scale_shift as u8);
-        // Single writes instead of a loop, which would need a table of addresses.
+        // The registers are written one by one, because a loop would need a table of their addresses.
         let [u, v, n] = [frame.u, frame.v, frame.n].map(|row| row.map(|value| value as u32));
         registers.row_u0().write(u[0]);
         registers.row_u1().write(u[1]);
@@ -255,8 +256,8 @@ impl TriangleEngine {
     /// Starts a raster pass.
     ///
     /// # Safety
-    /// Until the pass has ended, lists and descriptors must not be written, and frame and depth codes must not be accessed. Both are
-    /// overwritten.
+    /// Until the pass has ended, lists and descriptors must not be written, and frame and depth codes must not be
+    /// accessed. Frame and depth codes are overwritten.
     pub unsafe fn start_raster(&mut self, pass: &Raster) {
         let registers = &self.registers;
         registers.frame().write(pass.frame);
@@ -300,7 +301,8 @@ impl TriangleEngine {
         (!status.raster_busy()).then(|| EngineError::check(status.raster_error()))
     }
 
-    /// Cancels the running passes. The next frame in the buffer of a cancelled raster pass must be written whole ([`Raster::whole`]).
+    /// Cancels the running passes. The next frame in the buffer of a cancelled raster pass must
+    /// be written whole ([`Raster::whole`]).
     pub fn cancel(&mut self) {
         self.registers
             .control()
@@ -329,7 +331,8 @@ impl TriangleEngine {
 
 /// Clears the engine's interrupt, for the interrupt handler.
 pub fn acknowledge() {
-    // SAFETY: only this function writes the pending register. Both events may be cleared, because `status` keeps the states of the passes.
+    // SAFETY: only this function writes the pending register. Both events may be cleared, because `status` keeps the
+    // states of the passes.
     let registers = unsafe { triangle::Triangle::steal() };
     registers
         .ev_pending()

@@ -1,8 +1,8 @@
 //! The UART, driven by interrupts, with a queue of bytes in each direction: calls do not wait for the line.
 //!
 //! A [`Uart`] is a `static`. [`Uart::start`] gives it the registers, [`Uart::on_interrupt`] handles
-//! [`Interrupt::Uart`](litex_pac::Interrupt::Uart). The program reads through [`Uart::reader`] and writes through [`Uart::writer`].
-//! Bytes that arrive while the receive queue is full are dropped and counted ([`Uart::lost`]).
+//! [`Interrupt::Uart`](litex_pac::Interrupt::Uart). The program reads through [`Uart::reader`] and writes through
+//! [`Uart::writer`]. Bytes that arrive while the receive queue is full are dropped and counted ([`Uart::lost`]).
 //!
 //! ```no_run
 //! # use core::time::Duration;
@@ -132,8 +132,8 @@ impl<const RX: usize, const TX: usize> Uart<RX, TX> {
         }
     }
 
-    /// Sends the transmit queue without interrupts, before the program ends. Stops when the line makes no progress, and does nothing if the
-    /// program ends within another call.
+    /// Sends the transmit queue without interrupts, before the program ends. Stops when the line makes no progress, and
+    /// does nothing if the program ends within another call.
     pub fn drain(&self) {
         critical_section::with(|token| {
             let Ok(mut state) = self.state.borrow(token).try_borrow_mut() else {
@@ -147,7 +147,7 @@ impl<const RX: usize, const TX: usize> Uart<RX, TX> {
         });
     }
 
-    // No `action` calls `with` (all are in this file), so the state is never borrowed twice.
+    // Runs `action` on the state. No `action` in this file calls `with` itself, so the state is never borrowed twice.
     fn with<R>(&self, action: impl FnOnce(&mut State<RX, TX>) -> R) -> R {
         critical_section::with(|token| action(&mut self.state.borrow_ref_mut(token)))
     }
@@ -296,7 +296,7 @@ impl<const RX: usize, const TX: usize> WriteReady for Writer<'_, RX, TX> {
     }
 }
 
-/// Polls of a full transmitter before giving up: about 0.1 s, far longer than a byte at 115,200 baud.
+/// Number of polls of a full transmitter before giving up: about 0.1 s, far longer than a byte at 115,200 baud.
 const PATIENCE: u32 = 1_000_000;
 
 /// Writes to the hardware without queues or interrupts: the output of traps and panics.

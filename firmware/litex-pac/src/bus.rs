@@ -46,7 +46,7 @@ mod host {
         fn write(&mut self, address: usize, value: u32);
     }
 
-    /// An empty bus: reads give 0, as in the window of an absent block.
+    /// An empty bus: every read gives 0, as in the address window of an absent block.
     struct Empty;
 
     impl Bus for Empty {
@@ -61,7 +61,7 @@ mod host {
         static BUS: RefCell<Box<dyn Bus>> = RefCell::new(Box::new(Empty));
     }
 
-    /// Puts `bus` behind the registers for this thread.
+    /// Connects the model `bus` to the registers, for this thread.
     pub fn connect(bus: impl Bus + 'static) {
         BUS.replace(Box::new(bus));
     }

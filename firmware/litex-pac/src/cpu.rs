@@ -46,7 +46,7 @@ pub fn flush_data_cache() {
 /// Empties the instruction cache, so that code written as data is fetched from memory.
 #[inline]
 pub fn flush_instruction_cache() {
-    // SAFETY: `fence.i`, and as many `nop`s as the pipeline may have fetched before it.
+    // SAFETY: these are `fence.i` and as many `nop`s as the pipeline may have fetched before it; they change no memory.
     unsafe {
         asm!(
             ".word 0x100f",

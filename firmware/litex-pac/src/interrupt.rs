@@ -1,4 +1,4 @@
-//! Interrupt lines for the traits of the RISC-V crates.
+//! Implements the traits of the RISC-V crates for the interrupt lines.
 
 use riscv_types::result::{Error, Result};
 use riscv_types::{ExternalInterruptNumber, InterruptNumber};

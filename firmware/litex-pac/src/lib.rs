@@ -1,11 +1,12 @@
 //! Access to the registers of Glint's SoC. No other crate accesses registers.
 //!
-//! The modules of the peripherals are generated from the SoC's own description (`cargo xtask pac`, docs/pac.md). The module `cpu`,
-//! on the board only, is written by hand, because the CPU's registers are not part of that description.
+//! The modules of the peripherals are generated from the SoC's own description (`cargo xtask pac`, docs/pac.md). The
+//! module `cpu`, on the board only, is written by hand, because the CPU's registers are not part of that description.
 //!
-//! A peripheral is a zero-sized handle that exists once ([`Peripherals::take`]). Its methods name registers. A
-//! [`Register`](register::Register) is read or written as a number or as a type with a getter and a `with_…` setter for each field.
-//! A field with named values has an enumeration. `Counters` of a block holds a reading of all its free-running counters.
+//! A peripheral is a zero-sized handle that exists once ([`Peripherals::take`]), and its methods name its
+//! registers. A [`Register`](register::Register) is read or written as a number or as a type with a getter and a
+//! `with_…` setter for each field. A field with named values has an enumeration. `Counters` of a block holds a
+//! reading of all its free-running counters.
 //!
 //! ```
 //! use litex_pac::{bus, uart};
@@ -22,7 +23,8 @@
 //! }
 //! ```
 //!
-//! A host has no such bus: [`bus::connect`] connects a model at the same addresses, so that tests run the same drivers.
+//! On a host the registers do not exist: [`bus::connect`] connects a model at the same addresses, so that tests
+//! run the same drivers.
 //!
 //! # Limits
 //! A register of two words is read word by word. The result is consistent for counters only ([`register::WideRegister::read`]).
@@ -57,7 +59,7 @@ impl Peripherals {
     #[must_use]
     pub fn take() -> Option<Self> {
         let taken = critical_section::with(|token| TAKEN.borrow(token).replace(true));
-        // SAFETY: the handles are returned once.
+        // SAFETY: `TAKEN` ensures that the handles are returned only once.
         (!taken).then(|| unsafe { Self::steal() })
     }
 }

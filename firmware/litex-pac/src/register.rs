@@ -112,7 +112,8 @@ impl<A> WideRegister<A> {
         }
     }
 
-    /// Reads the register, and repeats the reading while the high word changes: consistent for a counter.
+    /// Reads both words, and repeats the reading while the high word changes, so that the value of
+    /// a counter is consistent.
     #[inline]
     #[must_use]
     pub fn read(&self) -> u64 {
@@ -135,7 +136,7 @@ mod tests {
     use super::*;
     use crate::bus::{self, Bus};
 
-    /// A counter that carries into its high word after the first read.
+    /// A model of a counter whose high word changes after the first read.
     struct Carrying(u64);
 
     impl Bus for Carrying {
@@ -157,7 +158,7 @@ mod tests {
     #[test]
     fn a_wide_counter_is_consistent() {
         bus::connect(Carrying(0xffff_ffff));
-        // SAFETY: the model above answers at this address.
+        // SAFETY: the model that is connected above answers at this address.
         let counter = unsafe { WideRegister::<ReadOnly>::at(0x100) };
         assert_eq!(counter.read(), 0x1_0000_0002);
     }
@@ -172,7 +173,7 @@ mod tests {
     #[test]
     fn modify_reads_then_writes() {
         bus::connect(Carrying(40));
-        // SAFETY: the model above answers at this address.
+        // SAFETY: the model that is connected above answers at this address.
         let register = unsafe { Register::<u16, ReadWrite>::at(4) };
         register.modify(|value| value + 2);
         assert_eq!(register.read(), 42);

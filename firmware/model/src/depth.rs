@@ -2,7 +2,8 @@
 
 use glint_core::fixed::Q32_32;
 
-/// K = `mantissa`·2^`exponent`: a depth code is K/z, and z is K/code.
+/// The scale K of depth codes, as `mantissa`·2^`exponent`: a surface at depth z along the camera's axis n has the code
+/// K/z, and a code stands for the depth K/code (docs/formats.md, "Frame constants").
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DepthScale {
     /// Mantissa km, u17 in [2^16, 2^17).
@@ -12,29 +13,33 @@ pub struct DepthScale {
 }
 
 impl DepthScale {
-    /// (2^18 − 4) times the smallest possible depth of the mesh: the depth of the near plane, or of the mesh's bounding sphere about
-    /// the origin if the sphere begins beyond the near plane. `n` may be 10^−4 longer than 1, so the radius is enlarged by 2^−13.
+    /// The scale of a mesh with the given `radius` (14 fraction bits). `origin` is the depth of the world's origin and
+    /// `near` that of the near plane, both with 37 fraction bits.
+    ///
+    /// The scale is (2^18 − 4) times the smallest possible depth of the mesh: the depth of the near plane, or of the
+    /// mesh's bounding sphere about the origin if the sphere begins beyond the near plane. The axis n may be 10^−4
+    /// longer than 1, so the radius is enlarged by a part of 2^−13.
     pub(crate) fn new(origin: i64, near: i64, radius: u32) -> Self {
         let radius = i64::from(radius);
         let reach = (radius << 23) + (radius << 10);
         Self::from_nearest(near.max(origin - reach))
     }
 
-    /// The scale (2^18 − 4)·z for a nearest depth z in (0, 64], 37 fraction bits.
+    /// The scale (2^18 − 4)·`nearest`, where `nearest` is the smallest depth of a frame: in (0, 64], 37 fraction bits.
     pub(crate) fn from_nearest(nearest: i64) -> Self {
-        // The product is below 2^61.
+        // `nearest` is at most 2^43, so the product is below 2^61.
         let scale = nearest as u64 * ((1 << 18) - 4);
         Self::cut(scale, -37)
     }
 
-    /// The product with a number above 0 and with 2^`shift`, truncated to 17 bits.
+    /// Multiplies the scale by `scale`, a number above 0, and by 2^`shift`; the mantissa is truncated to 17 bits.
     pub(crate) fn times(&self, scale: Q32_32, shift: u32) -> Self {
-        // Product of 17 by 40 bits.
+        // Multiplies the mantissa of 17 bits by 40 bits of `scale`, of which 24 are fraction bits.
         let product = u64::from(self.mantissa) * (scale.to_bits() as u64 >> 8);
         Self::cut(product, self.exponent - 24 + shift as i32)
     }
 
-    /// value·2^exponent, truncated to 17 bits.
+    /// The scale value·2^exponent, with the mantissa truncated to 17 bits.
     fn cut(value: u64, exponent: i32) -> Self {
         let lead = value.ilog2();
         Self {
@@ -43,10 +48,11 @@ impl DepthScale {
         }
     }
 
-    /// The distance along n of a depth code, to nearest; `None` for the clear code 0.
+    /// Converts a depth code to the depth along the camera's axis n, to nearest; `None` for code 0, which
+    /// marks an empty pixel.
     pub fn distance(&self, code: u32) -> Option<Q32_32> {
         let code = u64::from(code);
-        // The dividend is below 2^(17 + 37).
+        // The mantissa is below 2^17 and the shift at most 37, so the dividend is below 2^(17 + 37).
         let scale = u64::from(self.mantissa) << (32 + self.exponent);
         let bits = (scale + code / 2).checked_div(code)?;
         Some(Q32_32::from_bits(bits as i64))

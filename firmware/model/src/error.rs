@@ -1,4 +1,4 @@
-//! Limits of a frame, and the errors beyond these limits.
+//! Limits of the frames that the model draws, and errors for frames beyond these limits.
 
 use core::fmt;
 
@@ -15,19 +15,20 @@ pub const SIZES: [(u32, u32); 3] = {
     ]
 };
 
-/// The largest distance of the eye from the origin for a mesh, in world units: the widths of the translation follow from it.
+/// Largest distance of the eye from the origin in a frame with a mesh, in world units. It bounds the translation among
+/// the mesh's frame constants, whose bit widths follow from it.
 pub const MAX_EYE: u32 = 8;
 
 /// One of the buffers of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Buffer {
-    /// The picture.
+    /// Colours of the pixels.
     Colour,
-    /// The depth codes.
+    /// Depth codes of the pixels.
     Depth,
 }
 
-/// An error of a frame; nothing was drawn.
+/// Reason why a frame was refused; nothing was drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RenderError {
     /// The picture's size is not one of the [`SIZES`].
@@ -37,7 +38,7 @@ pub enum RenderError {
         /// Height in pixels.
         height: u32,
     },
-    /// A buffer without exactly one element for each pixel.
+    /// A buffer does not have exactly one element for each pixel.
     Buffer {
         /// The buffer.
         buffer: Buffer,
@@ -46,16 +47,16 @@ pub enum RenderError {
         /// Elements of the buffer.
         found: usize,
     },
-    /// Scratch memory smaller than the largest chunk.
+    /// The scratch memory has room for fewer vertices than the largest chunk of the mesh.
     Scratch {
         /// Vertices of the largest chunk.
         expected: usize,
         /// Vertices that fit the scratch memory.
         found: usize,
     },
-    /// Eye beyond [`MAX_EYE`], for a mesh.
+    /// The eye of a frame with a mesh is farther than [`MAX_EYE`] from the origin.
     Eye([Q32_32; 3]),
-    /// Stereo for a mesh in a field.
+    /// Two eyes were requested for a mesh in a field, which is drawn for one eye only.
     Stereo,
 }
 

@@ -54,9 +54,9 @@ pub enum Subject<'a> {
 pub struct MeshSubject<'a> {
     /// The mesh.
     pub mesh: Mesh<'a>,
-    /// Cull back faces.
+    /// Whether back faces are left out.
     pub cull: bool,
-    /// Source of colours.
+    /// Source of the colours: triangles (flat) or vertices (smooth).
     pub shading: Shading,
 }
 
@@ -67,9 +67,9 @@ pub struct FieldSubject<'a> {
     pub field: &'a Field,
     /// Material, lights, background, fog and occlusion.
     pub appearance: &'a Appearance,
-    /// Two eyes, for a field without a mesh.
+    /// Two eyes for a stereo picture, or `None` for one eye. A mesh in a field has one eye.
     pub stereo: Option<Stereo>,
-    /// Cones before the rays.
+    /// Whether a prepass marches one cone for each block of pixels before the rays (docs/formats.md, "Cones").
     pub prepass: bool,
 }
 
@@ -109,7 +109,7 @@ impl FieldSubject<'_> {
     }
 }
 
-/// Numbers computed once a frame.
+/// Numbers of a frame that do not depend on the pixel or triangle, computed once before drawing.
 ///
 /// The constants take about 1,500 bytes, mostly tables of a field's palette. To save time keep one value and
 /// [update](Self::update) it instead of moving new values.
@@ -122,9 +122,9 @@ pub struct FrameConstants {
 /// Frame constants of a field.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FieldConstants {
-    /// Rays and solid.
+    /// Constants of the rays and of the solid.
     pub setup: FieldSetup,
-    /// Colours.
+    /// Colours of surfaces, sky and fog.
     pub palette: Palette,
 }
 
@@ -183,7 +183,7 @@ impl FrameConstants {
     }
 }
 
-/// Counts of a frame.
+/// Counts of the work of drawing a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrameStats {
     /// Counts of the mesh, if any.
@@ -203,7 +203,7 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// The constants of the frame.
+    /// Computes the constants of this frame.
     ///
     /// # Errors
     /// As [`FrameConstants::update`].
@@ -213,13 +213,14 @@ impl<'a> Frame<'a> {
         Ok(constants)
     }
 
-    /// Number of vertices in the scratch memory of [`draw`](Self::draw).
+    /// Number of vertices for which the scratch memory of [`draw`](Self::draw) needs room.
     pub fn scratch_vertices(&self) -> usize {
         let mesh = self.subject.mesh_part();
         mesh.map_or(0, |subject| subject.mesh.largest_chunk())
     }
 
-    /// Draws the frame from the constants, and calls `progress` at short intervals.
+    /// Draws the frame into `buffer` from its constants, with `scratch` as memory for vertices. Calls
+    /// `progress` at short intervals.
     ///
     /// # Errors
     /// [`RenderError`] for a buffer or scratch memory of the wrong size.

@@ -9,7 +9,7 @@ pub struct FrameBuffer<'a> {
     pub width: u32,
     /// Height in pixels; width and height are one of the [`SIZES`].
     pub height: u32,
-    /// RGB565, one number per pixel.
+    /// Colours in RGB565, one per pixel.
     pub colour: &'a mut [u16],
     /// Depth codes, one per pixel: u18, larger is nearer, 0 is clear.
     pub depth: &'a mut [u32],
@@ -37,7 +37,7 @@ impl FrameBuffer<'_> {
         Ok(())
     }
 
-    /// Checks the size against that of frame constants.
+    /// Checks that the size equals the size of the frame constants.
     pub(crate) fn check_size(&self, (width, height): (u32, u32)) -> Result<(), RenderError> {
         if (self.width, self.height) == (width, height) {
             Ok(())

@@ -8,10 +8,12 @@ use crate::error::RenderError;
 use crate::raymarch::{FieldOptions, FieldSetup};
 use crate::triangle::MeshSetup;
 
-/// Zero low bits of km, so that K times 40.5, the field units per world unit, fits 17 bits too.
+/// Number of low bits cleared in the mantissa of the shared scale. The scale for depths in field units is up to 40.5
+/// times as large for bounded fields, and then still fits 17 bits without truncation.
 const EVEN_BITS: u32 = 7;
 
-/// The constants of a mesh with the given radius (u.14) and of a field, with one scale of depth codes.
+/// Computes the constants of a mesh with the given `radius` (14 fraction bits) and of a field, with one scale of depth
+/// codes for both.
 ///
 /// [`trace_frame`](crate::trace_frame) draws the mesh first, [`render_field`](crate::raymarch::render_field) the field over it.
 ///
@@ -36,7 +38,8 @@ pub fn constants(
     Ok((frame, setup))
 }
 
-/// The smaller K, truncated to 10 bits: no depth code of mesh or field overflows.
+/// Returns the smaller of two scales, with its mantissa truncated to 10 bits. With the smaller scale no depth code of
+/// mesh or field overflows.
 fn shared(a: DepthScale, b: DepthScale) -> DepthScale {
     let smaller = if (a.exponent, a.mantissa) < (b.exponent, b.mantissa) {
         a

@@ -1,13 +1,14 @@
 //! The raymarcher: frames of a distance field (formats.md, "Distance fields").
 //!
-//! A ray's direction is scaled so that its largest component is just below 1. A distance in the maximum norm is the half side of an
-//! empty cube about a point, and such a ray leaves the cube exactly at its side. Therefore a step is the whole distance, up to √3
-//! times a step with a Euclidean distance and a unit vector.
+//! Distances are in the maximum norm: the distance at a point is half the side of an empty cube about the point. A
+//! ray's direction is scaled so that its largest component is just below 1, so a step by the whole distance ends at the
+//! side of this cube. Such a step is up to √3 times as long as one with a Euclidean distance and a unit vector.
 //!
 //! Fields with spheres use the Euclidean norm for distances and for the length of rays, which is just below 1.
 //!
-//! [`FieldSetup`] computes the constants of a frame, [`Ray`] is the start of a pixel's ray, [`FieldSetup::march`] finds its end, and
-//! [`paint()`] its colour. After a [`Cone`] for each block of pixels, [`Rays`] start nearer to the surface.
+//! [`FieldSetup`] computes the constants of a frame, [`Ray`] is a pixel's ray before its first step,
+//! [`FieldSetup::march`] finds its end, and [`paint()`] its colour. In a prepass one [`Cone`] for each block of pixels
+//! is marched first; the [`Rays`] of the block then start nearer to the surface.
 
 mod blend;
 mod cone;

@@ -1,7 +1,8 @@
 //! Bit-exact model of the triangle engine: from a mesh to pixels.
 //!
-//! Vertices go through [`vertex`], triangles through [`setup`] and [`raster`], triangles that cross the guard band or the near plane
-//! first through [`clip`]. [`render()`] draws a mesh; [`descriptor`] has the records that the engine keeps in memory.
+//! Vertices go through [`vertex`], triangles through [`setup`] and [`raster`], triangles that cross the guard band or
+//! the near plane first through [`clip`]. [`render()`] draws a mesh; [`descriptor`] has the records that the engine
+//! keeps in memory.
 
 pub mod clip;
 pub mod descriptor;

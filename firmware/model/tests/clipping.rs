@@ -7,7 +7,7 @@ use glint_vectors::{Camera, Model, Picture, Random, math::world};
 
 const SIZE: (u32, u32) = SIZES[0];
 
-/// A radius that holds all positions.
+/// Radius of a mesh that may have vertices at all positions, 14 fraction bits.
 const RADIUS: u32 = 56_756;
 
 fn random_frame(random: &mut Random) -> MeshSetup {
@@ -19,7 +19,7 @@ fn random_vertex(random: &mut Random, frame: &MeshSetup) -> CameraVertex {
     transform(frame, [0; 3].map(|_| random.integer(-32768, 32767) as i16))
 }
 
-/// Vertices inside are kept bit for bit, vertices outside are removed.
+/// Vertices inside the view volume are kept bit for bit, vertices outside are removed.
 #[test]
 fn what_is_inside_is_never_cut() {
     let mut random = Random(10);
@@ -68,7 +68,7 @@ fn neighbours_cut_their_edge_alike() {
     for _ in 0..100_000 {
         let frame = random_frame(&mut random);
         let [a, b, c, d] = [0; 4].map(|_| random_vertex(&mut random, &frame));
-        // A degenerate triangle of the edge alone: both neighbours must contain its remaining vertices.
+        // Clips the edge alone, as a degenerate triangle: both neighbours must contain its remaining vertices.
         let edge = clip(&frame, [a, b, b]);
         let (left, right) = (clip(&frame, [a, b, c]), clip(&frame, [b, a, d]));
         for end in edge.vertices() {
@@ -157,10 +157,11 @@ fn level_camera(near: f64) -> Camera {
     }
 }
 
-/// Position of cuts: the picture of a square across the near plane ends at the right lines, with the right depths.
+/// Positions of cuts: the picture of a square that crosses the near plane ends at the right lines and
+/// has the right depths.
 #[test]
 fn the_near_plane_cuts_where_it_is() {
-    // The floor z = −0.25 from an eye above it, looking along it.
+    // The floor z = −0.25, seen by an eye that is above it and looks along it.
     let floor = Model {
         positions: vec![
             [-32768, -32768, -4096],
@@ -210,7 +211,7 @@ fn the_near_plane_cuts_where_it_is() {
     }
 }
 
-/// A vertex at the eye, a vertex on the near plane, and triangles seen edge-on.
+/// Tests a vertex at the eye, a vertex on the near plane, and triangles seen edge-on.
 #[test]
 fn apex_at_the_eye() {
     let far = [
@@ -236,7 +237,7 @@ fn apex_at_the_eye() {
     assert_eq!(edge_on.stats.clipped, 3);
     assert!(edge_on.covered() < 20, "{}", edge_on.covered());
     assert!(base.covered() > 2000);
-    // A vertex exactly on the near plane is not behind.
+    // A vertex exactly on the near plane counts as beyond it.
     let on = [[-8000, 8192, -6000], [8000, 8192, -6000], [0, 8192, 7000]];
     let [at, beyond] = [0.5, 0.500_01].map(|near| {
         Picture::of(
@@ -269,7 +270,7 @@ fn the_guard_band_cuts_nothing_visible() {
         camera.eye = [0.0, -1.2, 0.0];
         (camera.u, camera.v, camera.n) = ([1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]);
         camera.half_width = 0.05;
-        // About 3,000 pixels a unit: most corners are thousands of pixels outside.
+        // One world unit is about 3,000 pixels wide, so most corners are thousands of pixels outside the picture.
         let mut triangle = [[0; 3]; 3].map(|_: [i16; 3]| {
             [0, 1, 2].map(|k| random.integer(-32768, 32767) as i16 / [1, 4, 1][k])
         });

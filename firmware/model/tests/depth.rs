@@ -7,8 +7,8 @@ use glint_model::{SIZES, ScreenVertex};
 use glint_vectors::triangles::{SIZE, at, random_triangle, set_up};
 use glint_vectors::{Picture, Random};
 
-/// Compares the stored code with the exact plane through the three (x, y, w) at every covered pixel; returns the largest error in
-/// codes, half a code of which is the final rounding.
+/// Compares the stored code with the exact plane through the three (x, y, w) at every covered pixel. Returns the
+/// largest error in codes, of which half a code comes from the final rounding.
 fn depth_error(vertices: [ScreenVertex; 3], size: (u32, u32)) -> f64 {
     let mut picture = Picture::blank(size);
     let Some((triangle, setup)) = set_up(vertices, size) else {
@@ -23,7 +23,7 @@ fn depth_error(vertices: [ScreenVertex; 3], size: (u32, u32)) -> f64 {
         [0, 1, 2].map(|k| v1[k] - v0[k]),
         [0, 1, 2].map(|k| v2[k] - v0[k]),
     );
-    // Steps 6 to 8 of docs/formats.md, literally.
+    // Steps 6 to 8 of the triangle setup, as written in docs/formats.md.
     let Reciprocal { y, lead } = Reciprocal::of(triangle.doubled_area);
     let gradient =
         |n: i128| ((n * i128::from(y) + (1 << (lead + 7))) >> (lead + 8)).rem_euclid(1 << 40);
@@ -44,7 +44,7 @@ fn depth_error(vertices: [ScreenVertex; 3], size: (u32, u32)) -> f64 {
         let accumulator = (v0[2] << 8) + ((gx * dx + gy * dy) >> 8);
         let as_written = ((accumulator + (1 << 13)) >> 14).rem_euclid(1 << 18).max(1);
         assert_eq!(i128::from(code), as_written, "{vertices:?} at {i}, {j}");
-        // (exact − code)·64·area
+        // The exact depth less the stored code, times 64 times the area.
         let exact = (v0[2] - 64 * i128::from(code)) * area
             + (p1[2] * p2[1] - p2[2] * p1[1]) * dx
             + (p2[2] * p1[0] - p1[2] * p2[0]) * dy;
@@ -62,7 +62,7 @@ fn depth_error(vertices: [ScreenVertex; 3], size: (u32, u32)) -> f64 {
 #[test]
 fn depth_against_the_exact_plane() {
     let mut random = Random(6);
-    // All possible depths of a frame: up to (2^18 − 4) codes.
+    // Gives the vertices depths from the whole range of a frame, up to (2^18 − 4) codes.
     let mut steep = |mut triangle: [ScreenVertex; 3]| {
         for vertex in &mut triangle {
             vertex.w = match random.integer(0, 3) {
@@ -78,7 +78,7 @@ fn depth_against_the_exact_plane() {
     for _ in 0..4000 {
         worst = worst.max(depth_error(steep(random_triangle(&mut shapes)), SIZE));
     }
-    // Slivers of 1000:1 and more, of all directions.
+    // Slivers with a ratio of sides of 1000:1 and more, in all directions.
     let mut slivers: f64 = 0.0;
     for size in [SIZES[0], SIZES[2]] {
         for _ in 0..if size == SIZES[0] { 3000 } else { 150 } {

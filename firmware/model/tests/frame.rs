@@ -19,7 +19,7 @@ fn view() -> View {
     Camera::looking([0.0, -3.0, 1.0], [0.0; 3], 0.5, 0.1).rounded()
 }
 
-/// The picture of a frame, its counts, and the calls of `progress`.
+/// Draws a frame; returns its picture, its counts, and the number of calls of `progress`.
 fn drawn(frame: &Frame, constants: &FrameConstants) -> (Picture, FrameStats, u32) {
     let [width, height] = frame.size.pixels();
     let mut picture = Picture::blank((width, height));
@@ -100,7 +100,7 @@ fn a_frame_beyond_the_limits_has_no_constants() {
     assert!(constants.mesh().is_none() && constants.field().is_none());
 }
 
-/// Every triangle is in the lists of exactly its bands.
+/// Every triangle is in the lists of exactly those bands that it has a row in.
 #[test]
 fn lists_name_the_triangles_of_their_bands() {
     const DESCRIPTORS: usize = 64;

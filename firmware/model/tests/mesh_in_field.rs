@@ -10,7 +10,7 @@ use glint_vectors::{Camera, Model, Picture, Random};
 
 const SIZE: (u32, u32) = (320, 180);
 
-/// Pictures of the mesh, the field, and the field over the mesh, with the same constants.
+/// Draws three pictures with the same constants: the mesh, the field, and the field over the mesh.
 fn draw(mesh: &Mesh, field: &str, view: &View) -> [Picture; 3] {
     let field = Field::parse(field).unwrap();
     let options = FieldOptions::default();
@@ -45,7 +45,7 @@ fn outside(random: &mut Random) -> View {
     Camera::looking(eye, target, random.real(0.2, 0.9), 0.1).rounded()
 }
 
-/// A cube as a mesh and as a field: their faces are in the same planes.
+/// Compares a cube as a mesh with a cube as a field, whose faces are in the same planes.
 #[test]
 fn faces_of_both_in_one_plane_have_the_same_depth() {
     let bytes = Model::cube(8192).encoded();
@@ -96,11 +96,12 @@ fn what_is_nearer_is_seen() {
     assert!(seen.iter().all(|&pixels| pixels > 500), "{seen:?}");
 }
 
-/// The constants are in the ranges of mesh and field for every half width.
+/// The shared constants are in the ranges of those of a mesh and of a field, for every half width.
 #[test]
 fn shared_constants_keep_their_ranges() {
     let mut random = Random(3);
-    // The factors 40.5 and a power of two keep all 17 bits.
+    // Relative error where a world unit is 40.5 field units or a power of two of them: the scale then
+    // keeps all 17 bits.
     const EXACT: f64 = 1e-12;
     let fields = [
         ("menger:4", EXACT),

@@ -5,7 +5,7 @@ use glint_model::triangle::vertex::{project, transform};
 use glint_model::{MeshSetup, Projected, SIZES, ScreenVertex};
 use glint_vectors::{Camera, Random, math::world};
 
-/// The radius of a mesh that fills the 1×1×1 box, and of one with vertices at ±2; u.14.
+/// Radii of a mesh that fills the 1×1×1 box and of a mesh with vertices at ±2, 14 fraction bits.
 const RADII: [u32; 2] = [14_190, 56_756];
 
 /// Largest errors in 1/256 pixel.
@@ -88,7 +88,7 @@ fn places_against_f64() {
             let view = camera.rounded();
             let frame = MeshSetup::new(&view, width, height, RADII[index]).unwrap();
             for _ in 0..4 {
-                // Neighbours of the point on the screen.
+                // Positions near the point, so that they are near it on the screen too.
                 let spread = (z * half_width * 16384.0).min(20_000.0) as i64 + 1;
                 let position = point.map(|x| {
                     (i64::from(x) + random.integer(-spread, spread)).clamp(-32768, 32767) as i16
@@ -109,12 +109,13 @@ fn places_against_f64() {
             same.count, same.screen, same.guard, unrounded.screen, unrounded.guard
         );
         assert!(same.count > 20_000);
-        // Off the screen a wide camera amplifies the rounding of its basis.
+        // A wide camera amplifies the rounding of its basis for positions off the screen.
         assert!(same.guard <= bound && unrounded.screen <= bound);
     }
 }
 
-/// w against K/z, and K against the nearest depth, whose code must be the largest possible.
+/// Compares the depth code w with K/z, and the scale K with the one for the nearest depth, whose code must
+/// be the largest possible.
 #[test]
 fn depths_against_f64() {
     let mut random = Random(2);
@@ -148,7 +149,7 @@ fn depths_against_f64() {
     assert!(worst <= 4.5);
 }
 
-/// Extremes of the accepted cameras: no overflow, and right positions.
+/// Tests the extremes of the accepted cameras: no overflow, and right positions.
 #[test]
 fn extremes() {
     let mut random = Random(3);
@@ -231,7 +232,7 @@ fn extremes() {
     assert!(seen > 5000, "{seen}");
 }
 
-/// The vertex stage as formats.md writes it, in 128 bits.
+/// Compares the vertex stage with its steps in docs/formats.md, computed in 128 bits.
 #[test]
 fn steps_as_written() {
     let mut random = Random(4);
@@ -250,7 +251,7 @@ fn steps_as_written() {
                 if bits == 23 {
                     return x;
                 }
-                // x·(W/2)/h·2^f with x in 2^-23 and h in 2^-28
+                // Computes x·(W/2)/h·2^f, where x has 23 and h has 28 fraction bits.
                 let (top, bottom) = (
                     (x * i128::from(width / 2)) << (f + 5),
                     i128::from(view.half_width().to_bits()),
@@ -303,7 +304,7 @@ fn rows_fill_their_width() {
     let mut random = Random(5);
     for round in 0..20_000 {
         let (width, height) = SIZES[round % 3];
-        // Often near a change of the shift: s slightly below a power of two.
+        // Half of the cameras are near a change of the shift, where s is slightly below a power of two.
         let power = f64::from(width) / 2.0 / 2f64.powi(random.integer(5, 14) as i32);
         let half_width = match power * (1.0 + random.real(0.0, 3e-4)) {
             near_power if round % 2 == 0 && (0.05..4.0).contains(&near_power) => near_power,

@@ -8,7 +8,7 @@ fn every_mantissa() {
     let (mut worst, mut worst_at, mut sum, mut last) = (0.0, 0, 0.0, u32::MAX);
     let [mut e0_range, mut e1_range] = [[i64::MAX, i64::MIN]; 2];
     for m in 1i64 << 23..1 << 24 {
-        // The table of formats.md, literally.
+        // The steps of the reciprocal, as written in docs/formats.md.
         let y0 = i64::from(SEED[(m >> 15 & 0xFF) as usize]);
         let e0 = ((1 << 33) - m * y0) >> 8;
         let y1 = (y0 * (1 << 7) + ((y0 * e0) >> 18)).min((1 << 17) - 1);
@@ -25,7 +25,7 @@ fn every_mantissa() {
         assert!(recip(m as u32) <= last, "rises at {m}");
         last = recip(m as u32);
 
-        // 2^47 and the product are exact in 64 bits, and so is their difference in an f64.
+        // 2^47 and the product are exact in 64 bits, and their difference is exact as an f64.
         let error = ((1i64 << 47) - m * y).abs() as f64 / m as f64;
         if m != 1 << 23 && error > worst {
             (worst, worst_at) = (error, m);

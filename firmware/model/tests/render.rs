@@ -31,7 +31,8 @@ fn a_sphere_is_a_disc_without_holes() {
             let span: Vec<usize> = (0..row.len()).filter(|&i| row[i]).collect();
             assert!(span.windows(2).all(|pair| pair[1] == pair[0] + 1), "a hole");
         }
-        // The disc of tangents from the eye, approximated by 24 rings.
+        // The outline of the sphere is a disc, whose border is where lines from the eye touch the sphere; the mesh
+        // approximates it by 24 rings.
         let distance: f64 = (9.0f64 + 0.09 + 0.04).sqrt();
         let radius = f64::from(size.0) / 2.0 / 0.9 * 0.5 / (distance * distance - 0.25).sqrt();
         let disc = std::f64::consts::PI * radius * radius;
@@ -50,7 +51,7 @@ fn a_sphere_is_a_disc_without_holes() {
     }
 }
 
-/// Culling removes only hidden faces: without culling outline and picture are the same, except at equal depths.
+/// Culling removes only hidden faces: without it the outline and the picture are the same, except at equal depths.
 #[test]
 fn culling_and_windings() {
     let sphere = Model::sphere(0.5, 12);
@@ -113,7 +114,7 @@ fn ties_go_to_the_later() {
     }
 }
 
-/// Without ties the order does not matter, and exceptions are drawn after all others.
+/// Without equal depths the order of the triangles does not matter, and exceptions are drawn after all other triangles.
 #[test]
 fn order() {
     let mut random = Random(1);
@@ -177,7 +178,7 @@ fn chunks() {
     assert!(clipped(0..21_000) && clipped(21_900..22_000));
 }
 
-/// The same camera and mesh give the same bits, and a used scratch and target do not matter.
+/// The same camera and mesh give the same bits, whatever the scratch memory and the target contained before.
 #[test]
 fn frames_do_not_depend_on_what_was_before() {
     let bytes = Model::sphere(0.5, 9).encoded();
@@ -325,7 +326,8 @@ fn an_eye_too_far_for_a_mesh_is_refused() {
     );
 }
 
-/// Random checked meshes and cameras: no overflow, no panic, and every drawn triangle within its bit widths.
+/// Draws random checked meshes from random cameras: no overflow, no panic, and every drawn triangle
+/// within its bit widths.
 #[test]
 fn anything_goes() {
     let mut random = Random(6);

@@ -61,7 +61,7 @@ fn quotients_of_anything() {
             colour(light, ((random.bits() & 0xFFFF_FFFF) >> shift) as u32);
         }
     }
-    // The largest light, and a light slightly below 0, at both ends of the depths.
+    // The largest light and a light slightly below 0, at the smallest and the largest depth.
     for codes in [228u32, (1 << 18) - 4] {
         let depth = (codes << 14) + (1 << 13);
         let most = (u64::from(depth) * 63 / 64) as u32;
@@ -71,7 +71,8 @@ fn quotients_of_anything() {
     }
 }
 
-/// The light of a vertex equals flat shading with its normal for each side, and is 0 for one side.
+/// The light of a vertex equals flat shading with the vertex normal, on each side of the triangle. It is 0 on one of
+/// the two sides.
 #[test]
 fn light_is_that_of_flat_shading() {
     let mut random = Random(3);
@@ -103,8 +104,8 @@ fn random_frame(random: &mut Random) -> MeshSetup {
     MeshSetup::new(&Camera::inside(random).rounded(), width, height, 56_756).unwrap()
 }
 
-/// The light at a cut lies between the lights of the ends, is the nearest to linear interpolation, and is the same for both neighbours
-/// of an edge.
+/// The light at a cut is interpolated linearly between the lights of the edge's ends, and rounded. Both neighbours of
+/// the edge get the same light.
 #[test]
 fn cut_edges_have_light_in_between() {
     let mut random = Random(4);
@@ -124,7 +125,7 @@ fn cut_edges_have_light_in_between() {
                 continue;
             }
             cuts += 1;
-            // A second cut rounds again.
+            // A cut edge may be cut a second time, which rounds again.
             let part = (end.z - a.z) as f64 / (b.z - a.z) as f64;
             if (b.z - a.z).abs() < 1 << 30 {
                 continue;

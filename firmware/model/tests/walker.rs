@@ -40,7 +40,7 @@ fn by_edges(vertices: [ScreenVertex; 3], (width, height): (u32, u32)) -> Vec<boo
                 let (right, down) = (i - i64::from(setup.start_column), j - top);
                 edge.start + right * i64::from(edge.step_x) + down * i64::from(edge.step_y) >= 0
             });
-            // The steps are exact and equal the function itself.
+            // The value reached by steps is exact: it equals the edge function computed directly.
             assert_eq!(inside, directly(&oriented, i, j));
             covered[(j * i64::from(width) + i) as usize] = inside;
         }
@@ -97,7 +97,7 @@ fn both_accumulators_walk_alike() {
     }
 }
 
-/// The work is proportional to covered pixels and extents, not to the bounding box.
+/// The walker's work is proportional to the covered pixels and to the triangle's extents, not to the bounding box.
 #[test]
 fn the_walker_does_not_look_through_the_box() {
     let mut random = Random(3);
@@ -127,13 +127,14 @@ fn counts(triangles: &[[ScreenVertex; 3]]) -> Vec<u32> {
     counts
 }
 
-/// Fans about a point, with a ring beyond the picture: every pixel is covered exactly once, for every winding and first vertex.
+/// Draws fans of triangles about a point, with the outer ring beyond the picture: every pixel is covered exactly once,
+/// for every winding and first vertex.
 #[test]
 fn fans_cover_every_pixel_once() {
     let mut random = Random(4);
     for round in 0..30 {
         let grid = [1, 128, 256][round % 3];
-        // Sometimes on a pixel centre.
+        // The centre of the fan is near the middle of the picture, sometimes on a pixel centre.
         let centre = [256 * 160 + 128, 256 * 90 + 128].map(|x| x + random.integer(-8, 8) * grid);
         let spokes = random.integer(3, 24);
         let mut ray = |i: i64, low: f64, high: f64| {
@@ -214,7 +215,7 @@ fn shaken_grids_cover_their_rectangle_once() {
     }
 }
 
-/// Every triangle on a 5×5 grid of half pixels, where most pixel centres lie on edges and vertices.
+/// Draws every triangle on a 5×5 grid of half pixels, where most pixel centres lie on edges and vertices.
 #[test]
 fn top_left_torture_on_the_half_pixel_grid() {
     let grid: Vec<[i64; 2]> = (0..=4)
@@ -248,7 +249,7 @@ fn top_left_torture_on_the_half_pixel_grid() {
     assert_eq!(tried, 2148);
 }
 
-/// Known answers of the top-left rule.
+/// Compares with known answers of the top-left rule.
 #[test]
 fn a_square_on_pixel_centres() {
     let [a, b, c, d] = [[0, 0], [4, 0], [4, 4], [0, 4]]
@@ -292,7 +293,7 @@ fn nothing_from_nothing() {
     ] {
         assert!(Oriented::new(triangle).is_none());
     }
-    // Between pixel centres.
+    // A triangle between pixel centres covers no pixel.
     let small = [
         at([2560 + 130, 2560 + 130]),
         at([2560 + 250, 2560 + 130]),

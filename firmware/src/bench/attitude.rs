@@ -13,17 +13,18 @@ use crate::replay;
 /// The time between two samples, in µs.
 const STEP: u32 = 5_000;
 
-/// Consecutive samples of one mean.
+/// Number of consecutive samples of one measurement, whose mean is taken.
 const RUN: u32 = 64;
-/// Number of means.
+/// Number of measurements.
 const RUNS: usize = 16;
 
-/// Measures each method, with the names of `cargo xtask report imu`.
+/// Measures each method under its name in `cargo xtask report imu`.
 pub fn attitude(report: Report) {
     let angles = RefCell::new([0_u32; 3]);
     measure(report, "angles", rate, |rate: [i32; 3]| {
         for (angle, rate) in angles.borrow_mut().iter_mut().zip(rate) {
-            // A count of 2^−8 over 2^20 µs is 2^32/(16.4·360·256)·2^20/10^6 of 2^−32 turns.
+            // A rate of 2^−8 LSB turns the angle in 2^20 µs by 2^32/(16.4·360·256)·2^20/10^6 units
+            // of 2^−32 turns: 2,980.
             let turned = (i64::from(rate) * i64::from(STEP) * 2_980) >> 20;
             *angle = angle.wrapping_add(turned as u32);
         }
@@ -53,7 +54,7 @@ pub fn attitude(report: Report) {
     measure(report, "parabola", rate, |rate| {
         parabola.borrow_mut().advance_order::<3>(rate, STEP, [0; 3]);
     });
-    // The shipped method, with the code and the memory of `replay`.
+    // The method that the machine uses, with the code and the memory of `replay`.
     let tilt = || Some(Tilt::new(Units::MPU_6050.per_g, TIME_CONSTANT));
     for (name, jitter, tilt) in [
         ("cubic", 0, None),
@@ -90,9 +91,9 @@ fn rate(phase: u32) -> [i32; 3] {
     [0, 8, 16].map(|turn| phase.rotate_left(turn).cast_signed() >> 14)
 }
 
-/// q + ½·q·ω·dt, normalised by one Newton step. 30 fraction bits.
+/// Integrates one sample to first order: q + ½·q·ω·dt, normalised by one Newton step, with 30 fraction bits.
 fn first_order(q: &mut [i32; 4], rate: [i32; 3]) {
-    // Half angle of 2^−8 LSB over 2^20 µs: 2^50·π/360/16.4/256/10^6 of 2^−30 rad.
+    // Half the angle that a rate of 2^−8 LSB turns in 2^20 µs: 2^50·π/360/16.4/256/10^6 units of 2^−30 rad.
     const HALF: i64 = 2_340;
     let [x, y, z] = rate.map(|rate| (i64::from(rate) * i64::from(STEP) * HALF) >> 20);
     let [w0, x0, y0, z0] = q.map(i64::from);

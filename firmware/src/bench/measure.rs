@@ -3,9 +3,9 @@
 //! A kernel is called with [`INPUTS`] inputs spread over its range, with code and tables in the caches and interrupts
 //! disabled. The cycles of the measurement itself are measured in the same way and subtracted.
 //!
-//! The instruction cache is direct-mapped, and a miss costs more than a kernel. Measuring code that shares cache lines
-//! with the kernel would measure their conflict. The measuring code therefore exists at two places, and the place with fewer misses
-//! is used.
+//! The instruction cache is direct-mapped, and a miss costs more than a kernel. If the measuring code shared cache
+//! lines with the kernel, their conflict would be measured. The measuring code therefore exists at two places, and the
+//! place with fewer misses is used.
 
 use core::arch::asm;
 use core::hint::black_box;
@@ -30,7 +30,7 @@ pub struct Cycles {
 }
 
 impl Cycles {
-    /// Figures of measurements; sorts the measurements in place. All figures are 0 without measurements.
+    /// Minimum, median and maximum of measurements, which are sorted in place. All figures are 0 without measurements.
     pub fn of(cycles: &mut [u32]) -> Self {
         cycles.sort_unstable();
         let at = |index: usize| cycles.get(index).copied().unwrap_or(0);
@@ -52,7 +52,7 @@ pub fn measure<I: Copy, O>(
     input: impl Fn(u32) -> I,
     kernel: impl Fn(I) -> O,
 ) {
-    // Multiples of the golden section of 2^32 fill the circle evenly, in an order without a pattern.
+    // Multiples of the golden section of 2^32 fill the full circle evenly, in an order without a pattern.
     let input = |index: usize| input((index as u32).wrapping_mul(0x9e37_79b9));
     let timers: [fn(&_, I) -> u32; 2] = [timed::<0, _, I, O>, timed::<1, _, I, O>];
     let noise = |timer: &fn(&_, I) -> u32| {
@@ -79,7 +79,8 @@ pub fn measure<I: Copy, O>(
     report(name, Cycles::of(&mut cycles));
 }
 
-/// Clock cycles of a call and of reading the counter. Both values of `PLACE` have their own code, half a cache apart.
+/// Clock cycles of one call of the kernel, including a reading of the counter. Both values of `PLACE` have their own
+/// copy of the code, half a cache apart.
 #[inline(never)]
 #[allow(unsafe_code)]
 fn timed<const PLACE: usize, K: Fn(I) -> O, I, O>(kernel: &K, input: I) -> u32 {

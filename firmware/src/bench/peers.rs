@@ -8,7 +8,7 @@ use super::measure::{Report, measure};
 
 /// Measures the sine and cosine of third-party crates, each in its own formats.
 pub fn sine(report: Report) {
-    // The phase in radians, within ±π.
+    // Converts the phase to radians, within ±π.
     let radians = |phase: u32| phase.cast_signed() as f32 * (TAU / 4_294_967_296.0);
     measure(report, "micromath", radians, |angle: f32| {
         (angle.sin(), angle.cos())

@@ -29,7 +29,7 @@ impl<'l> AppearanceCommands<'l> for Machine {
                 return Err(CommandError::Lights);
             }
             Some(light) => change(self, &mut |appearance| match light {
-                // The check above ensures room in the list.
+                // The list has room, as checked above.
                 Some(light) => drop(appearance.lights.push(light)),
                 None => appearance.lights.clear(),
             }),

@@ -12,7 +12,7 @@ const KERNELS: &[&str] = &["sine", "triangle", "field"];
 #[cfg(feature = "peers")]
 const KERNELS: &[&str] = &["sine", "attitude", "triangle", "field"];
 
-/// Frames that the engine draws back to back.
+/// Number of frames that the engine draws back to back for a measurement.
 const FRAMES: u32 = 8;
 
 /// Measures the named kernels, or all kernels of this machine.
@@ -63,7 +63,7 @@ fn frames<'l>(machine: &mut Machine) -> Result<(), CommandError<'l>> {
         renderer,
         ..
     } = machine;
-    // Waits for a pending flip.
+    // A frame cannot be drawn while a flip is pending, so this loop waits for its end.
     let rendered = loop {
         if let Some(rendered) = renderer.repeat(models.mesh(), scene, FRAMES) {
             break rendered.map_err(CommandError::Engine)?;

@@ -88,7 +88,7 @@ pub fn send_frame(machine: &mut Machine, depth: bool) -> Result<(), CommandError
         .drawn()
         .ok_or(CommandError::NoFrame)?
         .map_err(CommandError::Render)?;
-    // The engine's writes to memory bypass the cache.
+    // The engine writes to memory past the cache, which may hold older data.
     cpu::flush_data_cache();
     let bytes = if depth {
         bytemuck::cast_slice(renderer.depths(scene))

@@ -16,7 +16,7 @@ use crate::job::{Job, JobResult, Outcome, Reply, SensorJob};
 use crate::machine::Machine;
 use crate::sensor;
 
-/// Samples between two reports of a calibration.
+/// Number of samples between two reports of a calibration.
 const PROGRESS: u32 = 1_024;
 
 impl<'l> ImuCommands<'l> for Machine {
@@ -75,7 +75,7 @@ impl<'l> ImuCommands<'l> for Machine {
     }
 }
 
-/// Continues a job of the sensor.
+/// Continues a calibration or a stream of samples.
 pub fn poll(machine: &mut Machine, job: &mut SensorJob) -> JobResult {
     let Machine {
         terminal,
@@ -105,7 +105,8 @@ pub fn poll(machine: &mut Machine, job: &mut SensorJob) -> JobResult {
                 return Poll::Ready(Err(CommandError::Sensor(error)));
             }
             let samples = imu.samples();
-            // A slow line gets fewer samples, not old samples.
+            // Prints only the newest sample, when all text has been sent: a slow line gets fewer
+            // samples, not old samples.
             if let Some(sample) = imu.latest()
                 && samples != *last
                 && uart.has_sent()

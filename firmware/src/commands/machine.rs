@@ -13,7 +13,7 @@ use crate::selftest;
 
 impl<'l> MachineCommands<'l> for Machine {
     fn help(&mut self, command: Option<&'l str>) -> Outcome<'l> {
-        // An error means that the line accepts no text, so the text has no reader.
+        // Writing fails only if the line accepts no text, so nobody would read an error.
         let _ = write_help(self.terminal.output(), command);
         Ok(Reply::Done)
     }
@@ -114,14 +114,14 @@ impl<'l> MachineCommands<'l> for Machine {
         self.ctrl
             .reset()
             .write(ctrl::Reset::default().with_soc_rst(true));
-        // The reset takes some cycles.
+        // The program runs on for some cycles until the reset takes effect.
         loop {
             core::hint::spin_loop();
         }
     }
 }
 
-/// The devices, if the build ids match.
+/// The devices, which are available only if the build ids of firmware and gateware match.
 fn devices<'l>(machine: &mut Machine) -> Result<&mut Devices, CommandError<'l>> {
     machine.devices.as_mut().ok_or(CommandError::Mismatch)
 }

@@ -11,7 +11,7 @@ use crate::job::{Job, JobResult, Outcome, Reply};
 use crate::machine::Machine;
 use crate::replay::Replay;
 
-/// Samples between two reports.
+/// Number of samples between two reports of progress.
 const PROGRESS: usize = 1_024;
 
 /// Receives a log and begins its replay.
@@ -37,7 +37,7 @@ pub fn poll(machine: &mut Machine) -> JobResult {
     };
     replay.advance(models.staging());
     if !replay.is_done() {
-        // A slow line gets fewer reports.
+        // Reports only when all text has been sent: a slow line gets fewer reports.
         if replay.unreported() >= PROGRESS && uart.has_sent() {
             terminal.print_entry("replaying", &replay.report());
         }
@@ -58,7 +58,7 @@ pub fn poll(machine: &mut Machine) -> JobResult {
     Poll::Ready(Ok(()))
 }
 
-/// Sends the attitudes of the last log.
+/// Sends the attitudes that the replay of the last log has computed.
 pub fn send<'l>(machine: &mut Machine) -> Outcome<'l> {
     let Machine {
         terminal,

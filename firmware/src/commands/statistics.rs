@@ -50,7 +50,7 @@ pub fn print(machine: &mut Machine, json: bool) -> Result<(), CommandError<'stat
     Ok(())
 }
 
-/// Statistics of a frame by either backend. The list has room for all of them.
+/// Statistics of a frame by either backend; the list is long enough for all of them.
 fn frame_values(cycles: u64, stats: &FrameStats) -> Vec<(&'static str, u64), 16> {
     let mut values = Vec::new();
     let _ = values.push(("cycles", cycles));
@@ -63,7 +63,7 @@ fn frame_values(cycles: u64, stats: &FrameStats) -> Vec<(&'static str, u64), 16>
             ("pixels_tested", mesh.pixels_tested),
             ("pixels_covered", mesh.pixels_covered),
         ]);
-        // An engine's count includes the pixels of a field.
+        // The engine's count includes the pixels of a field, so it is printed only without a field.
         if stats.field.is_none() {
             let _ = values.push(("pixels_drawn", mesh.pixels_drawn));
         }
@@ -92,7 +92,7 @@ pub fn engine_values(counters: &Counters) -> impl Iterator<Item = (&'static str,
         let name = match name {
             "items_in" => "words_read",
             "items_out" => "words_written",
-            // Printed with the triangles, without the pixels of a field.
+            // These counts are printed with the triangles, without the pixels of a field.
             "pixels_covered" | "pixels_drawn" => return None,
             name => name,
         };

@@ -1,4 +1,4 @@
-//! Uploads of commands.
+//! Reception of the data that a command uploads.
 
 use glint_core::wire::{Manifest, crc32};
 use litex_pac::cpu;
@@ -35,8 +35,8 @@ pub fn receive<'m>(
     };
     // The upload overwrites the attitudes of a replay.
     *replay = None;
-    // The memory may hold the data already: from a tool's direct write, which bypasses the cache, or from a transfer interrupted near
-    // its end.
+    // The memory may hold the data already: a tool may have written it directly, bypassing the cache, or a transfer may
+    // have been interrupted near its end.
     cpu::flush_data_cache();
     if crc32(staging) != manifest.crc32 {
         terminal.print(format_args!("ready\n"));

@@ -1,4 +1,4 @@
-//! Memory between the geometry pass and the raster pass of a frame.
+//! Memory that the geometry pass of a frame writes and the raster pass reads.
 
 use core::mem;
 
@@ -7,24 +7,24 @@ use glint_hal::triangle::{Lists, Set};
 use glint_model::Stats;
 use glint_model::triangle::descriptor;
 
-/// Largest number of short descriptors of a set and of exceptions; the CPU draws frames with more.
+/// Largest number of exceptions, and of the short descriptors of flat shading in a set; the CPU draws frames with more.
 const DESCRIPTORS: usize = 1 << 16;
-/// Words of a set's descriptors, with room for half as many long descriptors.
+/// Words for the descriptors of a set. They have room for half as many of the long descriptors of smooth shading.
 const DESCRIPTOR_WORDS: usize = DESCRIPTORS * descriptor::words(Shading::Flat);
 
 /// Memory of one frame: two sets of descriptors and lists, and the exceptions.
 pub struct Buffers {
     descriptors: &'static mut [u32],
     lists: &'static mut [u32],
-    /// Numbers of triangles that the geometry pass leaves to the clipper.
+    /// Numbers of the exceptions: triangles that the geometry pass leaves to the clipper.
     pub exceptions: &'static mut [u32],
     /// Descriptors of clipped triangles.
     pub clipped_descriptors: &'static mut [u32],
     /// Lists of clipped triangles.
     pub clipped_lists: &'static mut [u32],
-    /// The sets written by geometry pass and clipper.
+    /// The sets of lists written by the geometry pass and by the clipper.
     pub sets: [Option<Set>; 2],
-    /// Counts of geometry pass and clipper.
+    /// Counts of triangles of the geometry pass and the clipper.
     pub stats: Stats,
 }
 
@@ -47,7 +47,7 @@ impl Buffers {
         })
     }
 
-    /// The output of a geometry pass on gateware with this best shading.
+    /// Where a geometry pass writes its output, on gateware whose best shading is `capability`.
     pub fn lists(&self, capability: Shading) -> Lists {
         Lists {
             descriptors: address(self.descriptors),
@@ -56,7 +56,7 @@ impl Buffers {
         }
     }
 
-    /// The set of a geometry pass with this number of descriptors.
+    /// The set of lists that a geometry pass has written, with `count` descriptors.
     pub fn set(&self, count: u32) -> Set {
         Set {
             descriptors: address(self.descriptors),
@@ -65,7 +65,7 @@ impl Buffers {
         }
     }
 
-    /// The set of clipped triangles with this number of descriptors.
+    /// The set of lists of clipped triangles, with `count` descriptors.
     pub fn clipped_set(&self, count: u32) -> Set {
         Set {
             descriptors: address(self.clipped_descriptors),
@@ -75,7 +75,7 @@ impl Buffers {
     }
 }
 
-/// The address of a region for the engine.
+/// The address by which the engine accesses a region of memory.
 pub fn address<T>(memory: &[T]) -> u32 {
     memory.as_ptr().addr() as u32
 }

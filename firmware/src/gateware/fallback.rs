@@ -9,11 +9,11 @@ use glint_model::RenderError;
 /// The reason why the gateware cannot draw a frame.
 #[derive(Clone, Copy, Debug)]
 pub enum Fallback {
-    /// An error of the triangle engine.
+    /// The triangle engine reported an error.
     Triangle(EngineError),
-    /// A feature absent in this raymarcher.
+    /// The raymarcher of this gateware lacks a feature.
     Field(Missing),
-    /// No raymarcher in this build of the gateware.
+    /// This build of the gateware has no raymarcher.
     NoRaymarcher,
 }
 

@@ -18,7 +18,7 @@ use super::watchdog::Watchdog;
 
 /// The memory that a frame is written to.
 pub struct Output<'a> {
-    /// RGB565, row by row.
+    /// Colours in RGB565, row by row.
     pub colour: &'a mut [u16],
     /// Depth codes, if requested.
     pub depth: Option<&'a mut [u32]>,
@@ -28,13 +28,13 @@ pub struct Output<'a> {
 pub struct Rendered {
     /// Clock cycles from the first register write to the detected end.
     pub cycles: u64,
-    /// Counts; for the mesh of a benchmark only triangles of the last frame.
+    /// Counts of the frame. In a benchmark the triangle counts are those of the last frame only.
     pub stats: FrameStats,
-    /// Differences of the engine's counters over the frame.
+    /// Growth of the engine's counters during the frame.
     pub counters: Counters,
 }
 
-/// The running pass.
+/// The pass that is running.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Stage {
     Idle,
@@ -57,7 +57,8 @@ pub struct GatewareRenderer {
     shading: Shading,
     buffers: [Buffers; 2],
     first_frame_buffer: u32,
-    /// The size of the picture that the engine drew last into each frame buffer; `None` after other writes.
+    /// Size of the picture that the engine drew last into each frame buffer; `None` if the buffer
+    /// was written otherwise since.
     drawn_sizes: [Option<Size>; 2],
     stage: Stage,
     /// Constants of the frame being drawn, and, in a benchmark, of the next frame.
@@ -67,7 +68,8 @@ pub struct GatewareRenderer {
 }
 
 impl GatewareRenderer {
-    /// A renderer into two frame buffers, the first at `first_frame_buffer`; `None` if `memory` is too small.
+    /// A renderer for two frame buffers, of which the first is at `first_frame_buffer`; `None` if
+    /// `memory` is too small.
     pub fn new(
         engine: TriangleEngine,
         raymarcher: Option<Raymarcher>,
@@ -165,7 +167,7 @@ impl GatewareRenderer {
         Ok(())
     }
 
-    /// Starts time, counters and watchdog.
+    /// Notes the time and the counters at the start of a measurement, and resets the watchdog.
     pub(super) fn start_measurement(&mut self, frame: &Frame) {
         self.watchdog = Watchdog::default();
         self.start = Start {
@@ -181,7 +183,7 @@ impl GatewareRenderer {
         Some(self.raymarcher.as_ref()?.counters())
     }
 
-    /// The measurement since its start, with the triangle counts of one of the buffers.
+    /// The results of the measurement since its start, with the triangle counts of the buffers at `place`.
     pub(super) fn rendered(&self, frame: &Frame, place: usize) -> Rendered {
         let cycles = cpu::cycles() - self.start.cycles;
         let counters = self.engine.counters().since(&self.start.engine);
@@ -216,8 +218,8 @@ impl GatewareRenderer {
         Ok(self.constants[place].update(frame)?)
     }
 
-    /// Writes the raymarcher's registers for a field, or switches the raymarcher off. Tables are not compared if the raymarcher is known to
-    /// hold the right tables.
+    /// Writes the raymarcher's registers for a field, or switches the raymarcher off. With `has_tables`, the raymarcher
+    /// is known to hold the right tables, and they are not compared.
     pub(super) fn set_field(&mut self, place: usize, has_tables: bool) -> Result<(), Fallback> {
         match (&mut self.raymarcher, self.constants[place].field()) {
             (Some(raymarcher), Some(field)) if has_tables => {
@@ -233,7 +235,7 @@ impl GatewareRenderer {
         Ok(())
     }
 
-    /// Whether the raymarcher holds the tables of a field.
+    /// Whether the raymarcher holds the tables of the field whose constants are at `place`.
     pub(super) fn has_tables(&self, place: usize) -> bool {
         let both = self.raymarcher.as_ref().zip(self.constants[place].field());
         both.is_some_and(|(raymarcher, field)| raymarcher.has_tables(&field.palette))
@@ -261,8 +263,8 @@ impl GatewareRenderer {
     }
 
     pub(super) fn start_geometry(&mut self, pass: Prepared) {
-        // SAFETY: the buffers belong to this renderer, are not used by an earlier pass, and are read after the end of this pass; the mesh
-        // stays while the renderer is busy.
+        // SAFETY: the buffers belong to this renderer, are not used by an earlier pass, and are read after the end of
+        // this pass; the mesh stays while the renderer is busy.
         unsafe { self.engine.start_geometry(pass) };
     }
 
@@ -284,11 +286,12 @@ impl GatewareRenderer {
             sets,
         };
         *drawn_size = Some(frame.size);
-        // SAFETY: the lists belong to this renderer and stay until the end of the pass; colours and depth codes are lent until then.
+        // SAFETY: the lists belong to this renderer and stay until the end of the pass; colours and depth codes are
+        // lent until then.
         unsafe { self.engine.start_raster(&pass) };
     }
 
-    /// Clips the exceptions of the geometry pass in one of the buffers.
+    /// Clips the exceptions of the geometry pass that wrote the buffers at `place`.
     pub(super) fn clip(&mut self, subject: &MeshSubject, place: usize) -> Result<(), EngineError> {
         let setup = self.constants[place].mesh().ok_or(Error::Size)?;
         let buffers = &mut self.buffers[place];
@@ -326,7 +329,7 @@ impl GatewareRenderer {
         Ok(())
     }
 
-    /// Cancels the frame after a time without progress.
+    /// Cancels the frame if the engine has made no progress for too long.
     pub(super) fn check_progress(&mut self, output: &Output) -> Result<(), Fallback> {
         if self.watchdog.is_stuck(&self.engine.counters()) {
             return Err(self.give_up(output, EngineError::Timeout));
@@ -334,7 +337,7 @@ impl GatewareRenderer {
         Ok(())
     }
 
-    /// Cancels the running passes.
+    /// Cancels the running passes, and returns `error` as the reason to draw the frame by the CPU.
     pub(super) fn give_up(&mut self, output: &Output, error: EngineError) -> Fallback {
         self.engine.cancel();
         self.stage = Stage::Idle;
@@ -342,7 +345,7 @@ impl GatewareRenderer {
         error.into()
     }
 
-    /// The sets of one of the buffers.
+    /// The sets of lists in the buffers at `place`.
     pub(super) fn sets(&self, place: usize) -> [Option<Set>; 2] {
         self.buffers[place].sets
     }

@@ -6,12 +6,13 @@ use glint_model::{Frame, MeshSubject};
 use super::fallback::Fallback;
 use super::renderer::{GatewareRenderer, Output, Rendered};
 
-/// Queries of a pass's end between two checks of progress.
+/// Number of times that the end of a pass is queried between two checks of progress.
 const POLLS: u32 = 100;
 
 impl GatewareRenderer {
-    /// Draws a frame `count` times: the geometry pass of each runs during the raster pass of the one before. The result covers
-    /// `count` frames, from the start of a raster pass to the start of a later one. The console waits meanwhile.
+    /// Draws a frame `count` times: the geometry pass of each runs during the raster pass of the one before. The
+    /// result covers `count` frames, from the start of a raster pass to the start of a later one. The console
+    /// does not answer meanwhile.
     ///
     /// # Errors
     /// As [`advance`](Self::advance).
@@ -47,7 +48,8 @@ impl GatewareRenderer {
             if let Err(error) = self.clip(mesh, now) {
                 return Err(self.give_up(output, error));
             }
-            // The raster pass still reads the buffers of the next frame; the prepared geometry pass writes these buffers only after its start.
+            // The raster pass still reads the buffers of the next frame; the prepared geometry pass writes these
+            // buffers only after its start.
             prepared = self.prepare_geometry(mesh, next)?;
             if number > 0 {
                 self.wait(TriangleEngine::raster, output)?;
@@ -58,7 +60,7 @@ impl GatewareRenderer {
             if number == count {
                 break;
             }
-            // The raymarcher's registers are in use during a raster pass.
+            // The registers of the raymarcher are in use during a raster pass, so they are written between the passes.
             if frame.subject.field_part().is_some() {
                 self.set_field(now, false)?;
             }
@@ -68,7 +70,8 @@ impl GatewareRenderer {
         Ok(self.rendered(frame, now))
     }
 
-    /// The constants of the next frame are computed during the raster pass, which uses the registers of the raymarcher.
+    /// Draws a frame without a mesh repeatedly. The constants of the next frame are computed during the raster pass,
+    /// which uses the registers of the raymarcher.
     fn repeat_field(
         &mut self,
         frame: &Frame,

@@ -1,10 +1,10 @@
-//! A limit on the time without progress.
+//! Detection of passes that make no progress.
 
 use glint_hal::timer;
 use glint_hal::triangle::{Counters, TIMEOUT};
 use litex_pac::cpu;
 
-/// Cycles without progress after which a pass is cancelled.
+/// Number of clock cycles without progress after which a pass is cancelled.
 const LIMIT: u64 = timer::cycles(TIMEOUT);
 
 /// Watches counters that advance while the engine works.

@@ -23,18 +23,19 @@ struct Master {
     next: u8,
     commands: VecDeque<Command>,
     answers: VecDeque<u8>,
-    /// Trace of the bus: S, P, and bytes, sent or received (<), acknowledged (+) or not (-).
+    /// Trace of the bus: S is a start, P a stop, and `d0` a byte. A received byte has < before it; an acknowledged byte
+    /// has + after it, any other byte -.
     log: Vec<String>,
-    /// The next byte is an address.
+    /// Whether the next byte is an address.
     addressing: bool,
     transaction: bool,
     error: Error,
     /// Error reported at the next start.
     breaks: Error,
-    /// The model executes no command.
+    /// Whether the model stops executing commands.
     hangs: bool,
     overfull: bool,
-    /// The register `rounds`, and the repeated commands.
+    /// The register `rounds`; `round` are the commands of one periodic read.
     repeats: u32,
     round: Vec<Command>,
     uptime: Uptime,
@@ -175,7 +176,7 @@ impl Bus for Registers {
 fn bus_with(master: Master) -> (I2c, Rc<RefCell<Master>>) {
     let master = Rc::new(RefCell::new(master));
     bus::connect(Registers(master.clone()));
-    // SAFETY: a model is behind the registers.
+    // SAFETY: a model on the bus answers all accesses, so no device is affected.
     let registers = unsafe { Peripherals::steal() }.i2c;
     (I2c::new(registers, clock()), master)
 }
@@ -275,7 +276,7 @@ fn the_remains_of_a_dropped_transaction_are_cleared() {
     }
     master.borrow_mut().hangs = false;
     i2c.read(0x68, &mut buffer).unwrap();
-    // The start was already in progress.
+    // The first S is the start of the dropped transaction, which was already in progress.
     assert_eq!(log(&master), "S S d1+ <a0+ <a1+ <a2+ <a3- P");
 }
 
@@ -287,7 +288,7 @@ const READ: PeriodicRead = PeriodicRead {
     batch: 5,
 };
 
-/// The next periodic read; `None` if the read is not over.
+/// Polls once for the next periodic read; `None` if the read is not over.
 fn look(i2c: &mut I2c) -> Option<(Result<u64, BusError>, [u8; 3])> {
     let mut bytes = [0; 3];
     let found = {
@@ -306,7 +307,7 @@ fn periodic_reads_are_taken_one_by_one_with_their_times() {
     let (mut i2c, master) = bus_with(Master::new());
     i2c.begin(READ).unwrap();
     let begun = master.borrow().uptime.now;
-    // 39,000 clock cycles, five reads per interrupt.
+    // A read every 39,000 clock cycles, and an interrupt after every five reads.
     assert_eq!(master.borrow().repeats, 1 << 31 | 4 << 24 | 38_999);
     assert!(look(&mut i2c).is_none());
     for _ in 0..2 {

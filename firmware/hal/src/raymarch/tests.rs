@@ -15,7 +15,7 @@ use crate::recording::{self, Block};
 const IDENT: u32 = raymarch::Raymarch::IDENT;
 
 fn registers() -> raymarch::Raymarch {
-    // SAFETY: the registers belong to a model.
+    // SAFETY: a model on the bus answers all accesses, so no device is affected.
     unsafe { Peripherals::steal() }.raymarch
 }
 
@@ -26,9 +26,9 @@ fn probe(ident: u32, caps: u32) -> (Result<Raymarcher, Absent>, Rc<RefCell<Block
     (Raymarcher::probe(registers()), block)
 }
 
-/// Two lanes, six levels, boxes and two eyes.
+/// Register `caps` of a build with two lanes, six levels, boxes and two eyes.
 const EVERYTHING: u32 = 2 | 6 << 4 | 0b1111 << 9 | 0b11 << 16;
-/// Four lanes for sponges of depth 4.
+/// Register `caps` of a build with four lanes for sponges of depth 4.
 const SPONGES: u32 = 4 | 4 << 4 | 1 << 16;
 
 fn setup(field: &str, options: &FieldOptions) -> (FieldSetup, Palette) {
@@ -249,7 +249,7 @@ fn tables_are_written_where_they_change() {
     let (raymarcher, block) = probe(IDENT, EVERYTHING);
     let mut raymarcher = raymarcher.unwrap();
     let address = registers().table().address();
-    // Entry and share of each write to `table`.
+    // The entry and the share of each write to the register `table`.
     let mut written = |options: &FieldOptions| {
         block.borrow_mut().writes.clear();
         let (setup, palette) = setup("menger:4", options);

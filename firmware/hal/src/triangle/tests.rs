@@ -12,7 +12,7 @@ use crate::recording::{self, Block};
 const IDENT: u32 = triangle::Triangle::IDENT;
 
 fn registers() -> triangle::Triangle {
-    // SAFETY: a model is behind the registers.
+    // SAFETY: a model on the bus answers all accesses, so no device is affected.
     unsafe { Peripherals::steal() }.triangle
 }
 
@@ -85,7 +85,7 @@ fn a_geometry_pass_is_described_before_it_is_started() {
     unsafe { engine.start_geometry(prepared) };
     let wide = |low: u32, high: u16| {
         let bits = u64::from(high) << 32 | u64::from(low);
-        // A signed number of 44 bits.
+        // Extends the sign of the number, which has 44 bits.
         (bits << 20).cast_signed() >> 20
     };
     let translation = [

@@ -11,7 +11,8 @@ use litex_pac::bus::{self, Bus};
 use super::*;
 use crate::timer::tests::{Uptime, clock};
 
-/// LiteX's UART: 16 bytes each way, events on the edges of "not empty" and "not full", a clear that takes a byte out.
+/// A model of LiteX's UART: it holds 16 bytes each way, raises events on the edges of "not empty" and "not full", and
+/// removes a received byte when its event is cleared.
 struct Line {
     to_cpu: VecDeque<u8>,
     from_cpu: VecDeque<u8>,
@@ -109,7 +110,7 @@ fn started() -> (&'static Small, Rc<RefCell<Line>>) {
     let line = Line::new();
     bus::connect(Wire(line.clone()));
     let uart = Box::leak(Box::new(Small::new()));
-    // SAFETY: a model is behind the registers.
+    // SAFETY: a model on the bus answers all accesses, so no device is affected.
     uart.start(unsafe { Peripherals::steal() }.uart);
     (uart, line)
 }
@@ -120,7 +121,7 @@ fn receives_what_came_before_and_after_the_start() {
     line.borrow_mut().arrive(b"early");
     bus::connect(Wire(line.clone()));
     let uart = Small::new();
-    // SAFETY: a model is behind the registers.
+    // SAFETY: a model on the bus answers all accesses, so no device is affected.
     uart.start(unsafe { Peripherals::steal() }.uart);
     let mut buffer = [0; 8];
     assert_eq!(
@@ -171,7 +172,7 @@ fn a_writer_waits_only_so_long() {
     let (uart, line) = started();
     let mut writer = uart.writer(clock(), Duration::from_millis(1));
     assert_eq!(writer.flush(), Ok(()));
-    // The hardware holds 16 bytes, the queue 32.
+    // The hardware's queue holds 16 bytes and the driver's queue 32, so 48 bytes fit.
     assert_eq!(writer.write_all(&[1; 48]), Ok(()));
     assert_eq!(writer.write_ready(), Ok(false));
     assert_eq!(writer.write(b"x"), Err(TimedOut));
@@ -201,7 +202,7 @@ fn the_end_drains_the_queue_and_speaks_directly() {
     assert_eq!(uart.send(&[b'.'; 20]), 20);
     line.borrow_mut().take(10);
     uart.drain();
-    // SAFETY: a model is behind the registers.
+    // SAFETY: a model on the bus answers all accesses, so no device is affected.
     let mut direct = unsafe { Direct::seize() };
     write!(direct, "!").unwrap();
     line.borrow_mut().take(DEPTH);

@@ -1,9 +1,9 @@
 //! Unions of a flat and a round solid, sharp or with a fillet.
 //!
-//! A fillet is the quadratic smooth minimum of both distances a and b (I. Quilez, "smooth minimum"): min(a, b) − h²/4k
-//! with h = max(k − |a − b|, 0). Its gradient is the weighted mean of both gradients, with the weight h/2k for the
-//! larger distance. The blended distance therefore changes no faster than either, and the same weight blends the two
-//! colours.
+//! For a fillet of two surfaces with the distances a and b, the distance is their quadratic smooth minimum (I. Quilez,
+//! "smooth minimum"): min(a, b) − h²/4k with h = max(k − |a − b|, 0). Its gradient is the weighted mean of both
+//! gradients, with the weight h/2k for the larger distance. The blended distance therefore changes no faster than
+//! either, and the same weight blends the two colours.
 
 use glint_core::field::{FixedSpheres, Sample, Surface};
 
@@ -12,21 +12,21 @@ use glint_core::field::{FixedSpheres, Sample, Surface};
 pub struct Beside {
     /// The spheres.
     pub spheres: FixedSpheres,
-    /// The fillet between both.
+    /// The fillet between the spheres and the flat solid.
     pub blend: Blend,
 }
 
-/// A fillet.
+/// A fillet: the blended transition between two surfaces, described at the top of this file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Blend {
     /// Width k, u5.12; 0 for a sharp union.
     pub width: u32,
-    /// 1/2k, u1.16, to nearest.
+    /// 1/2k for the width k, u1.16, to nearest.
     pub inverse: u32,
 }
 
 impl Blend {
-    /// A fillet of a width of 0, or 2^10 to 2^17 − 1, 12 fraction bits.
+    /// A fillet of the given width, with 12 fraction bits: 0, or 2^10 to 2^17 − 1.
     pub fn new(width: u32) -> Self {
         Self {
             width,
@@ -34,8 +34,8 @@ impl Blend {
         }
     }
 
-    /// The union of a face and a sphere: the nearer one, or the fillet. A sharp union prefers the face at equal
-    /// distances.
+    /// Joins the samples of a flat solid and of a sphere at the same point: returns the nearer one, or the fillet's. A
+    /// sharp union prefers the face at equal distances.
     pub fn union(&self, flat: Sample, round: Sample) -> Sample {
         let is_round = round.distance < flat.distance;
         let nearer = if is_round { round } else { flat };
@@ -46,11 +46,11 @@ impl Blend {
         };
         let apart = flat.distance.abs_diff(round.distance);
         let h = i64::from(self.width.saturating_sub(apart));
-        // 28 fraction bits, shifted to 16; at most slightly above a half.
+        // The product has 28 fraction bits; the shift leaves 16. The weight is at most slightly above a half.
         let weight = (h * i64::from(self.inverse)) >> 12;
         let share = if is_round { (1 << 16) - weight } else { weight };
         Sample {
-            // Half of h·weight, with 16 fraction bits in the weight, rounded down.
+            // Adds −h·weight/2, rounded down; the weight has 16 fraction bits.
             distance: nearer.distance + ((-h * weight) >> 17) as i32,
             surface: Surface::Blended {
                 axis,

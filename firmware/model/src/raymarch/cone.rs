@@ -1,9 +1,9 @@
 //! The prepass: one cone for each block of pixels, marched before the rays, gives the start of the block's rays.
 //!
-//! A cone is the ray through the middle of a block, with a radius. Points of the block's rays at the same depth along n
-//! differ from the cone's point by at most t·spread in the norm of its rays. A cone therefore steps by the distance
-//! less t·spread, and all rays of its block are free up to its end. The end's depth replaces the near plane for the
-//! block.
+//! A cone is the ray through the middle of a block, with a radius that grows with the ray's parameter t. At the same
+//! depth along n, points of the block's rays differ from the cone's point by at most t·spread, in the norm of the
+//! field's distances. A cone therefore steps by the distance less t·spread, and all rays of its block are free up to
+//! its end. The end's depth replaces the near plane for the block.
 
 use glint_core::field::{FRACTION, cropped, magnitude};
 
@@ -12,10 +12,10 @@ use super::prepass::Cones;
 use super::ray::Ray;
 use super::setup::FieldSetup;
 
-/// Fraction bits of a depth in the table.
+/// Fraction bits of the depth at the end of a cone, as stored for the rays of its block.
 const DEPTH_FRACTION: u32 = 7;
 
-/// Largest number of evaluations of a cone. All rays wait for the last cone.
+/// Largest number of evaluations of a cone. It is small, because all rays wait for the last cone.
 const MOST_STEPS: u32 = 192;
 
 /// Largest number of blocks in a row of a picture: 1280 pixels in blocks of 4.
@@ -26,7 +26,7 @@ const ROW: usize = 320;
 pub struct Cone {
     /// The ray through the middle of the block.
     pub ray: Ray,
-    /// Growth of the radius per unit of t, u0.16, rounded up.
+    /// Growth of the radius per unit of the ray's parameter t, u0.16, rounded up.
     pub spread: u32,
 }
 
@@ -53,17 +53,20 @@ impl FieldSetup {
         };
         Cone {
             ray,
-            // 18 and 9 fraction bits. Rounded up by one for the truncation and one for directions, which are rounded to
-            // 17 bits.
+            // The factors have 18 and 9 fraction bits, the result 16. One is added for the truncation, and one for the
+            // rounding of directions to 17 bits.
             spread: ((cones.spread * inverse) >> 11) + 2,
         }
     }
 
-    /// Marches a cone while all rays of its block are free. Returns t at the end, and the number of evaluations.
+    /// Marches a cone while all rays of its block are free. Returns the parameter t at the end of the cone, and the
+    /// number of evaluations.
     pub fn march_cone(&self, cone: &Cone) -> (u32, u32) {
         let Cone { ray, spread } = cone;
         let tuning = &self.tuning;
-        // A coordinate is truncated by less than one step, the point by less than two steps in the Euclidean norm.
+        // The coordinates of a point are truncated by less than one unit of 2^−12, so the point moves by less than one
+        // unit in the maximum norm and two in the Euclidean norm. Each step below is one unit shorter for this; round
+        // fields need this second one.
         let cut = u32::from(self.is_round());
         let mut t = ray.start;
         let mut steps = 0;
@@ -88,7 +91,8 @@ impl FieldSetup {
         }
     }
 
-    /// Depth along n at t of a cone, in the format of the table: times 2^e, u11.7, rounded down.
+    /// Depth along n of the cone's point at t, in field units times 2^e (docs/formats.md,
+    /// "Cones"): u11.7, rounded down.
     pub fn cleared(&self, cone: &Cone, t: u32) -> u32 {
         let depth = (u64::from(t) * u64::from(self.inverse(cone.ray.length))) >> 9;
         depth.min(FARTHEST.into()) as u32 >> (FRACTION - DEPTH_FRACTION)
@@ -116,7 +120,8 @@ impl<'a> Rays<'a> {
         }
     }
 
-    /// The ray of a pixel.
+    /// The ray of pixel (x, y) for an eye. With a prepass, the first pixel of each row of blocks marches the
+    /// cones of the row.
     pub fn ray(&mut self, eye: usize, x: u32, y: u32) -> Ray {
         let setup = self.setup;
         let Some(cones) = &setup.cones else {
@@ -137,7 +142,7 @@ impl<'a> Rays<'a> {
         setup.ray_from(eye, x, y, setup.near.max(cleared))
     }
 
-    /// Evaluations by the cones so far.
+    /// Number of evaluations by all cones so far.
     pub const fn evaluations(&self) -> u64 {
         self.evaluations
     }

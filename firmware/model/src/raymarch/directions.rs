@@ -3,21 +3,23 @@
 use glint_core::camera::View;
 use glint_core::fixed::Q2_23;
 
-/// The directions D of the rays, 51 fraction bits.
+/// Directions of the pixels' rays with 51 fraction bits, scaled so that their component along n is 1. `narrow` converts
+/// them to the directions D of docs/formats.md ("Rays").
 pub(super) struct Directions {
-    /// D of the first pixel, for each eye.
+    /// Direction of the first pixel's ray, for each eye.
     pub first: [[i64; 3]; 2],
-    /// Change of D per pixel to the right.
+    /// Change of the direction per pixel to the right.
     pub across: [i64; 3],
-    /// Change of D per pixel down.
+    /// Change of the direction per pixel down.
     pub down: [i64; 3],
-    /// D is 2^−exponent times the direction whose component along n is 1.
+    /// The exponent e, 0 to 3: D is 2^−e times the direction whose component along n is 1, and shorter than 1.
     pub exponent: u32,
 }
 
 impl Directions {
-    /// Directions of a view. `parallax`, 28 fraction bits, at most 1, is the share of u that the left eye's direction
-    /// gains and the right eye's loses. `round` keeps D below 1 in the Euclidean norm, not only in the maximum norm.
+    /// Computes the directions for a view. `parallax`, 28 fraction bits, at most 1, is the share of u that the left
+    /// eye's direction gains and the right eye's loses. With `round` the directions D are shorter than 1 in the
+    /// Euclidean norm, otherwise in the maximum norm.
     pub fn new(view: &View, width: u32, height: u32, parallax: i64, round: bool) -> Self {
         let half_width = i64::from(view.half_width().to_bits());
         // Twice the half width divided by the number of pixels: below 2^54 before the division.
@@ -32,7 +34,7 @@ impl Directions {
                     - (i64::from(width - 1) * across[i] + i64::from(height - 1) * down[i]) / 2
             })
         });
-        // D is linear over the picture, so its length is largest in a corner.
+        // The direction is linear over the picture, so it is longest in a corner.
         let corners = first.iter().flat_map(|&first| {
             [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(x, y)| {
                 [0, 1, 2].map(|i: usize| {
@@ -43,11 +45,11 @@ impl Directions {
                 })
             })
         });
-        // Slightly below 1, because the steps are rounded.
+        // The limits are slightly below 1, because the steps are rounded; `SQUARE` is the limit of a squared length.
         const ONE: i64 = (1 << 51) - (1 << 36);
         const SQUARE: i64 = (1 << 50) - (1 << 40);
         let exponent = if round {
-            // 25 of the fraction bits, and 3 integer bits.
+            // Squares the components with 25 of their fraction bits and 3 integer bits.
             let squares = corners.map(|d| d.map(|x| ((x >> 26) + 1).pow(2)).iter().sum());
             let longest: i64 = squares.max().unwrap_or(0);
             (0..3).find(|&e| longest >> (2 * e) < SQUARE).unwrap_or(3)
@@ -63,7 +65,7 @@ impl Directions {
         }
     }
 
-    /// Narrows to 30 fraction bits, to nearest, times 2^−e.
+    /// Converts a component of a direction to D: multiplies it by 2^−e and rounds it to 30 fraction bits, to nearest.
     pub fn narrow(&self, x: i64) -> i32 {
         let shift = 21 + self.exponent;
         ((x + (1 << (shift - 1))) >> shift) as i32

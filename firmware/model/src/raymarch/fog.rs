@@ -7,7 +7,7 @@ use super::palette::Palette;
 use super::setup::FieldSetup;
 
 impl FieldOptions {
-    /// The colours of a frame, with its fog, and grey for two eyes.
+    /// The palette of a frame: with the fog of these options, and in grey for two eyes.
     pub fn palette_for(&self, setup: &FieldSetup) -> Palette {
         let palette = if self.fog == U4_28::ZERO {
             self.palette
@@ -22,16 +22,18 @@ impl FieldOptions {
 }
 
 impl Palette {
-    /// The palette with fog of transmittance e^(−density·z) for a surface at depth z along n, in world units. An entry
-    /// holds the value at the middle of its depths, within 0.51; the last entry holds for all larger depths too.
+    /// Adds fog to the palette, of transmittance e^(−density·z) for a surface at depth z along n, in world units. An
+    /// entry of the table `fog` holds the share of hidden colour at the middle of its range of depths, within 0.51; the
+    /// last entry holds for all larger depths too.
     #[must_use]
     pub fn with_fog(self, setup: &FieldSetup, density: U4_28) -> Self {
-        // Selects the smallest step of which 256 reach a transmittance of e^−8, or the largest available step.
+        // Selects the smallest depth step for which 256 steps reach a transmittance of e^−8, or
+        // the largest available step.
         const ENOUGH: u64 = 8 << 32;
         let unit = fog_of_unit(setup, density);
         let fog_shift = (0..7).find(|shift| unit << (shift + 8) >= ENOUGH);
         let fog_shift = fog_shift.unwrap_or(7);
-        // A half step first, then whole steps.
+        // The first entry is at half a depth step, each further entry one step deeper.
         let half = faded((unit << fog_shift) / 2);
         let whole = product(half, half);
         let mut left = half;
@@ -55,10 +57,10 @@ fn product(a: u64, b: u64) -> u64 {
     ((u128::from(a) * u128::from(b)) >> 62) as u64
 }
 
-/// Growth of the fog's exponent per field unit times 2^e, 32 fraction bits, rounded down: below 2^35.
+/// Fog's exponent density·z at the depth of one field unit times 2^e: 32 fraction bits, rounded down, below 2^35.
 fn fog_of_unit(setup: &FieldSetup, density: U4_28) -> u64 {
     let units = setup.scale.to_bits().max(1) as u128;
-    // 28 + 36 fraction bits over 32.
+    // The dividend has 28 + 36 fraction bits, the divisor and the result have 32.
     (((u128::from(density.to_bits()) << 36) / units) >> setup.exponent) as u64
 }
 

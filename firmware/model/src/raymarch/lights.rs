@@ -37,7 +37,7 @@ impl Lights {
         let mut list = [Light::default(); MAX_LIGHTS];
         for (place, light) in list.iter_mut().zip(&lighting.lights) {
             *place = Light {
-                // Two more fraction bits.
+                // Converts from 14 to 16 fraction bits.
                 direction: light.direction().map(|x| i32::from(x) << 2),
                 colour: light.colour(),
             };
@@ -51,7 +51,7 @@ impl Lights {
     }
 }
 
-/// Widens a share: 255 becomes 256, the whole.
+/// Converts a share of 255 to a share of 256: 255 becomes 256, so that the whole is a power of two.
 pub(super) const fn whole(part: u8) -> i32 {
     part as i32 + (part >> 7) as i32
 }
@@ -80,7 +80,8 @@ fn cosine(sphere: &FixedSphere, from_centre: [i32; 3], direction: [i32; 3]) -> i
     let product: i64 = core::iter::zip(from_centre, direction)
         .map(|(a, b)| i64::from(a) * i64::from(b))
         .sum();
-    // The radius has 21 bits after the same shift, so the product has 17 bits for a point on the sphere.
+    // A direction has length 1 and 16 fraction bits, so this shift (floor(log2 radius)) leaves 17 bits of the product
+    // for a point on the sphere.
     let size = (product.max(0) >> sphere.shift).min((1 << 17) - 1);
     ((size * i64::from(sphere.inverse)) >> 25).min(256) as i32
 }

@@ -8,7 +8,7 @@ use glint_core::stereo::Stereo;
 
 use super::palette::Palette;
 
-/// Upper limit of t, u11.12.
+/// Upper limit of the parameter t of a point along its ray, u11.12.
 pub(super) const FARTHEST: u32 = (1 << (11 + FRACTION)) - 1;
 
 /// Precision of the march, which determines its error and its time.
@@ -17,7 +17,7 @@ pub struct Tuning {
     /// Threshold: a ray hits where the distance is below `threshold` + t·2^−`footprint`; field units, 12 fraction bits,
     /// below 2^16.
     pub threshold: u32,
-    /// Footprint: exponent of the share of t in the threshold, 7 to 15.
+    /// Footprint: the exponent that gives the share of t in the threshold, 7 to 15.
     pub footprint: u32,
     /// Evaluations after which a ray ends undecided: 1 to 255, four times as many for scenes with spheres.
     pub cap: u32,
@@ -27,11 +27,12 @@ pub struct Tuning {
 
 /// Default tuning for pictures of all sizes (docs/report/raymarch.md).
 ///
-/// Errors of a picture lie at edges: a ray that passes an edge within the threshold hits there. The threshold therefore
-/// grows with t by much less than a pixel's width, 1/23 of a pixel even at 1280 × 720 and half width 0.9. One tuning
-/// serves all sizes, because the number of evaluations hardly depends on the size. Evaluations bound the threshold from
-/// below: a smaller threshold or footprint takes the slowest view of the report beyond 14.4 evaluations a ray. A larger
-/// footprint with a smaller threshold shows more wrong faces for the same number of evaluations.
+/// Errors of a picture lie at edges: a ray that passes an edge within the threshold hits there. The part of the
+/// threshold that grows with t is therefore much less than a pixel's width, 1/23 of a pixel even at 1280 × 720 and half
+/// width 0.9. One tuning serves all sizes, because the number of evaluations hardly depends on the size. Smaller
+/// thresholds need more evaluations: if either part of the threshold were smaller, the slowest view of the report would
+/// take more than 14.4 evaluations a ray. A smaller constant part with a larger growing part shows more wrong faces for
+/// the same number of evaluations.
 pub const DEFAULT_TUNING: Tuning = Tuning {
     threshold: 28,
     footprint: 14,
@@ -60,7 +61,7 @@ impl Tuning {
 /// Options of drawing a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FieldOptions {
-    /// Two eyes, or one.
+    /// Two eyes for a stereo picture, or `None` for one eye.
     pub stereo: Option<Stereo>,
     /// Precision of the march.
     pub tuning: Tuning,
@@ -68,7 +69,7 @@ pub struct FieldOptions {
     pub palette: Palette,
     /// Density of the fog per world unit: transmittance is e^(−density · z) at depth z. 0 is no fog.
     pub fog: U4_28,
-    /// Whether cones precede the rays.
+    /// Whether a prepass marches one cone for each block of pixels before the rays.
     pub prepass: bool,
 }
 

@@ -12,7 +12,7 @@ pub fn paint(setup: &FieldSetup, palette: &Palette, ray: &Ray, outcome: &RayResu
     let (colour, light, fog) = match outcome.state {
         State::Undecided => return palette.undecided,
         State::Miss => {
-            // The sine of the elevation, the upper 8 of its 17 bits.
+            // The sky's colour depends on the upper 8 of the 17 fraction bits of the direction's component along z.
             let height = ray.direction[2].max(0) >> 9;
             (palette.zenith, 255, 255 - height.min(255) as u8)
         }

@@ -20,11 +20,13 @@ pub struct Palette {
     pub zenith: [u8; 3],
     /// Colour of the sky at the horizon and below, and of the fog.
     pub horizon: [u8; 3],
-    /// Share of a surface's colour that fog hides, of 255, by depth in steps of 2^`fog_shift` field units times 2^e.
+    /// Share of a surface's colour that fog hides; 255 hides all of it. The index is the depth in steps of
+    /// 2^`fog_shift` field units times 2^e (docs/formats.md, "Ends").
     pub fog: [u8; 256],
     /// Exponent of the depth step of `fog`, 0 to 7.
     pub fog_shift: u32,
-    /// Share of light left at a surface, of 255, by the steps of the ray: rays take many steps in narrow places.
+    /// Share of light left at a surface; 255 is all of it. The index is the number of steps of the ray: rays take many
+    /// steps in narrow places.
     pub occlusion: [u8; 256],
 }
 
@@ -86,7 +88,7 @@ impl Palette {
     #[must_use]
     pub fn grey(self) -> Self {
         let grey = |[r, g, b]: [u8; 3]| {
-            // Rec. 601; the weights add up to 256.
+            // The luminance of Rec. 601, with weights that add up to 256.
             [((77 * u32::from(r) + 150 * u32::from(g) + 29 * u32::from(b) + 128) >> 8) as u8; 3]
         };
         let lights = Lights {

@@ -1,6 +1,6 @@
 //! The prepass: blocks of pixels and constants of their cones.
 
-/// Entries in the table of depths.
+/// Largest number of cones: the gateware's table has one depth for each cone.
 const CONES: u32 = 1 << 14;
 
 /// The constants of a frame's cones.
@@ -8,16 +8,17 @@ const CONES: u32 = 1 << 14;
 pub struct Cones {
     /// Blocks have 2^`block` by 2^`block` pixels: 2, 3 or 4.
     pub block: u32,
-    /// Change of D from a block's first pixel to its middle, 30 fraction bits.
+    /// Change of the unscaled ray direction D (docs/formats.md, "Rays") from a block's first pixel to its
+    /// middle, 30 fraction bits.
     pub offset: [i32; 3],
-    /// Largest difference of D between the middle and any pixel of a block, in the norm of the rays, u0.18, 14 bits,
-    /// rounded up.
+    /// Largest difference of D between the middle and any pixel of a block, in the maximum norm, or in the Euclidean
+    /// norm for round fields: u0.18, 14 bits, rounded up.
     pub spread: u32,
 }
 
 impl Cones {
-    /// The constants for blocks of 2^`block` by 2^`block` pixels, 2 to 4. `steps` is the change of D per pixel to the
-    /// right and per pixel down.
+    /// The constants for blocks of 2^`block` by 2^`block` pixels, where `block` is 2 to 4. `round` selects the
+    /// Euclidean norm, and `steps` is the change of D per pixel to the right and per pixel down.
     pub fn new(block: u32, round: bool, steps: &[[i32; 3]; 2]) -> Self {
         let block = block.clamp(2, 4);
         let [across, down] = steps.map(|step| step.map(i64::from));
@@ -34,16 +35,17 @@ impl Cones {
         Self {
             block,
             offset: [0, 1, 2].map(|i: usize| half(across[i] + down[i]) as i32),
-            // D is truncated to 24 bits, for the middle and for a pixel; half sums are truncated too.
+            // Adds 2, because D is truncated to 24 bits for the middle and for a pixel, and the half
+            // sums are truncated too.
             spread: (widest[0].max(widest[1]) >> 12) as u32 + 2,
         }
     }
 
-    /// Difference between the length index of a cone and that of its middle ray. It keeps every direction in the block
-    /// at length 1 or less.
+    /// Amount by which the length index of a cone is larger than that of its middle ray, so that every direction in the
+    /// block has length 1 or less.
     pub(super) const fn margin(&self, round: bool) -> u32 {
         if round {
-            // (|D| + s)² − |D|² is at most 2·s + s², with s at most 2^−4.
+            // With s for the spread, (|D| + s)² − |D|² is at most 2·s + s², and s is at most 2^−4.
             (self.spread >> 7) + (self.spread >> 12) + 2
         } else {
             (self.spread >> 8) + 1

@@ -5,8 +5,8 @@ use glint_core::field::{FRACTION, Surface, cropped, magnitude};
 use super::options::FARTHEST;
 use super::setup::{Eye, FieldSetup};
 
-/// Lower bounds of 1/m by the first ten fraction bits i of m: 2^10/(i + 1), truncated so that no product with m rounds
-/// to 1. u8.9, 17 bits.
+/// Lower bounds of 1/m for numbers m in (0, 1). The index i is the first ten fraction bits of m. The entry is
+/// 2^10/(i + 1), truncated so that no product with m rounds to 1: u8.9, 17 bits.
 const INVERSE: [u32; 1024] = inverses();
 
 const fn inverses() -> [u32; 1024] {
@@ -24,8 +24,8 @@ const fn inverses() -> [u32; 1024] {
     table
 }
 
-/// Lower bounds of 1/√q by the first ten fraction bits i of q: √(2^10/(i + 1)), reduced by a part of at least 2^−16 to
-/// cover later rounding up. u8.9, 15 bits.
+/// Lower bounds of 1/√q for numbers q in (0, 1). The index i is the first ten fraction bits of q. The entry is
+/// √(2^10/(i + 1)), reduced by a part of at least 2^−16 to cover later rounding up: u8.9, 15 bits.
 const ROUND_INVERSE: [u32; 1024] = round_inverses();
 
 const fn round_inverses() -> [u32; 1024] {
@@ -45,8 +45,8 @@ pub struct Ray {
     pub eye: usize,
     /// Direction, s1.17, of length 1 at most: in the maximum norm, or in the Euclidean norm for scenes with spheres.
     pub direction: [i32; 3],
-    /// The first ten fraction bits of the largest component of D, or of |D|²: the table index used to scale the
-    /// direction.
+    /// Length index: the first ten fraction bits of the largest component of the unscaled direction D (docs/formats.md,
+    /// "Rays"), or of |D|² for scenes with spheres. It selects the table entry that scales D to `direction`.
     pub length: u32,
     /// Start of the ray, u11.12: the near plane, or the entry into the bounding box.
     pub start: u32,
@@ -68,9 +68,10 @@ pub enum State {
 pub struct RayResult {
     /// The result.
     pub state: State,
-    /// t of the last evaluation, or of the step after it for a hit on a sphere or fillet: u11.12.
+    /// Parameter t of the last evaluated point; for a hit on a sphere or fillet, of the point one step farther. u11.12.
     pub t: u32,
-    /// Distance from that point to the plane of the face, at most 1 − 2^−12; 0 without a face. u0.12.
+    /// Distance from the point at `t` to the plane of the face that was hit, at most 1 − 2^−12; 0
+    /// without a face. u0.12.
     pub gap: u32,
     /// The first ten fraction bits of the direction's component along the face's inward normal; all ones for a ray that
     /// does not approach the face.
@@ -80,7 +81,7 @@ pub struct RayResult {
 }
 
 impl RayResult {
-    /// t at the end of the ray, u11.12: at a hit on a face, on the plane of the face.
+    /// Parameter t at the end of the ray, u11.12. For a hit on a face, the end is on the plane of the face.
     pub fn reached(&self) -> u32 {
         let rest = (self.gap * INVERSE[self.slope as usize & 0x3FF]) >> 9;
         (self.t + rest).min(FARTHEST)
@@ -88,14 +89,14 @@ impl RayResult {
 }
 
 impl FieldSetup {
-    /// The ray of a pixel.
+    /// The ray of pixel (x, y) for an eye.
     pub fn ray(&self, eye: usize, x: u32, y: u32) -> Ray {
         self.ray_from(eye, x, y, self.near)
     }
 
-    /// The ray of a pixel from the given near plane.
+    /// The ray of pixel (x, y) for an eye, which starts not before the depth `near`.
     pub(super) fn ray_from(&self, eye: usize, x: u32, y: u32, near: u32) -> Ray {
-        // s1.24.
+        // The unscaled direction D with 24 fraction bits, s1.24.
         let direction = [0, 1, 2].map(|i: usize| {
             let across = self.steps[0][i].wrapping_mul(x as i32);
             let down = self.steps[1][i].wrapping_mul(y as i32);
@@ -116,11 +117,11 @@ impl FieldSetup {
         }
     }
 
-    /// The first ten fraction bits of the largest component of D, or of |D|² rounded up, from the components'
-    /// magnitudes with 24 fraction bits.
+    /// Length index of an unscaled direction D, whose components have the magnitudes `parts` with 24 fraction bits: the
+    /// first ten fraction bits of the largest component, or of |D|² rounded up for scenes with spheres.
     pub(super) fn length(&self, parts: [u32; 3]) -> u32 {
         if self.is_round() {
-            // 17 bits of each component. The sum of the truncated parts is below 2^−15 and is added.
+            // Squares 17 bits of each component. The truncated bits change the sum by less than 2^−15, which is added.
             let square: u64 = parts.map(|part| u64::from(part >> 7).pow(2)).iter().sum();
             ((square + (1 << 19)) >> 24) as u32 & 0x3FF
         } else {
@@ -129,7 +130,7 @@ impl FieldSetup {
         }
     }
 
-    /// The scale of D to a direction, u8.9.
+    /// The factor that scales D to a direction of length 1 at most, by the length index of D: u8.9.
     pub(super) fn inverse(&self, length: u32) -> u32 {
         if self.is_round() {
             ROUND_INVERSE[length as usize]
@@ -138,16 +139,16 @@ impl FieldSetup {
         }
     }
 
-    /// Scales D to a direction of length 1 at most, by its length index.
+    /// Scales an unscaled direction D with length index `length` to a direction of length 1 at most.
     pub(super) fn scaled(&self, direction: [i32; 3], length: u32) -> [i32; 3] {
         let inverse = i64::from(self.inverse(length));
-        // 24 + 9 fraction bits to 17.
+        // Rounds a product with 24 + 9 fraction bits to 17.
         direction.map(|d| ((i64::from(d) * inverse + (1 << 15)) >> 16) as i32)
     }
 
-    /// t at a depth along n, or slightly less.
+    /// Parameter t at the given depth along n, or slightly less, of a ray with length index `length`.
     pub(super) fn at_depth(&self, depth: u32, length: u32) -> u32 {
-        // A lower bound of the inverse's inverse, 10 fraction bits.
+        // A lower bound of the reciprocal of `inverse`, with 10 fraction bits.
         let part = if self.is_round() {
             (self.inverse(length) * (length + 1)) >> 9
         } else {
@@ -156,10 +157,11 @@ impl FieldSetup {
         ((u64::from(depth) * u64::from(part)) >> 10) as u32
     }
 
-    /// t at which a ray enters the bounding box, or a lower bound: never beyond the box, and before it by at most about
-    /// 2^−17 of the way.
+    /// Parameter t at which a ray enters the bounding box, or a lower bound of it: never inside the box, and before it
+    /// by at most about 2^−17 of the way.
     ///
-    /// The table's reciprocal is too small by up to 1/i, so the remaining way to the box is divided a second time.
+    /// For index i the table's reciprocal is too small by a part of up to 1/i, so the remaining way to the box is
+    /// divided a second time.
     fn entry(&self, eye: usize, direction: &[i32; 3]) -> u64 {
         let Eye {
             origin, outside, ..
@@ -172,7 +174,7 @@ impl FieldSetup {
                 let outside = u64::from(outside[i]);
                 let part = u64::from(magnitude(direction[i]));
                 let near = divided(outside).min(FARTHEST.into());
-                // |d| is at most part + 1.
+                // For a negative component, `magnitude` is one less than |d|: so |d| is at most `part` + 1.
                 let gone = (near * (part + 1)) >> 17;
                 near + divided(outside.saturating_sub(gone + 1))
             })
@@ -226,8 +228,8 @@ impl FieldSetup {
         }
     }
 
-    /// Exponent by which the threshold has grown after `steps`. A ray along a face takes short steps, so its threshold
-    /// grows. A ray beside a sphere also takes many steps, but passes, so its threshold stays.
+    /// Number of times that the threshold has doubled after `steps` evaluations. A ray along a face takes short steps,
+    /// so its threshold grows. A ray beside a sphere also takes many steps, but passes, so its threshold stays.
     pub(super) fn patience(&self, steps: u32) -> u32 {
         if self.is_round() { 0 } else { steps >> 6 }
     }
@@ -244,7 +246,7 @@ impl FieldSetup {
         })
     }
 
-    /// The point of a ray, s13.12.
+    /// The point of a ray at the parameter t, in field units, s13.12.
     pub fn point(&self, ray: &Ray, t: u32) -> [i32; 3] {
         [0, 1, 2].map(|i: usize| {
             let way = i64::from(t) * i64::from(ray.direction[i]);
@@ -252,13 +254,14 @@ impl FieldSetup {
         })
     }
 
-    /// Depth along n of a point of a ray, in field units times 2^e, 21 fraction bits.
+    /// Depth along n of a ray's point at t, in field units times 2^e, 21 fraction bits.
     pub fn depth_of(&self, ray: &Ray, t: u32) -> u64 {
         u64::from(t) * u64::from(self.inverse(ray.length))
     }
 }
 
-/// The gap to the plane of a face, u0.12, and the slope of the ray against the face.
+/// Returns gap and slope of a hit on a face perpendicular to an axis: the distance to the plane of the face, u0.12, and
+/// the slope of the ray against the face.
 fn approach(ray: &Ray, distance: i32, axis: u8, positive: bool) -> (u32, u32) {
     let part = ray.direction[usize::from(axis) % 3];
     let comes = (part < 0) == positive;
@@ -270,8 +273,9 @@ fn approach(ray: &Ray, distance: i32, axis: u8, positive: bool) -> (u32, u32) {
     (gap(distance), slope)
 }
 
-/// As [`approach`], for a face perpendicular to a diagonal; gap and slope are both three quarters of their exact value.
-/// The slope is a third of the sum of three parts; a quarter needs no division.
+/// As [`approach`], for a face perpendicular to a diagonal. Gap and slope are both three quarters of their
+/// exact value, so their quotient is right. The exact slope is a third of the sum of three parts; a quarter of
+/// the sum needs no division.
 fn approach_diagonal(ray: &Ray, distance: i32, signs: u8) -> (u32, u32) {
     let towards = [0, 1, 2].map(|i: usize| {
         let part = ray.direction[i] >> 7;
@@ -287,7 +291,7 @@ fn approach_diagonal(ray: &Ray, distance: i32, signs: u8) -> (u32, u32) {
     (gap - (gap >> 2), slope)
 }
 
-/// The distance in the format of an end, saturated.
+/// Converts a distance to a gap: u0.12, saturated at 0 and at 1 − 2^−12.
 fn gap(distance: i32) -> u32 {
     distance.clamp(0, (1 << FRACTION) - 1) as u32
 }

@@ -27,7 +27,7 @@ pub struct FieldStats {
 }
 
 impl FieldStats {
-    /// Counts a ray of a frame.
+    /// Adds a ray with its result to the counts.
     pub fn count(&mut self, setup: &FieldSetup, outcome: &RayResult) {
         self.rays += 1;
         self.evaluations += u64::from(outcome.steps * setup.passes());
@@ -42,8 +42,9 @@ impl FieldStats {
 /// Draws a field into the target. A pixel changes if the field's depth code is at least the target's. With two eyes
 /// every pixel changes.
 ///
-/// With two eyes `palette` is grey, and depths are the left eye's. Not inlined, so that its loop and the functions that
-/// it calls do not evict each other from the instruction cache.
+/// With two eyes `palette` must be grey, and depths are the left eye's. `show` receives the column, row, ray and result
+/// of every ray. The function is not inlined, so that its loop and the functions that it calls do not evict each other
+/// from the instruction cache.
 ///
 /// # Errors
 /// [`RenderError`] if the target's size differs from the setup's; the target is then unchanged.
@@ -91,14 +92,14 @@ pub fn render_field(
 }
 
 impl FieldSetup {
-    /// The depth code of a point of a ray.
+    /// The depth code of a ray's point at the parameter t.
     pub fn depth_code(&self, ray: &Ray, t: u32) -> u32 {
         let Reciprocal { y, lead } = Reciprocal::of(self.depth_of(ray, t));
-        // The depth has 21 fraction bits.
+        // The reciprocal has 24 + `lead` fraction bits, of which the 21 fraction bits of the depth are subtracted.
         let shift = lead as i32 + 3 - self.depth.exponent;
         const MOST: u32 = (1 << 18) - 1;
         if shift < 22 {
-            // At least 2^(16 + 23 − 21).
+            // The code would be at least 2^(16 + 23 − 21), which does not fit 18 bits.
             return MOST;
         }
         let product = u64::from(self.depth.mantissa) * u64::from(y);
@@ -114,8 +115,8 @@ pub fn rgb565([r, g, b]: [u8; 3]) -> u16 {
     narrow(r, 5) << 11 | narrow(g, 6) << 5 | narrow(b, 5)
 }
 
-/// Composes an anaglyph pixel from the luminances of both eyes: truncated, because all eight pixels of a word are
-/// composed at once.
+/// Composes an anaglyph pixel from the luminances of both eyes. Channels are truncated instead of rounded, because all
+/// eight pixels of a word are composed at once in the gateware.
 pub fn compose(tint: Tint, left: u8, right: u8) -> u16 {
     let [red, green, blue] = match tint {
         Tint::RedBlue => [left, left.min(right), right],

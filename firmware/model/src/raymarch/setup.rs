@@ -14,7 +14,7 @@ use super::prepass::{Cones, block_for};
 use crate::depth::DepthScale;
 use crate::error::{RenderError, SIZES};
 
-/// Above the magnitude of every coordinate of a point, s13.12.
+/// Bound of the magnitude of every coordinate of a point (s13.12): half side of the bounding box of unbounded fields.
 const UNBOUNDED: u32 = (1 << (12 + FRACTION)) - 1;
 
 /// Position of an eye, and direction of its first ray.
@@ -24,7 +24,7 @@ pub struct Eye {
     pub origin: [i32; 3],
     /// Distance outside of the bounding box along each axis, u12.12; 0 inside, and for unbounded fields.
     pub outside: [u32; 3],
-    /// D of the first pixel, 30 fraction bits, modulo 2^32.
+    /// Unscaled direction D (docs/formats.md, "Rays") of the first pixel's ray, 30 fraction bits, modulo 2^32.
     pub first: [i32; 3],
 }
 
@@ -46,12 +46,12 @@ pub struct FieldSetup {
     pub bounds: [u32; 3],
     /// The left and the right eye; the second is unused without stereo.
     pub eyes: [Eye; 2],
-    /// Change of D per pixel to the right and per pixel down, 30 fraction bits.
+    /// Change of the unscaled ray direction D per pixel to the right and per pixel down, 30 fraction bits.
     pub steps: [[i32; 3]; 2],
     /// Exponent e, 0 to 3: D is 2^−e times the direction whose component along n is 1.
     pub exponent: u32,
-    /// Depth of the near plane, or of the nearest corner of the bounding box if larger, in field units times 2^e,
-    /// u11.12.
+    /// Depth of the near plane, or of the nearest corner of the bounding box if larger, in field
+    /// units times 2^e, u11.12.
     pub near: u32,
     /// The cones of the prepass, if any.
     pub cones: Option<Cones>,
@@ -61,7 +61,7 @@ pub struct FieldSetup {
     pub world_depth: DepthScale,
     /// Precision of the march.
     pub tuning: Tuning,
-    /// Colours of two eyes; `None` for one eye.
+    /// Colours in which the two eyes are shown in stereo; `None` for one eye.
     pub stereo: Option<Tint>,
 }
 
@@ -99,7 +99,7 @@ impl FieldSetup {
                 ..
             }) => (
                 half_separation,
-                // At most 1.
+                // The quotient is at most 1.
                 (half_separation.to_bits() << 24) / (zero_parallax.to_bits() >> 4).max(1),
             ),
             None => (Q32_32::ZERO, 0),
@@ -108,12 +108,12 @@ impl FieldSetup {
         let rays = Directions::new(view, width, height, parallax, round);
         let eye = |sign: i64, first: [i64; 3]| {
             let origin = [0, 1, 2].map(|i: usize| {
-                // |C| ≤ 32 and e ≤ 1.
+                // The camera's eye is within 32 of the origin, and the shift of an eye to its side is at most 1.
                 let aside = (shift.to_bits() >> 8) * i64::from(view.u()[i].to_bits());
                 let place = Q32_32::from_bits(view.eye()[i].to_bits() + sign * (aside >> 15));
                 let place = units(place, scale) as i32;
                 if repeated {
-                    // The same position in the cell about the origin.
+                    // The same position relative to the field, in the cell about the origin.
                     cropped(place, 6 + FRACTION)
                 } else {
                     place
@@ -129,7 +129,8 @@ impl FieldSetup {
 
         let near = i64::from(view.near().to_bits()) << 4;
         let nearest = nearest(view, extent);
-        // At most 2 world units for the plane and 64 for the box, of which one rounding step is omitted.
+        // The near plane is at most 2 world units away, the corner of the box at most 64. One rounding step is
+        // subtracted from the corner's depth below.
         let [plane, corner] = [near, nearest >> 5].map(|x| units(Q32_32::from_bits(x), scale));
         let near_units = plane.max(corner - 1) << rays.exponent;
         let world_depth = DepthScale::from_nearest(nearest.max(near << 5));
@@ -183,7 +184,8 @@ impl FieldSetup {
         self.spheres().map_or(1, |spheres| spheres.count as u32)
     }
 
-    /// The nearest surface at a point, coordinates s10.12; the face at equal distances.
+    /// Evaluates the field at a point with coordinates in s10.12: the distance, and the nearest surface; at equal
+    /// distances the face.
     pub fn sample(&self, point: [i32; 3]) -> Sample {
         let flat = self.solid.sample(point);
         match &self.beside {
@@ -219,7 +221,8 @@ fn nearest(view: &View, extent: Option<[Q32_32; 3]>) -> i64 {
         (0..3)
             .map(|i| {
                 let n = i64::from(view.n()[i].to_bits());
-                // 14 + 23 fraction bits; slightly larger for a length that is not exactly 1.
+                // The products have 14 + 23 fraction bits. The reach is slightly enlarged, because the length of n is
+                // not exactly 1.
                 let place = n * (view.eye()[i].to_bits() >> 18);
                 let reach = n.abs() * ((half[i].to_bits() >> 18) + 2);
                 -place - reach - (reach >> 13)

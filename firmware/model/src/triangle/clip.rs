@@ -1,13 +1,14 @@
 //! The clipper, for triangles that cross the near plane or leave the guard band.
 //!
-//! Clipping works on camera coordinates, before the division. An intersection is the rounded exact value and does not depend on the
-//! direction of the edge, so both triangles at an edge get the same vertex.
+//! Clipping works on camera coordinates, before the division. An intersection is the rounded exact value and does not
+//! depend on the direction of the edge, so both triangles at an edge get the same vertex.
 
 use crate::triangle::mesh_setup::MeshSetup;
 use crate::triangle::vertex::CameraVertex;
 
-/// Every plane replaces each run of outside vertices by two vertices, and at most every second vertex is a run:
-/// 3 → 4 → 6 → 9 → 13 → 19. (A convex polygon reaches 8, but rounding may make a polygon concave.)
+/// Largest number of vertices of a clipped triangle. Each of the five planes replaces every run of outside vertices by
+/// two vertices, and at most every second vertex is a run: 3 → 4 → 6 → 9 → 13 → 19. (A convex polygon reaches 8, but
+/// rounding may make a polygon concave.)
 const MAX_VERTICES: usize = 19;
 
 /// A clipped triangle.
@@ -25,7 +26,7 @@ impl Polygon {
         }
     }
 
-    /// The vertices in order; fewer than three if the triangle is outside.
+    /// The vertices in order; fewer than three if no part of the triangle is inside the view volume.
     pub fn vertices(&self) -> &[CameraVertex] {
         self.vertices.get(..self.len).unwrap_or_default()
     }
@@ -41,15 +42,15 @@ impl Polygon {
 /// A side of the view volume.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Plane {
-    /// Z ≥ near.
+    /// Inside is Z ≥ near: at or beyond the near plane.
     Near,
-    /// x ≥ −2047.5 pixels.
+    /// Inside is x ≥ −2047.5 pixels on the screen.
     Left,
-    /// x ≤ 2047.5 pixels.
+    /// Inside is x ≤ 2047.5 pixels on the screen.
     Right,
-    /// y ≥ −2047.5 pixels.
+    /// Inside is y ≥ −2047.5 pixels on the screen.
     Top,
-    /// y ≤ 2047.5 pixels.
+    /// Inside is y ≤ 2047.5 pixels on the screen.
     Bottom,
 }
 
@@ -57,7 +58,8 @@ impl Plane {
     /// All planes, in the order of clipping.
     pub const ALL: [Self; 5] = [Self::Near, Self::Left, Self::Right, Self::Top, Self::Bottom];
 
-    /// The exact signed distance of a vertex, times a positive factor of the plane; negative is outside.
+    /// The exact signed distance of a vertex from the plane, times a positive factor that depends on the plane only;
+    /// negative is outside.
     pub fn distance(self, frame: &MeshSetup, vertex: &CameraVertex) -> i64 {
         let [width, height] = [frame.width, frame.height].map(i64::from);
         match self {
@@ -101,7 +103,8 @@ impl Plane {
         true
     }
 
-    /// The intersection of the plane with the edge from a vertex inside to one outside.
+    /// The intersection of the plane with the edge from the vertex `a` inside, at distance `da`, to the vertex `b`
+    /// outside, at distance `db`.
     fn intersection(
         self,
         frame: &MeshSetup,
@@ -127,12 +130,14 @@ impl Plane {
     }
 }
 
-/// X or Y of a vertex in half pixels, in the units of Z: below 2^55.7, and 5375·|Z| is below 2^53.1.
+/// Converts X or Y of a vertex to half pixels, with the fraction bits of Z. The result is below 2^55.7; the terms of Z
+/// that are added to it are at most 5375·|Z|, below 2^53.1.
 fn half_pixels(frame: &MeshSetup, x: i64) -> i64 {
     x << (24 - frame.scale_shift)
 }
 
-/// Whether a triangle is wholly off one side of the picture. The plane of a side contains the eye, so vertices behind the eye count too.
+/// Whether a triangle is wholly off one side of the picture. The plane of a side contains the eye, so the test also
+/// holds for vertices behind the eye.
 ///
 /// This fast test replaces clipping, which would leave no covered pixel.
 pub fn off_picture(frame: &MeshSetup, triangle: &[CameraVertex; 3]) -> bool {

@@ -9,7 +9,8 @@ use crate::triangle::setup::{Plane, Setup};
 /// Columns of a group: the pixels that the raster pass draws in one clock.
 pub const GROUP: i32 = machine::GROUP as i32;
 
-/// A triangle after its setup. The words of the light follow the words read by gateware without smooth shading.
+/// A triangle after its setup, packed into words. Gateware without smooth shading reads only the first words; the words
+/// of the light follow them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Descriptor {
     words: [u32; SMOOTH_WORDS],
@@ -20,7 +21,7 @@ const FLAT_WORDS: usize = machine::FLAT_DESCRIPTOR_BYTES as usize / 4;
 /// Words of 32 bits of a descriptor for gateware with smooth shading.
 const SMOOTH_WORDS: usize = machine::SMOOTH_DESCRIPTOR_BYTES as usize / 4;
 
-/// Number of 32-bit words of a descriptor, a multiple of four, for gateware with this best shading.
+/// Number of 32-bit words of a descriptor, a multiple of four, for gateware whose best shading is `capability`.
 pub const fn words(capability: Shading) -> usize {
     match capability {
         Shading::Flat => FLAT_WORDS,
@@ -57,7 +58,7 @@ impl Descriptor {
         Self { words: bits.words }
     }
 
-    /// The words for gateware with this best shading, the lowest bits first.
+    /// The words for gateware whose best shading is `capability`, the lowest bits first.
     pub fn words(&self, capability: Shading) -> &[u32] {
         self.words.get(..words(capability)).unwrap_or_default()
     }
@@ -93,8 +94,9 @@ impl Packer {
     }
 }
 
-/// The start of a band's list in words of 16 bytes from the start of its set. A list has room for 4 << `shift` entries; a gap of a
-/// row of a memory bank separates lists, so that neighbouring lists are in different banks.
+/// The start of a band's list, in words of 16 bytes from the start of its set of lists. A list has room for
+/// 4 << `shift` entries. Between two lists is a gap as long as a row of a memory bank, so that neighbouring lists are
+/// in different banks.
 pub const fn list_word(band: u32, shift: u32) -> u32 {
     LIST_TABLE_WORDS + (band << shift) + LIST_GAP_WORDS * band
 }
@@ -115,7 +117,7 @@ const fn size(width: u32) -> Size {
     }
 }
 
-/// Words of 32 bits of the table of lengths at the start of a set.
+/// Words of 32 bits of the table of list lengths, which is at the start of a set of lists.
 pub const LENGTHS: usize = 4 * LIST_TABLE_WORDS as usize;
 
 /// Words of 32 bits of all lists of a set, with the table of their lengths: 4 MiB.
@@ -144,7 +146,8 @@ pub struct ListWriter<'a> {
 pub struct Full;
 
 impl<'a> ListWriter<'a> {
-    /// An empty set in two regions of memory, for a picture of this width and gateware with this best shading.
+    /// An empty set in two regions of memory, for a picture of this width and gateware whose
+    /// best shading is `capability`.
     pub const fn new(
         descriptors: &'a mut [u32],
         lists: &'a mut [u32],

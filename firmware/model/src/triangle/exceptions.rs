@@ -1,4 +1,4 @@
-//! Clipping of the gateware's exceptions.
+//! Clipping of exceptions: triangles that the gateware leaves to the firmware.
 
 use glint_core::mesh::{Mesh, Rgb565};
 
@@ -6,8 +6,8 @@ use crate::triangle::mesh_setup::MeshSetup;
 use crate::triangle::primitive::{Options, Placed, clip_fan, lit_corners};
 use crate::triangle::setup::Setup;
 
-/// Clips the exceptions of the gateware, given by their `numbers` in the mesh, and emits setup and colour of every remaining part.
-/// Returns the number of triangles with a remaining part.
+/// Clips the gateware's exceptions, given by their `numbers` in the mesh. Emits setup and colour of every part inside
+/// the view volume, and returns the number of triangles with such a part.
 ///
 /// Ascending numbers, the order of the gateware, are processed fastest. Numbers beyond the mesh are ignored.
 pub fn clip_exceptions(

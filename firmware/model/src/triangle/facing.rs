@@ -3,14 +3,15 @@
 /// The visible side of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Facing {
-    /// Counter-clockwise on the screen: 2A < 0.
+    /// Front face: counter-clockwise on the screen, so that its signed doubled area 2A is negative.
     Front,
-    /// Clockwise: 2A > 0.
+    /// Back face: clockwise on the screen, so that its signed doubled area 2A is positive.
     Back,
 }
 
 impl Facing {
-    /// Attributes of a triangle's vertices in clockwise order on the screen: a front face has 1 and 2 swapped.
+    /// Puts an attribute of the three vertices into clockwise order on the screen: swaps those of vertices 1 and 2
+    /// of a front face.
     pub fn order<T>(self, [a, b, c]: [T; 3]) -> [T; 3] {
         match self {
             Self::Front => [a, c, b],

@@ -15,24 +15,25 @@ pub struct MeshSetup {
     pub width: u32,
     /// Height of the picture in pixels.
     pub height: u32,
-    /// f, the fraction bits of `u` and `v`: 10 to 18.
+    /// Scale shift f: the number of fraction bits of `u` and `v`, 10 to 18.
     pub scale_shift: u32,
-    /// The right axis in pixels at distance 1, f fraction bits, 25 bits.
+    /// The right axis in pixels at distance 1, f fraction bits (f is `scale_shift`), 25 bits.
     pub u: [i32; 3],
-    /// The down axis in pixels at distance 1, f fraction bits, 25 bits.
+    /// The down axis in pixels at distance 1, f fraction bits (f is `scale_shift`), 25 bits.
     pub v: [i32; 3],
     /// The forward axis, s2.23.
     pub n: [i32; 3],
-    /// The translation: −C·u and −C·v with 14 + f fraction bits, −C·n with 37; each s44.
+    /// The translation for the eye C: −C·u and −C·v with 14 + f fraction bits, −C·n with 37; each s44.
     pub translation: [i64; 3],
     /// The near plane's distance, 37 fraction bits.
     pub near: i64,
-    /// K, the scale of depth codes.
+    /// The scale K of depth codes.
     pub depth: DepthScale,
 }
 
 impl MeshSetup {
-    /// The constants for a camera within 8 of the origin, one of the [`SIZES`], and a mesh with the given radius (u.14).
+    /// The constants for a camera within 8 of the origin, one of the [`SIZES`], and a mesh with the given
+    /// radius (14 fraction bits).
     ///
     /// # Errors
     /// [`RenderError::Size`] or [`RenderError::Eye`].
@@ -46,7 +47,8 @@ impl MeshSetup {
         let (scale_shift, scale) = Scale::new(width, view);
         let (u, v) = (scale.row(view.u()), scale.row(view.v()));
         let n = view.n().map(Q2_23::to_bits);
-        // |C| ≤ 8 is 2^35 in its units, and a row is shorter than 2^24.5: |C·row| < 2^60.
+        // The eye C is within 8 of the origin, 2^35 with its 32 fraction bits, and a row is shorter than 2^24.5:
+        // |C·row| < 2^60.
         let eye = view.eye().map(Q32_32::to_bits);
         let translation = [u, v, n].map(|row| {
             let product: i64 = core::iter::zip(eye, row)
@@ -70,20 +72,21 @@ impl MeshSetup {
     }
 }
 
-/// s·2^f as the fraction (W/2)·2^(28 + f)/h, with h in u4.28.
+/// The scale s·2^f (docs/formats.md, "Frame constants") as the fraction (W/2)·2^(28 + f)/h, where W is the width of the
+/// picture and h the half width of the view with 28 fraction bits.
 struct Scale {
     numerator: i64,
     half_width: i64,
 }
 
 impl Scale {
-    /// The largest f with ceil(s·2^f)·(1 + 2^−12) < 2^24, and its scale.
+    /// Returns the largest f with ceil(s·2^f)·(1 + 2^−12) < 2^24, and the scale s·2^f.
     ///
     /// s is in [40, 12800], so f is in 10…18. A component of the basis is at most 1 + 10^−4, which is below 1 + 2^−12.
     fn new(width: u32, view: &View) -> (u32, Self) {
         let half_width = i64::from(view.half_width().to_bits());
         let numerator = |shift| i64::from(width / 2) << (28 + shift);
-        // ceil(s·2^24), from which rounding low bits up gives the ceil of smaller powers.
+        // ceil(s·2^24). Rounding up its low bits gives ceil(s·2^f) for every smaller f.
         let ceil = (numerator(24) + half_width - 1) / half_width;
         let fits = |cut: u32| ((ceil + (1 << cut) - 1) >> cut) * 4097 < 1 << 36;
         let cut = (0..24).find(|&cut| fits(cut)).unwrap_or(24);
@@ -97,7 +100,7 @@ impl Scale {
         )
     }
 
-    /// nearest(row·s·2^f). The dividend is below 2^25·2^10·2^(28 + 18 − 23).
+    /// Scales each component r of an axis of the view: nearest(r·s·2^f). The dividend is below 2^25·2^10·2^23.
     fn row(&self, row: [Q2_23; 3]) -> [i32; 3] {
         row.map(|r| {
             let dividend = i64::from(r.to_bits()) * (self.numerator >> 23);
@@ -106,7 +109,8 @@ impl Scale {
     }
 }
 
-/// The quotient of a divisor above 0, rounded down. One unsigned division: a 32-bit processor divides 64 bits in software.
+/// Divides by a divisor above 0 and rounds down. There is only one unsigned division, because a 32-bit processor
+/// divides 64-bit numbers in software.
 const fn floor(dividend: i64, divisor: i64) -> i64 {
     let divisor = divisor.unsigned_abs();
     if dividend < 0 {

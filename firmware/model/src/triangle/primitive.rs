@@ -13,16 +13,16 @@ use crate::triangle::vertex::{CameraVertex, ScreenVertex, snap, transform};
 /// How a mesh is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
-    /// Cull back faces.
+    /// Whether back faces are left out.
     pub cull: bool,
     /// Colour of pixels without a triangle, RGB565.
     pub clear: u16,
-    /// Source of colours.
+    /// Source of the colours: triangles (flat) or vertices (smooth).
     pub shading: Shading,
 }
 
 impl Default for Options {
-    /// Back faces culled, on black, flat.
+    /// Back faces are left out, the background is black, and shading is flat.
     fn default() -> Self {
         Self {
             cull: true,
@@ -32,7 +32,7 @@ impl Default for Options {
     }
 }
 
-/// A screen triangle that reaches the walker.
+/// A triangle on the screen that reaches the walker.
 pub struct Placed {
     /// Vertices in clockwise order, and the visible side.
     pub oriented: Oriented,
@@ -68,7 +68,7 @@ impl Placed {
         })
     }
 
-    /// Edge functions and planes.
+    /// Computes the edge functions and planes of the triangle.
     pub fn setup(&self) -> Setup {
         match &self.lit {
             None => Setup::new(&self.oriented, self.bounds),
@@ -114,7 +114,8 @@ pub fn clip_fan(
     let [Some(a), Some(b), Some(c)] = triangle.indices.map(|i| chunk.vertex(usize::from(i))) else {
         return;
     };
-    // The fan starts at the smallest position, so that the order of the triangle's indices does not matter.
+    // The fan starts at the vertex with the smallest position, so that the order of the triangle's
+    // indices does not matter.
     let [p, q, r] = [&a, &b, &c].map(|vertex| vertex.position);
     let vertices = if p <= q && p <= r {
         [a, b, c]

@@ -10,7 +10,7 @@ const fn inverses() -> [u32; 1024] {
     let mut table = [0; 1024];
     let mut i = 0;
     while i < table.len() {
-        // The value is 2^28/d.
+        // The exact entry is 2^28/d.
         let d = 2049 + 2 * i as u32;
         table[i] = ((1 << 29) + d) / (2 * d);
         i += 1;
@@ -21,7 +21,8 @@ const fn inverses() -> [u32; 1024] {
 /// Bits per channel: red, green and blue.
 const CHANNEL_BITS: [u32; 3] = [5, 6, 5];
 
-/// The colour of a pixel from the accumulators of light and of depth plus half a code.
+/// The colour of a pixel, from the light accumulators of its channels, and from `depth`, its depth accumulator plus
+/// half a code.
 ///
 /// The depth of a covered pixel is at least 2^7 codes; smaller depths give a meaningless colour.
 pub fn colour(light: [u32; 3], depth: u32) -> Rgb565 {
@@ -29,7 +30,7 @@ pub fn colour(light: [u32; 3], depth: u32) -> Rgb565 {
     let inverse = INVERSE[((depth << shift) >> 21 & 0x3FF) as usize];
     let mut colour = 0;
     for (value, bits) in core::iter::zip(light, CHANNEL_BITS) {
-        // Light is at most 63/64 of the depth: a negative value is a rounded 0.
+        // Light is at most 63/64 of the depth, so six ones at the top are a light of 0 that was rounded below 0.
         let product = if value >> 26 == 0x3F {
             0
         } else {

@@ -19,7 +19,7 @@ pub struct Coverage {
     pub tested: u32,
     /// Pixels covered.
     pub covered: u32,
-    /// Pixels written: covered, and passed by the depth test.
+    /// Covered pixels that passed the depth test and were written.
     pub drawn: u32,
 }
 
@@ -31,7 +31,8 @@ pub fn draw(setup: &Setup, colour: Rgb565, target: &mut FrameBuffer) -> Coverage
     }
 }
 
-/// Not inlined, so that flat triangles do not load this code into the instruction cache.
+/// Draws a triangle with smooth shading. Not inlined, so that flat triangles do not load this code
+/// into the instruction cache.
 #[inline(never)]
 fn draw_smooth(setup: &Setup, light: &[Plane; 3], target: &mut FrameBuffer) -> Coverage {
     draw_with(setup, light.map(Accumulation::new), target)
@@ -47,17 +48,17 @@ fn draw_with(setup: &Setup, brush: impl Brush, target: &mut FrameBuffer) -> Cove
 
 /// The source of pixel colours, moved over the triangle with the depth.
 trait Brush {
-    /// Moves to the column `offset` from the start column of the row.
+    /// Moves to the column that is `offset` columns right of the start column, in the same row.
     fn go_to(&mut self, offset: u32);
     /// Moves one pixel to the right.
     fn go_right(&mut self);
     /// Moves to the next row, to an unspecified column.
     fn go_down(&mut self);
-    /// The colour of the pixel; `depth` is the accumulator plus half a code.
+    /// The colour of the pixel; `depth` is its depth accumulator plus half a code.
     fn colour(&self, depth: u32) -> Rgb565;
 }
 
-/// Flat shading.
+/// Flat shading: every pixel has the triangle's colour.
 impl Brush for Rgb565 {
     fn go_to(&mut self, _: u32) {}
     fn go_right(&mut self) {}
@@ -67,7 +68,7 @@ impl Brush for Rgb565 {
     }
 }
 
-/// A plane's value at the pixel and at the start column.
+/// A plane, with its value at the current pixel (`value`) and at the start column of the current row (`row`).
 #[derive(Clone, Copy)]
 struct Accumulation {
     plane: Plane,
@@ -85,7 +86,7 @@ impl Accumulation {
     }
 }
 
-/// Smooth shading.
+/// Smooth shading: the colour comes from the planes of red, green and blue.
 impl Brush for [Accumulation; 3] {
     fn go_to(&mut self, offset: u32) {
         for light in self {
@@ -109,7 +110,7 @@ impl Brush for [Accumulation; 3] {
     }
 }
 
-/// An accumulator of E': `i32` for a narrow setup, else `i64`.
+/// The number type of an edge function E' (docs/formats.md, "Triangle setup"): `i32` for a narrow setup, else `i64`.
 trait Accumulator:
     Copy
     + Default
@@ -202,7 +203,8 @@ fn fill(
 
 /// One end of a row's span: the outermost column that passes the one or two edges of its side.
 ///
-/// Outwards, E' of these edges decreases by |dy| per pixel. On a side with one edge the second E' is 0 everywhere, which passes.
+/// The edge functions E' of these edges decrease outwards by |dy| per pixel. On a side with one edge the second E' is 0
+/// everywhere, which passes.
 struct End<A> {
     value: [A; 2],
     inwards: [A; 2],
@@ -211,7 +213,7 @@ struct End<A> {
     outwards: i32,
     /// Outermost column of the bounds.
     outermost: i32,
-    /// Column inside of the innermost column: if the end is there, no column passes.
+    /// The first column beyond the bounds on the opposite side: if the end is there, no column of the row passes.
     nowhere: i32,
 }
 
@@ -248,7 +250,7 @@ impl<A: Accumulator> End<A> {
         end
     }
 
-    /// Moves to the end of this row's span; returns the number of tested pixels outside.
+    /// Moves to the end of this row's span; returns the number of pixels tested outside of the span.
     fn settle(&mut self) -> u32 {
         let mut missed = 0;
         if passes(self.value) {
@@ -275,7 +277,7 @@ impl<A: Accumulator> End<A> {
     }
 }
 
-/// The bitwise or is negative if a value is negative.
+/// Whether no value is negative: the bitwise or is negative if one of the values is.
 fn passes<A: Accumulator>([a, b]: [A; 2]) -> bool {
     a | b >= A::default()
 }

@@ -1,6 +1,6 @@
 //! The reciprocals 1/Z of the vertex stage and 1/|2A| of the triangle setup.
 //!
-//! A table of 256 seeds and two Newton steps; each product fits a 25×18 multiplier.
+//! Both reciprocals use a table of 256 seeds and two Newton steps, in which each product fits a 25×18 multiplier.
 
 /// `SEED[i]` is 2^10/(1 + (i + 1/2)/256) to nearest, u0.10.
 pub const SEED: [u16; 256] = seeds();
@@ -9,7 +9,7 @@ const fn seeds() -> [u16; 256] {
     let mut table = [0; 256];
     let mut i = 0;
     while i < table.len() {
-        // The value is 2^19/d.
+        // The exact entry is 2^19/d.
         let d = 513 + 2 * i;
         table[i] = (((1 << 20) + d) / (2 * d)) as u16;
         i += 1;
@@ -17,10 +17,10 @@ const fn seeds() -> [u16; 256] {
     table
 }
 
-/// 2^47/m for a mantissa m in [2^23, 2^24), in [2^23, 2^24).
+/// Approximates 2^47/m for a mantissa m in [2^23, 2^24); the result is in [2^23, 2^24) too.
 ///
-/// The error is at most one unit: 2^47/2^23 saturates to 2^24 − 1, all other results are within 0.51. The result never increases with m.
-/// An m outside the range gives a meaningless number.
+/// The error is at most one unit: 2^47/2^23 saturates to 2^24 − 1, all other results are within 0.51. The result never
+/// increases with m. An m outside the range gives a meaningless number.
 pub const fn recip(m: u32) -> u32 {
     let y0 = SEED[(m >> 15 & 0xFF) as usize] as u32;
     let y1 = (y0 << 7).wrapping_add_signed((y0 as i32).wrapping_mul(residue(m, y0)) >> 18);
@@ -30,7 +30,8 @@ pub const fn recip(m: u32) -> u32 {
     if y < 1 << 24 { y } else { (1 << 24) - 1 }
 }
 
-/// The residue of m·y below its power of two (2^33 for the seed, 2^40 for the first step), over 2^8, floor: s18.
+/// The residue of an estimate y of the reciprocal: a power of two less m·y, over 2^8, rounded down, s18. The power is
+/// 2^33 for the seed and 2^40 for the result of the first step.
 ///
 /// The difference is smaller than 2^25, and both powers are 0 modulo 2^32: the low word of the product is enough.
 const fn residue(m: u32, y: u32) -> i32 {

@@ -29,7 +29,7 @@ pub struct Stats {
     pub pixels_tested: u64,
     /// Pixels covered, counted once for each triangle.
     pub pixels_covered: u64,
-    /// Pixels written: covered, and passed by the depth test.
+    /// Covered pixels that passed the depth test and were written.
     pub pixels_drawn: u64,
 }
 
@@ -120,7 +120,7 @@ fn draw_frame(
     let scratch = scratch
         .get_mut(..expected)
         .ok_or(RenderError::Scratch { expected, found })?;
-    // Zeros are filled by a `memset` of whole words.
+    // A fill by the constant 0 becomes a `memset` of whole words.
     match options.clear {
         0 => target.colour.fill(0),
         clear => target.colour.fill(clear),
@@ -146,9 +146,9 @@ fn draw_frame(
 enum Path<'a> {
     /// Not drawn: wholly off one side of the picture, or behind the near plane.
     Unseen,
-    /// To the setup.
+    /// To the setup, as a whole.
     Regular([&'a ScreenVertex; 3]),
-    /// To the clipper.
+    /// To the clipper, because it crosses the near plane or leaves the guard band.
     Exception,
 }
 
@@ -213,7 +213,7 @@ impl Renderer<'_, '_> {
         }
     }
 
-    /// The vertex stage for a whole chunk.
+    /// Runs the vertex stage for all vertices of a chunk.
     fn project(&self, chunk: &Chunk, scratch: &mut [Projected]) {
         for (vertex, projected) in chunk.vertices().zip(scratch) {
             *projected = project(&self.frame, &transform(&self.frame, vertex.position));
@@ -263,7 +263,7 @@ impl Renderer<'_, '_> {
         any
     }
 
-    /// Setup, shading and walk of one screen triangle. Returns whether the triangle reached the walker.
+    /// Sets up, shades and walks one triangle on the screen. Returns whether the triangle reached the walker.
     fn draw(
         &mut self,
         index: u32,

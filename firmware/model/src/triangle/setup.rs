@@ -11,7 +11,7 @@ use crate::triangle::vertex::ScreenVertex;
 pub struct Oriented {
     /// The vertices, with 1 and 2 swapped for a front face.
     pub vertices: [ScreenVertex; 3],
-    /// a = |2A| > 0, u40 with 16 fraction bits: a triangle is at most half of a square that holds it.
+    /// The doubled area a = |2A| > 0, u40 with 16 fraction bits: a triangle is at most half of a square that holds it.
     pub doubled_area: u64,
     /// The visible side.
     pub facing: Facing,
@@ -60,7 +60,8 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The pixels of the picture with centres c in min ≤ c < max; `None` without any.
+    /// The pixels of the picture whose centres c have min ≤ c < max in both directions, where min and max are those of
+    /// the vertices; `None` if there is no such pixel.
     ///
     /// The upper limits are exclusive: the top-left rule moves a point slightly to the right and, even less, down.
     pub fn new(vertices: &[ScreenVertex; 3], width: u32, height: u32) -> Option<Self> {
@@ -75,7 +76,7 @@ impl Bounds {
     }
 }
 
-/// The pixels 0 ≤ i < `size` with min ≤ 256·i + 128 < max.
+/// The first, and one past the last, of the pixels 0 ≤ i < `size` with min ≤ 256·i + 128 < max of three coordinates.
 fn columns([a, b, c]: [i32; 3], size: u32) -> (i32, i32) {
     let first_at_or_after = |x: i32| (x + 127) >> 8;
     let (min, max) = (a.min(b).min(c), a.max(b).max(c));
@@ -97,7 +98,8 @@ pub struct Edge {
 }
 
 impl Edge {
-    /// Steps 4 and 5 for the edge from `a` to `b`, starting at pixel (i, j) of the picture.
+    /// Steps 4 and 5 of the setup (docs/formats.md) for the edge from `a` to `b`, starting at the pixel in column
+    /// i and row j.
     ///
     /// |E| < 2^20·(2047.5 + 1280 + 2047.5 + 720)·2^8, which is below 2^41.
     fn new(a: ScreenVertex, b: ScreenVertex, [i, j]: [i32; 2]) -> Self {
@@ -125,10 +127,10 @@ pub struct Plane {
 }
 
 impl Plane {
-    /// Steps 6 to 8 for the values at the vertices, u18.6.
+    /// Steps 6 to 8 of the setup (docs/formats.md), for values of depth or light at the vertices, u18.6.
     ///
-    /// A difference of values is below 2^24 and a difference of positions below 2^20, so N < 2^45. Inlined, because a flat triangle has
-    /// a single plane.
+    /// A difference of values is below 2^24 and a difference of positions below 2^20, so N < 2^45. Inlined, because a
+    /// flat triangle has a single plane.
     #[inline(always)]
     fn new(triangle: &Oriented, [w0, w1, w2]: [u32; 3], [i, j]: [i32; 2]) -> Self {
         let [v0, v1, v2] = triangle.vertices;
@@ -159,7 +161,7 @@ impl Plane {
     }
 }
 
-/// nearest(N·y·2^−(lead + 8)) for |N| < 2^45, exact: at most 2^62.
+/// One gradient of a plane, nearest(N·y·2^−(lead + 8)) for a numerator |N| < 2^45, exact: at most 2^62.
 ///
 /// The product has 69 bits: N is split in two parts, and the product with the low part is shifted first.
 const fn gradient(numerator: i64, Reciprocal { y, lead }: Reciprocal) -> i64 {
@@ -178,7 +180,8 @@ const fn gradient(numerator: i64, Reciprocal { y, lead }: Reciprocal) -> i64 {
 pub struct Setup {
     /// Bounding rows and columns.
     pub bounds: Bounds,
-    /// The column of the start pixel, in the bounds and near the topmost vertex. The row of the start pixel is the first row of the bounds.
+    /// The column of the start pixel, in the bounds and near the topmost vertex. The row of the start pixel is the
+    /// first row of the bounds.
     pub start_column: i32,
     /// The edges 0→1, 1→2 and 2→0.
     pub edges: [Edge; 3],
@@ -186,12 +189,12 @@ pub struct Setup {
     pub depth: Plane,
     /// Planes of red, green and blue times the depth, under smooth shading.
     pub light: Option<[Plane; 3]>,
-    /// Whether E' fits 32 bits everywhere in the bounds and one pixel around them.
+    /// Whether all edge functions E' fit 32 bits everywhere in the bounds and one pixel around them.
     pub narrow: bool,
 }
 
 impl Setup {
-    /// Steps 4 to 8, for a flat triangle.
+    /// Steps 4 to 8 of the setup (docs/formats.md), for a flat triangle.
     pub fn new(triangle: &Oriented, bounds: Bounds) -> Self {
         let [v0, v1, v2] = triangle.vertices;
         let topmost = if v0.y <= v1.y && v0.y <= v2.y {
@@ -217,7 +220,8 @@ impl Setup {
         }
     }
 
-    /// Steps 4 to 9, for a triangle with the light of its vertices in the order of the vertices.
+    /// Steps 4 to 9 of the setup (docs/formats.md), for a triangle with the light of its vertices in the
+    /// order of the vertices.
     ///
     /// Not inlined, so that flat triangles do not load this code into the instruction cache.
     #[inline(never)]
@@ -234,8 +238,9 @@ impl Setup {
     }
 }
 
-/// E is the doubled area of the triangle formed by an edge and the pixel: at most the area of the bounding box enlarged by a pixel on
-/// each side. E' = E/256 fits 32 bits if this area is below 2^39.
+/// Whether all edge functions fit 32 bits. An edge function E is the doubled area of the triangle formed by an edge and
+/// the pixel: at most the area of the bounding box enlarged by a pixel on each side. E' = E/256 fits 32 bits if this
+/// area is below 2^39.
 fn narrow(vertices: &[ScreenVertex; 3]) -> bool {
     let extent = |[a, b, c]: [i32; 3]| i64::from(a.max(b).max(c) - a.min(b).min(c) + 2 * 256);
     extent(vertices.map(|v| v.x)) * extent(vertices.map(|v| v.y)) < 1 << 39

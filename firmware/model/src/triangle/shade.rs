@@ -18,7 +18,7 @@ pub fn intensity(normal: [i16; 3], n: &[i32; 3], facing: Facing) -> u32 {
     nearest(towards, 37 - 8).clamp(0, 1 << 8) as u32
 }
 
-/// Each channel times the intensity (u1.8, at most 1), to nearest.
+/// Multiplies each channel of a colour by the intensity (u1.8, at most 1), to nearest.
 pub fn lit(colour: Rgb565, intensity: u32) -> Rgb565 {
     let [r, g, b] = colour
         .channels()
@@ -26,20 +26,22 @@ pub fn lit(colour: Rgb565, intensity: u32) -> Rgb565 {
     Rgb565(r << 11 | g << 5 | b)
 }
 
-/// L: red, green and blue of a vertex after shading, u0.14 of the channel's range: at most 63/64.
+/// The light L of a vertex (docs/formats.md, "Smooth shading"): red, green and blue after shading, u0.14 of the
+/// channel's range: at most 63/64.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Lit(pub [u16; 3]);
 
 impl Lit {
-    /// Each channel times the intensity (u1.8, at most 1), exact.
+    /// Multiplies each channel of a colour by the intensity (u1.8, at most 1), exactly.
     pub fn new(colour: Rgb565, intensity: u32) -> Self {
         let [r, g, b] = colour.channels().map(|c| u32::from(c) * intensity);
         Self([2 * r, g, 2 * b].map(|x| x as u16))
     }
 
-    /// P: each channel times w (u18.6) and half a code, to nearest, u18.6.
+    /// The values P that the planes of light interpolate: each channel times `w` plus half a code, where `w` is the
+    /// vertex's depth code before rounding (u18.6). P is u18.6, to nearest.
     pub fn weighted(self, w: u32) -> [u32; 3] {
-        // Product of 24 by 14 bits.
+        // The product has 24 + 14 bits.
         self.0
             .map(|x| nearest(i64::from(x) * i64::from(w + 32), 14) as u32)
     }

@@ -11,11 +11,12 @@ pub const GUARD: i32 = 2047 << 8;
 /// A vertex before the perspective division.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CameraVertex {
-    /// D·u in pixels at distance 1, s44 with 14 + f fraction bits.
+    /// Coordinate X along the right axis, relative to the eye, in pixels at distance 1: s44 with 14 + f fraction bits,
+    /// where f is the scale shift of the frame constants.
     pub x: i64,
-    /// D·v, in the format of `x`.
+    /// Coordinate Y along the down axis, in the format of `x`.
     pub y: i64,
-    /// D·n in world units, s44 with 37 fraction bits.
+    /// Depth Z along the forward axis, in world units: s44 with 37 fraction bits.
     pub z: i64,
     /// Light under smooth shading, otherwise black.
     pub light: Light,
@@ -39,7 +40,8 @@ pub enum Projected {
     Visible(ScreenVertex),
     /// Nearer than the near plane, or behind the eye.
     Behind,
-    /// Beyond the near plane, but outside the guard band. The position is saturated, so only the side of the picture is meaningful.
+    /// Beyond the near plane, but outside the guard band. The position is saturated, so only the side of
+    /// the picture is meaningful.
     BeyondGuard(ScreenVertex),
 }
 
@@ -58,10 +60,10 @@ impl Projected {
     }
 }
 
-/// Steps 1 and 2: into the camera's frame.
+/// Steps 1 and 2 of the vertex stage (docs/formats.md): transforms a position into the camera's frame.
 ///
-/// |P| ≤ 2·√3 is less than 2^15.8 in its units and a row is shorter than 2^24.01 (2^23.01 for n), so each product is below 2^39.9;
-/// a translation is at most 8 rows, 2^41.1. So |X|, |Y| < 2^41.7 and |Z| < 2^40.7.
+/// The position P with |P| ≤ 2·√3 is less than 2^15.8 in its units and a row is shorter than 2^24.01 (2^23.01 for n),
+/// so each product is below 2^39.9; a translation is at most 8 rows, 2^41.1. So |X|, |Y| < 2^41.7 and |Z| < 2^40.7.
 pub fn transform(frame: &MeshSetup, position: [i16; 3]) -> CameraVertex {
     let dot = |row: &[i32; 3]| -> i64 {
         core::iter::zip(position, row)
@@ -77,7 +79,8 @@ pub fn transform(frame: &MeshSetup, position: [i16; 3]) -> CameraVertex {
     }
 }
 
-/// Steps 3 to 8.
+/// Steps 3 to 8 of the vertex stage (docs/formats.md): projects a vertex to the screen, or finds it
+/// behind the near plane.
 pub fn project(frame: &MeshSetup, vertex: &CameraVertex) -> Projected {
     if vertex.z < frame.near {
         return Projected::Behind;
@@ -91,18 +94,19 @@ pub fn project(frame: &MeshSetup, vertex: &CameraVertex) -> Projected {
     }
 }
 
-/// Steps 4 to 8, for a vertex beyond the near plane.
+/// Steps 4 to 8 of the vertex stage (docs/formats.md): projects a vertex beyond the near plane to the screen.
 ///
 /// A position more than 4096 pixels from the centre saturates at 4096 pixels or more: it stays outside the guard band.
 ///
-/// Inlined, so that the code of the loop over vertices is contiguous and does not conflict in the direct-mapped instruction cache.
+/// Inlined, so that the code of the loop over vertices is contiguous and does not conflict in
+/// the direct-mapped instruction cache.
 #[inline(always)]
 pub fn snap(frame: &MeshSetup, vertex: &CameraVertex) -> ScreenVertex {
     let Reciprocal { y, lead } = Reciprocal::of(vertex.z as u64);
     // Z is at least near, so lead ≥ 30 (and ≤ 40); with f in 10…18 the shift is in 6…24.
     let shift = frame.scale_shift + lead - 34;
     let divide = |x: i64, size: u32| {
-        // Product of s14.11 and u24.
+        // `normalised` is s14.11, and its product with the u24 number y is exact.
         let normalised = nearest(x, shift).clamp(-1 << 24, (1 << 24) - 1);
         (128 * size) as i32 + nearest(normalised * i64::from(y), 27) as i32
     };
@@ -113,9 +117,9 @@ pub fn snap(frame: &MeshSetup, vertex: &CameraVertex) -> ScreenVertex {
     }
 }
 
-/// Step 8: w = K/Z. A mesh within its radius never saturates.
+/// Step 8: the depth code before rounding, w = K/Z. The codes of a mesh within its radius never saturate.
 fn depth(frame: &MeshSetup, y: u32, lead: u32) -> u32 {
-    // Product of 17 by 24 bits; the exponent is in −5…5, so the shift is in 6…26.
+    // The product has 17 + 24 bits; the exponent is in −5…5, so the shift is in 6…26.
     let product = u64::from(frame.depth.mantissa) * u64::from(y);
     let shift = (lead as i32 - 19 - frame.depth.exponent) as u32;
     nearest(product as i64, shift).min(((1 << 18) - 1) * 64) as u32
