@@ -291,8 +291,8 @@ impl Material {
             while face < colours.len() {
                 let mut i = 0;
                 while i < 3 {
-                    // A face perpendicular to an axis has 40 or 230 in the axis's channel. Here each component of the normal is 1/√3 in
-                    // magnitude, so the channels differ from the middle value by 1/√3 as much.
+                    // A face perpendicular to an axis has 40 or 230 in the axis's channel. Here each component of the normal is
+                    // 1/√3 in magnitude, so the channels differ from the middle value by 1/√3 as much.
                     colours[face][i] = if face >> i & 1 == 1 { 188 } else { 78 };
                     i += 1;
                 }

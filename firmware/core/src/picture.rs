@@ -1,11 +1,11 @@
-//! Size and renderer of a picture.
+//! Sizes of a picture, and the backends that draw it.
 
 use core::fmt;
 
 use crate::choice::choices;
 use crate::machine::{PICTURES, Picture};
 
-/// The size of a picture; the discriminant is the code in registers.
+/// The size of a picture. The discriminant is the code of the size in registers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Size {
     /// 320×180.
@@ -21,7 +21,7 @@ impl Size {
     /// All sizes, the smallest first.
     pub const ALL: [Self; 3] = [Self::W320, Self::W640, Self::W1280];
 
-    /// The size with this width and height; `None` for other pictures.
+    /// The size with this width and height; `None` if no size has them.
     pub fn of(width: u32, height: u32) -> Option<Self> {
         Self::ALL
             .into_iter()
@@ -48,35 +48,35 @@ impl Size {
         self.pixels()[1]
     }
 
-    /// Lines of a band.
+    /// Number of lines in a band.
     pub const fn band_lines(self) -> u32 {
         self.machine().band_lines
     }
 
-    /// Bands of a picture.
+    /// Number of bands in a picture.
     pub const fn bands(self) -> u32 {
         self.height() / self.band_lines()
     }
 
-    /// Width times height.
+    /// Number of pixels: width times height.
     pub const fn pixel_count(self) -> usize {
         self.width() as usize * self.height() as usize
     }
 }
 
-/// `320x180`
+/// Writes width and height, such as `320x180`.
 impl fmt::Display for Size {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         write!(f, "{}x{}", self.width(), self.height())
     }
 }
 
-/// The renderer of a board.
+/// The renderer that draws the frames of a board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Backend {
     /// The bit-exact model on the soft core.
     Cpu,
-    /// The accelerators.
+    /// The blocks in the gateware: triangle engine and raymarcher.
     Gateware,
 }
 

@@ -1,26 +1,26 @@
-//! The length and the angle of a plane vector, by CORDIC in vectoring mode (Volder, 1959).
+//! The length and the angle of a vector in the plane, by CORDIC in vectoring mode (Volder, 1959).
 //!
-//! Each of 36 steps turns the vector towards the positive first axis by an angle whose tangent is a power of two, and
-//! adds up the angles. The angle of a vector along an axis is exact; a vector of length 0 has the angle 0.
+//! Each of 36 steps turns the vector towards the positive first axis by an angle whose tangent is a power of two; the sum of
+//! these angles is the result. The angle of a vector along an axis is exact. A vector of length 0 has the angle 0.
 
 use crate::fixed::Turns;
 use crate::trig::PI_Q60;
 
-/// Number of steps. The final vector is within atan(2^−35) of the axis.
+/// Number of steps. After the last step the vector is within atan(2^−35) of the positive first axis.
 const STEPS: usize = 36;
-/// atan(2^−i) for i = 0…35, in units of 2^−48 turns, to the nearest.
+/// The angles of the steps: atan(2^−i) for i = 0…35, in units of 2^−48 turns, rounded to nearest.
 static ANGLES: [u64; STEPS] = angles();
-/// Factor that undoes the lengthening by the steps, ∏ cos(atan(2^−i)), with 32 fraction bits.
+/// Each step lengthens the vector. This factor, ∏ cos(atan(2^−i)) with 32 fraction bits, undoes the lengthening by all steps.
 const SHORTENING: u64 = 0x9B74_EDA8;
 
-/// Highest bit of the larger component before the steps. The vector grows by a factor of at most √2·1.6468, so all numbers fit
-/// 64 bits.
+/// Before the steps the components are shifted so that the highest bit of the larger one is this bit. The steps enlarge a
+/// component by a factor of at most √2·1.6468, so all numbers fit 64 bits.
 const LEAD: u32 = 60;
 
 /// The length of (x, y) in the units of the components, and the angle from the first axis towards the second.
 ///
-/// The error of the angle is at most 0.53·2^−32 turns for lengths of at least 2^32 units; the error of the length is at most 1 unit
-/// plus 2^−31 of the length. Components saturate to ±2^61.
+/// The error of the angle is at most 0.53·2^−32 turns for lengths of at least 2^32 units; the error of the length is at most 1
+/// unit plus 2^−31 of the length. Components saturate to ±2^61.
 pub fn polar(x: i64, y: i64) -> (i64, Turns) {
     const LIMIT: i64 = 1 << 61;
     let [x, y] = [x, y].map(|number| number.clamp(-LIMIT, LIMIT));
@@ -44,15 +44,15 @@ pub fn polar(x: i64, y: i64) -> (i64, Turns) {
             (x, y) = (x - turned, y + right);
             angle = angle.wrapping_sub(step);
         } else if i == 0 {
-            // A vector along the axis is neither turned nor lengthened.
+            // A vector along the first axis needs no steps, and its length is exact.
             return ((x >> up) << down, Turns((angle >> 16) as u32));
         } else {
-            // SHORTENING undoes the lengthening of all steps, so a vector on the axis is turned too.
+            // SHORTENING undoes the lengthening by all steps, so a vector that already lies on the axis is turned too.
             (x, y) = (x + turned, y - right);
             angle = angle.wrapping_add(step);
         }
     }
-    // Two partial products fit 64 bits each.
+    // The product is computed in two parts, because each part fits 64 bits.
     let (upper, lower) = (x as u64 >> 32, x as u64 & u64::from(u32::MAX));
     let length = upper * SHORTENING + ((lower * SHORTENING) >> 32);
     (
@@ -61,7 +61,7 @@ pub fn polar(x: i64, y: i64) -> (i64, Turns) {
     )
 }
 
-/// Computes the table by the Taylor series of the arctangent, with 60 fraction bits.
+/// Computes the table `ANGLES` by the Taylor series of the arctangent, with 60 fraction bits.
 const fn angles() -> [u64; STEPS] {
     let mut table = [1 << 45; STEPS];
     let mut i = 1;

@@ -8,21 +8,21 @@ use core::fmt;
 use crate::choice::{Choice as _, choices};
 use crate::fixed::Q32_32;
 
-/// Accepted half separations.
+/// Smallest and largest accepted half separation of the eyes, in world units.
 pub const HALF_SEPARATION: [Q32_32; 2] = [Q32_32::ZERO, Q32_32::ONE];
-/// Smallest distance of zero parallax, which is also at least the half separation.
+/// Smallest accepted distance of zero parallax, in world units. The distance must also be at least the half separation.
 const LEAST_PARALLAX: Q32_32 = Q32_32::lit("0.1");
 
-/// The text form.
+/// The text form, for help and error messages.
 pub const FORM: &str = "E,ZERO[,red-blue|red-cyan]";
 
 /// Colours of the glasses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tint {
-    /// Left red, right blue; green is the minimum of both.
+    /// The left eye is red, the right eye blue; green is the minimum of both.
     #[default]
     RedBlue,
-    /// Left red, right green and blue.
+    /// The left eye is red, the right eye green and blue.
     RedCyan,
 }
 
@@ -31,19 +31,20 @@ choices!(Tint {
     RedCyan: "red-cyan"
 });
 
-/// Two eyes, side by side along u.
+/// Two eyes, on both sides of the camera along its direction u.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stereo {
     /// Half separation: the distance from the camera to each eye, in world units, 0 to 1.
     pub half_separation: Q32_32,
-    /// Distance of zero parallax along n: at least the half separation, and at least 0.1.
+    /// Distance along the camera's direction n at which both eyes see a point at the same place of the picture (zero parallax):
+    /// at least the half separation, and at least 0.1.
     pub zero_parallax: Q32_32,
     /// Colours of the glasses.
     pub tint: Tint,
 }
 
 impl Stereo {
-    /// Checks the ranges of both distances.
+    /// Checks that half separation and distance of zero parallax are in their ranges.
     ///
     /// # Errors
     /// The first number out of range.
@@ -92,7 +93,7 @@ impl Stereo {
     }
 }
 
-/// The text form.
+/// Writes the text form.
 impl fmt::Display for Stereo {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let Self {

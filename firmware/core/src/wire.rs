@@ -14,18 +14,18 @@
 //! ```
 //!
 //! * A frame is COBS between two zero bytes, so that the loss of one zero is harmless, and ends in a CRC-16.
-//! * Data goes in blocks of 16 bytes, 1 to 15 a frame: the sender measures the error rate and shortens frames
-//!   on a bad line. Up to 128 blocks are in flight.
-//! * An acknowledgement lists the received blocks and the last data frame. As a line does not reorder, missing blocks of earlier
-//!   frames are lost and are sent again at once; a time-out is needed only for the loss of the newest frame or its
-//!   acknowledgement.
-//! * The newest acknowledgement is valid. If a damaged acknowledgement passes its CRC, the next one corrects the sender's state. The
-//!   CRC-32 of the transfer detects damaged data, and the transfer starts again.
+//! * Data is sent in blocks of 16 bytes, with 1 to 15 blocks in a frame: the sender measures the error rate and shortens the
+//!   frames on a bad line. Up to 128 blocks are in flight.
+//! * An acknowledgement lists the received blocks and the last data frame. As a line does not change the order of frames, missing
+//!   blocks of earlier frames are lost and are sent again at once; a time-out is needed only if the newest frame or its
+//!   acknowledgement is lost.
+//! * Only the newest acknowledgement counts. If a damaged acknowledgement passes its CRC-16, the next one corrects the sender's
+//!   state. If damaged data passes, the CRC-32 of the transfer is wrong, and the transfer starts again.
 //! * The receiver decides when the transfer is complete. It repeats its verdict until the sender has closed, so both
 //!   sides reach the end; if every `Close` is lost, the receiver ends after a timeout.
 //!
-//! A side with a console on the same line drops bytes after the end, until the line is quiet ([`Timing::quiet_ms`]). The other side
-//! treats the bytes after the last zero as text.
+//! A side with a console on the same line drops the bytes that it receives after the end of a transfer, until the line is quiet
+//! ([`Timing::quiet_ms`]). The other side treats the bytes after the last zero byte as text.
 
 mod ending;
 mod format;

@@ -21,7 +21,8 @@ impl Random {
 
 const BIAS: [f64; 3] = [73.8, -0.77, 18.4];
 
-/// A sensor at rest with noise of 0.1 °/s; `change` modifies its samples.
+/// Calibrates with samples of a sensor at rest with noise of 0.1 °/s, which `change` modifies. Returns the report and
+/// the exact means.
 fn calibrate(
     samples: u32,
     mut change: impl FnMut(u32, &mut Sample),
@@ -59,7 +60,7 @@ fn the_mean_is_kept_to_a_256th() {
             (f64::from(report.bias[axis]) - exact).abs() <= 0.5,
             "{report:?} {exact}"
         );
-        // Rounding to whole LSB adds a twelfth to the variance.
+        // The noise is 1.64 LSB, and rounding to whole LSB adds 1/12 LSB² to the variance.
         let deviation = f64::from(report.deviation[axis]) / 256.0;
         assert!(
             (deviation - (1.64_f64.powi(2) + 1.0 / 12.0).sqrt()).abs() < 0.05,
@@ -70,7 +71,7 @@ fn the_mean_is_kept_to_a_256th() {
         // The actual error agrees with the reported standard error.
         assert!((mean[axis] - BIAS[axis]).abs() < 4.0 * error);
     }
-    // 1.67 LSB of noise at 16.4 LSB per °/s, over the root of 8192.
+    // The expected drift: 1.67 LSB of noise, divided by 16.4 LSB per °/s and by the root of 8192 samples, in °/h.
     for drift in report.drift(Units::MPU_6050) {
         assert!((drift.to_num::<f64>() - 4.05).abs() < 0.15, "{drift}");
     }
@@ -150,7 +151,7 @@ fn stale_samples_do_not_count_and_extremes_fit() {
     };
     assert_eq!(calibration.on_sample(&sample), Ok(Progress::Going(1)));
     assert_eq!(calibration.on_sample(&sample), Ok(Progress::Going(1)));
-    // The largest number of samples with the largest rates.
+    // The largest number of samples with the largest rates must not overflow.
     for units in [
         Units::MPU_6050,
         Units {
@@ -175,7 +176,7 @@ fn stale_samples_do_not_count_and_extremes_fit() {
     }
 }
 
-/// Tracks a bias for `seconds` at 1 kHz; the gyroscope reads `rate` in LSB plus noise.
+/// Tracks a bias that is `start` at first, for `seconds` at 1 kHz. The gyroscope reads `rate`, in LSB, plus noise.
 fn followed(seconds: u32, start: [i32; 3], mut rate: impl FnMut(u32) -> [f64; 3]) -> RestBias {
     let mut resting = RestBias::new(Units::MPU_6050, start);
     let mut random = Random(9);
@@ -196,7 +197,7 @@ fn followed(seconds: u32, start: [i32; 3], mut rate: impl FnMut(u32) -> [f64; 3]
 
 #[test]
 fn a_bias_that_wanders_is_followed_at_rest() {
-    // A change of 0.5 °/s, tracked for three time constants.
+    // The bias changes by 0.5 °/s (8.2 LSB) and is tracked for three time constants.
     let resting = followed(300, [0; 3], |_| [8.2, -8.2, 0.0]);
     assert!(resting.is_at_rest());
     let bias = resting.bias().map(|x| f64::from(x) / 256.0);
@@ -226,7 +227,7 @@ fn motion_is_not_learnt() {
 
 #[test]
 fn at_rest_the_bias_does_not_cycle() {
-    // Without noise the bias converges to the resolution of a LSB and stays.
+    // Without noise the tracked bias must reach a constant value, and not cycle by rounding.
     let mut resting = RestBias::new(Units::MPU_6050, [256, -256, 128]);
     let mut seen = Vec::new();
     for i in 0..3_000_000 {

@@ -47,18 +47,18 @@ fn radians(angle: u32) -> f64 {
     f64::from(angle) / 2f64.powi(32) * TAU
 }
 
-/// Angles at the axes, the diagonals and their neighbours, and random angles.
+/// The angles of the axes and diagonals with their neighbours, and `count` further angles spread over the circle.
 fn angles(count: u32) -> impl Iterator<Item = u32> + Clone {
     let edges = (0..8_u32)
         .flat_map(|octant| [u32::MAX, 0, 1].map(|offset| (octant << 29).wrapping_add(offset)));
     edges.chain((0..count).map(|k| k.wrapping_mul(2_654_435_769).wrapping_add(k >> 3)))
 }
 
-/// Checks a view against the expected vectors and returns its deviation.
+/// Checks a view's basis against the expected vectors, and returns its deviation from an orthonormal basis.
 #[track_caller]
 fn check(view: &View, expected: [Vector; 3]) -> f64 {
     for (row, expected) in basis(view).into_iter().zip(expected) {
-        // Half a unit of Q2.23 and the errors of the sines and of one product.
+        // The tolerance is half a unit of Q2.23, plus 5 % for the errors of the sines and of one product.
         assert!(
             difference(row, expected) <= 2f64.powi(-24) * 1.05,
             "{row:?} {expected:?}"
@@ -132,7 +132,7 @@ fn the_free_camera_is_what_it_should_be() {
 fn known_places_are_exact() {
     let [zero, one] = [Q2_23::ZERO, Q2_23::ONE];
     let r = Q32_32::from_num(2);
-    // On the x axis, z is up on the screen.
+    // For an eye on the x axis, the world's z axis points up on the screen.
     let view = View::spherical(r, Turns(0), Turns::QUARTER).expect("in range");
     assert_eq!(view.eye(), [r, Q32_32::ZERO, Q32_32::ZERO]);
     assert_eq!(
@@ -178,7 +178,7 @@ fn known_places_are_exact() {
     );
 }
 
-/// A valid camera, for tests that change one number.
+/// The numbers of a valid camera (eye, basis, half width, near plane), of which tests change one.
 fn numbers() -> ([Q32_32; 3], [[Q2_23; 3]; 3], U4_28, U4_28) {
     let view = View::look(
         [Q32_32::ONE; 3],

@@ -19,7 +19,7 @@ fn assert_shortest<T: Fixed + std::str::FromStr>(x: T) {
             shorter.parse::<T>().is_ok_and(|back| back != x),
             "{decimal}"
         );
-        // The shorter decimal rounded up in its last digit.
+        // The other neighbour with this number of digits must not read back as the same bits either: rounded away from 0.
         let above = format!(
             "{:.digits$}",
             x.to_num::<f64>() + 0.5 * 0.1_f64.powi(digits as i32) * x.to_num::<f64>().signum()
@@ -44,7 +44,7 @@ proptest! {
         assert_shortest(Q2_23::from_bits(bits as i32 >> 7));
         assert_shortest(Q2_30::from_bits(bits as i32));
         assert_shortest(U4_28::from_bits(bits as u32));
-        // Beyond 53 bits the test's f64 would round.
+        // The test computes in f64, so this number has at most 53 bits.
         assert_shortest(Q32_32::from_bits(bits >> 11));
         prop_assert_eq!(Q32_32::from_bits(bits).to_string().parse(), Ok(Q32_32::from_bits(bits)));
     }
@@ -65,7 +65,7 @@ fn decimals_are_rounded_to_the_nearest_and_ties_to_even() {
             .map(Q2_14::to_bits)
             .map_err(|error| error.to_string())
     };
-    // 2^-15 is 0.000030517578125, half a unit.
+    // 0.000030517578125 is 2^-15, half a unit of the format: ties go to even.
     assert_eq!(bits("0.000030517578125"), Ok(0));
     assert_eq!(bits("0.0000305175781250000000000000000000000000001"), Ok(1));
     assert_eq!(bits("0.000091552734375"), Ok(2));
@@ -104,7 +104,7 @@ fn angles_are_degrees_without_whole_turns() {
     assert_eq!(turns("360"), Turns(0));
     assert_eq!(turns("-810"), -Turns::QUARTER);
     assert_eq!(turns("45"), Turns(1 << 29));
-    // One degree is 11930464.71 units.
+    // One degree is 11930464.71 units of 2^-32 turns.
     assert_eq!(turns("1"), Turns(11_930_465));
     assert_eq!(turns("-1"), -Turns(11_930_465));
     for extreme in [Q32_32::MIN, Q32_32::MAX] {

@@ -78,8 +78,8 @@ fn every_mounting_is_right_handed_and_orthonormal() {
     assert_eq!(Direction::from_word("--x"), None);
 }
 
-/// Paths over the zenith and the nadir, straight and while turning: a step of 0.01° changes no number by more than slightly over an arc
-/// of 0.01°.
+/// The camera follows paths over the zenith and the nadir, straight and while turning. A step of 0.01° changes each number of a
+/// camera by little more than the arc that the step causes.
 #[test]
 fn the_camera_never_jumps() {
     let step = 0.01_f64;
@@ -164,7 +164,7 @@ fn sensitivity_scales_a_turn() {
         let expected = 20.0 * f64::from(sensitivity) / 256.0;
         assert!((yaw - expected).abs() < 1e-4, "{sensitivity}: {yaw}");
     }
-    // A return to sensitivity 1 leaves the camera where it is.
+    // The camera does not move when the sensitivity changes back to 1.
     let mut steering = Steering::new(512);
     steering.follow(Quaternion::IDENTITY);
     let before = steering.follow(attitude(10.0, 0.0, 0.0));

@@ -1,7 +1,7 @@
-//! Mutations of valid inputs against every parser of external data.
+//! Gives mutations of valid inputs to every parser of external data.
 //!
-//! A fixed seed makes a run repeatable. `GLINT_FUZZ_INPUTS` sets how many inputs each target gets, 20,000 by default; the
-//! dev profile's overflow checks make an overflow a panic.
+//! A fixed seed makes a run repeatable. `GLINT_FUZZ_INPUTS` sets how many inputs each target gets, 20,000 by default. The
+//! overflow checks of the dev profile turn an overflow into a panic.
 
 use glint_core::calibration::Units;
 use glint_core::console::{Command, Event, LineEditor};
@@ -28,7 +28,7 @@ impl Random {
     }
 }
 
-/// Gives `target` mutations of a corpus.
+/// Calls `target` with mutations of the inputs in `corpus`.
 fn fuzz(corpus: &[Vec<u8>], mut target: impl FnMut(&[u8], &mut Random)) {
     let inputs =
         std::env::var("GLINT_FUZZ_INPUTS").map_or(20_000, |count| count.parse().expect("a number"));
@@ -98,7 +98,7 @@ fn meshes() {
         let triangles: Vec<_> = (0..count - 2).map(triangle).collect();
         encode(&vertices(count), &triangles).expect("a good mesh")
     };
-    // Two chunks of one vertex and one triangle each.
+    // A mesh of two chunks, with three vertices and one triangle each.
     let mut two = mesh(3);
     two[4] = 32 + 5 * 16 * 2;
     two[8] = 2;
@@ -149,7 +149,7 @@ fn logs() {
     let mut passed = 0;
     fuzz(&corpus, |bytes, random| {
         let mut bytes = bytes.to_vec();
-        // Few mutations keep a valid length.
+        // Few mutations leave the length valid, so half of the inputs get a valid length here.
         if let (Some(rest), true) = (bytes.len().checked_sub(HEADER_BYTES), random.below(2) == 0) {
             let samples = rest / RECORD_BYTES;
             bytes[4..8].copy_from_slice(&(samples as u32).to_le_bytes());
@@ -199,7 +199,7 @@ fn console() {
     assert!(parsed > 0);
 }
 
-/// A transfer without errors: the bytes in both directions.
+/// Runs a transfer without errors, and returns the bytes sent in both directions.
 fn transfer(data: &[u8], session: u8) -> [Vec<u8>; 2] {
     let mut buffer = vec![0; data.len()];
     let mut sender = Sender::new(data, session, Timing::HOST, 0);

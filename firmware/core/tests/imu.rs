@@ -11,7 +11,7 @@ type TestImu = Imu<&'static str>;
 const EYE: [Q32_32; 3] = [Q32_32::ZERO; 3];
 const RADIUS: Q32_32 = Q32_32::lit("2.5");
 
-/// At rest, flat, with a bias of (10, −20, 30) LSB and some noise.
+/// A measurement of a flat sensor at rest, with a bias of (10, −20, 30) LSB and some noise.
 fn rest(index: u64) -> Measurement {
     let noise = (index * 7 % 3) as i16 - 1;
     Measurement {
@@ -40,7 +40,7 @@ fn a_calibrated_sensor_at_rest_stays_where_it_is() {
     let bias = imu.bias().map(|bias| bias.to_num::<f64>() * 16.4);
     assert!((bias[2] - 30.0).abs() < 0.01, "{bias:?}");
     assert_eq!(imu.temperature(), Some(3_500));
-    // The tilt caused by the bias decays.
+    // Before the calibration the bias caused a tilt, which now decays.
     for index in 8_192..40_000 {
         imu.on_sample(index * 1_000, &rest(index));
     }
@@ -91,7 +91,7 @@ fn the_camera_follows_and_can_be_recentred() {
     assert_eq!(imu.view(EYE, RADIUS), None);
     imu.set_follow(Some(Follow::Look));
     assert_eq!(imu.view(EYE, RADIUS), None, "nothing was measured yet");
-    // Turn by 90° to the left in a second.
+    // The sensor turns by 90° to the left in a second.
     let turning = Measurement {
         gyro: [0, 0, 1_476],
         ..rest(0)
@@ -118,7 +118,7 @@ fn the_camera_follows_and_can_be_recentred() {
     let (n, eye) = forward(&mut imu);
     near(n, [0.0, 1.0, 0.0]);
     near(eye, [0.0, -2.5, 0.0]);
-    // Opposite mounting, and half the sensitivity.
+    // The sensor is mounted the other way round; then the mounting is the default one, with half the sensitivity.
     imu.set_mounting(Mounting::new(Direction::MinusY, Direction::Z).expect("perpendicular"));
     near(forward(&mut imu).0, [0.0, -1.0, 0.0]);
     imu.set_mounting(Mounting::default());

@@ -7,7 +7,7 @@ use glint_core::light::{
 };
 use proptest::prelude::*;
 
-/// The lit colours in f64.
+/// The lit colours of six faces, computed in f64.
 fn shone(ambient: Rgb, lights: &[([f64; 3], Rgb)], faces: &[Rgb; 6]) -> [[f64; 3]; 6] {
     core::array::from_fn(|face| {
         core::array::from_fn(|channel| {
@@ -59,7 +59,7 @@ proptest! {
         let exact = shone(ambient, &exact, &material.faces());
         for (found, exact) in lighting.shine_on(&material.faces()).iter().zip(exact) {
             for (found, exact) in found.iter().zip(exact) {
-                // Half a step, plus 2^-15 of 255 per direction.
+                // Half a step for the rounding of the result, plus 2^-15 of 255 for the rounding of each direction.
                 prop_assert!((f64::from(*found) - exact).abs() < 0.54, "{found} {exact}");
             }
         }
@@ -94,7 +94,7 @@ fn plain_light_leaves_colours_as_they_are() {
     }
 }
 
-/// Faces of equal colour would hide the edge between them.
+/// If two faces had the same colour, the edge between them would be invisible.
 #[test]
 fn every_face_of_a_material_looks_different() {
     for material in Material::ALL {

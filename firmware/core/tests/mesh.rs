@@ -22,7 +22,7 @@ fn triangle(indices: [u32; 3]) -> IndexedTriangle {
     }
 }
 
-/// A tetrahedron: 6 records and the header.
+/// A mesh of one chunk with four vertices and two triangles.
 fn small() -> Vec<u8> {
     let vertices: Vec<Vertex> = (0..4).map(vertex).collect();
     encode(&vertices, &[triangle([0, 1, 2]), triangle([0, 2, 3])]).expect("a good mesh")

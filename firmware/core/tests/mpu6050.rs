@@ -15,7 +15,7 @@ use virtual_mpu6050::{Bus, Chip, Fault, Imperfections, Source, State};
 const MILLISECOND: u64 = 1_000_000;
 const SECOND: u64 = 1_000 * MILLISECOND;
 
-/// The clock of the bus; a delay advances the clock and calls the test's hook.
+/// Delays on the clock of the bus: a delay advances this clock, and then gives control to the test once.
 struct Clock(Bus);
 
 impl DelayNs for Clock {
@@ -33,11 +33,11 @@ impl DelayNs for Clock {
     }
 }
 
-/// Faults of the bus.
+/// The errors of the bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Trouble {
     Bus(virtual_mpu6050::Error),
-    /// A read was not over when the next read was due.
+    /// A periodic read was not finished when the next one was due.
     Late,
 }
 
@@ -54,7 +54,7 @@ impl embedded_hal_async::i2c::Error for Trouble {
 struct Master {
     bus: Bus,
     read: Option<PeriodicRead>,
-    /// Start of the next read, in ns.
+    /// Time at which the next periodic read starts, in ns.
     next: u64,
 }
 
@@ -105,7 +105,7 @@ impl PeriodicI2c for Master {
     }
 }
 
-/// Received events, each with the time on the bus.
+/// The events that the stream reports, each with the time on the bus's clock, in ns.
 #[derive(Default)]
 struct Record {
     starts: Vec<(u64, Identity)>,
@@ -130,7 +130,8 @@ impl Sink<Trouble> for Recorder {
     }
 }
 
-/// A steadily increasing rate: a count of x is 61 µs.
+/// A motion with a steadily increasing rate about x, which shows when a sample was measured: the rate grows by a count
+/// every 61 µs.
 fn ramp(time: f64) -> State {
     State {
         rate: [1_000.0 * time - 1_900.0, 0.0, 0.0],
@@ -142,7 +143,7 @@ fn chip(motion: fn(f64) -> State, imperfections: Imperfections) -> Chip {
     Chip::new(Source::Motion(Box::new(motion)), imperfections, 7)
 }
 
-/// An action on the chip at a time in ns.
+/// An action on the chip, and the time in ns at which it happens.
 type Action<'a> = (u64, &'a dyn Fn(&mut Chip));
 
 /// Runs a stream for a given time and executes the planned actions on the chip.
@@ -190,7 +191,8 @@ fn every_sample_comes_once_with_its_time() {
         let found = record.samples.len() as f64;
         assert!((found - expected).abs() <= 2.0, "{found} of {expected}");
         for (index, (_, time, measurement)) in record.samples.iter().enumerate() {
-            // The filter at 98 Hz delays by 2.8 ms.
+            // The time in µs at which the chip has measured this rate: the motion's time plus the delay of the chip's
+            // filter, 2.8 ms.
             let measured = (f64::from(measurement.gyro[0]) / 16.4 + 1_900.0) * 1e3 + 2_800.0;
             let late = *time as f64 - measured;
             let most = if index < 100 { 300.0 } else { 100.0 };
@@ -216,7 +218,7 @@ fn counts_are_those_of_the_registers() {
             .map(|(.., sample)| f64::from(pick(sample)));
         all.sum::<f64>() / record.samples.len() as f64
     };
-    // Bias, drift over 11.53 °C, and scale of the modelled chip.
+    // The expected means: the modelled chip's bias, its drift over 11.53 °C, and the rate or force with its error of scale.
     let rate = [
         -4.5 + 1.8448 + 10.1,
         1.25 - 1.153 - 19.8,
@@ -269,12 +271,13 @@ fn relatives_are_known_and_strangers_are_not() {
     assert!(record.samples.is_empty());
 }
 
-/// At rest, with noise.
+/// The motion of a sensor at rest.
 fn still(_: f64) -> State {
     State::default()
 }
 
-/// Checks that the stream reports a fault between 1 s and 1.3 s and recovers within a time in ms.
+/// Runs a stream with a fault that `begin` causes at 1 s and that ends at 1.3 s. Checks that the stream reports the fault and
+/// recovers within `within` ms.
 fn recovers(begin: impl Fn(&mut Chip), within: u64) -> Record {
     let (from, to) = (SECOND, 1_300 * MILLISECOND);
     let end = |chip: &mut Chip| chip.fault = None;

@@ -37,18 +37,18 @@ fn excess(quaternion: Quaternion) -> f64 {
     (norm - 1.0).abs()
 }
 
-/// The attitude after a constant rate in LSB at 16.4 LSB per °/s.
+/// The attitude after some seconds of a constant rate, in LSB with 16.4 LSB per °/s; computed in f64.
 fn spun(rate: [f64; 3], seconds: f64) -> Parts {
     let [x, y, z] = rate.map(|lsb| (lsb / 16.4).to_radians() * seconds / 2.0);
     let half = (x * x + y * y + z * z).sqrt();
-    // The sine of many turns keeps 1e-16 of each.
+    // After many turns the angle's error in f64 is about 1e-16 of the whole angle, which is small enough.
     let scale = half.sin() / half;
     [half.cos(), x * scale, y * scale, z * scale]
 }
 
 #[test]
 fn a_constant_rate_is_exact() {
-    // A tenth of a day is enough here; the report runs the soak of a day.
+    // A selection of runs; the report runs the soak of a day in full.
     for (rate, step, seconds, most) in [
         ([1, 0, 0], 1_000, 3_600_u32, 1e-5),
         ([0, -1, 1], 1_000, 3_600, 1e-5),
@@ -150,7 +150,7 @@ fn gains_are_exact_for_steps_of_any_length() {
             );
         }
     }
-    // A higher precision is needed unless the step is short.
+    // For steps from a tenth to ten times the time constant the error must be below 1e-8.
     for ratio in [0.1, 0.3, 1.0, 3.0, 10.0] {
         let time_constant = 50_000;
         let step = (f64::from(time_constant) * ratio) as u32;
@@ -190,7 +190,8 @@ fn angles_are_those_of_f64_and_the_way_back() {
         assert!(excess(quaternion) <= 2e-9);
         let got = quaternion.angles();
         let level = degrees(angles.pitch).to_radians().cos();
-        // At the pole yaw and roll turn about the same axis, so the error of each is the error of the quaternion over cos(pitch).
+        // Near the pole yaw and roll turn about almost the same axis, so the error of each is the error of the
+        // quaternion over cos(pitch).
         let most = 6e-7 / level + 1e-7;
         for (got, want, most) in [
             (got.yaw, angles.yaw, most),
@@ -205,7 +206,7 @@ fn angles_are_those_of_f64_and_the_way_back() {
     println!("yaw and roll within {largest:.1e}°/cos(pitch)");
 }
 
-/// Pitch through ±90°: the quaternion is continuous, and the angles follow the documented convention.
+/// The pitch passes ±90°: the quaternion is continuous, and the angles follow the documented convention.
 #[test]
 fn the_pole_is_defined() {
     for sign in [1, -1_i64] {
@@ -291,7 +292,7 @@ fn upright(accel: [i16; 3]) -> f64 {
         .map(|(a, z)| a * f64::from(z) / 2f64.powi(30))
         .sum::<f64>()
         / length;
-    // Near the pole the yaw is ill-conditioned.
+    // The yaw must be 0. Its error grows towards the pole, where the projection of the x axis is short.
     let yaw = degrees(attitude.angles().yaw).abs();
     assert!(yaw * a[1].hypot(a[2]) <= 6e-7 * length, "{accel:?} {yaw}");
     1.0 - cosine
@@ -329,7 +330,7 @@ fn tracker() -> Tracker {
 #[test]
 fn what_becomes_of_samples() {
     let mut tracker = tracker();
-    // The stamps wrap between the first and the second.
+    // The time stamps wrap between the first and the second sample.
     assert_eq!(tracker.on_sample(&rest(u32::MAX - 400)), Outcome::First);
     assert_eq!(tracker.on_sample(&rest(600)), Outcome::Step);
     assert_eq!(tracker.on_sample(&rest(600)), Outcome::Stale);
@@ -357,7 +358,7 @@ fn what_becomes_of_samples() {
     );
 }
 
-/// The estimate starts upside down on a level body: any tilt error is corrected in a bounded time.
+/// Saturation turns the estimate upside down while the body is level: even this tilt error is corrected in a bounded time.
 #[test]
 fn tilt_comes_back_after_saturation() {
     for axis in [0, 1] {
@@ -425,7 +426,7 @@ fn knocks_are_left_out() {
     assert_eq!(tracker.attitude(), Quaternion::IDENTITY);
 }
 
-/// A soak of a day at rest without noise: the attitude stays constant.
+/// 1000 s at rest without noise: the attitude reaches a constant value, and does not cycle by rounding.
 #[test]
 fn at_rest_nothing_cycles() {
     let mut tracker = tracker();

@@ -25,7 +25,8 @@ fn angles_and_lengths_are_within_a_unit() {
     for x in numbers().step_by(3) {
         for y in numbers() {
             let (length, angle) = polar(x, y);
-            // The rounding of f64 is 2^-53 of a length of at least 2^32.
+            // Shorter vectors are left out, because the errors are stated for lengths of at least 2^32. The relative rounding of
+            // f64 is 2^-53.
             let (fx, fy) = (x as f64, y as f64);
             if fx.hypot(fy) < 2f64.powi(32) {
                 continue;
@@ -53,7 +54,7 @@ fn axes_are_exact() {
         }
     }
     assert_eq!(polar(0, 0), (0, Turns(0)));
-    // Components beyond the range saturate.
+    // Components beyond ±2^61 saturate, so these vectors lie on diagonals.
     assert_eq!(polar(i64::MIN, i64::MIN).1, Turns(5 << 29));
     assert_eq!(polar(i64::MAX, i64::MAX).1, Turns(1 << 29));
 }

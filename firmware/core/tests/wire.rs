@@ -7,10 +7,10 @@ use glint_core::wire::{
 };
 use proptest::prelude::*;
 
-/// Microseconds a byte takes at 115200 baud, 8N1.
+/// Time in µs that a byte takes on the line at 115200 baud, 8N1.
 const BYTE_US: f64 = 1e7 / 115_200.0;
 
-/// Probability of damage to a byte, in 1/10000.
+/// Probabilities that a byte is lost, changed or repeated, in 1/10000.
 #[derive(Clone, Copy, Default)]
 struct Faults {
     drop: u64,
@@ -94,7 +94,7 @@ struct Outcome {
 }
 
 impl Outcome {
-    /// Data bytes over the capacity of the line in the same time.
+    /// The transferred data bytes divided by the number of bytes that the line could carry in the same time.
     fn efficiency(&self) -> f64 {
         let bytes = self.received.as_ref().map_or(0, Vec::len);
         bytes as f64 * BYTE_US / 1e6 / self.seconds
@@ -135,7 +135,7 @@ impl Scene {
         let mut receiver = Receiver::new(&mut buffer, self.announced, Timing::CONSOLE, 0);
         let mut there = Line::new(self.faults, self.seed, self.latency_us);
         let mut back = Line::new(self.faults, self.seed + 1_000, self.latency_us);
-        // Earlier output of the console, and the rest of the command's line.
+        // Before the transfer, the line holds earlier output of the console and the rest of the line of the command.
         back.send(0.0, b"glint> load 1234 deadbeef\r\nready\r\n");
         there.send(0.0, b"\n");
         let mut frame = [0; MAX_FRAME];
@@ -186,7 +186,7 @@ impl Scene {
     }
 }
 
-/// Bytes of every value, with zeros and long runs without a zero.
+/// Test data with bytes of every value, with zeros and with long runs without a zero.
 fn some_data(length: usize) -> Vec<u8> {
     (0..length as u32)
         .map(|i| (i.wrapping_mul(2_654_435_769) >> (i >> 10 & 15)) as u8)
@@ -316,7 +316,7 @@ fn an_awful_line_is_slow_and_right_or_given_up() {
     assert_eq!(outcome.received, None);
 }
 
-/// Runs a transfer that must fail on both sides with these causes.
+/// Runs a transfer, and checks that it fails on both sides, with these causes.
 fn assert_ends(scene: Scene, sender: Failure, receiver: Failure) {
     let outcome = scene.run(&some_data(50_000));
     assert_eq!(outcome.sender, State::Failed(sender));

@@ -27,8 +27,8 @@ const AGAIN: u32 = 30;
 pub trait Sink<E> {
     /// The chip was found and configured.
     fn on_start(&mut self, identity: Identity);
-    /// Takes a sample and its time in µs. The time is later than the measured motion by the delay of the chip's filter. Apart from
-    /// this delay its error is at most 0.1 ms, and 0.3 ms for the first hundred samples after a start.
+    /// Takes a sample and its time in µs. The time is later than the measured motion by the delay of the chip's filter. Apart
+    /// from this delay its error is at most 0.1 ms, and 0.3 ms for the first hundred samples after a start.
     fn on_sample(&mut self, time: u64, measurement: &Measurement);
     /// The chip was not found, or reading it failed. The stream tries again.
     fn on_error(&mut self, error: Error<E>);

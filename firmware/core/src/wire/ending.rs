@@ -3,12 +3,12 @@
 use super::frame::{Message, write};
 use super::state::{Failure, State, Timing};
 
-/// Repetitions of the last message, because no side acknowledges this message.
+/// How often the last message of a transfer is sent. It is repeated because it is not acknowledged.
 const COPIES: u8 = 3;
-/// Factor of the quiet time after a failure, which interrupts the other side's messages.
+/// After a failure the wait for a quiet line is longer by this factor, because the other side may still be sending.
 const FAILED_QUIET_FACTOR: u64 = 10;
 
-/// Outcome of a transfer, its last message, and the wait for a quiet line.
+/// The end of a transfer: sends the last message, waits for a quiet line, and then gives the outcome.
 pub struct Ending {
     outcome: State,
     last_message: Option<(u8, Message<'static>)>,
@@ -16,12 +16,12 @@ pub struct Ending {
     quiet_ms: u64,
     /// Time of the last message in either direction.
     last_ms: u64,
-    /// Latest end of the wait.
+    /// Time at which the wait for a quiet line ends at the latest.
     deadline_ms: u64,
 }
 
 impl Ending {
-    /// An ending that repeats `last_message` (session and message), if any.
+    /// Starts an ending that repeats `last_message` (session and message), if there is one.
     pub fn new(
         outcome: State,
         last_message: Option<(u8, Message<'static>)>,
@@ -43,12 +43,13 @@ impl Ending {
         }
     }
 
-    /// The end of a failed transfer without a message.
+    /// Starts the end of a failed transfer, without a last message.
     pub fn failed(failure: Failure, timing: Timing, now_ms: u64) -> Self {
         Self::new(State::Failed(failure), None, timing, now_ms)
     }
 
-    /// Drops the remains of the transfer from received bytes; returns the number of dropped bytes.
+    /// Drops received bytes, which are remains of the transfer, and returns their number; drops none if there is no wait for
+    /// a quiet line.
     pub fn on_bytes(&mut self, now_ms: u64, bytes: &[u8]) -> usize {
         if self.quiet_ms == 0 {
             return 0;
@@ -59,7 +60,8 @@ impl Ending {
         bytes.len()
     }
 
-    /// Writes the next frame, if any, and returns the state: the outcome after the end.
+    /// Writes the next frame, if any, to `out`. Returns the frame's length and the state, which is the outcome once the
+    /// wait is over.
     pub fn poll(&mut self, now_ms: u64, out: &mut [u8]) -> (usize, State) {
         if let Some((session, message)) = self.last_message {
             let length = write(session, message, out);

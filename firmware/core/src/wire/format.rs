@@ -4,13 +4,13 @@
 pub const BLOCK: u32 = 16;
 /// Maximum number of blocks in a frame.
 pub const MAX_BLOCKS: u32 = 15;
-/// Maximum number of blocks in flight: the bits of an acknowledgement's map.
+/// Maximum number of blocks in flight, which is the number of bits in the map of an acknowledgement.
 pub const WINDOW: u32 = u128::BITS;
 
-/// Maximum length of a transfer in bytes: block numbers have 24 bits.
+/// Maximum length of a transfer in bytes, because block numbers have 24 bits.
 pub const MAX_LENGTH: u32 = ((1 << 24) - 1) * BLOCK;
 
-/// The CRC-32 of a transfer.
+/// The algorithm of the CRC-32 of a transfer.
 pub static CRC_32: crc::Crc<u32> = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
 
 /// The CRC-32 (IEEE 802.3, as in zlib) of a whole transfer.
@@ -28,16 +28,16 @@ pub struct Manifest {
 }
 
 impl Manifest {
-    /// The manifest of some data.
+    /// Computes the manifest of `data`.
     pub fn of(data: &[u8]) -> Self {
-        // Both sides reject lengths above `MAX_LENGTH`.
+        // A saturated length does no harm, because both sides reject lengths above `MAX_LENGTH`.
         Self {
             length: u32::try_from(data.len()).unwrap_or(u32::MAX),
             crc32: crc32(data),
         }
     }
 
-    /// Number of blocks; the last one may be short.
+    /// Number of blocks of the transfer; the last one may be short.
     pub const fn blocks(self) -> u32 {
         self.length.div_ceil(BLOCK)
     }

@@ -8,12 +8,14 @@ use cobs::{CobsEncoder, DestBufTooSmallError, decode_in_place};
 use super::format::{BLOCK, MAX_BLOCKS, Manifest};
 use super::state::Reason;
 
-/// Bytes of a data frame besides its data, as sent: the kind, the number, the block, the CRC-16, the COBS code and two zeros.
+/// Bytes of a data frame on the line besides its data: kind and session (1), frame number (1), block number (3), CRC-16 (2), COBS
+/// code (1) and two zeros.
 pub const OVERHEAD: usize = 10;
-/// Longest encoded frame: the room that `poll` needs.
+/// Length of the longest encoded frame, which is the room that `poll` needs.
 pub const MAX_FRAME: usize = OVERHEAD + (MAX_BLOCKS * BLOCK) as usize;
 
-/// CCITT polynomial, starting from all ones, so that leading zeros count.
+/// The CRC-16 of a frame, with the CCITT polynomial. It starts with all ones, so that it detects lost or added zeros
+/// at the start.
 static CRC_16: crc::Crc<u16> = crc::Crc::<u16>::new(&crc::CRC_16_IBM_3740);
 
 /// A message between sender and receiver.
@@ -51,7 +53,7 @@ pub struct Acknowledge {
     pub number: u8,
     /// Number of the first missing block.
     pub next: u32,
-    /// Bit i: block `next` + i was received.
+    /// Bit i is set if block `next` + i was received.
     pub map: u128,
 }
 
@@ -62,7 +64,7 @@ const COMPLETE: u8 = 4;
 const CLOSE: u8 = 5;
 const ABORT: u8 = 6;
 
-/// Writes a frame and returns its length; 0 without room for it.
+/// Encodes a frame into `out` and returns its length; 0 if `out` is too short.
 pub fn write(session: u8, message: Message, out: &mut [u8]) -> usize {
     write_body(session, message, out).unwrap_or(0)
 }
@@ -97,7 +99,8 @@ fn write_body(
         Message::Acknowledge(Acknowledge { number, next, map }) => {
             let [low, middle, high, _] = next.to_le_bytes();
             body.push(&[head(ACKNOWLEDGE), number, low, middle, high])?;
-            // The map without leading and trailing zero bytes, and the number of leading zero bytes.
+            // The map is sent without the zero bytes at its ends, after the number of zero bytes left out at its start
+            // (the lowest bytes).
             let first = map.trailing_zeros() / 8;
             let past = (u128::BITS - map.leading_zeros()).div_ceil(8);
             if let Some(bytes) = map.to_le_bytes().get(first as usize..past as usize) {
@@ -131,7 +134,7 @@ impl Body<'_> {
 /// Splits a byte stream into frames at zero bytes.
 pub struct Reader {
     buffer: [u8; MAX_FRAME],
-    /// Bytes of the frame so far; a count above the buffer's length marks a frame that is too long.
+    /// Number of received bytes of the frame. A number above the buffer's length marks a frame that is too long.
     length: usize,
 }
 
@@ -143,7 +146,8 @@ impl Reader {
         }
     }
 
-    /// Takes bytes up to the next zero; returns the number of taken bytes, and the frame if complete and valid.
+    /// Takes bytes up to the next zero byte. Returns the number of taken bytes, and session and message of the frame if the zero
+    /// completes a valid one.
     pub fn take(&mut self, bytes: &[u8]) -> (usize, Option<(u8, Message<'_>)>) {
         let zero = bytes.iter().position(|&byte| byte == 0);
         let part = bytes.get(..zero.unwrap_or(bytes.len())).unwrap_or_default();

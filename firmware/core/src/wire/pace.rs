@@ -1,26 +1,26 @@
-//! Length of frames, and timeouts of answers.
+//! The length of frames, and the timeouts after which an answer is requested again.
 
 use super::format::{BLOCK, MAX_BLOCKS};
 use super::frame::OVERHEAD;
 
-/// Number of sent bytes in the statistics.
+/// Largest number of sent bytes in the statistics of `FrameSize`; beyond it the statistics are halved.
 const MEMORY: u32 = 8_192;
-/// One lost frame in the units of `FrameSize::lost`.
+/// One lost frame in the unit of `FrameSize::lost`, 1/256 frame.
 const FRAME: u32 = 256;
 
-/// The best length of a frame, from the rate of lost frames.
+/// Chooses the best length of a frame from the rate of lost frames.
 ///
 /// A frame of n data bytes and h further bytes, on a line that damages a byte with probability p, uses n/(n + h)·(1 − p)^(n + h)
 /// of the line's capacity. The maximum is at about n = √(h/p).
 pub struct FrameSize {
-    /// Lost frames, in 1/256.
+    /// Number of lost frames, in units of 1/256.
     lost: u32,
-    /// Sent bytes with a known fate.
+    /// Number of sent bytes that are known to have arrived or to be lost.
     bytes: u32,
 }
 
 impl FrameSize {
-    /// The initial estimate: one damaged byte in 410, which gives 4 blocks.
+    /// Starts with the estimate of one lost frame in 410 bytes, which gives frames of 4 blocks.
     pub const fn new() -> Self {
         Self {
             lost: FRAME,
@@ -28,7 +28,7 @@ impl FrameSize {
         }
     }
 
-    /// Records the fate of sent bytes, and the number of lost frames.
+    /// Adds `bytes` sent bytes that have arrived or are lost, and the number of frames that were lost, to the statistics.
     pub fn record(&mut self, bytes: u32, lost: u32) {
         self.bytes = self.bytes.saturating_add(bytes);
         self.lost = self.lost.saturating_add(lost.saturating_mul(FRAME));
@@ -41,16 +41,16 @@ impl FrameSize {
 
     /// Best number of blocks per frame, 1 to [`MAX_BLOCKS`].
     pub fn blocks(&self) -> u32 {
-        // The product is at most 10·8192·256.
+        // The product is at most 10·8192·256, which fits 32 bits.
         let squared = OVERHEAD as u32 * self.bytes * FRAME / self.lost.max(1);
         ((squared.isqrt() + BLOCK / 2) / BLOCK).clamp(1, MAX_BLOCKS)
     }
 }
 
-/// Timeout of an answer.
+/// The timeouts after which a missing answer is requested again.
 ///
-/// Each timeout is slightly longer than the previous one: short first timeouts suit a bad line, and the number of requests to a slow
-/// side grows only with the square root of the time.
+/// Each timeout is slightly longer than the previous one. The first timeouts are short, which suits a bad line. If the other side
+/// is slow, the number of requests grows only with the square root of the time.
 pub struct Patience {
     since_ms: Option<u64>,
     tries: u64,
@@ -58,7 +58,7 @@ pub struct Patience {
 
 /// First timeout in milliseconds.
 const FIRST_WAIT: u64 = 15;
-/// Growth of each timeout in milliseconds.
+/// Difference between successive timeouts in milliseconds.
 const LONGER: u64 = 2;
 
 impl Patience {
@@ -79,7 +79,7 @@ impl Patience {
         self.since_ms = Some(now_ms);
     }
 
-    /// Records an answer; further answers may be pending.
+    /// Records an answer: the next timeout is the shortest one again. Further answers may be pending.
     pub const fn answered(&mut self, now_ms: u64) {
         *self = Self {
             since_ms: Some(now_ms),
@@ -87,7 +87,7 @@ impl Patience {
         };
     }
 
-    /// Whether the timeout has passed; if so, a new timeout starts.
+    /// Whether an answer is pending and its timeout has passed; if so, a new timeout starts.
     pub fn is_over(&mut self, now_ms: u64) -> bool {
         let wait = FIRST_WAIT + LONGER * self.tries;
         let over = self

@@ -1,4 +1,4 @@
-//! Frames from received bytes.
+//! Passes the frames in received bytes to the sender or receiver of a transfer.
 
 use super::ending::Ending;
 use super::frame::{Message, Reader};
@@ -7,7 +7,7 @@ use super::frame::{Message, Reader};
 pub trait Peer {
     /// Processes a valid frame.
     fn on_message(&mut self, now_ms: u64, session: u8, message: Message);
-    /// The end of the transfer, once reached.
+    /// The end of the transfer; `None` while the transfer is in progress.
     fn ending(&mut self) -> Option<&mut Ending>;
 }
 

@@ -8,14 +8,14 @@ use super::state::{Failure, Reason, State, Timing};
 
 /// Receives one transfer into a buffer.
 ///
-/// Blocks are written to the buffer in any order. Its contents are valid once the state is [`State::Done`].
+/// Blocks are written to the buffer in any order. The buffer's contents are valid once the state is [`State::Done`].
 pub struct Receiver<'a> {
     reader: Reader,
     transfer: Transfer<'a>,
 }
 
 impl<'a> Receiver<'a> {
-    /// Waits for a transfer that fits into the buffer and matches the announced one, if any.
+    /// Waits for a transfer that fits into `buffer`. If `announced` is given, the transfer must have this length and CRC-32.
     pub fn new(
         buffer: &'a mut [u8],
         announced: Option<Manifest>,
@@ -38,7 +38,7 @@ impl<'a> Receiver<'a> {
         }
     }
 
-    /// Processes received bytes; returns the number of bytes that belong to the transfer: all of them until the transfer ends.
+    /// Processes received bytes. Returns how many of them belong to the transfer; until the transfer ends, these are all bytes.
     pub fn on_bytes(&mut self, now_ms: u64, bytes: &[u8]) -> usize {
         feed(&mut self.reader, &mut self.transfer, now_ms, bytes)
     }
@@ -63,7 +63,7 @@ impl<'a> Receiver<'a> {
         self.transfer.state
     }
 
-    /// Bytes received without a gap, and the total (0 while unknown).
+    /// Number of bytes received without a gap, and the total number of bytes (0 while unknown).
     pub fn progress(&self) -> (u32, u32) {
         self.transfer.opened.as_ref().map_or((0, 0), |opened| {
             let length = opened.manifest.length;
@@ -82,7 +82,7 @@ impl<'a> Receiver<'a> {
     }
 }
 
-/// The state without the reader, because received frames borrow the reader.
+/// The receiver's state except the reader. It is a separate type because received frames borrow the reader.
 struct Transfer<'a> {
     buffer: &'a mut [u8],
     announced: Option<Manifest>,
@@ -90,21 +90,21 @@ struct Transfer<'a> {
     opened: Option<Opened>,
     /// Time of the last valid frame.
     valid_ms: u64,
-    /// Whether a frame needs an answer.
+    /// Whether a received frame still needs an answer.
     reply: bool,
     ending: Option<Ending>,
     state: State,
 }
 
-/// A transfer after its `Open`.
+/// A transfer whose `Open` was received.
 struct Opened {
     session: u8,
     manifest: Manifest,
     /// The first missing block.
     next: u32,
-    /// Bit i: block `next` + i was received.
+    /// Bit i is set if block `next` + i was received.
     map: u128,
-    /// Number of the last data frame.
+    /// Number of the last received data frame.
     number: u8,
     /// CRC-32 of the blocks before `next`.
     digest: crc::Digest<'static, u32>,
@@ -141,7 +141,7 @@ impl Peer for Transfer<'_> {
                     now_ms,
                 ));
             }
-            // Messages of a receiver are echoes of the own frames.
+            // Only a receiver sends the other messages, so these are echoes of this side's own frames.
             _ => return,
         }
         self.valid_ms = now_ms;
@@ -177,7 +177,7 @@ impl Transfer<'_> {
             return length;
         }
         if now_ms.saturating_sub(self.valid_ms) > self.timing.silence_ms {
-            // The sender may have received the verdict and ended.
+            // A silent sender may have received the verdict and ended, so a known verdict decides the outcome.
             let outcome = match self.opened.as_ref().and_then(|opened| opened.verdict) {
                 Some(true) => State::Done,
                 Some(false) => State::Failed(Failure::Corrupt),
@@ -196,7 +196,7 @@ impl Transfer<'_> {
 
     fn abort(&mut self, reason: Reason, now_ms: u64) {
         if self.ending.is_none() {
-            // The session is unknown before an `Open`.
+            // Before an `Open` the session is unknown, so no message can be sent.
             let last_message = self
                 .opened
                 .as_ref()
@@ -222,7 +222,7 @@ impl Opened {
         opened
     }
 
-    /// Stores the new blocks of a frame within the window.
+    /// Stores the new blocks of a data frame, if they are within the window.
     fn store(
         &mut self,
         Data {
@@ -261,7 +261,7 @@ impl Opened {
             return;
         }
         room.copy_from_slice(new);
-        // The frame has 1 to 15 blocks, all within the bits of the map.
+        // The frame has at most 15 new blocks, and all of them are within the bits of the map.
         self.map |= ((1 << (past - first)) - 1) << (first - self.next);
         self.advance(buffer);
     }
@@ -278,7 +278,7 @@ impl Opened {
         self.judge();
     }
 
-    /// Decides the verdict after the last block.
+    /// Decides whether the CRC-32 is right, once the last block was received.
     fn judge(&mut self) {
         if self.next >= self.manifest.blocks() && self.verdict.is_none() {
             self.verdict = Some(self.digest.clone().finalize() == self.manifest.crc32);

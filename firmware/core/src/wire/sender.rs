@@ -8,9 +8,9 @@ use super::peer::{Peer, feed};
 use super::state::{Failure, Reason, State, Timing};
 use super::window::Window;
 
-/// Number of restarts of a transfer after a wrong CRC-32.
+/// How often a transfer is restarted after a wrong CRC-32.
 const RESTARTS: u8 = 3;
-/// Longest time without a new block, in multiples of the longest silence.
+/// Longest time without a newly acknowledged block, in multiples of the longest accepted silence.
 const STALL_FACTOR: u64 = 4;
 
 /// Sends one transfer from a slice.
@@ -20,8 +20,8 @@ pub struct Sender<'a> {
 }
 
 impl<'a> Sender<'a> {
-    /// Starts to send `data`. `session` (modulo 16) separates this transfer from the remains of the previous transfer: increment the
-    /// number for each transfer.
+    /// Starts to send `data`. The number `session` (modulo 16) separates this transfer from remains of the previous one, so the
+    /// caller increments it for each transfer.
     pub fn new(data: &'a [u8], session: u8, timing: Timing, now_ms: u64) -> Self {
         let mut transfer = Transfer {
             data,
@@ -48,13 +48,13 @@ impl<'a> Sender<'a> {
         }
     }
 
-    /// Processes received bytes; returns the number of bytes that belong to the transfer: all of them until the transfer ends.
+    /// Processes received bytes. Returns how many of them belong to the transfer; until the transfer ends, these are all bytes.
     pub fn on_bytes(&mut self, now_ms: u64, bytes: &[u8]) -> usize {
         feed(&mut self.reader, &mut self.transfer, now_ms, bytes)
     }
 
-    /// Writes the next frame, if any, and returns its length. Call this whenever the line accepts bytes, because timeouts are checked
-    /// here. `out` needs [`MAX_FRAME`] bytes; a shorter buffer stays empty.
+    /// Writes the next frame, if any, and returns its length. Call this whenever the line accepts bytes, because timeouts are
+    /// checked here. `out` needs [`MAX_FRAME`] bytes; a shorter buffer stays empty.
     pub fn poll(&mut self, now_ms: u64, out: &mut [u8]) -> usize {
         if out.len() < MAX_FRAME {
             0
@@ -74,7 +74,7 @@ impl<'a> Sender<'a> {
         self.transfer.state
     }
 
-    /// Bytes acknowledged without a gap, and the total.
+    /// Number of bytes acknowledged without a gap, and the total number of bytes.
     pub fn progress(&self) -> (u32, u32) {
         let length = self.transfer.manifest.length;
         (
@@ -89,7 +89,7 @@ impl<'a> Sender<'a> {
     }
 }
 
-/// The state without the reader, because received frames borrow the reader.
+/// The sender's state except the reader. It is a separate type because received frames borrow the reader.
 struct Transfer<'a> {
     data: &'a [u8],
     manifest: Manifest,
@@ -139,7 +139,7 @@ impl Peer for Transfer<'_> {
                     now_ms,
                 ));
             }
-            // Messages of a sender are echoes of the own frames.
+            // Only a sender sends the other messages, so these are echoes of this side's own frames.
             _ => return,
         }
         self.valid_ms = now_ms;
@@ -151,7 +151,7 @@ impl Peer for Transfer<'_> {
 }
 
 impl Transfer<'_> {
-    /// Applies an acknowledgement; ignores an impossible one.
+    /// Applies an acknowledgement. Returns `false` for an impossible acknowledgement, which is ignored.
     fn acknowledged(&mut self, acknowledge: Acknowledge, now_ms: u64) -> bool {
         let blocks = self.frame_size.blocks();
         let Some(fate) = self.window.update(acknowledge) else {
@@ -193,7 +193,7 @@ impl Transfer<'_> {
                 return length;
             }
         }
-        // The window is full.
+        // No new block can be sent: the sender waits for an answer until the timeout.
         if self.patience.is_waiting() && !self.patience.is_over(now_ms) {
             return 0;
         }
@@ -202,12 +202,12 @@ impl Transfer<'_> {
             self.window.forget_first();
             return self.send_data(1, now_ms, out);
         }
-        // An `Open` requests an answer at the start, and the verdict at the end.
+        // An `Open` requests the first answer at the start of a transfer, and the verdict at its end.
         self.patience.begin(now_ms);
         write(self.session, Message::Open(self.manifest), out)
     }
 
-    /// Sends up to `most` of the first blocks to send.
+    /// Writes a data frame with the next blocks to send, at most `most`; returns its length.
     fn send_data(&mut self, most: u32, now_ms: u64, out: &mut [u8]) -> usize {
         let Some(run) = self.window.take(most, self.manifest.blocks()) else {
             return 0;
@@ -229,7 +229,7 @@ impl Transfer<'_> {
         )
     }
 
-    /// Restarts the transfer after a wrong CRC-32.
+    /// Restarts the transfer after a wrong CRC-32, or fails if no restart is left.
     fn restart(&mut self, now_ms: u64) {
         let Some(restarts) = self.restarts.checked_sub(1) else {
             return self.fail(Failure::Corrupt, now_ms);
@@ -286,7 +286,7 @@ mod tests {
         let mut sender = Sender::new(&data, 14, Timing::HOST, 0);
         sender.transfer.manifest.crc32 ^= 1;
         let mut receiver = Receiver::new(&mut buffer, None, Timing::CONSOLE, 0);
-        // Sessions 14 and 15 fail.
+        // The CRC-32 is wrong in sessions 14 and 15; in session 0 it is right.
         talk(&mut sender, &mut receiver, 0);
         assert_eq!(
             (sender.state(), receiver.state()),

@@ -5,19 +5,20 @@ use core::fmt;
 /// Time-outs of a sender or receiver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Timing {
-    /// Time without a valid frame after which a transfer fails.
+    /// Time in milliseconds without a valid frame after which a transfer fails.
     pub silence_ms: u64,
-    /// Silence that ends the dropping of bytes after a transfer; with 0 the caller gets these bytes.
+    /// After a transfer, received bytes are dropped until the line was quiet for this time in milliseconds. With 0 no bytes are
+    /// dropped: the caller gets them.
     pub quiet_ms: u64,
 }
 
 impl Timing {
-    /// Time-outs of the side that runs the console.
+    /// Time-outs of the side that runs the console (the board).
     pub const CONSOLE: Self = Self {
         silence_ms: 2_000,
         quiet_ms: 5,
     };
-    /// Time-outs of the side that uses a console.
+    /// Time-outs of the side that uses the console of the other side (the host).
     pub const HOST: Self = Self {
         silence_ms: 5_000,
         quiet_ms: 0,
@@ -42,7 +43,7 @@ pub enum Failure {
     Silence(u64),
     /// Valid frames, but no new block for the given milliseconds.
     Stalled(u64),
-    /// Wrong CRC-32 of the transfer in every attempt.
+    /// The CRC-32 of the transfer was wrong in every attempt.
     Corrupt,
     /// Cancelled by this side.
     Aborted(Reason),
@@ -56,13 +57,13 @@ pub enum Failure {
 pub enum Reason {
     /// Cancelled on request.
     Cancelled = 0,
-    /// Longer than the buffer.
+    /// The transfer is longer than the receiver's buffer.
     TooLong = 1,
-    /// Length or CRC-32 differ from the announced ones.
+    /// The length or the CRC-32 differs from the announced one.
     Unannounced = 2,
-    /// Wrong CRC-32 of the transfer in every attempt.
+    /// The CRC-32 of the transfer was wrong in every attempt.
     Corrupt = 3,
-    /// No frame, or no new block.
+    /// No valid frame, or no new block, arrived for too long.
     NoAnswer = 4,
 }
 

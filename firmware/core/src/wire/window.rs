@@ -1,4 +1,4 @@
-//! The sender's state of blocks in flight.
+//! Which blocks of a transfer the sender has sent, and which of them have arrived.
 
 use super::format::WINDOW;
 use super::frame::Acknowledge;
@@ -8,15 +8,15 @@ const MAX_FRAMES: u8 = 120;
 
 /// Sent and acknowledged blocks.
 pub struct Window {
-    /// Number of the first block that has not arrived.
+    /// Number of the first block that is not acknowledged.
     pub next: u32,
-    /// The end of the blocks sent so far.
+    /// Number of the block after the last block sent so far.
     pub end: u32,
-    /// Bit i: block `next` + i has arrived.
+    /// Bit i is set if block `next` + i has arrived.
     arrived: u128,
-    /// Bit i: block `next` + i was sent and not reported lost.
+    /// Bit i is set if block `next` + i was sent and is not known to be lost.
     sent: u128,
-    /// The last data frame of a block, by the block's number modulo the window.
+    /// For each block, the number of the last data frame that carried it. The index is the block's number modulo `WINDOW`.
     carriers: [u8; WINDOW as usize],
     /// Number of the last data frame sent.
     number: u8,
@@ -24,14 +24,14 @@ pub struct Window {
     heard: u8,
 }
 
-/// Result of an acknowledgement for the blocks in flight.
+/// What an acknowledgement newly tells: the numbers of arrived blocks, lost blocks and lost frames.
 pub struct Fate {
     pub arrived: u32,
     pub lost: u32,
     pub lost_frames: u32,
 }
 
-/// Run of blocks for a data frame.
+/// The contents of a data frame to send: its number, the number of its first block, and its number of blocks.
 pub struct Run {
     pub number: u8,
     pub block: u32,
@@ -51,7 +51,7 @@ impl Window {
         }
     }
 
-    /// Applies an acknowledgement; `None` for an impossible one.
+    /// Applies an acknowledgement, and returns what it newly tells; `None` for an impossible acknowledgement.
     pub fn update(&mut self, Acknowledge { number, next, map }: Acknowledge) -> Option<Fate> {
         let past = next.checked_add(u128::BITS - map.leading_zeros())?;
         let unheard = self.number.wrapping_sub(self.heard);
@@ -64,7 +64,8 @@ impl Window {
         let left_behind = shift.min(WINDOW) - (self.arrived & low_bits(shift)).count_ones();
         let arrived = left_behind + (map & !moved(self.arrived)).count_ones();
 
-        // An acknowledgement that withdraws a block proves that the previous acknowledgement was damaged.
+        // If `next` goes back, the previous acknowledgement was damaged although its CRC was right; the bits are
+        // then shifted back.
         let back = self.next.saturating_sub(next);
         self.sent = moved(self.sent).checked_shl(back).unwrap_or(0);
         self.arrived = map;
@@ -97,14 +98,15 @@ impl Window {
         self.number.wrapping_sub(self.heard) >= MAX_FRAMES
     }
 
-    /// Marks the first block in flight as lost.
+    /// Marks the first block in flight as lost, so that it is sent again.
     pub const fn forget_first(&mut self) {
         let on_the_way = self.sent & !self.arrived;
         let first = on_the_way & on_the_way.wrapping_neg();
         self.sent &= !first;
     }
 
-    /// Takes the next run of up to `most` blocks to send, of `total`, and marks the run as sent.
+    /// Chooses the next run of blocks to send, at most `most`, in a transfer of `total` blocks, and marks these blocks as sent.
+    /// `None` if there is no block to send.
     pub fn take(&mut self, most: u32, total: u32) -> Option<Run> {
         let settled = self.sent | self.arrived;
         let first = settled.trailing_ones();
@@ -117,7 +119,7 @@ impl Window {
             .min(most)
             .min(WINDOW - first)
             .min(total - block);
-        // Without a free frame number a probe repeats the last number, which is never marked as lost.
+        // If no frame number is free, the frame repeats the last number; blocks of the last frame are never marked as lost.
         if !self.is_full() {
             self.number = self.number.wrapping_add(1);
         }
@@ -143,7 +145,7 @@ impl Window {
     }
 }
 
-/// The lowest `count` bits.
+/// A number whose lowest `count` bits are set.
 const fn low_bits(count: u32) -> u128 {
     if count >= u128::BITS {
         u128::MAX
@@ -152,7 +154,7 @@ const fn low_bits(count: u32) -> u128 {
     }
 }
 
-/// Whether one number precedes another, modulo 256.
+/// Whether one frame number precedes another, modulo 256.
 const fn is_before(number: u8, other: u8) -> bool {
     (number.wrapping_sub(other) as i8) < 0
 }
@@ -168,7 +170,7 @@ mod tests {
             window.take(4, 100);
         }
         let says = |number, next, map| Acknowledge { number, next, map };
-        // Frames 1 and 3 have arrived.
+        // Frames 1 and 3 have arrived, frame 2 is lost.
         let fate = window.update(says(3, 4, 0b1111_0000)).expect("possible");
         assert_eq!((fate.arrived, fate.lost, fate.lost_frames), (8, 4, 1));
         assert_eq!(

@@ -30,7 +30,7 @@ proptest! {
         let _ = Command::parse(&line).map_err(|error| error.to_string());
     }
 
-    /// The printed arguments of `view` set the same view again.
+    /// The printed form of a view, given to the command `view`, sets the same view again.
     #[test]
     fn views_come_back_bit_for_bit(r in 2_i64 << 32..=5 << 32, theta in any::<u32>(), phi in 0..=1_u32 << 31) {
         let view = View::spherical(Q32_32::from_bits(r), Turns(theta), Turns(phi)).expect("in range");

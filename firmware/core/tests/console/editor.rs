@@ -3,7 +3,7 @@
 use glint_core::console::{Command, Event, HISTORY, LINE_MAX, LineEditor};
 use proptest::prelude::*;
 
-/// One line of a terminal.
+/// A terminal that shows the echo.
 #[derive(Default)]
 struct Screen {
     line: Vec<char>,
@@ -58,7 +58,7 @@ impl Screen {
     }
 }
 
-/// Lines and other events produced by bytes, with the text on the screen.
+/// Types bytes into the editor. Returns the resulting lines and other events, and the screen.
 fn type_in(bytes: &[u8]) -> (Vec<String>, Screen) {
     let (mut editor, mut screen, mut events) = (LineEditor::new(), Screen::default(), Vec::new());
     for &byte in bytes {
@@ -125,7 +125,7 @@ fn the_history_brings_lines_back() {
     );
     assert_lines(b"one\rtyp\x10\x0Eed\r", &["one", "typed"]);
     assert_lines(b"\x1B[A\x1B[Bx\r", &["x"]);
-    // Empty lines and repetitions are not remembered.
+    // The history does not keep blank lines and repetitions.
     assert_lines(
         b"one\r\r  \rtwo\rtwo\r\x1B[A\x1B[A\r",
         &["one", "", "  ", "two", "two", "one"],
@@ -169,7 +169,7 @@ fn tab_completes_commands_and_the_words_of_their_arguments() {
     assert_lines(b"stereo \t\r", &["stereo off "]);
     // Completion at the cursor keeps the rest of the line.
     assert_lines(b" on\x01cul\t\r", &["cull  on"]);
-    // A common beginning is inserted.
+    // Only the text that all candidates have in common is inserted.
     assert_lines(b"b\ten\t\r", &["bench "]);
     assert_lines(b"re\t\r", &["re"]);
     // Numbers, unknown commands and surplus arguments have no candidates.
@@ -212,7 +212,7 @@ proptest! {
     #[test]
     fn what_is_shown_is_the_line(keys in keys()) {
         let (lines, screen) = type_in(&[&keys[..], b"\r"].concat());
-        // Lists of candidates are further lines.
+        // The screen has further lines for the lists of candidates.
         prop_assert!(lines.len() <= screen.lines.len());
     }
 

@@ -1,4 +1,4 @@
-//! Random numbers of tests.
+//! Random numbers for tests.
 
 /// SplitMix64 (Steele, Lea and Flood, 2014).
 pub struct Random(pub u64);
