@@ -14,10 +14,10 @@ const STRETCH_TIMEOUT: u64 = 25_000_000;
 /// Number of clocks that the master sends to free a stuck device.
 const RECOVERY_CLOCKS: u32 = 9;
 
-/// Bus errors.
+/// Errors of a transfer on the bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Error {
-    /// No acknowledge.
+    /// The chip did not acknowledge a byte.
     NoAcknowledge(NoAcknowledgeSource),
     /// SCL or SDA is stuck low.
     Stuck,

@@ -66,11 +66,11 @@ impl Default for State {
 /// Raw counts of the data registers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Accelerometer.
+    /// Counts of the accelerometer for each axis.
     pub accel: [i16; 3],
-    /// Thermometer.
+    /// Counts of the thermometer.
     pub temperature: i16,
-    /// Gyroscope.
+    /// Counts of the gyroscope for each axis.
     pub gyro: [i16; 3],
 }
 
@@ -98,7 +98,7 @@ pub enum Source {
     Log(Vec<(u64, Counts)>),
 }
 
-/// Errors of the measurement.
+/// Errors of the sensor that affect its measurements.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Imperfections {
     /// Bias of the gyroscope at 25 °C in °/s.

@@ -9,9 +9,9 @@
 //! The caller passes the time, in ns. Equal calls with an equal seed give equal results.
 //!
 //! # Limits
-//! The low-pass filter delays, and limits the noise, but does not attenuate. There is no FIFO, no auxiliary bus, no self-test,
-//! no cycle mode and no interrupt pin; the registers of these functions only store the written values. Data are valid right
-//! after wake-up.
+//! The low-pass filter delays the motion and limits the noise, but does not attenuate fast motion. There is no FIFO, no
+//! auxiliary bus, no self-test, no cycle mode and no interrupt pin; the registers of these functions only store the
+//! written values. Data are valid right after wake-up.
 
 #![forbid(unsafe_code)]
 

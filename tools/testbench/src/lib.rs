@@ -4,7 +4,7 @@
 //! the module (valid/ready), a [`Sink`] takes from an output stream. Both stall at random. A payload must not change
 //! while it is valid and not taken: the source obeys this rule, and the sink checks it.
 //!
-//! `python gateware/tests/run.py --models` builds the modules; `cargo xtask test` runs that command.
+//! `python gateware/tests/run.py --models` builds the modules; `cargo xtask test` builds them too.
 
 mod bits;
 mod counters;

@@ -102,7 +102,7 @@ impl Kind {
 /// `face` of a pure sphere, `direction` without a sphere.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct End {
-    /// The result.
+    /// Whether the ray missed, hit or stayed undecided.
     pub state: Kind,
     /// Whether the surface is a sphere.
     pub round: bool,
@@ -381,7 +381,7 @@ pub fn set_paint(module: &mut Module, setup: &FieldSetup, palette: &Palette) {
 /// A pixel in the form of a group of eight pixels, as the band buffer takes it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pixel {
-    /// The eye.
+    /// Eye: 0 is the left eye or the only one, 1 the right eye.
     pub eye: u64,
     /// Row of the band buffer.
     pub row: u64,

@@ -53,7 +53,7 @@ impl Camera {
         }
     }
 
-    /// Random camera within 1 of the origin, with any direction.
+    /// Random camera whose coordinates are between −1 and 1, with any direction.
     pub fn inside(random: &mut Random) -> Self {
         let eye = [0; 3].map(|_| random.real(-1.0, 1.0));
         let (half_width, near) = (random.logarithmic(0.05, 4.0), random.logarithmic(0.01, 0.5));

@@ -52,7 +52,7 @@ pub fn random_triangle(random: &mut Random) -> [ScreenVertex; 3] {
             anywhere(random),
         ],
         _ => {
-            // A sliver.
+            // A sliver: the third vertex is near the middle of the line between the others.
             let (a, b) = (near(random, 256 * 200, 1), near(random, 256 * 200, 1));
             let c = ScreenVertex {
                 x: (a.x + b.x) / 2 + random.integer(-3, 3) as i32,

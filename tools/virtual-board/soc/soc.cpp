@@ -25,7 +25,7 @@ extern "C" const uint8_t glint_bios_end[] __attribute__((visibility("hidden")));
 
 namespace {
 
-// pix_clk / sys_clk = 74.25 / 81.25.
+// Ratio of the clocks' frequencies: pix_clk / sys_clk = 74.25 MHz / 81.25 MHz = 297 / 325.
 constexpr uint32_t PIXEL_TICKS = 297;
 constexpr uint32_t PIXEL_PERIOD = 325;
 

@@ -24,7 +24,7 @@ fn counters() -> Vec<&'static str> {
     names.filter(|name| !name.starts_with("pixels_")).collect()
 }
 
-/// `text` without values that change between builds, and without the counters that depend on time.
+/// Returns `text` without the values that change between builds, and without the counters that depend on time.
 fn lasting(text: &str) -> String {
     let build_id = format!("{:#010x}", litex_pac::BUILD_ID);
     let text = text.replace(&build_id, "BUILD_ID").replace("\r\n", "\n");

@@ -70,7 +70,7 @@ fn turn(time: f64) -> State {
     }
 }
 
-/// Tolerance of the angle of that turn, in degrees.
+/// Tolerance of measured angles, in degrees.
 const ANGLE: f64 = 0.1;
 
 /// Finds the line of `answer` that starts with `key`, and returns the rest of that line.

@@ -234,7 +234,7 @@ fn one_group_a_clock_where_rows_or_lanes_differ() {
 
 #[test]
 fn a_group_waits_for_the_lanes_it_shares() {
-    // Number of groups between two of the same row, and the clocks for which the second group is held.
+    // Number of groups between two groups in the same row, and the clocks for which the second of the two is held.
     for (between, held) in [(0, 3), (1, 2), (2, 1), (3, 0)] {
         let mut bench = Bench::ready(8, 0.0, 0.0);
         let others = (0..between).map(|i| full_group(100 + i, 5));
@@ -330,7 +330,8 @@ fn a_restart_ends_whatever_goes_on() {
         println!("seed {seed}");
         let mut random = Pcg64Mcg::new(u128::from(seed));
         let mut bench = Bench::ready(seed, 0.2, 0.3);
-        // One band is flushed while the next is drawn. With few rows, the rows drawn last are cleared first.
+        // The restart comes while one band is flushed and the next is drawn. With few rows, the clearing after the
+        // restart soon reaches the rows that were drawn last.
         let lines = random.random_range(if seed % 2 == 0 { 1..4 } else { 10..40 });
         let stride = random.random_range(1..10);
         let (shape, rows) = ([lines, stride], lines * stride);

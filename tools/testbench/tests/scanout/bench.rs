@@ -65,7 +65,7 @@ pub struct Bench {
     pub monitor: Monitor,
     /// Settings requested by software; they drive the inputs from the next edge of `sys_clk` on.
     pub asked: Settings,
-    /// Called in each cycle of `sys_clk`; may change the requested settings.
+    /// Function that is called in each cycle of `sys_clk` and may change the requested settings.
     pub software: Option<fn(&mut Pcg64Mcg, &mut Settings)>,
     ports: Ports,
     raster: Raster,
@@ -78,7 +78,7 @@ pub struct Bench {
     driven: Settings,
     /// Settings latched at the last vertical blanking.
     in_force: Settings,
-    /// Settings of the frame that the fetch belongs to.
+    /// Settings of the frame whose source line is being fetched.
     fetched_from: Settings,
     was_fetching: bool,
     counted: Counted,

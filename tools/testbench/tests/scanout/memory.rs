@@ -49,7 +49,7 @@ impl Manners {
     };
 }
 
-/// Draws an event of probability `share`.
+/// Returns true with the probability `share`.
 pub fn chance(random: &mut Pcg64Mcg, share: f64) -> bool {
     share >= 1.0 || share > 0.0 && random.random_bool(share)
 }

@@ -38,22 +38,22 @@ impl Raster {
         v_back: 4,
     };
 
-    /// Pixel clocks of a line.
+    /// Number of pixel clocks of a line.
     pub const fn h_total(&self) -> u64 {
         self.h_active + self.h_front + self.h_sync + self.h_back
     }
 
-    /// Lines of a frame.
+    /// Number of lines of a frame.
     pub const fn v_total(&self) -> u64 {
         self.v_active + self.v_front + self.v_sync + self.v_back
     }
 
-    /// Pixel clocks of a frame.
+    /// Number of pixel clocks of a frame.
     pub const fn frame(&self) -> u64 {
         self.h_total() * self.v_total()
     }
 
-    /// Lines from the start of vertical blanking to line 9 of the picture.
+    /// Number of lines from the start of vertical blanking to line 9 of the picture.
     pub const fn lines_to_picture(&self) -> u64 {
         self.v_front + self.v_sync + self.v_back + 9
     }
@@ -67,12 +67,12 @@ pub struct Clocks {
 }
 
 impl Clocks {
-    /// 81.25 MHz and 74.25 MHz.
+    /// `sys_clk` of 81.25 MHz and `pix_clk` of 74.25 MHz.
     pub const SLOW: Self = Self {
         sys: 8125,
         pix: 7425,
     };
-    /// 100 MHz and 74.25 MHz.
+    /// `sys_clk` of 100 MHz and `pix_clk` of 74.25 MHz.
     pub const FAST: Self = Self {
         sys: 10_000,
         pix: 7425,

@@ -80,7 +80,7 @@ fn board() -> SimulatedBoard {
     SimulatedBoard::fast(&built_firmware(None).unwrap()).unwrap()
 }
 
-/// Draws a field on the board, with or without depth output, and compares frame and statistics with the model's.
+/// Draws a field on the board, with or without depths, and compares the frame and its statistics with the model's.
 fn compare(
     console: &mut Console<SimulatedBoard>,
     subject: FieldSubject,

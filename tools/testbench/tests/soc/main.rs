@@ -1,7 +1,7 @@
 //! The whole SoC with its triangle engine against glint-model: the pictures on the monitor, the depths in memory, and the
 //! counts of triangles.
 //!
-//! The tests need what `cargo xtask gateware` and `cargo xtask firmware` build; `cargo xtask test` runs both.
+//! The tests need what `cargo xtask gateware` and `cargo xtask firmware` build; `cargo xtask test` builds it too.
 //!
 //! The board draws a frame while the monitor takes in the frame before, so that each scene costs the time of one video
 //! frame. Video frames are the largest part of the test's time:
@@ -52,7 +52,7 @@ struct Watched {
 }
 
 impl Watched {
-    /// Appends a frame to the expected ones.
+    /// Appends a frame to the expected frames.
     fn expect(&mut self, name: &str, frame: Vec<u16>) {
         match self.expected.last_mut() {
             // Equal frames one after the other look like one frame on the monitor.
@@ -85,12 +85,12 @@ impl Watched {
         self.seen += at;
     }
 
-    /// Runs until all expected frames were seen.
+    /// Runs until the monitor has shown all expected frames.
     fn see(&mut self) {
         self.run_until(|board| board.seen == board.expected.len());
     }
 
-    /// Runs until the current picture is complete.
+    /// Runs until the next picture of the monitor is complete.
     fn wait_for_picture(&mut self) {
         let before = self.pictures;
         self.run_until(|board| board.pictures > before);

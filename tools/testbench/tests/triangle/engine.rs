@@ -158,7 +158,7 @@ fn nothing_new_is_not_written() {
     let mut bench = Bench::new(11, 0.0);
     bench.with_depth = false;
     let nothing = meshes::mesh(&[], 100);
-    // At 1280x720 from -2 to 2 the square covers 160 pixels, at most 21 words, in 90 lines.
+    // At 1280x720, the rectangle covers 160 pixels, in at most 21 words, of each of 90 lines.
     let square = |x: f64| {
         let [left, right, top, bottom] = [x, x + 0.5, -0.14, 0.14];
         let corner = |x, z| at(x, 0.0, z);

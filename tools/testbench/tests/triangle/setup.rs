@@ -10,9 +10,9 @@ use glint_testbench::{Bits, Layout, Module, Port, Record, Sink, Source, Stalls, 
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
-/// The guard band, s12.8.
+/// Largest coordinate within the guard band, s12.8.
 const GUARD: i32 = 2047 << 8;
-/// The largest w, u18.6.
+/// Largest depth w, u18.6.
 const NEAREST: u32 = ((1 << 18) - 1) << 6;
 
 /// Constants of a frame.
@@ -183,7 +183,7 @@ impl Bench {
         for input in inputs {
             if let Some(expected) = expected(frame, input) {
                 let mut descriptor = found.next().map(|item| [item[0], item[1]]);
-                // The planes of a flat triangle are unused.
+                // The planes of a flat triangle have no meaning, except the bit `smooth`.
                 if let (Some([_, planes]), Shading::Flat) = (&mut descriptor, frame.shading) {
                     let smooth = planes_type.record_of(*planes).get("smooth");
                     *planes = planes_type.record().with("smooth", smooth).bits();

@@ -296,7 +296,7 @@ impl Bench {
         }
         self.module.settle();
     }
-    /// Asks for passes and waits for their ends; returns their errors.
+    /// Asks for passes and waits for their ends; returns the errors of both passes.
     pub fn ask(&mut self, ask: [bool; 2]) -> [u64; 2] {
         self.configure();
         self.clock(Events {

@@ -131,7 +131,7 @@ pub fn regions(
     let size = pass.size();
     let bands = [4, 15, 60, 60][size];
     let lists = match list_shift {
-        // A table of lengths, then lists with gaps between them.
+        // The region has a table of lengths, and then the lists with gaps between them.
         0..=17 => 16 * (16 + (bands << list_shift) + 128 * bands),
         _ => 1 << 60,
     };
