@@ -1,7 +1,7 @@
 //! Stereo: two eyes in one anaglyph picture.
 //!
-//! The text form is half the distance between the eyes, the distance of zero parallax, and the colours of the glasses, such
-//! as `0.05,3,red-cyan`.
+//! The text form is half the distance between the eyes, the distance of zero parallax, and the colours
+//! of the glasses, such as `0.05,3,red-cyan`.
 
 use core::fmt;
 

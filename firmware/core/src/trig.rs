@@ -40,8 +40,8 @@ pub fn sin_cos_q30(angle: Turns) -> (Q2_30, Q2_30) {
 
 /// Sine and cosine in Q2.30 with a Taylor polynomial of order 0 to 3 (higher orders saturate to 3).
 ///
-/// For order n the omitted terms are at most d^(n + 1)/(n + 1)! with d = π/512. For n = 0…3 this is 6.1e-3, 1.9e-5, 3.9e-8 and
-/// 5.9e-11.
+/// For order n the omitted terms are at most d^(n + 1)/(n + 1)! with d = π/512.
+/// For n = 0…3 this is 6.1e-3, 1.9e-5, 3.9e-8 and 5.9e-11.
 pub fn sin_cos_q30_order<const ORDER: u32>(angle: Turns) -> (Q2_30, Q2_30) {
     let (sin, cos) = unfold(angle, octant::<ORDER>);
     (Q2_30::from_bits(sin), Q2_30::from_bits(cos))

@@ -1,5 +1,5 @@
-//! Distances to spheres from a table of square roots. Distances are rounded down, so that a step of this length never passes a
-//! surface.
+//! Distances to spheres from a table of square roots. Distances are rounded down, so that a
+//! step of this length never passes a surface.
 
 use crate::field::limits::MAX_SPHERES;
 use crate::field::surface::{Sample, Surface, magnitude};
