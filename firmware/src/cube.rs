@@ -12,7 +12,7 @@ const RADIUS: u32 = 14_189;
 /// 1/√3 in Q2.14: the magnitude of each component of a corner's normal.
 const DIAGONAL: i16 = 9_459;
 
-/// Axis, colour of the positive side and colour of the negative side, for three pairs of sides.
+/// For each of the three pairs of sides: the axis, the colour of its positive side and the colour of its negative side.
 const SIDES: [(usize, u16, u16); 3] = [
     (0, 0xf9c7, 0x0733),
     (1, 0xfe60, 0x2b9f),
@@ -114,7 +114,8 @@ impl Writer {
             1 << ((axis + 1) % 3),
             1 << ((axis + 2) % 3),
         );
-        // Seen from the positive side, the axes b and c turn counter-clockwise; from the negative side, clockwise.
+        // Seen from the positive side the axes b and c turn counter-clockwise; seen from the negative side they turn
+        // clockwise, so b and c change places.
         let (b, c) = if plus { (b, c) } else { (c, b) };
         let mut normal = [0; 3];
         normal[axis] = if plus { ONE } else { -ONE };

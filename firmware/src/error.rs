@@ -43,7 +43,7 @@ pub enum CommandError<'l> {
     FieldShown,
     /// The engine cannot draw the frame.
     Engine(Fallback),
-    /// An upload is longer than its memory.
+    /// An upload is longer than the memory for it.
     TooLong {
         /// Name of the command.
         command: &'static str,
@@ -67,7 +67,7 @@ pub enum CommandError<'l> {
         /// Names of the existing kernels.
         expected: &'static [&'static str],
     },
-    /// This number of self-tests failed.
+    /// The number of self-tests that failed.
     SelfTest(u32),
     /// The sensor was not calibrated.
     Calibration(CalibrationError),

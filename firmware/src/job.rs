@@ -42,12 +42,12 @@ pub enum Job {
 pub enum SensorJob {
     /// Report the calibration until it ends.
     Calibrate {
-        /// Samples in the last report.
+        /// Number of samples at the last report.
         reported: u32,
     },
     /// Print samples.
     Stream {
-        /// Samples still to print; `None` is no limit.
+        /// Number of samples still to print; `None` is no limit.
         left: Option<u32>,
         /// Number of the last printed sample.
         last: u32,

@@ -31,7 +31,7 @@ const CALIBRATE: u8 = 1 << 2;
 /// Button 3 recentres the camera.
 const RECENTRE: u8 = 1 << 3;
 
-/// Half a period of the blinking LED.
+/// Time between two changes of the blinking LED.
 const HEARTBEAT: Duration = Duration::from_millis(500);
 
 /// The machine and the state of its main loop.

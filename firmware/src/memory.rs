@@ -10,17 +10,17 @@ use litex_pac::cpu;
 
 use crate::models::Buffer;
 
-/// All windows, each lent once.
+/// All windows of main memory; each is lent only once.
 pub struct Memory {
     /// Two frame buffers: colours in RGB565, one per pixel.
     pub frames: [&'static mut [u16]; 2],
     /// Depth codes, one per pixel.
     pub depth: &'static mut [u32],
-    /// Projected vertices of the CPU backend.
+    /// Memory for projected vertices, used by the CPU backend.
     pub scratch: Scratch,
     /// Memory for two meshes: the uploaded one, and the staging memory.
     pub meshes: [Buffer; 2],
-    /// Descriptors and band lists between the passes of the triangle engine.
+    /// Memory for the descriptors and band lists that pass from the triangle engine's geometry pass to its raster pass.
     pub lists: &'static mut [u32],
 }
 

@@ -42,7 +42,7 @@ impl Replay {
         self.done == self.samples
     }
 
-    /// Events of the samples so far.
+    /// Counts of the samples so far, by their effect on the attitude.
     pub const fn counts(&self) -> Counts {
         self.tracker.counts()
     }
@@ -58,7 +58,7 @@ impl Replay {
         self.done
     }
 
-    /// Mean cycles of a sample, rounded to nearest.
+    /// Mean number of the tracker's clock cycles per sample, rounded to nearest.
     pub fn cycles_per_sample(&self) -> u64 {
         let samples = self.samples.max(1) as u64;
         (self.cycles + samples / 2) / samples

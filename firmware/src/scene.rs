@@ -41,13 +41,13 @@ impl Sphere {
 /// Statistics of the last frame.
 #[derive(Clone, Copy)]
 pub struct Drawn {
-    /// Clock cycles, without the wait for a free frame buffer.
+    /// Clock cycles of drawing the frame, without the wait for a free frame buffer.
     pub cycles: u64,
     /// Counts of triangles, rays and pixels.
     pub stats: FrameStats,
     /// Which renderer drew the frame.
     pub by: RenderedBy,
-    /// Whether depth codes are in memory.
+    /// Whether the frame's depth codes are in memory.
     pub has_depth: bool,
 }
 
@@ -191,7 +191,7 @@ impl Scene {
         self.view = view;
     }
 
-    /// The last spherical camera.
+    /// The spherical camera that was set last.
     pub const fn sphere(&self) -> Sphere {
         self.sphere
     }

@@ -33,7 +33,7 @@ enum Event {
 /// Capacity of the queue of events, enough for the samples that arrive while a long frame is drawn.
 const QUEUE: usize = 256;
 
-/// The endless stream of the sensor.
+/// The future that reads the sensor and never ends.
 struct Stream(Pin<&'static mut dyn Future<Output = ()>>);
 
 // SAFETY: there is one core, and the stream is accessed only in critical sections, which exclude interrupts.

@@ -20,13 +20,13 @@ impl<T: Value> InputPort<T> {
         Self { register }
     }
 
-    /// All pins at once, pin 0 in bit 0.
+    /// Reads the levels of all pins at once, pin 0 in bit 0.
     #[must_use]
     pub fn read(&self) -> T {
         self.register.read()
     }
 
-    /// Pin `index`; low if the register has no such bit.
+    /// The input pin `index`; it reads as low if the register has no such bit.
     #[must_use]
     pub const fn pin(&self, index: u8) -> Input<'_, T> {
         Input { port: self, index }
@@ -65,7 +65,7 @@ impl<T: Value> OutputPort<T> {
         Self { register }
     }
 
-    /// Levels of all pins, pin 0 in bit 0.
+    /// Levels to which all pins are driven, pin 0 in bit 0.
     #[must_use]
     pub fn get(&self) -> T {
         self.register.read()
@@ -76,7 +76,7 @@ impl<T: Value> OutputPort<T> {
         critical_section::with(|_| self.register.write(value));
     }
 
-    /// Pin `index`; without effect if the register has no such bit.
+    /// The output pin `index`; without effect if the register has no such bit.
     #[must_use]
     pub const fn pin(&self, index: u8) -> Output<'_, T> {
         Output { port: self, index }
@@ -142,7 +142,7 @@ mod tests {
 
     use super::*;
 
-    /// Switches 0 and 15 are on; the LED register keeps the written value.
+    /// Model of a board: switches 0 and 15 are on, and the LED register keeps the written value.
     struct Board {
         leds: u32,
     }

@@ -65,7 +65,7 @@ pub enum BusError {
     ClockStuck,
     /// SDA was low instead of free, and nine clocks did not release SDA.
     DataStuck,
-    /// No progress for 100 ms.
+    /// The transaction made no progress for 100 ms.
     Timeout,
     /// A periodic read was not over when the next read was due: the device stretches the clock, or the receive queue is full.
     Late,
@@ -139,7 +139,7 @@ impl I2c {
             .write(Control::default().with_clear(true));
     }
 
-    /// The status, or the error that ended the transaction.
+    /// Reads the status of the master, or the error that ended the transaction.
     fn status(&self) -> Result<Status, BusError> {
         let status = self.registers.status().read();
         if !status.failed() {
@@ -255,7 +255,7 @@ impl I2c {
 enum Stage {
     /// A command of an operation, or the start before an operation.
     Operations,
-    /// The address after a start.
+    /// The address byte after a start.
     Address,
     /// No further command: the stop is in the queue.
     Over,

@@ -20,7 +20,7 @@ use crate::Absent;
 /// Build options of a raymarcher.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Capabilities {
-    /// Lanes: evaluations of the field per clock.
+    /// Number of lanes, each of which evaluates the field once a clock.
     pub lanes: u8,
     /// Largest depth of a sponge; 0 without sponges.
     pub levels: u8,
@@ -41,7 +41,7 @@ pub struct Capabilities {
 pub enum Missing {
     /// Sponges deeper than this number of levels, the most that this build has; 0 if it has no sponges.
     Levels(u8),
-    /// Flat fields of this kind.
+    /// Flat fields of this kind are missing.
     Flat(Kind),
     /// Spheres.
     Round,
@@ -94,7 +94,8 @@ pub struct Raymarcher {
 }
 
 impl Raymarcher {
-    /// Takes the block if present. Its interrupt stays disabled: the frame ends with the raster pass.
+    /// Takes the registers if the SoC has the raymarcher. Its interrupt stays disabled, because the end of the raster
+    /// pass also ends the raymarcher's work.
     ///
     /// # Errors
     /// [`Absent`] if another block answers, or none.

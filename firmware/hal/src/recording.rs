@@ -1,4 +1,4 @@
-//! Bus model of tests: registers that keep written values, and a record of all writes.
+//! Model of the bus for tests: registers that keep written values, and a record of all writes.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;

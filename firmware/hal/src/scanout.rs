@@ -18,7 +18,7 @@ use litex_pac::scanout::{self, Control, EvEnable, EvPending};
 
 use crate::Absent;
 
-/// Pixels of the screen, in each direction, that show one pixel of a frame.
+/// Number of screen pixels, horizontally and vertically, that show one pixel of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Scale {
@@ -47,7 +47,7 @@ pub struct Scanout {
 }
 
 impl Scanout {
-    /// Takes the block if present. The screen is black until a [`Display`] shows a frame.
+    /// Takes the registers if the SoC has scan-out. The screen is black until a [`Display`] shows a frame.
     ///
     /// # Errors
     /// The block is absent.
@@ -164,7 +164,7 @@ impl Display {
     /// Shows the frame that [`back`](Self::back) lent, from the next vertical blanking on.
     pub fn show(&mut self, scale: Scale) {
         core::mem::swap(&mut self.front, &mut self.back);
-        // The writes of the pixels must precede the write of the address.
+        // The writes of the frame's pixels must precede the write of its address to scan-out.
         compiler_fence(Ordering::SeqCst);
         if let Some(scanout) = &self.scanout {
             scanout.show(address(self.front), scale);
@@ -187,7 +187,7 @@ impl Display {
     }
 }
 
-/// Address of a frame for scan-out: the 32-bit address of the CPU.
+/// Address of a frame for scan-out, which uses the same 32-bit addresses as the CPU.
 fn address(frame: &[u16]) -> u32 {
     frame.as_ptr().addr() as u32
 }
@@ -285,7 +285,7 @@ mod tests {
         video.borrow_mut().blank();
         assert_eq!(display.front()[0], 1);
         display.show(Scale::Four);
-        // The second frame waits, the first frame is still on the screen.
+        // The second frame waits for the vertical blanking, and the first frame is still on the screen.
         assert!(display.back().is_none());
         video.borrow_mut().blank();
         assert_eq!(display.back().unwrap()[0], 1);

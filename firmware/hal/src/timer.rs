@@ -15,7 +15,7 @@ use litex_pac::timer0::{EvEnable, EvPending, Timer0};
 /// Clock cycles of the SoC per second.
 pub const FREQUENCY: u32 = CONFIG_CLOCK_FREQUENCY;
 
-/// Clock cycles in 4 µs: a whole number.
+/// Number of clock cycles in 4 µs; it is a whole number.
 const QUARTERS: u64 = FREQUENCY as u64 / 250_000;
 const _: () = assert!(FREQUENCY.is_multiple_of(250_000));
 
@@ -98,7 +98,7 @@ impl Deadline {
 }
 
 impl DelayNs for Clock {
-    /// Waits at least `ns`, and at most a few dozen cycles longer.
+    /// Waits for at least `ns` nanoseconds, and at most a few dozen cycles longer.
     fn delay_ns(&mut self, ns: u32) {
         let deadline = self.after(Duration::from_nanos(ns.into()));
         while !deadline.passed() {}
@@ -160,7 +160,8 @@ pub fn acknowledge() {
 /// Converts clock cycles to µs, rounded down.
 #[must_use]
 pub const fn microseconds(cycles: u64) -> u64 {
-    // 4/QUARTERS with 64 fraction bits, rounded up: exact below 2^55 cycles, 14 years. A division would take a thousand cycles.
+    // The reciprocal 4/`QUARTERS` in µs per cycle, with 64 fraction bits and rounded up. The result is exact below 2^55
+    // cycles, 14 years. A division would take a thousand cycles.
     const INVERSE: u128 = (4_u128 << 64).div_ceil(QUARTERS as u128);
     ((cycles as u128 * INVERSE) >> 64) as u64
 }
@@ -169,7 +170,7 @@ pub const fn microseconds(cycles: u64) -> u64 {
 #[must_use]
 pub const fn cycles(span: Duration) -> u64 {
     let frequency = FREQUENCY as u64;
-    // The product of less than 10^9 ns and 2^27 cannot overflow.
+    // A number of ns below 10^9 times a frequency below 2^27 cannot overflow.
     let part = (span.subsec_nanos() as u64 * frequency).div_ceil(1_000_000_000);
     span.as_secs()
         .saturating_mul(frequency)
@@ -182,7 +183,7 @@ pub(crate) mod tests {
 
     use super::*;
 
-    /// Advances the uptime by `step` at each latch.
+    /// Model of the uptime counter, which advances by `step` at each latch.
     pub struct Uptime {
         pub now: u64,
         pub latched: u64,
@@ -198,7 +199,7 @@ pub(crate) mod tests {
             }
         }
 
-        /// The word at `address`, if part of the uptime counter.
+        /// The word of the register at `address`, if it belongs to the uptime counter.
         pub fn read(&self, address: usize) -> Option<u32> {
             match address - Timer0::BASE {
                 0x24 => Some((self.latched >> 32) as u32),

@@ -84,7 +84,7 @@ pub struct Lists {
 pub struct Geometry<'a> {
     /// The mesh.
     pub mesh: &'a Mesh<'a>,
-    /// The constants of the frame.
+    /// The frame constants of the mesh.
     pub frame: &'a MeshSetup,
     /// Whether back faces are left out.
     pub cull: bool,
@@ -98,13 +98,13 @@ pub struct Geometry<'a> {
     pub exception_limit: u32,
 }
 
-/// A geometry pass with its registers written.
+/// A geometry pass whose registers have been written, ready to start.
 #[must_use]
 pub struct Prepared {
     start: GeometryStart,
 }
 
-/// A set of lists to draw.
+/// A set of descriptors and band lists that a raster pass draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Set {
     /// Address of the descriptors.
@@ -126,11 +126,11 @@ pub struct Raster {
     pub slot: bool,
     /// Whether the whole frame buffer is written, because its contents are unknown.
     pub whole: bool,
-    /// Address for depth codes, if requested.
+    /// Address to which depth codes are written, if they are requested.
     pub depth: Option<u32>,
-    /// Colour of the empty picture, RGB565.
+    /// Colour of pixels without a triangle, RGB565.
     pub clear: u16,
-    /// The sets, drawn in this order in each band.
+    /// The sets of lists, which each band draws in this order.
     pub sets: [Option<Set>; 2],
 }
 
@@ -158,7 +158,7 @@ pub struct TriangleEngine {
 }
 
 impl TriangleEngine {
-    /// Takes the block if present. The end of every pass raises an interrupt.
+    /// Takes the registers if the SoC has the triangle engine. The end of every pass raises an interrupt.
     ///
     /// # Errors
     /// The block is absent.

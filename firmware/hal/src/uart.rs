@@ -63,7 +63,7 @@ impl<const RX: usize, const TX: usize> Uart<RX, TX> {
             .write(EvEnable::default().with_rx(true).with_tx(true));
         self.with(|state| {
             state.registers = Some(registers);
-            // Bytes received before this point have already raised their event.
+            // Bytes that arrived before this point have already raised their event, so they are taken here.
             state.serve();
         });
     }
@@ -174,7 +174,8 @@ impl<const RX: usize, const TX: usize> State<RX, TX> {
                 self.lost = self.lost.saturating_add(1);
             }
         }
-        // The event is cleared before the hardware's queue is filled, so that later room raises the event again.
+        // The event is cleared before the hardware's queue is filled, so that room that appears later
+        // raises the event again.
         registers
             .ev_pending()
             .write(EvPending::default().with_tx(true));
@@ -299,7 +300,7 @@ impl<const RX: usize, const TX: usize> WriteReady for Writer<'_, RX, TX> {
 /// Number of polls of a full transmitter before giving up: about 0.1 s, far longer than a byte at 115,200 baud.
 const PATIENCE: u32 = 1_000_000;
 
-/// Writes to the hardware without queues or interrupts: the output of traps and panics.
+/// Writes text directly to the hardware, without queues or interrupts, for the messages of traps and panics.
 pub struct Direct {
     registers: uart::Uart,
 }

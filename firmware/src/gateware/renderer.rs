@@ -20,13 +20,13 @@ use super::watchdog::Watchdog;
 pub struct Output<'a> {
     /// Colours in RGB565, row by row.
     pub colour: &'a mut [u16],
-    /// Depth codes, if requested.
+    /// Memory for depth codes, if they are requested.
     pub depth: Option<&'a mut [u32]>,
 }
 
 /// A frame drawn by the gateware.
 pub struct Rendered {
-    /// Clock cycles from the first register write to the detected end.
+    /// Clock cycles from the first register write of the frame to the detection of its end.
     pub cycles: u64,
     /// Counts of the frame. In a benchmark the triangle counts are those of the last frame only.
     pub stats: FrameStats,
@@ -191,7 +191,7 @@ impl GatewareRenderer {
         let field = field.map(|field| field.since(&self.start.raymarcher));
         let field_pixels = field.map_or(0, |field| field.items_out);
         let mesh = frame.subject.mesh_part().map(|_| Stats {
-            // The walker tests a group of eight pixels per clock.
+            // In each clock of walking the walker tests a group of eight pixels.
             pixels_tested: 8 * u64::from(counters.cycles_walking),
             pixels_covered: counters.pixels_covered.wrapping_sub(field_pixels).into(),
             pixels_drawn: counters.pixels_drawn.into(),
@@ -207,7 +207,7 @@ impl GatewareRenderer {
         }
     }
 
-    /// Computes the constants of a frame into one of two places, if the engine can draw the frame.
+    /// Computes the constants of a frame into `self.constants[place]`, if the engine can draw the frame.
     pub(super) fn update_constants(&mut self, frame: &Frame, place: usize) -> Result<(), Fallback> {
         if let Some(mesh) = frame.subject.mesh_part()
             && mesh.shading == Shading::Smooth

@@ -7,7 +7,7 @@ use litex_pac::cpu;
 /// Number of clock cycles without progress after which a pass is cancelled.
 const LIMIT: u64 = timer::cycles(TIMEOUT);
 
-/// Watches counters that advance while the engine works.
+/// Watches the engine's counters, some of which advance while the engine works.
 #[derive(Default)]
 pub struct Watchdog {
     progress: u32,

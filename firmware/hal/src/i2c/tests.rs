@@ -11,14 +11,14 @@ use litex_pac::bus::{self, Bus};
 use super::*;
 use crate::timer::tests::{Uptime, clock};
 
-/// Capacity of each queue.
+/// Capacity of the command queue and of the receive queue.
 const PLACES: usize = i2c::I2c::COMMAND_PLACES as usize;
 
 /// A model of the master's registers with a device. Each read of the status executes one command.
 struct Master {
     /// Address of the device.
     address: u8,
-    /// Bytes that the device acknowledges after its address.
+    /// Number of bytes that the device acknowledges after its address.
     acknowledged: usize,
     next: u8,
     commands: VecDeque<Command>,
@@ -336,7 +336,7 @@ fn an_error_of_periodic_reads_comes_behind_the_received_bytes() {
     assert!(look(&mut i2c).unwrap().0.is_ok());
     assert_eq!(look(&mut i2c).unwrap().0, Err(BusError::Late));
     assert_eq!(master.borrow().repeats, 0);
-    // A master that makes no progress.
+    // Without progress of the master, the periodic read times out.
     i2c.begin(READ).unwrap();
     let mut bytes = [0; 3];
     assert_eq!(block_on(i2c.next(&mut bytes)), Err(BusError::Timeout));
