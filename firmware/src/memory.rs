@@ -84,8 +84,8 @@ impl Memory {
 /// SRAM for the BIOS.
 pub fn load_fast_code() {
     let size = (&raw const _fast_size).addr();
-    // SAFETY: memory.x reserves this SRAM for the fast code, and the program contains the image; both consist of whole
-    // words without another user.
+    // SAFETY: memory.x reserves the SRAM at `_fast` for the fast code and loads that code at `_fast_loaded` with the program.
+    // Both regions have `_fast_size` bytes, a multiple of a word, and nothing else uses them.
     unsafe {
         ptr::copy_nonoverlapping(&raw const _fast_loaded, &raw mut _fast, size);
     }

@@ -19,8 +19,8 @@ pub struct Pace {
     settling: u8,
 }
 
-/// Number of samples after a start in which only the time is corrected, not the period: in this time the reads drift across a
-/// whole period of the samples.
+/// Number of samples after a start in which corrections change only the estimated time, not the estimated period. In these
+/// samples the reads drift across a whole sample period.
 const SETTLED: u8 = 32;
 
 /// The estimated period changes by 2^−5 of each correction of the time, so that it settles within some dozens of corrections.

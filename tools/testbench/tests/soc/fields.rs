@@ -103,7 +103,8 @@ fn compare(
     compare_picture(console, &replies, &name, &image, with_depth);
 }
 
-/// Console commands that draw a frame whose mesh, if any, is loaded. Sent in one write, they draw one frame only.
+/// Console commands that draw `frame`; the mesh of a frame with one has to be loaded already. All of them go out in one write,
+/// so that the firmware does not draw a frame between two of them.
 fn lines(frame: &Frame, with_depth: bool) -> Vec<String> {
     let mut lines = vec![
         render::size_command(frame.size),

@@ -229,7 +229,7 @@ fn mantissas_and_shifts() {
     for round in 0..3072 {
         let (width, height) = SIZES[round as usize % 3];
         let mut frame = MeshSetup::new(&view, width, height, RADIUS).unwrap();
-        // The smallest distance of a near plane, 0.01.
+        // The smallest accepted distance of the near plane: 0.01 with 37 fraction bits.
         frame.near = 1_374_389_535;
         let seed = round / 4 % 256;
         let mantissa =

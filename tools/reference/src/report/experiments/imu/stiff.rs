@@ -1,4 +1,4 @@
-//! Stiff and extreme cases of the attitude, where simple methods fail.
+//! Stiff and extreme inputs of the attitude computation, on which simple methods fail.
 
 use glint_core::calibration::{RestBias, Units};
 use glint_core::orientation::{Gain, Sample};
