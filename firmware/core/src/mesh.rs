@@ -425,7 +425,7 @@ pub struct MeshError {
     pub found: u32,
 }
 
-/// What was expected in a mesh; a variant holds the name of what is counted, and the count.
+/// Expectation that a mesh violates. A variant with a count also holds the name of the counted items.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Expected {
     /// The four bytes [`MAGIC`].

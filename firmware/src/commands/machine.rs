@@ -13,7 +13,7 @@ use crate::selftest;
 
 impl<'l> MachineCommands<'l> for Machine {
     fn help(&mut self, command: Option<&'l str>) -> Outcome<'l> {
-        // Writing fails only if the line accepts no text, so nobody would read an error.
+        // Writing fails only if the line accepts no text; an error message would be lost as well.
         let _ = write_help(self.terminal.output(), command);
         Ok(Reply::Done)
     }

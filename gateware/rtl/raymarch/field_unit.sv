@@ -1,12 +1,12 @@
-// The distance field of a lane: the fields that it is built with, side by side, and which of them is asked.
+// The distance field of a lane: all built fields side by side, and a multiplexer that selects one by `solid`.
 //
-// Latency raymarch_pkg::field_clocks(LEVELS, FIELDS, ROUND, BLEND), throughput a point a clock, no handshake; `solid` holds. A field that is not
-// built costs nothing; one that is the only one costs no choice.
+// Latency raymarch_pkg::field_clocks(LEVELS, FIELDS, ROUND, BLEND), throughput one point a clock, no handshake. `solid` does not
+// change during a frame. An unbuilt field costs nothing; a single field needs no multiplexer.
 //
-// Spheres are looked at one after the other: `pass` is the number of one, a clock before the point, `so_far` is the nearest one of
-// those before it, and `nearest` is it or this one. The distance, to it or to what is flat beside it, is right in the last pass.
-// With BLEND, which needs both, there may be a fillet between them: then all is round, `face` is the flat one's surface and `share`
-// the sphere's part of what is there. Otherwise `share` is all ones.
+// Spheres are evaluated one after the other, one a pass. `pass` is the number of the sphere, one clock before the point; `so_far` is
+// the nearest sphere of the earlier passes; `nearest` is the nearest sphere including this pass. The distance, to the nearest sphere
+// or to the flat field, is valid in the last pass. BLEND needs spheres and a flat field and adds the fillet between both: `round` is
+// then set, `face` is the surface of the flat field, and `share` the weight of the sphere's colour. Otherwise `share` is all ones.
 
 `default_nettype none
 
