@@ -3,7 +3,7 @@
 `default_nettype none
 
 package raymarch_pkg;
-    // Verilator would warn about constants that a module does not use, and each module uses only some.
+    // UNUSEDPARAM is off, because each module uses only some of the constants.
     /* verilator lint_off UNUSEDPARAM */
     // Widths of t, u11.12; of a point's coordinate as input of a field, s10.12, and before that, s13.12; of a component of
     // the direction, s1.17.
