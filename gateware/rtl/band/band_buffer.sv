@@ -1,5 +1,6 @@
-// The band buffer: colour and depth of a band, at most 15,360 pixels, in block RAM, shared by all renderers. While one band
-// is drawn, the previous band is flushed to memory: in each line the pixels drawn in this frame or in the previous one.
+// The band buffer: block RAM for colour and depth of a band (a horizontal strip of the picture, at most 15,360 pixels), shared
+// by all renderers. While one band is drawn, the previous band is flushed to memory. Of each line the flush writes only the
+// words that were drawn in this frame or in the last frame of the same frame buffer.
 //
 //                        ┌────────────┐  drawn  ┌─────────────────┐ flushed  ┌────────────┐
 //   groups ─▶ band_pipe ─┤            ├────────▶│ colour bank 0/1 │─────────▶│            │
@@ -10,35 +11,35 @@
 //        └──────────────▶│ band_extents │──────────────────────────────────────────┘
 //                        └──────────────┘
 //
-// A row is eight pixels, and its address is line * (W/8) + column, with W the width of the picture, line = y in the band, and
-// column = x/8. Beside its colour each pixel has a written bit; a bank is clear when none of these bits is set. A pixel
-// without the bit counts as depth 0 and as the clear colour, and neither is stored. So one depth memory serves both banks,
-// and the clear colour may change from band to band. The flush resets the bits of each row that it has read, so there is no
-// clear pass. 25 RAMB36.
+// A row of these memories holds eight neighbouring pixels. Its address is line * (W/8) + column, with W the width of the
+// picture, line = y in the band, and column = x/8. Beside its colour each pixel has a written bit; a bank is clear when none of
+// these bits is set. A pixel whose bit is 0 has depth 0 and the clear colour, but neither value is stored. So one depth memory
+// serves both banks, and the clear colour may change from band to band. The flush resets the bits of each row that it has read,
+// so no clock is spent on clearing. The buffer takes 25 RAMB36.
 //
 // Groups: {row, line, column, mask, eight depth codes u18, eight colours RGB565}, lane 0 (the leftmost) in the lowest bits.
-// Lane i is written where mask[i] is set and code[i] is at least the stored one. With STEREO a group may belong to one eye:
+// Lane i is written if mask[i] is set and code[i] is at least the stored depth code. With STEREO a group may belong to one eye:
 // `halves` is 1 for the left eye and 2 for the right one, and that half of each colour is the eye's luminance. Such a group is
-// written without a depth test, and the stored depth is that of the left eye. The flush composes both eyes, see band_flush;
-// every pixel must then be drawn for both. Throughput one group a clock; hazards: see band_pipe.
+// written without a depth test, and the stored depth is that of the left eye. The flush composes the colours of both eyes, see
+// band_flush; every pixel must then be drawn for both eyes. Throughput one group a clock; band_pipe explains the hazards.
 //
-// Bands: an item of `band_*` ends the drawing of a band and says how to flush it: address of its first 128-bit word, its
-// `lines` (at least 1), `stride` (rows of a line) and clear colour. Groups taken up to and including the first clock of
-// `band_valid` belong to the band. After that no group is taken until the item has moved. The item moves when the last group
-// is written, the previous band is in memory, and the banks have changed places.
+// Bands: an item of the stream `band_*` ends the drawing of a band and has the parameters of its flush: the address of its first
+// 128-bit word, its `lines` (at least 1), `stride` (rows of a line) and clear colour. Groups taken up to and including the first
+// clock of `band_valid` belong to the band. After that no group is taken until the item has moved. The item moves when the last
+// group is written and the previous band is in memory; in this clock the banks change places.
 //
-// There are two frame buffers, `slot` 0 and 1. For each line of their pictures (from `first_line` on) the band buffer
-// remembers one extent: the words that the last flush to this slot left other than clear. The union of that extent and of the
-// words drawn now goes to memory. With `whole` all words go to memory. `whole` is required unless the lines in the frame
-// buffer are as the last flush to this slot left them, with the same clear colour and stride.
+// There are two frame buffers in memory, `slot` 0 and 1. For each line of their pictures (from `first_line` on) the band buffer
+// remembers one extent: the words of the line that may differ from the clear colour since the last flush to this slot. The
+// union of that extent and of the words drawn now goes to memory. With `whole` all words go to memory. `whole` is required
+// unless the lines in the frame buffer are as the last flush to this slot left them, with the same clear colour and stride.
 //
-// `with_depth` is for debugging: depth goes to memory too, as 32-bit words from `depth_base` on, for all of the band as with
-// `whole`. The next band is drawn only after this flush, which takes three words a row.
+// `with_depth` is for debugging: the depths of the whole band go to memory too, as 32-bit words from `depth_base` on, and
+// `whole` is implied. The next band is drawn only after this flush, which takes three words a row.
 //
 // `restart` (and reset) drops the band being drawn and stops the flush; words already read, at most 16, still come out. Then
-// both banks are cleared: for 2,048 clocks `clearing` is high and no stream is taken, whether memory takes words or not. The
-// next flush of the lines that were being flushed (after reset: of all lines) must be `whole` in this slot. The renderers must
-// be restarted too, because a group or band offered afterwards counts.
+// both banks are cleared: for 2,048 clocks `clearing` is high and no group or band is taken, whether memory takes words or not.
+// The next flush to the interrupted slot of the lines that were being flushed (after reset: of all lines, in both slots) must
+// be `whole`. The renderers must be restarted too, because groups and bands that they offer afterwards are accepted.
 //
 // Streams: an item moves in a clock in which valid and ready are high; valid does not wait for ready, and a payload holds
 // until it has moved. Words for memory: see band_flush. `flushed` is high when memory has taken all words of all bands.
@@ -89,14 +90,14 @@ module band_buffer #(
     // Number of the colour bank that is drawn; the other bank is flushed.
     logic drawn, closing, swap;
 
-    // The draw side.
+    // Signals between band_pipe, which draws, and the memories.
     logic                open, empty, held;
     logic [ROW_BITS-1:0] draw_read_row, draw_write_row;
     logic [7:0]          draw_lanes, drawn_written;
     logic [1:0]          draw_halves;
     logic [8*18-1:0]     draw_codes, stored_codes;
     logic [8*16-1:0]     draw_colours;
-    // The flush side.
+    // Signals between band_flush, which reads and clears the other bank, and the memories.
     logic                flush_idle, flush_reads_depth, flush_waits, flush_clears;
     logic [ROW_BITS-1:0] flush_row, flush_clear_row;
     logic [8*16-1:0]     flushed_colours;

@@ -1,5 +1,5 @@
-// Plans the flush of a band: in each line, the words from the first to the last one that was drawn now or in the last frame of
-// the same frame buffer. All other words already hold the clear colour in memory.
+// Plans the flush of a band: finds in each line the words to write, from the first to the last word that was drawn in this band
+// or in the last frame of the same frame buffer. All other words of the line already hold the clear colour in memory.
 //
 //               ┌───────────────┐
 //   groups ────▶│ now, bank 0/1 │──┬──────────────▶ union ─▶ + line's first row ─▶ skid_buffer ─▶ spans
@@ -8,19 +8,20 @@
 //                          │ last, slot 0/1├─────────┘
 //                          └───────────────┘
 //
-// The memory `now` holds the extent of each line, its first and its last column (of eight pixels), in LUT memory, one memory
-// for each bank. A group updates the extent of its line in one clock, so there is no hazard. The memory `last` holds the
-// extents of all lines of both frame buffers in a block RAM. An empty extent goes from the largest column down to 0, the
-// neutral element of the union; so the largest column, all ones, must not be drawn.
+// The extent of a line is its first and its last drawn column, a column being eight pixels. The memory `now` in LUTs holds the
+// extents of the lines of a band, once for each colour bank. A group updates the extent of its line in one clock, so there is
+// no hazard. The memory `last` in a block RAM holds the extents of all lines of both frame buffers. An empty extent goes from
+// the largest column down to 0, which is the neutral element of the union; so the largest column, all ones, must not be drawn.
 //
-// `start` (one clock, not while `busy` or `sweep` is high) plans the band in the bank that is not drawn from the next clock
-// on: its `lines` (at least 1) from the picture's line `first_line` on, of `stride` columns each. For every line that is not
-// empty, the output has a span: the line's first and last row in the band buffer, in order of lines. With `whole` the span has
-// all rows, for every line. `busy` falls when the last span has been taken. The extents of the lines have then moved from
-// `now` to `last`. Latency 6 clocks from `start` to the first span; throughput one line a clock, empty or not.
+// `start` (one clock, not while `busy` or `sweep` is high) plans the band that has just been drawn; from the next clock on its
+// bank is the one that is not drawn. The band has `lines` lines (at least 1) of `stride` columns each, and begins at the line
+// `first_line` of the picture. For every line that is not empty, the output has a span: the line's first and last row in the
+// band buffer, in order of lines. With `whole` the span has all rows, for every line. `busy` falls when the last span has been
+// taken. The extents of the lines have then moved from `now` to `last`. Latency 6 clocks from `start` to the first span;
+// throughput one line a clock, empty or not.
 //
-// `sweep` empties `now`; it must last 2^LINE_BITS clocks at least. Sweep and reset cancel a plan that is under way.
-// Then the extents of its lines in `last` are unknown (after reset: those of all lines), and the next band with such
+// `sweep` empties the memory `now`; it must be high for at least 2^LINE_BITS clocks. Sweep and reset cancel a plan that is under
+// way. The extents of its lines in `last` are then unknown (after reset: the extents of all lines), and the next band with such
 // lines must be `whole`.
 
 `default_nettype none
@@ -67,7 +68,7 @@ module band_extents #(
         united = {a_last > b_last ? a_last : b_last, a_first < b_first ? a_first : b_first};
     endfunction
 
-    // Lines in planning.
+    // Progress of a plan: the current line in the band, its place in `last`, and the number of columns in a line.
     logic                    planning, plan;
     logic [LINE_BITS-1:0]    line, last_line;
     logic [PLACE_BITS-1:0]   place;
@@ -77,7 +78,7 @@ module band_extents #(
 
     assign plan = planning && advance;
 
-    // Update by groups.
+    // Line and column of a drawn group, which update the memory `now` a clock after the group.
     logic                   adds;
     logic [LINE_BITS-1:0]   add_line;
     logic [COLUMN_BITS-1:0] add_column;
@@ -131,7 +132,7 @@ module band_extents #(
     logic [EXTENT_BITS-1:0] to_store, latched, earlier, now_1, now_2, now_3, united_4;
     logic                   to_write;
     logic [4:1]             valid;
-    // Address of the first row of the line in the last stage.
+    // Band buffer row at which the line in the last pipeline stage begins.
     logic [ROW_BITS-1:0]    line_row;
 
     always_ff @(posedge clk) begin

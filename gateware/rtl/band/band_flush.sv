@@ -1,14 +1,16 @@
-// Flushes a finished band: reads spans of rows from its bank, sends their words, and clears each row after its last read.
+// Flushes a finished band from the band buffer to memory: reads spans of consecutive rows from the band's bank, sends their
+// words, and clears each row after its last read.
 //
 //   span ─▶ row ─▶ ┄┄ band_bank's read ┄┄ ─▶ compose ─▶ fifo ─▶ out
 //            └──▶ clear_row, a clock later, ─▶ address ──┘
 //
 // One row is one 128-bit word: eight RGB565 pixels, the leftmost in the lowest bits, with the clear colour where a pixel is
-// not written. With `compose` (STEREO only) a pixel holds the luminances of two eyes, {right, left}: 1 makes the left one red,
-// the right one blue and the smaller of both green, 2 makes the left one red and the right one green and blue. The colour word
-// of row r goes to address `base` + r. With `with_depth`, the rows of a span are read again after its colours: two words a
-// row, four depths of 32 bits each, 0 where a pixel is not written, for address `depth_base` + 2r and the word after it. Words
-// with neighbouring addresses follow each other, so memory seldom turns to another bank.
+// not written. With `compose` other than 0 (STEREO only) a pixel holds the luminances of two eyes, {right, left}. For 1 the left
+// luminance becomes red, the right one blue, and the smaller of both green. For 2 the left one becomes red, and the right one
+// green and blue. The colour word of row r goes to address `base` + r. With `with_depth`, the rows of a span are read again
+// after its colours: each row gives two words of four 32-bit depths, 0 where a pixel is not written, for the addresses
+// `depth_base` + 2r and `depth_base` + 2r + 1. Words with neighbouring addresses follow each other, so the DDR3 memory seldom
+// has to open another bank.
 //
 // `start` (only while `idle`) takes these parameters and begins a flush; `idle` is low until the last word has been taken.
 // Spans are items {first, last}, last >= first; `spans_busy` must be high until the last span has been taken. Throughput one
@@ -25,7 +27,8 @@
 module band_flush #(
     parameter int unsigned ADDRESS_BITS = 23,
     parameter int unsigned ROW_BITS     = 11,
-    // Largest number of words under way, a power of two. A place is free again 7 clocks after the request of its row.
+    // Places in the FIFO of words, a power of two: the largest number of words that are requested and not yet taken. If words
+    // are taken at once, a place is free again 7 clocks after the request of its row.
     parameter int unsigned WORDS        = 16,
     parameter bit          STEREO       = 1'b0
 ) (
@@ -49,8 +52,8 @@ module band_flush #(
     input  wire  [ROW_BITS-1:0]     span_first,
     input  wire  [ROW_BITS-1:0]     span_last,
     input  wire                     spans_busy,
-    // Bank port: colours, codes and written bits belong to the `row` of 3 clocks ago. `clears` marks
-    // `clear_row` as not written.
+    // Port to the bank: colours, depth codes and written bits belong to the `row` of 3 clocks ago. `clears` resets the written
+    // bits of `clear_row`.
     output logic [ROW_BITS-1:0]     row,
     input  wire  [8*16-1:0]         colours,
     input  wire  [8*18-1:0]         codes,
@@ -65,7 +68,7 @@ module band_flush #(
 );
     localparam int unsigned COUNT_BITS = $clog2(WORDS + 1);
 
-    // The words that a row gives: its colours, the left half of its depths, and the right half.
+    // The word that a read of a row produces: its eight colours, its left four depths, or its right four depths.
     typedef enum logic [1:0] {COLOUR, DEPTH_LEFT, DEPTH_RIGHT} part_t;
 
     typedef enum logic [1:0] {IDLE, FLUSH, SWEEP} state_t;
@@ -76,7 +79,7 @@ module band_flush #(
     logic [15:0]           background;
     logic [1:0]            composing;
     logic [ADDRESS_BITS-1:0] colour_base, depth_words_base;
-    // Number of words that may still be requested: places of the FIFO that are not reserved.
+    // Number of words that may still be requested, which is the number of FIFO places that are not reserved.
     logic [COUNT_BITS-1:0] places;
 
     assign idle        = state == IDLE && places == COUNT_BITS'(WORDS);

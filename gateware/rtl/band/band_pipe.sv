@@ -1,19 +1,20 @@
-// Draws groups of eight pixels into the band buffer's memories: reads the row, compares depths, writes the lanes that pass.
+// Draws groups of eight pixels into the band buffer's memories: reads the row of the group, compares the depth codes, and writes
+// the lanes (pixels) that pass the depth test.
 //
 //   groups ─▶ issue ─▶ ┄┄┄┄┄┄┄┄ band_bank's read ┄┄┄┄┄┄┄┄ ─▶ compare ─▶ ┄┄ band_bank's write ┄┄
 //             read_row    reading[0]      reading[1]         write_*
 //
-// A lane is written where its mask is set and its code is at least the stored one; the stored code of a pixel not yet written
-// in this band is 0. A group for one half of the colour, the view of one eye, has no depth test. Latency 3 clocks from
+// A lane is written if its mask bit is set and its depth code is at least the stored one; the stored code of a pixel not yet
+// written in this band is 0. A group for one half of the colour (the view of one eye) has no depth test. Latency 3 clocks from
 // `read_row` to `write_*`; throughput one group a clock.
 //
 // Hazard: a group must not read a lane before an earlier group has written it. A group that shares a row and a lane with one
-// of the three groups before it is held until there are at least four clocks between both. Groups that share a row but no
-// lane, as neighbouring triangles do along their common edge, pass without a stall: each lane is a memory of its own.
+// of the three groups before it is held until at least four clocks after that group. Groups that share a row but no lane, as
+// neighbouring triangles do along their common edge, pass without a stall, because each lane is a separate memory.
 //
 // Stream contract on the input: an item moves in a clock in which valid and ready are high; `group_ready` comes from registers
-// and from `open`, which lets groups in. `empty` is high when every accepted group is written, so that a read through
-// `read_row` sees it.
+// and from `open`, which admits groups. `empty` is high when every accepted group is written, so that a read of any row
+// includes it.
 
 `default_nettype none
 
@@ -31,7 +32,7 @@ module band_pipe #(
     input  wire  [1:0]          group_halves,
     input  wire  [8*18-1:0]     group_codes,
     input  wire  [8*16-1:0]     group_colours,
-    // Memory ports. `stored` and `stored_written` belong to the `read_row` of 3 clocks ago.
+    // Memory ports. The depth codes `stored` and the written bits `stored_written` belong to the `read_row` of 3 clocks ago.
     output logic [ROW_BITS-1:0] read_row,
     input  wire  [8*18-1:0]     stored,
     input  wire  [7:0]          stored_written,

@@ -2,9 +2,9 @@
 //
 //   start ──▶ request (level, until done) ──▶ done ──▶ finished (one clock) ──▶ busy falls
 //
-// The payload crosses in plain registers. The payload of the source must be stable from `start` until `finished`, that of the
-// destination from the clock of `done` at the latest until the next `request`. Each payload is then stable for at least one
-// clock of the receiving side before its use.
+// Payloads do not pass through this module: the other side reads the registers directly. Data from the source must be stable
+// from `start` until `finished`, data from the destination from the clock of `done` at the latest until the next `request`.
+// Data are then stable for at least one clock of the receiving side before their use.
 //
 // The signals are levels, not toggles, because each side may be reset alone: a destination after reset sees the request again,
 // a source after reset withdraws it. One request at a time; `start` is ignored while `busy`. Latency of a round trip: about 3

@@ -5,9 +5,9 @@
 // time later, and cannot be held back. A client is therefore served only while the FIFO of DEPTH places for its words has room
 // for all words under way. Throughput one word a clock.
 //
-// Memory takes four clocks to turn to another bank, and a dozen from writes to reads and back. So a client is served in
-// bursts: until it has no request or its FIFO is full, and again when half of its FIFO is empty. The other clients have
-// their turns in between.
+// The DDR3 memory takes four clocks to turn to another of its banks, and a dozen to turn from writes to reads and back. So a
+// client is served in bursts: a burst ends when the client has no request or its FIFO is full, and a new one begins when half
+// of the FIFO is empty. Other clients are served between the bursts.
 //
 // Latency: 2 clocks from `ask` to the command, 3 from the memory's data to the client.
 // `drop`, held until `idle`, cancels everything: no commands go out, and words still to come from memory are discarded.
@@ -46,12 +46,12 @@ module read_port #(
 );
     localparam int unsigned CLIENT_BITS = CLIENTS > 1 ? $clog2(CLIENTS) : 1;
     localparam int unsigned ROOM_BITS   = $clog2(DEPTH + 1);
-    // The largest number of words under way is CLIENTS * DEPTH.
+    // At most CLIENTS * DEPTH words are requested and not yet delivered.
     localparam int unsigned OWNER_BITS  = $clog2(CLIENTS * DEPTH);
 
-    // The client of the next command is chosen a clock ahead: the same client while it may continue, otherwise the next
-    // client with a request. The choice does not depend on requests in the same clock. A chosen client without a
-    // request loses its turn.
+    // The client of the next command (`turn`) is chosen one clock before the command: the same client while it may continue,
+    // otherwise the next client with a request. The choice does not depend on requests in the clock of the command. If the
+    // chosen client then has no request, no command is sent.
     logic [CLIENT_BITS-1:0] turn, first, chosen, asker;
     logic [CLIENTS-1:0]     servable, taken;
     logic                   given, any, moves;
@@ -87,7 +87,7 @@ module read_port #(
         end
     end
 
-    // The client of each word under way, in the order of the commands.
+    // Queue of the clients of all words that were requested and have not come, in the order of the commands.
     (* ram_style = "distributed" *) logic [CLIENT_BITS-1:0] owners [0:2**OWNER_BITS-1];
     logic [OWNER_BITS:0]    asked, answered;
     logic [CLIENT_BITS-1:0] owner;
@@ -118,7 +118,7 @@ module read_port #(
     end
 
     for (genvar i = 0; i < CLIENTS; i++) begin : client
-        // Number of free places in the client's FIFO that are not reserved for a word under way.
+        // Number of free places in the client's FIFO, without those that are reserved for requested words.
         logic [ROOM_BITS-1:0] room;
         logic                 has_turn, asks, bursting;
 
@@ -139,7 +139,7 @@ module read_port #(
             end
         end
 
-        // A place is reserved for each word, so `in_ready` is high whenever a word comes.
+        // A place is reserved for each requested word, so the FIFO's `in_ready` is high whenever a word comes.
         /* verilator lint_off PINCONNECTEMPTY */
         fifo #(.WIDTH(128), .DEPTH(DEPTH)) words (
             .clk       (clk),

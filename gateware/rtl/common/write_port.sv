@@ -2,10 +2,10 @@
 //
 // Input: a stream of {address, data, strobe}, with strobe bit k for byte k. Memory side, the LiteDRAM native write port:
 // commands by valid/ready, and the data of each command in the same order, some time later. Memory takes data without looking
-// at valid; data are always valid by then, since they enter their FIFO before the command goes out.
+// at `wdata_valid`; the data are always valid by then, since they enter their FIFO before the command goes out.
 //
-// Memory takes a dozen clocks to turn from reads to writes and back. So words gather until BURST of them go out together.
-// While `hurry` is high, as needed for the last words, words go out at once.
+// Memory takes a dozen clocks to turn from reads to writes and back. So words wait in the FIFOs until BURST of them go out
+// together. While `hurry` is high, as needed for the last words of a frame, words go out at once.
 //
 //   in ──┬─▶ addresses ─▶ gate ─▶ command
 //        └─▶ words ─────────────▶ data
@@ -71,7 +71,8 @@ module write_port #(
         .out_data  ({wdata_strobe, wdata})
     );
 
-    // Number of words whose command was not sent, and number of words whose data memory has not taken.
+    // `gathered` is the number of words whose command has not left its FIFO, `waiting` the number of words whose data memory has
+    // not taken.
     logic [COUNT_BITS-1:0] gathered, waiting;
     logic                  bursting, sent;
 

@@ -23,10 +23,10 @@
 // transaction, and while there is no room for a byte to receive, SCL is kept low. A bit takes 3 phases, and 7 clocks until SCL
 // is seen high. A start takes 3 phases, and 1 more within a transaction; a stop takes 4 phases.
 //
-// A start checks SDA. When SDA is low, a device hangs in the middle of a byte. The device then gets up to nine SCL clocks, and
-// the start follows in the first of these clocks with a released SDA, which resets the device.
+// A start checks SDA. A low SDA means that a device is still in the middle of a byte. The device then gets up to nine SCL
+// clocks, and the start condition follows in the first of these clocks in which SDA is released, which resets the device.
 //
-// Rounds: with `repeats` a finished command goes back into the queue, and a transaction begins every `period` + 1
+// Repetition: while `repeats` is high, a finished command goes back into the queue, and a transaction begins every `period` + 1
 // clocks, the first one `period` + 1 clocks after `repeats` rises. By then the queue must hold a whole transaction, from
 // start to stop. `ended` pulses once every `batch` + 1 transactions. A transaction that is still running when the next
 // one is due is an error.

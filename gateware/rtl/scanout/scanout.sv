@@ -6,13 +6,13 @@
 //                  └──────────── one source line at a time ◀── scanout_lines ◀── scanout_timing
 //
 // Once a frame, when the vertical blanking begins, the sys side latches `frame_base`, `scale` and `enable`, counts the frame
-// and pulses `vblank`. The pix side requests line 0 only after that, so all lines of a frame come from one base. The raster
-// never waits: a line that comes late is replaced by the previous one and counted.
+// and pulses `vblank`. The pix side requests line 0 only after that, so all lines of a picture come from one frame in memory.
+// The video timing never waits: a line that comes late is replaced by the previous line, and counted as an underflow.
 //
-// Throughput: one pixel a pix_clk, at most one memory word a sys_clk. Latency: 3 pix_clk from the raster to the video outputs;
-// a source line is requested one to `scale` output lines before its first use. Clock domain crossings: three four-phase
-// requests with stable payload (cdc_request), one level, and the line ring, whose slots are written and read at different
-// times by the protocol of scanout_lines.
+// Throughput: one pixel a pix_clk, at most one memory word a sys_clk. Latency: 3 pix_clk from scanout_timing to the video
+// outputs; a source line (a line of the frame in memory) is requested one to `scale` output lines before its first use. Clock
+// domain crossings: three four-phase requests with stable payload (cdc_request), one level, and the line ring, whose slots are
+// written and read at different times by the protocol of scanout_lines.
 
 `default_nettype none
 
@@ -70,7 +70,7 @@ module scanout #(
 
     // ---- Crossings ----------------------------------------------------------------------------------------------
 
-    /* verilator lint_off PINCONNECTEMPTY */ // Not every request needs both ends of its life.
+    /* verilator lint_off PINCONNECTEMPTY */ // No request uses both `src_busy` and `src_finished`.
     logic pix_vblank, pix_frame_begun, sys_vblank;
     cdc_request cross_vblank (
         .src_clk(pix_clk), .src_rst(pix_rst), .src_start(pix_vblank), .src_busy(), .src_finished(pix_frame_begun),
@@ -91,11 +91,11 @@ module scanout #(
 
     /* verilator lint_on PINCONNECTEMPTY */
 
-    // This signal is a level, so that a reset of the sys side blacks the screen at once.
+    // `enabled` crosses as a level, so that a reset of the sys side blacks the screen at once.
     logic pix_enabled;
     cdc_level cross_enabled (.clk(pix_clk), .level(enabled), .synced(pix_enabled));
 
-    // ---- Frame parameters and counters (sys) --------------------------------------------------------------------
+    // ---- Frame parameters and counters, clocked by sys_clk ------------------------------------------------------
 
     logic [1:0] shift, shift_asked;
     logic       scale_known, underflow_seen;
@@ -146,7 +146,7 @@ module scanout #(
         end
     end
 
-    // ---- Fetch (sys) --------------------------------------------------------------------------------------------
+    // ---- Fetch of source lines from memory, clocked by sys_clk --------------------------------------------------
 
     logic                 store, store_slot;
     logic [WORD_BITS-1:0] store_word;
@@ -161,7 +161,7 @@ module scanout #(
         .store, .store_slot, .store_word
     );
 
-    // ---- Line ring (written by sys, read by pix) ----------------------------------------------------------------
+    // ---- Line ring, two buffers of one source line: written in sys_clk, read in pix_clk -------------------------
 
     logic [127:0]         ring [0:2*(1 << WORD_BITS)-1];
     logic [127:0]         ring_word;
@@ -170,7 +170,7 @@ module scanout #(
     always_ff @(posedge sys_clk) if (store) ring[{store_slot, store_word}] <= rdata;
     always_ff @(posedge pix_clk) ring_word <= ring[ring_address];
 
-    // ---- Raster and ring control (pix) --------------------------------------------------------------------------
+    // ---- Video timing and control of the line ring, clocked by pix_clk ------------------------------------------
 
     logic [X_BITS-1:0] x;
     logic              active, hsync, vsync, tick;
@@ -194,7 +194,7 @@ module scanout #(
         .shown, .shown_slot, .underflow(pix_underflow)
     );
 
-    // ---- Pixels (pix): address, ring, select --------------------------------------------------------------------
+    // ---- Pixel pipeline, clocked by pix_clk: address, read of the ring, selection of the pixel ------------------
 
     logic [X_BITS-1:0] source_x;
     logic [2:0]        lane_1, lane_2;

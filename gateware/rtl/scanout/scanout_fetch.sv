@@ -1,12 +1,12 @@
-// Fetches one source line from memory into a slot of the line ring.
+// Fetches one source line (a line of the frame in memory) into a slot of the line ring, which is a buffer of two lines.
 //
 // Memory side, the LiteDRAM native read port: commands by valid/ready (payload stable while valid and not ready), one word a
 // clock at most; data comes in order, some time later, and cannot be held back. The whole slot is free before the first
 // command, so each word is stored in its place in the clock in which it comes.
 //
-// Work side: `request` is a level with `line` and `slot`, held until `done` (one clock). Without `enable` a request is done at
-// once and reads nothing. A request that is withdrawn ends without `done`. Latency: 3 clocks to the first command, 1 clock
-// from the last word to `done`.
+// Work side: `request` is a level with `line` and `slot`, held until `done` (one clock). While `enable` is low, a request is
+// done at once and reads nothing. A request that is withdrawn ends without `done`. Latency: 3 clocks to the first command, 1
+// clock from the last word to `done`.
 
 `default_nettype none
 

@@ -1,4 +1,5 @@
-// Control of the line ring: which of the two slots is shown, and which source line is fetched into the other.
+// Control of the line ring, two slots of one source line each: decides which slot is shown, and which source line (a line of the
+// frame in memory) is fetched into the other, hidden slot.
 //
 // Decisions are taken once an output line, at the tick (the leading edge of hsync, when the last pixel has left):
 //
@@ -55,7 +56,7 @@ module scanout_lines #(
     logic frame_open, hidden_asked, hidden_ready;
     assign hidden_ready = hidden_asked && !fetch_busy && fetch_line == needed && in_picture;
 
-    // Step 3 above runs a clock after steps 1 and 2 and uses their results.
+    // Step 3 of the decisions at the head of this module runs a clock after steps 1 and 2, and uses their results.
     logic              decide;
     logic [Y_BITS-1:0] decide_line;
     logic              decide_exists;

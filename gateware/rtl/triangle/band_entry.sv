@@ -1,5 +1,5 @@
-// Places a triangle at the row where it enters the band: its first row, or the first row of the band if the
-// triangle begins above.
+// Evaluates the edge functions E' and the depth of a triangle at the row where it enters the band: `first` in the drawing is
+// the triangle's first row, or the first row of the band if the triangle begins above it.
 //
 //        top ─────────▲            E' and depth there are start + step_y * (first - top), and at the other end of the
 //                    ╱ ╲           group E' + 7 * step_x: exact, E' in 34 bits and depth modulo 2^32
@@ -7,21 +7,23 @@
 //         band     ╱     ╲
 //      ═══════════════════════════
 //
-// One multiplier and adder, and a second one for `beside`, compute all values in eight passes, one a clock:
+// One multiply_add computes E' and the depth in eight passes, one a clock, and a second one computes `beside`, the value of E'
+// one lane outside of the group (see raster_pkg):
 //
 //   pass   product              plus           gives
-//   0, 1   step_y * offset      start          E' at lane 0 of edges 0 and 1
-//   2, 3   step_x * 7           pass 0, 1      E' at lane 7, and beside the group: step_x * 8 or -step_x
-//   4      step_y * offset      start          edge 2
-//   5      low 24 bits of the depth's step     depth start and half a code
-//   6      step_x * 7           pass 4         lane 7 and beside
-//   7      its high 8 bits      pass 5         depth
+//   0, 1   step_y * offset      start          E' in lane 0 of edges 0 and 1
+//   2, 3   step_x * 7           pass 0, 1      E' in lane 7; `beside` from step_x * 8 or -step_x
+//   4      step_y * offset      start          E' in lane 0 of edge 2
+//   5      low 24 bits of the depth's step_y   depth_start plus half a depth code
+//   6      step_x * 7           pass 4         E' in lane 7, and `beside`, of edge 2
+//   7      its high 8 bits      pass 5         depth in lane 0
 //
-// Streams are valid/ready, and ready comes from registers. Latency 13 clocks, throughput a triangle in 8 clocks: while one
-// triangle is in its passes, the previous one finishes, or is held until there is room, and another one waits at the input. A
-// triangle without a row in the band is taken and dropped. The band's first row `in_y0` and its parity `in_odd` come with the
-// triangle; `holds` is set for the parities of the triangles inside. `rows`, the rows of a band, must hold while triangles are
-// inside. With SMOOTH, planes of light go the same way, each with a multiplier of its own.
+// `offset` is the number of rows from the triangle's top to `first`. Streams are valid/ready, and ready comes from registers.
+// Latency 13 clocks, throughput a triangle in 8 clocks: while one triangle is in its passes, the previous one finishes, or is
+// held until there is room, and another one waits at the input. A triangle without a row in the band is taken and dropped. The
+// band's first row `in_y0` and the parity `in_odd` of its number come with the triangle; bit b of `holds` is high while a
+// triangle of a band with parity b is inside. `rows`, the rows of a band, must hold while triangles are inside. With SMOOTH,
+// the planes of light pass through plane_entry, each with its own multiplier.
 
 `default_nettype none
 
@@ -43,13 +45,14 @@ module band_entry #(
     input  wire                            out_ready,
     output logic                           out_odd,
     output raster_pkg::placed_t            out_triangle,
-    // Planes of light: their values at the row, in lane 0.
+    // Planes of light in the format of `in_planes`, with their values at the triangle's first row in the band, in lane 0.
     output logic [PLANES_BITS-1:0]         out_planes
 );
     localparam logic [31:0] HALF_A_CODE = 32'd1 << 13;
     localparam logic [2:0]  STALLS = 3'd3, ROWS_KNOWN = 3'd4, LAST = 3'd7;
 
-    // Three stages: a triangle is in its passes, then in its three `ending` clocks, then held.
+    // Stages of a triangle: first its passes (`busy`), then three clocks in which the last products arrive (`ending`), then the
+    // held stage, in which it waits for the output register.
     triangle_pkg::descriptor_t triangle;
     logic [9:0]  y0;
     logic        busy, odd, held_valid, held_odd, advance, next_free;
@@ -67,7 +70,8 @@ module band_entry #(
                         || out_valid && out_odd == 1'(b);
     end
 
-    // Rows relative to the first row of the band.
+    // Rows of the triangle, counted from the first row of the band: its first row, the row after its last one,
+    // and their number.
     logic [10:0] above, below;
     logic [9:0]  offset;
     logic [5:0]  first, past, count;
@@ -82,7 +86,7 @@ module band_entry #(
         count <= past > first ? past - first : '0;
     end
 
-    // The horizontal step of the edge that this pass uses, its sign and its magnitude.
+    // The horizontal step of the edge that the current pass uses, with its sign and magnitude.
     logic [2:0][20:0] step_x, step_y;
     logic [20:0]      step;
     logic             rises, falls;
@@ -99,7 +103,8 @@ module band_entry #(
         slope = falls ? 20'(-step) : step[19:0];
     end
 
-    // Operands of a pass; `c` comes a clock later, and `sum` and `beside` come two more clocks later.
+    // Operands of a pass. `c` is selected one clock after `a` and `b`; the results `sum` and `beside` come two
+    // clocks after that.
     logic signed [24:0] a;
     logic signed [17:0] b, b_beside;
     logic signed [47:0] c, sum;
@@ -142,7 +147,8 @@ module band_entry #(
     logic [2:0]          all_rises, all_falls;
 
     for (genvar k = 0; k < 3; k++) begin : edges
-        // LANE_0: the pass in whose clock the edge's value at lane 0 arrives. STEP: the pass that uses the edge's step_x.
+        // LANE_0: the pass in whose clock the product with the edge's value in lane 0 arrives. STEP: the pass that multiplies
+        // the edge's step_x.
         localparam logic [2:0] LANE_0 = k == 2 ? 3'd7 : 3'd3 + 3'(k);
         localparam logic [2:0] STEP   = k == 2 ? 3'd6 : 3'd2 + 3'(k);
         logic at_lane_0, at_lane_7;

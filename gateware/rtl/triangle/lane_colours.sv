@@ -1,19 +1,21 @@
-// Colours of two pixels from their accumulators of depth and light, by a division (docs/formats.md, "Smooth shading").
+// Computes the colours of two pixels from their accumulators of depth and light: divides each light by the depth, with a table
+// of reciprocals (docs/formats.md, "Smooth shading").
 //
 //   clock   0          1           2               3                      4, 5, 6        7
 //           depth ─▶ zeros by 4 ─▶ zeros, index ─▶ table: inverse y ──┐
 //                                                  light ─────────────┴▶ light·y + half ─▶ five or six bits, by the zeros
 //
-// Both pixels share a table in half a block RAM, which has two ports. Latency 7 clocks in which `enable` is high, counted from
-// the depths, and 4 from the light; throughput two pixels a clock.
+// `zeros` is the number of leading zeros of the depth, at most 11. Both pixels share a table in half a block RAM, which has two
+// ports. Latency 7 clocks in which `enable` is high, counted from the depths, and 4 counted from the light; throughput two
+// pixels a clock.
 
 `default_nettype none
 
 module lane_colours (
     input  wire                   clk,
     input  wire                   enable,
-    input  wire  [1:0][31:0]      depths, // with half a code
-    input  wire  [1:0][2:0][31:0] lights, // red in the lowest; three clocks after the depths
+    input  wire  [1:0][31:0]      depths, // with half a depth code added
+    input  wire  [1:0][2:0][31:0] lights, // red in the lowest bits; three clocks after the depths
     output logic [1:0][15:0]      colours
 );
     // Entry i of the table is nearest(2^17/(1 + (i + 1/2)/1024)), which is nearest(2^28/(2049 + 2·i)).
@@ -76,7 +78,7 @@ module lane_colours (
                 .clk, .enable, .a({1'b0, light[31:8]}), .b({1'b0, inverse[lane]}), .c(half >> (BITS - 5)), .p(product)
             );
 
-            // The light is negative, but close to 0.
+            // High if the light is below 0, which rounding may cause for a light of 0. The channel is then 0.
             assign dark = light[31:26] == '1;
 
             delay #(.WIDTH(1), .CLOCKS(3)) dark_delay (.clk, .enable, .in(dark), .out(dark_6));

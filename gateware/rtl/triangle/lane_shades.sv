@@ -1,12 +1,13 @@
-// Smooth shading of eight pixels: computes the colours of a group beside `lanes`, and delays the outputs of `lanes` to match.
+// Smooth shading of eight pixels: computes the colours of a group in parallel with `lanes`, and delays the outputs of `lanes`
+// to match.
 //
 //   stage   1         3                4                    6              10
 //           light ───────────────────────▶ lane_values ─────▶ ┌──────────────┐
 //                     depths ───────────────────────────────▶ │ lane_colours │─▶ colours
 //                                      group ─────────────────└──────────────┘─▶ group
 //
-// Stages are those of `lanes`; all move with `enable`. Latency 6 clocks from the output of the group by `lanes`,
-// throughput a group a clock.
+// Stage numbers count from the input of `lanes`; all stages move in clocks with `enable`. Latency 6 clocks from the group's
+// output by `lanes` to the coloured group, throughput a group a clock.
 
 `default_nettype none
 
@@ -22,7 +23,7 @@ module lane_shades #(
     input  wire  [2:0][31:0]       in_step_x,
     input  wire                    in_smooth,
     // Stage 3.
-    input  wire  [7:0][31:0]       in_depths, // with half a code
+    input  wire  [7:0][31:0]       in_depths, // with half a depth code added
     // Stage 4.
     input  wire                    in_valid,
     input  wire  [GROUP_BITS-1:0]  in_group,
@@ -53,7 +54,8 @@ module lane_shades #(
 
     always_ff @(posedge clk) if (enable) smooth <= smooth_9;
 
-    // Light waits for the depths of its group: before `lane_values` as an accumulator and its step, after it as eight values.
+    // The light of a group is delayed until the depths are there. Before `lane_values` it is an accumulator and its step, after
+    // `lane_values` the accumulators of eight lanes.
     logic [2:0][7:0][31:0] lights;
 
     for (genvar k = 0; k < 3; k++) begin : channels
@@ -64,7 +66,7 @@ module lane_shades #(
     end
 
     for (genvar pair = 0; pair < 4; pair++) begin : pairs
-        // These are vectors, because Yosys does not support arrays here.
+        // The following signals are vectors, because Yosys does not support arrays here.
         logic [2*96-1:0] pair_lights;
         logic [2*16-1:0] colours;
 

@@ -1,22 +1,23 @@
-// Eight pixels of a triangle: coverage and depth codes (docs/formats.md, "Pixels").
+// Computes which of the eight pixels (lanes) of a group a triangle covers, and their depth codes (docs/formats.md, "Pixels").
 //
-// The coverage is counted. E' is the edge function of docs/formats.md. It is largest in the edge's best lane, and falls by
-// |step_x| from lane to lane. Where E' is at least 0 in the best lane, the edge passes in that lane and in the next min(7,
-// floor(E' / |step_x|)) lanes; the quotient comes from three steps of a restoring division. A rising edge counts from lane 7,
-// a falling one from lane 0. From E' = 2^23 on, which exceeds 7 * 2^20, the edge passes in all lanes.
+// Coverage: E' is the value of an edge function (docs/formats.md, "Triangle setup"); an edge passes in a lane if E' is at least
+// 0 there. E' is largest in the edge's best lane, which is lane 7 of a rising edge and lane 0 of a falling one, and falls by
+// |step_x| from lane to lane. If E' is at least 0 in the best lane, the edge passes in that lane and in the next min(7,
+// floor(E' / |step_x|)) lanes; the quotient comes from three steps of a restoring division. From E' = 2^23 on, which exceeds 7
+// * 2^20, the edge passes in all lanes.
 //
-// The depths of the lanes come from `lane_values`.
+// The depths of the lanes come from `lane_values`. In the table, `count` is the division of E' by |step_x|.
 //
 //   stage    1           2            3           4
 //   count    4, bit 2    2, bit 1     1, bit 0    mask
 //   depth    lane_values                          codes, at least 1
 //   address  5 * line    * stride / 5 + group
 //
-// `stride`, the number of groups in a line, is 40, 80 or 160 and must hold while groups are inside. The output has the address
-// of the group in the band buffer beside the line and the group from which it is computed.
+// `stride`, the number of groups in a row of the picture, is 40, 80 or 160 and must hold while groups are inside. `out_row` is
+// the address of the group in the band buffer, computed from `out_line` and `out_column`.
 //
 // Streams are valid/ready; ready passes through combinationally. Latency 4 clocks, throughput a group a clock. A group without
-// a covered pixel is dropped. `early_depths` has the depth accumulators of a group a clock before its output.
+// a covered pixel is dropped. `early_depths` has the depth accumulators of a group one clock before the group leaves.
 
 `default_nettype none
 
@@ -48,7 +49,8 @@ module lanes (
         if (rst) valid <= '0;
     end
 
-    // For each edge, the number of lanes beside the best one in which the edge passes.
+    // For each edge and pipeline stage (the suffix of a name): `count`, the number of lanes beside the best one in which the
+    // edge passes, `rises`, whether the edge rises to the right, and `all`, whether it passes in all lanes.
     logic [2:0]      rises_1, rises_2, rises_3;
     logic [2:0]      all_1, all_2, all_3;
     logic [2:0][2:0] count_3;
@@ -117,7 +119,7 @@ module lanes (
         end
     end
 
-    // The place and the colour of a group, delayed to match its mask and depths.
+    // Position and colour of a group, delayed to match its mask and depths.
     typedef struct packed {
         logic [5:0]  line;
         logic [7:0]  column;

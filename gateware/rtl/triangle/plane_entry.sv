@@ -1,7 +1,8 @@
-// Moves a plane of light to the row where `band_entry` places the triangle: its value there is
-// start + step_y * offset, modulo 2^32.
+// Evaluates a plane of light (the linear function of one colour channel, see triangle_pkg) at the row where the triangle enters
+// the band: start + step_y * offset, modulo 2^32, with `offset` the number of rows from the triangle's first row to that row.
 //
-// Driven by the passes of band_entry: the low 24 bits of the step are multiplied in pass 5, its high 8 bits in pass 7.
+// The module `band_entry` drives the control inputs and counts the passes: the low 24 bits of step_y are multiplied in pass 5,
+// its high 8 bits in pass 7.
 
 `default_nettype none
 
@@ -15,7 +16,7 @@ module plane_entry (
     input  wire         result,    // the value is computed
     input  wire         give,      // the held value goes out
     input  wire  [95:0] in_plane,  // {step_y, step_x, start}
-    output logic [95:0] out_plane  // {step_y, step_x, value there}
+    output logic [95:0] out_plane  // {step_y, step_x, value at the row}
 );
     localparam logic [2:0] LOW = 3'd5, START = 3'd6;
 

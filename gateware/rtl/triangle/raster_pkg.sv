@@ -3,13 +3,15 @@
 `default_nettype none
 
 package raster_pkg;
-    // A triangle at the row where it enters the band, in its start group. An edge function is linear, so within a group of
-    // eight lanes it is largest at one end: in lane 7 if it rises to the right, else in lane 0. The lane beside the other end,
-    // lane -1 if the edge rises and else lane 8, shows whether the edge passes anywhere in the next group on that side.
+    // A triangle at the row where it enters the band, in its start group. A group is eight neighbouring pixels of a row, lanes
+    // 0 (left) to 7. E' is the value of an edge function (docs/formats.md, "Triangle setup"); an edge passes in a lane if its
+    // E' is at least 0 there. E' is linear, so within a group its largest value is in lane 7 if the edge rises to the right,
+    // and in lane 0 otherwise: `best`. `beside` is E' one lane outside of the opposite end of the group, in lane -1 if the edge
+    // rises, and in lane 8 otherwise. It shows whether the edge passes anywhere in the next group on that side.
     typedef struct packed {
-        logic [2:0][33:0] best;         // E' at the lane where it is largest
-        logic [2:0][33:0] beside;       // E' at the lane beside
-        logic [31:0]      depth;        // accumulator at lane 0, with half a code added
+        logic [2:0][33:0] best;         // E' in the lane where it is largest
+        logic [2:0][33:0] beside;       // E' in lane -1 or lane 8, as explained above
+        logic [31:0]      depth;        // depth accumulator in lane 0, with half a depth code added
         logic [2:0][20:0] step_x;
         logic [2:0][20:0] step_y;
         logic [31:0]      depth_step_x;
@@ -17,15 +19,16 @@ package raster_pkg;
         logic [2:0][19:0] slope;        // |step_x|
         logic [2:0]       rises;        // step_x > 0
         logic [2:0]       falls;        // step_x < 0
-        logic [5:0]       line;         // the row, from the band's first one
-        logic [5:0]       rows;         // in the band, at least 1
+        logic [5:0]       line;         // number of the row, counted from the first row of the band
+        logic [5:0]       rows;         // number of the triangle's rows in the band, at least 1
         logic [7:0]       group_left;
         logic [7:0]       group_right;
         logic [7:0]       group_start;
         logic [15:0]      colour;
     } placed_t;
 
-    // A group of eight pixels in which every edge passes in at least one lane: every `best` is at least 0.
+    // A group of eight pixels that the triangle may cover, because every edge passes in at least one of its lanes: every `best`
+    // is at least 0. The fields have the same meaning as those of placed_t, here at this group.
     typedef struct packed {
         logic [5:0]       line;
         logic [7:0]       group;

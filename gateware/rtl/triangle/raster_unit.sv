@@ -1,26 +1,28 @@
-// Draws a frame, band by band, from the descriptors and band lists of the geometry unit and of the firmware.
+// Draws a frame, band by band, from the descriptors (triangles after the setup) and the band lists (the numbers of the
+// descriptors in each band), which the geometry unit and the firmware have written to memory.
 //
 //                                                                             ┌─▶ write_port 0 ─┐
 //   lists, descriptors ──▶ list_reader ──▶ triangle_raster ──┬▶ band_buffer ──┴─▶ write_port 1 ─┴─▶ frame, depth
 //   pixels of a field, from a raymarcher ────────────────────┘
 //
-// `start` (one clock, not while `busy`) begins a frame. The parameters must hold until `done` (one clock), when the frame is
-// in memory. A band takes the time of its groups, and about 16 clocks to be handed over; meanwhile descriptors are read ahead,
-// and the first triangles of the next band are prepared. `restart` (any time) cancels the frame; the next start must wait
-// until the unit is `ready` and read_port is idle.
+// `start` (one clock, not while `busy`) begins a frame. The parameters must hold until `done` (one clock), when the frame is in
+// memory. A band takes the time of its groups of eight pixels, plus about 16 clocks until its flush begins; meanwhile
+// descriptors are read ahead, and the first triangles of the next band are prepared. `restart` (any time) cancels the frame;
+// the next start must wait until the unit is `ready` and read_port is idle.
 //
-// With FIELDS, a raymarcher beside the unit draws the field of a frame with `field_source.enable`. `field_sink.start` begins
-// the field; when the triangles of a band are drawn, `open` admits the field's pixels until `done` of the raymarcher, and
-// `next` hands the band over. `compose` maps the luminances of two eyes to colours, see band_flush.
+// With FIELDS, a raymarcher outside of this unit draws a distance field into each frame with `field_source.enable`.
+// `field_sink.start` begins the field. When the triangles of a band are drawn, `open` admits the field's pixels of this band
+// until the raymarcher raises `done`, and `next` tells the raymarcher to continue with the next band. `compose` selects how the
+// luminances of two eyes become colours, see band_flush.
 //
-// `slot` is the number of the frame buffer. Only words that can differ from the last frame in the same slot are written.
-// `whole` writes all words; it is required when the contents of the frame buffer are unknown (a new buffer, another size or
-// clear colour, a write by the CPU). `depth` implies `whole`. All words are also written if the slot holds no complete frame:
-// after reset, and after a cancelled frame.
+// `slot` is the number of the frame buffer that is drawn. Only words that can differ from the last frame in the same slot are
+// written. `whole` writes all words; it is required when the contents of the frame buffer are unknown (a new buffer, another
+// size or clear colour, a write by the CPU). `depth` implies `whole`. All words are also written if the slot holds no complete
+// frame: after reset, and after a cancelled frame.
 //
-// Memory: three clients of a read_port, and two native write ports, one for the even banks of memory and one for the odd ones.
-// A port turns to another bank only when the previous bank is idle, a dozen clocks later, and the lines of a band move from
-// bank to bank. So while one port waits for its bank, the other port writes.
+// Memory: three clients of a read_port, and two native write ports, one for the words in even banks of the DDR3 memory and one
+// for the words in odd banks. A port turns to another bank only when the previous bank is idle, a dozen clocks later, and
+// consecutive lines of a band lie in different banks. So while one port waits for its bank, the other port writes.
 
 `default_nettype none
 
@@ -57,7 +59,8 @@ module raster_unit #(
     input  wire triangle_registers_pkg::write_answer_t odd_write_answer,
     output triangle_registers_pkg::events_t events
 );
-    // By the size of the picture: its last band, lines of a band, groups of a line, words of a band.
+    // Numbers that follow from the size of the picture: its last band, the rows of a band, the groups of a row, and the 128-bit
+    // words of a band.
     logic [5:0]  last_band, rows;
     logic [7:0]  stride;
     logic [10:0] words;
@@ -71,11 +74,11 @@ module raster_unit #(
     logic [9:0]              first_row;
     logic [ADDRESS_BITS-1:0] base, band_depth_base;
     logic                    clearing, flushed, in_memory, band_ready, begins, drawn, has_field;
-    // The first row and the parity of the band whose triangles are read: the band being drawn, or the next one.
+    // The first row and the parity of the band whose triangles are read, which is the band being drawn or the next one.
     logic [9:0]              read_row;
     logic                    read_odd;
 
-    // Per slot: whether the frame buffer holds a complete frame. The slot being drawn does not.
+    // For each slot, whether its frame buffer holds a complete frame. The bit of a slot is 0 while it is drawn.
     logic [1:0] known;
     logic       all_words;
 
@@ -131,13 +134,13 @@ module raster_unit #(
     triangle_pkg::descriptor_t descriptor;
     logic [(SMOOTH ? 289 : 1)-1:0] planes;
 
-    // A descriptor whose groups are outside of the picture is skipped.
+    // `stray` is high for a descriptor with groups outside of the picture, which is skipped.
     logic stray, list_damaged;
 
     assign stray = descriptor.group_left > descriptor.group_start || descriptor.group_start > descriptor.group_right
                 || descriptor.group_right >= stride;
 
-    // The item that ends a band waits until the band is drawn.
+    // The item that ends a band is taken only while that band is drawn, so descriptors are read at most one band ahead.
     assign triangle_valid = item_valid && !band_ends && !stray;
     assign item_ready     = band_ends ? read_odd == band[0] : stray || triangle_ready;
     assign drawn          = read_odd != band[0] && raster_idle;
@@ -167,7 +170,7 @@ module raster_unit #(
         .out_planes(planes)
     );
 
-    // Each band is drawn in two steps: triangles, then the field.
+    // Each band is drawn in two steps: first its triangles (`drawn_*`), then the pixels of the field (`field_source`).
     logic            group_valid, group_ready;
     logic            drawn_valid, drawn_ready;
     logic [10:0]     drawn_row;

@@ -3,8 +3,9 @@
 `default_nettype none
 
 package setup_pkg;
-    // A clockwise triangle with an area, accepted for drawing. Some differences of coordinates have the opposite sign, so that
-    // sums of products need no subtraction.
+    // A triangle that is accepted for drawing: its area is not 0, and its vertices are ordered clockwise on the screen. A name
+    // such as x10 is the difference x1 − x0 of vertices 1 and 0. x02 and y01 have the opposite sign of the differences in
+    // docs/formats.md, so that sums of products need no subtraction.
     typedef struct packed {
         logic             front;
         logic [2:0][15:0] normal;      // s2.14
@@ -14,7 +15,7 @@ package setup_pkg;
         logic [7:0]       group_left;
         logic [7:0]       group_right;
         logic [7:0]       group_start;
-        logic [39:0]      area;        // a
+        logic [39:0]      area;        // twice the area, a in docs/formats.md
         logic [24:0]      w20;
         logic [24:0]      w10;
         logic [20:0]      y20;

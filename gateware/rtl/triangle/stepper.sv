@@ -1,15 +1,17 @@
-// One of the walker's accumulators: its value at the current place, and a snapshot of its value at an earlier place.
+// One of the walker's accumulators, such as an edge function: its value at the current group, and a snapshot of its value at an
+// earlier group.
 //
-// In each clock with `advance` the value steps from the current place or from the snapshot, or becomes `load_value`. `keep`
-// preserves the snapshot; otherwise the snapshot takes the new value.
+// In each clock with `advance` the value becomes one of the following, by the first control that is high. `keep` preserves the
+// snapshot; without `keep` the snapshot takes the new value.
 //
-//   extend        current + step_x, with `left` - step_x
-//   else seek     snapshot + step_x, with `left` - step_x
+//   extend        current + step_x, or current - step_x with `left`
+//   else seek     snapshot + step_x, or snapshot - step_x with `left`
 //   else last     load_value
 //   else          snapshot + step_y
 //
-// The addition is in the walker's critical loop. So the upper part is computed for both carries, and the rest fits LUTs of six
-// inputs: one for `from`, one for the sum of a bit. Sums are modulo 2^WIDTH.
+// The addition is in the walker's critical loop. So the upper part of the sum is computed for both values of the carry from the
+// lower part, and the logic fits LUTs of six inputs: one LUT for each bit of `from`, and one for each bit of the sum. Sums are
+// modulo 2^WIDTH.
 
 `default_nettype none
 
@@ -41,7 +43,7 @@ module stepper #(
     assign from     = extend ? current : !seek && last ? load_value : snapshot;
     assign step     = sideways ? step_x ^ {WIDTH{left}} : last ? '0 : step_y;
 
-    // An added bit below the sum makes the carry in: 1 on both sides for a subtraction.
+    // The added bit below the lowest bit makes the carry in: for a subtraction it is 1 in both summands.
     assign {carry, low, below_low}       = {1'b0, from[LOW-1:0], negate} + {1'b0, step[LOW-1:0], negate};
     assign high                          = from[WIDTH-1:LOW] + step[WIDTH-1:LOW];
     assign {high_with_carry, below_high} = {from[WIDTH-1:LOW], 1'b1} + {step[WIDTH-1:LOW], 1'b1};

@@ -1,21 +1,23 @@
-// Draws the part of a triangle that is in a band: descriptors in, groups of eight pixels out.
+// Draws the parts of triangles that are in a band. Input: descriptors (triangles after the setup). Output: groups of eight
+// neighbouring pixels of a row.
 //
 //               ┌────────────┐     ┌────────┐     ┌───────┐     ┌─────────────┐
 //   triangle ──▶│ band_entry │────▶│ walker │────▶│ lanes │────▶│ skid_buffer │──▶ group
 //               └────────────┘     └────────┘     └───────┘     └─────────────┘
 //
-// With SMOOTH, a triangle carries its colour planes, and lane_shades stands between the lanes and the buffer: latency 25.
+// With SMOOTH, a triangle comes with the planes of its three colour channels, and lane_shades stands between `lanes` and
+// `skid_buffer`; the latency is then 25 clocks.
 //
-// A group is {line = y - y0, column = x / 8, row address in the band = line * stride + column, mask, eight depth codes u18,
-// eight colours RGB565}, lane 0 (the leftmost) in the lowest bits. The mask is never 0. Each group of a triangle appears once;
-// triangles keep their order.
+// A group is {line = y - y0 with y0 the first row of the band, column = x / 8, row address in the band buffer = line * stride +
+// column, mask, eight depth codes u18, eight colours RGB565}, lane 0 (the leftmost pixel) in the lowest bits. The mask is never
+// 0. Each group that a triangle covers comes once; triangles keep their order.
 //
-// Streams are valid/ready with a register between any two readies. Latency 19 clocks from a descriptor to its first group.
-// Throughput: the walker tries one group a clock, and a triangle takes at least 8 clocks. `triangle_y0`, the band's first row,
-// comes with each triangle, and so does `triangle_odd`, the parity of its band. Triangles of the next band are accepted and
-// prepared, but wait until `odd`, the parity of the band that is drawn, equals the parity of their band. `idle` is low from
-// the clock after a descriptor of the drawn band is taken until the last group of that band is taken. `rows` of a band and
-// `stride` (groups of a line: 40, 80 or 160) must hold while triangles are inside.
+// Streams are valid/ready, with a register between any two ready signals. Latency 19 clocks from a descriptor to its first
+// group. Throughput: the walker tests one group a clock, and a triangle takes at least 8 clocks. `triangle_y0`, the first row
+// of the band, and `triangle_odd`, the parity of the band's number, come with each triangle. `odd` is the parity of the band
+// that is drawn. Triangles of the next band are accepted and prepared, but wait until `odd` is the parity of their band. `idle`
+// is low from the clock after a descriptor of the drawn band is taken until the last group of that band is taken. `rows` (rows
+// of a band) and `stride` (groups of a row: 40, 80 or 160) must hold while triangles are inside.
 
 `default_nettype none
 

@@ -1,34 +1,37 @@
-// Walks over a triangle in groups of eight pixels, one group a clock, and sends the groups that it may cover.
+// Visits the part of a triangle in a band in groups of eight pixels, one group a clock, and sends the groups that the triangle
+// may cover. E' is the value of an edge function (docs/formats.md, "Triangle setup"); an edge passes in a pixel with E' >= 0
+// and fails otherwise. A group has lanes 0 to 7 from left to right; lanes -1 and 8 are the pixels next to it.
 //
 //        ┌──────┐     row by row, from group_start:
 //        │ seek │───▶ until no edge fails in the whole group
 //        └──────┘
-//   ◀─2─┤first├─1'─▶  then to the left while lane -1 is inside (1, 2, …), then from the snapshot of the first group
-//          │          to the right while lane 8 is inside (1', …), then down from the snapshot.
+//   ◀─2─┤first├─1'─▶  then to the left while lane -1 is inside (1, 2, …), then from the first group, kept as a
+//          │          snapshot, to the right while lane 8 is inside (1', …), then down from the snapshot.
 //          ▼
 //
-// The walk misses no covered group. The covered columns of a row reach from a column a to a column b: edges with step_x > 0
-// have E' >= 0 from column a on, edges with step_x < 0 up to column b; a horizontal edge passes everywhere or nowhere.
-//  * An edge that fails at both ends of a group fails in all of it. A failing edge that rises puts a further right, one that
-//    falls puts b further left; the covered columns lie on that side. If edges disagree, if the direction returns to a place
-//    where an edge has failed, or leaves the bounds, or if a horizontal edge fails, the row is empty. So seeking never
-//    leaves a row with coverage, and never ends in a group without coverage:
+// The walker misses no covered group. The covered columns of a row reach from a column a to a column b: edges with step_x > 0
+// (rising) have E' >= 0 from column a on, edges with step_x < 0 (falling) up to column b; a horizontal edge passes everywhere
+// in the row or nowhere.
+//  * An edge that fails at both ends of a group fails in the whole group. If it rises, column a is further right; if it falls,
+//    column b is further left. The covered columns lie on that side. The row is empty if two failing edges point to different
+//    sides, if the direction returns to a group where an edge has failed or leaves the bounds, or if a horizontal edge fails.
+//    So seeking never gives up a row with coverage, and never ends in a group without coverage:
 //  * in a group g0…g7 where no edge fails everywhere, a <= g7 and b >= g0. So in a row with coverage (a <= b) the group
-//    covers max(a, g0)…min(b, g7). In an empty row the group comes out without coverage, and the row is done.
+//    covers max(a, g0)…min(b, g7). In an empty row the group is sent without coverage, and the row is done.
 //  * The covered columns are contiguous, so they continue to the left only if lane -1 is covered, and to the right only if
-//    lane 8 is. In a group where no edge fails everywhere, the rising edges decide lane -1 and the falling edges lane 8: the
-//    other edges are larger there than at their best lane in this group. A group that follows another one has no edge that
-//    fails.
-// A group comes out at most once: seeking visits only groups that do not come out, and both directions lead away from the
-// first group. A row begins at the first group of the row above, or at the last group tried in an empty row; any start
+//    lane 8 is. In a group where no edge fails everywhere, the rising edges decide lane -1 and the falling edges lane 8, because
+//    all other edges have an E' there that is at least as large as in any lane of this group. So no edge fails in a whole
+//    group that is reached in this way.
+// A group is sent at most once: seeking visits only groups that are not sent, and both directions lead away from the first
+// group. A row begins at the first group of the row above, or, if that row was empty, at the last group tried in it; any start
 // within the bounds is correct.
 //
-// The walk stays within group_left…group_right and the rows, so edge functions are evaluated at most a pixel beside the
+// The walker stays within group_left…group_right and the rows, so edge functions are evaluated at most one pixel outside of the
 // picture and fit 34 bits.
 //
-// Both streams are valid/ready; only ready passes through combinationally, to the input. Throughput one group a clock,
-// covered or not; the next triangle's first group follows the last one without a gap. `walking` is high in the clocks spent
-// on a group.
+// Both streams are valid/ready; ready passes through combinationally, from the output to the input. Throughput one group a
+// clock, covered or not; the next triangle's first group follows the last one without a gap. `walking` is high in the clocks
+// that are spent on a group.
 
 `default_nettype none
 
@@ -48,7 +51,8 @@ module walker #(
     output logic                     out_valid,
     input  wire                      out_ready,
     output raster_pkg::candidate_t   out_group,
-    // Light of the group, a clock after `out_group`: {smooth, blue, green, red}, each {step_x, accumulator at lane 0}.
+    // Light of the group, a clock after `out_group`: {smooth, blue, green, red}; each channel is {step_x, accumulator
+    // in lane 0}.
     output logic [VALUES_BITS-1:0]   out_light
 );
     // The triangle.
@@ -66,11 +70,11 @@ module walker #(
     logic [5:0]       line, rows_below;
     logic             active, last_row;
 
-    // Directions of the walk that are open in this row. Seeking ends once the row's first group is found. `resume` is high
-    // while columns remain to the right of the snapshot.
+    // Directions in which the walker may still move in this row: `seek_*` before the row's first group is found, `extend_*`
+    // from that group on. `resume` is high while groups to the right of the snapshot remain to be visited.
     logic seek_left, seek_right, extend_left, extend_right, resume;
 
-    // The next move, decided from sign bits of the edge functions and the directions above.
+    // The next move, decided from the signs of the edge functions and from the directions declared above.
     logic [2:0]        best_fails, beside_fails;
     logic              fails, go_right, go_left, open_left, open_right;
     logic              extend, seek, left, leave;
@@ -97,7 +101,8 @@ module walker #(
     assign walking  = active && out_ready;
     assign in_ready = leave && out_ready;
 
-    // While the walker seeks, the snapshot follows it.
+    // While the walker seeks, the snapshot is the current group. It is kept while the walker extends from the first group
+    // of the row.
     logic keep;
 
     assign keep = extend || resume;
@@ -130,7 +135,7 @@ module walker #(
         .current(depth), .next(next_depth)
     );
 
-    // Light does not affect the next move, so it follows the same moves a clock later.
+    // Light does not affect the next move, so its accumulators make the same moves one clock later.
     if (SMOOTH) begin : light
         logic [PLANES_BITS-1:0] planes;
         logic                   was_keep, was_extend, was_seek, was_left, was_last;
