@@ -1,4 +1,4 @@
-//! The firmware's console for programs: sends a command, and reads its reply line by line.
+//! The firmware's console as programs use it: sends a command, and reads its reply line by line.
 
 use crate::board::{Board, BoardError};
 use glint_core::console::PROMPT;
@@ -17,14 +17,14 @@ pub enum ConsoleError {
         /// The text after `error: ` in the reply.
         reason: String,
     },
-    /// The board sent nothing for the time-out, before the reply was complete.
+    /// The board sent nothing during the whole time-out, before its reply was complete.
     #[error(
         "waited {waited_ms} ms of the board's time for {expected}; the last lines were {last:?}"
     )]
     Silence {
         /// The awaited text.
         expected: String,
-        /// Time without a byte, in milliseconds.
+        /// Length of the time-out, in milliseconds of the board's time.
         waited_ms: u64,
         /// The end of the received text.
         last: String,
@@ -62,7 +62,7 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         }
     }
 
-    /// Sets the timeout of replies, in milliseconds of the board's time.
+    /// Sets the time-out of replies, in milliseconds of the board's time.
     #[must_use]
     pub fn patience(self, patience_ms: u64) -> Self {
         Self {
@@ -71,7 +71,7 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         }
     }
 
-    /// Adds bytes that other code has received from the board, as if the console had received them.
+    /// Adds bytes that other code has read from the board to those that the console has received.
     pub fn hear(&mut self, said: &[u8]) {
         self.pending.extend_from_slice(said);
     }
@@ -106,8 +106,8 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         self.reply(command)
     }
 
-    /// Sends a command that may start a transfer. Returns true if the board is ready for the transfer, and false if the
-    /// command has ended without one.
+    /// Sends a command that may start a transfer. Returns true if the board is ready for the transfer, and false if the command
+    /// has ended without a transfer.
     ///
     /// # Errors
     /// The firmware refuses the command, or does not answer.
@@ -149,7 +149,7 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         Ok(found.split(' ').next().unwrap_or_default().to_owned())
     }
 
-    /// The board, and the received bytes that have not been used yet. A transfer works on both.
+    /// Returns the board, and the received bytes that have not been used yet. A transfer reads and writes both.
     pub fn line(&mut self) -> (&mut B, &mut Vec<u8>) {
         (self.board, &mut self.pending)
     }
@@ -174,10 +174,10 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
     /// # Errors
     /// The board does not answer.
     pub fn send(&mut self, command: &str) -> Result<(), ConsoleError> {
-        // The zero byte makes the board discard an unfinished input line.
+        // The board discards an unfinished input line when it receives a zero byte.
         self.board.write(format!("\0{command}\r").as_bytes())?;
         loop {
-            // The line of the echo may start with earlier output, such as the prompt.
+            // The line with the echo may start with earlier output, such as the prompt.
             if self.next_line(command)?.ends_with(command) {
                 return Ok(());
             }
@@ -280,7 +280,7 @@ mod tests {
     use super::*;
     use std::collections::VecDeque;
 
-    /// A board that answers each line that it receives with the next of its prepared replies.
+    /// A simulated board that answers each line it receives with the next of its prepared replies.
     struct Script {
         replies: VecDeque<&'static str>,
         output: Vec<u8>,
@@ -296,7 +296,7 @@ mod tests {
         }
 
         fn read(&mut self, bytes: &mut Vec<u8>, wait_ms: u64) -> Result<(), BoardError> {
-            // Each read returns one byte, so that no line arrives in one read.
+            // Each read returns one byte, so that every line arrives in parts.
             if self.output.is_empty() {
                 self.now_ms += wait_ms;
             } else {

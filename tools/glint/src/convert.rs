@@ -25,7 +25,7 @@ pub struct Report {
     pub points: usize,
     /// Polygons in the file.
     pub faces: usize,
-    /// Vertices in the mesh; a vertex in several chunks counts in each.
+    /// Vertices in the mesh. A vertex that several chunks use is counted once for each of them.
     pub vertices: u32,
     /// Triangles in the mesh.
     pub triangles: u32,
@@ -37,11 +37,11 @@ pub struct Report {
     pub bytes: usize,
     /// Factor that converts the file's lengths to world units.
     pub scale: f64,
-    /// The file's point that became the origin.
+    /// The point, in the file's coordinates, that became the origin.
     pub centre: Vector,
-    /// Maximum distance between a point and its rounded vertex, in world units.
+    /// Maximum distance between a scaled point and its rounded vertex, in world units.
     pub error_max: f64,
-    /// Root mean square of these distances, in world units.
+    /// Root mean square of the distances between scaled points and their rounded vertices, in world units.
     pub error_rms: f64,
     /// `error_max` in units of 2^-14.
     pub error_max_lsb: f64,
@@ -132,15 +132,16 @@ fn flat_triangles(polygons: &Polygons, rounded: &Rounded) -> (Vec<FlatTriangle>,
     (triangles, degenerate)
 }
 
-/// Unit face normal, from the corners before rounding; `None` if the triangle has no area after rounding.
+/// Returns the unit normal of a triangle, from its corners before rounding; `None` for a triangle without area after rounding.
 fn normal(polygons: &Polygons, rounded: &Rounded, corners: [Corner; 3]) -> Option<Vector> {
-    // Differences of rounded coordinates have 17 bits, and their products are exact in f64, so the test for zero area is exact.
+    // Differences of rounded coordinates have 17 bits, and their products are exact in f64, so `unit` returns `None` exactly for
+    // an area of zero.
     let after = unit(area_vector(
         corners.map(|corner| rounded.position(corner).map(f64::from)),
     ))?;
     let before = unit(area_vector(corners.map(|corner| polygons.point(corner))));
-    // Rounding may turn a sliver over. Then the rounded corners give the normal, because the rounded triangle is
-    // the one that is drawn.
+    // Rounding may turn over a triangle that is very narrow. The normal then follows from the rounded corners, because the
+    // rounded triangle is the one that is drawn.
     Some(
         before
             .filter(|before| dot(*before, after) > 0.0)
@@ -203,7 +204,7 @@ fn index(
     (vertices, indexed)
 }
 
-/// Two vertices are the same if these values are equal: position, normal and colour.
+/// Position, normal and colour of a vertex. Vertices in which all three are equal become one vertex of the mesh.
 #[derive(PartialEq, Eq, Hash)]
 struct VertexKey([i16; 3], [i16; 3], Rgb565);
 
@@ -220,7 +221,7 @@ fn point_colour(polygons: &Polygons, corner: Corner) -> Option<Rgb8> {
     polygons.point_colours.get(corner.point as usize).copied()
 }
 
-/// Mean of the corners' colours, for the flat colour of a triangle between coloured points.
+/// Mean of the corners' colours, as the flat colour of a triangle whose points have colours.
 fn mean_colour(polygons: &Polygons, corners: [Corner; 3]) -> Option<Rgb8> {
     let mut sums = [0_u16; 3];
     for corner in corners {
@@ -255,7 +256,7 @@ mod tests {
 
     #[test]
     fn scaled_to_the_unit_box() {
-        // The scale does not depend on the point that no face uses.
+        // No face uses the last point, so it has no influence on the scale.
         let polygons = soup(
             &[
                 [10.0, 0.0, 0.0],

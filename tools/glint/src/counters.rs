@@ -1,15 +1,16 @@
-//! Counters of an engine, identified by name, so that a new counter in the gateware needs no change here.
+//! Counters of an accelerator, identified by name, so that a new counter in the gateware needs no change here.
 
 use std::fmt;
 
 use serde::de::{IgnoredAny, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// Names and values of an engine's counters, in the order in which the board prints them; empty if no engine has drawn.
+/// Names and values of an accelerator's counters, in the order in which the board prints them. Empty if the frame was drawn
+/// without an accelerator.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Counters(Vec<(String, u64)>);
 
-/// A counter that the board did not print.
+/// Error for a counter that the board did not print: its name, and the names that the board printed.
 #[derive(Debug, thiserror::Error)]
 #[error("expected the counter `{0}` in the board's statistics, found {1}")]
 pub struct MissingCounter(String, String);
@@ -39,7 +40,7 @@ impl Serialize for Counters {
     }
 }
 
-/// The value of one line of the board's statistics. Only a number is a counter.
+/// The value of one line of the board's statistics: a counter if it is a number, otherwise a text, which is skipped.
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Entry {

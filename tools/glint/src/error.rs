@@ -9,7 +9,7 @@ pub const MAX_FILE: usize = 512 << 20;
 pub const MAX_LINE: usize = 64 << 10;
 /// Maximum number of points in a mesh: three for each of [`MAX_TRIANGLES`].
 pub const MAX_POINTS: usize = 3 * MAX_TRIANGLES;
-/// Maximum number of triangles in a mesh: 16-byte records that fit a board's 32 MiB of mesh memory.
+/// Maximum number of triangles in a mesh: at 16 bytes each they fill the 32 MiB that a board has for a mesh.
 pub const MAX_TRIANGLES: usize = 1 << 21;
 /// Maximum number of corners of a polygon; the time of ear clipping grows with its square.
 pub const MAX_POLYGON: usize = 8192;

@@ -1,4 +1,4 @@
-//! Fields on the command line and in files.
+//! Distance fields as text on the command line, and lists of spheres in JSON files.
 
 use crate::error::{FormatError, InputError};
 use crate::formats::read_file;

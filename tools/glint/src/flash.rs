@@ -4,12 +4,12 @@
 //! payload. It answers each complete frame with one letter, in order, and drops a frame that stays incomplete for 250 ms. A frame
 //! carries its own address, so it may be sent again at any time.
 //!
-//! The letters carry no frame number, so after a lost answer the answer to the next frame could be taken for it. Frames
+//! The letters carry no frame number, so after a lost answer the host could mistake the answer to the next frame for it. Frames
 //! therefore go in batches. A batch has arrived when its answers are exactly one `K` per frame. Otherwise the host waits until
-//! the line has been quiet, so that both sides agree on the start of a frame, and sends the whole batch again. After a failure,
-//! batches and frames get shorter, because a short frame is damaged less often. After a success, frames grow up to the size of
-//! the BIOS's buffer. Batches grow only where answers take time: a line that answers at once gains nothing from them, and may
-//! be faster than the BIOS.
+//! the line has been quiet for longer than the BIOS's time-out, so that host and BIOS agree on the start of a frame, and sends
+//! the whole batch again. After a failure, batches and frames get shorter, because a short frame is damaged less often. After a
+//! success, frames grow up to the size of the BIOS's buffer. Batches grow only where an answer takes at least 2 ms: where answers
+//! come at once, long batches save no time, and may come faster than the BIOS can take them.
 
 mod frame;
 mod link;
@@ -27,8 +27,8 @@ pub const ACCEPT: &[u8] = b"z6IHG7cYDID6o\n";
 /// Time in milliseconds after which the host sends `reboot` if no request has come, because the board may be running a program.
 const POKE_MS: u64 = 2000;
 
-/// Sends a program to `address` and starts it there. `progress` is called with the number of bytes that
-/// have arrived, and their total.
+/// Sends a program to `address` and starts it there. Calls `progress` with the number of bytes that have arrived and the length
+/// of the program.
 ///
 /// If no request comes, the host sends `reboot` once: a command of the BIOS and of Glint's firmware.
 ///
@@ -87,7 +87,7 @@ fn wait_for_request(board: &mut dyn Board, wait_ms: u64) -> Result<(), FlashErro
             board.write(b"\rreboot\r")?;
         }
         board.read(&mut heard, 100)?;
-        // Keeps the last bytes: they may hold the start of a request, and the error quotes the end of them.
+        // Keeps the last bytes only: they may hold the start of a request, and the error quotes the end of what was received.
         let surplus = heard.len().saturating_sub(1024);
         heard.drain(..surplus);
     }
@@ -103,7 +103,7 @@ mod tests {
 
     const ADDRESS: u32 = 0x4000_0000;
 
-    /// The BIOS's side of the protocol, behind a line that drops, flips and repeats bytes.
+    /// A simulated BIOS that receives frames over a line which drops, flips and repeats bytes.
     struct Bios {
         now_ms: u64,
         output: Vec<u8>,
@@ -113,7 +113,7 @@ mod tests {
         memory: BTreeMap<u32, u8>,
         jumped: Option<u32>,
         accepted: bool,
-        /// Number of bytes in 1000 that the line damages, in both directions.
+        /// How many of 1000 bytes the line damages, in each direction.
         faults: usize,
         random: Random,
     }

@@ -11,7 +11,7 @@ use std::path::Path;
 pub struct Model {
     /// The mesh in the board's memory layout.
     pub mesh: Vec<u8>,
-    /// The report; none for a `.glm`, which needs no conversion.
+    /// The report of the conversion; `None` for a `.glm` file, which needs no conversion.
     pub report: Option<Report>,
 }
 

@@ -17,8 +17,7 @@ impl NormalSums {
         }
     }
 
-    /// Adds the normal of a triangle to the sums of its points; `numbers` and `places` are the numbers
-    /// and positions of the points.
+    /// Adds the normal of a triangle to the sums of its points, whose indices are `numbers` and whose positions are `places`.
     pub fn add(&mut self, numbers: [usize; 3], places: [Vector; 3], normal: Vector) {
         let [a, b, c] = places;
         for (number, [a, b, c]) in numbers.into_iter().zip([[a, b, c], [b, c, a], [c, a, b]]) {
@@ -34,7 +33,7 @@ impl NormalSums {
 
     /// Unit normal at a point; `None` if the normals of its faces cancel out.
     pub fn at(&self, number: usize) -> Option<Vector> {
-        // The weights are angles of a few turns in total, so a sum shorter than 1e-9 is only rounding error.
+        // The weights at a point add up to a few turns at most, so a sum that is shorter than 1e-9 is only rounding error.
         self.sums
             .get(number)
             .copied()

@@ -16,12 +16,12 @@ pub struct Image {
     pub height: u32,
     /// RGB565, row by row from the top left.
     pub colour: Vec<u16>,
-    /// Depth codes in the same order; empty unless requested.
+    /// Depth codes in the same order as the colours; empty unless requested.
     pub depth: Vec<u32>,
 }
 
 impl Image {
-    /// Creates an image of this size with empty lists of colours and depth codes.
+    /// Creates an image of the given size with empty lists of colours and depth codes.
     pub const fn empty(size: Size) -> Self {
         Self {
             width: size.width(),
@@ -31,7 +31,7 @@ impl Image {
         }
     }
 
-    /// Converts the colours to 8 bits a channel by bit replication, as the scan-out does it.
+    /// Converts the colours to 8 bits a channel by bit replication, like the gateware's video output.
     pub fn picture(&self) -> Picture {
         let rgb = self
             .colour
@@ -41,8 +41,8 @@ impl Image {
         Picture::new(self.width as usize, self.height as usize, rgb)
     }
 
-    /// Writes the distance along n in world units as one little-endian f32 a pixel, and +inf for a pixel
-    /// whose depth code is clear.
+    /// Writes the distance along the camera's axis n in world units, as one little-endian f32 a pixel. A pixel without a surface,
+    /// whose depth code is 0, gets +inf.
     ///
     /// # Errors
     /// The file cannot be written.

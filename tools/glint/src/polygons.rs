@@ -29,7 +29,7 @@ pub struct Corner {
 }
 
 impl Corner {
-    /// Marks a corner without a normal.
+    /// Index that marks a corner without a normal.
     pub const NO_NORMAL: u32 = u32::MAX;
 
     /// A corner without a normal.
@@ -75,8 +75,8 @@ pub struct Polygons {
     largest_normal: Largest,
 }
 
-/// The largest index used so far, and its place. Faces may use points that come later, so the check follows at the end,
-/// and checks this index only.
+/// The largest index that a face has used so far, and the place of that face. Faces may use points or normals that come later in
+/// the file, so only this index is checked, at the end of the file.
 #[derive(Clone, Copy, Debug, Default)]
 struct Largest(Option<(u32, Place)>);
 
@@ -186,7 +186,7 @@ impl Polygons {
     }
 }
 
-/// Appends a vector to a list of at most [`MAX_POINTS`]; returns its index.
+/// Appends a vector to a list that holds at most [`MAX_POINTS`], and returns the vector's index.
 fn push(
     list: &mut Vec<Vector>,
     vector: Vector,

@@ -40,10 +40,10 @@ impl Route {
     }
 }
 
-/// A callback with the bytes transferred and the total.
+/// A callback that gets the number of bytes transferred so far, and the total.
 pub type Progress<'p> = dyn FnMut(u64, u64) + 'p;
 
-/// Longest wait for bytes of the board in one read, in milliseconds of the board's time.
+/// Longest wait for bytes from the board in one read, in milliseconds of the board's time.
 const LOOK_MS: u64 = 2;
 
 /// Uploads a mesh and shows it.
@@ -59,8 +59,8 @@ pub fn upload<B: Board + ?Sized>(
     upload_for(console, "load", mesh, session, progress, &mut |_| {})
 }
 
-/// Sends the console command `name` with the length and CRC-32 of `data`, and uploads the data if the board asks for it. Calls
-/// `on_line` with the other lines of the reply.
+/// Sends the console command `name` with the length and CRC-32 of `data`, and uploads the data if the board asks for them. Calls
+/// `on_line` with each line of the reply but `ready` and `ok`.
 ///
 /// # Errors
 /// The transfer fails, or the firmware refuses.
@@ -86,11 +86,11 @@ pub fn upload_for<B: Board + ?Sized>(
     Ok(())
 }
 
-/// Writes data directly to the board's staging memory. The board then finds that they have the CRC-32
-/// of the next upload, and skips its transfer.
+/// Writes data directly to the board's staging memory, where uploads arrive. At the next upload of the same data the board finds
+/// their CRC-32 there, and skips the transfer.
 ///
 /// # Errors
-/// [`TransferError::NoMemory`], or data beyond the memory.
+/// [`TransferError::NoMemory`], or the data exceed the board's memory.
 pub fn stage<B: Board + ?Sized>(
     console: &mut Console<B>,
     data: &[u8],
@@ -100,7 +100,8 @@ pub fn stage<B: Board + ?Sized>(
     Ok(memory.write_memory(address, data)?)
 }
 
-/// Reads main memory directly, from `offset` bytes after the address that `info` prints for `key`.
+/// Reads `length` bytes of the board's main memory directly, from `offset` bytes after the address that the command `info` prints
+/// for `key`.
 ///
 /// # Errors
 /// [`TransferError::NoMemory`], or an unknown key.
@@ -117,7 +118,7 @@ pub fn read_memory<B: Board + ?Sized>(
     Ok(bytes)
 }
 
-/// The address that `info` prints for `key`.
+/// The address that the board's command `info` prints for `key`.
 fn address<B: Board + ?Sized>(console: &mut Console<B>, key: &str) -> Result<u32, ConsoleError> {
     let word = console.info(key)?;
     word.strip_prefix("0x")
@@ -129,7 +130,7 @@ fn address<B: Board + ?Sized>(console: &mut Console<B>, key: &str) -> Result<u32
         })
 }
 
-/// Sends a command such as `frame`, and downloads the `length` bytes that it provides.
+/// Sends a console command such as `frame`, and downloads the `length` bytes that the board then sends.
 ///
 /// # Errors
 /// The board refuses the command, the transfer fails, or the length differs.

@@ -15,8 +15,8 @@ pub struct Scratch {
     triangles: Vec<[Corner; 3]>,
 }
 
-/// Vector perpendicular to a triangle, as long as twice the area. It points to the side from
-/// which the triangle runs counter-clockwise.
+/// Vector perpendicular to a triangle, with twice its area as length. From the side it points to, the
+/// corners run counter-clockwise.
 pub fn area_vector([a, b, c]: [Vector; 3]) -> Vector {
     cross(sub(b, a), sub(c, a))
 }
@@ -99,9 +99,8 @@ fn area([ax, ay]: [f64; 2], [bx, by]: [f64; 2], [cx, cy]: [f64; 2]) -> f64 {
     (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
 }
 
-/// Clips one ear after the other. Whether a corner is an ear is cached, and a cut updates only the two corners beside
-/// it, so the time grows with the square of the number of corners. A self-intersecting polygon may run out of ears:
-/// then any corner is clipped.
+/// Clips one ear after the other. Which corners are ears is stored, and clipping an ear updates its two neighbours only, so the
+/// time grows with the square of the number of corners. If a self-intersecting polygon has no ears left, any corner is clipped.
 fn clip_ears(corners: &[Corner], scratch: &mut Scratch) {
     let n = corners.len();
     scratch.next.clear();
@@ -129,7 +128,7 @@ fn clip_ears(corners: &[Corner], scratch: &mut Scratch) {
         for i in [before, after] {
             scratch.is_ear[i] = is_ear(scratch, i);
         }
-        // Going on after the neighbour makes fewer slivers than cutting a fan from one corner.
+        // The search goes on one corner after the next one: this gives fewer narrow triangles than a fan around one corner.
         at = scratch.next[after];
     }
 }
@@ -144,7 +143,8 @@ fn is_ear(scratch: &Scratch, i: usize) -> bool {
     let mut at = scratch.next[after];
     while at != before {
         let p = scratch.plane[at];
-        // A hole that is joined to the outline passes the same points twice; such points do not count.
+        // Where a hole is joined to the outline, the polygon passes the same points twice, so points equal to a corner of the
+        // triangle do not count.
         let shared = p == a || p == b || p == c;
         if !shared && area(a, b, p) >= 0.0 && area(b, c, p) >= 0.0 && area(c, a, p) >= 0.0 {
             return false;

@@ -8,7 +8,7 @@ use glint_core::fixed::{Q32_32, Turns};
 use serde::Deserialize;
 use std::path::Path;
 
-/// Contents of a view file. Lengths in world units; u, v and n are the rows of the camera's basis.
+/// Contents of a view file. `eye` and `near` are in world units; `u`, `v` and `n` are the rows of the camera's basis.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ViewFile {
@@ -110,7 +110,7 @@ mod tests {
         assert_eq!(view.eye().map(|c| c.to_num::<f64>()), [0.0, -3.0, 0.0]);
         assert_eq!(view.half_width(), glint_core::camera::DEFAULT_HALF_WIDTH);
         assert_eq!(view.near(), glint_core::camera::DEFAULT_NEAR);
-        // Equal to the spherical camera at theta = -90, phi = 90.
+        // The view from the file equals the spherical camera at theta = -90, phi = 90.
         assert_eq!(view, spherical("3,-90,90").unwrap());
     }
 

@@ -9,7 +9,8 @@ fn run(target: Target) {
     let accepted = (0..INPUTS)
         .filter(|&number| inputs.run(number) == Verdict::Accepted)
         .count();
-    // Both rejected and accepted inputs are needed: otherwise the parser's first check, or only its good path, is fuzzed.
+    // Both rejected and accepted inputs are needed: if all were rejected, only the parser's first check would be tested, and if
+    // all were accepted, only its path without errors.
     let share = accepted as f64 / INPUTS as f64;
     assert!(
         (0.005..0.995).contains(&share),

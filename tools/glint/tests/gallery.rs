@@ -5,7 +5,7 @@ use std::process::Command;
 
 use glint_core::field::KINDS;
 
-/// Maximum size of all pictures together, in bytes.
+/// Limit for the size of all pictures together, in bytes.
 const MOST: u64 = 400_000;
 
 fn docs() -> PathBuf {
@@ -39,7 +39,7 @@ fn pixels(path: &Path) -> Vec<u8> {
     pixels
 }
 
-/// Renders every picture; with `GLINT_UPDATE` in the environment it replaces the committed one.
+/// Renders every picture and compares it with the committed one; with `GLINT_UPDATE` in the environment, replaces that one.
 #[test]
 fn the_commands_produce_their_pictures() {
     let update = std::env::var_os("GLINT_UPDATE").is_some();

@@ -12,7 +12,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::Duration;
 use virtual_board::{Start, VirtualBoard, pty::Pty};
 
-/// Time-out in clock cycles of the board: several times what the tests need.
+/// Time-out of a test in clock cycles of the board: several times as many as the tests need.
 const LIMIT: u64 = 400_000_000;
 
 /// Bytes of output kept for an error message.
@@ -54,7 +54,7 @@ impl Terminal {
             .write(true)
             .open(path)
             .unwrap();
-        // Ctrl-C works in a controlling terminal only.
+        // Ctrl-C works in a controlling terminal only, which `setsid --ctty` makes of the input.
         let mut child = Command::new("setsid")
             .arg("--ctty")
             .arg(program)
@@ -88,7 +88,7 @@ impl Terminal {
         }
     }
 
-    /// Waits until the program prints `wanted`, after the match of the last wait.
+    /// Waits until the program prints `wanted`. The search starts after the text that the previous wait has found.
     fn wait_for(&mut self, wanted: &str, board: &Pty) {
         loop {
             if let Some(at) = self.seen.find(wanted) {

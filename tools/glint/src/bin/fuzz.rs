@@ -1,4 +1,4 @@
-//! Fuzzes everything that parses external bytes, and measures the rate.
+//! Fuzzes every parser of external bytes, and prints how many inputs a second it has run.
 #![forbid(unsafe_code)]
 
 use anyhow::Context;
@@ -12,7 +12,8 @@ use std::time::{Duration, Instant};
 
 /// Run fuzz targets on generated inputs; a panic is a finding.
 ///
-/// Seed and number determine an input's bytes. A finding is written to a file, and --only runs it again.
+/// The seed and the number of an input determine its bytes. The input of a finding is written to a file, and --only with its
+/// number runs it again.
 #[derive(Parser)]
 struct Arguments {
     /// Targets [default: all].
@@ -32,7 +33,7 @@ struct Arguments {
     only: Option<u64>,
 }
 
-/// Inputs that a thread takes at once from the shared counter.
+/// Number of inputs that a thread takes from the shared counter at a time.
 const STRIDE: u64 = 256;
 
 fn main() -> anyhow::Result<()> {
@@ -58,7 +59,7 @@ fn main() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Counts of a run, shared by its threads.
+/// Counts of the inputs of one target, shared by the threads that run them.
 #[derive(Default)]
 struct Tally {
     next: AtomicU64,

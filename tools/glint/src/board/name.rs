@@ -9,7 +9,7 @@ use std::str::FromStr;
 pub enum BoardName {
     /// `virtual`: the verilated SoC, simulated in this process.
     Virtual,
-    /// Any other name is that of a serial port.
+    /// Any name but `virtual`: a serial port, such as `/dev/ttyUSB1`.
     Serial(String),
 }
 
@@ -33,12 +33,13 @@ impl fmt::Display for BoardName {
     }
 }
 
-/// What does the work of a command: the bit-exact model, which runs in this process without a board, or a board.
+/// What computes the result of a command, as named on the command line: the bit-exact model, which runs in this process without a
+/// board, or a board.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ModelOrBoard {
     /// `model`: the bit-exact model.
     Model,
-    /// Any other name is that of a board.
+    /// Any name but `model`: the name of a board.
     Board(BoardName),
 }
 

@@ -5,7 +5,7 @@ use super::line::{Board, Memory};
 use std::path::{Path, PathBuf};
 use virtual_board::{Start, VirtualBoard};
 
-/// Simulated clock cycles between two checks for received bytes.
+/// Clock cycles to simulate between two checks for bytes from the board.
 const SLICE: u64 = 1000;
 
 /// A virtual board, simulated in this process.
@@ -47,7 +47,7 @@ impl SimulatedBoard {
     }
 }
 
-/// Reads the firmware from `path`, or without a path the one that `cargo xtask firmware` has built in this checkout.
+/// Reads the firmware file at `path`, or without a path the file that `cargo xtask firmware` has built in this checkout.
 ///
 /// # Errors
 /// [`BoardError::Firmware`] for a file that cannot be read.

@@ -60,7 +60,7 @@ const SPONGE_FRAMES_PER_SECOND: u16 = 3;
 /// Longest wait for the BIOS's request for a serial boot, in milliseconds of the board's time.
 const BOOT_MS: u64 = 10_000;
 
-/// A model and its name.
+/// A model with its name on the command line.
 type Named<'n> = (&'n str, Model);
 
 /// A model's row in the table that the demo prints.
@@ -68,7 +68,7 @@ struct Row {
     number: u32,
     picture: PathBuf,
     stats: Stats,
-    /// Cycles of the same frame drawn by the soft core, if measured.
+    /// Cycles that the soft core takes for the same frame, if measured.
     cpu_cycles: Option<u64>,
     cycles_per_second: f64,
 }
@@ -88,7 +88,7 @@ impl DemoArguments {
             .collect::<anyhow::Result<Vec<_>>>()?;
         let firmware = built_firmware(self.firmware.as_deref())?;
 
-        // Two boards run in parallel: a simulation uses one core, and most hosts have two.
+        // The two boards run in parallel: the simulation of a board uses one core, and most hosts have two.
         let (first, others) = models.split_first().context("no model")?;
         let (mut rows, lines) = std::thread::scope(|scope| {
             let second = scope.spawn(|| self.second_board(first, others, &firmware));
@@ -106,8 +106,8 @@ impl DemoArguments {
         lines.into_iter().try_for_each(say)
     }
 
-    /// Runs the whole serial path on one board: BIOS, serial boot, upload over the line. Then the soft
-    /// core draws the same picture.
+    /// Shows a model on the first board by the serial line alone: BIOS, serial boot of the firmware, upload of the model. Then
+    /// the soft core draws the same picture, to compare the cycles.
     fn first_board(&self, model: &Named, firmware: &[u8]) -> anyhow::Result<Row> {
         let mut board = SimulatedBoard::full()?;
         let mut renderer =
@@ -120,8 +120,8 @@ impl DemoArguments {
         Ok(row)
     }
 
-    /// Runs the second board, whose firmware is preloaded: shows the other models, uploaded through its memory, then the orbit
-    /// around the last one and the sponge.
+    /// Runs the second board, which starts with the firmware in its memory. It shows `models`, uploaded through its memory, then
+    /// animates an orbit around the last of them (`first` if there is none) and a flight to the sponge.
     fn second_board(
         &self,
         first: &Named,
@@ -190,7 +190,8 @@ impl DemoArguments {
         })
     }
 
-    /// Animates one turn of the camera around the shown model; returns the mean number of cycles of a frame.
+    /// Writes an animation of one turn of the camera around the shown model to `path`. Returns the mean number of cycles
+    /// of a frame.
     fn orbit(
         &self,
         renderer: &mut BoardRenderer<SimulatedBoard>,
@@ -223,7 +224,8 @@ impl DemoArguments {
         Ok(cycles / u64::from(self.orbit.max(1)))
     }
 
-    /// Animates a camera that moves towards the sponge and around it; returns the mean number of cycles of a frame.
+    /// Writes an animation to `path`, in which the camera moves towards the sponge and around it. Returns the mean number of
+    /// cycles that a frame takes.
     fn sponge(
         &self,
         renderer: &mut BoardRenderer<SimulatedBoard>,
@@ -238,7 +240,7 @@ impl DemoArguments {
         };
         let console = renderer.console();
         console.command(&size_command(SIZE))?;
-        // No earlier command of this board has set another option of fields, so all of them have their defaults.
+        // No command has set another option of fields on this board so far, so all other options have their defaults.
         console.command(&format!("stereo {EYES}"))?;
         console.command(&format!("field {SPONGE}"))?;
         let mut cycles = 0;
@@ -269,7 +271,7 @@ impl DemoArguments {
     }
 }
 
-/// Summary line of an animation; `cycles` is the mean number of cycles of a frame.
+/// Formats the summary line of an animation; `cycles` is the mean number of cycles of a frame.
 fn line(path: &Path, what: &str, size: Size, cycles: u64) -> String {
     format!(
         "{}: {what}, {size}, by the gateware in {cycles} cycles each: {:.0} frames a second at 81.25 MHz",
@@ -278,7 +280,7 @@ fn line(path: &Path, what: &str, size: Size, cycles: u64) -> String {
     )
 }
 
-/// Azimuth of the camera for a model's picture. Each model is seen from a different side.
+/// Azimuth of the camera for the picture of the model with this number. Each model is seen from a different side.
 fn azimuth(number: u32) -> Turns {
     Turns::from_degrees(Q32_32::from_num(number * 50 + 30))
 }

@@ -16,15 +16,15 @@ use std::fmt::Display;
 pub struct FieldArguments {
     #[arg(long, value_name = "FIELD", help = field_help())]
     field: Option<String>,
-    /// Stereo for a field without a mesh: two eyes, each E (0 to 1) beside the camera, with zero parallax at the distance ZERO. The left
-    /// eye is red, the right one blue or cyan [default tint: red-blue].
+    /// Stereo for a field without a mesh: two eyes at a distance of E (0 to 1) to the left and right of the camera, with zero
+    /// parallax at the distance ZERO. The left eye is red, the right one blue or cyan [default tint: red-blue].
     #[arg(long, value_name = stereo::FORM, allow_hyphen_values = true)]
     stereo: Option<String>,
     /// Material of a field; `normal` colours each face by its normal [default: normal].
     #[arg(long, value_parser = named(Material::ALL, Material::name))]
     material: Option<Material>,
-    /// A light on a field: the direction to it and its colour [default colour: white]; up to four [default: none on `normal`,
-    /// sun and sky on others].
+    /// A light on a field: the direction to it and its colour [default colour: white]; up to four [default: none on `normal`, sun
+    /// and sky on other materials].
     #[arg(long, value_name = light::FORM, allow_hyphen_values = true)]
     light: Vec<String>,
     /// Ambient light on a field [default: white without lights, 404040 with some].
@@ -36,7 +36,7 @@ pub struct FieldArguments {
     /// Fog in the background's colour: transmittance is exp(-distance * DENSITY). 0 to below 16.
     #[arg(long, value_name = "DENSITY", allow_hyphen_values = true)]
     fog: Option<String>,
-    /// Ambient occlusion: darken a field's surface in narrow places.
+    /// Ambient occlusion: darken a field's surface where other surfaces are close.
     #[arg(long)]
     occlusion: bool,
     /// Before the rays, march a cone for each block of pixels; the block's rays start where the cone ends. This
@@ -61,7 +61,7 @@ impl FieldArguments {
         self.name().map(parse).transpose()
     }
 
-    /// The parsed stereo settings, if `--stereo` is given.
+    /// The parsed stereo settings, if `--stereo` is given. With a mesh (`with_mesh`) the option is an error.
     pub fn stereo(&self, with_mesh: bool) -> Result<Option<Stereo>, InputError> {
         let Some(text) = &self.stereo else {
             return Ok(None);
@@ -140,7 +140,7 @@ fn escaped(error: impl Display) -> String {
     error.to_string().escape_debug().to_string()
 }
 
-/// Makes the error for an option whose value is not as `expected`.
+/// Returns the error for an option whose value is not as `expected`.
 fn refusal(option: &str, expected: &str, found: String) -> InputError {
     FormatError::whole(expected, found).in_file(option)
 }

@@ -9,9 +9,9 @@ use rustix::termios::{OptionalActions, Termios, isatty, tcgetattr, tcsetattr};
 use std::io::{Read, Write};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
-/// Ctrl-]: ends the session.
+/// Code of the key Ctrl-], which ends the session.
 const EXIT: u8 = 0x1d;
-/// Time-out of a read from the board, in board time.
+/// Time-out of a read from the board, in milliseconds of the board's time.
 const LOOK_MS: u64 = 10;
 
 /// Open a board's console. Ctrl-] ends the session.

@@ -7,11 +7,11 @@ use std::collections::HashMap;
 /// One in Q2.14.
 pub const ONE: f64 = 16384.0;
 
-/// Map from the file's coordinates to world units: (P − centre)·scale.
+/// The map of a point P from the file's coordinates to world units: (P − centre)·scale.
 pub struct Placing {
-    /// The point that becomes the origin.
+    /// The point, in the file's coordinates, that becomes the origin.
     pub centre: Vector,
-    /// World units for one unit of the file.
+    /// Length in world units of one unit of the file.
     pub scale: f64,
 }
 
@@ -27,7 +27,7 @@ impl Placing {
                 scale: 1.0,
             });
         }
-        // Points that no face uses do not count.
+        // The bounding box has only the points that a face uses.
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for &corner in &polygons.corners {
             for (i, &c) in polygons.point(corner).iter().enumerate() {
@@ -55,15 +55,15 @@ impl Placing {
     }
 }
 
-/// All points in Q2.14; points that round to the same position share it.
+/// The points of a file, rounded to Q2.14. Points that round to the same position share it.
 pub struct Rounded {
-    /// For each point of the file, the index of its rounded position in `positions`.
+    /// For each point of the file, the index of its rounded position in `positions`, or `UNUSED` if no face uses the point.
     of_point: Vec<u32>,
     /// The distinct rounded positions in Q2.14.
     pub positions: Vec<[i16; 3]>,
-    /// Maximum distance between a point and its position, in world units.
+    /// Maximum distance between a scaled point and its rounded position, in world units.
     pub error_max: f64,
-    /// Root mean square of these distances, in world units.
+    /// Root mean square of the distances between scaled points and their rounded positions, in world units.
     pub error_rms: f64,
 }
 

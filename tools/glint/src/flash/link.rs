@@ -3,21 +3,21 @@
 use super::frame::{JUMP, LOAD, frame};
 use crate::board::{Board, BoardError};
 
-/// Maximum data bytes of a frame. The protocol allows 251, but a frame of 104 bytes and the answer to the request fit together
-/// into the 127 bytes that the BIOS buffers while it is busy.
+/// Maximum number of data bytes in a frame. The protocol allows 251, but a frame with 96 data bytes has 104 bytes and fits,
+/// together with the 14-byte answer to the request, into the 127 bytes that the BIOS buffers while it is busy.
 const MAX_DATA: usize = 96;
-/// Minimum data bytes of a frame.
+/// Minimum number of data bytes in a frame.
 const MIN_DATA: usize = 12;
-/// Maximum frames of a batch: more than a serial adapter's delay and buffers hold at 1 Mbit/s.
+/// Maximum number of frames in a batch: more than can be under way in a serial adapter and its buffers at 1 Mbit/s.
 const MAX_BATCH: usize = 64;
-/// Answer time per frame in milliseconds below which longer batches gain nothing.
+/// Mean time in milliseconds from a frame to its answer below which longer batches save no time.
 const PROMPT_MS: u64 = 2;
 /// Silence in milliseconds after which the BIOS expects a new frame: more than its time-out of 250 ms.
 const QUIET_MS: u64 = 300;
-/// Time-out of an answer in milliseconds: covers the time of a frame on a slow line and the delay of an adapter.
+/// Time-out of an answer in milliseconds: covers the transmission of a frame on a slow line and the delay of a serial adapter.
 const ANSWER_MS: u64 = 500;
-/// Maximum length of the BIOS's answers to one frame: `C` and, after the time-out of a surplus byte, `E`, each repeated by the line.
-/// Longer output comes from the program.
+/// Maximum number of bytes that the BIOS answers to one frame: `C` for a wrong checksum and, after the time-out of a surplus
+/// byte, `E`, each of them twice if the line repeats bytes. Longer output comes from the program.
 const MAX_ANSWER: usize = 4;
 /// Failed batches in a row after which the transfer fails.
 const MAX_FAILURES: u32 = 24;
@@ -25,7 +25,7 @@ const MAX_FAILURES: u32 = 24;
 /// Report of a serial boot.
 #[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Report {
-    /// The program's length.
+    /// Length of the program in bytes.
     pub bytes: usize,
     /// Frames sent, repeats included.
     pub frames: u32,
@@ -70,7 +70,7 @@ pub enum FlashError {
     },
 }
 
-/// What happened to a batch of frames.
+/// The outcome of sending a batch of frames.
 pub enum Delivery {
     /// Every frame was acknowledged.
     Arrived {
@@ -180,8 +180,8 @@ impl<'b> Link<'b> {
         Ok(rest)
     }
 
-    /// Makes frames longer, or batches if frames have their full length, after a batch of `frames`
-    /// frames that arrived in `milliseconds`.
+    /// Makes the next frames longer, or the next batches if frames have their full length. The batch before had `frames` frames
+    /// and arrived in `milliseconds`.
     pub fn grow(&mut self, frames: usize, milliseconds: u64) {
         self.failures = 0;
         if self.data < MAX_DATA {

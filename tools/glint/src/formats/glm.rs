@@ -1,10 +1,10 @@
-//! Conversion of Glint's own meshes to polygons.
+//! Conversion of GLM, Glint's own mesh format, to polygons.
 
 use crate::error::{FormatError, Place};
 use crate::polygons::{Corner, Polygons, Rgb8};
 use glint_core::mesh::{Mesh, Rgb565};
 
-/// Parses a GLM. Positions and normals are converted exactly, colours by bit replication; chunks are joined.
+/// Parses a GLM. Positions and normals are converted exactly, colours by bit replication. The chunks of the mesh are joined.
 ///
 /// # Errors
 /// [`Mesh::new_checked`] rejects the mesh, or the mesh has no triangles.
@@ -36,7 +36,7 @@ pub fn parse(bytes: &[u8]) -> Result<Polygons, FormatError> {
     Ok(polygons)
 }
 
-/// Checks a GLM.
+/// Checks a GLM, and returns it as a mesh.
 ///
 /// # Errors
 /// [`Mesh::new_checked`] rejects the mesh.

@@ -88,7 +88,7 @@ pub fn parse(text: &[u8], materials: &mut Materials) -> Result<Polygons, ObjErro
     Ok(reader.finish()?)
 }
 
-/// Joins a line that ends in a backslash with the next one.
+/// Joins a line that ends in a backslash with the line after it.
 fn join_continued<'a>(
     first: Line<'a>,
     lines: &mut Lines<'a>,
@@ -116,7 +116,7 @@ fn join_continued<'a>(
 #[derive(Default)]
 struct Reader {
     polygons: Polygons,
-    /// Colours as in the file. Their scale, 1 or 255, is known only at the end of the file.
+    /// Colours of the points as in the file. Whether 1 or 255 means full intensity is known only at the end of the file.
     point_colours: Vec<Option<[f32; 3]>>,
     palette: HashMap<Vec<u8>, Rgb8>,
     colour: Option<Rgb8>,
@@ -229,8 +229,8 @@ impl Reader {
     }
 
     fn library(&mut self, names: &[u8], materials: &mut Materials) -> Result<(), ObjError> {
-        // The text is one file name with spaces, or several names. If a file with the whole text as its name exists,
-        // only that one is read.
+        // `names` is one file name with spaces, or several file names. If a file with the whole text as its name exists, only
+        // that file is read.
         let mut found = false;
         let whole = std::iter::once(names);
         let parts = names
@@ -293,8 +293,8 @@ fn rest_of(line: Line<'_>) -> &[u8] {
         .trim_ascii_start()
 }
 
-/// Converts an index of the file, where `1` is the first and `-1` the last of the `count` elements so far, to one that counts
-/// from 0. Returns `None` for zero, for an index before the first element, and for one beyond 32 bits.
+/// Converts an index of the file to an index that counts from 0. In the file `1` is the first and `-1` the last of the `count`
+/// elements so far. Returns `None` for zero, for an index before the first element, and for an index beyond 32 bits.
 fn index(word: &[u8], count: usize) -> Option<u32> {
     let index: i64 = std::str::from_utf8(word).ok()?.parse().ok()?;
     let index = match index {

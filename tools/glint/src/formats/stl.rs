@@ -47,12 +47,12 @@ pub fn parse(file: &[u8]) -> Result<Polygons, FormatError> {
     Ok(polygons)
 }
 
-/// Encoding of a colour in the attribute word of a binary record; both have five bits a channel.
+/// Encoding of a colour in the attribute word of a binary record. Each channel has five bits.
 #[derive(Clone, Copy)]
 enum Colours {
-    /// As VisCAM and SolidView write it: a set bit 15 marks a colour; red is in the highest bits.
+    /// The encoding of VisCAM and SolidView: a set bit 15 marks a face with a colour; red is in the highest bits.
     VisCam,
-    /// As Materialise Magics writes it: the header has a default colour, and a clear bit 15 marks a face with a colour of its
+    /// The encoding of Materialise Magics: the header has a default colour, and a clear bit 15 marks a face with a colour of its
     /// own; blue is in the highest bits.
     Magics(Rgb8),
 }
@@ -166,7 +166,7 @@ fn parse_ascii(file: &[u8]) -> Result<Polygons, FormatError> {
             }
             Expect::Facet if is(Some(keyword), "facet") && is(words.next(), "normal") => {
                 facet = place;
-                // Some exporters write nan for the normal of a sliver.
+                // Some programs write nan for the normal of a face without area.
                 for _ in 0..3 {
                     words.next().and_then(any_number).ok_or_else(refuse)?;
                 }

@@ -116,7 +116,7 @@ pub fn checked_at(value: f64, offset: usize) -> Result<f64, FormatError> {
     })
 }
 
-/// Parses the next three words as coordinates.
+/// Parses the next three words of a line as coordinates.
 ///
 /// # Errors
 /// The line has fewer than three more words, or one of them is not a coordinate.

@@ -96,7 +96,7 @@ pub fn ply(polygons: &Polygons, out: &mut impl Write) -> io::Result<()> {
         }
     }
     for face in &polygons.faces {
-        // MAX_POLYGON corners fit 16 bits.
+        // The count of corners has 16 bits, which is enough for MAX_POLYGON.
         out.write_all(&(face.count as u16).to_le_bytes())?;
         for corner in polygons.corners_of(face) {
             out.write_all(&corner.point.to_le_bytes())?;

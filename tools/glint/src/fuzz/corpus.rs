@@ -79,8 +79,8 @@ fn meshes() -> Vec<Vec<u8>> {
         .collect()
 }
 
-/// The bytes that each side of a transfer sends. Each seed starts with three bytes that select how the target delivers
-/// them to the other side.
+/// Byte streams of whole transfers, of the sender and of the receiver. The first three bytes of each seed select how the fuzz
+/// target delivers the stream to the other side.
 fn transfers() -> Vec<Vec<u8>> {
     let mut seeds = Vec::new();
     for length in [0, 1, 16, 100, 1500] {
@@ -123,7 +123,7 @@ fn still_log() -> Vec<u8> {
     log.into_bytes()
 }
 
-/// Logs in a board's format: with all options and none, moving and at rest, with a gap and repeated time stamps.
+/// Logs in a board's format, with all options and with none: in motion and at rest, with a gap and repeated time stamps.
 fn images() -> Vec<Vec<u8>> {
     let image = |tilt, follow_bias, samples: u32| {
         let setup = Setup::new(Units::MPU_6050, tilt, follow_bias, [1_000, -300, 0]).ok()?;

@@ -1,6 +1,6 @@
 //! Fuzzing without compiler instrumentation: generated seeds, a small mutator, numbered inputs.
 //!
-//! Seed and number determine an input's bytes, on any thread: runs can be split, and findings repeated.
+//! The seed and the number of an input determine its bytes, on any thread, so runs can be split and findings repeated.
 
 mod corpus;
 mod mutate;

@@ -3,7 +3,7 @@
 /// Maximum length of an input in bytes.
 pub const MAX_INPUT: usize = 4096;
 
-/// SplitMix64 (Steele, Lea and Flood, 2014): any seed works, and neighbouring numbers give unrelated streams.
+/// Random numbers by SplitMix64 (Steele, Lea and Flood, 2014): any seed works, and neighbouring numbers give unrelated streams.
 pub struct Random(u64);
 
 impl Random {
@@ -32,7 +32,7 @@ impl Random {
     }
 }
 
-/// Numbers at limits of types.
+/// Numbers near limits of types, infinity and NaN, as text.
 const WORDS: [&str; 20] = [
     "0",
     "1",
@@ -93,7 +93,7 @@ pub fn mutate(corpus: &[Vec<u8>], words: &[&str], random: &mut Random) -> Vec<u8
     input
 }
 
-/// Returns a random range within `length`, mostly a short one.
+/// Returns a random range within `length` bytes, mostly a short one.
 fn range(length: usize, random: &mut Random) -> std::ops::Range<usize> {
     let start = random.below(length + 1);
     let longest = if random.below(4) == 0 {
@@ -128,7 +128,7 @@ fn change_byte(input: &mut [u8], random: &mut Random, to: impl FnOnce(u8, &mut R
     }
 }
 
-/// Replaces the word at a random place by a random one of `words`. A word longer than 64 bytes stays.
+/// Replaces the word at a random place of the input by a random one of `words`. A word longer than 64 bytes is not replaced.
 fn replace_word(input: &mut Vec<u8>, random: &mut Random, words: &[&str]) {
     let Some(word) = random.pick(words) else {
         return;

@@ -53,7 +53,7 @@ impl Target {
         Self::Replay,
     ];
 
-    /// Words with a meaning in the target's format.
+    /// Words with a meaning in the target's format, for the mutator to insert.
     pub fn words(self) -> &'static [&'static str] {
         match self {
             Self::Upload | Self::Glm | Self::Replay => &[],
@@ -96,12 +96,12 @@ impl Target {
         }
     }
 
-    /// Corrects checksums and lengths in the input. Wrong ones would make the parser reject nearly every mutation.
+    /// Corrects the checksums and lengths in the input. With wrong ones the parser would reject nearly every mutation.
     pub fn repair(self, input: &mut Vec<u8>) {
         match self {
             Self::Upload => repair_frames(input),
             Self::Stl => {
-                // Sets the count that matches the file's length.
+                // Sets the number of triangles that matches the file's length.
                 let count = (input.len().saturating_sub(84) / 50) as u32;
                 if let (Some(field), false) = (input.get_mut(80..84), count == 0) {
                     field.copy_from_slice(&count.to_le_bytes());
@@ -116,7 +116,7 @@ impl Target {
                 }
             }
             Self::Replay => {
-                // Sets the number of samples that matches the length.
+                // Sets the number of samples that matches the log's length.
                 let samples = input.len().saturating_sub(image::HEADER_BYTES) / image::RECORD_BYTES;
                 if let Some(field) = input.get_mut(4..8) {
                     field.copy_from_slice(&(samples as u32).to_le_bytes());
@@ -133,7 +133,7 @@ impl Target {
             Self::Upload => run_transfer(input),
             Self::Console => run_console(input),
             Self::Obj => {
-                // The same bytes serve as material file.
+                // The input is parsed as OBJ, and serves as every material file of the OBJ too.
                 let polygons = obj::parse(input, &mut |_| Some(input.to_vec()));
                 polygons.map_or(Verdict::Rejected, |polygons| run_conversion(&polygons))
             }
@@ -157,9 +157,9 @@ impl Target {
     }
 }
 
-/// Converts parsed polygons to a mesh. A mesh from the conversion must be valid.
+/// Converts parsed polygons to a mesh, and checks that a mesh from the conversion is valid.
 fn run_conversion(polygons: &Polygons) -> Verdict {
-    // A conversion with the input's own scale may fail, but must not panic.
+    // A conversion without scaling may fail, because coordinates can be out of range, but it must not panic.
     let _ = convert::convert(polygons, Options { keep_scale: true });
     match convert::convert(polygons, Options::default()) {
         Ok((mesh, report)) => {
@@ -175,7 +175,7 @@ fn run_conversion(polygons: &Polygons) -> Verdict {
     }
 }
 
-/// Replays a parsed log with every option on: by its time stamps, and with two fixed periods.
+/// Replays a parsed log with every option on: by its time stamps, and with two fixed sample periods.
 fn run_replay(entries: &[log::Entry]) {
     for period in [None, Some(1_000), Some(600_000)] {
         let options = replay::Options {
@@ -191,7 +191,7 @@ fn run_replay(entries: &[log::Entry]) {
             replayed.is_ok_and(|replayed| replayed.attitudes.len() == entries.len()),
             "without a calibration every log is replayed"
         );
-        // With a calibration, a log that is not at rest fails, so the result may be an error.
+        // A calibration fails for a log that is not at rest, so the result may be an error.
         let _ = replay(&replay::Options {
             still: Some(u64::MAX),
             ..options
@@ -291,8 +291,8 @@ pub fn upload_data(length: usize) -> Vec<u8> {
     (0..length).map(|i| (i * 7 / 3) as u8).collect()
 }
 
-/// Feeds the input to one side of a transfer in pieces, while time passes. The first three bytes select the side, the time
-/// between two pieces and the length of a piece.
+/// Feeds the input to the sender or the receiver of a transfer in pieces, while time passes. The first three bytes select the
+/// side, the time between two pieces and the length of a piece.
 fn run_transfer(input: &[u8]) -> Verdict {
     let &[side, pace, piece, ref stream @ ..] = input else {
         return Verdict::Rejected;

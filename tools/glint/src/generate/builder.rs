@@ -4,7 +4,7 @@ use crate::error::{FormatError, Place};
 use crate::polygons::{Corner, Polygons, Rgb8, Vector};
 use std::collections::HashMap;
 
-/// Collects faces given by their points.
+/// Builds a mesh from faces that are given by the coordinates of their points.
 #[derive(Default)]
 pub struct Builder {
     polygons: Polygons,
@@ -12,7 +12,8 @@ pub struct Builder {
 }
 
 impl Builder {
-    /// Returns the number of a point. Points are equal if all bits of their coordinates are; −0 counts as 0.
+    /// Returns the index of a point, which is added if it is new. Two points are equal if all bits of their coordinates are
+    /// equal, where −0 counts as 0.
     pub fn point(&mut self, point: Vector) -> Result<u32, FormatError> {
         let point = point.map(|c| c + 0.0);
         let key = point.map(f64::to_bits);
@@ -24,7 +25,8 @@ impl Builder {
         Ok(number)
     }
 
-    /// Adds a face, counter-clockwise seen from outside. Repeated corners are dropped, and so is a face with fewer than three.
+    /// Adds a face that is counter-clockwise seen from outside. Repeated corners in sequence are dropped. A face with fewer than
+    /// three corners left is not added.
     pub fn face(&mut self, points: &[Vector], colour: Option<Rgb8>) -> Result<(), FormatError> {
         let mut corners = Vec::with_capacity(points.len());
         for &point in points {
@@ -40,7 +42,8 @@ impl Builder {
         self.polygons.add_face(&corners, colour, Place::Whole)
     }
 
-    /// Adds a grid of rows of points as quads. The cross product of the directions along and across the rows points outside.
+    /// Adds the quads of a grid, whose points are given row by row. The cross product of the direction along a row and the
+    /// direction to the next row points outside.
     pub fn grid(
         &mut self,
         rows: &[Vec<Vector>],
@@ -58,7 +61,7 @@ impl Builder {
         Ok(())
     }
 
-    /// Finishes the mesh; `colour` gives each point its colour.
+    /// Finishes the mesh with a colour for each point; `colour` computes it from the point.
     pub fn coloured(mut self, colour: impl Fn(Vector) -> Rgb8) -> Polygons {
         self.polygons.point_colours = self
             .polygons

@@ -17,7 +17,8 @@ pub fn cube() -> Result<Polygons, FormatError> {
     ];
     for (side, colour) in colours.into_iter().enumerate() {
         let (axis, outward): (usize, f64) = (side / 2, if side % 2 == 0 { 0.5 } else { -0.5 });
-        // The corners run counter-clockwise about the axis; those of the opposite side are reversed.
+        // On the side at +0.5 the corners run counter-clockwise about the axis. On the side at −0.5 one coordinate is mirrored,
+        // which reverses their order.
         let square = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]].map(|[a, b]| -> Vector {
             let mut point = [0.0; 3];
             point[axis] = outward;

@@ -15,7 +15,7 @@ use crate::polygons::Polygons;
 pub const NAMES: &str =
     "cube, icosphere:N (frequency, 1 to 64), torus-knot, gear, teapot or sponge:N (0 to 4)";
 
-/// Whether a name is a generator's, not a file's.
+/// Whether a name is that of a generator, as opposed to a file.
 pub fn is_name(name: &str) -> bool {
     let stem = name.split(':').next().unwrap_or_default();
     matches!(

@@ -1,17 +1,18 @@
-//! The Menger sponge: the faces between full and empty cells, with shared points.
+//! The Menger sponge: the faces between full and empty cells, which share their points.
 
 use super::builder::Builder;
 use crate::error::FormatError;
 use crate::polygons::{Polygons, Rgb8, Vector};
 
-/// The sponge of a level in the cube of edge 1 about the origin, coloured by position.
+/// The sponge of depth `level` in the cube of edge 1 about the origin, coloured by position.
 pub fn sponge(level: u32) -> Result<Polygons, FormatError> {
     let mut builder = Builder::default();
     cells(&mut builder, [0; 3], level, 3_i64.pow(level))?;
     Ok(builder.coloured(|point| Rgb8::from_unit(point.map(|c| 0.66 + 0.6 * c))))
 }
 
-/// Adds the faces of the cells, in octree order, so that neighbours are close to each other and chunks share few points.
+/// Adds the outer faces of the full cells in the cube from `corner` on with 3^`level` cells on each edge. The octree order keeps
+/// neighbours close to each other, so that chunks of the mesh share few points.
 fn cells(
     builder: &mut Builder,
     corner: [i64; 3],
@@ -36,7 +37,8 @@ fn cells(
     Ok(())
 }
 
-/// Whether one of the 27 parts of a cube is empty: those in the middle of a side and in the centre are.
+/// Whether the part at `place` (0 to 2 on each axis) of a cube cut into 27 is empty: the part in the centre, and the middle part
+/// of each side.
 fn is_hole(place: [i64; 3]) -> bool {
     place.iter().filter(|&&c| c == 1).count() >= 2
 }

@@ -1,7 +1,7 @@
 //! The Utah teapot: 32 bicubic Bézier patches, with the control points of Martin Newell (1975) and the bottom added later.
 //!
-//! The original has a slit around the lid and an open spout. Four caps close body, spout and handle: each becomes a closed
-//! surface. They intersect like the original's.
+//! The original has a slit around the lid and an open spout. Here a ring of quads closes the slit, and caps close both ends of
+//! the handle and of the spout, so that body, handle and spout each are a closed surface. The three intersect as in the original.
 
 use super::builder::Builder;
 use crate::error::FormatError;
@@ -94,7 +94,7 @@ pub fn teapot() -> Result<Polygons, FormatError> {
     let mut builder = Builder::default();
     let body = turned(&mut builder, &BODY, |_| GLAZE)?;
     let cover = turned(&mut builder, &COVER, |_| LID)?;
-    // The slit between the lid's edge (end of the cover) and the rim's (start of the body).
+    // Closes the slit between the edge of the lid (the last row of the cover) and that of the rim (the first row of the body).
     let (Some(lid_edge), Some(rim_edge)) = (cover.last(), body.first()) else {
         return Ok(builder.finish());
     };
@@ -201,8 +201,8 @@ fn tube(
     Ok(rows)
 }
 
-/// A point of a cubic Bézier curve, by de Casteljau's method. The ends of a curve, and curves with equal control points, are
-/// exact, so that patches and poles close.
+/// A point of a cubic Bézier curve, by de Casteljau's method. The ends of a curve, and all points of a curve with equal control
+/// points, have no rounding error, so that neighbouring patches meet and poles are closed.
 fn bezier(mut control: [Vector; 4], t: f64) -> Vector {
     if t == 1.0 {
         return control[3];
@@ -261,7 +261,7 @@ mod tests {
             (-3.01..-2.9).contains(&back) && (3.4..3.5).contains(&front),
             "{back} {front}"
         );
-        // A body of revolution with about this profile has a volume of 25; handle and spout add a little.
+        // A body of revolution with about this profile has a volume of 25; handle and spout add to it.
         let volume = volume(&teapot);
         assert!((25.0..31.0).contains(&volume), "{volume}");
     }

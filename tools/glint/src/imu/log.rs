@@ -22,7 +22,7 @@ pub struct Entry {
 const TIME: &str = "t_us";
 const TEMPERATURE: &str = "temp";
 const COLUMNS: [&str; 8] = [TIME, "ax", "ay", "az", "gx", "gy", "gz", TEMPERATURE];
-/// Maximum number of columns in a header; real logs have fewer.
+/// Maximum number of columns in a header; logs in use have fewer.
 const MOST_COLUMNS: usize = 64;
 
 /// The position in the file of each of [`COLUMNS`], and the number of columns in the file.

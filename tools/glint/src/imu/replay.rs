@@ -27,15 +27,15 @@ pub struct Options {
     pub follow_bias: bool,
 }
 
-/// Samples of a log with the firmware's 32-bit time stamps.
+/// A log whose samples get the 32-bit time stamps of the firmware.
 struct Stamps<'a> {
     entries: &'a [Entry],
     period: Option<u32>,
 }
 
 impl Stamps<'_> {
-    /// Samples with 32-bit time stamps. A step backwards becomes a step of 0. A step longer than `LONGEST_STEP` is not
-    /// integrated, and is shortened to 1 µs more than that.
+    /// Returns the samples with 32-bit time stamps. Where the log's time goes back, the step is 0. A step longer than
+    /// `LONGEST_STEP`, over which the firmware does not integrate, is shortened to `LONGEST_STEP` + 1 µs.
     fn samples(&self) -> impl Iterator<Item = Sample> {
         let mut latest = self.entries.first().map_or(0, |entry| entry.t_us);
         let mut stamp = 0_u32;
@@ -74,11 +74,11 @@ pub struct Prepared {
 pub struct Replayed {
     /// Attitude at each sample.
     pub attitudes: Vec<Quaternion>,
-    /// Numbers of samples by how the integration treated them.
+    /// Numbers of samples by their effect on the attitude.
     pub counts: Counts,
     /// The calibration, if requested.
     pub calibration: Option<Report>,
-    /// Mean number of cycles that a board takes for a sample; `None` on this host.
+    /// Mean number of clock cycles that the board took for a sample; `None` for a replay on this host.
     pub cycles: Option<u64>,
 }
 
@@ -118,8 +118,8 @@ pub fn prepare(entries: &[Entry], options: &Options) -> Result<Prepared, Error> 
     let bias = calibration.map_or([0; 3], |report| report.bias);
     let setup =
         Setup::new(options.units, options.tilt, options.follow_bias, bias).map_err(Error::Log)?;
-    // A count beyond 32 bits becomes the largest one, which every board rejects as too long. The model uses
-    // the number of bytes instead.
+    // A number of samples beyond 32 bits becomes the largest number of 32 bits. Every board rejects it as too long, and the model
+    // because it does not match the number of bytes.
     let count = u32::try_from(entries.len()).unwrap_or(u32::MAX);
     let mut image = setup.header(count).to_vec();
     stamps
@@ -147,8 +147,8 @@ pub fn on_model(mut prepared: Prepared) -> Result<Replayed, Error> {
     })
 }
 
-/// Replays a log on a board. `progress` gets the stage, and the progress in bytes during transfers or
-/// in samples during the replay.
+/// Replays a log on a board. Calls `progress` with the stage, and with how much of it is done and its total: bytes of a transfer,
+/// samples of the replay.
 ///
 /// # Errors
 /// The firmware rejects the log, or a transfer fails.
@@ -201,15 +201,15 @@ pub fn on_board<B: Board + ?Sized>(
 
 /// The console command that replays a log.
 const COMMAND: &str = "replay";
-/// Session number of the transfer: the same for every transfer, because a board's receiver lives for one transfer.
+/// Session number of the transfers. All can have the same one, because a board's receiver exists for one transfer only.
 const SESSION: u8 = 1;
 
 /// Stage of a replay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
-    /// Transfer of log or attitudes, in bytes.
+    /// Transfer of the log or of the attitudes; its progress counts bytes.
     Transfer,
-    /// Computation of attitudes, in samples.
+    /// Computation of the attitudes; its progress counts samples.
     Replay,
 }
 
@@ -220,7 +220,7 @@ fn attitudes(records: &[u8]) -> Result<Vec<Quaternion>, Error> {
         .collect()
 }
 
-/// Calibrates with the samples in the first `still` µs of a log, at most as many as a calibration takes.
+/// Calibrates with the samples in the first `still` µs of a log. Samples beyond the maximum number of a calibration are ignored.
 fn calibrate(stamps: &Stamps, units: Units, still: u64) -> Result<Report, FormatError> {
     let mut elapsed = 0_u64;
     let mut last = 0_u32;

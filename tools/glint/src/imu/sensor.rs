@@ -47,7 +47,8 @@ pub fn wait<B: Board + ?Sized>(console: &mut Console<B>) -> Result<String, Error
     }
 }
 
-/// Streams `samples` samples to `on_sample`. Their times are µs of board time, counted from the first sample.
+/// Streams as many samples as `samples` says from the board to `on_sample`. The time of a sample is in µs of board time, counted
+/// from the first sample.
 ///
 /// # Errors
 /// The sensor or the board fails.
@@ -78,7 +79,7 @@ pub fn stream<B: Board + ?Sized>(
     malformed.map_or(Ok(()), |line| Err(Error::Sample(line)))
 }
 
-/// Extends 32-bit time stamps to 64 bits, and counts from the first stamp.
+/// Converts 32-bit time stamps, which wrap around, to a 64-bit time that counts from the first stamp.
 #[derive(Default)]
 struct ExtendedTime {
     last: Option<u32>,
@@ -105,20 +106,20 @@ fn sample(line: &str) -> Option<(u32, [i16; 3], [i16; 3])> {
     Some((stamp.parse().ok()?, [ax, ay, az], [gx, gy, gz]))
 }
 
-/// Result of a calibration, in °/s and °/h.
+/// Result of a calibration. Each array has the values about x, y and z.
 #[derive(Clone, Debug, serde::Serialize)]
 pub struct Calibrated {
     /// Number of averaged samples.
     pub samples: u32,
-    /// Mean rate at rest.
+    /// Mean rate at rest, in °/s.
     pub bias: [f64; 3],
-    /// Standard deviation of the samples.
+    /// Standard deviation of the samples, in °/s.
     pub deviation: [f64; 3],
     /// Expected drift of an attitude, in °/h.
     pub drift_per_hour: [f64; 3],
 }
 
-/// Calibrates with `samples` samples; `progress` gets the number of samples taken so far.
+/// Calibrates the gyroscope with as many samples as `samples` says. Calls `progress` with the number of samples taken so far.
 ///
 /// # Errors
 /// The sensor moves or fails, as reported by the firmware.
@@ -149,7 +150,7 @@ pub fn calibrate<B: Board + ?Sized>(
     })
 }
 
-/// Three numbers, parsed from text with single spaces.
+/// Three numbers, parsed from a text in which single spaces separate them.
 struct Triple([f64; 3]);
 
 impl std::str::FromStr for Triple {
@@ -162,8 +163,8 @@ impl std::str::FromStr for Triple {
     }
 }
 
-/// A sensor for a virtual board. Without a log it is at rest, with typical errors. With a log it gives the log's counts, from the
-/// board's start, and keeps the last sample at the end.
+/// Returns a sensor to plug into a virtual board. Without a log the sensor is at rest, with typical errors. With a log it gives
+/// the counts of the log, which starts with the board; after the end of the log it repeats the last sample.
 #[must_use]
 pub fn virtual_sensor(log: Option<&[Entry]>) -> Wires {
     let source = match log {

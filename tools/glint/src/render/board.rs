@@ -14,7 +14,8 @@ use glint_model::Frame;
 /// A renderer that draws frames on a board.
 pub struct BoardRenderer<'b, B: ?Sized = dyn Board> {
     console: Console<'b, B>,
-    /// Number of uploads so far, modulo 256. Each upload gets it as its session number, so that two successive uploads differ.
+    /// Number of uploads so far, modulo 256. Each upload has it as session number, so that two successive uploads differ
+    /// in this number.
     uploads: u8,
     backend: Option<Backend>,
     route: Route,
@@ -38,7 +39,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         Self { backend, ..self }
     }
 
-    /// Sets the route by which [`render`](Renderer::render) transfers data. The default is the serial line.
+    /// Sets the route by which [`render`](Renderer::render) transfers meshes and pictures. The default is the serial line.
     #[must_use]
     pub fn with_route(self, route: Route) -> Self {
         Self { route, ..self }
@@ -59,7 +60,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         &mut self.console
     }
 
-    /// Shows a frame: uploads its mesh if it has one, and waits until the frame is drawn.
+    /// Shows a frame on the board: uploads its mesh if it has one, and waits until the frame is drawn.
     ///
     /// # Errors
     /// The firmware refuses, or the upload fails.
@@ -72,7 +73,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         if let Some(backend) = self.backend {
             self.console.command(&format!("backend {backend}"))?;
         }
-        // The board draws after every change: the subject, which takes the longest, comes last.
+        // The board draws a frame after every change, so the mesh or field, which takes the longest to draw, is set last.
         self.console.command(&size_command(frame.size))?;
         self.console.command(&view_command(&frame.view))?;
         if let Some(mesh) = frame.subject.mesh_part() {
@@ -112,7 +113,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         )?)
     }
 
-    /// Moves the camera and waits for the frame.
+    /// Moves the camera, and waits until the frame from there is drawn.
     ///
     /// # Errors
     /// The firmware refuses.
@@ -138,7 +139,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
             .collect())
     }
 
-    /// Downloads the depth codes of the scene that is shown.
+    /// Downloads the depth codes of the scene on the monitor.
     ///
     /// # Errors
     /// The download fails, or the board lacks this route.
@@ -148,7 +149,8 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         route: Route,
         progress: &mut Progress,
     ) -> Result<Vec<u32>, Error> {
-        // The gateware writes depth codes only on request. Over the serial line the download command makes the request.
+        // The gateware writes depth codes on request only. Over the serial line, `frame depth` requests them; for a direct read
+        // from memory, `render depth` must request them.
         if route == Route::Memory {
             let lines = self.console.command("stats")?;
             if console::value::<String>("stats", &lines, "backend")? == Backend::Gateware.name() {

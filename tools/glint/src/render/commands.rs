@@ -33,7 +33,8 @@ pub fn view_command(view: &View) -> String {
     command
 }
 
-/// The console commands that set a field, alone or with the present mesh in it. Only the last one makes the board draw a frame.
+/// The console commands that set a field, alone or together with the mesh that the board has. Only the last command makes the
+/// board draw a frame.
 pub fn field_commands(subject: &FieldSubject, with_mesh: bool) -> Vec<String> {
     let Appearance {
         material,
@@ -45,7 +46,7 @@ pub fn field_commands(subject: &FieldSubject, with_mesh: bool) -> Vec<String> {
     } = subject.appearance;
     let ambient = ambient.map(|ambient| Hexadecimal(ambient).to_string());
     let mut commands = vec![
-        // While the field is off, a change of its options draws no frame.
+        // While the field is off, commands that change its options make the board draw no frame.
         "field off".to_owned(),
         format!("material {}", material.name()),
         "light default".to_owned(),

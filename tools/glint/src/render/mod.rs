@@ -1,6 +1,7 @@
 //! Frames rendered by the model in this process, or by a board.
 //!
-//! [`Frame`] and its subjects are the model's own types. A [`Renderer`] draws them: [`ModelRenderer`] or [`BoardRenderer`].
+//! [`Frame`] and the types of its subjects come from the model. The renderers of frames are [`ModelRenderer`] and
+//! [`BoardRenderer`], by the trait [`Renderer`].
 
 mod board;
 mod commands;

@@ -18,7 +18,7 @@ impl Renderer for ModelRenderer {
 /// Draws a frame with the bit-exact model.
 ///
 /// # Errors
-/// A mesh is seen from too far, or is to be drawn for two eyes.
+/// The eye is too far from the origin for a mesh, or a mesh in a field is requested for two eyes.
 pub fn on_model(frame: &Frame) -> Result<Rendered, Error> {
     let ([width, height], pixels) = (frame.size.pixels(), frame.size.pixel_count());
     let mut image = Image {

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// Cycles and counts of a frame. The option `--stats` writes them to its file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Stats {
-    /// Cycles of the board's clock; `None` from the model, which has no clock.
+    /// Cycles of the board's clock that the frame took; `None` from the model, which has no clock.
     pub cycles: Option<u64>,
     /// Counts of the mesh; `None` without one.
     #[serde(flatten)]
@@ -17,7 +17,7 @@ pub struct Stats {
     /// Counts of the field; `None` without one.
     #[serde(flatten)]
     pub rays: Option<RayCounts>,
-    /// The board's clock in Hz.
+    /// Frequency of the board's clock in Hz; `None` from the model.
     pub clock: Option<u64>,
     /// The backend of a board: `cpu` or `gateware`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -40,7 +40,7 @@ pub struct TriangleCounts {
     pub triangles_drawn: u32,
     /// Pixels tested by the walker. The gateware's walker tests eight at a time.
     pub pixels_tested: u64,
-    /// Pixels covered, counted once for each triangle.
+    /// Pixels covered by triangles; a pixel under several triangles counts for each of them.
     pub pixels_covered: u64,
     /// Pixels written; `None` for a mesh in a field, where the gateware does not count the mesh's pixels apart from the field's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -106,7 +106,7 @@ impl From<FrameStats> for Stats {
     }
 }
 
-/// Reads the statistics of a frame from a reply whose lines are a key and a value.
+/// Reads the statistics of a frame from a reply of the board, in which each line is a key and a value.
 ///
 /// # Errors
 /// [`ConsoleError::Reply`] without the lines of a frame.

@@ -1,4 +1,4 @@
-//! Attitudes of logs: board and model agree bit for bit.
+//! Attitudes of logs by the board and by the model are equal, bit for bit.
 
 use crate::common::{console, mesh, running_board};
 use glint::fuzz::Random;
@@ -73,7 +73,7 @@ const MOVING: Options = Options {
     ..EVERYTHING
 };
 
-/// The attitudes of a log by the model and by the board over `route`; both must be the same.
+/// Replays a log by the model and, over `route`, by the board; checks that the attitudes are equal.
 fn replayed_by_both(entries: &[Entry], options: &Options, route: Route) -> [Replayed; 2] {
     let prepared = replay::prepare(entries, options).unwrap();
     let mut board = running_board();
@@ -111,7 +111,7 @@ fn attitudes_of_a_log_are_the_models() {
         rejected,
     } = board.counts;
     println!("{:?}, {:?} cycles a sample", board.counts, board.cycles);
-    // The log exercises every counter.
+    // The log has samples for every counter.
     assert!([stale, saturated, rejected].iter().all(|&count| count > 50));
     assert!(steps > 4_000 && gaps == 1);
 }

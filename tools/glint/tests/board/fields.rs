@@ -24,14 +24,14 @@ fn a_field_by_the_cpu_is_the_models() {
     a_field_by(Backend::Cpu, "cpu");
 }
 
-/// Checks the first lines of a frame while the soft core draws it: a cube, and a box through the cube.
+/// Compares the first two lines of a frame, a cube with a box through it, with the model's while the soft core draws the rest.
 #[test]
 fn the_cpu_draws_a_mesh_in_a_field() {
     const PIXELS: usize = 2 * 320;
     // A fill value that is neither a colour nor a depth of this scene.
     const UNTOUCHED: [u8; 4] = 0xA5A5_A5A5_u32.to_le_bytes();
     let mesh = mesh("cube");
-    // The view looks down, so that cube and box are both at the top of the picture.
+    // The camera looks down, so that the cube and the box both appear at the top of the picture.
     let eye = r#"{"eye":[0,-6,0],"u":[1,0,0],"v":[0,-0.6,-0.8],"n":[0,0.8,-0.6],"half_width":1.4,"near":0.1}"#;
     let field = FieldSubject {
         field: &Field::parse("box:3,0.2,0.4").unwrap(),
@@ -68,7 +68,8 @@ fn the_cpu_draws_a_mesh_in_a_field() {
     renderer
         .upload(&mesh, Route::Memory, &mut |_, _| {})
         .unwrap();
-    // The two frame buffers take turns, so the next frame goes to the other one.
+    // Frames alternate between two frame buffers. `colour` and `depth` are the addresses of this frame; after one `render` the
+    // next frame is drawn there again.
     renderer.redraw().unwrap();
     let console = renderer.console();
     let [colour, depth] = ["frame", "depth"].map(|key| address(console, key));
@@ -87,8 +88,8 @@ fn the_cpu_draws_a_mesh_in_a_field() {
     for line in &lines {
         console.reply(line).unwrap();
     }
-    // The soft core clears the frame to black first, and no visible surface is black. So another colour in the last pixel says
-    // that the lines are drawn.
+    // The soft core clears the frame to black first, and no visible surface is black. So the lines are drawn when the last pixel
+    // has neither black nor the fill value.
     let mut waited = 0;
     loop {
         let drawn = read(console, colour, 2 * PIXELS);

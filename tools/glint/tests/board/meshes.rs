@@ -10,7 +10,7 @@ use glint_core::colour::Shading;
 use glint_core::mesh::Mesh;
 use glint_core::picture::{Backend, Size};
 
-/// Smooth shading: by the engine if the gateware has it, otherwise by the CPU with a note in `stats`.
+/// Smooth shading is drawn by the triangle engine if the gateware has it, otherwise by the CPU with a note in `stats`.
 #[test]
 fn smooth_shading_is_the_models_on_every_backend() {
     let mut board = running_board();
@@ -144,7 +144,7 @@ fn captured_is(renderer: &mut BoardRenderer<SimulatedBoard>, old: &[u16], new: &
     shown == old
 }
 
-/// The picture on the monitor, scaled back to the frame; checks the video timing.
+/// Captures the picture on the monitor, scaled down by `scale` to the frame's size; checks the video timing.
 fn captured(renderer: &mut BoardRenderer<SimulatedBoard>, scale: usize) -> Vec<u16> {
     let board = renderer.board().inner();
     let picture = board.capture().unwrap();
@@ -152,7 +152,7 @@ fn captured(renderer: &mut BoardRenderer<SimulatedBoard>, scale: usize) -> Vec<u
     picture.scaled_back(scale).unwrap()
 }
 
-/// Shows the cube over the serial line only; returns the board's renderer and the model's frame.
+/// Shows the cube on the board over the serial line only; returns the board's renderer, and the model's image of the same frame.
 fn shown_over_the_line(board: &mut SimulatedBoard) -> (BoardRenderer<'_, SimulatedBoard>, Image) {
     let mesh = mesh("cube");
     let frame = mesh_frame(&mesh, "3,10,80", Size::W320);

@@ -1,4 +1,4 @@
-//! A board's sensor over its console.
+//! The sensor of a board, accessed through the board's console.
 
 use crate::common::{console, running_board};
 use glint::imu::log::Entry;
@@ -23,7 +23,7 @@ fn a_sensor_is_found_calibrated_and_gives_samples() {
     assert_eq!(entries.len(), 10);
     assert_eq!(entries[0].t_us, 0);
     for pair in entries.windows(2) {
-        // No sample is printed twice; samples that arrive during a print are left out.
+        // The board prints no sample twice, and leaves out the samples that it measures while it prints one.
         let step = pair[1].t_us - pair[0].t_us;
         let samples = (step + 500) / 1_000;
         assert!(
@@ -31,7 +31,7 @@ fn a_sensor_is_found_calibrated_and_gives_samples() {
             "{step}"
         );
     }
-    // The acceleration is gravity, with the virtual sensor's scale error and bias.
+    // The acceleration along z is gravity, with the virtual sensor's scale error and bias.
     assert!(
         entries
             .iter()

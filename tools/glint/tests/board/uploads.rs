@@ -80,7 +80,7 @@ fn an_upload_over_a_bad_line_arrives_bit_for_bit() {
     assert!(arrived == mesh);
 }
 
-/// The bytes of the scene's frame, 320×180 pixels.
+/// Draws the scene, and reads the colours of its frame of 320×180 pixels from memory.
 fn frame(console: &mut Console<SimulatedBoard>) -> Vec<u8> {
     console.command("render").unwrap();
     let address = address(console, "frame");

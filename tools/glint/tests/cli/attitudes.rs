@@ -5,8 +5,8 @@ use crate::common::{folder, refused, succeed};
 #[test]
 fn logs_of_a_gyroscope() {
     let folder = folder("imu");
-    // The sensor is at rest for 0.1 s, with noise and a bias, then turns at 90 °/s about z for a second. Only the last of the
-    // samples in the last 10 ms exists.
+    // The sensor is at rest for 0.1 s, with noise and a bias, then turns at 90 °/s about z for a second. Of the samples in the
+    // last 10 ms, the log has the last one only.
     let mut log = String::from("gx,gy,gz,t_us,temp,ax,ay,az\n");
     for i in (0..=1090).chain([1100]) {
         let noise = i * 7 % 5 - 2;
@@ -38,8 +38,8 @@ fn logs_of_a_gyroscope() {
     );
     let last = numbers(said.last().unwrap());
     assert_eq!(last[0], 4_100_000.0);
-    // The angle is less than 90°: between the last sample at rest and the first in motion half a step is lost, and the jump of
-    // the rate adds the error of the cubic interpolation.
+    // The angle is less than 90°: half a step is lost between the last sample at rest and the first one in motion, and the jump
+    // of the rate adds the error of the cubic interpolation.
     assert!(
         (last[5] - 89.96).abs() < 0.02 && last[6].abs() < 0.1 && last[7].abs() < 0.1,
         "{last:?}"
@@ -54,7 +54,7 @@ fn logs_of_a_gyroscope() {
     let yaw = summary["end"]["yaw"].as_f64().unwrap();
     assert!((yaw - last[5]).abs() < 1e-6, "{yaw}");
 
-    // Twice the sample period and half the scale give the same attitude. The gap becomes an ordinary step,
+    // Twice the sample period and half the rate per count give the same attitude. The gap of 10 ms becomes an ordinary step,
     // because the period is fixed.
     let said = replay(
         "turn.csv",
@@ -66,7 +66,7 @@ fn logs_of_a_gyroscope() {
         said[0]
     );
     let turned = numbers(said.last().unwrap())[5];
-    // The bias of 5 LSB is not removed here.
+    // Without calibration, the bias of 5 LSB stays in the rate.
     let expected = (991.0 * 1481.0 + 100.5 * 5.0) * 0.002 / 32.8;
     assert!((turned - expected).abs() < 0.1, "{turned} {expected}");
 

@@ -1,4 +1,4 @@
-//! Runs of the program, and its output files.
+//! Runs the program `glint`, and reads its output files.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -15,7 +15,7 @@ pub fn folder(name: &str) -> PathBuf {
     path
 }
 
-/// Runs the program with 256 MiB of address space, which exposes unbounded memory.
+/// Runs the program with 256 MiB of address space, so that unbounded use of memory fails.
 pub fn glint(folder: &Path, arguments: &[&str]) -> Output {
     Command::new("sh")
         .args([

@@ -5,7 +5,7 @@ use crate::common::{SQUARE, folder, refused, succeed};
 #[test]
 fn conversions_by_every_way_agree() {
     let folder = folder("conversions");
-    // A model without face colours, which not every format can store.
+    // The model has no face colours, because not every format can store them.
     succeed(&folder, &["model", "icosphere:4", "straight.glm"]);
     for extension in ["obj", "ply"] {
         let between = format!("between.{extension}");

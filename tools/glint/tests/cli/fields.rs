@@ -5,7 +5,7 @@ use crate::common::{VIEW, depths, folder, json, picture, refused, succeed};
 #[test]
 fn fields_and_their_files() {
     let folder = folder("fields");
-    // A box of half a unit at distance 20, which is too far for a mesh.
+    // The camera is 20 away from the box, which would be too far for a mesh.
     let view = VIEW.replace("[0,-2,0]", "[0,-20,0]");
     std::fs::write(
         folder.join("far.json"),
@@ -102,7 +102,8 @@ fn fields_and_their_files() {
     assert_ne!(sponge, render("menger:3", &["--camera", "3,30,60"]).0);
 }
 
-/// A sphere of radius 1 protrudes from the faces of a box, and the corners of the box from the sphere.
+/// Draws a sphere of radius 1 as a mesh in a box as a field: the sphere protrudes from the box's faces, and the box's corners
+/// protrude from the sphere.
 #[test]
 fn a_mesh_in_a_field() {
     let folder = folder("mesh-in-field");

@@ -47,7 +47,8 @@ pub struct ReplayArguments {
     /// Accelerometer scale in LSB per g: 16384, 8192, 4096, 2048 for an MPU-6050 at ±2, 4, 8, 16 g.
     #[arg(long, value_name = "LSB", default_value = "4096")]
     accel_lsb: String,
-    /// Rest at the start of the log, in seconds: its mean rate is the bias. Motion during it is an error.
+    /// Length of the rest at the start of the log, in seconds. The mean rate during the rest is the bias; motion during the rest
+    /// is an error.
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     still: Option<String>,
     /// Disable tilt correction by the accelerometer.
@@ -60,7 +61,7 @@ pub struct ReplayArguments {
     transfer: TransferArguments,
 }
 
-/// The summary of a replay, as printed.
+/// The summary of a replay, as the command prints it.
 #[derive(Serialize)]
 struct Summary<'a> {
     log: &'a Path,
@@ -79,7 +80,7 @@ struct Summary<'a> {
     end: Attitude,
 }
 
-/// The result of a calibration, as printed, in LSB and °/h.
+/// The result of a calibration, as the command prints it: bias and deviation in LSB of the gyroscope, drift in °/h.
 #[derive(Serialize)]
 struct Calibrated {
     samples: u32,

@@ -42,7 +42,7 @@ impl StreamArguments {
     }
 }
 
-/// Formats a sample as a line of a log.
+/// Formats a sample as a line of a log: time stamp, accelerometer, gyroscope.
 fn line(entry: &Entry) -> String {
     let ([ax, ay, az], [gx, gy, gz]) = (entry.accel, entry.gyro);
     format!("{},{ax},{ay},{az},{gx},{gy},{gz}", entry.t_us)

@@ -1,4 +1,4 @@
-//! The sources of samples: a board's sensor, and a log.
+//! The two sources of samples: a board's sensor, and a log file.
 
 use crate::cli::common::{LineArguments, spinner};
 use clap::Args;

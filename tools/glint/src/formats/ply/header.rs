@@ -3,7 +3,7 @@
 use crate::error::{FormatError, Place, quote};
 use crate::formats::text::{Line, Lines};
 
-/// Maximum number of elements in a header, and of properties in an element; real files have fewer.
+/// Maximum number of elements in a header, and of properties in an element; files in use have fewer.
 const MAX_DECLARED: usize = 64;
 
 /// Encoding of the values after the header.
@@ -88,12 +88,12 @@ impl Scalar {
             .is_none_or(|(low, high)| (low..=high).contains(&value) && value.fract() == 0.0)
     }
 
-    /// The value that stands for full intensity in a colour channel of this type.
+    /// The value that means full intensity in a colour channel of this type.
     pub fn full_scale(self) -> f64 {
         self.range().map_or(1.0, |(_, high)| high)
     }
 
-    /// Name in messages.
+    /// Name of the type with its article, for messages.
     pub fn describe(self) -> &'static str {
         match self {
             Self::Int8 => "an int8",
@@ -154,7 +154,7 @@ pub struct Header {
 }
 
 impl Header {
-    /// Parses up to and including the line `end_header`; `lines` then continues with the first value.
+    /// Parses the header up to and including the line `end_header`. What is left of `lines` are the values that follow it.
     ///
     /// # Errors
     /// The first line that violates the format.

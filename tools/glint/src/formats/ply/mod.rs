@@ -114,7 +114,7 @@ impl Slot {
     }
 }
 
-/// Whether the properties include all three coordinates or channels that `kind` selects.
+/// Whether the properties of an element set all three of x, y and z, or of red, green and blue, which `kind` selects.
 fn has_all(slots: &[Slot], kind: impl Fn(&Slot) -> Option<usize>) -> bool {
     (0..3).all(|i| slots.iter().any(|slot| kind(slot) == Some(i)))
 }
@@ -179,7 +179,7 @@ fn read_vertices(
             let value = source.value(scalar)?;
             match *slot {
                 Slot::Position(i) => point[i] = coordinate(value, place)?,
-                // An invalid component of a normal counts as 0.
+                // A component of a normal that is not a valid number counts as 0.
                 Slot::Normal(i) => normal[i] = checked(value).unwrap_or(0.0),
                 Slot::Colour(i, full) => colour[i] = value / full,
                 Slot::None => {}

@@ -8,9 +8,9 @@ use crate::formats::text::{Lines, any_number};
 pub trait Source {
     /// Starts the next instance of an element.
     fn start(&mut self) -> Result<(), FormatError>;
-    /// Reads the next value.
+    /// Reads the next value of the instance.
     fn value(&mut self, scalar: Scalar) -> Result<f64, FormatError>;
-    /// Ends the instance.
+    /// Ends the instance: a line of text must have no further word.
     fn end(&mut self) -> Result<(), FormatError>;
     /// The place of the next value.
     fn place(&self) -> Place;
