@@ -1,4 +1,4 @@
-//! Optional blocks of the SoC.
+//! The error for an optional block that the SoC lacks.
 
 use core::fmt;
 

@@ -1,7 +1,8 @@
 //! Buttons and switches as input pins, LEDs as output pins.
 //!
-//! A port is all pins of a register; [`InputPort::pin`] and [`OutputPort::pin`] give single pins. Pins of one output
-//! port share its register and may be used in different contexts: each change is a critical section.
+//! A port has all pins of one register; [`InputPort::pin`] and [`OutputPort::pin`] give single pins. All pins of an output
+//! port share its register. They may be changed from the main program and from interrupt handlers, because each change is
+//! a critical section.
 
 use core::convert::Infallible;
 
@@ -76,7 +77,7 @@ impl<T: Value> OutputPort<T> {
         critical_section::with(|_| self.register.write(value));
     }
 
-    /// The output pin `index`; without effect if the register has no such bit.
+    /// The output pin `index`; changes of the pin have no effect if the register has no such bit.
     #[must_use]
     pub const fn pin(&self, index: u8) -> Output<'_, T> {
         Output { port: self, index }
@@ -130,7 +131,7 @@ impl<T: Value> StatefulOutputPin for Output<'_, T> {
     }
 }
 
-/// The bit of pin `index`, 0 beyond 32 pins.
+/// Mask of the bit of pin `index` in a register; 0 if `index` is 32 or more.
 const fn bit(index: u8) -> u32 {
     if index < 32 { 1 << index } else { 0 }
 }

@@ -1,9 +1,9 @@
 //! The I2C master `i2c`, which executes a queue of commands.
 //!
-//! The master is the only one on the bus and supports 7-bit addresses, 400 kHz and clock stretching. A transaction is
-//! put into the queue, and an interrupt reports its end: [`embedded_hal_async::i2c::I2c`] yields the CPU meanwhile,
-//! [`embedded_hal::i2c::I2c`] polls. A device that was interrupted in the middle of a byte may hold SDA low; each start
-//! then first sends clocks until the device releases SDA.
+//! The master must be the only one on the bus. It supports 7-bit addresses, 400 kHz and clock stretching. The driver puts
+//! a transaction into the queue, and an interrupt reports the end of the transaction: [`embedded_hal_async::i2c::I2c`]
+//! yields the CPU meanwhile, [`embedded_hal::i2c::I2c`] polls. A device that was interrupted in the middle of a byte may
+//! hold SDA low; before each start the master therefore sends clocks until the device releases SDA.
 //!
 //! Periodic reads ([`PeriodicI2c`], the register `rounds`) are one transaction that the master repeats at a steady pace, with an
 //! interrupt after each batch of reads.
@@ -29,7 +29,7 @@ use litex_pac::i2c::{
 use crate::timer::{Clock, Deadline, cycles, microseconds};
 
 /// Longest time without progress before a transaction times out. It is longer than the 25.8 ms of clock stretching
-/// after which the master reports a device, and than the 1 ms that the 33 bytes of a full queue take.
+/// after which the master reports `ClockStuck`, and than the 1 ms that the 33 bytes of a full queue take on the bus.
 const WAIT: Duration = Duration::from_millis(100);
 const WAIT_CYCLES: u64 = cycles(WAIT);
 
@@ -59,7 +59,7 @@ struct Periodic {
 pub enum BusError {
     /// The address has more than 7 bits.
     Address(u8),
-    /// The address or a byte was not acknowledged.
+    /// The device did not acknowledge its address or a byte of data.
     NoAcknowledge(NoAcknowledgeSource),
     /// SCL was held low longer than a device may stretch it.
     ClockStuck,
@@ -67,7 +67,8 @@ pub enum BusError {
     DataStuck,
     /// The transaction made no progress for 100 ms.
     Timeout,
-    /// A periodic read was not over when the next read was due: the device stretches the clock, or the receive queue is full.
+    /// A periodic read was not over when the next read was due, because the device stretches the clock or the receive
+    /// queue is full.
     Late,
     /// The requested periodic reads exceed the master's limits, or no periodic reads have begun.
     Reads,
@@ -115,7 +116,7 @@ impl embedded_hal::i2c::Error for BusError {
 }
 
 impl I2c {
-    /// A master on `registers`, with both wires released. The end of each transaction raises an interrupt.
+    /// The driver of the master at `registers`, with SCL and SDA released. The end of each transaction raises an interrupt.
     #[must_use]
     pub fn new(registers: i2c::I2c, clock: Clock) -> Self {
         let mut master = Self {
@@ -139,7 +140,7 @@ impl I2c {
             .write(Control::default().with_clear(true));
     }
 
-    /// Reads the status of the master, or the error that ended the transaction.
+    /// Reads the status of the master. Returns the error if an error has ended the transaction.
     fn status(&self) -> Result<Status, BusError> {
         let status = self.registers.status().read();
         if !status.failed() {
@@ -169,8 +170,8 @@ impl I2c {
         result
     }
 
-    /// Takes the bytes of a periodic read from the receive queue until `bytes` is full; `received` of
-    /// them were taken before.
+    /// Moves the bytes of a periodic read from the receive queue to `bytes` until `bytes` is full. `received` is the
+    /// number of bytes moved by earlier calls, and is updated.
     fn take(
         &self,
         bytes: &mut [u8],
@@ -180,7 +181,7 @@ impl I2c {
         while let Some(slot) = bytes.get_mut(*received) {
             let answer = self.registers.answer().read();
             if !answer.valid() {
-                // The error is reported now, because all bytes received before it have been taken.
+                // The receive queue is empty, so all bytes received before an error have been taken: an error is reported now.
                 return match (self.status(), &deadline) {
                     (Err(error), _) => Poll::Ready(Err(error)),
                     (_, Some(deadline)) if deadline.passed() => Poll::Ready(Err(BusError::Timeout)),
@@ -196,8 +197,8 @@ impl I2c {
         Poll::Ready(Ok(()))
     }
 
-    /// Fills the command queue and empties the receive queue. Interrupt code is not in the cache, so one small function
-    /// for both queues is faster.
+    /// Fills the command queue and empties the receive queue. This code runs after interrupts, when it is not in the
+    /// instruction cache: one small function for both queues is faster than two functions.
     fn serve(
         &self,
         transfer: &mut Transfer,
@@ -253,7 +254,7 @@ impl I2c {
 /// Kind of the next command of a transaction.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Stage {
-    /// A command of an operation, or the start before an operation.
+    /// A command that reads or writes bytes of an operation, or the start before an operation.
     Operations,
     /// The address byte after a start.
     Address,
@@ -268,13 +269,13 @@ struct Transfer<'o, 'b> {
     stage: Stage,
     /// Whether the last start began a read; `None` before the first start.
     reads: Option<bool>,
-    /// Index in `operations` of the operation of the next command, and the number of its bytes that already have a
-    /// command in the queue.
+    /// Index in `operations` of the operation that the next command is for.
     operation: usize,
+    /// Number of bytes of that operation for which a command is already in the queue.
     sent: usize,
-    /// Index in `operations` of the read that gets the next received byte, and the number of bytes already
-    /// received for that read.
+    /// Index in `operations` of the read that gets the next received byte.
     receiver: usize,
+    /// Number of bytes already received for that read.
     received: usize,
 }
 
@@ -292,7 +293,7 @@ impl<'o, 'b> Transfer<'o, 'b> {
         }
     }
 
-    /// The next command; `None` after the stop.
+    /// Returns the next command for the command queue; `None` after the stop.
     fn next_command(&mut self) -> Option<Command> {
         match self.stage {
             Stage::Over => return None,
@@ -340,7 +341,7 @@ impl<'o, 'b> Transfer<'o, 'b> {
         }
     }
 
-    /// Whether the next operation that is not empty is a read.
+    /// Whether the current read continues in a later operation: a read with at least one byte follows before any write.
     fn reads_on(&self) -> bool {
         let rest = self.operations.iter().skip(self.operation + 1);
         rest.map_while(|operation| match operation {

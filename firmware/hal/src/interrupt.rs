@@ -5,7 +5,7 @@
 
 use litex_pac::Interrupt;
 
-/// Calls `handle` for each interrupt of `pending`, lowest number first, and returns the lines without a name.
+/// Calls `handle` for each interrupt of `pending`, lowest number first. Returns the pending lines that have no [`Interrupt`].
 ///
 /// Handlers match on [`Interrupt`], so the compiler finds an interrupt without a handler.
 pub fn dispatch(pending: u32, mut handle: impl FnMut(Interrupt)) -> u32 {

@@ -1,7 +1,7 @@
-//! The raymarcher: distance fields in the frames of the triangle engine's raster pass.
+//! Driver of the raymarcher, which draws distance fields into the frames of the triangle engine's raster pass.
 //!
 //! [`Raymarcher::set_field`] writes a field's frame constants. Every raster pass that starts afterwards draws
-//! the field, until [`Raymarcher::clear_field`]. Neither may be called during a raster pass. The raymarcher
+//! the field, until [`Raymarcher::clear_field`]. Neither function may be called during a raster pass. The raymarcher
 //! does not access memory.
 
 use core::fmt;
@@ -39,9 +39,9 @@ pub struct Capabilities {
 /// A feature that a frame needs and this build lacks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Missing {
-    /// Sponges deeper than this number of levels, the most that this build has; 0 if it has no sponges.
+    /// Sponges deeper than this number of levels, which is the limit of this build; 0 if the build has no sponges.
     Levels(u8),
-    /// Flat fields of this kind are missing.
+    /// Flat fields of this kind.
     Flat(Kind),
     /// Spheres.
     Round,
@@ -98,7 +98,7 @@ impl Raymarcher {
     /// pass also ends the raymarcher's work.
     ///
     /// # Errors
-    /// [`Absent`] if another block answers, or none.
+    /// [`Absent`] if the register `ident` does not identify a raymarcher.
     pub fn probe(registers: raymarch::Raymarch) -> Result<Self, Absent> {
         match registers.ident().read() {
             raymarch::Raymarch::IDENT => {
@@ -132,7 +132,7 @@ impl Raymarcher {
         self.capabilities
     }
 
-    /// Checks that this build can draw a frame.
+    /// Checks that this build of the raymarcher can draw the frame with the constants `setup`.
     ///
     /// # Errors
     /// The missing feature.
@@ -172,8 +172,8 @@ impl Raymarcher {
         Ok(())
     }
 
-    /// Enables the field in every following raster pass, after the triangles. The size of the pass must equal that of
-    /// the setup.
+    /// Enables the field in every following raster pass, in which it is drawn after the triangles. The picture size of
+    /// these passes must equal the size in `setup`.
     ///
     /// # Errors
     /// The missing feature; all registers are then unchanged.
@@ -185,8 +185,8 @@ impl Raymarcher {
         self.set_field_with_tables_held(setup, palette)
     }
 
-    /// As [`set_field`](Self::set_field), for a palette whose tables the raymarcher [holds](Self::has_tables). The
-    /// palette's tables are not read.
+    /// Does the same as [`set_field`](Self::set_field), for a palette whose tables the raymarcher already
+    /// [holds](Self::has_tables). The palette's tables are not read.
     ///
     /// # Errors
     /// As [`set_field`](Self::set_field).
@@ -316,7 +316,7 @@ impl Raymarcher {
         self.registers.sphere().write(constant);
     }
 
-    /// Writes the constants of spheres, of the fillet, and of the light on spheres.
+    /// Writes the constants of the spheres, of their fillet with the flat solid, and of the light on them.
     fn set_spheres(&self, spheres: &FixedSpheres, blend: &Blend, lights: &Lights) {
         let write = |entry, value| self.set_constant(entry, value);
         let numbers = |x: [i32; 3]| x.map(|x| x as u32 & 0xFF_FFFF);
@@ -345,8 +345,8 @@ impl Raymarcher {
         }
     }
 
-    /// Whether the raymarcher's tables of fog and light are those of `palette`. The comparison takes longer than
-    /// writing a frame's registers.
+    /// Whether the raymarcher's tables of fog and light equal the tables of `palette`. This comparison takes longer than
+    /// writing the registers of a frame.
     #[must_use]
     pub fn has_tables(&self, palette: &Palette) -> bool {
         let held = self.tables.as_ref();
@@ -363,7 +363,7 @@ impl Raymarcher {
         self.tables = Some(tables);
     }
 
-    /// Disables the field in following raster passes.
+    /// Disables the field in all following raster passes.
     pub fn clear_field(&mut self) {
         self.registers.control().write(Control::default());
     }
@@ -375,7 +375,8 @@ impl Raymarcher {
     }
 }
 
-/// The kind of a flat field as a register value. `Kind::ALL` has every kind of the model, so the default is never used.
+/// The kind of a flat field as a register value. `Kind::ALL` has every kind of the model, so the default `Menger` is
+/// never used.
 fn kind(constants: &FlatConstants) -> Kind {
     let kind = Kind::ALL.get(usize::from(constants.kind)).copied();
     kind.unwrap_or(Kind::Menger)

@@ -1,14 +1,14 @@
 //! Two frames in memory and the scan-out that shows one of them while the other is drawn.
 //!
 //! [`Display`] owns the memory of both frames. [`Display::back`] lends the frame that is not on the screen, and
-//! [`Display::show`] flips: scan-out takes the frame over at the next vertical blanking. Until then no frame is free and `back`
-//! returns `None`. Therefore no incomplete picture is shown, and no call waits: the interrupt of the vertical blanking
+//! [`Display::show`] flips: scan-out shows this frame from the next vertical blanking on. Until then no frame is free, and
+//! `back` returns `None`. Therefore no incomplete picture is shown, and no call waits: the interrupt of the vertical blanking
 //! ([`acknowledge_vblank`]) reports when a frame may be free again.
 //!
 //! The CPU's data cache writes through, so a drawn frame is in memory; scan-out only reads.
 //!
 //! # Limits
-//! A SoC may lack the scan-out block. Then a frame is always free, and no picture is shown.
+//! A SoC may lack the scan-out block. On such a SoC a frame is always free, and no picture is shown.
 
 use core::sync::atomic::{Ordering, compiler_fence};
 
@@ -59,9 +59,9 @@ impl Scanout {
         Ok(Self { registers })
     }
 
-    /// Keeps the frame at `shown` on the screen instead of the frame at `next`, if that is not shown yet; returns
-    /// whether `shown` was kept. Two frames with different scales are not exchanged, because a frame would be shown
-    /// with the wrong scale.
+    /// Keeps the frame at the address `shown` on the screen if the frame at the address `next`, which should replace it,
+    /// is not shown yet. Returns whether the frame at `shown` was kept. If the two frames have different scales, nothing
+    /// changes, because a frame would be shown with the wrong scale.
     fn withdraw(&self, next: u32, shown: u32) -> bool {
         let registers = &self.registers;
         if registers.fb_next().read() != next
@@ -79,7 +79,7 @@ impl Scanout {
         withdrawn
     }
 
-    /// Whether the frame at `address` is shown or waits to be shown, and must not be drawn on.
+    /// Whether the frame at `address` is shown or waits to be shown, so that it must not be drawn on.
     fn holds(&self, address: u32) -> bool {
         // `next` is read first: a frame that becomes current between the two reads is then found as the next frame.
         self.registers.fb_next().read() == address || self.registers.fb_current().read() == address
@@ -205,8 +205,8 @@ mod tests {
 
     const IDENT: u32 = scanout::Scanout::IDENT;
 
-    /// Model of the registers. `blank_before` is the number of register writes that still come
-    /// before a vertical blanking.
+    /// Model of the registers of scan-out. `blank_before` is the number of register writes until the next vertical
+    /// blanking; `None` for no blanking.
     #[derive(Default)]
     struct Video {
         ident: u32,
@@ -232,7 +232,7 @@ mod tests {
             match address - scanout::Scanout::BASE {
                 0x00 => video.ident,
                 0x08 => video.control,
-                // The active scale.
+                // Register `status`: the scale of the shown frame is in the bits from 4 on.
                 0x0c => video.current[2] << 4,
                 0x1c => video.next,
                 0x20 => video.scale,

@@ -1,8 +1,8 @@
 //! Time since reset, from the uptime counter of `timer0`.
 //!
 //! The counter has 64 bits and counts clock cycles of the SoC without stop or wrap. [`Clock`] is a copyable handle,
-//! also for interrupt handlers: a reading that is interrupted by another reading still gives a time between start and
-//! end of the reading.
+//! which interrupt handlers may use too: a reading that is interrupted by another reading still gives a time between its
+//! own start and end.
 
 use core::future::poll_fn;
 use core::task::Poll;
@@ -15,7 +15,7 @@ use litex_pac::timer0::{EvEnable, EvPending, Timer0};
 /// Clock cycles of the SoC per second.
 pub const FREQUENCY: u32 = CONFIG_CLOCK_FREQUENCY;
 
-/// Number of clock cycles in 4 µs; it is a whole number.
+/// Number of clock cycles in 4 µs, which the assertion below shows to be a whole number.
 const QUARTERS: u64 = FREQUENCY as u64 / 250_000;
 const _: () = assert!(FREQUENCY.is_multiple_of(250_000));
 
@@ -25,7 +25,7 @@ pub struct Clock {
     _running: (),
 }
 
-/// The uptime counter stands still, because the SoC has no such counter.
+/// Error: the uptime counter stands still, because the SoC has no such counter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stopped;
 
@@ -38,7 +38,7 @@ impl core::fmt::Display for Stopped {
 impl core::error::Error for Stopped {}
 
 impl Clock {
-    /// The clock on `timer0`; only the uptime counter is used.
+    /// Returns the clock that reads the uptime counter of `timer0`.
     ///
     /// # Errors
     /// Two readings of the counter are equal.
@@ -54,7 +54,7 @@ impl Clock {
     /// Clock cycles since reset.
     #[must_use]
     pub fn cycles(self) -> u64 {
-        // SAFETY: `new` took the only handle and dropped it; every other access reads the uptime.
+        // SAFETY: `new` consumed the owner of `timer0`, so only this function accesses the registers of the uptime.
         let timer = unsafe { Timer0::steal() };
         timer.uptime_latch().write(true);
         timer.uptime_cycles().read()
@@ -105,9 +105,9 @@ impl DelayNs for Clock {
     }
 }
 
-/// A delay ends at the first poll after its time; an interrupt of `timer0` causes this poll. `timer0` has a
-/// single interrupt: of several simultaneous delays only the last one gets the interrupt, and the others
-/// wait for another poll.
+/// A delay ends at the first poll after its time; an interrupt of `timer0` causes this poll. `timer0` has a single
+/// interrupt: of several simultaneous delays only the delay that began last gets the interrupt. Earlier delays end at a
+/// poll with another cause.
 impl embedded_hal_async::delay::DelayNs for Clock {
     async fn delay_ns(&mut self, ns: u32) {
         self.wait(cycles(Duration::from_nanos(ns.into()))).await;
@@ -138,7 +138,7 @@ impl Clock {
     }
 }
 
-/// Sets the interrupt of `timer0` to slightly more than `cycles` from now.
+/// Makes `timer0` raise an interrupt after slightly more than `cycles` clock cycles from now.
 fn alarm(cycles: u32) {
     // SAFETY: only this function writes these registers; the last write sets the interrupt.
     let timer = unsafe { Timer0::steal() };
@@ -161,7 +161,7 @@ pub fn acknowledge() {
 #[must_use]
 pub const fn microseconds(cycles: u64) -> u64 {
     // The reciprocal 4/`QUARTERS` in µs per cycle, with 64 fraction bits and rounded up. The result is exact below 2^55
-    // cycles, 14 years. A division would take a thousand cycles.
+    // cycles, which is 14 years. A division would take a thousand cycles instead.
     const INVERSE: u128 = (4_u128 << 64).div_ceil(QUARTERS as u128);
     ((cycles as u128 * INVERSE) >> 64) as u64
 }
@@ -199,7 +199,7 @@ pub(crate) mod tests {
             }
         }
 
-        /// The word of the register at `address`, if it belongs to the uptime counter.
+        /// The 32-bit word at `address`, if the address is that of a register of the uptime counter.
         pub fn read(&self, address: usize) -> Option<u32> {
             match address - Timer0::BASE {
                 0x24 => Some((self.latched >> 32) as u32),

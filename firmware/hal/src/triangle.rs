@@ -1,4 +1,4 @@
-//! The triangle engine: draws meshes in memory into frames in memory.
+//! Driver of the triangle engine, which draws meshes in memory into frames in memory.
 //!
 //! A frame takes two passes. The geometry pass writes descriptors and band lists of a mesh, and a list of the triangles that
 //! need clipping. The raster pass draws a frame from these lists, and from a second set that the program may write
@@ -71,9 +71,9 @@ impl core::error::Error for EngineError {}
 /// Output of a geometry pass in memory; every address is a multiple of 16.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lists {
-    /// Address of the descriptors; the [`shading`](TriangleEngine::shading) of the engine sets their length.
+    /// Address of the descriptors; the [`shading`](TriangleEngine::shading) of the engine determines the length of each.
     pub descriptors: u32,
-    /// Largest number of descriptors that fit their memory.
+    /// Largest number of descriptors that fit the memory at `descriptors`.
     pub descriptor_limit: u32,
     /// Address of the band lists.
     pub lists: u32,
@@ -92,9 +92,9 @@ pub struct Geometry<'a> {
     pub shading: Shading,
     /// Output of the pass.
     pub lists: Lists,
-    /// Address of the list of exceptions: triangle numbers of 4 bytes.
+    /// Address of the list of exceptions, the triangles that need clipping: their numbers, of 4 bytes each.
     pub exceptions: u32,
-    /// Largest number of exceptions that fit their memory.
+    /// Largest number of exceptions that fit the memory at `exceptions`.
     pub exception_limit: u32,
 }
 
@@ -122,15 +122,15 @@ pub struct Raster {
     pub size: Size,
     /// Address of the frame to write.
     pub frame: u32,
-    /// Number of the frame buffer: `false` for 0, `true` for 1.
+    /// Number of the frame buffer that is written: `false` for 0, `true` for 1.
     pub slot: bool,
-    /// Whether the whole frame buffer is written, because its contents are unknown.
+    /// Whether every pixel of the frame buffer is written, because its contents are unknown.
     pub whole: bool,
     /// Address to which depth codes are written, if they are requested.
     pub depth: Option<u32>,
     /// Colour of pixels without a triangle, RGB565.
     pub clear: u16,
-    /// The sets of lists, which each band draws in this order.
+    /// The sets of descriptors and band lists, drawn in this order in each band.
     pub sets: [Option<Set>; 2],
 }
 
@@ -170,8 +170,8 @@ impl TriangleEngine {
         Ok(Self { registers })
     }
 
-    /// Best shading of this gateware. It determines the length of a descriptor
-    /// (`glint_model::triangle::descriptor::words`).
+    /// Best shading that this gateware can draw: `Smooth` if it was built with smooth shading, otherwise `Flat`. It
+    /// determines the length of a descriptor (`glint_model::triangle::descriptor::words`).
     #[must_use]
     pub fn shading(&self) -> Shading {
         if self.registers.caps().read().gouraud() {
@@ -181,11 +181,11 @@ impl TriangleEngine {
         }
     }
 
-    /// Writes the registers of a geometry pass while no geometry pass runs, so that the start itself is short. A band
-    /// list has room for 4 << `list_shift` entries, in both passes.
+    /// Writes the registers of a geometry pass, so that the start itself is short. No geometry pass may be running. In
+    /// this pass and in the raster pass, a band list has room for 4 << `list_shift` entries.
     ///
     /// # Errors
-    /// [`Error::Size`] if the engine lacks this picture size; no register is then written.
+    /// [`Error::Size`] if the engine does not support this picture size; no register is then written.
     pub fn prepare_geometry(
         &mut self,
         pass: &Geometry,
@@ -301,8 +301,8 @@ impl TriangleEngine {
         (!status.raster_busy()).then(|| EngineError::check(status.raster_error()))
     }
 
-    /// Cancels the running passes. The next frame in the buffer of a cancelled raster pass must
-    /// be written whole ([`Raster::whole`]).
+    /// Cancels the running passes. The next frame in the frame buffer of a cancelled raster pass must be written whole
+    /// ([`Raster::whole`]).
     pub fn cancel(&mut self) {
         self.registers
             .control()

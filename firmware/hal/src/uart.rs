@@ -42,7 +42,7 @@ struct State<const RX: usize, const TX: usize> {
 }
 
 impl<const RX: usize, const TX: usize> Uart<RX, TX> {
-    /// A UART without registers: receives no bytes, and keeps bytes to send in the queue.
+    /// A UART that does not have its registers yet: it receives no bytes, and keeps bytes to send in its queue.
     #[must_use]
     pub const fn new() -> Self {
         let state = State {
@@ -99,7 +99,7 @@ impl<const RX: usize, const TX: usize> Uart<RX, TX> {
         })
     }
 
-    /// Whether received bytes are waiting.
+    /// Whether the receive queue has bytes.
     pub fn has_received(&self) -> bool {
         self.with(|state| !state.received.is_empty())
     }
@@ -109,12 +109,12 @@ impl<const RX: usize, const TX: usize> Uart<RX, TX> {
         self.with(|state| state.to_send.is_empty())
     }
 
-    /// Bytes dropped since the start because the receive queue was full; saturates.
+    /// Number of bytes dropped since the start because the receive queue was full; saturates.
     pub fn lost(&self) -> u32 {
         self.with(|state| state.lost)
     }
 
-    /// The receiving end; a read waits at most `timeout` for its first byte.
+    /// Returns the receiving end. Each read waits at most `timeout` for its first byte.
     pub const fn reader(&self, clock: Clock, timeout: Duration) -> Reader<'_, RX, TX> {
         Reader {
             uart: self,
@@ -123,7 +123,7 @@ impl<const RX: usize, const TX: usize> Uart<RX, TX> {
         }
     }
 
-    /// The sending end; a write waits at most `timeout` for room.
+    /// Returns the sending end. Each write waits at most `timeout` for room in the queue.
     pub const fn writer(&self, clock: Clock, timeout: Duration) -> Writer<'_, RX, TX> {
         Writer {
             uart: self,
@@ -132,8 +132,8 @@ impl<const RX: usize, const TX: usize> Uart<RX, TX> {
         }
     }
 
-    /// Sends the transmit queue without interrupts, before the program ends. Stops when the line makes no progress, and
-    /// does nothing if the program ends within another call.
+    /// Sends the bytes in the transmit queue without interrupts, before the program ends. Stops when the line makes no
+    /// progress. Does nothing if the program ends inside another function of this UART, which still borrows its state.
     pub fn drain(&self) {
         critical_section::with(|token| {
             let Ok(mut state) = self.state.borrow(token).try_borrow_mut() else {
@@ -174,8 +174,8 @@ impl<const RX: usize, const TX: usize> State<RX, TX> {
                 self.lost = self.lost.saturating_add(1);
             }
         }
-        // The event is cleared before the hardware's queue is filled, so that room that appears later
-        // raises the event again.
+        // The event is cleared before the hardware's queue is filled: room that appears in this queue later raises the
+        // event again.
         registers
             .ev_pending()
             .write(EvPending::default().with_tx(true));
@@ -297,7 +297,8 @@ impl<const RX: usize, const TX: usize> WriteReady for Writer<'_, RX, TX> {
     }
 }
 
-/// Number of polls of a full transmitter before giving up: about 0.1 s, far longer than a byte at 115,200 baud.
+/// Number of polls of a full transmitter after which sending is given up: about 0.1 s, far longer than a byte takes at
+/// 115,200 baud.
 const PATIENCE: u32 = 1_000_000;
 
 /// Writes text directly to the hardware, without queues or interrupts, for the messages of traps and panics.
@@ -306,7 +307,7 @@ pub struct Direct {
 }
 
 impl Direct {
-    /// A second handle on the UART, beside the owner's handle.
+    /// Returns a second handle on the UART, in addition to the handle of its owner.
     ///
     /// # Safety
     /// The output of the owner may be interrupted or incomplete from now on.

@@ -13,8 +13,8 @@ pub struct DepthScale {
 }
 
 impl DepthScale {
-    /// The scale of a mesh with the given `radius` (14 fraction bits). `origin` is the depth of the world's origin and
-    /// `near` that of the near plane, both with 37 fraction bits.
+    /// Returns the scale for a mesh with the given `radius` (14 fraction bits). `origin` is the depth of the world's
+    /// origin and `near` the depth of the near plane, each with 37 fraction bits.
     ///
     /// The scale is (2^18 − 4) times the smallest possible depth of the mesh: the depth of the near plane, or of the
     /// mesh's bounding sphere about the origin if the sphere begins beyond the near plane. The axis n may be 10^−4
@@ -25,21 +25,22 @@ impl DepthScale {
         Self::from_nearest(near.max(origin - reach))
     }
 
-    /// The scale (2^18 − 4)·`nearest`, where `nearest` is the smallest depth of a frame: in (0, 64], 37 fraction bits.
+    /// Returns the scale (2^18 − 4)·`nearest`, where `nearest` is the smallest depth in a frame: in (0, 64], with 37
+    /// fraction bits.
     pub(crate) fn from_nearest(nearest: i64) -> Self {
         // `nearest` is at most 2^43, so the product is below 2^61.
         let scale = nearest as u64 * ((1 << 18) - 4);
         Self::cut(scale, -37)
     }
 
-    /// Multiplies the scale by `scale`, a number above 0, and by 2^`shift`; the mantissa is truncated to 17 bits.
+    /// Returns this scale times `scale`, a number above 0, times 2^`shift`, with the mantissa truncated to 17 bits.
     pub(crate) fn times(&self, scale: Q32_32, shift: u32) -> Self {
         // Multiplies the mantissa of 17 bits by 40 bits of `scale`, of which 24 are fraction bits.
         let product = u64::from(self.mantissa) * (scale.to_bits() as u64 >> 8);
         Self::cut(product, self.exponent - 24 + shift as i32)
     }
 
-    /// The scale value·2^exponent, with the mantissa truncated to 17 bits.
+    /// Returns the scale `value`·2^`exponent`, with the mantissa truncated to 17 bits.
     fn cut(value: u64, exponent: i32) -> Self {
         let lead = value.ilog2();
         Self {

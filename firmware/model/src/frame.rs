@@ -111,8 +111,8 @@ impl FieldSubject<'_> {
 
 /// Numbers of a frame that do not depend on the pixel or triangle, computed once before drawing.
 ///
-/// The constants take about 1,500 bytes, mostly tables of a field's palette. To save time keep one value and
-/// [update](Self::update) it instead of moving new values.
+/// The constants take about 1,500 bytes, mostly tables of a field's palette. To save time, keep one `FrameConstants`
+/// and [update](Self::update) it for each frame instead of moving new ones.
 #[derive(Clone, Debug, Default)]
 pub struct FrameConstants {
     mesh: Option<MeshSetup>,
@@ -129,12 +129,12 @@ pub struct FieldConstants {
 }
 
 impl FrameConstants {
-    /// Constants of the mesh.
+    /// Returns the constants of the mesh, if the frame has a mesh.
     pub const fn mesh(&self) -> Option<&MeshSetup> {
         self.mesh.as_ref()
     }
 
-    /// Constants of the field.
+    /// Returns the constants of the field, if the frame has a field.
     pub const fn field(&self) -> Option<&FieldConstants> {
         self.field.as_ref()
     }
@@ -148,10 +148,10 @@ impl FrameConstants {
         }
     }
 
-    /// Computes the constants of another frame.
+    /// Replaces the constants by those of `frame`.
     ///
     /// # Errors
-    /// [`RenderError::Eye`] or [`RenderError::Stereo`]; the constants are then invalid for drawing.
+    /// [`RenderError::Eye`] or [`RenderError::Stereo`]; the constants must then not be used for drawing.
     pub fn update(&mut self, frame: &Frame) -> Result<(), RenderError> {
         (self.mesh, self.field) = (None, None);
         let (view, [width, height]) = (&frame.view, frame.size.pixels());
@@ -219,7 +219,7 @@ impl<'a> Frame<'a> {
         mesh.map_or(0, |subject| subject.mesh.largest_chunk())
     }
 
-    /// Draws the frame into `buffer` from its constants, with `scratch` as memory for vertices. Calls
+    /// Draws the frame into `buffer` from the frame's `constants`, with `scratch` as memory for projected vertices. Calls
     /// `progress` at short intervals.
     ///
     /// # Errors

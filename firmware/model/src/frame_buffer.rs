@@ -1,4 +1,4 @@
-//! The memory of a frame.
+//! The memory that a picture is drawn into: colours and depth codes.
 
 use crate::error::{Buffer, RenderError, SIZES};
 
@@ -37,7 +37,7 @@ impl FrameBuffer<'_> {
         Ok(())
     }
 
-    /// Checks that the size equals the size of the frame constants.
+    /// Checks that the size of this buffer equals the size (`width`, `height`) of the frame constants.
     pub(crate) fn check_size(&self, (width, height): (u32, u32)) -> Result<(), RenderError> {
         if (self.width, self.height) == (width, height) {
             Ok(())

@@ -1,12 +1,12 @@
-//! Bit-exact twins of Glint's accelerators.
+//! Bit-exact software models of Glint's accelerators, the triangle engine and the raymarcher.
 //!
 //! The crate computes the triangle pipeline and the raymarcher of `docs/formats.md` in integers. It is the renderer of
 //! the CPU backend, and the reference of the gateware's tests. A [`Frame`] describes a picture, and [`Frame::draw`]
-//! draws it: its mesh through [`triangle`], its rays through [`raymarch`].
+//! draws it: the mesh of the picture by [`triangle`], the rays of its distance field by [`raymarch`].
 //!
 //! The crate uses no floating point and no allocation, and 128-bit integers only for the fog's table. Every sum and
-//! product fits its type for every camera that [`glint_core::camera::View`] accepts and for every mesh; the comments
-//! prove it, and tests with overflow checks run the extremes. Modular arithmetic uses the `wrapping` methods.
+//! product fits its type for every camera that [`glint_core::camera::View`] accepts and for every mesh; comments at
+//! the functions prove it, and tests with overflow checks run the extreme cases. Modular arithmetic uses the `wrapping` methods.
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -8,8 +8,9 @@ use crate::error::RenderError;
 use crate::raymarch::{FieldOptions, FieldSetup};
 use crate::triangle::MeshSetup;
 
-/// Number of low bits cleared in the mantissa of the shared scale. The scale for depths in field units is up to 40.5
-/// times as large for bounded fields, and then still fits 17 bits without truncation.
+/// Number of low bits that are cleared in the mantissa of the shared scale. The conversion of the scale to depths in
+/// field units multiplies it by up to 40.5 for bounded fields, and the mantissa then still fits 17 bits without
+/// truncation.
 const EVEN_BITS: u32 = 7;
 
 /// Computes the constants of a mesh with the given `radius` (14 fraction bits) and of a field, with one scale of depth
@@ -38,8 +39,8 @@ pub fn constants(
     Ok((frame, setup))
 }
 
-/// Returns the smaller of two scales, with its mantissa truncated to 10 bits. With the smaller scale no depth code of
-/// mesh or field overflows.
+/// Returns the smaller of two scales of depth codes, with its mantissa truncated to 10 bits. With the smaller scale no
+/// depth code of the mesh or the field overflows.
 fn shared(a: DepthScale, b: DepthScale) -> DepthScale {
     let smaller = if (a.exponent, a.mantissa) < (b.exponent, b.mantissa) {
         a

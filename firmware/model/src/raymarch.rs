@@ -6,9 +6,10 @@
 //!
 //! Fields with spheres use the Euclidean norm for distances and for the length of rays, which is just below 1.
 //!
-//! [`FieldSetup`] computes the constants of a frame, [`Ray`] is a pixel's ray before its first step,
-//! [`FieldSetup::march`] finds its end, and [`paint()`] its colour. In a prepass one [`Cone`] for each block of pixels
-//! is marched first; the [`Rays`] of the block then start nearer to the surface.
+//! [`FieldSetup`] has the constants of a frame, [`Ray`] is a pixel's ray before its first step,
+//! [`FieldSetup::march`] finds the end of the ray, and [`paint()`] computes the colour for this end. In a
+//! prepass one [`Cone`] for each block of pixels is marched first; the [`Rays`] of the block then start nearer to the
+//! surface.
 
 mod blend;
 mod cone;

@@ -1,8 +1,8 @@
 //! Bit-exact model of the triangle engine: from a mesh to pixels.
 //!
-//! Vertices go through [`vertex`], triangles through [`setup`] and [`raster`], triangles that cross the guard band or
-//! the near plane first through [`clip`]. [`render()`] draws a mesh; [`descriptor`] has the records that the engine
-//! keeps in memory.
+//! Vertices are processed by [`vertex`], and triangles by [`setup`] and [`raster`]. Triangles that cross the guard band
+//! or the near plane are first cut by [`clip`]. [`render()`] draws a mesh; [`descriptor`] has the records of triangles
+//! that the engine keeps in memory.
 
 pub mod clip;
 pub mod descriptor;

@@ -1,4 +1,4 @@
-//! Triangles that cross the near plane or leave the guard band.
+//! Clipping of triangles that cross the near plane or leave the guard band.
 
 use glint_model::triangle::clip::clip;
 use glint_model::triangle::vertex::{CameraVertex, project, transform};
@@ -116,7 +116,7 @@ fn clipping_does_not_depend_on_the_first_vertex() {
     assert!(clipped > 200, "{clipped}");
 }
 
-/// Inside a closed mesh clipping leaves no pixel uncovered, and away from the near plane neighbours cover no pixel twice.
+/// Inside a closed mesh, clipping leaves no pixel uncovered. Except at cut edges, no pixel is covered by two triangles.
 #[test]
 fn from_inside_every_pixel_is_covered() {
     let mut random = Random(3);
@@ -129,7 +129,7 @@ fn from_inside_every_pixel_is_covered() {
         };
         let mut camera = Camera::inside(&mut random);
         camera.eye = camera.eye.map(|x| x * 0.6);
-        // The near plane must not reach the walls: a corner of the picture may be far from its centre.
+        // The near plane must not reach the walls of the mesh, even in the corners of a wide picture.
         camera.near = 0.01;
         camera.half_width = camera.half_width.min(2.0);
         let size = SIZES[round % 3];
@@ -157,8 +157,8 @@ fn level_camera(near: f64) -> Camera {
     }
 }
 
-/// Positions of cuts: the picture of a square that crosses the near plane ends at the right lines and
-/// has the right depths.
+/// A square that crosses the near plane is cut at the right position: its picture ends at the expected lines and has the
+/// expected depths.
 #[test]
 fn the_near_plane_cuts_where_it_is() {
     // The floor z = −0.25, seen by an eye that is above it and looks along it.
@@ -187,7 +187,7 @@ fn the_near_plane_cuts_where_it_is() {
                 );
                 let z = 0.25 * scale / (y - h / 2.0);
                 let across = (x - w / 2.0) / scale * z;
-                // Within half a subpixel of the border both results are right.
+                // A pixel within half a subpixel of the border may be covered or not.
                 let rows_off = (y - h / 2.0 - 0.25 * scale / near)
                     .abs()
                     .min((y - h / 2.0 - 0.125 * scale).abs());
@@ -219,7 +219,8 @@ fn apex_at_the_eye() {
         [8000, 16000, -6000],
         [0, 16000, 7000],
     ];
-    // A pyramid with its tip at the eye covers the same pixels as its base, except for slivers of half a subpixel.
+    // The three sides of a pyramid whose tip is at the eye are seen edge-on: they cover almost no pixels, whereas the
+    // base of the pyramid covers many.
     let base = Picture::of(
         &Model::soup(&[far]),
         &level_camera(0.01).rounded(),
@@ -252,7 +253,7 @@ fn apex_at_the_eye() {
         (beyond.stats.drawn, beyond.stats.clipped, beyond.covered()),
         (0, 0, 0)
     );
-    // The smallest possible depth gives the largest code.
+    // This triangle is at the smallest possible depth, so its codes are the largest possible.
     assert!(
         at.depth
             .iter()

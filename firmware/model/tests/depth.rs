@@ -1,4 +1,4 @@
-//! Depth codes of screen triangles.
+//! Depth codes of triangles that are given in screen coordinates.
 
 use glint_core::colour::Rgb565;
 use glint_model::triangle::raster::draw;
@@ -7,8 +7,8 @@ use glint_model::{SIZES, ScreenVertex};
 use glint_vectors::triangles::{SIZE, at, random_triangle, set_up};
 use glint_vectors::{Picture, Random};
 
-/// Compares the stored code with the exact plane through the three (x, y, w) at every covered pixel. Returns the
-/// largest error in codes, of which half a code comes from the final rounding.
+/// Compares the stored depth code of every covered pixel with the exact plane through the three vertices (x, y, w).
+/// Returns the largest error in codes, which includes the error of up to half a code from the final rounding.
 fn depth_error(vertices: [ScreenVertex; 3], size: (u32, u32)) -> f64 {
     let mut picture = Picture::blank(size);
     let Some((triangle, setup)) = set_up(vertices, size) else {
@@ -44,7 +44,7 @@ fn depth_error(vertices: [ScreenVertex; 3], size: (u32, u32)) -> f64 {
         let accumulator = (v0[2] << 8) + ((gx * dx + gy * dy) >> 8);
         let as_written = ((accumulator + (1 << 13)) >> 14).rem_euclid(1 << 18).max(1);
         assert_eq!(i128::from(code), as_written, "{vertices:?} at {i}, {j}");
-        // The exact depth less the stored code, times 64 times the area.
+        // The exact depth less the stored code, in codes, times 64 times the doubled area of the triangle.
         let exact = (v0[2] - 64 * i128::from(code)) * area
             + (p1[2] * p2[1] - p2[2] * p1[1]) * dx
             + (p2[2] * p1[0] - p1[2] * p2[0]) * dy;

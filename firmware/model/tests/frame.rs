@@ -1,4 +1,4 @@
-//! Frames: constants, drawing in one call, and the lists of clipped triangles.
+//! Frames: their constants, drawing in one call, and the band lists of their clipped triangles.
 
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;

@@ -37,7 +37,7 @@ fn draw(mesh: &Mesh, field: &str, view: &View) -> [Picture; 3] {
     pictures
 }
 
-/// A camera outside that looks approximately at the centre.
+/// A random camera outside of mesh and field that looks approximately at the origin.
 fn outside(random: &mut Random) -> View {
     let distance = random.real(1.5, 6.0);
     let eye = random.direction().map(|x| x * distance);
@@ -80,14 +80,16 @@ fn faces_of_both_in_one_plane_have_the_same_depth() {
 fn what_is_nearer_is_seen() {
     let bytes = Model::sphere(1.2, 12).encoded();
     let mesh = Mesh::new_checked(&bytes).unwrap();
-    // The cube's corners extend beyond the sphere, and the sphere beyond the cube's faces.
+    // The corners of the cube (the field) extend beyond the sphere (the mesh), and the sphere extends beyond the cube's
+    // faces.
     let mut random = Random(2);
     let mut seen = [0; 3];
     for view in [0; 3].map(|_| outside(&mut random)) {
         let [mesh, field, both] = draw(&mesh, "box:1,1,1", &view);
         for i in 0..both.depth.len() {
             let (a, b) = (mesh.depth[i], field.depth[i]);
-            // At equal depths the field wins, because it is drawn later; elsewhere its background is shown.
+            // At equal depth codes the field is shown, because it is drawn later. If both codes are 0, this is the
+            // background of the field.
             let (which, expected) = if b >= a { (1, &field) } else { (0, &mesh) };
             assert_eq!(both.colour[i], expected.colour[i], "pixel {i}");
             seen[if a.max(b) == 0 { 2 } else { which }] += 1;
@@ -96,12 +98,13 @@ fn what_is_nearer_is_seen() {
     assert!(seen.iter().all(|&pixels| pixels > 500), "{seen:?}");
 }
 
-/// The shared constants are in the ranges of those of a mesh and of a field, for every half width.
+/// The constants shared by mesh and field are in the ranges of the constants of a mesh alone and of a field alone, for
+/// every half width.
 #[test]
 fn shared_constants_keep_their_ranges() {
     let mut random = Random(3);
-    // Relative error where a world unit is 40.5 field units or a power of two of them: the scale then
-    // keeps all 17 bits.
+    // Tolerated relative error of the scale where a world unit is 40.5 field units or a power of two of them: then all 17
+    // bits of the scale are kept.
     const EXACT: f64 = 1e-12;
     let fields = [
         ("menger:4", EXACT),

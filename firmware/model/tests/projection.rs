@@ -1,18 +1,21 @@
-//! Snapped positions and depths against a projection in f64.
+//! The vertex stage: snapped positions and depths of vertices, compared with a projection in f64.
 
 use glint_model::triangle::reciprocal::Reciprocal;
 use glint_model::triangle::vertex::{project, transform};
 use glint_model::{MeshSetup, Projected, SIZES, ScreenVertex};
 use glint_vectors::{Camera, Random, math::world};
 
-/// Radii of a mesh that fills the 1×1×1 box and of a mesh with vertices at ±2, 14 fraction bits.
+/// Radius of a mesh that fills a box of 1×1×1 world units, and of a mesh with vertices at ±2; 14 fraction bits.
 const RADII: [u32; 2] = [14_190, 56_756];
 
-/// Largest errors in 1/256 pixel.
+/// Largest errors of positions in 1/256 pixel.
 #[derive(Clone, Copy, Default)]
 struct Worst {
+    /// Largest error of a position on the screen.
     screen: f64,
+    /// Largest error of a position in the guard band.
     guard: f64,
+    /// Number of positions on the screen.
     count: u32,
 }
 
@@ -31,7 +34,8 @@ impl Worst {
     }
 }
 
-/// A random camera within 8 of the origin, with a point of the mesh in its guard band.
+/// Returns a random camera within 8 world units of the origin, a point of a mesh that appears in its guard band, and the
+/// depth of this point. The coordinates of the point are within ±`reach`.
 fn aimed(
     random: &mut Random,
     (width, height): (u32, u32),
@@ -88,7 +92,7 @@ fn places_against_f64() {
             let view = camera.rounded();
             let frame = MeshSetup::new(&view, width, height, RADII[index]).unwrap();
             for _ in 0..4 {
-                // Positions near the point, so that they are near it on the screen too.
+                // Tests positions close to the point in space, which are close to it on the screen too.
                 let spread = (z * half_width * 16384.0).min(20_000.0) as i64 + 1;
                 let position = point.map(|x| {
                     (i64::from(x) + random.integer(-spread, spread)).clamp(-32768, 32767) as i16
@@ -109,13 +113,14 @@ fn places_against_f64() {
             same.count, same.screen, same.guard, unrounded.screen, unrounded.guard
         );
         assert!(same.count > 20_000);
-        // A wide camera amplifies the rounding of its basis for positions off the screen.
+        // `unrounded.guard` has no bound, because a wide camera amplifies the rounding of its basis for positions off the
+        // screen.
         assert!(same.guard <= bound && unrounded.screen <= bound);
     }
 }
 
-/// Compares the depth code w with K/z, and the scale K with the one for the nearest depth, whose code must
-/// be the largest possible.
+/// Compares the depth code w of a vertex with K/z, and the scale K with its definition: the nearest possible depth of the
+/// mesh must have the code 2^18 − 4, or a part of up to 2^−16 less.
 #[test]
 fn depths_against_f64() {
     let mut random = Random(2);
@@ -149,7 +154,7 @@ fn depths_against_f64() {
     assert!(worst <= 4.5);
 }
 
-/// Tests the extremes of the accepted cameras: no overflow, and right positions.
+/// Tests the extremes of the accepted cameras: nothing overflows, and positions are correct.
 #[test]
 fn extremes() {
     let mut random = Random(3);
@@ -211,7 +216,7 @@ fn extremes() {
                                 Projected::Visible(_) => assert!(z > near - 1e-6 && !outside),
                                 Projected::BeyondGuard(place) => {
                                     assert!(z > near - 1e-6 && !inside);
-                                    // Saturated positions are on the right side too.
+                                    // A saturated position must be beyond the same side of the guard band as the exact one.
                                     let side = |place: i32, x: f64| {
                                         x.abs() < 2046.9
                                             || f64::from(place) * x >= 256.0 * 2046.0 * x.abs()
@@ -298,13 +303,14 @@ fn steps_as_written() {
     }
 }
 
-/// The scale is the largest that fits the rows' 25 bits, for the longest accepted basis.
+/// The scale shift is the largest for which the rows U and V fit 25 bits, tested with the longest basis that a camera may
+/// have.
 #[test]
 fn rows_fill_their_width() {
     let mut random = Random(5);
     for round in 0..20_000 {
         let (width, height) = SIZES[round % 3];
-        // Half of the cameras are near a change of the shift, where s is slightly below a power of two.
+        // For half of the cameras the scale s is slightly below a power of two, where the scale shift changes.
         let power = f64::from(width) / 2.0 / 2f64.powi(random.integer(5, 14) as i32);
         let half_width = match power * (1.0 + random.real(0.0, 3e-4)) {
             near_power if round % 2 == 0 && (0.05..4.0).contains(&near_power) => near_power,

@@ -1,4 +1,4 @@
-//! The reciprocal over all of its mantissas.
+//! Test of the reciprocal with all mantissas.
 
 use glint_model::triangle::reciprocal::{Reciprocal, SEED, recip};
 
@@ -25,7 +25,7 @@ fn every_mantissa() {
         assert!(recip(m as u32) <= last, "rises at {m}");
         last = recip(m as u32);
 
-        // 2^47 and the product are exact in 64 bits, and their difference is exact as an f64.
+        // 2^47 and the product m·y are exact in 64 bits, and their difference is exact as an f64.
         let error = ((1i64 << 47) - m * y).abs() as f64 / m as f64;
         if m != 1 << 23 && error > worst {
             (worst, worst_at) = (error, m);

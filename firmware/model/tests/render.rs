@@ -1,4 +1,4 @@
-//! Whole frames: order, facing, chunks, errors.
+//! Whole frames: order of drawing, facing, chunks, and errors.
 
 use glint_core::camera::View;
 use glint_core::fixed::Q32_32;
@@ -51,7 +51,7 @@ fn a_sphere_is_a_disc_without_holes() {
     }
 }
 
-/// Culling removes only hidden faces: without it the outline and the picture are the same, except at equal depths.
+/// Culling removes only hidden faces: without culling the outline and the picture are the same, except at equal depths.
 #[test]
 fn culling_and_windings() {
     let sphere = Model::sphere(0.5, 12);
@@ -66,7 +66,7 @@ fn culling_and_windings() {
     assert_eq!(culled.colour, both.colour);
     assert!(culled.drawn.iter().all(|t| t.facing == Facing::Front));
 
-    // A mesh turned inside out shows its far side, and shading negates its normals.
+    // Of a mesh turned inside out, the far side is drawn, and shading negates the normals.
     let inverted = Picture::of(&sphere.flipped(), &view, SIZE, true);
     assert_eq!(inverted.coverage(), culled.coverage());
     assert!(
@@ -92,7 +92,7 @@ fn culling_and_windings() {
     );
 }
 
-/// At equal depths the later triangle wins.
+/// At equal depths the triangle that is drawn later is shown.
 #[test]
 fn ties_go_to_the_later() {
     let triangle = [[0, -8000, -8000], [0, 8000, -8000], [0, 0, 8000]];
@@ -141,7 +141,7 @@ fn order() {
     assert!(parts > 100, "{parts}");
 }
 
-/// A mesh in two chunks gives the same picture as the same triangles in one.
+/// A mesh in two chunks gives the same picture as the same triangles in one chunk.
 #[test]
 fn chunks() {
     let mut random = Random(5);

@@ -1,4 +1,4 @@
-//! Exact properties of smooth shading. `tools/reference` measures its errors.
+//! Exact properties of smooth shading. The errors of smooth shading are measured by `tools/reference`.
 
 use glint_core::colour::Rgb565;
 use glint_model::triangle::clip::clip;
@@ -15,7 +15,7 @@ fn any_colour(random: &mut Random) -> Rgb565 {
     Rgb565(random.bits() as u16)
 }
 
-/// A constant light gives exactly its colour, at all depths and on every shape.
+/// Equal light at all vertices gives exactly this colour in all pixels, at all depths and for triangles of every shape.
 #[test]
 fn equal_light_is_a_flat_colour() {
     let mut random = Random(1);
@@ -71,8 +71,8 @@ fn quotients_of_anything() {
     }
 }
 
-/// The light of a vertex equals flat shading with the vertex normal, on each side of the triangle. It is 0 on one of
-/// the two sides.
+/// The light of a vertex equals flat shading with the normal of the vertex, for each side of the triangle. For one of the
+/// two sides it is 0.
 #[test]
 fn light_is_that_of_flat_shading() {
     let mut random = Random(3);
@@ -125,7 +125,7 @@ fn cut_edges_have_light_in_between() {
                 continue;
             }
             cuts += 1;
-            // A cut edge may be cut a second time, which rounds again.
+            // An edge may be cut by a second plane, which rounds a second time.
             let part = (end.z - a.z) as f64 / (b.z - a.z) as f64;
             if (b.z - a.z).abs() < 1 << 30 {
                 continue;

@@ -1,4 +1,4 @@
-//! Coverage of screen triangles by setup and walker.
+//! The pixels that setup and walker cover, for triangles in screen coordinates.
 
 use glint_core::colour::Rgb565;
 use glint_model::triangle::raster::{Coverage, draw};
@@ -12,7 +12,7 @@ fn pixels([x, y]: [f64; 2]) -> [i64; 2] {
     [x, y].map(|x| (x * 256.0).round() as i64)
 }
 
-/// Draws one triangle on a blank picture.
+/// Draws one triangle on a blank picture. Returns which pixels are covered, and the walker's counts.
 fn alone(vertices: [ScreenVertex; 3], size: (u32, u32)) -> (Vec<bool>, Coverage) {
     let mut picture = Picture::blank(size);
     let coverage = set_up(vertices, size)
@@ -27,7 +27,8 @@ fn alone(vertices: [ScreenVertex; 3], size: (u32, u32)) -> (Vec<bool>, Coverage)
     (covered, coverage)
 }
 
-/// The pixels of the picture where all three edge functions pass, each evaluated on its own.
+/// Whether all three edge functions pass, for each pixel of the picture. Every pixel is computed independently, without
+/// the walker.
 fn by_edges(vertices: [ScreenVertex; 3], (width, height): (u32, u32)) -> Vec<bool> {
     let mut covered = vec![false; (width * height) as usize];
     let Some((oriented, setup)) = set_up(vertices, (width, height)) else {
@@ -40,7 +41,7 @@ fn by_edges(vertices: [ScreenVertex; 3], (width, height): (u32, u32)) -> Vec<boo
                 let (right, down) = (i - i64::from(setup.start_column), j - top);
                 edge.start + right * i64::from(edge.step_x) + down * i64::from(edge.step_y) >= 0
             });
-            // The value reached by steps is exact: it equals the edge function computed directly.
+            // The steps of an edge function are exact: the result equals that of the edge function computed directly.
             assert_eq!(inside, directly(&oriented, i, j));
             covered[(j * i64::from(width) + i) as usize] = inside;
         }
@@ -165,7 +166,7 @@ fn fans_cover_every_pixel_once() {
     }
 }
 
-/// A grid with randomly moved inner vertices covers exactly the rectangle, exactly once.
+/// The triangles of a grid with randomly moved inner vertices cover every pixel of its rectangle once, and no other pixel.
 #[test]
 fn shaken_grids_cover_their_rectangle_once() {
     let mut random = Random(5);
@@ -205,7 +206,8 @@ fn shaken_grids_cover_their_rectangle_once() {
             }
         }
         let counts = counts(&triangles);
-        // The rectangle's sides run through pixel centres: left and top count, right and bottom do not.
+        // The rectangle's sides run through pixel centres. Pixels on the left and top side are covered, pixels on the right
+        // and bottom side are not.
         let side = N * 13;
         for (pixel, &count) in counts.iter().enumerate() {
             let (i, j) = (pixel % 320, pixel / 320);
@@ -239,7 +241,7 @@ fn top_left_torture_on_the_half_pixel_grid() {
                         );
                     }
                 }
-                // The flipped and the rotated triangle give the same result.
+                // The same triangle with two vertices exchanged, or with another first vertex, covers the same pixels.
                 assert_eq!(covered, alone([b, a, c].map(at), SIZE).0);
                 assert_eq!(covered, alone([b, c, a].map(at), SIZE).0);
                 tried += 1;
@@ -249,7 +251,7 @@ fn top_left_torture_on_the_half_pixel_grid() {
     assert_eq!(tried, 2148);
 }
 
-/// Compares with known answers of the top-left rule.
+/// Compares the covered pixels of squares and triangles with the known results of the top-left rule.
 #[test]
 fn a_square_on_pixel_centres() {
     let [a, b, c, d] = [[0, 0], [4, 0], [4, 4], [0, 4]]
@@ -261,7 +263,7 @@ fn a_square_on_pixel_centres() {
             .map(|i| (i % 320 - 10, i / 320 - 10))
             .collect::<Vec<_>>()
     };
-    // The diagonal from top left to bottom right: its pixels belong to the triangle on its right.
+    // Pixels on the diagonal from top left to bottom right belong to the triangle on the right of the diagonal.
     assert_eq!(
         covered([a, b, c]),
         [

@@ -14,7 +14,7 @@ use crate::timer::tests::{Uptime, clock};
 /// Capacity of the command queue and of the receive queue.
 const PLACES: usize = i2c::I2c::COMMAND_PLACES as usize;
 
-/// A model of the master's registers with a device. Each read of the status executes one command.
+/// Model of the registers of the I2C master, with one device on its bus. Each read of the register `status` executes one command.
 struct Master {
     /// Address of the device.
     address: u8,
@@ -30,13 +30,14 @@ struct Master {
     addressing: bool,
     transaction: bool,
     error: Error,
-    /// Error reported at the next start.
+    /// Error that the model reports at the next start, or `Error::None`.
     breaks: Error,
     /// Whether the model stops executing commands.
     hangs: bool,
     overfull: bool,
-    /// The register `rounds`; `round` are the commands of one periodic read.
+    /// Value of the register `rounds`.
     repeats: u32,
+    /// Commands of one periodic read.
     round: Vec<Command>,
     uptime: Uptime,
 }
@@ -288,7 +289,7 @@ const READ: PeriodicRead = PeriodicRead {
     batch: 5,
 };
 
-/// Polls once for the next periodic read; `None` if the read is not over.
+/// Polls once for the next periodic read. Returns its time or error, and its bytes; `None` if the read is not over.
 fn look(i2c: &mut I2c) -> Option<(Result<u64, BusError>, [u8; 3])> {
     let mut bytes = [0; 3];
     let found = {
@@ -321,7 +322,7 @@ fn periodic_reads_are_taken_one_by_one_with_their_times() {
     assert!(look(&mut i2c).is_none());
     let round = "S d0+ 3a+ S d1+";
     assert_eq!(log(&master).matches(round).count(), 2);
-    // Another transaction ends the periodic reads.
+    // Any other transaction ends the periodic reads.
     i2c.write(0x68, &[1, 2]).unwrap();
     assert_eq!(master.borrow().repeats, 0);
     assert_eq!(look(&mut i2c).unwrap().0, Err(BusError::Reads));

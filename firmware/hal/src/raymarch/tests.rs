@@ -249,7 +249,7 @@ fn tables_are_written_where_they_change() {
     let (raymarcher, block) = probe(IDENT, EVERYTHING);
     let mut raymarcher = raymarcher.unwrap();
     let address = registers().table().address();
-    // The entry and the share of each write to the register `table`.
+    // Draws a field, and returns index and value of each table entry written through the register `table`, with the palette.
     let mut written = |options: &FieldOptions| {
         block.borrow_mut().writes.clear();
         let (setup, palette) = setup("menger:4", options);

@@ -46,7 +46,7 @@ impl Line {
         assert!(self.to_cpu.len() <= DEPTH);
     }
 
-    /// The other end of the line takes `count` bytes.
+    /// Takes `count` sent bytes at the other end of the line.
     fn take(&mut self, count: usize) {
         if self.from_cpu.len() == DEPTH && count > 0 {
             self.pending |= TX;

@@ -3,7 +3,7 @@
 //! For a fillet of two surfaces with the distances a and b, the distance is their quadratic smooth minimum (I. Quilez,
 //! "smooth minimum"): min(a, b) − h²/4k with h = max(k − |a − b|, 0). Its gradient is the weighted mean of both
 //! gradients, with the weight h/2k for the larger distance. The blended distance therefore changes no faster than
-//! either, and the same weight blends the two colours.
+//! a or b, and the same weight blends the colours of the two surfaces.
 
 use glint_core::field::{FixedSpheres, Sample, Surface};
 
@@ -26,7 +26,7 @@ pub struct Blend {
 }
 
 impl Blend {
-    /// A fillet of the given width, with 12 fraction bits: 0, or 2^10 to 2^17 − 1.
+    /// Returns a fillet of the given `width`, in field units with 12 fraction bits: 0, or 2^10 to 2^17 − 1.
     pub fn new(width: u32) -> Self {
         Self {
             width,
@@ -34,8 +34,8 @@ impl Blend {
         }
     }
 
-    /// Joins the samples of a flat solid and of a sphere at the same point: returns the nearer one, or the fillet's. A
-    /// sharp union prefers the face at equal distances.
+    /// Joins the samples of a flat solid and of a sphere at the same point: returns the sample with the smaller distance,
+    /// or a blended sample on the fillet. At equal distances a sharp union returns the sample of the flat solid.
     pub fn union(&self, flat: Sample, round: Sample) -> Sample {
         let is_round = round.distance < flat.distance;
         let nearer = if is_round { round } else { flat };
@@ -46,7 +46,7 @@ impl Blend {
         };
         let apart = flat.distance.abs_diff(round.distance);
         let h = i64::from(self.width.saturating_sub(apart));
-        // The product has 28 fraction bits; the shift leaves 16. The weight is at most slightly above a half.
+        // The product has 28 fraction bits; the shift leaves 16. The weight is at most slightly above 1/2.
         let weight = (h * i64::from(self.inverse)) >> 12;
         let share = if is_round { (1 << 16) - weight } else { weight };
         Sample {

@@ -1,9 +1,9 @@
 //! The prepass: one cone for each block of pixels, marched before the rays, gives the start of the block's rays.
 //!
 //! A cone is the ray through the middle of a block, with a radius that grows with the ray's parameter t. At the same
-//! depth along n, points of the block's rays differ from the cone's point by at most t·spread, in the norm of the
-//! field's distances. A cone therefore steps by the distance less t·spread, and all rays of its block are free up to
-//! its end. The end's depth replaces the near plane for the block.
+//! depth along the camera's forward axis n, points of the block's rays differ from the cone's point by at most t·spread,
+//! in the norm of the field's distances. A cone therefore steps by the distance less t·spread, and no ray of its block
+//! meets a surface before the end of the cone. The depth of this end replaces the near plane for the block.
 
 use glint_core::field::{FRACTION, cropped, magnitude};
 
@@ -31,7 +31,7 @@ pub struct Cone {
 }
 
 impl FieldSetup {
-    /// The cone of the block in the given column and row of blocks.
+    /// The cone of one block for one eye; `column` and `row` count blocks.
     pub fn cone(&self, cones: &Cones, eye: usize, column: u32, row: u32) -> Cone {
         let direction = [0, 1, 2].map(|i: usize| {
             let across = self.steps[0][i].wrapping_mul((column << cones.block) as i32);
@@ -53,20 +53,20 @@ impl FieldSetup {
         };
         Cone {
             ray,
-            // The factors have 18 and 9 fraction bits, the result 16. One is added for the truncation, and one for the
-            // rounding of directions to 17 bits.
+            // The factors have 18 and 9 fraction bits, the result 16. One unit is added for the truncation, and one unit
+            // for the rounding of directions to 17 bits.
             spread: ((cones.spread * inverse) >> 11) + 2,
         }
     }
 
-    /// Marches a cone while all rays of its block are free. Returns the parameter t at the end of the cone, and the
-    /// number of evaluations.
+    /// Marches a cone as long as no ray of its block can meet a surface. Returns the parameter t at the end of the cone,
+    /// and the number of evaluations.
     pub fn march_cone(&self, cone: &Cone) -> (u32, u32) {
         let Cone { ray, spread } = cone;
         let tuning = &self.tuning;
         // The coordinates of a point are truncated by less than one unit of 2^−12, so the point moves by less than one
-        // unit in the maximum norm and two in the Euclidean norm. Each step below is one unit shorter for this; round
-        // fields need this second one.
+        // unit in the maximum norm and less than two units in the Euclidean norm. Each step below is therefore one unit
+        // shorter, and in round fields, which use the Euclidean norm, `cut` makes it one more unit shorter.
         let cut = u32::from(self.is_round());
         let mut t = ray.start;
         let mut steps = 0;
@@ -91,20 +91,21 @@ impl FieldSetup {
         }
     }
 
-    /// Depth along n of the cone's point at t, in field units times 2^e (docs/formats.md,
-    /// "Cones"): u11.7, rounded down.
+    /// Depth along the camera's forward axis n of the cone's point at the parameter t, in field units times 2^e
+    /// (docs/formats.md, "Cones"): u11.7, rounded down.
     pub fn cleared(&self, cone: &Cone, t: u32) -> u32 {
         let depth = (u64::from(t) * u64::from(self.inverse(cone.ray.length))) >> 9;
         depth.min(FARTHEST.into()) as u32 >> (FRACTION - DEPTH_FRACTION)
     }
 }
 
-/// The rays of a picture, requested row by row. Without a prepass they are those of [`FieldSetup::ray`]; with a prepass
-/// each ray starts at the end of the cone of its block.
+/// The rays of a picture, requested row by row. Without a prepass they equal the rays of [`FieldSetup::ray`]; with a
+/// prepass each ray starts at the end of the cone of its block.
 pub struct Rays<'a> {
     setup: &'a FieldSetup,
     /// Depths at the ends of the cones in the current row of blocks, for each eye.
     cleared: [[u32; ROW]; 2],
+    /// The current row of blocks, for each eye; `None` before the first ray.
     row: [Option<u32>; 2],
     evaluations: u64,
 }

@@ -3,8 +3,8 @@
 use glint_core::camera::View;
 use glint_core::fixed::Q2_23;
 
-/// Directions of the pixels' rays with 51 fraction bits, scaled so that their component along n is 1. `narrow` converts
-/// them to the directions D of docs/formats.md ("Rays").
+/// Directions of the pixels' rays with 51 fraction bits, scaled so that their component along the camera's forward axis n
+/// is 1. `narrow` converts them to the directions D of docs/formats.md ("Rays").
 pub(super) struct Directions {
     /// Direction of the first pixel's ray, for each eye.
     pub first: [[i64; 3]; 2],
@@ -12,17 +12,17 @@ pub(super) struct Directions {
     pub across: [i64; 3],
     /// Change of the direction per pixel down.
     pub down: [i64; 3],
-    /// The exponent e, 0 to 3: D is 2^−e times the direction whose component along n is 1, and shorter than 1.
+    /// The exponent e, 0 to 3: D is 2^−e times the direction whose component along n is 1. This makes D shorter than 1.
     pub exponent: u32,
 }
 
 impl Directions {
-    /// Computes the directions for a view. `parallax`, 28 fraction bits, at most 1, is the share of u that the left
-    /// eye's direction gains and the right eye's loses. With `round` the directions D are shorter than 1 in the
-    /// Euclidean norm, otherwise in the maximum norm.
+    /// Computes the directions for a view. For two eyes, `parallax`·u is added to the directions of the left eye and
+    /// subtracted from those of the right eye; `parallax` is at most 1 and has 28 fraction bits. With `round` the
+    /// directions D are shorter than 1 in the Euclidean norm, otherwise in the maximum norm.
     pub fn new(view: &View, width: u32, height: u32, parallax: i64, round: bool) -> Self {
         let half_width = i64::from(view.half_width().to_bits());
-        // Twice the half width divided by the number of pixels: below 2^54 before the division.
+        // The width of the picture at distance 1 divided by the number of pixels; the dividend is below 2^54.
         let step = |row: [Q2_23; 3]| {
             row.map(|x| (2 * half_width * i64::from(x.to_bits())) / i64::from(width))
         };
@@ -45,7 +45,7 @@ impl Directions {
                 })
             })
         });
-        // The limits are slightly below 1, because the steps are rounded; `SQUARE` is the limit of a squared length.
+        // Limits of a length and of a squared length. They are slightly below 1, because the steps are rounded.
         const ONE: i64 = (1 << 51) - (1 << 36);
         const SQUARE: i64 = (1 << 50) - (1 << 40);
         let exponent = if round {

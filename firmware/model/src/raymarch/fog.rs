@@ -7,7 +7,7 @@ use super::palette::Palette;
 use super::setup::FieldSetup;
 
 impl FieldOptions {
-    /// The palette of a frame: with the fog of these options, and in grey for two eyes.
+    /// Returns the palette of a frame: the palette of these options with their fog, and in grey for two eyes.
     pub fn palette_for(&self, setup: &FieldSetup) -> Palette {
         let palette = if self.fog == U4_28::ZERO {
             self.palette
@@ -23,12 +23,11 @@ impl FieldOptions {
 
 impl Palette {
     /// Adds fog to the palette, of transmittance e^(−density·z) for a surface at depth z along n, in world units. An
-    /// entry of the table `fog` holds the share of hidden colour at the middle of its range of depths, within 0.51; the
-    /// last entry holds for all larger depths too.
+    /// entry of the table `fog` is the share of hidden colour at the middle of its range of depths, in 255ths and within
+    /// 0.51 of the exact value. The last entry is also used for all larger depths.
     #[must_use]
     pub fn with_fog(self, setup: &FieldSetup, density: U4_28) -> Self {
-        // Selects the smallest depth step for which 256 steps reach a transmittance of e^−8, or
-        // the largest available step.
+        // Selects the smallest depth step for which 256 steps reach a transmittance of e^−8, or the largest available step.
         const ENOUGH: u64 = 8 << 32;
         let unit = fog_of_unit(setup, density);
         let fog_shift = (0..7).find(|shift| unit << (shift + 8) >= ENOUGH);
@@ -49,7 +48,7 @@ impl Palette {
     }
 }
 
-/// 1 with 62 fraction bits.
+/// The number 1 with 62 fraction bits.
 const FULL: u64 = 1 << 62;
 
 /// The product of two numbers with 62 fraction bits.
@@ -57,15 +56,15 @@ fn product(a: u64, b: u64) -> u64 {
     ((u128::from(a) * u128::from(b)) >> 62) as u64
 }
 
-/// Fog's exponent density·z at the depth of one field unit times 2^e: 32 fraction bits, rounded down, below 2^35.
+/// The product density·z for the depth z of one field unit times 2^e: 32 fraction bits, rounded down, below 2^35.
 fn fog_of_unit(setup: &FieldSetup, density: U4_28) -> u64 {
     let units = setup.scale.to_bits().max(1) as u128;
     // The dividend has 28 + 36 fraction bits, the divisor and the result have 32.
     (((u128::from(density.to_bits()) << 36) / units) >> setup.exponent) as u64
 }
 
-/// e^−x, 62 fraction bits, for x with 32 fraction bits: (1 − x/2^20)^(2^20), below the exact value by a part of
-/// x²/2^21, and 0 for x ≥ 16.
+/// Computes e^−x with 62 fraction bits for an x with 32 fraction bits, as (1 − x/2^20)^(2^20). The result is below the
+/// exact value by a part of x²/2^21; for x ≥ 16 it is 0.
 fn faded(x: u64) -> u64 {
     if x >= 16 << 32 {
         return 0;

@@ -26,8 +26,8 @@ pub struct Lights {
 }
 
 impl Lights {
-    /// The lights of a scene on spheres of a material. Material `Normal` without lights gets daylight, because unshaded
-    /// spheres look flat.
+    /// Returns the lights of a scene for spheres of the given material. For the material `Normal` without any light they
+    /// are daylight, because unshaded spheres look flat.
     pub fn new(material: Material, lighting: &Lighting) -> Self {
         let day = Lighting::day();
         let lighting = match material {
@@ -51,14 +51,15 @@ impl Lights {
     }
 }
 
-/// Converts a share of 255 to a share of 256: 255 becomes 256, so that the whole is a power of two.
+/// Converts a share in 255ths to a share in 256ths: 255, the whole, becomes 256, which is a power of two.
 pub(super) const fn whole(part: u8) -> i32 {
     part as i32 + (part >> 7) as i32
 }
 
 impl Lights {
-    /// Colour of a lit sphere at a point relative to its centre: (ambient + Σ max(0, n·l)·colour) times the material,
-    /// where n is the point over the radius.
+    /// Returns the colour of the lit sphere `number` at the point `from_centre`, relative to its centre: (ambient +
+    /// Σ max(0, n·l)·colour) times the material. The normal n is `from_centre` divided by the radius, and l is the
+    /// direction to a light.
     pub(super) fn shine_on(&self, number: u8, sphere: &FixedSphere, from_centre: [i32; 3]) -> Rgb {
         let mut sum = self.ambient.map(|part| i32::from(part) << 8);
         for light in self.list.iter().take(self.count) {
@@ -75,13 +76,14 @@ impl Lights {
     }
 }
 
-/// The cosine between the normal and a direction, 8 fraction bits, rounded down; 0 if negative, at most 256.
+/// The cosine of the angle between the normal at the point `from_centre` of a sphere and a direction: 8 fraction bits,
+/// rounded down, 0 if negative, at most 256.
 fn cosine(sphere: &FixedSphere, from_centre: [i32; 3], direction: [i32; 3]) -> i32 {
     let product: i64 = core::iter::zip(from_centre, direction)
         .map(|(a, b)| i64::from(a) * i64::from(b))
         .sum();
-    // A direction has length 1 and 16 fraction bits, so this shift (floor(log2 radius)) leaves 17 bits of the product
-    // for a point on the sphere.
+    // A direction has length 1 and 16 fraction bits, so a shift by floor(log2 radius) leaves 17 bits of the product for
+    // a point on the sphere.
     let size = (product.max(0) >> sphere.shift).min((1 << 17) - 1);
     ((size * i64::from(sphere.inverse)) >> 25).min(256) as i32
 }

@@ -1,4 +1,4 @@
-//! Options of drawing a field: appearance, eyes, tuning, prepass.
+//! Options of drawing a field: colours, fog, one eye or two, precision of the march, and prepass.
 
 use glint_core::appearance::Appearance;
 use glint_core::field::{FRACTION, Field};
@@ -11,7 +11,7 @@ use super::palette::Palette;
 /// Upper limit of the parameter t of a point along its ray, u11.12.
 pub(super) const FARTHEST: u32 = (1 << (11 + FRACTION)) - 1;
 
-/// Precision of the march, which determines its error and its time.
+/// Precision of the march of rays, which determines the errors of a picture and the time to draw it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tuning {
     /// Threshold: a ray hits where the distance is below `threshold` + t·2^−`footprint`; field units, 12 fraction bits,
@@ -19,7 +19,8 @@ pub struct Tuning {
     pub threshold: u32,
     /// Footprint: the exponent that gives the share of t in the threshold, 7 to 15.
     pub footprint: u32,
-    /// Evaluations after which a ray ends undecided: 1 to 255, four times as many for scenes with spheres.
+    /// Step limit: number of evaluations after which a ray ends undecided, 1 to 255. In scenes with spheres the limit is
+    /// four times this number.
     pub cap: u32,
     /// Far limit of t, u11.12.
     pub far: u32,
@@ -29,10 +30,10 @@ pub struct Tuning {
 ///
 /// Errors of a picture lie at edges: a ray that passes an edge within the threshold hits there. The part of the
 /// threshold that grows with t is therefore much less than a pixel's width, 1/23 of a pixel even at 1280 × 720 and half
-/// width 0.9. One tuning serves all sizes, because the number of evaluations hardly depends on the size. Smaller
-/// thresholds need more evaluations: if either part of the threshold were smaller, the slowest view of the report would
-/// take more than 14.4 evaluations a ray. A smaller constant part with a larger growing part shows more wrong faces for
-/// the same number of evaluations.
+/// width 0.9. One tuning serves all sizes, because the number of evaluations per ray hardly depends on the size. Smaller
+/// thresholds need more evaluations: if the constant part or the growing part were smaller, the slowest view of the
+/// report would take more than 14.4 evaluations per ray. A smaller constant part with a larger growing part shows more
+/// wrong faces for the same number of evaluations.
 pub const DEFAULT_TUNING: Tuning = Tuning {
     threshold: 28,
     footprint: 14,

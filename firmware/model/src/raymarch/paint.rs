@@ -1,4 +1,4 @@
-//! Colour of a ray's end: a colour of the palette, darkened by the number of steps, faded by the fog.
+//! Colour of a ray's end: a colour of the palette, darkened by the ray's number of steps and faded by the fog.
 
 use glint_core::field::Surface;
 
@@ -46,7 +46,7 @@ fn surface_colour(
     mixed(face, round, surface.share())
 }
 
-/// Colour of a lit sphere; `None` if the hit is not on a sphere.
+/// Colour of the lit sphere that was hit; `None` if the ray hit no sphere or fillet.
 fn lit(setup: &FieldSetup, palette: &Palette, ray: &Ray, outcome: &RayResult) -> Option<[u8; 3]> {
     let State::Hit(surface) = outcome.state else {
         return None;
@@ -65,7 +65,8 @@ fn mixed(from: [u8; 3], to: [u8; 3], part: u8) -> [u8; 3] {
 }
 
 impl FieldSetup {
-    /// The normal at a hit on a sphere, with about the radius as length: field units, 12 fraction bits.
+    /// The normal at a hit on a sphere, in field units with 12 fraction bits; it is about as long as the radius. `None`
+    /// if the ray hit no sphere or fillet.
     pub fn normal(&self, ray: &Ray, outcome: &RayResult) -> Option<[i32; 3]> {
         let State::Hit(surface) = outcome.state else {
             return None;

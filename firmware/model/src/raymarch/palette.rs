@@ -1,4 +1,4 @@
-//! The colours of a frame.
+//! The palette: the colours of a frame with a distance field.
 
 use glint_core::field::Field;
 use glint_core::light::{Background, Lighting, Material};
@@ -23,7 +23,7 @@ pub struct Palette {
     /// Share of a surface's colour that fog hides; 255 hides all of it. The index is the depth in steps of
     /// 2^`fog_shift` field units times 2^e (docs/formats.md, "Ends").
     pub fog: [u8; 256],
-    /// Exponent of the depth step of `fog`, 0 to 7.
+    /// Exponent of the depth step of the table `fog`, 0 to 7.
     pub fog_shift: u32,
     /// Share of light left at a surface; 255 is all of it. The index is the number of steps of the ray: rays take many
     /// steps in narrow places.

@@ -35,14 +35,14 @@ impl Cones {
         Self {
             block,
             offset: [0, 1, 2].map(|i: usize| half(across[i] + down[i]) as i32),
-            // Adds 2, because D is truncated to 24 bits for the middle and for a pixel, and the half
-            // sums are truncated too.
+            // Adds 2, because D is truncated to 24 bits for the middle and for a pixel, and the results of `half` are
+            // truncated too.
             spread: (widest[0].max(widest[1]) >> 12) as u32 + 2,
         }
     }
 
-    /// Amount by which the length index of a cone is larger than that of its middle ray, so that every direction in the
-    /// block has length 1 or less.
+    /// Amount by which the length index of a cone is larger than the length index of the ray through its middle, so that
+    /// every direction in the block has length 1 or less.
     pub(super) const fn margin(&self, round: bool) -> u32 {
         if round {
             // With s for the spread, (|D| + s)² − |D|² is at most 2·s + s², and s is at most 2^−4.
@@ -53,7 +53,8 @@ impl Cones {
     }
 }
 
-/// Block size of a picture as a power of two: the smallest one whose cones for all eyes fit the table.
+/// Exponent of the block size of a picture, 2 to 4: blocks have 2^exponent pixels each way, and this is the smallest size
+/// for which the cones of all eyes fit the table.
 pub(super) const fn block_for((width, height): (u32, u32), eyes: u32) -> u32 {
     let mut block = 2;
     while block < 4 && eyes * (width >> block) * (height >> block) > CONES {

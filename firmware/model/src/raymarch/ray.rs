@@ -1,4 +1,4 @@
-//! Rays: start, march and end.
+//! Rays through a distance field: their start, their march and their end.
 
 use glint_core::field::{FRACTION, Surface, cropped, magnitude};
 
@@ -6,7 +6,7 @@ use super::options::FARTHEST;
 use super::setup::{Eye, FieldSetup};
 
 /// Lower bounds of 1/m for numbers m in (0, 1). The index i is the first ten fraction bits of m. The entry is
-/// 2^10/(i + 1), truncated so that no product with m rounds to 1: u8.9, 17 bits.
+/// 2^10/(i + 1), truncated so that its product with m is always less than 1 after rounding: u8.9, 17 bits.
 const INVERSE: [u32; 1024] = inverses();
 
 const fn inverses() -> [u32; 1024] {
@@ -117,8 +117,8 @@ impl FieldSetup {
         }
     }
 
-    /// Length index of an unscaled direction D, whose components have the magnitudes `parts` with 24 fraction bits: the
-    /// first ten fraction bits of the largest component, or of |D|² rounded up for scenes with spheres.
+    /// Length index of an unscaled direction D whose components have the magnitudes `parts`, with 24 fraction bits: the
+    /// first ten fraction bits of the largest magnitude, or of |D|² rounded up for scenes with spheres.
     pub(super) fn length(&self, parts: [u32; 3]) -> u32 {
         if self.is_round() {
             // Squares 17 bits of each component. The truncated bits change the sum by less than 2^−15, which is added.
@@ -157,11 +157,11 @@ impl FieldSetup {
         ((u64::from(depth) * u64::from(part)) >> 10) as u32
     }
 
-    /// Parameter t at which a ray enters the bounding box, or a lower bound of it: never inside the box, and before it
-    /// by at most about 2^−17 of the way.
+    /// Parameter t at which a ray enters the bounding box, or slightly less, by at most about a part of 2^−17. The point
+    /// at t is therefore never inside the box.
     ///
-    /// For index i the table's reciprocal is too small by a part of up to 1/i, so the remaining way to the box is
-    /// divided a second time.
+    /// Along each axis, t is the distance to the box divided by the component of the direction. The reciprocal from the
+    /// table is too small by a part of up to 1/i for index i, so the distance that remains is divided a second time.
     fn entry(&self, eye: usize, direction: &[i32; 3]) -> u64 {
         let Eye {
             origin, outside, ..
@@ -228,13 +228,14 @@ impl FieldSetup {
         }
     }
 
-    /// Number of times that the threshold has doubled after `steps` evaluations. A ray along a face takes short steps,
-    /// so its threshold grows. A ray beside a sphere also takes many steps, but passes, so its threshold stays.
+    /// Number of times that the threshold has doubled after `steps` evaluations. A ray along a face takes many short
+    /// steps, so its threshold grows. A ray close to a sphere also takes many short steps, but then passes the sphere,
+    /// so in scenes with spheres the threshold does not grow.
     pub(super) fn patience(&self, steps: u32) -> u32 {
         if self.is_round() { 0 } else { steps >> 6 }
     }
 
-    /// Step limit of a ray; larger for scenes with spheres, beside which steps are short.
+    /// Step limit of a ray; larger for scenes with spheres, because rays take many short steps close to a sphere.
     pub(super) fn cap(&self) -> u32 {
         self.tuning.cap << if self.is_round() { 2 } else { 0 }
     }
@@ -260,8 +261,8 @@ impl FieldSetup {
     }
 }
 
-/// Returns gap and slope of a hit on a face perpendicular to an axis: the distance to the plane of the face, u0.12, and
-/// the slope of the ray against the face.
+/// Returns gap and slope of a hit on a face perpendicular to an axis (see the fields of these names in `RayResult`).
+/// `distance` is the distance at the last point, and `positive` tells whether the face's normal points along the axis.
 fn approach(ray: &Ray, distance: i32, axis: u8, positive: bool) -> (u32, u32) {
     let part = ray.direction[usize::from(axis) % 3];
     let comes = (part < 0) == positive;
@@ -273,9 +274,9 @@ fn approach(ray: &Ray, distance: i32, axis: u8, positive: bool) -> (u32, u32) {
     (gap(distance), slope)
 }
 
-/// As [`approach`], for a face perpendicular to a diagonal. Gap and slope are both three quarters of their
-/// exact value, so their quotient is right. The exact slope is a third of the sum of three parts; a quarter of
-/// the sum needs no division.
+/// Returns gap and slope as [`approach`] does, for a face perpendicular to a diagonal. Gap and slope are three quarters
+/// of their exact values, so their quotient is right. The exact slope is a third of the sum of the direction's three
+/// components towards the face; a quarter of the sum needs no division.
 fn approach_diagonal(ray: &Ray, distance: i32, signs: u8) -> (u32, u32) {
     let towards = [0, 1, 2].map(|i: usize| {
         let part = ray.direction[i] >> 7;

@@ -1,4 +1,4 @@
-//! Drawing of a whole frame.
+//! Drawing of all pixels of a frame with a distance field.
 
 use glint_core::stereo::Tint;
 
@@ -16,7 +16,7 @@ use crate::triangle::reciprocal::Reciprocal;
 pub struct FieldStats {
     /// Rays: one per pixel and eye.
     pub rays: u32,
-    /// Evaluations of the field by rays and cones: one per sphere in each step.
+    /// Evaluations of the field by rays and cones. A step in a scene with several spheres counts one for each sphere.
     pub evaluations: u64,
     /// Rays that hit a surface.
     pub hits: u32,
@@ -27,7 +27,7 @@ pub struct FieldStats {
 }
 
 impl FieldStats {
-    /// Adds a ray with its result to the counts.
+    /// Adds a ray with the result `outcome` to the counts.
     pub fn count(&mut self, setup: &FieldSetup, outcome: &RayResult) {
         self.rays += 1;
         self.evaluations += u64::from(outcome.steps * setup.passes());
@@ -39,8 +39,8 @@ impl FieldStats {
     }
 }
 
-/// Draws a field into the target. A pixel changes if the field's depth code is at least the target's. With two eyes
-/// every pixel changes.
+/// Draws a field into `target`. A pixel of the target changes if the field's depth code is at least the code stored
+/// there. With two eyes every pixel changes.
 ///
 /// With two eyes `palette` must be grey, and depths are the left eye's. `show` receives the column, row, ray and result
 /// of every ray. The function is not inlined, so that its loop and the functions that it calls do not evict each other
@@ -95,7 +95,8 @@ impl FieldSetup {
     /// The depth code of a ray's point at the parameter t.
     pub fn depth_code(&self, ray: &Ray, t: u32) -> u32 {
         let Reciprocal { y, lead } = Reciprocal::of(self.depth_of(ray, t));
-        // The reciprocal has 24 + `lead` fraction bits, of which the 21 fraction bits of the depth are subtracted.
+        // The reciprocal of the depth as an integer has 24 + `lead` fraction bits. The depth has 21 fraction bits, so 21
+        // are subtracted.
         let shift = lead as i32 + 3 - self.depth.exponent;
         const MOST: u32 = (1 << 18) - 1;
         if shift < 22 {
@@ -107,7 +108,8 @@ impl FieldSetup {
     }
 }
 
-/// Converts three channels of eight bits to the nearest RGB565 colour, except within half a step of white.
+/// Converts three channels of eight bits to RGB565. Each channel is rounded to nearest; values that would round beyond
+/// the largest number of the channel give this number.
 pub fn rgb565([r, g, b]: [u8; 3]) -> u16 {
     let narrow = |x: u8, bits: u32| {
         ((u32::from(x) + (0x80 >> bits)) >> (8 - bits)).min((1 << bits) - 1) as u16

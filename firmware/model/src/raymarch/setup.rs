@@ -36,9 +36,9 @@ pub struct FieldSetup {
     pub width: u32,
     /// Height of the picture in pixels.
     pub height: u32,
-    /// The solid; for a union, its flat member.
+    /// The solid of the field; for a union, its flat member.
     pub solid: Solid,
-    /// Spheres in union with a flat solid.
+    /// Spheres in union with `solid`; `None` if the field is not a union.
     pub beside: Option<Beside>,
     /// Field units per world unit: 2 to 256.
     pub scale: Q32_32,
@@ -66,7 +66,7 @@ pub struct FieldSetup {
 }
 
 impl FieldSetup {
-    /// The constants for a field, a camera and one of the [`SIZES`].
+    /// Computes the constants for a field, a camera and one of the [`SIZES`].
     ///
     /// # Errors
     /// [`RenderError::Size`] for another size.
@@ -99,7 +99,7 @@ impl FieldSetup {
                 ..
             }) => (
                 half_separation,
-                // The quotient is at most 1.
+                // The quotient of half separation and depth of zero parallax is at most 1.
                 (half_separation.to_bits() << 24) / (zero_parallax.to_bits() >> 4).max(1),
             ),
             None => (Q32_32::ZERO, 0),
@@ -108,7 +108,8 @@ impl FieldSetup {
         let rays = Directions::new(view, width, height, parallax, round);
         let eye = |sign: i64, first: [i64; 3]| {
             let origin = [0, 1, 2].map(|i: usize| {
-                // The camera's eye is within 32 of the origin, and the shift of an eye to its side is at most 1.
+                // The eye of the camera is within 32 world units of the origin, and each of two eyes is at most 1 world
+                // unit to the side of it.
                 let aside = (shift.to_bits() >> 8) * i64::from(view.u()[i].to_bits());
                 let place = Q32_32::from_bits(view.eye()[i].to_bits() + sign * (aside >> 15));
                 let place = units(place, scale) as i32;
@@ -129,8 +130,8 @@ impl FieldSetup {
 
         let near = i64::from(view.near().to_bits()) << 4;
         let nearest = nearest(view, extent);
-        // The near plane is at most 2 world units away, the corner of the box at most 64. One rounding step is
-        // subtracted from the corner's depth below.
+        // The near plane is at most 2 world units away, the corner of the box at most 64. The depth of the corner is
+        // reduced by one unit below, because it is rounded.
         let [plane, corner] = [near, nearest >> 5].map(|x| units(Q32_32::from_bits(x), scale));
         let near_units = plane.max(corner - 1) << rays.exponent;
         let world_depth = DepthScale::from_nearest(nearest.max(near << 5));
@@ -179,13 +180,13 @@ impl FieldSetup {
         self.spheres().is_some()
     }
 
-    /// Passes per evaluation of a point: one for each sphere, at least one.
+    /// Number of evaluations that a step counts: one for each sphere of the scene, and one without spheres.
     pub fn passes(&self) -> u32 {
         self.spheres().map_or(1, |spheres| spheres.count as u32)
     }
 
-    /// Evaluates the field at a point with coordinates in s10.12: the distance, and the nearest surface; at equal
-    /// distances the face.
+    /// Evaluates the field at a point with coordinates in s10.12. Returns the distance and the nearest surface; at equal
+    /// distances of a face and a sphere, the face.
     pub fn sample(&self, point: [i32; 3]) -> Sample {
         let flat = self.solid.sample(point);
         match &self.beside {

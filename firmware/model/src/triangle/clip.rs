@@ -1,7 +1,8 @@
 //! The clipper, for triangles that cross the near plane or leave the guard band.
 //!
-//! Clipping works on camera coordinates, before the division. An intersection is the rounded exact value and does not
-//! depend on the direction of the edge, so both triangles at an edge get the same vertex.
+//! Clipping works on camera coordinates, before the perspective division. The intersection of an edge with a plane is the
+//! exact point after rounding. It does not depend on the direction of the edge, so the two triangles at an edge get the
+//! same vertex.
 
 use crate::triangle::mesh_setup::MeshSetup;
 use crate::triangle::vertex::CameraVertex;
@@ -11,7 +12,7 @@ use crate::triangle::vertex::CameraVertex;
 /// rounding may make a polygon concave.)
 const MAX_VERTICES: usize = 19;
 
-/// A clipped triangle.
+/// The polygon that remains of a triangle after clipping.
 #[derive(Clone, Copy, Debug)]
 pub struct Polygon {
     vertices: [CameraVertex; MAX_VERTICES],
@@ -71,7 +72,8 @@ impl Plane {
         }
     }
 
-    /// Writes the part of `polygon` inside the plane to `left`. Returns false without writing if the whole polygon is inside.
+    /// Writes the part of `polygon` that is inside the plane to `left`. Returns false without writing if the whole
+    /// polygon is inside.
     fn cut(self, frame: &MeshSetup, polygon: &Polygon, left: &mut Polygon) -> bool {
         let vertices = polygon.vertices();
         let Some(mut from) = vertices.last() else {
@@ -130,16 +132,16 @@ impl Plane {
     }
 }
 
-/// Converts X or Y of a vertex to half pixels, with the fraction bits of Z. The result is below 2^55.7; the terms of Z
-/// that are added to it are at most 5375·|Z|, below 2^53.1.
+/// Converts the camera coordinate X or Y of a vertex to half pixels at distance 1, with the fraction bits of Z. The result
+/// is below 2^55.7. `Plane::distance` adds multiples of Z to it, at most 5375·|Z|, which is below 2^53.1.
 fn half_pixels(frame: &MeshSetup, x: i64) -> i64 {
     x << (24 - frame.scale_shift)
 }
 
-/// Whether a triangle is wholly off one side of the picture. The plane of a side contains the eye, so the test also
-/// holds for vertices behind the eye.
+/// Whether a triangle lies wholly beyond one side of the picture. The plane through this side and the eye separates it
+/// from the picture, so the test also holds for vertices behind the eye.
 ///
-/// This fast test replaces clipping, which would leave no covered pixel.
+/// Such a triangle is left out by this fast test instead of clipping, after which it would cover no pixel.
 pub fn off_picture(frame: &MeshSetup, triangle: &[CameraVertex; 3]) -> bool {
     let off = |x: fn(&CameraVertex) -> i64, size: u32| {
         let places = triangle
@@ -162,7 +164,7 @@ pub fn clip(frame: &MeshSetup, triangle: [CameraVertex; 3]) -> Polygon {
     polygon
 }
 
-/// x·part/whole to nearest, ties up, for part ≤ whole < 2^61 and whole > 0.
+/// Computes x·part/whole to nearest, ties up, for part ≤ whole < 2^61 and whole > 0.
 ///
 /// Long division: the product may have 100 bits, but the quotient is at most x.
 fn portion(x: i64, part: u64, whole: u64) -> i64 {
@@ -198,7 +200,7 @@ mod tests {
             state >> (64 - bits)
         };
         for round in 0..200_000u32 {
-            // Small numbers have many ties.
+            // Half of the rounds use small numbers, for which many quotients are ties.
             let (wide, long) = if round % 2 == 0 { (4, 5) } else { (61, 44) };
             let whole = random(wide) + 1;
             let part = random(wide) % (whole + 1);

@@ -9,16 +9,16 @@ use crate::triangle::setup::{Plane, Setup};
 /// Columns of a group: the pixels that the raster pass draws in one clock.
 pub const GROUP: i32 = machine::GROUP as i32;
 
-/// A triangle after its setup, packed into words. Gateware without smooth shading reads only the first words; the words
-/// of the light follow them.
+/// A triangle after its setup, packed into words of 32 bits. The words for smooth shading, with the planes of light, come
+/// last: gateware without smooth shading reads only the words before them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Descriptor {
     words: [u32; SMOOTH_WORDS],
 }
 
-/// Words of 32 bits of a descriptor for gateware without smooth shading.
+/// Number of 32-bit words of a descriptor for gateware without smooth shading.
 const FLAT_WORDS: usize = machine::FLAT_DESCRIPTOR_BYTES as usize / 4;
-/// Words of 32 bits of a descriptor for gateware with smooth shading.
+/// Number of 32-bit words of a descriptor for gateware with smooth shading.
 const SMOOTH_WORDS: usize = machine::SMOOTH_DESCRIPTOR_BYTES as usize / 4;
 
 /// Number of 32-bit words of a descriptor, a multiple of four, for gateware whose best shading is `capability`.
@@ -58,7 +58,7 @@ impl Descriptor {
         Self { words: bits.words }
     }
 
-    /// The words for gateware whose best shading is `capability`, the lowest bits first.
+    /// The words that gateware reads whose best shading is `capability`, the word with the lowest bits first.
     pub fn words(&self, capability: Shading) -> &[u32] {
         self.words.get(..words(capability)).unwrap_or_default()
     }
@@ -72,7 +72,7 @@ struct Packer {
 }
 
 impl Packer {
-    /// Appends the lowest `width` bits of a value that fits.
+    /// Appends the lowest `width` bits of `value`, which must fit this width.
     fn put(&mut self, value: i64, width: usize) {
         for i in 0..width {
             let at = self.used + i;
@@ -83,7 +83,7 @@ impl Packer {
         self.used += width;
     }
 
-    /// Appends a plane, with its start moved `back` columns to the left.
+    /// Appends a plane whose start is moved `back` columns to the left.
     fn put_plane(&mut self, plane: &Plane, back: i32) {
         let start = plane
             .start
@@ -94,14 +94,14 @@ impl Packer {
     }
 }
 
-/// The start of a band's list, in words of 16 bytes from the start of its set of lists. A list has room for
-/// 4 << `shift` entries. Between two lists is a gap as long as a row of a memory bank, so that neighbouring lists are
+/// Start of a band's list, in words of 16 bytes from the start of the set of lists. A list has room for 4 << `shift`
+/// entries. The gap between two lists is as long as a row of a memory bank, so that the lists of neighbouring bands are
 /// in different banks.
 pub const fn list_word(band: u32, shift: u32) -> u32 {
     LIST_TABLE_WORDS + (band << shift) + LIST_GAP_WORDS * band
 }
 
-/// Lines of a band of a picture of this width, one of [`SIZES`](crate::SIZES).
+/// Number of lines of a band in a picture of this width, which is one of [`SIZES`](crate::SIZES).
 pub const fn band_rows(width: u32) -> u32 {
     size(width).band_lines()
 }
@@ -117,10 +117,10 @@ const fn size(width: u32) -> Size {
     }
 }
 
-/// Words of 32 bits of the table of list lengths, which is at the start of a set of lists.
+/// Number of 32-bit words of the table of list lengths, which is at the start of a set of lists.
 pub const LENGTHS: usize = 4 * LIST_TABLE_WORDS as usize;
 
-/// Words of 32 bits of all lists of a set, with the table of their lengths: 4 MiB.
+/// Number of 32-bit words of a set of lists, including the table of their lengths: 4 MiB.
 pub const LIST_SET_WORDS: usize = 1 << 20;
 
 /// The `shift` of [`list_word`] for a picture of this width: the largest value for which the lists of all bands fit a set.
@@ -146,8 +146,8 @@ pub struct ListWriter<'a> {
 pub struct Full;
 
 impl<'a> ListWriter<'a> {
-    /// An empty set in two regions of memory, for a picture of this width and gateware whose
-    /// best shading is `capability`.
+    /// Starts an empty set in two regions of memory, for a picture of this width and gateware whose best shading is
+    /// `capability`.
     pub const fn new(
         descriptors: &'a mut [u32],
         lists: &'a mut [u32],

@@ -7,9 +7,9 @@ use crate::triangle::primitive::{Options, Placed, clip_fan, lit_corners};
 use crate::triangle::setup::Setup;
 
 /// Clips the gateware's exceptions, given by their `numbers` in the mesh. Emits setup and colour of every part inside
-/// the view volume, and returns the number of triangles with such a part.
+/// the view volume, and returns the number of exceptions that have such a part.
 ///
-/// Ascending numbers, the order of the gateware, are processed fastest. Numbers beyond the mesh are ignored.
+/// Numbers in ascending order, as the gateware writes them, are processed fastest. Numbers beyond the mesh are ignored.
 pub fn clip_exceptions(
     mesh: &Mesh,
     frame: &MeshSetup,

@@ -10,8 +10,8 @@ pub enum Facing {
 }
 
 impl Facing {
-    /// Puts an attribute of the three vertices into clockwise order on the screen: swaps those of vertices 1 and 2
-    /// of a front face.
+    /// Puts an attribute of the three vertices into clockwise order on the screen: for a front face, swaps the attributes
+    /// of vertices 1 and 2.
     pub fn order<T>(self, [a, b, c]: [T; 3]) -> [T; 3] {
         match self {
             Self::Front => [a, c, b],

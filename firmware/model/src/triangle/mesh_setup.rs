@@ -17,23 +17,23 @@ pub struct MeshSetup {
     pub height: u32,
     /// Scale shift f: the number of fraction bits of `u` and `v`, 10 to 18.
     pub scale_shift: u32,
-    /// The right axis in pixels at distance 1, f fraction bits (f is `scale_shift`), 25 bits.
+    /// The camera's right axis, scaled to pixels at distance 1: f fraction bits (f is `scale_shift`), 25 bits.
     pub u: [i32; 3],
-    /// The down axis in pixels at distance 1, f fraction bits (f is `scale_shift`), 25 bits.
+    /// The camera's down axis, scaled to pixels at distance 1: f fraction bits (f is `scale_shift`), 25 bits.
     pub v: [i32; 3],
-    /// The forward axis, s2.23.
+    /// The camera's forward axis, s2.23.
     pub n: [i32; 3],
     /// The translation for the eye C: −C·u and −C·v with 14 + f fraction bits, −C·n with 37; each s44.
     pub translation: [i64; 3],
-    /// The near plane's distance, 37 fraction bits.
+    /// Distance of the near plane from the eye, 37 fraction bits.
     pub near: i64,
     /// The scale K of depth codes.
     pub depth: DepthScale,
 }
 
 impl MeshSetup {
-    /// The constants for a camera within 8 of the origin, one of the [`SIZES`], and a mesh with the given
-    /// radius (14 fraction bits).
+    /// Computes the constants for a camera whose eye is within 8 world units of the origin, one of the [`SIZES`], and a
+    /// mesh with the given `radius` (14 fraction bits).
     ///
     /// # Errors
     /// [`RenderError::Size`] or [`RenderError::Eye`].
@@ -109,8 +109,8 @@ impl Scale {
     }
 }
 
-/// Divides by a divisor above 0 and rounds down. There is only one unsigned division, because a 32-bit processor
-/// divides 64-bit numbers in software.
+/// Divides by a divisor above 0 and rounds down. The code has only one unsigned division, because a 32-bit processor
+/// divides 64-bit numbers slowly, in software.
 const fn floor(dividend: i64, divisor: i64) -> i64 {
     let divisor = divisor.unsigned_abs();
     if dividend < 0 {

@@ -1,4 +1,4 @@
-//! One triangle between vertex stage and walker: facing, bounds, light, and the fan of a clipped triangle.
+//! The steps of one triangle between vertex stage and walker: facing, bounds, light, and the fan of a clipped triangle.
 
 use glint_core::colour::Shading;
 use glint_core::mesh::{Chunk, Rgb565, Triangle};
@@ -10,7 +10,7 @@ use crate::triangle::setup::{Bounds, Oriented, Setup};
 use crate::triangle::shade::{Light, Lit, intensity, lit};
 use crate::triangle::vertex::{CameraVertex, ScreenVertex, snap, transform};
 
-/// How a mesh is drawn.
+/// Options of drawing a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
     /// Whether back faces are left out.
@@ -94,11 +94,11 @@ pub fn vertex_light(frame: &MeshSetup, indices: [u16; 3], chunk: &Chunk) -> [Lig
 pub struct Corner {
     /// Position on the screen.
     pub place: ScreenVertex,
-    /// Light; black under flat shading.
+    /// Light of the vertex under smooth shading; black under flat shading.
     pub light: Light,
 }
 
-/// The light of three vertices of a clipped triangle under smooth shading.
+/// The light of three vertices of a clipped triangle; `None` under flat shading.
 pub fn lit_corners(shading: Shading, corners: [&Corner; 3]) -> Option<[Light; 3]> {
     (shading == Shading::Smooth).then(|| corners.map(|corner| corner.light))
 }

@@ -1,5 +1,5 @@
-//! The division of a pixel under smooth shading: the colour from the planes of light and depth (docs/formats.md,
-//! "Smooth shading").
+//! Smooth shading: the division of light by depth that gives the colour of each pixel (docs/formats.md, "Smooth
+//! shading").
 
 use glint_core::colour::Rgb565;
 
@@ -30,7 +30,8 @@ pub fn colour(light: [u32; 3], depth: u32) -> Rgb565 {
     let inverse = INVERSE[((depth << shift) >> 21 & 0x3FF) as usize];
     let mut colour = 0;
     for (value, bits) in core::iter::zip(light, CHANNEL_BITS) {
-        // Light is at most 63/64 of the depth, so six ones at the top are a light of 0 that was rounded below 0.
+        // Light is at most 63/64 of the depth, so an accumulator whose highest six bits are ones is a light of 0 that was
+        // rounded to slightly below 0.
         let product = if value >> 26 == 0x3F {
             0
         } else {

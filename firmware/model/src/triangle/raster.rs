@@ -1,8 +1,9 @@
 //! The walker: finds the pixels of a triangle row by row, tests their depth and writes them.
 //!
-//! A triangle is convex, so each row has one span. The span starts where all edges of the left side pass and ends where an
-//! edge of the right side fails. From row to row the walker follows both ends along their edges, pixel by pixel. Horizontal edges
-//! need no test, because the bounds contain only rows at or below a top edge and above a bottom edge.
+//! A triangle is convex, so each row has one span of covered pixels. The span starts where all edges of the left side pass
+//! and ends where an edge of the right side fails. From row to row the walker moves both ends of the span along the edges,
+//! pixel by pixel. Horizontal edges need no test, because the bounds contain only rows at or below a top edge and above a
+//! bottom edge.
 
 use core::ops::{Add, BitOr, Sub};
 
@@ -12,7 +13,7 @@ use crate::frame_buffer::FrameBuffer;
 use crate::triangle::quotient;
 use crate::triangle::setup::{Edge, Plane, Setup};
 
-/// Counts of one triangle.
+/// Counts of the pixels of one triangle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Coverage {
     /// Pixels tested: covered pixels, and pixels just outside the ends of a span.
@@ -46,13 +47,13 @@ fn draw_with(setup: &Setup, brush: impl Brush, target: &mut FrameBuffer) -> Cove
     }
 }
 
-/// The source of pixel colours, moved over the triangle with the depth.
+/// The source of pixel colours. The walker moves it over the triangle together with the depth.
 trait Brush {
     /// Moves to the column that is `offset` columns right of the start column, in the same row.
     fn go_to(&mut self, offset: u32);
     /// Moves one pixel to the right.
     fn go_right(&mut self);
-    /// Moves to the next row, to an unspecified column.
+    /// Moves to the next row. The column is unspecified until the next `go_to`.
     fn go_down(&mut self);
     /// The colour of the pixel; `depth` is its depth accumulator plus half a code.
     fn colour(&self, depth: u32) -> Rgb565;
@@ -68,7 +69,7 @@ impl Brush for Rgb565 {
     }
 }
 
-/// A plane, with its value at the current pixel (`value`) and at the start column of the current row (`row`).
+/// A plane of light, with its value at the current pixel (`value`) and at the start column of the current row (`row`).
 #[derive(Clone, Copy)]
 struct Accumulation {
     plane: Plane,
@@ -171,8 +172,8 @@ fn walk<A: Accumulator>(
     coverage
 }
 
-/// Fills the columns `from` to `to` of a row where the depth test passes. `depth` is the accumulator plus half a code, so that
-/// truncation rounds to nearest. Returns the number of pixels written.
+/// Writes the pixels in columns `from` to `to` of a row where the depth test passes. `depth` is the depth accumulator plus
+/// half a code, so that truncation rounds to nearest. Returns the number of pixels written.
 fn fill(
     target: &mut FrameBuffer,
     row: i32,
@@ -201,19 +202,23 @@ fn fill(
     drawn
 }
 
-/// One end of a row's span: the outermost column that passes the one or two edges of its side.
+/// One end of a row's span: the outermost column in which the edges on this side of the triangle, one or two, pass.
 ///
-/// The edge functions E' of these edges decrease outwards by |dy| per pixel. On a side with one edge the second E' is 0
-/// everywhere, which passes.
+/// The edge functions E' of these edges decrease by |dy| per pixel in the direction away from the triangle. On a side with
+/// one edge the second E' is 0 everywhere, which passes.
 struct End<A> {
+    /// E' of the edges at `column` in the current row.
     value: [A; 2],
+    /// Increment of E' for one column towards the triangle, |dy|.
     inwards: [A; 2],
+    /// Increment of E' for one row down.
     down: [A; 2],
     column: i32,
+    /// Step of the column away from the triangle: −1 on the left side, 1 on the right side.
     outwards: i32,
     /// Outermost column of the bounds.
     outermost: i32,
-    /// The first column beyond the bounds on the opposite side: if the end is there, no column of the row passes.
+    /// The first column beyond the bounds on the opposite side. If the end reaches it, no column of the row passes.
     nowhere: i32,
 }
 
@@ -250,7 +255,7 @@ impl<A: Accumulator> End<A> {
         end
     }
 
-    /// Moves to the end of this row's span; returns the number of pixels tested outside of the span.
+    /// Moves `column` to the end of the span in the current row. Returns the number of pixels tested outside of the span.
     fn settle(&mut self) -> u32 {
         let mut missed = 0;
         if passes(self.value) {

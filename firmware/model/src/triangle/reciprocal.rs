@@ -19,8 +19,8 @@ const fn seeds() -> [u16; 256] {
 
 /// Approximates 2^47/m for a mantissa m in [2^23, 2^24); the result is in [2^23, 2^24) too.
 ///
-/// The error is at most one unit: 2^47/2^23 saturates to 2^24 − 1, all other results are within 0.51. The result never
-/// increases with m. An m outside the range gives a meaningless number.
+/// The error is at most one unit: the result for m = 2^23 saturates to 2^24 − 1, and all other results are within 0.51 of
+/// the exact quotient. The result never increases with m. An m outside the range gives a meaningless number.
 pub const fn recip(m: u32) -> u32 {
     let y0 = SEED[(m >> 15 & 0xFF) as usize] as u32;
     let y1 = (y0 << 7).wrapping_add_signed((y0 as i32).wrapping_mul(residue(m, y0)) >> 18);
@@ -30,15 +30,15 @@ pub const fn recip(m: u32) -> u32 {
     if y < 1 << 24 { y } else { (1 << 24) - 1 }
 }
 
-/// The residue of an estimate y of the reciprocal: a power of two less m·y, over 2^8, rounded down, s18. The power is
-/// 2^33 for the seed and 2^40 for the result of the first step.
+/// The residue of an estimate y of the reciprocal: (P − m·y)/2^8, rounded down, s18. P is 2^33 if y is the seed, and 2^40
+/// if y is the result of the first step.
 ///
-/// The difference is smaller than 2^25, and both powers are 0 modulo 2^32: the low word of the product is enough.
+/// The difference is smaller than 2^25, and P is 0 modulo 2^32, so the low word of the product is enough.
 const fn residue(m: u32, y: u32) -> i32 {
     m.wrapping_mul(y).wrapping_neg() as i32 >> 8
 }
 
-/// 1/v of an integer v > 0 as `y`·2^−(24 + `lead`).
+/// The reciprocal 1/v of an integer v > 0, as `y`·2^−(24 + `lead`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reciprocal {
     /// The mantissa, u24 in [2^23, 2^24).

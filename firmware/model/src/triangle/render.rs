@@ -13,13 +13,13 @@ use crate::triangle::raster;
 use crate::triangle::shade::{Light, Lit};
 use crate::triangle::vertex::{Projected, ScreenVertex, project, transform};
 
-/// Counts of a mesh's frame.
+/// Counts of the triangles and pixels of a mesh in one frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Stats {
     /// Triangles in the mesh: `culled` + `drawn`.
     pub triangles_in: u32,
-    /// Triangles that did not reach the walker: back faces, no area, behind the near plane, off the picture, or no pixel's
-    /// centre in the bounds.
+    /// Triangles that did not reach the walker: back faces, triangles without area, behind the near plane or off the
+    /// picture, and triangles without a pixel centre in their bounds.
     pub culled: u32,
     /// Triangles that went through the clipper, with or without a visible part.
     pub clipped: u32,
@@ -99,7 +99,8 @@ pub fn trace_frame(
     draw_frame(mesh, frame, target, scratch, options, &mut show)
 }
 
-/// [`trace_frame`] without the type parameter, compiled once with the optimisation of this crate.
+/// Does the work of [`trace_frame`] without its type parameter, so that it is compiled once, with the optimisation of
+/// this crate.
 #[inline(never)]
 fn draw_frame(
     mesh: &Mesh,
@@ -144,11 +145,11 @@ fn draw_frame(
 
 /// The path of a triangle after the vertex stage.
 enum Path<'a> {
-    /// Not drawn: wholly off one side of the picture, or behind the near plane.
+    /// Not drawn, because the triangle lies wholly beyond one side of the picture or behind the near plane.
     Unseen,
-    /// To the setup, as a whole.
+    /// Drawn as a whole: goes to the triangle setup.
     Regular([&'a ScreenVertex; 3]),
-    /// To the clipper, because it crosses the near plane or leaves the guard band.
+    /// Clipped first, because the triangle crosses the near plane or leaves the guard band.
     Exception,
 }
 
@@ -161,7 +162,7 @@ struct Renderer<'a, 'b> {
 }
 
 impl Renderer<'_, '_> {
-    /// Draws the triangles that need no clipping, and counts the remaining triangles.
+    /// Draws the triangles that need no clipping, and counts those that do.
     fn regular(&mut self, mesh: &Mesh, scratch: &mut [Projected]) {
         let mut index = 0;
         for chunk in mesh.chunks() {
@@ -195,7 +196,7 @@ impl Renderer<'_, '_> {
         let several_chunks = mesh.chunks().nth(1).is_some();
         let mut index = 0;
         for chunk in mesh.chunks() {
-            // The vertices of a single chunk are still in the scratch memory.
+            // If the mesh has a single chunk, its projected vertices are still in the scratch memory.
             if several_chunks {
                 self.project(&chunk, scratch);
             }

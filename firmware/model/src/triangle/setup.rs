@@ -18,7 +18,7 @@ pub struct Oriented {
 }
 
 impl Oriented {
-    /// Steps 1 to 3 of the setup (docs/formats.md); `None` for a triangle without area.
+    /// Computes steps 1 to 3 of the setup (docs/formats.md, "Triangle setup"); `None` for a triangle without area.
     ///
     /// A difference of two positions is s21 (at most 4095 pixels), a product is below 2^40.
     pub fn new(vertices: [ScreenVertex; 3]) -> Option<Self> {
@@ -39,7 +39,7 @@ impl Oriented {
     }
 }
 
-/// x10·y20 − x20·y10: the doubled area of a triangle, positive when it is clockwise.
+/// The signed doubled area x10·y20 − x20·y10 of a triangle, positive if its vertices are clockwise.
 fn cross(v0: ScreenVertex, v1: ScreenVertex, v2: ScreenVertex) -> i64 {
     let (x10, y10) = (i64::from(v1.x - v0.x), i64::from(v1.y - v0.y));
     let (x20, y20) = (i64::from(v2.x - v0.x), i64::from(v2.y - v0.y));
@@ -60,10 +60,11 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The pixels of the picture whose centres c have min ≤ c < max in both directions, where min and max are those of
-    /// the vertices; `None` if there is no such pixel.
+    /// Returns the bounds of the pixels in the picture whose centres c have min ≤ c < max in both directions, where min
+    /// and max are the limits of the vertices; `None` if there is no such pixel.
     ///
-    /// The upper limits are exclusive: the top-left rule moves a point slightly to the right and, even less, down.
+    /// The upper limits are exclusive, because under the top-left rule a pixel centre counts as moved slightly to the
+    /// right and, by even less, down.
     pub fn new(vertices: &[ScreenVertex; 3], width: u32, height: u32) -> Option<Self> {
         let (left, right) = columns(vertices.map(|v| v.x), width);
         let (top, bottom) = columns(vertices.map(|v| v.y), height);
@@ -76,7 +77,8 @@ impl Bounds {
     }
 }
 
-/// The first, and one past the last, of the pixels 0 ≤ i < `size` with min ≤ 256·i + 128 < max of three coordinates.
+/// Returns the first, and one past the last, of the pixels i in 0 ≤ i < `size` with min ≤ 256·i + 128 < max, where min and
+/// max are the limits of the three coordinates.
 fn columns([a, b, c]: [i32; 3], size: u32) -> (i32, i32) {
     let first_at_or_after = |x: i32| (x + 127) >> 8;
     let (min, max) = (a.min(b).min(c), a.max(b).max(c));
@@ -86,7 +88,7 @@ fn columns([a, b, c]: [i32; 3], size: u32) -> (i32, i32) {
     )
 }
 
-/// An edge function E' at the start pixel, and its steps: the pixel is inside where E' ≥ 0.
+/// An edge function E': its value at the start pixel and its steps. A pixel is inside the edge where E' ≥ 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Edge {
     /// E' = floor((E − bias)/256), s34.
@@ -98,8 +100,8 @@ pub struct Edge {
 }
 
 impl Edge {
-    /// Steps 4 and 5 of the setup (docs/formats.md) for the edge from `a` to `b`, starting at the pixel in column
-    /// i and row j.
+    /// Computes steps 4 and 5 of the setup (docs/formats.md, "Triangle setup") for the edge from `a` to `b`, with the
+    /// start pixel in column i and row j.
     ///
     /// |E| < 2^20·(2047.5 + 1280 + 2047.5 + 720)·2^8, which is below 2^41.
     fn new(a: ScreenVertex, b: ScreenVertex, [i, j]: [i32; 2]) -> Self {
@@ -115,7 +117,8 @@ impl Edge {
     }
 }
 
-/// An accumulator of depth or light at the start pixel and its steps: 18.14, modulo 2^32.
+/// A linear function on the screen, of depth or of light: the value of its accumulator at the start pixel and its steps,
+/// 18.14 modulo 2^32.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Plane {
     /// The value at the start pixel.
@@ -127,10 +130,11 @@ pub struct Plane {
 }
 
 impl Plane {
-    /// Steps 6 to 8 of the setup (docs/formats.md), for values of depth or light at the vertices, u18.6.
+    /// Computes steps 6 to 8 of the setup (docs/formats.md, "Triangle setup") for the values w0, w1, w2 of depth or light
+    /// at the vertices, u18.6.
     ///
-    /// A difference of values is below 2^24 and a difference of positions below 2^20, so N < 2^45. Inlined, because a
-    /// flat triangle has a single plane.
+    /// A difference of values is below 2^24 and a difference of positions below 2^20, so Nx and Ny are below 2^45.
+    /// Inlined, because a flat triangle has a single plane.
     #[inline(always)]
     fn new(triangle: &Oriented, [w0, w1, w2]: [u32; 3], [i, j]: [i32; 2]) -> Self {
         let [v0, v1, v2] = triangle.vertices;
@@ -147,7 +151,7 @@ impl Plane {
         let reciprocal = Reciprocal::of(triangle.doubled_area);
         let gx = gradient(w10 * y20 - w20 * y10, reciprocal);
         let gy = gradient(w20 * x10 - w10 * x20, reciprocal);
-        // The sum is modulo 2^64, which keeps bits 8 to 39 right.
+        // The sum is computed modulo 2^64, so its bits 8 to 39, which the accumulator takes, are right.
         let (px, py) = (
             i64::from(256 * i + 128 - v0.x),
             i64::from(256 * j + 128 - v0.y),
@@ -161,9 +165,10 @@ impl Plane {
     }
 }
 
-/// One gradient of a plane, nearest(N·y·2^−(lead + 8)) for a numerator |N| < 2^45, exact: at most 2^62.
+/// One gradient of a plane: nearest(N·y·2^−(lead + 8)) for a numerator N with |N| < 2^45. The result is exact, and at most
+/// 2^62.
 ///
-/// The product has 69 bits: N is split in two parts, and the product with the low part is shifted first.
+/// The product N·y has 69 bits. N is therefore split in two parts, and the product with the low part is shifted first.
 const fn gradient(numerator: i64, Reciprocal { y, lead }: Reciprocal) -> i64 {
     let shift = lead + 8;
     let high = (numerator >> 24) * y as i64;
@@ -185,7 +190,7 @@ pub struct Setup {
     pub start_column: i32,
     /// The edges 0→1, 1→2 and 2→0.
     pub edges: [Edge; 3],
-    /// Plane of the depth.
+    /// Plane of the depth accumulator.
     pub depth: Plane,
     /// Planes of red, green and blue times the depth, under smooth shading.
     pub light: Option<[Plane; 3]>,
@@ -194,7 +199,7 @@ pub struct Setup {
 }
 
 impl Setup {
-    /// Steps 4 to 8 of the setup (docs/formats.md), for a flat triangle.
+    /// Computes steps 4 to 8 of the setup (docs/formats.md, "Triangle setup"), for a flat triangle.
     pub fn new(triangle: &Oriented, bounds: Bounds) -> Self {
         let [v0, v1, v2] = triangle.vertices;
         let topmost = if v0.y <= v1.y && v0.y <= v2.y {
@@ -220,8 +225,8 @@ impl Setup {
         }
     }
 
-    /// Steps 4 to 9 of the setup (docs/formats.md), for a triangle with the light of its vertices in the
-    /// order of the vertices.
+    /// Computes steps 4 to 9 of the setup (docs/formats.md, "Triangle setup"), for a triangle under smooth shading. `lit`
+    /// is the light of its vertices, in the order of the vertices.
     ///
     /// Not inlined, so that flat triangles do not load this code into the instruction cache.
     #[inline(never)]

@@ -1,11 +1,12 @@
-//! Shading with a light at the camera.
+//! Shading of triangles and vertices with a light at the camera.
 
 use glint_core::colour::Rgb565;
 
 use crate::triangle::facing::Facing;
 use crate::triangle::rounding::nearest;
 
-/// Intensity clamp(−N·n, 0, 1) of a normal N (s2.14) and the forward direction n (s2.23), u1.8; a back face negates N.
+/// Intensity clamp(−N·n, 0, 1), u1.8, for the normal N (s2.14) and the camera's forward direction n (s2.23). A back face
+/// negates N.
 pub fn intensity(normal: [i16; 3], n: &[i32; 3], facing: Facing) -> u32 {
     // The scalar product is below 2^41.
     let product: i64 = core::iter::zip(normal, n)
@@ -18,7 +19,7 @@ pub fn intensity(normal: [i16; 3], n: &[i32; 3], facing: Facing) -> u32 {
     nearest(towards, 37 - 8).clamp(0, 1 << 8) as u32
 }
 
-/// Multiplies each channel of a colour by the intensity (u1.8, at most 1), to nearest.
+/// Multiplies each channel of a colour by the intensity (u1.8, at most 1) and rounds to nearest.
 pub fn lit(colour: Rgb565, intensity: u32) -> Rgb565 {
     let [r, g, b] = colour
         .channels()
@@ -26,8 +27,8 @@ pub fn lit(colour: Rgb565, intensity: u32) -> Rgb565 {
     Rgb565(r << 11 | g << 5 | b)
 }
 
-/// The light L of a vertex (docs/formats.md, "Smooth shading"): red, green and blue after shading, u0.14 of the
-/// channel's range: at most 63/64.
+/// The light L of a vertex (docs/formats.md, "Smooth shading"): red, green and blue after shading. Each is a fraction of
+/// the channel's range in u0.14, at most 63/64.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Lit(pub [u16; 3]);
 
@@ -38,8 +39,8 @@ impl Lit {
         Self([2 * r, g, 2 * b].map(|x| x as u16))
     }
 
-    /// The values P that the planes of light interpolate: each channel times `w` plus half a code, where `w` is the
-    /// vertex's depth code before rounding (u18.6). P is u18.6, to nearest.
+    /// Returns the value P of each channel, which a plane of light interpolates: the light of the channel times (`w` plus
+    /// half a code), where `w` is the vertex's depth code before rounding (u18.6). P is u18.6, rounded to nearest.
     pub fn weighted(self, w: u32) -> [u32; 3] {
         // The product has 24 + 14 bits.
         self.0
@@ -57,7 +58,7 @@ pub struct Light {
 }
 
 impl Light {
-    /// The light of a mesh's vertex.
+    /// Returns the light of a vertex of a mesh with this colour and normal; `n` is the camera's forward direction.
     pub fn new(colour: Rgb565, normal: [i16; 3], n: &[i32; 3]) -> Self {
         let to = |facing| Lit::new(colour, intensity(normal, n, facing));
         Self {
@@ -66,7 +67,7 @@ impl Light {
         }
     }
 
-    /// The light for this visible side of a triangle.
+    /// Returns the light for a triangle whose visible side is `facing`.
     pub const fn to(self, facing: Facing) -> Lit {
         match facing {
             Facing::Front => self.front,

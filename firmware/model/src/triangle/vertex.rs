@@ -8,7 +8,7 @@ use crate::triangle::shade::Light;
 /// The guard band: 2047 pixels from the top left corner to every side, s12.8.
 pub const GUARD: i32 = 2047 << 8;
 
-/// A vertex before the perspective division.
+/// A vertex in camera coordinates, before the perspective division.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CameraVertex {
     /// Coordinate X along the right axis, relative to the eye, in pixels at distance 1: s44 with 14 + f fraction bits,
@@ -40,8 +40,8 @@ pub enum Projected {
     Visible(ScreenVertex),
     /// Nearer than the near plane, or behind the eye.
     Behind,
-    /// Beyond the near plane, but outside the guard band. The position is saturated, so only the side of
-    /// the picture is meaningful.
+    /// Beyond the near plane, but outside the guard band. The position is saturated, so it only tells beyond which sides
+    /// of the picture the vertex lies.
     BeyondGuard(ScreenVertex),
 }
 
@@ -60,10 +60,11 @@ impl Projected {
     }
 }
 
-/// Steps 1 and 2 of the vertex stage (docs/formats.md): transforms a position into the camera's frame.
+/// Transforms a position to camera coordinates: steps 1 and 2 of the vertex stage (docs/formats.md).
 ///
-/// The position P with |P| ≤ 2·√3 is less than 2^15.8 in its units and a row is shorter than 2^24.01 (2^23.01 for n),
-/// so each product is below 2^39.9; a translation is at most 8 rows, 2^41.1. So |X|, |Y| < 2^41.7 and |Z| < 2^40.7.
+/// The position P with |P| ≤ 2·√3 is less than 2^15.8 in its units, and a row is shorter than 2^24.01 (2^23.01 for n), so
+/// each scalar product is below 2^39.9. A translation is at most 8 times the length of a row, 2^41.1. So |X|, |Y| <
+/// 2^41.7 and |Z| < 2^40.7.
 pub fn transform(frame: &MeshSetup, position: [i16; 3]) -> CameraVertex {
     let dot = |row: &[i32; 3]| -> i64 {
         core::iter::zip(position, row)
@@ -79,8 +80,8 @@ pub fn transform(frame: &MeshSetup, position: [i16; 3]) -> CameraVertex {
     }
 }
 
-/// Steps 3 to 8 of the vertex stage (docs/formats.md): projects a vertex to the screen, or finds it
-/// behind the near plane.
+/// Projects a vertex to the screen, or finds that it is nearer than the near plane: steps 3 to 8 of the vertex stage
+/// (docs/formats.md).
 pub fn project(frame: &MeshSetup, vertex: &CameraVertex) -> Projected {
     if vertex.z < frame.near {
         return Projected::Behind;
@@ -94,16 +95,16 @@ pub fn project(frame: &MeshSetup, vertex: &CameraVertex) -> Projected {
     }
 }
 
-/// Steps 4 to 8 of the vertex stage (docs/formats.md): projects a vertex beyond the near plane to the screen.
+/// Projects a vertex at or beyond the near plane to the screen: steps 4 to 8 of the vertex stage (docs/formats.md).
 ///
 /// A position more than 4096 pixels from the centre saturates at 4096 pixels or more: it stays outside the guard band.
 ///
-/// Inlined, so that the code of the loop over vertices is contiguous and does not conflict in
-/// the direct-mapped instruction cache.
+/// Inlined, so that the code of the loop over vertices is contiguous and has no conflicts in the direct-mapped
+/// instruction cache.
 #[inline(always)]
 pub fn snap(frame: &MeshSetup, vertex: &CameraVertex) -> ScreenVertex {
     let Reciprocal { y, lead } = Reciprocal::of(vertex.z as u64);
-    // Z is at least near, so lead ≥ 30 (and ≤ 40); with f in 10…18 the shift is in 6…24.
+    // Z is at least the distance of the near plane, so `lead` is in 30…40. With f in 10…18 the shift is in 6…24.
     let shift = frame.scale_shift + lead - 34;
     let divide = |x: i64, size: u32| {
         // `normalised` is s14.11, and its product with the u24 number y is exact.
@@ -117,7 +118,8 @@ pub fn snap(frame: &MeshSetup, vertex: &CameraVertex) -> ScreenVertex {
     }
 }
 
-/// Step 8: the depth code before rounding, w = K/Z. The codes of a mesh within its radius never saturate.
+/// Step 8 of the vertex stage: the depth code before rounding, w = K/Z. The codes of a mesh within its radius never
+/// saturate.
 fn depth(frame: &MeshSetup, y: u32, lead: u32) -> u32 {
     // The product has 17 + 24 bits; the exponent is in −5…5, so the shift is in 6…26.
     let product = u64::from(frame.depth.mantissa) * u64::from(y);
