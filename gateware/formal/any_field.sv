@@ -1,4 +1,5 @@
-// Replaces field_unit by one that returns any distance to any surface. Properties proven with it hold for all fields.
+// Stand-in for the module field_unit in proofs. It returns an arbitrary distance to an arbitrary surface, so properties proven
+// with it hold for all distance fields.
 
 `default_nettype none
 

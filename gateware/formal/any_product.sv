@@ -1,4 +1,5 @@
-// Replaces multiply_add by one that returns any result. Properties proven with it hold for all numbers.
+// Stand-in for the module multiply_add in proofs. It returns an arbitrary result, so properties proven with it hold for all
+// operands.
 
 `default_nettype none
 

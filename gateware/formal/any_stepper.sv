@@ -1,5 +1,5 @@
-// Replaces stepper by one with any edge functions and depths, constant while the walker stalls. Only the number of a group is
-// computed as in the real stepper.
+// Stand-in for the module stepper in proofs. Edge functions and depths are arbitrary, but constant while the walker stalls. Only
+// the number of a group is computed as in the real stepper.
 
 `default_nettype none
 

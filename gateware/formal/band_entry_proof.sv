@@ -1,7 +1,7 @@
-// Proof of band_entry, which places triangles at their first row in a band, with any traffic on both sides. Triangles are
-// numbered and carry their number in every field. Each triangle with a row in its band comes out once, in order, with all its
-// fields and results; the other triangles leave no trace. No triangle waits without limit, and `holds` says to which bands the
-// triangles inside belong.
+// Proof of band_entry, which places each triangle at its first row in a band, with any pattern of valid and ready on its input
+// and output. Triangles are numbered and carry their number in every field. Each triangle with a row in its band comes out once,
+// in order, with all its fields and computed results; a triangle without such a row never comes out. No triangle waits without
+// limit, and `holds` names the bands to which the triangles inside the module belong.
 
 `default_nettype none
 
@@ -27,7 +27,7 @@ module band_entry_proof (
     triangle_pkg::descriptor_t descriptor;
     raster_pkg::placed_t       placed;
 
-    // The proof never expects the number `'1`, which the dropped triangles carry.
+    // Triangles without a row in their band carry the number `'1`, which the proof never expects at the output.
     assign number = in_kept ? kept : '1;
 
     always_comb begin
@@ -67,7 +67,7 @@ module band_entry_proof (
     stream_checker #(.WIDTH(2), .GIVEN(1)) given (
         .clk, .rst, .valid(in_valid), .ready(in_ready), .data({in_kept, in_odd})
     );
-    // It is enough to check these fields of the output: all fields of a triangle are loaded at once.
+    // Checking these fields of the output is enough: the module loads all fields of a triangle at once.
     stream_checker #(.WIDTH(17)) shown (
         .clk, .rst, .valid(out_valid), .ready(out_ready), .data({out_odd, placed.colour})
     );

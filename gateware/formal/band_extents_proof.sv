@@ -1,9 +1,11 @@
-// Proof of band_extents, which plans the words that the flush of a band writes, at a small size: bands of one to four lines
-// with one to three columns, in two frame buffers of four lines, any groups, any bands, any traffic.
+// Proof of band_extents, which computes for each line of a band the span of words that the flush of the band writes. The size is
+// small: bands of one to four lines with one to three columns, and two frame buffers of four lines. Groups and bands are
+// arbitrary, and so is the time at which a span is taken.
 //
-// The proof marks the columns drawn in this band and, for each line of a frame buffer, the columns drawn in the last band
-// there. The expected span of a line goes from the first to the last column of both sets. After reset, and after a cancelled
-// band, the last columns of the lines are unknown, and a band with such a line must be `whole`.
+// The proof keeps two sets of columns: for each line of the current band the columns drawn so far, and for each line of a frame
+// buffer the columns drawn in the last band that was flushed there. The expected span of a line goes from the first to the last
+// column in either set. After reset, and after a cancelled band, the second set is unknown for the lines concerned, and a band
+// with such a line must be flushed `whole`.
 
 `default_nettype none
 
@@ -19,7 +21,7 @@ module band_extents_proof (
     input wire       span_ready,
     input wire       restart
 );
-    // Largest number of clocks without an expected span, or without the end of `busy` after the last span.
+    // Upper bound on the clocks until the next expected span comes, and on the clocks from the last span until `busy` falls.
     localparam int unsigned WITHIN = 10;
 
     logic rst = 1'b1;
@@ -40,13 +42,14 @@ module band_extents_proof (
         .clk, .rst(rst || sweep), .valid(span_valid), .ready(span_ready), .data({span_first, span_last})
     );
 
-    // Sets of columns of each line: `marked` drawn in this band, `to_come` still expected in a span, `left` drawn in the last
-    // band at this line of a frame buffer.
+    // Sets of columns of each line. Of the lines of the band: `marked` holds the columns drawn in it, `to_come` the columns of a
+    // span that is still expected. Of the lines of each frame buffer: `left` holds the columns drawn in the last band there.
     logic [3:0][2:0]      marked, to_come;
     logic [1:0][3:0][2:0] left;
     logic [1:0][3:0]      known;
     logic [2:0]           all;
-    // First line and slot of the planned band, and the number of clocks since the sweep began.
+    // First line and slot (number of the frame buffer) of the band whose spans come, and the number of clocks since the sweep,
+    // which clears the extents after a reset or restart, began.
     logic [1:0]           band_line, swept;
     logic                 band_slot, all_known;
 
@@ -56,7 +59,8 @@ module band_extents_proof (
         hull = columns == 3'b101 ? 3'b111 : columns;
     endfunction
 
-    // The line whose span is expected next.
+    // Whether a span is expected (`comes`), and of the next one: its line, the number of the line's first word in the band, and
+    // its set of columns.
     logic       comes;
     logic [1:0] next_line;
     logic [3:0] next_row;
@@ -80,8 +84,8 @@ module band_extents_proof (
     end
 
     logic [3:0] without_span, without_end;
-    // For a cover: a line of a band that is not `whole` has drawn columns, and lacks a column that it had in its
-    // frame buffer before.
+    // Condition of the cover `both`: in a band that is not `whole`, a line has drawn columns, but lacks a column that was drawn
+    // in the last band at this line of the frame buffer.
     logic       united;
 
     always_ff @(posedge clk) begin

@@ -1,17 +1,18 @@
-// Proof of the flush of the band buffer, at a small size: any of four rows in any spans, four words in flight, any
-// back-pressure, any restart.
+// Proof of band_flush, which writes the rows of a band from a bank of the band buffer to memory and clears them. The size is
+// small: any of four rows in any spans, and four words in flight. Back-pressure and restarts come at any time.
 //
-// The bank's row r holds r in every colour and r + 1 in every depth, and all rows are drawn. So the expected words are
-// known: first the colours of the rows in the spans, in order, each once; then both halves of each row's depths.
-// Afterwards these rows are clear and the other rows are not. The model of the bank has the latencies of band_bank; a
-// cleared row loses its pixels.
+// Row r of the bank holds r in every colour and r + 1 in every depth, and all rows have drawn pixels. So the expected words are
+// known: first the colours of the rows in the spans, in order, each once; then both halves of each row's depths. Afterwards
+// these rows are clear and the other rows are not. The model of the bank has the latencies of band_bank; a cleared row loses its
+// pixels.
 
 `default_nettype none
 
 module band_flush_proof (
     input wire       clk,
     input wire       start,
-    // The rows to flush, as a bit mask. The proof gives them as spans at any time, each span whole or in pieces.
+    // Mask of the rows to flush. The proof offers them to the module at any time (`gives`): neighbouring rows as one span, or row
+    // by row (`in_pieces`).
     input wire [3:0] rows,
     input wire       gives,
     input wire       in_pieces,
@@ -21,7 +22,7 @@ module band_flush_proof (
     input wire       out_ready
 );
     localparam logic [15:0] BACKGROUND = 16'h8421;
-    // Largest number of clocks without a word while memory takes all words.
+    // Upper bound on the clocks between two words while memory takes all words.
     localparam int unsigned WITHIN = 10;
 
     (* anyconst *) logic [5:0] base, depth_base;
@@ -51,7 +52,7 @@ module band_flush_proof (
         depth_of = 18'(of_row) + 1'b1;
     endfunction
 
-    // Model of the bank: `drawn` has a bit for each row. A flush starts with all rows drawn.
+    // Model of the bank. Bit r of `drawn` is set while row r has drawn pixels; at the start of a flush all bits are set.
     logic [3:0] drawn;
     logic [1:0] from_row, latched_row, read_row, to_row;
     logic       latched_drawn, read_drawn, to_clear;
@@ -80,7 +81,8 @@ module band_flush_proof (
         first_of = of_rows[0] ? 2'd0 : of_rows[1] ? 2'd1 : of_rows[2] ? 2'd2 : 2'd3;
     endfunction
 
-    // Rows that were not yet given as a span, and whether more spans may follow.
+    // `to_give`: the rows that the module has not yet taken in a span. `lingering`: keeps `spans_busy` high, so that the module
+    // must wait for more spans even when no row is left.
     logic [3:0] to_give;
     logic       offered, pieces, lingering;
 
@@ -110,7 +112,8 @@ module band_flush_proof (
         end
     end
 
-    // The expected words: rows whose colours or depths have not come out yet, and the half of the next depth word.
+    // The expected words: masks of the rows whose colours and whose depths have not come out yet, and the half of a row's depths
+    // that comes next.
     logic [5:0] flush_base, flush_depth_base, expected_addr;
     logic [3:0] flush_rows, colour_rows, depth_rows;
     logic [1:0] colour_row, depth_row;
@@ -120,8 +123,8 @@ module band_flush_proof (
     assign colour_row = first_of(colour_rows);
     assign depth_row  = first_of(depth_rows);
     assign none_left  = colour_rows == '0 && depth_rows == '0;
-    // Tells depth words from colour words by the lowest 32 bits: the two halves of a depth differ, two neighbouring
-    // colours are equal.
+    // Whether a word holds depths, as its lowest 32 bits show: these are a depth whose two halves differ, or two neighbouring
+    // colours, which are equal.
     assign is_depth   = out_data[31:16] != out_data[15:0];
 
     logic [127:0] expected;
@@ -170,7 +173,7 @@ module band_flush_proof (
         .clk, .rst, .valid(out_valid), .ready(out_ready), .data({out_addr, out_data})
     );
 
-    // A row that is cleared reads as clear in the bank two clocks later.
+    // The bank shows a row as clear two clocks after the request to clear it, so `drawn` is compared two clocks after a sweep.
     logic [1:0] settled;
     logic       fresh;
     always_ff @(posedge clk) begin

@@ -1,8 +1,8 @@
 // Proof that band_pipe handles its read-modify-write hazard: the result equals that of a memory without latency.
 //
-// Two rows, any groups at any time, on a depth memory and its written bits with the latencies of band_bank. The proof follows
-// one pixel, any lane of any row: each accepted group updates a copy of this pixel at once. When the pipe is empty, the copy
-// and the memory must agree.
+// The pipe works on two rows of a depth memory and its written bits, with the latencies of band_bank; any groups come at any
+// time. The proof follows one pixel, an arbitrary lane of an arbitrary row: each accepted group updates a copy of this pixel at
+// once. When the pipe is empty, the copy and the memory must agree.
 
 `default_nettype none
 
@@ -13,10 +13,10 @@ module band_pipe_proof (
     input wire            group_row,
     input wire [7:0]      group_mask,
     input wire [8*18-1:0] group_codes,
-    // Tag that the colours carry, to distinguish groups of equal depth.
+    // Tag in all colours of the group, which distinguishes groups of equal depth.
     input wire [1:0]      group_tag
 );
-    // Largest number of clocks for which a group is held.
+    // The pipe holds back a group for fewer clocks than this.
     localparam int unsigned WITHIN = 4;
 
     logic rst = 1'b1;
@@ -36,7 +36,8 @@ module band_pipe_proof (
         .read_row, .stored, .stored_written, .write_row, .write_lanes, .write_halves(), .write_codes, .write_colours, .empty, .held()
     );
 
-    // The followed pixel in the memory. The other pixels hold any value, since their groups do not matter.
+    // Model of the memory. It stores the followed pixel only; every other pixel reads as an arbitrary value, since the result must
+    // not depend on it.
     logic        from_row, to_row, to_lane, latched_written, read_written, written;
     logic [17:0] to_store, latched, read, code;
     logic        latched_here, read_here;
@@ -76,7 +77,7 @@ module band_pipe_proof (
         end
     end
 
-    // The copy of the followed pixel, in a memory without latency.
+    // Copy of the followed pixel, which accepted groups update without latency.
     logic        taken, drawn;
     logic [17:0] nearest, given;
     logic [1:0]  nearest_tag;
@@ -85,7 +86,8 @@ module band_pipe_proof (
     assign given = group_codes[18*lane +: 18];
     assign taken = group_valid && group_ready;
 
-    // `empty` one clock ago: the model of the memory is one clock behind, so the copy and the memory are compared later.
+    // `empty` in the previous clock: writes reach the model of the memory one clock late, so it is compared with the copy only
+    // after two clocks of `empty`. `was_held`: whether a group was ever held back.
     logic was_empty, was_held;
 
     always_ff @(posedge clk) begin

@@ -1,5 +1,5 @@
-// Proof that a buffer between two streams keeps its contract, with any traffic on both sides. The buffer is the skid buffer,
-// or a FIFO of DEPTH places.
+// Proof that a buffer keeps the contract of streams and the order of its items, with any pattern of valid and ready on its input
+// and output. The buffer is the skid buffer, or a FIFO of DEPTH places.
 
 `default_nettype none
 

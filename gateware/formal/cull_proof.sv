@@ -1,6 +1,6 @@
-// Proof that culled triangles do not block, for any triangles in any order. The limits count only the clocks in which the
-// output is not held. A triangle waits for the stage in at most 3 of them; each triangle leaves once, culled or drawn; and at
-// least one leaves in any 8 of them while triangles are inside.
+// Proof that culled triangles do not block the stage `cull`, for any triangles in any order. The limits count only clocks in
+// which no triangle waits at the output for the consumer. A triangle at the input waits for at most 3 such clocks. Each triangle
+// leaves once, culled or drawn; while triangles are inside, one leaves after at most 8 such clocks.
 
 `default_nettype none
 
@@ -29,7 +29,7 @@ module cull_proof (
     stream_checker #(.WIDTH(16), .GIVEN(1)) given (
         .clk, .rst, .valid(in_valid), .ready(in_ready), .data(in_colour)
     );
-    // It is enough to check the colour: all fields of the triangle are loaded at once.
+    // Checking the colour is enough: the stage loads all fields of a triangle at once.
     stream_checker #(.WIDTH(16)) shown (
         .clk, .rst, .valid(out_valid), .ready(out_ready), .data(out_triangle.colour)
     );

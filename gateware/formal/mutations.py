@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Mutation:
-    """Replaces the only `old` in `source` by `new`; the property `fails`, a path within the proof, must then fail."""
+    """Replacement of the only occurrence of `old` in the file `source` by `new`. The property `fails`, given as its path within
+    the proof, must then fail."""
 
     source: str
     old: str
@@ -91,11 +92,11 @@ MUTATIONS = {
         _flush("depth_words_base <= depth_base;", "depth_words_base <= base;", "in_their_places"),
         _flush("{clear_row, 1'b1}", "{clear_row, 1'b0}", "in_their_places"),
         _flush("address   <= address_2;", "address   <= address_1;", "in_their_places"),
-        # A span begins where the previous span ended, not at its own first row.
+        # Fault: a span begins where the previous span ended instead of at its own first row.
         _flush("row       <= span_first;", "row       <= row + 1'b1;", "in_their_places"),
-        # The flush admits more words than the FIFO has places.
+        # Fault: the flush admits more words than the FIFO has places.
         _flush("in_span && places != '0;", "in_span;", "words_in_order"),
-        # The flush clears a row before it reads the row's depth.
+        # Fault: the flush clears a row before it reads the row's depth.
         _flush("clears <= part == last_part;", "clears <= 1'b1;", "words_in_order"),
         _flush("{18{written[lane]}}", "18'b0", "words_in_order"),
         _flush("&& row == last_row;", "&& row == '1;", "none_made_up"),
@@ -103,15 +104,15 @@ MUTATIONS = {
         _flush("COLOUR:     if (part_ends && depth_too)", "COLOUR: if (depth_too)", "colour_first"),
         _flush("if (taken && !issue) ", "if (out_valid && !issue) ", "all_taken"),
         _flush("last_row  <= span_last;", "last_row  <= span_first;", "none_left_out"),
-        # The flush ends during a span, or before the last span has come.
+        # Fault: the flush ends during a span, or before the last span has come.
         _flush("if (!in_span && !spans_busy)", "if (!spans_busy)", "none_left_out"),
         _flush("if (!in_span && !spans_busy)", "if (!in_span && !span_valid)", "none_left_out"),
         _flush("(!in_span || span_ends);", "span_ends;", "no_standstill"),
         _flush("places <= places + 1'b1;", "places <= places;", "ends"),
         _flush("if (row == '1) state", "if (row == '1 && idle) state", "sweep_ends"),
-        # A restart waits until memory has taken the words.
+        # Fault: a restart waits until memory has taken the words.
         _flush("SWEEP: begin", "SWEEP: if (places == COUNT_BITS'(WORDS)) begin", "sweep_ends"),
-        # A restart begins its sweep at the row that the flush had reached.
+        # Fault: a restart begins its sweep at the row that the flush had reached instead of at row 0.
         _flush("state  <= SWEEP;\n            row    <= '0;", "state  <= SWEEP;", "all_swept"),
         _flush("clears <= part == last_part;", "clears <= part == last_part && row != last_row;", "cleared_behind"),
         _flush("clear_row <= row;", "clear_row <= row + 1'b1;", "cleared_behind"),
@@ -149,12 +150,12 @@ MUTATIONS = {
         Mutation("skid_buffer.sv", "if (!out_valid || out_ready)", "if (1'b1)", "spans.valid_stays"),
         Mutation("skid_buffer.sv", "if (!out_valid || out_ready)", "if (!out_valid || out_ready || in_valid)",
                  "spans.payload_stable"),
-        # The plan loses the last extent of a line, or takes it from the other frame buffer.
+        # Fault: the module ignores a line's extent in the last frame, or takes it from the other frame buffer.
         _extents("united(earlier, now_3);", "now_3;", "in_order"),
         _extents("to       <= from;", "to       <= {1'b0, from[PLACE_BITS-2:0]};", "in_order"),
-        # The plan moves to further lines while spans are not taken.
+        # Fault: the module goes on to further lines while no span is taken.
         _extents("        if (advance) begin", "        if (1'b1) begin", "none_left_out"),
-        # The new extent stays for the next band, or keeps only its last group.
+        # Fault: an extent of the band stays for the next band, or keeps only its last group.
         _extents("empties ? EMPTY : united", "united", "in_order"),
         _extents("united(kept[bank], {add_column, add_column})", "{add_column, add_column}", "in_order"),
         _extents("if (valid[4]) line_row", "line_row", "in_order"),
@@ -189,7 +190,7 @@ MUTATIONS = {
         _setup("drawn <= beat && valid[4];", "drawn <= beat;", "counted"),
         _setup("cull_busy || valid != '0 || out_valid", "cull_busy || valid[3:1] != '0 || out_valid", "busy_while_inside"),
         _setup("valid <= {valid[3:1], first_valid};", "valid <= {1'b0, valid[2:1], first_valid};", "busy_while_inside"),
-        # Triangles wait for later triangles, or for the consumer.
+        # Fault: triangles wait for later triangles, or for the consumer.
         _setup("end else if (enable) begin", "end else if (enable && first_valid) begin", "no_standstill"),
         _setup("end else if (enable) begin", "end else if (enable && out_ready) begin", "taken_in_time"),
     ],
@@ -197,7 +198,7 @@ MUTATIONS = {
         _entry("if (next_free) begin", "if (1'b1) begin", "shown.valid_stays"),
         _entry("            out_triangle <= placed;\n        end", "        end\n        out_triangle <= placed;", "shown.payload_stable"),
         _entry("            if (pass == ROWS_KNOWN && count == '0) busy <= 1'b0;\n", "", "nothing_made_up"),
-        # The next triangle overwrites the held one.
+        # Fault: the next triangle overwrites the held one.
         _entry("pass != STALLS || !held_valid || !out_valid;", "1'b1;", "in_order"),
         _entry("if (pass == LAST) begin", "if (busy) begin", "in_order"),
         _entry("k == 2 ? ending[2] :", "k == 2 ? ending[1] :", "in_order"),

@@ -1,5 +1,4 @@
-// Replaces multiply_add by one whose products are 0, so its sum is the addend. The addend identifies its
-// triangle in the proof.
+// Stand-in for the module multiply_add in proofs. Its products are 0, so its sum is the addend, which identifies the triangle.
 
 `default_nettype none
 

@@ -1,5 +1,5 @@
-// Replaces the arithmetic parts of the setup. Each replacement passes on one of its operands, which identifies the triangle.
-// The replacement of `cull` takes the decision to cull, and the triangle's number, from the colour.
+// Stand-ins for the arithmetic parts of the triangle setup in proofs. Each part passes on one of its operands, which identifies
+// the triangle. The stand-in for `cull` takes the decision to cull, and the triangle's number, from the colour.
 
 `default_nettype none
 

@@ -1,7 +1,7 @@
-// Proof of ring_lane, a lane of the raymarcher, with room for two ends of rays, any rays, any field, and any back-pressure.
+// Proof of ring_lane, a lane of the raymarcher, with room for the ends of two rays, for any rays, fields and back-pressure.
 //
-// The proof follows any one ray by its column, which is its number here: a lane's results do not depend on the column.
-// The field returns any distance, so a ray takes any number of rounds up to `cap`, here two.
+// The proof follows one arbitrary ray. Rays are numbered in their column, which no result of a lane depends on. The field returns
+// any distance, so a ray takes any number of rounds (evaluations of the field) up to the limit `cap`, here two.
 
 `default_nettype none
 
@@ -11,8 +11,8 @@ module ring_lane_proof (
     input wire [9:0] in_length,
     input wire       out_ready
 );
-    // Largest number of clocks with a ready consumer until a ray's end is taken: two rounds of 9 slots, then the wait in the
-    // FIFO behind another end.
+    // Upper bound on the clocks with a ready consumer from the entry of a ray until its end is taken: two rounds of 9 slots, then
+    // the wait in the FIFO behind the end of the other ray.
     localparam int unsigned PLACES = 2, WITHIN = 22;
 
     logic rst = 1'b1;
@@ -25,7 +25,7 @@ module ring_lane_proof (
     (* anyconst *) logic [10:0] followed;
     (* anyconst *) logic [9:0]  length;
 
-    // The column of a ray is its number.
+    // A ray carries its number as its column.
     always_comb begin
         ray = '0;
         ray.place.column = came;

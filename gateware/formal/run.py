@@ -1,8 +1,8 @@
 """Proofs of the gateware's handshakes: bounded model checking with SymbiYosys and Bitwuzla, from reset on.
 
     python gateware/formal/run.py              runs all proofs, one line each; ends with 1 if any failed
-    python gateware/formal/run.py NAME...      runs some
-    python gateware/formal/run.py --mutations  breaks the modules on purpose instead: each property has to notice
+    python gateware/formal/run.py NAME...      runs the named proofs only
+    python gateware/formal/run.py --mutations  breaks the modules on purpose instead: each property has to fail in one
 """
 
 import argparse
@@ -36,7 +36,7 @@ _PROPERTIES = [path for path in sorted(FORMAL.glob("*.sv")) if path.stem not in 
 
 @dataclass(frozen=True)
 class Proof:
-    """A top module with properties, the proven clocks after reset, and the replacement modules."""
+    """A proof: its top module with the properties, the number of clocks after reset that it covers, and its stand-ins."""
 
     name: str
     top: str
@@ -46,11 +46,11 @@ class Proof:
 
     @cached_property
     def sources(self):
-        """The files that the proof reads."""
+        """The SystemVerilog files that the proof reads."""
         return rtl.sources(self.top, others=(*_PROPERTIES, *(FORMAL / f"{name}.sv" for name in self.stand_ins)))
 
     def properties(self):
-        """Labels of the assertions."""
+        """Returns the labels of all assertions of the proof."""
         return [label for source in self.sources for label in re.findall(r"(\w+):\s*assert\b", source.read_text())]
 
 
@@ -90,7 +90,7 @@ prep -top {top}
 def check(proof, mode, folder, sources=None, only=None):
     """Runs SymbiYosys in mode `bmc` or `cover`; returns its verdict and what it found: failed or unreached properties.
 
-    `sources` replaces the proof's; with `only` all assertions but those with this label are left out.
+    `sources` replaces the proof's source files. If `only` is given, only the assertions with this label are checked.
     """
     sources = sources or proof.sources
     folder.parent.mkdir(parents=True, exist_ok=True)

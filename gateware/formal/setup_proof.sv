@@ -1,11 +1,13 @@
-// Proof of the control of `setup`, with beats of three clocks and any traffic on both sides. Each drawn triangle comes out
-// once, in order, with its own value in every field. No triangle waits without limit, with or without triangles behind it.
-// `culled` and `drawn` count each triangle once, and `busy` is high while triangles are inside.
+// Proof of the control logic of `setup`, the triangle setup, with beats (steps of its pipeline) of three clocks and any pattern
+// of valid and ready on both sides. Each drawn triangle comes out once, in order, with its own value in every field. No triangle
+// waits without limit, whether or not other triangles follow it. `culled` and `drawn` count each triangle once, and `busy` is
+// high while triangles are inside.
 
 `default_nettype none
 
 module setup_proof #(
-    // Largest number of clocks between two inputs or two outputs without back-pressure: five beats and a clock.
+    // Upper bound on the clocks, without back-pressure, in which no triangle enters or leaves while one is inside: five beats and
+    // a clock.
     parameter int unsigned WITHIN = 16
 ) (
     input wire clk,
@@ -25,7 +27,7 @@ module setup_proof #(
 
     triangle_pkg::descriptor_t descriptor;
 
-    // The proof never expects the number `'1`, which the culled triangles carry.
+    // Culled triangles carry the number `'1`, which the proof never expects at the output.
     assign number = in_culled ? '1 : kept;
 
     setup #(.LAST(4'd2)) dut (
@@ -37,7 +39,7 @@ module setup_proof #(
     stream_checker #(.WIDTH(1), .GIVEN(1)) given (
         .clk, .rst, .valid(in_valid), .ready(in_ready), .data(in_culled)
     );
-    // It is enough to check the colour: all fields of the triangle are loaded at once.
+    // Checking the colour is enough: the module loads all fields of a triangle at once.
     stream_checker #(.WIDTH(16)) shown (
         .clk, .rst, .valid(out_valid), .ready(out_ready), .data(descriptor.colour)
     );

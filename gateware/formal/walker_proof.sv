@@ -1,15 +1,15 @@
-// Proof that the walker visits the right groups of a triangle, with any edge functions and any traffic on both sides.
-// Triangles are numbered in their colour; their bounds are up to three groups wide and two lines high.
+// Proof that the walker visits the right groups of each triangle, with any edge functions and any pattern of valid and ready on
+// both sides. Triangles are numbered in their colour; their bounds are up to three groups wide and two lines high.
 //
-// Groups come out in the order of the accepted triangles, within the lines and bounds of their triangle, none twice. Where no
-// edge fails, every group of the bounds comes out. The walk over each triangle ends in time.
+// Groups come out in the order of the accepted triangles, within the lines and bounds of their triangle, none twice. If no edge
+// fails anywhere, every group of the bounds comes out. The walk over each triangle ends within a fixed number of clocks.
 
 `default_nettype none
 
 module walker_proof (
     input wire       clk,
     input wire       in_valid,
-    input wire       in_two,     // lines
+    input wire       in_two,     // High if the triangle has two lines, low if it has one.
     input wire [1:0] in_left,
     input wire [1:0] in_right,
     input wire [1:0] in_start,
@@ -91,8 +91,8 @@ module walker_proof (
             within_bounds:   assert (group.line[5:1] == '0 && group.group[7:2] == '0 && (group_bit & bounds) != '0);
             none_twice:      assert ((group_bit & gone) == '0);
         end
-        // The walker may try two of a line's three groups, in which an edge fails, before it finds the line's first group, and
-        // try them again after it.
+        // In a line of three groups, the walker may try two groups in which an edge fails before it finds the line's first group,
+        // and may try these two again afterwards.
         left_in_time:  assert (!walking || walked < 5'd10);
         none_left_out: assert (!solid || !some || !(taken || idle) || (gone | (goes ? group_bit : '0)) == bounds);
         busy_while_it_walks: assert (idle || some);

@@ -1,4 +1,5 @@
-// Proof of write_port, at a small size: four places, bursts of two, any traffic and any memory.
+// Proof of write_port, at a small size: FIFOs of four places, and bursts of two words. Words come at any time, and memory takes
+// commands and data at any time.
 //
 // The words are numbered: word n has address n and data n. The port does not depend on its payload, so the proof holds for
 // any address and data. Memory takes the data of a command at any time, without looking at valid.
@@ -13,7 +14,8 @@ module write_port_proof (
     input wire wdata_ready
 );
     localparam int unsigned DEPTH = 4, NUMBER_BITS = 5;
-    // Largest number of clocks until a memory that takes all words has a word: through both FIFOs with all places full.
+    // Upper bound on the clocks without a transfer of data while memory takes all words: the time of a word through both FIFOs
+    // when all their places are full.
     localparam int unsigned WITHIN = 8;
 
     logic rst = 1'b1;
@@ -36,8 +38,8 @@ module write_port_proof (
         .clk, .rst, .valid(cmd_valid), .ready(cmd_ready), .data(cmd_addr)
     );
 
-    // Clocks in a row without a transfer of data, although memory takes all words: `unmoved` while the port holds words under
-    // `hurry`, `refused` while it accepts no word.
+    // Clocks in a row without a transfer of data, although memory takes all words: `unmoved` counts those in which the port holds
+    // words and `hurry` is high, `refused` those in which the port accepts no word.
     logic [3:0] unmoved, refused;
 
     always_ff @(posedge clk) begin

@@ -1,4 +1,4 @@
-"""The memory bridge under random traffic, against a memory of random latency."""
+"""Tests of the bridge from Wishbone to LiteDRAM: random traffic, and a model of the memory with random latency."""
 
 import random
 from collections import deque
@@ -11,13 +11,13 @@ from glint_soc.memory_bridge import MemoryBridge
 
 BASE = 0x4000_0000
 WORDS = 256
-"""32-bit words of the memory: few, so that accesses overlap."""
+"""Number of 32-bit words of the memory; it is small, so that accesses overlap."""
 
 TRANSACTIONS = 250
 
 
 class Memory:
-    """The memory's side of a native port: takes commands at random, and answers without back-pressure."""
+    """Model of the memory at a native port of LiteDRAM: takes commands at random times, and its answers cannot be held back."""
 
     def __init__(self, bus, port, rng):
         self.bus = bus
@@ -29,7 +29,7 @@ class Memory:
 
     @passive
     def run(self):
-        """Answers commands in order, each some cycles after it was taken, at most one word a cycle, like the controller."""
+        """Answers commands in order, each some cycles after it was taken, with at most one word per cycle, like LiteDRAM."""
         port, rng = self.port, self.rng
         queue = deque()
         cycle, earliest = 0, 0
@@ -77,13 +77,14 @@ class Memory:
 
 
 def merged(old, new, sel):
-    """`old` with the bytes of `new` that `sel` selects."""
+    """Returns the word `old` with the bytes of `new` that the mask `sel` selects."""
     mask = sum(0xff << 8 * byte for byte in range(4) if sel >> byte & 1)
     return old & ~mask | new & mask
 
 
 def master(bus, memory, rng, errors, counts):
-    """Random reads, bursts, aborted bursts, and writes, against its own copy of the memory."""
+    """Bus master: issues random reads, bursts, aborted bursts and writes, and compares what it reads with its own copy of the
+    memory."""
     expected = list(memory.words)
 
     def beat():
@@ -126,7 +127,8 @@ def master(bus, memory, rng, errors, counts):
                                   f"expected {expected[word + n]:#010x}, got {found:#010x}")
                     return
         if kind == "given up" and stop == 0:
-            # The bus gives this access up, maybe after its command was sent.
+            # Gives the access up before its first answer is used: the request stays for 1 to 12 cycles, so that its command
+            # may already have gone to memory.
             yield bus.adr.eq(BASE // 4 + word)
             yield bus.cti.eq(wishbone.CTI_BURST_INCREMENTING)
             for _ in range(rng.randint(1, 12)):
@@ -147,7 +149,7 @@ def master(bus, memory, rng, errors, counts):
 
 
 def random_traffic():
-    """Reads see all earlier writes; commands are stable; write data are valid when requested."""
+    """Checks that reads see all earlier writes, commands stay unchanged until taken, and write data are valid when requested."""
     rng = random.Random(1)
     bus = wishbone.Interface(data_width=32, address_width=32, addressing="word")
     port = LiteDRAMNativePort(mode="both", address_width=23, data_width=128)
@@ -162,7 +164,7 @@ def random_traffic():
 
 
 def a_line_takes_two_accesses():
-    """A fill of 8 words sends two commands to the memory, a write one."""
+    """Checks that the fill of a cache line of 8 words sends two commands to the memory, and a write sends one."""
     rng = random.Random(2)
     bus = wishbone.Interface(data_width=32, address_width=32, addressing="word")
     port = LiteDRAMNativePort(mode="both", address_width=23, data_width=128)

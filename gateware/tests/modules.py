@@ -1,4 +1,4 @@
-"""The modules under test, their builds and their benches."""
+"""The RTL modules under test, and the parameters of their builds."""
 
 from dataclasses import dataclass, field
 
@@ -9,8 +9,8 @@ from glint_soc.raymarch import BUILDS
 
 @dataclass(frozen=True)
 class Module:
-    """A top module. `variants` are builds with other parameters. Builds that are `measured` are for synthesis only: no test in
-    `tools/testbench` clocks them."""
+    """A module under test. `variants` has the parameters of further builds by name. `measured` names builds for synthesis only:
+    no test in `tools/testbench` simulates them."""
 
     top: str
     variants: dict = field(default_factory=dict)
@@ -18,19 +18,19 @@ class Module:
 
     @property
     def sources(self):
-        """The files of the module and of all that it is made of."""
+        """The source files of the module and of all modules and packages that it uses."""
         return rtl.sources(self.top)
 
     def builds(self):
-        """The parameters of every build by its name."""
+        """Returns the parameters of every build by the build's name."""
         return {self.top: {}, **self.variants}
 
 
-# A small picture: each memory word has the same time as at 1280x720, and a frame is a 200th of a frame at 1280x720.
+# Video timing of a small picture: each memory word has the same time as at 1280x720, and a frame takes a 200th of the time.
 _SMALL_RASTER = {"H_ACTIVE": 160, "H_FRONT": 8, "H_SYNC": 4, "H_BACK": 12,
                  "V_ACTIVE": 24, "V_FRONT": 2, "V_SYNC": 2, "V_BACK": 4}
 _SMOOTH = {"SMOOTH": 1}
-# Parameters of a lane, and of the module that takes the ends of its rays, with every field.
+# Parameters of the builds with every field: of a lane (ring_lane), and of the module that colours the ends of rays (ray_paint).
 _ALL_FIELDS = {name: BUILDS["all"].parameters()[name] for name in ("LEVELS", "FIELDS", "ROUND", "BLEND", "PREPASS")}
 _ALL_PAINT = {"ROUND": 1, "OCTANTS": int(has_octants(NAMES))}
 _PREPASS = {"PREPASS": 1}
@@ -42,7 +42,7 @@ MODULES = [
     ),
     Module(top="skid_buffer"),
     Module(top="fifo", variants={"fifo_2": {"DEPTH": 2}}),
-    # The time-out for a device that holds SCL low is half a millisecond in this build.
+    # In the build i2c_engine_hasty, the time-out for a device that holds SCL low is half a millisecond.
     Module(top="i2c_engine", variants={"i2c_engine_hasty": {"STRETCH_BITS": 15}}, measured=("i2c_engine",)),
     Module(top="band_buffer", variants={"band_buffer_stereo": {"STEREO": 1}}),
     Module(top="binner"),

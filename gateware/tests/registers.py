@@ -1,4 +1,4 @@
-"""The blocks' descriptions against the generated files, and the rules of packed structs."""
+"""Checks of the SystemVerilog that is generated from the blocks' descriptions: register packages, structs, enumerations."""
 
 from migen import Cat, Signal
 
@@ -7,13 +7,14 @@ from glint_soc.packed import Enumeration, Struct
 
 
 def check_packages():
-    """The committed SystemVerilog packages are those of the descriptions."""
+    """Checks that the committed SystemVerilog packages are those that the descriptions generate."""
     stale = packages.stale(packages.full_soc())
     return [f"{path} is out of date: `{packages.WRITER}` writes it" for path in stale]
 
 
 def check_struct():
-    """Type and value of a struct agree: SystemVerilog's first member is the highest, element 0 of an array the lowest."""
+    """Checks that type and value of a struct agree: SystemVerilog's first member is the highest, element 0 of an array the
+    lowest."""
     low, high, flag, inner = Signal(3), Signal(3), Signal(), Signal(5)
     nested = Struct("inner_t", "Inside.", {"inner": inner})
     struct = Struct("outer_t", "Outside.", {"flag": flag, "pair": [low, high], "nested": nested})
@@ -38,7 +39,7 @@ def _signals(value):
 
 
 def check_enumeration():
-    """Values are numbered from 0, in the bits of the last number."""
+    """Checks that the values are numbered from 0, in as many bits as the last number needs."""
     values = Enumeration("error", "Errors.", {"none": "no error", "size": "wrong size", "late": "too late"})
     expected = "    // Errors.\n" + "\n".join(
         f"    localparam logic [1:0] ERROR_{name} = 2'd{number};" for number, name in enumerate(("NONE", "SIZE", "LATE")))

@@ -2,7 +2,8 @@
 
     python gateware/tests/run.py           runs everything, one line a test; ends with 1 if anything failed
     python gateware/tests/run.py --models [NAME ...]
-                                           builds what the tests in tools/testbench need instead, or only these modules of it
+                                           builds the models for the tests in tools/testbench instead, all or only those of
+                                           the named modules
     python gateware/tests/run.py --packages
                                            writes the SystemVerilog packages that follow from the blocks' descriptions instead
     python gateware/tests/run.py --size NAME
@@ -71,7 +72,7 @@ def run_all(checks):
 
 
 def test():
-    """Runs everything and returns the number of failures."""
+    """Runs all checks and returns the number of those that failed."""
     prepare_yosys()
     failures = run_all(module_checks())
     files = urbana.generate()
@@ -86,13 +87,13 @@ def test():
 
 
 def run_lint(module, parameters):
-    """All of Verilator's warnings, none of them allowed."""
+    """Checks a module with all warnings of Verilator; any warning is an error."""
     run_verilator("--lint-only", "-Wall", "--top-module", module.top,
                   *(f"-G{key}={value}" for key, value in parameters.items()), *module.sources)
 
 
 def print_size(name):
-    """Prints a line of JSON. Returns whether it failed."""
+    """Prints the resources of the module `name` as a line of JSON. Returns whether the measurement failed."""
     try:
         print(json.dumps({"name": name, **size.measure(name)}), flush=True)
     except ToolError as error:
@@ -102,13 +103,13 @@ def print_size(name):
 
 
 def build_models(names):
-    """Builds the modules that are tested from Rust, or those named, and returns the number of builds that failed."""
+    """Builds the models for `tools/testbench`, or only those of the modules `names`, and returns the number of failed builds."""
     chosen = [module for module in MODULES if not names or module.top in names]
     return run_all(build for module in chosen for build in model_builds(module))
 
 
 def write_packages():
-    """Writes the packages that differ from the descriptions. Returns False: writing does not fail."""
+    """Writes the packages of registers that differ from the descriptions. Returns False, which stands for no failure."""
     for path in packages.write(packages.full_soc()):
         print(path, flush=True)
     return False

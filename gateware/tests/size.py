@@ -9,7 +9,7 @@ from modules import MODULES
 from tools import BUILD, TESTS, ToolError, run_yosys
 
 SOC = "soc"
-"""The whole of the Urbana's FPGA, as `cargo xtask gateware --board urbana` leaves it: with the BIOS in its ROM."""
+"""Name of the whole SoC on the Urbana, as `cargo xtask gateware --board urbana` builds it: with the BIOS in its ROM."""
 
 _SOC_FILES = BUILD.parent / "urbana" / "gateware"
 _FOLDER = BUILD.parent / "size"
@@ -18,16 +18,17 @@ _FOLDER = BUILD.parent / "size"
 _RESOURCES = {"logic": r"LUT[1-6]|INV", "srl": r"SRL16E|SRLC32E", "lutram": r"RAM\d+[MX]\w*", "ff": r"(FD[RSCP]|LD[CP])E(_1)?",
               "dsp48": r"DSP48E1", "ramb36": r"RAMB36E1", "ramb18": r"RAMB18E1", "carry4": r"CARRY4"}
 
-# LUTs that one cell of each kind of LUT memory takes.
+# Number of LUTs that one cell of each kind of LUT memory takes.
 _LUTRAM = {"RAM32M": 4, "RAM64M": 4, "RAM64X1S": 1, "RAM128X1S": 2, "RAM256X1S": 4, "RAM64X1D": 2, "RAM128X1D": 4}
 
 # Marks that Yosys leaves in a netlist, and pads and clock buffers that it adds to a top module. Sizes omit these cells, but
 # include the pads of the SoC.
 _MARKS, _PADS = {"$scopeinfo"}, {"BUFG", "IBUF", "OBUF"}
 
-# Keeps only the combinational cells between registers and finds the longest path in them. `ltp` treats a flip-flop as logic,
-# and takes the write of a LUT memory for its read. So reads of LUT memories become tables, and all cells but the combinational
-# ones are deleted. A LUT memory of an unknown kind would cut a path, so none is allowed.
+# Script for Yosys that counts the cells of a design, then keeps only the combinational cells between registers and finds the
+# longest path in them. Its command `ltp` treats a flip-flop as logic, and lets a path go from the write of a LUT memory to its
+# read. So reads of LUT memories become tables, and all cells except combinational ones are deleted. A LUT memory of an unknown
+# kind would cut a path, so none is allowed.
 _SCRIPT = """synth_xilinx -family xc7 -top {top} -flatten;
 tee -q -o {folder}/cells.json stat -json;
 techmap -map {reads}; opt_clean;
@@ -66,7 +67,7 @@ def _measure(top, sources, name, ignored=_MARKS | _PADS, cwd=BUILD, parameters=N
 
 
 def _set(top, parameters):
-    """Yosys commands that set a module's parameters."""
+    """Returns the Yosys commands that set a module's parameters."""
     return "".join(f"chparam -set {key} {value} {top};\n" for key, value in parameters.items())
 
 
@@ -88,7 +89,7 @@ def sort_cells(cells, ignored=frozenset()):
 
 
 def longest_path(report):
-    """The number of cells on the path that `ltp` found."""
+    """Returns the number of cells on the longest path from the report of Yosys' command `ltp`."""
     found = re.search(r"Longest topological path in \S+ \(length=(\d+)\)", report)
     if not found:
         raise ToolError(f"Yosys found no longest path:\n{report}")
@@ -101,12 +102,12 @@ def read(module, parameters):
 
 
 def check_sample():
-    """The measured size of a module with known cells is correct."""
+    """Checks that the measured size of a module with known cells is correct."""
     return _differences(_SAMPLE, _measure("size_sample", [TESTS / "size_sample.sv"], "size_sample"))
 
 
 def check_sorting():
-    """Cells are sorted by resource, and unknown ones are reported."""
+    """Checks that cells are sorted by resource, and that unknown cells are reported."""
     cells = {"LUT1": 1, "LUT6": 2, "INV": 4, "SRL16E": 8, "SRLC32E": 16, "RAM32M": 3, "RAM64X1S": 5, "FDRE": 32, "FDPE": 64,
              "FDCE_1": 1, "LDCE": 2, "RAMB18E1": 3, "RAMB36E1": 4, "DSP48E1": 5, "CARRY4": 6, "MUXF7": 7, "$scopeinfo": 8,
              "FDX": 9}

@@ -1,4 +1,4 @@
-"""The tables of roots as Yosys computes them, from reals, against integer arithmetic."""
+"""Compares the tables of square roots, which Yosys computes with real numbers, with integer arithmetic."""
 
 import json
 from math import isqrt
@@ -8,7 +8,7 @@ from tools import BUILD, run_yosys
 
 
 def _yosys(name, memory):
-    """Returns the entries that Yosys gives a memory."""
+    """Returns the entries that Yosys computes for the table `memory` of the module `name`."""
     netlist = BUILD / f"{name}.json"
     run_yosys(f"hierarchy -top {name}; proc; memory_collect; write_json {netlist.name}", rtl.sources(name))
     cell = json.loads(netlist.read_text())["modules"][name]["cells"][memory]["parameters"]
@@ -25,7 +25,7 @@ def _differences(found, expected):
 
 
 def check_roots():
-    """`ROOTS` of docs/formats.md: 18 fraction bits of each entry, and the distance to the next entry."""
+    """Checks `ROOTS` of docs/formats.md: 18 fraction bits of each entry, and the distance to the next entry."""
     roots = [isqrt(max(i, 128) << 29) for i in range(512)]
     following = [isqrt((max(i, 128) + 1) << 29) for i in range(512)]
     expected = [(root - (1 << 18) << 10) + after - root for root, after in zip(roots, following)]
@@ -33,7 +33,7 @@ def check_roots():
 
 
 def check_round_inverses():
-    """`ROUND_INVERSE`: the root of 2^10/(i + 1) less a part of 2^-16, u8.9."""
+    """Checks `ROUND_INVERSE` of docs/formats.md: the root of 2^10/(i + 1), reduced by the fraction 2^-16 of itself, u8.9."""
     expected = [isqrt(((1 << 28) - (1 << 13)) // (i + 1)) for i in range(1024)]
     return _differences(_yosys("round_inverse", "inverses"), expected)
 

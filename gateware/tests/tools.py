@@ -1,4 +1,4 @@
-"""Places of the tests, and calls of Yosys."""
+"""Folders of the tests, and calls of Yosys."""
 
 import os
 import sys
@@ -8,7 +8,7 @@ from verilate.programs import GATEWARE, ToolError, run
 
 TESTS = GATEWARE / "tests"
 BUILD = GATEWARE.parent / "target" / "gateware" / "tests"
-"""Products of the tests; may be deleted at any time."""
+"""Folder for the output files of the tests; it may be deleted at any time."""
 
 
 def prepare_yosys():
@@ -19,8 +19,8 @@ def prepare_yosys():
 def run_yosys(script, sources, folder=BUILD, log=None):
     """Reads SystemVerilog with Yosys and runs a script in `folder`.
 
-    Yosys is a WebAssembly program with a `/tmp` of its own, so every path is relative. Its output breaks off where it starts
-    a second program, as synthesis does: then errors are in its `log` only.
+    Yosys is a WebAssembly program with a separate `/tmp`, so every path is relative. Its output ends where it starts a second
+    program, as synthesis does; later errors are in the file `log` only.
     """
     folder.mkdir(parents=True, exist_ok=True)
     paths = " ".join(os.path.relpath(source, folder) for source in sources)

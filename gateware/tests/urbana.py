@@ -1,4 +1,4 @@
-"""The Urbana's generated files against facts recorded independently of the platform file."""
+"""Checks the generated files of the Urbana board against facts that were recorded independently of its platform file."""
 
 import csv
 import math
@@ -38,7 +38,7 @@ def generate():
 
 
 def check_pins(xdc, verilog, _script):
-    """Each port of the design has the pin and the properties of the table, and no other; no pin is used twice."""
+    """Checks that the ports of the design have exactly the pins and properties of urbana_pins.csv, and no pin is used twice."""
     with open(_PINS, newline="") as file:
         table = {row["signal"]: row for row in csv.DictReader(file)}
     ports = {}
@@ -66,7 +66,7 @@ def check_pins(xdc, verilog, _script):
 
 
 def _ports(verilog):
-    """The ports of the top module, one name a bit."""
+    """Returns the ports of the top module, one name per bit."""
     header = re.search(r"^module glint_urbana \((.*?)^\);", verilog, re.M | re.S).group(1)
     ports = set()
     for width, name in re.findall(r"^\s*(?:input|output|inout)\s+(?:wire|reg)\s+(?:\[(\d+):0\])?\s*(\w+),?$", header, re.M):
@@ -75,7 +75,7 @@ def _ports(verilog):
 
 
 def check_constraints(xdc, _verilog, script):
-    """The input clock, the clock groups and the configuration are constrained; the script names the part and the sources."""
+    """Checks that input clock, clock groups and configuration are constrained, and that the script names part and sources."""
     problems = [f"not in the XDC: {line}" for line in _CONSTRAINTS if line not in xdc.splitlines()]
     for word in ("-part xc7s50csga324-1", "scanout.sv", "read_xdc glint_urbana.xdc", "write_bitstream"):
         if word not in script:
@@ -84,7 +84,7 @@ def check_constraints(xdc, _verilog, script):
 
 
 def check_clocks(_xdc, verilog, _script):
-    """The parameters of the MMCMs and PLLs give exactly the frequencies that the design is made for, within limits."""
+    """Checks that the MMCMs and PLLs give exactly the clocks in `_CLOCKS`, with parameters in the range of the FPGA."""
     problems = []
     found = Counter()
     for kind, text in re.findall(r"^(MMCME2_ADV|PLLE2_ADV) #\((.*?)^\) ", verilog, re.M | re.S):
@@ -106,14 +106,14 @@ def check_clocks(_xdc, verilog, _script):
 
 
 def check_complete(_xdc, _verilog, _script):
-    """Each instantiated module exists, the FPGA's primitives included, and has the connected ports."""
+    """Checks that each instantiated module, or primitive of the FPGA, exists and has the connected ports."""
     run_yosys("read_verilog -lib +/xilinx/cells_sim.v +/xilinx/cells_xtra.v; hierarchy -check -top glint_urbana",
-              synthesis_sources(_GATEWARE), folder=_GATEWARE) # where its memory images are
+              synthesis_sources(_GATEWARE), folder=_GATEWARE) # The folder with the memory images.
     return []
 
 
 def synthesis_sources(folder):
-    """The Verilog of the Vivado script in `folder`, in a form that Yosys accepts."""
+    """Returns the Verilog files named in the Vivado script in `folder`, in a form that Yosys accepts."""
     verilog, script = folder / "glint_urbana.v", folder / "glint_urbana.tcl"
     for path in (verilog, script):
         if not path.exists():

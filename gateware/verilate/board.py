@@ -1,7 +1,7 @@
-"""The SoC of the virtual board as a shared library, which the crate `virtual-board` loads.
+"""Builds the SoC of the virtual board as a shared library, which the crate `virtual-board` loads.
 
-The model is compiled twice: the counters of a first run of the BIOS tell the compiler the likely branches, and a model that is
-compiled with them needs a quarter less time for a cycle.
+The model is compiled twice: a first build counts how often the BIOS takes each branch, and the second build, compiled with these
+counts, needs a quarter less time for a cycle.
 """
 
 import shutil
@@ -17,8 +17,8 @@ _VERILATE = ["--no-timing", "--flatten", "--x-assign", "fast", "--x-initial", "f
 
 
 def build(folder, waveforms):
-    """Builds the library from the Verilog that LiteX left in `folder`, where it is not up to date: without waveforms
-    `libglint_soc.so`, or a slower one with them, `libglint_soc_trace.so`."""
+    """Builds the library from the Verilog that LiteX left in `folder`, unless it is up to date: `libglint_soc.so`, or with
+    `waveforms` the slower `libglint_soc_trace.so`, which can write waveforms."""
     objects = folder / ("verilated-trace" if waveforms else "verilated")
     library = folder / ("libglint_soc_trace.so" if waveforms else "libglint_soc.so")
     verilog = folder / "gateware" / f"{TOP}.v"
@@ -28,7 +28,7 @@ def build(folder, waveforms):
     options = [*compiler.flags(objects, waveforms), "-O3"]
     harness_options = [*options, f'-DGLINT_BIOS="{bios}"', f"-I{folder / 'software' / 'include'}", f"-I{_SOC}"]
 
-    # The C++ of the model, which takes most of the time.
+    # First step: the model in C++ and its objects, which take most of the build's time.
     inputs = digest([verilog, *files_below(GATEWARE / "rtl", _SOC), *compiler.RECIPE, Path(__file__)], waveforms)
     stamp = objects / "model.stamp"
     if not is_current(stamp, inputs):
@@ -41,7 +41,7 @@ def build(folder, waveforms):
         _compile_model(objects, options, harness_options, waveforms)
         stamp.write_text(inputs)
 
-    # The harness around the model.
+    # Second step: the harness around the model, and the library.
     inputs = digest([bios], inputs)
     stamp = objects / "library.stamp"
     if is_current(stamp, inputs, library):

@@ -1,4 +1,4 @@
-"""Verilator, the C++ compiler and the harness around a model."""
+"""Calls of Verilator and the C++ compiler, for a model and the harness around it."""
 
 import json
 import os
@@ -13,7 +13,7 @@ HARNESS = GATEWARE.parent / "tools" / "testbench" / "harness"
 _HERE = Path(__file__).resolve().parent
 RECIPE = [*(_HERE / f"{part}.py" for part in ("compiler", "description", "programs")), *files_below(HARNESS),
           VERILATOR_ROOT / "bin" / "verilator_bin"]
-"""Files that every library depends on."""
+"""Files that every library depends on, whatever its design."""
 
 _RUNTIME = [VERILATOR_ROOT / "include" / f"{part}.cpp" for part in ("verilated", "verilated_threads")]
 _RUNTIME_OF_WAVEFORMS = VERILATOR_ROOT / "include" / "verilated_vcd_c.cpp"
@@ -21,7 +21,8 @@ _runtime_lock = threading.Lock()
 
 
 def flags(folder, waveforms=False):
-    """Options of g++ for a model in `folder`. Hidden symbols let the compiler inline: a module runs a third faster."""
+    """Returns the options of g++ for the model in `folder`. Symbols are hidden, which lets the compiler inline more and makes a
+    module a third faster."""
     values = {"SC": 0, "COVERAGE": 0, "TIMING": 0, "TRACE": int(waveforms), "TRACE_VCD": int(waveforms)}
     includes = [folder, HARNESS, VERILATOR_ROOT / "include", VERILATOR_ROOT / "include" / "vltstd"]
     return ["-std=gnu++20", "-fPIC", "-fvisibility=hidden", "-pthread", "-w", *(f"-DVM_{key}={value}" for key, value in values.items()),
@@ -40,12 +41,12 @@ def verilate(top, sources, parameters, folder, options):
 
 
 def model_sources(folder, waveforms=False):
-    """The C++ of a verilated design and Verilator's runtime."""
+    """Returns the C++ files of the verilated design in `folder` and of Verilator's runtime."""
     return [*sorted(folder.glob("Vmodel*.cpp")), *_RUNTIME, *([_RUNTIME_OF_WAVEFORMS] if waveforms else [])]
 
 
 def object_of(source, folder):
-    """The object file of a source."""
+    """Returns the path of the object file of a source."""
     return folder / f"{source.stem}.o"
 
 
@@ -70,13 +71,13 @@ def compile_all(name, sources, folder, options):
 
 
 def link(objects, built, library):
-    """Links a shared library. A program that runs keeps the library it has opened: the new one takes its place by renaming."""
+    """Links a shared library as `built` and renames it to `library`, so that running programs keep the old one they opened."""
     run(["g++", "-shared", "-pthread", *objects, "-o", built])
     built.rename(library)
 
 
 def runtime(folder, options):
-    """Objects of Verilator's runtime, in `folder`: the same for all models with these options."""
+    """Returns the objects of Verilator's runtime in `folder`, which all models with the same options share."""
     objects = [object_of(source, folder) for source in _RUNTIME]
     with _runtime_lock:
         stamp, inputs = folder / "inputs", digest(_RUNTIME, options)

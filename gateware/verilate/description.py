@@ -1,4 +1,4 @@
-"""Ports and packed types of a design as Verilator resolves them.
+"""Describes the ports and packed types of a design as Verilator resolves them.
 
 A type is one of
     {"width": 18, "signed": true}                           a vector
@@ -17,7 +17,7 @@ _WIDTHS = {"logic": 1, "bit": 1, "byte": 8, "shortint": 16, "int": 32, "integer"
 
 
 def describe(top, sources, parameters, folder):
-    """Ports in the order of the declaration, and the named types of all packages, of a design with the given parameters."""
+    """Returns the ports of a design with the given parameters, in order of declaration, and the named types of all packages."""
     run_verilator("--json-only", "-Wno-fatal", "--prefix", "Vmodel", "--Mdir", folder, "--top-module", top,
                   *(f"-G{key}={value}" for key, value in parameters.items()), *sources)
     tree = json.loads((folder / "Vmodel.tree.json").read_text())

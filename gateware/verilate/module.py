@@ -15,7 +15,7 @@ _VERILATE = ["-Wall", "--x-initial", "unique", "--x-assign", "unique"]
 
 
 def build(top, sources, name, parameters):
-    """Builds `target/gateware/models/NAME.so`, a variant of a module with some parameters, where it is not up to date."""
+    """Builds the module `top` with the given parameters as `target/gateware/models/NAME.so`, unless it is up to date."""
     library, folder = MODELS / f"{name}.so", MODELS / name
     stamp = folder / "inputs"
     inputs = digest([*sources, *compiler.RECIPE, Path(__file__)], top, name, parameters)
@@ -25,7 +25,7 @@ def build(top, sources, name, parameters):
     folder.mkdir(parents=True)
     compiler.verilate(top, sources, parameters, folder, _VERILATE)
     options = [*compiler.flags(folder), _OPTIMISE]
-    # All files are compiled as one: compiling each file alone would take as long as all of them together.
+    # All files are compiled as one file: compiling a single one of them takes as long as compiling them all together.
     parts = [*sorted(folder.glob("Vmodel*.cpp")), compiler.HARNESS / "module.cpp"]
     whole = folder / "whole.cpp"
     whole.write_text("".join(f'#include "{path}"\n' for path in parts))

@@ -1,4 +1,4 @@
-"""Calls of Verilator and other programs, and the inputs of builds."""
+"""Calls of Verilator and other programs, and fingerprints of the inputs of builds."""
 
 import hashlib
 import os
@@ -12,7 +12,7 @@ VERILATOR_ROOT = Path(verilator.__file__).resolve().parent
 
 
 class ToolError(Exception):
-    """A program that failed, with its output."""
+    """Error of a program that failed; the message has the program's output."""
 
 
 def run(command, cwd=GATEWARE, **environment):
@@ -31,7 +31,7 @@ def run_verilator(*arguments):
 
 
 def files_below(*roots):
-    """All files in folders, in a fixed order, and the files among `roots`; without Python's caches."""
+    """Yields the files among `roots`, and in a fixed order all files below the folders among `roots`, except Python's caches."""
     for root in roots:
         if root.is_dir():
             yield from (path for path in sorted(root.rglob("*")) if path.is_file() and "__pycache__" not in path.parts)
@@ -40,7 +40,7 @@ def files_below(*roots):
 
 
 def digest(files, *recipe):
-    """Fingerprint of a build: its files and its options."""
+    """Returns the fingerprint of a build's input files and options."""
     total = hashlib.sha256(repr(recipe).encode())
     for path in files:
         total.update(path.read_bytes())

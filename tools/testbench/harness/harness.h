@@ -1,5 +1,5 @@
-// One verilated design with a Verilator context of its own. Every library of a design contains this; interface.h adds the
-// C interface.
+// Harness of a verilated design: one instance of the model with its own Verilator context. Every library of a design contains
+// this code; interface.h adds the C interface.
 //
 // The build defines MODEL as the class of the verilated model, and MODEL_HEADER as the header of that class.
 
@@ -36,7 +36,7 @@ struct Harness {
         if (trace) trace->close();
 #endif
         top.final();
-        // The destructor of a model uses the thread's context, which may be another instance's.
+        // The destructor of the model uses the current thread's context, which may belong to another instance.
         Verilated::threadContextp(&context);
     }
 

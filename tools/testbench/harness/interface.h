@@ -1,10 +1,10 @@
-// The C interface of a verilated design, the same for all: `tools/testbench/src/library.rs` is its caller.
+// The C interface of a verilated design, which is the same for all designs. Its caller is `tools/testbench/src/library.rs`.
 //
-// INSTANCE is a struct derived from Harness that is made from a seed. `description.inc` is a string literal, the ports and types of
-// the design as JSON; `ports.inc` has a line PORT(name) for each port, in the same order. Ports are given out as addresses, so that
-// setting and reading one costs no call.
+// INSTANCE is a struct derived from Harness that is made from a seed. `description.inc` is a string literal, the ports and types
+// of the design as JSON; `ports.inc` has a line PORT(name) for each port, in the same order. The caller gets the address of each
+// port, so that setting or reading a port needs no call.
 //
-// Instances share nothing. An instance may move between threads, and is used by one at a time.
+// Instances share nothing. An instance may move between threads, but only one thread at a time may use it.
 
 #pragma once
 
@@ -26,7 +26,8 @@ const char *harness_description() {
 INSTANCE *harness_new(uint32_t seed) { return new INSTANCE(seed); }
 void harness_free(INSTANCE *instance) { delete instance; }
 
-// Address of a port's bits: little-endian, 1, 2, 4 or 8 bytes, or whole 4-byte words of a wider port.
+// Returns the address of the bits of port number `port`, or null if there is no such port. The bits are little-endian, in 1, 2, 4
+// or 8 bytes, or in whole 4-byte words if the port has more than 64 bits.
 void *harness_port(INSTANCE *instance, size_t port) {
     size_t index = 0;
 #define PORT(name) \

@@ -1,4 +1,4 @@
-//! Values of ports as bits.
+//! Values of a module's ports, as bits.
 
 use std::fmt;
 
@@ -36,7 +36,7 @@ impl Bits {
         bits
     }
 
-    /// The value as 32-bit words, the lowest first.
+    /// Returns the value as 32-bit words, the lowest first.
     #[must_use]
     pub fn words(&self) -> &[u32; WORDS] {
         &self.0
@@ -63,7 +63,7 @@ impl Bits {
         (three >> (low % 32)) as u64 & ((1_u128 << width) - 1) as u64
     }
 
-    /// Returns the `width` bits from bit `low` on, moved to the lowest bits; `width` has no limit of its own.
+    /// Returns the `width` bits from bit `low` on, moved to the lowest bits; `width` may be above 64.
     ///
     /// # Panics
     /// When the bits are not within the 512 bits.
@@ -93,7 +93,7 @@ impl Bits {
         self
     }
 
-    /// Returns all bits as one number.
+    /// Returns the whole value as one number.
     ///
     /// # Panics
     /// When the number does not fit 64 bits.
@@ -138,7 +138,7 @@ impl Bits {
     /// Replaces the `width` bits from bit `low` on by `value`, in two's complement if `value` is negative.
     ///
     /// # Panics
-    /// When the field is not within 512 bits, or `value` does not fit, signed or unsigned.
+    /// When the bits are not within the 512 bits, or `value` does not fit `width` bits, neither signed nor unsigned.
     #[must_use]
     pub(crate) fn with(mut self, low: usize, width: usize, value: impl Into<i128>) -> Self {
         let value = value.into();

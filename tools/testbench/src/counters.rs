@@ -3,10 +3,10 @@
 
 use crate::{Bits, Module, Port};
 
-/// Sums up the members of such a port over the clocks, by the members' names.
+/// The counters of a module: sums of the port's members over all sampled clocks, by the members' names.
 pub struct Counters {
     events: Port,
-    /// For each member: its name, its bits of the port, and its sum so far.
+    /// For each member of the port: its name, its bits within the port, and its sum so far.
     counts: Vec<(String, Port, u64)>,
 }
 

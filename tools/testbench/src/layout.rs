@@ -20,13 +20,13 @@ pub struct Layout {
 enum Shape {
     Array {
         count: usize,
-        /// Lowest index; its element is in the lowest bits.
+        /// Lowest index; the element with this index is in the lowest bits.
         lowest: usize,
         element: Layout,
     },
     Structure {
         name: String,
-        /// Members, the highest bits first.
+        /// Names and types of the members, the member in the highest bits first.
         members: Vec<(String, Layout)>,
     },
     Enumeration {
@@ -94,9 +94,9 @@ pub enum LayoutError {
     Leaf {
         /// The whole path.
         path: String,
-        /// Rest of the path, which the type `found` does not have.
+        /// Rest of the path, which names no part of the type `found`.
         rest: String,
-        /// Description of the type at that place of the path.
+        /// Description of the type that the path has reached before `rest`.
         found: String,
     },
     /// A value that does not fit the bits of its part.
@@ -121,7 +121,7 @@ pub enum LayoutError {
         /// Names of that type's values; empty if the type is not an enumeration.
         values: Vec<String>,
     },
-    /// A list of values whose length differs from that of the array to be set.
+    /// A list of values whose length differs from the length of the array that they are for.
     #[error("{path}: {found} values for {found_in}")]
     Length {
         /// The path.
@@ -134,7 +134,7 @@ pub enum LayoutError {
 }
 
 impl Layout {
-    /// Bits of the type.
+    /// Number of bits of the type.
     #[must_use]
     pub fn width(&self) -> usize {
         self.width
@@ -167,7 +167,7 @@ impl Layout {
         Ok(part)
     }
 
-    /// Names of a structure's members, the one in the highest bits first; empty for any other type.
+    /// Names of a structure's members, the member in the highest bits first; empty for any other type.
     pub(crate) fn member_names(&self) -> Vec<String> {
         match &*self.shape {
             Shape::Structure { members, .. } => {
@@ -177,7 +177,7 @@ impl Layout {
         }
     }
 
-    /// Number of elements of an array, and the type of an element; `None` for any other type.
+    /// Number of elements of an array, and the type of its elements; `None` for any other type.
     pub(crate) fn elements(&self) -> Option<(usize, &Self)> {
         match &*self.shape {
             Shape::Array { count, element, .. } => Some((*count, element)),

@@ -1,8 +1,8 @@
-//! Verilated designs, their ports by name, and both ends of their streams.
+//! Test benches for verilated designs: ports by name, and senders and receivers for streams.
 //!
-//! A [`Module`] is one instance of one module, with ports by name and a clock. A [`Source`] sends to an input stream of
-//! the module (valid/ready), a [`Sink`] takes from an output stream. Both stall at random. A payload must not change
-//! while it is valid and not taken: the source obeys this rule, and the sink checks it.
+//! A [`Module`] is one instance of one module, with ports by name and a clock. A [`Source`] sends items to an input stream
+//! of the module (valid/ready), a [`Sink`] takes items from an output stream; sources and sinks stall at random. A payload
+//! must not change while it is valid and not taken: the source obeys this rule, and the sink checks it.
 //!
 //! `python gateware/tests/run.py --models` builds the modules; `cargo xtask test` builds them too.
 

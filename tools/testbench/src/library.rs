@@ -93,7 +93,7 @@ impl Slot {
     }
 }
 
-/// One instance of a verilated design: ports by number, and evaluation.
+/// One instance of a verilated design, which gives access to its ports by number and evaluates it.
 pub struct Instance {
     handle: NonNull<c_void>,
     ports: Vec<Slot>,
@@ -105,14 +105,14 @@ pub struct Instance {
     library: Library,
 }
 
-// SAFETY: an instance may move between threads as long as one uses it at a time (interface.h).
+// SAFETY: an instance may move between threads as long as only one thread uses it at a time (interface.h).
 unsafe impl Send for Instance {}
 
 impl Instance {
     /// Loads a library and creates an instance of its design, before the first evaluation.
     ///
     /// # Errors
-    /// When the file is missing, or is not a library of this version of the harness.
+    /// When the file is missing, or is not a library with this version of the C interface.
     pub fn load(path: &Path, seed: u32) -> Result<Self, LoadError> {
         let error = |source| LoadError::Library {
             path: path.to_owned(),
@@ -202,7 +202,7 @@ impl Instance {
         &self.description.ports[port]
     }
 
-    /// Number of the port `name`.
+    /// Returns the number of the port `name`.
     ///
     /// # Panics
     /// When there is no such port; the message lists the names of all ports.
@@ -219,7 +219,7 @@ impl Instance {
     /// Returns the value of a port of at most 64 bits after the last evaluation.
     ///
     /// # Panics
-    /// When there is no such port, or the port is wider.
+    /// When there is no such port, or the port has more than 64 bits.
     #[must_use]
     pub fn value(&self, port: usize) -> u64 {
         let bytes = self.bytes(port);
@@ -295,8 +295,8 @@ impl Instance {
         let Ok(path) = CString::new(path.as_os_str().as_encoded_bytes()) else {
             return Ok(false);
         };
-        // SAFETY: the type is that of interface.h. The handle belongs to an instance, and the path is read during the
-        // call only.
+        // SAFETY: the function has the type that interface.h declares. The handle belongs to an instance, and the path is
+        // read during the call only.
         unsafe {
             let start: unsafe extern "C" fn(*mut c_void, *const c_char) -> c_int =
                 self.symbol("harness_waveforms")?;
@@ -304,14 +304,14 @@ impl Instance {
         }
     }
 
-    /// The storage of a port, little-endian.
+    /// Returns the bytes of a port in the model, little-endian.
     fn bytes(&self, port: usize) -> &[u8] {
         let Slot { address, bytes, .. } = self.ports[port];
         // SAFETY: the address is valid for this many bytes as long as the instance lives, and writes need `&mut self`.
         unsafe { slice::from_raw_parts(address.as_ptr(), bytes) }
     }
 
-    /// The storage of a port for changes, little-endian.
+    /// Returns the bytes of a port in the model, little-endian, to be changed.
     fn bytes_mut(&mut self, port: usize) -> &mut [u8] {
         let Slot { address, bytes, .. } = self.ports[port];
         // SAFETY: as in `bytes`; `&mut self` excludes other access.

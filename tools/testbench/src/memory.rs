@@ -1,10 +1,10 @@
-//! Model of the memory behind LiteDRAM's native ports, in words of 16 bytes.
+//! Model of the memory behind LiteDRAM's native ports; addresses count words of 16 bytes.
 
 use std::collections::VecDeque;
 
 use crate::{Bits, Module, Port, Stalls};
 
-/// Contents of the memory, by word.
+/// Contents of the memory, in words of 16 bytes.
 pub struct Memory {
     words: Vec<[u8; 16]>,
 }
@@ -45,7 +45,7 @@ impl Memory {
         )
     }
 
-    /// Writes those bytes of the word number `address` whose bit is set in `strobe`.
+    /// Writes those bytes of `data` whose bit is set in `strobe` to the word number `address`.
     ///
     /// # Panics
     /// When the address is beyond the memory.
@@ -57,7 +57,7 @@ impl Memory {
         }
     }
 
-    /// Returns number `index` of the 32-bit entries that start at the word number `address`.
+    /// Returns entry number `index` of an array of 32-bit entries that starts at the word number `address`.
     ///
     /// # Panics
     /// When the address is beyond the memory.
@@ -68,15 +68,15 @@ impl Memory {
     }
 }
 
-/// Default of `latency` of a read port, in clocks.
+/// Default latency of a read port, in clocks from a command to its data.
 const LATENCY: u64 = 12;
 
-/// The memory's side of a read port: the structs `NAME_read_request` and `NAME_read_answer` of the module. The module
-/// cannot hold back data.
+/// The memory's side of a module's read port, which consists of the structs `NAME_read_request` and `NAME_read_answer`. The
+/// module must take each word in the clock in which the memory delivers it.
 pub struct ReadPort {
     cmd: [Port; 3],
     rdata: [Port; 2],
-    /// Words that were requested and not delivered: the cycle from which each may be delivered, and its address.
+    /// Words that were requested and not yet delivered: for each, the cycle from which it may be delivered, and its address.
     queue: VecDeque<(u64, u32)>,
     stalls: Stalls,
     /// Lowest number of clocks from a command to its data.
@@ -105,7 +105,7 @@ impl ReadPort {
         }
     }
 
-    /// Drives the port: delivers a word if one is due, and is ready for a command or stalls.
+    /// Drives the port for the next clock: delivers a word if one is due, and is ready for a command or stalls.
     pub fn drive(&mut self, module: &mut Module, memory: &Memory) {
         let stalled = self.stalls.next_stalled();
         module.set(self.cmd[1], u64::from(!stalled));
@@ -131,8 +131,8 @@ impl ReadPort {
     }
 }
 
-/// The memory's side of a write port: the structs `NAME_write_request` and `NAME_write_answer` of the module. The memory
-/// takes the data of a command in any later clock, when the data must be valid.
+/// The memory's side of a module's write port, which consists of the structs `NAME_write_request` and `NAME_write_answer`.
+/// The memory takes the data of a command in any later clock; the data must be valid in that clock.
 pub struct WritePort {
     cmd: [Port; 3],
     wdata: [Port; 4],
@@ -169,7 +169,7 @@ impl WritePort {
         }
     }
 
-    /// Drives the port: is ready for a command or stalls, and takes the data of an earlier command or stalls.
+    /// Drives the port for the next clock: is ready for a command or stalls, and takes the data of an earlier command or stalls.
     pub fn drive(&mut self, module: &mut Module) {
         let stalled = self.stalls.next_stalled();
         module.set(self.cmd[1], u64::from(!stalled));
@@ -177,7 +177,8 @@ impl WritePort {
         module.set(self.wdata[1], u64::from(self.takes));
     }
 
-    /// Takes the command of this clock, if there is one, and writes the data that `drive` announced to take.
+    /// Takes the command of this clock, if there is one, and writes the data of this clock to `memory` if `drive` has
+    /// announced to take data.
     ///
     /// # Panics
     /// When the data of a command are missing, or the address is beyond the memory.

@@ -1,11 +1,11 @@
-//! A module under test.
+//! An instance of a module under test, with ports by name.
 
 use std::path::Path;
 
 use crate::library::Instance;
 use crate::{Bits, Layout, Record};
 
-/// A port of a [`Module`], or part of one.
+/// A port of a [`Module`], or part of a port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Port {
     index: usize,
@@ -69,16 +69,16 @@ impl Module {
         }
     }
 
-    /// Finds a port, or part of one, by its path: `busy`, `status.busy`, `origins[2]`. See [`Record`] for paths.
+    /// Finds a port, or part of a port, by its path: `busy`, `status.busy`, `origins[2]`. See [`Record`] for paths.
     ///
     /// # Panics
-    /// When there is none; the message lists the known names.
+    /// When there is no such port or part; the message lists the known names.
     #[must_use]
     pub fn port(&self, path: &str) -> Port {
         self.part(path).0
     }
 
-    /// Finds a port, or part of one, and its type.
+    /// Finds a port, or part of a port, and its type.
     fn part(&self, path: &str) -> (Port, &Layout) {
         let (name, rest) = split(path);
         let index = self.instance.find(name);
@@ -97,7 +97,7 @@ impl Module {
     /// Finds a type of a SystemVerilog package by its name, such as `raymarch_pkg::end_t`.
     ///
     /// # Panics
-    /// When there is none; the message lists the known names.
+    /// When there is no such type; the message lists the known names.
     #[must_use]
     pub fn packed_type(&self, name: &str) -> &Layout {
         let types = &self.instance.description().types;
@@ -107,7 +107,7 @@ impl Module {
         })
     }
 
-    /// Makes a record, all zero, of the type of a port or of part of one.
+    /// Makes a record, all zero, of the type of a port or of a part of a port.
     ///
     /// # Panics
     /// When there is no such part.
@@ -116,7 +116,7 @@ impl Module {
         self.part(path).1.record()
     }
 
-    /// Drives an input, or part of one, with a number: `stereo`, `solid.levels`, `origins[0][2]`. See [`Record`] for paths.
+    /// Drives an input, or part of an input, with a number: `stereo`, `solid.levels`, `origins[0][2]`. See [`Record`] for paths.
     ///
     /// # Panics
     /// When there is no such part, or the number does not fit.
@@ -127,12 +127,12 @@ impl Module {
     /// Drives an array with numbers, the lowest index first.
     ///
     /// # Panics
-    /// When there is no such array, or one of another length, or a number does not fit.
+    /// When there is no such array, its length differs from the number of values, or a number does not fit.
     pub fn drive_all(&mut self, path: &str, values: impl IntoIterator<Item: Into<i128>>) {
         self.change(path, |record| record.set_all("", values));
     }
 
-    /// Drives an input, or part of one, with bits, such as those of a record.
+    /// Drives an input, or part of an input, with bits, such as those of a record.
     ///
     /// # Panics
     /// When there is no such part, or the bits do not fit.
@@ -140,16 +140,16 @@ impl Module {
         self.set(self.port(path), bits);
     }
 
-    /// Reads a port or part of one as an unsigned number.
+    /// Reads a port, or part of a port, as an unsigned number.
     ///
     /// # Panics
-    /// When there is no such part, or one of more than 64 bits.
+    /// When there is no such part, or it has more than 64 bits.
     #[must_use]
     pub fn read(&self, path: &str) -> u64 {
         self.value(self.port(path))
     }
 
-    /// Reads a port or part of one as a record of its type.
+    /// Reads a port, or part of a port, as a record of its type.
     ///
     /// # Panics
     /// When there is no such part.
@@ -165,7 +165,7 @@ impl Module {
         self.set(self.port(path), record);
     }
 
-    /// Drives an input, or part of one, with a value.
+    /// Drives an input, or part of an input, with a value.
     ///
     /// # Panics
     /// When the port is an output, or the value does not fit.
@@ -185,7 +185,7 @@ impl Module {
         self.instance.set_bits(index, value);
     }
 
-    /// Drives an input, or part of one, of at most 64 bits.
+    /// Drives an input, or part of an input, of at most 64 bits.
     ///
     /// # Panics
     /// When the port is an output, or the value does not fit.
@@ -197,7 +197,7 @@ impl Module {
         }
     }
 
-    /// Bits of a port after the last [`settle`](Self::settle) or [`clock`](Self::clock).
+    /// Returns the bits of a port after the last [`settle`](Self::settle) or [`clock`](Self::clock).
     #[must_use]
     pub fn get(&self, port: Port) -> Bits {
         let bits = self.instance.bits(port.index);
@@ -207,10 +207,10 @@ impl Module {
         bits.slice(port.low, port.width)
     }
 
-    /// Value of a port of at most 64 bits.
+    /// Returns the value of a port of at most 64 bits.
     ///
     /// # Panics
-    /// When the port is wider.
+    /// When the port has more than 64 bits.
     #[must_use]
     pub fn value(&self, port: Port) -> u64 {
         if port.whole {

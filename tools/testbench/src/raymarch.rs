@@ -1,4 +1,4 @@
-//! Values on the ports of the raymarcher's modules: frame constants, rays, ends of rays, and pixels.
+//! Packs and unpacks values on the ports of the raymarcher's modules: frame constants, rays, ends of rays, and pixels.
 
 use crate::{Bits, Layout, Module, Record};
 use glint_core::field::{Solid, Surface};
@@ -20,7 +20,7 @@ pub struct Place {
 }
 
 impl Place {
-    /// The place that stands for a cone: line and column hold the cone's number.
+    /// Returns the place that stands for a cone: its line and column hold the cone's number.
     pub fn of_cone(eye: usize, number: u32) -> Self {
         Self {
             odd: false,
@@ -47,12 +47,12 @@ impl Place {
     }
 }
 
-/// Packs a `ray_t` before the ray's first step.
+/// Packs a ray, before its first step, as a `ray_t`.
 pub fn ray(layout: &Layout, place: Place, ray: &Ray) -> Bits {
     ray_record(layout, place, ray).bits()
 }
 
-/// Packs the `ray_t` of a cone.
+/// Packs a cone, before its first step, as a `ray_t`.
 pub fn cone(layout: &Layout, place: Place, cone: &Cone) -> Bits {
     let record = ray_record(layout, place, &cone.ray);
     record.with("spread", cone.spread).bits()
@@ -67,7 +67,7 @@ fn ray_record(layout: &Layout, place: Place, ray: &Ray) -> Record {
     record
 }
 
-/// Result of a ray; the names in `state_t` are in `NAMES`.
+/// State in which a ray ends. `NAMES` has the names of these states in the SystemVerilog type `state_t`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Kind {
     /// The ray reached the far limit.
@@ -98,8 +98,8 @@ impl Kind {
     }
 }
 
-/// End of a ray or cone. Members without a meaning are 0: `surface` and `slope` without a hit, `t` of an undecided ray,
-/// `face` of a pure sphere, `direction` without a sphere.
+/// End of a ray or cone: the result that a lane returns. Members without a meaning are 0: `surface` and `slope` if nothing
+/// was hit, `t` of an undecided ray, `face` if a pure sphere was hit, `direction` if no sphere was hit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct End {
     /// Whether the ray missed, hit or stayed undecided.
@@ -112,15 +112,15 @@ pub struct End {
     pub face: u64,
     /// Share of the sphere in a fillet, u0.8.
     pub share: u64,
-    /// Distance, u11.12; after a miss, the sine of the direction's angle above the horizon in 8 bits.
+    /// Distance along the ray, u11.12; after a miss, the sine of the direction's angle above the horizon in 8 bits.
     pub t: u64,
-    /// Number of evaluations, at most 255.
+    /// Number of evaluations of the field; 255 stands for 255 or more.
     pub steps: u64,
     /// Length of the ray's direction.
     pub length: u64,
-    /// Distance of the face from the point at `t`.
+    /// Distance of the face from the point at `t` (*gap* in docs/formats.md).
     pub gap: u64,
-    /// Slope of the ray towards the face.
+    /// Slope of the ray towards the face (*slope* in docs/formats.md).
     pub slope: u64,
     /// Direction of a ray that hits a sphere.
     pub direction: [i32; 3],
@@ -156,8 +156,8 @@ impl End {
         }
     }
 
-    /// Converts the model's distance and evaluations of a cone to the end that the module must produce; the other
-    /// members, except the length, are 0.
+    /// Converts the model's result of a cone, distance `t` and number of evaluations, to the end that the module must
+    /// produce. The other members, except the length, are 0.
     pub fn expected_of_cone(cone: &Cone, (t, steps): (u32, u32)) -> Self {
         Self {
             t: t.into(),
@@ -242,7 +242,7 @@ fn solid(mut solid: Record, setup: &FieldSetup) -> Record {
     solid
 }
 
-/// Writes the tables of spheres and their materials.
+/// Writes the spheres of the field, and their materials, to the module's tables.
 fn set_spheres(module: &mut Module, setup: &FieldSetup, lights: &Lights) {
     let Some(spheres) = setup.spheres() else {
         return;
@@ -378,7 +378,7 @@ pub fn set_paint(module: &mut Module, setup: &FieldSetup, palette: &Palette) {
     module.set(write, 0);
 }
 
-/// A pixel in the form of a group of eight pixels, as the band buffer takes it.
+/// A pixel in the form that the band buffer takes: a group of eight pixels in which only this pixel is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pixel {
     /// Eye: 0 is the left eye or the only one, 1 the right eye.
@@ -389,7 +389,7 @@ pub struct Pixel {
     pub line: u64,
     /// Column of the group, in units of eight pixels.
     pub column: u64,
-    /// Mask of the group's pixels, with the one pixel's bit set.
+    /// Mask of the group's eight pixels; only the bit of this pixel is set.
     pub mask: u64,
     /// Depth code.
     pub code: u64,
@@ -398,7 +398,7 @@ pub struct Pixel {
 }
 
 impl Pixel {
-    /// Names of the numbers that [`from`](Self::from) takes, which are the payload of a stream of pixels.
+    /// Names of the payload's ports in a stream of pixels, in the order of the numbers that [`from`](Self::from) takes.
     pub const PAYLOAD: [&str; 7] = ["eye", "row", "line", "column", "mask", "code", "colour"];
 }
 
@@ -416,7 +416,7 @@ impl From<[u64; 7]> for Pixel {
     }
 }
 
-/// Paints the model's result of one ray: the pixel that the paint module must produce.
+/// Computes, from the model's result of one ray, the pixel that the paint module must produce.
 pub fn pixel(
     setup: &FieldSetup,
     palette: &Palette,

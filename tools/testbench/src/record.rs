@@ -1,4 +1,4 @@
-//! Values of packed types, member by member.
+//! Values of packed types, with access to single members.
 
 use std::fmt;
 
@@ -6,9 +6,9 @@ use crate::Bits;
 use crate::bits::holds;
 use crate::layout::{Layout, LayoutError, Part};
 
-/// A value of a packed type with named members. Paths are `place.line`, `half[2]`, `[1][0]`, and `""` for the whole.
+/// A value of a packed type. A path names a part of it: for example `place.line`, `half[2]`, `[1][0]`, or `""` for the whole.
 ///
-/// Every method that takes a path panics with a [`LayoutError`] when the type has no such part, and lists its parts.
+/// Every method that takes a path panics when the type has no such part; the message is a [`LayoutError`] with the known names.
 #[derive(Clone)]
 pub struct Record {
     layout: Layout,
@@ -67,7 +67,7 @@ impl Record {
     /// Returns the record with an array set to numbers, the lowest index first.
     ///
     /// # Panics
-    /// When there is no such array, or one of another length, or a number does not fit.
+    /// When there is no such array, its length differs from the number of values, or a number does not fit.
     #[must_use]
     pub fn with_all(mut self, path: &str, values: impl IntoIterator<Item: Into<i128>>) -> Self {
         self.set_all(path, values);
@@ -86,7 +86,7 @@ impl Record {
     /// Sets an array to numbers, the lowest index first.
     ///
     /// # Panics
-    /// When there is no such array, or one of another length, or a number does not fit.
+    /// When there is no such array, its length differs from the number of values, or a number does not fit.
     pub fn set_all(&mut self, path: &str, values: impl IntoIterator<Item: Into<i128>>) {
         let values: Vec<i128> = values.into_iter().map(Into::into).collect();
         let result = self.try_set_all(path, &values);
@@ -96,7 +96,7 @@ impl Record {
     /// Sets an enumeration to a value by its name.
     ///
     /// # Panics
-    /// When there is no such part, or no such value of it.
+    /// When there is no such part, or its type has no value of that name.
     pub fn set_name(&mut self, path: &str, name: &str) {
         let result = self.try_set_name(path, name);
         result.unwrap_or_else(|error| panic!("{error}"));
@@ -114,7 +114,7 @@ impl Record {
     /// Returns a part of at most 64 bits as an unsigned number.
     ///
     /// # Panics
-    /// When there is no such part, or a wider one.
+    /// When there is no such part, or it has more than 64 bits.
     #[must_use]
     pub fn get(&self, path: &str) -> u64 {
         let part = self.find(path);
@@ -124,7 +124,7 @@ impl Record {
     /// Returns a part of at most 64 bits as a two's complement number.
     ///
     /// # Panics
-    /// When there is no such part, or a wider one.
+    /// When there is no such part, or it has more than 64 bits.
     #[must_use]
     pub fn signed(&self, path: &str) -> i64 {
         let part = self.find(path);
@@ -134,7 +134,7 @@ impl Record {
     /// Whether a part of one bit is set.
     ///
     /// # Panics
-    /// When there is no such part, or a wider one.
+    /// When there is no such part, or it has more than one bit.
     #[must_use]
     pub fn is_set(&self, path: &str) -> bool {
         let part = self.find(path);
@@ -145,7 +145,7 @@ impl Record {
     /// Returns the name of an enumeration's value; `None` for a number without a name.
     ///
     /// # Panics
-    /// When there is no such part, or it is no enumeration.
+    /// When there is no such part, or its type is no enumeration.
     #[must_use]
     pub fn name(&self, path: &str) -> Option<&str> {
         let part = self.find(path);
@@ -156,7 +156,7 @@ impl Record {
         found.map(|(name, _)| name.as_str())
     }
 
-    /// Returns a part as a record of its own.
+    /// Returns a part as a separate record.
     ///
     /// # Panics
     /// When there is no such part.
@@ -169,20 +169,20 @@ impl Record {
         }
     }
 
-    /// Fallible [`set`](Self::set).
+    /// Does the same as [`set`](Self::set), but returns errors.
     ///
     /// # Errors
-    /// Where the other method panics.
+    /// In the cases in which `set` panics.
     pub fn try_set(&mut self, path: &str, value: i128) -> Result<(), LayoutError> {
         let part = self.layout.find(path)?;
         self.bits = with_number(self.bits, path, part.low, part.layout, value)?;
         Ok(())
     }
 
-    /// Fallible [`set_all`](Self::set_all).
+    /// Does the same as [`set_all`](Self::set_all), but returns errors.
     ///
     /// # Errors
-    /// Where the other method panics.
+    /// In the cases in which `set_all` panics.
     pub fn try_set_all(&mut self, path: &str, values: &[i128]) -> Result<(), LayoutError> {
         let part = self.layout.find(path)?;
         let elements = part.layout.elements();
@@ -200,10 +200,10 @@ impl Record {
         Ok(())
     }
 
-    /// Fallible [`set_name`](Self::set_name).
+    /// Does the same as [`set_name`](Self::set_name), but returns errors.
     ///
     /// # Errors
-    /// Where the other method panics.
+    /// In the cases in which `set_name` panics.
     pub fn try_set_name(&mut self, path: &str, name: &str) -> Result<(), LayoutError> {
         let part = self.layout.find(path)?;
         let values = part.layout.values();
@@ -217,10 +217,10 @@ impl Record {
         self.try_set(path, value.into())
     }
 
-    /// Fallible [`set_bits`](Self::set_bits).
+    /// Does the same as [`set_bits`](Self::set_bits), but returns errors.
     ///
     /// # Errors
-    /// Where the other method panics.
+    /// In the cases in which `set_bits` panics.
     pub fn try_set_bits(&mut self, path: &str, bits: Bits) -> Result<(), LayoutError> {
         let part = self.layout.find(path)?;
         let (low, width) = (part.low, part.layout.width());
@@ -241,7 +241,7 @@ impl Record {
     }
 }
 
-/// Returns `bits` with `value` in the part at `low`, which has the type `layout`. `path` is for errors.
+/// Returns `bits` with `value` in the part that starts at bit `low` and has the type `layout`. `path` is for errors only.
 fn with_number(
     bits: Bits,
     path: &str,

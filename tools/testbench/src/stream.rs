@@ -1,7 +1,7 @@
 //! The test bench's ends of a module's streams. A stream has the ports `valid`, `ready`, and those of its payload.
 //!
-//! In every cycle: `drive` all ends, [`Module::settle`], `sample` all ends, [`Module::clock`]. [`step`] does this for a
-//! module that has no ports except those of streams.
+//! In every cycle, a test bench does these steps: `drive` all ends, [`Module::settle`], `sample` all ends,
+//! [`Module::clock`]. [`step`] does them for a module that has no ports except those of streams.
 
 use std::collections::VecDeque;
 
@@ -25,7 +25,7 @@ pub fn exchange(module: &mut Module, sources: &mut [&mut Source], sinks: &mut [&
     sinks.iter_mut().for_each(|sink| sink.sample(module));
 }
 
-/// Random stalls of a stream's end: a share of the cycles, in runs of random length.
+/// Random stalls of one end of a stream: a given share of the cycles stalls, in runs of random length.
 pub struct Stalls {
     random: Pcg64Mcg,
     share: f64,
@@ -35,7 +35,7 @@ pub struct Stalls {
 }
 
 impl Stalls {
-    /// Most cycles between two random decisions.
+    /// Largest number of cycles between two random decisions.
     const RUN: u32 = 8;
 
     /// Creates stalls in the share `share` of the cycles: never for 0, always for 1.
@@ -194,7 +194,7 @@ impl Sink {
         module.set(self.ports.ready, u64::from(ready));
     }
 
-    /// Takes the item of this cycle if it is valid and the sink is ready.
+    /// Takes the item on the ports if it is valid and the sink is ready in this cycle.
     ///
     /// # Panics
     /// When a payload that was valid and not taken has changed, or is no longer valid.
