@@ -7,12 +7,13 @@
 //                 list_base + 16 + (band << list_shift) + 128·band  the list of a band, 4 entries a word
 //   exceptions    exception_base                       4 entries a word
 //
-// The entries of a list are kept here until there are four of them, so that each word is written whole. Turning from the
-// descriptors to a list and back costs memory several clocks, so it matters that four entries take one write.
+// Up to three entries of each list are kept in this module until a fourth one completes the word, so that each word is
+// written whole. Memory needs several clocks to change between the descriptors and a list, and writes of four entries make
+// these changes rare.
 //
-// Throughput 6 clocks a descriptor, with SMOOTH 9, and 2 more for each band after the first. `restart` (while idle) empties
-// all lists, which takes 64 clocks; `finish` (a level, after the last input) writes the lengths and ends with `done`. Items
-// for which there is no room are dropped, and `full` is set: the frame is incomplete.
+// Throughput 6 clocks a descriptor, or 9 with SMOOTH, and 2 more for each band after the first. `restart` (while idle) empties
+// all lists, which takes 64 clocks; `finish` (a level, after the last input) writes the lengths and ends with `done`. Items for
+// which there is no room are dropped, and `full` is set: the frame is then incomplete.
 
 `default_nettype none
 
@@ -75,7 +76,7 @@ module binner #(
         endcase
     endfunction
 
-    // The strobe that writes only the entry in lane `lane` of a word.
+    // Returns the byte strobe that writes only the entry in lane `lane` of a word.
     function automatic logic [15:0] entry_strobe(input logic [1:0] lane);
         entry_strobe = 16'hf << {lane, 2'b00};
     endfunction
@@ -83,7 +84,7 @@ module binner #(
     typedef enum logic [3:0] {CLEAR, IDLE, LOCATE, WORD, LOOK, ENTRY, LENGTHS, LENGTHS_WORD, DONE} state_t;
     state_t state;
 
-    // Per list: its length, and the first three entries of its incomplete last word.
+    // For each list: its length, and the first three entries of its incomplete last word.
     (* ram_style = "distributed" *) logic [COUNT_BITS-1:0]   lengths [0:BANDS-1];
     (* ram_style = "distributed" *) logic [3*COUNT_BITS-1:0] ends [0:BANDS-1];
     logic [BAND_BITS-1:0]    band, last_band;
@@ -127,7 +128,7 @@ module binner #(
         endcase
     end
 
-    // Values that are read for `band` come a clock after it.
+    // Values that are read from `lengths` and `ends` for `band` are valid a clock after `band`.
     logic [ADDRESS_BITS-1:0] first_list, list_word;
     logic [127:0]            list_data;
 

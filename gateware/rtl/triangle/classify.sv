@@ -1,9 +1,9 @@
-// Decides where a triangle goes after the vertex stage (`Renderer::path` of glint-model): to the setup, to the clipper as
-// an exception, or nowhere.
+// Decides what happens to a triangle after the vertex stage (`Renderer::path` of glint-model): it goes to the setup, or its
+// number goes to the firmware's clipper as an exception, or it is dropped.
 //
-//   all vertices behind, or none behind and all off the same side of the picture   unseen: leaves no trace but `unseen`
-//   else one behind, or one beyond the guard band                                  exception: its number goes out
-//   else                                                                           regular
+//   all vertices behind, or none behind and all off the same side of the picture   dropped, with a pulse of `unseen`
+//   otherwise, a vertex behind or beyond the guard band                            exception: its number goes out
+//   otherwise                                                                      regular: goes to the setup
 //
 // Latency 2 clocks, throughput a triangle a clock. `width` and `height` must hold while triangles are inside. Triangles are
 // numbered in the order in which they come, from 0 after `restart`.
@@ -34,8 +34,8 @@ module classify #(
     input  wire                      exception_ready,
     output logic [31:0]              exception_number
 );
-    // The sides of the picture beyond which a vertex lies: left, right, above, below. Only the whole pixels
-    // of its place count.
+    // Returns the sides of the picture beyond which a vertex lies: left, right, above, below. x and y are the integer parts
+    // of its position.
     function automatic logic [3:0] off_sides(input logic [12:0] x, input logic [12:0] y);
         off_sides = {x[12], !x[12] && x[11:0] >= 12'(width), y[12], !y[12] && y[11:0] >= 12'(height)};
     endfunction

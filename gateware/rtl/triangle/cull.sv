@@ -1,6 +1,7 @@
-// The first part of the triangle setup: area, facing, bounds and start group. A triangle without area, a back face while
-// `cull_back`, or a triangle without a pixel's centre in its bounds ends here, with a pulse of `culled`. So does a triangle
-// beyond one side of the picture, because its bounds are empty.
+// The first part of the triangle setup: computes the area, the facing, the bounds in pixels, and the start group (the eight
+// pixels in which rasterization begins). A triangle is dropped, with a pulse of `culled`, if it has no area, if it is a back
+// face while `cull_back` is high, or if its bounds contain no pixel centre. The bounds of a triangle beyond one side of the
+// picture are empty.
 //
 // Throughput a triangle in 4 clocks, latency 8. Two triangles are inside, in different stages; `phase` counts the 4
 // clocks of a stage:
@@ -8,8 +9,8 @@
 //   in ─▶│ first 4 clocks: products of the area,  │─▶│ last 4 clocks: area,        │─▶ out
 //        │ minima and maxima, one in each clock   │  │ bounds, start; then verdict │
 //
-// Everything stops while a triangle that is not culled waits in phase 3 for `out`; a culled triangle never waits. `in_ready`
-// follows `out_ready` in the same clock, so `out_ready` must come from registers, as in `setup`.
+// All stages stop while a triangle that is not culled waits in phase 3 for `out`; a culled triangle never waits. `in_ready`
+// follows `out_ready` in the same clock, so `out_ready` must come from registers, as it does in `setup`.
 
 `default_nettype none
 
@@ -37,7 +38,7 @@ module cull #(
     // Light L of the vertices, for the visible side of the triangle.
     output logic [2:0][LIT_BITS-1:0] out_lit
 );
-    // The inputs of a triangle, and the differences of the coordinates of its vertices.
+    // The inputs of a triangle, and differences of the coordinates of its vertices: x10 is x1 − x0, y01 is y0 − y1, and so on.
     typedef struct packed {
         triangle_pkg::screen_vertex_t v0, v1, v2;
         logic [15:0]          colour;
@@ -91,8 +92,8 @@ module cull #(
         end
     end
 
-    // `area` is 2A = x10·y20 + x20·y01, from products with the highest four bits of y20 and y01 first. Valid in phase 2
-    // of the last clocks.
+    // `area` is 2A = x10·y20 + x20·y01, twice the signed area. The products with the highest four bits of y20 and y01 come
+    // first, then the products with their low 17 bits. The sum is valid in phase 2 of a triangle's last 4 clocks.
     logic signed [24:0] a;
     logic signed [17:0] b;
     logic signed [43:0] c, area;
@@ -136,7 +137,7 @@ module cull #(
         cut     = pixel[12] ? '0 : pixel[11:0] > {1'b0, size} ? size : pixel[10:0];
     end
 
-    // The decision to cull, and the values that depend on the facing, registered for phase 3.
+    // The decision to cull the triangle, and the values that depend on its facing, registered for phase 3.
     logic        front, no_area, no_column, no_row;
     logic [39:0] flipped_area;
     logic [9:0]  group_top;
@@ -217,7 +218,7 @@ module cull #(
 
     // Light of the vertices in the order after the swap; 0 for a vertex whose light belongs to the other side of the triangle.
     if (SMOOTH) begin : light
-        // These are vectors, because Yosys does not support arrays here.
+        // The following signals are vectors, because Yosys does not support arrays here.
         logic [3*LIGHT_BITS-1:0] first_light, last_light;
         logic [3*LIT_BITS-1:0]   lit;
 

@@ -1,5 +1,5 @@
-// A cache of descriptors: descriptor numbers in, descriptors out. A triangle is drawn in several bands, one after the other,
-// and with the cache its descriptor is mostly read from memory only once.
+// A cache of descriptors (triangles after the setup): descriptor numbers in, descriptors out. A triangle is drawn in several
+// bands, one after the other, and with the cache its descriptor is mostly read from memory only once.
 //
 //                 ┌──────┐ miss                              ┌───────┐
 //   numbers ─────▶│ tags ├──────▶ addresses ─▶ memory ─words▶│       │
@@ -7,13 +7,14 @@
 //                    └─────────────▶ marks ─────────────────▶│       │
 //                                                            └───────┘
 //
-// The cache is direct-mapped: the low bits of a number choose the line. At the front, tags change in the order of the numbers;
-// at the back, lines change in the same order. So a number that hits finds the descriptor of its tag. An item without a
-// descriptor (`in_end`) passes in order.
+// The cache is direct-mapped: the low bits of a number choose the line. The first stage looks up and replaces tags in the order
+// of the numbers, and the last stage fills and reads lines in the same order. So a number that hits finds the descriptor of its
+// tag. The FIFO `marks` tells the last stage what to do for each item: pass the end of a band, read a line, or fill it. An item
+// without a descriptor (`in_end`) passes in order.
 //
-// Latency 5 clocks for a hit; for a miss that of memory and 6 more. Throughput a hit in 4 clocks, a miss in 5, with SMOOTH in
-// 8. Descriptors must not change in memory while `forget` is low. A clock with `forget`, given while no request is in the
-// cache, starts to invalidate all lines, one line a clock; numbers wait until that is done.
+// Latency 5 clocks for a hit, and the latency of memory plus 6 clocks for a miss. Throughput a hit in 4 clocks, a miss in 5, or
+// in 8 with SMOOTH. Descriptors must not change in memory while `forget` is low. A clock with `forget`, given while no request
+// is in the cache, starts to invalidate all lines, one line a clock; numbers wait until all lines are invalid.
 //
 // Streams: an item moves in a clock in which valid and ready are high; valid does not wait for ready, and a payload stays as
 // it is until it has moved. Memory: a client of read_port.
@@ -24,14 +25,14 @@ module descriptor_cache #(
     parameter int unsigned ADDRESS_BITS = 23,
     parameter int unsigned COUNT_BITS   = 20,
     parameter int unsigned LINE_BITS    = 8,
-    // With SMOOTH a descriptor has six words, which include planes of light.
+    // With SMOOTH a descriptor has six words instead of three, which include the planes of light.
     parameter bit          SMOOTH       = 1'b0,
     localparam int unsigned PLANES_BITS = SMOOTH ? 289 : 1
 ) (
     input  wire                       clk,
     input  wire                       rst,
     input  wire                       forget,
-    // Base addresses of the descriptors of both sets.
+    // Base addresses of the descriptors of set 0 (written by the geometry unit) and of set 1 (written by the firmware).
     input  wire  [2*ADDRESS_BITS-1:0] base,
     input  wire                       in_valid,
     output logic                      in_ready,
@@ -57,7 +58,8 @@ module descriptor_cache #(
     // A tag consists of the set, the high bits of the number, and a valid bit.
     localparam int unsigned TAG_BITS  = COUNT_BITS - LINE_BITS + 2;
 
-    // Front: an item waits one clock for the tag of its line, then until the FIFOs of marks and addresses have room.
+    // First stage: an item waits one clock while the tag of its line is read, then until the FIFO `marks` and, for a miss, the
+    // request of addresses can take it.
     (* ram_style = "distributed" *) logic [TAG_BITS-1:0] tags [0:2**LINE_BITS-1];
     logic                    looked, is_end, set, hit, passes, asks;
     logic [COUNT_BITS-1:0]   number;
@@ -128,7 +130,8 @@ module descriptor_cache #(
         .out_valid(marked), .out_ready(out_valid && out_ready), .out_data({out_end, mark_hit, mark_line})
     );
 
-    // Back: the words of a descriptor that missed are gathered, and written to its line when it leaves; a hit reads its line.
+    // Last stage: the words of a descriptor that missed are collected from memory, and written to the cache line when the
+    // descriptor leaves; a descriptor that hit is read from its line.
     (* ram_style = "block", rw_addr_collision = "no", no_rw_check *)
     logic [128*WORDS-1:0]    lines [0:2**LINE_BITS-1];
     logic [128*WORDS-1:0]    cached, descriptor;

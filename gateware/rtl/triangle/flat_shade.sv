@@ -1,8 +1,8 @@
-// Flat shading with the light at the camera: intensity = clamp(nearest(∓N·n·2^8), 0, 1), and colour·intensity
-// rounded to nearest.
+// Flat shading with the light at the camera: intensity = clamp(nearest(∓N·n·2^8), 0, 1), with N the normal of the triangle, n
+// the camera's viewing direction, and − for a front face. The result is colour·intensity, rounded to nearest.
 //
-// One multiplier makes three products for N·n, one for blue and green side by side, and one for red. It is driven by the
-// `count` of the setup's beat: the inputs hold during a beat; the colour is valid in clock 10 of the beat.
+// One multiplier makes five products: three for N·n, one for blue and green side by side, and one for red. The module `setup`
+// drives `count`, the clock of a beat: the inputs hold during a beat; the colour is valid in clock 10 of the beat.
 
 `default_nettype none
 

@@ -1,22 +1,22 @@
-// Reads the descriptors of a frame, band by band, in the order of their lists: in each band first the set written by
-// the geometry unit, then an optional second set written by the firmware (clipped triangles). The layout in memory
-// is that of binner.
+// Reads the descriptors (triangles after the setup) of a frame, band by band, in the order of the band lists: in each band
+// first the set written by the geometry unit, then an optional second set written by the firmware (clipped triangles). The
+// layout in memory is described in binner.
 //
 //             words               entries   ┌──────────────────┐
 //   lengths ─────────▶ lists ────────┬─────▶│ descriptor_cache │──▶ out
 //                        └─▶ jobs ───┘      └──────────────────┘
 //
-// Each part runs ahead of the next part as far as its FIFO reaches, even past the ends of lists and bands: by the lengths of
-// 16 bands, by 8 jobs (a job is the list of one band) or 128 entries, and by 10 descriptors (5 with SMOOTH). This hides the
-// latency of memory. Three clients of a read_port read the lengths of the lists, the lists, and the descriptors. Throughput a
-// descriptor in 5 clocks, with SMOOTH in 8; a list takes at least 4 clocks.
+// Each part reads ahead of the next part as far as its FIFO has room, even past the ends of lists and bands: the lengths of up
+// to 16 bands, up to 8 jobs (a job is the list of one band) or 128 entries, and up to 10 descriptors (5 with SMOOTH). This
+// hides the latency of memory. Three clients of a read_port read the lengths of the lists, the lists, and the descriptors.
+// Throughput a descriptor in 5 clocks, or in 8 with SMOOTH; a list takes at least 4 clocks.
 //
-// `list_error`: since `start` a list was longer than the largest length and was read as empty, or an entry was not below its
-// set's number of descriptors (`counts`) and was replaced by another entry.
+// `list_error` is high if since `start` a list was longer than the largest length and was read as empty, or an entry was not
+// below the number of descriptors in its set (`counts`). Only the low COUNT_BITS bits of an entry are used.
 //
-// `start` (one clock, not while a frame is read) begins with band 0. `forget`: see descriptor_cache. An item of `out` is a
-// descriptor, or with `out_end` the end of a band; the end of `last_band` is the last item. Streams: an item moves in a clock
-// in which valid and ready are high; valid does not wait for ready, and a payload holds until it has moved.
+// `start` (one clock, not while a frame is read) begins with band 0. `forget` invalidates the descriptor_cache. An item of
+// `out` is a descriptor, or with `out_end` the end of a band; the end of `last_band` is the last item. Streams: an item moves
+// in a clock in which valid and ready are high; valid does not wait for ready, and a payload holds until it has moved.
 
 `default_nettype none
 
@@ -38,7 +38,7 @@ module list_reader #(
     input  wire  [2*COUNT_BITS-1:0]   counts,
     input  wire  [4:0]                list_shift,
     output logic                      list_error,
-    // Clients of a read_port, for the lengths, the lists and the descriptors.
+    // Ports of three clients of a read_port: 0 for the lengths, 1 for the lists and 2 for the descriptors.
     output logic [2:0]                ask_valid,
     input  wire  [2:0]                ask_ready,
     output logic [3*ADDRESS_BITS-1:0] ask_addr,
@@ -57,7 +57,8 @@ module list_reader #(
 
     assign lists = list_base;
 
-    // Reads of the lengths: one read per list. A word of the table has the lengths of four bands, but the two sets alternate.
+    // Requests the lengths of the lists, one read for each list. A word of the table has the lengths of four bands, and is read
+    // again for each of them, because the lists of the two sets alternate.
     logic       asks_lengths, length_set;
     logic [5:0] length_band;
 
@@ -79,7 +80,8 @@ module list_reader #(
         if (rst) asks_lengths <= 1'b0;
     end
 
-    // Reads of the lists: a job is the length of a list, 0 for an absent one; the words of the list follow later.
+    // Requests the words of the lists. For each list a job goes to the next part first: the length of the list, or 0 if the
+    // list is too long or its set is absent.
     typedef enum logic [2:0] {IDLE, LENGTH, CHECK, JOB, WORDS} list_state_t;
     list_state_t list_state;
 
@@ -146,7 +148,8 @@ module list_reader #(
         .out_valid(next_valid), .out_ready(next_ready), .out_data(next_length)
     );
 
-    // Entries of the lists: taken from the words of a list one after the other; the end of the band follows after both lists.
+    // Takes the entries from the words of each list, one after the other. After the lists of both sets an item for the end of
+    // the band follows.
     logic                    job_valid, set, left, last_entry, entry_taken, end_taken;
     logic                    item_valid, item_ready, item_free, item_end, item_set;
     logic [COUNT_BITS-1:0]   entries_after;

@@ -2,8 +2,8 @@
 //
 // Reads words of 16 bytes as a client of read_port: a chunk's header, then its triangles one after the other. The vertex stage
 // reads the vertices of the chunk, from `vertex_base` on. Triangles that were sent still need the vertices of their chunk, so
-// the next chunk begins only when the pipeline behind is `drained`: this costs some hundred clocks a chunk of up to 65,535
-// vertices. Throughput within a chunk: a triangle a clock, as far as memory keeps up.
+// the next chunk begins only when the following pipeline is empty (`drained`): this costs some hundred clocks for each chunk of
+// up to 65,535 vertices. Throughput within a chunk: a triangle a clock, as far as memory keeps up.
 //
 // `start` (one clock, not while `busy`) begins at `first`, the address of the mesh's first chunk; `past` is the address
 // of the first word after the mesh. A chunk without vertices or beyond `past` ends the walk with `error`, which holds
@@ -37,7 +37,7 @@ module mesh_walk #(
     input  wire                     out_ready,
     output logic [127:0]            out_triangle
 );
-    // Addresses and counts in memory may have any value; with these bits their sums do not wrap around.
+    // Width of sums of addresses and counts: values from memory may be arbitrary, and their sums do not wrap around.
     localparam int unsigned SUM_BITS = 34;
 
     typedef enum logic [2:0] {IDLE, ASK, HEADER, LOCATE, SUM, CHECK, TRIANGLES, DRAIN} state_t;

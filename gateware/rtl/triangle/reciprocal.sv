@@ -1,4 +1,5 @@
-// The reciprocal of docs/formats.md: y = 2^47/m for a mantissa m in [2^23, 2^24), from a table and two Newton steps.
+// Computes the reciprocal y = 2^47/m of a mantissa m in [2^23, 2^24), from a table and two Newton steps
+// (docs/formats.md, "The reciprocal").
 //
 // `out_y` comes with `out_valid` (one clock) 14 clocks after m, and stays until the next result; nothing stalls. Throughput:
 // `in_ready` admits one m in 10 clocks. One DSP48 makes the four products:
@@ -6,8 +7,8 @@
 //   clock  0        1          4             7           10            13         14
 //          m ─▶ seed y0 ─▶ e0 = −m·y0 ─▶ y1 = y0 + y0·e0 ─▶ e1 = −m·y1 ─▶ y1·e1 ─▶ y = y1 + y1·e1
 //
-// −m·y is made as ~m·y + y, so that there is no adder before the multiplier. The residues e are differences from powers of
-// two, which are 0 in the bits that are kept.
+// −m·y is computed as ~m·y + y, so that there is no adder before the multiplier. The residues are e0 = 2^33 − m·y0 and
+// e1 = 2^40 − m·y1; only their bits 8 to 25 are used, in which the powers of two are 0.
 
 `default_nettype none
 

@@ -1,27 +1,28 @@
 // Culling, setup and flat shading of triangles: from three vertices on the screen to a descriptor (docs/formats.md, "Triangle
-// setup"). The start is the pixel of descriptor_t at which edge functions and depth begin.
+// setup"). The *start* is the pixel at which the edge functions and the depth in a descriptor_t are given.
 //
 //         4 clocks a triangle            11 clocks a triangle, all four in step with `count`
 //   in ─▶│ cull: area, facing, bounds │─▶│ 1 edges, normal, 1/a, shade │ 2 E1, 1/a │ 3 gradients │ 4 depth │─▶ out
 //            └▶ culled
 //
-// Throughput a drawn triangle in 11 clocks, a culled one in 4; latency at most 75 clocks. The stages 1 to 4 move together, in
-// the last clock of a beat. The beat lasts until there is room after stage 4; empty stages move too, so a single triangle gets
-// through. A culled triangle leaves before stage 1 and waits only for earlier triangles. `culled` and `drawn` are high for one
-// clock for each triangle, `drawn` with its descriptor. The frame's constants (`width`, `height`, `cull_back`, `camera_n`,
-// `smooth`) must hold while `busy` and when a triangle comes.
+// Throughput a drawn triangle in 11 clocks, a culled one in 4; latency at most 75 clocks. A beat is the time in which each of
+// the stages 1 to 4 processes one triangle: 11 clocks, numbered by `count`, or more if stage 4 has to wait for the output. All
+// stages move together in the last clock of a beat, also empty ones, so a single triangle gets through. A culled triangle
+// leaves before stage 1 and waits only for earlier triangles. `culled` and `drawn` are high for one clock for each triangle,
+// `drawn` together with the triangle's descriptor. The frame's constants (`width`, `height`, `cull_back`, `camera_n`, `smooth`)
+// must hold while `busy` and when a triangle comes.
 //
-// Edges 0 and 2 meet in vertex 0, so both start from (px, py), the start relative to vertex 0. Edge 1 follows from
-// E0 + E1 + E2 = 2A = a. This holds at every point: the differences of the three vertices add up to 0, so the sum does not
-// depend on the point, and at vertex 0 it is E1.
+// E0, E1 and E2 are the edge functions, A is the area, and (px, py) is the start relative to vertex 0. Edges 0 and 2 meet in
+// vertex 0, so both are evaluated from (px, py). Edge 1 follows from E0 + E1 + E2 = 2A = a. This holds at every point: the
+// differences of the three vertices add up to 0, so the sum does not depend on the point, and at vertex 0 the sum is E1.
 //
-// With SMOOTH, each channel of light has a plane: stage 1 computes P of docs/formats.md ("Smooth shading") for it, stage 2
-// the planes' normals.
+// With SMOOTH, each channel of light has a plane, a linear function on the screen like the depth. Stage 1 computes its values P
+// at the vertices (docs/formats.md, "Smooth shading"), stage 2 its normal.
 
 `default_nettype none
 
 module setup #(
-    // The last clock of a beat; a proof of the control uses a smaller number.
+    // Number of the last clock of a beat; the formal proof of the control uses a smaller number.
     parameter bit [3:0] LAST = 4'd10,
     parameter bit SMOOTH = 1'b0,
     localparam int unsigned LIGHT_BITS  = SMOOTH ? 41 : 1,
@@ -92,8 +93,8 @@ module setup #(
         end
     end
 
-    // Stage 1. The bias is 1 on an edge that is neither top nor left, as seen from step_x and the sign of step_y. Both steps
-    // are 0 only for an edge of length 0.
+    // Stage 1. Returns the bias of an edge (docs/formats.md, "Triangle setup"): 1 if the edge is neither top nor left.
+    // `right_to_left` is the sign of the edge's step_y. Both steps are 0 only for an edge of length 0.
     function automatic logic bias(input logic [20:0] step_x, input logic right_to_left);
         bias = step_x[20] || step_x == '0 && right_to_left;
     endfunction
@@ -138,16 +139,17 @@ module setup #(
     flat_shade shade (
         .clk, .enable, .count, .camera_n, .front(t.front), .normal(t.normal), .colour(t.colour), .lit
     );
-    // The reciprocal of the area takes from clock 3 of stage 1 to clock 6 of stage 2, or less of stage 2 if
-    // the beat is longer.
+    // The reciprocal of the area starts in clock 3 of stage 1 and is valid from clock 6 of stage 2 on, or earlier in stage 2 if
+    // the beat of stage 1 is longer than 11 clocks.
     normalise normalised (.clk, .enable(1'b1), .in(t.area), .m, .lead);
     reciprocal reciprocal_of_area (
         .clk, .rst, .in_valid(count == 4'd3), .in_ready(reciprocal_ready), .in_m(m),
         .out_valid(reciprocal_done), .out_y(y)
     );
 
-    // Stage 2 computes E1 − bias = a − (E0 − bias) − (E2 − bias) − all biases, divided by 2^8: only the carry of the lowest 8
-    // bits is kept. Values that are only passed on stay in flip-flops (`keep`), since shift registers would take LUTs.
+    // Stage 2 computes (E1 − bias)/2^8 with E1 − bias = a − (E0 − bias) − (E2 − bias) − the sum of the three biases: of the
+    // lowest 8 bits only the carry is kept. Values that only pass through stay in flip-flops (`keep`), since shift registers
+    // would take LUTs.
     (* keep *) passed_t passed_2;
     (* keep *) origin_t origin_2;
     logic        [45:0] nx_2, ny_2;
@@ -164,7 +166,7 @@ module setup #(
     assign low_sum = {3'b0, area_low} - {3'b0, e0_2[7:0]} - {3'b0, e2_2[7:0]} - {9'b0, biases};
 
     always_ff @(posedge clk) begin
-        // −e = ~e + 1; the ones of both negations enter as carries.
+        // Each negation is −e = ~e + 1. The 1s of both negations are added to the carry.
         carry <= low_sum[10:8] + 3'd2;
         unique case (count)
             4'd0:    addend <= ~e0_2[41:8];
@@ -235,9 +237,9 @@ module setup #(
         .px(origin_4.px), .py(origin_4.py), .value(origin_4.w0), .step_x, .step_y, .start(depth_start)
     );
 
-    // Planes of light. Stage 2 computes their normals while the depth plane waits for 1/a.
+    // Planes of light. Stage 2 computes their normals, while the depth plane waits for 1/a.
     if (SMOOTH) begin : light
-        // These are vectors, because Yosys does not support arrays here.
+        // The following signals are vectors, because Yosys does not support arrays here.
         logic [3*LIT_BITS-1:0] lit_1;
         logic [3*24-1:0]       p0;
         logic [3*25-1:0]       p10, p20;

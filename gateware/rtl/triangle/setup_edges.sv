@@ -1,8 +1,9 @@
-// Computes edge functions 0 and 2 of a triangle at the start pixel, minus their biases, with 8 fraction bits: E − bias.
+// Computes the edge functions E of edges 0 and 2 of a triangle at the start pixel, minus their biases, with 8 fraction bits:
+// E − bias.
 //
 // Both edges pass through vertex 0, and (px, py) is the centre of the start pixel relative to vertex 0. An edge takes four
-// products, first those of the 17 low bits of its steps. Driven by the `count` of the setup's beat: the inputs hold during a
-// beat; E0 is valid from clock 7 on, E2 in clock 10.
+// products, first the two with the 17 low bits of its steps. The module `setup` drives `count`, the clock of a beat: the inputs
+// hold during a beat; E0 is valid from clock 7 on, E2 in clock 10.
 
 `default_nettype none
 
@@ -27,8 +28,8 @@ module setup_edges (
     logic        [20:0] step;
     logic        [16:0] low;
 
-    // Selects operands by clock = 4·k + 2·high + term, with k = 0 for edge 0 and 1 for edge 2. The sum
-    // follows two clocks later.
+    // The factors follow from count = 4·k + 2·high + term: k is 0 for edge 0 and 1 for edge 2, high is 1 for the high bits of a
+    // step, term is 0 or 1. The addend `c` comes two clocks after the factors of its product.
     always_comb begin
         a    = 25'($signed(count[0] ? px : py));
         step = count[2] ? (count[0] ? y20 : x02) : (count[0] ? y01 : x10);

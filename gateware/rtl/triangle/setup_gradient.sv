@@ -1,8 +1,9 @@
-// Computes the gradients of a plane before their rounding: floor(Nx·y·2^−(lead + 7)) modulo 2^41, and the same of Ny.
+// Computes the gradients of a plane (the depth, or one channel of light) before their rounding, from its normal (Nx, Ny) and
+// the reciprocal y of the area: floor(Nx·y·2^−(lead + 7)) modulo 2^41, and the same for Ny.
 //
-// Each gradient takes three products, of 17, 17 and 12 bits of N from the low end; then a shift in three parts: by multiples
-// of 16, of 4 and of 1. Driven by the `count` of the setup's beat: the inputs hold during a beat; the result for Nx is valid
-// from clock 8 on, for Ny in clock 10.
+// Each gradient takes three products, with pieces of the normal of 17, 17 and 12 bits from the low end. Then follows a shift in
+// three parts: by multiples of 16, of 4 and of 1. The module `setup` drives `count`, the clock of a beat: the inputs hold
+// during a beat; the result for Nx is valid from clock 8 on, for Ny in clock 10.
 
 `default_nettype none
 

@@ -1,9 +1,10 @@
-// Computes P of a triangle's vertices (docs/formats.md, "Smooth shading"), nearest((w + 1/2)·L) of each channel, in the form
-// that a plane needs: the value at vertex 0, and the differences of the other vertices from it. Stage 1 of the triangle setup.
+// Stage 1 of the triangle setup for smooth shading: computes P = nearest((w + 1/2)·L) of each vertex and channel
+// (docs/formats.md, "Smooth shading"), with w the depth of the vertex and L its light. The results have the form that a plane
+// needs: P at vertex 0 (`p0`), and the differences of the other vertices from it (`p10`, `p20`).
 //
-// There are nine products, one channel of a vertex after the other. Driven by the `count` and the `beat` of the setup: the
-// inputs hold during a beat, and the results belong to the next one. The blue of `p20` is valid from clock 1 of that beat on,
-// all other results from clock 0.
+// There are nine products, one for each channel of a vertex, vertex after vertex. The module `setup` drives `count` and `beat`:
+// the inputs hold during a beat, and the results belong to the next beat. The blue of `p20` is valid from clock 1 of that beat
+// on, all other results from clock 0 on.
 
 `default_nettype none
 
@@ -16,19 +17,19 @@ module setup_light (
     input  wire  [24:0]      w10,
     input  wire  [24:0]      w20,
     input  wire  [2:0][39:0] lit, // L of each vertex: red in 13 bits, green in 14, blue in 13, which is the lowest
-    output logic [2:0][23:0] p0,  // red in the lowest
+    output logic [2:0][23:0] p0,  // red in the lowest bits
     output logic [2:0][24:0] p10,
     output logic [2:0][24:0] p20
 );
     logic        [1:0]  channel;
     logic        [39:0] vertex;
-    // w with half a code added: `w0` of vertex 0, `w` of the next vertex.
+    // w with half a depth code added: `w0` is that of vertex 0, `w` that of the vertex whose products come next.
     logic        [24:0] w0, w;
     logic signed [24:0] a;
     logic signed [17:0] b;
     logic signed [43:0] p;
 
-    // Selects operands by clock = 3·vertex + channel. The product follows three clocks later.
+    // The factors follow from count = 3·vertex + channel. The product comes three clocks later.
     always_comb begin
         unique case (count)
             4'd0, 4'd1, 4'd2: {vertex, a} = {lit[0], w0};
@@ -57,7 +58,7 @@ module setup_light (
 
     logic [2:0][23:0] p0_1;
     logic [2:0][24:0] p10_1;
-    // The value of vertex 0 in the next channel.
+    // P of vertex 0 in the channel of the next difference.
     logic [23:0]      first;
     logic [24:0]      difference, p20_red;
 

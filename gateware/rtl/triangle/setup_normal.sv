@@ -1,7 +1,9 @@
-// Computes the normal of a plane: Nx = w10·y20 + w20·y01 and Ny = w20·x10 + w10·x02, s46.
+// Computes the normal of a plane, a value w that is linear on the screen: Nx = w10·y20 + w20·y01 and Ny = w20·x10 + w10·x02,
+// s46. w10 is w1 − w0, y01 is y0 − y1, and so on.
 //
-// Each component takes four products, first those of the four high bits. Driven by the `count` of the setup's beat: the inputs
-// hold during a beat; Nx is valid from clock 7 on, Ny in clock 10.
+// Each component takes four products: first the two with the four high bits of a coordinate difference, then the two with its
+// 17 low bits. The module `setup` drives `count`, the clock of a beat: the inputs hold during a beat; Nx is valid from clock 7
+// on, Ny in clock 10.
 
 `default_nettype none
 
@@ -23,7 +25,8 @@ module setup_normal (
     logic signed [45:0] c, p;
     logic        [20:0] factor;
 
-    // Selects operands by clock = 4·y + 2·low + term, with y = 1 for Ny. The sum follows two clocks later.
+    // The factors follow from count = 4·k + 2·low + term: k is 0 for Nx and 1 for Ny, low is 1 for the low bits, term is 0 or
+    // 1. The addend `c` comes two clocks after the factors of its product.
     always_comb begin
         a      = $signed(count[2] ^ count[0] ? w20 : w10);
         factor = count[2] ? (count[0] ? x02 : x10) : (count[0] ? y01 : y20);

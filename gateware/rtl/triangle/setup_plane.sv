@@ -1,7 +1,8 @@
-// Computes the gradients of a plane, and its accumulator at the start, from its normal: stages 3 and 4 of the triangle setup.
+// Stages 3 and 4 of the triangle setup: computes the gradients of a plane, and its accumulator at the start pixel, from the
+// normal (Nx, Ny) of the plane. A plane is a value that is linear on the screen: the depth, or one channel of light.
 //
-// Driven by the `count` and the `beat` of the setup. The normal is valid at the end of a beat, the reciprocal holds in the
-// next beat, and the inputs for vertex 0 hold in the beat after that, at the end of which all outputs are valid.
+// The module `setup` drives `count` and `beat`. The normal is valid at the end of a beat. The reciprocal must hold in the next
+// beat, and the inputs for vertex 0 in the beat after that, at the end of which all outputs are valid.
 
 `default_nettype none
 
@@ -15,7 +16,7 @@ module setup_plane (
     // Stage 3.
     input  wire  [23:0] y,
     input  wire  [5:0]  lead,
-    // Inputs of stage 4: the start's centre relative to vertex 0, and the value at vertex 0, u18.6.
+    // Inputs of stage 4: the centre of the start pixel relative to vertex 0, and the plane's value at vertex 0, u18.6.
     input  wire  [20:0] px,
     input  wire  [20:0] py,
     input  wire  [23:0] value,

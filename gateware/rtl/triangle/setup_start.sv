@@ -1,8 +1,9 @@
-// Computes the accumulator of a plane at the start: value·2^8 + floor((Gx·px + Gy·py)/2^8) modulo 2^32. `value` is that at
-// vertex 0, and (px, py) is the start relative to vertex 0.
+// Computes the accumulator of a plane (the depth, or one channel of light) at the start pixel: value·2^8 + floor((Gx·px +
+// Gy·py)/2^8) modulo 2^32. `value` is the plane's value at vertex 0, Gx and Gy are its gradients, and (px, py) is the start
+// relative to vertex 0.
 //
-// Each gradient takes three products, of 17, 17 and 6 bits from the low end; bits 8 to 39 of their sum are exact. Driven by
-// the `count` of the setup's beat: the inputs hold during a beat; the result is valid from clock 9 on.
+// Each gradient takes three products, with pieces of 17, 17 and 6 bits from the low end; bits 8 to 39 of their sum are exact.
+// The module `setup` drives `count`, the clock of a beat: the inputs hold during a beat; the result is valid from clock 9 on.
 
 `default_nettype none
 
@@ -24,7 +25,8 @@ module setup_start (
     logic        [8:0]  low;
     logic        [16:0] middle;
 
-    // Selects operands by clock = 2·piece + term. The sum follows two clocks later.
+    // The factors follow from count = 2·piece + term, with term 0 for Gx and 1 for Gy. The addend `c` comes two clocks after
+    // the factors of its product.
     always_comb begin
         a        = 25'($signed(count[0] ? py : px));
         gradient = count[0] ? gy : gx;

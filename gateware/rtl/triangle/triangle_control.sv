@@ -3,16 +3,17 @@
 //   ask ──▶ pending ──▶ regions, one a clock ──▶ start ──▶ busy ──▶ done ──▶ ended, error
 //                                     └── refused ─────────────────────────────▲
 //
-// The parameters of a pass name regions of memory: the byte address of their first word of 16 bytes, in the CPU's 32-bit
-// space, and their lengths. A region that is not aligned or not within memory (2^ADDRESS_BITS words from BASE on) ends the
-// pass with ERROR_ADDRESS before its first access to memory. `ended` (one clock) answers each ask when its pass is refused,
-// done or cancelled; `error` then holds until the next ask of this pass.
+// The parameters of a pass describe regions of memory: the byte address of the first 16-byte word of a region, in the CPU's
+// 32-bit space, and the length of the region. A region that is not aligned or not within memory (2^ADDRESS_BITS words from
+// BASE on) ends the pass with ERROR_ADDRESS before its first access to memory. A pass is requested by one clock of `ask`.
+// `ended` (one clock) answers each request when its pass is refused, done or cancelled; `error` then holds until the next
+// request of this pass.
 //
-// A pass is `active` from its ask until its error is valid. A second ask meanwhile does not stop the pass; the error is then
-// ERROR_BUSY, unless the pass ends with an error of its own.
+// A pass is `active` from its request until its error is valid. A second request meanwhile does not stop the pass; the error is
+// then ERROR_BUSY, unless the pass ends with another error.
 //
-// `cancel` (one clock, at any time) ends both passes, also those asked for in the same clock. Later asks wait until the engine
-// is `ready`. Latency 15 clocks from `ask` to `start`. `kept` holds the flags of a pass from its `ask` on; all other
+// `cancel` (one clock, at any time) ends both passes, also those requested in the same clock. Later requests wait until the
+// engine is `ready`. Latency 15 clocks from `ask` to `start`. `kept` holds the flags of a pass from its request on; all other
 // parameters must hold until `ended`.
 
 `default_nettype none
@@ -56,7 +57,7 @@ module triangle_control #(
 
     // Bits of a region's length in words; a length may exceed the size of memory.
     localparam int unsigned WORD_BITS  = ADDRESS_BITS + 2;
-    // Largest list shift: longer lists would exceed the entry counter.
+    // Largest valid `list_shift`, the log2 of the words of a list: longer lists would exceed the counter of entries.
     localparam logic [4:0]  LAST_SHIFT = 5'(COUNT_BITS - 3);
 
     typedef enum logic [2:0] {IDLE, CHECK, SETTLE, JUDGE, START} state_t;
@@ -76,7 +77,7 @@ module triangle_control #(
 
     assign bands = band_pkg::bands(size);
 
-    // First address and length of the region under check, and the lengths from which the latter is selected.
+    // First address and length (in words) of the region that is checked, and the values from which this length is selected.
     logic [31:0]          first;
     logic [WORD_BITS-1:0] words, mesh_words, list_words, frame_words, descriptor_words;
     logic [COUNT_BITS-1:0] count;
@@ -140,7 +141,7 @@ module triangle_control #(
 
         if (engine.ready) recovering <= 1'b0;
 
-        // A pass that is asked for while it is pending or busy is refused, and the earlier ask continues.
+        // A request of a pass that is pending or busy is refused, and the earlier request continues.
         if (geometry_ask) begin
             if (geometry_active) begin
                 geometry_error <= ERROR_BUSY;
@@ -170,7 +171,7 @@ module triangle_control #(
                 region <= region + 1'b1;
                 if (region == (rastering ? LAST_RASTER : LAST_GEOMETRY)) state <= SETTLE;
             end
-            // Waits for the end of the last region.
+            // Waits until the end address of the last region is checked.
             SETTLE: state <= JUDGE;
             JUDGE: begin
                 if (size == 2'd3 || misplaced) begin

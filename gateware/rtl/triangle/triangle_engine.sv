@@ -6,13 +6,14 @@
 //                                firmware's lists ──────────▲
 //
 // Three native read ports of the memory serve triangles, vertices, and the raster unit. LiteDRAM lets a port turn to another
-// bank only when the previous bank is idle, four clocks later, so each of these streams has a port of its own. Write ports
-// serve descriptors, lists, and the frame's words in even and in odd banks. `cancel` (one clock, at any time) ends both
-// passes. `status.ready` is high when no read is under way and the band buffer is clear, so that either unit may start.
-// Parameters and results: see the units. `events` has the growth of each counter in this clock.
+// memory bank only when the previous bank is idle, four clocks later, so each of these streams has its own port. Write ports
+// serve descriptors, lists, and the frame's words in even and in odd banks. `cancel` (one clock, at any time) ends both passes.
+// `status.ready` is high when no read is under way and the band buffer is clear, so that either unit may start. geometry_unit
+// and raster_unit explain their parameters and results. `events` has the growth of each counter in this clock.
 //
-// SMOOTH builds smooth shading, which `smooth` of the geometry's flags chooses for a frame: light of the vertices, interpolated
-// over the depth and divided at each pixel (docs/formats.md, "Smooth shading"). Descriptors then have twice the words.
+// SMOOTH builds smooth shading, which the flag `smooth` of the geometry pass enables for a frame: the light of the vertices
+// is interpolated over the depth, with a division at each pixel (docs/formats.md, "Smooth shading"). Descriptors then have
+// twice the words.
 
 `default_nettype none
 

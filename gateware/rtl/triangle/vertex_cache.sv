@@ -1,4 +1,5 @@
-// A cache of vertices after the vertex stage: triangles of indices in, triangles of vertices out, both in order.
+// A cache of vertices after the vertex stage. Input: triangles as three vertex indices. Output: triangles with their three
+// vertices, in the same order.
 //
 //           ┌──────┐  miss: index   ┌───────────────────────────┐ fetch                 memory, vertex stage
 //   in ────▶│ tags │───────────────▶│ 64 places                 │──────▶ … ─────────────┐
@@ -7,15 +8,17 @@
 //    │      └──────┘                └───────────────────────────┘        │ vertices │──▶ 3 vertices ─▶ out
 //    └─────────────────────────────────────────────────── side ─────────▶└──────────┘              ▲
 //                                                              └───────────────────────────────────┘
-// The cache is direct mapped. Tags change in the order of the indices, at the front; vertices change in the same order, at the
-// back, where a record that missed takes the next vertex of `projected`. So a record that hit finds its vertex at any latency:
-// there is no hazard between front and back. There is none within either memory: a tag is read and replaced by one access,
-// which returns the old tag; and a record either reads its slot or writes it, through one port.
+// The cache is direct mapped. The first stage looks up and replaces tags in the order of the indices, and queues a record for
+// each index: its slot, and whether it missed. The last stage takes the records in the same order. For a record that missed it
+// stores the next vertex of `projected` in the slot; for a record that hit it reads the slot. So a hit finds its vertex at any
+// latency of the vertex stage, and there is no hazard between the stages. There is no hazard within a memory either: a tag is
+// read and replaced by one access, which returns the old tag, and a record either reads its slot or writes it, through one
+// port. `side` has the fields of a triangle that only pass through.
 //
 // `clear` (one clock) invalidates all vertices for the triangles that move in later, at the start of a chunk or a frame. A tag
-// holds the number of its epoch, the time between two clears, so all tags are swept only every 2^EPOCH_BITS − 1 clears, and
-// after a reset: 1 clock a slot. Latency 15 clocks without a miss. Throughput an index a clock, a triangle in 3, while there
-// are no misses. Each stream is valid/ready.
+// holds the number of its epoch, which is the time between two clears. So all tags are reset only every 2^EPOCH_BITS − 1
+// clears, and after a reset, in 1 clock a slot. Latency 15 clocks without a miss. Throughput without misses an index a clock, a
+// triangle in 3 clocks. Each stream is valid/ready.
 
 `default_nettype none
 
@@ -52,7 +55,7 @@ module vertex_cache #(
     localparam int unsigned PLACES     = 16; // for vertices whose triangle is incomplete
     localparam int unsigned TRIANGLES  = 32; // more than the triangles of all RECORDS and PLACES
 
-    // Front: the indices of a triangle go to the tags one by one, while there is room for their records.
+    // First stage: looks up the indices of a triangle one by one, while the FIFO has room for their records.
     logic [2:0][15:0]        indices;
     logic [1:0]              to_look;
     logic [$clog2(RECORDS):0] records;
@@ -62,7 +65,7 @@ module vertex_cache #(
     assign in_ready = (to_look == 2'd0 || to_look == 2'd1 && look) && side_room && !clearing;
     assign taken    = in_valid && in_ready;
 
-    // Epoch 0 is reserved: a slot with this epoch never hits.
+    // Number of the current epoch. Epoch 0 is reserved for empty slots, which never hit.
     logic [EPOCH_BITS-1:0] epoch;
     logic                  sweeping;
     logic [SLOT_BITS-1:0]  sweep;
@@ -137,7 +140,8 @@ module vertex_cache #(
         end
     end
 
-    // Each index in the FIFO of fetches has a record in the other FIFO, so the limit of `records` holds for both.
+    // Both FIFOs have RECORDS places. Each index in `fetches` also has a record in `waiting`, so the limit of `records` keeps
+    // both from overflowing.
     logic                 record_valid, record_missed, fetch_room, record_room;
     logic [SLOT_BITS-1:0] record_slot;
 
@@ -149,7 +153,7 @@ module vertex_cache #(
         .clk(clk), .rst(rst), .in_valid(found), .in_ready(record_room), .in_data({missed, found_index[SLOT_BITS-1:0]}),
         .out_valid(record_valid), .out_ready(record_taken), .out_data({record_missed, record_slot}));
 
-    // Back: three clocks from a record to its vertex.
+    // Last stage: three clocks from a record to its vertex.
     logic [$clog2(PLACES):0] held;
     logic                    room, vertex_taken;
 
@@ -182,7 +186,7 @@ module vertex_cache #(
         end
     end
 
-    // Triangles again.
+    // Collects three vertices for each triangle and adds the fields of `side`.
     logic                   vertex_valid, vertex_room, side_valid;
     logic [VERTEX_BITS-1:0] vertex;
     logic [1:0]             filled;

@@ -1,10 +1,11 @@
-// The light of a vertex (docs/formats.md, "Smooth shading"): L of each channel, and the side of a triangle that L belongs to.
+// Computes the light of a vertex (docs/formats.md, "Smooth shading"): the shaded colour L of each channel, and the side of a
+// triangle to which this light belongs. N is the vertex normal, n the camera's viewing direction.
 //
-// There are three products for N·n, one for green and blue side by side, and one for red. A vertex takes 6 clocks, in step
-// with `vertex_stage`: `take` is high for one clock when a vertex enters that stage. The light waits in a FIFO for the place
-// of its vertex; `give` takes it out. Latency 17 clocks.
+// One multiplier makes five products: three for N·n, one for green and blue side by side, and one for red. A vertex takes 6
+// clocks, in step with `vertex_stage`: `take` is high for one clock when a vertex enters that stage. The light waits in a FIFO
+// until the position of its vertex leaves that stage; `give` then takes the light out. Latency 17 clocks.
 //
-//   clocks after `take`   1…3: N·n in     6: there     7, 8: |N·n| rounded     9: intensity     10, 11: colour in     13, 14: L
+//   clocks after `take`   1…3: factors of N·n   6: N·n   7, 8: |N·n| rounded   9: intensity   10, 11: colour in   13, 14: L
 
 `default_nettype none
 
@@ -18,7 +19,7 @@ module vertex_light (
     input  wire              give,
     output logic [40:0]      out_light // {to back faces, red u13, green u14, blue u13}
 );
-    // The FIFO has more places than vertices fit in vertex_stage.
+    // The FIFO has more places than vertex_stage can hold vertices.
     localparam int unsigned PLACES = 16;
 
     // Bit k of `since` is high when a vertex came k + 1 clocks ago.
@@ -52,7 +53,7 @@ module vertex_light (
 
     multiply_add #(.BITS(44)) dsp (.clk, .enable(1'b1), .a, .b, .c, .p);
 
-    // −v = ~v + 1; the added 1 carries into the bit of one half only if all lower bits are 0.
+    // The negation of a negative product v is ~v + 1. The added 1 carries into `high` only if all bits of v below `high` are 0.
     assign carry = !back && whole;
 
     always_ff @(posedge clk) begin

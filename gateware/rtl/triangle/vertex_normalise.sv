@@ -1,4 +1,5 @@
-// Step 6 of the vertex stage: X' = nearest(X·2^−sh) in 25 bits, saturated, and Y' the same by the same shifter.
+// Step 6 of the vertex stage (docs/formats.md): X' = nearest(X·2^−sh) in 25 bits, saturated, and Y' = nearest(Y·2^−sh) by
+// the same shifter.
 //
 // Clock numbers count from the vertex's entry into `vertex_stage`.
 //
@@ -14,7 +15,7 @@ module vertex_normalise (
     input  wire                half,
     input  wire  [1:0]         element,
     input  wire  [4:0]         scale_shift,
-    // `planar` omits the lowest five bits; its lowest bit may be half a unit of the result.
+    // `planar` is X or Y without its lowest five bits; the lowest bit of `planar` is worth at most half a unit of the result.
     input  wire  signed [38:0] planar,
     // Leading zeros of Z, valid in clock 7. The shift sh is f + lead − 34, and lead is 40 − zeros.
     input  wire  [3:0]         zeros,
@@ -31,7 +32,7 @@ module vertex_normalise (
 
     always_comb begin
         saturated = rounded[24:0];
-        // Rounding may give the first value that is out of range.
+        // Rounding up may give 2^24, the first value that is out of range.
         if (overflow || rounded[25] != rounded[24]) saturated = {sign, {24{!sign}}};
     end
 
@@ -55,7 +56,7 @@ module vertex_normalise (
         overflow <= shifted[38:25] != {14{shifted[38]}};
     end
 
-    // Results held for the reciprocal: X' from clock 12 on, Y' from clock 15 on.
+    // Results that are held until the reciprocal of the same vertex is valid: X' from clock 12 on, Y' from clock 15 on.
     logic signed [24:0] x_first, x_second, y_first, y_second;
 
     always_ff @(posedge clk) begin

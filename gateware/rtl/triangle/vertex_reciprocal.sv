@@ -1,5 +1,5 @@
-// Step 5 of the vertex stage: the reciprocal of docs/formats.md, one every 6 clocks; up to three vertices
-// share one multiplier.
+// Step 5 of the vertex stage: y = recip(m), about 2^47/m (docs/formats.md, "The reciprocal"), one result every 6 clocks. Up to
+// three vertices share one multiplier.
 //
 // Clock numbers count from the vertex's entry into `vertex_stage`; products follow three clocks after their factors.
 //
@@ -31,7 +31,8 @@ module vertex_reciprocal (
     logic signed [36:0] c, p;
     logic        [24:0] sum;
 
-    // The residues e are differences from powers of two, which are 0 in the bits that are kept.
+    // The residues are e0 = 2^33 − m·y0 and e1 = 2^40 − m·y1. Only their bits 8 to 25 are used, in which the powers of two are
+    // 0, so the products −m·y0 and −m·y1 are enough.
     assign e = p[25:8];
 
     logic unused;

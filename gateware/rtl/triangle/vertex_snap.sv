@@ -1,4 +1,5 @@
-// Steps 7 and 8 of the vertex stage: computes the place on the screen, the guard band flag, and w.
+// Steps 7 and 8 of the vertex stage (docs/formats.md): computes the position x, y on the screen, the flag of a vertex beyond
+// the guard band, and w, the depth code before its rounding.
 //
 // Clock numbers count from the vertex's entry into `vertex_stage`; products follow three clocks after their factors.
 //
@@ -27,9 +28,9 @@ module vertex_snap (
     input  wire  [23:0]       inverse,
     output triangle_pkg::projected_t vertex
 );
-    // w is the product with km divided by 2^(16 + depth_shift), and saturates for a negative depth_shift. The value `lead` of
-    // the vertex is 40 − zeros. Each of both registers shifts every 6 clocks, so that its five places follow the vertices
-    // through the stage: the first register from clock 8 on, the second one from clock 9 on.
+    // w is the product km·y divided by 2^(16 + depth_shift), and saturates for a negative depth_shift. `lead` of
+    // docs/formats.md is 40 − zeros. Both registers shift every 6 clocks, so that their five places follow the vertices through
+    // the stage: `depth_shifts` from clock 8 of a vertex on, `behinds` from clock 9 on.
     logic [4:0][4:0]   depth_shifts;
     logic [4:0]        behinds;
     logic signed [4:0] depth_shift;
@@ -69,7 +70,7 @@ module vertex_snap (
         if (half && element == 2'd2) low <= p[16:15];
     end
 
-    // The coordinate of a place has 8 fraction bits and is saturated to s12.8; the guard band ends at 2047 pixels.
+    // A screen coordinate has 8 fraction bits and is saturated to s12.8; the guard band ends at ±2047 pixels.
     logic signed [22:0] place;
     logic signed [19:0] saturated, place_x, place_y;
     logic               beyond, beyond_x, beyond_y;

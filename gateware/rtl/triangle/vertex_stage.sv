@@ -1,16 +1,17 @@
-// The vertex stage (docs/formats.md, steps 1 to 8): a position of the mesh in, a place on the screen out, in order.
+// The vertex stage: computes the position on the screen and the depth of mesh vertices, in order. It performs steps 1 to 8 of
+// docs/formats.md, "Vertex stage", which also defines the letters (f, m, y, X, Y, X', Y' and so on).
 //
-// A vertex takes 6 clocks; latency 39 clocks, plus up to 5 until its slot in the schedule. Four multipliers work through a
-// schedule of 6 clocks: `half` is 0, 0, 0, 1, 1, 1 and `element` is 0, 1, 2, 0, 1, 2 in clocks 1 to 6 of a vertex, and again
-// every 6 clocks; clock 0 is the vertex's entry. A vertex moves in only if the FIFO at the end has a place for it, so the
-// schedule never stops.
+// A vertex takes 6 clocks; latency 39 clocks, plus up to 5 until its slot in the schedule. Four multipliers work in a fixed
+// schedule of 6 clocks, which repeats for each vertex: `half` is 0, 0, 0, 1, 1, 1 and `element` is 0, 1, 2, 0, 1, 2 in clocks 1
+// to 6 of a vertex. Clock 0 is the vertex's entry. A vertex moves in only if the FIFO at the end has a free place for it, so
+// the schedule never stops.
 //
 //   clock  1         7            9                  25             37
 //     in ─▶ transform ─▶ lead ──────▶ m ─▶ reciprocal ──▶ y ─▶ snap ───▶ FIFO ─▶ out
 //                  └──▶ X, Y ─▶ normalise ──────────▶ X', Y' ─┘
 //
-// The frame's constants must hold from the entry of its first vertex until its last vertex has left. The other fields of a
-// vertex behind the near plane are 0; beyond the guard band x and y are saturated to s12.8.
+// The frame's constants must hold from the entry of its first vertex until its last vertex has left. For a vertex behind the
+// near plane all fields but `behind` are 0; beyond the guard band x and y are saturated to s12.8.
 
 `default_nettype none
 
@@ -18,8 +19,8 @@ module vertex_stage (
     input  wire                clk,
     input  wire                rst,
     // Frame constants.
-    input  wire  [4:0]         scale_shift, // f
-    input  wire  [2:0][24:0]   row_u,       // the first number lowest
+    input  wire  [4:0]         scale_shift, // f of docs/formats.md
+    input  wire  [2:0][24:0]   row_u,       // x component in the lowest bits
     input  wire  [2:0][24:0]   row_v,
     input  wire  [2:0][24:0]   row_n,
     input  wire  signed [43:0] tx,

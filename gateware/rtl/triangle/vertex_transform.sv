@@ -1,5 +1,5 @@
-// Steps 1 to 4 of the vertex stage: transforms a position to the camera's frame, compares it with the near plane, and gives
-// the mantissa of Z.
+// Steps 1 to 4 of the vertex stage (docs/formats.md): transforms a position P to camera coordinates X, Y, Z, compares Z with
+// the near plane, and normalises Z to its mantissa.
 //
 // Clock numbers count from the vertex's entry into `vertex_stage`, which explains `half` and `element`.
 //
@@ -54,8 +54,8 @@ module vertex_transform (
         endcase
     end
 
-    // Two clocks after the first of three products the accumulator adds the translation and this product, then it adds
-    // the other products.
+    // Two clocks after the factors of the first of three products, the accumulator takes the translation plus this product. In
+    // the next two clocks it adds the other products.
     logic               first;
     logic signed [43:0] translation, addend_planar, addend_deep, sum, deep;
 
@@ -70,8 +70,8 @@ module vertex_transform (
     multiply_add #(.BITS(44)) multiply_deep (
         .clk(clk), .enable(1'b1), .a(row_deep), .b(18'(factor)), .c(addend_deep), .p(deep));
 
-    // Compares Z < near in two halves. Only Z has bits above 38, see `far`. The highest set bit of a visible Z is
-    // among bits 30 to 40.
+    // Compares Z < near in two halves of their bits. near_z has no bits above 38; `far` is high if Z has a bit set above 38. In
+    // a Z beyond the near plane the highest set bit is one of the bits 30 to 40.
     logic        negative, far, high_less, high_equal, low_less;
     logic [40:6] z;
 
