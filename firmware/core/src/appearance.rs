@@ -5,7 +5,8 @@ use heapless::Vec;
 use crate::fixed::U4_28;
 use crate::light::{Background, Light, Lighting, MAX_LIGHTS, Material, Rgb};
 
-/// Appearance of a field. By default each face has the colour of its normal, on white.
+/// Appearance of a distance field: material, lights, background and fog. By default each face has a colour that depends on its
+/// normal, and the background is white.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Appearance {
     /// Material.
@@ -16,14 +17,15 @@ pub struct Appearance {
     pub ambient: Option<Rgb>,
     /// Background.
     pub background: Background,
-    /// Density of the fog, per world unit: transmittance is exp(−distance · density). 0 is no fog.
+    /// Density of the fog per world unit: of the light from a point at the distance d, the part exp(−d · density) reaches the
+    /// eye. 0 means no fog.
     pub fog: U4_28,
     /// Whether ambient occlusion is on.
     pub occlusion: bool,
 }
 
 impl Appearance {
-    /// The ambient light and the lights to draw with: the values of this appearance, or the defaults where it has none.
+    /// Returns the ambient light and the lights to draw with: those of this appearance, or the defaults where it states none.
     pub fn lighting(&self) -> Lighting {
         let lighting = if self.lights.is_empty() {
             self.material.light()

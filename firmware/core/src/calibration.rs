@@ -1,7 +1,7 @@
-//! Bias of a gyroscope: calibrated at rest, then tracked at rest.
+//! The bias of a gyroscope: measured by a calibration at rest, and tracked later whenever the sensor rests.
 //!
-//! [`Calibration`] takes the mean of many samples and fails if the sensor moved. [`RestBias`] follows the bias slowly afterwards,
-//! only at rest.
+//! [`Calibration`] takes the mean of many samples and fails if the sensor moved. [`RestBias`] corrects the bias slowly
+//! afterwards, only while the sensor is at rest.
 
 mod rest;
 
@@ -51,7 +51,7 @@ impl Units {
         ((i128::from(lsb) * i128::from(dps) + (1 << 32) - 1) >> 32) as u32
     }
 
-    /// Converts a rate from 2^−16 LSB to °/h, rounded down.
+    /// Converts a rate in units of 2^−16 LSB to °/h, rounded down.
     fn per_hour(self, rate: u32) -> Q32_32 {
         let lsb = i128::from(self.per_dps.to_bits().max(1 << 28));
         Q32_32::saturating_from_num(fixed_i128(((i128::from(rate) * 3_600) << 48) / lsb))
@@ -63,21 +63,22 @@ fn fixed_i128(bits: i128) -> fixed::FixedI128<fixed::types::extra::U32> {
     fixed::FixedI128::from_bits(bits)
 }
 
-/// Result of a calibration.
+/// Result of a calibration of the gyroscope.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Report {
     /// Number of samples.
     pub samples: u32,
-    /// The mean of each axis in 1/256 LSB, to nearest.
+    /// The bias: the mean rate about each axis in 1/256 LSB, rounded to nearest.
     pub bias: [i32; 3],
-    /// The standard deviation of a sample in 1/256 LSB, rounded down.
+    /// Standard deviation of the samples' rate about each axis in 1/256 LSB, rounded down.
     pub deviation: [u32; 3],
-    /// Standard error of the mean if the noise is white, in 2^−16 LSB, rounded down.
+    /// Standard error of the mean rate about each axis in 2^−16 LSB, rounded down. It assumes white noise.
     pub error: [u32; 3],
 }
 
 impl Report {
-    /// Expected drift of each axis that [`Report::error`] causes, in °/h. Slow changes of the bias itself add 5 to 10 °/h.
+    /// Computes the drift of the angle about each axis, in °/h, that follows from [`Report::error`]. Slow changes of the bias
+    /// itself add 5 to 10 °/h.
     pub fn drift(&self, units: Units) -> [Q32_32; 3] {
         self.error.map(|error| units.per_hour(error))
     }
@@ -130,7 +131,7 @@ pub enum SampleError {
     Frozen,
 }
 
-/// The name of an axis.
+/// Returns the name of the axis with this number.
 const fn axis_name(axis: usize) -> &'static str {
     match axis {
         0 => "x",
@@ -199,9 +200,9 @@ pub struct Calibration {
 /// Progress of a calibration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Progress {
-    /// In progress, with this number of samples.
+    /// The calibration is in progress and has taken this number of samples.
     Going(u32),
-    /// Done.
+    /// The calibration has ended with this result.
     Done(Report),
 }
 
@@ -220,7 +221,7 @@ impl Calibration {
         }
     }
 
-    /// Takes a sample. A sample with the time of the previous sample is ignored.
+    /// Takes a sample and returns the progress. A sample with the time stamp of the previous sample is ignored.
     ///
     /// # Errors
     /// The sensor moved or does not measure; the calibration has ended, and a new one is needed.
@@ -306,7 +307,7 @@ impl Calibration {
                 });
             }
         }
-        // n²·variance for n samples, on each axis: at most 2^62, and at least 0 by the Cauchy–Schwarz inequality.
+        // n²·variance of the rate about each axis, for n samples: at most 2^62, and at least 0 by the Cauchy–Schwarz inequality.
         let spread = [0, 1, 2].map(|axis| {
             u64::from(self.count) * self.squares[axis] - self.sum[axis].unsigned_abs().pow(2)
         });

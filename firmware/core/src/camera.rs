@@ -38,7 +38,7 @@ pub struct View {
 }
 
 impl View {
-    /// Checks eye, basis, half width and near plane, and makes a camera of them.
+    /// Makes a camera from its eye, basis, half width and near plane, after checking them.
     ///
     /// The basis must be orthonormal within 1e-4 (lengths and scalar products) with u × v = n; it is not normalised. The
     /// eye must be within 32 of the origin, `half_width` in [0.05, 4] and `near` in [0.01, 2].
@@ -71,12 +71,12 @@ impl View {
         })
     }
 
-    /// The camera on a sphere about the origin that looks at its centre.
+    /// Returns the camera that looks at the origin from a point C on the sphere of radius `r` about the origin.
     ///
-    /// C = r·(sin φ cos θ, sin φ sin θ, cos φ), u = (−sin θ, cos θ, 0), v = (cos φ cos θ, cos φ sin θ, −sin φ),
-    /// n = −C/r. `theta` is the azimuth and `phi` the angle from the z axis, at most half a turn; at the poles the basis
-    /// follows from `theta`, so nothing is singular. The eye is exact to 2^−32, each number of the basis to 2^−24 (both
-    /// for the sines of [`sin_cos_q30`]).
+    /// With θ = `theta` and φ = `phi`, C = r·(sin φ cos θ, sin φ sin θ, cos φ), u = (−sin θ, cos θ, 0),
+    /// v = (cos φ cos θ, cos φ sin θ, −sin φ) and n = −C/r. θ is the azimuth, and φ the angle from the z axis, at most half a
+    /// turn. The formulas have no singularity: at the poles the basis follows from θ. Given the sines of [`sin_cos_q30`], the eye
+    /// is exact to 2^−32, and each component of the basis to 2^−24.
     ///
     /// # Errors
     /// `r` is outside [2, 5], or `phi` is beyond half a turn.
@@ -100,11 +100,13 @@ impl View {
         })
     }
 
-    /// The free camera: an eye and three angles, yaw to the right, pitch downwards, roll.
+    /// Returns the free camera, which is given by an eye and three angles: yaw y to the right, pitch p downwards, and roll r
+    /// about the direction of view.
     ///
-    /// In a left-handed frame (x right, y up, z forward) R = (cos y, 0, −sin y), U = (sin p sin y, cos p, sin p cos y),
-    /// F = (cos p sin y, −sin p, cos p cos y), R' = R cos r + U sin r, U' = −R sin r + U cos r. With P the swap of y and z
-    /// that makes it Glint's frame, u = P·R', v = −P·U', n = P·F: with all angles 0 the camera looks along +y.
+    /// In a left-handed frame (x right, y up, z forward) the directions to the right, up and forward without roll are
+    /// R = (cos y, 0, −sin y), U = (sin p sin y, cos p, sin p cos y) and F = (cos p sin y, −sin p, cos p cos y). Roll turns the
+    /// first two directions to R' = R cos r + U sin r and U' = −R sin r + U cos r. P exchanges y and z, which converts to the
+    /// world's right-handed frame: u = P·R', v = −P·U', n = P·F. With all angles 0 the camera looks along +y.
     ///
     /// # Errors
     /// The eye is more than 32 from the origin.
@@ -133,7 +135,7 @@ impl View {
         })
     }
 
-    /// This camera with the half width and near plane of another camera.
+    /// Returns this camera with the half width and the near plane of `other`.
     #[must_use]
     pub const fn with_lens_of(self, other: &Self) -> Self {
         Self {
@@ -143,7 +145,7 @@ impl View {
         }
     }
 
-    /// The eye, at most 32 from the origin.
+    /// The position of the eye in world units, at most 32 from the origin.
     pub const fn eye(&self) -> [Q32_32; 3] {
         self.eye
     }
@@ -153,17 +155,17 @@ impl View {
         within(self.eye, distance)
     }
 
-    /// The direction to the right of the screen.
+    /// The direction in the world that points to the right of the screen.
     pub const fn u(&self) -> [Q2_23; 3] {
         self.u
     }
 
-    /// The direction down the screen.
+    /// The direction in the world that points down the screen.
     pub const fn v(&self) -> [Q2_23; 3] {
         self.v
     }
 
-    /// The direction into the scene.
+    /// The direction in the world in which the camera looks.
     pub const fn n(&self) -> [Q2_23; 3] {
         self.n
     }
@@ -192,18 +194,19 @@ impl fmt::Display for View {
     }
 }
 
-/// Sine and cosine of an angle, in units of 2^−30; the product of two such numbers is below 2^61.
+/// Returns sine and cosine of an angle, in units of 2^−30; the product of two such numbers is below 2^61.
 fn sines(angle: Turns) -> (i64, i64) {
     let (sin, cos) = sin_cos_q30(angle);
     (sin.to_bits().into(), cos.to_bits().into())
 }
 
-/// Converts units of 2^−60 to 2^−30, to nearest.
+/// Converts a number in units of 2^−60 to units of 2^−30, rounded to nearest.
 const fn narrow(x: i64) -> i64 {
     (x + (1 << 29)) >> 30
 }
 
-/// Converts units of 2^−60 to 2^−23, to nearest. The value is at most 1 plus a rounding error.
+/// Converts a vector in units of 2^−60 to units of 2^−23, rounded to nearest. Each component is at most 1 in
+/// magnitude plus a rounding error.
 fn rounded(x: Exact) -> [Q2_23; 3] {
     x.map(|x| Q2_23::from_bits(((x + (1 << 36)) >> 37) as i32))
 }
@@ -240,7 +243,7 @@ fn check_basis(u: [Q2_23; 3], v: [Q2_23; 3], n: [Q2_23; 3]) -> Result<(), ViewEr
 
     let rows = [(Axis::U, u), (Axis::V, v), (Axis::N, n)];
     for (axis, row) in rows {
-        // Components below 2 in magnitude keep the scalar products from overflow.
+        // The scalar products cannot overflow if all components are below 2 in magnitude.
         let squared = row
             .iter()
             .all(|x| x.unsigned_abs() < 2)
@@ -275,14 +278,14 @@ fn check_basis(u: [Q2_23; 3], v: [Q2_23; 3], n: [Q2_23; 3]) -> Result<(), ViewEr
     }
 }
 
-/// The scalar product of two vectors, in units of 2^−46; exact for components within ±2.
+/// Computes the scalar product of two vectors, in units of 2^−46. It is exact for components within ±2.
 fn dot(a: [Q2_23; 3], b: [Q2_23; 3]) -> i64 {
     core::iter::zip(a, b)
         .map(|(a, b)| i64::from(a.to_bits()) * i64::from(b.to_bits()))
         .sum()
 }
 
-/// Converts units of 2^−46 to 2^−23, rounded down.
+/// Converts a product in units of 2^−46 to units of 2^−23, rounded down.
 const fn narrow_product(x: i64) -> i32 {
     (x >> 23) as i32
 }

@@ -1,13 +1,13 @@
 //! Types with a fixed list of named values, such as materials and backends.
 
-/// A type with a fixed list of values. Each value has a name, which console and command line share.
+/// A type with a fixed list of values. Each value has a name, by which the console and the command line of `glint` accept it.
 pub trait Choice: Copy + 'static {
     /// All values.
     const VALUES: &'static [Self];
     /// Names of [`VALUES`](Self::VALUES), in the same order.
     const WORDS: &'static [&'static str];
 
-    /// The value with this name.
+    /// Returns the value with the name `word`; `None` for an unknown name.
     fn from_word(word: &str) -> Option<Self> {
         Self::VALUES.get(position(Self::WORDS, word)?).copied()
     }
@@ -18,9 +18,9 @@ fn position(words: &[&str], word: &str) -> Option<usize> {
     words.iter().position(|&known| known == word)
 }
 
-/// States the names of a type's values once: `choices!(Type { Variant: "name", … })`.
+/// Defines the names of an enumeration's values: `choices!(Type { Variant: "name", … })`.
 ///
-/// Gives the type `ALL`, `NAMES`, `name`, `Display` and [`Choice`].
+/// Generates the constants `ALL` and `NAMES`, the method `name`, and the implementations of `Display` and [`Choice`].
 macro_rules! choices {
     ($type:ident { $($variant:ident: $name:literal),+ $(,)? }) => {
         impl $type {
@@ -29,7 +29,7 @@ macro_rules! choices {
             /// Names of [`ALL`](Self::ALL), in the same order.
             pub const NAMES: [&'static str; Self::ALL.len()] = [$($name),+];
 
-            /// The name on console and command line.
+            /// The value's name on the console and on the command line.
             pub const fn name(self) -> &'static str {
                 match self {
                     $(Self::$variant => $name),+
@@ -56,7 +56,7 @@ impl Choice for bool {
     const WORDS: &'static [&'static str] = &["on", "off"];
 }
 
-/// `on` or `off`.
+/// Returns the word of the console for a switch: `on` or `off`.
 pub const fn switch_name(on: bool) -> &'static str {
     if on { "on" } else { "off" }
 }

@@ -7,10 +7,10 @@ use crate::choice::choices;
 pub struct Rgb565(pub u16);
 
 impl Rgb565 {
-    /// Full red, green and blue.
+    /// White: red, green and blue at their largest values.
     pub const WHITE: Self = Self(0xFFFF);
 
-    /// The RGB565 colour nearest to three 8-bit channels.
+    /// Returns the RGB565 colour nearest to the given red, green and blue of 8 bits each.
     pub const fn from_rgb888(rgb: [u8; 3]) -> Self {
         const fn nearest(channel: u8, max: u32) -> u16 {
             ((channel as u32 * max * 2 + 255) / 510) as u16
@@ -18,7 +18,7 @@ impl Rgb565 {
         Self(nearest(rgb[0], 31) << 11 | nearest(rgb[1], 63) << 5 | nearest(rgb[2], 31))
     }
 
-    /// The colour as three 8-bit channels, widened by bit replication as in the scan-out.
+    /// Converts the colour to red, green and blue of 8 bits each, widened by bit replication as in the video output.
     pub const fn to_rgb888(self) -> [u8; 3] {
         let [r, g, b] = self.channels();
         [r << 3 | r >> 2, g << 2 | g >> 4, b << 3 | b >> 2]
@@ -37,10 +37,10 @@ impl Rgb565 {
 /// The source of a triangle's colours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shading {
-    /// The triangle's own colour and normal.
+    /// Each triangle has one colour, from the colour and normal stored with the triangle.
     #[default]
     Flat,
-    /// The colours and normals of the vertices, interpolated.
+    /// Colours are interpolated between the vertices, from the colours and normals stored with the vertices.
     Smooth,
 }
 

@@ -1,8 +1,8 @@
 //! Distance fields: scenes defined by the distance of every point from a solid, instead of a mesh.
 //!
-//! The text form is a kind, a colon and numbers in world units, such as `menger:4` or `cubes:2,0.5`; [`Field::parse`]
-//! checks the numbers. Each kind of field has one module here. The module defines the kind's name, its numbers and their ranges
-//! ([`Shape`]), and its solid in fixed-point arithmetic, bit for bit as the gateware evaluates it ([`FlatSolid`],
+//! The text form is a kind, a colon and numbers in world units, such as `menger:4` or `cubes:2,0.5`; [`Field::parse`] checks the
+//! numbers. Each kind of field has one module here. The module defines the kind's name, its numbers and their ranges ([`Shape`]).
+//! It also evaluates the solid's distances in fixed-point arithmetic, bit for bit as the gateware does ([`FlatSolid`],
 //! [`FixedSpheres`]). The lists in the module `primitive` name all kinds (docs/adding-a-field.md).
 
 use core::fmt;
@@ -24,7 +24,7 @@ pub use shape::{FlatConstants, FlatSolid, Placed, Shape};
 pub use surface::{FRACTION, Sample, Surface, cropped, magnitude, units};
 pub use union::Union;
 
-/// A distance field.
+/// A distance field: one solid, or the union of two solids.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(
     clippy::large_enum_variant,
@@ -33,7 +33,7 @@ pub use union::Union;
 pub enum Field {
     /// A field of one kind.
     Primitive(Primitive),
-    /// A union of a flat field and a round field.
+    /// A union of a flat field (with faces) and a round field (with spheres).
     Union(Union),
 }
 
@@ -46,7 +46,7 @@ impl Field {
         }
     }
 
-    /// Whether the field is unbounded along an axis.
+    /// Whether the field is unbounded along at least one axis.
     pub fn is_endless(&self) -> bool {
         match self {
             Self::Primitive(primitive) => primitive.placed().extent.is_none(),
@@ -80,7 +80,7 @@ impl Field {
         }
     }
 
-    /// Makes a random field for tests and test vectors: its kind, and its numbers within their ranges. `random` returns
+    /// Makes a random field for tests and test vectors: a random kind, with random numbers within their ranges. `random` returns
     /// 32 random bits.
     pub fn draw(mut random: impl FnMut() -> u32) -> Self {
         let mut numbers = Random::new(&mut random);

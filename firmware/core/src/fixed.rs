@@ -1,4 +1,4 @@
-//! The named fixed-point formats, angles, and decimals.
+//! The named fixed-point formats, angles, and conversions from and to decimals.
 //!
 //! `QI.F` is a two's complement number with I integer bits, which include the sign, and F fraction bits; `UI.F` has no sign. The
 //! types are aliases of types of the [`fixed`] crate. Such a type may have more integer bits than the alias says; the code that
@@ -30,7 +30,7 @@ impl Turns {
     /// Half a turn, 180°.
     pub const HALF: Self = Self(1 << 31);
 
-    /// The angle nearest to a number of degrees, modulo one turn.
+    /// Returns the angle nearest to a number of degrees, modulo one turn.
     pub const fn from_degrees(degrees: Q32_32) -> Self {
         let bits = degrees.to_bits();
         let nearest = bits.div_euclid(360) + (bits.rem_euclid(360) >= 180) as i64;
@@ -63,7 +63,7 @@ impl core::ops::Neg for Turns {
     }
 }
 
-/// The exact product of two numbers.
+/// Returns the exact product of two 32-bit numbers.
 pub(crate) const fn wide(a: i32, b: i32) -> i64 {
     a as i64 * b as i64
 }

@@ -1,4 +1,4 @@
-//! Cameras steered by an attitude: free look, and orbit about the model.
+//! Cameras steered by the attitude of a sensor: a camera that turns in place, and a camera that orbits the origin.
 //!
 //! The camera's basis is computed from the attitude's quaternion without angles, so it has no singularity: a small turn of the
 //! sensor turns the picture by an equally small angle, also at the zenith and the nadir.
@@ -12,7 +12,7 @@ use crate::orientation::Quaternion;
 use crate::polar::polar;
 use crate::trig::sin_cos_q30;
 
-/// A direction of the sensor along one of its axes.
+/// A direction along one of the sensor's axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
     /// In the direction of +x.
@@ -48,7 +48,8 @@ impl Direction {
         }
     }
 
-    /// This direction in the world, 30 fraction bits, from the world's directions of the sensor's axes x, y, z.
+    /// Returns this direction in the world, with 30 fraction bits. `axes` are the directions of the sensor's
+    /// axes x, y and z in the world.
     fn of(self, axes: &[[i32; 3]; 3]) -> [i32; 3] {
         let axis = axes[self.axis()];
         match self {
@@ -67,8 +68,8 @@ pub struct Mounting {
 }
 
 impl Default for Mounting {
-    /// Forward is y and up is z, so that with the identity as attitude the camera looks along +y, as [`View::look`] does with
-    /// all angles 0.
+    /// Forward is y and up is z. With this mounting and the identity as attitude the camera looks along +y, as with
+    /// [`View::look`] and all angles 0.
     fn default() -> Self {
         Self {
             forward: Direction::Y,
@@ -84,14 +85,14 @@ impl Mounting {
     }
 }
 
-/// Writes the directions forward and up, as the console accepts them.
+/// Writes the directions forward and up in the form that the console accepts.
 impl fmt::Display for Mounting {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         write!(f, "{} {}", self.forward, self.up)
     }
 }
 
-/// The camera at `eye` that looks in the direction of the sensor.
+/// Returns the camera at `eye` that looks in the forward direction of the sensor.
 ///
 /// The basis is orthonormal within 2^−21.
 ///
@@ -106,8 +107,8 @@ pub fn free_look(
     View::new_checked(eye, u, v, n, DEFAULT_HALF_WIDTH, DEFAULT_NEAR)
 }
 
-/// The camera that looks at the origin from the distance `r`, in the direction of the sensor: yaw and pitch move the eye about
-/// the model, roll turns the picture.
+/// Returns the camera that looks at the origin from the distance `r`, in the forward direction of the sensor: yaw and pitch of
+/// the sensor move the eye about the origin, roll turns the picture.
 ///
 /// # Errors
 /// `r` is outside [2, 5].
@@ -122,7 +123,7 @@ pub fn orbit(r: Q32_32, attitude: Quaternion, mounting: Mounting) -> Result<View
     free_look(eye, attitude, mounting)
 }
 
-/// The vectors u, v and n of the camera's basis.
+/// Computes the vectors u, v and n of the camera's basis.
 fn basis(attitude: Quaternion, mounting: Mounting) -> [[Q2_23; 3]; 3] {
     let axes = attitude.axes();
     let n = mounting.forward.of(&axes);
@@ -137,7 +138,7 @@ fn basis(attitude: Quaternion, mounting: Mounting) -> [[Q2_23; 3]; 3] {
     [u, v, n].map(|row| row.map(|x| Q2_23::from_bits((x + (1 << 6)) >> 7)))
 }
 
-/// The sensitivity 1, in units of 1/256: the camera turns as far as the sensor.
+/// The sensitivity 1, in units of 1/256. With this value the camera turns as far as the sensor.
 pub const NATURAL: u16 = 256;
 /// Smallest and largest accepted sensitivity, in units of 1/256.
 pub const SENSITIVITY: [u16; 2] = [32, 2_048];
@@ -152,7 +153,8 @@ pub struct Steering {
     /// The sensor's attitude at the last call.
     seen: Option<Quaternion>,
     camera: Quaternion,
-    /// The left factor: the camera's attitude is this quaternion times the sensor's attitude.
+    /// The rotation from the sensor's attitude to the camera's: the camera's attitude is this quaternion
+    /// times the sensor's attitude.
     offset: Quaternion,
 }
 
@@ -183,7 +185,7 @@ impl Steering {
         self.sensitivity = sensitivity.clamp(SENSITIVITY[0], SENSITIVITY[1]);
     }
 
-    /// The camera's attitude for an attitude of the sensor.
+    /// Takes the sensor's new attitude, and returns the camera's attitude.
     pub fn follow(&mut self, attitude: Quaternion) -> Quaternion {
         match self.seen.replace(attitude) {
             Some(seen) if self.sensitivity != NATURAL => {
@@ -196,22 +198,23 @@ impl Steering {
         self.camera
     }
 
-    /// Turns the camera back to its heading at the start; the sensor's present direction now gives this heading. The horizon
-    /// does not change.
+    /// Turns the camera about the vertical, back to the heading that it had at the start. From then on the sensor's present
+    /// attitude stands for this heading. The horizon does not change.
     pub fn recentre(&mut self) {
         let back = Quaternion::about_axis(2, -self.camera.heading());
         self.camera = back.times(self.camera);
         self.offset = back.times(self.offset);
     }
 
-    /// Makes the sensor's present attitude the centre: the camera's attitude becomes the identity, including the horizon.
+    /// Makes the sensor's present attitude the centre: the camera's attitude becomes the identity, so the horizon changes too.
     pub fn level(&mut self) {
         self.offset = self.seen.unwrap_or(Quaternion::IDENTITY).inverse();
         self.camera = Quaternion::IDENTITY;
     }
 }
 
-/// The rotation about the axis of `turn` by `sensitivity`/256 times its angle, which is at most half a turn.
+/// Returns the rotation about the axis of `turn` whose angle is `sensitivity`/256 times the angle of `turn`, which is at most
+/// half a turn.
 fn scaled(turn: Quaternion, sensitivity: u16) -> Quaternion {
     let [w, x, y, z] = turn
         .canonical()
@@ -223,7 +226,7 @@ fn scaled(turn: Quaternion, sensitivity: u16) -> Quaternion {
         return Quaternion::IDENTITY;
     }
     let (_, half) = polar(w << 30, sine << 30);
-    // The product is at most a quarter of a turn times 8.
+    // The product is at most 8 times a quarter of a turn.
     let half = Turns(((u64::from(half.0) * u64::from(sensitivity)) >> 8) as u32);
     let (sin, cos) = sin_cos_q30(half);
     let along = |x: i64| Q2_30::from_bits((i64::from(sin.to_bits()) * x / sine) as i32);

@@ -11,7 +11,7 @@ pub struct PeriodicRead {
     pub register: u8,
     /// Number of bytes in one read, 1 to 32.
     pub length: u8,
-    /// Time from the start of a read to the start of the next, in µs.
+    /// Time from the start of a read to the start of the next read, in µs.
     pub period: u32,
     /// Number of reads after which the bus interrupts the processor, 1 to 16.
     pub batch: u8,

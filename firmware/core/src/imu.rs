@@ -1,7 +1,7 @@
-//! Sensor that steers the camera: samples, calibration, attitude and steering.
+//! The motion sensor that steers the camera: its samples, calibration and attitude, and the steering.
 //!
-//! [`Imu`] is the [`Sink`] of an MPU-6050's [`Stream`](crate::mpu6050::Stream). While the sensor fails, the
-//! attitude stays constant.
+//! [`Imu`] is the [`Sink`] of an MPU-6050's [`Stream`](crate::mpu6050::Stream). While the sensor gives no samples,
+//! the attitude stays constant.
 
 use core::fmt;
 
@@ -108,7 +108,7 @@ impl<E: Copy> Imu<E> {
         self.error
     }
 
-    /// Number of errors, saturating.
+    /// Number of errors since the start; it saturates.
     pub const fn errors(&self) -> u32 {
         self.errors
     }
@@ -118,17 +118,17 @@ impl<E: Copy> Imu<E> {
         self.identity.is_some() && self.error.is_none()
     }
 
-    /// Number of samples, modulo 2^32.
+    /// Number of samples since the start, modulo 2^32.
     pub const fn samples(&self) -> u32 {
         self.samples
     }
 
-    /// The newest sample.
+    /// The newest sample; `None` before the first.
     pub const fn latest(&self) -> Option<&Sample> {
         self.latest.as_ref()
     }
 
-    /// The chip's temperature in 1/100 °C.
+    /// The chip's temperature in 1/100 °C; `None` before the first sample.
     pub fn temperature(&self) -> Option<i32> {
         let identity = self.identity.filter(|_| self.latest.is_some())?;
         Some(identity.temperature(self.temperature))
@@ -187,12 +187,12 @@ impl<E: Copy> Imu<E> {
         self.moved = true;
     }
 
-    /// Which directions of the sensor point into the scene and up on the screen.
+    /// The mounting: which directions of the sensor point into the scene and up on the screen.
     pub const fn mounting(&self) -> Mounting {
         self.mounting
     }
 
-    /// Sets which directions of the sensor point into the scene and up on the screen.
+    /// Sets the mounting: which directions of the sensor point into the scene and up on the screen.
     pub const fn set_mounting(&mut self, mounting: Mounting) {
         self.mounting = mounting;
         self.moved = true;
@@ -208,7 +208,8 @@ impl<E: Copy> Imu<E> {
         self.steering.set_sensitivity(sensitivity);
     }
 
-    /// Turns the camera back to its heading at the start; the sensor's present direction now gives this heading.
+    /// Turns the camera back to the heading that it had at the start. From then on the sensor's present
+    /// attitude stands for this heading.
     pub fn recentre(&mut self) {
         self.steering.recentre();
         self.moved = true;
@@ -234,8 +235,9 @@ impl<E: Copy> Imu<E> {
         }
     }
 
-    /// The steered camera: at `eye` for [`Follow::Look`], at the distance `radius` from the origin for [`Follow::Orbit`]. `None`
-    /// if nothing has changed since the last call, or if the sensor does not steer the camera.
+    /// Computes the steered camera: at `eye` for [`Follow::Look`], at the distance `radius` from the origin for
+    /// [`Follow::Orbit`]. `None` if nothing that moves the camera has changed since the last call, before the first sample, or if
+    /// the sensor does not steer the camera.
     ///
     /// # Errors
     /// Eye or radius is out of range.

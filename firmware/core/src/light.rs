@@ -1,8 +1,8 @@
-//! Light on distance fields.
+//! Lights, and the lit colours of distance fields.
 //!
-//! Faces perpendicular to the axes have six directions, so six lit colours are computed once a frame, and no pixel needs further
-//! work. Spheres are lit per pixel, in `glint-model` and in the gateware. Light depends only on the angle between the normal and
-//! the direction to the light; there are no shadows.
+//! Faces perpendicular to the axes have only six directions, so their six lit colours are computed once per frame, and no
+//! lighting is computed per pixel. Spheres are lit per pixel, in `glint-model` and in the gateware. Light depends only on the
+//! angle between the normal and the direction to the light; there are no shadows.
 
 use core::fmt;
 
@@ -105,7 +105,7 @@ impl fmt::Display for Light {
     }
 }
 
-/// Displays a colour in the form that [`parse_rgb`] reads.
+/// Displays a colour as the six hexadecimal digits that [`parse_rgb`] reads.
 #[derive(Clone, Copy, Debug)]
 pub struct Hexadecimal(pub Rgb);
 
@@ -117,7 +117,7 @@ impl fmt::Display for Hexadecimal {
     }
 }
 
-/// Reads a colour of six hexadecimal digits, two per channel.
+/// Parses a colour of six hexadecimal digits, two per channel; `None` for any other text.
 pub fn parse_rgb(text: &str) -> Option<Rgb> {
     let digits = text.len() == 6 && text.bytes().all(|byte| byte.is_ascii_hexdigit());
     let number = u32::from_str_radix(text, 16).ok().filter(|_| digits)?;
@@ -125,7 +125,7 @@ pub fn parse_rgb(text: &str) -> Option<Rgb> {
     Some([red, green, blue])
 }
 
-/// Reason why a text is not a light.
+/// Reason why a text is not the text form of a light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LightError<'a> {
     /// The text has another form.
@@ -158,16 +158,17 @@ pub struct Lighting {
 }
 
 impl Lighting {
-    /// Full ambient light and no lights: surfaces show their own colours.
+    /// Full ambient light and no lights: surfaces have the colours of their material.
     pub const PLAIN: Self = Self {
         ambient: [0xFF; 3],
         lights: Vec::new(),
     };
 
-    /// Default ambient light for lights that the user has set.
+    /// Default ambient light for a scene whose lights the user has set.
     pub const AMBIENT: Rgb = [0x40; 3];
 
-    /// The lights of the materials except `Normal`: a sun and a sky, whose directions give faces different brightness.
+    /// Returns the default lighting of all materials except `Normal`: the lights are a sun and a sky, whose directions give
+    /// faces different brightness.
     pub fn day() -> Self {
         let sun = Light {
             towards: [3, -5, 8].map(Q32_32::from_num),
@@ -185,9 +186,9 @@ impl Lighting {
         }
     }
 
-    /// Lit colours of six faces from their colours c in full light: each channel is c·min(1, ambient + Σ max(0, n·l)·light),
-    /// where 255 stands for 1, n is the face's normal and l the direction to a light. Only the directions and the result are
-    /// rounded (to nearest).
+    /// Computes the lit colours of six faces, perpendicular to the axes, from their colours c in full light. Each channel is
+    /// c·min(1, ambient + Σ max(0, n·l)·light), where 255 stands for 1, n is the face's normal and l the direction to a light.
+    /// Only the directions and the result are rounded (to nearest).
     pub fn shine_on(&self, faces: &[Rgb; 6]) -> [Rgb; 6] {
         core::array::from_fn(|face| {
             self.lit(faces[face], |light| {
@@ -198,10 +199,10 @@ impl Lighting {
         })
     }
 
-    /// Lit colours of the eight faces perpendicular to the diagonals, from their colours in full light. Bit i of a face's number
-    /// is set if component i of its normal is positive. The cosine n·l is rounded down.
+    /// Computes the lit colours of the eight faces perpendicular to the diagonals, from their colours in full light. Bit i of a
+    /// face's number is set if component i of its normal is positive. The cosine n·l is rounded down.
     pub fn shine_on_octants(&self, faces: &[Rgb; 8]) -> [Rgb; 8] {
-        // 1/√3 with 14 fraction bits: each component of a normal, apart from its sign.
+        // The magnitude of each component of a face's normal: 1/√3 with 14 fraction bits.
         const PART: i32 = 9_459;
         core::array::from_fn(|face| {
             self.lit(faces[face], |light| {
@@ -214,8 +215,8 @@ impl Lighting {
         })
     }
 
-    /// The lit colour of a face, from its colour in full light and the cosine between its normal and the direction to each light.
-    /// Cosines have 14 fraction bits.
+    /// Computes the lit colour of a face, from its colour in full light and the cosine between its normal and the direction to
+    /// each light. Cosines have 14 fraction bits.
     fn lit(&self, colour: Rgb, cosine: impl Fn(&Light) -> i32) -> Rgb {
         core::array::from_fn(|channel| {
             let sum: i32 = self
@@ -231,7 +232,7 @@ impl Lighting {
     }
 }
 
-/// Material of a solid.
+/// Material of a solid, which determines its colours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Material {
     /// Each face has a colour that depends on its normal; spheres have the colours of the other materials in turn.
@@ -291,8 +292,9 @@ impl Material {
             while face < colours.len() {
                 let mut i = 0;
                 while i < 3 {
-                    // A face perpendicular to an axis has 40 or 230 in the axis's channel. Here each component of the normal is
-                    // 1/√3 in magnitude, so the channels differ from the middle value by 1/√3 as much.
+                    // A face perpendicular to an axis has 130 − 90 or 130 + 100 in the channel of this axis, and 130 in the two
+                    // other channels. Here each component of the normal is 1/√3 in magnitude, so each channel is 130 − 90/√3 or
+                    // 130 + 100/√3.
                     colours[face][i] = if face >> i & 1 == 1 { 188 } else { 78 };
                     i += 1;
                 }
@@ -302,8 +304,8 @@ impl Material {
         colours
     }
 
-    /// Colours of the spheres in full light, by their numbers. All have the material's colour; for `Normal` they have the colours
-    /// of the other materials in turn, to distinguish neighbours.
+    /// The colours of the spheres in full light, by their numbers. All spheres have the material's colour; for `Normal` they have
+    /// the colours of the other materials in turn, so that neighbours differ.
     pub const fn spheres(self) -> [Rgb; MAX_SPHERES] {
         let mut colours = [self.faces()[0]; MAX_SPHERES];
         if let Self::Normal = self {
@@ -316,7 +318,7 @@ impl Material {
         colours
     }
 
-    /// Default lighting. `Normal` needs no lights, because its colours already distinguish the faces.
+    /// The default lighting of the material. `Normal` needs no lights, because its colours already distinguish the faces.
     pub fn light(self) -> Lighting {
         match self {
             Self::Normal => Lighting::PLAIN,
@@ -331,7 +333,7 @@ pub enum Background {
     /// White.
     #[default]
     White,
-    /// Blue above, pale at the horizon and below.
+    /// A sky: blue above, pale at the horizon and below it.
     Sky,
 }
 
@@ -341,7 +343,7 @@ choices!(Background {
 });
 
 impl Background {
-    /// Two colours: the colour at the zenith, and the colour at the horizon and below.
+    /// Two colours: the colour at the zenith, and the colour at and below the horizon.
     pub const fn colours(self) -> [Rgb; 2] {
         match self {
             Self::White => [[0xFF; 3]; 2],

@@ -20,7 +20,7 @@ pub const MAX_CHUNK_VERTICES: u32 = u16::MAX as u32;
 /// The largest radius, in units of 2^−14: 2·√3, the distance of the farthest position from the origin, rounded up.
 pub const MAX_RADIUS: u32 = 56_756;
 
-/// Bytes of a record. The mesh's header is as long as two records.
+/// Bytes of a record: a chunk's header, a vertex or a triangle. The mesh's header is as long as two records.
 const RECORD: usize = 16;
 /// Bytes of the mesh's header.
 const HEADER: usize = 2 * RECORD;
@@ -37,7 +37,7 @@ pub struct Mesh<'a> {
 }
 
 impl<'a> Mesh<'a> {
-    /// Checks every length, count, index and reserved field of a mesh, and that its radius holds all vertices.
+    /// Checks every length, count, index and reserved field of a mesh, and that the sphere with its radius contains all vertices.
     ///
     /// # Errors
     /// The first deviation from the format, with its place.
@@ -152,7 +152,7 @@ impl<'a> Mesh<'a> {
         self.triangles
     }
 
-    /// Radius of a sphere about the origin that holds all vertices, in units of 2^−14; at most [`MAX_RADIUS`].
+    /// Radius of a sphere about the origin that contains all vertices, in units of 2^−14; at most [`MAX_RADIUS`].
     pub const fn radius(&self) -> u32 {
         self.radius
     }
@@ -189,12 +189,12 @@ impl<'a> Chunk<'a> {
         self.triangles.len()
     }
 
-    /// The vertex with this number.
+    /// Returns the vertex with this index in the chunk; `None` beyond the last.
     pub fn vertex(&self, index: usize) -> Option<Vertex> {
         self.vertices.get(index).map(Vertex::from_bytes)
     }
 
-    /// The triangle with this number.
+    /// Returns the triangle with this index in the chunk; `None` beyond the last.
     pub fn triangle(&self, index: usize) -> Option<Triangle> {
         self.triangles.get(index).map(Triangle::from_bytes)
     }
@@ -278,7 +278,7 @@ pub struct Triangle {
     pub indices: [u16; 3],
     /// Colour in RGB565.
     pub colour: Rgb565,
-    /// The normal of its face, s2.14.
+    /// Normal of the triangle, s2.14.
     pub normal: [i16; 3],
     /// Reserved, 0.
     pub flags: u16,
@@ -305,7 +305,7 @@ struct Walk<'a> {
 }
 
 impl<'a> Walk<'a> {
-    /// The next chunk, and the offset of its header.
+    /// Takes the next chunk. Returns the offset of its header in the mesh, and the chunk.
     fn chunk(&mut self) -> Result<(u32, Chunk<'a>), MeshError> {
         let offset = self.offset;
         let Some((header, rest)) = self.rest.split_first() else {
@@ -373,7 +373,7 @@ impl<'a> Iterator for Chunks<'a> {
     }
 }
 
-/// The first `N` little-endian words of `bytes`; words beyond the end are 0.
+/// Returns the first `N` little-endian 32-bit words of `bytes`; words beyond the end are 0.
 fn words<const N: usize>(bytes: &[u8]) -> [u32; N] {
     let mut words = [0; N];
     for (word, bytes) in words.iter_mut().zip(bytes.as_chunks().0) {
@@ -382,7 +382,7 @@ fn words<const N: usize>(bytes: &[u8]) -> [u32; N] {
     words
 }
 
-/// The eight little-endian half words of a record.
+/// Returns the eight little-endian 16-bit half words of a record.
 fn halves(record: &[u8; RECORD]) -> [u16; RECORD / 2] {
     let mut halves = [0; RECORD / 2];
     for (half, bytes) in halves.iter_mut().zip(record.as_chunks().0) {
@@ -419,7 +419,7 @@ fn expect_zeros<const N: usize>(offset: u32, reserved: [u32; N]) -> Result<(), M
 pub struct MeshError {
     /// Offset of the error in bytes from the start of the mesh.
     pub offset: u32,
-    /// What was expected at this place.
+    /// The number or value that was expected at this place.
     pub expected: Expected,
     /// The number that was found instead.
     pub found: u32,
@@ -430,15 +430,15 @@ pub struct MeshError {
 pub enum Expected {
     /// The four bytes [`MAGIC`].
     Magic,
-    /// Exactly this number.
+    /// Exactly this number of items.
     Exactly(&'static str, u32),
-    /// At least this number.
+    /// At least this number of items.
     AtLeast(&'static str, u32),
-    /// At most this number.
+    /// At most this number of items.
     AtMost(&'static str, u32),
-    /// Below this number.
+    /// An index below this number of items.
     Below(&'static str, u32),
-    /// A multiple of this number.
+    /// A multiple of this number of items.
     MultipleOf(&'static str, u32),
 }
 

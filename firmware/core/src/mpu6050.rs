@@ -21,7 +21,7 @@ use crate::i2c::{PeriodicI2c, PeriodicRead};
 pub use pace::Pace;
 pub use stream::{Sink, Stream};
 
-/// The chip's two I2C addresses: with its pin AD0 low, and high.
+/// The chip's two possible I2C addresses: the first with its pin AD0 low, the second with AD0 high.
 pub const ADDRESSES: [u8; 2] = [0x68, 0x69];
 
 /// LSB of the gyroscope per 10 °/s, at the range that [`Mpu6050`] configures.
@@ -35,7 +35,7 @@ pub const fn degrees_per_second(rate: i64) -> Q32_32 {
     Q32_32::from_bits((rate << 24) * 10 / LSB_PER_10_DPS)
 }
 
-/// The time between two samples, in µs.
+/// The time between two samples of the chip, in µs.
 pub const PERIOD: u32 = 1_000;
 
 /// Number of reads after which the bus interrupts the processor.
@@ -118,7 +118,7 @@ impl fmt::Display for Identity {
 pub struct Measurement {
     /// The specific force along each axis, in units of 1/4096 g.
     pub accel: [i16; 3],
-    /// The temperature in counts, which [`Identity::temperature`] converts.
+    /// The temperature in counts, which [`Identity::temperature`] converts to 1/100 °C.
     pub temperature: i16,
     /// The rate about each axis in counts, [`GYRO_LSB_PER_DPS`] counts per °/s.
     pub gyro: [i16; 3],
@@ -160,7 +160,7 @@ pub enum Error<E> {
     },
     /// The chip answers, but has no new sample.
     Silent,
-    /// Successive samples are all equal, so the chip does not measure.
+    /// Many successive samples are all equal, so the chip does not measure.
     Frozen,
 }
 
@@ -197,14 +197,14 @@ impl<E: fmt::Display> fmt::Display for Error<E> {
     }
 }
 
-/// A chip on a bus.
+/// A driver of the chip on an I2C bus.
 pub struct Mpu6050<B> {
     bus: B,
     address: u8,
 }
 
 impl<B: I2c> Mpu6050<B> {
-    /// A driver on a bus; [`start`](Self::start) finds the chip.
+    /// Makes a driver for a chip on `bus`; [`start`](Self::start) finds the chip.
     pub const fn new(bus: B) -> Self {
         Self {
             bus,
@@ -235,7 +235,7 @@ impl<B: I2c> Mpu6050<B> {
         Ok(identity)
     }
 
-    /// Checks that the chip is awake and configured. It loses its configuration when its supply fails.
+    /// Checks that the chip is awake and configured. A chip loses its configuration when its supply fails.
     ///
     /// # Errors
     /// The chip is not configured, or absent.
@@ -262,13 +262,13 @@ impl<B: I2c> Mpu6050<B> {
         Err(Error::Identity(found[0]))
     }
 
-    /// Writes consecutive registers.
+    /// Writes consecutive registers, from the number `register` on.
     async fn write(&mut self, register: u8, values: &[u8]) -> Result<(), Error<B::Error>> {
         let mut operations = [Operation::Write(&[register]), Operation::Write(values)];
         Ok(self.bus.transaction(self.address, &mut operations).await?)
     }
 
-    /// Reads consecutive registers and checks that they have the expected values.
+    /// Reads consecutive registers, from the number `register` on, and checks that they have the expected values.
     async fn expect<const N: usize>(
         &mut self,
         register: u8,
@@ -310,7 +310,8 @@ impl<B: PeriodicI2c> Mpu6050<B> {
         })?)
     }
 
-    /// Waits for the next read, and returns its start in µs and its sample; the sample is `None` if an earlier read returned it.
+    /// Waits for the next periodic read, and returns the time of its start in µs, and its sample. In place of a sample that an
+    /// earlier read already returned, the result is `None`.
     ///
     /// # Errors
     /// Errors of the bus.

@@ -1,8 +1,8 @@
 //! The attitude of a body from its gyroscope and accelerometer, by integer arithmetic alone.
 //!
 //! Conventions: the quaternion maps body to world, the world's z axis points up, and a flat sensor at rest reads +1 g on its z
-//! axis. The first sample starts the attitude: with the identity, or, with tilt correction, with the tilt that the accelerometer
-//! shows and yaw 0. Times are in µs. `docs/formats.md` states formats and rounding, `docs/report/imu.md` the errors.
+//! axis. The attitude at the first sample is the identity; with tilt correction it has the tilt that the accelerometer shows, and
+//! yaw 0. Times are in µs. `docs/formats.md` states the number formats and the rounding, `docs/report/imu.md` the errors.
 
 mod gain;
 mod integrator;

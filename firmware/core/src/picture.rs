@@ -1,4 +1,4 @@
-//! Sizes of a picture, and the backends that draw it.
+//! Sizes of a picture, and the backends that draw pictures.
 
 use core::fmt;
 

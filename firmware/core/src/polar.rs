@@ -13,11 +13,12 @@ static ANGLES: [u64; STEPS] = angles();
 /// Each step lengthens the vector. This factor, ∏ cos(atan(2^−i)) with 32 fraction bits, undoes the lengthening by all steps.
 const SHORTENING: u64 = 0x9B74_EDA8;
 
-/// Before the steps the components are shifted so that the highest bit of the larger one is this bit. The steps enlarge a
-/// component by a factor of at most √2·1.6468, so all numbers fit 64 bits.
+/// Before the steps, the components are shifted so that the highest bit of the larger component has this number. The steps
+/// enlarge a component by a factor of at most √2·1.6468, so all numbers fit 64 bits.
 const LEAD: u32 = 60;
 
-/// The length of (x, y) in the units of the components, and the angle from the first axis towards the second.
+/// Computes the length of the vector (x, y) in the units of its components, and its angle from the first
+/// axis towards the second axis.
 ///
 /// The error of the angle is at most 0.53·2^−32 turns for lengths of at least 2^32 units; the error of the length is at most 1
 /// unit plus 2^−31 of the length. Components saturate to ±2^61.

@@ -1,4 +1,4 @@
-//! Stereo: two eyes in one anaglyph picture.
+//! Stereo: the pictures of two eyes in one picture for coloured glasses (an anaglyph).
 //!
 //! The text form is half the distance between the eyes, the distance of zero parallax, and the colours
 //! of the glasses, such as `0.05,3,red-cyan`.
@@ -19,10 +19,10 @@ pub const FORM: &str = "E,ZERO[,red-blue|red-cyan]";
 /// Colours of the glasses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tint {
-    /// The left eye is red, the right eye blue; green is the minimum of both.
+    /// The left eye is red, the right eye blue; the green channel is the smaller of both eyes' values.
     #[default]
     RedBlue,
-    /// The left eye is red, the right eye green and blue.
+    /// The left eye is red, the right eye is green and blue.
     RedCyan,
 }
 
@@ -105,7 +105,7 @@ impl fmt::Display for Stereo {
     }
 }
 
-/// Reason why a text is not a pair of eyes.
+/// Reason why a text does not describe two eyes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StereoError<'a> {
     /// The text has another form.

@@ -15,15 +15,15 @@
 
 use crate::fixed::{Q2_14, Q2_30, Turns};
 
-/// Steps in an octant, and nodes in the table; node 0, where sin = 0 and cos = 1, is not stored.
+/// Number of steps in an octant, and of nodes in the table, because node 0, where sin = 0 and cos = 1, is not stored.
 const STEPS: u32 = 64;
 /// Length of one step, in units of 2^−32 turns.
 const STEP: u32 = (1 << 29) / STEPS;
 
-/// The nodes: sin(k·π/256) and 1 − cos(k·π/256) for k = 1…64 in u0.32, rounded to nearest.
+/// The table of nodes: sin(k·π/256) and 1 − cos(k·π/256) for k = 1…64, in u0.32, rounded to nearest.
 static NODES: [[u32; 2]; STEPS as usize] = nodes();
 
-/// Sine and cosine in Q2.14. The error is at most 0.51 units in the last place (2^−14), over all angles.
+/// Computes sine and cosine in Q2.14. The error is at most 0.51 units in the last place (2^−14), over all angles.
 pub fn sin_cos_q14(angle: Turns) -> (Q2_14, Q2_14) {
     // The magnitudes are rounded before the signs are set, so that rounding keeps the symmetries.
     let (sin, cos) = unfold(angle, |phase| {
@@ -33,12 +33,12 @@ pub fn sin_cos_q14(angle: Turns) -> (Q2_14, Q2_14) {
     (Q2_14::from_bits(sin as i16), Q2_14::from_bits(cos as i16))
 }
 
-/// Sine and cosine in Q2.30. The error is at most 0.68 units in the last place (2^−30), over all 2^32 angles.
+/// Computes sine and cosine in Q2.30. The error is at most 0.68 units in the last place (2^−30), over all 2^32 angles.
 pub fn sin_cos_q30(angle: Turns) -> (Q2_30, Q2_30) {
     sin_cos_q30_order::<3>(angle)
 }
 
-/// Sine and cosine in Q2.30 with a Taylor polynomial of order 0 to 3 (higher orders saturate to 3).
+/// Computes sine and cosine in Q2.30 with a Taylor polynomial of order 0 to 3 (higher orders saturate to 3).
 ///
 /// For order n the omitted terms are at most d^(n + 1)/(n + 1)! with d = π/512.
 /// For n = 0…3 this is 6.1e-3, 1.9e-5, 3.9e-8 and 5.9e-11.
@@ -57,7 +57,7 @@ fn unfold(angle: Turns, octant: impl Fn(u32) -> [i32; 2]) -> (i32, i32) {
         (1 << 29) - offset
     };
     let [mut sin, mut cos] = octant(phase);
-    // Octants 1, 2, 5 and 6 lie nearer to the vertical axis: sine and cosine change places.
+    // Octants 1, 2, 5 and 6 lie nearer to the vertical axis, so sine and cosine are exchanged.
     if (number + 1) & 2 != 0 {
         (sin, cos) = (cos, sin);
     }
@@ -70,7 +70,7 @@ fn unfold(angle: Turns, octant: impl Fn(u32) -> [i32; 2]) -> (i32, i32) {
     (sin, cos)
 }
 
-/// Sine and cosine, with 30 fraction bits, of an angle in the first octant: `phase` is 0…2^29 in units of 2^−32 turns.
+/// Computes sine and cosine, with 30 fraction bits, of an angle in the first octant: `phase` is 0…2^29 in units of 2^−32 turns.
 ///
 /// No operation overflows: |d| ≤ π/512 < 2^−7.3, so `d` and `e` (38 fraction bits) stay below 2^30.7, and `h` (45 fraction bits)
 /// below 2^29.4. The products with the node's `s` and `versine` are smaller, because both factors are below 1.
@@ -93,24 +93,24 @@ fn octant<const ORDER: u32>(phase: u32) -> [i32; 2] {
     } else {
         mul_high(d.unsigned_abs() as i32, d.unsigned_abs()) as u32
     };
-    // d·h is d³/2 with 51 fraction bits; a third of d·h, shifted by 13 bits, is d³/6 with 38.
+    // d·h is d³/2 with 51 fraction bits; a third of d·h, shifted by 13 bits, is d³/6 with 38 fraction bits.
     let e = if ORDER < 3 {
         d
     } else {
         d - mul_high(mul_high(d, h), (1 << 19) / 3)
     };
 
-    // What the polynomial adds to the node's sine and cosine, with 38 fraction bits; C·x is computed as x − versine·x.
+    // The polynomial's additions to the node's sine and cosine, with 38 fraction bits; C·x is computed as x − versine·x.
     let sin = e - mul_high(e, versine) - (mul_high(h as i32, s) >> 7);
     let cos = -mul_high(e, s) - ((h as i32 - mul_high(h as i32, versine)) >> 7);
-    // Nested floors equal one floor: the exact sum (node·2^6 + polynomial) is rounded once, to the nearest 2^−30. Sines of the
-    // octant lie in [0, 0.71], so the unsigned sum does not wrap.
+    // Two successive roundings down equal a single one, so the exact sum (node·2^6 + polynomial) is in effect rounded once, to
+    // the nearest 2^−30. Sines of the octant lie in [0, 0.71], so the unsigned sum does not wrap.
     let sin = s.wrapping_add_signed((sin + 128) >> 6) >> 2;
     let cos = (1 << 30) + ((((cos + 128) >> 6) - versine as i32) >> 2);
     [sin as i32, cos]
 }
 
-/// The high word of a product, floor(a·b/2^32), which is one instruction `mulhsu` on the soft core.
+/// Computes the high word of a product, floor(a·b/2^32), which is one instruction `mulhsu` on the soft core.
 fn mul_high(a: i32, b: u32) -> i32 {
     ((a as i64 * b as i64) >> 32) as i32
 }
@@ -132,8 +132,8 @@ const fn nodes() -> [[u32; 2]; STEPS as usize] {
     table
 }
 
-/// The series x^n/n! − x^(n+2)/(n+2)! + … from n = `first` on, which is sin x for n = 1 and 1 − cos x for n = 2. `x` is below 1
-/// and has 60 fraction bits; the result has 32 fraction bits and is rounded to nearest.
+/// Computes the series x^n/n! − x^(n+2)/(n+2)! + … from n = `first` on, which is sin x for n = 1 and 1 − cos x for n = 2. `x` is
+/// below 1 and has 60 fraction bits; the result has 32 fraction bits and is rounded to nearest.
 const fn alternating_series(x: u128, first: u128) -> u32 {
     let (mut sum, mut term, mut n) = (0_i128, x, 1);
     let mut sign = 1;

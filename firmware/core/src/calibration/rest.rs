@@ -21,19 +21,19 @@ const MOST_FORCE: u32 = 1;
 /// at 1 kHz, resolves a difference of 2^−15 LSB.
 #[derive(Clone, Copy, Debug)]
 pub struct RestBias {
-    /// The limits of the differences of rates, of forces and of the bias at rest, in LSB.
+    /// The limits of `MOST_RATE`, `MOST_FORCE` and `MOST_BIAS`, in this order, converted to LSB.
     most: [u32; 3],
     bias: [i64; 3],
     mean: [i64; 3],
     force: [i64; 3],
-    /// Time since the sensor came to rest in µs, 0 in motion; `None` before the first sample.
+    /// Time in µs since the sensor came to rest, 0 in motion; `None` before the first sample.
     rested: Option<u32>,
     notice: Gain,
     learn: Gain,
 }
 
 impl RestBias {
-    /// Starts with a bias in 1/256 LSB.
+    /// Starts with the given bias of each axis, in 1/256 LSB.
     pub fn new(units: Units, bias: [i32; 3]) -> Self {
         Self {
             most: [
@@ -50,7 +50,7 @@ impl RestBias {
         }
     }
 
-    /// The bias in 1/256 LSB, to nearest.
+    /// The bias of each axis in 1/256 LSB, rounded to nearest.
     #[inline(never)]
     pub fn bias(&self) -> [i32; 3] {
         self.bias.map(|x| ((x + (1 << 23)) >> 24) as i32)
@@ -94,7 +94,7 @@ impl RestBias {
     }
 }
 
-/// Converts a count to 32 fraction bits.
+/// Converts a count in LSB to a fixed-point number with 32 fraction bits.
 fn fraction(count: i16) -> i64 {
     i64::from(count) << 32
 }
@@ -106,7 +106,7 @@ fn near(a: i64, b: i64, most: u32) -> bool {
 }
 
 /// Moves `mean` towards `count` by the part `gain` (32 fraction bits) of their difference, rounded to nearest. The mean has 32
-/// fraction bits and is below 2^48, so no product overflows.
+/// fraction bits and its bits are below 2^48 in magnitude, so no product overflows.
 #[inline(never)]
 fn approach(mean: &mut i64, count: i16, gain: u32) {
     let difference = fraction(count) - *mean;

@@ -30,13 +30,13 @@ pub trait WordArgument {
     /// Parses a word. `None` means that the word is not accepted.
     fn parse(text: &str) -> Option<Self::Value<'_>>;
 
-    /// The reason why [`parse`](Self::parse) rejects a word.
+    /// Returns the reason why [`parse`](Self::parse) rejects a word.
     fn error(_: &str) -> ValueError<'_> {
         ValueError::Kind
     }
 }
 
-/// The words of a line after the command's name, and the first error.
+/// Reads the words of a line after the command's name, and stores the first error.
 ///
 /// The reader stores the error, so that the many small functions that read arguments return `Option` instead of `Result`, which
 /// makes the code smaller.
@@ -63,7 +63,7 @@ impl<'a> Reader<'a> {
         T::read(self, parameter)
     }
 
-    /// Whether the line has no further word.
+    /// Returns whether all words of the line were taken.
     #[inline(never)]
     fn is_empty(&self) -> bool {
         self.words.clone().next().is_none()
@@ -81,7 +81,7 @@ impl<'a> Reader<'a> {
         None
     }
 
-    /// Stores the error of the word that was taken last.
+    /// Rejects the word that was taken last: stores the error that `error_of` gives for it.
     #[cold]
     #[inline(never)]
     fn reject_word(&mut self, parameter: &'static Parameter, error_of: ErrorOf) {
@@ -98,7 +98,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Stores the error of a value whose words are valid one by one, but not in combination.
+    /// Rejects a value whose words are valid one by one, but not in combination: stores `error`.
     #[cold]
     #[inline(never)]
     pub fn reject(&mut self, error: ValueError<'a>) {
@@ -126,7 +126,7 @@ impl<'a> Reader<'a> {
 type ErrorOf = fn(&str) -> ValueError<'_>;
 
 impl Parameter {
-    /// A parameter of type `T`.
+    /// Makes a parameter with this name that takes an argument of type `T`.
     pub const fn of<T: Argument>(name: &'static str) -> Self {
         Self {
             name,
@@ -185,8 +185,9 @@ impl Argument for Flag {
     }
 }
 
-/// Defines the argument type `Name` of several words: `group!(Name: Value = (word: Type, …) => expression)`. The expression
-/// computes the value from the parsed words, which it uses by their names. It is a `Result` with a [`ValueError`].
+/// Defines the argument type `Name` of several words: `group!(Name: Value = (word: Type, …) => expression)`. The
+/// expression computes the value from the parsed words, which it uses by their names. The type of the expression is a
+/// `Result` with a [`ValueError`].
 macro_rules! group {
     ($(#[$doc:meta])* $name:ident: $value:ty = ($($word:ident: $type:ty),+ $(,)?) => $build:expr) => {
         $(#[$doc])*
@@ -214,7 +215,7 @@ macro_rules! group {
 }
 pub(super) use group;
 
-/// The name of a value of a [`Choice`].
+/// An argument of one word: the name of a value of a type that implements [`Choice`].
 impl<T: Choice> WordArgument for T {
     type Value<'a> = T;
     const KIND: Kind = Kind::Words(T::WORDS);
@@ -244,7 +245,7 @@ impl Keyword for Default {
     const WORD: &'static str = "default";
 }
 
-/// A keyword, read as `None`, or a value.
+/// An argument that is either the keyword `K`, whose value is `None`, or a word of type `T`.
 pub struct Or<K, T>(PhantomData<(K, T)>);
 
 impl<K: Keyword, T: WordArgument> WordArgument for Or<K, T> {

@@ -15,7 +15,7 @@ use crate::light::{Background, Light, Material, Rgb};
 use crate::picture::Backend;
 use crate::stereo::Stereo;
 
-/// The machine, which executes commands: each trait of commands below has one method per command.
+/// A machine that executes commands. Each trait that the table below defines extends this trait, and has one method per command.
 pub trait Executor<'a> {
     /// The result of a command. It may borrow from the line.
     type Output;
@@ -59,7 +59,7 @@ commands! {
         orbit Orbit(frames: Option<Whole<3_600>>): "turn the camera once about the z axis, in FRAMES frames (default 240)";
     }
 
-    /// Commands of the sensor.
+    /// Commands of the motion sensor (IMU).
     ImuCommands {
         imu Imu(action: Option<Imu>): "show sensor status; calibrate, stream, or steer the camera";
         mounting Mounting(mounting: Option<Mounting>): "show or set the sensor axes that point into the scene and up on the screen";
@@ -67,7 +67,7 @@ commands! {
         replay Replay(upload: Option<Upload>): "upload a log (binary) and compute its attitudes, or download the last attitudes (binary)";
     }
 
-    /// Commands of frames.
+    /// Commands for drawing frames.
     FrameCommands {
         size Size(size: Size): "set the picture size: 320 180, 640 360 or 1280 720";
         backend Backend(backend: Option<Backend>): "show or set the backend that draws frames";
@@ -127,7 +127,7 @@ fn entry(name: &str) -> Option<&'static Entry> {
     COMMANDS.iter().find(|entry| entry.syntax.name == name)
 }
 
-/// The syntax of the command with this name.
+/// Returns the syntax of the command with this name; `None` for an unknown name.
 pub(super) fn find(name: &str) -> Option<&'static Syntax> {
     entry(name).map(|entry| &entry.syntax)
 }
@@ -140,7 +140,7 @@ pub(super) fn syntaxes() -> impl Iterator<Item = &'static Syntax> {
 /// Writes the help of `command`, or the list of all commands if the name is missing or unknown.
 ///
 /// # Errors
-/// Errors of the writer.
+/// The errors of the writer `out`.
 pub fn write_help(out: &mut dyn fmt::Write, command: Option<&str>) -> fmt::Result {
     match command.and_then(find) {
         Some(syntax) => {

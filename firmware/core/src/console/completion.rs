@@ -33,7 +33,7 @@ pub fn complete(line: &str, offer: &mut dyn FnMut(&'static str, &'static str)) {
     }
 }
 
-/// The parameter of `command` for the argument word `index`, counted from 0.
+/// Returns the parameter of `command` that takes the word with the number `index` (from 0) after the command's name.
 fn parameter(command: &str, index: usize) -> Option<&'static Parameter> {
     let mut left = index;
     find(command)?

@@ -18,7 +18,7 @@ type Line = Vec<u8, LINE_MAX>;
 /// What the caller must handle after a byte from the terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event<'a> {
-    /// Nothing; only the echo was written.
+    /// Nothing to handle: at most the echo was written.
     None,
     /// A complete line: ASCII without control characters.
     Line(&'a str),
@@ -46,13 +46,13 @@ pub enum Event<'a> {
 #[derive(Debug)]
 pub struct LineEditor {
     line: Line,
-    /// Cursor: the place of the next character, at most the line's length.
+    /// Cursor: the index in the line at which the next character is inserted, at most the line's length.
     cursor: usize,
-    /// Whether the line exceeds its buffer.
+    /// Whether the typed line is longer than its buffer.
     overlong: bool,
-    /// Whether the caller has got the line; if so, the next byte clears it.
+    /// Whether the line has ended and was returned to the caller; if so, the next byte clears it.
     ended: bool,
-    /// Whether the last byte was a carriage return; if so, a line feed belongs to the same end of line.
+    /// Whether the last byte was a carriage return; if so, a line feed that follows belongs to the same end of line.
     returned: bool,
     escape: Escape,
     /// The history, newest line last.
@@ -69,7 +69,7 @@ enum Escape {
     No,
     /// The Escape byte was received.
     Begun,
-    /// Escape and `[` or `O` were received. The value is the sequence's number, as far as its digits were received.
+    /// Escape and `[` or `O` were received. The value is the decimal number in the sequence, as far as its digits were received.
     Number(u8),
 }
 
@@ -113,7 +113,7 @@ impl LineEditor {
     }
 
     /// Takes a byte and writes the echo for the terminal to `echo`, which must send a carriage return with every line feed.
-    /// Errors of `echo` are ignored, because the echo then has no reader.
+    /// Errors of `echo` are ignored, because they mean that no terminal shows the echo.
     pub fn on_byte(&mut self, byte: u8, echo: &mut dyn Write) -> Event<'_> {
         if self.ended {
             self.clear();
@@ -129,7 +129,7 @@ impl LineEditor {
             b'\n' if returned => {}
             b'\r' | b'\n' => return self.end(echo),
             _ => {
-                // Errors of the echo are ignored, because a terminal that gets no echo is not there.
+                // Errors of the echo are ignored, because they mean that no terminal shows the echo.
                 let _ = match self.decode(byte) {
                     Input::Nothing => Ok(()),
                     Input::Character(byte) => self.insert(byte, echo),
@@ -167,7 +167,8 @@ impl LineEditor {
         self.shown = 0;
     }
 
-    /// Decodes characters and keys; some keys are sequences of bytes.
+    /// Decodes the next byte to a character or an editing key; `Nothing` until the last byte of a key that
+    /// is sent as several bytes.
     fn decode(&mut self, byte: u8) -> Input {
         let key = match (self.escape, byte) {
             (_, 0x1B) => {
@@ -265,7 +266,7 @@ impl LineEditor {
         }
     }
 
-    /// The line up to the cursor.
+    /// Returns the text of the line before the cursor.
     fn before(&self) -> &str {
         text(self.line.get(..self.cursor).unwrap_or_default())
     }
@@ -321,7 +322,7 @@ impl LineEditor {
         }
     }
 
-    /// Deletes the characters from `start` to `end`; one of these two places is the cursor.
+    /// Deletes the characters from index `start` up to, but not including, index `end`. One of the two indices is the cursor.
     fn delete(&mut self, start: usize, end: usize, echo: &mut dyn Write) -> fmt::Result {
         if start >= end {
             return Ok(());
@@ -357,7 +358,7 @@ impl LineEditor {
         Ok(())
     }
 
-    /// Writes the text after the cursor to the terminal, and moves the terminal's cursor back to its place.
+    /// Writes the text after the cursor to the terminal, and moves the terminal's cursor back to the editor's cursor.
     fn write_tail(&self, echo: &mut dyn Write) -> fmt::Result {
         match self.line.get(self.cursor..) {
             Some(tail) if !tail.is_empty() => write!(echo, "{}\x1B[{}D", text(tail), tail.len()),

@@ -11,7 +11,7 @@ use crate::follow::SENSITIVITY;
 use crate::light::LightError;
 use crate::stereo::StereoError;
 
-/// Reason why a line is not a command. `Display` states the error, its place, and the expected input.
+/// Reason why a line is not a command. `Display` states the error, its place in the line, and the expected input.
 #[derive(Clone, Copy, Debug)]
 pub struct ParseError<'a>(pub(super) ParseErrorKind<'a>);
 
@@ -56,17 +56,17 @@ pub enum ValueError<'a> {
         /// The number of samples.
         samples: u32,
     },
-    /// Both directions of a mounting lie on the same axis of the sensor.
+    /// The two directions of a mounting, forward and up, lie on the same axis of the sensor.
     Mounting,
     /// The camera gain is outside [`SENSITIVITY`].
     Sensitivity,
     /// The numbers do not describe a camera.
     View(ViewError),
-    /// The word is not a field.
+    /// The word is not the text form of a distance field.
     Field(FieldError<'a>),
-    /// The word is not a pair of eyes.
+    /// The word does not describe the two eyes of a stereo picture.
     Stereo(StereoError<'a>),
-    /// The word is not a light.
+    /// The word is not the text form of a light.
     Light(LightError<'a>),
 }
 

@@ -52,13 +52,14 @@ pub enum Kind {
     Words(&'static [&'static str]),
     /// A text with this description.
     Text(&'static (dyn Display + Sync)),
-    /// A keyword, or a word of the given kind.
+    /// The given keyword, or a word of the given kind.
     Either(&'static str, &'static Kind),
     /// The name of a command.
     Command,
 }
 
-/// Largest number of words that a usage line lists for a parameter; for longer lists it shows the parameter's name instead.
+/// Largest number of accepted words that a usage line lists for a parameter. A parameter that accepts more
+/// words is shown by its name.
 const USAGE_WORDS: usize = 3;
 
 /// Writes the usage line: the command's name and its parameters.
@@ -69,7 +70,7 @@ impl Display for Syntax {
     }
 }
 
-/// Writes `lead` and then the parameters, separated by blanks.
+/// Writes `lead` and then the usage of the parameters, separated by blanks.
 fn write_usage(f: &mut fmt::Formatter, parameters: &[Parameter], lead: &str) -> fmt::Result {
     parameters
         .iter()
@@ -130,7 +131,7 @@ fn visit_all<E>(
 }
 
 impl Shape {
-    /// A value of several words. Only the last parameter may be optional.
+    /// Returns the shape of a parameter of several words. Only the last word may be optional; this is checked at compile time.
     pub const fn group(parameters: &'static [Parameter]) -> Self {
         assert_optional_last(parameters);
         Self::Group(parameters)
@@ -138,13 +139,13 @@ impl Shape {
 }
 
 impl Parameter {
-    /// The parameter in usage lines and messages, such as `RADIUS`, `on|off` or `off|FIELD`.
+    /// Returns the parameter's form in usage lines and error messages, such as `RADIUS`, `on|off` or `off|FIELD`.
     pub const fn form(&self) -> Form<'_> {
         Form(self)
     }
 }
 
-/// A parameter of one word in usage lines and messages.
+/// Displays a parameter of one word as in usage lines and error messages.
 pub struct Form<'a>(&'a Parameter);
 
 impl Display for Form<'_> {

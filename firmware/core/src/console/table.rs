@@ -11,8 +11,8 @@
 /// }
 /// ```
 ///
-/// A `Type` is an [`Argument`](super::argument::Argument). The macro generates the enumeration `Command`, the list `COMMANDS` for
-/// parser, help and completion, and a trait per subject with one method per command.
+/// Each `Type` implements [`Argument`](super::argument::Argument). The macro generates the enumeration `Command`, the list
+/// `COMMANDS` for parser, help and completion, and a trait per subject with one method per command.
 macro_rules! commands {
     ($(
         $(#[$doc:meta])*
@@ -20,7 +20,8 @@ macro_rules! commands {
             $($name:ident $variant:ident($($argument:ident: $type:ty),* $(,)?): $summary:literal;)+
         }
     )+) => {
-        /// A command with its arguments. The arguments are checked, but not against the state of the machine.
+        /// A command with its arguments. Each argument is valid by itself; whether it suits the state of
+        /// the machine is not checked.
         #[derive(Clone, Copy, Debug, PartialEq)]
         #[expect(
             clippy::large_enum_variant,

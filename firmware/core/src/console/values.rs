@@ -1,6 +1,7 @@
 //! Types of arguments: numbers, angles, colours, fields and values of several words.
 //!
-//! Parsers of numbers and fields are not inlined, so that all commands share one copy: less code loads faster.
+//! The parsers of numbers and fields are not inlined, so that all commands share one copy. This makes the firmware smaller, so
+//! that it is loaded faster.
 
 use core::fmt::{self, Display};
 
@@ -103,7 +104,7 @@ impl<const MAX: u32> WordArgument for Whole<MAX> {
     }
 }
 
-/// A whole number of 16 bits.
+/// A whole number from 0 to 65535.
 impl WordArgument for u16 {
     type Value<'a> = Self;
     const KIND: Kind = Kind::Text(&UpTo(Self::MAX as u32));
@@ -141,14 +142,14 @@ fn whole(text: &str) -> Option<u32> {
     }
 }
 
-/// Parses a number of digits only, without a sign.
+/// Parses a whole number in the base `radix` that consists of digits only, without a sign.
 #[inline(never)]
 fn digits(text: &str, radix: u32) -> Option<u32> {
     let digits = text.bytes().all(|byte| byte.is_ascii_hexdigit());
     u32::from_str_radix(text, radix).ok().filter(|_| digits)
 }
 
-/// A colour.
+/// A colour as six hexadecimal digits.
 impl WordArgument for Rgb {
     type Value<'a> = Self;
     const KIND: Kind = Kind::Text(&"a colour RRGGBB");
@@ -158,7 +159,7 @@ impl WordArgument for Rgb {
     }
 }
 
-/// A distance field.
+/// The text form of a distance field.
 impl WordArgument for field::Field {
     type Value<'a> = Self;
     const KIND: Kind = Kind::Text(&FieldForms);
@@ -186,7 +187,7 @@ impl Display for FieldForms {
     }
 }
 
-/// A pair of eyes.
+/// The text form of the two eyes of a stereo picture.
 impl WordArgument for stereo::Stereo {
     type Value<'a> = Self;
     const KIND: Kind = Kind::Text(&stereo::FORM);
@@ -202,7 +203,7 @@ impl WordArgument for stereo::Stereo {
     }
 }
 
-/// A light.
+/// The text form of a light.
 impl WordArgument for light::Light {
     type Value<'a> = Self;
     const KIND: Kind = Kind::Text(&light::FORM);
@@ -218,7 +219,7 @@ impl WordArgument for light::Light {
     }
 }
 
-/// A camera gain, entered as a decimal number and stored in 1/256, rounded down.
+/// A camera gain: a decimal number on the console, which is stored in units of 1/256, rounded down.
 pub struct Sensitivity;
 
 impl WordArgument for Sensitivity {
@@ -263,19 +264,19 @@ group! {
 }
 
 group! {
-    /// The directions of the sensor that point into the scene and up on the screen.
+    /// The mounting of the sensor: which of its directions points into the scene, and which points up on the screen.
     Mounting: follow::Mounting = (forward: Direction, up: Direction)
         => follow::Mounting::new(forward, up).ok_or(ValueError::Mounting)
 }
 
-/// An action of the sensor.
+/// An action of the command `imu`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ImuAction {
     /// Measure the bias with this number of samples.
     Calibrate(u32),
-    /// Print this number of samples; without a number, until the next command.
+    /// Print this number of samples; `None` prints samples until the next command.
     Stream(Option<u32>),
-    /// Steer the camera in this way, or stop steering it (`None`).
+    /// Let the sensor steer the camera in this way; `None` stops the steering.
     Follow(Option<Follow>),
     /// Turn the camera back to the heading that it had at the start.
     Recentre,
@@ -320,7 +321,7 @@ impl ImuAction {
 }
 
 group! {
-    /// An action of the sensor, and its number of samples.
+    /// The action of the command `imu`, and an optional number of samples.
     Imu: ImuAction = (action: Action, samples: Option<Whole<{ MOST_SAMPLES[1] }>>)
         => ImuAction::new(action, samples)
 }

@@ -33,7 +33,7 @@ pub struct Words<'a> {
 }
 
 impl<'a> Words<'a> {
-    /// The words of `line`.
+    /// Starts before the first word of `line`.
     pub const fn new(line: &'a str) -> Self {
         Self { line, offset: 0 }
     }

@@ -7,19 +7,19 @@ use crate::fixed::{Q32_32, Turns};
 /// A source of a field's numbers. Each kind of field requests its numbers by name and range, so that the ranges are stated once
 /// for parser, error messages and random tests.
 pub trait Arguments<'a> {
-    /// The next number, which is within `range` (both ends included).
+    /// Returns the next number, after checking that it is within `range` (both ends included).
     ///
     /// # Errors
     /// The number is missing, malformed or out of range.
     fn number(&mut self, name: &'static str, range: [Q32_32; 2]) -> Result<Q32_32, FieldError<'a>>;
 
-    /// The next number, which is an integer within `range` (both ends included).
+    /// Returns the next number, after checking that it is an integer within `range` (both ends included).
     ///
     /// # Errors
     /// The same as those of [`number`](Self::number).
     fn integer(&mut self, name: &'static str, range: [u8; 2]) -> Result<u8, FieldError<'a>>;
 
-    /// An optional angle in degrees; 0 if it is missing.
+    /// Returns the next number as an angle, which is stated in degrees; 0 if the number is missing.
     ///
     /// # Errors
     /// The word is not a number.
@@ -45,11 +45,11 @@ pub(in crate::field) fn check(
     }
 }
 
-/// The numbers after a kind's name, separated by commas.
+/// Reads a field's numbers from the text after the kind's name. Commas separate numbers, semicolons separate groups of numbers.
 pub(in crate::field) struct Words<'a> {
     kind: &'a str,
     words: core::str::Split<'a, char>,
-    /// The text of the groups that are not read yet.
+    /// The text of the groups that are not yet read; `None` after the last group.
     rest: Option<&'a str>,
     in_group: bool,
 }
@@ -79,7 +79,7 @@ impl<'a> Words<'a> {
             .ok_or(FieldError::Missing { kind, name })
     }
 
-    /// Checks that all numbers were read.
+    /// Checks that all numbers of the text, or of its present group, were read.
     pub fn end(&mut self) -> Result<(), FieldError<'a>> {
         let kind = self.kind;
         self.word()
@@ -145,7 +145,7 @@ impl<F: FnMut() -> u32> Random<F> {
         Self { bits, groups }
     }
 
-    /// The random index of an element in a list of `count` elements.
+    /// Returns a random index into a list of `count` elements.
     pub(in crate::field) fn choose(&mut self, count: usize) -> usize {
         (self.bits)() as usize % count.max(1)
     }

@@ -1,11 +1,11 @@
-//! Errors of the text form of a field.
+//! Errors in the text form of a distance field.
 
 use core::fmt;
 
 use super::limits::MAX_SPHERES;
 use crate::fixed::Q32_32;
 
-/// Reason why a text is not a field.
+/// Reason why a text is not the text form of a distance field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FieldError<'a> {
     /// The name of the kind is unknown.

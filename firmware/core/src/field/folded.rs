@@ -1,5 +1,6 @@
-//! Coordinates that are mirrored and exchanged (folded) during an evaluation. Folding keeps the maximum norm, and each coordinate
-//! keeps its direction in the world, so that the direction of the nearest face is known at the end.
+//! Coordinates of a point that are mirrored and exchanged (folded) while the distance of a solid is evaluated. Folding does not
+//! change the point's maximum norm. With each coordinate its direction in the world is kept, so that the direction of the nearest
+//! face is known at the end.
 
 use super::surface::Surface;
 
@@ -15,7 +16,7 @@ pub(in crate::field) struct Folded {
 }
 
 impl Folded {
-    /// The coordinates of a point before folding.
+    /// Returns the coordinates of a point before any folding.
     pub fn of(point: [i32; 3]) -> [Self; 3] {
         [0, 1, 2].map(|axis: u8| Self {
             value: point[usize::from(axis)],
@@ -24,7 +25,7 @@ impl Folded {
         })
     }
 
-    /// −x if `negate`, otherwise x.
+    /// Returns the coordinate mirrored at 0 (−x) if `negate`, otherwise the coordinate itself.
     pub fn negated_if(self, negate: bool) -> Self {
         if negate {
             Self {
@@ -37,7 +38,7 @@ impl Folded {
         }
     }
 
-    /// A coordinate with the given value and the direction of this coordinate.
+    /// Returns a coordinate with the given value and the direction of this coordinate.
     pub fn with(self, value: i32) -> Self {
         Self { value, ..self }
     }
@@ -49,7 +50,7 @@ impl Folded {
         }
     }
 
-    /// The face whose normal is the coordinate's direction.
+    /// Returns the face whose normal is the direction in which the coordinate increases.
     pub const fn face(self) -> Surface {
         Surface::Face {
             axis: self.axis,
@@ -58,7 +59,7 @@ impl Folded {
     }
 }
 
-/// Index of the largest of three numbers. If several are largest, y is preferred to x, and x to z.
+/// Returns the index of the largest of three numbers. If several are largest, y is preferred to x, and x to z.
 pub(in crate::field) fn largest([x, y, z]: [i32; 3]) -> usize {
     if z > x && z > y {
         2

@@ -1,5 +1,5 @@
-//! The two lists of kinds of fields: [`Primitive`] lists all kinds that have a text form, [`Flat`] lists the solids with flat
-//! faces as the gateware evaluates them.
+//! Two lists: [`Primitive`] lists all kinds of fields except unions, and [`Flat`] lists the solids with flat faces
+//! that the gateware evaluates.
 
 use core::fmt;
 
@@ -20,7 +20,7 @@ pub use menger::{FixedSponge, MAX_DEPTH, Menger};
 pub use octahedron::{FixedOctahedron, Octahedron};
 pub use sphere::{CentredSphere, Lattice, MovingSphere, Sphere, Spheres};
 
-/// Defines [`Primitive`] from the kinds of fields, in the order of the help.
+/// Defines [`Primitive`] from the list of the kinds of fields, which is in the order of the help.
 macro_rules! primitives {
     ($($kind:ident($shape:ty)),* $(,)?) => {
         /// A field that is not a union.
@@ -42,7 +42,7 @@ macro_rules! primitives {
 
             pub(super) const FORMS: [(&str, &str); Self::NAMES.len()] = [$((<$shape>::FORM, <$shape>::ABOUT)),*];
 
-            /// Reads the numbers of a kind; `None` for an unknown name.
+            /// Reads the numbers of a field of the kind with the name `kind`; `None` for an unknown name.
             fn read<'a>(kind: &str, numbers: &mut impl Arguments<'a>) -> Option<Result<Self, FieldError<'a>>> {
                 match kind {
                     $(<$shape>::NAME => Some(<$shape>::read(numbers).map(Self::$kind)),)*
@@ -57,7 +57,7 @@ macro_rules! primitives {
                 }
             }
 
-            /// Whether the faces are perpendicular to the diagonals.
+            /// Whether the field's faces are perpendicular to the diagonals instead of the axes.
             pub const fn has_octants(&self) -> bool {
                 match self {
                     $(Self::$kind(_) => <$shape>::OCTANTS,)*
@@ -71,7 +71,7 @@ macro_rules! primitives {
                 }
             }
 
-            /// The field's solid in field units.
+            /// Converts the field to its solid in field units, in which the engine computes.
             pub fn placed(&self) -> Placed<Solid> {
                 match self {
                     $(Self::$kind(shape) => shape.placed().map(Into::into),)*
@@ -113,7 +113,7 @@ primitives! {
 /// Defines [`Flat`] from the solids with flat faces that the gateware evaluates.
 macro_rules! flat_solids {
     ($($solid:ident),* $(,)?) => {
-        /// A flat solid in field units.
+        /// A solid with flat faces, with lengths in field units.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum Flat {
             $(#[doc = concat!("[`", stringify!($solid), "`].")] $solid($solid),)*
@@ -156,12 +156,12 @@ flat_solids! {
     FixedOctahedron,
 }
 
-/// A solid in field units.
+/// A solid with lengths in field units, in which the engine computes (`Placed` states the scale).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Solid {
-    /// A solid with faces.
+    /// A solid with flat faces.
     Flat(Flat),
-    /// Spheres.
+    /// One or several spheres.
     Spheres(FixedSpheres),
 }
 
@@ -175,7 +175,7 @@ impl Solid {
         }
     }
 
-    /// The solid's spheres; `None` for a solid with faces.
+    /// The solid's spheres; `None` for a solid with flat faces.
     pub const fn spheres(&self) -> Option<&FixedSpheres> {
         match self {
             Self::Flat(_) => None,
@@ -183,7 +183,7 @@ impl Solid {
         }
     }
 
-    /// Whether the solid is periodic with 64 units along each axis.
+    /// Whether the solid is periodic with 64 field units along each axis.
     pub fn is_repeated(&self) -> bool {
         match self {
             Self::Flat(flat) => flat.constants().repeated,
@@ -207,7 +207,7 @@ impl Primitive {
         Some(primitive.and_then(|primitive| words.end().map(|()| primitive)))
     }
 
-    /// Makes a random field for tests and test vectors: its kind, and its numbers within their ranges.
+    /// Makes a random field for tests and test vectors: a random kind, with random numbers within their ranges.
     pub(super) fn draw<F: FnMut() -> u32>(numbers: &mut Random<F>) -> Self {
         loop {
             let kind = Self::NAMES[numbers.choose(Self::NAMES.len())];

@@ -7,17 +7,17 @@ use super::error::FieldError;
 use super::surface::Sample;
 use crate::fixed::Q32_32;
 
-/// A kind of field with its text form.
+/// A kind of field, and its text form.
 pub trait Shape: Sized {
-    /// The solid type in field units.
+    /// The type of the solid with lengths in field units, which the engine evaluates.
     type Solid;
-    /// The word before the colon.
+    /// The name of the kind: the word before the colon of the text form.
     const NAME: &'static str;
-    /// Text form with the names of the numbers, for the help.
+    /// The text form with names in place of numbers, for the help.
     const FORM: &'static str;
-    /// Description, for the help.
+    /// Description of the kind, for the help.
     const ABOUT: &'static str;
-    /// An example of this kind, for tests of pictures.
+    /// An example of this kind in text form, for tests of pictures.
     const EXAMPLE: &'static str;
     /// Whether the kind can be a member of a union: a flat kind is the first member, a round kind the second.
     const JOINS: bool = false;
@@ -32,39 +32,40 @@ pub trait Shape: Sized {
     /// A number is missing, malformed or out of range.
     fn read<'a>(numbers: &mut impl Arguments<'a>) -> Result<Self, FieldError<'a>>;
 
-    /// Writes the numbers in text form.
+    /// Writes the numbers of the field as they stand in the text form.
     ///
     /// # Errors
     /// The formatter reports an error.
     fn write(&self, f: &mut fmt::Formatter) -> fmt::Result;
 
-    /// The solid in field units.
+    /// Converts the field to its solid in field units.
     fn placed(&self) -> Placed<Self::Solid>;
 }
 
-/// A solid in field units, with its scale and bounding box in the world.
+/// A solid with lengths in field units, with its scale and its bounding box in the world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Placed<S> {
     /// The solid.
     pub solid: S,
     /// Field units per world unit: 2 to 256.
     pub scale: Q32_32,
-    /// Half the sides of the bounding box about the origin, in world units; `None` for an unbounded solid.
+    /// Half the sides of the solid's bounding box, whose centre is the origin, in world units; `None` for an unbounded solid.
     pub extent: Option<[Q32_32; 3]>,
 }
 
-/// Field units per world unit for a field without a period. With this scale the cubes of the Menger sponge's first four levels
-/// have the sides 27, 9, 3 and 1.
+/// The scale, in field units per world unit, of a field without a period. With this scale the cubes of the Menger sponge's first
+/// four levels have the sides 27, 9, 3 and 1.
 pub const SCALE: Q32_32 = Q32_32::lit("40.5");
 
-/// Field units per world unit for a field with the given period in world units, so that the period is 64 field units.
+/// Computes the scale, in field units per world unit, of a field with the given period in world units. With this scale the period
+/// is 64 field units.
 pub fn scale_of(period: Q32_32) -> Q32_32 {
     const PERIOD: Q32_32 = Q32_32::lit("64");
     Q32_32::from_bits(((PERIOD.to_bits() << 16) / (period.to_bits() >> 8).max(1)) << 8)
 }
 
 impl<S> Placed<S> {
-    /// A solid without a period, in a bounding box.
+    /// Places a solid without a period whose bounding box has the half sides `extent`.
     pub const fn bounded(solid: S, extent: [Q32_32; 3]) -> Self {
         Self {
             solid,
@@ -73,7 +74,7 @@ impl<S> Placed<S> {
         }
     }
 
-    /// An unbounded solid without a period.
+    /// Places an unbounded solid without a period.
     pub const fn endless(solid: S) -> Self {
         Self {
             solid,
@@ -115,10 +116,10 @@ pub struct FlatConstants {
     pub has: u8,
     /// Whether the solid is outside the box.
     pub room: bool,
-    /// Whether the solid is periodic with 64 units along each axis.
+    /// Whether the solid is periodic with 64 field units along each axis.
     pub repeated: bool,
     /// Half the side of a sponge's smallest cubes, u10.12.
     pub cube_half: u32,
-    /// Half the sides of a box along x, y and z, u10.12; other solids keep their lengths here.
+    /// Half the sides of a box along x, y and z, u10.12. An octahedron has its size in the first number.
     pub half: [u32; 3],
 }

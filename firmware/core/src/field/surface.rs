@@ -1,4 +1,4 @@
-//! Distances as the gateware computes them, in field units with 12 fraction bits, and the nearest surface.
+//! Distances of points from solids, in field units with 12 fraction bits as in the gateware, and the nearest surfaces.
 
 use crate::fixed::Q32_32;
 
@@ -33,14 +33,14 @@ pub enum Surface {
         positive: bool,
         /// Number of the sphere.
         number: u8,
-        /// Weight of the sphere, u0.8: 0 is the face alone.
+        /// Weight of the sphere, u0.8: 0 means the face alone.
         share: u8,
     },
 }
 
 impl Surface {
-    /// The face in the gateware's encoding. A face perpendicular to an axis is twice the axis, plus 1 if the normal is positive;
-    /// a face perpendicular to a diagonal is its `signs`. `None` for a sphere.
+    /// Returns the face in the gateware's encoding. A face perpendicular to an axis is encoded as twice the axis, plus 1 if the
+    /// normal is positive; a face perpendicular to a diagonal is encoded as its `signs`. `None` for a sphere.
     pub const fn face(self) -> Option<u8> {
         match self {
             Self::Face { axis, positive } | Self::Blended { axis, positive, .. } => {
@@ -69,30 +69,30 @@ impl Surface {
     }
 }
 
-/// The distance of a point from a solid, and the nearest surface.
+/// The distance of a point from a solid, and the surface nearest to the point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sample {
-    /// Distance, s10.12. For a flat field it is in the maximum norm: the cube about the point with this half side holds no
-    /// surface. For a round field it is in the Euclidean norm.
+    /// Distance, s10.12. For a flat field it is in the maximum norm: a cube about the point contains no surface if half its side
+    /// is this distance. For a round field it is in the Euclidean norm.
     pub distance: i32,
     /// The surface of a solid that is nearest to a point.
     pub surface: Surface,
 }
 
-/// The lowest `bits` bits of a number, sign-extended.
+/// Returns the lowest `bits` bits of a number, sign-extended.
 pub const fn cropped(x: i32, bits: u32) -> i32 {
     let beyond = 32 - bits;
     x << beyond >> beyond
 }
 
-/// The magnitude without the carry of a negation: |x| for x ≥ 0, |x| − 1 for x < 0.
+/// Returns the magnitude of a number without the carry of a negation: |x| for x ≥ 0, |x| − 1 for x < 0.
 pub const fn magnitude(x: i32) -> u32 {
     (x ^ (x >> 31)) as u32
 }
 
-/// Converts a length from world units to field units, to nearest. |x| is at most 64, the scale at most 256.
+/// Converts a length from world units to field units, rounded to nearest. |x| is at most 64, the scale at most 256.
 pub fn units(x: Q32_32, scale: Q32_32) -> i64 {
-    // The length is used with 24 fraction bits, the scale with 20.
+    // The length is used with 24 fraction bits, the scale with 20 fraction bits.
     let product = (x.to_bits() >> 8) * (scale.to_bits() >> 12);
     (product + (1 << (43 - FRACTION))) >> (44 - FRACTION)
 }

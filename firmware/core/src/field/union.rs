@@ -1,4 +1,4 @@
-//! `union:A+B` and `smooth:K,A+B`: the union of a flat and a round field, sharp or with a fillet.
+//! `union:A+B` and `smooth:K,A+B`: the union of a flat field and a round field, without or with a fillet (a rounded transition).
 
 use core::fmt;
 
@@ -31,10 +31,10 @@ impl Union {
         ),
     ];
 
-    /// A union of two members with a fillet of the given width; 0 is no fillet.
+    /// Makes a union of two fields, its members, with a fillet of the width `blend` in world units; 0 means no fillet.
     ///
     /// # Errors
-    /// The members are not a flat and a round kind that unions accept, or the width is out of range.
+    /// The members are not of a flat and a round kind that unions accept, or the width is out of range.
     pub fn new(
         flat: Primitive,
         round: Primitive,
@@ -50,12 +50,12 @@ impl Union {
         }
     }
 
-    /// The flat member.
+    /// The flat member of the union.
     pub const fn flat(&self) -> &Primitive {
         &self.flat
     }
 
-    /// The round member.
+    /// The round member of the union.
     pub const fn round(&self) -> &Primitive {
         &self.round
     }

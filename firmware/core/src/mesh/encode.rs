@@ -1,4 +1,4 @@
-//! Encoding of meshes, for hosts with a heap.
+//! Encoding of meshes (docs/formats.md, "Mesh in memory"), for hosts with a heap.
 
 use alloc::vec::Vec;
 use core::fmt;
@@ -12,20 +12,20 @@ pub struct IndexedTriangle {
     pub indices: [u32; 3],
     /// Colour of the triangle.
     pub colour: Rgb565,
-    /// The normal of its face, s2.14.
+    /// Normal of the triangle, s2.14.
     pub normal: [i16; 3],
 }
 
 /// Encodes an indexed mesh, divided into chunks of at most 65,535 vertices.
 ///
 /// Triangles keep their order. A vertex is repeated in every chunk that uses it. A vertex that no triangle uses is left out. A
-/// mesh without triangles keeps its first vertex, because a chunk has at least one.
+/// mesh without triangles keeps its first vertex, because a chunk has at least one vertex.
 ///
 /// # Errors
 /// The mesh has no vertex, a triangle uses a missing vertex, or the encoded mesh exceeds [`MAX_BYTES`].
 pub fn encode(vertices: &[Vertex], triangles: &[IndexedTriangle]) -> Result<Vec<u8>, EncodeError> {
     let mut writer = Writer::default();
-    // For each vertex of the mesh, its index in the present chunk, if the chunk has it.
+    // For each vertex of the mesh: its index in the present chunk; `None` if the chunk does not have the vertex.
     let mut local = alloc::vec![None; vertices.len()];
     let mut used: Vec<u32> = Vec::new();
     let mut records: Vec<[u8; RECORD]> = Vec::new();
@@ -68,7 +68,7 @@ pub fn encode(vertices: &[Vertex], triangles: &[IndexedTriangle]) -> Result<Vec<
     Ok(writer.finish())
 }
 
-/// Makes a record of little-endian half words, padded with zeros.
+/// Makes a record of little-endian 16-bit half words, padded with zeros.
 fn record(halves: impl IntoIterator<Item = u16>) -> [u8; RECORD] {
     let mut record = [0; RECORD];
     for (bytes, half) in record.as_chunks_mut().0.iter_mut().zip(halves) {
@@ -146,7 +146,7 @@ impl Writer {
 /// Reason why a mesh cannot be encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EncodeError {
-    /// No vertex.
+    /// The mesh has no vertex.
     NoVertex,
     /// A triangle uses a missing vertex.
     Index {

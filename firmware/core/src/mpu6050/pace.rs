@@ -1,11 +1,11 @@
 //! Time stamps of samples from the times of reads.
 
-/// A model of the sensor's clock.
+/// A model of the sensor's clock, which computes the times at which samples were measured.
 ///
-/// A new sample was measured in the interval between the previous read and the present read. The period of the samples is
-/// not a multiple of the period of the reads, so the reads drift across the samples, and from time to time the interval
-/// begins or ends close to the sample's time. The clock predicts each sample's time; the smallest correction moves the
-/// prediction into the interval.
+/// A new sample was measured in the interval between the previous read and the present read. The period of the samples is not a
+/// multiple of the period of the reads, so the reads drift across the samples, and from time to time the interval begins or ends
+/// close to the sample's time. The clock predicts the time of each sample. A prediction outside the interval is moved to the
+/// nearer end of the interval.
 #[derive(Clone, Copy, Debug)]
 pub struct Pace {
     /// Nominal period (`nominal`) and estimated period (`period`) of the samples, in 2^−8 µs.
@@ -15,7 +15,7 @@ pub struct Pace {
     looked: Option<u64>,
     /// Predicted time of the next sample, in 2^−8 µs.
     expected: Option<u64>,
-    /// Number of samples that are left until corrections apply to the estimated period too.
+    /// Number of samples that are left until corrections also change the estimated period.
     settling: u8,
 }
 
@@ -23,9 +23,10 @@ pub struct Pace {
 /// samples the reads drift across a whole sample period.
 const SETTLED: u8 = 32;
 
-/// The estimated period changes by 2^−5 of each correction of the time, so that it settles within some dozens of corrections.
+/// After each correction of the time, the estimated period changes by 2^−5 of this correction, so that it settles within some
+/// dozens of corrections. This constant is the exponent.
 const SLOWNESS: u32 = 5;
-/// The estimated period differs from the nominal period by at most 2^−5 of it.
+/// The estimated period differs from the nominal period by at most 2^−5 of the nominal period. This constant is the exponent.
 const TOLERANCE: u32 = 5;
 
 impl Pace {
@@ -41,8 +42,9 @@ impl Pace {
         }
     }
 
-    /// Takes the time of a read in µs, which is later than the previous read. Returns the time of the read's sample if `found`
-    /// states that the read has a new sample. The sample of the first read may be old and is ignored.
+    /// Takes the time of a read in µs, which is later than the time of the previous read. If `found` states that the read has a
+    /// new sample, returns the time in µs at which this sample was measured. The sample of the first read may be old, so for it
+    /// the result is `None`.
     pub fn on_look(&mut self, time: u64, found: bool) -> Option<u64> {
         let before = self.looked.replace(time)?;
         if !found {
@@ -54,7 +56,7 @@ impl Pace {
         if self.settling > 0 {
             self.settling -= 1;
         } else {
-            // The period is corrected by a part of the error. The error is less than a period, unless samples were lost.
+            // The period is corrected by a part of the prediction's error, which is less than a period unless samples were lost.
             let most = i64::from(self.nominal);
             let off = (measured as i64 - expected as i64).clamp(-most, most) >> SLOWNESS;
             let tolerance = self.nominal >> TOLERANCE;

@@ -1,4 +1,4 @@
-//! The endless stream of samples.
+//! The endless stream of samples from a chip.
 
 use core::convert::Infallible;
 
@@ -9,16 +9,16 @@ use super::pace::Pace;
 use super::{Error, Identity, Measurement, Mpu6050, PERIOD};
 use crate::i2c::PeriodicI2c;
 
-/// Time between the starts of two reads in µs. It is slightly longer than a read, and slightly less than half a sample period, so
-/// that no sample is missed and the reads drift by 40 µs per sample.
+/// Time between the starts of two reads in µs. It is slightly longer than one read takes, and slightly less than half a sample
+/// period. Therefore no sample is missed, and relative to the samples the reads drift by 40 µs per sample period.
 const LOOK: u32 = 480;
-/// Time between the starts of two reads in µs for a chip that stretches the clock. It is slightly less than a sample period and
-/// has the same drift.
+/// Time between the starts of two reads in µs for a chip that stretches the clock. It is slightly less than a sample period, and
+/// gives the same drift as `LOOK`.
 const LONG_LOOK: u32 = 960;
 
 /// Longest time without a new sample that is not an error, in µs.
 const SILENCE: u32 = 20_000;
-/// Number of successive samples, each equal to its predecessor, that counts as an error.
+/// This many successive samples that are each equal to their predecessor are an error.
 const FROZEN: u32 = 50;
 /// Pause before the next attempt to find the chip, in ms. It bounds the load that an absent sensor causes.
 const AGAIN: u32 = 30;
@@ -28,7 +28,7 @@ pub trait Sink<E> {
     /// The chip was found and configured.
     fn on_start(&mut self, identity: Identity);
     /// Takes a sample and its time in µs. The time is later than the measured motion by the delay of the chip's filter. Apart
-    /// from this delay its error is at most 0.1 ms, and 0.3 ms for the first hundred samples after a start.
+    /// from this delay, the error of the time is at most 0.1 ms, or 0.3 ms for the first hundred samples after a start.
     fn on_sample(&mut self, time: u64, measurement: &Measurement);
     /// The chip was not found, or reading it failed. The stream tries again.
     fn on_error(&mut self, error: Error<E>);
@@ -45,7 +45,7 @@ pub struct Stream<B, D, S> {
 }
 
 impl<B: PeriodicI2c, D: DelayNs, S: Sink<B::Error>> Stream<B, D, S> {
-    /// A stream from a bus to a sink.
+    /// Makes a stream that reads the chip on `bus` and gives the samples to `sink`.
     pub const fn new(bus: B, delay: D, sink: S) -> Self {
         Self {
             chip: Mpu6050::new(bus),
@@ -54,7 +54,7 @@ impl<B: PeriodicI2c, D: DelayNs, S: Sink<B::Error>> Stream<B, D, S> {
         }
     }
 
-    /// Runs without end.
+    /// Finds, configures and reads the chip without end.
     pub async fn run(&mut self) -> ! {
         let mut reset = false;
         let mut look = LOOK;

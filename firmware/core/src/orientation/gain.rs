@@ -3,13 +3,13 @@
 /// The shortest time constant, in µs.
 pub const SHORTEST: u32 = 1_000;
 
-/// Computes the gains of a filter with a given time constant.
+/// Computes the gains of a filter with a given time constant, for steps of different lengths.
 #[derive(Clone, Copy, Debug)]
 pub struct Gain {
     time_constant: u32,
     /// 2^48 divided by the time constant.
     inverse: u64,
-    /// The last step and its gain. They are stored because most steps are equal.
+    /// The length of the last step in µs, and its gain. They are stored because most steps are equally long.
     last: (u32, u32),
 }
 
@@ -29,8 +29,8 @@ impl Gain {
         self.time_constant
     }
 
-    /// The gain of a step in µs; steps saturate to 2^19. The gain has 32 fraction bits; its error is at most 4 units plus 2^−16
-    /// of the gain for τ up to 1000 s. A gain that would round to 1 is 1 − 2^−32.
+    /// Computes the gain of a step of `step` µs, which saturates to 2^19. The gain has 32 fraction bits; its error is at most 4
+    /// units plus 2^−16 of the gain for τ up to 1000 s. A gain that would round to 1 is 1 − 2^−32.
     pub fn of(&mut self, step: u32) -> u32 {
         if step != self.last.0 {
             self.last = (step, self.fresh(step));
@@ -38,7 +38,7 @@ impl Gain {
         self.last.1
     }
 
-    /// Computes the gain of a step that differs from the last one.
+    /// Computes the gain of a step whose length differs from that of the last step.
     #[inline(never)]
     fn fresh(&self, step: u32) -> u32 {
         // `self.inverse` is below 2^39, so the product fits 64 bits.
@@ -50,7 +50,8 @@ impl Gain {
     }
 }
 
-/// 2^48 divided by a time constant, rounded down. Below 2^24 µs (16.8 s) a few 32-bit divisions replace the slow 64-bit division.
+/// Computes 2^48 divided by a time constant, rounded down. Below 2^24 µs (16.8 s) a few 32-bit divisions replace
+/// the slow 64-bit division.
 fn inverse(time_constant: u32) -> u64 {
     if time_constant >= 1 << 24 {
         return (1 << 48) / u64::from(time_constant);
@@ -66,7 +67,7 @@ fn inverse(time_constant: u32) -> u64 {
     quotient
 }
 
-/// Limit of the argument of `series`: 1/16 with 32 fraction bits.
+/// Arguments of `series` are below this limit: 1/16 with 32 fraction bits.
 const SMALL: u32 = 1 << 28;
 
 /// Computes 1 − exp(−x) for any x; argument and result have 32 fraction bits.

@@ -1,10 +1,11 @@
 //! Computes an attitude by integration of angular rates: exactly for a constant rate, and without numerical drift.
 //!
-//! A step by the half angle vector h multiplies the attitude by exp h = (cos|h|, h·sin|h|/|h|), as q + q·(exp h − 1): the addend
-//! is small, and so is its rounding error. The series of 1 − cos|h| and of 1 − sin|h|/|h| in |h|² have no singularity and need
-//! neither a root nor a division. Three rounding errors would accumulate over millions of steps and are avoided: the attitude has
-//! 62 fraction bits, of which the upper 30 are multiplied; the vector of exp h is rounded to 32 bits and its remainder goes into
-//! the next step; and each step corrects the length, by half of 1 − |q|².
+//! A step turns the body by twice the half angle vector h. It multiplies the attitude q by the quaternion exp h = (cos|h|,
+//! h·sin|h|/|h|). The product is computed as q + q·(exp h − 1), because the second term is small, and so is its rounding error.
+//! The series of 1 − cos|h| and of 1 − sin|h|/|h| in |h|² have no singularity and need neither a root nor a division. Three
+//! rounding errors would accumulate over millions of steps and are avoided: the attitude has 62 fraction bits, of which the upper
+//! 30 are multiplied; the vector of exp h is rounded to 32 bits and its remainder goes into the next step; and each step corrects
+//! the length, by half of 1 − |q|².
 
 use super::quaternion::{Quaternion, dot, product};
 use super::rate::History;
@@ -22,7 +23,8 @@ pub struct Integrator {
     attitude: [i64; 4],
     /// The attitude rounded to 30 fraction bits, to nearest.
     rounded: Quaternion,
-    /// What rounding left of the last step's vector part of exp h, with 48 fraction bits; it is added to the next step.
+    /// The remainder of the last step's vector part of exp h after rounding, with 48 fraction bits. It is added to the half angle
+    /// vector of the next step.
     rest: [i32; 3],
 }
 
@@ -31,7 +33,7 @@ pub struct Integrator {
 const LARGEST: i64 = 1 << 46;
 
 impl Integrator {
-    /// Starts with an attitude and with a rate in 1/256 LSB.
+    /// Starts with the given attitude and the given angular rate about each axis, in 1/256 LSB.
     pub fn new(scale: Scale, attitude: Quaternion, rate: [i32; 3]) -> Self {
         let mut integrator = Self {
             scale,
@@ -65,8 +67,9 @@ impl Integrator {
         self.advance_order::<4>(rate, step, correction);
     }
 
-    /// Integrates a rate as [`Self::advance`] does, by a method of the given order (above 4 as for 4): order 1 takes the newest
-    /// sample, 2 the mean of two samples, 3 a parabola through three samples, and 4 a cubic through four samples.
+    /// Integrates a rate as [`Self::advance`] does, by a method of the given order; orders above 4 count as 4. As the rate
+    /// between two samples, order 1 takes the newest sample, 2 the mean of two samples, 3 a parabola through three samples, and 4
+    /// a cubic through four samples.
     pub fn advance_order<const ORDER: u32>(
         &mut self,
         rate: [i32; 3],
@@ -96,7 +99,8 @@ impl Integrator {
         &self.rounded
     }
 
-    /// Turns the attitude by a half angle vector of any length. Its components have 48 fraction bits and are within ±2^57.
+    /// Turns the attitude by the rotation with the half angle vector `half`, of any length. Its components have 48 fraction bits
+    /// and are within ±2^57.
     pub(super) fn turn(&mut self, half: &[i64; 3]) {
         if half.iter().all(|x| (-LARGEST..LARGEST).contains(x)) {
             self.turn_part(half);
@@ -138,7 +142,7 @@ impl Integrator {
             self.rest[i] = i32::from(exact as u16) - (1 << 15);
             change[i + 1] = (exact >> 16) as i32;
         }
-        // |change| < 0.47, so no sum exceeds 1.47·2^62.
+        // |change| < 0.47, so no component of the sum below exceeds 1.47·2^62.
         let turned = product(q, change);
         for (part, turned) in core::iter::zip(&mut self.attitude, turned) {
             *part += turned;

@@ -1,5 +1,5 @@
-//! The format of a log for replay on a board: a header, then one record for each sample. Replay computes the attitude after each
-//! sample, and writes it over the sample's record.
+//! The format of a log of sensor samples, which a board can replay: a header, then one record for each sample. A replay computes
+//! the attitude after each sample, and writes the attitude over the sample's record.
 //!
 //! All numbers are little-endian.
 //!
@@ -33,7 +33,7 @@ use crate::fixed::Q32_32;
 pub const HEADER_BYTES: usize = 48;
 /// Bytes of a record.
 pub const RECORD_BYTES: usize = 16;
-/// Largest accepted bias in 1/256 LSB, which is the largest mean of counts.
+/// Largest accepted magnitude of a bias, in 1/256 LSB. No mean of 16-bit counts exceeds it.
 pub const LARGEST_BIAS: u32 = 1 << 23;
 
 const MAGIC: [u8; 4] = *b"GIMU";
@@ -56,26 +56,26 @@ pub struct Setup {
 /// Reason why bytes are not a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LogError {
-    /// Fewer bytes than a header.
+    /// The log has only this number of bytes, fewer than a header.
     Short(usize),
     /// The magic number is wrong.
     Magic([u8; 4]),
-    /// No samples.
+    /// The log has no samples.
     Empty,
-    /// The length does not match the number of samples.
+    /// The length of the log does not match the number of samples in its header.
     Length {
-        /// The number of samples.
+        /// The number of samples in the header.
         samples: u32,
-        /// The number of bytes.
+        /// The number of bytes of the log.
         bytes: usize,
     },
-    /// LSB per °/s out of range.
+    /// The gyroscope's LSB per °/s are out of range.
     PerDps(Q32_32),
-    /// LSB per g out of range.
+    /// The accelerometer's LSB per g are out of range.
     PerG(u32),
-    /// Unknown flags.
+    /// The header has unknown flags.
     Flags(u32),
-    /// A bias out of range.
+    /// The bias of an axis is out of range.
     Bias {
         /// The axis, 0 for x.
         axis: usize,
@@ -135,8 +135,8 @@ const fn length(samples: u32) -> u64 {
 }
 
 impl Setup {
-    /// Checks the parameters of a replay: the units of the counts, whether the accelerometer corrects the tilt, whether the bias
-    /// is tracked at rest, and the bias in 1/256 LSB.
+    /// Makes the parameters of a replay, after checking them: the units of the counts, whether the accelerometer corrects the
+    /// tilt, whether the bias is tracked at rest, and the bias in 1/256 LSB.
     ///
     /// # Errors
     /// The units or the bias are out of range.
@@ -164,7 +164,7 @@ impl Setup {
         })
     }
 
-    /// Makes a tracker with these parameters, before its first sample.
+    /// Makes a tracker with these parameters, which has not yet taken a sample.
     pub fn tracker(&self) -> Tracker {
         let tilt = self
             .tilt
@@ -177,7 +177,7 @@ impl Setup {
         tracker
     }
 
-    /// The header of a log with this number of samples.
+    /// Encodes the header of a log with these parameters and this number of samples.
     pub fn header(&self, samples: u32) -> [u8; HEADER_BYTES] {
         let mut flags = 0;
         if self.tilt {
@@ -266,7 +266,7 @@ pub fn open(bytes: &mut [u8]) -> Result<(Setup, &mut [[u8; RECORD_BYTES]]), LogE
     Ok((setup, records.as_chunks_mut().0))
 }
 
-/// The record stored in `bytes`.
+/// Decodes a record from its bytes.
 pub fn from_bytes(bytes: &[u8; RECORD_BYTES]) -> Record {
     let mut words = bytes
         .as_chunks()
@@ -276,7 +276,7 @@ pub fn from_bytes(bytes: &[u8; RECORD_BYTES]) -> Record {
     [0; 4].map(|nothing| words.next().unwrap_or(nothing))
 }
 
-/// The bytes of a record.
+/// Encodes a record to its bytes.
 pub fn to_bytes(record: Record) -> [u8; RECORD_BYTES] {
     let mut bytes = [0; RECORD_BYTES];
     for (to, word) in bytes.as_chunks_mut().0.iter_mut().zip(record) {
@@ -311,7 +311,8 @@ pub fn attitude(record: Record) -> Option<Quaternion> {
     Quaternion::exact(record.map(|part| part as i32))
 }
 
-/// Replays a log in place: replaces each sample by the attitude after it. Returns the counts of the samples by their effect.
+/// Replays a log in place: replaces each sample by the attitude after this sample. Returns how many samples had
+/// each effect on the attitude.
 ///
 /// # Errors
 /// The bytes are not a log; they stay unchanged.

@@ -13,8 +13,8 @@ pub struct Quaternion {
 
 /// The number 1 in the units of a component.
 const ONE: i32 = 1 << 30;
-/// If the cosine of the pitch is below this limit, roll is defined as 0. The limit is 2^−16 (within 0.00088° of the pole), with
-/// 60 fraction bits.
+/// If the cosine of the pitch is below this limit, roll is defined as 0. The limit is 2^−16 with 60 fraction bits, which is
+/// reached within 0.00088° of the pole.
 const POLE: i64 = 1 << 44;
 
 impl Quaternion {
@@ -34,7 +34,8 @@ impl Quaternion {
         Some(Self { parts }.renormalised())
     }
 
-    /// The quaternion with exactly these components (w, x, y, z in 2^−30); `None` unless the length is 1 within 2^−28.
+    /// Returns the quaternion with exactly these components (w, x, y, z in units of 2^−30); `None` unless the
+    /// length is 1 within 2^−28.
     pub(super) fn exact(parts: [i32; 4]) -> Option<Self> {
         // Each square is at most 2^62, so the sum fits u64; a sum beyond i64 is far too long.
         let square = parts
@@ -48,7 +49,7 @@ impl Quaternion {
             .then_some(Self { parts })
     }
 
-    /// The rotation by an angle about one of the axes: 0, 1, 2 for x, y, z (larger numbers are z).
+    /// Returns the rotation by `angle` about one of the axes: 0, 1, 2 for x, y, z (larger numbers count as 2).
     pub fn about_axis(axis: usize, angle: Turns) -> Self {
         // The angle is taken as −½ to ½ turns before it is halved, so that small angles of both signs give a quaternion
         // near the identity.
@@ -59,7 +60,7 @@ impl Quaternion {
         Self { parts }.renormalised()
     }
 
-    /// The attitude with these angles: the inverse of [`Quaternion::angles`].
+    /// Returns the attitude with these angles, as the inverse function of [`Quaternion::angles`].
     pub fn from_angles(angles: Angles) -> Self {
         let pitched = Self::about_axis(2, angles.yaw).times(Self::about_axis(1, angles.pitch));
         pitched.times(Self::about_axis(0, angles.roll))
@@ -85,7 +86,7 @@ impl Quaternion {
         }
     }
 
-    /// The product of two rotations: first `other`, then this one. The result is rounded to nearest and normalised.
+    /// Computes the product of two rotations: first `other`, then this rotation. The result is rounded to nearest and normalised.
     #[must_use]
     pub fn times(self, other: Self) -> Self {
         let products = product(&self.parts, other.parts);
@@ -93,8 +94,8 @@ impl Quaternion {
         Self { parts }.renormalised()
     }
 
-    /// The quaternion with w ≥ 0 that is the same attitude: this one or its negative. An attitude with w = 0 has
-    /// two such quaternions.
+    /// Returns the quaternion with w ≥ 0 for the same attitude: this quaternion or its negative. For an attitude with w = 0 there
+    /// are two such quaternions.
     #[must_use]
     pub fn canonical(self) -> Self {
         if self.parts[0] < 0 {
@@ -106,14 +107,14 @@ impl Quaternion {
         }
     }
 
-    /// The directions of the body's axes x, y, z in the world, which are the columns of the rotation's matrix. They have 30
-    /// fraction bits, rounded to nearest, and length 1 within 2^−28.
+    /// Computes the directions of the body's axes x, y, z in the world, which are the columns of the rotation's matrix. They have
+    /// 30 fraction bits, rounded to nearest, and length 1 within 2^−28.
     pub fn axes(self) -> [[i32; 3]; 3] {
         self.columns()
             .map(|column| column.map(|x| ((x + (1 << 29)) >> 30) as i32))
     }
 
-    /// The columns of the rotation's matrix, exact, with 60 fraction bits.
+    /// Computes the columns of the rotation's matrix exactly, with 60 fraction bits.
     fn columns(self) -> [[i64; 3]; 3] {
         let [w, x, y, z] = self.parts.map(i64::from);
         // Each element of the matrix is at most 1 in magnitude, and no intermediate value exceeds 2, so 64 bits are enough.
@@ -137,7 +138,7 @@ impl Quaternion {
         ]
     }
 
-    /// The direction of the world's z axis (up) in the body's axes: 30 fraction bits, rounded down.
+    /// Computes the direction of the world's z axis (up) in the body's axes, with 30 fraction bits, rounded down.
     pub(super) fn up(&self) -> [i32; 3] {
         let [w, x, y, z] = self.parts;
         // Each component is at most 1 in magnitude, apart from the error of the quaternion's length.
@@ -148,7 +149,8 @@ impl Quaternion {
         ]
     }
 
-    /// Yaw, pitch and roll: successive rotations about the body's z axis, then its y axis, then its x axis. For output only.
+    /// Computes yaw, pitch and roll: successive rotations about the body's z axis, then its y axis, then its x axis.
+    /// They are for output only.
     ///
     /// Yaw and roll are in [−½, ½) turns and pitch in [−¼, ¼]. An error ε of the quaternion gives yaw and roll an error of
     /// ε/cos(pitch), and their sum an error of ε. For cos(pitch) < 2^−16, roll is defined as 0, and yaw is the whole remaining
@@ -169,8 +171,8 @@ impl Quaternion {
         Angles { yaw, pitch, roll }
     }
 
-    /// The heading: the angle of the rotation about the world's z axis that is nearest to this attitude (the twist). The heading
-    /// is continuous, also at both poles of the pitch, except for a body that is upside down.
+    /// Computes the heading: the angle of that rotation about the world's z axis which is nearest to this attitude (the twist).
+    /// The heading is continuous, also at both poles of the pitch, except for a body that is upside down.
     pub fn heading(self) -> Turns {
         let [w, _, _, z] = self.parts.map(i64::from);
         let (_, half) = polar(w << 30, z << 30);
@@ -189,8 +191,9 @@ impl Quaternion {
     }
 }
 
-/// The product of two quaternions; its unit is the product of their units. Both lengths are at most 1 apart from their errors, so
-/// by the Cauchy–Schwarz inequality no partial sum exceeds 1 in this unit by more than these errors.
+/// Computes the product of two quaternions. The unit of its components is the product of the units of both factors. The lengths
+/// of both factors are at most 1 apart from rounding errors, so by the Cauchy–Schwarz inequality no partial sum exceeds 1 by more
+/// than these errors.
 pub(super) fn product(a: &[i32; 4], [w, x, y, z]: [i32; 4]) -> [i64; 4] {
     [
         dot(a, w, -x, -y, -z),
@@ -200,8 +203,8 @@ pub(super) fn product(a: &[i32; 4], [w, x, y, z]: [i32; 4]) -> [i64; 4] {
     ]
 }
 
-/// The sum of four products; the caller ensures that partial sums fit 64 bits. The function is not inlined, which saves space in
-/// the soft core's small instruction cache.
+/// Computes the sum of four products. The caller ensures that partial sums fit 64 bits. The function is not inlined, which saves
+/// space in the soft core's small instruction cache.
 #[inline(never)]
 pub(super) fn dot([aw, ax, ay, az]: &[i32; 4], w: i32, x: i32, y: i32, z: i32) -> i64 {
     wide(*aw, w) + wide(*ax, x) + wide(*ay, y) + wide(*az, z)
@@ -212,7 +215,7 @@ pub(super) fn dot([aw, ax, ay, az]: &[i32; 4], w: i32, x: i32, y: i32, z: i32) -
 pub struct Angles {
     /// Rotation about the world's z axis.
     pub yaw: Turns,
-    /// Rotation about the y axis after yaw. Positive is nose down for a nose along x.
+    /// Rotation about the y axis after yaw. If the body's nose points along x, a positive pitch turns the nose down.
     pub pitch: Turns,
     /// Rotation about the x axis after yaw and pitch.
     pub roll: Turns,

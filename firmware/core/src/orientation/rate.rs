@@ -1,14 +1,15 @@
 //! Computes the rotation of a body between two samples of its angular rate.
 //!
-//! A step of length h goes from the last sample but one, ω₂, to the last sample, ω₃. Its rotation vector φ is approximated by the
-//! first two terms of the Magnus expansion:
+//! The last four samples of the angular rate are ω₀, ω₁, ω₂ and ω₃, the newest last. A step of duration h leads from ω₂ to ω₃.
+//! The rotation vector φ of the step is approximated by the first two terms of the Magnus expansion:
 //!
 //! ```text
 //! φ = ∫ω dt + ½∫∫ ω(s) × ω(t) ds dt (s < t) = h·A + h²/12·A × E
 //! ```
 //!
-//! ω is the cubic through the last four samples at their times. With the differences e₁ = ω₃ − ω₂, e₂ = ω₂ − ω₁ and the ages h,
-//! h₁, h₂ of the samples, its divided differences in units of h are
+//! ω is taken as the cubic through the last four samples at their times. With the differences e₁ = ω₃ − ω₂ and e₂ = ω₂ − ω₁, and
+//! with h, h₁ and h₂ as the durations of the last three steps (the newest first), A and E follow from the divided differences S
+//! and D of the cubic in units of h:
 //!
 //! ```text
 //! S = (e₁ − g·e₂)·h/(h + h₁)      g = h/h₁
@@ -17,10 +18,11 @@
 //! E = e₁ + 9/5·T
 //! ```
 //!
-//! and with equal steps A is the Adams–Moulton formula (9ω₃ + 19ω₂ − 5ω₁ + ω₀)/24. For the cubic itself E would be e₁ − T/10. The
-//! error of A, −19/720·h⁴·d⁴ω/dt⁴, accumulates while the body turns: integration by parts in the world's axes gives a bounded
-//! term and the growing term 19/720·h⁴·ω × d³ω/dt³. As h³·d³ω/dt³ is about 6·T, an additional 19/10·T in E cancels the growing
-//! term. The factor 9/5 reduces the drift of coning at 20 samples a turn to a ninth of the drift with −1/10.
+//! With equal steps A is the Adams–Moulton formula (9ω₃ + 19ω₂ − 5ω₁ + ω₀)/24. The exact E of the cubic would be e₁ − T/10; the
+//! factor 9/5 in its place reduces the accumulated error, as follows. The error of A, −19/720·h⁴·d⁴ω/dt⁴, accumulates while the
+//! body turns: integration by parts in the world's axes gives a bounded term and the growing term 19/720·h⁴·ω × d³ω/dt³. As
+//! h³·d³ω/dt³ is about 6·T, an additional 19/10·T in E cancels the growing term: −1/10 + 19/10 = 9/5. For a coning motion with 20
+//! samples per turn the drift with the factor 9/5 is a ninth of the drift with −1/10.
 
 use super::scale::{Factor, Scale};
 use crate::fixed::wide;
@@ -34,29 +36,29 @@ pub const MOST_STRETCH: u32 = 3;
 /// file that are stored in 32 bits fit.
 pub const LARGEST_RATE: i32 = 3 << 22;
 
-/// What a step needs of the earlier samples.
+/// The data of the earlier samples from which the next step is computed.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct History {
     /// Number of earlier steps that can be used: 0, 1 or 2.
     steps: u8,
     axes: [Axis; 3],
-    /// The earlier steps h₁ and h₂ in µs.
+    /// The durations h₁ and h₂ of the two earlier steps, in µs.
     ages: [u32; 2],
 }
 
-/// What a step needs of the earlier rates about an axis, in 1/256 LSB.
+/// The data of the earlier rates about one axis from which the next step is computed, in 1/256 LSB.
 #[derive(Clone, Copy, Debug, Default)]
 struct Axis {
-    /// The last rate, ω₂.
+    /// The rate at the last sample, ω₂.
     last: i32,
-    /// The last difference, e₂.
+    /// The difference of the last two rates, e₂.
     difference: i32,
     /// The divided difference S of the previous step.
     second: i32,
 }
 
-/// The weights of the module's formulas, which depend only on the times of the samples. Those without a stated format have
-/// 15 fraction bits.
+/// The weights of the module's formulas, which depend only on the times of the samples. Weights without a stated
+/// format have 15 fraction bits.
 #[derive(Clone, Copy)]
 struct Weights {
     /// g = h/h₁ in units of 2^−30, rounded to 15 fraction bits.
@@ -85,7 +87,7 @@ impl Weights {
         far: FOUR_THIRDS,
     };
 
-    /// Weights for a step without usable earlier steps, which give linear interpolation.
+    /// Weights for a step without usable earlier steps: the rate is interpolated linearly.
     const STRAIGHT: Self = Self {
         stretch: 0,
         stretch_squared: 0,
@@ -94,7 +96,8 @@ impl Weights {
         far: 0,
     };
 
-    /// Weights for a step h (`step`) and the earlier steps h₁ and h₂, of which `steps` can be used.
+    /// Computes the weights for a step of duration h (`step`) after earlier steps of durations h₁ and h₂, of which `steps` (0 to
+    /// 2) can be used.
     #[inline(never)]
     fn of<const ORDER: u32>(steps: u8, step: u32, [h1, h2]: [u32; 2]) -> Self {
         if steps == 0 {
@@ -104,7 +107,7 @@ impl Weights {
             return Self::EVEN;
         }
         let g = Divisor::new(h1).ratio(step);
-        // Without two earlier steps D is unknown, because D needs S of the previous step; its weights are then 0.
+        // Without two earlier steps D is unknown, because it needs S of the previous step; the weights of D are then 0.
         let (mut near, mut far) = (0, 0);
         if steps == 2 && ORDER >= 4 {
             let all = Divisor::new(step + h1 + h2);
@@ -122,17 +125,17 @@ impl Weights {
     }
 }
 
-/// The product x·2^−15, rounded to nearest; the result must fit 31 bits.
+/// Computes x·2^−15, rounded to nearest; the result must fit 31 bits.
 const fn narrow(x: i64) -> i32 {
     half_up((x >> 14) as i32)
 }
 
-/// x/2, to nearest.
+/// Computes x/2, rounded to nearest.
 const fn half_up(x: i32) -> i32 {
     (x + 1) >> 1
 }
 
-/// The upper 32 bits of a product.
+/// Returns the upper 32 bits of the 64-bit product of two numbers.
 const fn upper(a: i32, b: u32) -> i32 {
     ((a as i64 * b as i64) >> 32) as i32
 }
@@ -152,8 +155,8 @@ impl Divisor {
         }
     }
 
-    /// The quotient a/divisor with 15 fraction bits, rounded to nearest. All numbers fit 32 bits, because a < 2^17 and the
-    /// quotient is at most 3.
+    /// Computes the quotient a/divisor with 15 fraction bits, rounded to nearest. All numbers fit 32 bits, because a < 2^17 and
+    /// the quotient is at most 3.
     const fn ratio(&self, a: u32) -> i32 {
         let number = (a << 15) + self.number / 2;
         // `below` is the quotient or 1 less: the product with the reciprocal is too small by less than 1 before it
@@ -169,11 +172,11 @@ fn within(rate: i32) -> i32 {
     rate.clamp(-LARGEST_RATE, LARGEST_RATE)
 }
 
-/// A (with 12 fraction bits) and E (with 8 fraction bits) of the module's formulas, for one axis.
+/// The components along one axis of A (with 12 fraction bits) and E (with 8 fraction bits) in the module's formulas.
 type Ends = (i32, i32);
 
 impl Axis {
-    /// Takes a sample.
+    /// Takes the newest rate about the axis, in 1/256 LSB, and computes A and E of its step.
     #[inline(never)]
     fn advance(&mut self, rate: i32, weights: &Weights) -> Ends {
         let rate = within(rate);
@@ -182,8 +185,8 @@ impl Axis {
         let before = half_up(upper(self.difference << 3, weights.stretch));
         let second = half_up(upper((e1 - before) << 1, weights.half));
         let third = second - narrow(wide(weights.stretch_squared, self.second));
-        // `curve` is (2·S + D·…)/12 of A. The factor 16/12 in the weights is the division by 12 and the change from 8 to
-        // 12 fraction bits.
+        // `curve` is (2·S + D·…)/12 of A. The weights contain the factor 16/12: the division by 12, and the change from 8 to 12
+        // fraction bits.
         let curve = wide(second, EIGHT_THIRDS) + wide(third, weights.far);
         let curve = ((curve + (1 << 14)) >> 15) as i32;
         let mean = ((rate + self.last) << 3) - curve;
@@ -193,7 +196,7 @@ impl Axis {
             difference: e1,
             second,
         };
-        // The limits are beyond every motion within the sensor's range.
+        // No motion within the sensor's range reaches these limits.
         (
             mean.clamp(-MOST_MEAN, MOST_MEAN),
             end.clamp(-MOST_CHANGE, MOST_CHANGE),
@@ -202,7 +205,7 @@ impl Axis {
 }
 
 impl History {
-    /// Starts at a sample.
+    /// Starts with the rate of a first sample, in 1/256 LSB, and without earlier samples.
     pub fn start(&mut self, rate: [i32; 3]) {
         let axis = |last| Axis {
             last,
@@ -214,12 +217,12 @@ impl History {
         };
     }
 
-    /// Takes the rate of a sample, `step` µs (at least 1) after the previous sample. Returns half the rotation vector, φ/2, with
-    /// 48 fraction bits.
+    /// Takes the rate of a sample that was measured `step` µs (at least 1) after the previous sample. Returns half the rotation
+    /// vector of this step, φ/2, in radians with 48 fraction bits.
     ///
-    /// The rate saturates to ±[`LARGEST_RATE`]. `ORDER` is the order of the method: 1 takes the newest sample, 2 the mean of two
-    /// samples, 3 the parabola through three samples (with e₁ in place of E), and 4 or more the cubic. The first steps after a
-    /// start have fewer earlier samples; together they leave an error of order h³.
+    /// The rate saturates to ±[`LARGEST_RATE`]. `ORDER` is the order of the method: 1 takes the newest sample as the rate, 2 the
+    /// mean of two samples, 3 the parabola through three samples (with e₁ in place of E), and 4 or more the cubic through four
+    /// samples. The first steps after a start have fewer earlier samples; together they leave an error of order h³.
     pub fn advance<const ORDER: u32>(
         &mut self,
         rate: [i32; 3],
@@ -251,8 +254,8 @@ impl History {
     }
 }
 
-/// The component of φ/2 along an axis, from A along this axis (`mean`), and from A and E along the two other axes
-/// in cyclic order.
+/// Computes the component of φ/2 along an axis from A along this axis (`mean`), and from A and E along the next two axes in
+/// cyclic order (`mj`, `ej` and `mk`, `ek`).
 #[inline(always)]
 fn turned(mean: i32, (mj, ej): Ends, (mk, ek): Ends, coning: u32, factor: Factor) -> i64 {
     // Before the shift the cross product A × E is in LSB² with 20 fraction bits, at most 2^55.

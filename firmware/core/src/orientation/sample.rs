@@ -1,4 +1,4 @@
-//! Samples of a sensor.
+//! Samples of a motion sensor.
 
 /// One measurement of the sensor in raw counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

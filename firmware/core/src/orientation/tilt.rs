@@ -1,16 +1,17 @@
 //! Tilt correction by the accelerometer.
 //!
 //! An accelerometer reads gravity plus acceleration. In the axes of the world gravity is constant, and the acceleration of a body
-//! that returns to its place has mean 0, so a low-pass filter in these axes rejects it. For each reading the attitude turns by
+//! that returns to its place has mean 0, so a low-pass filter in these axes removes the acceleration. For each reading the
+//! attitude turns by
 //!
 //! ```text
 //! (1 − exp(−dt/τ))·(a × up)/g
 //! ```
 //!
 //! where τ is the filter's time constant, dt the time since the previous reading, `a` the reading and `up` the upward direction,
-//! both in the body's axes. Readings are not normalised, and a reading is not rejected because its length differs slightly from 1
-//! g: both would weight accelerations unequally and bias their mean. Readings above 3 g, which a hand or a walking person does
-//! not reach, and readings at the end of the sensor's range are rejected.
+//! both in the body's axes. Readings are not normalised, and no reading is rejected only because its length differs slightly from
+//! 1 g. Normalising or rejecting would give accelerations unequal weights, and their mean would not be 0. Readings above 3 g,
+//! which a hand or a walking person does not reach, and readings at the end of the sensor's range are rejected.
 
 use super::gain::Gain;
 use super::quaternion::{Angles, Quaternion};
@@ -21,10 +22,11 @@ use crate::polar::polar;
 pub const TIME_CONSTANT: u32 = 3_000_000;
 /// Smallest and largest accepted LSB per g.
 pub const LSB_PER_G: [u32; 2] = [1_024, 32_767];
-/// Time of readings that an attitude from a single reading counts as, in µs.
+/// Weight of an attitude that comes from a single reading, as a time in µs: it counts like the mean of readings over this time.
 pub const FRESH: u32 = 20_000;
-/// Time of readings that an attitude counts as after saturation of the gyroscope or a gap, in µs. The accelerometer corrects the
-/// attitude's error within ten times this time, and a short saturation changes the attitude little.
+/// Largest weight of an attitude after saturation of the gyroscope or after a gap, as a time in µs: it counts like the mean of
+/// readings over this time. A short saturation changes the attitude little, and the accelerometer corrects the error within ten
+/// times this time.
 pub const DOUBTFUL: u32 = 100_000;
 /// Largest accepted reading, in g.
 const MOST: u32 = 3;
@@ -32,13 +34,13 @@ const MOST: u32 = 3;
 /// Corrects the tilt of an attitude by the readings of an accelerometer.
 #[derive(Clone, Copy, Debug)]
 pub struct Tilt {
-    /// 2^32 over the LSB of 1 g.
+    /// 2^32 divided by the accelerometer's LSB per g.
     inverse: u32,
     /// Square of the largest accepted reading, in LSB².
     largest: u32,
     time_constant: u32,
-    /// Total time of the readings so far in µs, up to τ. It is the present time constant, so that the first readings form
-    /// a running mean.
+    /// Total time of the readings so far in µs, up to τ. The filter uses it as its present time constant, so that the first
+    /// readings form a running mean.
     age: u32,
     gain: Gain,
 }
@@ -89,11 +91,11 @@ impl Tilt {
         if self.gain.time_constant() < self.time_constant {
             self.grow(step);
         }
-        // The factor is half the gain divided by g, for an error in 2^−14 LSB, with 57 fraction bits. `self.inverse` is
-        // at most 2^22.
+        // `factor` converts the error, in units of 2^−14 LSB, to a half angle with 57 fraction bits: it is half the gain, divided
+        // by g. `self.inverse` is at most 2^22.
         let factor = ((u64::from(self.gain.of(step)) * u64::from(self.inverse)) >> 22) as u32;
         let up = attitude.up();
-        // With this shift, the error below takes only the upper words of the products.
+        // After this shift, the error below is computed from the upper 32 bits of the products alone.
         let a = a.map(|x| x << 16);
         // The components of a × up, in LSB with 14 fraction bits, rounded down; they are at most 2^30.
         let error = [0, 1, 2].map(|i| {
@@ -113,14 +115,14 @@ impl Tilt {
         true
     }
 
-    /// Lengthens the present time constant by a step, up to τ.
+    /// Lengthens the filter's present time constant by `step` µs, up to τ.
     #[inline(never)]
     fn grow(&mut self, step: u32) {
         self.age = self.age.saturating_add(step).min(self.time_constant);
         self.gain = Gain::new(self.age);
     }
 
-    /// The attitude with yaw 0 in which the reading points upwards. A reading of 0 gives the identity.
+    /// Computes the attitude with yaw 0 in which the reading points upwards. A reading of 0 gives the identity.
     #[cold]
     #[inline(never)]
     pub fn align(reading: [i16; 3]) -> Quaternion {
@@ -136,9 +138,10 @@ impl Tilt {
     }
 }
 
-/// Lengthens `error`, which is a × up, for a tilt of more than a right angle. There |a × up| decreases with the tilt and is 0
-/// upside down, so that the attitude would stay there. The length is set to 2·|a|, roughly |a| times the angle in radians.
-/// A vector near 0 is replaced by an axis across `up`. `square` is |a|², at most (2^16 − 1)².
+/// Lengthens `error`, which is a × up, for an attitude whose error of tilt is more than a right angle. At such angles |a × up|
+/// decreases as the error grows, and is 0 if the attitude is upside down, so that this attitude would not be corrected. The
+/// length is set to 2·|a|, roughly |a| times the angle in radians. A vector near 0 is replaced by a vector perpendicular to `up`.
+/// `square` is |a|², at most (2^16 − 1)².
 #[cold]
 #[inline(never)]
 fn lengthened(error: [i32; 3], up: [i32; 3], square: u32) -> [i32; 3] {
@@ -159,7 +162,7 @@ fn lengthened(error: [i32; 3], up: [i32; 3], square: u32) -> [i32; 3] {
     across
 }
 
-/// Whether a count is at an end of its 16-bit range.
+/// Returns whether a count is the smallest or the largest 16-bit number.
 pub(super) const fn is_end(count: i32) -> bool {
     count ^ (count >> 31) == i16::MAX as i32
 }

@@ -1,4 +1,4 @@
-//! Computes a body's attitude from samples of its sensor.
+//! Computes a body's attitude from the samples of the sensor on the body.
 
 use core::mem;
 
@@ -30,7 +30,7 @@ pub struct Counts {
     pub steps: u64,
     /// Samples that were ignored because they are not later than their predecessor.
     pub stale: u64,
-    /// Gaps between samples, over which the attitude stayed constant.
+    /// Gaps of more than `LONGEST_STEP` between samples, over which the attitude stayed constant.
     pub gaps: u64,
     /// Samples at an end of the gyroscope's range.
     pub saturated: u64,
@@ -56,7 +56,7 @@ pub struct Tracker {
 }
 
 impl Tracker {
-    /// A tracker before its first sample. Without `tilt` the accelerometer is ignored.
+    /// Makes a tracker, which starts at its first sample. Without `tilt` the accelerometer is ignored.
     pub fn new(scale: Scale, tilt: Option<Tilt>) -> Self {
         Self {
             integrator: Integrator::new(scale, Quaternion::IDENTITY, [0; 3]),
@@ -75,7 +75,7 @@ impl Tracker {
         self.resting = None;
     }
 
-    /// Tracks the bias of the gyroscope by `resting` from now on.
+    /// From now on, tracks the bias of the gyroscope at rest by `resting`.
     pub fn follow_bias(&mut self, resting: RestBias) {
         self.set_bias(resting.bias());
         self.resting = Some(resting);
@@ -91,7 +91,7 @@ impl Tracker {
         self.integrator.attitude()
     }
 
-    /// Counts of samples so far.
+    /// Counts of the samples so far, by their effect on the attitude.
     pub const fn counts(&self) -> Counts {
         self.counts
     }

@@ -3,25 +3,25 @@
 use super::frame::{Message, write};
 use super::state::{Failure, State, Timing};
 
-/// How often the last message of a transfer is sent. It is repeated because it is not acknowledged.
+/// Number of times that the last message of a transfer is sent. The message is repeated because it is not acknowledged.
 const COPIES: u8 = 3;
 /// After a failure the wait for a quiet line is longer by this factor, because the other side may still be sending.
 const FAILED_QUIET_FACTOR: u64 = 10;
 
-/// The end of a transfer: sends the last message, waits for a quiet line, and then gives the outcome.
+/// Carries out the end of a transfer: sends the last message, waits for a quiet line, and then gives the outcome.
 pub struct Ending {
     outcome: State,
     last_message: Option<(u8, Message<'static>)>,
     copies: u8,
     quiet_ms: u64,
-    /// Time of the last message in either direction.
+    /// Time in milliseconds at which the last message was sent or the last byte was received.
     last_ms: u64,
-    /// Time at which the wait for a quiet line ends at the latest.
+    /// Latest time in milliseconds at which the wait for a quiet line ends.
     deadline_ms: u64,
 }
 
 impl Ending {
-    /// Starts an ending that repeats `last_message` (session and message), if there is one.
+    /// Starts the end of a transfer, in which `last_message` (session and message), if any, is sent repeatedly.
     pub fn new(
         outcome: State,
         last_message: Option<(u8, Message<'static>)>,
@@ -48,8 +48,8 @@ impl Ending {
         Self::new(State::Failed(failure), None, timing, now_ms)
     }
 
-    /// Drops received bytes, which are remains of the transfer, and returns their number; drops none if there is no wait for
-    /// a quiet line.
+    /// Drops received bytes, which are remains of the transfer, and returns their number. Without a wait for a quiet line no
+    /// bytes are dropped, and the result is 0.
     pub fn on_bytes(&mut self, now_ms: u64, bytes: &[u8]) -> usize {
         if self.quiet_ms == 0 {
             return 0;

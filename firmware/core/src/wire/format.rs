@@ -2,18 +2,18 @@
 
 /// Bytes in a block, the unit of acknowledgement.
 pub const BLOCK: u32 = 16;
-/// Maximum number of blocks in a frame.
+/// Maximum number of blocks in a data frame.
 pub const MAX_BLOCKS: u32 = 15;
-/// Maximum number of blocks in flight, which is the number of bits in the map of an acknowledgement.
+/// Maximum number of blocks that are sent but not yet acknowledged: the number of bits in the map of an acknowledgement.
 pub const WINDOW: u32 = u128::BITS;
 
 /// Maximum length of a transfer in bytes, because block numbers have 24 bits.
 pub const MAX_LENGTH: u32 = ((1 << 24) - 1) * BLOCK;
 
-/// The algorithm of the CRC-32 of a transfer.
+/// The CRC-32 algorithm by which a whole transfer is checked.
 pub static CRC_32: crc::Crc<u32> = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
 
-/// The CRC-32 (IEEE 802.3, as in zlib) of a whole transfer.
+/// Computes the CRC-32 (IEEE 802.3, as in zlib) of all bytes of a transfer.
 pub fn crc32(data: &[u8]) -> u32 {
     CRC_32.checksum(data)
 }

@@ -11,7 +11,7 @@ use super::state::Reason;
 /// Bytes of a data frame on the line besides its data: kind and session (1), frame number (1), block number (3), CRC-16 (2), COBS
 /// code (1) and two zeros.
 pub const OVERHEAD: usize = 10;
-/// Length of the longest encoded frame, which is the room that `poll` needs.
+/// Length in bytes of the longest encoded frame, for which the buffer of `poll` must have room.
 pub const MAX_FRAME: usize = OVERHEAD + (MAX_BLOCKS * BLOCK) as usize;
 
 /// The CRC-16 of a frame, with the CCITT polynomial. It starts with all ones, so that it detects lost or added zeros
@@ -29,7 +29,7 @@ pub enum Message<'a> {
     Acknowledge(Acknowledge),
     /// Message from the receiver: all blocks have arrived; the flag states whether the CRC-32 is right.
     Complete { verified: bool },
-    /// Message from the sender: the verdict has arrived.
+    /// Message from the sender: the receiver's `Complete` has arrived.
     Close,
     /// Message from either side: the transfer is cancelled.
     Abort(Reason),
@@ -99,8 +99,8 @@ fn write_body(
         Message::Acknowledge(Acknowledge { number, next, map }) => {
             let [low, middle, high, _] = next.to_le_bytes();
             body.push(&[head(ACKNOWLEDGE), number, low, middle, high])?;
-            // The map is sent without the zero bytes at its ends, after the number of zero bytes left out at its start
-            // (the lowest bytes).
+            // The map is sent without the zero bytes at its two ends. Before it, the number of lowest zero bytes that were left
+            // out is sent.
             let first = map.trailing_zeros() / 8;
             let past = (u128::BITS - map.leading_zeros()).div_ceil(8);
             if let Some(bytes) = map.to_le_bytes().get(first as usize..past as usize) {
@@ -134,7 +134,7 @@ impl Body<'_> {
 /// Splits a byte stream into frames at zero bytes.
 pub struct Reader {
     buffer: [u8; MAX_FRAME],
-    /// Number of received bytes of the frame. A number above the buffer's length marks a frame that is too long.
+    /// Number of bytes received so far of the present frame. A number above the buffer's length marks a frame that is too long.
     length: usize,
 }
 
@@ -146,8 +146,8 @@ impl Reader {
         }
     }
 
-    /// Takes bytes up to the next zero byte. Returns the number of taken bytes, and session and message of the frame if the zero
-    /// completes a valid one.
+    /// Takes bytes up to the next zero byte. Returns the number of taken bytes; if the zero byte completes a valid frame, also
+    /// the frame's session and message.
     pub fn take(&mut self, bytes: &[u8]) -> (usize, Option<(u8, Message<'_>)>) {
         let zero = bytes.iter().position(|&byte| byte == 0);
         let part = bytes.get(..zero.unwrap_or(bytes.len())).unwrap_or_default();
@@ -164,7 +164,8 @@ impl Reader {
     }
 }
 
-/// Undoes COBS in place, checks the CRC-16 and reads the session and the message.
+/// Decodes a frame: undoes COBS in place, checks the CRC-16, and returns the session and the message.
+/// `None` for an invalid frame.
 fn parse(frame: &mut [u8]) -> Option<(u8, Message<'_>)> {
     let length = decode_in_place(frame).ok()?;
     let (body, crc) = frame.get(..length)?.split_last_chunk()?;

@@ -1,4 +1,4 @@
-//! The length of frames, and the timeouts after which an answer is requested again.
+//! The length of data frames, and the timeouts after which an answer is requested again.
 
 use super::format::{BLOCK, MAX_BLOCKS};
 use super::frame::OVERHEAD;
@@ -8,14 +8,14 @@ const MEMORY: u32 = 8_192;
 /// One lost frame in the unit of `FrameSize::lost`, 1/256 frame.
 const FRAME: u32 = 256;
 
-/// Chooses the best length of a frame from the rate of lost frames.
+/// Chooses the best length of a data frame from the rate of lost frames.
 ///
 /// A frame of n data bytes and h further bytes, on a line that damages a byte with probability p, uses n/(n + h)·(1 − p)^(n + h)
 /// of the line's capacity. The maximum is at about n = √(h/p).
 pub struct FrameSize {
-    /// Number of lost frames, in units of 1/256.
+    /// Number of lost frames, in units of 1/256 frame; older frames count less.
     lost: u32,
-    /// Number of sent bytes that are known to have arrived or to be lost.
+    /// Number of sent bytes that are known to have arrived or to be lost; older bytes count less.
     bytes: u32,
 }
 
@@ -39,7 +39,7 @@ impl FrameSize {
         }
     }
 
-    /// Best number of blocks per frame, 1 to [`MAX_BLOCKS`].
+    /// Computes the best number of blocks per data frame, 1 to [`MAX_BLOCKS`].
     pub fn blocks(&self) -> u32 {
         // The product is at most 10·8192·256, which fits 32 bits.
         let squared = OVERHEAD as u32 * self.bytes * FRAME / self.lost.max(1);
@@ -79,7 +79,7 @@ impl Patience {
         self.since_ms = Some(now_ms);
     }
 
-    /// Records an answer: the next timeout is the shortest one again. Further answers may be pending.
+    /// Records an answer and starts the shortest timeout again, because further answers may be pending.
     pub const fn answered(&mut self, now_ms: u64) {
         *self = Self {
             since_ms: Some(now_ms),
@@ -87,7 +87,7 @@ impl Patience {
         };
     }
 
-    /// Whether an answer is pending and its timeout has passed; if so, a new timeout starts.
+    /// Returns whether an answer is pending and its timeout has passed. If so, the next, longer timeout starts.
     pub fn is_over(&mut self, now_ms: u64) -> bool {
         let wait = FIRST_WAIT + LONGER * self.tries;
         let over = self

@@ -16,7 +16,7 @@ pub trait Party {
     fn abort(&mut self, now_ms: u64);
     /// State of the transfer at the last `poll`.
     fn state(&self) -> State;
-    /// Number of bytes received without a gap, and the total number of bytes.
+    /// Number of bytes transferred from the start without a gap, and the total number of bytes.
     fn progress(&self) -> (u32, u32);
 }
 

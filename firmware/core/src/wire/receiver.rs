@@ -38,13 +38,13 @@ impl<'a> Receiver<'a> {
         }
     }
 
-    /// Processes received bytes. Returns how many of them belong to the transfer; until the transfer ends, these are all bytes.
+    /// Processes received bytes. Returns how many of the bytes belong to the transfer: all of them, until the transfer ends.
     pub fn on_bytes(&mut self, now_ms: u64, bytes: &[u8]) -> usize {
         feed(&mut self.reader, &mut self.transfer, now_ms, bytes)
     }
 
     /// Writes the next frame, if any, and returns its length. Call this regularly, because timeouts are checked here. `out` needs
-    /// [`MAX_FRAME`] bytes; a shorter buffer stays empty.
+    /// [`MAX_FRAME`] bytes; to a shorter buffer nothing is written.
     pub fn poll(&mut self, now_ms: u64, out: &mut [u8]) -> usize {
         if out.len() < MAX_FRAME {
             0
@@ -63,7 +63,7 @@ impl<'a> Receiver<'a> {
         self.transfer.state
     }
 
-    /// Number of bytes received without a gap, and the total number of bytes (0 while unknown).
+    /// Number of bytes received from the start without a gap, and the total number of bytes (0 while unknown).
     pub fn progress(&self) -> (u32, u32) {
         self.transfer.opened.as_ref().map_or((0, 0), |opened| {
             let length = opened.manifest.length;
@@ -88,9 +88,9 @@ struct Transfer<'a> {
     announced: Option<Manifest>,
     timing: Timing,
     opened: Option<Opened>,
-    /// Time of the last valid frame.
+    /// Time in milliseconds at which the last valid frame was received.
     valid_ms: u64,
-    /// Whether a received frame still needs an answer.
+    /// Whether a received frame has not yet been answered.
     reply: bool,
     ending: Option<Ending>,
     state: State,
@@ -104,11 +104,11 @@ struct Opened {
     next: u32,
     /// Bit i is set if block `next` + i was received.
     map: u128,
-    /// Number of the last received data frame.
+    /// Frame number of the last received data frame.
     number: u8,
     /// CRC-32 of the blocks before `next`.
     digest: crc::Digest<'static, u32>,
-    /// Whether the CRC-32 is right; `None` before the last block.
+    /// Whether the CRC-32 of the transfer is right; `None` until all blocks were received.
     verdict: Option<bool>,
 }
 
@@ -278,7 +278,7 @@ impl Opened {
         self.judge();
     }
 
-    /// Decides whether the CRC-32 is right, once the last block was received.
+    /// Decides whether the CRC-32 is right, once all blocks were received.
     fn judge(&mut self) {
         if self.next >= self.manifest.blocks() && self.verdict.is_none() {
             self.verdict = Some(self.digest.clone().finalize() == self.manifest.crc32);

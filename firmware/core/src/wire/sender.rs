@@ -8,9 +8,9 @@ use super::peer::{Peer, feed};
 use super::state::{Failure, Reason, State, Timing};
 use super::window::Window;
 
-/// How often a transfer is restarted after a wrong CRC-32.
+/// Maximum number of restarts of a transfer after a wrong CRC-32.
 const RESTARTS: u8 = 3;
-/// Longest time without a newly acknowledged block, in multiples of the longest accepted silence.
+/// Longest time without a newly acknowledged block, in multiples of `Timing::silence_ms`.
 const STALL_FACTOR: u64 = 4;
 
 /// Sends one transfer from a slice.
@@ -48,13 +48,13 @@ impl<'a> Sender<'a> {
         }
     }
 
-    /// Processes received bytes. Returns how many of them belong to the transfer; until the transfer ends, these are all bytes.
+    /// Processes received bytes. Returns how many of the bytes belong to the transfer: all of them, until the transfer ends.
     pub fn on_bytes(&mut self, now_ms: u64, bytes: &[u8]) -> usize {
         feed(&mut self.reader, &mut self.transfer, now_ms, bytes)
     }
 
     /// Writes the next frame, if any, and returns its length. Call this whenever the line accepts bytes, because timeouts are
-    /// checked here. `out` needs [`MAX_FRAME`] bytes; a shorter buffer stays empty.
+    /// checked here. `out` needs [`MAX_FRAME`] bytes; to a shorter buffer nothing is written.
     pub fn poll(&mut self, now_ms: u64, out: &mut [u8]) -> usize {
         if out.len() < MAX_FRAME {
             0
@@ -74,7 +74,7 @@ impl<'a> Sender<'a> {
         self.transfer.state
     }
 
-    /// Number of bytes acknowledged without a gap, and the total number of bytes.
+    /// Number of bytes acknowledged from the start without a gap, and the total number of bytes.
     pub fn progress(&self) -> (u32, u32) {
         let length = self.transfer.manifest.length;
         (
@@ -83,7 +83,7 @@ impl<'a> Sender<'a> {
         )
     }
 
-    /// Present number of data bytes per frame: at most 240, fewer on a bad line.
+    /// Present number of data bytes per data frame: at most 240, and fewer on a bad line.
     pub fn frame_bytes(&self) -> u32 {
         self.transfer.frame_size.blocks() * BLOCK
     }
@@ -98,13 +98,13 @@ struct Transfer<'a> {
     restarts: u8,
     window: Window,
     frame_size: FrameSize,
-    /// Timeout of the next acknowledgement.
+    /// Timeout after which the next acknowledgement is requested again.
     patience: Patience,
-    /// Time of the last valid frame.
+    /// Time in milliseconds at which the last valid frame was received.
     valid_ms: u64,
-    /// Time of the last growth of `farthest`.
+    /// Time in milliseconds at which `farthest` last increased.
     progress_ms: u64,
-    /// Largest number of blocks acknowledged without a gap.
+    /// Largest number of blocks that were ever acknowledged from the start without a gap.
     farthest: u32,
     /// Whether the receiver has answered.
     opened: bool,
@@ -266,7 +266,8 @@ mod tests {
     use super::*;
     use crate::wire::Receiver;
 
-    /// Runs a transfer whose manifest has a wrong CRC-32, which simulates damage that no CRC-16 detects.
+    /// Runs a transfer whose manifest has a wrong CRC-32, which simulates damage that no CRC-16 detects. From the session
+    /// `mend_in_session` on, the CRC-32 is right.
     fn talk(sender: &mut Sender, receiver: &mut Receiver, mend_in_session: u8) {
         let mut frame = [0; MAX_FRAME];
         for now_ms in 0..10_000 {

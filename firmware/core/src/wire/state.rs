@@ -13,12 +13,12 @@ pub struct Timing {
 }
 
 impl Timing {
-    /// Time-outs of the side that runs the console (the board).
+    /// Time-outs of the board, which runs the console.
     pub const CONSOLE: Self = Self {
         silence_ms: 2_000,
         quiet_ms: 5,
     };
-    /// Time-outs of the side that uses the console of the other side (the host).
+    /// Time-outs of the host, which uses the console of the board.
     pub const HOST: Self = Self {
         silence_ms: 5_000,
         quiet_ms: 0,
@@ -39,9 +39,9 @@ pub enum State {
 /// Cause of a failure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Failure {
-    /// No valid frame for the given milliseconds.
+    /// No valid frame was received for the given number of milliseconds.
     Silence(u64),
-    /// Valid frames, but no new block for the given milliseconds.
+    /// Valid frames were received, but no new block was acknowledged for the given number of milliseconds.
     Stalled(u64),
     /// The CRC-32 of the transfer was wrong in every attempt.
     Corrupt,
@@ -59,7 +59,7 @@ pub enum Reason {
     Cancelled = 0,
     /// The transfer is longer than the receiver's buffer.
     TooLong = 1,
-    /// The length or the CRC-32 differs from the announced one.
+    /// The length or the CRC-32 differs from the announced length or CRC-32.
     Unannounced = 2,
     /// The CRC-32 of the transfer was wrong in every attempt.
     Corrupt = 3,

@@ -1,4 +1,4 @@
-//! Which blocks of a transfer the sender has sent, and which of them have arrived.
+//! The sender's record of the blocks of a transfer: which were sent, and which of these have arrived.
 
 use super::format::WINDOW;
 use super::frame::Acknowledge;
@@ -6,7 +6,7 @@ use super::frame::Acknowledge;
 /// Maximum number of data frames in flight: half of the 256 frame numbers, so that older and newer numbers can be told apart.
 const MAX_FRAMES: u8 = 120;
 
-/// Sent and acknowledged blocks.
+/// The sender's record of sent and acknowledged blocks.
 pub struct Window {
     /// Number of the first block that is not acknowledged.
     pub next: u32,
@@ -24,7 +24,8 @@ pub struct Window {
     heard: u8,
 }
 
-/// What an acknowledgement newly tells: the numbers of arrived blocks, lost blocks and lost frames.
+/// The news in an acknowledgement: how many blocks have arrived, how many blocks were lost, and how many frames were lost, since
+/// the previous acknowledgement.
 pub struct Fate {
     pub arrived: u32,
     pub lost: u32,
@@ -51,7 +52,7 @@ impl Window {
         }
     }
 
-    /// Applies an acknowledgement, and returns what it newly tells; `None` for an impossible acknowledgement.
+    /// Applies an acknowledgement, and returns its news; `None` for an impossible acknowledgement, which is ignored.
     pub fn update(&mut self, Acknowledge { number, next, map }: Acknowledge) -> Option<Fate> {
         let past = next.checked_add(u128::BITS - map.leading_zeros())?;
         let unheard = self.number.wrapping_sub(self.heard);
@@ -64,7 +65,7 @@ impl Window {
         let left_behind = shift.min(WINDOW) - (self.arrived & low_bits(shift)).count_ones();
         let arrived = left_behind + (map & !moved(self.arrived)).count_ones();
 
-        // If `next` goes back, the previous acknowledgement was damaged although its CRC was right; the bits are
+        // If `next` is smaller than before, the previous acknowledgement was damaged although its CRC-16 was right; the bits are
         // then shifted back.
         let back = self.next.saturating_sub(next);
         self.sent = moved(self.sent).checked_shl(back).unwrap_or(0);
@@ -105,8 +106,8 @@ impl Window {
         self.sent &= !first;
     }
 
-    /// Chooses the next run of blocks to send, at most `most`, in a transfer of `total` blocks, and marks these blocks as sent.
-    /// `None` if there is no block to send.
+    /// Chooses the next consecutive blocks to send, at most `most`, in a transfer of `total` blocks, and marks these blocks as
+    /// sent. Returns `None` if there is no block to send.
     pub fn take(&mut self, most: u32, total: u32) -> Option<Run> {
         let settled = self.sent | self.arrived;
         let first = settled.trailing_ones();
@@ -119,7 +120,8 @@ impl Window {
             .min(most)
             .min(WINDOW - first)
             .min(total - block);
-        // If no frame number is free, the frame repeats the last number; blocks of the last frame are never marked as lost.
+        // If no frame number is free, the new frame gets the number of the last frame. Blocks of a frame with the last number are
+        // never marked as lost.
         if !self.is_full() {
             self.number = self.number.wrapping_add(1);
         }
@@ -145,7 +147,7 @@ impl Window {
     }
 }
 
-/// A number whose lowest `count` bits are set.
+/// Returns a number whose lowest `count` bits are set.
 const fn low_bits(count: u32) -> u128 {
     if count >= u128::BITS {
         u128::MAX
@@ -154,7 +156,7 @@ const fn low_bits(count: u32) -> u128 {
     }
 }
 
-/// Whether one frame number precedes another, modulo 256.
+/// Returns whether the frame number `number` precedes the frame number `other`, modulo 256.
 const fn is_before(number: u8, other: u8) -> bool {
     (number.wrapping_sub(other) as i8) < 0
 }

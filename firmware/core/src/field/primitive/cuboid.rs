@@ -13,23 +13,23 @@ use crate::fixed::Q32_32;
 /// A box about the origin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cuboid {
-    /// Half of each side, in world units.
+    /// Half the length of each side, in world units.
     pub half: [Q32_32; 3],
 }
 
-/// Cubes at all multiples of the period along each axis.
+/// A lattice of cubes, whose centres are at all multiples of the period along each axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cubes {
-    /// Distance between neighbouring centres.
+    /// Distance between the centres of neighbouring cubes, in world units.
     pub period: Q32_32,
-    /// Half the side of a cube, below half the period.
+    /// Half the side of a cube in world units, less than half the period.
     pub half: Q32_32,
 }
 
-/// An infinite floor and ceiling.
+/// An infinite floor and an infinite ceiling, perpendicular to the z axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Planes {
-    /// The distance of ceiling and floor from the origin.
+    /// Distance of the ceiling and of the floor from the origin, in world units.
     pub half: Q32_32,
 }
 
@@ -125,22 +125,22 @@ impl Shape for Planes {
 /// A box, a lattice of boxes, or a room (the space inside a box, with the solid around it), in field units.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FixedBox {
-    /// Half of each side, u10.12; `None` along an axis on which the box has no end.
+    /// Half the length of each side, u10.12; `None` along an axis on which the box has no end.
     half: [Option<i32>; 3],
-    /// Whether the box is a room, so that the solid is outside the box.
+    /// Whether the box is a room, which means that the solid is outside the box.
     room: bool,
-    /// Whether the solid is periodic with 64 units along each axis.
+    /// Whether the solid is periodic with 64 field units along each axis.
     repeated: bool,
 }
 
 impl FlatSolid for FixedBox {
     const CODE: u8 = 1;
 
-    /// The distance is the maximum of |x| − half over the axes, with the opposite sign in a room.
+    /// Computes the distance as the maximum of |x| − half over the axes, with the opposite sign in a room.
     #[inline]
     fn sample(&self, point: [i32; 3]) -> Sample {
-        // A period of 64 units is 2^18 in s10.12, so the lowest 18 bits of a coordinate, as a signed number, are the coordinate
-        // relative to the centre of its cell.
+        // A period of 64 field units is 2^18 in s10.12, so the lowest 18 bits of a coordinate, as a signed number, are the
+        // coordinate relative to the centre of its cell.
         let wrap = |x: i32| {
             if self.repeated {
                 cropped(x, 6 + FRACTION)
@@ -149,7 +149,7 @@ impl FlatSolid for FixedBox {
             }
         };
         let p = Folded::of(point.map(wrap)).map(|x| x.negated_if(x.value < 0));
-        // The distance for an axis without an end: less than every distance to a face, and within 23 bits.
+        // The distance along an axis on which the box has no end: it is less than every distance to a face, and fits 23 bits.
         let nowhere = -1 << (10 + FRACTION);
         let outside =
             [0, 1, 2].map(|i: usize| self.half[i].map_or(nowhere, |half| p[i].value - half));

@@ -1,10 +1,10 @@
-//! Distances to spheres from a table of square roots. Distances are rounded down, so that a
-//! step of this length never passes a surface.
+//! Distances to spheres from a table of square roots. Distances are rounded down, so that a ray that advances by the distance
+//! never passes a surface.
 
 use crate::field::limits::MAX_SPHERES;
 use crate::field::surface::{Sample, Surface, magnitude};
 
-/// A sphere in field units with 12 fraction bits.
+/// A sphere with lengths in field units, which have 12 fraction bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FixedSphere {
     /// The centre, s9.12.
@@ -14,7 +14,7 @@ pub struct FixedSphere {
     /// Reciprocal of the radius: 2^37 over the radius, which is first shifted left until it has 21 bits. The quotient is rounded
     /// to nearest and saturates to 17 bits.
     pub inverse: u32,
-    /// Right shift (6 to 20) that reduces the product of the radius and a number with 16 fraction bits to 17 bits.
+    /// The right shift (6 to 20) by which the product of the radius and a number with 16 fraction bits is reduced to 17 bits.
     pub shift: u32,
 }
 
@@ -33,14 +33,14 @@ impl FixedSphere {
     }
 }
 
-/// Several spheres. The gateware evaluates one sphere per pass.
+/// Several spheres, which the gateware evaluates one after the other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FixedSpheres {
-    /// The spheres, in the first `count` entries.
+    /// The spheres are in the first `count` entries; the other entries are not used.
     pub list: [FixedSphere; MAX_SPHERES],
     /// Number of spheres, 1 to 8.
     pub count: usize,
-    /// Whether the solid is periodic with 64 units along each axis. A periodic solid has one sphere, about the origin.
+    /// Whether the solid is periodic with 64 field units along each axis. A periodic solid has one sphere, about the origin.
     pub repeated: bool,
 }
 
@@ -48,7 +48,8 @@ pub struct FixedSpheres {
 const MOST: i32 = (1 << 21) - 1;
 
 impl FixedSpheres {
-    /// Distance to the nearest sphere, and its number. Of several spheres at the same distance the first counts.
+    /// Returns the distance to the nearest sphere, and the number of this sphere. If several spheres are equally near, the first
+    /// one is returned.
     pub fn sample(&self, point: [i32; 3]) -> Sample {
         let mut nearest = Sample {
             distance: MOST,
@@ -67,17 +68,18 @@ impl FixedSpheres {
         nearest
     }
 
-    /// The vector from a sphere's centre to a point, s11.12.
+    /// Returns the vector from a sphere's centre to a point, s11.12.
     pub fn from(&self, sphere: &FixedSphere, point: [i32; 3]) -> [i32; 3] {
-        // 64 units are 2^18: the lowest 18 bits of a coordinate, as a signed number, are relative to the centre of its cell.
+        // A period of 64 field units is 2^18 in this format. Therefore the lowest 18 bits of a coordinate, as a signed number,
+        // are the coordinate relative to the centre of its cell.
         let beyond = if self.repeated { 14 } else { 9 };
         [0, 1, 2].map(|i: usize| (point[i] - sphere.centre[i]) << beyond >> beyond)
     }
 }
 
-/// √x for x from 1 to 4 in steps of 1/128, and the difference to the next entry. The index is 128·x; the entries have 18
-/// fraction bits and are rounded down. Linear interpolation between entries gives at most the exact root; the relative error is
-/// at most 2^−19.
+/// Table of √x for x from 1 to 4 in steps of 1/128: the root, and the difference between the next root and this one. The index is
+/// 128·x; the roots have 18 fraction bits and are rounded down. Linear interpolation between entries gives at most the exact
+/// root; the relative error is at most 2^−19.
 const ROOTS: [(u32, u32); 512] = roots();
 
 const fn roots() -> [(u32, u32); 512] {
@@ -93,7 +95,8 @@ const fn roots() -> [(u32, u32); 512] {
     table
 }
 
-/// A lower bound of the length of a vector with components of at most 23 bits. The error is at most 3 plus 2^−15 of the length.
+/// Returns a lower bound of the length of a vector with components of at most 23 bits. It is too small by at most 3 units of the
+/// components plus 2^−15 of the length.
 fn length(q: [i32; 3]) -> i32 {
     let parts = q.map(magnitude);
     let Some(lead) = (parts[0] | parts[1] | parts[2]).checked_ilog2() else {

@@ -9,7 +9,7 @@ use crate::field::shape::{FlatConstants, FlatSolid, Placed, Shape};
 use crate::field::surface::{FRACTION, Sample};
 use crate::fixed::Q32_32;
 
-/// The largest number of levels.
+/// The largest number of levels of holes.
 pub const MAX_DEPTH: u8 = 6;
 
 /// The Menger sponge in [−1, 1]³.
@@ -52,12 +52,12 @@ impl Shape for Menger {
     }
 }
 
-/// The sponge in field units: its half side is 40.5.
+/// The sponge with lengths in field units, in which half its side is 40.5.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FixedSponge {
     /// The side S of the cubes of each level: 27, 9, 3, 1, 1/3, 1/9, each an even multiple of 2^−12.
     levels: [i32; MAX_DEPTH as usize],
-    /// Number of evaluated levels.
+    /// Number of levels that are evaluated: the first `depth` entries of `levels`.
     depth: u8,
     /// Half the side S of the cubes of the last level.
     half: i32,
@@ -66,8 +66,8 @@ pub struct FixedSponge {
 impl FlatSolid for FixedSponge {
     const CODE: u8 = 0;
 
-    /// Each level folds space by mirrors: its cubes of side S onto one cube about the origin, and its holes onto the outside
-    /// of this cube.
+    /// Evaluates the levels from the largest cubes to the smallest. Each level folds space by mirrors, which map all cubes of its
+    /// side S onto one cube about the origin, and its holes onto the outside of this cube.
     ///
     /// Every coordinate x is replaced by S − |x|, which is above S/2 if x is in the middle third. A point is in a hole if at
     /// least two coordinates are in the middle third. Therefore the largest new coordinate is mirrored at S/2: all points outside

@@ -41,7 +41,7 @@ impl Shape for Octahedron {
     }
 }
 
-/// The octahedron in field units.
+/// The octahedron with lengths in field units.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FixedOctahedron {
     /// Distance from the origin to a corner, u10.12.
@@ -51,9 +51,9 @@ pub struct FixedOctahedron {
 impl FlatSolid for FixedOctahedron {
     const CODE: u8 = 2;
 
-    /// The distance in the maximum norm. Within a cube of half side r about the point, |x| + |y| + |z| changes by at most 3r, so
-    /// the distance is a third of |x| + |y| + |z| − size. The product with 85/256, rounded down, approximates this third from
-    /// below outside the solid.
+    /// Computes the distance in the maximum norm. Within a cube of half side r about the point, |x| + |y| + |z| changes by at
+    /// most 3r, so the distance is a third of |x| + |y| + |z| − size. The product with 85/256, rounded down, approximates this
+    /// third from below outside the solid.
     #[inline]
     fn sample(&self, point: [i32; 3]) -> Sample {
         let sum: u32 = point.map(magnitude).iter().sum();

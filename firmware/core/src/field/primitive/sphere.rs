@@ -22,7 +22,7 @@ pub struct Sphere {
 }
 
 impl Sphere {
-    /// Checks that the sphere lies within [`MAX_EXTENT`].
+    /// Checks that the radius is in its range, and that no coordinate of the sphere exceeds [`MAX_EXTENT`] in magnitude.
     fn checked(self) -> Result<Self, FieldError<'static>> {
         check("radius", self.radius, [SMALLEST, MAX_EXTENT])?;
         let room = MAX_EXTENT - self.radius;
@@ -48,10 +48,11 @@ pub struct Spheres {
 }
 
 impl Spheres {
-    /// Checks 1 to [`MAX_SPHERES`] spheres, and makes a field of them.
+    /// Makes a field from 1 to [`MAX_SPHERES`] spheres, after checking them.
     ///
     /// # Errors
-    /// The number of spheres is out of range, or the radius or a coordinate of a sphere is; the first such number is reported.
+    /// The number of spheres is out of range, or the radius or a coordinate of a sphere is out of range. The first
+    /// wrong number is reported.
     pub fn new(spheres: &[Sphere]) -> Result<Self, FieldError<'static>> {
         let mut list = [Sphere::default(); MAX_SPHERES];
         let count = spheres.len();
@@ -70,23 +71,23 @@ impl Spheres {
     }
 }
 
-/// Spheres at all multiples of the period along each axis.
+/// A lattice of spheres, whose centres are at all multiples of the period along each axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lattice {
-    /// Distance between neighbouring centres, in world units.
+    /// Distance between the centres of neighbouring spheres, in world units.
     pub period: Q32_32,
-    /// Radius of each sphere in world units, below half the period.
+    /// Radius of each sphere in world units, less than half the period.
     pub radius: Q32_32,
 }
 
-/// A sphere on an orbit about the z axis, at height 0.
+/// A sphere whose centre is on a circular orbit about the z axis, in the plane z = 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MovingSphere {
     /// Radius, in world units.
     pub radius: Q32_32,
     /// Distance from the origin to the centre, in world units.
     pub orbit: Q32_32,
-    /// Angle on the orbit, from the x axis towards the y axis.
+    /// Angle of the centre on the orbit, from the x axis towards the y axis.
     pub angle: Turns,
 }
 
@@ -225,7 +226,7 @@ impl Shape for MovingSphere {
         let along = |part: Q2_30| {
             Q32_32::from_bits(((self.orbit.to_bits() >> 12) * i64::from(part.to_bits())) >> 18)
         };
-        // The bounding box holds the whole orbit, so the scale is the same in every frame.
+        // The bounding box contains the sphere at all angles of the orbit, so the scale is the same in every frame.
         let reach = self.orbit + self.radius;
         Placed {
             extent: Some([reach, reach, self.radius]),
