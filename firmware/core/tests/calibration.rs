@@ -1,4 +1,4 @@
-//! Calibration: results, and rejected samples.
+//! Calibration of the gyroscope: results, rejected samples, and tracking of the bias at rest.
 
 mod random;
 
@@ -10,7 +10,7 @@ use glint_core::orientation::Sample;
 use random::Random;
 
 impl Random {
-    /// Approximately normal with variance 1: the sum of twelve uniform numbers.
+    /// Returns an approximately normal random number with mean 0 and variance 1, from the sum of twelve uniform numbers.
     fn normal(&mut self) -> f64 {
         (0..12)
             .map(|_| (self.next() >> 11) as f64 / 2f64.powi(53))
@@ -21,8 +21,8 @@ impl Random {
 
 const BIAS: [f64; 3] = [73.8, -0.77, 18.4];
 
-/// Calibrates with samples of a sensor at rest with noise of 0.1 °/s, which `change` modifies. Returns the report and
-/// the exact means.
+/// Calibrates with samples of a sensor at rest with noise of 0.1 °/s. `change` may modify each sample. Returns the
+/// report and the exact means.
 fn calibrate(
     samples: u32,
     mut change: impl FnMut(u32, &mut Sample),
@@ -71,7 +71,7 @@ fn the_mean_is_kept_to_a_256th() {
         // The actual error agrees with the reported standard error.
         assert!((mean[axis] - BIAS[axis]).abs() < 4.0 * error);
     }
-    // The expected drift: 1.67 LSB of noise, divided by 16.4 LSB per °/s and by the root of 8192 samples, in °/h.
+    // The expected drift is 1.67 LSB of noise, divided by 16.4 LSB per °/s and by the root of 8192 samples, converted to °/h.
     for drift in report.drift(Units::MPU_6050) {
         assert!((drift.to_num::<f64>() - 4.05).abs() < 0.15, "{drift}");
     }
@@ -176,7 +176,8 @@ fn stale_samples_do_not_count_and_extremes_fit() {
     }
 }
 
-/// Tracks a bias that is `start` at first, for `seconds` at 1 kHz. The gyroscope reads `rate`, in LSB, plus noise.
+/// Tracks a bias for `seconds` at 1 kHz, from the initial value `start` in 1/256 LSB. The gyroscope reads
+/// `rate`, in LSB, plus noise.
 fn followed(seconds: u32, start: [i32; 3], mut rate: impl FnMut(u32) -> [f64; 3]) -> RestBias {
     let mut resting = RestBias::new(Units::MPU_6050, start);
     let mut random = Random(9);
@@ -211,7 +212,7 @@ fn a_bias_that_wanders_is_followed_at_rest() {
 
 #[test]
 fn motion_is_not_learnt() {
-    // An oscillation of 1500 °/s, a slow sway, and a steady turn that is too fast for a bias.
+    // Two oscillations of ±1500 °/s with different periods, a slow sway, and a steady turn that is too fast to be a bias.
     let square = |i: u32, period: u32| if i % period < period / 2 { 1.0 } else { -1.0 };
     for rate in [
         Box::new(move |i| [0.0, 0.0, 24_600.0 * square(i, 1_000)])
@@ -227,7 +228,7 @@ fn motion_is_not_learnt() {
 
 #[test]
 fn at_rest_the_bias_does_not_cycle() {
-    // Without noise the tracked bias must reach a constant value, and not cycle by rounding.
+    // Without noise the tracked bias must reach a constant value; rounding must not make it cycle.
     let mut resting = RestBias::new(Units::MPU_6050, [256, -256, 128]);
     let mut seen = Vec::new();
     for i in 0..3_000_000 {

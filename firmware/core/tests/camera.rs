@@ -1,4 +1,4 @@
-//! Cameras against f64, and the conditions on their bases.
+//! Cameras compared with computations in f64, and the conditions on their bases.
 
 use std::f64::consts::TAU;
 
@@ -26,7 +26,7 @@ fn basis(view: &View) -> [Vector; 3] {
     [view.u(), view.v(), view.n()].map(|row| row.map(Q2_23::to_num))
 }
 
-/// Deviation of a basis from orthonormal and right-handed: the largest of |a·a − 1|, |a·b| and |u × v − n|.
+/// Returns how far a view's basis is from an orthonormal right-handed one: the largest of |a·a − 1|, |a·b| and |u × v − n|.
 fn deviation(view: &View) -> f64 {
     let [u, v, n] = basis(view);
     [
@@ -47,7 +47,8 @@ fn radians(angle: u32) -> f64 {
     f64::from(angle) / 2f64.powi(32) * TAU
 }
 
-/// The angles of the axes and diagonals with their neighbours, and `count` further angles spread over the circle.
+/// Returns the multiples of an eighth of a turn with their neighbours, and `count` further angles spread over the circle, in
+/// units of 2^−32 turns.
 fn angles(count: u32) -> impl Iterator<Item = u32> + Clone {
     let edges = (0..8_u32)
         .flat_map(|octant| [u32::MAX, 0, 1].map(|offset| (octant << 29).wrapping_add(offset)));
@@ -178,7 +179,7 @@ fn known_places_are_exact() {
     );
 }
 
-/// The numbers of a valid camera (eye, basis, half width, near plane), of which tests change one.
+/// Returns the numbers of a valid camera (eye, basis, half width, near plane), of which each test changes one.
 fn numbers() -> ([Q32_32; 3], [[Q2_23; 3]; 3], U4_28, U4_28) {
     let view = View::look(
         [Q32_32::ONE; 3],

@@ -1,4 +1,4 @@
-//! Fields in text form.
+//! Tests of distance fields in text form.
 
 use glint_core::field::{Field, FieldError, KINDS, MAX_SPHERES, Primitive, Sphere, Spheres};
 use glint_core::fixed::Q32_32;
@@ -7,7 +7,7 @@ use proptest::prelude::*;
 proptest! {
     #![proptest_config(ProptestConfig { cases: 500, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Every field reads back from its text as the same bits.
+    /// The printed text form of every field reads back as the same field.
     #[test]
     fn fields_come_back_bit_for_bit(seed in any::<u64>()) {
         let mut state = seed;

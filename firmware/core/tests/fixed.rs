@@ -1,10 +1,10 @@
-//! Decimals and angles.
+//! Tests of decimals and angles.
 
 use glint_core::fixed::fixed::traits::Fixed;
 use glint_core::fixed::{Q2_14, Q2_23, Q2_30, Q32_32, Turns, U4_28};
 use proptest::prelude::*;
 
-/// Whether the decimal of a number reads back as the same bits, and no shorter decimal does.
+/// Checks that the decimal of a number reads back as the same bits, and that no shorter decimal does.
 #[track_caller]
 fn assert_shortest<T: Fixed + std::str::FromStr>(x: T) {
     let decimal = x.to_string();
@@ -19,7 +19,8 @@ fn assert_shortest<T: Fixed + std::str::FromStr>(x: T) {
             shorter.parse::<T>().is_ok_and(|back| back != x),
             "{decimal}"
         );
-        // The other neighbour with this number of digits must not read back as the same bits either: rounded away from 0.
+        // `shorter` is the decimal without its last digit, so it is rounded towards 0. The decimal of the same length that is
+        // rounded away from 0 must not read back as the same bits either.
         let above = format!(
             "{:.digits$}",
             x.to_num::<f64>() + 0.5 * 0.1_f64.powi(digits as i32) * x.to_num::<f64>().signum()
@@ -44,7 +45,7 @@ proptest! {
         assert_shortest(Q2_23::from_bits(bits as i32 >> 7));
         assert_shortest(Q2_30::from_bits(bits as i32));
         assert_shortest(U4_28::from_bits(bits as u32));
-        // The test computes in f64, so this number has at most 53 bits.
+        // `assert_shortest` computes in f64, so the number tested has at most 53 bits.
         assert_shortest(Q32_32::from_bits(bits >> 11));
         prop_assert_eq!(Q32_32::from_bits(bits).to_string().parse(), Ok(Q32_32::from_bits(bits)));
     }
@@ -65,7 +66,7 @@ fn decimals_are_rounded_to_the_nearest_and_ties_to_even() {
             .map(Q2_14::to_bits)
             .map_err(|error| error.to_string())
     };
-    // 0.000030517578125 is 2^-15, half a unit of the format: ties go to even.
+    // 0.000030517578125 is 2^-15, which is half a unit of the format: such ties are rounded to even.
     assert_eq!(bits("0.000030517578125"), Ok(0));
     assert_eq!(bits("0.0000305175781250000000000000000000000000001"), Ok(1));
     assert_eq!(bits("0.000091552734375"), Ok(2));

@@ -1,4 +1,4 @@
-//! Cameras steered by an attitude: direction and continuity.
+//! Tests of cameras steered by an attitude: their directions, and the continuity of their motion.
 
 use glint_core::camera::{View, ViewError};
 use glint_core::choice::Choice;
@@ -21,7 +21,7 @@ fn basis(view: &View) -> [[f64; 3]; 3] {
     [view.u(), view.v(), view.n()].map(|row| row.map(Q2_23::to_num))
 }
 
-/// The largest difference between corresponding numbers of two cameras, over eye and basis.
+/// Returns the largest difference between corresponding numbers of the eyes and bases of two cameras.
 fn apart(a: &View, b: &View) -> f64 {
     let eyes = [a, b].map(|view| view.eye().map(Q32_32::to_num::<f64>));
     let rows = [basis(a), basis(b)];
@@ -78,8 +78,8 @@ fn every_mounting_is_right_handed_and_orthonormal() {
     assert_eq!(Direction::from_word("--x"), None);
 }
 
-/// The camera follows paths over the zenith and the nadir, straight and while turning. A step of 0.01° changes each number of a
-/// camera by little more than the arc that the step causes.
+/// The sensor's pitch passes −90° and +90°, without and with yaw and roll, and some of the cameras pass the zenith and the nadir.
+/// A step of 0.01° changes each number of a camera by little more than the arc that the step causes.
 #[test]
 fn the_camera_never_jumps() {
     let step = 0.01_f64;
@@ -139,7 +139,7 @@ fn recentring_takes_the_heading_and_leaves_the_horizon() {
     for (a, b) in up(camera).iter().zip(up(tilted)) {
         assert!((a - b).abs() < 16, "{a} {b}");
     }
-    // The heading is defined for a view straight up too.
+    // The heading is defined for a camera that looks straight up, too.
     let mut steering = Steering::default();
     steering.follow(attitude(0.0, 90.0, 40.0));
     steering.recentre();

@@ -1,7 +1,7 @@
 //! Gives mutations of valid inputs to every parser of external data.
 //!
-//! A fixed seed makes a run repeatable. `GLINT_FUZZ_INPUTS` sets how many inputs each target gets, 20,000 by default. The
-//! overflow checks of the dev profile turn an overflow into a panic.
+//! A fixed seed makes a run repeatable. The environment variable `GLINT_FUZZ_INPUTS` sets the number of inputs that each parser
+//! gets (20,000 by default). The overflow checks of the dev profile turn an overflow into a panic.
 
 use glint_core::calibration::Units;
 use glint_core::console::{Command, Event, LineEditor};
@@ -28,7 +28,7 @@ impl Random {
     }
 }
 
-/// Calls `target` with mutations of the inputs in `corpus`.
+/// Calls `target`, which runs a parser, with mutations of the inputs in `corpus`.
 fn fuzz(corpus: &[Vec<u8>], mut target: impl FnMut(&[u8], &mut Random)) {
     let inputs =
         std::env::var("GLINT_FUZZ_INPUTS").map_or(20_000, |count| count.parse().expect("a number"));
@@ -149,7 +149,7 @@ fn logs() {
     let mut passed = 0;
     fuzz(&corpus, |bytes, random| {
         let mut bytes = bytes.to_vec();
-        // Few mutations leave the length valid, so half of the inputs get a valid length here.
+        // Most mutations make the length wrong, so here half of the inputs get a number of samples that suits their length.
         if let (Some(rest), true) = (bytes.len().checked_sub(HEADER_BYTES), random.below(2) == 0) {
             let samples = rest / RECORD_BYTES;
             bytes[4..8].copy_from_slice(&(samples as u32).to_le_bytes());

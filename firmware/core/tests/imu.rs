@@ -11,7 +11,7 @@ type TestImu = Imu<&'static str>;
 const EYE: [Q32_32; 3] = [Q32_32::ZERO; 3];
 const RADIUS: Q32_32 = Q32_32::lit("2.5");
 
-/// A measurement of a flat sensor at rest, with a bias of (10, −20, 30) LSB and some noise.
+/// Returns a measurement of a flat sensor at rest, whose gyroscope has a bias of (10, −20, 30) LSB and some noise.
 fn rest(index: u64) -> Measurement {
     let noise = (index * 7 % 3) as i16 - 1;
     Measurement {
@@ -118,7 +118,8 @@ fn the_camera_follows_and_can_be_recentred() {
     let (n, eye) = forward(&mut imu);
     near(n, [0.0, 1.0, 0.0]);
     near(eye, [0.0, -2.5, 0.0]);
-    // The sensor is mounted the other way round; then the mounting is the default one, with half the sensitivity.
+    // First the sensor is mounted so that it faces backwards. Then the mounting is the default again, and
+    // the sensitivity is halved.
     imu.set_mounting(Mounting::new(Direction::MinusY, Direction::Z).expect("perpendicular"));
     near(forward(&mut imu).0, [0.0, -1.0, 0.0]);
     imu.set_mounting(Mounting::default());
@@ -128,7 +129,7 @@ fn the_camera_follows_and_can_be_recentred() {
     }
     let half = std::f64::consts::FRAC_1_SQRT_2;
     near(forward(&mut imu).0, [-half, half, 0.0]);
-    // The attitude is held while the sensor fails.
+    // The attitude stays constant while the sensor fails.
     imu.on_error(Error::Bus("gone"));
     assert_eq!(imu.view(EYE, RADIUS), None);
     imu.set_follow(None);

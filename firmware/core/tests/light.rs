@@ -1,4 +1,4 @@
-//! Lights in text form, and the lit colours of faces.
+//! Tests of lights in text form, and of the lit colours of faces.
 
 use glint_core::appearance::Appearance;
 use glint_core::fixed::Q32_32;
@@ -7,7 +7,7 @@ use glint_core::light::{
 };
 use proptest::prelude::*;
 
-/// The lit colours of six faces, computed in f64.
+/// Computes the lit colours of six faces in f64, as the expected values.
 fn shone(ambient: Rgb, lights: &[([f64; 3], Rgb)], faces: &[Rgb; 6]) -> [[f64; 3]; 6] {
     core::array::from_fn(|face| {
         core::array::from_fn(|channel| {
@@ -27,7 +27,7 @@ fn shone(ambient: Rgb, lights: &[([f64; 3], Rgb)], faces: &[Rgb; 6]) -> [[f64; 3
 }
 
 fn lights() -> impl Strategy<Value = Vec<([i64; 3], Rgb)>> {
-    // Directions of all lengths.
+    // The shift gives directions of all magnitudes.
     let number = (any::<i64>(), 0..63_u32).prop_map(|(x, shift)| x >> shift);
     let direction = [number.clone(), number.clone(), number]
         .prop_filter("a direction", |direction| *direction != [0; 3]);
@@ -59,7 +59,8 @@ proptest! {
         let exact = shone(ambient, &exact, &material.faces());
         for (found, exact) in lighting.shine_on(&material.faces()).iter().zip(exact) {
             for (found, exact) in found.iter().zip(exact) {
-                // Half a step for the rounding of the result, plus 2^-15 of 255 for the rounding of each direction.
+                // The tolerance is half a step for the rounding of the result, plus 2^-15 of 255 for the rounding
+                // of each light's direction.
                 prop_assert!((f64::from(*found) - exact).abs() < 0.54, "{found} {exact}");
             }
         }

@@ -1,4 +1,4 @@
-//! Meshes: encoding, decoding and error messages.
+//! Tests of meshes: encoding, decoding and error messages.
 
 use glint_core::mesh::{
     EncodeError, Expected, IndexedTriangle, MAX_RADIUS, Mesh, MeshError, Rgb565, Vertex, encode,
@@ -22,13 +22,13 @@ fn triangle(indices: [u32; 3]) -> IndexedTriangle {
     }
 }
 
-/// A mesh of one chunk with four vertices and two triangles.
+/// Encodes a mesh of one chunk with four vertices and two triangles.
 fn small() -> Vec<u8> {
     let vertices: Vec<Vertex> = (0..4).map(vertex).collect();
     encode(&vertices, &[triangle([0, 1, 2]), triangle([0, 2, 3])]).expect("a good mesh")
 }
 
-/// The triangles of a mesh with their vertices in place of indices.
+/// Returns the triangles of a mesh with their vertices in place of the indices.
 fn triangles(mesh: &Mesh) -> Vec<([Vertex; 3], Rgb565, [i16; 3])> {
     let corner =
         |chunk: &glint_core::mesh::Chunk, i: u16| chunk.vertex(i.into()).expect("a checked index");

@@ -1,4 +1,4 @@
-//! The driver against a virtual MPU-6050: samples, compatible chips and faults.
+//! Tests of the driver with a virtual MPU-6050: samples, compatible chips and faults.
 
 use std::cell::RefCell;
 use std::future::poll_fn;
@@ -33,7 +33,7 @@ impl DelayNs for Clock {
     }
 }
 
-/// The errors of the bus.
+/// The errors of the test's I2C bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Trouble {
     Bus(virtual_mpu6050::Error),
@@ -130,8 +130,8 @@ impl Sink<Trouble> for Recorder {
     }
 }
 
-/// A motion with a steadily increasing rate about x, which shows when a sample was measured: the rate grows by a count
-/// every 61 µs.
+/// A motion with a steadily increasing rate about x, so that the rate in a sample shows when it was measured: the rate grows by
+/// one count every 61 µs.
 fn ramp(time: f64) -> State {
     State {
         rate: [1_000.0 * time - 1_900.0, 0.0, 0.0],
@@ -218,7 +218,8 @@ fn counts_are_those_of_the_registers() {
             .map(|(.., sample)| f64::from(pick(sample)));
         all.sum::<f64>() / record.samples.len() as f64
     };
-    // The expected means: the modelled chip's bias, its drift over 11.53 °C, and the rate or force with its error of scale.
+    // The expected means are sums of three terms: the modelled chip's bias, its drift over 11.53 °C, and the rate or force with
+    // the error of its scale.
     let rate = [
         -4.5 + 1.8448 + 10.1,
         1.25 - 1.153 - 19.8,
@@ -271,7 +272,7 @@ fn relatives_are_known_and_strangers_are_not() {
     assert!(record.samples.is_empty());
 }
 
-/// The motion of a sensor at rest.
+/// The state of a sensor at rest, at any time.
 fn still(_: f64) -> State {
     State::default()
 }

@@ -1,4 +1,4 @@
-//! Attitudes against closed forms: accuracy, length 1, and freedom from panics.
+//! Attitudes compared with closed forms: accuracy, length 1 of the quaternions, and freedom from panics.
 
 mod random;
 
@@ -26,7 +26,7 @@ fn times(a: Parts, b: Parts) -> Parts {
     ]
 }
 
-/// The angle between two attitudes in degrees.
+/// Returns the angle between two attitudes, in degrees.
 fn apart(a: Parts, b: Parts) -> f64 {
     let [w, x, y, z] = times([a[0], -a[1], -a[2], -a[3]], b);
     2.0 * (x * x + y * y + z * z).sqrt().atan2(w.abs()).to_degrees()
@@ -37,7 +37,7 @@ fn excess(quaternion: Quaternion) -> f64 {
     (norm - 1.0).abs()
 }
 
-/// The attitude after some seconds of a constant rate, in LSB with 16.4 LSB per °/s; computed in f64.
+/// Computes in f64 the attitude after `seconds` at a constant rate, which is in LSB with 16.4 LSB per °/s.
 fn spun(rate: [f64; 3], seconds: f64) -> Parts {
     let [x, y, z] = rate.map(|lsb| (lsb / 16.4).to_radians() * seconds / 2.0);
     let half = (x * x + y * y + z * z).sqrt();
@@ -48,7 +48,7 @@ fn spun(rate: [f64; 3], seconds: f64) -> Parts {
 
 #[test]
 fn a_constant_rate_is_exact() {
-    // A selection of runs; the report runs the soak of a day in full.
+    // A selection of runs. The measurements for docs/report/imu.md also integrate a whole day at 1 kHz.
     for (rate, step, seconds, most) in [
         ([1, 0, 0], 1_000, 3_600_u32, 1e-5),
         ([0, -1, 1], 1_000, 3_600, 1e-5),
@@ -206,7 +206,8 @@ fn angles_are_those_of_f64_and_the_way_back() {
     println!("yaw and roll within {largest:.1e}°/cos(pitch)");
 }
 
-/// The pitch passes ±90°: the quaternion is continuous, and the angles follow the documented convention.
+/// While the pitch passes ±90°, the quaternion is continuous, and the angles follow the convention in the
+/// documentation of `Quaternion::angles`.
 #[test]
 fn the_pole_is_defined() {
     for sign in [1, -1_i64] {
@@ -283,7 +284,7 @@ fn upright(accel: [i16; 3]) -> f64 {
     let attitude = Tilt::align(accel);
     let up = attitude.inverse();
     let [_, _, z] = up.axes();
-    // The world's z in the body's axes is the third column of the inverse.
+    // The direction of the world's z axis in the body's axes is the third column of the inverse rotation's matrix.
     let a = accel.map(f64::from);
     let length = a.iter().map(|x| x * x).sum::<f64>().sqrt();
     let cosine = a
@@ -358,7 +359,8 @@ fn what_becomes_of_samples() {
     );
 }
 
-/// Saturation turns the estimate upside down while the body is level: even this tilt error is corrected in a bounded time.
+/// Saturation of the gyroscope turns the estimated attitude upside down while the body is level. Even this error of the tilt is
+/// corrected in a bounded time.
 #[test]
 fn tilt_comes_back_after_saturation() {
     for axis in [0, 1] {
@@ -426,7 +428,7 @@ fn knocks_are_left_out() {
     assert_eq!(tracker.attitude(), Quaternion::IDENTITY);
 }
 
-/// 1000 s at rest without noise: the attitude reaches a constant value, and does not cycle by rounding.
+/// In 1000 s at rest without noise the attitude reaches a constant value; rounding does not make it cycle.
 #[test]
 fn at_rest_nothing_cycles() {
     let mut tracker = tracker();

@@ -1,11 +1,11 @@
-//! Length and angle of vectors against f64.
+//! Length and angle of vectors, compared with computations in f64.
 
 use std::f64::consts::TAU;
 
 use glint_core::fixed::Turns;
 use glint_core::polar::polar;
 
-/// The difference between an angle and a number of turns, in units of 2^−32 turns.
+/// Returns the difference between an angle and a number of turns, in units of 2^−32 turns.
 fn apart(angle: Turns, turns: f64) -> f64 {
     let difference = f64::from(angle.0) - turns * 2f64.powi(32);
     let turn = 2f64.powi(32);
@@ -25,8 +25,8 @@ fn angles_and_lengths_are_within_a_unit() {
     for x in numbers().step_by(3) {
         for y in numbers() {
             let (length, angle) = polar(x, y);
-            // Shorter vectors are left out, because the errors are stated for lengths of at least 2^32. The relative rounding of
-            // f64 is 2^-53.
+            // Vectors shorter than 2^32 are left out, because the errors are stated for lengths of at least 2^32. The relative
+            // rounding error of f64 is 2^-53, which is negligible.
             let (fx, fy) = (x as f64, y as f64);
             if fx.hypot(fy) < 2f64.powi(32) {
                 continue;

@@ -1,4 +1,4 @@
-//! Stereo in text form.
+//! Tests of the text form of stereo settings.
 
 use glint_core::fixed::Q32_32;
 use glint_core::stereo::{Stereo, Tint};
@@ -7,7 +7,7 @@ use proptest::prelude::*;
 proptest! {
     #![proptest_config(ProptestConfig { cases: 500, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// The printed text reads back as the same bits.
+    /// The printed text form reads back as the same bits.
     #[test]
     fn eyes_come_back_bit_for_bit(
         half_separation in 0..=1_i64 << 32,

@@ -1,11 +1,11 @@
-//! Sine and cosine against f64, whose error of 2^-53 is negligible.
+//! Sine and cosine, compared with f64, whose error of 2^-53 is negligible.
 
 use std::f64::consts::TAU;
 
 use glint_core::fixed::Turns;
 use glint_core::trig::{sin_cos_q14, sin_cos_q30, sin_cos_q30_order};
 
-/// The errors of a function for sine and cosine over a set of angles, in units in the last place of its results.
+/// The errors of a function that computes sine and cosine, over a set of angles, in units in the last place of its results.
 #[derive(Default)]
 struct Errors {
     max: f64,

@@ -1,4 +1,4 @@
-//! Transfers over a line that loses, changes and repeats bytes.
+//! Tests of transfers over a line that loses, changes and repeats bytes.
 
 use std::collections::VecDeque;
 
@@ -86,22 +86,22 @@ impl Line {
 struct Outcome {
     sender: State,
     receiver: State,
-    /// Data received, if the transfer succeeded.
+    /// The received data; `None` if the transfer failed.
     received: Option<Vec<u8>>,
     seconds: f64,
-    /// Data bytes per frame at the end.
+    /// Number of data bytes per frame at the end of the transfer.
     frame_bytes: u32,
 }
 
 impl Outcome {
-    /// The transferred data bytes divided by the number of bytes that the line could carry in the same time.
+    /// Computes the number of transferred data bytes divided by the number of bytes that the line can carry in the same time.
     fn efficiency(&self) -> f64 {
         let bytes = self.received.as_ref().map_or(0, Vec::len);
         bytes as f64 * BYTE_US / 1e6 / self.seconds
     }
 }
 
-/// A transfer from a host to a console.
+/// The conditions of a transfer from a host to a console.
 struct Scene {
     faults: Faults,
     seed: u64,
@@ -135,7 +135,8 @@ impl Scene {
         let mut receiver = Receiver::new(&mut buffer, self.announced, Timing::CONSOLE, 0);
         let mut there = Line::new(self.faults, self.seed, self.latency_us);
         let mut back = Line::new(self.faults, self.seed + 1_000, self.latency_us);
-        // Before the transfer, the line holds earlier output of the console and the rest of the line of the command.
+        // Before the transfer, the line still carries earlier output of the console in one direction, and the end of the
+        // command's line in the other direction.
         back.send(0.0, b"glint> load 1234 deadbeef\r\nready\r\n");
         there.send(0.0, b"\n");
         let mut frame = [0; MAX_FRAME];
@@ -186,7 +187,7 @@ impl Scene {
     }
 }
 
-/// Test data with bytes of every value, with zeros and with long runs without a zero.
+/// Returns test data with bytes of every value, with zeros, and with long runs without a zero.
 fn some_data(length: usize) -> Vec<u8> {
     (0..length as u32)
         .map(|i| (i.wrapping_mul(2_654_435_769) >> (i >> 10 & 15)) as u8)
@@ -316,7 +317,7 @@ fn an_awful_line_is_slow_and_right_or_given_up() {
     assert_eq!(outcome.received, None);
 }
 
-/// Runs a transfer, and checks that it fails on both sides, with these causes.
+/// Runs a transfer, and checks that it fails on both sides, with the given causes.
 fn assert_ends(scene: Scene, sender: Failure, receiver: Failure) {
     let outcome = scene.run(&some_data(50_000));
     assert_eq!(outcome.sender, State::Failed(sender));

@@ -1,4 +1,4 @@
-//! Every command with its arguments.
+//! Tests of every command with its arguments.
 
 use glint_core::camera::View;
 use glint_core::colour::Shading;

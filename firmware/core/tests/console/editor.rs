@@ -3,7 +3,7 @@
 use glint_core::console::{Command, Event, HISTORY, LINE_MAX, LineEditor};
 use proptest::prelude::*;
 
-/// A terminal that shows the echo.
+/// A terminal that interprets the echo and keeps the text that it shows.
 #[derive(Default)]
 struct Screen {
     line: Vec<char>,
@@ -58,7 +58,7 @@ impl Screen {
     }
 }
 
-/// Types bytes into the editor. Returns the resulting lines and other events, and the screen.
+/// Types bytes into the editor. Returns the lines and other events that the editor reports, and the screen.
 fn type_in(bytes: &[u8]) -> (Vec<String>, Screen) {
     let (mut editor, mut screen, mut events) = (LineEditor::new(), Screen::default(), Vec::new());
     for &byte in bytes {
@@ -125,7 +125,7 @@ fn the_history_brings_lines_back() {
     );
     assert_lines(b"one\rtyp\x10\x0Eed\r", &["one", "typed"]);
     assert_lines(b"\x1B[A\x1B[Bx\r", &["x"]);
-    // The history does not keep blank lines and repetitions.
+    // The history keeps neither blank lines nor repeated lines.
     assert_lines(
         b"one\r\r  \rtwo\rtwo\r\x1B[A\x1B[A\r",
         &["one", "", "  ", "two", "two", "one"],
@@ -208,11 +208,11 @@ fn keys() -> impl Strategy<Value = Vec<u8>> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 500, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// `type_in` compares every line with the screen.
+    /// The function `type_in` compares every line with the line on the screen.
     #[test]
     fn what_is_shown_is_the_line(keys in keys()) {
         let (lines, screen) = type_in(&[&keys[..], b"\r"].concat());
-        // The screen has further lines for the lists of candidates.
+        // The screen has additional lines, because Tab lists candidates on lines of their own.
         prop_assert!(lines.len() <= screen.lines.len());
     }
 

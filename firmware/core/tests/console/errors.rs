@@ -1,4 +1,4 @@
-//! Error messages of lines that are not commands.
+//! Tests of the error messages for lines that are not commands.
 
 use glint_core::console::Command;
 

@@ -1,4 +1,4 @@
-//! The help of commands.
+//! Tests of the help texts of the commands.
 
 use glint_core::console::{Command, write_help};
 use glint_core::field::KINDS;
@@ -21,7 +21,7 @@ fn the_help_lists_every_command_and_how_it_is_used() {
     {
         let usage = help(Some(name));
         assert!(usage.starts_with(name), "{usage}");
-        // The usage of an error message equals the usage in the help.
+        // The usage line in an error message equals the usage line in the help.
         let first = usage.lines().next().unwrap_or_default();
         if let Some(required) = first
             .split_once(' ')

@@ -1,4 +1,4 @@
-//! The console: line editor, completion, grammar and help.
+//! Tests of the console: line editor, completion, grammar and help.
 
 mod commands;
 mod editor;
