@@ -24,7 +24,7 @@ const REQUIREMENTS: [&str; 2] = [
     "tools/reference/requirements.txt",
 ];
 
-/// Installs missing prerequisites. Fast if there are none.
+/// Installs missing prerequisites. Returns quickly if none is missing.
 ///
 /// # Errors
 /// Lists each prerequisite that is still missing, and the command that installs it.
@@ -73,7 +73,7 @@ fn debian_packages() -> Result<()> {
     .with_context(|| format!("Debian packages: run: {by_hand}"))
 }
 
-/// Whether a package is present: its program works, installed as this package or otherwise.
+/// Whether a package's program runs. It may also have been installed in another way than as this package.
 fn is_present(package: &str) -> bool {
     match package {
         "gcc-riscv64-unknown-elf" => {

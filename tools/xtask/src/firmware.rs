@@ -35,7 +35,8 @@ pub fn build(features: &[&str]) -> Result<PathBuf> {
     ]);
     cargo.arg("--features").arg(features.join(","));
     if features.contains(&"peers") {
-        // The program's crate instantiates the generic kernels, so it gets the optimization level of the kernels' crates.
+        // The generic kernels of other crates are compiled in the firmware's crate, so it gets the same optimization level as
+        // those crates.
         for package in ["glint-firmware", "\"*\""] {
             cargo
                 .arg("--config")
@@ -61,7 +62,7 @@ pub fn build(features: &[&str]) -> Result<PathBuf> {
     Ok(path)
 }
 
-/// Writes a file only if its contents change, so that dependents are not rebuilt.
+/// Writes a file only if its contents change, so that builds which depend on it are not repeated.
 fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     if fs::read(path).is_ok_and(|old| old == bytes) {
         return Ok(());
@@ -69,7 +70,7 @@ fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     fs::write(path, bytes).with_context(|| format!("writing {}", path.display()))
 }
 
-/// Returns the bytes for the start of main memory, and a text that lists the sections that they consist of.
+/// Returns the image of an ELF file, which starts at the base of main memory, and a text that lists the image's sections.
 fn image(elf: &[u8]) -> Result<(Vec<u8>, String)> {
     let file = ElfFile32::<Endianness>::parse(elf).context("not an ELF file")?;
     let endian = file.endian();
@@ -106,7 +107,7 @@ fn image(elf: &[u8]) -> Result<(Vec<u8>, String)> {
         if segment.p_type(endian) != PT_LOAD {
             continue;
         }
-        // This is the load address, which may differ from the address at run time.
+        // `p_paddr` is the load address of a segment, which may differ from its address at run time.
         let address = u64::from(segment.p_paddr(endian));
         let length = u64::from(segment.p_memsz(endian));
         let Ok(data) = segment.data(endian, elf) else {

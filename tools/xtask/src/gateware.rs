@@ -37,7 +37,7 @@ impl Board {
     }
 }
 
-/// The sets of fields that a raymarcher can be built with: `BUILDS` of `glint_soc/raymarch.py`.
+/// The sets of distance fields that a raymarcher can be built with: `BUILDS` of `glint_soc/raymarch.py`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Fields {
     /// Every field, with cones: two lanes
@@ -70,7 +70,7 @@ pub fn build(board: Board) -> Result<()> {
     build_with(board, &[])
 }
 
-/// Builds `board` with options of `glint_soc`; replaces the build without options.
+/// Builds the gateware of `board` with command-line options of `glint_soc`, and replaces the build without options.
 ///
 /// # Errors
 /// As [`build`].
@@ -83,8 +83,8 @@ pub fn build_with(board: Board, options: &[&str]) -> Result<()> {
     Ok(())
 }
 
-/// Builds the virtual board with the four lanes of [`Fields::Sponge`] in `target/gateware/virtual-sponge`; keeps the standard
-/// build.
+/// Builds the virtual board with the four lanes of [`Fields::Sponge`] in `target/gateware/virtual-sponge`, and leaves the
+/// standard build as it is.
 ///
 /// # Errors
 /// As [`build`].
@@ -98,7 +98,7 @@ pub fn build_sponge_beside() -> Result<()> {
     verilate(&folder, Waveforms::Without)
 }
 
-/// Builds the virtual board's second library, slower and with waveform output.
+/// Builds a second library of the virtual board, which writes waveforms and is slower.
 ///
 /// # Errors
 /// As [`build`].
@@ -108,7 +108,7 @@ pub fn build_with_waveforms() -> Result<()> {
     verilate(&folder, Waveforms::With)
 }
 
-/// Runs LiteX, which writes Verilog, the BIOS, `csr.json` and `soc.svd`.
+/// Runs LiteX, which writes Verilog, the BIOS, `csr.json` and `soc.svd` to `folder`, unless its inputs are unchanged.
 fn generate(board: Board, folder: &Path, options: &[&str]) -> Result<()> {
     let root = paths::root();
     let gateware = root.join("gateware");
@@ -142,7 +142,7 @@ fn generate(board: Board, folder: &Path, options: &[&str]) -> Result<()> {
     fs::write(&stamp, inputs).with_context(|| format!("writing {}", stamp.display()))
 }
 
-/// Whether a library has waveform output.
+/// Whether the library of the virtual board can write waveforms.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Waveforms {
     With,
@@ -171,7 +171,7 @@ fn verilate(folder: &Path, waveforms: Waveforms) -> Result<()> {
     )
 }
 
-/// A text that changes when `salt` or any file below `roots` changes.
+/// Returns a hash, as text, of `salt` and of the paths and contents of all files below `roots`.
 fn fingerprint(roots: &[PathBuf], salt: &str) -> Result<String> {
     let mut hasher = DefaultHasher::new();
     salt.hash(&mut hasher);
@@ -186,7 +186,7 @@ fn fingerprint(roots: &[PathBuf], salt: &str) -> Result<String> {
     Ok(format!("{:016x}\n", hasher.finish()))
 }
 
-/// All files below the folder `root` in a fixed order, without Python's caches. If `root` is a file, only that file.
+/// Lists all files below the folder `root` in a fixed order, without Python's caches. If `root` is a file, lists that file only.
 fn files(root: &Path) -> Result<Vec<PathBuf>> {
     if !root.is_dir() {
         return Ok(vec![root.to_owned()]);
@@ -208,7 +208,7 @@ fn files(root: &Path) -> Result<Vec<PathBuf>> {
     Ok(found)
 }
 
-/// Whether the last build had the same `inputs`.
+/// Whether the last build had the same fingerprint `inputs`, which it wrote to the file `stamp`.
 fn is_current(stamp: &Path, inputs: &str) -> bool {
     fs::read_to_string(stamp).is_ok_and(|last| last == inputs)
 }

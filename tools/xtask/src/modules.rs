@@ -1,6 +1,7 @@
 //! `cargo xtask modules`: the structure of the sources.
 //!
-//! Three rules: no circle of modules in a crate, no `#[path]`, no hand-written source file above [`files::MOST_LINES`] lines.
+//! The command checks three rules: no circle of modules in a crate, no `#[path]`, no hand-written source file above
+//! [`files::MOST_LINES`] lines.
 //!
 //! **Circles.** An arrow from module A to module B counts when A names an item that B defines. B is the module that defines the
 //! item, not one that re-exports it. These do not count:
@@ -31,10 +32,10 @@ use crate::paths;
 use arrows::Arrows;
 use tree::Crate;
 
-/// Checks the three rules.
+/// Checks the three rules for the whole workspace.
 ///
 /// # Errors
-/// Lists every violation, a line each.
+/// A rule is violated, or a source cannot be read. The error lists every violation on a line of its own.
 pub fn check() -> Result<()> {
     let mut faults = Vec::new();
     let mut path_attributes = BTreeSet::new();
@@ -66,7 +67,8 @@ pub fn check() -> Result<()> {
     Ok(())
 }
 
-/// The circles of one crate as chains `a → b (name) → a (name)`. Each name is the item that the arrow before it uses.
+/// Returns the circles of one crate as chains such as `a → b (B) → a (A)`: module `a` uses the item `B` of module `b`, which uses
+/// the item `A` of module `a`.
 fn circles(tree: &Crate) -> Vec<String> {
     let arrows = arrows::arrows(tree);
     circles::circles(&arrows)
@@ -87,7 +89,7 @@ fn chain(tree: &Crate, arrows: &Arrows, circle: &[usize]) -> String {
     text
 }
 
-/// The used part of the output of `cargo metadata`.
+/// The part of the output of `cargo metadata` that the check uses.
 #[derive(Deserialize)]
 struct Metadata {
     packages: Vec<Package>,

@@ -1,8 +1,8 @@
 //! `cargo xtask pac`: writes the register access crate and the register map's page from the SoC's own description.
 //!
 //! LiteX exports a SoC in two incomplete files: `soc.svd` has fields and interrupts, `csr.json` has access rights, constants and
-//! memories. `description.json` (`gateware/glint_soc/description.py`) has the rest: enumerated values, counters, the blocks'
-//! constants. [`soc::Soc`] joins the three and refuses contradictions; [`rust`] and [`markdown`] print the result. The output
+//! memories. `description.json` (`gateware/glint_soc/description.py`) adds the enumerated values, counters and constants of the
+//! blocks. [`soc::Soc`] joins the three files and refuses contradictions; [`rust`] and [`markdown`] print the result. The output
 //! does not depend on the time, the machine or the order in which LiteX collects the parts: the same SoC gives the same bytes.
 
 mod description;
@@ -62,7 +62,7 @@ fn read(path: &Path) -> Result<String> {
     })
 }
 
-/// The first difference of `have` from `want`; `None` when they are equal.
+/// Describes the first line in which the text `have` differs from `want`; `None` when they are equal.
 fn first_difference(have: &str, want: &str) -> Option<String> {
     if have == want {
         return None;

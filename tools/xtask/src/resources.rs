@@ -1,7 +1,7 @@
 //! `cargo xtask resources`: FPGA resources of the gateware, against `gateware/budget.toml`.
 //!
-//! `gateware/tests/size.py` measures one block with Yosys; two blocks are measured at a time. [`size::Size`] is the result,
-//! [`budget::Budget`] its limit; [`table`] prints both.
+//! `gateware/tests/size.py` measures one block with Yosys; two blocks are measured at a time. [`size::Size`] has the result,
+//! [`budget::Budget`] the limits; [`table`] prints both.
 
 mod blocks;
 mod budget;
@@ -35,7 +35,7 @@ pub struct Options {
     pub write: bool,
 }
 
-/// Measures, prints, and compares with the budget.
+/// Measures the selected blocks, prints their sizes, and compares them with the budget.
 ///
 /// # Errors
 /// A block exceeds its budget, or cannot be measured.
@@ -63,7 +63,8 @@ pub fn resources(options: &Options) -> Result<()> {
     within(&excesses)
 }
 
-/// Checks this project's own blocks against the budget. The SoC takes too long to measure in every test.
+/// Measures this project's own blocks and compares them with the budget. The SoC is left out, because it takes too long to
+/// measure in every test.
 ///
 /// # Errors
 /// As [`resources`].
@@ -72,7 +73,7 @@ pub fn check_own_blocks() -> Result<()> {
     within(&budget.excesses(&measure(OWN.map(String::from).into())?))
 }
 
-/// Fails if there is an excess; the error has one line for each.
+/// Fails if there is an excess; the error has one line for each excess.
 fn within(excesses: &[Excess]) -> Result<()> {
     if excesses.is_empty() {
         return Ok(());
@@ -109,7 +110,7 @@ fn selection(blocks: &[String]) -> Result<VecDeque<String>> {
     Ok(names)
 }
 
-/// Measures blocks in parallel, and adds the flat build if all its parts are present.
+/// Measures blocks in parallel, and adds the sum `flat_build` if all its parts are among them.
 fn measure(names: VecDeque<String>) -> Result<Vec<Size>> {
     if names.iter().any(|name| name == SOC) {
         gateware::build(Board::Urbana)?;
@@ -167,7 +168,7 @@ fn measure_one(name: &str) -> Result<Size> {
     Size::parse(&line_of_size).with_context(|| format!("reading the size of {name}"))
 }
 
-/// Adds the sum of the flat build's parts, if all are present.
+/// Adds the block `flat_build`, the sum of [`FLAT_PARTS`], if all of these are in `sizes`.
 fn add_flat_build(sizes: &mut Vec<Size>) {
     let parts: Vec<&Size> = sizes
         .iter()

@@ -13,7 +13,7 @@ use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 
 use crate::paths;
 
-/// Lines of output shown on failure; the log has all.
+/// Number of the last lines of output shown on failure. The log has all lines.
 const SHOWN_ON_FAILURE: usize = 60;
 
 /// Progress lines of the running steps.
@@ -38,8 +38,8 @@ pub fn print_progress(line: &str) {
     });
 }
 
-/// Runs `command` as the step `name`: shows its latest line of output meanwhile, writes all output to `target/log`, and prints
-/// one line with the run time.
+/// Runs `command` as the step `name`: shows its latest line of output while it runs, writes all output to `target/log`, and
+/// prints one line with the run time at the end.
 ///
 /// # Errors
 /// The program cannot be started, or fails; then the end of its output is printed.
@@ -47,7 +47,7 @@ pub fn step(name: &str, command: &mut Command) -> Result<()> {
     watched_step(name, command, |_| ())
 }
 
-/// Like [`step`]; `watch` gets each line of output.
+/// Runs a step like [`step`], and calls `watch` with each line of output.
 ///
 /// # Errors
 /// As [`step`].
@@ -66,7 +66,8 @@ pub fn watched_step(name: &str, command: &mut Command, mut watch: impl FnMut(&st
     let mut child = command
         .spawn()
         .with_context(|| format!("{name}: cannot start `{program}`"))?;
-    // The command still holds write ends of the pipe. They are replaced, so that the pipe ends when the child closes its own.
+    // `command` still holds the writing ends of the pipe. They are dropped here, so that reading ends when the child process
+    // closes its copies.
     command.stdout(Stdio::null()).stderr(Stdio::null());
     let mut tail = VecDeque::new();
     let mut lines = BufReader::new(reader);
@@ -110,7 +111,7 @@ pub fn foreground(name: &str, command: &mut Command) -> Result<()> {
     Ok(())
 }
 
-/// Whether `command` runs and succeeds; its output is dropped.
+/// Runs `command` without showing its output; returns whether it succeeds.
 pub fn succeeds(command: &mut Command) -> bool {
     command
         .stdin(Stdio::null())
@@ -120,7 +121,7 @@ pub fn succeeds(command: &mut Command) -> bool {
         .is_ok_and(|status| status.success())
 }
 
-/// A spinner named `name`; without a terminal, a line at the start.
+/// Starts a spinner for the step `name`. Without a terminal it prints one line instead.
 fn spinner(name: &str) -> ProgressBar {
     if !std::io::stderr().is_terminal() {
         print_progress(&format!("  ...            {name}"));

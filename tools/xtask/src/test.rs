@@ -11,10 +11,10 @@ use anyhow::{Result, bail};
 use crate::gateware::{self, Board};
 use crate::{bootstrap, firmware, modules, pac, paths, resources, run};
 
-/// Sets up, builds and tests everything. A failed check does not stop the others; a failed build does.
+/// Sets up, builds and tests everything. A failed check does not stop the other checks; a failed build stops the command.
 ///
-/// The gateware's own checks run beside cargo's, because most checks keep one core busy. The Rust tests wait for the
-/// gateware tests, which build their models.
+/// The checks of the gateware run in parallel with those of cargo, because most checks keep one core busy. The Rust tests wait
+/// for the gateware tests, which build the verilated models that the Rust tests use.
 ///
 /// # Errors
 /// A build or a check fails; the error names the checks.
@@ -29,7 +29,7 @@ pub fn test() -> Result<()> {
     thread::scope(|scope| -> Result<()> {
         scope.spawn(|| {
             results.add(gateware_check("gateware tests", "gateware/tests/run.py"));
-            // The error is ignored: it means that the receiver is gone because a build has failed.
+            // The error is ignored: sending fails only if the receiver is gone because a build has failed.
             let _ = models_are_built.send(());
             results.add(gateware_check("proofs", "gateware/formal/run.py"));
             results.add(resources::check_own_blocks().map(|()| 1));

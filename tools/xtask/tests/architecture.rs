@@ -1,10 +1,10 @@
-//! The table of blocks in docs/architecture.md names files that exist, by the block's own name.
+//! Checks the table of blocks in docs/architecture.md: the files in a block's row exist and are named after the block.
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Text of a cell for an absent part, such as the model of a block that computes nothing.
+/// Text of a cell for a file that a block does not have, such as the model of a block that computes nothing.
 const ABSENT: &str = "–";
 
 fn root() -> PathBuf {

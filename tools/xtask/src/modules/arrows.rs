@@ -10,7 +10,7 @@ use syn::{
 
 use super::tree::{self, Crate, Definition, Id, Segments};
 
-/// For each arrow (from, to) the names that `from` takes from `to`.
+/// For each arrow (from, to), the names of the items in module `to` that module `from` uses.
 pub type Arrows = BTreeMap<(Id, Id), BTreeSet<String>>;
 
 /// Collects the arrows between the file modules of a crate.
@@ -35,7 +35,7 @@ pub fn arrows(tree: &Crate) -> Arrows {
 struct Collector<'a> {
     tree: &'a Crate,
     module: Id,
-    /// Variables and parameters of the current item; their names are not paths.
+    /// Variables and parameters of the current item. A name of these alone is not the path of an item.
     bindings: HashSet<String>,
     /// Imports of the code blocks around the current expression, the outermost block first.
     blocks: Vec<HashMap<String, Segments>>,
@@ -67,7 +67,7 @@ impl Collector<'_> {
         }
     }
 
-    /// Adds the arrow of a path in the scope of the module and its current block.
+    /// Adds the arrow for a path, as resolved in the scope of the module and of the blocks around the path.
     fn path(&mut self, path: &[String]) {
         let Some(first) = path.first() else { return };
         if path.len() == 1 && self.bindings.contains(first) {
@@ -86,11 +86,11 @@ impl Collector<'_> {
         }
     }
 
-    /// Collects the paths in the arguments of a macro or attribute, which are tokens. With `absolute`,
-    /// only paths from `crate` count.
+    /// Collects the paths in the arguments of a macro or attribute, which syn leaves as tokens. With `absolute`, only paths that
+    /// start with `crate` count.
     fn tokens(&mut self, tokens: TokenStream, absolute: bool) {
         let mut path = Segments::new();
-        // State after the last tokens: after a single `.` a name is a field or a method, and after `::` it continues the path.
+        // What the last tokens were: after a single `.`, the next name is a field or a method; after `::` it continues the path.
         let (mut colons, mut dot) = (0, false);
         for token in tokens {
             match token {
@@ -143,8 +143,8 @@ impl<'ast> Visit<'ast> for Collector<'_> {
         }
     }
 
-    /// Adds the arrow of an import. A re-export from a child module makes none, because the re-exporting module does not use
-    /// the item.
+    /// Adds the arrow of an import. A re-export of an item from a child module makes no arrow, because the re-exporting module
+    /// does not use the item.
     fn visit_item_use(&mut self, item: &'ast ItemUse) {
         for import in tree::imports(&item.tree) {
             for target in self.tree.resolve(self.module, &import.path) {
@@ -194,7 +194,8 @@ impl<'ast> Visit<'ast> for Collector<'_> {
         self.tokens(call.tokens.clone(), false);
     }
 
-    /// Handles a definition by `macro_rules!`: its relative paths belong to the caller, those from `$crate` to this module.
+    /// Collects the paths of a macro. In a definition by `macro_rules!`, relative paths belong to the macro's callers, so only
+    /// paths from `$crate` count for this module.
     fn visit_item_macro(&mut self, item: &'ast ItemMacro) {
         if item.ident.is_some() {
             self.tokens(item.mac.tokens.clone(), true);
@@ -203,7 +204,8 @@ impl<'ast> Visit<'ast> for Collector<'_> {
         }
     }
 
-    /// Collects the paths in `#[clap(value_parser = super::parse)]`. The attribute's own name is not of this crate.
+    /// Collects the paths in the arguments of an attribute, such as `#[clap(value_parser = super::parse)]`. The attribute's name
+    /// is left out, because it is defined in another crate.
     fn visit_attribute(&mut self, attribute: &'ast Attribute) {
         match &attribute.meta {
             Meta::List(list) => self.tokens(list.tokens.clone(), false),
@@ -213,13 +215,13 @@ impl<'ast> Visit<'ast> for Collector<'_> {
     }
 }
 
-/// The names that patterns bind.
+/// The names of the variables that patterns bind.
 struct Bindings(HashSet<String>);
 
 impl<'ast> Visit<'ast> for Bindings {
     fn visit_pat_ident(&mut self, pattern: &'ast PatIdent) {
         let name = tree::text(&pattern.ident);
-        // An upper-case name in a pattern is a constant or a variant.
+        // A name in a pattern that starts with a capital is a constant or a variant.
         if !name.starts_with(char::is_uppercase) {
             self.0.insert(name);
         }

@@ -5,8 +5,8 @@ use std::collections::{BTreeSet, HashMap, VecDeque};
 use super::arrows::Arrows;
 use super::tree::Id;
 
-/// Finds, for each module that lies on a circle, a shortest circle through it. Equal circles are listed once,
-/// starting at their lowest module id.
+/// Finds for each module on a circle a shortest circle through that module. A circle that is found for several modules is listed
+/// once, starting at the module with the lowest id.
 pub fn circles(arrows: &Arrows) -> Vec<Vec<Id>> {
     let modules: BTreeSet<Id> = arrows.keys().map(|(from, _)| *from).collect();
     let circles: BTreeSet<Vec<Id>> = modules

@@ -1,4 +1,4 @@
-//! Circles of small crates whose files are given as text.
+//! Tests the search for circles on small crates, whose files are given as text.
 
 use std::path::Path;
 
@@ -15,7 +15,7 @@ fn load(files: &[(&str, &str)]) -> Crate {
     Crate::load(Path::new("lib.rs"), &read).unwrap()
 }
 
-/// The circles of a crate of modules `a` and `b`.
+/// Returns the circles of a crate whose modules `a` and `b` have the given texts.
 fn of_pair(a: &str, b: &str) -> Vec<String> {
     circles(&load(&[
         ("lib.rs", "mod a; mod b;"),

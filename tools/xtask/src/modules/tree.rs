@@ -9,15 +9,15 @@ use syn::{Attribute, Expr, ExprLit, Ident, Item, ItemMod, Lit, Meta, UseTree, Vi
 /// Index of a module in [`Crate::modules`]; 0 is the crate's root.
 pub type Id = usize;
 
-/// Segments of a path.
+/// Segments of a path, such as `crate`, `a` and `B` of `crate::a::B`.
 pub type Segments = Vec<String>;
 
 /// Reads the text of a source file; `None` if no such file exists.
 pub type ReadSource<'a> = &'a dyn Fn(&Path) -> Option<String>;
 
-/// One crate: its root file and the modules below.
+/// One crate: its root module and all modules below the root.
 pub struct Crate {
-    /// Every module, the root first; inline modules too.
+    /// Every module, including inline modules; the root is the first.
     pub modules: Vec<Module>,
     /// `#[path]` attributes, as `FILE: mod NAME`.
     pub path_attributes: Vec<String>,
@@ -25,9 +25,9 @@ pub struct Crate {
 
 /// One module, inline or in its own file.
 pub struct Module {
-    /// Path below the root, `a::b`; the root is `crate`.
+    /// Path of the module below the root, such as `a::b`; `crate` for the root.
     pub name: String,
-    /// The module whose file contains this module: for a module in its own file, the module itself.
+    /// The module that the whole file belongs to: for an inline module the one around it, otherwise the module itself.
     pub file_module: Id,
     /// Items of the module, without those under `#[cfg(test)]`.
     pub items: Vec<Item>,
@@ -46,12 +46,12 @@ enum Name {
     Import(Segments),
 }
 
-/// The meaning of a path.
+/// What a path refers to.
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
 pub enum Definition {
     /// A module.
     Module(Id),
-    /// An item and the module that defines it.
+    /// An item, by the module that defines it and its name there.
     Item(Id, String),
 }
 
@@ -59,9 +59,9 @@ pub enum Definition {
 pub struct Import {
     /// The imported path.
     pub path: Segments,
-    /// Name of the item in this scope; none for a glob and for `_`.
+    /// Name of the item in the importing scope; `None` for a glob and for `_`.
     pub name: Option<String>,
-    /// `path::*`.
+    /// Whether the import is a glob, `path::*`.
     pub glob: bool,
 }
 
@@ -81,7 +81,7 @@ impl Crate {
         Ok(tree)
     }
 
-    /// Adds the module in `file`; the files of its children are below `folder`.
+    /// Adds the module in `file`, whose text is `text`. The files of its child modules are below `folder`.
     fn add_file(
         &mut self,
         parent: Option<Id>,
@@ -97,7 +97,7 @@ impl Crate {
         self.add(parent, name, id, Place { file, folder }, parsed.items, read)
     }
 
-    /// Adds a module with its items, then its children.
+    /// Adds a module with its items and child modules.
     fn add(
         &mut self,
         parent: Option<Id>,
@@ -211,13 +211,14 @@ impl Crate {
         false
     }
 
-    /// The meanings of `path` in the scope of module `from`; none for names of other crates, locals and primitives.
+    /// Returns the meanings of `path` in the scope of module `from`. Names of other crates, local variables and primitive types
+    /// have none.
     pub fn resolve(&self, from: Id, path: &[String]) -> Vec<Definition> {
         self.resolve_guarded(from, path, &mut HashSet::new())
     }
 
-    /// The macro `name`, defined in `from` or in the nearest module above it: macros are visible in
-    /// text order, child modules included.
+    /// Returns the macro `name` that is defined in module `from` or in the nearest module above it: a macro by `macro_rules!` is
+    /// visible in the child modules that follow it.
     pub fn textual_macro(&self, from: Id, name: &str) -> Option<Definition> {
         let mut next = Some(from);
         while let Some(id) = next {
@@ -230,7 +231,8 @@ impl Crate {
         None
     }
 
-    /// As [`Self::resolve`]; `seen` stops the search in a cycle of imports.
+    /// Resolves a path like [`Self::resolve`]. `seen` has the imports that are being resolved, and ends the search in a
+    /// cycle of imports.
     fn resolve_guarded<'a>(
         &'a self,
         from: Id,
@@ -262,7 +264,7 @@ impl Crate {
         self.descend(start, rest, seen)
     }
 
-    /// The meanings of `path`, whose first segment is a name in the scope of `module`.
+    /// Returns the meanings of `path`, whose first segment is a name in the scope of `module`.
     fn descend<'a>(
         &'a self,
         module: Id,
@@ -284,17 +286,18 @@ impl Crate {
             })
             .collect();
         if modules.is_empty() {
-            // The name is a type: the next segment is a variant or an associated item.
+            // The name is that of a type, and the next segment a variant or an associated item.
             return found;
         }
-        // A function may have the same name as a module, but only the module has names below.
+        // A function may have the same name as a module, but only a module contains further names.
         modules
             .into_iter()
             .flat_map(|id| self.descend(id, rest, seen))
             .collect()
     }
 
-    /// The meanings of `name` in the scope of `module`. A name that the module itself states hides those of globs.
+    /// Returns the meanings of `name` in the scope of `module`. A name that the module defines or imports by itself hides the
+    /// same name from a glob import.
     fn lookup<'a>(
         &'a self,
         module: Id,
@@ -332,7 +335,7 @@ impl Crate {
     }
 }
 
-/// A source file, and the folder of its children's files.
+/// A source file, and the folder that has the files of its child modules.
 struct Place<'a> {
     file: &'a Path,
     folder: PathBuf,
@@ -383,7 +386,7 @@ fn add_imports(tree: &UseTree, prefix: &mut Segments, leaves: &mut Vec<Import>) 
     }
 }
 
-/// An identifier without the `r#` of a raw one.
+/// Returns the text of an identifier, without the `r#` of a raw identifier.
 pub fn text(ident: &Ident) -> String {
     let text = ident.to_string();
     text.strip_prefix("r#").map(str::to_owned).unwrap_or(text)
@@ -449,7 +452,7 @@ fn has_attribute(attributes: &[Attribute], name: &str) -> bool {
         .any(|attribute| attribute.meta.path().is_ident(name))
 }
 
-/// The file that `#[path = "..."]` names.
+/// The file that an attribute `#[path = "..."]` names, if there is one.
 fn path_attribute(attributes: &[Attribute]) -> Option<String> {
     attributes
         .iter()

@@ -16,7 +16,7 @@ pub struct Description {
 /// Numbers that gateware, firmware and host share: `gateware/glint_soc/constants.py`.
 #[derive(Debug, Deserialize)]
 pub struct Machine {
-    /// Picture sizes, by their code.
+    /// Picture sizes in the order of their codes in registers.
     pub sizes: Vec<Size>,
     pub group: u32,
     pub list_table_words: u32,
@@ -38,7 +38,7 @@ pub struct Size {
 pub struct Block {
     /// Registers in the order of their addresses.
     pub registers: Vec<Register>,
-    /// Names of the registers that are free-running counters, in the order in which they are shown.
+    /// Names of the registers that are free-running counters, in the order in which software lists them.
     pub counters: Vec<String>,
     pub constants: Vec<Constant>,
 }
@@ -49,11 +49,11 @@ pub struct Register {
     pub name: String,
     /// Width in bits.
     pub width: u32,
-    /// Fields by lowest bit; empty for a register that is one plain number.
+    /// Fields in the order of their lowest bits; empty for a register that is one plain number.
     pub fields: Vec<Field>,
 }
 
-/// Bits of a register with a name of their own.
+/// A named range of bits in a register.
 #[derive(Deserialize)]
 pub struct Field {
     pub name: String,
@@ -63,7 +63,7 @@ pub struct Field {
     pub values: Vec<NamedValue>,
 }
 
-/// A value of a field with a name of its own.
+/// A named value of a field.
 #[derive(Clone, Debug, Deserialize, PartialEq, Eq)]
 pub struct NamedValue {
     pub value: u32,
@@ -71,7 +71,7 @@ pub struct NamedValue {
     pub text: String,
 }
 
-/// A number that software relies on.
+/// A property of the block that software relies on: a named number with its description.
 #[derive(Debug, Deserialize, PartialEq, Eq)]
 pub struct Constant {
     pub name: String,
@@ -88,7 +88,7 @@ impl Description {
         serde_json::from_str(text).context("description.json is not of the expected form")
     }
 
-    /// Takes out the block `name`.
+    /// Removes the block `name` from the description and returns it.
     ///
     /// # Errors
     /// When the description has no such block, or the block contradicts itself.
@@ -115,7 +115,7 @@ impl Description {
         Ok(block)
     }
 
-    /// Returns the shared numbers. Call it after all blocks have been taken out.
+    /// Returns the shared numbers. All blocks must have been taken out before.
     ///
     /// # Errors
     /// A block has not been taken out; the error names the first one.

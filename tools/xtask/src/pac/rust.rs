@@ -15,7 +15,7 @@ use text::{camel, decimal, hex};
 /// The text of `generated.rs`.
 ///
 /// # Errors
-/// When two of its names are equal.
+/// When two names of the module would be equal.
 pub fn print(soc: &Soc) -> Result<String> {
     let mut out = String::new();
     write_head(&mut out, soc)?;

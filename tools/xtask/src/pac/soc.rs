@@ -1,4 +1,4 @@
-//! The SoC, joined from three descriptions: LiteX's two are matched by address, Glint's own by name.
+//! The SoC, joined from three descriptions: the two of LiteX are matched by address, that of Glint by name.
 
 use std::collections::BTreeMap;
 
@@ -11,18 +11,18 @@ use super::description::{self, Block, Constant, Description, Machine, NamedValue
 /// Name of the constant that carries the CRC-32 of the pinned register map.
 const BUILD_ID: &str = "build_id";
 
-/// Contents of the generated files, sorted by address or name.
+/// The parts of the SoC that the generated files list, each sorted by address or by name.
 #[derive(Debug)]
 pub struct Soc {
     /// CRC-32 of the pinned register map.
     pub build_id: u32,
     /// Peripherals in the order of their base addresses.
     pub peripherals: Vec<Peripheral>,
-    /// Memories in the order of their base addresses, without `csr`.
+    /// Memories in the order of their base addresses, without `csr`, the window of the registers.
     pub memories: Vec<Memory>,
     /// Numbers that gateware, firmware and host share.
     pub machine: Machine,
-    /// Numeric constants that firmware may rely on, by name.
+    /// Numeric constants that firmware may rely on, sorted by name.
     pub constants: Vec<(String, u32)>,
 }
 
@@ -31,26 +31,26 @@ pub struct Soc {
 pub struct Peripheral {
     pub name: String,
     pub base: u32,
-    /// First paragraph of the gateware's own description; may be empty.
+    /// First paragraph of the description in the gateware; may be empty.
     pub description: String,
     pub interrupt: Option<u32>,
-    /// Registers by offset.
+    /// Registers in the order of their offsets.
     pub registers: Vec<Register>,
-    /// Names of the registers that are free-running counters, in the order in which they are shown.
+    /// Names of the registers that are free-running counters, in the order in which software lists them.
     pub counters: Vec<String>,
-    /// Numbers that software relies on.
+    /// Properties of the block that software relies on, each a named number.
     pub constants: Vec<Constant>,
 }
 
 impl Peripheral {
-    /// The counters' registers, in the order in which they are shown.
+    /// The registers of the counters, in the order of `counters`.
     pub fn counters(&self) -> Vec<&Register> {
         let register = |name: &String| self.registers.iter().find(|r| r.name == *name);
         self.counters.iter().filter_map(register).collect()
     }
 }
 
-/// One register of one or two 32-bit words, the high word first.
+/// A register of one 32-bit word, or of two with the high word first.
 #[derive(Debug)]
 pub struct Register {
     pub name: String,
@@ -61,7 +61,7 @@ pub struct Register {
     /// Width in bits.
     pub width: u32,
     pub description: String,
-    /// Fields by lowest bit; empty for a register that is one plain number.
+    /// Fields in the order of their lowest bits; empty for a register that is one plain number.
     pub fields: Vec<Field>,
 }
 
@@ -72,14 +72,14 @@ pub enum Access {
     ReadWrite,
 }
 
-/// Bits of a register with a name of their own.
+/// A named range of bits in a register.
 #[derive(Debug)]
 pub struct Field {
     pub name: String,
     pub lsb: u32,
     pub width: u32,
     pub description: String,
-    /// Values with a name of their own. Empty where the field is a number or a flag.
+    /// Named values of the field; empty for a field that is a number or a flag.
     pub values: Vec<NamedValue>,
 }
 
@@ -139,7 +139,7 @@ fn peripherals(
             "`{name}` lies at {base:#010x} in soc.svd and at {json_base:#010x} in csr.json"
         );
         let mut registers = registers(node, &name, base, &mut declared)?;
-        // A memory behind the register bus (the identifier) has no registers in csr.json.
+        // The SoC's identifier text is a memory behind the register bus, and has no registers in csr.json.
         if !registers.is_empty() {
             let Block {
                 registers: described,
@@ -174,8 +174,8 @@ fn peripherals(
     Ok(peripherals)
 }
 
-/// Adds the named values of `described` to the fields of `registers`, and drops the fields that LiteX invents for soc.svd where
-/// none was declared.
+/// Adds the named values of `described` to the fields of `registers`. For a register that was declared without fields, LiteX adds
+/// fields to soc.svd; these are dropped.
 fn join_fields(
     peripheral: &str,
     registers: &mut [Register],
@@ -233,7 +233,7 @@ fn join_fields(
 
 /// A register as csr.json declares it.
 struct Declared {
-    /// Name of the form `peripheral_register`.
+    /// Name in csr.json, of the form `peripheral_register`.
     name: String,
     words: u32,
     access: Access,
@@ -274,7 +274,7 @@ fn declared_registers(csr: &Value) -> Result<BTreeMap<u32, Declared>> {
     Ok(declared)
 }
 
-/// The registers of one peripheral of soc.svd, each taken out of `declared`.
+/// Reads the registers of one peripheral from soc.svd, and takes each of them out of `declared`.
 fn registers(
     peripheral: Node,
     peripheral_name: &str,
@@ -392,8 +392,8 @@ fn memories(csr: &Value) -> Result<Vec<Memory>> {
     Ok(memories)
 }
 
-/// The numeric constants, without interrupt numbers, which the peripherals state, and without the settings of the BIOS's memory
-/// test, which differ between boards.
+/// Reads the numeric constants from csr.json. Interrupt numbers are left out because the peripherals have them, and the settings
+/// of the BIOS's memory test because they differ between boards.
 fn constants(csr: &Value) -> Result<BTreeMap<String, u32>> {
     let mut constants = BTreeMap::new();
     for (name, value) in object(csr, "constants")? {
@@ -436,7 +436,7 @@ fn number(text: &str) -> Result<u32> {
     parsed.with_context(|| format!("soc.svd: expected a number of 32 bits, found `{text}`"))
 }
 
-/// A description on one line, with reStructuredText's code quotes turned into Markdown's.
+/// Converts a description to one line, and the code quotes of reStructuredText to those of Markdown.
 fn flowed(text: Option<&str>) -> String {
     text.unwrap_or_default()
         .split_whitespace()
@@ -449,8 +449,8 @@ fn first_paragraph(text: &str) -> String {
     flowed(text.trim().split("\n\n").next())
 }
 
-/// The description of a field without LiteX's sentence on the trigger, which names a falling edge for every event. LiteX writes
-/// `None` for a missing description.
+/// Returns the description of a field without LiteX's sentence on the trigger, which names a falling edge for every event. A
+/// missing description, for which LiteX writes `None`, becomes empty.
 fn field_description(text: &str) -> String {
     let text = text
         .split(" This Event is triggered")
@@ -463,8 +463,8 @@ fn field_description(text: &str) -> String {
     }
 }
 
-/// The description of a register. Registers of an event manager get general words, because LiteX's describe the last event
-/// only; a register of several words loses LiteX's note on the bits of this word.
+/// Returns the description of a register. Registers of an event manager get a general description, because LiteX's describes the
+/// last event only. From a register of several words, LiteX's note on the bits of one word is removed.
 fn register_description(name: &str, text: &str) -> String {
     match (name, text.strip_prefix("Bits ")) {
         ("ev_status", _) => "Level of each event's trigger.".to_owned(),

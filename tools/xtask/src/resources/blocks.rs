@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 
 use crate::paths;
 
-/// This project's own blocks. The one that takes longest to measure comes first.
+/// This project's own blocks. The block that takes longest to measure comes first.
 pub const OWN: [&str; 7] = [
     "ring_lane",
     "setup",
@@ -17,8 +17,8 @@ pub const OWN: [&str; 7] = [
     "i2c_engine",
 ];
 
-/// Engines made of own blocks, in several builds, and parts of the raymarcher. The tables show them. `cargo xtask test` does not
-/// measure them, because that would take too long.
+/// Engines that consist of own blocks, in several builds, and parts of the raymarcher. The tables list these blocks, but `cargo
+/// xtask test` does not measure them, because that would take too long.
 pub const BUILDS: [&str; 10] = [
     "triangle_engine_smooth",
     "raymarcher",
@@ -32,7 +32,7 @@ pub const BUILDS: [&str; 10] = [
     "round_light",
 ];
 
-/// The modules of the raymarcher's fields: the files `field_*.sv`, except `field_unit.sv`, which has them all.
+/// The modules of the raymarcher's fields: the files `field_*.sv`, except `field_unit.sv`, which contains all of them.
 ///
 /// # Errors
 /// The folder cannot be read.
@@ -53,13 +53,13 @@ pub fn fields() -> Result<Vec<String>> {
 
 /// Parts of the smallest engine that draws flat triangles.
 pub const FLAT_PARTS: [&str; 3] = ["vertex_stage", "setup", "triangle_raster"];
-/// Name of the sum of [`FLAT_PARTS`].
+/// Name of the block that is the sum of [`FLAT_PARTS`].
 pub const FLAT: &str = "flat_build";
 
-/// The whole of the Urbana's FPGA.
+/// Name of the whole design in the Urbana's FPGA.
 pub const SOC: &str = "soc";
 
-/// The rows of the tables, in their order. Other modules come after these.
+/// The blocks in the order of their rows in the tables. Other modules come after these rows.
 pub const ROWS: [&str; 22] = [
     "scanout",
     "i2c_engine",

@@ -18,7 +18,7 @@ pub type Limits = BTreeMap<Resource, u32>;
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Budget {
-    /// Resources of the FPGA: the SoC's limits.
+    /// Resources of the FPGA, which are the limits of the SoC.
     pub device: Limits,
     /// Default limits for each of this project's own blocks.
     own: Limits,
@@ -26,7 +26,7 @@ pub struct Budget {
     block: BTreeMap<String, Limits>,
 }
 
-/// A block above its limit.
+/// A resource of a block that is above its limit.
 #[derive(Debug, PartialEq, Serialize)]
 pub struct Excess {
     /// The block.
@@ -75,7 +75,8 @@ impl Budget {
         Ok(budget)
     }
 
-    /// Limits of a block: its own where it has any, otherwise those of its kind.
+    /// Returns the limits of a block. A limit of this single block replaces the default limit, which is the device's for the SoC
+    /// and that of own blocks otherwise.
     pub fn limits(&self, block: &str) -> Limits {
         let common = if block == SOC {
             &self.device
@@ -87,7 +88,7 @@ impl Budget {
         limits
     }
 
-    /// All blocks above their limits.
+    /// Lists every resource of every block that is above its limit.
     pub fn excesses(&self, sizes: &[Size]) -> Vec<Excess> {
         let mut excesses = Vec::new();
         for size in sizes {
@@ -112,7 +113,7 @@ pub mod tests {
     use super::super::size::tests::size;
     use super::*;
 
-    /// A budget that blocks of [`size`] meet, except for the SoC.
+    /// A budget that the block of [`size`] meets as `setup`, but exceeds as `band_buffer` and as `soc`.
     pub const BUDGET: &str = "device = { lut = 32600, ff = 65200, dsp48 = 120, ramb36 = 75 }
         own = { path = 9 }
         [block]

@@ -47,7 +47,7 @@ impl Resource {
     }
 }
 
-/// One line of `gateware/tests/run.py --size`: cells of a mapped netlist.
+/// The size of a block, from a line of output of `gateware/tests/run.py --size`: the counts of the cells in its mapped netlist.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Size {
@@ -73,7 +73,7 @@ pub struct Size {
     pub carry4: u32,
     /// Cells on the longest path between registers.
     pub path: u32,
-    /// Numbers of the other cells by the name of their kind.
+    /// Number of cells of each other kind, by the name of the kind.
     pub others: BTreeMap<String, u32>,
 }
 
@@ -86,7 +86,7 @@ impl Size {
         serde_json::from_str(line).with_context(|| format!("not a size: `{line}`"))
     }
 
-    /// Sum of several blocks; the path is the longest of all.
+    /// Adds up several blocks to a block `name`. Its path is the longest of their paths.
     pub fn sum(name: &str, parts: &[&Self]) -> Self {
         let total = |count: fn(&Self) -> u32| parts.iter().map(|part| count(part)).sum();
         let mut others = BTreeMap::new();
@@ -111,7 +111,7 @@ impl Size {
         }
     }
 
-    /// Amount of `resource` in the block.
+    /// Amount of `resource` in the block; a half block RAM counts 0.5.
     pub fn of(&self, resource: Resource) -> f64 {
         match resource {
             Resource::Lut => f64::from(self.logic + self.srl + self.lutram),
@@ -124,7 +124,7 @@ impl Size {
     }
 }
 
-/// A count with commas between its thousands; halves as `.5`.
+/// Formats a count with commas between its thousands, and a half as `.5`.
 pub fn number(count: f64) -> String {
     let digits = format!("{:.0}", count.trunc());
     let mut grouped = String::new();
@@ -145,7 +145,7 @@ pub fn number(count: f64) -> String {
 pub mod tests {
     use super::*;
 
-    /// A block in which every count is different.
+    /// Returns a block called `name` in which every count is different.
     pub fn size(name: &str) -> Size {
         let line = r#"{"name": "NAME", "yosys": "Yosys 0.70", "logic": 1200, "srl": 30, "lutram": 4, "ff": 2000, "dsp48": 7,
             "ramb36": 2, "ramb18": 1, "carry4": 50, "path": 9, "others": {"MUXF7": 3}}"#;

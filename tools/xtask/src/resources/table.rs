@@ -28,10 +28,10 @@ const NOTES: [&str; 7] = [
     "The SoC's path is not limited: the soft core has longer paths than the own blocks.",
 ];
 
-/// The rows of a table, all of equal length; the first is the head.
+/// The rows of a table, all of equal length. The first row is the head.
 type Rows = Vec<Vec<String>>;
 
-/// Sizes of the blocks, and the SoC's share of the device.
+/// Rows with the sizes of the blocks, and with the share of the device that the SoC takes.
 fn sizes_rows(sizes: &[Size], budget: &Budget) -> Rows {
     let mut rows = vec![strings(&[
         "block", "LUT", "logic", "SRL", "LUTRAM", "FF", "DSP48", "RAMB36", "CARRY4", "path",
@@ -64,7 +64,7 @@ fn sizes_rows(sizes: &[Size], budget: &Budget) -> Rows {
     rows
 }
 
-/// Limits of the blocks.
+/// Rows with the limits of the blocks.
 fn budget_rows(sizes: &[Size], budget: &Budget) -> Rows {
     let mut head = vec!["block".to_owned()];
     head.extend(Resource::ALL.map(|resource| resource.name().to_owned()));
@@ -82,7 +82,7 @@ fn budget_rows(sizes: &[Size], budget: &Budget) -> Rows {
     rows
 }
 
-/// Text with the SoC's cells that count as no resource.
+/// Lists the SoC's cells that count as no resource, as text; `None` if the SoC was not measured.
 fn others(sizes: &[Size]) -> Option<String> {
     let soc = sizes.iter().find(|size| size.name == SOC)?;
     let cells: Vec<String> = soc
@@ -97,7 +97,7 @@ fn yosys(sizes: &[Size]) -> &str {
     sizes.first().map_or("Yosys", |size| &size.yosys)
 }
 
-/// Tables for a terminal.
+/// Formats both tables for a terminal.
 pub fn text(sizes: &[Size], budget: &Budget) -> String {
     let mut out = aligned(&sizes_rows(sizes, budget));
     write!(out, "\nbudget\n{}\n", aligned(&budget_rows(sizes, budget)))
@@ -166,7 +166,7 @@ fn strings(words: &[&str]) -> Vec<String> {
     words.iter().map(|word| (*word).to_owned()).collect()
 }
 
-/// Aligns the first column left, the others right.
+/// Formats a table as text, with the first column aligned left and the others right.
 fn aligned(rows: &Rows) -> String {
     let columns = rows[0].len();
     let widths: Vec<usize> = (0..columns)

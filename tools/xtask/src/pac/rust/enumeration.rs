@@ -10,9 +10,9 @@ use super::text::{camel, documented, sentence};
 
 /// A set of named values, and the fields that hold one of them.
 pub struct Enumeration<'s> {
-    /// Name of its type.
+    /// Name of the enumeration's Rust type.
     pub kind: String,
-    /// Width of its fields in bits.
+    /// Width in bits of the fields that hold one of the values.
     width: u32,
     values: &'s [NamedValue],
     /// The fields that hold one of the values, as `register.field`.
@@ -20,22 +20,22 @@ pub struct Enumeration<'s> {
 }
 
 impl Enumeration<'_> {
-    /// Whether every value of the field has a name.
+    /// Whether every number that fits the field is one of the named values.
     pub fn is_total(&self) -> bool {
         self.values.len() as u64 == 1 << self.width
     }
 
-    /// Whether `field` holds a value of this enumeration.
+    /// Whether `field` has the same width and named values as this enumeration.
     pub fn is_of(&self, field: &Field) -> bool {
         !field.values.is_empty() && self.width == field.width && self.values == field.values
     }
 }
 
-/// The enumerations of a peripheral. Fields with the same values share one, which is named by the words that the names
-/// of the fields end in.
+/// Returns the enumerations of a peripheral. Fields with the same values share an enumeration. Its name is made of the last words
+/// that the names of these fields have in common.
 ///
 /// # Errors
-/// When a name is taken already, or fields that share their values have no part of their name in common.
+/// When the name is taken already, or the names of fields that share an enumeration do not end in the same word.
 pub fn of(peripheral: &Peripheral) -> Result<Vec<Enumeration<'_>>> {
     let mut enumerations: Vec<(Enumeration, &str)> = vec![];
     for register in &peripheral.registers {
@@ -80,7 +80,7 @@ pub fn of(peripheral: &Peripheral) -> Result<Vec<Enumeration<'_>>> {
         .collect()
 }
 
-/// The longest run of whole words that both names end in.
+/// The longest sequence of whole words, separated by `_`, in which both names end.
 fn common_suffix<'n>(name: &'n str, other: &str) -> &'n str {
     let words = name.rsplit('_').zip(other.rsplit('_'));
     let letters: usize = words

@@ -12,7 +12,7 @@ use super::text::{camel, decimal, documented, hex, identifier};
 /// Prints the module of `peripheral`.
 ///
 /// # Errors
-/// When the names of its enumerations are not distinct.
+/// When two enumerations of the peripheral would have the same name.
 pub fn write(out: &mut String, peripheral: &Peripheral) -> Result<()> {
     let enumerations = enumeration::of(peripheral)?;
     let (name, kind) = (&peripheral.name, camel(&peripheral.name));
@@ -75,7 +75,7 @@ fn constants(peripheral: &Peripheral) -> String {
         (
             "Value of `ident` where the block is present.".to_owned(),
             "IDENT".to_owned(),
-            // `ident` is a register of one word, so its reset value has 32 bits.
+            // The register `ident` has one word, so its reset value has 32 bits.
             hex(register.reset as u32),
         )
     });
@@ -95,7 +95,7 @@ fn constants(peripheral: &Peripheral) -> String {
         .collect()
 }
 
-/// The names of `crate::register` that the module of `peripheral` uses.
+/// The items of `crate::register` that the generated module of `peripheral` uses.
 fn imports(peripheral: &Peripheral) -> Vec<&'static str> {
     let any = |test: fn(&Register) -> bool| peripheral.registers.iter().any(test);
     let mut names = Vec::new();

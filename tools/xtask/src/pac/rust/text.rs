@@ -1,6 +1,6 @@
-//! Names, numbers and texts in Rust's notation.
+//! Converts names, numbers and texts of the SoC's description to Rust's notation.
 
-/// Words that cannot name a function.
+/// Keywords of Rust among the names in the gateware: they cannot be names of functions.
 const KEYWORDS: [&str; 5] = ["in", "loop", "mod", "type", "use"];
 
 /// Converts a name to Rust's form for types: `ev_pending` becomes `EvPending`.
@@ -45,7 +45,7 @@ pub fn decimal(value: u32) -> String {
     groups.join("_")
 }
 
-/// Escapes a description for rustdoc, which takes brackets outside code for links and tags.
+/// Escapes a description for rustdoc, which would read brackets outside code as links and tags.
 pub fn documented(description: &str) -> String {
     let parts = description.split('`').enumerate().map(|(index, part)| {
         if index % 2 == 1 {
